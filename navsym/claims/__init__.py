@@ -1,0 +1,38 @@
+"""Statements, verdicts, claims and papers: the nouns of navsym, as plain data."""
+
+from navsym.claims.claim import Claim, claim
+from navsym.claims.paper import Coverage, Paper, claims_of, coverage, equation_of
+from navsym.claims.statement import Bound, Box, Equation, Finding, Optimum, Property, Statement
+from navsym.claims.verdict import (
+    CERTIFIED,
+    CONFIRMED,
+    OPEN,
+    PROVED,
+    REFUTED,
+    Status,
+    Verdict,
+)
+
+__all__ = [
+    "CERTIFIED",
+    "CONFIRMED",
+    "OPEN",
+    "PROVED",
+    "REFUTED",
+    "Bound",
+    "Box",
+    "Claim",
+    "Coverage",
+    "Equation",
+    "Finding",
+    "Optimum",
+    "Paper",
+    "Property",
+    "Statement",
+    "Status",
+    "Verdict",
+    "claim",
+    "claims_of",
+    "coverage",
+    "equation_of",
+]

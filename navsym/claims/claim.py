@@ -1,0 +1,83 @@
+"""A claim: a statement with a name, a source and the verdict that its author expects."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal
+
+from navsym.claims.statement import Statement
+from navsym.claims.verdict import PROVED, Status
+
+Slip = Literal["paper", "scan"]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Claim:
+    """One checkable statement of a paper.
+
+    module   : derivation module, for example ``"guaranteed_velocity"``
+    number   : equation and part, ``"4.12.Phi21"``; an unnumbered statement has a short name
+    title    : one sentence, the first line of the docstring of ``derive``
+    derive   : function without arguments that returns the statement
+    expect   : the verdict that the source declares
+    corrects : number of the refuted claim that this one replaces
+    slip     : where the printed side went wrong, ``"paper"`` or ``"scan"``
+    reason   : one sentence: what is wrong and how one can tell
+    """
+
+    module: str
+    number: str
+    title: str
+    derive: Callable[[], Statement]
+    expect: Status = PROVED
+    corrects: str | None = None
+    slip: Slip | None = None
+    reason: str = ""
+
+    @property
+    def id(self) -> str:
+        return f"{self.module}:{self.number}"
+
+    @property
+    def corrects_id(self) -> str | None:
+        return None if self.corrects is None else f"{self.module}:{self.corrects}"
+
+
+def claim(
+    number: str,
+    *,
+    expect: Status = PROVED,
+    corrects: str | None = None,
+    slip: Slip | None = None,
+    reason: str = "",
+    title: str | None = None,
+) -> Callable[[Callable[[], Statement]], Claim]:
+    """Decorator that turns a function without arguments into a :class:`Claim`."""
+
+    def make(derive: Callable[[], Statement]) -> Claim:
+        return Claim(
+            module=module_of(derive),
+            number=number,
+            title=title if title is not None else first_line(derive),
+            derive=derive,
+            expect=expect,
+            corrects=corrects,
+            slip=slip,
+            reason=reason,
+        )
+
+    return make
+
+
+def module_of(derive: Callable[[], Statement]) -> str:
+    """Name of the derivation module: the part of the dotted name after ``derivations``."""
+    parts = derive.__module__.split(".")
+    return parts[1] if parts[0] == "derivations" and len(parts) > 1 else parts[-1]
+
+
+def first_line(derive: Callable[[], Statement]) -> str:
+    text = (derive.__doc__ or "").strip()
+    if not text:
+        raise ValueError(f"{derive.__name__}: a claim needs a docstring, its first line is the title")
+    return text.splitlines()[0].strip()

@@ -1,0 +1,94 @@
+"""The card of a paper: what it is, and every equation it numbers."""
+
+from __future__ import annotations
+
+import importlib
+import pkgutil
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from types import ModuleType
+
+from navsym.claims.claim import Claim
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Paper:
+    """Bibliographic card and the list of **all** numbered equations, so that omissions show.
+
+    module      : derivation module
+    equations   : every number printed in the paper, in order
+    definitions : number -> why nothing can be checked there (notation, a given model)
+    """
+
+    module: str
+    title: str
+    authors: tuple[str, ...]
+    year: int | None
+    source: str
+    language: str
+    equations: tuple[str, ...]
+    definitions: Mapping[str, str] = field(default_factory=dict)
+    doi: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Coverage:
+    """Which numbered equations are claimed, which only define, which are missing."""
+
+    claimed: tuple[str, ...]
+    definitions: tuple[str, ...]
+    missing: tuple[str, ...]
+
+
+def equation_of(number: str, equations: Iterable[str]) -> str | None:
+    """The numbered equation to which a claim belongs: the longest that it extends.
+
+    ``"4.12.Phi21"`` and ``"4.8*"`` belong to ``"4.12"`` and ``"4.8"``; a short name belongs to none.
+    """
+    fits = [
+        equation
+        for equation in equations
+        if number == equation or number.startswith((f"{equation}.", f"{equation}*"))
+    ]
+    return max(fits, key=len, default=None)
+
+
+def coverage(paper: Paper, claims: Iterable[Claim]) -> Coverage:
+    """Compare the paper's list of equations with the claims made about it."""
+    touched = {equation_of(claim.number, paper.equations) for claim in claims}
+    claimed = tuple(e for e in paper.equations if e in touched)
+    definitions = tuple(e for e in paper.equations if e in paper.definitions and e not in touched)
+    missing = tuple(e for e in paper.equations if e not in touched and e not in paper.definitions)
+    return Coverage(claimed, definitions, missing)
+
+
+def claims_of(module: ModuleType) -> tuple[Claim, ...]:
+    """All claims of a derivation module, in the order of the source.
+
+    A claim is a module attribute or a member of a tuple that is one; a folder contributes
+    the claims of its files in the order of their names.
+    """
+    found: dict[str, Claim] = {}
+    for part in parts_of(module):
+        for value in vars(part).values():
+            for claim in claims_in(value):
+                known = found.setdefault(claim.id, claim)
+                if known is not claim:
+                    raise ValueError(f"{claim.id}: two claims have this id")
+    return tuple(found.values())
+
+
+def claims_in(value: object) -> Iterator[Claim]:
+    if isinstance(value, Claim):
+        yield value
+    elif isinstance(value, tuple):
+        yield from (item for item in value if isinstance(item, Claim))
+
+
+def parts_of(module: ModuleType) -> list[ModuleType]:
+    """The module itself, and the files below it when it is a folder."""
+    path = getattr(module, "__path__", None)
+    if path is None:
+        return [module]
+    names = sorted(entry.name for entry in pkgutil.iter_modules(path))
+    return [module, *(importlib.import_module(f"{module.__name__}.{name}") for name in names)]

@@ -1,0 +1,112 @@
+"""What can be asserted: plain data with a printed and a derived side.
+
+The printed side is what a paper or a user says. The derived side follows from a model by a
+route of its own. Expressions are sympy objects without floating-point numbers; this file
+only carries them and never looks inside, so that importing it costs nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from navsym.claims.verdict import PROVED, Status
+
+#: Box: symbol -> (lower, upper), exact numbers, None for an end at infinity.
+Box = Mapping[Any, tuple[Any, Any]]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Equation:
+    """``printed = derived`` for all values of the symbols in the box.
+
+    printed, derived : expressions, matrices of one shape, or sequences of expressions
+    box              : ranges of the symbols; a symbol that is not named is any real number
+                       (or any positive one, when it was declared positive)
+    tolerance        : None for equality; an exact number for ``|printed - derived| <= tolerance``,
+                       which is how a printed numeral is meant (half a unit of its last digit)
+    nonzero          : expressions that the statement takes to be nonzero
+    """
+
+    printed: Any
+    derived: Any
+    box: Box = field(default_factory=dict)
+    tolerance: Any = None
+    nonzero: tuple[Any, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Bound:
+    """``printed relation derived`` on the whole box; relation is one of ``= != < <= > >=``.
+
+    The printed side stands on the left: ``Bound(det, "!=", 0, box)`` says that the printed
+    determinant does not vanish anywhere in the box.
+    """
+
+    printed: Any
+    relation: str
+    derived: Any
+    box: Box = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Optimum:
+    """A printed solution of the guaranteed-estimation problem and of its dual.
+
+    Minimise ``integral |Phi|`` subject to ``integral H(t) Phi(t) dt = functional`` over
+    ``interval``; dual: maximise ``x . functional`` subject to ``|x . H(t)| <= 1``.
+
+    regressors : derived H(t), one expression per unknown
+    functional : P
+    variable   : the symbol t
+    interval   : (start, end)
+    dual       : printed x
+    support    : printed instants
+    weights    : printed weights, one per instant
+    value      : printed optimal value (for a noise bound of one)
+    box        : ranges of the parameters
+    """
+
+    regressors: tuple[Any, ...]
+    functional: tuple[Any, ...]
+    variable: Any
+    interval: tuple[Any, Any]
+    dual: tuple[Any, ...]
+    support: tuple[Any, ...]
+    weights: tuple[Any, ...]
+    value: Any
+    box: Box = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Finding:
+    """A derived fact that an exact method has decided: a rank, a count, yes or no.
+
+    value       : an exact, comparable value (bool, int, Fraction, str, tuple of these)
+    status      : how strongly the method decided it (PROVED, CERTIFIED or CONFIRMED)
+    method, scope, assumptions, evidence, certificate : as in a verdict
+    """
+
+    value: Any
+    method: str
+    status: Status = PROVED
+    scope: str = ""
+    assumptions: tuple[str, ...] = ()
+    evidence: str = ""
+    certificate: Mapping[str, Any] | None = None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Property:
+    """A printed fact in words, as a value, beside the value that was found.
+
+    printed : what the paper says, for example ``True``, ``3`` or ``"three instants"``
+    derived : a :class:`Finding` whose value is compared with it
+    """
+
+    printed: Any
+    derived: Finding
+
+
+Statement = Equation | Bound | Optimum | Property
