@@ -5,12 +5,14 @@ Each function is the textbook formula in its numerically safe form.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
 from navsym.errors import DomainError
 
-Array = NDArray[np.float64]
+Array = NDArray[np.floating[Any]]
 
 
 def symmetrise(P: Array) -> Array:

@@ -1,0 +1,188 @@
+"""Linear models: dx/dt = F x + G w, z = H x + r, with symbols for everything that is not a number.
+
+A model is a value: sympy matrices without floating-point numbers, checked once. What follows
+from a model (transition matrix, observability, regressors) are functions in the files beside.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import sympy as sp
+
+from navsym.errors import DomainError, DuplicateError, EmptyError, NotFiniteError, ShapeError
+from navsym.models.noise import Noise
+
+#: The independent variable of a model that is not told otherwise.
+TIME = sp.Symbol("t", real=True)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LinearModel:
+    """dx/dt = F x + G w,  z = H x + r.
+
+    F            : (n, n) matrix of the system; may contain parameters and ``time``
+    G            : (n, q) how the process noise w enters; no columns when there is none
+    H            : (p, n) one row per scalar measurement
+    states       : n different names
+    noise        : what is known about w and r
+    measurements : p different names, by default z1, z2, ...
+    time         : the symbol of the independent variable
+
+    Matrices may be given as nested lists of exact numbers and expressions; a missing F makes no
+    model, a missing G means no process noise, a missing H no measurement.
+
+    Raises ShapeError, EmptyError, DuplicateError, NotFiniteError and DomainError (floats).
+    """
+
+    F: sp.ImmutableMatrix
+    G: Any = None                          # sp.ImmutableMatrix once constructed
+    H: Any = None
+    states: tuple[str, ...] = ()
+    noise: Noise = field(default_factory=Noise)
+    measurements: tuple[str, ...] = ()
+    time: sp.Symbol = TIME
+
+    def __post_init__(self) -> None:
+        F = square("F", self.F)
+        n = F.rows
+        G = sp.ImmutableMatrix.zeros(n, 0) if self.G is None else exact_matrix("G", self.G)
+        H = sp.ImmutableMatrix.zeros(0, n) if self.H is None else exact_matrix("H", self.H)
+        need_shape("G", G, (n, G.cols), "states by process noises")
+        need_shape("H", H, (H.rows, n), "measurements by states")
+        states = different("states", self.states or numbered("x", n), n, "states")
+        measurements = different(
+            "measurements", self.measurements or numbered("z", H.rows), H.rows, "measurements"
+        )
+        need_noise(self.noise, G.cols, H.rows)
+        values = {"F": F, "G": G, "H": H, "states": states, "measurements": measurements}
+        for name, value in values.items():
+            object.__setattr__(self, name, value)
+
+    @property
+    def size(self) -> int:
+        """Number of states."""
+        return len(self.states)
+
+    @property
+    def constant(self) -> bool:
+        """True when neither F nor H contains the time."""
+        return self.time not in self.F.free_symbols | self.H.free_symbols
+
+    @property
+    def parameters(self) -> tuple[sp.Symbol, ...]:
+        """Symbols of F, G, H other than the time, in the order of their names."""
+        symbols = self.F.free_symbols | self.G.free_symbols | self.H.free_symbols
+        return tuple(sorted(symbols - {self.time}, key=str))
+
+    def unit(self, state: str | int) -> sp.ImmutableMatrix:
+        """The functional (n, 1) that picks one state, by name or by number."""
+        place = self.states.index(state) if isinstance(state, str) and state in self.states else state
+        if not isinstance(place, int) or not 0 <= place < self.size:
+            raise DomainError(
+                f"state: expected one of {', '.join(self.states)}; got {state!r}; name one of them"
+            )
+        return sp.ImmutableMatrix(self.size, 1, lambda i, _: int(i == place))
+
+    def at(self, values: Mapping[sp.Symbol, Any]) -> LinearModel:
+        """The model with exact values or expressions put in for some of its parameters.
+
+        This is how a degenerate case is reached: substitute first, then derive.
+        """
+        F, G, H = (substituted(matrix, values) for matrix in (self.F, self.G, self.H))
+        return LinearModel(F, G, H, self.states, self.noise, self.measurements, self.time)
+
+
+def exact_matrix(name: str, value: Any) -> sp.ImmutableMatrix:
+    """A sympy matrix without floats and infinities; text is refused, so that nothing is parsed here."""
+    if isinstance(value, sp.MatrixBase):
+        rows = value.tolist()
+    else:
+        rows = [list(row) for row in value] if is_nested(value) else [[value]]
+    if len({len(row) for row in rows}) > 1:
+        lengths = [len(row) for row in rows]
+        raise ShapeError(f"{name}: expected rows of one length; got {lengths}; complete them")
+    entries = [[exact_entry(name, i, j, entry) for j, entry in enumerate(row)] for i, row in enumerate(rows)]
+    if isinstance(value, sp.MatrixBase):
+        return sp.ImmutableMatrix(*value.shape, [entry for row in entries for entry in row])
+    return sp.ImmutableMatrix(entries)
+
+
+def is_nested(value: Any) -> bool:
+    return isinstance(value, Sequence) and all(
+        isinstance(row, Sequence) and not isinstance(row, str) for row in value
+    )
+
+
+def exact_entry(name: str, i: int, j: int, entry: Any) -> sp.Expr:
+    """One entry as a sympy expression, refused when it is a float, an infinity or text."""
+    place = f"{name}[{i}, {j}]"
+    if isinstance(entry, str | float | complex) or (isinstance(entry, sp.Basic) and entry.has(sp.Float)):
+        raise DomainError(
+            f"{place}: expected an exact number or an expression; got {entry!r}; "
+            "write sp.Rational(1, 10), not 0.1"
+        )
+    try:
+        expression = sp.sympify(entry, strict=True)
+    except sp.SympifyError:
+        raise DomainError(f"{place}: expected a number or an expression; got {entry!r}; give one") from None
+    if expression.has(sp.nan, sp.oo, -sp.oo, sp.zoo):
+        raise NotFiniteError(f"{place}: expected a finite expression; got {expression}; remove it")
+    return expression
+
+
+def square(name: str, value: Any) -> sp.ImmutableMatrix:
+    """An exact matrix with as many rows as columns, at least one."""
+    matrix = exact_matrix(name, value)
+    if matrix.rows == 0:
+        raise EmptyError(f"{name}: expected a square matrix; got no rows; give one row per state")
+    need_shape(name, matrix, (matrix.rows, matrix.rows), "one row and one column per state")
+    return matrix
+
+
+def need_shape(name: str, matrix: sp.ImmutableMatrix, shape: tuple[int, int], why: str) -> None:
+    if matrix.shape != shape:
+        raise ShapeError(f"{name}: expected shape {shape}, {why}; got {matrix.shape}; complete it")
+
+
+def different(name: str, values: Iterable[Any], count: int, why: str) -> tuple[str, ...]:
+    """Names as strings, as many as needed and no two alike."""
+    names = tuple(str(value) for value in values)
+    if len(names) != count:
+        raise ShapeError(f"{name}: expected {count} names, one for each of the {why}; got {len(names)}")
+    for place, name_ in enumerate(names):
+        if name_ in names[:place]:
+            raise DuplicateError(f"{name}: expected different names; got {name_!r} twice; rename one")
+    return names
+
+
+def numbered(letter: str, count: int) -> tuple[str, ...]:
+    return tuple(f"{letter}{place + 1}" for place in range(count))
+
+
+def need_noise(noise: Noise, q: int, p: int) -> None:
+    """Noise is described for every component or for none."""
+    for name, kinds, count in (("process", noise.process, q), ("measurement", noise.measurement, p)):
+        if kinds and len(kinds) != count:
+            raise ShapeError(f"noise.{name}: expected {count} kinds, one per component; got {len(kinds)}")
+
+
+def substituted(matrix: sp.ImmutableMatrix, values: Mapping[sp.Symbol, Any]) -> sp.ImmutableMatrix:
+    """Simultaneous exact substitution; a pole shows itself as NotFiniteError at construction."""
+    exact = {symbol: exact_entry("value of", 0, 0, value) for symbol, value in values.items()}
+    return matrix.subs(exact, simultaneous=True)
+
+
+def observability_matrix(model: LinearModel) -> sp.ImmutableMatrix:
+    """The rows H, H F + H', (H F + H') F + ..., n blocks of p rows: (n p, n).
+
+    The state is determined by the measurements on any interval where its rank is n (for constant
+    F and H exactly then). Kalman's matrix for a constant model, Silverman and Meadows otherwise.
+    """
+    blocks = [model.H]
+    for _ in range(model.size - 1):
+        last = blocks[-1]
+        blocks.append((last * model.F + last.diff(model.time)).applyfunc(sp.expand))
+    return sp.ImmutableMatrix.vstack(*blocks)
