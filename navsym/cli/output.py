@@ -1,0 +1,197 @@
+"""What verbs print: one JSON document, or text and tables for people, and files written whole."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import sys
+import tempfile
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import IO, Any
+
+from navsym.errors import NavsymError
+
+#: Colours of the words that a reader looks for first.
+STYLES: Mapping[str, str] = {
+    "PROVED": "bold green",
+    "CERTIFIED": "green",
+    "CONFIRMED": "cyan",
+    "REFUTED": "bold red",
+    "OPEN": "yellow",
+    "ACCEPTED": "green",
+    "REJECTED": "bold red",
+    "missing": "yellow",
+    "yes": "green",
+    "no": "yellow",
+}
+
+
+class OutputError(NavsymError):
+    """A file that cannot be written."""
+
+    kind = "output"
+
+
+# One document, or text
+
+
+def emit(document: Any, *, as_json: bool, text: str | Callable[[], str | None]) -> None:
+    """Print the document as JSON, or the text for people.
+
+    document : plain data; numpy arrays and scalars are written as lists and numbers
+    text     : the text, or a function that returns it, called only when it is wanted;
+               a function that prints for itself returns None
+    Raises ValueError when the document holds NaN or an infinity: those are decimal strings or null.
+    """
+    if as_json:
+        put(dumps(document) + "\n")
+        return
+    shown = text() if callable(text) else text
+    if shown:
+        put(shown if shown.endswith("\n") else shown + "\n")
+
+
+def dumps(document: Any, *, indent: int | None = 2) -> str:
+    """The document as JSON text: UTF-8 throughout, keys as given, never NaN."""
+    return json.dumps(document, ensure_ascii=False, allow_nan=False, indent=indent, default=plain)
+
+
+def plain(value: Any) -> Any:
+    """Plain data for the values of numpy; anything else has to be made plain by its owner."""
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    raise TypeError(f"{type(value).__name__} is not plain data")
+
+
+def put(text: str, stream: IO[str] | None = None) -> None:
+    """Write text in UTF-8, whatever the locale says; lone surrogates of file names become '?'."""
+    stream = sys.stdout if stream is None else stream
+    stream.flush()
+    data = text.encode("utf-8", "replace")
+    raw = getattr(stream, "buffer", None)
+    if raw is None:
+        stream.write(data.decode("utf-8"))
+    else:
+        raw.write(data)
+    stream.flush()
+
+
+def remark(text: str) -> None:
+    """Progress and remarks: on standard error, so that standard output stays one document."""
+    put(visible(text) + "\n", sys.stderr)
+
+
+def visible(text: str) -> str:
+    """The text without control characters, so that a file's words cannot steer a terminal."""
+    return "".join(c if c.isprintable() or c in "\n\t" else repr(c)[1:-1] for c in text)
+
+
+# Tables
+
+
+def wants_colour(stream: Any = None) -> bool:
+    """True when the stream is a terminal and nobody asked for plain text (NO_COLOR, TERM=dumb)."""
+    stream = sys.stdout if stream is None else stream
+    if os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb":
+        return False
+    return bool(getattr(stream, "isatty", lambda: False)())
+
+
+def table(
+    columns: Sequence[str],
+    rows: Iterable[Sequence[Any]],
+    *,
+    title: str = "",
+    right: Iterable[str] = (),
+) -> str:
+    """A table as text: drawn by rich on a terminal, aligned plain columns otherwise.
+
+    columns : headings
+    rows    : one sequence of cells per row, as long as ``columns``; cells are shown with ``str``
+    right   : headings of the columns that are aligned to the right
+    """
+    cells = [[visible(str(cell)).replace("\n", " ") for cell in row] for row in rows]
+    if wants_colour():
+        return drawn_table(columns, cells, title, frozenset(right))
+    return plain_table(columns, cells, title, frozenset(right))
+
+
+def plain_table(columns: Sequence[str], cells: list[list[str]], title: str, right: frozenset[str]) -> str:
+    """Columns two blanks apart, headings underlined; nothing is cut off."""
+    widths = [max(map(len, column)) for column in zip(columns, *cells, strict=True)]
+
+    def line(row: Sequence[str]) -> str:
+        fields = zip(row, widths, columns, strict=True)
+        return "  ".join(c.rjust(w) if name in right else c.ljust(w) for c, w, name in fields).rstrip()
+
+    head = [title] if title else []
+    return "\n".join([*head, line(columns), line(["-" * w for w in widths]), *map(line, cells)])
+
+
+def drawn_table(columns: Sequence[str], cells: list[list[str]], title: str, right: frozenset[str]) -> str:
+    """The same table drawn by rich; cells are text, never markup."""
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+    drawn = Table(title=Text(title) if title else None, title_justify="left")
+    for name in columns:
+        drawn.add_column(Text(name), justify="right" if name in right else "left", overflow="fold")
+    for row in cells:
+        drawn.add_row(*(Text(cell, style=STYLES.get(cell, "")) for cell in row))
+    console = Console()
+    with console.capture() as capture:
+        console.print(drawn)
+    return capture.get()
+
+
+# Files
+
+
+def write_text(path: str | os.PathLike[str], text: str) -> None:
+    """Write a file whole or not at all: temporary file beside it, fsync, rename.
+
+    Raises OutputError when the folder is missing or cannot be written.
+    """
+    write_bytes(path, text.encode("utf-8"))
+
+
+def write_bytes(path: str | os.PathLike[str], data: bytes) -> None:
+    """Like :func:`write_text`, for bytes."""
+    target = Path(os.path.realpath(path))
+    try:
+        if target.exists() and not target.is_file():     # a pipe or /dev/stdout cannot be renamed over
+            target.write_bytes(data)
+        else:
+            replace_file(target, data)
+    except OSError as error:
+        reason = error.strerror or type(error).__name__
+        message = f"expected a file that can be written; got '{reason}'; choose another --out"
+        raise OutputError(message, where=str(path)) from error
+
+
+def replace_file(target: Path, data: bytes) -> None:
+    """The temporary file has the mode of a new file, or that of the one it replaces."""
+    handle, name = tempfile.mkstemp(prefix=f".{target.name[:50]}.", dir=target.parent)
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
+        os.chmod(name, mode_for(target))
+        os.replace(name, target)
+    except BaseException:
+        with contextlib.suppress(OSError):
+            os.unlink(name)
+        raise
+
+
+def mode_for(target: Path) -> int:
+    """Permission bits of the file that stands there, or what the umask leaves of 0666."""
+    if target.exists():
+        return target.stat().st_mode & 0o777
+    mask = os.umask(0)
+    os.umask(mask)
+    return 0o666 & ~mask
