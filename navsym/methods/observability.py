@@ -1,0 +1,318 @@
+"""Which part of the state each measurement observes, exactly and for symbols.
+
+For dx/dt = G x, sigma_k = h_k^T x the observable functionals of measurement k are spanned by the
+chain a_1 = h_k, a_{j+1} = G^T a_j (joint_correction:1.2). The chain breaks off at the first vector
+that depends on the earlier ones, a_{m+1} = theta_1 a_1 + ... + theta_m a_m (joint_correction:1.4):
+m is the dimension, theta the companion coefficients. All arithmetic is exact in Q[parameters];
+a coupling of 1e-15 is not zero. The dimensions are generic: where they drop is the subject of
+``observability_loci``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import sympy as sp
+
+from navsym.errors import DomainError, DuplicateError, EmptyError, TooLargeError, UnobservableError
+from navsym.methods.observability_linear import (
+    Matrix,
+    at_point,
+    independent_rows,
+    null_vectors,
+    points,
+    relation,
+    residue_chains,
+    residue_rank,
+)
+from navsym.methods.observability_ring import Poly, Quotient, Ring
+from navsym.models.linear import LinearModel
+
+#: Largest number of states; exact symbolic answers grow fast.
+STATES = 40
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Chain:
+    """The vectors a_1 ... a_m of one measurement, without denominators.
+
+    vectors   : m polynomial vectors; ``a_j = vectors[j - 1] / (bottom * clock**(j - 1))``
+    bottom    : common denominator of h
+    clock     : common denominator of G, the same for all chains
+    companion : theta_1 ... theta_m
+    """
+
+    name: str
+    vectors: Matrix
+    bottom: Poly
+    clock: Poly
+    companion: tuple[Quotient, ...]
+
+    @property
+    def dimension(self) -> int:
+        return len(self.vectors)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Chains:
+    """All chains of a model, and the staircase that spans what is observed jointly.
+
+    matrix    : numerator of G, (n, n); ``G = matrix / clock``
+    staircase : (k_1, ..., k_s): k_1 vectors of the first chain, then k_2 of the second, ... are a
+                basis of the jointly observable functionals
+    """
+
+    ring: Ring
+    states: tuple[str, ...]
+    matrix: Matrix
+    clock: Poly
+    chains: tuple[Chain, ...]
+    staircase: tuple[int, ...]
+
+    @property
+    def size(self) -> int:
+        return len(self.states)
+
+    @property
+    def joint_dimension(self) -> int:
+        return sum(self.staircase)
+
+    def staircase_vectors(self, counts: Sequence[int]) -> Matrix:
+        """counts[k] first vectors of every chain, one below the other; longer chains are continued."""
+        return [v for chain, count in zip(self.chains, counts, strict=True) for v in self.first(chain, count)]
+
+    def first(self, chain: Chain, count: int) -> Matrix:
+        """The first vectors of a chain, also beyond its dimension."""
+        vectors = list(chain.vectors[:count])
+        while len(vectors) < count:
+            vectors.append(transposed_times(self.matrix, vectors[-1], self.ring))
+        return vectors
+
+    def weight(self, counts: Sequence[int]) -> Poly:
+        """Product of the denominators that the staircase vectors were freed of."""
+        total = self.ring.constant(1)
+        for chain, count in zip(self.chains, counts, strict=True):
+            total = total * chain.bottom**count * self.clock ** (count * (count - 1) // 2)
+        return total
+
+
+def chains_of(model: LinearModel) -> Chains:
+    """Chains of all measurements of a constant model, with proofs of their dimensions.
+
+    Raises DomainError (time-varying model, zero row h, entries that are no rational functions),
+    EmptyError (no measurement), DuplicateError (two measurements with equal rows), TooLargeError.
+    """
+    check(model)
+    ring = Ring.of([model.F, model.H])
+    n = model.size
+    matrix, clock = numerators([model.F[i, :] for i in range(n)], ring)
+    rows = [numerators([model.H[k, :]], ring) for k in range(model.H.rows)]
+    chains = tuple(
+        chain_of(name, row[0], bottom, matrix, clock, ring)
+        for name, (row, bottom) in zip(model.measurements, rows, strict=True)
+    )
+    staircase = joint_staircase(chains, matrix, ring, n)
+    return Chains(ring, model.states, matrix, clock, chains, staircase)
+
+
+def check(model: LinearModel) -> None:
+    if not model.constant:
+        raise DomainError(
+            f"expected constant F and H; got entries with the time {model.time}; freeze them at an instant"
+        )
+    if model.size > STATES:
+        raise TooLargeError(f"expected at most {STATES} states; got {model.size}; split the model")
+    if model.H.rows == 0:
+        raise EmptyError("expected at least one measurement; got none; add a row h")
+    for k, name in enumerate(model.measurements):
+        if not any(model.H[k, :]):
+            raise DomainError(f"measurement {name}: expected a row h that is not zero; got zeros; remove it")
+        for earlier in range(k):
+            if all(sp.expand(entry) == 0 for entry in model.H[k, :] - model.H[earlier, :]):
+                raise DuplicateError(
+                    f"measurement {name}: expected a row of its own; got that of "
+                    f"{model.measurements[earlier]}; remove one of them"
+                )
+
+
+def numerators(rows: Sequence[sp.Matrix], ring: Ring) -> tuple[Matrix, Poly]:
+    """Entries times their least common denominator, and that denominator."""
+    quotients = [[ring.quotient(entry) for entry in row] for row in rows]
+    bottom = ring.constant(1)
+    for row in quotients:
+        for q in row:
+            bottom = bottom * ring.lowest(q.bottom, bottom).top
+    return [[q.top * ring.lowest(bottom, q.bottom).top for q in row] for row in quotients], bottom
+
+
+def transposed_times(matrix: Matrix, vector: list[Poly], ring: Ring) -> list[Poly]:
+    """G^T a for sparse polynomial entries."""
+    total = [ring.constant(0)] * len(vector)
+    for row, factor in zip(matrix, vector, strict=True):
+        if factor != 0:
+            total = [t + factor * x if x != 0 else t for t, x in zip(total, row, strict=True)]
+    return total
+
+
+def chain_of(name: str, row: list[Poly], bottom: Poly, matrix: Matrix, clock: Poly, ring: Ring) -> Chain:
+    """Vectors up to the first dependent one; its relation proves that the chain ends there."""
+    vectors = [row]
+    dimension = generic_rank([row], matrix, ring)
+    while True:
+        while len(vectors) <= dimension:
+            vectors.append(transposed_times(matrix, vectors[-1], ring))
+        coefficients = relation(vectors[:dimension], vectors[dimension], ring)
+        if coefficients is not None:
+            break
+        dimension += 1                  # the points were unlucky: the relation, not they, decides
+    m = dimension
+    companion = tuple(                  # joint_correction:1.4
+        ring.lowest(c.top * clock**j, c.bottom * clock**m) for j, c in enumerate(coefficients)
+    )
+    return Chain(name, vectors[:m], bottom, clock, companion)
+
+
+def generic_rank(rows: Matrix, matrix: Matrix, ring: Ring) -> int:
+    """Largest rank of the chains of the rows at the integer points: a proved lower bound.
+
+    The chains run in residues, so that this takes microseconds even for many symbols.
+    """
+    return max(residue_rank(residue_chains(rows, matrix, point)) for point in points(ring))
+
+
+def joint_staircase(chains: tuple[Chain, ...], matrix: Matrix, ring: Ring, n: int) -> tuple[int, ...]:
+    """How many vectors of every chain are needed after those of the earlier chains.
+
+    The lower bound is a nonzero minor at a point; unless it is n already, a relation shows for
+    every chain that its next vector depends on the basis, which is then closed under G^T.
+    """
+    counts: list[int] = []
+    basis: Matrix = []
+    for chain in chains:
+        ranks = [ranks_with(basis, chain, point) for point in points(ring)]
+        count = max(ranks) if len(basis) < n else 0
+        while len(basis) + count < n:
+            following = chain.vectors[count] if count < chain.dimension else None
+            if following is None or relation([*basis, *chain.vectors[:count]], following, ring) is not None:
+                break
+            count += 1
+        basis = [*basis, *chain.vectors[:count]]
+        counts.append(count)
+    return tuple(counts)
+
+
+def ranks_with(basis: Matrix, chain: Chain, point: Sequence[int]) -> int:
+    """How many leading vectors of the chain are independent of the basis at a point."""
+    rows = independent_rows(at_point([*basis, *chain.vectors], point))
+    return sum(1 for place in rows if place >= len(basis))
+
+
+# The answer in sympy
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MeasurementObservability:
+    """What one scalar measurement observes.
+
+    basis     : (m, n) rows a_1 ... a_m
+    companion : theta_1 ... theta_m with a_{m+1} = sum theta_j a_j
+    """
+
+    name: str
+    basis: sp.ImmutableMatrix
+    companion: tuple[sp.Expr, ...]
+
+    @property
+    def dimension(self) -> int:
+        return self.basis.rows
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Observability:
+    """Generic observability of a model, proved.
+
+    staircase    : how many chain vectors of every measurement form a basis of the observed functionals
+    unobservable : (n - joint_dimension, n) rows x with h_k^T G^j x = 0 for all j and k
+    assumptions  : denominators that are taken to be nonzero
+    """
+
+    states: tuple[str, ...]
+    measurements: tuple[MeasurementObservability, ...]
+    staircase: tuple[int, ...]
+    unobservable: sp.ImmutableMatrix
+    assumptions: tuple[sp.Expr, ...]
+    chains: Chains
+
+    @property
+    def joint_dimension(self) -> int:
+        return sum(self.staircase)
+
+    @property
+    def observable(self) -> bool:
+        return self.joint_dimension == len(self.states)
+
+
+def observe(model: LinearModel) -> Observability:
+    """Chains, dimensions, companion coefficients and unobservable directions of a constant model.
+
+    Errors as for :func:`chains_of`.
+    """
+    chains = chains_of(model)
+    ring, n = chains.ring, chains.size
+    hidden = null_vectors(chains.staircase_vectors(chains.staircase), n, ring)
+    if chains.joint_dimension == n:
+        hidden = []
+    entries = [ring.expression(x) for vector in hidden for x in vector]
+    return Observability(
+        states=model.states,
+        measurements=tuple(measured(chain, ring) for chain in chains.chains),
+        staircase=chains.staircase,
+        unobservable=sp.ImmutableMatrix(len(hidden), n, entries),
+        assumptions=denominators(chains),
+        chains=chains,
+    )
+
+
+def measured(chain: Chain, ring: Ring) -> MeasurementObservability:
+    rows = basis_rows(chain.vectors, chain, ring)
+    companion = tuple(ring.expression(c) for c in chain.companion)
+    return MeasurementObservability(chain.name, rows, companion)
+
+
+def basis_rows(vectors: Matrix, chain: Chain, ring: Ring) -> sp.ImmutableMatrix:
+    """The vectors as rows with their denominators put back."""
+    entries = []
+    for j, vector in enumerate(vectors):
+        scale = chain.bottom * chain.clock**j
+        entries += [ring.expression(ring.lowest(x, scale)) for x in vector]
+    return sp.ImmutableMatrix(len(vectors), len(vectors[0]) if vectors else 0, entries)
+
+
+def denominators(chains: Chains) -> tuple[sp.Expr, ...]:
+    """What must not vanish for the model itself to make sense."""
+    ring = chains.ring
+    bottoms = [chains.clock, *(chain.bottom for chain in chains.chains)]
+    return tuple(dict.fromkeys(ring.factored(b) for b in bottoms if not b.is_constant()))
+
+
+def direction_names(vector: Sequence[sp.Expr], states: Sequence[str]) -> str:
+    """A direction by the states it mixes: ``x1 - 2*x3``; parentheses around sums."""
+    parts = []
+    for value, state in zip(vector, states, strict=True):
+        if value != 0:
+            text = str(value)
+            factor = f"({text})" if value.is_Add else text
+            parts.append(state if value == 1 else f"-{state}" if value == -1 else f"{factor}*{state}")
+    return " + ".join(parts).replace("+ -", "- ")
+
+
+def need_observable(found: Observability) -> None:
+    """Raise UnobservableError with the directions that no measurement shows."""
+    if not found.observable:
+        hidden = found.unobservable
+        named = "; ".join(direction_names(hidden[k, :], found.states) for k in range(hidden.rows))
+        raise UnobservableError(
+            f"expected an observable pair; got rank {found.joint_dimension} of {len(found.states)}, no measurement "
+            f"shows the direction {named}; measure it or leave it out"
+        )
