@@ -1,0 +1,101 @@
+"""Bounds: printed relation derived on a whole box."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import sympy as sp
+from flint import arb
+
+from navsym.claims.statement import Bound, Box, Equation
+from navsym.claims.verdict import CERTIFIED, OPEN, PROVED, REFUTED, Verdict
+from navsym.errors import DomainError
+from navsym.proof.balls import UnsupportedError, tape
+from navsym.proof.bounds import Sign, SignProof, prove_sign
+from navsym.proof.equations import decide_equation, sampled
+from navsym.proof.normal_form import OutsideLanguageError, reduce_to_zero, vanishes_identically
+from navsym.proof.sampling import points, search_counterexample, value_at
+from navsym.proof.wording import decimal_ends, point_text, scope_of
+
+#: relation -> when a finite ball of printed - derived contradicts it.
+EXCLUDES: dict[str, Callable[[arb], bool]] = {
+    "<": lambda ball: bool(ball >= 0),
+    "<=": lambda ball: bool(ball > 0),
+    ">": lambda ball: bool(ball <= 0),
+    ">=": lambda ball: bool(ball < 0),
+    "!=": lambda ball: bool(ball == 0),
+}
+
+
+def decide_bound(statement: Bound) -> Verdict:
+    """Verdict of an inequality; ``=`` is handed to the equations."""
+    if statement.relation == "=":
+        return decide_equation(Equation(statement.printed, statement.derived, statement.box))
+    if statement.relation not in EXCLUDES:
+        raise DomainError(f"expected one of = != < <= > >=; got {statement.relation!r}; correct the relation")
+    difference = sp.sympify(statement.printed, strict=True) - sp.sympify(statement.derived, strict=True)
+    scope = scope_of(difference, statement.box)
+    try:
+        return decide_difference(difference, statement.relation, statement.box, scope)
+    except (UnsupportedError, OutsideLanguageError) as error:
+        return Verdict(OPEN, "none", scope, evidence=str(error))
+
+
+def decide_difference(difference: sp.Expr, relation: str, box: Box, scope: str) -> Verdict:
+    sample = search_counterexample(difference, lambda ball: contradicts(ball, relation), box)
+    if sample.counterexample is None and relation in ("<", ">", "!="):
+        exact = exact_zero_point(difference, box)
+        if exact is not None:
+            evidence = "the difference is exactly zero there"
+            return Verdict(
+                REFUTED,
+                "exact point",
+                "one point",
+                evidence=evidence,
+                counterexample=exact,
+                difference=("0", "0"),
+            )
+    if sample.counterexample is not None:
+        assert sample.difference is not None
+        low, high = decimal_ends(sample.difference)
+        return Verdict(
+            REFUTED,
+            method="exact point, ball arithmetic",
+            scope="one point",
+            evidence=f"printed - derived lies in [{low}, {high}] at an exact point",
+            counterexample=point_text(sample.counterexample),
+            difference=(low, high),
+        )
+    proof = prove_relation(difference, relation, box)
+    if proof.sign != Sign.UNKNOWN:
+        status = PROVED if proof.exact else CERTIFIED
+        return Verdict(status, "sign on the box", scope, evidence=proof.reason)
+    return sampled(sample, scope, f"printed {relation} derived")
+
+
+def contradicts(ball: arb, relation: str) -> bool:
+    return EXCLUDES[relation](ball)
+
+
+def exact_zero_point(difference: sp.Expr, box: Box) -> dict[str, str] | None:
+    """An exact point of the box at which the difference vanishes, proved by the normal form."""
+    program = tape(difference)
+    for point in points(sorted(difference.free_symbols, key=str), box, 24):
+        ball = value_at(program, point)
+        if not ball.is_finite() or not ball.contains(0):
+            continue
+        if vanishes_identically(difference.subs(point)):
+            return dict(point_text(point))
+    return None
+
+
+def prove_relation(difference: sp.Expr, relation: str, box: Box) -> SignProof:
+    if relation in ("<=", "<"):
+        difference = -difference
+    wanted = Sign.NONNEGATIVE if relation in ("<=", ">=") else Sign.POSITIVE
+    if wanted == Sign.NONNEGATIVE and reduce_to_zero(difference).zero:
+        return SignProof(Sign.NONNEGATIVE, "the two sides are equal", exact=True)
+    proof = prove_sign(difference, box, wanted)
+    if relation == "!=" and not proof.at_least(wanted):
+        proof = prove_sign(-difference, box, wanted)
+    return proof if proof.at_least(wanted) else SignProof(Sign.UNKNOWN)

@@ -1,0 +1,84 @@
+"""One door: a statement goes in, a verdict comes out.
+
+Every rung first tries to break the statement and then to prove it. What runs out of time or
+memory is OPEN, not a hang: ``decide_within`` works in a child process with limits.
+"""
+
+from __future__ import annotations
+
+from navsym.claims.statement import Bound, Equation, Finding, Optimum, Property, Statement
+from navsym.claims.verdict import OPEN, PROVED, REFUTED, Verdict
+from navsym.proof.equations import decide_equation
+from navsym.proof.inequalities import decide_bound
+from navsym.proof.optima import decide_optimum
+from navsym.proof.sandbox import Exhausted, run_limited
+
+DEFAULT_SECONDS = 20.0
+DEFAULT_MEGABYTES = 4096
+
+
+def decide(statement: Statement) -> Verdict:
+    """Verdict of a statement, in this process and without limits."""
+    if isinstance(statement, Equation):
+        return decide_equation(statement)
+    if isinstance(statement, Bound):
+        return decide_bound(statement)
+    if isinstance(statement, Optimum):
+        return decide_optimum(statement)
+    if isinstance(statement, Property):
+        return decide_property(statement)
+    raise TypeError(f"expected a statement; got {type(statement).__name__}")
+
+
+def decide_within(
+    statement: Statement, seconds: float = DEFAULT_SECONDS, megabytes: int = DEFAULT_MEGABYTES
+) -> Verdict:
+    """The same in a child process; OPEN when it needs more time or memory than allowed."""
+    outcome = run_limited(decide, (statement,), seconds, megabytes)
+    return exhausted(outcome) if isinstance(outcome, Exhausted) else outcome
+
+
+def exhausted(outcome: Exhausted) -> Verdict:
+    return Verdict(OPEN, "none", evidence=f"stopped: {outcome.why}; nothing is known")
+
+
+def decide_property(statement: Property) -> Verdict:
+    """A printed fact beside a computed one: they are equal, or the computed one refutes it."""
+    finding = statement.derived
+    if not same_value(statement.printed, finding.value):
+        return (
+            Verdict(
+                REFUTED,
+                method=finding.method,
+                scope=finding.scope,
+                evidence=f"printed {statement.printed!r}, found {finding.value!r}. {finding.evidence}".strip(),
+                counterexample={},
+                certificate=finding.certificate,
+            )
+            if finding.status.holds
+            else weak(statement, finding)
+        )
+    return Verdict(
+        finding.status,
+        method=finding.method,
+        scope=finding.scope,
+        assumptions=finding.assumptions,
+        evidence=finding.evidence,
+        certificate=finding.certificate,
+    )
+
+
+def weak(statement: Property, finding: Finding) -> Verdict:
+    """A value that was only sampled cannot refute."""
+    evidence = f"printed {statement.printed!r}, found {finding.value!r} by {finding.method} only"
+    return Verdict(OPEN, finding.method, finding.scope, evidence=evidence)
+
+
+def same_value(printed: object, found: object) -> bool:
+    """Equality of exact values; True is not 1, and a float is never compared."""
+    if isinstance(printed, float) or isinstance(found, float):
+        raise TypeError("expected exact values in a property; got a float; use Fraction or Rational")
+    return isinstance(printed, bool) == isinstance(found, bool) and printed == found
+
+
+__all__ = ["DEFAULT_SECONDS", "OPEN", "PROVED", "decide", "decide_within"]

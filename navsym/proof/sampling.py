@@ -1,0 +1,163 @@
+"""Looking for a counterexample: awkward exact points first, then random ones.
+
+A point is a dictionary symbol -> exact sympy number inside the box. Residuals are balls, so a
+counterexample is rigorous: the ball of ``left - right`` excludes the printed relation.
+"""
+
+from __future__ import annotations
+
+import itertools
+import random
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import sympy as sp
+from flint import arb
+
+from navsym.claims.statement import Box
+from navsym.proof.balls import Tape, enclose, exact_ball, tape
+
+Point = dict[sp.Symbol, sp.Expr]
+
+AWKWARD = tuple(
+    sp.sympify(value)
+    for value in (
+        sp.Integer(0), sp.Integer(1), sp.Rational(1, 2), sp.sqrt(2), sp.pi / 3, sp.Integer(-1), sp.Integer(2),
+        sp.pi, sp.Rational(-3, 2), sp.pi / 2, sp.Rational(7, 3), sp.Integer(10), sp.Rational(1, 100),
+    )
+)  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class Range:
+    """Range of one symbol; an end is None at infinity, and open when it is not attained."""
+
+    lower: sp.Expr | None
+    upper: sp.Expr | None
+    open_lower: bool = False
+    nonzero: bool = False
+    integer: bool = False
+
+    def contains(self, value: sp.Expr) -> bool:
+        """Rigorous membership of an exact number."""
+        if self.integer and not value.is_Integer:
+            return False
+        if (self.nonzero and value == 0) or (self.open_lower and value == self.lower):
+            return False
+        below = self.lower is not None and value != self.lower and not exact_ball(value - self.lower) > 0
+        above = self.upper is not None and value != self.upper and not exact_ball(self.upper - value) > 0
+        return not below and not above
+
+
+def range_of(symbol: sp.Symbol, box: Box) -> Range:
+    """Range of a symbol: the box, cut down by what the symbol was declared to be."""
+    lower, upper = box.get(symbol, (None, None))
+    lower = None if lower is None else sp.sympify(lower, strict=True)
+    upper = None if upper is None else sp.sympify(upper, strict=True)
+    lower = None if lower is sp.S.NegativeInfinity else lower
+    upper = None if upper is sp.S.Infinity else upper
+    integer, nonzero = bool(symbol.is_integer), bool(symbol.is_nonzero)
+    if symbol.is_positive and (lower is None or not exact_ball(lower) > 0):
+        return Range(sp.Integer(0), upper, True, True, integer)
+    if symbol.is_nonnegative and lower is None:
+        return Range(sp.Integer(0), upper, False, nonzero, integer)
+    if symbol.is_negative and upper is None:
+        return Range(lower, sp.Integer(0), False, True, integer)
+    return Range(lower, upper, False, nonzero, integer)
+
+
+def ranges(symbols: Sequence[sp.Symbol], box: Box) -> dict[sp.Symbol, Range]:
+    return {symbol: range_of(symbol, box) for symbol in symbols}
+
+
+def candidates(limits: Range, generator: random.Random) -> Iterator[sp.Expr]:
+    """Exact values of one symbol: inside points, ends and awkward numbers, then random rationals."""
+    lower, upper = limits.lower, limits.upper
+    if limits.integer:
+        first = 0 if lower is None else int(sp.ceiling(lower))
+        last = first + 40 if upper is None else int(sp.floor(upper))
+        yield from (sp.Integer(n) for n in range(first, last + 1))
+        while last >= first:
+            yield sp.Integer(generator.randint(first, last))
+        return
+    if lower is not None and upper is not None:
+        width = upper - lower
+        for share in ((1, 2), (1, 3), (0, 1), (1, 1), (3, 4), (1, 7), (1, 1000)):
+            yield lower + width * sp.Rational(*share)
+    yield from (value for value in AWKWARD if limits.contains(value))
+    while True:
+        yield random_value(limits, generator)
+
+
+def random_value(limits: Range, generator: random.Random) -> sp.Expr:
+    share = sp.Rational(generator.randint(1, 9999), 10000)
+    if limits.lower is not None and limits.upper is not None:
+        return limits.lower + (limits.upper - limits.lower) * share
+    stretched = share / (1 - share)  # (0, infinity)
+    if limits.lower is not None:
+        return limits.lower + stretched
+    if limits.upper is not None:
+        return limits.upper - stretched
+    return stretched if generator.random() < 0.5 else -stretched
+
+
+def points(symbols: Sequence[sp.Symbol], box: Box, count: int, seed: int = 0) -> Iterator[Point]:
+    """``count`` exact points of the box, the same ones for the same seed."""
+    if not symbols:
+        yield {}
+        return
+    generator = random.Random(seed)
+    limits = ranges(symbols, box)
+    streams = {}
+    for place, symbol in enumerate(symbols):
+        stream = (v for v in candidates(limits[symbol], generator) if limits[symbol].contains(v))
+        # Different symbols start at different awkward values, so that they are not all equal.
+        streams[symbol] = itertools.islice(stream, 2 * place if not limits[symbol].integer else place, None)
+    for _ in range(count):
+        point = {symbol: next(stream, None) for symbol, stream in streams.items()}
+        if any(value is None for value in point.values()):
+            return
+        yield point  # type: ignore[misc]
+
+
+def value_at(program: Tape, point: Mapping[sp.Symbol, sp.Expr], bits: int = 128) -> arb:
+    """Ball of the expression at an exact point."""
+    return enclose(program, {symbol: exact_ball(value, bits) for symbol, value in point.items()}, bits)
+
+
+@dataclass(frozen=True, slots=True)
+class Sample:
+    """What sampling found: a counterexample, or how close all the points were."""
+
+    counterexample: Point | None
+    difference: arb | None
+    points: int
+    largest: arb | None
+
+
+def search_counterexample(
+    difference: sp.Expr,
+    excludes: Callable[[arb], bool],
+    box: Box,
+    count: int = 64,
+    seed: int = 0,
+    sides: Sequence[sp.Expr] = (),
+) -> Sample:
+    """Look for a point at which the ball of ``difference`` excludes the statement.
+
+    excludes : true for a finite ball that contradicts the statement
+    sides    : expressions that have to be finite at the point as well
+    """
+    symbols = sorted(difference.free_symbols | set().union(*(s.free_symbols for s in sides)), key=str)
+    program, others = tape(difference), [tape(side) for side in sides]
+    tried, largest = 0, None
+    for point in points(symbols, box, count, seed):
+        ball = value_at(program, point)
+        if not ball.is_finite() or not all(value_at(other, point).is_finite() for other in others):
+            continue
+        tried += 1
+        if excludes(ball):
+            return Sample(point, ball, tried, None)
+        size = abs(ball)
+        largest = size if largest is None else largest.max(size)
+    return Sample(None, None, tried, largest)
