@@ -1,0 +1,143 @@
+"""One step of exact arithmetic at a time, bounded before it is done.
+
+sympy evaluates while it builds: ``9**9**9`` would be computed, ``exp(10**9*log(2))`` turned
+into a power and computed, ``1/0`` become ``zoo``. Here the size of every power is bounded
+first, and every result must be a finite real expression.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from fractions import Fraction
+
+import sympy as sp
+
+from navsym.errors import DomainError, NavsymError, TooLargeError
+from navsym.text.tokens import EXPONENT
+
+BITS = 13_000  # size of any number, below 4000 digits
+ROOT_BITS = 700  # size of a number under a root: sympy looks for square factors in it
+
+BUILDERS: dict[str, Callable[..., sp.Expr]] = {
+    "sin": sp.sin, "cos": sp.cos, "tan": sp.tan, "cot": sp.cot, "sec": sp.sec, "csc": sp.csc,
+    "exp": sp.exp, "log": sp.log, "sqrt": sp.sqrt, "abs": sp.Abs, "asin": sp.asin, "acos": sp.acos,
+    "atan": sp.atan, "atan2": sp.atan2, "sinh": sp.sinh, "cosh": sp.cosh, "tanh": sp.tanh,
+}  # fmt: skip
+
+
+class Refusal(Exception):
+    """Why a step is not done; the parser adds the place."""
+
+    def __init__(self, error: type[NavsymError], expected: str, got: str, do: str):
+        super().__init__(expected)
+        self.error, self.expected, self.got, self.do = error, expected, got, do
+
+
+def too_large(expected: str, got: str) -> Refusal:
+    return Refusal(TooLargeError, expected, got, "rescale, or state the formula without this power")
+
+
+def undefined(got: str) -> Refusal:
+    return Refusal(DomainError, "a finite real value", got, "restrict or correct the expression")
+
+
+def number(text: str) -> sp.Rational:
+    """A decimal number, exactly: ``"0.1"`` is 1/10 and ``"1e-9"`` is 1/10**9."""
+    value = Fraction(text)
+    return sp.Rational(value.numerator, value.denominator)
+
+
+def add(terms: list[sp.Expr]) -> sp.Expr:
+    return real(sp.Add(*terms)) if len(terms) > 1 else terms[0]
+
+
+def multiply(factors: list[sp.Expr]) -> sp.Expr:
+    return real(sp.Mul(*factors)) if len(factors) > 1 else factors[0]
+
+
+def invert(divisor: sp.Expr) -> sp.Expr:
+    if divisor.is_zero is True:
+        raise Refusal(DomainError, "a nonzero divisor", "zero", "correct the denominator")
+    return real(sp.Pow(divisor, -1))
+
+
+def power(base: sp.Expr, exponent: sp.Expr) -> sp.Expr:
+    """``base**exponent`` with the size of the result bounded before it is computed."""
+    bound_exponent(base, exponent)
+    if base.is_zero is True and exponent.is_extended_negative:
+        raise Refusal(DomainError, "a nonzero base", "zero to a negative power", "correct the denominator")
+    return real(sp.Pow(base, exponent))
+
+
+def call(name: str, arguments: list[sp.Expr]) -> sp.Expr:
+    """Function of the language at exact arguments."""
+    if name == "sqrt":
+        return power(arguments[0], sp.Rational(1, 2))
+    if name == "exp":
+        bound_logarithms(arguments[0])
+    return real(BUILDERS[name](*arguments))
+
+
+def bound_exponent(base: sp.Expr, exponent: sp.Expr) -> None:
+    """Refuse a power whose numbers, or whose total exponent, would be too large.
+
+    Every rational part of the exponent counts, also beside symbols: ``2**(x + n)*2**(-x)`` is ``2**n``.
+    """
+    size = max((abs(part) for part in rational_parts(exponent)), default=sp.Integer(0))
+    bits = number_bits(base)
+    if size > EXPONENT:
+        raise too_large(f"an exponent of at most {EXPONENT}", "a larger one")
+    if exponent.is_Rational and exponent.q > EXPONENT:
+        raise too_large(f"a fractional exponent with a denominator of at most {EXPONENT}", "a larger one")
+    if exponent.is_Rational and total_exponent(base) * size > EXPONENT:
+        raise too_large(f"a total exponent of at most {EXPONENT}", "powers of powers beyond it")
+    if bits * size > BITS:
+        raise too_large(f"numbers of at most {BITS} bits", f"about {int(bits * size)} bits")
+    if not exponent.is_integer and bits > ROOT_BITS:
+        raise too_large(f"at most {ROOT_BITS} bits under a root", f"{bits} bits")
+
+
+def bound_logarithms(argument: sp.Expr) -> None:
+    """``exp(n*log(a))`` is turned into ``a**n``: the caps of powers hold for it."""
+    for term in sp.Add.make_args(argument):
+        for factor in sp.Mul.make_args(term):
+            if isinstance(factor, sp.log):
+                bound_exponent(factor.args[0], term / factor)
+
+
+def rational_parts(exponent: sp.Expr) -> list[sp.Rational]:
+    """Rational coefficients of the terms of an exponent."""
+    parts = (term.as_coeff_Mul()[0] for term in sp.Add.make_args(exponent))
+    return [part for part in parts if part.is_Rational]
+
+
+def number_bits(base: sp.Expr) -> int:
+    """Size of the numbers that a power of ``base`` would raise: its rational factors."""
+    bits = 0
+    for factor in sp.Mul.make_args(base):
+        inner = factor.base if factor.is_Pow else factor
+        if inner.is_Rational:
+            bits += int(inner.p).bit_length() * (abs(inner.p) > 1) + int(inner.q).bit_length() * (inner.q > 1)
+    return bits
+
+
+def total_exponent(base: sp.Expr) -> sp.Rational:
+    """Largest rational exponent inside ``base``, which the outer one would multiply."""
+    inside = [part for factor in sp.Mul.make_args(base) if factor.is_Pow for part in rational_parts(factor.exp)]
+    return max([sp.Integer(1), *(abs(part) for part in inside)])
+
+
+def real(value: sp.Expr) -> sp.Expr:
+    """The value, when it is finite and real as far as a look at its surface tells."""
+    for term in sp.Add.make_args(value):
+        for factor in sp.Mul.make_args(term):
+            if factor in (sp.nan, sp.zoo, sp.oo, -sp.oo):
+                raise undefined("an undefined or infinite value")
+            if factor is sp.I or (factor.is_Pow and factor.base.is_negative and factor.exp.is_Rational
+                                  and not factor.exp.is_integer):  # fmt: skip
+                raise undefined("a value that is not real")
+            if factor.is_Rational and number_bits(factor) > BITS:
+                raise too_large(f"numbers of at most {BITS} bits", "a larger number")
+    if isinstance(value, (sp.asin, sp.acos)) and value.args[0].is_Rational and abs(value.args[0]) > 1:
+        raise undefined("the inverse of a sine or cosine above one")
+    return value

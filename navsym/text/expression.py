@@ -1,0 +1,231 @@
+"""Expressions in files: text to sympy and back, by a grammar of our own.
+
+No string from a file reaches sympy's parsers or ``eval``. Numbers are read exactly. The
+grammar, from the loosest to the tightest binding::
+
+    sum      = product (("+" | "-") product)*
+    product  = unary (("*" | "/") unary)*
+    unary    = ("+" | "-")* power
+    power    = atom ["**" unary]                     right associative, above a leading minus
+    atom     = number | name | "pi" | function "(" sum ["," sum] ")" | "(" sum ")"
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+
+import sympy as sp
+
+from navsym.errors import (
+    DomainError,
+    EmptyError,
+    ExpressionSyntaxError,
+    NavsymError,
+    TooLargeError,
+    UnknownSymbolError,
+)
+from navsym.text import arithmetic
+from navsym.text.names import FUNCTIONS, RESERVED, check_name, nearest, shown
+from navsym.text.printer import to_text
+from navsym.text.tokens import DEPTH, Source, Token, tokenize
+
+__all__ = ["Parsed", "parse", "parse_noting", "symbol", "to_text"]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Parsed:
+    """An expression with what its text divides by: sympy cancels ``x/x`` before anyone can ask."""
+
+    expression: sp.Expr
+    divisors: tuple[sp.Expr, ...]
+
+
+def parse(text: str, symbols: Mapping[str, sp.Symbol], *, where: str = "") -> sp.Expr:
+    """The expression that the text means, exactly.
+
+    symbols : declared name -> symbol, made by :func:`symbol`
+    where   : ``"file: key"``; the column is added to it
+
+    Raises EmptyError, ExpressionSyntaxError, UnknownSymbolError, DomainError (division by zero, a value that is
+    not real) or TooLargeError (caps on length, depth, exponent, digits).
+    """
+    return parse_noting(text, symbols, where=where).expression
+
+
+def parse_noting(text: str, symbols: Mapping[str, sp.Symbol], *, where: str = "") -> Parsed:
+    """Like :func:`parse`, together with every symbolic divisor that the text has."""
+    if not isinstance(text, str):
+        raise ExpressionSyntaxError(
+            f'expected an expression as text; got {shown(text)}; do put it in quotes, such as "1/2"', where=where
+        )
+    for name in RESERVED & symbols.keys():
+        check_name(name, where=where)
+    if not text.strip():
+        raise EmptyError("expected an expression; got an empty text; do write one, such as \"0\"", where=where)
+    source = Source(text, where)
+    reader = Reader(source, tokenize(source), symbols)
+    try:
+        return Parsed(reader.whole(), tuple(dict.fromkeys(reader.divisors)))
+    except RecursionError:
+        source.fail(0, "an expression that can be built", "one nested too deeply", "simplify it", TooLargeError)
+
+
+def symbol(
+    name: str,
+    *,
+    real: bool = True,
+    positive: bool = False,
+    nonnegative: bool = False,
+    nonzero: bool = False,
+    where: str = "",
+) -> sp.Symbol:
+    """A symbol with a checked ASCII name: the only kind that may reach code generation."""
+    wanted = {"real": real, "positive": positive, "nonnegative": nonnegative, "nonzero": nonzero}
+    return sp.Symbol(check_name(name, where=where), **{key: True for key, value in wanted.items() if value})
+
+
+@dataclass(slots=True, eq=False)
+class Reader:
+    """Recursive descent over the tokens; sums and products are built in one piece each."""
+
+    source: Source
+    tokens: list[Token]
+    symbols: Mapping[str, sp.Symbol]
+    position: int = 0
+    depth: int = 0
+    divisors: list[sp.Expr] = field(default_factory=list)
+
+    @property
+    def token(self) -> Token:
+        return self.tokens[self.position]
+
+    def take(self, *marks: str) -> Token | None:
+        """The next token if it is one of these marks."""
+        token = self.token
+        if token.kind != "mark" or token.text not in marks:
+            return None
+        self.position += 1
+        return token
+
+    def whole(self) -> sp.Expr:
+        value = self.sum()
+        if self.token.kind != "end":
+            self.unexpected("an operator or the end")
+        if value.has(sp.I, sp.nan, sp.zoo, sp.oo, -sp.oo, sp.Float):
+            self.source.fail(0, "a finite real value", "one that is not", "correct the expression", DomainError)
+        return value
+
+    def sum(self) -> sp.Expr:
+        at, terms = self.token.start, [self.product()]
+        while mark := self.take("+", "-"):
+            term = self.product()
+            terms.append(term if mark.text == "+" else self.do(mark.start, arithmetic.multiply, [sp.S.NegativeOne, term]))
+        return self.do(at, arithmetic.add, terms)
+
+    def product(self) -> sp.Expr:
+        at, factors = self.token.start, [self.unary()]
+        while mark := self.take("*", "/"):
+            factor = self.unary()
+            factors.append(factor if mark.text == "*" else self.inverse(mark.start, factor))
+        return self.do(at, arithmetic.multiply, factors)
+
+    def inverse(self, at: int, divisor: sp.Expr) -> sp.Expr:
+        if divisor.free_symbols:
+            self.divisors.append(divisor)
+        return self.do(at, arithmetic.invert, divisor)
+
+    def unary(self) -> sp.Expr:
+        at, sign = self.token.start, 1
+        while mark := self.take("+", "-"):
+            sign = -sign if mark.text == "-" else sign
+        value = self.power()
+        return value if sign > 0 else self.do(at, arithmetic.multiply, [sp.S.NegativeOne, value])
+
+    def power(self) -> sp.Expr:
+        base = self.atom()
+        mark = self.take("**")
+        if mark is None:
+            return base
+        exponent = self.nested(mark, self.unary)
+        if exponent.is_extended_negative is not False and base.free_symbols and exponent.is_number:
+            self.divisors.append(base)
+        return self.do(mark.start, arithmetic.power, base, exponent)
+
+    def atom(self) -> sp.Expr:
+        token = self.token
+        self.position += 1
+        if token.kind == "number":
+            return self.do(token.start, arithmetic.number, token.text)
+        if token.kind == "name":
+            return self.name(token)
+        if token.text == "(":
+            value = self.nested(token, self.sum)
+            self.close(token)
+            return value
+        self.position -= 1
+        self.unexpected("a number, a name, a function or (")
+
+    def name(self, token: Token) -> sp.Expr:
+        if token.text in FUNCTIONS:
+            return self.function(token)
+        if token.text == "pi":
+            return sp.pi
+        if token.text not in self.symbols:
+            got, do = shown(token.text), f"declare it or correct it: {nearest(token.text, self.symbols)}"
+            self.source.fail(token.start, "a declared name or a function", got, do, UnknownSymbolError)
+        if self.token.kind == "mark" and self.token.text == "(":
+            do = f"write a product with *: {token.text}*(...)"
+            self.source.fail(token.start, "an operator after a name", f"{token.text}(", do)
+        return self.symbols[token.text]
+
+    def function(self, token: Token) -> sp.Expr:
+        wanted = 2 if token.text == "atan2" else 1
+        opening = self.take("(")
+        if opening is None:
+            self.unexpected(f"( after {token.text}")
+        arguments = [self.nested(opening, self.sum)]
+        while len(arguments) < wanted and self.take(","):
+            arguments.append(self.nested(opening, self.sum))
+        if len(arguments) < wanted:
+            self.unexpected(f"a comma, since {token.text} takes {wanted} arguments,")
+        self.close(opening)
+        if token.text in ("tan", "cot", "sec", "csc"):
+            self.note_pole(token.text, arguments[0])
+        return self.do(token.start, arithmetic.call, token.text, arguments)
+
+    def note_pole(self, name: str, argument: sp.Expr) -> None:
+        divisor = sp.cos(argument) if name in ("tan", "sec") else sp.sin(argument)
+        if divisor.free_symbols:
+            self.divisors.append(divisor)
+
+    def close(self, opening: Token) -> None:
+        if not self.take(")"):
+            self.unexpected(f") to close the ( of {self.source.place(opening.start).rpartition(', ')[2]}")
+
+    def nested(self, token: Token, rule: Callable[[], sp.Expr]) -> sp.Expr:
+        self.depth += 1
+        if self.depth > DEPTH:
+            self.source.fail(token.start, f"at most {DEPTH} levels", "more", "give parts a name", TooLargeError)
+        value = rule()
+        self.depth -= 1
+        return value
+
+    def unexpected(self, expected: str) -> None:
+        token = self.token
+        got = "the end of the text" if token.kind == "end" else shown(token.text)
+        implicit = token.kind in ("number", "name") or token.text == "("
+        do = "write a product with *" if implicit else "complete or remove this part"
+        self.source.fail(token.start, expected, got, do)
+
+    def do(self, at: int, step: Callable[..., sp.Expr], *arguments: object) -> sp.Expr:
+        """One step of arithmetic, with its refusal placed in the text."""
+        try:
+            return step(*arguments)
+        except arithmetic.Refusal as refusal:
+            self.source.fail(at, refusal.expected, refusal.got, refusal.do, refusal.error)
+        except (NavsymError, RecursionError, MemoryError):
+            raise
+        except Exception as failure:  # sympy's own evaluation gave up on an exotic constant
+            got = f"one on which the algebra stops ({type(failure).__name__})"
+            self.source.fail(at, "an expression that can be evaluated exactly", got, "simplify it", DomainError)
