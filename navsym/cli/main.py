@@ -11,11 +11,12 @@ from __future__ import annotations
 import ast
 import contextlib
 import difflib
+import functools
 import importlib
 import os
 import sys
 import traceback
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -28,6 +29,10 @@ NOT_VERBS = frozenset({"main", "output"})
 
 INTERRUPTED = 130      # 128 + SIGINT, as shells have it
 BROKEN_PIPE = 141      # 128 + SIGPIPE
+
+
+class Stopped(Exception):
+    """Carries an interruption or a broken pipe past typer, which has answers of its own for them."""
 
 
 def main() -> NoReturn:
@@ -49,12 +54,8 @@ def run(arguments: Sequence[str]) -> int:
         status = dispatch(list(arguments))
         sys.stdout.flush()
         return status
-    except KeyboardInterrupt:
-        complain("interrupted")
-        return INTERRUPTED
-    except BrokenPipeError:
-        silence_stdout()
-        return BROKEN_PIPE
+    except (KeyboardInterrupt, BrokenPipeError, Stopped) as error:
+        return stopped(error.__cause__ if isinstance(error, Stopped) else error)
     except NavsymError as error:
         return report(error, as_json)
     except Exception as error:
@@ -130,12 +131,34 @@ def call(module: str, verb: str, arguments: list[str]) -> int:
         rich_markup_mode=None,                      # square brackets in help are TOML, not markup
         context_settings={"help_option_names": ["-h", "--help"]},
     )
-    app.command(name=verb)(importlib.import_module(module).command)
+    app.command(name=verb)(guarded(importlib.import_module(module).command))
     result = app(args=arguments, prog_name=f"navsym {verb}", standalone_mode=False)
     return result if isinstance(result, int) else 0
 
 
+def guarded(command: Callable[..., Any]) -> Callable[..., Any]:
+    """The command with the two ways of being stopped from outside handed to :func:`run`."""
+
+    @functools.wraps(command)
+    def inner(*positional: Any, **named: Any) -> Any:
+        try:
+            return command(*positional, **named)
+        except (KeyboardInterrupt, BrokenPipeError) as error:
+            raise Stopped from error
+
+    return inner
+
+
 # Errors
+
+
+def stopped(error: BaseException | None) -> int:
+    """Exit status after the user, or the reader of our output, has had enough."""
+    if isinstance(error, BrokenPipeError):
+        silence_stdout()
+        return BROKEN_PIPE
+    complain("interrupted")
+    return INTERRUPTED
 
 
 def translated(error: Exception, arguments: Sequence[str]) -> NavsymError:
