@@ -1,0 +1,143 @@
+"""What the closed form of a transition matrix is made of: waves, surds and roots.
+
+A wave is a function of time times a constant whose rational and irrational parts are kept apart,
+so that constants of one wave add up and cancel exactly.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import sympy as sp
+
+from navsym.models.parameter_ring import (
+    Fraction,
+    Poly,
+    Ring,
+    cancelled,
+    expanded,
+    quotient,
+    sign,
+    square_root,
+)
+from navsym.models.polynomials import Coefficients
+
+LAMBDA = sp.Symbol("lambda")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Surd:
+    """An irrational constant; its square is the polynomial ``radicand`` when that is given."""
+
+    value: sp.Expr
+    radicand: Poly | None = None
+
+
+RATIONAL = Surd(sp.S.One)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Wave:
+    """function(t) * weight * surd: one function of time with its constant factor."""
+
+    function: sp.Expr
+    weight: Fraction
+    surd: Surd = RATIONAL
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Piece:
+    """(sum of waves) * poly(mu)."""
+
+    waves: tuple[Wave, ...]
+    poly: Coefficients
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Form:
+    """Closed form of one factor: the monic factor in mu, its multiplicity, its pieces and conditions."""
+
+    base: Coefficients
+    times: int
+    kind: str
+    factor: sp.Expr
+    pieces: tuple[Piece, ...]
+    conditions: tuple[sp.Basic, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Frame:
+    """What the forms of one matrix share: the ring, d, and the elapsed time t."""
+
+    ring: Ring
+    d: Poly
+    time: sp.Expr
+
+    def growth(self, alpha: Poly) -> sp.Expr:
+        """exp(alpha t / d)."""
+        return sp.exp(quotient(self.ring, alpha, self.d) * self.time)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Root:
+    """A square root, rational * surd, as it enters the functions of time; ``value`` is the product."""
+
+    rational: Fraction
+    surd: Surd
+    value: sp.Expr
+
+    @property
+    def inverse(self) -> Fraction:
+        """The rational factor of 1 / root; the surd stays as it is."""
+        above, below = self.rational
+        return below, above if self.surd.radicand is None else above * self.surd.radicand
+
+
+def in_lambda(frame: Frame, base: Coefficients) -> sp.Expr:
+    """The factor as a monic polynomial in the eigenvalue lambda of A."""
+    n = len(base) - 1
+    return sp.Add(*(
+        quotient(frame.ring, c, frame.d ** (n - k)) * LAMBDA**k for k, c in enumerate(base) if not c.is_zero()
+    ))
+
+
+def root_of(frame: Frame, value: Poly, degree: int = 2) -> Root:
+    """sqrt(value / d^degree), with what can be taken out of the root taken out."""
+    ring = frame.ring
+    rational, radicand, surd = square_root(ring, value, frame.d**degree)
+    return Root(rational, RATIONAL if surd == 1 else Surd(surd, radicand), quotient(ring, *rational) * surd)
+
+
+def reality(ring: Ring, *roots: Root) -> tuple[sp.Basic, ...]:
+    """Radicands that must be positive for the roots to be real, unless the declared signs make them so."""
+    radicands = [root.surd.radicand for root in roots if root.surd.radicand is not None]
+    return tuple(sp.Gt(expanded(ring, r), 0) for r in radicands if sign(ring, r) == 0)
+
+
+def scaled(piece: Piece, growth: sp.Expr) -> Piece:
+    """The piece with every function of time multiplied by one more."""
+    return replace(piece, waves=tuple(replace(wave, function=wave.function * growth) for wave in piece.waves))
+
+
+Factor = tuple[Fraction, Surd]
+
+
+def direct(root: Root) -> Factor:
+    return root.rational, root.surd
+
+
+def inverted(root: Root) -> Factor:
+    return root.inverse, root.surd
+
+
+def times(ring: Ring, *factors: Factor) -> Factor:
+    """Product of constants, rational and irrational parts apart."""
+    above, below, value, radicand = ring.one, ring.one, sp.S.One, ring.one
+    for (top, bottom), surd in factors:
+        above, below, value = above * top, below * bottom, value * surd.value
+        radicand = radicand if surd.radicand is None else radicand * surd.radicand
+    return cancelled(above, below), RATIONAL if value == 1 else Surd(value, radicand)
+
+
+def wave(ring: Ring, function: sp.Expr, *factors: Factor) -> Wave:
+    return Wave(function, *times(ring, *factors))
