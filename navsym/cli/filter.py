@@ -1,0 +1,84 @@
+"""Filter measurements of a signal whose model switches: exact, pulsating, K-pulsating, GPB2, IMM, polygaussian."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from navsym.cli.output import emit
+
+if TYPE_CHECKING:
+    from navsym.methods.multimodel import Estimate
+
+
+def command(
+    file: Annotated[Path, typer.Argument(metavar="BANK.json", help="models, transitions, start, measurements")],
+    method: Annotated[
+        str, typer.Option("--method", help="pulsating, k-pulsating, polygaussian, imm, gpb2 or exact")
+    ] = "pulsating",
+    depth: Annotated[int | None, typer.Option("--depth", help="K of k-pulsating, default 2")] = None,
+    missing: Annotated[
+        bool, typer.Option("--missing", help="null is a number that did not come, not an error")
+    ] = False,
+    json_: Annotated[bool, typer.Option("--json", help="one JSON document")] = False,
+) -> None:
+    """Mode probabilities, mean, covariance and log-likelihood after every measurement."""
+    from navsym.errors import NavsymError
+    from navsym.methods.multimodel import read_bank, run
+    from navsym.text.jsonfile import read_json
+
+    document = read_json(file)
+    try:
+        models, measurements, forget = read_bank(as_mapping(document))
+        estimate = run(models, measurements, method, depth=depth, forget=forget, missing=missing)
+    except NavsymError as error:
+        raise error.at(str(file)) from None
+    for remark in remarks(estimate):
+        typer.echo(remark, err=True)
+    emit(as_document(estimate), as_json=json_, text=lambda: as_text(estimate))
+
+
+def as_mapping(document: Any) -> dict[str, Any]:
+    """The top level of the file must be an object."""
+    from navsym.errors import ShapeError
+
+    if not isinstance(document, dict):
+        raise ShapeError("expected an object with models, mode_transition, initial and measurements; got "
+                         f"{type(document).__name__}; see the interfaces")
+    return document
+
+
+def as_document(estimate: Estimate) -> dict[str, Any]:
+    """The answer with exactly the keys of the interface."""
+    return {
+        "probabilities": estimate.probabilities.tolist(),
+        "mean": estimate.mean.tolist(),
+        "covariance": estimate.covariance.tolist(),
+        "log_likelihood": estimate.log_likelihood.tolist(),
+        "filters_run": estimate.filters_run,
+    }
+
+
+def remarks(estimate: Estimate) -> list[str]:
+    """What the user should know and the document does not say."""
+    out = [f"step {k}: every mode gives this measurement a likelihood below 1e-323; weighed by logarithms"
+           for k in estimate.impossible if k not in estimate.left_out]
+    out += [f"step {k}: the measurement is impossible under every mode; left out" for k in estimate.left_out]
+    return out
+
+
+def as_text(estimate: Estimate) -> str:
+    """A table for people: step, most probable mode, its probability, mean, standard deviations."""
+    import numpy as np
+
+    lines = ["step  mode  probability  mean (standard deviation)"]
+    for k, (p, x, P) in enumerate(
+        zip(estimate.probabilities, estimate.mean, estimate.covariance, strict=True), start=1
+    ):
+        spread = np.sqrt(np.diagonal(P).clip(0.0))
+        values = "  ".join(f"{value:.6g} ({sigma:.2g})" for value, sigma in zip(x, spread, strict=True))
+        lines.append(f"{k:4d}  {int(p.argmax()):4d}  {p.max():11.6f}  {values}")
+    total = estimate.log_likelihood[-1] if len(estimate.log_likelihood) else 0.0
+    return "\n".join([*lines, f"log-likelihood {total:.9g}; {estimate.filters_run} one-step filters"])

@@ -1,0 +1,141 @@
+"""Filters for a signal whose model switches: exact, pulsating, K-pulsating, polygaussian, GPB2 and IMM.
+
+One function, :func:`run`, whatever the method; :mod:`navsym.methods.multimodel_schemes` says how the
+methods differ. Paper: module ``multistructure``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navsym.errors import DomainError, ShapeError
+from navsym.methods import multimodel_steps as steps
+from navsym.methods.multimodel_bank import Bank, bank, measurements_for, memoryless
+from navsym.methods.multimodel_schemes import Scheme, require_room, scheme
+from navsym.numeric import arrays
+
+Array = NDArray[np.float64]
+Engine = Literal["auto", "numpy", "compiled"]
+
+#: Below this many one-step filters the compiled loops do not pay for being loaded.
+WORTH_COMPILING = 20_000
+#: Log-likelihood below which every likelihood is zero in double precision.
+UNDERFLOW = -745.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Estimate:
+    """What a filter says after every step k = 1 .. T.
+
+    probabilities : (T, m)     of the modes, given the measurements so far
+    mean          : (T, n)     of the state
+    covariance    : (T, n, n)  of its error
+    log_likelihood: (T,)       of all measurements so far
+    filters_run   : one-step Kalman filters that ran, all steps together
+    impossible    : steps whose measurement has a likelihood below the smallest double under every mode; the
+                    weights are right all the same, because they are kept as logarithms
+    left_out      : steps whose measurement had to be left out, because even its logarithm has no number
+    """
+
+    probabilities: Array
+    mean: Array
+    covariance: Array
+    log_likelihood: Array
+    filters_run: int
+    impossible: tuple[int, ...] = ()
+    left_out: tuple[int, ...] = ()
+
+
+def run(
+    models: Bank,
+    measurements: Any,
+    method: str = "pulsating",
+    *,
+    depth: int | None = None,
+    forget: bool = False,
+    missing: bool = False,
+    engine: Engine = "auto",
+) -> Estimate:
+    """Filter a series of measurements (T, p); the first row is at step 1.
+
+    method  : exact, pulsating, k-pulsating, gpb2, imm or polygaussian
+    depth   : K of k-pulsating
+    forget  : the printed (14)-(17): the unconditional P[I(k) = i] in place of p^ij(k)
+    missing : NaN or None is a number that did not come, instead of an error
+    engine  : compiled loops, numpy, or whichever fits
+
+    Raises the errors of the bank, DomainError for a method that does not exist, TooLargeError for a tree
+    that does not fit.
+    """
+    rule = scheme(method, depth)
+    z = measurements_for(models, measurements, missing=missing)
+    if forget:
+        if rule.branching == "own":
+            raise DomainError("memoryless: expected a method that switches modes; got polygaussian, whose modes "
+                              "never switch; choose another method")
+        models = memoryless(models, len(z))
+    roots = 1 if models.common else models.modes
+    count = require_room(rule, models.modes, models.states, roots, len(z))
+    if compiled_fits(rule, models, z, count, engine):
+        from navsym.methods import multimodel_fast
+
+        return multimodel_fast.run_compiled(rule, models, z, count)
+    return run_in_numpy(rule, models, z, count)
+
+
+def compiled_fits(rule: Scheme, models: Bank, z: Array, count: int, engine: Engine) -> bool:
+    """Whether to use the compiled loops: asked for, or worth their start-up time."""
+    if engine not in ("auto", "numpy", "compiled"):
+        raise DomainError(f"engine: expected auto, numpy or compiled; got {engine!r}; choose one")
+    return engine == "compiled" or (engine == "auto" and count >= WORTH_COMPILING)
+
+
+def run_in_numpy(rule: Scheme, models: Bank, z: Array, count: int) -> Estimate:
+    """The readable engine: one :func:`multimodel_steps.advance` per row."""
+    now = steps.start(models, rule)
+    found: list[steps.Step] = []
+    for k, row in enumerate(z, start=1):
+        step = steps.advance(rule, k, models, now, row)
+        now = step.hypotheses
+        found.append(step)
+    return collected(found, models, count)
+
+
+def collected(found: list[steps.Step], models: Bank, count: int) -> Estimate:
+    """Stack what the steps found."""
+    T, m, n = len(found), models.modes, models.states
+    best = [step.best for step in found]
+    return Estimate(
+        arrays.frozen(np.array([s.probabilities for s in found]).reshape(T, m)),
+        arrays.frozen(np.array([s.mean for s in found]).reshape(T, n)),
+        arrays.frozen(np.array([s.covariance for s in found]).reshape(T, n, n)),
+        arrays.frozen(np.cumsum([s.log_likelihood for s in found])),
+        count,
+        tuple(k for k, b in enumerate(best, start=1) if b < UNDERFLOW),
+        tuple(k for k, b in enumerate(best, start=1) if b == -np.inf),
+    )
+
+
+def read_bank(document: Mapping[str, Any]) -> tuple[Bank, Any, bool]:
+    """A bank file as data: the bank, its measurements, and whether it asks for the memoryless form."""
+    for key in ("models", "mode_transition", "initial", "measurements"):
+        if key not in document:
+            raise ShapeError(f"{key}: expected the keys models, mode_transition, initial and measurements; got "
+                             f"no {key}; add it")
+    start = document["initial"]
+    for key in ("mean", "covariance", "probabilities"):
+        if not isinstance(start, Mapping) or key not in start:
+            raise ShapeError(f"initial.{key}: expected mean, covariance and probabilities; got no {key}; add it")
+    if not isinstance(document["models"], list) or not isinstance(document["measurements"], list):
+        raise ShapeError("models: expected lists of models and of measurements; got something else; use [ ]")
+    forget = document.get("memoryless", False)
+    if not isinstance(forget, bool):
+        raise DomainError(f"memoryless: expected true or false; got {forget!r}; write true or false")
+    made = bank(document["models"], document["mode_transition"], start["mean"], start["covariance"],
+                start["probabilities"])
+    return made, document["measurements"], forget
