@@ -168,11 +168,14 @@ def make_venv(venv: str) -> None:
     run([sys.executable, "-m", "venv", venv], advice % sys.version_info[:2])
 
 
+def locked() -> int:
+    """How many packages the lock holds."""
+    with open(os.path.join(ROOT, LOCK), encoding="utf-8") as file:
+        return sum("==" in line for line in file)
+
+
 def install(venv: str) -> None:
     """The locked packages by their hashes, then this checkout itself, editable."""
-    with open(os.path.join(ROOT, LOCK), encoding="utf-8") as file:
-        count = sum("==" in line for line in file)
-    say("installing %d locked packages into %s (a few minutes, once)" % (count, os.path.basename(venv)))
     pip = [python_of(venv), "-m", "pip", "install", "--quiet"]
     advice = (
         "pip could not install the locked packages; this needs a network, a mirror in PIP_INDEX_URL, or "
@@ -222,9 +225,13 @@ def update(venv: str, stamp: "dict[str, str]") -> None:
     if found == "ready":                   # another run finished while this one waited
         return
     drop_stamp(venv)
+    name = os.path.basename(venv)
     if found == "absent":
-        say("making %s with Python %s" % (os.path.basename(venv), sys.version.split()[0]))
+        say("making %s with Python %s" % (name, sys.version.split()[0]))
         make_venv(venv)
+        say("installing %d locked packages into %s (a minute or two, once)" % (locked(), name))
+    else:
+        say("bringing %s up to date with the lock" % name)
     install(venv)
     write_stamp(venv, stamp)
     say("the environment is ready")
