@@ -1,0 +1,325 @@
+"""Exchange search for the guaranteed estimator: which instants, with which signs and weights.
+
+Minimise ``sum |w_i|`` subject to ``sum w_i q(u_i) = p``; dual: maximise ``p . x`` subject to
+``|x . q(u)| <= 1``. The functions q are given by Chebyshev coefficients on panels (one panel
+for each analytic piece of each measurement, noise bound divided out), orthonormal or nearly so.
+A grid simplex finds the pattern, Newton on the optimality system places the contacts. The
+answer is a hint in double precision: :mod:`navsym.proof.optimality` turns it into enclosures.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from navsym.numeric.arrays import named
+from navsym.numeric.exchange_kernels import (
+    Array,
+    Ints,
+    chebyshev_derivative,
+    chebyshev_sum,
+    contact_system,
+    grid_values,
+    seek,
+    simplex,
+    spread_rows,
+)
+
+NEAR = 1e-7  # |f| above 1 - NEAR counts as touching
+NEGLIGIBLE = 1e-7  # weights below this part of their sum are not contacts
+ROUNDS = 8
+VERTICES = 6
+MOST_TOUCHES = 600
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Panels:
+    """Functions on panels and the functional.
+
+    coefficients : (panels, K, m) Chebyshev coefficients in the local variable u in [-1, 1]
+    functional   : (m,) p, in the same basis
+    """
+
+    coefficients: Array
+    functional: Array
+
+    def __post_init__(self) -> None:
+        panels, K, m = np.shape(self.coefficients)
+        shape = (panels, K, m)
+        object.__setattr__(self, "coefficients", named("coefficients", self.coefficients, shape, "panels"))
+        object.__setattr__(self, "functional", named("functional", self.functional, (m,), "unknowns"))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Contacts:
+    """Where the dual polynomial touches its bound, in double precision.
+
+    panel, u : (l,) place of each contact, u in [-1, 1]
+    inner    : (l,) 1 where the contact may move (f' = 0 there), 0 at an end of a panel
+    sign     : (l,) sign of f there, also of the weight
+    weights  : (l,)
+    dual     : (m,)
+    excess   : largest ``|f| - 1`` seen on a fine grid
+    touching : panel and u of every further place where ``|f|`` is near one, weight zero
+    """
+
+    panel: Ints
+    u: Array
+    inner: Ints
+    sign: Array
+    weights: Array
+    dual: Array
+    excess: float
+    touching: tuple[tuple[int, float], ...] = ()
+
+    @property
+    def value(self) -> float:
+        return float(np.abs(self.weights).sum())
+
+
+def nodes_for(panels: Panels) -> Array:
+    """Chebyshev-spaced search nodes, ends included, several for each oscillation."""
+    K = panels.coefficients.shape[1]
+    m = panels.functional.size
+    count = int(min(4000, max(6 * K, 16 * m, 64))) + 1
+    nodes = -np.cos(np.pi * np.arange(count) / (count - 1))
+    nodes[0], nodes[-1] = -1.0, 1.0
+    return nodes
+
+
+def find_contacts(panels: Panels) -> Contacts:
+    """Solve the problem to double precision; the fast road first, the careful one when it refuses."""
+    nodes = nodes_for(panels)
+    panel, u, weights, move = seek(panels.coefficients, panels.functional, nodes)
+    if move < 1e-6:
+        quick = settled(panels, panel, u, np.sign(weights), weights)
+        if quick is not None and quick.excess < 1e-9:
+            return quick
+    return careful(panels, nodes)
+
+
+def settled(panels: Panels, panel: Ints, u: Array, sign: Array, weights: Array) -> Contacts | None:
+    """Weights and dual of a full alternance whose contacts are already placed."""
+    inner = ((u > -1.0) & (u < 1.0)).astype(np.int64)
+    B = rows_at(panels.coefficients, panel, u)
+    try:
+        x = np.linalg.solve(B, sign)
+        weights = np.linalg.solve(B.T, panels.functional)
+    except np.linalg.LinAlgError:
+        return None
+    if (weights * sign <= NEGLIGIBLE * np.abs(weights).sum()).any():
+        return None
+    excess, touching = survey(panels, x, panel, u)
+    return Contacts(panel, u, inner, sign, weights, x, excess, touching)
+
+
+def rows_at(coefficients: Array, panel: Ints, u: Array) -> Array:
+    """q at the given places, (l, m)."""
+    K = coefficients.shape[1]
+    T = np.cos(np.arange(K) * np.arccos(np.clip(u, -1.0, 1.0))[:, None])
+    rows: Array = np.einsum("lk,lkm->lm", T, coefficients[panel])
+    return rows
+
+
+def careful(panels: Panels, nodes: Array) -> Contacts:
+    """The road for degenerate problems: vertices of the dual face, averaged; contacts merged."""
+    C, p = panels.coefficients, panels.functional
+    extra_panel = np.empty(0, dtype=np.int64)
+    extra_u = np.empty(0)
+    best: Contacts | None = None
+    for _ in range(ROUNDS):
+        panel = np.concatenate([np.repeat(np.arange(C.shape[0]), nodes.size), extra_panel])
+        u = np.concatenate([np.tile(nodes, C.shape[0]), extra_u])
+        G = np.concatenate([grid_values(C, nodes), rows_at(C, extra_panel, extra_u)])
+        basis, x = dual_face(G, p)
+        found = polish(panels, merged(panels, G, p, basis, panel, u, nodes), x)
+        if best is None or found.excess < best.excess:
+            best = found
+        if best.excess < 1e-9:
+            break
+        more = peaks(panels, x) + peaks(panels, found.dual)
+        extra_panel = np.concatenate([extra_panel, np.array([k for k, _ in more], dtype=np.int64)])
+        extra_u = np.concatenate([extra_u, np.array([v for _, v in more])])
+    assert best is not None
+    return best
+
+
+def dual_face(G: Array, p: Array) -> tuple[Ints, Array]:
+    """An optimal basis and a point inside the face of optimal duals.
+
+    Small changes of p lead to the vertices of the face; their mean touches the bound only where
+    every optimal dual does.
+    """
+    random = np.random.default_rng(7)
+    size = 1e-9 * np.abs(p).max()
+    limit = 80 * p.size + 400
+    basis, _, x, _ = simplex(G, p + size * random.standard_normal(p.size), spread_rows(G), limit)
+    first = basis
+    total = x.copy()
+    for _ in range(VERTICES):
+        basis, _, x, _ = simplex(G, p + 100 * size * random.standard_normal(p.size), basis, limit)
+        total += x
+    return first, total / (VERTICES + 1)
+
+
+def merged(
+    panels: Panels, G: Array, p: Array, basis: Ints, panel: Ints, u: Array, nodes: Array
+) -> tuple[Ints, Array, Array, Array]:
+    """Contacts from basis rows: negligible ones dropped, neighbours of one sign made one."""
+    weights = np.linalg.lstsq(G[basis].T, p, rcond=1e-13)[0]
+    keep = np.abs(weights) > NEGLIGIBLE * np.abs(weights).sum()
+    basis, weights = basis[keep], weights[keep]
+    order = np.lexsort((u[basis], panel[basis]))
+    groups: list[list[int]] = []
+    for k in order:
+        if groups:
+            last = groups[-1][-1]
+            near = abs(u[basis[k]] - u[basis[last]]) <= 2.6 * spacing(nodes, u[basis[k]])
+            if near and panel[basis[k]] == panel[basis[last]] and weights[k] * weights[last] > 0:
+                groups[-1].append(int(k))
+                continue
+        groups.append([int(k)])
+    at_panel = np.array([panel[basis[g[0]]] for g in groups], dtype=np.int64)
+    at_weight = np.array([weights[g].sum() for g in groups])
+    at_u = np.array([end_or_mean(u[basis[g]], weights[g]) for g in groups])
+    return at_panel, at_u, np.sign(at_weight), at_weight
+
+
+def end_or_mean(u: Array, weights: Array) -> float:
+    mean = float((u * weights).sum() / weights.sum())
+    return float(u[np.abs(u).argmax()]) if abs(mean) > 1.0 - 1e-9 else mean
+
+
+def spacing(nodes: Array, u: float) -> float:
+    k = int(np.clip(np.searchsorted(nodes, u), 1, nodes.size - 1))
+    return float(nodes[k] - nodes[k - 1])
+
+
+def polish(panels: Panels, start: tuple[Ints, Array, Array, Array], x: Array) -> Contacts:
+    """Newton in the least-squares sense on the optimality system, contacts kept inside their panels."""
+    C = panels.coefficients
+    C1 = np.stack([chebyshev_derivative(c) for c in C])
+    C2 = np.stack([chebyshev_derivative(c) for c in C1])
+    panel, u, sign, weights = start
+    inner = inner_flags(C1, panel, u, sign, x)
+    m, l = panels.functional.size, u.size
+    x = x.copy()
+    for _ in range(25):
+        F, J = contact_system(C, C1, C2, panels.functional, panel, u, inner, sign, x, weights)
+        step = np.linalg.lstsq(J, -F, rcond=1e-11)[0]
+        x = x + step[:m]
+        moved = u.copy()
+        moved[inner == 1] += np.clip(step[m : m + int(inner.sum())], -0.2, 0.2)
+        weights = weights + step[-l:]
+        outside = (np.abs(moved) >= 1.0) & (inner == 1)
+        u = np.clip(moved, -1.0, 1.0)
+        inner = np.where(outside, 0, inner)
+        if np.abs(step).max() < 1e-13 * max(1.0, float(np.abs(x).max())):
+            break
+    kept, weights = independent(rows_at(C, panel, u), weights)
+    panel, u, inner, sign = panel[kept], u[kept], inner[kept], sign[kept]
+    excess, touching = survey(panels, x, panel, u)
+    if (weights * sign <= 0).any():
+        excess = max(excess, 1e-3)
+    return Contacts(panel, u, inner, sign, weights, x, excess, touching)
+
+
+def independent(rows: Array, weights: Array) -> tuple[Ints, Array]:
+    """Fewer contacts with the same sum and the same cost, until their rows are independent.
+
+    Along a null vector n of the rows the cost ``sum |w|`` does not change while no weight changes
+    its sign, since ``x . row_i = sign(w_i)``; the first weight that vanishes is dropped. Carathéodory.
+    """
+    kept = np.arange(weights.size)
+    while kept.size > 1:
+        _, s, Vt = np.linalg.svd(rows[kept].T)
+        if kept.size <= s.size and s[-1] > 1e-9 * s[0]:
+            break
+        n = Vt[-1]
+        ratios = np.where(np.abs(n) > 1e-12, weights / np.where(n == 0.0, 1.0, n), np.inf)
+        forward = np.where(ratios > 0, ratios, np.inf)
+        if not np.isfinite(forward).any():
+            n, forward = -n, np.where(ratios < 0, -ratios, np.inf)
+        if not np.isfinite(forward).any():
+            break
+        drop = int(np.argmin(forward))
+        weights = np.delete(weights - forward[drop] * n, drop)
+        kept = np.delete(kept, drop)
+    return kept, weights
+
+
+def inner_flags(C1: Array, panel: Ints, u: Array, sign: Array, x: Array) -> Ints:
+    """0 for a contact on an end of its panel towards which the polynomial still grows, or is flat."""
+    flags = np.ones(u.size, dtype=np.int64)
+    for i in np.flatnonzero(np.abs(u) >= 1.0 - 1e-12):
+        slope = rows_at(C1, panel[i : i + 1], u[i : i + 1])[0] @ x
+        flags[i] = 0 if slope * sign[i] * u[i] > -1e-6 else 1
+    return flags
+
+
+def fine_nodes(panels: Panels) -> Array:
+    K = panels.coefficients.shape[1]
+    count = int(min(20000, max(24 * K, 256))) + 1
+    return -np.cos(np.pi * np.arange(count) / (count - 1))
+
+
+def peaks(panels: Panels, x: Array) -> list[tuple[int, float]]:
+    """Local maxima of |f| above one, by a parabola through three grid values."""
+    return [(k, v) for k, v, height in local_maxima(panels, x) if height > 1.0 + 1e-12]
+
+
+def survey(
+    panels: Panels, x: Array, panel: Ints, u: Array
+) -> tuple[float, tuple[tuple[int, float], ...]]:
+    """Largest ``|f| - 1``, and the near-touching maxima that are not among the given contacts."""
+    heights = local_maxima(panels, x)
+    excess = max((h for _, _, h in heights), default=1.0) - 1.0
+    rest = [
+        (k, v)
+        for k, v, h in heights
+        if h > 1.0 - NEAR and not any(j == k and abs(v - w) < 1e-5 for j, w in zip(panel, u, strict=True))
+    ]
+    return float(excess), tuple(rest[:MOST_TOUCHES])
+
+
+def local_maxima(panels: Panels, x: Array) -> list[tuple[int, float, float]]:
+    """(panel, u, |f|) at the local maxima of |f|, ends included."""
+    nodes = fine_nodes(panels)
+    sums = panels.coefficients @ x
+    slopes = np.stack([chebyshev_derivative(c[:, None])[:, 0] for c in sums])
+    bends = np.stack([chebyshev_derivative(c[:, None])[:, 0] for c in slopes])
+    values = np.abs(grid_values(sums[:, :, None], nodes)).reshape(-1, nodes.size)
+    found: list[tuple[int, float, float]] = []
+    for k, f in enumerate(values):
+        padded = np.concatenate([[-1.0], f, [-1.0]])
+        tops = np.flatnonzero((padded[1:-1] >= padded[:-2]) & (padded[1:-1] > padded[2:]))
+        for i in tops:
+            top = newton_top(slopes[k], bends[k], parabola_top(nodes, f, int(i)))
+            found.append((k, top, abs(chebyshev_sum(sums[k], top))))
+    return found
+
+
+def newton_top(slope: Array, bend: Array, u: float) -> float:
+    """Two Newton steps on f' = 0 from inside a panel, as long as they stay near."""
+    at = u
+    for _ in range(2):
+        curvature = chebyshev_sum(bend, at)
+        if abs(u) >= 1.0 or curvature == 0.0:
+            return u
+        at -= chebyshev_sum(slope, at) / curvature
+    return at if abs(at) < 1.0 and abs(at - u) < 0.05 else u
+
+
+def parabola_top(nodes: Array, f: Array, i: int) -> float:
+    """Place of the top of the parabola through three neighbouring grid values (the node at an end)."""
+    if i in (0, nodes.size - 1):
+        return float(nodes[i])
+    left, right = nodes[i - 1] - nodes[i], nodes[i + 1] - nodes[i]
+    a = (f[i - 1] - f[i]) / left
+    b = (f[i + 1] - f[i]) / right
+    bend = (b - a) / (right - left)
+    if bend >= -1e-300:
+        return float(nodes[i])
+    shift = -(a - bend * left) / (2.0 * bend)
+    return float(nodes[i] + shift) if left <= shift <= right else float(nodes[i])

@@ -1,0 +1,62 @@
+"""Decimal strings of exact numbers and of the ends of balls, rounded the way that is asked for."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from flint import arb, fmpq, fmpz
+
+from navsym.proof.enclosure import rational
+
+
+def decimal(x: Any, digits: int, direction: int = 0) -> str:
+    """``x`` with ``digits`` significant digits: to nearest (0), downwards (-1) or upwards (1).
+
+    x : a ball (its midpoint), an fmpq, or an integer
+    """
+    value = rational(x)
+    if value == 0:
+        return "0"
+    exponent = magnitude(value) - digits
+    scaled = value * fmpq(10) ** (-exponent)
+    whole = scaled.floor() if direction < 0 else scaled.ceil() if direction > 0 else (scaled + fmpq(1, 2)).floor()
+    return placed(int(whole), exponent)
+
+
+def magnitude(value: fmpq) -> int:
+    """Smallest e with ``|value| < 10**e``."""
+    size = abs(value)
+    e = len(str(int(size.p))) - len(str(int(size.q)))
+    while size >= fmpq(10) ** e:
+        e += 1
+    while size < fmpq(10) ** (e - 1):
+        e -= 1
+    return e
+
+
+def placed(whole: int, exponent: int) -> str:
+    """``whole * 10**exponent`` written without a power of ten, trailing zeros dropped."""
+    sign, text = ("-" if whole < 0 else ""), str(abs(whole))
+    if exponent >= 0:
+        return sign + text + "0" * exponent
+    text = text.rjust(-exponent + 1, "0")
+    head, tail = text[:exponent], text[exponent:].rstrip("0")
+    return sign + head + ("." + tail if tail else "")
+
+
+def lower_end(x: arb, digits: int) -> str:
+    """A decimal below every number of the ball."""
+    return decimal(rational(x.lower()), digits, -1)
+
+
+def upper_end(x: arb, digits: int) -> str:
+    """A decimal above every number of the ball."""
+    return decimal(rational(x.upper()), digits, 1)
+
+
+def exact(text: str) -> fmpq:
+    """The rational number that a decimal string of this module means."""
+    head, _, tail = text.partition(".")
+    sign = -1 if head.startswith("-") else 1
+    whole = fmpz(head.lstrip("-") + tail)
+    return sign * fmpq(whole, fmpz(10) ** len(tail))

@@ -1,0 +1,358 @@
+"""Balls around H(t) and rigorous bounds of ``|x . H(t)|`` over whole intervals.
+
+A :class:`Panel` is one analytic piece of one measurement: its regressors as expressions in the
+time, its ends and its noise bound. Time on a panel is ``t = start + (end - start) v`` with v in
+[0, 1], so that cells, contacts and support points are exact fractions whatever the ends are.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from math import comb
+from typing import Any
+
+import numpy as np
+import sympy as sp
+from flint import arb, arb_series, ctx, fmpq
+
+from navsym.proof.balls import OPERATIONS, Step, instruction
+
+ORDER = 10
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Program:
+    """Several expressions flattened into one tape, shared parts once; ``outputs`` are their places."""
+
+    steps: tuple[Step, ...]
+    outputs: tuple[int, ...]
+
+    def run(self, values: Mapping[sp.Symbol, Any]) -> list[Any]:
+        done: list[Any] = []
+        for step in self.steps:
+            done.append(OPERATIONS[step.operation](step.constant, [done[i] for i in step.arguments], values))
+        return [done[i] for i in self.outputs]
+
+    def numbers(self, values: Mapping[sp.Symbol, Any]) -> list[Any]:
+        """The same in double precision, over numpy arrays: a hint, never a bound."""
+        done: list[Any] = []
+        for step in self.steps:
+            arguments = [done[i] for i in step.arguments]
+            done.append(FLOATS[step.operation](step.constant, arguments, values))
+        return [done[i] for i in self.outputs]
+
+
+def program(expressions: Sequence[sp.Expr]) -> Program:
+    """Flatten expressions; raises :class:`~navsym.proof.balls.UnsupportedError` outside the language."""
+    steps: list[Step] = []
+    place: dict[sp.Basic, int] = {}
+
+    def visit(node: sp.Basic) -> int:
+        if node not in place:
+            operation, arguments, constant = instruction(node)
+            steps.append(Step(operation, tuple(visit(a) for a in arguments), constant))
+            place[node] = len(steps) - 1
+        return place[node]
+
+    outputs = tuple(visit(sp.sympify(e)) for e in expressions)
+    return Program(tuple(steps), outputs)
+
+
+FLOATS: dict[str, Any] = {
+    "number": lambda c, a, v: float(int(c.p)) / float(int(c.q)),
+    "pi": lambda c, a, v: np.pi,
+    "e": lambda c, a, v: np.e,
+    "symbol": lambda c, a, v: v[c],
+    "add": lambda c, a, v: sum(a[1:], a[0]),
+    "mul": lambda c, a, v: np.prod(a, axis=0) if all(np.ndim(x) == 0 for x in a) else product(a),
+    "power": lambda c, a, v: a[0] ** c if c >= 0 else 1.0 / a[0] ** (-c),
+    "root": lambda c, a, v: a[0] ** (c[0] / c[1]),
+    "general_power": lambda c, a, v: a[0] ** a[1],
+    "tan": lambda c, a, v: np.tan(a[0]),
+    "cot": lambda c, a, v: 1.0 / np.tan(a[0]),
+    "sec": lambda c, a, v: 1.0 / np.cos(a[0]),
+    "csc": lambda c, a, v: 1.0 / np.sin(a[0]),
+    "asin": lambda c, a, v: np.arcsin(a[0]),
+    "acos": lambda c, a, v: np.arccos(a[0]),
+    "atan": lambda c, a, v: np.arctan(a[0]),
+    "atan2": lambda c, a, v: np.arctan2(a[0], a[1]),
+    "max": lambda c, a, v: np.maximum.reduce(a),
+    "min": lambda c, a, v: np.minimum.reduce(a),
+} | {
+    name: (lambda f: lambda c, a, v: f(a[0]))(getattr(np, name))
+    for name in ("sin", "cos", "exp", "log", "abs", "sign", "sinh", "cosh", "tanh")
+}  # fmt: skip
+
+
+def product(factors: Sequence[Any]) -> Any:
+    value = factors[0]
+    for factor in factors[1:]:
+        value = value * factor
+    return value
+
+
+@dataclass(frozen=True)
+class Panel:
+    """One analytic piece of one measurement.
+
+    measurement : index of the measurement
+    functions   : H_1(t) … H_m(t)
+    variable    : t
+    start, end  : exact ends of the piece
+    sigma       : noise bound of the measurement, positive
+    """
+
+    measurement: int
+    functions: tuple[sp.Expr, ...]
+    variable: sp.Symbol
+    start: sp.Expr
+    end: sp.Expr
+    sigma: sp.Expr
+    values: Mapping[sp.Symbol, Any] = field(default_factory=dict)
+
+    @cached_property
+    def program(self) -> Program:
+        return program(self.functions)
+
+    @cached_property
+    def ends(self) -> Program:
+        return program([self.start, self.end, self.sigma])
+
+    def time(self, v: Any) -> arb:
+        """Time at the fraction v of the panel."""
+        start, end, _ = self.ends.run(self.values)
+        return arb(start) + (arb(end) - start) * v
+
+    def bound(self) -> arb:
+        return arb(self.ends.run(self.values)[2])
+
+    def rows(self, v: Any) -> list[arb]:
+        """H at the fraction v (a ball or an exact number)."""
+        inputs = dict(self.values)
+        inputs[self.variable] = self.time(v)
+        return [arb(h) for h in self.program.run(inputs)]
+
+    def series(self, v: Any, scale: Any, order: int) -> list[list[arb]]:
+        """Taylor coefficients 0 … order of every H in w, where the fraction is ``v + scale w``.
+
+        With a ball for v the coefficients hold for every centre in it (Lagrange remainders).
+        """
+        start, end, _ = self.ends.run(self.values)
+        width = arb(end) - start
+        before = ctx.cap
+        ctx.cap = order + 1
+        try:
+            inputs = dict(self.values)
+            inputs[self.variable] = arb_series([start + width * v, width * scale])
+            results = self.program.run(inputs)
+        finally:
+            ctx.cap = before
+        return [coefficients(h, order) for h in results]
+
+
+def coefficients(value: Any, order: int) -> list[arb]:
+    if isinstance(value, arb_series):
+        return [value[k] for k in range(order + 1)]
+    return [arb(value)] + [arb(0)] * order
+
+
+def combination(x: Sequence[arb], series: Sequence[Sequence[arb]]) -> list[arb]:
+    """Taylor coefficients of ``x . H`` from those of H."""
+    return [total(x, [s[k] for s in series]) for k in range(len(series[0]))]
+
+
+def total(x: Sequence[arb], y: Sequence[arb]) -> arb:
+    value = arb(0)
+    for a, b in zip(x, y, strict=True):
+        value += a * b
+    return value
+
+
+@dataclass(frozen=True)
+class Problem:
+    """Minimise ``sum |w|`` times the noise bounds subject to ``sum w H = P``, with exact data.
+
+    panels     : pieces of the measurements, in any order
+    functional : P, exact expressions
+    values     : balls for the parameters that the expressions contain
+    """
+
+    panels: tuple[Panel, ...]
+    functional: tuple[sp.Expr, ...]
+    values: Mapping[sp.Symbol, Any] = field(default_factory=dict)
+
+    @cached_property
+    def functional_program(self) -> Program:
+        return program(self.functional)
+
+    def target(self) -> list[arb]:
+        """P as balls at the working precision."""
+        return [arb(p) for p in self.functional_program.run(self.values)]
+
+
+# -- |x . H| <= bound over a panel -----------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Touch:
+    """A place where the dual polynomial touches its bound, or nearly so.
+
+    at    : fraction of the panel, exact or a ball
+    sign  : sign of f there
+    exact : True when ``f = sign * bound`` holds exactly there, and f' = 0 too unless ``end``
+    end   : True for a contact at an end of the panel where only the value is known
+    """
+
+    at: Any
+    sign: int
+    exact: bool = False
+    end: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Cell:
+    """Part [lower, upper] of a panel, with the touch inside it, if any."""
+
+    lower: fmpq
+    upper: fmpq
+    touch: Touch | None = None
+
+
+def bounded(panel: Panel, x: Sequence[arb], touches: Sequence[Touch], limit: int = 4000) -> int | None:
+    """Number of cells that prove ``|x . H| <= sigma`` on the whole panel, or None.
+
+    Cells around touches pass by curvature or slope, all others by Taylor bounds; a cell that
+    fails is halved. With exact touches the other cells must stay strictly below the bound.
+    """
+    strict = any(t.exact for t in touches)
+    stack = first_cells(touches)
+    bound = panel.bound()
+    used = 0
+    while stack:
+        cell = stack.pop()
+        used += 1
+        if used > limit:
+            return None
+        if passes(panel, x, cell, bound, strict):
+            continue
+        if cell.upper - cell.lower < fmpq(1, 1 << 400):
+            return None
+        stack.extend(split(cell))
+    return used
+
+
+def first_cells(touches: Sequence[Touch]) -> list[Cell]:
+    """[0, 1] cut half-way between neighbouring touches, each touch in the middle third of its cell."""
+    ordered = sorted(touches, key=lambda t: float(rational(t.at)))
+    places = [rational(t.at) for t in ordered]
+    cells: list[Cell] = []
+    edge = fmpq(0)
+    for i, touch in enumerate(ordered):
+        before = places[i] - (places[i - 1] if i else fmpq(0))
+        after = (places[i + 1] if i + 1 < len(places) else fmpq(1)) - places[i]
+        gaps = [gap for gap in (before, after) if gap > 0]
+        radius = min(gaps) * fmpq(3, 8) if gaps else fmpq(1)
+        lower, upper = max(places[i] - radius, fmpq(0)), min(places[i] + radius, fmpq(1))
+        if lower > edge:
+            cells.append(Cell(edge, lower))
+        cells.append(Cell(lower, upper, touch))
+        edge = upper
+    if edge < 1:
+        cells.append(Cell(edge, fmpq(1)))
+    return cells
+
+
+def rational(x: Any) -> fmpq:
+    """Exact midpoint of a ball, or the exact number itself."""
+    if isinstance(x, arb):
+        mantissa, exponent = x.mid().man_exp()
+        power = int(exponent)
+        return fmpq(int(mantissa)) * fmpq(2) ** power
+    return fmpq(x)
+
+
+def split(cell: Cell) -> list[Cell]:
+    """Halves of a plain cell; a touch keeps a cell of half the width, in the middle of two more."""
+    if cell.touch is None:
+        middle = (cell.lower + cell.upper) / 2
+        return [Cell(cell.lower, middle), Cell(middle, cell.upper)]
+    c = rational(cell.touch.at)
+    lower, upper = (cell.lower + c) / 2, (cell.upper + c) / 2
+    parts = [Cell(lower, upper, cell.touch)]
+    if lower > cell.lower:
+        parts.append(Cell(cell.lower, lower))
+    if upper < cell.upper:
+        parts.append(Cell(upper, cell.upper))
+    return parts
+
+
+def order_for(m: int) -> int:
+    """Order of the Taylor bounds: above the degree of m monomials, so that their remainder vanishes."""
+    return min(24, max(ORDER, m + 2))
+
+
+def interval(lower: fmpq, upper: fmpq) -> arb:
+    """A ball around an interval with exact ends."""
+    return arb((lower + upper) / 2) + arb((upper - lower) / 2) * arb(0, 1)
+
+
+def passes(panel: Panel, x: Sequence[arb], cell: Cell, bound: arb, strict: bool) -> bool:
+    """``|f| <= bound`` on the cell (``<`` off an exact touch), from one Taylor expansion with remainder."""
+    centre = (cell.lower + cell.upper) / 2 if cell.touch is None else rational(cell.touch.at)
+    radius = max(centre - cell.lower, cell.upper - centre)
+    taylor = expansion(panel, x, cell, centre, radius)
+    spread = remainder(taylor, 0)
+    if cell.touch is not None and cell.touch.exact:
+        return exact_touch(cell, taylor, spread, bound)
+    height = abs(taylor[0]) + spread
+    if bool(height < bound) or (not strict and bool(height <= bound)):
+        return True
+    return cell.touch is not None and near_touch(cell, taylor, spread, bound)
+
+
+def expansion(panel: Panel, x: Sequence[arb], cell: Cell, centre: fmpq, radius: fmpq) -> list[arb]:
+    """Taylor coefficients of f in w, fraction ``centre + radius w``; the last one holds over the whole cell."""
+    order = order_for(len(x))
+    point = combination(x, panel.series(arb(centre), radius, order - 1))
+    wide = panel.series(interval(cell.lower, cell.upper), radius, order)
+    return [*point, total(x, [h[order] for h in wide])]
+
+
+def remainder(taylor: Sequence[arb], derivative: int) -> arb:
+    """Bound of ``f^(d)/d!`` minus its value at the centre, over ``|w| <= 1``."""
+    value = arb(0)
+    for k in range(derivative + 1, len(taylor)):
+        value += comb(k, derivative) * taylor[k].abs_upper()
+    return value
+
+
+def near_touch(cell: Cell, taylor: Sequence[arb], spread: arb, bound: arb) -> bool:
+    """f <= bound by concavity around the centre, or by monotony up to an end of the cell."""
+    assert cell.touch is not None
+    s = cell.touch.sign
+    if not bool(-s * taylor[0] + spread <= bound):
+        return False
+    bend = s * taylor[2] + remainder(taylor, 2)
+    if bool(bend < 0) and bool(s * taylor[0] + taylor[1] ** 2 / (-4 * bend) <= bound):
+        return True
+    centre = rational(cell.touch.at)
+    slope, change = s * taylor[1], remainder(taylor, 1)
+    rising = centre == cell.upper and bool(slope > change)
+    falling = centre == cell.lower and bool(-slope > change)
+    return (rising or falling) and bool(s * taylor[0] <= bound)
+
+
+def exact_touch(cell: Cell, taylor: Sequence[arb], spread: arb, bound: arb) -> bool:
+    """``|f| < bound`` on the cell off the contact: strictly concave with f' = 0 at an inner contact,
+    strictly monotone up to a contact at an end of the panel."""
+    assert cell.touch is not None
+    s, place = cell.touch.sign, arb(cell.touch.at)
+    inside = bool(place >= arb(cell.lower)) and bool(place <= arb(cell.upper))
+    if not inside or not bool(-s * taylor[0] + spread < bound):
+        return False
+    if not cell.touch.end:
+        return bool(s * taylor[2] + remainder(taylor, 2) < 0)
+    outward = s if rational(cell.touch.at) == 1 else -s
+    return bool(outward * taylor[1] > remainder(taylor, 1))

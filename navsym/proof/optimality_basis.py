@@ -1,0 +1,167 @@
+"""A well-conditioned basis for the optimum: sampled in balls, orthonormalised, made double.
+
+The functions of a problem may be as close to dependent as monomials of degree 19 or sines on a
+short interval. Their Gram matrix on Chebyshev points is factorised in balls with as many bits as
+that needs; the orthonormal functions are then safe in double precision.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from flint import arb, arb_mat, fmpq
+from numpy.typing import NDArray
+
+from navsym.errors import TooLargeError
+from navsym.numeric.exchange import Panels
+from navsym.proof.balls import precision
+from navsym.proof.enclosure import Panel, Problem, rational
+
+FIRST = 24
+LARGEST = 3072
+MOST_BITS = 6000
+RESOLVED = 3e-13
+
+
+class DependentError(Exception):
+    """The functions are dependent as far as ``bits`` can tell: row ``index`` on the rows before it."""
+
+    def __init__(self, index: int, relation: list[arb], bits: int):
+        super().__init__(index)
+        self.index, self.relation, self.bits = index, relation, bits
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Basis:
+    """Orthonormal functions ``q = A H`` with an exact matrix A, and what the search needs.
+
+    transform  : A (m, m), exact entries; A^-1 exists
+    functional : A P as balls
+    scale      : the double number by which ``A P`` was divided for the search
+    panels     : Chebyshev coefficients of q / sigma in double precision
+    """
+
+    transform: arb_mat
+    functional: arb_mat
+    scale: float
+    panels: Panels
+    bits: int
+
+
+def chebyshev_fractions(count: int) -> tuple[NDArray[np.float64], list[fmpq]]:
+    """Chebyshev points of the first kind in u, and the same as exact dyadic fractions of [0, 1]."""
+    u = np.cos(np.pi * (np.arange(count) + 0.5) / count)
+    return u, [(1 + fmpq(round(float(x) * (1 << 60)), 1 << 60)) / 2 for x in u]
+
+
+def samples(panels: Sequence[Panel], count: int, bits: int) -> arb_mat:
+    """H / sigma at the Chebyshev points of every panel, (panels * count, m)."""
+    _, fractions = chebyshev_fractions(count)
+    rows: list[list[arb]] = []
+    with precision(bits):
+        for panel in panels:
+            sigma = panel.bound()
+            rows += [[h / sigma for h in panel.rows(arb(v))] for v in fractions]
+        return arb_mat(rows)
+
+
+def cholesky(gram: arb_mat, bits: int) -> list[list[arb]]:
+    """Lower factor of the Gram matrix, midpoints only; raises DependentError at a vanishing pivot."""
+    m = gram.nrows()
+    L = [[arb(0)] * m for _ in range(m)]
+    for i in range(m):
+        for j in range(i + 1):
+            rest = gram[i, j]
+            for k in range(j):
+                rest = rest - L[i][k] * L[j][k]
+            if i == j:
+                size = abs(gram[i, i]).mid()
+                if size == 0 or not bool(rest > size * arb(2) ** (-bits // 2)):
+                    raise DependentError(i, relation_of(gram, i), bits)
+                L[i][i] = rest.sqrt().mid()
+            else:
+                L[i][j] = (rest / L[j][j]).mid()
+    return L
+
+
+def relation_of(gram: arb_mat, index: int) -> list[arb]:
+    """Coefficients c with ``H_index = sum c_k H_k`` over the rows before, from the normal equations."""
+    if index == 0:
+        return []
+    block = arb_mat([[gram[i, j].mid() for j in range(index)] for i in range(index)])
+    right = arb_mat([[gram[i, index].mid()] for i in range(index)])
+    solved = block.solve(right)
+    return [solved[i, 0].mid() for i in range(index)]
+
+
+def transform_of(values: arb_mat, bits: int) -> arb_mat:
+    """A = L^-1 for the Gram matrix ``L L^T`` of the rows, as exact midpoints."""
+    gram = values.transpose() * values
+    count = values.nrows()
+    L = cholesky(gram * (arb(1) / count), bits)
+    m = len(L)
+    return arb_mat([[e.mid() for e in row] for row in arb_mat(L).inv().tolist()]) if m else arb_mat(0, 0)
+
+
+def make_basis(problem: Problem, bits: int = 192) -> Basis:
+    """Orthonormal basis of a problem, with points and bits increased until both suffice.
+
+    Raises DependentError when the functions look dependent at ``MOST_BITS``, TooLargeError when
+    ``LARGEST`` points a panel do not resolve them.
+    """
+    panels = problem.panels
+    count = FIRST
+    while True:
+        try:
+            with precision(bits):
+                values = samples(panels, count, bits)
+                A = transform_of(values, bits)
+                q = double(values * A.transpose())
+                P = A * arb_mat([[p] for p in problem.target()])
+        except DependentError:
+            if bits >= MOST_BITS:
+                raise
+            bits *= 2
+            continue
+        coefficients = chebyshev_coefficients(q, len(panels), count)
+        tail = np.abs(coefficients[:, -3:, :]).max()
+        if tail < RESOLVED * np.abs(coefficients).max():
+            break
+        if count >= LARGEST:
+            raise TooLargeError(
+                f"expected functions that {LARGEST} points a piece resolve; got a tail of {tail:.1e}; "
+                "shorten the interval or split it into pieces"
+            )
+        count *= 2
+    p = double(P)[:, 0]
+    scale = float(np.linalg.norm(p))
+    used = trimmed(coefficients)
+    return Basis(A, P, scale, Panels(used, p / scale), bits)
+
+
+def double(matrix: arb_mat) -> NDArray[np.float64]:
+    return np.array([[float(e.mid()) for e in row] for row in matrix.tolist()])
+
+
+def chebyshev_coefficients(q: NDArray[np.float64], panels: int, count: int) -> NDArray[np.float64]:
+    """Coefficients (panels, count, m) from values at the points of the first kind."""
+    k = np.arange(count)
+    cosines = np.cos(np.pi * np.outer(k, k + 0.5) / count) * (2.0 / count)
+    cosines[0] *= 0.5
+    return np.stack([cosines @ q[i * count : (i + 1) * count] for i in range(panels)])
+
+
+def trimmed(coefficients: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Without the trailing coefficients that are rounding."""
+    size = np.abs(coefficients).max(axis=(0, 2))
+    last = int(np.flatnonzero(size > 1e-15 * size.max()).max())
+    return np.ascontiguousarray(coefficients[:, : max(last + 1, 3)])
+
+
+def as_fraction(u: float) -> fmpq:
+    """The fraction in [0, 1] of a local coordinate in [-1, 1], exactly."""
+    if u <= -1.0:
+        return fmpq(0)
+    return fmpq(1) if u >= 1.0 else (1 + rational(arb(u))) / 2
