@@ -123,8 +123,9 @@ def number_bits(base: sp.Expr) -> int:
 
 def total_exponent(base: sp.Expr) -> sp.Rational:
     """Largest rational exponent inside ``base``, which the outer one would multiply."""
-    inside = [part for factor in sp.Mul.make_args(base) if factor.is_Pow for part in rational_parts(factor.exp)]
-    return max([sp.Integer(1), *(abs(part) for part in inside)])
+    powers = (factor for factor in sp.Mul.make_args(base) if factor.is_Pow)
+    inside = (abs(part) for factor in powers for part in rational_parts(factor.exp))
+    return max(inside, default=sp.Integer(1))
 
 
 def real(value: sp.Expr) -> sp.Expr:

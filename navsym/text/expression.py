@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from typing import NoReturn
 
 import sympy as sp
 
@@ -28,7 +29,9 @@ from navsym.errors import (
 from navsym.text import arithmetic
 from navsym.text.names import FUNCTIONS, RESERVED, check_name, nearest, shown
 from navsym.text.printer import to_text
-from navsym.text.tokens import DEPTH, Source, Token, tokenize
+from navsym.text.tokens import CALLS, DEPTH, Source, Token, tokenize
+
+ROOT_TOTAL = 3_000  # bits of all numbers under roots in one expression
 
 __all__ = ["Parsed", "parse", "parse_noting", "symbol", "to_text"]
 
@@ -47,8 +50,8 @@ def parse(text: str, symbols: Mapping[str, sp.Symbol], *, where: str = "") -> sp
     symbols : declared name -> symbol, made by :func:`symbol`
     where   : ``"file: key"``; the column is added to it
 
-    Raises EmptyError, ExpressionSyntaxError, UnknownSymbolError, DomainError (division by zero, a value that is
-    not real) or TooLargeError (caps on length, depth, exponent, digits).
+    Raises EmptyError, ExpressionSyntaxError, UnknownSymbolError, DomainError (division by zero, a value
+    that is not real) or TooLargeError (caps on length, depth, exponents, digits, roots).
     """
     return parse_noting(text, symbols, where=where).expression
 
@@ -57,18 +60,19 @@ def parse_noting(text: str, symbols: Mapping[str, sp.Symbol], *, where: str = ""
     """Like :func:`parse`, together with every symbolic divisor that the text has."""
     if not isinstance(text, str):
         raise ExpressionSyntaxError(
-            f'expected an expression as text; got {shown(text)}; do put it in quotes, such as "1/2"', where=where
+            f'expected an expression as text; got {shown(text)}; do put it in quotes, such as "1/2"',
+            where=where,
         )
     for name in RESERVED & symbols.keys():
         check_name(name, where=where)
     if not text.strip():
-        raise EmptyError("expected an expression; got an empty text; do write one, such as \"0\"", where=where)
+        raise EmptyError('expected an expression; got an empty text; do write one, such as "0"', where=where)
     source = Source(text, where)
     reader = Reader(source, tokenize(source), symbols)
     try:
         return Parsed(reader.whole(), tuple(dict.fromkeys(reader.divisors)))
     except RecursionError:
-        source.fail(0, "an expression that can be built", "one nested too deeply", "simplify it", TooLargeError)
+        source.fail(0, "less nesting", "an expression too deep to build", "give parts a name", TooLargeError)
 
 
 def symbol(
@@ -94,6 +98,8 @@ class Reader:
     symbols: Mapping[str, sp.Symbol]
     position: int = 0
     depth: int = 0
+    calls: int = 0
+    root_bits: int = 0
     divisors: list[sp.Expr] = field(default_factory=list)
 
     @property
@@ -113,14 +119,14 @@ class Reader:
         if self.token.kind != "end":
             self.unexpected("an operator or the end")
         if value.has(sp.I, sp.nan, sp.zoo, sp.oo, -sp.oo, sp.Float):
-            self.source.fail(0, "a finite real value", "one that is not", "correct the expression", DomainError)
+            self.source.fail(0, "a finite real value", "another one", "correct the expression", DomainError)
         return value
 
     def sum(self) -> sp.Expr:
         at, terms = self.token.start, [self.product()]
         while mark := self.take("+", "-"):
             term = self.product()
-            terms.append(term if mark.text == "+" else self.do(mark.start, arithmetic.multiply, [sp.S.NegativeOne, term]))
+            terms.append(term if mark.text == "+" else self.minus(mark.start, term))
         return self.do(at, arithmetic.add, terms)
 
     def product(self) -> sp.Expr:
@@ -140,7 +146,10 @@ class Reader:
         while mark := self.take("+", "-"):
             sign = -sign if mark.text == "-" else sign
         value = self.power()
-        return value if sign > 0 else self.do(at, arithmetic.multiply, [sp.S.NegativeOne, value])
+        return value if sign > 0 else self.minus(at, value)
+
+    def minus(self, at: int, value: sp.Expr) -> sp.Expr:
+        return self.do(at, arithmetic.multiply, [sp.S.NegativeOne, value])
 
     def power(self) -> sp.Expr:
         base = self.atom()
@@ -150,7 +159,16 @@ class Reader:
         exponent = self.nested(mark, self.unary)
         if exponent.is_extended_negative is not False and base.free_symbols and exponent.is_number:
             self.divisors.append(base)
+        self.count_roots(mark, base, exponent)
         return self.do(mark.start, arithmetic.power, base, exponent)
+
+    def count_roots(self, mark: Token, base: sp.Expr, exponent: sp.Expr) -> None:
+        """The algebra factors numbers under roots, again in every product: their total is bounded."""
+        if exponent.is_integer is not True:
+            self.root_bits += arithmetic.number_bits(base)
+        if self.root_bits > ROOT_TOTAL:
+            got, do = f"more, with {self.root_bits} bits", "split the expression"
+            self.source.fail(mark.start, f"at most {ROOT_TOTAL} bits under roots", got, do, TooLargeError)
 
     def atom(self) -> sp.Expr:
         token = self.token
@@ -181,15 +199,20 @@ class Reader:
 
     def function(self, token: Token) -> sp.Expr:
         wanted = 2 if token.text == "atan2" else 1
-        opening = self.take("(")
-        if opening is None:
-            self.unexpected(f"( after {token.text}")
+        opening = self.take("(") or self.unexpected(f"( after {token.text}")
+        self.calls += 1
+        if self.calls > CALLS:
+            got, do = "more", "give parts a name"
+            self.source.fail(token.start, f"functions nested at most {CALLS} deep", got, do, TooLargeError)
         arguments = [self.nested(opening, self.sum)]
         while len(arguments) < wanted and self.take(","):
             arguments.append(self.nested(opening, self.sum))
         if len(arguments) < wanted:
             self.unexpected(f"a comma, since {token.text} takes {wanted} arguments,")
         self.close(opening)
+        self.calls -= 1
+        if token.text == "sqrt":
+            self.count_roots(token, arguments[0], sp.S.Half)
         if token.text in ("tan", "cot", "sec", "csc"):
             self.note_pole(token.text, arguments[0])
         return self.do(token.start, arithmetic.call, token.text, arguments)
@@ -206,12 +229,13 @@ class Reader:
     def nested(self, token: Token, rule: Callable[[], sp.Expr]) -> sp.Expr:
         self.depth += 1
         if self.depth > DEPTH:
-            self.source.fail(token.start, f"at most {DEPTH} levels", "more", "give parts a name", TooLargeError)
+            got, do = "more", "give parts a name"
+            self.source.fail(token.start, f"at most {DEPTH} levels", got, do, TooLargeError)
         value = rule()
         self.depth -= 1
         return value
 
-    def unexpected(self, expected: str) -> None:
+    def unexpected(self, expected: str) -> NoReturn:
         token = self.token
         got = "the end of the text" if token.kind == "end" else shown(token.text)
         implicit = token.kind in ("number", "name") or token.text == "("
@@ -228,4 +252,4 @@ class Reader:
             raise
         except Exception as failure:  # sympy's own evaluation gave up on an exotic constant
             got = f"one on which the algebra stops ({type(failure).__name__})"
-            self.source.fail(at, "an expression that can be evaluated exactly", got, "simplify it", DomainError)
+            self.source.fail(at, "a value that exists exactly", got, "simplify it", DomainError)

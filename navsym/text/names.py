@@ -14,8 +14,9 @@ NAME_LENGTH = 64
 
 #: Functions of the language; `atan2` takes two arguments, the others one.
 FUNCTIONS = (
-    "sin cos tan cot sec csc exp log sqrt abs asin acos atan atan2 sinh cosh tanh".split()
-)
+    "sin", "cos", "tan", "cot", "sec", "csc", "exp", "log", "sqrt", "abs",
+    "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh",
+)  # fmt: skip
 
 #: Names that have a meaning already.
 RESERVED = frozenset({"pi", *FUNCTIONS})
@@ -72,7 +73,7 @@ def character(char: str) -> str:
     """A character with its code and its Unicode name, so that look-alikes show."""
     code = f"U+{ord(char):04X}"
     name = unicodedata.name(char, "")
-    return f"{ascii(char)} ({code} {name})" if name else f"{ascii(char)} ({code})"
+    return f"{char!a} ({code} {name})" if name else f"{char!a} ({code})"
 
 
 def nearest(name: str, known: Iterable[str]) -> str:

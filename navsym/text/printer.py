@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from typing import NoReturn
+
 import sympy as sp
 
 from navsym.errors import ExpressionSyntaxError, TooLargeError
-from navsym.text.arithmetic import BUILDERS, number_bits, BITS
+from navsym.text.arithmetic import BITS, BUILDERS, number_bits
 from navsym.text.names import check_name, shown
 
 SUM, PRODUCT, POWER, ATOM = range(4)
@@ -30,7 +32,7 @@ def to_text(expression: sp.Expr) -> str:
         ) from None
 
 
-def refuse(part: object) -> str:
+def refuse(part: object) -> NoReturn:
     kind = type(part).__name__
     text = shown(str(part)) if not isinstance(part, str) else shown(part)
     raise ExpressionSyntaxError(
@@ -63,7 +65,7 @@ def written(e: sp.Expr) -> tuple[str, int]:
         return powered(e.base, e.exp)
     name = NAMES.get(type(e))
     if name is None or len(e.args) != (2 if name == "atan2" else 1):
-        return refuse(e), ATOM
+        refuse(e)
     return f"{name}({', '.join(write(part, SUM) for part in e.args)})", ATOM
 
 
@@ -97,7 +99,7 @@ def times(e: sp.Mul) -> tuple[str, int]:
         else:
             above.append(written(factor))
     if not isinstance(coefficient, sp.Rational):
-        return refuse(coefficient), ATOM
+        refuse(coefficient)
     if coefficient.q != 1:
         below.insert(0, rational(sp.Integer(coefficient.q)))
     if abs(coefficient.p) != 1 or not above:

@@ -17,6 +17,7 @@ LENGTH = 10_000  # characters of one expression
 DIGITS = 1_000  # digits of one number
 EXPONENT = 1_000  # largest power, and largest decimal exponent
 DEPTH = 100  # nesting of parentheses, functions and towers of powers
+CALLS = 12  # nesting of functions: constants such as sin(sin(...)) are compared numerically
 
 TOKEN = re.compile(
     r"[ \t\r\n]*(?:(?P<number>[0-9]+(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?)"
@@ -81,9 +82,8 @@ class Source:
 def tokenize(source: Source) -> list[Token]:
     """Tokens of the text, the last of kind ``"end"``."""
     if len(source.text) > LENGTH:
-        source.fail(
-            LENGTH, f"at most {LENGTH} characters", f"{len(source.text)}", "split the expression", TooLargeError
-        )
+        got, do = f"{len(source.text)}", "split the expression"
+        source.fail(LENGTH, f"at most {LENGTH} characters", got, do, TooLargeError)
     tokens: list[Token] = []
     at = 0
     while not tokens or tokens[-1].kind != "end":
@@ -114,7 +114,8 @@ def refuse_tail(source: Source, token: Token, at: int) -> None:
         source.fail(token.start, "a decimal number", got, do)
     mantissa, _, exponent = token.text.lower().partition("e")
     if len(mantissa) > DIGITS:
-        source.fail(token.start, f"at most {DIGITS} digits", f"{len(mantissa)}", "shorten the number", TooLargeError)
+        got, do = f"{len(mantissa)}", "shorten the number"
+        source.fail(token.start, f"at most {DIGITS} digits", got, do, TooLargeError)
     if exponent and (len(exponent) > 8 or abs(int(exponent)) > EXPONENT):
         expected = f"a decimal exponent of at most {EXPONENT}"
         source.fail(token.start, expected, shown(exponent), "rescale the units", TooLargeError)
