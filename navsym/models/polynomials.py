@@ -53,6 +53,8 @@ def companion_inverse(ring: Ring, a: Coefficients, q: Coefficients) -> tuple[Coe
     Column k of the linear system is x^k a modulo q; its determinant is the resultant of q and a.
     """
     n = len(q) - 1
+    if all(c.is_zero() for c in a[1:]):                # a constant, as for the only factor of q
+        return lowest_terms([ring.one], a[0])
     columns = [a]
     for _ in range(n - 1):
         columns.append(monic_remainder(ring, [ring.zero, *columns[-1]], q))
