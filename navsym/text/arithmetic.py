@@ -16,6 +16,7 @@ from navsym.errors import DomainError, NavsymError, TooLargeError
 from navsym.text.tokens import EXPONENT
 
 BITS = 13_000  # size of any number, below 4000 digits
+GROWTH = 9_000  # argument of exp, sinh and cosh: exp(9000) is just below 2**BITS
 ROOT_BITS = 700  # size of a number under a root: sympy looks for square factors in it
 
 BUILDERS: dict[str, Callable[..., sp.Expr]] = {
@@ -73,6 +74,8 @@ def call(name: str, arguments: list[sp.Expr]) -> sp.Expr:
     """Function of the language at exact arguments."""
     if name == "sqrt":
         return power(arguments[0], sp.Rational(1, 2))
+    for argument in arguments:
+        bound_constant(name, argument)
     if name == "exp":
         bound_logarithms(arguments[0])
     return real(BUILDERS[name](*arguments))
@@ -95,6 +98,16 @@ def bound_exponent(base: sp.Expr, exponent: sp.Expr) -> None:
         raise too_large(f"numbers of at most {BITS} bits", f"about {int(bits * size)} bits")
     if not exponent.is_integer and bits > ROOT_BITS:
         raise too_large(f"at most {ROOT_BITS} bits under a root", f"{bits} bits")
+
+
+def bound_constant(name: str, argument: sp.Expr) -> None:
+    """Refuse constants such as ``sin(exp(exp(99)))``: comparing them would need their whole digits."""
+    if argument.free_symbols:
+        return
+    size = abs(argument.evalf(5))
+    largest = GROWTH if name in ("exp", "sinh", "cosh") else sp.Integer(2) ** BITS
+    if size.is_Float and size > largest:
+        raise too_large(f"an argument of {name} of bounded size", "a larger constant")
 
 
 def bound_logarithms(argument: sp.Expr) -> None:

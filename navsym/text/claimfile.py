@@ -1,0 +1,149 @@
+"""The file of ``navsym prove``: symbols with their ranges, and claims with two sides each."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import sympy as sp
+
+from navsym.errors import DomainError, EmptyError, ExpressionSyntaxError, ShapeError, TooLargeError
+from navsym.text.files import called
+from navsym.text.names import nearest, shown
+from navsym.text.parameters import Parameter, box_of, read_parameters, read_range, symbols_of
+from navsym.text.schema import (
+    Table,
+    as_label,
+    as_list,
+    as_table,
+    as_text,
+    distinct,
+    entry_noting,
+    expect_keys,
+    inside,
+    required,
+)
+from navsym.text.tomlfile import read_toml
+
+RELATIONS = ("=", "!=", "<", "<=", ">", ">=")
+CLAIMS = 2_000
+
+Box = dict[sp.Symbol, tuple[sp.Expr, sp.Expr]]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FileClaim:
+    """One formula of the user.
+
+    left, right : expressions, or matrices of one shape (given as lists of rows)
+    relation    : one of ``= != < <= > >=``
+    box         : symbol -> (lower, upper), the file's ranges and those of the claim itself
+    divisors    : what the text divides by, also where the algebra has cancelled it since
+    """
+
+    id: str
+    left: Any
+    right: Any
+    relation: str
+    box: Mapping[sp.Symbol, tuple[sp.Expr, sp.Expr]]
+    divisors: tuple[sp.Expr, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ClaimFile:
+    """``[symbols]`` and ``[[claim]]``."""
+
+    symbols: Mapping[str, Parameter]
+    claims: tuple[FileClaim, ...] = field(default=())
+
+
+def read_claims(path: str | os.PathLike[str]) -> ClaimFile:
+    """The claims of a TOML file, or a NavsymError that names the file and the key."""
+    return claims_from(read_toml(path), called(path))
+
+
+def claims_from(document: Table, where: str = "") -> ClaimFile:
+    """Like :func:`read_claims` for a document in memory."""
+    expect_keys(document, ("symbols", "claim"), where)
+    place = inside(where, "symbols")
+    symbols = read_parameters(as_table(document.get("symbols", {}), place), place)
+    blocks = required(document, "claim", where)
+    place = inside(where, "claim")
+    if not isinstance(blocks, list):
+        raise ShapeError("expected [[claim]] blocks; got a single one; do write double brackets", where=place)
+    if not blocks:
+        raise EmptyError("expected at least one [[claim]]; got none; do add one", where=place)
+    if len(blocks) > CLAIMS:
+        message = f"expected at most {CLAIMS} claims; got {len(blocks)}; do split the file"
+        raise TooLargeError(message, where=place)
+    claims = tuple(read_claim(block, symbols, inside(place, i)) for i, block in enumerate(blocks))
+    distinct((claim.id for claim in claims), place)
+    return ClaimFile(symbols, claims)
+
+
+def read_claim(block: Any, symbols: Mapping[str, Parameter], where: str) -> FileClaim:
+    table = as_table(block, where)
+    expect_keys(table, ("id", "left", "right", "relation", "box"), where)
+    label = as_label(required(table, "id", where), inside(where, "id"))
+    relation = as_text(table.get("relation", "="), inside(where, "relation"), "a relation")
+    if relation not in RELATIONS:
+        hint = "write =" if relation == "==" else nearest(relation, RELATIONS)
+        message = f"expected one of {' '.join(RELATIONS)}; got {shown(relation)}; do correct it: {hint}"
+        raise ExpressionSyntaxError(message, where=inside(where, "relation"))
+    known = symbols_of(symbols)
+    left, over_left = read_side(required(table, "left", where), known, inside(where, "left"))
+    right, over_right = read_side(required(table, "right", where), known, inside(where, "right"))
+    require_comparable(left, right, relation, where)
+    box = box_of(symbols) | read_box(table.get("box", {}), symbols, inside(where, "box"))
+    return FileClaim(label, left, right, relation, box, tuple(dict.fromkeys(over_left + over_right)))
+
+
+def read_side(value: Any, known: Mapping[str, sp.Symbol], where: str) -> tuple[Any, tuple[sp.Expr, ...]]:
+    """An expression, a column given as a list, or a matrix given as a list of rows; with its divisors."""
+    if not isinstance(value, list):
+        parsed = entry_noting(value, known, where)
+        return parsed.expression, parsed.divisors
+    rows = [row if isinstance(row, list) else [row] for row in as_list(value, where)]
+    cells = [
+        [entry_noting(cell, known, inside(inside(where, i), j)) for j, cell in enumerate(as_list(row, where))]
+        for i, row in enumerate(rows)
+    ]
+    if len({len(row) for row in cells}) > 1:
+        raise ShapeError("expected rows of one length; got a ragged matrix; do correct it", where=where)
+    divisors = tuple(divisor for row in cells for cell in row for divisor in cell.divisors)
+    return sp.ImmutableMatrix([[cell.expression for cell in row] for row in cells]), divisors
+
+
+def require_comparable(left: Any, right: Any, relation: str, where: str) -> None:
+    shapes = [getattr(side, "shape", None) for side in (left, right)]
+    if shapes[0] != shapes[1]:
+        message = f"expected two sides of one shape; got {shapes[0]} and {shapes[1]}; do correct one of them"
+        raise ShapeError(message.replace("None", "a scalar"), where=where)
+    if shapes[0] is not None and relation not in ("=", "!="):
+        message = f"expected = or != between matrices; got {relation}; do compare them entry by entry"
+        raise ShapeError(message, where=inside(where, "relation"))
+
+
+def read_box(value: Any, symbols: Mapping[str, Parameter], where: str) -> Box:
+    """The claim's own ranges; they may narrow what the file says of a symbol, not contradict it."""
+    box = {}
+    for name, ends in as_table(value, where).items():
+        place = inside(where, name)
+        if name not in symbols:
+            expect_keys({name: ends}, tuple(symbols), where)
+        lower, upper = read_range(ends, place)
+        parameter = symbols[name]
+        unnamed = sp.S.Zero if parameter.symbol.is_nonnegative else None
+        low_end = unnamed if parameter.lower is None else parameter.lower
+        if outside(lower, low_end) or outside(parameter.upper, upper):
+            message = f"expected a range inside the declaration of {name}; got a wider one; do narrow it"
+            raise DomainError(message, where=place)
+        box[parameter.symbol] = (lower, upper)
+    return box
+
+
+def outside(inner: sp.Expr | None, outer: sp.Expr | None) -> bool:
+    """True when ``inner < outer`` is certain; None means no end."""
+    return inner is not None and outer is not None and (inner - outer).is_negative is True

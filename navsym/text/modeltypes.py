@@ -1,0 +1,89 @@
+"""What a model file says, as plain exact data."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import sympy as sp
+
+from navsym.errors import ShapeError
+from navsym.text.parameters import Parameter, box_of
+
+Targets = Mapping[str, tuple[sp.Expr, ...]]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Measurement:
+    """``z = h x + r`` with a standard deviation of r of at most sigma; h has one entry per state."""
+
+    name: str
+    h: tuple[sp.Expr, ...]
+    sigma: sp.Expr
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Piece:
+    """``dx/dt = F x`` from ``start`` to ``end`` (None: no end is given)."""
+
+    start: sp.Expr
+    end: sp.Expr | None
+    F: sp.ImmutableMatrix
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ModelFile:
+    """``dx/dt = F x`` with scalar measurements on [0, T].
+
+    time         : the symbol t, which F and h may contain
+    states       : n names
+    pieces       : one piece for a constant (or continuously varying) F, otherwise one per stretch
+    T            : length of the interval, None when the file has no [interval]
+    targets      : name -> n expressions, a functional of the state at T
+    """
+
+    name: str
+    parameters: Mapping[str, Parameter]
+    states: tuple[str, ...]
+    time: sp.Symbol
+    pieces: tuple[Piece, ...]
+    measurements: tuple[Measurement, ...]
+    T: sp.Expr | None
+    targets: Targets
+
+    @property
+    def F(self) -> sp.ImmutableMatrix:
+        """The matrix of a model in one piece. Raises ShapeError when there are several."""
+        if len(self.pieces) != 1:
+            message = f"expected one F; got {len(self.pieces)} pieces; do use a method that takes pieces"
+            raise ShapeError(message)
+        return self.pieces[0].F
+
+    @property
+    def box(self) -> dict[sp.Symbol, tuple[sp.Expr, sp.Expr]]:
+        """Symbol -> (lower, upper) for the parameters that have a range."""
+        return box_of(self.parameters)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class BasisFile:
+    """Regressors without a model: ``z_j(s) = H_j(s) q + r_j``.
+
+    H        : one row per measurement, one expression per unknown
+    sigma    : one bound per measurement
+    interval : (start, end) of the variable
+    targets  : name -> one expression per unknown
+    """
+
+    name: str
+    parameters: Mapping[str, Parameter]
+    variable: sp.Symbol
+    H: tuple[tuple[sp.Expr, ...], ...]
+    sigma: tuple[sp.Expr, ...]
+    interval: tuple[sp.Expr, sp.Expr]
+    targets: Targets
+
+    @property
+    def box(self) -> dict[sp.Symbol, tuple[sp.Expr, sp.Expr]]:
+        """Symbol -> (lower, upper) for the parameters that have a range."""
+        return box_of(self.parameters)
