@@ -1,0 +1,372 @@
+"""Compiled loops of the terrain search: criteria of a grid of hypotheses against a height map.
+
+Everything here is counted in map cells: a hypothesis ``(i, j, Vi, Vj)`` puts measurement k at
+
+    u = bx[k] + ((i - Nx) sx + (Vi - Nvx) wx[k])     column coordinate
+    w = by[k] + ((j - Ny) sy + (Vj - Nvy) wy[k])     row coordinate
+
+with ``bx, by`` the positions of the track, ``sx, sy`` the position steps and ``wx, wy`` the
+velocity steps times the time since t0. Heights between nodes are bilinear, columns first. Every
+loop evaluates these expressions in this order, without reassociation, and adds squares in the
+order of the measurements: that makes the fast loops equal their slow twins to the last bit.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numba import njit
+
+unsigned = np.uint64
+
+#: Rows of hypotheses are padded to this many entries, so that vector loops have no remainder.
+LANES = 16
+#: Measurements that share one pass over the criterion.
+TOGETHER = 4
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def height_at(H: np.ndarray, u: float, w: float) -> float:
+    """Bilinear height at column ``u`` and row ``w`` of H (ny, nx); positions on the map only."""
+    ny, nx = H.shape
+    c = max(min(np.int64(np.floor(u)), nx - 2), 0)
+    r = max(min(np.int64(np.floor(w)), ny - 2), 0)
+    f, g = u - c, w - r
+    column, row, one = unsigned(c), unsigned(r), unsigned(1)
+    a = H[row, column] + f * (H[row, column + one] - H[row, column])
+    b = H[row + one, column] + f * (H[row + one, column + one] - H[row + one, column])
+    return a + g * (b - a)
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def criterion_one(
+    H: np.ndarray,
+    bx: np.ndarray,
+    by: np.ndarray,
+    z: np.ndarray,
+    wx: np.ndarray,
+    wy: np.ndarray,
+    px: float,
+    py: float,
+    vx: float,
+    vy: float,
+    limit: float,
+) -> float:
+    """Sum of squared height differences of one hypothesis, abandoned once it exceeds ``limit``.
+
+    px, py : (i - Nx) sx and (j - Ny) sy, in cells ; vx, vy : Vi - Nvx and Vj - Nvy
+
+    An abandoned sum is a lower bound above ``limit``: rounded sums of squares never decrease.
+    """
+    total = 0.0
+    for k in range(z.shape[0]):
+        d = z[k] - height_at(H, bx[k] + (px + vx * wx[k]), by[k] + (py + vy * wy[k]))
+        total += d * d
+        if total > limit:
+            break
+    return total
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def dense_slowly(
+    H: np.ndarray,
+    bx: np.ndarray,
+    by: np.ndarray,
+    z: np.ndarray,
+    wx: np.ndarray,
+    wy: np.ndarray,
+    steps: Any,
+    counts: Any,
+    out: np.ndarray,
+) -> None:
+    """Twin of :func:`slab` for all Vi: four plain loops. out : (Mvx, Mvy, My, Mx)."""
+    sx, sy = steps
+    Mx, My, Mvx, Mvy = counts
+    for Vi in range(Mvx):
+        for Vj in range(Mvy):
+            for j in range(My):
+                for i in range(Mx):
+                    px, py = (i - Mx // 2) * sx, (j - My // 2) * sy
+                    out[Vi, Vj, j, i] = criterion_one(
+                        H, bx, by, z, wx, wy, px, py, Vi - Mvx // 2, Vj - Mvy // 2, np.inf
+                    )
+
+
+# The fast loops. Unsigned loop variables spare the test for negative indices, which would keep
+# the compiler from using vector instructions.
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def place_columns(
+    b: float, s: float, shift: float, nx: int, half: int, columns: np.ndarray, fraction: np.ndarray
+) -> bool:
+    """Cell and fraction of every padded i; returns whether the cells are consecutive."""
+    for i in range(columns.shape[0]):
+        u = b + ((i - half) * s + shift)
+        c = max(min(np.int64(np.floor(u)), nx - 2), 0)
+        columns[i] = c
+        fraction[i] = u - c
+    apart = 0
+    for i in range(columns.shape[0]):
+        apart |= columns[i] - (columns[0] + i)
+    return apart == 0
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def place_rows(
+    b: float, s: float, w: float, ny: int, My: int, Mvy: int, rows: np.ndarray, fraction: np.ndarray
+) -> tuple[int, int]:
+    """Row and fraction of every (Vj, j); returns the first and the last row needed."""
+    low, high = np.int64(ny), np.int64(0)
+    for v in range(Mvy):
+        shift = (v - Mvy // 2) * w
+        for j in range(My):
+            u = b + ((j - My // 2) * s + shift)
+            r = max(min(np.int64(np.floor(u)), ny - 2), 0)
+            rows[v * My + j] = r
+            fraction[v * My + j] = u - r
+            low = min(low, r)
+            high = max(high, r)
+    return low, high + 1
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def blend_columns(
+    H: np.ndarray,
+    low: int,
+    high: int,
+    columns: np.ndarray,
+    fraction: np.ndarray,
+    consecutive: bool,
+    patch: np.ndarray,
+    start: int,
+) -> None:
+    """Interpolate rows ``low..high`` of the map at all columns, once for all Vj and j."""
+    width = unsigned(columns.shape[0])
+    for r in range(low, high + 1):
+        base = unsigned(start + (r - low) * columns.shape[0])
+        if consecutive:
+            near = H[r, columns[0] : columns[0] + columns.shape[0] + 1]
+            for i in range(width):
+                a = near[i]
+                patch[base + i] = a + fraction[i] * (near[i + unsigned(1)] - a)
+        else:
+            line = H[r]
+            for i in range(width):
+                c = unsigned(columns[i])
+                a = line[c]
+                patch[base + i] = a + fraction[i] * (line[c + unsigned(1)] - a)
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def add_four(patch: np.ndarray, at: np.ndarray, g: Any, z: np.ndarray, width: int, out: np.ndarray) -> None:
+    """Add four measurements to every hypothesis: one pass over ``out`` instead of four."""
+    W = unsigned(width)
+    z0, z1, z2, z3 = z[0], z[1], z[2], z[3]
+    for e in range(at.shape[1]):
+        p0, p1, p2, p3 = unsigned(at[0, e]), unsigned(at[1, e]), unsigned(at[2, e]), unsigned(at[3, e])
+        g0, g1, g2, g3 = g[0, e], g[1, e], g[2, e], g[3, e]
+        o = unsigned(e * width)
+        for i in range(W):
+            a = patch[p0 + i]
+            d = z0 - (a + g0 * (patch[p0 + W + i] - a))
+            s = out[o + i] + d * d
+            a = patch[p1 + i]
+            d = z1 - (a + g1 * (patch[p1 + W + i] - a))
+            s += d * d
+            a = patch[p2 + i]
+            d = z2 - (a + g2 * (patch[p2 + W + i] - a))
+            s += d * d
+            a = patch[p3 + i]
+            d = z3 - (a + g3 * (patch[p3 + W + i] - a))
+            out[o + i] = s + d * d
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def add_one(patch: np.ndarray, at: np.ndarray, g: np.ndarray, z: float, width: int, out: np.ndarray) -> None:
+    """Add one measurement to every hypothesis."""
+    W = unsigned(width)
+    for e in range(at.shape[0]):
+        p, o, ge = unsigned(at[e]), unsigned(e * width), g[e]
+        for i in range(W):
+            a = patch[p + i]
+            d = z - (a + ge * (patch[p + W + i] - a))
+            out[o + i] += d * d
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def slab(
+    H: np.ndarray,
+    bx: np.ndarray,
+    by: np.ndarray,
+    z: np.ndarray,
+    wx: np.ndarray,
+    wy: np.ndarray,
+    steps: Any,
+    counts: Any,
+    vx: float,
+    patch: np.ndarray,
+    out: np.ndarray,
+) -> None:
+    """Add all measurements to the criteria of one velocity hypothesis ``vx = Vi - Nvx``.
+
+    steps  : (sx, sy) ; counts : (Mx, My, Mvy)
+    patch  : (4, rows, W) work space, rows as :func:`patch_rows` says, W = Mx padded to LANES
+    out    : (Mvy, My, W), added to; the padding is work space too
+    The type of ``patch``, ``out`` and ``z`` is that of the sums; positions are always double.
+    """
+    sx, sy = steps
+    Mx, My, Mvy = counts
+    W, capacity = out.shape[2], patch.shape[1] * out.shape[2]
+    columns, fx = np.empty(W, np.int64), np.empty(W)
+    at = np.empty((TOGETHER, Mvy * My), np.int64)
+    g = np.empty((TOGETHER, Mvy * My), out.dtype)
+    flat, sums = patch.reshape(-1), out.reshape(-1)
+    for k0 in range(0, z.shape[0], TOGETHER):
+        m = min(TOGETHER, z.shape[0] - k0)
+        for q in range(m):
+            k = k0 + q
+            consecutive = place_columns(bx[k], sx, vx * wx[k], H.shape[1], Mx // 2, columns, fx)
+            low, high = place_rows(by[k], sy, wy[k], H.shape[0], My, Mvy, at[q], g[q])
+            blend_columns(H, low, high, columns, fx, consecutive, flat, q * capacity)
+            for e in range(at.shape[1]):
+                at[q, e] = (at[q, e] - low) * W + q * capacity
+        if m == TOGETHER:
+            add_four(flat, at, g, z[k0 : k0 + TOGETHER], W, sums)
+        else:
+            for q in range(m):
+                add_one(flat, at[q], g[q], z[k0 + q], W, sums)
+
+
+def padded(Mx: int) -> int:
+    """Mx rounded up to a multiple of LANES."""
+    return -(-Mx // LANES) * LANES
+
+
+def patch_rows(by: np.ndarray, wy: np.ndarray, sy: float, My: int, Mvy: int, ny: int) -> int:
+    """Rows that the widest fan of hypotheses of one measurement can need."""
+    span = (My - 1) * sy + 2 * (Mvy // 2) * float(np.abs(wy).max(initial=0.0))
+    return int(min(ny, span + 4))
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def height_or_nan(H: np.ndarray, u: float, w: float) -> float:
+    """Like :func:`height_at`, NaN off the map or when a node that takes part has no height.
+
+    A node takes part when its weight is not zero, so a position exactly on a node, or on the line
+    between two nodes, does not look at the others.
+    """
+    ny, nx = H.shape
+    if not (0.0 <= u <= nx - 1 and 0.0 <= w <= ny - 1):
+        return np.nan
+    h = height_at(H, u, w)
+    return beside_a_void(H, u, w) if np.isnan(h) else h
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def beside_a_void(H: np.ndarray, u: float, w: float) -> float:
+    """Height in a cell with a void corner: NaN unless the void corners have weight zero."""
+    c, r = np.int64(np.floor(u)), np.int64(np.floor(w))
+    f, g = u - c, w - r
+    a = H[r, c] if f == 0.0 else H[r, c] + f * (H[r, c + 1] - H[r, c])
+    if g == 0.0:
+        return a
+    b = H[r + 1, c] if f == 0.0 else H[r + 1, c] + f * (H[r + 1, c + 1] - H[r + 1, c])
+    return a + g * (b - a)
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def criterion_masked(
+    H: np.ndarray,
+    bx: np.ndarray,
+    by: np.ndarray,
+    z: np.ndarray,
+    wx: np.ndarray,
+    wy: np.ndarray,
+    px: float,
+    py: float,
+    vx: float,
+    vy: float,
+    limit: float,
+) -> float:
+    """:func:`criterion_one` for tracks that may leave the map or cross voids: infinity when they do."""
+    total = 0.0
+    inside = True
+    for k in range(z.shape[0]):
+        h = height_or_nan(H, bx[k] + (px + vx * wx[k]), by[k] + (py + vy * wy[k]))
+        if np.isnan(h):
+            inside = False
+            break
+        d = z[k] - h
+        total += d * d
+        if total > limit:
+            break
+    return total if inside else np.inf
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def dense_masked(
+    H: np.ndarray,
+    bx: np.ndarray,
+    by: np.ndarray,
+    z: np.ndarray,
+    wx: np.ndarray,
+    wy: np.ndarray,
+    steps: Any,
+    counts: Any,
+    out: np.ndarray,
+) -> None:
+    """Criteria of all hypotheses, infinite where the track leaves the map. out : (Mvx, Mvy, My, Mx)."""
+    sx, sy = steps
+    Mx, My, Mvx, Mvy = counts
+    for Vi in range(Mvx):
+        for Vj in range(Mvy):
+            for j in range(My):
+                for i in range(Mx):
+                    px, py = (i - Mx // 2) * sx, (j - My // 2) * sy
+                    out[Vi, Vj, j, i] = criterion_masked(
+                        H, bx, by, z, wx, wy, px, py, Vi - Mvx // 2, Vj - Mvy // 2, np.inf
+                    )
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def profile(H: np.ndarray, u: np.ndarray, w: np.ndarray, out: np.ndarray) -> None:
+    """Heights along the positions (u, w), in cells; NaN off the map or without data."""
+    for k in range(u.shape[0]):
+        out[k] = height_or_nan(H, u[k], w[k])
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def offset_free(
+    H: np.ndarray,
+    bx: np.ndarray,
+    by: np.ndarray,
+    z: np.ndarray,
+    wx: np.ndarray,
+    wy: np.ndarray,
+    steps: Any,
+    counts: Any,
+    out: np.ndarray,
+) -> None:
+    """Criteria free of a constant height error: sum (d - mean d)^2, by the update of Welford."""
+    sx, sy = steps
+    Mx, My, Mvx, Mvy = counts
+    for Vi in range(Mvx):
+        for Vj in range(Mvy):
+            for j in range(My):
+                for i in range(Mx):
+                    px, py = (i - Mx // 2) * sx, (j - My // 2) * sy
+                    mean, total = 0.0, 0.0
+                    for k in range(z.shape[0]):
+                        u = bx[k] + (px + (Vi - Mvx // 2) * wx[k])
+                        w = by[k] + (py + (Vj - Mvy // 2) * wy[k])
+                        h = height_or_nan(H, u, w)
+                        if np.isnan(h):
+                            total = np.inf
+                            break
+                        d = z[k] - h
+                        step = d - mean
+                        mean += step / (k + 1)
+                        total += step * (d - mean)
+                    out[Vi, Vj, j, i] = total
