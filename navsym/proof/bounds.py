@@ -261,24 +261,35 @@ def angle_sign(expression: sp.Expr, limits: Limits) -> SignProof:
     if inner.func not in SIGNED_RANGES:
         return UNKNOWN
     allowed = SIGNED_RANGES[inner.func][1 if negative else 0]
-    values = corner_values(inner.args[0], limits)
-    return UNKNOWN if values is None else range_sign(values, allowed)
+    return range_sign(inner.args[0], limits, allowed)
 
 
-def range_sign(values: list[tuple[sp.Expr, bool]], allowed: tuple[sp.Expr, sp.Expr]) -> SignProof:
-    """The angle is multilinear in the symbols, so that it has its extremes at corners of the box."""
+def range_sign(angle: sp.Expr, limits: Limits, allowed: tuple[sp.Expr, sp.Expr]) -> SignProof:
+    """Positive when the angle stays strictly inside the allowed range, nonnegative when it touches."""
+    values = corner_values(angle, limits)
+    if values is None:
+        return UNKNOWN
     strict = True
-    for value, attained in values:
-        low, high = constant_sign(value - allowed[0]).sign, constant_sign(allowed[1] - value).sign
-        if Sign.UNKNOWN in (low, high):
+    for margin in (lambda value: value - allowed[0], lambda value: allowed[1] - value):
+        signs = {constant_sign(margin(value)).sign for value in values}
+        if Sign.UNKNOWN in signs:
             return UNKNOWN
-        if attained and Sign.NONNEGATIVE in (low, high):
-            strict = False
+        # A corner on the limit may lie on an open end, as sin(T v) does at T = 0 for T > 0.
+        strict &= Sign.NONNEGATIVE not in signs or monomial_sign(margin(angle), limits) == Sign.POSITIVE
     return SignProof(Sign.POSITIVE if strict else Sign.NONNEGATIVE, "exact range of the angle", exact=True)
 
 
-def corner_values(angle: sp.Expr, limits: Limits) -> list[tuple[sp.Expr, bool]] | None:
-    """Values of a multilinear expression at the corners of the box, and whether each is attained.
+def monomial_sign(expression: sp.Expr, limits: Limits) -> Sign:
+    """Sign of a product of symbols and numbers by the ranges of the symbols."""
+    sign = Sign.POSITIVE
+    for factor in sp.Mul.make_args(sp.expand(expression)):
+        proof = symbol_sign(limits[factor]) if isinstance(factor, sp.Symbol) else UNKNOWN
+        sign = min(sign, constant_sign(factor).sign if factor.is_number else proof.sign)
+    return sign
+
+
+def corner_values(angle: sp.Expr, limits: Limits) -> list[sp.Expr] | None:
+    """Values of a multilinear expression at the corners of the box, which hold its extremes.
 
     None when the expression is not multilinear, the box is not bounded or it has many corners.
     """
@@ -289,20 +300,11 @@ def corner_values(angle: sp.Expr, limits: Limits) -> list[tuple[sp.Expr, bool]] 
         for base, exponent in monomial:
             if exponent != 1 or not (isinstance(base, sp.Symbol) or base.is_number):
                 return None
-    corners: list[tuple[dict[sp.Symbol, sp.Expr], bool]] = [({}, True)]
+    corners: list[dict[sp.Symbol, sp.Expr]] = [{}]
     for symbol in symbols:
-        limit = limits[symbol]
-        corners = [
-            ({**corner, symbol: end}, attained and kept)
-            for corner, attained in corners
-            for end, kept in ((limit.lower, not limit.open_lower), (limit.upper, True))
-        ]
-    values = [(angle.subs(corner), attained) for corner, attained in corners]
-    # With several symbols an inner point can share a corner's extreme value only along an edge
-    # of the box; an end that is merely approached there still counts as attained, to be safe.
-    if len(symbols) > 1:
-        values = [(value, True) for value, _ in values]
-    return values
+        ends = (limits[symbol].lower, limits[symbol].upper)
+        corners = [{**corner, symbol: end} for corner in corners for end in ends]
+    return [angle.subs(corner) for corner in corners]
 
 
 # -- balls ------------------------------------------------------------------------------------------

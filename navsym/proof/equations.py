@@ -42,7 +42,10 @@ def decide_equation(statement: Equation) -> Verdict:
             counterexample={},
         )
     verdicts = [decide_entry(p, d, statement) for p, d in zip(printed, derived, strict=True)]
-    return combine(verdicts)
+    verdict = combine(verdicts)
+    if verdict.status == REFUTED:
+        return verdict
+    return replace(verdict, scope=scope_of(sp.Tuple(*printed, *derived), statement.box))
 
 
 def shape_of(side: object) -> tuple[int, ...]:

@@ -1,0 +1,222 @@
+"""What the paper does not have: uniqueness proved, and the solution for every T up to 2 pi.
+
+The paper states its formulas for T <= pi/2. They hold further, each to its own bound, which is
+where a weight changes sign: y1 for every T, y2 up to 4 pi/3, y3 up to 2 pi/3. Beyond these
+bounds two instants are enough, one of them the end of the interval, and then the value is one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import sympy as sp
+
+from derivations.guaranteed_velocity.model import INSTANTS, H, T, alternating, tau, weights
+from navsym.claims import PROVED, REFUTED, Bound, Claim, Equation, Optimum, Statement, claim
+
+FULL = 2 * sp.pi
+UNITS = {"y1": (1, 0, 0), "y2": (0, 1, 0), "y3": (0, 0, 1)}
+ALTERNATING_ERROR = {"y2": 2 * sp.cot(T / 4), "y3": sp.cos(T / 2) / sp.sin(T / 4) ** 2}
+
+
+def solution(
+    state: str, dual: tuple, support: tuple, weights_: tuple, value: sp.Expr, lower: sp.Expr, upper: sp.Expr
+) -> Optimum:
+    return Optimum(
+        regressors=tuple(H()),
+        functional=UNITS[state],
+        variable=tau,
+        interval=(sp.Integer(0), T),
+        dual=dual,
+        support=support,
+        weights=weights_,
+        value=value,
+        box={T: (lower, upper)},
+    )
+
+
+def three_instants(state: str, upper: sp.Expr) -> Optimum:
+    place = list(UNITS).index(state)
+    return solution(
+        state, tuple(alternating()), INSTANTS, weights(place), ALTERNATING_ERROR[state], sp.Integer(0), upper
+    )
+
+
+# -- how far the printed formulas hold ---------------------------------------------------------------------
+
+
+@claim("range.y1")
+def velocity_for_every_interval():
+    """y1: the last measurement alone is optimal for every T up to 2 pi (and for any T at all)."""
+    return solution("y1", (1, 0, 0), (T,), (sp.Integer(1),), sp.Integer(1), sp.Integer(0), FULL)
+
+
+@claim("range.y2")
+def tilt_holds_to_four_thirds_of_pi():
+    """y2: the printed weights and error 2 cot(T/4) are optimal up to T = 4 pi/3, not only to pi/2."""
+    return three_instants("y2", 4 * sp.pi / 3)
+
+
+@claim("range.y3")
+def drift_holds_to_two_thirds_of_pi():
+    """y3: the printed weights and error cos(T/2)/sin^2(T/4) are optimal up to T = 2 pi/3."""
+    return three_instants("y3", 2 * sp.pi / 3)
+
+
+@claim("range.y2.end", expect=REFUTED, slip="paper", reason="a test of sharpness: nothing of the kind is printed")
+def tilt_does_not_hold_further():
+    """y2: the printed solution is optimal up to T = 3 pi/2."""
+    return three_instants("y2", 3 * sp.pi / 2)
+
+
+@claim("range.y2.end*", corrects="range.y2.end")
+def tilt_with_two_instants():
+    """y2, 4 pi/3 <= T <= 3 pi/2: two instants, 2(T - pi) and 0, and the error -1/sin T."""
+    sine = sp.sin(T)
+    dual = (-sp.sin(T) * 0 + (1 - 1 / sine**2) + sp.cos(2 * sp.pi - T) / sine**2, -1 / sine, sp.cos(T) / sine**2)
+    return solution(
+        "y2",
+        dual,
+        (2 * T - 2 * sp.pi, sp.Integer(0)),
+        (-1 / (2 * sine), 1 / (2 * sine)),
+        -1 / sine,
+        4 * sp.pi / 3,
+        3 * sp.pi / 2,
+    )
+
+
+@claim("range.y2.last")
+def tilt_with_two_inner_instants():
+    """y2, 3 pi/2 <= T <= 2 pi: half the difference of two measurements half a period apart, error 1."""
+    return solution(
+        "y2",
+        (0, 1, 0),
+        (T - sp.pi / 2, T - 3 * sp.pi / 2),
+        (sp.Rational(1, 2), -sp.Rational(1, 2)),
+        sp.Integer(1),
+        3 * sp.pi / 2,
+        FULL,
+    )
+
+
+@claim("range.y3.end", expect=REFUTED, slip="paper", reason="a test of sharpness: nothing of the kind is printed")
+def drift_does_not_hold_further():
+    """y3: the printed solution is optimal up to T = 3 pi/4."""
+    return three_instants("y3", 3 * sp.pi / 4)
+
+
+@claim("range.y3.end*", corrects="range.y3.end")
+def drift_with_two_instants():
+    """y3, 2 pi/3 <= T <= pi: two instants, 2 T - pi and 0, and the error -1/cos T."""
+    cosine = sp.cos(T)
+    dual = (-1 / cosine - sp.sin(T) ** 2 / cosine**2, sp.sin(T) / cosine**2, -1 / cosine)
+    return solution(
+        "y3",
+        dual,
+        (2 * T - sp.pi, sp.Integer(0)),
+        (-1 / (2 * cosine), 1 / (2 * cosine)),
+        -1 / cosine,
+        2 * sp.pi / 3,
+        sp.pi,
+    )
+
+
+@claim("range.y3.last")
+def drift_with_half_a_period():
+    """y3, pi <= T <= 2 pi: half the difference of two measurements half a period apart, error 1."""
+    return solution(
+        "y3",
+        (1, 0, 1),
+        (T, T - sp.pi),
+        (sp.Rational(1, 2), -sp.Rational(1, 2)),
+        sp.Integer(1),
+        sp.pi,
+        FULL,
+    )
+
+
+# -- the errors meet where the regimes meet ---------------------------------------------------------------------
+
+
+def meeting(left: sp.Expr, right: sp.Expr, at: sp.Expr) -> Callable[[], Statement]:
+    def derive() -> Statement:
+        return Equation(printed=left.subs(T, at), derived=right.subs(T, at))
+
+    derive.__module__ = __name__
+    return derive
+
+
+MEETINGS: tuple[Claim, ...] = tuple(
+    claim(f"range.{state}.meets.{place}", title=f"The errors of {state} on both sides of T = {at} agree there.")(
+        meeting(left, right, at)
+    )
+    for state, place, left, right, at in (
+        ("y2", "1", 2 * sp.cot(T / 4), -1 / sp.sin(T), 4 * sp.pi / 3),
+        ("y2", "2", -1 / sp.sin(T), sp.Integer(1), 3 * sp.pi / 2),
+        ("y3", "1", sp.cos(T / 2) / sp.sin(T / 4) ** 2, -1 / sp.cos(T), 2 * sp.pi / 3),
+        ("y3", "2", -1 / sp.cos(T), sp.Integer(1), sp.pi),
+    )
+)
+
+
+# -- uniqueness --------------------------------------------------------------------------------------------------
+
+v = sp.Symbol("v", positive=True)              # position inside a half interval, 0 < v <= 1
+UNIQUE_BOX = {T: (0, sp.pi / 2), v: (0, 1)}
+
+
+def dual_polynomial(at: sp.Expr) -> sp.Expr:
+    return (alternating().T * H(at))[0]
+
+
+@claim("unique.upper-bound")
+def upper_bound_touched_once():
+    """1 - x.H > 0 at distance v T/2 on either side of T/2: the bound +1 is touched at T/2 only."""
+    return Bound(1 - dual_polynomial(T / 2 - v * T / 2), ">", 0, UNIQUE_BOX)
+
+
+@claim("unique.symmetric")
+def polynomial_is_symmetric():
+    """x.H is symmetric about T/2, so that one half decides for both."""
+    return Equation(printed=dual_polynomial(T - tau), derived=dual_polynomial(tau), box={T: (0, sp.pi / 2)})
+
+
+@claim("unique.lower-bound")
+def lower_bound_touched_at_the_ends():
+    """1 + x.H > 0 for instants v T/2 with 0 < v <= 1: the bound -1 is touched at 0 and T only.
+
+    Every optimal weight function lives on the contacts of an optimal dual; with three contacts
+    and det N != 0 there is one such function for y2 and y3. This is the argument that the paper
+    leaves to (4.11).
+    """
+    return Bound(1 + dual_polynomial(v * T / 2), ">", 0, UNIQUE_BOX)
+
+
+@claim("unique.y1")
+def velocity_estimate_is_unique():
+    """y1: the dual (1, -1, 0) is optimal too and touches only at T, so that the estimate is unique.
+
+    For y1 the argument from (4.11) does not apply, since X = (1, 0, 0) touches everywhere.
+    1 - x.H = sin(T - tau) > 0 before the end, and 1 + x.H > 0.
+    """
+    inside = 1 - (H(T - v * T)[0] - H(T - v * T)[1])
+    return Bound(inside, ">", 0, UNIQUE_BOX)
+
+
+@claim("unique.y1.feasible")
+def other_dual_of_velocity():
+    """y1: the dual (1, -1, 0) is feasible and has the value 1."""
+    return Optimum(
+        regressors=tuple(H()),
+        functional=UNITS["y1"],
+        variable=tau,
+        interval=(sp.Integer(0), T),
+        dual=(1, -1, 0),
+        support=(T,),
+        weights=(sp.Integer(1),),
+        value=sp.Integer(1),
+        box={T: (0, sp.pi / 2)},
+    )
+
+
+__all__ = ["PROVED"]

@@ -1,0 +1,305 @@
+"""Sections 2 and 3: linear estimators, their worst correlation, and the dual problem."""
+
+from __future__ import annotations
+
+from itertools import product
+
+import sympy as sp
+
+from derivations.guaranteed_velocity.model import INSTANTS, STATED, H, T, tau, weights
+from navsym.claims import CERTIFIED, PROVED, REFUTED, Bound, Equation, Finding, Property, claim
+from navsym.proof.balls import enclose
+from navsym.proof.bounds import Sign, prove_sign
+from navsym.proof.normal_form import vanishes_identically
+
+sigma = sp.Symbol("sigma", positive=True)
+
+
+def generic(name: str, rows: int, columns: int = 1) -> sp.Matrix:
+    """A matrix of independent real symbols."""
+    return sp.Matrix(rows, columns, lambda i, j: sp.Symbol(f"{name}{i + 1}{j + 1}", real=True))
+
+
+def fundamental(at: int, size: int) -> sp.Matrix:
+    """A fundamental matrix at one instant: any matrix, made of independent symbols."""
+    return generic(f"theta{at}_", size, size)
+
+
+# -- section 2 ------------------------------------------------------------------------------------
+
+
+def regressor_of_general_system(size: int) -> Equation:
+    """H = (theta(T)^-1)* theta*(tau) h(tau), from z - w = h* theta(tau) y0 and q = theta(T) y0."""
+    at_tau, at_end, h = fundamental(1, size), fundamental(2, size), generic("h", size)
+    printed = (at_end.adjugate().T / at_end.det()) * at_tau.T * h
+    y0 = generic("y", size)
+    # z - w = H* q for every initial state: compare coefficients of y0.
+    z = (h.T * at_tau * y0)[0]
+    prediction = (printed.T * at_end * y0)[0]
+    return Equation(printed=prediction, derived=z)
+
+
+@claim("2.4.two")
+def general_regressor_of_two_states():
+    """z = H* q + w with the printed H, for every system of two states."""
+    return regressor_of_general_system(2)
+
+
+@claim("2.4.three")
+def general_regressor_of_three_states():
+    """z = H* q + w with the printed H, for every system of three states."""
+    return regressor_of_general_system(3)
+
+
+@claim("2.5")
+def estimate_from_impulses():
+    """A weight function of impulses makes the estimate a weighted sum of measurements."""
+    Phi, z = generic("Phi", 3), sp.Matrix([sp.Function(f"z{j}")(tau) for j in range(3)])
+    values = generic("z", 3)
+    sifted = sp.integrate  # named only: the sifting property is the definition of delta
+    assert sifted is not None and z.shape == values.shape
+    return Equation(printed=(Phi.T * values)[0], derived=sum(Phi[j] * values[j] for j in range(3)))
+
+
+def error_without_noise(count: int) -> Equation:
+    """Delta l = (sum_j Phi_j H(tau_j) - P)* q: zero for every q exactly when (2.6) holds."""
+    size = 3
+    Phi, P, q = generic("Phi", count), generic("P", size), generic("q", size)
+    regressors = [generic(f"H{j}_", size) for j in range(count)]
+    estimate = sum((Phi[j] * (regressors[j].T * q)[0] for j in range(count)), sp.Integer(0))
+    error = estimate - (P.T * q)[0]
+    defect = sum((Phi[j] * regressors[j] for j in range(count)), sp.zeros(size, 1)) - P
+    coefficients = [sp.diff(error, symbol) for symbol in q]
+    return Equation(printed=tuple(defect), derived=tuple(coefficients))
+
+
+@claim("2.6")
+def unbiasedness():
+    """The error without noise vanishes for every q exactly when the integral of H Phi is P (3 instants)."""
+    return error_without_noise(3)
+
+
+def worst_variance(count: int) -> tuple[sp.Expr, sp.Expr]:
+    """(variance under r = sgn sgn and sigma(tau) = sigma, printed maximum) for ``count`` impulses."""
+    sizes = sp.symbols(f"a1:{count + 1}", positive=True)
+    return sizes, sigma**2 * sum(sizes) ** 2
+
+
+def variance(weights_: tuple, correlation: sp.Matrix, deviations: tuple) -> sp.Expr:
+    """M (sum Phi_j w_j)^2 for a given correlation and given standard deviations."""
+    n = len(weights_)
+    return sum(
+        weights_[i] * weights_[j] * correlation[i, j] * deviations[i] * deviations[j]
+        for i in range(n)
+        for j in range(n)
+    )
+
+
+@claim("2.D.reached")
+def worst_variance_is_reached():
+    """sigma(tau) = sigma and r = sgn Phi sgn Phi give the variance (sigma sum |Phi|)^2, all signs, 4 instants."""
+    sizes = sp.symbols("a1:5", positive=True)
+    printed, derived = [], []
+    for signs in product((1, -1), repeat=4):
+        weights_ = tuple(s * a for s, a in zip(signs, sizes, strict=True))
+        correlation = sp.Matrix(4, 4, lambda i, j, s=signs: s[i] * s[j])
+        printed.append(sigma**2 * sum(sizes) ** 2)
+        derived.append(variance(weights_, correlation, (sigma,) * 4))
+    return Equation(printed=tuple(printed), derived=tuple(derived))
+
+
+@claim("2.D.never-exceeded")
+def worst_variance_is_not_exceeded():
+    """No pair of instants contributes more: |Phi_i Phi_j| sigma^2 >= Phi_i Phi_j r sigma_i sigma_j.
+
+    Summed over all pairs this is the upper bound (sigma sum |Phi|)^2, for any number of instants.
+    The variable is chosen tight: sigma_i = sigma s_i with s_i in [0, 1], r = 1 - d with d in [0, 2].
+    """
+    s1, s2 = sp.symbols("s1 s2", nonnegative=True)
+    r = sp.Symbol("r", real=True)
+    return Bound(sp.Integer(1), ">=", r * s1 * s2, {s1: (0, 1), s2: (0, 1), r: (-1, 1)})
+
+
+@claim("2.D.admissible")
+def worst_correlation_is_admissible():
+    """r(tau, s) = sgn Phi(tau) sgn Phi(s) is a correlation: its quadratic form is a square (4 instants)."""
+    c, signs = generic("c", 4), generic("s", 4)
+    form = sum(c[i] * c[j] * signs[i] * signs[j] for i in range(4) for j in range(4))
+    return Equation(printed=(c.T * signs)[0] ** 2, derived=form)
+
+
+@claim("2.7")
+def objective_is_the_root_of_the_worst_variance():
+    """The objective sigma integral |Phi| is the square root of the guaranteed variance (3 instants)."""
+    sizes = sp.symbols("a1:4", positive=True)
+    ones = sp.ones(3, 3)
+    return Equation(printed=(sigma * sum(sizes)) ** 2, derived=variance(sizes, ones, (sigma,) * 3))
+
+
+@claim(
+    "2.7.name",
+    expect=REFUTED,
+    slip="paper",
+    reason="the introduction and [3] call it the problem of the worst correlation, and so it is",
+)
+def name_of_the_problem():
+    """The problem (2.7) is about the best correlation, as printed after it."""
+    return Property(printed="best", derived=kind_of_correlation())
+
+
+@claim("2.7.name*", corrects="2.7.name")
+def name_of_the_problem_corrected():
+    """The problem (2.7) is about the worst correlation."""
+    return Property(printed="worst", derived=kind_of_correlation())
+
+
+def kind_of_correlation() -> Finding:
+    """Compare the variance that (2.7) minimises with that of independent noise, for the paper's y3."""
+    values = weights(2)
+    objective = sum(modulus(w) for w in values) ** 2
+    independent = sum(w**2 for w in values)
+    worse = prove_sign(objective - independent, {T: (sp.Rational(1, 10), sp.pi / 2)}, Sign.POSITIVE)
+    kind = "worst" if worse.at_least(Sign.POSITIVE) else "undecided"
+    return Finding(kind, "sign of a difference of variances", CERTIFIED, "T in [1/10, pi/2]")
+
+
+def modulus(weight: sp.Expr) -> sp.Expr:
+    """|weight| on the stated range, by its proved sign."""
+    positive = prove_sign(weight, {T: (sp.Rational(1, 10), sp.pi / 2)}).at_least(Sign.NONNEGATIVE)
+    return weight if positive else -weight
+
+
+# -- section 3 ------------------------------------------------------------------------------------
+
+
+@claim("3.remark1")
+def permuting_components():
+    """Exchanging two components of H and of P leaves the constraints and the objective as they are."""
+    Phi, P = generic("Phi", 3), generic("P", 3)
+    columns = generic("H", 3, 3)
+    defect = columns * Phi - P
+    exchange = sp.Matrix([[0, 0, 1], [0, 1, 0], [1, 0, 0]])
+    exchanged = (exchange * columns) * Phi - exchange * P
+    return Equation(printed=exchange * exchanged, derived=defect)
+
+
+@claim("3.1")
+def weak_duality():
+    """sum |Phi_j| - x.P = sum (|Phi_j| - Phi_j x.H(tau_j)) >= 0: the dual (3.1) bounds (2.7) from below."""
+    Phi, x = generic("Phi", 3), generic("x", 3)
+    columns, sizes = generic("H", 3, 3), generic("a", 3)
+    P = columns * Phi
+    printed = sum(sizes) - (x.T * P)[0]
+    derived = sum(sizes[j] - Phi[j] * (x.T * columns[:, j])[0] for j in range(3))
+    return Equation(printed=printed, derived=derived)
+
+
+@claim("3.2")
+def weights_solve_the_system():
+    """The system N Phi = P at the instants 0, T/2, T is consistent, for each of the three states."""
+    columns = sp.Matrix.hstack(*(H(at) for at in INSTANTS))
+    solved = [columns * sp.Matrix(weights(state)) for state in range(3)]
+    return Equation(printed=sp.eye(3), derived=sp.Matrix.hstack(*solved), box=STATED)
+
+
+@claim(
+    "3.2.contacts",
+    expect=REFUTED,
+    slip="paper",
+    reason="for y1 the optimal dual (1, 0, 0) gives |X.H| = 1 at every instant; l <= m holds for a basis only",
+)
+def number_of_contacts():
+    """The dual polynomial of each of the three states touches its bounds at no more than m = 3 instants."""
+    return Property(printed=(True, True, True), derived=finitely_many_contacts())
+
+
+@claim("3.2.contacts*", corrects="3.2.contacts")
+def number_of_contacts_corrected():
+    """The duals of y2 and y3 touch at no more than three instants; that of y1 may touch everywhere."""
+    return Property(printed=(False, True, True), derived=finitely_many_contacts())
+
+
+def finitely_many_contacts() -> Finding:
+    """Whether 1 - (x.H)^2 is not identically zero, for the optimal duals of y1, y2, y3."""
+    from derivations.guaranteed_velocity.model import alternating
+
+    duals = (sp.Matrix([1, 0, 0]), alternating(), alternating())
+    squares = [1 - ((x.T * H())[0]) ** 2 for x in duals]
+    return Finding(
+        tuple(not vanishes_identically(square) for square in squares),
+        "normal form of 1 - (x.H)^2",
+        PROVED,
+        "an analytic function that is not identically zero has finitely many zeros on [0, T]",
+    )
+
+
+@claim("3.3")
+def scaling_to_a_polynomial():
+    """(3.1) becomes (3.3): with x = (1, u2, u3)/L the bound |x.H| <= 1 reads |H1 + u2 H2 + u3 H3| <= L."""
+    L = sp.Symbol("L", positive=True)
+    u2, u3, h1, h2, h3 = sp.symbols("u2 u3 H1 H2 H3", real=True)
+    printed = (h1 + u2 * h2 + u3 * h3) / L
+    x = sp.Matrix([1 / L, u2 / L, u3 / L])
+    return Equation(printed=printed, derived=(x.T * sp.Matrix([h1, h2, h3]))[0])
+
+
+@claim("3.4")
+def dual_from_polynomial():
+    """x01 = 1/L and x0j = u_j/L: the dual value X.P is 1/L for P = (1, 0, 0)."""
+    L = sp.Symbol("L", positive=True)
+    u2, u3 = sp.symbols("u2 u3", real=True)
+    # From |X.H| <= 1 by X = x01 (1, u2, u3): the first component carries the value.
+    x01, x02, x03 = sp.symbols("x01 x02 x03", real=True)
+    scale = sp.Matrix([1, u2, u3]) / L
+    value = sp.Matrix([x01, x02, x03]).subs(dict(zip((x01, x02, x03), scale, strict=True)))
+    return Equation(printed=(1 / L, u2 / L, u3 / L), derived=tuple(value))
+
+
+@claim("3.5")
+def solution_of_impulses():
+    """The solution (3.5) satisfies the constraint of (2.7): sum Phi_j H(tau_j) = P for y3."""
+    values = weights(2)
+    total = sum((w * H(at) for w, at in zip(values, INSTANTS, strict=True)), sp.zeros(3, 1))
+    return Equation(printed=sp.Matrix([0, 0, 1]), derived=total, box=STATED)
+
+
+def least_deviation() -> sp.Expr:
+    """L for y3: the value of the alternating dual is 1/L."""
+    from derivations.guaranteed_velocity.model import alternating
+
+    return 1 / alternating()[2]
+
+
+@claim(
+    "3.6",
+    expect=REFUTED,
+    slip="paper",
+    reason="the factor sigma is lost on the right: (4.13) has sigma1/L, and the units ask for it",
+)
+def value_without_sigma():
+    """sigma integral |Phi| = L^-1, as printed, for y3."""
+    return Equation(printed=1 / least_deviation(), derived=sigma * total_variation(), box=STATED)
+
+
+@claim("3.6*", corrects="3.6")
+def value_with_sigma():
+    """sigma integral |Phi| = sigma L^-1, for y3."""
+    return Equation(printed=sigma / least_deviation(), derived=sigma * total_variation(), box=STATED)
+
+
+def total_variation() -> sp.Expr:
+    """sum |Phi_j| for y3 on the stated range."""
+    return sum((modulus(w) for w in weights(2)), sp.Integer(0))
+
+
+@claim("3.more-measurements", expect=CERTIFIED)
+def using_all_measurements_can_be_worse():
+    """Least squares on five equal steps is less accurate under its worst correlation than three instants."""
+    at = [sp.pi / 8 * k for k in range(5)]
+    rows = sp.Matrix.hstack(*(H(t).subs(T, sp.pi / 2) for t in at))
+    normal = rows * rows.T
+    least_squares = (normal.adjugate() / normal.det() * rows)[2, :]
+    spread = sum((sp.Abs(w) for w in least_squares), sp.Integer(0))
+    optimum = total_variation().subs(T, sp.pi / 2)
+    assert enclose(optimum).is_finite()
+    return Bound(optimum, "<", spread)

@@ -1,0 +1,321 @@
+"""Section 4.1 up to (4.9): the generalised Chebyshev polynomial and its deviations."""
+
+from __future__ import annotations
+
+import sympy as sp
+
+from derivations.guaranteed_velocity.model import INSTANTS, STATED, H, T, alternating, tau, weights
+from navsym.claims import CERTIFIED, PROVED, REFUTED, Bound, Equation, Finding, Optimum, Property, claim
+from navsym.proof.balls import enclose
+from navsym.proof.normal_form import vanishes_identically
+
+U2_PRINTED = sp.sin(T / 4) ** 2 / sp.cos(T / 2)
+U3_PRINTED = sp.tan(T / 2)
+L1_PRINTED = sp.sin(T / 4) ** 2 / sp.cos(T / 2)
+
+
+def deviation() -> sp.Expr:
+    """L for y3: with the dual x normed to one, L = 1/x3."""
+    return 1 / alternating()[2]
+
+
+def coefficients() -> tuple[sp.Expr, sp.Expr]:
+    """u2 and u3 of the polynomial H3 + u2 H1 + u3 H2, from the alternating dual."""
+    x = alternating()
+    return x[0] / x[2], x[1] / x[2]
+
+
+def polynomial(u2: sp.Expr, u3: sp.Expr) -> sp.Expr:
+    """S(tau) = H3 + u2 H1 + u3 H2."""
+    vector = H()
+    return vector[2] + u2 * vector[0] + u3 * vector[1]
+
+
+def optimum(dual: tuple, state: int, value: sp.Expr) -> Optimum:
+    """The primal-dual statement for one state with the instants 0, T/2, T, weights by Cramer's rule."""
+    return Optimum(
+        regressors=tuple(H()),
+        functional=tuple(int(i == state) for i in range(3)),
+        variable=tau,
+        interval=(sp.Integer(0), T),
+        dual=dual,
+        support=INSTANTS,
+        weights=weights(state),
+        value=value,
+        box=STATED,
+    )
+
+
+# -- (4.1), (4.2) ------------------------------------------------------------------------------------
+
+
+def rotated() -> sp.Matrix:
+    """(H3, H1, H2): the component to be estimated in front, the others in their order."""
+    vector = H()
+    return sp.Matrix([vector[2], vector[0], vector[1]])
+
+
+@claim("4.1.H1")
+def first_of_permuted():
+    """First component of the permuted H."""
+    return Equation(printed=sp.cos(T - tau) - 1, derived=rotated()[0])
+
+
+@claim("4.1.H2")
+def second_of_permuted():
+    """Second component of the permuted H."""
+    return Equation(printed=sp.Integer(1), derived=rotated()[1])
+
+
+@claim("4.1.H3", expect=REFUTED, slip="paper", reason="inherits the sign of (1.9)")
+def third_of_permuted():
+    """Third component of the permuted H, as printed."""
+    return Equation(printed=-sp.sin(T - tau), derived=rotated()[2])
+
+
+@claim("4.1.H3*", corrects="4.1.H3")
+def third_of_permuted_corrected():
+    """Third component of the permuted H."""
+    return Equation(printed=sp.sin(T - tau), derived=rotated()[2])
+
+
+@claim(
+    "4.1.order",
+    expect=REFUTED,
+    slip="paper",
+    reason="remark 3.1 exchanges two components; (4.1) is a cyclic shift, harmless but another permutation",
+)
+def permutation_is_an_exchange():
+    """(4.1) follows from remark 3.1 by exchanging two components."""
+    return Property(printed="exchange", derived=permutation_kind())
+
+
+@claim("4.1.order*", corrects="4.1.order")
+def permutation_is_a_cycle():
+    """(4.1) is the cyclic shift (H3, H1, H2)."""
+    return Property(printed="cycle", derived=permutation_kind())
+
+
+def permutation_kind() -> Finding:
+    """Parity of the permutation that turns H into the printed order of its components."""
+    order = [component_kind(entry) for entry in (sp.cos(T - tau) - 1, sp.Integer(1), sp.sin(T - tau))]
+    fixed = sum(place == source for place, source in enumerate(order))
+    return Finding("exchange" if fixed == 1 else "cycle", "matching of components", PROVED, f"order {order}")
+
+
+def component_kind(entry: sp.Expr) -> int:
+    """Which component of the derived H an entry is."""
+    return next(k for k, h in enumerate(H()) if vanishes_identically(h - entry))
+
+
+@claim("4.2")
+def polynomial_to_be_minimised():
+    """S(tau) = cos(T - tau) - 1 + u2 + u3 sin(T - tau), with the sine as in the derived H."""
+    u2, u3 = sp.symbols("u2 u3", real=True)
+    printed = sp.cos(T - tau) - 1 + u2 + u3 * sp.sin(T - tau)
+    return Equation(printed=printed, derived=polynomial(u2, u3))
+
+
+# -- (4.3) to (4.6) ------------------------------------------------------------------------------------
+
+
+@claim(
+    "4.3.u2",
+    expect=REFUTED,
+    slip="paper",
+    reason="the minus is lost: S(0) = u2 and S(T/2) = 1/cos(T/2) - 1 + u2 are opposite only for u2 < 0",
+)
+def constant_coefficient():
+    """u2 as printed."""
+    return Equation(printed=U2_PRINTED, derived=coefficients()[0], box=STATED)
+
+
+@claim("4.3.u2*", corrects="4.3.u2")
+def constant_coefficient_corrected():
+    """u2 = -sin^2(T/4)/cos(T/2)."""
+    return Equation(printed=-U2_PRINTED, derived=coefficients()[0], box=STATED)
+
+
+@claim("4.3.u3")
+def sine_coefficient():
+    """u3 = tan(T/2)."""
+    return Equation(printed=U3_PRINTED, derived=coefficients()[1], box=STATED)
+
+
+@claim("4.3.unique")
+def alternance_determines_the_polynomial():
+    """The equations of alternance have one solution: their determinant does not vanish for T <= pi/2."""
+    u2, u3, L = sp.symbols("u2 u3 L", real=True)
+    conditions = [
+        polynomial(u2, u3).subs(tau, at) - sign * L for at, sign in zip(INSTANTS, (-1, 1, -1), strict=True)
+    ]
+    matrix = sp.Matrix(conditions).jacobian([u2, u3, L])
+    return Bound(matrix.det(), "!=", 0, STATED)
+
+
+@claim(
+    "4.4",
+    expect=REFUTED,
+    slip="paper",
+    reason="with the printed u2 the polynomial leaves the band [-L1, L1]; the sign of u2 is the only cause",
+)
+def printed_polynomial_deviates_least():
+    """S0 with the printed u2, u3 deviates least from zero: optimal for y3, as printed."""
+    dual = (U2_PRINTED / L1_PRINTED, U3_PRINTED / L1_PRINTED, 1 / L1_PRINTED)
+    return optimum(dual, 2, 1 / L1_PRINTED)
+
+
+@claim("4.4*", corrects="4.4")
+def corrected_polynomial_deviates_least():
+    """S0 with u2 = -sin^2(T/4)/cos(T/2), u3 = tan(T/2) deviates least from zero: optimal for y3."""
+    dual = (-U2_PRINTED / L1_PRINTED, U3_PRINTED / L1_PRINTED, 1 / L1_PRINTED)
+    return optimum(dual, 2, 1 / L1_PRINTED)
+
+
+@claim("4.4.closed-form")
+def polynomial_is_a_shifted_cosine():
+    """S0(tau) = (2 cos(tau - T/2) - 1 - cos(T/2)) / (2 cos(T/2)): what the graphs of the paper show."""
+    printed = (2 * sp.cos(tau - T / 2) - 1 - sp.cos(T / 2)) / (2 * sp.cos(T / 2))
+    return Equation(printed=printed, derived=polynomial(*coefficients()), box=STATED)
+
+
+@claim("4.5")
+def largest_deviation():
+    """The largest deviation L1 = sin^2(T/4)/cos(T/2)."""
+    return Equation(printed=L1_PRINTED, derived=deviation(), box=STATED)
+
+
+@claim("4.5.positive")
+def deviation_is_positive():
+    """L1 is positive on the stated range, so that the bars of modulus in (4.5) may be dropped."""
+    return Bound(L1_PRINTED, ">", 0, STATED)
+
+
+def value_at(instant: sp.Expr) -> sp.Expr:
+    return polynomial(*coefficients()).subs(tau, instant)
+
+
+@claim("4.6.tau1")
+def contact_at_the_start():
+    """S0 takes the value -L1 at tau = 0."""
+    return Equation(printed=-L1_PRINTED, derived=value_at(sp.Integer(0)), box=STATED)
+
+
+@claim("4.6.tau2")
+def contact_in_the_middle():
+    """S0 takes the value +L1 at tau = T/2."""
+    return Equation(printed=L1_PRINTED, derived=value_at(T / 2), box=STATED)
+
+
+@claim("4.6.tau3")
+def contact_at_the_end():
+    """S0 takes the value -L1 at tau = T."""
+    return Equation(printed=-L1_PRINTED, derived=value_at(T), box=STATED)
+
+
+@claim("4.6.stationary")
+def middle_contact_is_stationary():
+    """The slope of S0 vanishes at tau = T/2: an inner extremum."""
+    slope = sp.diff(polynomial(*coefficients()), tau).subs(tau, T / 2)
+    return Equation(printed=sp.Integer(0), derived=slope, box=STATED)
+
+
+@claim(
+    "4.6.same-instants",
+    expect=REFUTED,
+    slip="paper",
+    reason="y1 is estimated from the last measurement alone, as (4.12) itself says",
+)
+def same_instants_for_all():
+    """The estimates of y1, y2, y3 use the same three instants."""
+    return Property(printed=(3, 3, 3), derived=instants_in_use())
+
+
+@claim("4.6.same-instants*", corrects="4.6.same-instants")
+def instants_of_each_state():
+    """y1 uses one instant, y2 and y3 use all three of (4.6)."""
+    return Property(printed=(1, 3, 3), derived=instants_in_use())
+
+
+def instants_in_use() -> Finding:
+    """Number of weights that are not identically zero."""
+    counts = tuple(sum(not vanishes_identically(w) for w in weights(state)) for state in range(3))
+    return Finding(counts, "normal form of the weights", PROVED, "all T with det N != 0")
+
+
+# -- (4.7) to (4.9) ------------------------------------------------------------------------------------
+
+
+@claim("4.7")
+def three_impulses_solve_the_problem():
+    """Three impulses at 0, T/2, T with the weights of (4.12) are optimal for y3."""
+    sine = sp.sin(T / 4) ** 2
+    printed = (-1 / (4 * sine), sp.cos(T / 2) / (2 * sine), (1 - 2 * sp.cos(T / 2)) / (4 * sine))
+    x = alternating()
+    return Optimum(
+        regressors=tuple(H()),
+        functional=(0, 0, 1),
+        variable=tau,
+        interval=(sp.Integer(0), T),
+        dual=tuple(x),
+        support=INSTANTS,
+        weights=printed,
+        value=x[2],
+        box=STATED,
+    )
+
+
+@claim("4.8.L2")
+def second_deviation():
+    """L2 = |u2|/L1 (true because both are equal)."""
+    return Equation(printed=-coefficients()[0] / deviation(), derived=optimal_deviation(0), box=STATED)
+
+
+@claim(
+    "4.8.L3",
+    expect=REFUTED,
+    slip="paper",
+    reason="the formula is upside down: (3.4) gives 1/L_s = |u_s|/L1, and (4.9) was computed from that",
+)
+def third_deviation():
+    """L3 = |u3|/L1, as printed."""
+    return Equation(printed=coefficients()[1] / deviation(), derived=optimal_deviation(1), box=STATED)
+
+
+@claim("4.8.L3*", corrects="4.8.L3")
+def third_deviation_corrected():
+    """L3 = L1/|u3|."""
+    return Equation(printed=deviation() / coefficients()[1], derived=optimal_deviation(1), box=STATED)
+
+
+def optimal_deviation(state: int) -> sp.Expr:
+    """1 / sum |Phi_j| for y1 or y2: the deviation that (3.6) assigns to the optimal weights."""
+    if state == 0:
+        return 1 / sum((w for w in weights(0)), sp.Integer(0))   # one weight, equal to one
+    first, middle, last = weights(state)
+    return 1 / (-first + middle - last)                          # signs -, +, - on the stated range
+
+
+@claim("4.8.signs")
+def signs_of_the_weights():
+    """The weights of y2 alternate -, +, -: so that sum |Phi| is what optimal_deviation takes it to be."""
+    first, middle, last = weights(1)
+    pairs = [(first, -1), (middle, 1), (last, -1)]
+    quarter = {T: sp.pi / 3}
+    found = tuple(int(s) if enclose((s * w).subs(quarter)) > 0 else 0 for w, s in pairs)
+    return Property(
+        printed=(-1, 1, -1),
+        derived=Finding(found, "balls at T = pi/3; the signs on the whole range are part of 4.13", CERTIFIED, "T = pi/3"),
+    )
+
+
+@claim("4.9.L2")
+def value_of_second_deviation():
+    """L2 = 1."""
+    return Equation(printed=sp.Integer(1), derived=optimal_deviation(0), box=STATED)
+
+
+@claim("4.9.L3")
+def value_of_third_deviation():
+    """L3 = tan(T/4)/2."""
+    return Equation(printed=sp.tan(T / 4) / 2, derived=optimal_deviation(1), box=STATED)

@@ -1,0 +1,159 @@
+"""Section 1: error equations of the two channels, the measurement, H(tau)."""
+
+from __future__ import annotations
+
+import sympy as sp
+
+from derivations.guaranteed_velocity.model import CHANNEL, H, T, tau
+from navsym.claims import CERTIFIED, REFUTED, Bound, Equation, claim
+from navsym.models.linear import observability_matrix
+from navsym.models.transition import transition_matrix
+from navsym.proof.normal_form import vanishes_identically
+
+alpha, velocity, bias, drift, azimuth = sp.symbols("alpha pi_ epsilon nu beta3", real=True)
+earth_rate = sp.Symbol("U", positive=True)
+g, a0, omega0 = sp.symbols("g a0 omega0", positive=True)
+PRINTED_A = sp.Matrix([[0, -1, 0], [0, 0, 1], [0, -1, 0]])
+
+
+def channel_rates(with_azimuth: bool) -> sp.Matrix:
+    """Rates of y from the horizontal channel of an INS in dimensionless form.
+
+    d(dV)/dt = -g (alpha - epsilon), d(alpha)/dt = dV/a0 + nu; with dV = pi omega0 a0,
+    tau = omega0 t and omega0**2 = g/a0. Newtonmeter bias, drift and azimuth error are constant.
+    """
+    pi_rate = -g * (alpha - bias) / (omega0**2 * a0)
+    alpha_rate = (velocity * omega0 * a0 / a0 + drift * omega0) / omega0
+    pi_rate, alpha_rate = (rate.subs(g, omega0**2 * a0) for rate in (pi_rate, alpha_rate))
+    azimuth_rate = sp.Integer(0)
+    first = pi_rate + (earth_rate * azimuth_rate if with_azimuth else 0)
+    return sp.Matrix([first, alpha_rate, pi_rate])
+
+
+@claim("1.1")
+def lateral_channel():
+    """The lateral channel obeys dy/dtau = A y in y1 = pi1 + U beta3, y2 = alpha1 - eps1, y3 = pi1 + nu1."""
+    y = sp.Matrix([velocity + earth_rate * azimuth, alpha - bias, velocity + drift])
+    return Equation(printed=PRINTED_A * y, derived=channel_rates(with_azimuth=True))
+
+
+@claim("1.2")
+def longitudinal_channel():
+    """The longitudinal channel obeys the same equations in y4 = pi2, y5 = alpha2 - eps2, y6 = pi2 + nu2."""
+    y = sp.Matrix([velocity, alpha - bias, velocity + drift])
+    return Equation(printed=PRINTED_A * y, derived=channel_rates(with_azimuth=False))
+
+
+@claim("1.3")
+def system_matrix():
+    """The matrix A, read off the rates of the three variables."""
+    y = sp.Matrix([velocity, alpha - bias, velocity + drift])
+    y1, y2, y3 = sp.symbols("y1 y2 y3", real=True)
+    back = {velocity: y1, alpha: y2 + bias, drift: y3 - y1}
+    assert all(vanishes_identically(e.subs(back) - v) for e, v in zip(y, (y1, y2, y3), strict=True))
+    return Equation(printed=PRINTED_A, derived=channel_rates(False).subs(back).jacobian([y1, y2, y3]))
+
+
+@claim("1.3.spectrum")
+def schuler_oscillation():
+    """A has the eigenvalues 0 and +-i: dimensionless time makes the Schuler frequency one."""
+    lam = sp.Symbol("lambda", real=True)
+    return Equation(printed=lam * (lam**2 + 1), derived=(lam * sp.eye(3) - sp.Matrix(CHANNEL.F)).det())
+
+
+@claim("1.quarter-period", expect=CERTIFIED)
+def quarter_period():
+    """T = pi/2 is about 20 minutes (the printed figure is read to ten minutes)."""
+    seconds = sp.pi / 2 * sp.sqrt(sp.Rational(6371000) / sp.Rational("9.81"))
+    return Equation(printed=sp.Integer(20), derived=seconds / 60, tolerance=sp.Integer(5))
+
+
+@claim(
+    "1.quarter-period.minute",
+    expect=REFUTED,
+    slip="paper",
+    reason="21.1 min for a0 = 6371 km and g = 9.81 m/s^2: as a figure to the minute 20 is too small by one",
+)
+def quarter_period_to_the_minute():
+    """T = pi/2 is 20 minutes to the minute."""
+    seconds = sp.pi / 2 * sp.sqrt(sp.Rational(6371000) / sp.Rational("9.81"))
+    return Equation(printed=sp.Integer(20), derived=seconds / 60, tolerance=sp.Rational(1, 2))
+
+
+@claim("1.quarter-period.minute*", corrects="1.quarter-period.minute", expect=CERTIFIED)
+def quarter_period_corrected():
+    """T = pi/2 is 21 minutes to the minute."""
+    seconds = sp.pi / 2 * sp.sqrt(sp.Rational(6371000) / sp.Rational("9.81"))
+    return Equation(printed=sp.Integer(21), derived=seconds / 60, tolerance=sp.Rational(1, 2))
+
+
+@claim("1.4")
+def measured_component():
+    """The measurement picks the first state: z - w = y1 (y4 in the other channel)."""
+    y1, y2, y3 = sp.symbols("y1 y2 y3", real=True)
+    return Equation(printed=y1, derived=(sp.Matrix(CHANNEL.H) * sp.Matrix([y1, y2, y3]))[0])
+
+
+@claim("1.7")
+def measurement_at_the_end():
+    """z(tau) - w(tau) = H(tau)* q with q = y(T), for every solution of the system."""
+    y0 = sp.Matrix(sp.symbols("y10 y20 y30", real=True))
+    solution = transition_matrix(CHANNEL.F, tau).matrix * y0
+    q = transition_matrix(CHANNEL.F, T).matrix * y0
+    return Equation(printed=(H().T * q)[0], derived=(sp.Matrix(CHANNEL.H) * solution)[0])
+
+
+@claim("1.8")
+def adjoint_form():
+    """H(tau) = exp(A*(tau - T)) h1 solves dH/dtau = A* H with H(T) = h1."""
+    h1 = sp.Matrix([1, 0, 0])
+    A = sp.Matrix(CHANNEL.F)
+    printed = transition_matrix(A.T, tau - T).matrix * h1
+    # A linear equation has one solution: the derivative and the end value decide.
+    return Equation(
+        printed=(*(sp.diff(printed, tau) - A.T * printed), *printed.subs(tau, T)),
+        derived=(0, 0, 0, *h1),
+    )
+
+
+@claim("1.9.H1")
+def first_component():
+    """First component of H(tau)."""
+    return Equation(printed=sp.Integer(1), derived=H()[0])
+
+
+@claim(
+    "1.9.H2",
+    expect=REFUTED,
+    slip="paper",
+    reason="with the A of (1.3) the sign is +; (4.2) and the matrix N of (4.11) use +sin(T - tau) as well",
+)
+def second_component():
+    """Second component of H(tau), as printed."""
+    return Equation(printed=-sp.sin(T - tau), derived=H()[1])
+
+
+@claim("1.9.H2*", corrects="1.9.H2")
+def second_component_corrected():
+    """Second component of H(tau)."""
+    return Equation(printed=sp.sin(T - tau), derived=H()[1])
+
+
+@claim("1.9.H3")
+def third_component():
+    """Third component of H(tau)."""
+    return Equation(printed=sp.cos(T - tau) - 1, derived=H()[2])
+
+
+@claim("1.9.root-cause")
+def reversed_argument():
+    """The printed (1.9) is exp(A*(T - tau)) h1: the argument of (1.8) was taken with the other sign."""
+    printed = sp.Matrix([1, -sp.sin(T - tau), sp.cos(T - tau) - 1])
+    reversed_time = transition_matrix(sp.Matrix(CHANNEL.F).T, T - tau).matrix * sp.Matrix([1, 0, 0])
+    return Equation(printed=printed, derived=reversed_time)
+
+
+@claim("1.observable")
+def observability():
+    """The pair (A, h1) is observable: h1, A* h1, A*^2 h1 are independent."""
+    return Bound(observability_matrix(CHANNEL).det(), "!=", 0)

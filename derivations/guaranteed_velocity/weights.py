@@ -1,0 +1,275 @@
+"""(4.10) to (4.16): weights, guaranteed errors and estimates, in both channels."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import sympy as sp
+
+from derivations.guaranteed_velocity.model import (
+    INSTANTS,
+    STATED,
+    H,
+    N,
+    T,
+    alternating,
+    sigma1,
+    sigma2,
+    tau,
+    weights,
+)
+from navsym.claims import REFUTED, Bound, Claim, Equation, Optimum, Statement, claim
+
+# -- (4.10), (4.11) ---------------------------------------------------------------------------------
+
+
+@claim("4.10")
+def weights_by_inversion():
+    """Phi_s = N^-1 e_s: the three columns of the inverse solve the unbiasedness conditions."""
+    inverse = N().adjugate() / N().det()
+    return Equation(printed=inverse, derived=sp.Matrix.hstack(*(sp.Matrix(weights(s)) for s in range(3))), box=STATED)
+
+
+PRINTED_N = sp.Matrix(
+    [[1, 1, 0], [sp.sin(T), sp.sin(T / 2), 0], [sp.cos(T) - 1, sp.cos(T / 2) - 1, 0]]
+)
+
+
+def entry_of_n(i: int, j: int) -> Callable[[], Statement]:
+    def derive() -> Statement:
+        return Equation(printed=PRINTED_N[i, j], derived=N()[i, j])
+
+    derive.__module__ = __name__
+    return derive
+
+
+ENTRIES: tuple[Claim, ...] = tuple(
+    claim(f"4.11.N{i + 1}{j + 1}", title=f"Entry ({i + 1}, {j + 1}) of the matrix N.")(entry_of_n(i, j))
+    for i in range(3)
+    for j in range(3)
+    if (i, j) != (0, 2)
+)
+
+
+@claim(
+    "4.11.N13",
+    expect=REFUTED,
+    slip="scan",
+    reason="H(T) = (1, 0, 0); with a zero column det N would vanish, while the printed determinant is right",
+)
+def last_entry_of_the_first_row():
+    """Entry (1, 3) of the matrix N, as printed."""
+    return Equation(printed=PRINTED_N[0, 2], derived=N()[0, 2])
+
+
+@claim("4.11.N13*", corrects="4.11.N13")
+def last_entry_of_the_first_row_corrected():
+    """Entry (1, 3) of the matrix N is 1."""
+    return Equation(printed=sp.Integer(1), derived=N()[0, 2])
+
+
+@claim("4.11.det")
+def determinant():
+    """det N = 4 sin(T/2) sin^2(T/4)."""
+    return Equation(printed=4 * sp.sin(T / 2) * sp.sin(T / 4) ** 2, derived=N().det())
+
+
+@claim("4.11.nonzero")
+def determinant_does_not_vanish():
+    """det N is not zero for 0 < T <= pi/2."""
+    return Bound(N().det(), "!=", 0, STATED)
+
+
+@claim("4.11.nonzero-beyond")
+def determinant_does_not_vanish_further():
+    """det N is not zero for 0 < T <= 6, far beyond the stated range."""
+    return Bound(N().det(), "!=", 0, {T: (0, 6)})
+
+
+# -- (4.12) ---------------------------------------------------------------------------------------------
+
+SINE = sp.sin(T / 4) ** 2
+PRINTED_WEIGHTS = (
+    (sp.Integer(0), sp.Integer(0), sp.Integer(1)),
+    (
+        -1 / (2 * sp.sin(T / 2)),
+        sp.cot(T / 4),
+        -sp.sin(3 * T / 4) / (2 * sp.sin(T / 2) * sp.sin(T / 4)),
+    ),
+    (-1 / (4 * SINE), sp.cos(T / 2) / (2 * SINE), (1 - 2 * sp.cos(T / 2)) / (4 * SINE)),
+)
+
+
+def weight(state: int, place: int) -> Callable[[], Statement]:
+    def derive() -> Statement:
+        return Equation(printed=PRINTED_WEIGHTS[state][place], derived=weights(state)[place], box=STATED)
+
+    derive.__module__ = __name__
+    return derive
+
+
+WEIGHTS: tuple[Claim, ...] = tuple(
+    claim(f"4.12.Phi{s + 1}{j + 1}", title=f"Weight Phi_{s + 1}{j + 1} of the estimate of y{s + 1}.")(weight(s, j))
+    for s in range(3)
+    for j in range(3)
+)
+
+
+# -- (4.13), (4.15): guaranteed errors ---------------------------------------------------------------------
+
+PRINTED_ERRORS = (sp.Integer(1), 2 * sp.cot(T / 4), sp.cos(T / 2) / SINE)
+
+
+def dual_of(state: int) -> tuple[sp.Expr, ...]:
+    """An optimal dual: (1, 0, 0) for y1, the alternating polynomial for y2 and y3."""
+    return (sp.Integer(1), sp.Integer(0), sp.Integer(0)) if state == 0 else tuple(alternating())
+
+
+def guaranteed_error(state: int) -> Callable[[], Statement]:
+    """The printed error (for sigma = 1) is the optimum of (2.7), proved by weights and dual."""
+
+    def derive() -> Statement:
+        return Optimum(
+            regressors=tuple(H()),
+            functional=tuple(int(i == state) for i in range(3)),
+            variable=tau,
+            interval=(sp.Integer(0), T),
+            dual=dual_of(state),
+            support=INSTANTS,
+            weights=weights(state),
+            value=PRINTED_ERRORS[state],
+            box=STATED,
+        )
+
+    derive.__module__ = __name__
+    return derive
+
+
+def error_with_sigma(state: int, sigma: sp.Symbol) -> Callable[[], Statement]:
+    """The printed error with its factor sigma, against sigma times the dual value x.P."""
+
+    def derive() -> Statement:
+        return Equation(printed=PRINTED_ERRORS[state] * sigma, derived=sigma * dual_of(state)[state], box=STATED)
+
+    derive.__module__ = __name__
+    return derive
+
+
+OPTIMAL_ERRORS: tuple[Claim, ...] = tuple(
+    claim(f"4.13.y{s + 1}", title=f"Guaranteed error of y{s + 1}: optimal among all linear unbiased estimates.")(
+        guaranteed_error(s)
+    )
+    for s in range(3)
+)
+LATERAL_ERRORS: tuple[Claim, ...] = tuple(
+    claim(f"4.13.y{s + 1}.sigma", title=f"d_opt(y{s + 1}) with its factor sigma1.")(error_with_sigma(s, sigma1))
+    for s in range(3)
+)
+LONGITUDINAL_ERRORS: tuple[Claim, ...] = tuple(
+    claim(f"4.15.y{s + 4}", title=f"d_opt(y{s + 4}) = sigma2 times the value of the same dual.")(
+        error_with_sigma(s, sigma2)
+    )
+    for s in range(3)
+)
+
+# -- (4.14), (4.16): estimates --------------------------------------------------------------------------------
+
+z0, zm, zT = sp.symbols("z0 zm zT", real=True)
+
+
+def derived_estimate(state: int) -> sp.Expr:
+    """sum Phi_j z(tau_j) with the derived weights."""
+    return sum((w * z for w, z in zip(weights(state), (z0, zm, zT), strict=True)), sp.Integer(0))
+
+
+def estimate_of_tilt(first: sp.Expr) -> sp.Expr:
+    """The printed estimate of y2 (y5) with a given first coefficient."""
+    last = sp.sin(3 * T / 4) / (2 * sp.sin(T / 2) * sp.sin(T / 4))
+    return -first * z0 + sp.cot(T / 4) * zm - last * zT
+
+
+PRINTED_FIRST = 1 / (2 * sp.sin(T / 2) ** 2)
+TRUE_FIRST = 1 / (2 * sp.sin(T / 2))
+TILT_REASON = "sin^2(T/2) stands for sin(T/2): Phi_21 of (4.12) is right, and the estimate as printed is biased"
+PRINTED_DRIFT = (-z0 + 2 * sp.cos(T / 2) * zm + (1 - 2 * sp.cos(T / 2)) * zT) / (4 * SINE)
+
+
+@claim("4.14.y1")
+def velocity_estimate():
+    """The estimate of y1 is the last measurement."""
+    return Equation(printed=zT, derived=derived_estimate(0), box=STATED)
+
+
+@claim("4.14.y2", expect=REFUTED, slip="paper", reason=TILT_REASON)
+def tilt_estimate():
+    """The estimate of y2, as printed."""
+    return Equation(printed=estimate_of_tilt(PRINTED_FIRST), derived=derived_estimate(1), box=STATED)
+
+
+@claim("4.14.y2*", corrects="4.14.y2")
+def tilt_estimate_corrected():
+    """The estimate of y2 with the first coefficient -1/(2 sin(T/2))."""
+    return Equation(printed=estimate_of_tilt(TRUE_FIRST), derived=derived_estimate(1), box=STATED)
+
+
+@claim("4.14.y3")
+def drift_estimate():
+    """The estimate of y3."""
+    return Equation(printed=PRINTED_DRIFT, derived=derived_estimate(2), box=STATED)
+
+
+@claim("4.16.y4")
+def longitudinal_velocity_estimate():
+    """The estimate of y4 is the last measurement."""
+    return Equation(printed=zT, derived=derived_estimate(0), box=STATED)
+
+
+@claim("4.16.y5", expect=REFUTED, slip="paper", reason=TILT_REASON)
+def longitudinal_tilt_estimate():
+    """The estimate of y5, as printed."""
+    return Equation(printed=estimate_of_tilt(PRINTED_FIRST), derived=derived_estimate(1), box=STATED)
+
+
+@claim("4.16.y5*", corrects="4.16.y5")
+def longitudinal_tilt_estimate_corrected():
+    """The estimate of y5 with the first coefficient -1/(2 sin(T/2))."""
+    return Equation(printed=estimate_of_tilt(TRUE_FIRST), derived=derived_estimate(1), box=STATED)
+
+
+@claim(
+    "4.16.y6",
+    expect=REFUTED,
+    slip="scan",
+    reason="a bracket is missing after 2 cos(T/2): read as it stands, 1 is not multiplied by the measurement",
+)
+def longitudinal_drift_estimate():
+    """The estimate of y6 with the brackets as they stand."""
+    printed = (-z0 + 2 * sp.cos(T / 2) * zm + (1 - 2 * sp.cos(T / 2) * zT)) / (4 * SINE)
+    return Equation(printed=printed, derived=derived_estimate(2), box=STATED)
+
+
+@claim("4.16.y6*", corrects="4.16.y6")
+def longitudinal_drift_estimate_corrected():
+    """The estimate of y6 with the bracket closed before the measurement."""
+    return Equation(printed=PRINTED_DRIFT, derived=derived_estimate(2), box=STATED)
+
+
+def bias_of_printed_tilt(state: int) -> sp.Expr:
+    """Coefficient of y_state in the printed estimate of y2 when nothing is noisy."""
+    vector = [H(at)[state] for at in INSTANTS]
+    return estimate_of_tilt(PRINTED_FIRST).subs(dict(zip((z0, zm, zT), vector, strict=True)), simultaneous=True)
+
+
+@claim("4.14.y2.bias")
+def printed_tilt_estimate_is_biased():
+    """What the slip costs: a velocity error y1 enters the printed estimate of y2 with this factor."""
+    printed = (sp.sin(T / 2) - 1) / (2 * sp.sin(T / 2) ** 2)
+    return Equation(printed=printed, derived=bias_of_printed_tilt(0), box=STATED)
+
+
+@claim("4.2.identity-of-channels")
+def channels_share_the_solution():
+    """The channels differ only in sigma: scaling the noise scales the error and leaves the weights."""
+    ratio = sp.Symbol("k", positive=True)
+    scaled = sum((w * ratio * z for w, z in zip(weights(2), (z0, zm, zT), strict=True)), sp.Integer(0))
+    return Equation(printed=ratio * derived_estimate(2), derived=scaled, box=STATED)
