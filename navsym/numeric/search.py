@@ -104,7 +104,7 @@ def place_columns(
     """Cell and fraction of every padded i; returns whether the cells are consecutive."""
     for i in range(columns.shape[0]):
         u = b + ((i - half) * s + shift)
-        c = max(min(np.int64(np.floor(u)), nx - 2), 0)
+        c: Any = max(min(np.int64(np.floor(u)), nx - 2), 0)
         columns[i] = c
         fraction[i] = u - c
     apart = 0
@@ -118,12 +118,13 @@ def place_rows(
     b: float, s: float, w: float, ny: int, My: int, Mvy: int, rows: np.ndarray, fraction: np.ndarray
 ) -> tuple[int, int]:
     """Row and fraction of every (Vj, j); returns the first and the last row needed."""
-    low, high = np.int64(ny), np.int64(0)
+    low: Any = np.int64(ny)
+    high: Any = np.int64(0)
     for v in range(Mvy):
         shift = (v - Mvy // 2) * w
         for j in range(My):
             u = b + ((j - My // 2) * s + shift)
-            r = max(min(np.int64(np.floor(u)), ny - 2), 0)
+            r: Any = max(min(np.int64(np.floor(u)), ny - 2), 0)
             rows[v * My + j] = r
             fraction[v * My + j] = u - r
             low = min(low, r)
@@ -335,6 +336,40 @@ def profile(H: np.ndarray, u: np.ndarray, w: np.ndarray, out: np.ndarray) -> Non
     """Heights along the positions (u, w), in cells; NaN off the map or without data."""
     for k in range(u.shape[0]):
         out[k] = height_or_nan(H, u[k], w[k])
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def velocity_criteria(
+    H: np.ndarray,
+    bx: np.ndarray,
+    by: np.ndarray,
+    z: np.ndarray,
+    tau: np.ndarray,
+    centre: np.ndarray,
+    steps: Any,
+    counts: Any,
+    out: np.ndarray,
+) -> None:
+    """Criteria of velocity hypotheses turning about one point: the track moved by (tau - centre) v.
+
+    tau : (n,) times ; centre : (2, 2) matrix of times, in the axes of the map cells
+    steps : (svx, svy) velocity steps in cells per unit of time ; counts : (Mvx, Mvy)
+    out : (Mvx, Mvy), infinite where the track leaves the map
+    """
+    for Vi in range(counts[0]):
+        for Vj in range(counts[1]):
+            vx, vy = (Vi - counts[0] // 2) * steps[0], (Vj - counts[1] // 2) * steps[1]
+            cx = centre[0, 0] * vx + centre[0, 1] * vy
+            cy = centre[1, 0] * vx + centre[1, 1] * vy
+            total = 0.0
+            for k in range(z.shape[0]):
+                h = height_or_nan(H, bx[k] + (tau[k] * vx - cx), by[k] + (tau[k] * vy - cy))
+                if np.isnan(h):
+                    total = np.inf
+                    break
+                d = z[k] - h
+                total += d * d
+            out[Vi, Vj] = total
 
 
 @njit(nogil=True, cache=True, error_model="numpy")

@@ -1,0 +1,261 @@
+"""Terrain search: the correction under which the measured profile fits the map best.
+
+A hypothesis moves the inertial track by ``(i Dx + Vi DVx tau, j Dy + Vj DVy tau)`` with tau the
+time since the first measurement; its criterion is the sum of squared differences between the
+measured and the mapped heights (terrain_search:2, terrain_search:4). Hypotheses whose track
+leaves the map or meets a void have an infinite criterion and are never chosen.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navsym.errors import NotEstimableError, TooLargeError
+from navsym.models.terrain import TerrainMap, demand_heights
+from navsym.models.terrain_track import MOST_HYPOTHESES, Hypotheses, Track
+from navsym.numeric.search import TOGETHER, dense_masked, offset_free, padded, patch_rows, slab
+from navsym.numeric.search_bounded import search_bounded
+
+Array = NDArray[np.float64]
+Index = tuple[int, int, int, int]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Prepared:
+    """A map, a track and a grid of hypotheses, counted in cells, as the compiled loops want them.
+
+    plain : every hypothesis stays on the map and off its voids, so the fast loops may run
+    bound : at least the largest absolute height of map and profile
+    """
+
+    H: Array
+    bx: Array
+    by: Array
+    z: Array
+    wx: Array
+    wy: Array
+    steps: tuple[float, float]
+    counts: Index
+    plain: bool
+    bound: float
+
+    @property
+    def arguments(self) -> tuple[Array, Array, Array, Array, Array, Array]:
+        return self.H, self.bx, self.by, self.z, self.wx, self.wy
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Search:
+    """Result of a search over a grid.
+
+    index     : (i, j, Vi, Vj) of the smallest criterion, each from -N to N; the first of equals
+    criterion : its value, m^2; second_best that of the best other hypothesis (inf: there is none)
+    unique    : True or False when proved, None when two criteria differ by less than rounding
+    criteria  : (Mvx, Mvy, My, Mx), or None when they were not all computed
+    evaluated : hypotheses evaluated over all measurements
+    share     : squares evaluated, as a share of hypotheses x measurements
+    """
+
+    index: Index
+    criterion: float
+    second_best: float
+    unique: bool | None
+    evaluated: int
+    share: float = 1.0
+    criteria: Array | None = None
+
+
+def prepare(terrain: TerrainMap, track: Track, grid: Hypotheses) -> Prepared:
+    """Count everything in cells. Raises OutsideMapError or NoDataError for the inertial track itself."""
+    demand_heights(terrain, track.x, track.y, terrain.sample(track.x, track.y)[1])
+    bx, by = terrain.cells(track.x, track.y)
+    wx = grid.velocity_step[0] * track.elapsed / terrain.dx
+    wy = grid.velocity_step[1] * track.elapsed / terrain.dy
+    steps = (grid.step[0] / terrain.dx, grid.step[1] / terrain.dy)
+    ny, nx = terrain.heights.shape
+    Mx, My, Mvx, Mvy = grid.counts
+    across = reach(bx, wx, steps[0], Mx, Mvx)
+    along = reach(by, wy, steps[1], My, Mvy)
+    inside = across[0] >= 0.0 and across[1] <= nx - 1 and along[0] >= 0.0 and along[1] <= ny - 1
+    plain = inside and not void_within(terrain, across, along)
+    bound = max(terrain.highest, float(np.abs(track.h).max()))
+    return Prepared(terrain.heights, bx, by, np.array(track.h), wx, wy, steps, grid.counts, plain, bound)
+
+
+def reach(b: Array, w: Array, s: float, M: int, Mv: int) -> tuple[float, float]:
+    """Smallest and largest coordinate of any hypothesis, by the expressions of the loops."""
+    span = np.abs((Mv // 2) * w)
+    return float((b + (-(M // 2) * s - span)).min()), float((b + ((M // 2) * s + span)).max())
+
+
+def void_within(terrain: TerrainMap, across: tuple[float, float], along: tuple[float, float]) -> bool:
+    if not terrain.has_voids:
+        return False
+    rows = slice(math.floor(along[0]), math.floor(along[1]) + 2)
+    columns = slice(math.floor(across[0]), math.floor(across[1]) + 2)
+    return bool(np.isnan(terrain.heights[rows, columns]).any())
+
+
+def criteria(prepared: Prepared, *, threads: int = 1) -> Array:
+    """Criteria of all hypotheses (Mvx, Mvy, My, Mx), in double precision; inf where inadmissible."""
+    Mx, My, Mvx, Mvy = prepared.counts
+    if not prepared.plain:
+        out = np.empty((Mvx, Mvy, My, Mx))
+        dense_masked(*prepared.arguments, prepared.steps, prepared.counts, out)
+        return out
+    sums = np.zeros((Mvx, Mvy, My, padded(Mx)))
+    each_velocity(lambda Vi: one_slab(prepared, Vi, sums[Vi]), Mvx, threads)
+    return sums[..., :Mx]
+
+
+def each_velocity(work: Callable[[int], None], count: int, threads: int) -> None:
+    """Run the work for every Vi; the compiled loops release the interpreter lock."""
+    if threads <= 1:
+        for Vi in range(count):
+            work(Vi)
+        return
+    with ThreadPoolExecutor(threads) as pool:
+        list(pool.map(work, range(count)))
+
+
+def one_slab(prepared: Prepared, Vi: int, out: Array) -> None:
+    Mx, My, Mvx, Mvy = prepared.counts
+    rows = patch_rows(prepared.by, prepared.wy, prepared.steps[1], My, Mvy, prepared.H.shape[0])
+    patch = np.empty((TOGETHER, rows, out.shape[2]))
+    slab(*prepared.arguments, prepared.steps, (Mx, My, Mvy), Vi - Mvx // 2, patch, out)
+
+
+def search_position(terrain: TerrainMap, track: Track, grid: Hypotheses) -> Search:
+    """The best position hypothesis, velocity errors taken as zero (terrain_search:2, terrain_search:3).
+
+    Raises OutsideMapError, NoDataError, NotEstimableError (fewer than two measurements).
+    """
+    need(track, 2, "two coordinates")
+    prepared = prepare(terrain, track, grid.position_only)
+    return lowest(prepared, criteria(prepared))
+
+
+def search_full(
+    terrain: TerrainMap, track: Track, grid: Hypotheses, *, dense: bool = False, threads: int = 1
+) -> Search:
+    """The best hypothesis in position and velocity (terrain_search:4, terrain_search:5).
+
+    dense : evaluate every hypothesis and keep the criteria; otherwise search by bounding, which
+            returns the same minimum, runner-up and values without them.
+    Raises OutsideMapError, NoDataError, NotEstimableError (fewer than four measurements).
+    """
+    need(track, 4, "two coordinates and two velocities")
+    prepared = prepare(terrain, track, grid)
+    # Outside this range single precision could overflow or underflow; nobody measures such heights.
+    usual = 1e-10 < prepared.bound < 1e15 and grid.size > 1
+    if dense or not (prepared.plain and usual):
+        return lowest(prepared, criteria(prepared, threads=threads))
+    found = search_bounded(*prepared.arguments, prepared.steps, prepared.counts, prepared.bound)
+    index, runner_up = unravel(found.index, grid.counts), unravel(found.runner_up, grid.counts)
+    unique = is_unique(prepared, (index, found.criterion), (runner_up, found.second))
+    share = found.samples / (grid.size * track.t.size)
+    return Search(index, found.criterion, found.second, unique, found.completed, share)
+
+
+def search_offset_free(terrain: TerrainMap, track: Track, grid: Hypotheses) -> Search:
+    """Like the dense search, with the criterion ``sum (d - mean d)^2``: free of a constant height error."""
+    need(track, 3 if grid.counts[2:] == (1, 1) else 5, "the corrections and the height offset")
+    prepared = prepare(terrain, track, grid)
+    out = np.empty(grid.counts[2:] + grid.counts[1::-1])
+    offset_free(*prepared.arguments, prepared.steps, grid.counts, out)
+    return lowest(prepared, out, exactly=False)
+
+
+def need(track: Track, least: int, what: str) -> None:
+    if track.t.size < least:
+        raise NotEstimableError(
+            f"track: expected at least {least} measurements for {what}; got {track.t.size}; fly longer"
+        )
+
+
+def lowest(prepared: Prepared, values: Array, *, exactly: bool = True) -> Search:
+    """Minimum and runner-up of an array of criteria (Mvx, Mvy, My, Mx)."""
+    flat = np.ravel(values)
+    best = int(flat.argmin())
+    others = np.concatenate([flat[:best], flat[best + 1 :]])
+    second = float(others.min(initial=math.inf))
+    index = unravel(best, prepared.counts)
+    unique: bool | None = True
+    if math.isfinite(second):
+        at = int(others.argmin())
+        runner_up = unravel(at + (at >= best), prepared.counts)
+        if exactly:
+            unique = is_unique(prepared, (index, float(flat[best])), (runner_up, second))
+        else:
+            unique = True if second > flat[best] * (1.0 + 1e-9) else None
+    return Search(index, float(flat[best]), second, unique, values.size, 1.0, values)
+
+
+def unravel(flat: int, counts: Index) -> Index:
+    """(i, j, Vi, Vj) from -N to N of a flat index in the order Vi, Vj, j, i."""
+    Mx, My, Mvx, Mvy = counts
+    i, rest = flat % Mx, flat // Mx
+    j, rest = rest % My, rest // My
+    return i - Mx // 2, j - My // 2, rest // Mvy - Mvx // 2, rest % Mvy - Mvy // 2
+
+
+# Uniqueness
+
+
+def is_unique(prepared: Prepared, best: tuple[Index, float], second: tuple[Index, float]) -> bool | None:
+    """Whether the smallest criterion belongs to one hypothesis only.
+
+    True when the two smallest double sums differ by more than their rounding can; False when the
+    two criteria are equal as rational numbers; None otherwise.
+    """
+    n = prepared.z.size
+    slack = 16.0 * 2.0**-53 * (prepared.bound + position_noise(prepared)) * math.sqrt(n)
+    grow = (n + 4) * 2.0**-53
+    upper = math.sqrt(best[1]) * (1.0 + grow) + slack
+    lower = math.sqrt(second[1]) * (1.0 - grow) - slack
+    if lower > upper:
+        return True
+    if n > 5000 or exact_criterion(prepared, best[0]) != exact_criterion(prepared, second[0]):
+        return None
+    return False
+
+
+def position_noise(prepared: Prepared) -> float:
+    """Height error of rounded positions, over 16 u: coordinates are off by a few u of their size."""
+    largest = float(max(np.abs(prepared.bx).max(), np.abs(prepared.by).max())) + max(prepared.H.shape)
+    return 4.0 * largest * prepared.bound
+
+
+def exact_criterion(prepared: Prepared, index: Index) -> Fraction:
+    """The criterion as a rational number, of the numbers in cells that the loops are given."""
+    i, j, Vi, Vj = index
+    sx, sy = map(Fraction, prepared.steps)
+    total = Fraction(0)
+    for k in range(prepared.z.size):
+        u = Fraction(prepared.bx[k]) + i * sx + Vi * Fraction(prepared.wx[k])
+        w = Fraction(prepared.by[k]) + j * sy + Vj * Fraction(prepared.wy[k])
+        total += (Fraction(prepared.z[k]) - exact_height(prepared.H, u, w)) ** 2
+    return total
+
+
+def exact_height(H: Array, u: Fraction, w: Fraction) -> Fraction:
+    """Bilinear height in rational arithmetic."""
+    c = max(min(math.floor(u), H.shape[1] - 2), 0)
+    r = max(min(math.floor(w), H.shape[0] - 2), 0)
+    f, g = u - c, w - r
+    low, high = (1 - f) * (1 - g), (1 - f) * g
+    weights = ((low, r, c), (1 - g - low, r, c + 1), (high, r + 1, c), (g - high, r + 1, c + 1))
+    return sum((weight * Fraction(H[a, b]) for weight, a, b in weights if weight), Fraction(0))
+
+
+def demand_memory(cells: int) -> None:
+    """TooLargeError above the number of criteria that are kept at once."""
+    if cells > MOST_HYPOTHESES:
+        raise TooLargeError(f"hypotheses: expected at most {MOST_HYPOTHESES}; got {cells}; use fewer")

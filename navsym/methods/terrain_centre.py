@@ -1,0 +1,129 @@
+"""Where the information lies along a track: the sums behind t_G, in O(n).
+
+With the slopes g_k = (dh/dx, dh/dy) of the map at the measurements and their times t_k,
+
+    G  = sum g_k g_k^T,   M1 = sum t_k g_k g_k^T,   M2 = sum t_k^2 g_k g_k^T
+
+are all that the theory of the paper needs. ``t_G(v) = v^T M1 v / v^T G v`` is a Rayleigh quotient
+(terrain_search:11*), its extremes are the roots of ``det(M1 - t G)`` (terrain_search:roots.values), and
+the matrix ``centre = G^-1 M1`` is what the scalar t_G stands for (terrain_search:centre).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navsym.errors import NotEstimableError
+from navsym.models.terrain import TerrainMap, bilinear
+
+Array = NDArray[np.float64]
+#: Ratio of the smallest to the largest information below which a direction counts as flat.
+FLAT = 1e-12
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Information:
+    """G, M1, M2 (2, 2), slopes squared, times slopes squared and so on."""
+
+    G: Array
+    M1: Array
+    M2: Array
+
+    @property
+    def centre(self) -> Array:
+        """C = G^-1 M1 (2, 2), times: a velocity error v moves the position fix by C v."""
+        return np.asarray(np.linalg.solve(self.G, self.M1), dtype=np.float64)
+
+    @property
+    def interval(self) -> tuple[float, float]:
+        """(t_min, t_max): smallest and largest t_G over all directions of the velocity error.
+
+        The roots of det(M1 - t G) = a t^2 - b t + c; the discriminant is computed as a sum of
+        squares, so that it is never negative and loses nothing when the roots are close.
+        """
+        G, M = self.G, self.M1
+        A2, A1, _ = self.quadratic
+        det = G[0, 0] * G[1, 1] - G[0, 1] ** 2
+        middle = (M[0, 0] * G[1, 1] + M[1, 1] * G[0, 0] - 2.0 * M[0, 1] * G[0, 1]) / (2.0 * det)
+        # terrain_search:discriminant: G11^2 D = (G11 A1 - 2 G12 A2)^2 + 4 det(G) A2^2
+        root = math.hypot(G[0, 0] * A1 - 2.0 * G[0, 1] * A2, 2.0 * math.sqrt(det) * A2) / G[0, 0]
+        return middle - root / (2.0 * det), middle + root / (2.0 * det)
+
+    @property
+    def quadratic(self) -> tuple[float, float, float]:
+        """(A2, A1, A0) of terrain_search:12*, from four products instead of double sums."""
+        G, M = self.G, self.M1
+        return (
+            float(M[0, 0] * G[0, 1] - M[0, 1] * G[0, 0]),          # terrain_search:12.Ax2*
+            float(M[0, 0] * G[1, 1] - M[1, 1] * G[0, 0]),          # terrain_search:12.Ax1
+            float(M[0, 1] * G[1, 1] - M[1, 1] * G[0, 1]),          # terrain_search:12.Ax0*
+        )
+
+    @property
+    def mean_time(self) -> float:
+        """Mean of t_G over a uniform direction: tr(G^-1/2 M1) / tr(G^1/2), terrain_search:mean.direction*."""
+        G, M = self.G, self.M1
+        root = math.sqrt(G[0, 0] * G[1, 1] - G[0, 1] ** 2)
+        adjugate = np.array([[G[1, 1], -G[0, 1]], [-G[0, 1], G[0, 0]]])
+        return float((np.sum(adjugate * M) + root * np.trace(M)) / (root * (np.trace(G) + 2.0 * root)))
+
+    def time_of(self, direction: tuple[float, float]) -> float:
+        """t_G for a velocity error along ``direction``: the Rayleigh quotient."""
+        v = np.asarray(direction, dtype=float)
+        return float(v @ self.M1 @ v / (v @ self.G @ v))
+
+
+def information(gx: Array, gy: Array, times: Array) -> Information:
+    """The sums G, M1, M2 of slopes (n,), (n,) at times (n,); unknown slopes (NaN) are left out."""
+    known = np.isfinite(gx) & np.isfinite(gy)
+    g, times = np.stack([gx[known], gy[known]]), np.asarray(times, dtype=float)[known]
+    G = g @ g.T
+    M1, M2 = (g * times) @ g.T, (g * times**2) @ g.T
+    return Information(G, 0.5 * (M1 + M1.T), 0.5 * (M2 + M2.T))
+
+
+def quadratic_slowly(gx: Array, gy: Array, times: Array) -> tuple[float, float, float]:
+    """Twin of :attr:`Information.quadratic`: the double sums of the paper, corrected (terrain_search:12*)."""
+    A2 = A1 = A0 = 0.0
+    for i, t in enumerate(times):
+        for j in range(len(times)):
+            cross = gx[i] * gy[j] - gy[i] * gx[j]
+            A2 += t * gx[i] * gx[j] * cross
+            A1 += t * ((gx[i] * gy[j]) ** 2 - (gy[i] * gx[j]) ** 2)
+            A0 += t * gy[i] * gy[j] * cross
+    return A2, A1, A0
+
+
+def slopes(terrain: TerrainMap, x: Array, y: Array) -> tuple[Array, Array]:
+    """Slopes of the map along x and y at positions (n,): central differences at the nodes, bilinear between.
+
+    Only the nodes around the positions are differenced. At the border of the map the differences
+    are one-sided and of second order where three nodes are there; next to voids the slope is NaN.
+    """
+    u, w = terrain.cells(x, y)
+    r0, c0 = max(int(w.min()) - 2, 0), max(int(u.min()) - 2, 0)
+    patch = terrain.heights[r0 : int(w.max()) + 5, c0 : int(u.max()) + 5]
+    order: Any = 2 if min(patch.shape) >= 3 else 1
+    along_y, along_x = map(np.asarray, np.gradient(np.asarray(patch), terrain.dy, terrain.dx, edge_order=order))
+    return bilinear(along_x, u - c0, w - r0)[0], bilinear(along_y, u - c0, w - r0)[0]
+
+
+def demand_estimable(info: Information) -> None:
+    """NotEstimableError, with the direction, when the terrain under the track is flat along one."""
+    values, vectors = np.linalg.eigh(info.G)
+    if values[1] <= 0.0:
+        raise NotEstimableError(
+            "terrain: expected slopes under the track; got flat ground, where no position error shows; "
+            "fly over relief"
+        )
+    if values[0] <= FLAT * values[1]:
+        ex, ey = vectors[:, 0]
+        raise NotEstimableError(
+            f"terrain: expected slopes in two directions; got none along ({ex:.4f}, {ey:.4f}): a position "
+            "error in this direction does not show; fly over other relief or turn"
+        )

@@ -1,0 +1,293 @@
+"""Height maps and tracks in files: npz without pickles, SRTM tiles, GeoTIFF, CSV.
+
+Nothing is allocated before the size that a header announces has been multiplied out and compared
+with a limit, and nothing in a file is executed.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+import os
+import re
+import zipfile
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navsym.errors import (
+    DomainError,
+    DuplicateError,
+    EmptyError,
+    ExpressionSyntaxError,
+    MissingEngineError,
+    NavsymError,
+    NotFiniteError,
+    ShapeError,
+    TooLargeError,
+)
+from navsym.text.files import called, read_bytes, read_text
+
+#: Largest number of heights in a map file, and of bytes in a track file.
+MOST_HEIGHTS, MOST_BYTES = 200_000_000, 64_000_000
+#: Mean radius of the Earth, metres, for the local frame of a tile.
+EARTH = 6_371_008.8
+SRTM_VOID = -32768
+
+#: A header's announcement: shape, type.
+Header = tuple[tuple[int, ...], np.dtype[Any]]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Raster:
+    """What a map file holds: heights with row = y ascending, and where they lie.
+
+    geographic : True when x0, y0, dx, dy are degrees of longitude and latitude
+    """
+
+    heights: NDArray[Any]
+    x0: float
+    y0: float
+    dx: float
+    dy: float
+    nodata: float | None = None
+    geographic: bool = False
+
+
+def read_map(path: str | os.PathLike[str]) -> Raster:
+    """A map from ``.npz``, ``.hgt`` or ``.tif``/``.tiff``, told apart by the end of the name.
+
+    Raises NavsymError: ``missing-file``, ``syntax``, ``shape``, ``too-large``, ``domain``, ``missing``.
+    """
+    readers: dict[str, Callable[[Path], Raster]] = {
+        ".npz": read_npz, ".hgt": read_hgt, ".tif": read_geotiff, ".tiff": read_geotiff,
+    }
+    reader = readers.get(Path(path).suffix.lower())
+    if reader is None:
+        raise DomainError(
+            f"expected a map file ending in {', '.join(readers)}; got {called(Path(path).name)[-40:]}; convert it",
+            where=called(path),
+        )
+    return reader(Path(path))
+
+
+def local_frame(raster: Raster) -> Raster:
+    """A geographic tile in metres east and north of its south-west node, scaled at its middle latitude."""
+    if not raster.geographic:
+        return raster
+    middle = raster.y0 + 0.5 * raster.dy * (raster.heights.shape[0] - 1)
+    dx = EARTH * math.radians(raster.dx) * math.cos(math.radians(middle))
+    return Raster(raster.heights, 0.0, 0.0, dx, EARTH * math.radians(raster.dy), raster.nodata)
+
+
+# npz
+
+
+def read_npz(path: Path) -> Raster:
+    """``heights`` (row = y), ``x0, y0, dx, dy`` and perhaps ``nodata``; or the names of matplotlib's sample.
+
+    The sample has ``elevation``, ``xmin``, ``xmax``, ``ymin``, ``ymax``, ``dx``, ``dy`` in degrees and its
+    first row in the north.
+    """
+    with opened_zip(path) as archive:
+        names = member_names(archive, path)
+        get = lambda name: read_member(archive, names, name, path)  # noqa: E731
+        if "elevation" in names and "heights" not in names:
+            top, bottom = sorted((scalar(get, "ymin", path), scalar(get, "ymax", path)))[::-1]
+            heights, dy = get("elevation")[::-1], scalar(get, "dy", path)
+            # ymin and ymax are the outer edges of cells; the lowest row lies half a cell inside.
+            dx = scalar(get, "dx", path)
+            x0, y0 = scalar(get, "xmin", path) + 0.5 * dx, min(top, bottom) + 0.5 * dy
+            return Raster(heights, x0, y0, dx, dy, None, True)
+        x0, y0, dx, dy = (scalar(get, name, path) for name in ("x0", "y0", "dx", "dy"))
+        nodata = scalar(get, "nodata", path, finite=False) if "nodata" in names else None
+        return Raster(get("heights"), x0, y0, dx, dy, nodata)
+
+
+def opened_zip(path: Path) -> zipfile.ZipFile:
+    try:
+        if not path.is_file():
+            raise FileNotFoundError
+        return zipfile.ZipFile(path)
+    except FileNotFoundError:
+        message = "expected a readable map file; got nothing there; check the path"
+        raise NavsymError(message, where=called(path), kind="missing-file") from None
+    except (OSError, zipfile.BadZipFile, ValueError) as reason:
+        raise damaged(path, "an npz archive", reason) from None
+
+
+def damaged(path: Path, what: str, reason: object) -> ExpressionSyntaxError:
+    message = f"expected {what}; got a damaged file ({reason!s:.80}); fetch or write it again"
+    return ExpressionSyntaxError(message, where=called(path))
+
+
+def member_names(archive: zipfile.ZipFile, path: Path) -> frozenset[str]:
+    names = [name.removesuffix(".npy") for name in archive.namelist()]
+    if len(set(names)) < len(names):
+        raise DuplicateError("expected every array once; got one name twice; write it again", where=called(path))
+    return frozenset(names)
+
+
+def read_member(archive: zipfile.ZipFile, names: frozenset[str], name: str, path: Path) -> NDArray[Any]:
+    """One array of an npz archive, its header checked before anything is allocated."""
+    where = f"{called(path)}: {name}"
+    if name not in names:
+        raise EmptyError(f"expected an array '{name}'; got {', '.join(sorted(names))[:120]}; add it", where=where)
+    try:
+        with archive.open(f"{name}.npy") as file:
+            shape, fortran, dtype = npy_header(file)
+            size = checked_size((shape, dtype), where)
+            data = file.read(size + 1)
+    except NavsymError:
+        raise
+    except Exception as reason:                # zlib, zipfile and struct errors of a damaged member
+        raise damaged(path, f"the array '{name}'", reason) from None
+    if len(data) != size:
+        raise damaged(path, f"{size} bytes of '{name}'", f"{len(data)} bytes")
+    array = np.frombuffer(data, dtype=dtype).reshape(shape, order="F" if fortran else "C")
+    return np.array(array)
+
+
+def npy_header(file: Any) -> tuple[tuple[int, ...], bool, np.dtype[Any]]:
+    version = np.lib.format.read_magic(file)
+    readers = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.read_array_header_2_0}
+    if version not in readers:
+        raise ValueError(f"version {version} of the npy format")
+    shape, fortran, dtype = readers[version](file, max_header_size=4096)
+    return shape, bool(fortran), dtype
+
+
+def checked_size(header: Header, where: str) -> int:
+    """Bytes that a header announces; refuses objects (pickles), other types and large arrays."""
+    shape, dtype = header
+    if dtype.kind not in "iuf" or dtype.hasobject:
+        raise DomainError(f"expected real numbers; got type {dtype!s:.40}; save plain numbers", where=where)
+    if any(n < 0 for n in shape) or math.prod(shape) > MOST_HEIGHTS:
+        raise TooLargeError(
+            f"expected at most {MOST_HEIGHTS} numbers; got shape {shape!s:.60}; cut the map", where=where
+        )
+    return math.prod(shape) * dtype.itemsize
+
+
+def scalar(get: Callable[[str], NDArray[Any]], name: str, path: Path, *, finite: bool = True) -> float:
+    array = get(name)
+    if array.size != 1:
+        raise ShapeError(f"expected one number; got shape {array.shape}; give one", where=f"{called(path)}: {name}")
+    value = float(array.reshape(-1)[0])
+    if finite and not math.isfinite(value):
+        raise NotFiniteError(f"expected a finite number; got {value}; mend it", where=f"{called(path)}: {name}")
+    return value
+
+
+# SRTM tiles
+
+
+def read_hgt(path: Path) -> Raster:
+    """A one-degree SRTM tile: big-endian int16, first row in the north, -32768 where there is no height.
+
+    The corner is read from the name (``N44W072…``), the number of samples (1201 or 3601) from the size.
+    """
+    name = re.match(r"([NS])(\d{2})([EW])(\d{3})", path.name.upper())
+    if name is None:
+        raise DomainError(
+            f"expected a name such as N44W072.hgt, it gives the corner; got {called(path.name)[-40:]}; rename it",
+            where=called(path),
+        )
+    data = read_bytes(path, 2 * 3601 * 3601)
+    side = {2 * n * n: n for n in (1201, 3601)}.get(len(data))
+    if side is None:
+        raise ShapeError(
+            f"expected {2 * 1201**2} or {2 * 3601**2} bytes (1201 or 3601 samples squared); got {len(data)}; "
+            "fetch it again", where=called(path),
+        )
+    latitude = int(name[2]) * (1 if name[1] == "N" else -1)
+    longitude = int(name[4]) * (1 if name[3] == "E" else -1)
+    heights = np.frombuffer(data, dtype=">i2").reshape(side, side)[::-1].astype(np.int16)
+    step = 1.0 / (side - 1)
+    return Raster(heights, float(longitude), float(latitude), step, step, float(SRTM_VOID), True)
+
+
+# GeoTIFF
+
+
+def read_geotiff(path: Path) -> Raster:
+    """First band of an upright GeoTIFF, by rasterio (the extra ``maps``)."""
+    try:
+        import rasterio
+    except ModuleNotFoundError:
+        raise MissingEngineError(
+            "expected the Python package rasterio to read GeoTIFF; got none; install the extra navsym[maps]",
+            where=called(path),
+        ) from None
+    read_bytes(path, 4 * MOST_HEIGHTS)
+    try:
+        with rasterio.open(path) as source:
+            shape, transform = (source.height, source.width), source.transform
+            checked_size((shape, np.dtype(source.dtypes[0])), called(path))
+            geographic = bool(source.crs is not None and source.crs.is_geographic)
+            return upright(source.read(1), transform, source.nodata, geographic, path)
+    except NavsymError:
+        raise
+    except Exception as reason:                # whatever GDAL says about a damaged file
+        raise damaged(path, "a GeoTIFF", reason) from None
+
+
+def upright(heights: NDArray[Any], transform: Any, nodata: Any, geographic: bool, path: Path) -> Raster:
+    """A north-up raster with its rows turned round; heights stand at the middle of the pixels."""
+    if transform.b or transform.d or transform.a <= 0 or transform.e >= 0:
+        raise DomainError(
+            "expected a raster with north up and no rotation; got another one; warp it first", where=called(path)
+        )
+    x0 = transform.c + 0.5 * transform.a
+    y0 = transform.f + transform.e * (heights.shape[0] - 0.5)
+    void = None if nodata is None else float(nodata)
+    return Raster(heights[::-1], x0, y0, transform.a, -transform.e, void, geographic)
+
+
+# Tracks
+
+
+def read_track(path: str | os.PathLike[str]) -> dict[str, list[float]]:
+    """Columns t, x, y, h of a CSV file with a header line; other columns are ignored.
+
+    Lines that start with # and empty lines are skipped. Raises NavsymError with the line.
+    """
+    rows = csv.reader(io.StringIO(read_text(path, MOST_BYTES)))
+    where = called(path)
+    try:
+        lines = [(rows.line_num, row) for row in rows if row and not row[0].lstrip().startswith("#")]
+    except csv.Error as reason:
+        raise damaged(Path(path), "a CSV table", reason) from None
+    if not lines:
+        raise EmptyError("expected a header line t,x,y,h; got nothing; write one", where=where)
+    header = [name.strip().lower() for name in lines[0][1]]
+    missing = [name for name in ("t", "x", "y", "h") if header.count(name) != 1]
+    if missing:
+        raise ExpressionSyntaxError(
+            f"expected the columns t, x, y, h once each; got {','.join(header)[:120]!r}; name them",
+            where=f"{where}: line {lines[0][0]}",
+        )
+    place = {name: header.index(name) for name in ("t", "x", "y", "h")}
+    table = [{name: cell(row, k, f"{where}: line {line}") for name, k in place.items()} for line, row in lines[1:]]
+    if not table:
+        raise EmptyError("expected at least one row below the header; got none; add the track", where=where)
+    return {name: [row[name] for row in table] for name in place}
+
+
+def cell(row: list[str], k: int, where: str) -> float:
+    """One number of a row."""
+    text = row[k].strip() if k < len(row) else ""
+    try:
+        if "_" in text:
+            raise ValueError
+        value = float(text)
+    except ValueError:
+        raise ExpressionSyntaxError(f"expected a number; got {text[:40]!r}; mend it", where=where) from None
+    if not math.isfinite(value):
+        raise NotFiniteError(f"expected a finite number; got {text[:40]!r}; drop the row", where=where)
+    return value
