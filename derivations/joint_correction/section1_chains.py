@@ -1,0 +1,251 @@
+"""Section 1, (1.2)-(1.6): what one measurement observes, and the observer for it."""
+
+from __future__ import annotations
+
+import sympy as sp
+
+from derivations.joint_correction.section1_systems import (
+    System,
+    coefficients_of_polynomial,
+    coordinates,
+    flat,
+    free,
+    k,
+    systems,
+)
+from navsym.claims import CERTIFIED, Bound, Equation, Finding, Property, claim
+from navsym.methods.observability_split import companion, inverse, unit_row
+
+SIZES = "the symbolic systems (n, m) = (2, 1), (3, 2), (4, 2), (5, 3), all parameters"
+
+
+@claim("1.dimensions")
+def dimensions():
+    """m <= n, l <= n and m + l >= n for an observable pair."""
+    found = all(
+        first.dimension <= s.n and second.dimension <= s.n and first.dimension + second.dimension >= s.n
+        for s in systems()
+        for first, second in [s.found.measurements]
+    )
+    return Property(True, Finding(found, "exact dimensions of the chains", scope=SIZES))
+
+
+@claim("1.3.basis")
+def chain_is_a_basis():
+    """The first m vectors a_1 ... a_m are a basis of what sigma_1 observes."""
+    counts = tuple(rank_of(s.chain(1, s.m)) for s in systems())
+    longer = tuple(rank_of(s.chain(1, 2 * s.n)) for s in systems())
+    return Property(
+        tuple(s.m for s in systems()),
+        Finding(counts if counts == longer else None, "exact ranks of m and of 2 n vectors", scope=SIZES),
+    )
+
+
+def rank_of(rows: sp.MatrixBase) -> int:
+    """Exact generic rank: pivots of a fraction-free elimination."""
+    from navsym.methods.observability import numerators
+    from navsym.methods.observability_linear import reduce_rows
+    from navsym.methods.observability_ring import Ring
+
+    ring = Ring.of(rows)
+    entries, _ = numerators([rows[r, :] for r in range(rows.rows)], ring)
+    return len(reduce_rows(entries, ring).rows)
+
+
+def characteristic(matrix: sp.MatrixBase) -> list[sp.Expr]:
+    """theta_1 ... theta_m of a matrix: its characteristic polynomial is p^m - theta_m p^(m-1) - ... - theta_1."""
+    values = [-value for value in coefficients_of_polynomial(matrix)[1:]]
+    return values[::-1]
+
+
+@claim("1.4.theta")
+def next_vector_depends():
+    """a_{m+1} is the combination of a_1 ... a_m with the coefficients theta of Cayley and Hamilton."""
+    printed, derived = [], []
+    for s in systems():
+        theta = characteristic(s.block)
+        printed += flat(sp.Matrix([theta]) * s.chain(1, s.m))
+        derived += list(s.chain(1, s.m + 1)[s.m, :])
+    return Equation(printed, derived)
+
+
+def theta_of(s: System) -> tuple[sp.Expr, ...]:
+    return s.found.measurements[0].companion
+
+
+@claim("1.5.x")
+def motion_of_x():
+    """dx/dt = G_x x with G_x = C_1 Theta C_1^-1: equal to L_x G for every state."""
+    printed, derived = [], []
+    for s in systems():
+        C1 = free("x", s.m)
+        L_x = C1 * s.chain(1, s.m)
+        printed += flat(C1 * companion(theta_of(s)) * inverse("C1", C1) * L_x)
+        derived += flat(L_x * s.G)
+    return Equation(printed, derived)
+
+
+@claim("1.5.Gx")
+def matrix_of_x():
+    """G_x is the upper left block of the transformed system, and z does not enter dx/dt."""
+    printed, derived = [], []
+    for s in systems():
+        C1 = free("x", s.m)
+        L, back = coordinates(s, C1, free("z", s.rest))
+        block = (L * s.G * back)[: s.m, :]
+        printed += flat(C1 * companion(theta_of(s)) * inverse("C1", C1), sp.zeros(s.m, s.rest))
+        derived += flat(block[:, : s.m], block[:, s.m:])
+    return Equation(printed, derived)
+
+
+@claim("1.5.Theta")
+def companion_matrix():
+    """Theta has ones above the diagonal and theta_1 ... theta_m in its last row."""
+    s = systems()[3]
+    t1, t2, t3 = theta_of(s)
+    A = s.chain(1, 4)
+    solved = sp.Matrix([[*coefficients(A[:3, :], A[row, :])] for row in (1, 2, 3)])
+    return Equation(sp.Matrix([[0, 1, 0], [0, 0, 1], [t1, t2, t3]]), solved)
+
+
+def coefficients(basis: sp.MatrixBase, row: sp.MatrixBase) -> list[sp.Expr]:
+    """Coefficients of a row in a basis of rows, by the exact elimination of the house."""
+    from navsym.methods.observability import numerators
+    from navsym.methods.observability_linear import relation
+    from navsym.methods.observability_ring import Ring
+
+    ring = Ring.of(sp.Matrix.vstack(sp.Matrix(basis), sp.Matrix(row)))
+    entries, _ = numerators([*(basis[r, :] for r in range(basis.rows)), row], ring)
+    values = relation(entries[:-1], entries[-1], ring)
+    if values is None:
+        raise ArithmeticError("the row lies outside of the span")
+    return [ring.expression(value) for value in values]
+
+
+@claim("1.5.gx")
+def output_of_x():
+    """sigma_1 = g_x^T x with g_x^T = (1 0 ... 0) C_1^-1."""
+    printed, derived = [], []
+    for s in systems():
+        C1 = free("x", s.m)
+        printed += flat(unit_row(s.m) * inverse("C1", C1) * C1 * s.chain(1, s.m))
+        derived += flat(s.h(1).T)
+    return Equation(printed, derived)
+
+
+@claim("1.5.qx")
+def noise_of_x():
+    """q_x = L_x q: the noise that drives x."""
+    printed, derived = [], []
+    for s in systems():
+        q = sp.Matrix(sp.symbols(f"q1:{s.n + 1}", real=True))
+        state = sp.Matrix(sp.symbols(f"xi1:{s.n + 1}", real=True))
+        L_x = free("x", s.m) * s.chain(1, s.m)
+        printed += list(L_x * q)
+        derived += list(L_x * (s.G * state + q) - L_x * s.G * state)
+    return Equation(printed, derived)
+
+
+def observer(size: int) -> tuple[sp.Matrix, sp.Matrix, sp.Matrix]:
+    """(G_x, K, g_x) of a general scalar observer of the given order in coordinates with C_1 = free."""
+    theta = sp.symbols(f"theta1:{size + 1}", real=True)
+    C1 = free("x", size)
+    back = inverse("C1", C1)
+    return C1 * companion(theta) * back, sp.Matrix(k[:size]), unit_row(size) * back
+
+
+@claim("1.6.error")
+def error_of_x():
+    """The error x - x° of (1.6) obeys de/dt = (G_x - K_x g_x^T) e + q_x - K_x r_x."""
+    printed, derived = [], []
+    for size in (1, 2, 3):
+        G, K, row = observer(size)
+        x, estimate, q = (sp.Matrix(sp.symbols(f"{name}1:{size + 1}", real=True)) for name in ("x", "e", "q"))
+        r = sp.Symbol("r", real=True)
+        truth = G * x + q
+        filtered = G * estimate + K * ((row * x)[0] + r - (row * estimate)[0])
+        printed += list((G - K * row) * (x - estimate) + q - K * r)
+        derived += list(truth - filtered)
+    return Equation(printed, derived)
+
+
+@claim("1.6.gain_unique")
+def gain_is_unique():
+    """Prescribed roots of |pE - G_x + K_x g_x^T| determine K_x uniquely, for every choice of them."""
+    found = True
+    for size in (1, 2, 3):
+        G, K, row = observer(size)
+        values = coefficients_of_polynomial((G - K * row))[1:]
+        jacobian = sp.Matrix(values).jacobian(K)
+        linear = not any(jacobian.has(symbol) for symbol in K)
+        found = found and linear and rank_of(jacobian) == size
+    return Property(
+        True,
+        Finding(
+            found,
+            "the coefficients are affine in K_x with an invertible matrix",
+            scope="m = 1, 2, 3, all theta and C_1",
+            assumptions=("det C_1 != 0",),
+        ),
+    )
+
+
+@claim("1.6.gain_unique.determinant")
+def gain_determinant():
+    """The matrix of that affine map has determinant 1/det C_1 up to sign, so no theta makes it singular."""
+    values = []
+    for size in (1, 2, 3):
+        G, K, row = observer(size)
+        values_of = coefficients_of_polynomial((G - K * row))[1:]
+        jacobian = sp.Matrix(values_of).jacobian(K)
+        values.append(sp.expand(jacobian.det(method="berkowitz")) ** 2)
+    return Equation([free("x", size).det() ** -2 for size in (1, 2, 3)], values)
+
+
+@claim("1.6.initial")
+def initial_estimate():
+    """With x°(t_0) = C_1 (sigma_10 0 ... 0)^T the first innovation is zero."""
+    first = sp.Symbol("sigma_10", real=True)
+    values = []
+    for size in (1, 2, 3):
+        _, _, row = observer(size)
+        start = free("x", size) * sp.Matrix([first, *[0] * (size - 1)])
+        values.append((row * start)[0])
+    return Equation(values, [first] * 3)
+
+
+@claim("1.6.kalman_unique")
+def steady_kalman_gain():
+    """m = 1: with process noise the steady Riccati equation has one nonnegative solution.
+
+    2 a P + Q - P^2/R = 0 has real roots with the product -Q R < 0. (For Q = 0 and a > 0 both
+    roots 0 and 2 a R are nonnegative: the gain is then unique only with an initial covariance.)
+    """
+    a = sp.Symbol("a", real=True)
+    Q, R = sp.symbols("Q R", positive=True)
+    root = sp.sqrt(a**2 * R**2 + Q * R)
+    return Equation([-Q * R, sp.Integer(0), sp.Integer(0)], [
+        sp.expand((a * R + root) * (a * R - root)),
+        *(sp.expand(2 * a * P + Q - P**2 / R) for P in (a * R + root, a * R - root)),
+    ])
+
+
+@claim("1.two_stage.small", expect=CERTIFIED)
+def errors_can_be_made_small():
+    """At a fixed instant every entry of the error transition vanishes as the poles go to the left.
+
+    m = 2, Theta = 0, (p + lam)^2: entries exp(-s) times 1 + s, s/lam, lam s, 1 - s with s = lam t;
+    the largest is lam s = s^2/t, and s^2 exp(-s) <= 24/s^2.
+    """
+    s = sp.Symbol("s", positive=True)
+    return Bound(s**2 * sp.exp(-s), "<=", 24 / s**2, {s: (sp.Rational(1, 100), 60)})
+
+
+@claim("1.two_stage.transition")
+def error_transition():
+    """The error transition matrix behind that bound solves its differential equation."""
+    lam, t = sp.symbols("lam t", positive=True)
+    error = companion([0, 0]) - sp.Matrix([2 * lam, lam**2]) * unit_row(2)
+    transition = sp.exp(-lam * t) * sp.Matrix([[1 - lam * t, t], [-lam**2 * t, 1 + lam * t]])
+    return Equation(transition.diff(t), error * transition)
+

@@ -1,0 +1,266 @@
+"""Section 1, (1.14): the form u, v, w for a basis with i < m, and the choice of i."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import sympy as sp
+
+from derivations.joint_correction.section1_chains import coefficients, theta_of
+from derivations.joint_correction.section1_systems import System, flat, free, k, overlapping, polynomial_of
+from navsym.claims import Equation, Finding, Property, claim
+from navsym.methods.observability_split import companion, corner, inverse, last_row, shift, unit_row
+
+#: Splits i, j of the overlapping system (n = 4, m = 3) that have all three parts.
+CASES = ((2, 2), (1, 3))
+
+
+def parts(i: int, j: int) -> tuple[System, dict[str, sp.ImmutableMatrix], dict[str, sp.ImmutableMatrix]]:
+    """The system, the free matrices, and the rows L_u, L_v, L_w of the definition."""
+    s = overlapping()
+    C = {"u": free("x", i), "v": free("v", s.m - i), "w": free("z", j)}
+    A = s.chain(1, s.m)
+    rows = {"u": C["u"] * A[:i, :], "v": C["v"] * A[i:, :], "w": C["w"] * s.chain(2, j)}
+    return s, C, rows
+
+
+def delta_of(s: System, i: int, j: int) -> list[sp.Expr]:
+    """delta_1 ... delta_n: b_{j+1} in the basis a_1 ... a_i, b_1 ... b_j."""
+    basis = sp.Matrix.vstack(s.chain(1, i), s.chain(2, j))
+    return coefficients(basis, s.chain(2, j + 1)[j, :])
+
+
+@cache
+def printed_blocks(i: int, j: int) -> dict[str, sp.ImmutableMatrix]:
+    """The blocks as the paper prints them, with theta and delta of the system."""
+    s, C, _ = parts(i, j)
+    theta, delta = theta_of(s), delta_of(s, i, j)
+    back = {name: inverse(name, matrix) for name, matrix in C.items()}
+    return {
+        "u1": C["u"] * shift(i) * back["u"],
+        "u2": C["u"] * corner(i, s.m - i) * back["v"],
+        "v1": C["v"] * last_row(s.m - i, theta[:i]) * back["u"],
+        "v2": C["v"] * companion(theta[i:]) * back["v"],
+        "w1": C["w"] * last_row(j, delta[:i]) * back["u"],
+        "w2": C["w"] * companion(delta[i:]) * back["w"],
+    }
+
+
+def motion(name: str, first: str, second: str) -> Equation:
+    """d(name)/dt: printed blocks on the rows of two parts, against L_name G."""
+    printed, derived = [], []
+    for i, j in CASES:
+        s, _, rows = parts(i, j)
+        block = printed_blocks(i, j)
+        printed += flat(block[f"{name}1"] * rows[first] + block[f"{name}2"] * rows[second])
+        derived += flat(rows[name] * s.G)
+    return Equation(printed, derived)
+
+
+@claim("1.14.u")
+def motion_of_u():
+    """du/dt = G_u1 u + G_u2 v."""
+    return motion("u", "u", "v")
+
+
+@claim("1.14.v")
+def motion_of_v():
+    """dv/dt = G_v1 u + G_v2 v."""
+    return motion("v", "u", "v")
+
+
+@claim("1.14.w")
+def motion_of_w():
+    """dw/dt = G_w1 u + G_w2 w."""
+    return motion("w", "u", "w")
+
+
+def block_of(name: str, first: str, second: str, number: int) -> Equation:
+    """One printed block against the block solved from L_name G in the rows of two parts."""
+    printed, derived = [], []
+    for i, j in CASES:
+        s, _, rows = parts(i, j)
+        basis = sp.Matrix.vstack(rows[first], rows[second])
+        rates = rows[name] * s.G
+        solved = [coefficients(basis, rates[r, :]) for r in range(rates.rows)]
+        size = rows[first].rows
+        derived += [x for row in solved for x in (row[:size] if number == 1 else row[size:])]
+        printed += flat(printed_blocks(i, j)[f"{name}{number}"])
+    return Equation(printed, derived)
+
+
+@claim("1.14.Gu1")
+def block_u1():
+    """G_u1 = C_11 F C_11^-1."""
+    return block_of("u", "u", "v", 1)
+
+
+@claim("1.14.Gu2")
+def block_u2():
+    """G_u2 = C_11 F° C_12^-1."""
+    return block_of("u", "u", "v", 2)
+
+
+@claim("1.14.Gv1")
+def block_v1():
+    """G_v1 = C_12 Theta_u C_11^-1."""
+    return block_of("v", "u", "v", 1)
+
+
+@claim("1.14.Gv2")
+def block_v2():
+    """G_v2 = C_12 Theta_v C_12^-1."""
+    return block_of("v", "u", "v", 2)
+
+
+@claim("1.14.Gw1")
+def block_w1():
+    """G_w1 = C_22 D_u C_11^-1."""
+    return block_of("w", "u", "w", 1)
+
+
+@claim("1.14.Gw2")
+def block_w2():
+    """G_w2 = C_22 D_w C_22^-1."""
+    return block_of("w", "u", "w", 2)
+
+
+@claim("1.14.noise")
+def noises():
+    """q_u = L_u q, q_v = L_v q, q_w = L_w q."""
+    printed, derived = [], []
+    s, _, rows = parts(2, 2)
+    q, state = (sp.Matrix(sp.symbols(f"{name}1:5", real=True)) for name in ("q", "xi"))
+    for name in "uvw":
+        printed += list(rows[name] * q)
+        derived += list(rows[name] * (s.G * state + q) - rows[name] * s.G * state)
+    return Equation(printed, derived)
+
+
+@claim("1.14.matrices")
+def constant_matrices():
+    """F, F°, Theta_u, Theta_v, D_u, D_w as printed, solved from the chains (i = 2, j = 2, m = 3)."""
+    s = overlapping()
+    t1, t2, t3 = theta_of(s)
+    d1, d2, d3, d4 = delta_of(s, 2, 2)
+    A, B = s.chain(1, 4), s.chain(2, 3)
+    first = [coefficients(A[:3, :], A[row, :]) for row in (1, 2, 3)]
+    second = [coefficients(sp.Matrix.vstack(A[:2, :], B[:2, :]), B[row, :]) for row in (1, 2)]
+    printed = [[0, 1, 0], [0, 0, 1], [t1, t2, t3], [0, 0, 0, 1], [d1, d2, d3, d4]]
+    return Equation([sp.sympify(x) for row in printed for x in row], [x for row in [*first, *second] for x in row])
+
+
+@claim("1.14.delta")
+def delta_relation():
+    """b_{j+1} = delta_1 a_1 + ... + delta_i a_i + delta_{i+1} b_1 + ... + delta_n b_j, delta from Cramer's rule."""
+    printed, derived = [], []
+    for i, j in CASES:
+        s = overlapping()
+        basis = sp.Matrix.vstack(s.chain(1, i), s.chain(2, j))
+        target = s.chain(2, j + 1)[j, :]
+        det = basis.det(method="berkowitz")
+        delta = []
+        for r in range(4):
+            changed = basis.as_mutable()
+            changed[r, :] = target
+            delta.append(sp.cancel(changed.det(method="berkowitz") / det))
+        printed += list(sp.Matrix([delta]) * basis)
+        derived += list(target)
+    return Equation(printed, derived)
+
+
+@claim("1.14.outputs")
+def outputs():
+    """sigma_1 = g_u^T u, sigma_2 = g_w^T w with g_u^T = (1 0 ... 0) C_11^-1, g_w^T = (1 0 ... 0) C_22^-1."""
+    printed, derived = [], []
+    for i, j in CASES:
+        s, C, rows = parts(i, j)
+        printed += flat(unit_row(i) * inverse("C11", C["u"]) * rows["u"], unit_row(j) * inverse("C22", C["w"]) * rows["w"])
+        derived += flat(s.h(1).T, s.h(2).T)
+    return Equation(printed, derived)
+
+
+@claim("1.14.dimension")
+def dimension():
+    """The system (1.14) has m + j variables, m - i more than xi."""
+    i, j, m, n = (sp.Symbol(name, integer=True, positive=True) for name in "ijmn")
+    counted = [parts(*case) for case in CASES]
+    sizes = [sum(rows[name].rows for name in "uvw") - s.n for s, _, rows in counted]
+    expected = [(m - i).subs({m: s.m, i: case[0]}) for (s, _, _), case in zip(counted, CASES, strict=True)]
+    return Equation([*expected, m - i], [*map(sp.Integer, sizes), (i + (m - i) + j - n).subs(n, i + j)])
+
+
+@claim("1.14.one_to_one")
+def u_and_w_determine_the_state():
+    """(u, w) = L_* xi is one to one: L_* times its inverse is the identity, although v is carried along."""
+    printed, derived = [], []
+    for i, j in CASES:
+        _, _, rows = parts(i, j)
+        L = sp.ImmutableMatrix.vstack(rows["u"], rows["w"])
+        printed += flat(sp.eye(4))
+        derived += flat(L * inverse("L", L))
+    return Equation(printed, derived)
+
+
+@claim("1.14.error")
+def error_dynamics():
+    """Errors of the algorithm: (u, v) form the first stage, w is driven through G_w1 by the error of u only."""
+    printed, derived = [], []
+    i, m, j = 2, 3, 2
+    theta = sp.symbols("theta1:4", real=True)
+    delta = sp.symbols("delta1:5", real=True)
+    sizes = {"u": i, "v": m - i, "w": j}
+    truth = {name: sp.Matrix(sp.symbols(f"{name}1:{size + 1}", real=True)) for name, size in sizes.items()}
+    guess = {name: sp.Matrix(sp.symbols(f"{name}e1:{size + 1}", real=True)) for name, size in sizes.items()}
+    gains = {"u": sp.Matrix(k[:2]), "v": sp.Matrix(k[2:3]), "w": sp.Matrix(k[3:5])}
+    full = companion([*theta])
+    chain = sp.Matrix.vstack(truth["u"], truth["v"])
+    chain_guess = sp.Matrix.vstack(guess["u"], guess["v"])
+    link, own = last_row(j, delta[:i]), companion(delta[i:])
+    first = sp.Matrix.vstack(gains["u"], gains["v"]) * (truth["u"][0] - guess["u"][0])
+    rate = full * chain - full * chain_guess - first
+    rate_w = link * truth["u"] + own * truth["w"] - link * guess["u"] - own * guess["w"]
+    rate_w -= gains["w"] * (truth["w"][0] - guess["w"][0])
+    error = {name: truth[name] - guess[name] for name in sizes}
+    F, F0 = shift(i), corner(i, m - i)
+    printed += list((F - gains["u"] * unit_row(i)) * error["u"] + F0 * error["v"])
+    printed += list((last_row(m - i, theta[:i]) - gains["v"] * unit_row(i)) * error["u"] + companion(theta[i:]) * error["v"])
+    printed += list(link * error["u"] + (own - gains["w"] * unit_row(j)) * error["w"])
+    derived += [*rate, *rate_w]
+    return Equation(printed, derived)
+
+
+@claim("1.14.characteristic")
+def characteristic_polynomial():
+    """The poles of (1.14) are those of the (u, v) stage, of order m, and of the w stage, of order j."""
+    theta, delta = sp.symbols("theta1:4", real=True), sp.symbols("delta1:5", real=True)
+    first = companion(theta) - sp.Matrix(k[:3]) * unit_row(3)
+    second = companion(delta[2:]) - sp.Matrix(k[3:5]) * unit_row(2)
+    link = sp.Matrix.hstack(last_row(2, delta[:2]), sp.zeros(2, 1))
+    whole = sp.Matrix.vstack(sp.Matrix.hstack(first, sp.zeros(3, 2)), sp.Matrix.hstack(link, second))
+    expected = polynomial_of(first) * polynomial_of(second)
+    return Equation(expected, polynomial_of(whole))
+
+
+@claim("1.14.higher_derivatives")
+def higher_derivatives_take_longer():
+    """The variance of the r-th derivative estimated over [0, T] falls as T^-(2r+1): the higher, the slower at first.
+
+    Polynomial of degree 3 in white noise of unit intensity; information matrix with the entries
+    T^(i+j+1)/((i+j+1) i! j!).
+    """
+    T = sp.Symbol("T", positive=True)
+    information = sp.Matrix(4, 4, lambda i, j: T ** (i + j + 1) / (sp.Integer(i + j + 1) * sp.factorial(i) * sp.factorial(j)))
+    covariance = inverse("information", sp.ImmutableMatrix(information))
+    at_one = covariance.subs(T, 1)
+    printed = [at_one[r, r] * T ** (-(2 * r + 1)) for r in range(4)]
+    return Equation(printed, [covariance[r, r] for r in range(4)])
+
+
+@claim("1.14.choice")
+def choice_of_i():
+    """The least max(i, j) over all bases: for the overlapping system i = j = 2, not the two-stage i = m = 3."""
+    from navsym.methods.observability_split import best_split
+
+    best = best_split(overlapping().found)
+    return Property((2, 2), Finding((best.i, best.j), "all determinants of a_1 ... a_i, b_1 ... b_j", scope="n = 4, m = 3, l = 4"))

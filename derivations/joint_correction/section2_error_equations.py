@@ -1,0 +1,314 @@
+"""Section 2, (2.1)-(2.5): error equations and corrections from the kinematics of small rotations.
+
+The derived sides come from ``navsym.models.inertial_kinematics``: Poisson's equation linearised,
+Newton's equation solved for the rates, the velocity seen in platform axes. Terms of order
+mu^2 rho are dropped, and :func:`dropped_terms` says which.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+
+import sympy as sp
+
+from navsym.claims import CERTIFIED, REFUTED, Bound, Equation, Finding, Property, claim
+from navsym.models.inertial import PHYSICAL_ORDERS
+from navsym.models.inertial_kinematics import (
+    ALPHA,
+    BETA,
+    CLIMB,
+    DELTA_P,
+    EARTH_X,
+    EPSILON,
+    NU_X,
+    OMEGA_X,
+    OMEGA_X_RATE,
+    SCHULER,
+    W_C,
+    W_M,
+    ErrorEquations,
+    error_equations,
+)
+from navsym.models.inertial_orders import truncate
+
+a1, a2, a3 = ALPHA
+b1, b2, b3 = BETA
+p1, p2 = DELTA_P
+v1, v2, v3 = NU_X
+e1, e2 = EPSILON
+w1, w2 = OMEGA_X[:2]
+u1, u2, u3 = EARTH_X
+w0 = SCHULER
+
+
+@cache
+def equations() -> ErrorEquations:
+    return error_equations()
+
+
+def kept(symbol: sp.Symbol) -> sp.Expr:
+    """The derivative of an error variable without its terms of order mu^2 rho."""
+    return truncate(equations().rates[symbol], PHYSICAL_ORDERS, 2).kept
+
+
+@claim("2.1.alpha1")
+def tilt_1():
+    """alpha_1' = dp_1 + nu_x1."""
+    return Equation(p1 + v1, kept(a1))
+
+
+@claim("2.1.alpha2")
+def tilt_2():
+    """alpha_2' = dp_2 + nu_x2."""
+    return Equation(p2 + v2, kept(a2))
+
+
+@claim("2.1.dp1")
+def momentum_1():
+    """dp_1' = -omega_0^2 (alpha_1 + epsilon_2) - omega_x2 nu_x3."""
+    return Equation(-(w0**2) * (a1 + e2) - w2 * v3, kept(p1))
+
+
+@claim("2.1.dp2")
+def momentum_2():
+    """dp_2' = -omega_0^2 (alpha_2 - epsilon_1) + omega_x1 nu_x3."""
+    return Equation(-(w0**2) * (a2 - e1) + w1 * v3, kept(p2))
+
+
+@claim("2.1.dropped")
+def dropped_terms():
+    """(2.1) leaves out omega_x1 (omega_x1 alpha_1 + omega_x2 alpha_2) and its like, and nothing else."""
+    printed = [w1 * (w1 * a1 + w2 * a2), w2 * (w1 * a1 + w2 * a2)]
+    derived = [equations().rates[p] - kept(p) for p in (p1, p2)]
+    return Equation(printed, derived)
+
+
+@claim("2.1.climb")
+def climb_is_negligible():
+    """A climb below 0.1 a max|omega| adds only terms of order mu^2 rho to (2.1) and (2.4)."""
+    climbing = error_equations(CLIMB)
+    values = [climbing.rates[p] - equations().rates[p] for p in (p1, p2)]
+    values += [c - e for c, e in zip(climbing.velocity, equations().velocity, strict=True)]
+    orders = tuple(truncate(sp.expand(value), PHYSICAL_ORDERS, 2).kept == 0 for value in values)
+    return Property(
+        (True,) * 4,
+        Finding(orders, "orders of all added terms, climb/(a omega_0) counted as mu^2",
+                scope="linear in the errors, alpha_3 up to rho/mu"),
+    )
+
+
+@claim("2.2.beta1")
+def drift_1():
+    """beta_1' = -omega_x2 beta_3 + nu_x1."""
+    return Equation(-w2 * b3 + v1, equations().rates[b1])
+
+
+@claim("2.2.beta2")
+def drift_2():
+    """beta_2' = omega_x1 beta_3 + nu_x2."""
+    return Equation(w1 * b3 + v2, equations().rates[b2])
+
+
+@claim(
+    "2.2.beta3",
+    expect=REFUTED,
+    slip="scan",
+    reason="index 2 for 1 in the second term: beta x omega has -omega_x1 beta_2, and the paper's own (2.8) for x_3 "
+    "follows only with omega_x1",
+)
+def drift_3_printed():
+    """beta_3' = omega_x2 beta_1 - omega_x2 beta_2 + nu_x3, as printed."""
+    return Equation(w2 * b1 - w2 * b2 + v3, equations().rates[b3])
+
+
+@claim("2.2.beta3*", corrects="2.2.beta3")
+def drift_3():
+    """beta_3' = omega_x2 beta_1 - omega_x1 beta_2 + nu_x3."""
+    return Equation(w2 * b1 - w1 * b2 + v3, equations().rates[b3])
+
+
+@claim("2.3.gamma1")
+def position_error_1():
+    """gamma_1 = alpha_1 - beta_1 is the turn from Mx to Mu: Poisson's equation gives the same derivative."""
+    return Equation(equations().rates[a1] - equations().rates[b1], turn_of_the_computed_frame()[0])
+
+
+@claim("2.3.gamma2")
+def position_error_2():
+    """gamma_2 = alpha_2 - beta_2 is the turn from Mx to Mu: Poisson's equation gives the same derivative."""
+    return Equation(equations().rates[a2] - equations().rates[b2], turn_of_the_computed_frame()[1])
+
+
+def turn_of_the_computed_frame() -> sp.Matrix:
+    """gamma' for a frame that turns with the computed rate, with gamma = alpha - beta put in."""
+    from navsym.models.inertial_kinematics import horizontal, rotation_rate, skew
+
+    gamma = sp.Matrix(sp.symbols("gamma_1:4", real=True))
+    computed = sp.Matrix([*(DELTA_P - horizontal(skew(ALPHA) * OMEGA_X)), 0])
+    return rotation_rate(gamma, computed, OMEGA_X).subs(dict(zip(gamma, ALPHA - BETA, strict=True)))
+
+
+@claim("2.4.sigma1")
+def velocity_information_1():
+    """sigma_x1^c = dp_1 + u_x3 alpha_2 + u_x2 beta_3 - u_x3 beta_2 + w_x1^c."""
+    return Equation(p1 + u3 * a2 + u2 * b3 - u3 * b2 + W_C[0], equations().velocity[0])
+
+
+@claim("2.4.sigma2")
+def velocity_information_2():
+    """sigma_x2^c = dp_2 - u_x3 alpha_1 + u_x3 beta_1 - u_x1 beta_3 + w_x2^c."""
+    return Equation(p2 - u3 * a1 + u3 * b1 - u1 * b3 + W_C[1], equations().velocity[1])
+
+
+@claim("2.5.sigma1")
+def position_information_1():
+    """sigma_1^M = gamma_1 + w_1^M: the error of the computed vertical, axis 1."""
+    return Equation(a1 - b1 + W_M[0], computed_vertical()[0] + W_M[0])
+
+
+@claim("2.5.sigma2")
+def position_information_2():
+    """sigma_2^M = gamma_2 + w_2^M: the error of the computed vertical, axis 2."""
+    return Equation(a2 - b2 + W_M[1], computed_vertical()[1] + W_M[1])
+
+
+def computed_vertical() -> tuple[sp.Expr, sp.Expr]:
+    """Turn gamma recovered from the third axis of Mu seen in Mx: e3 = e3 + gamma x e3."""
+    from navsym.models.inertial_kinematics import skew
+
+    tilt = skew(ALPHA - BETA) * sp.Matrix([0, 0, 1])           # (gamma_2, -gamma_1, 0)
+    return -tilt[1], tilt[0]
+
+
+# Assumptions of the section, with numbers
+
+EARTH_RATE = sp.Rational(7292115, 10**11)                      # 1/s
+EARTH_RADIUS = sp.Integer(6378137)                             # m
+GRAVITY = sp.Rational(980665, 100000)                          # m/s^2
+SCHULER_RATE = sp.sqrt(GRAVITY / EARTH_RADIUS)                 # 1/s
+
+
+def degree(expression: sp.Expr) -> sp.Expr:
+    """Power of 1/s of an expression in rates (1/s) and their derivatives (1/s^2), from f(2 omega)/f(omega)."""
+    doubled = {w1: 2 * w1, w2: 2 * w2, **{rate: 4 * rate for rate in OMEGA_X_RATE[:2]}}
+    ratio = sp.cancel((expression**2).subs(doubled, simultaneous=True) / expression**2)
+    return sp.Rational(int(ratio).bit_length() - 1, 2)
+
+
+RATE = sp.sqrt(w1**2 + w2**2)
+
+
+@claim(
+    "2.assumption1.units",
+    expect=REFUTED,
+    slip="scan",
+    reason="a rate (1/s) is compared with a squared rate (1/s^2); the dot of the derivative over the root is lost, as are "
+    "the dots in (2.9) and (3.3)",
+)
+def stationarity_units_printed():
+    """(omega_x1^2 + omega_x2^2)^(1/2) < max(omega_x1^2 + omega_x2^2), as printed: both sides have one unit."""
+    return Property(degree(RATE**2), Finding(degree(RATE), "powers of 1/s on the right and on the left side"))
+
+
+@claim("2.assumption1.units*", corrects="2.assumption1.units")
+def stationarity_units():
+    """|d/dt (omega_x1^2 + omega_x2^2)^(1/2)| < max(omega_x1^2 + omega_x2^2): both sides in 1/s^2."""
+    rate = sum(sp.diff(RATE, w) * dw for w, dw in zip((w1, w2), OMEGA_X_RATE[:2], strict=True))
+    return Property(degree(RATE**2), Finding(degree(rate), "powers of 1/s on the right and on the left side"))
+
+
+def stationarity(speed: sp.Expr, course: sp.Expr, place: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
+    """Both sides, squared and freed of the divisor, of the stationarity condition on a great circle.
+
+    In units of the Earth rate: speed = v/(Omega R); course = cos(latitude) sin(heading), constant on the
+    circle (Clairaut); cos^2(latitude) = course^2 + (1 - course^2) place with 0 <= place <= 1. Then
+    omega^2 = speed^2 + 2 speed course + cos^2(latitude), and its largest value is at the equator.
+    """
+    square = speed**2 + 2 * speed * course + course**2 + (1 - course**2) * place
+    largest = speed**2 + 2 * speed * course + 1
+    return (1 - course**2) ** 2 * place * (1 - place) * speed**2, largest**2 * square
+
+
+@claim(
+    "2.assumption1.orthodrome",
+    expect=REFUTED,
+    slip="paper",
+    reason="too strong on the rotating Earth: near a westward course at a speed close to that of the Earth's surface the "
+    "absolute rate is small and changes faster than its square",
+)
+def great_circles_are_stationary_printed():
+    """On every great circle at constant speed the stationarity condition holds."""
+    point = (sp.Rational(9, 10), sp.Rational(-99, 100), sp.Rational(1, 2))
+    left, right = stationarity(*point)
+    return Property(
+        True,
+        Finding(bool(left < right), "exact values at one flight", scope="speed 0.9 Omega R = 419 m/s, course constant -0.99"),
+    )
+
+
+@claim("2.assumption1.orthodrome*", corrects="2.assumption1.orthodrome", expect=CERTIFIED)
+def great_circles_are_stationary():
+    """On every great circle up to 250 m/s the condition holds: (1 - c^2) s^2 < (s^2 + 2 s c + 1)^2 is sufficient.
+
+    The left side of :func:`stationarity` is at most (1 - c^2)^2 place s^2 and its right side at least
+    (s^2 + 2 s c + 1)^2 (1 - c^2) place.
+    """
+    s, course = sp.symbols("s c", real=True)
+    return Bound((1 - course**2) * s**2, "<", (s**2 + 2 * s * course + 1) ** 2,
+                 {s: (0, sp.Rational(54, 100)), course: (-1, 1)})
+
+
+@claim("2.scale.mu", expect=CERTIFIED)
+def mu_is_small():
+    """mu <= 0.1 for every latitude and heading up to 250 m/s."""
+    v, sine, cosine = sp.symbols("v s c", real=True)
+    square = v**2 / EARTH_RADIUS**2 + 2 * v * sine * EARTH_RATE * cosine / EARTH_RADIUS + EARTH_RATE**2 * cosine**2
+    return Bound(square * EARTH_RADIUS / GRAVITY, "<=", sp.Rational(1, 100), {v: (0, 250), sine: (-1, 1), cosine: (0, 1)})
+
+
+@claim("2.scale.tau_low")
+def correction_time_low():
+    """Thirty minutes are more than one in dimensionless time."""
+    return Bound(sp.Integer(1), "<", 1800 * SCHULER_RATE)
+
+
+@claim("2.scale.tau_high")
+def correction_time_high():
+    """Thirty minutes are less than three in dimensionless time."""
+    return Bound(sp.Integer(3), ">", 1800 * SCHULER_RATE)
+
+
+@claim("2.scale.period", expect=CERTIFIED)
+def correction_is_short():
+    """tau_h <= 3 is at most a twentieth of the period 2 pi/mu of the motion when mu <= 0.1."""
+    mu = sp.Symbol("mu", positive=True)
+    return Bound(sp.Integer(60), "<", 2 * sp.pi / mu, {mu: (sp.Rational(1, 1000), sp.Rational(1, 10))})
+
+
+@claim("2.scale.earth", expect=CERTIFIED)
+def earth_rate_is_of_order_one():
+    """u = Omega/(mu omega_0) is 3/4 within 1/4 at 45 degrees and 250 m/s, mu being the largest over the headings."""
+    largest = EARTH_RATE * sp.sqrt(2) / 2 + sp.Rational(250, EARTH_RADIUS)
+    return Equation(sp.Rational(3, 4), EARTH_RATE / largest, tolerance=sp.Rational(1, 4))
+
+
+@claim("2.scale.mu_u3", expect=CERTIFIED)
+def coupling_is_small():
+    """|mu u_3| = Omega |sin(latitude)|/omega_0 is at most 0.06, far from the value 1 at which (2.8) breaks."""
+    sine = sp.Symbol("s", real=True)
+    return Bound(sine**2 * EARTH_RATE**2 * EARTH_RADIUS / GRAVITY, "<=", sp.Rational(6, 100) ** 2, {sine: (-1, 1)})
+
+
+@claim("2.scale.symbol", expect=REFUTED, slip="scan",
+       reason="the list defines v_i twice; (2.7)-(2.9) use omega_i, which it defines nowhere")
+def omega_symbol_printed():
+    """The list of dimensionless quantities names omega_xi/(mu omega_0) by v_i, as printed: no name twice."""
+    names = ("pi", "sigma^c", "v", "u", "v")
+    return Property(True, Finding(len(set(names)) == len(names), "names of the printed list"))
+
+
+@claim("2.scale.symbol*", corrects="2.scale.symbol")
+def omega_symbol():
+    """With omega_i = omega_xi/(mu omega_0) every symbol of (2.6)-(2.9) is defined once."""
+    names = ("pi", "sigma^c", "omega", "u", "nu")
+    return Property(True, Finding(len(set(names)) == len(names), "names of the corrected list"))

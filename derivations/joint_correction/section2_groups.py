@@ -1,0 +1,262 @@
+"""Section 2, (2.6)-(2.9): the two groups of observable variables, with bookkeeping of mu.
+
+The derived sides are found by machine: the velocity information is split into its Schuler part
+and its constant part at mu = 0, the position information is differentiated, and what has the
+order mu^2 rho is dropped term by term (``navsym.models.inertial``).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+
+import sympy as sp
+
+from navsym.claims import REFUTED, Claim, Equation, Finding, Property, claim
+from navsym.methods.observability import observe
+from navsym.methods.observability_loci import rank_drops
+from navsym.models.inertial import (
+    EARTH,
+    FULL,
+    MU,
+    NU,
+    OMEGA,
+    OMEGA_RATE,
+    ORDERS,
+    PI,
+    W_C0,
+    W_M0,
+    Group,
+    X,
+    Y,
+    full_model,
+    position_group,
+    velocity_group,
+)
+from navsym.models.inertial_kinematics import ALPHA, BETA, EPSILON
+from navsym.models.inertial_orders import lowest_order, truncate
+
+mu = MU
+a1, a2 = ALPHA[:2]
+b1, b2, b3 = BETA
+pi1, pi2 = PI
+v1, v2, v3 = NU
+e1, e2 = EPSILON
+w1, w2 = OMEGA[:2]
+dw1, dw2 = OMEGA_RATE[:2]
+u1, u2, u3 = EARTH
+x1, x2, x3, x4, x5, x6 = X
+y1, y2, y3, y4, y5, y6, y7, y8 = Y
+
+
+@cache
+def velocity() -> Group:
+    return velocity_group()
+
+
+@cache
+def position() -> Group:
+    return position_group()
+
+
+def row(number: str, title: str, printed: sp.Expr, derived: Callable[[], sp.Expr], **more: object) -> Claim:
+    """A claim for one printed row."""
+    def derive() -> Equation:
+        return Equation(printed, derived())
+
+    derive.__doc__ = title
+    return claim(number, **more)(derive)
+
+
+# (2.6) and (2.7): what the variables are
+
+VELOCITY_MEANING = (
+    a1 + e2,
+    pi1 + v1,
+    mu * (u2 * b3 - u3 * b2) + W_C0[0] - v1 + mu * u3 * e1,
+    a2 - e1,
+    pi2 + v2,
+    mu * (u3 * b1 - u1 * b3) + W_C0[1] - v2 + mu * u3 * e2,
+)
+POSITION_MEANING = (
+    a1 - b1 + W_M0[0],
+    pi1 + mu * w2 * b3,
+    a1 + e2,
+    pi1 + v1,
+    a2 - b2 + W_M0[1],
+    pi2 - mu * w1 * b3,
+    a2 - e1,
+    pi2 + v2,
+)
+
+meanings_x = tuple(
+    row(f"2.6.x{k + 1}", f"x_{k + 1} as a combination of errors, from the spectral parts of sigma^c.", printed,
+        lambda k=k: velocity().meaning[k])
+    for k, printed in enumerate(VELOCITY_MEANING)
+)
+meanings_y = tuple(
+    row(f"2.7.y{k + 1}", f"y_{k + 1} as a combination of errors, from sigma^M and its derivatives.", printed,
+        lambda k=k: position().meaning[k])
+    for k, printed in enumerate(POSITION_MEANING)
+)
+
+# (2.8): the velocity group
+
+earth_drift = u1 * b2 - u2 * b1
+VELOCITY_ROWS = (
+    x2,
+    -x1 - mu * w2 * v3,
+    -(mu**2) * w2 * earth_drift + mu * (u2 * v3 - u3 * v2),
+    x5,
+    -x4 + mu * w1 * v3,
+)
+
+rows_x = tuple(
+    row(f"2.8.x{k + 1}", f"Derivative of x_{k + 1} up to terms of order mu^2 rho.", printed,
+        lambda k=k: velocity().rates[k])
+    for k, printed in enumerate(VELOCITY_ROWS)
+)
+row_x6_printed = row(
+    "2.8.x6", "Derivative of x_6, as printed.", mu**2 * w1 * earth_drift + mu * (u1 * v3 - u3 * v1),
+    lambda: velocity().rates[5], expect=REFUTED, slip="paper",
+    reason="sign of the last bracket: x_6 contains -u_1 beta_3 and u_3 beta_1, whose drifts give -u_1 nu_3 + u_3 nu_1; the row "
+    "of x_3 turned by 90 degrees gives the same",
+)
+row_x6 = row(
+    "2.8.x6*", "Derivative of x_6 up to terms of order mu^2 rho.", mu**2 * w1 * earth_drift - mu * (u1 * v3 - u3 * v1),
+    lambda: velocity().rates[5], corrects="2.8.x6",
+)
+output_c1 = row("2.8.sigma1", "sigma_1^c in the variables of the group, without noise.", x2 + x3 + mu * u3 * x4,
+                lambda: velocity().outputs[0])
+output_c2 = row("2.8.sigma2", "sigma_2^c in the variables of the group, without noise.", x5 + x6 - mu * u3 * x1,
+                lambda: velocity().outputs[1])
+
+# (2.9): the position group
+
+POSITION_ROWS = {
+    1: y2,
+    3: y4,
+    4: -y3 - mu * w2 * v3,
+    5: y6,
+    7: y8,
+    8: -y7 + mu * w1 * v3,
+}
+rows_y = tuple(
+    row(f"2.9.y{k}", f"Derivative of y_{k} up to terms of order mu^2 rho.", printed, lambda k=k: position().rates[k - 1])
+    for k, printed in POSITION_ROWS.items()
+)
+DOT = ("the dot over omega is lost: beta_3 enters through the derivative of omega only (mu omega nu_3 cancels); as printed the term "
+       "has the order rho, against the paper's own remark that the inhomogeneous terms have the order mu")
+row_y2_printed = row(
+    "2.9.y2", "Derivative of y_2, as printed.", -y3 + mu**2 * (w1 * y5 - w2 * y1) * w2 + mu * w2 * b3,
+    lambda: position().rates[1], expect=REFUTED, slip="scan", reason=DOT,
+)
+row_y2 = row(
+    "2.9.y2*", "Derivative of y_2 up to terms of order mu^2 rho.", -y3 + mu**2 * (w1 * y5 - w2 * y1) * w2 + mu * dw2 * b3,
+    lambda: position().rates[1], corrects="2.9.y2",
+)
+row_y6_printed = row(
+    "2.9.y6", "Derivative of y_6, as printed.", -y7 + mu**2 * (w2 * y1 - w1 * y5) * w1 - mu * w1 * b3,
+    lambda: position().rates[5], expect=REFUTED, slip="scan", reason=DOT,
+)
+row_y6 = row(
+    "2.9.y6*", "Derivative of y_6 up to terms of order mu^2 rho.", -y7 + mu**2 * (w2 * y1 - w1 * y5) * w1 - mu * dw1 * b3,
+    lambda: position().rates[5], corrects="2.9.y6",
+)
+output_m1 = row("2.9.sigma1", "sigma_1^M in the variables of the group, without noise.", y1, lambda: position().outputs[0])
+output_m2 = row("2.9.sigma2", "sigma_2^M in the variables of the group, without noise.", y5, lambda: position().outputs[1])
+
+
+# Statements in words about (2.8) and (2.9)
+
+
+@claim("2.8.neglected")
+def neglected_terms():
+    """What (2.8) and (2.9) leave out has the order mu^2 rho exactly: no lower, and nothing of higher order either."""
+    orders = {term.order for group in (velocity(), position()) for row_ in group.dropped for term in row_}
+    return Property(
+        (2,),
+        Finding(tuple(sorted(orders)), "bookkeeping of every monomial",
+                scope="alpha, pi, epsilon, nu, w of order rho; beta, gamma of order rho/mu; d omega/d tau of order mu",
+                evidence=f"{sum(len(r) for g in (velocity(), position()) for r in g.dropped)} terms, listed by the model"),
+    )
+
+
+@claim("2.8.inhomogeneous")
+def inhomogeneous_terms():
+    """(2.8) and (2.9) are inhomogeneous, and all terms that make them so have the order mu (times rho)."""
+    orders = {lowest_order(f, ORDERS) for group in (velocity(), position()) for f in group.linear()[2] if f != 0}
+    highest = {truncate(f, ORDERS, 2).dropped for group in (velocity(), position()) for f in group.linear()[2]}
+    found = tuple(sorted(orders)) if highest == {()} else None
+    return Property((1,), Finding(found, "bookkeeping of every monomial", scope="orders as declared in 2.8.neglected"))
+
+
+@claim("2.9.inhomogeneous_printed", expect=REFUTED, slip="scan", reason=DOT)
+def inhomogeneous_term_as_printed():
+    """The printed inhomogeneous term mu omega_2 beta_3 of y_2 has the order mu (times rho)."""
+    return Property(1, Finding(lowest_order(mu * w2 * b3, ORDERS), "bookkeeping of every monomial"))
+
+
+@claim("2.9.inhomogeneous_printed*", corrects="2.9.inhomogeneous_printed")
+def inhomogeneous_term():
+    """With the derivative of omega the inhomogeneous term of y_2 has the order mu (times rho)."""
+    return Property(1, Finding(lowest_order(position().linear()[2][1], ORDERS), "bookkeeping of every monomial"))
+
+
+def rank_and_drops(group: Group) -> tuple[int, tuple[str, ...]]:
+    found = observe(group.model(("first", "second")))
+    drops = rank_drops(found)
+    conditions = tuple(d.condition for d in drops if d.subspace == "joint" and d.complete)
+    return found.joint_dimension, conditions
+
+
+@claim("2.8.observable")
+def velocity_group_is_observable():
+    """x_1 ... x_6 are observable by velocity information, except where mu u_3 = 1 or -1."""
+    return Property(
+        (6, ("mu*u_3 + 1 = 0", "mu*u_3 - 1 = 0")),
+        Finding(rank_and_drops(velocity()), "fraction-free rank, all split determinants", scope="homogeneous part of (2.8)"),
+    )
+
+
+@claim("2.9.observable")
+def position_group_is_observable():
+    """y_1 ... y_8 are observable by position information, for all mu, omega_1, omega_2."""
+    return Property(
+        (8, ()),
+        Finding(rank_and_drops(position()), "fraction-free rank, a split determinant that is a number",
+                scope="homogeneous part of (2.9)"),
+    )
+
+
+@claim("2.6.span")
+def velocity_observes_six_combinations():
+    """At mu = 0, with mu beta kept, velocity information observes exactly the six combinations x_1 ... x_6 (u_3 = 0 or not)."""
+    return Property(6, Finding(leading_rank((0, 1), mu * BETA), "exact rank of the leading-order model",
+                               scope="mu = 0 in the motion, mu beta of order rho; u_1, u_2, u_3 arbitrary"))
+
+
+@claim("2.7.span")
+def position_observes_eight_combinations():
+    """At leading order, with gamma' of order rho kept, position information observes exactly eight combinations."""
+    return Property(8, Finding(leading_rank((2, 3), mu * BETA), "exact rank of the leading-order model",
+                               scope="mu = 0 in the motion, mu beta of order rho; omega_1, omega_2 arbitrary"))
+
+
+def leading_rank(measurements: tuple[int, ...], slow: sp.Matrix) -> int:
+    """Rank of the chains of the 16-state model when mu -> 0 with B = mu beta_3 kept of order one.
+
+    The slow angles are rescaled, beta = B/mu for the third; beta_1, beta_2 enter the position at order
+    one as they are.
+    """
+    from navsym.models.linear import LinearModel
+
+    model = full_model()
+    place = {symbol: k for k, symbol in enumerate(FULL)}
+    scale = sp.eye(16)
+    velocity_only = measurements == (0, 1)
+    for symbol in (BETA if velocity_only else BETA[2:]):
+        scale[place[symbol], place[symbol]] = mu
+    F = (scale * model.F * scale.inv()).applyfunc(sp.expand).subs(mu, 0)
+    H = (model.H * scale.inv()).applyfunc(sp.expand).subs(mu, 0)
+    return observe(LinearModel(F, None, sp.Matrix([H[k, :] for k in measurements]))).joint_dimension

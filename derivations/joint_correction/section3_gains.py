@@ -1,0 +1,328 @@
+"""Section 3, gains in closed form, the coupled system, its exact range of stability, its true decay.
+
+The paper chooses the gains "neglecting the links between the subsystems". Here the links are put
+back: kappa = mu u_3 couples the two velocity channels, c = mu^2 omega_1 omega_2 the two position
+channels.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import sympy as sp
+
+from derivations.joint_correction.section1_systems import coefficients_of_polynomial, p, polynomial_of
+from derivations.joint_correction.section2_groups import mu, position, velocity, w1, w2
+from derivations.joint_correction.section3_algorithm import joint_error_matrix
+from navsym.claims import CERTIFIED, Equation, Finding, Property, claim
+from navsym.models.inertial import EARTH, MU
+
+lam, lam_h = sp.symbols("lambda_c lambda_h", positive=True)
+kappa, omega = sp.symbols("kappa omega", real=True)
+
+#: K_1, K_2, K_3 (and K_4, K_5, K_6) for (p + lambda_c)^3.
+VELOCITY_GAINS = (1 - 3 * lam**2, 3 * lam - lam**3, lam**3)
+
+
+def velocity_block(gains: tuple[sp.Expr, ...], channel: int = 0) -> sp.Matrix:
+    """Errors of one channel of (3.2) with the link mu u_3 neglected."""
+    F, H, _ = velocity().linear()
+    places = range(3 * channel, 3 * channel + 3)
+    return F.extract(places, places) - sp.Matrix(gains) * H.extract([channel], places).subs(EARTH[2], 0)
+
+
+def position_block(gains: tuple[sp.Expr, sp.Expr], channel: int = 0) -> sp.Matrix:
+    """Errors of one channel of (3.3) with the link to the other channel neglected."""
+    F, H, _ = position().linear()
+    places = [4 * channel, 4 * channel + 1]
+    return F.extract(places, places) - sp.Matrix(gains) * H.extract([channel], places)
+
+
+@claim("3.2.gains")
+def velocity_gains():
+    """K_1 = 1 - 3 lambda_c^2, K_2 = 3 lambda_c - lambda_c^3, K_3 = lambda_c^3 give (p + lambda_c)^3 in both channels."""
+    derived = [polynomial_of(velocity_block(VELOCITY_GAINS, channel)) for channel in (0, 1)]
+    return Equation([(p + lam) ** 3] * 2, derived)
+
+
+@claim("3.2.gains_unique")
+def velocity_gains_are_unique():
+    """These gains are the only ones: the coefficients are affine in K with determinant 1 or -1."""
+    K = sp.symbols("K1:4", real=True)
+    values = sp.Matrix(coefficients_of_polynomial(velocity_block(K))[1:])
+    return Equation([sp.Integer(1), *[sp.Integer(0)] * 3], [
+        values.jacobian(K).det() ** 2, *(sp.expand(value) for value in values.jacobian(K) * sp.Matrix(VELOCITY_GAINS)
+                                         + values.subs(dict.fromkeys(K, 0)) - sp.Matrix([3 * lam, 3 * lam**2, lam**3])),
+    ])
+
+
+@claim("3.3.gains")
+def position_gains():
+    """K_1^h = 2 lambda_h and K_2^h = lambda_h^2 - mu^2 omega_2^2 (K_6^h: omega_1) give (p + lambda_h)^2 exactly."""
+    derived = [
+        polynomial_of(position_block((2 * lam_h, lam_h**2 - mu**2 * w**2), channel))
+        for channel, w in ((0, w2), (1, w1))
+    ]
+    return Equation([(p + lam_h) ** 2] * 2, derived)
+
+
+@claim("3.3.gains_unique")
+def position_gains_are_unique():
+    """The matrix of the affine map from K^h to the coefficients has determinant 1: no other gains do it."""
+    K = sp.symbols("K1:3", real=True)
+    values = sp.Matrix(coefficients_of_polynomial(position_block(K))[1:])
+    return Equation(sp.Integer(1), values.jacobian(K).det())
+
+
+# The coupled velocity stage
+
+
+def coupled_velocity_block() -> sp.Matrix:
+    """Errors of (3.2), all six, with kappa = mu u_3."""
+    gains = {"Kx": (*VELOCITY_GAINS, *VELOCITY_GAINS)}
+    A = joint_error_matrix(gains["Kx"])[:6, :6]
+    return A.subs(EARTH[2], kappa / MU).applyfunc(sp.expand)
+
+
+def link_polynomial(variable: sp.Expr) -> sp.Expr:
+    """p ((1 - 3 lambda^2) p + 3 lambda - lambda^3): the transfer of the innovation to x_1 times its denominator."""
+    return variable * ((1 - 3 * lam**2) * variable + 3 * lam - lam**3)
+
+
+@claim("3.coupled.characteristic")
+def coupled_characteristic_polynomial():
+    """With the link kappa = mu u_3 the six errors have (p + lambda_c)^6 + kappa^2 p^2 ((1 - 3 lambda_c^2) p + 3 lambda_c -
+    lambda_c^3)^2."""
+    return Equation((p + lam) ** 6 + kappa**2 * link_polynomial(p) ** 2, polynomial_of(coupled_velocity_block()))
+
+
+@claim("3.coupled.without_link")
+def coupled_polynomial_without_link():
+    """Without the link, kappa = 0, the six errors have (p + lambda_c)^6, as the choice of gains intends."""
+    return Equation((p + lam) ** 6, polynomial_of(coupled_velocity_block().subs(kappa, 0)))
+
+
+def crossing() -> tuple[sp.Expr, sp.Expr]:
+    """Real and imaginary part of (lambda + i omega)^3 + i kappa link(i omega) = 0.
+
+    The polynomial of the six errors is the product of this factor and of the one with -kappa.
+    """
+    value = sp.expand((lam + sp.I * omega) ** 3 + sp.I * kappa * link_polynomial(sp.I * omega))
+    real = sp.expand((value + sp.conjugate(value)) / 2)
+    imaginary = sp.expand((value - sp.conjugate(value)) / (2 * sp.I))
+    return real, imaginary
+
+
+@claim("3.coupled.factors")
+def coupled_polynomial_factors():
+    """The polynomial of the six errors is the sum of squares of (p + lambda_c)^3 and kappa times the link polynomial."""
+    first, second = (p + lam) ** 3, kappa * link_polynomial(p)
+    product = sp.expand((first + sp.I * second) * (first - sp.I * second))
+    return Equation(product, polynomial_of(coupled_velocity_block()))
+
+
+@claim("3.coupled.crossing")
+def poles_cross_the_axis_at_one():
+    """A pole i omega on the imaginary axis satisfies 8 lambda_c^3 omega (omega^2 - 1) = 0, and omega = 0 is none."""
+    real, imaginary = crossing()
+    combination = real * omega * (1 - 3 * lam**2) - imaginary * (3 * lam - lam**3)
+    return Equation([8 * lam**3 * omega * (omega**2 - 1), lam**3],
+                    [sp.expand(combination), real.subs(omega, 0)])
+
+
+@claim("3.coupled.crossing_value")
+def poles_cross_at_kappa_one():
+    """At omega = 1 (-1) both parts carry the factor 1 - kappa (1 + kappa), and nothing else makes both vanish."""
+    real, imaginary = crossing()
+    printed, derived = [], []
+    for side in (1, -1):
+        factor = 1 + side * kappa
+        printed += [-(3 * lam - lam**3) * factor, -side * (1 - 3 * lam**2) * factor]
+        derived += [real.subs(omega, side), imaginary.subs(omega, side)]
+    return Equation(printed, derived)
+
+
+@claim("3.coupled.stable")
+def coupled_system_is_stable_inside():
+    """The errors of (3.2) with these gains decay for every lambda_c > 0 exactly when |mu u_3| < 1.
+
+    No pole meets the imaginary axis for kappa other than 1 and -1 (3.coupled.crossing), so the number of poles on
+    the right is constant on {lambda > 0, |kappa| < 1} and on {kappa > 1}; it is counted at one point of each.
+    """
+    counts = tuple(poles_on_the_right(sp.Integer(1), value) for value in (sp.Integer(0), sp.Rational(1, 2), sp.Integer(2)))
+    no_other = parts_never_vanish_together()
+    found = counts[0] == counts[1] == 0 and counts[2] > 0 and no_other
+    return Property(
+        True,
+        Finding(found, "no crossing of the axis, Routh's table at one point of every region", scope="all lambda_c > 0, all real kappa",
+                evidence=f"poles on the right at lambda = 1, kappa = 0, 1/2, 2: {counts}"),
+    )
+
+
+def parts_never_vanish_together() -> bool:
+    """3 lambda - lambda^3 and 1 - 3 lambda^2 have no common zero: their resultant is not zero."""
+    return sp.resultant(3 * lam - lam**3, 1 - 3 * lam**2, lam) != 0
+
+
+def poles_on_the_right(lambda_value: sp.Expr, kappa_value: sp.Expr) -> int:
+    """Sign changes in the first column of Routh's table, in rational numbers."""
+    polynomial = (p + lambda_value) ** 6 + kappa_value**2 * link_polynomial(p).subs(lam, lambda_value) ** 2
+    values = [Fraction(int(c.p), int(c.q)) for c in sp.Poly(sp.expand(polynomial), p).all_coeffs()]
+    first, second = values[0::2], values[1::2]
+    column = []
+    while first:
+        column.append(first[0])
+        if not second:
+            break
+        if second[0] == 0:
+            raise ArithmeticError("Routh's table is singular here; choose another point")
+        padded = [*second, *[Fraction(0)] * (len(first) - len(second))]
+        following = [a - first[0] / second[0] * b for a, b in zip(first[1:], padded[1:], strict=True)]
+        first, second = second, following
+    return sum(1 for a, b in zip(column, column[1:], strict=False) if a * b < 0)
+
+
+@claim("3.coupled.decay", expect=CERTIFIED)
+def true_decay_rate():
+    """lambda_c = 1, mu u_3 = 1/20 (latitude near 58 degrees): the true decay rate is 0.577 instead of 1."""
+    return Equation(sp.Rational(577, 1000), decay_rate(sp.Integer(1), sp.Rational(1, 20)), tolerance=sp.Rational(1, 2000))
+
+
+def decay_rate(lambda_value: sp.Rational, kappa_value: sp.Rational) -> sp.Rational:
+    """Decay rate, minus the largest real part of the poles: 20 digits of a ball at 200 bits."""
+    from flint import ctx, fmpq, fmpq_poly
+
+    polynomial = sp.Poly(sp.expand((p + lambda_value) ** 6 + kappa_value**2 * link_polynomial(p).subs(lam, lambda_value) ** 2), p)
+    coefficients = [fmpq(int(c.p), int(c.q)) for c in polynomial.all_coeffs()[::-1]]
+    before, ctx.prec = ctx.prec, 200
+    try:
+        rates = [-root.real for root, _ in fmpq_poly(coefficients).complex_roots()]
+        least = min(rates, key=lambda ball: float(ball.mid()))
+        digits = Fraction(least.mid().str(20, radius=False))
+    finally:
+        ctx.prec = before
+    return sp.Rational(digits.numerator, digits.denominator)
+
+
+@claim("3.coupled.small_link")
+def decay_for_a_small_link():
+    """To leading order the three poles leave -lambda_c along the cube roots: (p + lambda_c)^3 = 2 i kappa lambda_c^2 (1 + lambda_c^2)."""
+    return Equation(-2 * lam**2 * (1 + lam**2), sp.expand(link_polynomial(p).subs(p, -lam)))
+
+
+# The coupled position stage
+
+
+def coupled_position_block(second: tuple[sp.Expr, sp.Expr]) -> sp.Matrix:
+    gains = {1: 2 * lam_h, 2: second[0], 5: 2 * lam_h, 6: second[1]}
+    return joint_error_matrix(Ky=gains)[6:, 6:]
+
+
+@claim("3.coupled.position")
+def coupled_position_polynomial():
+    """With gains that cancel mu^2 omega^2 the link leaves (p + lambda_h)^4 - mu^4 omega_1^2 omega_2^2: stable only for
+    lambda_h > mu |omega_1 omega_2|^(1/2), decay rate lambda_h - mu |omega_1 omega_2|^(1/2)."""
+    A = coupled_position_block((lam_h**2 - mu**2 * w2**2, lam_h**2 - mu**2 * w1**2))
+    return Equation((p + lam_h) ** 4 - mu**4 * w1**2 * w2**2, polynomial_of(A))
+
+
+@claim("3.coupled.position_plain")
+def plain_position_gains_are_better():
+    """With K_2^h = K_6^h = lambda_h^2 the coupled polynomial is (p + lambda_h)^2 ((p + lambda_h)^2 + mu^2 (omega_1^2 +
+    omega_2^2)): always stable, decay rate exactly lambda_h."""
+    A = coupled_position_block((lam_h**2, lam_h**2))
+    return Equation((p + lam_h) ** 2 * ((p + lam_h) ** 2 + mu**2 * (w1**2 + w2**2)), polynomial_of(A))
+
+
+@claim("3.coupled.whole")
+def whole_polynomial():
+    """The ten errors have the product of the polynomials of both stages."""
+    from sympy import expand
+
+    A = joint_error_matrix((*VELOCITY_GAINS, *VELOCITY_GAINS), {1: 2 * lam_h, 2: lam_h**2, 5: 2 * lam_h, 6: lam_h**2})
+    A = A.subs(EARTH[2], kappa / MU).applyfunc(expand)
+    first = (p + lam) ** 6 + kappa**2 * link_polynomial(p) ** 2
+    second = (p + lam_h) ** 2 * ((p + lam_h) ** 2 + mu**2 * (w1**2 + w2**2))
+    return Equation(first * second, polynomial_of(A))
+
+
+# What the inhomogeneous terms do
+
+
+@claim("3.bias.velocity")
+def steady_error_of_the_velocity_stage():
+    """A constant term d_2 in x_2' and d_3 in x_3' leave the steady errors d_2 + d_3 - 3 d_3/lambda^2, (1 - 3 lambda^2)
+    d_3/lambda^3, 3 d_3/lambda (one channel)."""
+    d2, d3 = sp.symbols("d_2 d_3", real=True)
+    steady = sp.Matrix([d2 + d3 - 3 * d3 / lam**2, (1 - 3 * lam**2) * d3 / lam**3, 3 * d3 / lam])
+    return Equation(list(velocity_block(VELOCITY_GAINS) * steady), [sp.Integer(0), -d2, -d3])
+
+
+@claim("3.bias.position")
+def steady_error_of_the_position_stage():
+    """Constant errors of x_1° and of the terms left out, d = Delta x_1 + d_2, leave Delta y_1 = -d/lambda_h^2 and
+    Delta y_2 = -2 d/lambda_h."""
+    d = sp.Symbol("d", real=True)
+    steady = sp.Matrix([-d / lam_h**2, -2 * d / lam_h])
+    A = position_block((2 * lam_h, lam_h**2 - mu**2 * w2**2))
+    return Equation(list(A * steady), [sp.Integer(0), d])
+
+
+# Pre-estimation and the situations of the last paragraph
+
+
+@claim("3.preestimation.exact")
+def preestimation_frees_the_position_stage():
+    """With exact x_1° the errors of y_1, y_2 obey (p + lambda_h)^2 alone: two variables to estimate instead of four."""
+    t = sp.Symbol("t", positive=True)
+    start = sp.Matrix(sp.symbols("e_1 e_2", real=True))
+    A = position_block((2 * lam_h, lam_h**2 - mu**2 * w2**2))
+    solution = sp.exp(-lam_h * t) * (sp.eye(2) + t * (A + lam_h * sp.eye(2))) * start
+    return Equation(solution.diff(t), A * solution)
+
+
+@claim("3.preestimation.transient")
+def transient_driven_by_the_velocity_stage():
+    """Without it an error of the velocity stage drives y: Delta y_1 has the transfer -1/(p + lambda_h)^2 from Delta x_1."""
+    A = position_block((2 * lam_h, lam_h**2 - mu**2 * w2**2))
+    transfer = (p * sp.eye(2) - A).adjugate() * sp.Matrix([0, -1])
+    return Equation([sp.Integer(-1), (p + lam_h) ** 2], [transfer[0], (p * sp.eye(2) - A).det()])
+
+
+def position_only_block(gains: tuple[sp.Expr, ...]) -> sp.Matrix:
+    """Errors of y_1, y_2, x_1, x_2 with all four corrected by sigma_1^M; mu^2 neglected."""
+    F, H, _ = position().linear()
+    return F.extract(range(4), range(4)).subs(MU, 0) - sp.Matrix(gains) * H.extract([0], range(4))
+
+
+@claim("3.situations.position_only")
+def position_only():
+    """Only position: gains (4 l, 6 l^2 - 1, 4 l - 4 l^3, 6 l^2 - l^4 - 1), l = lambda_h, give (p + l)^4 on y_1, y_2, x_1, x_2."""
+    gains = (4 * lam_h, 6 * lam_h**2 - 1, 4 * lam_h - 4 * lam_h**3, 6 * lam_h**2 - lam_h**4 - 1)
+    return Equation((p + lam_h) ** 4, polynomial_of(position_only_block(gains)))
+
+
+@claim("3.situations.zeroing")
+def position_only_by_zeroing_oscillates():
+    """Only position with K^c = 0: the polynomial keeps the factor p^2 (p^2 + 1)^2 of the uncorrected Schuler errors."""
+    A = joint_error_matrix(tuple([sp.Integer(0)] * 6), {1: 2 * lam_h, 2: lam_h**2, 5: 2 * lam_h, 6: lam_h**2})
+    slow = (p + lam_h) ** 2 * ((p + lam_h) ** 2 + mu**2 * (w1**2 + w2**2))
+    return Equation(p**2 * (p**2 + 1) ** 2 * slow, polynomial_of(A))
+
+
+@claim("3.situations.neither")
+def neither_information():
+    """Neither information: all gains zero, the estimates are carried along; errors of y grow at most linearly at mu = 0."""
+    A = joint_error_matrix(tuple([sp.Integer(0)] * 6), dict.fromkeys((1, 2, 5, 6), sp.Integer(0)))
+    polynomial = p**4 * (p**2 + 1) ** 2 * (p**2 + mu**2 * (w1**2 + w2**2))
+    return Equation(polynomial, polynomial_of(A))
+
+
+@claim("3.situations.velocity_after_joint")
+def velocity_after_a_joint_session():
+    """Only velocity after a session with position: K^h = 0; x keeps its poles, y is carried along undamped."""
+    A = joint_error_matrix((*VELOCITY_GAINS, *VELOCITY_GAINS), dict.fromkeys((1, 2, 5, 6), sp.Integer(0)))
+    A = A.subs(EARTH[2], kappa / MU).applyfunc(sp.expand)
+    first = (p + lam) ** 6 + kappa**2 * link_polynomial(p) ** 2
+    return Equation(first * p**2 * (p**2 + mu**2 * (w1**2 + w2**2)), polynomial_of(A))
+
