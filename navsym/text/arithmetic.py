@@ -17,6 +17,7 @@ from navsym.text.tokens import EXPONENT
 
 BITS = 13_000  # size of any number, below 4000 digits
 GROWTH = 9_000  # argument of exp, sinh and cosh: exp(9000) is just below 2**BITS
+FACTORS = 128  # of one product: the algebra compares all of them
 ROOT_BITS = 700  # size of a number under a root: sympy looks for square factors in it
 
 BUILDERS: dict[str, Callable[..., sp.Expr]] = {
@@ -53,6 +54,10 @@ def add(terms: list[sp.Expr]) -> sp.Expr:
 
 
 def multiply(factors: list[sp.Expr]) -> sp.Expr:
+    if len(factors) > FACTORS:
+        raise too_large(f"at most {FACTORS} factors in a product", f"{len(factors)}")
+    if len(factors) > 2 and sum(number_bits(factor) for factor in factors) > 4 * BITS:
+        raise too_large(f"numbers of at most {BITS} bits", "a product of many large ones")
     return real(sp.Mul(*factors)) if len(factors) > 1 else factors[0]
 
 

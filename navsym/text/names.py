@@ -57,7 +57,7 @@ def shown(value: object, limit: int = 40) -> str:
     """Foreign text as it may stand in a message: quoted, escaped, ASCII only, and cut."""
     text = value if isinstance(value, str) else f"{type(value).__name__} {short_repr(value, limit)}"
     cut = text[:limit]
-    return ascii(cut) + (f" … ({len(text)} characters)" if len(text) > limit else "")
+    return ascii(cut) + (f" ... ({len(text)} characters)" if len(text) > limit else "")
 
 
 def short_repr(value: object, limit: int) -> str:

@@ -105,9 +105,10 @@ def times(e: sp.Mul) -> tuple[str, int]:
     if abs(coefficient.p) != 1 or not above:
         above.insert(0, rational(sp.Integer(abs(coefficient.p))))
     top = "*".join(tight(part, PRODUCT) for part in above)
-    bottom = "*".join(tight(part, POWER) for part in below)
-    if len(below) > 1:
-        bottom = f"({bottom})"
+    parts = [tight(part, POWER) for part in below]
+    bottom = parts[0] if len(parts) == 1 else f"({'*'.join(parts)})"
+    if any(level == SUM for _, level in below):
+        bottom = "/".join(parts)  # reading 2*(x + y) would multiply it out
     text = f"{top}/{bottom}" if below else top
     return (f"-{text}", SUM) if coefficient < 0 else (text, PRODUCT)
 
