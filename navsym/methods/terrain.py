@@ -72,9 +72,13 @@ class Search:
     criteria: Array | None = None
 
 
-def prepare(terrain: TerrainMap, track: Track, grid: Hypotheses) -> Prepared:
-    """Count everything in cells. Raises OutsideMapError or NoDataError for the inertial track itself."""
-    demand_heights(terrain, track.x, track.y, terrain.sample(track.x, track.y)[1])
+def prepare(terrain: TerrainMap, track: Track, grid: Hypotheses, *, on_map: bool = True) -> Prepared:
+    """Count everything in cells.
+
+    on_map : raise OutsideMapError or NoDataError when the inertial track itself has no heights
+    """
+    if on_map:
+        demand_heights(terrain, track.x, track.y, terrain.sample(track.x, track.y)[1])
     bx, by = terrain.cells(track.x, track.y)
     wx = grid.velocity_step[0] * track.elapsed / terrain.dx
     wy = grid.velocity_step[1] * track.elapsed / terrain.dy

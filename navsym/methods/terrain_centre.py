@@ -109,7 +109,8 @@ def slopes(terrain: TerrainMap, x: Array, y: Array) -> tuple[Array, Array]:
     r0, c0 = max(int(w.min()) - 2, 0), max(int(u.min()) - 2, 0)
     patch = terrain.heights[r0 : int(w.max()) + 5, c0 : int(u.max()) + 5]
     order: Any = 2 if min(patch.shape) >= 3 else 1
-    along_y, along_x = map(np.asarray, np.gradient(np.asarray(patch), terrain.dy, terrain.dx, edge_order=order))
+    gradient = np.gradient(np.asarray(patch), terrain.dy, terrain.dx, edge_order=order)
+    along_y, along_x = map(np.asarray, gradient)
     return bilinear(along_x, u - c0, w - r0)[0], bilinear(along_y, u - c0, w - r0)[0]
 
 

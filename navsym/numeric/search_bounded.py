@@ -354,5 +354,5 @@ def search_bounded(
         survivors.append(index.size)
     best, criterion, runner_up, second = settle(*arguments, pair, counts, index, second)
     samples += index.size * n
-    completed = index.size + tried
+    completed = min(index.size + tried, total)
     return BoundedResult(best, criterion, runner_up, second, completed, samples, tuple(survivors))

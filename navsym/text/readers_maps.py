@@ -70,7 +70,7 @@ def read_map(path: str | os.PathLike[str]) -> Raster:
     reader = readers.get(Path(path).suffix.lower())
     if reader is None:
         raise DomainError(
-            f"expected a map file ending in {', '.join(readers)}; got {called(Path(path).name)[-40:]}; convert it",
+            f"expected {', '.join(readers)} at the end; got {called(Path(path).name)[-40:]}; convert it",
             where=called(path),
         )
     return reader(Path(path))
@@ -129,7 +129,8 @@ def damaged(path: Path, what: str, reason: object) -> ExpressionSyntaxError:
 def member_names(archive: zipfile.ZipFile, path: Path) -> frozenset[str]:
     names = [name.removesuffix(".npy") for name in archive.namelist()]
     if len(set(names)) < len(names):
-        raise DuplicateError("expected every array once; got one name twice; write it again", where=called(path))
+        message = "expected every array once; got one name twice; write it again"
+        raise DuplicateError(message, where=called(path))
     return frozenset(names)
 
 
@@ -137,7 +138,8 @@ def read_member(archive: zipfile.ZipFile, names: frozenset[str], name: str, path
     """One array of an npz archive, its header checked before anything is allocated."""
     where = f"{called(path)}: {name}"
     if name not in names:
-        raise EmptyError(f"expected an array '{name}'; got {', '.join(sorted(names))[:120]}; add it", where=where)
+        message = f"expected an array '{name}'; got {', '.join(sorted(names))[:120]}; add it"
+        raise EmptyError(message, where=where)
     try:
         with archive.open(f"{name}.npy") as file:
             shape, fortran, dtype = npy_header(file)
@@ -175,12 +177,12 @@ def checked_size(header: Header, where: str) -> int:
 
 
 def scalar(get: Callable[[str], NDArray[Any]], name: str, path: Path, *, finite: bool = True) -> float:
-    array = get(name)
+    array, where = get(name), f"{called(path)}: {name}"
     if array.size != 1:
-        raise ShapeError(f"expected one number; got shape {array.shape}; give one", where=f"{called(path)}: {name}")
+        raise ShapeError(f"expected one number; got shape {array.shape}; give one", where=where)
     value = float(array.reshape(-1)[0])
     if finite and not math.isfinite(value):
-        raise NotFiniteError(f"expected a finite number; got {value}; mend it", where=f"{called(path)}: {name}")
+        raise NotFiniteError(f"expected a finite number; got {value}; mend it", where=where)
     return value
 
 
@@ -195,7 +197,8 @@ def read_hgt(path: Path) -> Raster:
     name = re.match(r"([NS])(\d{2})([EW])(\d{3})", path.name.upper())
     if name is None:
         raise DomainError(
-            f"expected a name such as N44W072.hgt, it gives the corner; got {called(path.name)[-40:]}; rename it",
+            f"expected a name such as N44W072.hgt, which gives the corner; got {called(path.name)[-40:]}; "
+            "rename it",
             where=called(path),
         )
     data = read_bytes(path, 2 * 3601 * 3601)
@@ -224,7 +227,9 @@ def read_geotiff(path: Path) -> Raster:
             "expected the Python package rasterio to read GeoTIFF; got none; install the extra navsym[maps]",
             where=called(path),
         ) from None
-    read_bytes(path, 4 * MOST_HEIGHTS)
+    if not path.is_file():
+        message = "expected a readable map file; got nothing there; check the path"
+        raise NavsymError(message, where=called(path), kind="missing-file")
     try:
         with rasterio.open(path) as source:
             shape, transform = (source.height, source.width), source.transform
@@ -241,7 +246,8 @@ def upright(heights: NDArray[Any], transform: Any, nodata: Any, geographic: bool
     """A north-up raster with its rows turned round; heights stand at the middle of the pixels."""
     if transform.b or transform.d or transform.a <= 0 or transform.e >= 0:
         raise DomainError(
-            "expected a raster with north up and no rotation; got another one; warp it first", where=called(path)
+            "expected a raster with north up and no rotation; got another one; warp it first",
+            where=called(path),
         )
     x0 = transform.c + 0.5 * transform.a
     y0 = transform.f + transform.e * (heights.shape[0] - 0.5)
@@ -273,7 +279,9 @@ def read_track(path: str | os.PathLike[str]) -> dict[str, list[float]]:
             where=f"{where}: line {lines[0][0]}",
         )
     place = {name: header.index(name) for name in ("t", "x", "y", "h")}
-    table = [{name: cell(row, k, f"{where}: line {line}") for name, k in place.items()} for line, row in lines[1:]]
+    table = [
+        {name: cell(row, k, f"{where}: line {line}") for name, k in place.items()} for line, row in lines[1:]
+    ]
     if not table:
         raise EmptyError("expected at least one row below the header; got none; add the track", where=where)
     return {name: [row[name] for row in table] for name in place}
