@@ -118,7 +118,7 @@ def gain_stability(
     Boxes that are undecided are halved in the coordinate of largest relative width.
     """
     if len(gain) != len(half_width):
-        raise DomainError(f"half_width: expected {len(gain)} entries; got {len(half_width)}; give one per gain")
+        raise DomainError(f"half_width: expected {len(gain)} entries; got {len(half_width)}; one per gain")
     todo = [[(g - w, g + w) for g, w in zip(gain, half_width, strict=True)]]
     answers: set[bool] = set()
     count = 0
@@ -136,7 +136,7 @@ def gain_stability(
                 return StabilityFinding(None, count, reason)
     stable = answers.pop()
     side = "every root inside the unit circle" if stable else "a root outside the unit circle"
-    return StabilityFinding(stable, count, f"{side} for every gain of the box ({count} boxes, Routh's column)")
+    return StabilityFinding(stable, count, f"{side} for every gain of the box ({count} boxes)")
 
 
 def decide_box(box: Sequence[tuple[Fraction, Fraction]], scale: Sequence[flint.arb] | None) -> bool | None:
@@ -208,11 +208,13 @@ def back(x: flint.fmpq) -> Fraction:
     return Fraction(int(x.p), int(x.q))
 
 
-def speed_lag(gain: Sequence[Fraction], tau: Fraction, period: Fraction) -> flint.arb:
-    """|estimated speed - speed| / |speed| in the steady state of a harmonic motion, as a ball.
+def harmonic_lag(gain: Sequence[Fraction], tau: Fraction, period: Fraction, state: int) -> flint.arb:
+    """|estimate - truth| / |truth| of one state in the steady answer to a harmonic motion, as a ball.
 
-    gain   : (n,) in the variables f; the position is exp(i 2 pi t / period), sampled every tau
-    The observer answers z_k = zeta^k with f = (zeta E - C)^-1 k zeta; the speed is f_2 / tau.
+    gain  : (n,) in the variables f; the position is exp(i 2 pi t / period), sampled every tau
+    state : 1 position, 2 speed, 3 acceleration, ...
+    The observer answers z_k = zeta^k with f zeta^k, f = (zeta E - C)^-1 k zeta; the true f of
+    the state is (i omega tau)^(state - 1) / (state - 1)!.
     """
     n = len(gain)
     Phi = pascal_rows(n)
@@ -224,8 +226,8 @@ def speed_lag(gain: Sequence[Fraction], tau: Fraction, period: Fraction) -> flin
             (zeta if i == j else flint.acb(0)) - Phi[i][j] + balls[i] for i in range(n) for j in range(n)
         ]
         f = flint.acb_mat(n, n, entries).solve(flint.acb_mat(n, 1, [b * zeta for b in balls]))
-        # f answers at step k + 1 to z_(k+1) = zeta^(k+1): divide by it, then compare with i omega tau.
-        return abs(f[1, 0] / flint.acb(0, angle) - 1)
+        truth = flint.acb(0, angle) ** (state - 1) / math.factorial(state - 1)
+        return abs(f[state - 1, 0] / truth - 1)
 
 
 def root_decimal(x: Fraction, digits: int) -> str:

@@ -14,13 +14,24 @@ from __future__ import annotations
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
 
 #: Criteria by number: see ``navsym.methods.trajectory``.
 PREDICTED, CORRECTED, LIKELIHOOD = 0, 1, 2
 
 
 @njit(cache=True)
-def predict(Phi, y, P, h, ahead, B, g):
+def predict(
+    Phi: Array,
+    y: Array,
+    P: Array,
+    h: Array,
+    ahead: Array,
+    B: Array,
+    g: Array,
+) -> float:
     """Write Phi y into ``ahead``, Phi P Phi^T into B, B h into g; return h g. Phi is upper triangular."""
     n = y.shape[0]
     for i in range(n):
@@ -51,8 +62,14 @@ def predict(Phi, y, P, h, ahead, B, g):
 
 
 @njit(cache=True)
-def innovation_variances(s0, h, q, step, out):
-    """S of all 3^n candidates; candidate c multiplies q_i by step^(digit_i(c) - 1), digit 0 varies fastest."""
+def innovation_variances(
+    s0: float,
+    h: Array,
+    q: Array,
+    step: float,
+    out: Array,
+) -> None:
+    """S of all 3^n candidates; candidate c has q_i step^(digit_i(c) - 1), digit 0 varies fastest."""
     n = h.shape[0]
     base = s0
     for i in range(n):
@@ -71,7 +88,10 @@ def innovation_variances(s0, h, q, step, out):
 
 
 @njit(cache=True)
-def likeliest(S, squared):
+def likeliest(
+    S: Array,
+    squared: float,
+) -> int:
     """Index of the smallest log S + squared / S, the first of equals.
 
     The function falls for S < squared and rises above it: only the largest S below and the smallest S
@@ -97,7 +117,19 @@ def likeliest(S, squared):
 
 
 @njit(cache=True)
-def smallest_change(S, g, h, q, step, innovation, ahead, y, weights, kind, row):
+def smallest_change(
+    S: Array,
+    g: Array,
+    h: Array,
+    q: Array,
+    step: float,
+    innovation: float,
+    ahead: Array,
+    y: Array,
+    weights: Array,
+    kind: int,
+    row: Array,
+) -> tuple[int, float]:
     """Index and value of the smallest criterion J of the paper over all candidates, first of equals.
 
     weights : three numbers, of the residual, of the change of state 2 and of state 3
@@ -122,13 +154,18 @@ def smallest_change(S, g, h, q, step, innovation, ahead, y, weights, kind, row):
             elif i == 2:
                 change3 = ahead[i] + move - y[i]
         J = weights[0] * residual**2 + weights[1] * change2**2 + weights[2] * change3**2
-        if J < value:
+        if value > J:
             best, value = c, J
     return best, value
 
 
 @njit(cache=True)
-def candidate(q, step, index, out):
+def candidate(
+    q: Array,
+    step: float,
+    index: int,
+    out: Array,
+) -> None:
     """Write the diagonal of a candidate by its number into ``out``."""
     for i in range(q.shape[0]):
         digit = index % 3
@@ -137,7 +174,18 @@ def candidate(q, step, index, out):
 
 
 @njit(cache=True)
-def apply(B, g, h, q, S, ahead, innovation, y, P, gain):
+def apply(
+    B: Array,
+    g: Array,
+    h: Array,
+    q: Array,
+    S: float,
+    ahead: Array,
+    innovation: float,
+    y: Array,
+    P: Array,
+    gain: Array,
+) -> None:
     """Correct by the chosen candidate: y, P and gain are written. P = (E - K h) P^-."""
     n = y.shape[0]
     for i in range(n):
@@ -150,7 +198,24 @@ def apply(B, g, h, q, S, ahead, innovation, y, P, gain):
 
 
 @njit(cache=True)
-def tune_one_step(Phi, h, row, R, z, y, P, q, step, weights, kind, stop, states, gains, diagonals, values):
+def tune_one_step(
+    Phi: Array,
+    h: Array,
+    row: Array,
+    R: float,
+    z: Array,
+    y: Array,
+    P: Array,
+    q: Array,
+    step: float,
+    weights: Array,
+    kind: int,
+    stop: int,
+    states: Array,
+    gains: Array,
+    diagonals: Array,
+    values: Array,
+) -> None:
     """The adaptive filter, Q chosen anew at each of the first ``stop`` steps, then a constant gain.
 
     z : (N,) measurements 1..N; y, P, q : estimate, matrix and diagonal at step 0, overwritten
@@ -193,10 +258,22 @@ def tune_one_step(Phi, h, row, R, z, y, P, q, step, weights, kind, stop, states,
 
 
 @njit(cache=True)
-def bank_step(Phi, h, R, z, ys, Ps, qs, cost, ahead, T, B):
+def bank_step(
+    Phi: Array,
+    h: Array,
+    R: float,
+    z: float,
+    ys: Array,
+    Ps: Array,
+    qs: Array,
+    cost: Array,
+    ahead: Array,
+    T: Array,
+    B: Array,
+) -> None:
     """One step of all candidates, each with its own estimate; ``cost`` grows by log S + innovation^2 / S.
 
-    ys (n, C), Ps (n, n, C), qs (n, C), cost (C,) are overwritten; ahead (n, C), T and B (n, n, C) are scratch.
+    ys (n, C), Ps (n, n, C), qs (n, C), cost (C,) are overwritten; ahead (n, C), T, B (n, n, C) are scratch.
     The correction is that of the corrected algorithm: predict, then H on the predicted state.
     """
     n, C = ys.shape
@@ -227,8 +304,8 @@ def bank_step(Phi, h, R, z, ys, Ps, qs, cost, ahead, T, B):
             B[i, i, c] += qs[i, c]
     h0 = h[0]
     for c in range(C):
-        T[0, 0, c] = 1.0 / (h0 * h0 * B[0, 0, c] + R)          # 1 / S
-        T[0, 1, c] = z - h0 * ahead[0, c]                      # innovation
+        T[0, 0, c] = 1.0 / (h0 * h0 * B[0, 0, c] + R)  # 1 / S
+        T[0, 1, c] = z - h0 * ahead[0, c]  # innovation
         cost[c] += T[0, 1, c] * T[0, 1, c] * T[0, 0, c] - np.log(T[0, 0, c])
     for i in range(n):
         for c in range(C):
@@ -242,7 +319,23 @@ def bank_step(Phi, h, R, z, ys, Ps, qs, cost, ahead, T, B):
 
 
 @njit(cache=True)
-def tune_by_windows(Phi, h, R, z, y, P, q, step, window, floor, ceiling, states, gains, diagonals, values):
+def tune_by_windows(
+    Phi: Array,
+    h: Array,
+    R: float,
+    z: Array,
+    y: Array,
+    P: Array,
+    q: Array,
+    step: float,
+    window: int,
+    floor: Array,
+    ceiling: Array,
+    states: Array,
+    gains: Array,
+    diagonals: Array,
+    values: Array,
+) -> None:
     """The adaptive filter with all 3^n candidates carried through windows of steps.
 
     At the end of each window the likeliest candidate becomes the centre of the next field, its estimate

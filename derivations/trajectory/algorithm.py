@@ -1,0 +1,224 @@
+"""The dynamic inversion algorithm: gain, covariance, criterion and the field of Q.
+
+Worked in the variables f of the first stage, where all matrices are integer; the normalised variables
+differ by the constant positive diagonal D_s, which changes none of the statements.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from itertools import product
+
+import sympy as sp
+
+from navsym.claims import REFUTED, Equation, Finding, Property, claim
+from navsym.models.earth_motion import pascal_rows
+
+N = 3
+R = sp.Symbol("R", positive=True)
+z = sp.Symbol("z", real=True)
+F = sp.Matrix(sp.symbols(f"f1:{N + 1}", real=True))
+K = sp.Matrix(sp.symbols(f"K1:{N + 1}", real=True))
+Q = sp.diag(*sp.symbols(f"q1:{N + 1}", positive=True))
+
+PHI = sp.Matrix(pascal_rows(N))
+H_STEP = sp.ones(1, N)  # H_f: acts on the state before the step
+
+
+def symmetric(name: str) -> sp.Matrix:
+    """A symmetric (N, N) matrix of free symbols."""
+    return sp.Matrix(N, N, lambda i, j: sp.Symbol(f"{name}{min(i, j) + 1}{max(i, j) + 1}", real=True))
+
+
+P_BEFORE, P_AHEAD = symmetric("p"), symmetric("m")
+
+
+def row_after_step() -> sp.Matrix:
+    """The row that turns the state after the step into the measurement: H_f Phi_f^-1."""
+    return H_STEP * PHI.inv()
+
+
+def regression_gain() -> sp.Matrix:
+    """Covariance of state and measurement over the variance of the measurement: the least-variance gain."""
+    row = row_after_step()
+    return P_AHEAD * row.T / ((row * P_AHEAD * row.T)[0] + R)
+
+
+# -- estimator -------------------------------------------------------------------------------------------
+
+
+@claim("algorithm.C")
+def estimator_form():
+    """y_(k+1) = C y_k + K z_(k+1) with C = Phi^- - K H^- is prediction and correction; n = 3."""
+    predicted = PHI * F
+    derived = predicted + K * (z - (row_after_step() * predicted)[0])
+    printed = (PHI - K * H_STEP) * F + K * z
+    return Equation(printed=list(printed), derived=list(derived))
+
+
+@claim("algorithm.estimate")
+def estimate_in_physical_variables():
+    """D^-1 y estimates x; n = 3."""
+    D = sp.diag(*sp.symbols(f"d1:{N + 1}", positive=True))
+    x = sp.Matrix(sp.symbols(f"x1:{N + 1}", real=True))
+    return Equation(printed=list(D.inv() * (D * x)), derived=list(x))
+
+
+@claim(
+    "algorithm.K",
+    expect=REFUTED,
+    slip="paper",
+    reason="P^- is the matrix of the state after the step, but H^- = H_p D^-1 of equation 5 reads the state "
+    "before it: the row has to be H D^-1, the same slip as in the second measurement equation of 4",
+)
+def gain_printed():
+    """Gain with the row H^- of equation 5, as printed; n = 3."""
+    printed = P_AHEAD * H_STEP.T / ((H_STEP * P_AHEAD * H_STEP.T)[0] + R)
+    return Equation(printed=list(printed), derived=list(regression_gain()), box=example_box())
+
+
+@claim("algorithm.K*", corrects="algorithm.K")
+def gain():
+    """Gain with the row H D^-1, which reads the state after the step; n = 3."""
+    row = sp.Matrix([[1] + [0] * (N - 1)])
+    printed = P_AHEAD * row.T / ((row * P_AHEAD * row.T)[0] + R)
+    return Equation(printed=list(printed), derived=list(regression_gain()))
+
+
+def example_box() -> dict[sp.Symbol, tuple[int, int]]:
+    """Positive variances; covariances of either sign, small enough to keep the matrix definite."""
+    return {x: ((2, 3) if x == P_AHEAD[i, i] else (-1, 1)) for i in range(N) for x in P_AHEAD[i, i:]}
+
+
+@claim("algorithm.P_ahead")
+def predicted_matrix():
+    """P^- = Phi P Phi^T + Q is the matrix of Phi e + w for independent e and w; n = 3."""
+    derived = sp.Matrix(N, N, lambda i, j: covariance(PHI[i, :], PHI[j, :]) + (Q[i, i] if i == j else 0))
+    return Equation(printed=PHI * P_BEFORE * PHI.T + Q, derived=derived)
+
+
+def covariance(left: sp.Matrix, right: sp.Matrix) -> sp.Expr:
+    """Covariance of two linear combinations of the error before the step, term by term."""
+    return sum(left[i] * right[j] * P_BEFORE[i, j] for i in range(N) for j in range(N))
+
+
+@claim("algorithm.P")
+def corrected_matrix():
+    """P = (E - K H) P^- is the matrix of the corrected error, for the gain of algorithm.K*; n = 3."""
+    row, best = row_after_step(), regression_gain()
+    rest = sp.eye(N) - best * row
+    error_matrix = rest * P_AHEAD * rest.T + best * R * best.T
+    return Equation(printed=rest * P_AHEAD, derived=error_matrix)
+
+
+# -- the field of Q ----------------------------------------------------------------------------------------
+
+
+@claim(
+    "algorithm.NQ",
+    expect=REFUTED,
+    slip="paper",
+    reason="3^5 = 243; one candidate of the field is not counted",
+)
+def field_size_printed():
+    """Number of values in the field for n = 5, as printed."""
+    return Property(printed=242, derived=Finding(len(field(5)), "enumeration", scope="n = 5"))
+
+
+@claim("algorithm.NQ*", corrects="algorithm.NQ")
+def field_size():
+    """Number of values in the field for n = 5."""
+    return Property(printed=243, derived=Finding(len(field(5)), "enumeration", scope="n = 5"))
+
+
+@claim("algorithm.NQ.power")
+def field_size_power():
+    """The field has 3^n candidates: each of n elements may fall, stay or rise."""
+    found = tuple(len(field(n)) for n in range(1, 8))
+    return Property(
+        printed=tuple(3**n for n in range(1, 8)), derived=Finding(found, "enumeration", scope="n = 1..7")
+    )
+
+
+def field(n: int) -> list[tuple[Fraction, ...]]:
+    """All diagonals around a centre, each element halved, kept or doubled.
+
+    The centre has unequal elements: with equal ones the symmetry of the sum in S would merge candidates.
+    """
+    centre = [Fraction(1, 2 * i + 1) for i in range(n)]
+    factors = product((Fraction(1, 2), Fraction(1), Fraction(2)), repeat=n)
+    return [tuple(c * f for c, f in zip(centre, choice, strict=True)) for choice in factors]
+
+
+def criteria(n: int, row: list[int], residual_after: bool) -> set[Fraction]:
+    """Distinct values of J over the field, one step, in exact arithmetic.
+
+    row            : row used in the gain
+    residual_after : first term from the corrected state instead of the predicted one
+    Start: f = 0, P = E, R = 1, measurement 1, weights 1/5 and 1/25 (tau and tau^2 for 0.2 s).
+    """
+    Phi = pascal_rows(n)
+    ahead = [[sum(Phi[i][k] * Phi[j][k] for k in range(n)) for j in range(n)] for i in range(n)]
+    values = set()
+    for q in field(n):
+        g = [sum(ahead[i][j] * row[j] for j in range(n)) + q[i] * row[i] for i in range(n)]
+        S = sum(a * b for a, b in zip(row, g, strict=True)) + 1
+        gains = [x / Fraction(S) for x in g]
+        residual = 1 - gains[0] if residual_after else Fraction(1)
+        values.add(residual**2 + gains[1] ** 2 / 5 + gains[2] ** 2 / 25)
+    return values
+
+
+@claim("algorithm.field")
+def field_values():
+    """As printed (row of ones in the gain), the 3^5 candidates give as many different values of J."""
+    found = len(criteria(5, [1] * 5, residual_after=False))
+    return Property(printed=3**5, derived=Finding(found, "exact enumeration", scope="one start, n = 5"))
+
+
+def values_with_corrected_gain() -> int:
+    """With the row of the corrected gain only q_1 enters: three different values of J, for every n.
+
+    K = (g + q_1 e_1) / (g_1 + q_1 + R): a criterion of one step cannot tune the other elements of Q, which
+    is why the corrected algorithm carries its candidates through several steps.
+    """
+    return len(criteria(5, [1, 0, 0, 0, 0], residual_after=True))
+
+
+# -- units of the criterion --------------------------------------------------------------------------------
+
+#: Units as exponents of (metre, second); an angle times the Earth radius counts as metres.
+POSITION, SPEED, ACCELERATION, TIME = (1, 0), (1, -1), (1, -2), (0, 1)
+
+
+def unit(*factors: tuple[tuple[int, int], int]) -> tuple[int, int]:
+    """Unit of a product of powers."""
+    return (sum(u[0] * p for u, p in factors), sum(u[1] * p for u, p in factors))
+
+
+def commensurate(speed_power: int, acceleration_power: int) -> Finding:
+    terms = {
+        unit((POSITION, 2)),
+        unit((SPEED, 2), (TIME, speed_power)),
+        unit((ACCELERATION, 2), (TIME, acceleration_power)),
+    }
+    return Finding(
+        len(terms) == 1, "exponents of metre and second", evidence=f"units of the terms: {sorted(terms)}"
+    )
+
+
+@claim(
+    "algorithm.J.units",
+    expect=REFUTED,
+    slip="paper",
+    reason="the terms have the units m^2, m^2/s and m^2/s^2: their sum depends on the choice of the second",
+)
+def criterion_units_printed():
+    """The terms of J, weighted by tau and tau^2, have one unit."""
+    return Property(printed=True, derived=commensurate(1, 2))
+
+
+@claim("algorithm.J.units*", corrects="algorithm.J.units")
+def criterion_units():
+    """The terms of J have one unit when weighted by tau^2 and tau^4."""
+    return Property(printed=True, derived=commensurate(2, 4))

@@ -1,0 +1,300 @@
+"""Equations 1 to 4: polynomial motion, nilpotent dynamics, transition over a step, measurement."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from itertools import pairwise
+
+import sympy as sp
+
+from navsym.claims import CERTIFIED, REFUTED, Bound, Equation, Finding, Property, claim
+from navsym.methods.conditioning import condition_number
+from navsym.models import earth_motion as motion
+
+rho, tau, t = sp.symbols("rho tau t", positive=True)
+
+#: A leading block of each matrix is the matrix of the smaller order, so one order stands for all below it.
+ORDER = 8
+ORDERS = range(2, 13)
+STATE = sp.symbols(f"x1:{ORDER + 1}", real=True)
+
+
+def speed_polynomial(n: int) -> tuple[sp.Expr, tuple[sp.Symbol, ...]]:
+    """V(t) of degree n - 2 with free coefficients: Taylor coefficients are the states x_2 ... x_n at zero."""
+    start = STATE[:n]
+    return sum(start[j] * t ** (j - 1) / sp.factorial(j - 1) for j in range(1, n)), start
+
+
+def moved_state(n: int, time: sp.Expr) -> list[sp.Expr]:
+    """x(time) by direct integration and differentiation of the speed: no matrix enters."""
+    speed, start = speed_polynomial(n)
+    terms = sp.Poly(speed, t).all_coeffs()[::-1]
+    distance = sum(c * t ** (k + 1) / (k + 1) for k, c in enumerate(terms))
+    states = [start[0] + rho * distance, *(sp.diff(speed, t, k) for k in range(n - 1))]
+    return [sp.expand(x).subs(t, time) for x in states]
+
+
+def rate_of_state(n: int) -> list[sp.Expr]:
+    return [sp.diff(x, t) for x in moved_state(n, t)]
+
+
+# -- equation 1 --------------------------------------------------------------------------------------
+
+
+@claim("1.degree")
+def degree_of_the_speed():
+    """The speed is a polynomial of degree n - 2."""
+
+    def degree(n: int) -> int:
+        speed = (motion.transition(motion.dynamics(n, rho), t) * sp.Matrix(STATE[:n]))[1]
+        return int(sp.Poly(speed, t).degree())
+
+    orders = range(2, ORDER + 1)
+    found = Finding(tuple(map(degree, orders)), "degree of the exact solution", scope=f"n = 2..{ORDER}")
+    return Property(printed=tuple(n - 2 for n in orders), derived=found)
+
+
+@claim("1.row1")
+def first_row():
+    """Rate of the coordinate: rho times the speed."""
+    return Equation(printed=rho * moved_state(ORDER, t)[1], derived=rate_of_state(ORDER)[0])
+
+
+@claim(
+    "1.row2",
+    expect=REFUTED,
+    slip="scan",
+    reason="indices are lost: the second row cannot be a second equation for dx_1/dt",
+)
+def second_row_printed():
+    """Second row, dx_1/dt = x_2, as it came out of the scan."""
+    return Equation(printed=moved_state(ORDER, t)[1], derived=rate_of_state(ORDER)[0])
+
+
+@claim("1.row2*", corrects="1.row2")
+def second_row():
+    """Second row: dx_2/dt = x_3."""
+    return Equation(printed=moved_state(ORDER, t)[2], derived=rate_of_state(ORDER)[1])
+
+
+@claim(
+    "1.rown",
+    expect=REFUTED,
+    slip="scan",
+    reason="an index is lost: the last row is that of x_n, whose initial value stands beside it",
+)
+def last_row_printed():
+    """Last row, dx_1/dt = 0, as it came out of the scan."""
+    return Equation(printed=sp.Integer(0), derived=rate_of_state(ORDER)[0])
+
+
+@claim("1.rown*", corrects="1.rown")
+def last_row():
+    """Last row: dx_n/dt = 0."""
+    return Equation(printed=sp.Integer(0), derived=rate_of_state(ORDER)[-1])
+
+
+@claim("1.general")
+def matrix_form():
+    """The general form dx/dt = A x with A of equation 3."""
+    A = motion.dynamics(ORDER, rho)
+    return Equation(printed=list(A * sp.Matrix(moved_state(ORDER, t))), derived=rate_of_state(ORDER))
+
+
+# -- equations 2 and 3 -------------------------------------------------------------------------------
+
+
+def measured_row(n: int) -> sp.Matrix:
+    """Row of the measured coordinate: its gradient in the state."""
+    return sp.Matrix([moved_state(n, sp.Integer(0))[0]]).jacobian(STATE[:n])
+
+
+@claim(
+    "2.H",
+    expect=REFUTED,
+    slip="paper",
+    reason="H has as many entries as the state: (1, 0, 0) is the case n = 3 only, and after equation 4 it is "
+    "printed as (1, 0, ..., 0)",
+)
+def measurement_row_printed():
+    """Row of the measurement, printed with three entries for every n; here n = 8."""
+    return Equation(printed=sp.Matrix([[1, 0, 0]]), derived=measured_row(ORDER))
+
+
+@claim("2.H*", corrects="2.H")
+def measurement_row():
+    """Row of the measurement: one and n - 1 zeros; here n = 8."""
+    return Equation(printed=sp.Matrix([[1] + [0] * (ORDER - 1)]), derived=measured_row(ORDER))
+
+
+def nilpotency_index(n: int) -> int:
+    """Smallest q with A^q = 0, by exact powers; rho is a free symbol."""
+    A = motion.dynamics(n, rho)
+    power, q = sp.eye(n), 0
+    while power != sp.zeros(n, n):
+        power, q = power * A, q + 1
+    return q
+
+
+@claim("3.nilpotent")
+def nilpotency():
+    """A is nilpotent of index n."""
+    found = Finding(
+        tuple(map(nilpotency_index, ORDERS)),
+        "exact powers",
+        scope="n = 2..12; for every n the power k moves the diagonal k places up",
+        assumptions=("rho != 0",),
+    )
+    return Property(printed=tuple(n for n in ORDERS), derived=found)
+
+
+@claim("3.nonzero")
+def nonzero_elements():
+    """A has n - 1 elements that are not zero."""
+
+    def count(n: int) -> int:
+        return sum(x != 0 for x in motion.dynamics(n, rho))
+
+    found = Finding(tuple(map(count, ORDERS)), "count", scope="n = 2..12", assumptions=("rho != 0",))
+    return Property(printed=tuple(n - 1 for n in ORDERS), derived=found)
+
+
+@claim("3.elements")
+def elements_of_A():
+    """A_12 = rho, A_i,i+1 = 1 below, all others zero; here n = 8."""
+    rate = sp.Matrix(rate_of_state(ORDER)).subs(t, 0)
+    printed = sp.zeros(ORDER, ORDER)
+    printed[0, 1] = rho
+    for i in range(1, ORDER - 1):
+        printed[i, i + 1] = 1
+    return Equation(printed=printed, derived=rate.jacobian(STATE))
+
+
+# -- equation 4 --------------------------------------------------------------------------------------
+
+
+def derived_transition(n: int) -> sp.Matrix:
+    """Matrix of x(0) -> x(tau), by integrating the polynomial motion."""
+    return sp.Matrix(moved_state(n, tau)).jacobian(STATE[:n])
+
+
+def printed_transition(n: int) -> sp.Matrix:
+    def entry(i: int, j: int) -> sp.Expr:
+        if j < i:
+            return sp.Integer(0)
+        power = tau ** (j - i) / sp.factorial(j - i)
+        return rho * power if i == 0 and j > 0 else power
+
+    return sp.Matrix(n, n, entry)
+
+
+@claim("4.Phi")
+def transition_matrix():
+    """Transition matrix over a step; n = 8, smaller orders are its leading blocks."""
+    return Equation(printed=printed_transition(ORDER), derived=derived_transition(ORDER))
+
+
+@claim("4.Phi.series")
+def transition_matrix_is_the_finite_series():
+    """The transition matrix is the series of exp(A tau), which ends because A is nilpotent; n = 8."""
+    return Equation(
+        printed=printed_transition(ORDER), derived=motion.transition(motion.dynamics(ORDER, rho), tau)
+    )
+
+
+@claim("4.exact")
+def exact_for_constant_rho():
+    """For constant rho, Phi(tau) x is exactly the state a step later; n = 8."""
+    moved = printed_transition(ORDER) * sp.Matrix(STATE)
+    return Equation(printed=list(moved), derived=moved_state(ORDER, tau))
+
+
+@claim("4.smaller_step")
+def better_for_smaller_steps():
+    """For rho = 1/r with r growing steadily the error of a step grows with its length."""
+    r, climb, speed = sp.symbols("r V3 V2", positive=True)
+    # d/dtau of the integral of (rho(s) - rho(0)) V2 ds: of one sign, so the error only grows.
+    growth = sp.factor((1 / (r + climb * tau) - 1 / r) * speed)
+    return Bound(printed=growth, relation="<", derived=sp.Integer(0))
+
+
+@claim(
+    "4.z",
+    expect=REFUTED,
+    slip="paper",
+    reason="H_p = H Phi acts on the state before the step: the index of x is k, as in equations 5 and 6",
+)
+def stepped_measurement_printed():
+    """The measurement z_(k+1) = H_p x_(k+1), as printed; n = 5."""
+    after = sp.Matrix(moved_state(5, tau))
+    return Equation(printed=(measured_row(5) * printed_transition(5) * after)[0], derived=after[0])
+
+
+@claim("4.z*", corrects="4.z")
+def stepped_measurement():
+    """The measurement after a step by the state before it: z_(k+1) = H_p x_k; n = 5."""
+    before, after = sp.Matrix(STATE[:5]), sp.Matrix(moved_state(5, tau))
+    return Equation(printed=(measured_row(5) * printed_transition(5) * before)[0], derived=after[0])
+
+
+@claim("4.H")
+def measured_coordinate():
+    """H = (1, 0, ..., 0); n = 8."""
+    return Equation(printed=sp.Matrix([[1] + [0] * (ORDER - 1)]), derived=measured_row(ORDER))
+
+
+@claim("4.Hp")
+def measurement_through_a_step():
+    """H_p = H Phi = (1, rho tau, ..., rho tau^(n-1)/(n-1)!); n = 8."""
+    printed = [sp.Integer(1)] + [rho * tau**j / sp.factorial(j) for j in range(1, ORDER)]
+    later = sp.Matrix([moved_state(ORDER, tau)[0]]).jacobian(STATE)
+    return Equation(printed=sp.Matrix([printed]), derived=later)
+
+
+# -- smaller steps and conditioning ------------------------------------------------------------------
+
+PAPER_RHO = sp.Rational(1, 6371000)
+
+
+def conditioning(n: int, step: sp.Rational):
+    """Certified enclosure of mu(N_p) at the rho of the table."""
+    rows = motion.observability_rows(n, Fraction(1, 6371000), Fraction(int(step.p), int(step.q)))
+    return condition_number(rows, digits=12)
+
+
+def improves(n: int, longer: sp.Rational, shorter: sp.Rational) -> bool:
+    """True when the longer step is certified to have the smaller condition number."""
+    return conditioning(n, longer).upper < conditioning(n, shorter).lower
+
+
+@claim(
+    "4.hadamard",
+    expect=REFUTED,
+    slip="paper",
+    reason="true for small tau only: at n = 10 the columns of N_p are best balanced near 2 s, beyond that a "
+    "smaller step is the better one",
+)
+def smaller_steps_always_worsen():
+    """A smaller step inevitably worsens the condition number (n = 10, 3 s against 2 s)."""
+    found = Finding(
+        improves(10, sp.Integer(3), sp.Integer(2)),
+        "certified condition numbers",
+        CERTIFIED,
+        scope="n = 10, rho = 1/6371000, tau = 3 and 2",
+        evidence=f"{conditioning(10, sp.Integer(3)).rounded(5)} at 3 s, "
+        f"{conditioning(10, sp.Integer(2)).rounded(5)} at 2 s",
+    )
+    return Property(printed=True, derived=found)
+
+
+@claim("4.hadamard*", expect=CERTIFIED, corrects="4.hadamard")
+def smaller_steps_worsen_below_a_second():
+    """For tau up to 1 s each halving of the step worsens the condition number, n of the table."""
+    steps = [sp.Rational(1, 2**k) for k in range(6)]
+    holds = all(
+        improves(n, longer, shorter) for n in (2, 3, 4, 5, 10, 19, 20) for longer, shorter in pairwise(steps)
+    )
+    scope = "rho = 1/6371000, tau = 1, 1/2, ..., 1/32, n of the table"
+    return Property(
+        printed=True, derived=Finding(holds, "certified condition numbers", CERTIFIED, scope=scope)
+    )

@@ -1,0 +1,317 @@
+"""Equations 5 and 6: normalised variables in one stage and in two, and why both end at the same place."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from math import comb
+
+import sympy as sp
+
+from navsym.claims import REFUTED, Equation, Finding, Property, claim
+from navsym.models import earth_motion as motion
+
+rho, tau = sp.symbols("rho tau", positive=True)
+
+#: Small order for statements with irrational norms; the two-stage procedure is printed for n = 5.
+SMALL, PRINTED = 4, 5
+LARGEST = 30
+X = sp.symbols(f"x1:{PRINTED + 1}", real=True)
+
+
+def step(n: int) -> sp.Matrix:
+    return motion.transition(motion.dynamics(n, rho), tau)
+
+
+def measured(n: int) -> sp.Matrix:
+    """H_p = H Phi."""
+    return motion.first_state(n) * step(n)
+
+
+def N_p(n: int) -> sp.Matrix:
+    return motion.observability(measured(n), step(n))
+
+
+def D(n: int) -> sp.Matrix:
+    """Matrix of the one-stage procedure: norms of the columns of N_p."""
+    return sp.diag(*motion.column_norms(N_p(n)))
+
+
+def D_f(n: int) -> sp.Matrix:
+    """First stage: the entries of H_p."""
+    return motion.row_scaling(measured(n))
+
+
+def in_first_stage(n: int) -> tuple[sp.Matrix, sp.Matrix]:
+    """Transition matrix and measurement row in f = D_f x."""
+    scale = D_f(n)
+    return (scale * step(n) * scale.inv()).applyfunc(sp.cancel), (measured(n) * scale.inv()).applyfunc(
+        sp.cancel
+    )
+
+
+def N_f(n: int) -> sp.Matrix:
+    Phi_f, h_f = in_first_stage(n)
+    return motion.observability(h_f, Phi_f)
+
+
+def D_s(n: int) -> sp.Matrix:
+    return sp.diag(*motion.column_norms(N_f(n)))
+
+
+# -- one stage -----------------------------------------------------------------------------------------
+
+
+@claim("5.Phi")
+def normalised_transition():
+    """In x^q = D x the transition matrix is D Phi D^-1; n = 4."""
+    x = sp.Matrix(X[:SMALL])
+    scale = D(SMALL)
+    moved = scale * step(SMALL) * scale.inv() * (scale * x)
+    return Equation(printed=list(moved), derived=list(scale * (step(SMALL) * x)))
+
+
+@claim("5.H")
+def normalised_measurement():
+    """In x^q = D x the measurement row is H_p D^-1; n = 4."""
+    x = sp.Matrix(X[:SMALL])
+    scale = D(SMALL)
+    return Equation(
+        printed=(measured(SMALL) * scale.inv() * (scale * x))[0], derived=(measured(SMALL) * x)[0]
+    )
+
+
+@claim("5.N")
+def normalised_observability():
+    """The observability matrix of the normalised model is N_p D^-1; n = 4."""
+    scale = D(SMALL)
+    pair = motion.observability(measured(SMALL) * scale.inv(), scale * step(SMALL) * scale.inv())
+    return Equation(printed=N_p(SMALL) * scale.inv(), derived=pair)
+
+
+@claim("5.unit")
+def normalised_columns():
+    """The columns of N_pN have unit length; n = 5."""
+    norms = motion.column_norms(N_p(PRINTED) * D(PRINTED).inv())
+    return Equation(printed=[sp.Integer(1)] * PRINTED, derived=norms)
+
+
+def sensitivity(matrix: sp.Matrix) -> list[sp.Expr]:
+    return [*matrix.diff(rho), *matrix.diff(tau)]
+
+
+@claim("5.independent")
+def independent_of_rho_and_tau():
+    """The normalised matrices Phi^- and H^- do not depend on rho and tau; n = 5."""
+    scale = D(PRINTED)
+    changes = sensitivity(scale * step(PRINTED) * scale.inv()) + sensitivity(measured(PRINTED) * scale.inv())
+    return Equation(printed=[sp.Integer(0)] * len(changes), derived=changes)
+
+
+# -- two stages: the first -----------------------------------------------------------------------------
+
+
+@claim("6.Df")
+def first_stage_scaling():
+    """D_f = diag(1, rho tau, rho tau^2/2!, rho tau^3/3!, rho tau^4/4!) turns H_p into a row of ones."""
+    printed = sp.diag(1, rho * tau, rho * tau**2 / 2, rho * tau**3 / 6, rho * tau**4 / 24)
+    return Equation(printed=printed, derived=D_f(PRINTED))
+
+
+@claim("6.Phif")
+def first_stage_transition():
+    """Phi_f for n = 5."""
+    printed = sp.Matrix([[1, 1, 1, 1, 1], [0, 1, 2, 3, 4], [0, 0, 1, 3, 6], [0, 0, 0, 1, 4], [0, 0, 0, 0, 1]])
+    return Equation(printed=printed, derived=in_first_stage(PRINTED)[0])
+
+
+@claim("6.Hf")
+def first_stage_measurement():
+    """H_f = (1, 1, 1, 1, 1)."""
+    return Equation(printed=sp.Matrix([[1, 1, 1, 1, 1]]), derived=in_first_stage(PRINTED)[1])
+
+
+@claim("6.Nf")
+def first_stage_observability():
+    """N_f for n = 5."""
+    printed = sp.Matrix(
+        [
+            [1, 1, 1, 1, 1],
+            [1, 2, 4, 8, 16],
+            [1, 3, 9, 27, 81],
+            [1, 4, 16, 64, 256],
+            [1, 5, 25, 125, 625],
+        ]
+    )
+    return Equation(printed=printed, derived=N_f(PRINTED))
+
+
+@lru_cache(maxsize=1)
+def transitions() -> sp.Matrix:
+    """Phi_f of the largest order: its leading blocks are those of all smaller orders."""
+    return in_first_stage(LARGEST)[0]
+
+
+SCOPE = f"n = {LARGEST} and, as leading blocks, every smaller n; D_f exp(A tau) D_f^-1 for free rho, tau"
+
+
+@claim("6.Phif.triangular")
+def transition_is_triangular():
+    """Phi_f is upper triangular with integer elements."""
+    Phi = transitions()
+    holds = all(
+        Phi[i, j].is_Integer and (j >= i or Phi[i, j] == 0) for i in range(LARGEST) for j in range(LARGEST)
+    )
+    return Property(printed=True, derived=Finding(holds, "exact matrix", scope=SCOPE))
+
+
+@claim("6.Phif.diagonal")
+def transition_diagonal():
+    """Phi_f,ii = 1."""
+    found = tuple(int(transitions()[i, i]) for i in range(LARGEST))
+    return Property(printed=(1,) * LARGEST, derived=Finding(found, "exact matrix", scope=SCOPE))
+
+
+@claim("6.Phif.first_row")
+def transition_first_row():
+    """Phi_f,1j = 1."""
+    found = tuple(int(x) for x in transitions()[0, :])
+    return Property(printed=(1,) * LARGEST, derived=Finding(found, "exact matrix", scope=SCOPE))
+
+
+def recurrence_holds(row_step: int) -> bool:
+    """Phi_(i + row_step(i), j+1) = Phi_ij + Phi_(i+1)j wherever all three elements exist.
+
+    row_step 1 is i + 1; 0 stands for the printed i + i.
+    """
+    Phi = transitions()
+
+    def target(i: int) -> int:
+        return 2 * i + 1 if row_step == 0 else i + 1
+
+    places = [(i, j) for i in range(LARGEST - 1) for j in range(LARGEST - 1) if target(i) < LARGEST]
+    return all(Phi[target(i), j + 1] == Phi[i, j] + Phi[i + 1, j] for i, j in places)
+
+
+@claim(
+    "6.Phif.recurrence",
+    expect=REFUTED,
+    slip="scan",
+    reason="the first index is i + 1: with i + i, i = 2, j = 3 the rule asks Phi_4,4 = 2 + 1, but it is 1",
+)
+def recurrence_printed():
+    """Phi_(i+i, j+1) = Phi_ij + Phi_(i+1)j, as it came out of the scan."""
+    return Property(printed=True, derived=Finding(recurrence_holds(0), "exact matrix", scope=SCOPE))
+
+
+@claim("6.Phif.recurrence*", corrects="6.Phif.recurrence")
+def recurrence():
+    """Phi_(i+1, j+1) = Phi_ij + Phi_(i+1)j: Pascal's triangle."""
+    return Property(printed=True, derived=Finding(recurrence_holds(1), "exact matrix", scope=SCOPE))
+
+
+def reached(allowed) -> int:
+    """How many elements above the diagonal of the printed 5 x 5 matrix the rules determine.
+
+    Known at the start: the diagonal, the first row, the zeros below the diagonal.
+    """
+    known = {(i, j) for i in range(PRINTED) for j in range(PRINTED) if i >= j or i == 0}
+    size = 0
+    while size != len(known):
+        size = len(known)
+        known |= {
+            (i + 1, j + 1)
+            for i in range(PRINTED - 1)
+            for j in range(PRINTED - 1)
+            if allowed(i, j) and {(i, j), (i + 1, j)} <= known
+        }
+    return sum(j > i for i, j in known)
+
+
+@claim(
+    "6.Phif.range",
+    expect=REFUTED,
+    slip="paper",
+    reason="for i >= j the recurrence only says 0 = 0 + 0 and 1 = 1 + 0: six of the ten elements above the "
+    "diagonal stay undetermined; the range has to be i <= j",
+)
+def recurrence_range_printed():
+    """The recurrence for i >= j determines all 10 elements above the diagonal (n = 5)."""
+    found = Finding(reached(lambda i, j: i >= j), "closure of the rules", scope="n = 5")
+    return Property(printed=10, derived=found)
+
+
+@claim("6.Phif.range*", corrects="6.Phif.range")
+def recurrence_range():
+    """The recurrence for i <= j determines all 10 elements above the diagonal (n = 5)."""
+    found = Finding(reached(lambda i, j: i <= j), "closure of the rules", scope="n = 5")
+    return Property(printed=10, derived=found)
+
+
+@claim("6.Nf.elements")
+def observability_elements():
+    """N_f,ij = i^(j-1)."""
+    found = tuple(int(x) for x in N_f(16))
+    printed = tuple(i**j for i in range(1, 17) for j in range(16))
+    return Property(printed=printed, derived=Finding(found, "exact matrix", scope="n = 16"))
+
+
+@claim("6.Nf.row_step")
+def observability_rows_for_every_index():
+    """Row x of N_f times Phi_f is row x + 1, for every x: the binomial theorem, columns 1 to 16."""
+    x = sp.Symbol("x", real=True)
+    derived = [sum(x**m * comb(j, m) for m in range(j + 1)) for j in range(16)]
+    return Equation(printed=[(x + 1) ** j for j in range(16)], derived=derived)
+
+
+# -- two stages: the second ----------------------------------------------------------------------------
+
+
+@claim("6.Ns.unit")
+def second_stage_columns():
+    """N_s = N_f D_s^-1 has columns of unit length; n = 5."""
+    norms = motion.column_norms(N_f(PRINTED) * D_s(PRINTED).inv())
+    return Equation(printed=[sp.Integer(1)] * PRINTED, derived=norms)
+
+
+@claim("6.Np")
+def observability_by_stages():
+    """N_p = N_f D_f; n = 5."""
+    return Equation(printed=N_f(PRINTED) * D_f(PRINTED), derived=N_p(PRINTED))
+
+
+@claim("6.Np.stages")
+def observability_by_both_stages():
+    """N_p = N_s D_s D_f; n = 5."""
+    N_s = N_f(PRINTED) * D_s(PRINTED).inv()
+    return Equation(printed=N_s * D_s(PRINTED) * D_f(PRINTED), derived=N_p(PRINTED))
+
+
+@claim("6.D")
+def scalings_multiply():
+    """D = D_s D_f for positive rho and tau; n = 5."""
+    return Equation(printed=D_s(PRINTED) * D_f(PRINTED), derived=D(PRINTED))
+
+
+@claim("6.Ns")
+def both_procedures_meet():
+    """N_s = N_pN for positive rho and tau; n = 5."""
+    N_s = N_f(PRINTED) * D_s(PRINTED).inv()
+    return Equation(printed=N_s, derived=N_p(PRINTED) * D(PRINTED).inv())
+
+
+@claim("6.S")
+def both_variables_meet():
+    """S = D_s f = x^q; n = 5."""
+    x = sp.Matrix(X)
+    return Equation(printed=list(D_s(PRINTED) * D_f(PRINTED) * x), derived=list(D(PRINTED) * x))
+
+
+@claim("6.more_stages")
+def an_earlier_stage_takes_rho_out():
+    """With D_p = diag(1, rho, ..., rho) as a first stage the model no longer contains rho; n = 5."""
+    D_p = sp.diag(1, *([rho] * (PRINTED - 1)))
+    changes = [
+        *(D_p * step(PRINTED) * D_p.inv()).diff(rho),
+        *(measured(PRINTED) * D_p.inv()).diff(rho),
+    ]
+    return Equation(printed=[sp.Integer(0)] * len(changes), derived=changes)

@@ -1,0 +1,149 @@
+"""The table of condition numbers: 56 entries, each with the digits that the exact matrix gives.
+
+An entry is printed with five significant digits (or four decimals). The derived side is the certified
+enclosure of the condition number, rounded in the same format; both ends of the enclosure round alike.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from functools import lru_cache
+
+from navsym.claims import CERTIFIED, REFUTED, Claim, Finding, Property
+from navsym.methods.conditioning import Enclosure, condition_number
+from navsym.models.earth_motion import observability_rows, power_rows
+
+RHO = Fraction(1, 6371000)
+STEPS = {"tau0.2": Fraction(1, 5), "tau1": Fraction(1)}
+COLUMNS = ("Np", "NpN", "Nf", "Ns")
+ORDERS = (2, 3, 4, 5, 10, 19, 20)
+
+#: Order, step -> printed condition numbers of N_p, N_pN, N_f, N_s.
+PRINTED: dict[tuple[int, str], tuple[str, str, str, str]] = {
+    (2, "tau0.2"): ("6.3710e+07", "6.1623", "6.8541", "6.1623"),
+    (2, "tau1"): ("1.2742e+07", "6.1623", "6.8541", "6.1623"),
+    (3, "tau0.2"): ("7.2795e+08", "39.0077", "70.9231", "39.0077"),
+    (3, "tau1"): ("6.0844e+07", "39.0077", "70.9231", "39.0077"),
+    (4, "tau0.2"): ("8.0047e+09", "262.9437", "1.1710e+03", "262.9437"),
+    (4, "tau1"): ("2.2291e+08", "262.9437", "1.1710e+03", "262.9437"),
+    (5, "tau0.2"): ("8.7781e+10", "1.8524e+03", "2.6170e+04", "1.8524e+03"),
+    (5, "tau1"): ("7.4783e+08", "1.8524e+03", "2.6170e+04", "1.8524e+03"),
+    (10, "tau0.2"): ("1.3968e+16", "4.1966e+07", "2.1063e+12", "4.1966e+07"),
+    (10, "tau1"): ("2.4634e+11", "4.1966e+07", "2.1063e+12", "4.1966e+07"),
+    (19, "tau0.2"): ("3.3225e+25", "4.0542e+15", "2.8640e+26", "4.0793e+15"),
+    (19, "tau1"): ("1.0438e+16", "4.0431e+15", "5.1125e+24", "4.0507e+15"),
+    (20, "tau0.2"): ("3.7743e+26", "2.9984e+16", "1.4788e+26", "2.9904e+16"),
+    (20, "tau1"): ("7.5995e+16", "3.0201e+16", "3.3490e+26", "3.0396e+16"),
+}
+
+#: The digits that should stand there, for the rows that double precision spoiled.
+CORRECTED: dict[tuple[int, str], tuple[str, str, str, str]] = {
+    (19, "tau0.2"): ("3.3237e+25", "4.0615e+15", "1.7285e+29", "4.0615e+15"),
+    (19, "tau1"): ("1.0459e+16", "4.0615e+15", "1.7285e+29", "4.0615e+15"),
+    (20, "tau0.2"): ("3.6639e+26", "3.1661e+16", "1.8020e+31", "3.1661e+16"),
+    (20, "tau1"): ("8.0948e+16", "3.1661e+16", "1.8020e+31", "3.1661e+16"),
+}
+
+
+@lru_cache(maxsize=256)
+def true_value(n: int, step: str, column: str, digits: int = 30) -> Enclosure:
+    """Certified condition number of one entry of the table."""
+    rows = power_rows(n) if column in ("Nf", "Ns") else observability_rows(n, RHO, STEPS[step])
+    return condition_number(rows, digits=digits, equilibrate=column in ("NpN", "Ns"))
+
+
+def in_printed_format(found: Enclosure, printed: str) -> str:
+    """The enclosure rounded as the printed numeral is; 'undecided' when its ends round differently."""
+    if "e" in printed:
+        return found.rounded(5) or "undecided"
+    places = len(printed.split(".")[1])
+    low, high = (round_places(x, places) for x in (found.lower, found.upper))
+    return low if low == high else "undecided"
+
+
+def round_places(x: Fraction, places: int) -> str:
+    text = str(int(x * 10**places + Fraction(1, 2))).rjust(places + 1, "0")
+    return f"{text[:-places]}.{text[-places:]}"
+
+
+def relative_error(printed: str, found: Enclosure) -> Fraction:
+    """Printed over true value, minus one."""
+    return Fraction(printed) / found.lower - 1
+
+
+def entry(n: int, step: str, column: str, printed: str) -> Property:
+    found = true_value(n, step, column)
+    lower, upper = found.decimal(12)
+    finding = Finding(
+        in_printed_format(found, printed),
+        "exact matrix, certified singular values",
+        CERTIFIED,
+        scope=f"n = {n}, rho = 1/6371000, tau = {STEPS[step]}",
+        evidence=f"condition number in [{lower}, {upper}]; printed value off by "
+        f"{float(relative_error(printed, found)):+.1e}",
+    )
+    return Property(printed=printed, derived=finding)
+
+
+def entry_claim(n: int, step: str, column: str, printed: str, corrects: bool, wrong: bool) -> Claim:
+    number = f"table.n{n}.{step}.{column}"
+
+    def derive() -> Property:
+        return entry(n, step, column, printed)
+
+    return Claim(
+        module="trajectory",
+        number=f"{number}*" if corrects else number,
+        title=f"Condition number of {column} for n = {n}, tau = {STEPS[step]} s"
+        + (", as it should read" if corrects else ""),
+        derive=derive,
+        expect=REFUTED if wrong else CERTIFIED,
+        corrects=number if corrects else None,
+        slip="paper" if wrong else None,
+        reason="rounding: the ratio exceeds what double precision resolves, the smallest singular value is "
+        "noise, and entries that must be equal differ"
+        if wrong
+        else "",
+    )
+
+
+ENTRIES = tuple(
+    entry_claim(n, step, column, printed, corrects=False, wrong=(n, step) in CORRECTED)
+    for (n, step), row in PRINTED.items()
+    for column, printed in zip(COLUMNS, row, strict=True)
+)
+
+CORRECTIONS = tuple(
+    entry_claim(n, step, column, printed, corrects=True, wrong=False)
+    for (n, step), row in CORRECTED.items()
+    for column, printed in zip(COLUMNS, row, strict=True)
+)
+
+
+# -- the Earth radius that the digits imply --------------------------------------------------------------
+
+
+def fits(radius: Fraction) -> bool:
+    """True when mu(N_p) with rho = 1/radius rounds to the printed digits for every n up to 10."""
+    return all(entry_fits(n, step, radius) for n, step in PRINTED if n <= 10)
+
+
+def entry_fits(n: int, step: str, radius: Fraction) -> bool:
+    printed = PRINTED[n, step][0]
+    found = condition_number(observability_rows(n, 1 / radius, STEPS[step]), digits=14)
+    return in_printed_format(found, printed) == printed
+
+
+def implied_radius(resolution: Fraction = Fraction(1, 10)) -> tuple[Fraction, Fraction]:
+    """Ends, in metres, of the range of radii around 6371000 m that fits all ten entries; by bisection.
+
+    The condition number grows with the radius there, so the fitting radii form one interval.
+    """
+
+    def end(inside: Fraction, outside: Fraction) -> Fraction:
+        while abs(outside - inside) > resolution:
+            middle = (inside + outside) / 2
+            inside, outside = (middle, outside) if fits(middle) else (inside, middle)
+        return inside
+
+    return end(1 / RHO, Fraction(6370000)), end(1 / RHO, Fraction(6372000))
