@@ -100,7 +100,7 @@ def touch(problem: Problem, basis: Basis, found: Polished, digits: int, bits: in
         value = total(z[:m], problem.target())
         lower, upper = lower_end(value, digits + 4), upper_end(value, digits + 4)
         document = header(problem, "touch", bits, cells) | {
-            "dual": [decimal(c, places + loss + 8) for c in centre[:m]],
+            "dual": [[decimal(c, places + loss + 8)] for c in centre[:m]],
             "contacts": contact_rows(found, centre, places + loss + 8),
             "radius": [decimal(r, 3, 1) for r in radius],
             "lower": lower,
@@ -200,10 +200,17 @@ def contact_rows(found: Polished, centre: Sequence[fmpq], digits: int) -> list[d
     for i, k in enumerate(found.panel):
         at = next(free) if found.inner[i] else rational(found.v[i])
         rows.append({
-            "panel": k, "at": decimal(at, digits), "end": not found.inner[i],
-            "sign": found.sign[i], "weight": decimal(centre[len(centre) - l + i], digits),
+            "panel": k, "at": [decimal(at, digits)], "end": end_name(found, i), "sign": found.sign[i],
+            "weight": [decimal(centre[len(centre) - l + i], digits)],
         })  # fmt: skip
     return rows
+
+
+def end_name(found: Polished, i: int) -> str:
+    """Which end of its panel a contact sits on: "from", "to", or "no"."""
+    if found.inner[i]:
+        return "no"
+    return "to" if rational(found.v[i]) == 1 else "from"
 
 
 def support_of(found: Polished, z: Sequence[arb]) -> tuple[tuple[int, arb, arb], ...]:
@@ -237,9 +244,10 @@ def gap(
         else:
             x, cells = [fmpq(0)] * len(found.dual), 0
         lower = lower_end(total([arb(c) for c in x], problem.target()), digits + 6)
-        document = header(problem, "gap", bits, cells) | {
+        # The checker has no touches to guide it: it halves its way towards each of them.
+        plain = cells + sum(map(len, touches)) * 2 * (digits + 12)
+        document = header(problem, "gap", bits, plain) | {
             "dual": [decimal(c, places + 8) for c in x],
-            "touches": [[k, decimal(t.at, places), t.sign] for k, row in enumerate(touches) for t in row],
             "support": [[k, decimal(v, places)] for k, v in support],
             "lower": lower,
             "upper": upper,
