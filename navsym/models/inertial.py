@@ -48,7 +48,7 @@ PHYSICAL_ORDERS: Mapping[sp.Symbol, int] = {
 }
 
 
-def dimensionless(climb: sp.Expr = sp.Integer(0)) -> ErrorEquations:
+def dimensionless(climb: sp.Expr = sp.S.Zero) -> ErrorEquations:
     """The error equations in tau, pi, nu, omega, u, with every term."""
     equations = error_equations(climb)
     w0 = physical.SCHULER

@@ -63,7 +63,7 @@ def rotation_rate(theta: sp.Matrix, excess: sp.Matrix, rate: sp.Matrix) -> sp.Ma
     return unskew(-first_order(right))
 
 
-def specific_force(rate: sp.Matrix, rate_derivative: sp.Matrix, climb: sp.Expr = sp.Integer(0)) -> sp.Matrix:
+def specific_force(rate: sp.Matrix, rate_derivative: sp.Matrix, climb: sp.Expr = sp.S.Zero) -> sp.Matrix:
     """f = dV/dt - g in the axes of a frame whose third axis carries the position ``R e3``.
 
     V = R' + rate x R; the attraction is ``-omega_0^2 R`` and the climb R' is constant.
@@ -74,7 +74,7 @@ def specific_force(rate: sp.Matrix, rate_derivative: sp.Matrix, climb: sp.Expr =
     return (inside + skew(rate) * velocity + SCHULER**2 * position).applyfunc(sp.expand)
 
 
-def mechanisation(force: sp.Matrix, rate: sp.Matrix, climb: sp.Expr = sp.Integer(0)) -> sp.Matrix:
+def mechanisation(force: sp.Matrix, rate: sp.Matrix, climb: sp.Expr = sp.S.Zero) -> sp.Matrix:
     """The rates that a computer integrates: :func:`specific_force` solved for omega_1', omega_2'."""
     return sp.Matrix([-(force[1] + 2 * climb * rate[0]) / RADIUS, (force[0] - 2 * climb * rate[1]) / RADIUS])
 
@@ -97,7 +97,7 @@ def horizontal(v: sp.Matrix) -> sp.Matrix:
     return v[:2, :]
 
 
-def error_equations(climb: sp.Expr = sp.Integer(0)) -> ErrorEquations:
+def error_equations(climb: sp.Expr = sp.S.Zero) -> ErrorEquations:
     """Exact first-order error equations, in physical units.
 
     The gyroscopes give the platform rate with the error nu, the accelerometers the force with the

@@ -1,0 +1,151 @@
+"""What each measurement of a model observes, where that breaks, and how the problem splits."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from navsym.cli.output import emit, table, write_text
+from navsym.errors import DomainError, DuplicateError, ExpressionSyntaxError, NavsymError
+
+if TYPE_CHECKING:
+    from navsym.text.modeltypes import ModelFile
+
+
+def command(
+    file: Annotated[Path, typer.Argument(help="model file (TOML) with constant F and h")],
+    split: Annotated[str | None, typer.Option(help='vectors of each chain, "i,j"; default m,n-m')] = None,
+    poles: Annotated[str | None, typer.Option(help='one polynomial in p per stage: "(p+lam)**3; (p+lam)**2"')] = None,
+    set_: Annotated[list[str] | None, typer.Option("--set", help="value of a parameter: w=1/2")] = None,
+    html: Annotated[Path | None, typer.Option(help="write the decomposition as a page")] = None,
+    latex: Annotated[Path | None, typer.Option(help="write the decomposition as LaTeX")] = None,
+    json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
+) -> None:
+    """Exact observability of a model: dimensions, rank drops, splits, gains by poles."""
+    from navsym.methods.observability_document import document, examine
+    from navsym.methods.observability_pages import as_html, as_latex
+
+    model_file = read(file, set_ or [])
+    request = read_split(split) if split is not None else None
+    polynomials, variable = read_poles(poles, model_file) if poles is not None else ((), None)
+    options = {"variable": variable} if variable is not None else {}
+    try:
+        examination = examine(linear_model(model_file), request, polynomials, **options)
+    except NavsymError as error:
+        raise error.at(str(file)) from None
+    if html is not None:
+        write_text(html, as_html(examination, model_file.name))
+    if latex is not None:
+        write_text(latex, as_latex(examination))
+    data = document(examination)
+    emit(data, as_json=json_, text=lambda: as_text(data))
+
+
+def read(file: Path, settings: list[str]) -> ModelFile:
+    """The model of a file; a file of regressors has no F to observe."""
+    from navsym.text.modelfile import read_model
+    from navsym.text.modeltypes import ModelFile
+
+    found = read_model(file, values_of(settings))
+    if not isinstance(found, ModelFile):
+        raise DomainError(
+            "expected a [model] with F and h; got a [basis] of regressors; give the system", where=str(file)
+        )
+    return found
+
+
+def values_of(settings: list[str]) -> Mapping[str, str]:
+    values = {}
+    for setting in settings:
+        name, equals, value = setting.partition("=")
+        if not equals:
+            raise ExpressionSyntaxError(f"expected NAME=VALUE; got {setting[:40]!r}; write --set w=1/2", where="--set")
+        values[name.strip()] = value.strip()
+    return values
+
+
+def linear_model(found: ModelFile) -> Any:
+    """The model file as a linear model."""
+    from navsym.models.linear import LinearModel
+
+    return LinearModel(
+        found.F,
+        None,
+        [list(m.h) for m in found.measurements] or None,
+        found.states,
+        measurements=tuple(m.name for m in found.measurements),
+        time=found.time,
+    )
+
+
+def read_split(text: str) -> tuple[int, int]:
+    """Two numbers with a comma between them."""
+    match = re.fullmatch(r"\s*(\d{1,3})\s*,\s*(\d{1,3})\s*", text)
+    if match is None:
+        raise ExpressionSyntaxError(f'expected two numbers "i,j"; got {text[:40]!r}; write --split 3,2', where="--split")
+    return int(match[1]), int(match[2])
+
+
+def read_poles(text: str, found: ModelFile) -> tuple[tuple[Any, ...], Any]:
+    """Polynomials in p; names that the file does not declare are positive symbols of their own."""
+    from navsym.text.expression import parse, symbol
+    from navsym.text.names import RESERVED
+
+    declared = {name: parameter.symbol for name, parameter in found.parameters.items()}
+    if "p" in declared:
+        raise DuplicateError(
+            "expected p to be free for the variable of the polynomials; got a parameter p; rename the parameter",
+            where="--poles",
+        )
+    names = set(re.findall(r"[A-Za-z][A-Za-z0-9_]*", text)) - RESERVED - declared.keys() - {"p"}
+    for name in sorted(names & set(found.states)):
+        raise DuplicateError(f"expected a symbol of its own; got {name}, which is a state; rename it", where="--poles")
+    variable = symbol("p")
+    known = {**declared, "p": variable, **{name: symbol(name, positive=True) for name in sorted(names)}}
+    parts = [part.strip() for part in text.split(";")]
+    return tuple(parse(part, known, where="--poles") for part in parts), variable
+
+
+# Text for people
+
+
+def as_text(data: Mapping[str, Any]) -> str:
+    """Tables of the document."""
+    verdict = "observable" if data["observable"] else "NOT observable"
+    blocks = [f"{data['n']} states, joint dimension {data['joint_dimension']}: {verdict}\n"]
+    blocks.append(table(["measurement", "dimension", "companion"], [
+        [m["name"], str(m["dimension"]), ", ".join(m["companion"])] for m in data["measurements"]
+    ]))
+    if data["unobservable_directions"]:
+        blocks.append("hidden: " + "; ".join(data["unobservable_directions"]) + "\n")
+    if data["rank_drops"]:
+        blocks.append(table(["rank drops of", "where", "list complete"], [
+            [d["subspace"], d["condition"] + (" (excluded by declaration)" if d["excluded_by_declaration"] else ""),
+             "proved" if d["complete"] else "not proved"] for d in data["rank_drops"]
+        ]))
+    else:
+        blocks.append("no rank drops\n")
+    if data["splits"]:
+        best = data["best_split"]
+        blocks.append(table(["i", "j", "det L", ""], [
+            [str(s["i"]), str(s["j"]), s["det_L"], "least max(i, j)" if [s["i"], s["j"]] == best else ""] for s in data["splits"]
+        ]))
+    if data["split"]:
+        blocks.append(split_text(data["split"]))
+    for name, values in data["gains"].items():
+        if name != "stable" and values:
+            blocks.append(f"{name} = ({', '.join(values)})\n")
+    return "\n".join(blocks)
+
+
+def split_text(chosen: Mapping[str, Any]) -> str:
+    lines = [f"split i = {chosen['i']}, j = {chosen['j']} ({chosen['form']}), det L = {chosen['det_L']}"]
+    for name in ("L", "Theta", "Phi_x", "Phi_z"):
+        rows = chosen[name]
+        if rows and rows[0]:
+            lines += [f"{name}:", *("  [" + ", ".join(cells) + "]" for cells in rows)]
+    return "\n".join(lines) + "\n"
