@@ -11,6 +11,7 @@ from collections.abc import Callable
 from fractions import Fraction
 
 import sympy as sp
+from sympy.core.evalf import PrecisionExhausted
 
 from navsym.errors import DomainError, NavsymError, TooLargeError
 from navsym.text.tokens import EXPONENT
@@ -62,7 +63,7 @@ def multiply(factors: list[sp.Expr]) -> sp.Expr:
 
 
 def invert(divisor: sp.Expr) -> sp.Expr:
-    if divisor.is_zero is True:
+    if sign(divisor) == 0:
         raise Refusal(DomainError, "a nonzero divisor", "zero", "correct the denominator")
     return real(sp.Pow(divisor, -1))
 
@@ -70,7 +71,7 @@ def invert(divisor: sp.Expr) -> sp.Expr:
 def power(base: sp.Expr, exponent: sp.Expr) -> sp.Expr:
     """``base**exponent`` with the size of the result bounded before it is computed."""
     bound_exponent(base, exponent)
-    if base.is_zero is True and exponent.is_extended_negative:
+    if exponent.is_extended_negative and sign(base) == 0:
         raise Refusal(DomainError, "a nonzero base", "zero to a negative power", "correct the denominator")
     return real(sp.Pow(base, exponent))
 
@@ -84,6 +85,18 @@ def call(name: str, arguments: list[sp.Expr]) -> sp.Expr:
     if name == "exp":
         bound_logarithms(arguments[0])
     return real(BUILDERS[name](*arguments))
+
+
+def sign(value: sp.Expr) -> int | None:
+    """Sign of a constant: -1, 1, or 0 for zero and what 120 digits cannot tell from it; None with symbols."""
+    if value.free_symbols:
+        return None
+    if not value.is_Rational:
+        try:
+            value = value.evalf(10, maxn=120, strict=True)
+        except PrecisionExhausted:
+            return 0
+    return int(sp.sign(value)) if value.is_comparable else None
 
 
 def bound_exponent(base: sp.Expr, exponent: sp.Expr) -> None:

@@ -10,6 +10,7 @@ from typing import Any
 import sympy as sp
 
 from navsym.errors import DomainError, EmptyError, ExpressionSyntaxError, ShapeError, TooLargeError
+from navsym.text.arithmetic import sign
 from navsym.text.files import called
 from navsym.text.names import nearest, shown
 from navsym.text.parameters import Parameter, box_of, read_parameters, read_range, symbols_of
@@ -146,4 +147,4 @@ def read_box(value: Any, symbols: Mapping[str, Parameter], where: str) -> Box:
 
 def outside(inner: sp.Expr | None, outer: sp.Expr | None) -> bool:
     """True when ``inner < outer`` is certain; None means no end."""
-    return inner is not None and outer is not None and (inner - outer).is_negative is True
+    return inner is not None and outer is not None and sign(inner - outer) == -1

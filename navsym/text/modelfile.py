@@ -9,6 +9,7 @@ from typing import Any
 import sympy as sp
 
 from navsym.errors import DomainError, DuplicateError, EmptyError, UnknownSymbolError
+from navsym.text.arithmetic import sign
 from navsym.text.basisfile import Known, read_basis, read_targets
 from navsym.text.expression import parse, symbol
 from navsym.text.files import called
@@ -90,10 +91,10 @@ def read_values(values: Mapping[str, str], parameters: Mapping[str, Parameter]) 
 
 def admitted(value: sp.Expr, parameter: Parameter) -> bool:
     """False when the value certainly contradicts the declaration."""
-    below = parameter.lower is not None and (value - parameter.lower).is_negative
-    above = parameter.upper is not None and (parameter.upper - value).is_negative
-    sign = {"positive": value.is_positive, "nonnegative": value.is_nonnegative, "nonzero": value.is_nonzero}
-    return not below and not above and sign.get(parameter.kind) is not False
+    below = parameter.lower is not None and sign(value - parameter.lower) == -1
+    above = parameter.upper is not None and sign(parameter.upper - value) == -1
+    wrong = {"positive": (0, -1), "nonnegative": (-1,), "nonzero": (0,)}.get(parameter.kind, ())
+    return not below and not above and sign(value) not in wrong
 
 
 def read_system(document: Table, where: str, parameters: Mapping[str, Parameter], known: Known) -> ModelFile:

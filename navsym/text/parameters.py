@@ -9,6 +9,7 @@ from typing import Any, Literal
 import sympy as sp
 
 from navsym.errors import DomainError, ExpressionSyntaxError, ShapeError, TooLargeError
+from navsym.text.arithmetic import sign
 from navsym.text.expression import symbol
 from navsym.text.names import nearest, shown
 from navsym.text.schema import SIDE, Table, as_list, entry, inside, kind_of
@@ -72,8 +73,7 @@ def read_range(value: Any, where: str) -> tuple[sp.Expr, sp.Expr]:
 
 def require_order(lower: sp.Expr, upper: sp.Expr, where: str) -> None:
     """Refuse ends that are not in order, as far as that can be decided."""
-    width = upper - lower
-    if not width.free_symbols and width.is_positive is not True:
+    if sign(upper - lower) in (0, -1):
         got = f"{brief(lower)} and {brief(upper)}"
         message = f"expected the lower end below the upper one; got {got}; do swap or correct them"
         raise DomainError(message, where=where)
@@ -81,9 +81,8 @@ def require_order(lower: sp.Expr, upper: sp.Expr, where: str) -> None:
 
 def require_positive(value: sp.Expr, what: str, where: str) -> None:
     """Refuse a number that is not positive, and a name that is not declared to be."""
-    if value.is_positive or (value.is_Symbol and value.is_nonnegative):
-        return
-    if not value.free_symbols or value.is_Symbol or value.is_nonpositive:
+    declared = value.is_Symbol and (value.is_positive or value.is_nonnegative)
+    if not declared and (value.is_Symbol or sign(value) in (0, -1) or value.is_nonpositive):
         message = f"expected {what} above zero; got {brief(value)}; do correct it or declare it positive"
         raise DomainError(message, where=where)
 
@@ -95,9 +94,10 @@ def brief(value: object) -> str:
 
 
 def sign_of(lower: sp.Expr) -> dict[str, bool]:
-    if lower.is_positive:
+    """What a range with this lower end says of the sign."""
+    if sign(lower) == 1:
         return {"positive": True}
-    return {"nonnegative": True} if lower.is_zero else {}
+    return {"nonnegative": True} if lower == 0 else {}
 
 
 def symbols_of(parameters: Mapping[str, Parameter]) -> dict[str, sp.Symbol]:

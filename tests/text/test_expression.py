@@ -21,7 +21,10 @@ from navsym.errors import (
 from navsym.text.expression import parse, parse_noting, symbol, to_text
 
 NAMES = ["x", "y", "E", "I", "N", "S", "O", "Q", "beta", "gamma", "zeta", "lambda", "is", "in", "if", "T"]
-SYMBOLS = {name: symbol(name) for name in NAMES} | {"p": symbol("p", positive=True), "u": symbol("u", nonzero=True)}
+SYMBOLS = {name: symbol(name) for name in NAMES} | {
+    "p": symbol("p", positive=True),
+    "u": symbol("u", nonzero=True),
+}
 x, y, p, T = (SYMBOLS[name] for name in "x y p T".split())
 
 
@@ -78,7 +81,9 @@ def test_a_name_with_a_meaning_cannot_be_declared(name):
         parse("1", {name: sp.Symbol(name)})
 
 
-@pytest.mark.parametrize("name", ["", "1x", "_x", "__class__", "x y", "x;y", "х", "ﬁ", "x.y", "a" * 65, None, 3])
+@pytest.mark.parametrize(
+    "name", ["", "1x", "_x", "__class__", "x y", "x;y", "х", "ﬁ", "x.y", "a" * 65, None, 3]
+)
 def test_a_name_must_be_plain_ascii(name):
     with pytest.raises(NavsymError, match=r"expected .*name.*; got .*; do "):
         symbol(name)
@@ -149,7 +154,7 @@ def test_what_is_refused_is_refused_where_it_stands(text, error, place, words):
     with pytest.raises(error, match=words) as caught:
         read(text)
     assert type(caught.value) is error
-    assert caught.value.where.startswith("file.toml: h") and caught.value.where.endswith(place or "h") or (
+    assert (caught.value.where.startswith("file.toml: h") and caught.value.where.endswith(place or "h")) or (
         place and place in caught.value.where
     )
     assert caught.value.message.isascii() and "\n" not in caught.value.message
@@ -196,11 +201,28 @@ def test_printing_reads_like_the_paper(expression, text):
 @pytest.mark.parametrize(
     "outside",
     [
-        sp.Float("0.1"), sp.I, sp.oo, sp.zoo, sp.nan, sp.Piecewise((x, x > 0), (0, True)), sp.gamma(x),
-        sp.Symbol("х"), sp.Symbol("x;y"), sp.Symbol("pi"), sp.Symbol("</script>"), sp.Integral(x, x), sp.sign(x),
-        sp.Symbol("x") * sp.Float(2), sp.asinh(x), x < y, sp.Matrix([x]), "x", 0.5, None,
+        sp.Float("0.1"),
+        sp.I,
+        sp.oo,
+        sp.zoo,
+        sp.nan,
+        sp.Piecewise((x, x > 0), (0, True)),
+        sp.gamma(x),
+        sp.Symbol("х"),
+        sp.Symbol("x;y"),
+        sp.Symbol("pi"),
+        sp.Symbol("</script>"),
+        sp.Integral(x, x),
+        sp.sign(x),
+        sp.Symbol("x") * sp.Float(2),
+        sp.asinh(x),
+        x < y,
+        sp.Matrix([x]),
+        "x",
+        0.5,
+        None,
     ],
-)  # fmt: skip
+)
 def test_what_is_outside_the_language_cannot_be_printed(outside):
     with pytest.raises(NavsymError, match="expected"):
         to_text(outside)
@@ -212,9 +234,25 @@ leaves = st.one_of(
     st.fractions(-5, 5, max_denominator=9).map(lambda f: sp.Rational(f.numerator, f.denominator)),
 )
 functions = st.sampled_from(
-    [sp.sin, sp.cos, sp.tan, sp.cot, sp.sec, sp.csc, sp.exp, sp.log, sp.sqrt, sp.Abs, sp.asin, sp.acos, sp.atan,
-     sp.sinh, sp.cosh, sp.tanh]
-)  # fmt: skip
+    [
+        sp.sin,
+        sp.cos,
+        sp.tan,
+        sp.cot,
+        sp.sec,
+        sp.csc,
+        sp.exp,
+        sp.log,
+        sp.sqrt,
+        sp.Abs,
+        sp.asin,
+        sp.acos,
+        sp.atan,
+        sp.sinh,
+        sp.cosh,
+        sp.tanh,
+    ]
+)
 powers = st.sampled_from([-3, -2, -1, 2, 3, sp.Rational(1, 2), sp.Rational(-1, 2), sp.Rational(2, 3), x, -y])
 
 
