@@ -52,13 +52,13 @@ class Certified:
         return 0.0 if size == 0 else float(arb((self.upper - self.lower) / size))
 
 
-def certify(problem: Problem, digits: int = 30) -> Certified:
+def certify(problem: Problem, digits: int = 30, basis: Basis | None = None) -> Certified:
     """Solve and enclose to a relative width of ``10**-digits`` if the problem lets us.
 
     Raises DependentError when the regressors look dependent; the width of the answer tells how
     far it came.
     """
-    basis = make_basis(problem)
+    basis = make_basis(problem) if basis is None else basis
     contacts = find_contacts(basis.panels)
     loss = lost_digits(basis)
     bits = int(3.33 * (digits + 2 * loss + 25)) + 64
@@ -79,7 +79,7 @@ def lost_digits(basis: Basis) -> int:
     return max(0, int(np.log10(largest) + np.log10(inverse)) + 1)
 
 
-# -- exact contacts --------------------------------------------------------------------------
+# -- exact contacts ---------------------------------------
 
 
 def touch(problem: Problem, basis: Basis, found: Polished, digits: int, bits: int) -> Certified | None:
@@ -220,7 +220,7 @@ def support_of(found: Polished, z: Sequence[arb]) -> tuple[tuple[int, arb, arb],
     return tuple(zip(found.panel, at, z[len(z) - l :], strict=True))
 
 
-# -- two-sided -------------------------------------------------------------------------------
+# -- two-sided ---------------------------------------
 
 
 def gap(
@@ -253,13 +253,13 @@ def gap(
             "upper": upper,
         }
         rows = tuple((k, arb(v), w) for (k, v), w in zip(support, weights, strict=True))
-        shown = tuple(row for row in rows if not bool(abs(row[2]) < arb(10) ** (-digits) * abs(arb(exact(upper)))))
+        shown = tuple(
+            row for row in rows if not bool(abs(row[2]) < arb(10) ** (-digits) * abs(arb(exact(upper))))
+        )
         return Certified(exact(lower), exact(upper), shown, tuple(arb(c) for c in x), None, document)
 
 
-def support_points(
-    basis: Basis, contacts: Contacts, found: Polished, places: int
-) -> list[tuple[int, fmpq]]:
+def support_points(basis: Basis, contacts: Contacts, found: Polished, places: int) -> list[tuple[int, fmpq]]:
     """As many places as unknowns, regressors far from dependent: the contacts, filled up from the grid."""
     C = basis.panels.coefficients
     m = C.shape[2]

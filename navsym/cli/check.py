@@ -1,0 +1,88 @@
+"""Re-verify certificates with the independent checker."""
+
+from __future__ import annotations
+
+import importlib
+import json
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from navsym.cli.output import emit, table
+from navsym.errors import EmptyError
+
+LARGEST = 50_000_000
+
+
+def command(
+    paths: Annotated[list[Path], typer.Argument(help="certificates (JSON) or folders of them")],
+    json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
+) -> None:
+    """Accept or reject every certificate; the exit status is 1 when one is rejected."""
+    rows = [row for path in paths for row in check_path(path)]
+    if not rows:
+        raise EmptyError("expected certificates; got none; name JSON files or exported folders", where=str(paths[0]))
+    emit({"checked": rows}, as_json=json_, text=lambda: as_text(rows))
+    if any(row["status"] != "ACCEPTED" for row in rows):
+        raise typer.Exit(1)
+
+
+def check_path(path: Path) -> list[dict[str, Any]]:
+    """Verdicts on a file, or on the certificates and exported code of a folder."""
+    if path.is_dir():
+        exported = check_exported(path)
+        return exported + [row for file in sorted(path.rglob("*.json")) for row in check_folder_file(file)]
+    return [check_file(path)]
+
+
+def check_folder_file(file: Path) -> list[dict[str, Any]]:
+    """A JSON file in a folder counts when it is a certificate; vectors and manifests do not."""
+    try:
+        document = json.loads(file.read_text("utf-8"))
+    except (OSError, ValueError):
+        return [check_file(file)]
+    return [check_file(file)] if isinstance(document, dict) and "kind" in document else []
+
+
+def check_file(path: Path) -> dict[str, Any]:
+    from navsym import checker
+
+    try:
+        if path.stat().st_size > LARGEST:
+            raise checker.Refused("longer than 50 MB")
+        item = checker.load(path.read_text("utf-8"))
+        kind = checker.check(item)
+    except (OSError, UnicodeDecodeError) as error:
+        return verdict(path, None, f"cannot be read: {type(error).__name__}")
+    except checker.Refused as error:
+        return verdict(path, kind_of(path), str(error))
+    return {"path": str(path), "kind": kind, "status": "ACCEPTED", "why": ""}
+
+
+def verdict(path: Path, kind: str | None, why: str) -> dict[str, Any]:
+    return {"path": str(path), "kind": kind, "status": "REJECTED", "why": why}
+
+
+def kind_of(path: Path) -> str | None:
+    try:
+        document = json.loads(path.read_text("utf-8"))
+    except (ValueError, RecursionError):
+        return None
+    kind = document.get("kind") if isinstance(document, dict) else None
+    return kind if isinstance(kind, str) else None
+
+
+def check_exported(folder: Path) -> list[dict[str, Any]]:
+    """Exported code runs on its own vectors; the export room knows how, when it is there."""
+    try:
+        roundtrip = importlib.import_module("navsym.export.roundtrip")
+    except ModuleNotFoundError:
+        return []
+    check = getattr(roundtrip, "check_folder", None)
+    return list(check(folder)) if check is not None else []
+
+
+def as_text(rows: list[dict[str, Any]]) -> str:
+    cells = [(row["path"], row["kind"] or "", row["status"], row["why"]) for row in rows]
+    return table(("path", "kind", "status", "why"), cells)

@@ -1,0 +1,73 @@
+"""The guaranteed estimator of a model: optimal instants and weights, with a certificate."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from navsym.cli.output import dumps, emit, table, write_text
+from navsym.errors import ExpressionSyntaxError, NavsymError
+
+
+def command(
+    file: Annotated[Path, typer.Argument(help="model or basis file (TOML)")],
+    target: Annotated[str | None, typer.Option(help="name of the functional; the only one by default")] = None,
+    set_: Annotated[list[str] | None, typer.Option("--set", help="value of a parameter: T=2.5")] = None,
+    digits: Annotated[int, typer.Option(help="certified digits of the value")] = 30,
+    compare: Annotated[bool, typer.Option("--compare", help="least squares, Kalman and solvers beside it")] = False,
+    out: Annotated[Path | None, typer.Option(help="write the certificate to this file")] = None,
+    json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
+) -> None:
+    """Minimise the guaranteed standard deviation; the value is enclosed, the certificate replayable."""
+    from navsym.methods.guaranteed import solve
+    from navsym.methods.guaranteed_problem import from_file
+    from navsym.text.modelfile import read_model
+
+    found = read_model(file, values_of(set_ or []))
+    try:
+        solution = solve(from_file(found, target), digits)
+    except NavsymError as error:
+        raise error.at(str(file)) from None
+    document = solution.document()
+    if compare:
+        from navsym.methods.guaranteed_compare import compare as beside
+
+        document["compare"] = beside(solution)
+    if out is not None:
+        write_text(out, dumps(document["certificate"]) + "\n")
+    emit(document, as_json=json_, text=lambda: as_text(document))
+
+
+def values_of(settings: list[str]) -> dict[str, str]:
+    values = {}
+    for setting in settings:
+        name, equals, value = setting.partition("=")
+        if not equals:
+            message = f"expected NAME=VALUE; got {setting[:40]!r}; write --set T=5/2"
+            raise ExpressionSyntaxError(message, where="--set")
+        values[name.strip()] = value.strip()
+    return values
+
+
+def as_text(document: dict[str, Any]) -> str:
+    value = document["value"]
+    lines = [
+        f"{document['target']}: {document['status']}",
+        f"guaranteed standard deviation  {value['lower']}",
+        f"                            …  {value['upper']}",
+    ]
+    rows = [(row["measurement"], row["at"], row["weight"]) for row in document["support"]]
+    lines.append(table(("measurement", "at", "weight"), rows))
+    words = {True: "the only optimal estimator", None: "other optimal estimators are not excluded"}
+    lines.append(words.get(document["unique"], "other optimal estimators exist"))
+    if "compare" in document:
+        lines.append(comparison(document["compare"]))
+    return "\n".join(lines)
+
+
+def comparison(data: dict[str, Any]) -> str:
+    rows = [("least squares", "", data["least_squares"]), ("Kalman, white noise", "", data["kalman_white_noise"])]
+    rows += [(row["solver"], row["status"], row["value"]) for row in data["solvers"]]
+    return table(("estimator", "status", "guaranteed deviation"), rows, right=("guaranteed deviation",))
