@@ -12,7 +12,7 @@ from collections.abc import Callable
 import sympy as sp
 
 from derivations.guaranteed_velocity.model import INSTANTS, H, T, alternating, tau, weights
-from navsym.claims import PROVED, REFUTED, Bound, Claim, Equation, Optimum, Statement, claim
+from navsym.claims import REFUTED, Bound, Claim, Equation, Optimum, Statement, claim
 
 FULL = 2 * sp.pi
 UNITS = {"y1": (1, 0, 0), "y2": (0, 1, 0), "y3": (0, 0, 1)}
@@ -42,7 +42,7 @@ def three_instants(state: str, upper: sp.Expr) -> Optimum:
     )
 
 
-# -- how far the printed formulas hold ---------------------------------------------------------------------
+# -- how far the printed formulas hold ---------------------------------------
 
 
 @claim("range.y1")
@@ -63,7 +63,11 @@ def drift_holds_to_two_thirds_of_pi():
     return three_instants("y3", 2 * sp.pi / 3)
 
 
-@claim("range.y2.end", expect=REFUTED, slip="paper", reason="a test of sharpness: nothing of the kind is printed")
+@claim(
+    "range.y2.end",
+    expect=REFUTED,
+    reason="a test of sharpness: at the end of this range a weight has the wrong sign",
+)
 def tilt_does_not_hold_further():
     """y2: the printed solution is optimal up to T = 3 pi/2."""
     return three_instants("y2", 3 * sp.pi / 2)
@@ -73,7 +77,11 @@ def tilt_does_not_hold_further():
 def tilt_with_two_instants():
     """y2, 4 pi/3 <= T <= 3 pi/2: two instants, 2(T - pi) and 0, and the error -1/sin T."""
     sine = sp.sin(T)
-    dual = (-sp.sin(T) * 0 + (1 - 1 / sine**2) + sp.cos(2 * sp.pi - T) / sine**2, -1 / sine, sp.cos(T) / sine**2)
+    dual = (
+        -sp.sin(T) * 0 + (1 - 1 / sine**2) + sp.cos(2 * sp.pi - T) / sine**2,
+        -1 / sine,
+        sp.cos(T) / sine**2,
+    )
     return solution(
         "y2",
         dual,
@@ -99,7 +107,11 @@ def tilt_with_two_inner_instants():
     )
 
 
-@claim("range.y3.end", expect=REFUTED, slip="paper", reason="a test of sharpness: nothing of the kind is printed")
+@claim(
+    "range.y3.end",
+    expect=REFUTED,
+    reason="a test of sharpness: at the end of this range a weight has the wrong sign",
+)
 def drift_does_not_hold_further():
     """y3: the printed solution is optimal up to T = 3 pi/4."""
     return three_instants("y3", 3 * sp.pi / 4)
@@ -135,7 +147,7 @@ def drift_with_half_a_period():
     )
 
 
-# -- the errors meet where the regimes meet ---------------------------------------------------------------------
+# -- the errors meet where the regimes meet ---------------------------------------
 
 
 def meeting(left: sp.Expr, right: sp.Expr, at: sp.Expr) -> Callable[[], Statement]:
@@ -147,9 +159,9 @@ def meeting(left: sp.Expr, right: sp.Expr, at: sp.Expr) -> Callable[[], Statemen
 
 
 MEETINGS: tuple[Claim, ...] = tuple(
-    claim(f"range.{state}.meets.{place}", title=f"The errors of {state} on both sides of T = {at} agree there.")(
-        meeting(left, right, at)
-    )
+    claim(
+        f"range.{state}.meets.{place}", title=f"The errors of {state} on both sides of T = {at} agree there."
+    )(meeting(left, right, at))
     for state, place, left, right, at in (
         ("y2", "1", 2 * sp.cot(T / 4), -1 / sp.sin(T), 4 * sp.pi / 3),
         ("y2", "2", -1 / sp.sin(T), sp.Integer(1), 3 * sp.pi / 2),
@@ -159,9 +171,9 @@ MEETINGS: tuple[Claim, ...] = tuple(
 )
 
 
-# -- uniqueness --------------------------------------------------------------------------------------------------
+# -- uniqueness ---------------------------------------
 
-v = sp.Symbol("v", positive=True)              # position inside a half interval, 0 < v <= 1
+v = sp.Symbol("v", positive=True)  # position inside a half interval, 0 < v <= 1
 UNIQUE_BOX = {T: (0, sp.pi / 2), v: (0, 1)}
 
 
@@ -217,6 +229,3 @@ def other_dual_of_velocity():
         value=sp.Integer(1),
         box={T: (0, sp.pi / 2)},
     )
-
-
-__all__ = ["PROVED"]

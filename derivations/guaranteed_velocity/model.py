@@ -7,9 +7,9 @@ import sympy as sp
 from navsym.models.linear import LinearModel
 from navsym.models.transition import regressors
 
-T = sp.Symbol("T", positive=True)             # length of the correction interval, Schuler units
-tau = sp.Symbol("tau", real=True)             # dimensionless time, omega_0 t
-sigma1 = sp.Symbol("sigma1", positive=True)   # bound of the noise of the lateral measurement
+T = sp.Symbol("T", positive=True)  # length of the correction interval, Schuler units
+tau = sp.Symbol("tau", real=True)  # dimensionless time, omega_0 t
+sigma1 = sp.Symbol("sigma1", positive=True)  # bound of the noise of the lateral measurement
 sigma2 = sp.Symbol("sigma2", positive=True)
 
 #: The range of validity that the paper states: T <= pi/2.

@@ -5,8 +5,8 @@ from __future__ import annotations
 import sympy as sp
 
 from derivations.guaranteed_velocity.model import INSTANTS, STATED, H, T, alternating, tau, weights
-from navsym.claims import CERTIFIED, PROVED, REFUTED, Bound, Equation, Finding, Optimum, Property, claim
-from navsym.proof.balls import enclose
+from navsym.claims import PROVED, REFUTED, Bound, Equation, Finding, Optimum, Property, claim
+from navsym.proof.bounds import Sign, prove_sign
 from navsym.proof.normal_form import vanishes_identically
 
 U2_PRINTED = sp.sin(T / 4) ** 2 / sp.cos(T / 2)
@@ -46,7 +46,7 @@ def optimum(dual: tuple, state: int, value: sp.Expr) -> Optimum:
     )
 
 
-# -- (4.1), (4.2) ------------------------------------------------------------------------------------
+# -- (4.1), (4.2) ---------------------------------------
 
 
 def rotated() -> sp.Matrix:
@@ -116,7 +116,7 @@ def polynomial_to_be_minimised():
     return Equation(printed=printed, derived=polynomial(u2, u3))
 
 
-# -- (4.3) to (4.6) ------------------------------------------------------------------------------------
+# -- (4.3) to (4.6) ---------------------------------------
 
 
 @claim(
@@ -243,7 +243,7 @@ def instants_in_use() -> Finding:
     return Finding(counts, "normal form of the weights", PROVED, "all T with det N != 0")
 
 
-# -- (4.7) to (4.9) ------------------------------------------------------------------------------------
+# -- (4.7) to (4.9) ---------------------------------------
 
 
 @claim("4.7")
@@ -291,22 +291,27 @@ def third_deviation_corrected():
 def optimal_deviation(state: int) -> sp.Expr:
     """1 / sum |Phi_j| for y1 or y2: the deviation that (3.6) assigns to the optimal weights."""
     if state == 0:
-        return 1 / sum((w for w in weights(0)), sp.Integer(0))   # one weight, equal to one
+        return 1 / sum((w for w in weights(0)), sp.Integer(0))  # one weight, equal to one
     first, middle, last = weights(state)
-    return 1 / (-first + middle - last)                          # signs -, +, - on the stated range
+    return 1 / (-first + middle - last)  # signs -, +, - on the stated range
 
 
 @claim("4.8.signs")
 def signs_of_the_weights():
-    """The weights of y2 alternate -, +, -: so that sum |Phi| is what optimal_deviation takes it to be."""
-    first, middle, last = weights(1)
-    pairs = [(first, -1), (middle, 1), (last, -1)]
-    quarter = {T: sp.pi / 3}
-    found = tuple(int(s) if enclose((s * w).subs(quarter)) > 0 else 0 for w, s in pairs)
+    """The weights of y2 alternate -, +, - on the stated range, as optimal_deviation takes for granted."""
+    found = tuple(proved_sign(weight) for weight in weights(1))
     return Property(
         printed=(-1, 1, -1),
-        derived=Finding(found, "balls at T = pi/3; the signs on the whole range are part of 4.13", CERTIFIED, "T = pi/3"),
+        derived=Finding(found, "signs of the product forms", PROVED, "T in (0, pi/2]"),
     )
+
+
+def proved_sign(weight: sp.Expr) -> int:
+    """+1 or -1 when that sign is proved on the stated range, otherwise 0."""
+    for sign in (1, -1):
+        if prove_sign(sign * weight, STATED, Sign.POSITIVE).at_least(Sign.POSITIVE):
+            return sign
+    return 0
 
 
 @claim("4.9.L2")

@@ -119,7 +119,7 @@ def power_instruction(node: sp.Pow) -> tuple[str, Sequence[sp.Basic], Any]:
     return "general_power", (node.base, node.exp), None
 
 
-# -- the operations, for balls and for power series of balls alike ---------------------------
+# -- the operations, for balls and for power series of balls alike ---------------------------------------
 
 
 def constant_term(x: Any) -> arb:
@@ -299,7 +299,7 @@ OPERATIONS: dict[str, Callable[[Any, list[Any], Any], Any]] = {
 }
 
 
-# -- what the other rooms call ---------------------------------------------------------------
+# -- what the other rooms call ---------------------------------------
 
 
 def enclose(

@@ -13,12 +13,13 @@ Every step is rigorous; what none of them settles comes back as unknown.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from enum import IntEnum
 
 import sympy as sp
-from flint import arb
+from flint import arb, fmpq
 
 from navsym.claims.statement import Box
 from navsym.proof.balls import (
@@ -81,18 +82,20 @@ def attempt(expression: sp.Expr, limits: Limits, wanted: Sign, budget: int, dept
     """One level of the search; the cheap and exact ways come first."""
     if not expression.free_symbols:
         return constant_sign(expression)
-    by_factors = product_sign(expression, limits, budget, depth)
-    if by_factors.at_least(wanted):
-        return by_factors
-    for exact_way in (angle_sign, bounded_terms):
-        by_range = exact_way(expression, limits)
-        if by_range.at_least(wanted):
-            return by_range
+    if negative_somewhere(expression, limits):
+        return UNKNOWN
     product = as_product(expression) if depth == 0 else None
     if product is not None:
         by_product = product_sign(product, limits, budget, depth)
         if by_product.at_least(wanted):
             return replace(by_product, reason=f"product form {product}")
+    by_factors = product_sign(expression, limits, budget, depth)
+    if by_factors.at_least(wanted):
+        return by_factors
+    for exact_way in (angle_sign, bounded_terms, multilinear_sign):
+        by_range = exact_way(expression, limits)
+        if by_range.at_least(wanted):
+            return by_range
     by_balls = subdivide(expression, limits, wanted, budget)
     if by_balls.at_least(wanted):
         return by_balls
@@ -105,7 +108,30 @@ def attempt(expression: sp.Expr, limits: Limits, wanted: Sign, budget: int, dept
     return UNKNOWN
 
 
-# -- constants -----------------------------------------------------------------------------------
+def negative_somewhere(expression: sp.Expr, limits: Limits) -> bool:
+    """A look at a few inner points, to give up early on what is not true."""
+    program = tape(expression)
+    for share in (fmpq(1, 2), fmpq(1, 7), fmpq(12, 13)):
+        with precision(DEFAULT_BITS):
+            point = {symbol: inner_value(limit, share) for symbol, limit in limits.items()}
+        if enclose(program, point) < 0:
+            return True
+    return False
+
+
+def inner_value(limit: Range, share: fmpq) -> arb:
+    """A point inside the range, up to rounding; only a guess is built on it."""
+    lower = None if limit.lower is None else exact_ball(limit.lower).mid()
+    upper = None if limit.upper is None else exact_ball(limit.upper).mid()
+    if lower is not None and upper is not None:
+        return arb(lower + (upper - lower) * share)
+    stretched = arb(share / (1 - share))
+    if lower is not None:
+        return arb(lower + stretched)
+    return arb(upper - stretched) if upper is not None else stretched - arb(2) / 3
+
+
+# -- constants ---------------------------------------
 
 
 def constant_sign(expression: sp.Expr) -> SignProof:
@@ -121,7 +147,7 @@ def constant_sign(expression: sp.Expr) -> SignProof:
     return UNKNOWN
 
 
-# -- products ------------------------------------------------------------------------------------
+# -- products ---------------------------------------
 
 
 def product_sign(expression: sp.Expr, limits: Limits, budget: int, depth: int) -> SignProof:
@@ -189,7 +215,9 @@ def power_sign(expression: sp.Pow, limits: Limits, budget: int, depth: int) -> S
         return UNKNOWN
     even = exponent.q == 1 and exponent.p % 2 == 0
     if even and exponent > 0 and is_entire(base):
-        return SignProof(Sign.NONNEGATIVE, "even power", exact=True)
+        ways = [way(value, limits) for value in (base, -base) for way in (angle_sign, multilinear_sign)]
+        best = max((way.sign for way in ways), default=Sign.UNKNOWN)
+        return SignProof(max(best, Sign.NONNEGATIVE), "even power", exact=True)
     proof, flipped = factor_sign(base, limits, budget, depth)
     if exponent.q != 1 and (flipped or proof.sign == Sign.UNKNOWN):
         return UNKNOWN
@@ -247,28 +275,32 @@ def least_value(term: sp.Expr) -> sp.Expr | None:
 # -- sine and cosine of an angle whose exact range is known ---------------------------------------
 
 
-#: function -> ranges of the angle on which it is nonnegative and on which it is nonpositive.
-SIGNED_RANGES = {
-    sp.sin: ((sp.Integer(0), sp.pi), (-sp.pi, sp.Integer(0))),
-    sp.cos: ((-sp.pi / 2, sp.pi / 2), (sp.pi / 2, 3 * sp.pi / 2)),
-}
-
-
 def angle_sign(expression: sp.Expr, limits: Limits) -> SignProof:
-    """sin(u) or cos(u), or its negative, for an angle whose range is exactly known."""
+    """sin(u) or cos(u), or its negative, when the exact range of u lies between two zeros."""
     negative = expression.could_extract_minus_sign() and isinstance(-expression, (sp.sin, sp.cos))
     inner = -expression if negative else expression
-    if inner.func not in SIGNED_RANGES:
+    if not isinstance(inner, (sp.sin, sp.cos)):
         return UNKNOWN
-    allowed = SIGNED_RANGES[inner.func][1 if negative else 0]
-    return range_sign(inner.args[0], limits, allowed)
-
-
-def range_sign(angle: sp.Expr, limits: Limits, allowed: tuple[sp.Expr, sp.Expr]) -> SignProof:
-    """Positive when the angle stays strictly inside the allowed range, nonnegative when it touches."""
+    angle = inner.args[0] if isinstance(inner, sp.sin) else inner.args[0] + sp.pi / 2
     values = corner_values(angle, limits)
     if values is None:
         return UNKNOWN
+    half_turn = middle_half_turn(values)
+    if (half_turn % 2 == 1) != negative:
+        return UNKNOWN
+    return range_sign(angle, values, limits, (half_turn * sp.pi, (half_turn + 1) * sp.pi))
+
+
+def middle_half_turn(values: list[sp.Expr]) -> int:
+    """k with the middle of the values between k pi and (k + 1) pi: a guess, checked afterwards."""
+    middle = float(sum((value.evalf(20) for value in values), sp.Integer(0))) / len(values)
+    return math.floor(middle / math.pi)
+
+
+def range_sign(
+    angle: sp.Expr, values: list[sp.Expr], limits: Limits, allowed: tuple[sp.Expr, sp.Expr]
+) -> SignProof:
+    """Positive when the angle stays strictly inside the allowed range, nonnegative when it touches."""
     strict = True
     for margin in (lambda value: value - allowed[0], lambda value: allowed[1] - value):
         signs = {constant_sign(margin(value)).sign for value in values}
@@ -279,12 +311,29 @@ def range_sign(angle: sp.Expr, limits: Limits, allowed: tuple[sp.Expr, sp.Expr])
     return SignProof(Sign.POSITIVE if strict else Sign.NONNEGATIVE, "exact range of the angle", exact=True)
 
 
+def multilinear_sign(expression: sp.Expr, limits: Limits) -> SignProof:
+    """A multilinear expression is least at a corner of the box."""
+    if not isinstance(expression, (sp.Add, sp.Mul)):
+        return UNKNOWN
+    values = corner_values(expression, limits)
+    if values is None:
+        return UNKNOWN
+    signs = [constant_sign(value).sign for value in values]
+    return SignProof(min(signs), "least at a corner of the box", exact=True)
+
+
 def monomial_sign(expression: sp.Expr, limits: Limits) -> Sign:
-    """Sign of a product of symbols and numbers by the ranges of the symbols."""
-    sign = Sign.POSITIVE
-    for factor in sp.Mul.make_args(sp.expand(expression)):
-        proof = symbol_sign(limits[factor]) if isinstance(factor, sp.Symbol) else UNKNOWN
-        sign = min(sign, constant_sign(factor).sign if factor.is_number else proof.sign)
+    """Sign of a product of numbers, symbols and multilinear factors, such as T (1/2 - v/4)."""
+    spread = sp.expand(expression)
+    gathered = sp.factor_terms(spread)
+    sign = Sign.POSITIVE if sp.expand(gathered - spread) == 0 else Sign.UNKNOWN
+    for factor in sp.Mul.make_args(gathered):
+        if factor.is_number:
+            sign = min(sign, constant_sign(factor).sign)
+        elif isinstance(factor, sp.Symbol):
+            sign = min(sign, symbol_sign(limits[factor]).sign)
+        else:
+            sign = min(sign, multilinear_sign(factor, limits).sign)
     return sign
 
 
@@ -307,7 +356,7 @@ def corner_values(angle: sp.Expr, limits: Limits) -> list[sp.Expr] | None:
     return [angle.subs(corner) for corner in corners]
 
 
-# -- balls ------------------------------------------------------------------------------------------
+# -- balls ---------------------------------------
 
 
 def subdivide(expression: sp.Expr, limits: Limits, wanted: Sign, budget: int) -> SignProof:
@@ -382,7 +431,7 @@ def split(
         ]
 
 
-# -- zeros at an end of the range --------------------------------------------------------------------
+# -- zeros at an end of the range ---------------------------------------
 
 
 def end_contact(expression: sp.Expr, limits: Limits, wanted: Sign, budget: int, depth: int) -> SignProof:
@@ -480,7 +529,7 @@ def guessed_points(limit: Range) -> list[sp.Expr]:
     return [guess for guess in dict.fromkeys(guesses) if guess not in ends and limit.contains(guess)]
 
 
-# -- monotone in one symbol ---------------------------------------------------------------------------
+# -- monotone in one symbol ---------------------------------------
 
 
 def monotone(expression: sp.Expr, limits: Limits, wanted: Sign, budget: int, depth: int) -> SignProof:

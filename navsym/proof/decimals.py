@@ -19,7 +19,9 @@ def decimal(x: Any, digits: int, direction: int = 0) -> str:
         return "0"
     exponent = magnitude(value) - digits
     scaled = value * fmpq(10) ** (-exponent)
-    whole = scaled.floor() if direction < 0 else scaled.ceil() if direction > 0 else (scaled + fmpq(1, 2)).floor()
+    whole = (
+        scaled.floor() if direction < 0 else scaled.ceil() if direction > 0 else (scaled + fmpq(1, 2)).floor()
+    )
     return placed(int(whole), exponent)
 
 

@@ -192,7 +192,7 @@ class Problem:
         return [arb(p) for p in self.functional_program.run(self.values)]
 
 
-# -- |x . H| <= bound over a panel -----------------------------------------------------------
+# -- |x . H| <= bound over a panel ---------------------------------------
 
 
 @dataclass(frozen=True, slots=True)

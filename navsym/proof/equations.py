@@ -109,7 +109,7 @@ def refuted(sample: Sample, box: Box) -> Verdict:
     )
 
 
-# -- numerals ----------------------------------------------------------------------------------------
+# -- numerals ---------------------------------------
 
 
 def decide_numeral(printed: sp.Expr, derived: sp.Expr, statement: Equation) -> Verdict:
@@ -132,7 +132,7 @@ def decide_numeral(printed: sp.Expr, derived: sp.Expr, statement: Equation) -> V
     )
 
 
-# -- exact equality -------------------------------------------------------------------------------------
+# -- exact equality ---------------------------------------
 
 
 @dataclass(frozen=True, slots=True)
@@ -303,17 +303,15 @@ def common_point(difference: sp.Expr, symbol: sp.Symbol, box: Box) -> sp.Expr | 
     return None
 
 
-# -- assumptions ------------------------------------------------------------------------------------------
+# -- assumptions ---------------------------------------
 
 
 def remaining_assumptions(reduction: Reduction, statement: Equation) -> tuple[str, ...]:
     """What the proof took for granted and the box does not guarantee."""
     box, found = statement.box, []
-    given = set(statement.nonzero)
-    for divisor in reduction.divisors:
-        if divisor not in given and not is_nonzero(divisor, box):
+    for divisor in (*reduction.divisors, *statement.nonzero):
+        if not is_nonzero(divisor, box):
             found.append(f"{text_of(divisor)} != 0")
-    found += [f"{text_of(item)} != 0" for item in statement.nonzero]
     for radicand in reduction.radicands:
         if not prove_sign(radicand, box).at_least(Sign.NONNEGATIVE):
             found.append(f"{text_of(radicand)} >= 0")

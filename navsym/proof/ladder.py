@@ -46,18 +46,7 @@ def decide_property(statement: Property) -> Verdict:
     """A printed fact beside a computed one: they are equal, or the computed one refutes it."""
     finding = statement.derived
     if not same_value(statement.printed, finding.value):
-        return (
-            Verdict(
-                REFUTED,
-                method=finding.method,
-                scope=finding.scope,
-                evidence=f"printed {statement.printed!r}, found {finding.value!r}. {finding.evidence}".strip(),
-                counterexample={},
-                certificate=finding.certificate,
-            )
-            if finding.status.holds
-            else weak(statement, finding)
-        )
+        return contradicted(statement, finding)
     return Verdict(
         finding.status,
         method=finding.method,
@@ -68,10 +57,19 @@ def decide_property(statement: Property) -> Verdict:
     )
 
 
-def weak(statement: Property, finding: Finding) -> Verdict:
-    """A value that was only sampled cannot refute."""
-    evidence = f"printed {statement.printed!r}, found {finding.value!r} by {finding.method} only"
-    return Verdict(OPEN, finding.method, finding.scope, evidence=evidence)
+def contradicted(statement: Property, finding: Finding) -> Verdict:
+    """REFUTED by a decided value; a value that was only sampled cannot refute."""
+    words = f"printed {statement.printed!r}, found {finding.value!r}. {finding.evidence}".strip()
+    if not finding.status.holds:
+        return Verdict(OPEN, finding.method, finding.scope, evidence=f"{words} (sampled only)")
+    return Verdict(
+        REFUTED,
+        method=finding.method,
+        scope=finding.scope,
+        evidence=words,
+        counterexample={},
+        certificate=finding.certificate,
+    )
 
 
 def same_value(printed: object, found: object) -> bool:

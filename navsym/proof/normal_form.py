@@ -44,7 +44,7 @@ class UndefinedExpressionError(NavsymError):
     kind = "domain"
 
 
-# -- sums of monomials: arguments of sin, cos and exp ----------------------------------------
+# -- sums of monomials: arguments of sin, cos and exp ---------------------------------------
 
 
 def linear_terms(expression: sp.Basic) -> dict[Monomial, Fraction]:
@@ -111,7 +111,7 @@ def multiply_monomials(left: Monomial, right: Monomial) -> Monomial:
 PI: Monomial = frozenset({(sp.pi, Fraction(1))})
 
 
-# -- the ring: which generators an expression needs ------------------------------------------
+# -- the ring: which generators an expression needs ---------------------------------------
 
 
 @dataclass(slots=True)
@@ -232,7 +232,7 @@ def single(monomial: Monomial, kinds: tuple[type, ...]) -> sp.Basic | None:
     return None
 
 
-# -- quotients of polynomials -------------------------------------------------------------------
+# -- quotients of polynomials ---------------------------------------
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -554,7 +554,7 @@ def same_atom(left: sp.Basic, right: sp.Basic) -> bool:
     return all(vanishes_identically(a - b) for a, b in zip(left.args, right.args, strict=True))
 
 
-# -- what the other rooms call ----------------------------------------------------------------
+# -- what the other rooms call ---------------------------------------
 
 
 @dataclass(frozen=True, slots=True)

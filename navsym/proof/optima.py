@@ -42,9 +42,15 @@ def decide_optimum(statement: Optimum) -> Verdict:
     return replace(
         verdict,
         method=f"exact primal-dual pair ({verdict.method})",
-        scope=scope_of(sp.Tuple(*statement.dual, statement.value), statement.box),
+        scope=scope_of(parameters(statement), statement.box),
         evidence=f"{words}. {verdict.evidence}",
     )
+
+
+def parameters(statement: Optimum) -> sp.Basic:
+    """Everything but the variable that the statement is about, for the words of its scope."""
+    sides = sp.Tuple(*statement.regressors, *statement.interval, *statement.dual, statement.value)
+    return sides.subs(statement.variable, statement.interval[0])
 
 
 def constraints(statement: Optimum) -> Verdict:

@@ -89,6 +89,11 @@ def candidates(limits: Range, generator: random.Random) -> Iterator[sp.Expr]:
         yield random_value(limits, generator)
 
 
+def allowed(limits: Range, generator: random.Random) -> Iterator[sp.Expr]:
+    """The candidates that lie in the range."""
+    return (value for value in candidates(limits, generator) if limits.contains(value))
+
+
 def random_value(limits: Range, generator: random.Random) -> sp.Expr:
     share = sp.Rational(generator.randint(1, 9999), 10000)
     if limits.lower is not None and limits.upper is not None:
@@ -108,11 +113,13 @@ def points(symbols: Sequence[sp.Symbol], box: Box, count: int, seed: int = 0) ->
         return
     generator = random.Random(seed)
     limits = ranges(symbols, box)
-    streams = {}
-    for place, symbol in enumerate(symbols):
-        stream = (v for v in candidates(limits[symbol], generator) if limits[symbol].contains(v))
-        # Different symbols start at different awkward values, so that they are not all equal.
-        streams[symbol] = itertools.islice(stream, 2 * place if not limits[symbol].integer else place, None)
+    # Different symbols start at different awkward values, so that they are not all equal.
+    streams = {
+        symbol: itertools.islice(
+            allowed(limits[symbol], generator), place if limits[symbol].integer else 2 * place, None
+        )
+        for place, symbol in enumerate(symbols)
+    }
     for _ in range(count):
         point = {symbol: next(stream, None) for symbol, stream in streams.items()}
         if any(value is None for value in point.values()):

@@ -1,6 +1,6 @@
-"""A child process with limits on time and memory, for work that might not end.
+"""Child processes with limits on time and memory, for work that might not end.
 
-The child is forked, so that it has the parent's loaded engines and objects and only its result
+A child is forked, so that it has the parent's loaded engines and objects and only its result
 travels back. A child that exceeds its limits is killed; the parent never waits for it longer.
 """
 
@@ -9,12 +9,15 @@ from __future__ import annotations
 import multiprocessing
 import resource
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from multiprocessing.connection import Connection
+from multiprocessing.connection import Connection, wait
 from typing import Any
 
 from navsym.errors import NavsymError
+
+DEFAULT_SECONDS = 60.0
+DEFAULT_MEGABYTES = 6144
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,31 +27,91 @@ class Exhausted:
     why: str
 
 
+@dataclass(frozen=True, slots=True)
+class Failed:
+    """The child ended with an error of the user's making."""
+
+    error: NavsymError
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What came of one item: its place, a result, Exhausted or Failed, and the seconds it took."""
+
+    place: int
+    value: Any
+    seconds: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Child:
+    """A running child."""
+
+    place: int
+    process: Any
+    receiver: Connection
+    started: float
+
+
 def run_limited(
-    function: Callable[..., Any], arguments: tuple[Any, ...], seconds: float, megabytes: int
+    function: Callable[..., Any],
+    arguments: tuple[Any, ...],
+    seconds: float = DEFAULT_SECONDS,
+    megabytes: int = DEFAULT_MEGABYTES,
 ) -> Any:
     """Result of ``function(*arguments)`` from a limited child, or :class:`Exhausted`.
 
     A NavsymError of the child is raised again here; any other exception is an Exhausted with
     its text.
     """
+    (outcome,) = run_many(lambda packed: function(*packed), [arguments], 1, seconds, megabytes)
+    if isinstance(outcome.value, Failed):
+        raise outcome.value.error
+    return outcome.value
+
+
+def run_many(
+    function: Callable[[Any], Any],
+    items: Sequence[Any],
+    jobs: int,
+    seconds: float = DEFAULT_SECONDS,
+    megabytes: int = DEFAULT_MEGABYTES,
+) -> Iterator[Outcome]:
+    """Outcomes of ``function(item)``, each in a child of its own, at most ``jobs`` at once.
+
+    Outcomes come as they are ready, in no particular order.
+    """
+    waiting = list(enumerate(items))[::-1]
+    running: list[Child] = []
+    try:
+        while waiting or running:
+            while waiting and len(running) < max(1, jobs):
+                place, item = waiting.pop()
+                running.append(start(place, function, item, megabytes))
+            for child in ready(running, seconds):
+                running.remove(child)
+                yield finish(child, seconds)
+    finally:
+        for child in running:
+            stop(child)
+
+
+def start(place: int, function: Callable[[Any], Any], item: Any, megabytes: int) -> Child:
     context = multiprocessing.get_context("fork")
     receiver, sender = context.Pipe(duplex=False)
-    child = context.Process(target=work, args=(sender, function, arguments, megabytes), daemon=True)
-    child.start()
+    process = context.Process(target=work, args=(sender, function, item, megabytes), daemon=True)
+    process.start()
     sender.close()
-    return collect(child, receiver, seconds)
+    return Child(place, process, receiver, time.monotonic())
 
 
-def work(
-    sender: Connection, function: Callable[..., Any], arguments: tuple[Any, ...], megabytes: int
-) -> None:
+def work(sender: Connection, function: Callable[[Any], Any], item: Any, megabytes: int) -> None:
     """Runs in the child."""
     limit = megabytes * 2**20
     resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     try:
-        sender.send(("result", function(*arguments)))
+        sender.send(("result", function(item)))
     except NavsymError as error:
         sender.send(("error", error))
     except MemoryError:
@@ -61,20 +124,33 @@ def work(
         sender.close()
 
 
-def collect(child: Any, receiver: Connection, seconds: float) -> Any:
-    deadline = time.monotonic() + seconds
+def ready(running: Sequence[Child], seconds: float) -> list[Child]:
+    """Children with a result or out of time; waits until there is one."""
+    deadline = min(child.started for child in running) + seconds
+    answered = wait([child.receiver for child in running], max(0.0, deadline - time.monotonic()))
+    now = time.monotonic()
+    return [child for child in running if child.receiver in answered or now - child.started >= seconds]
+
+
+def finish(child: Child, seconds: float) -> Outcome:
+    spent = time.monotonic() - child.started
     try:
-        if not receiver.poll(max(0.0, deadline - time.monotonic())):
-            return Exhausted(f"more than {seconds:g} s")
-        kind, value = receiver.recv()
+        if not child.receiver.poll(0):
+            return Outcome(child.place, Exhausted(f"more than {seconds:g} s"), spent)
+        kind, value = child.receiver.recv()
     except EOFError:
-        child.join(1)
-        return Exhausted(f"the child ended without a result (exit {child.exitcode})")
+        child.process.join(1)
+        code = child.process.exitcode
+        return Outcome(child.place, Exhausted(f"the child ended without a result (exit {code})"), spent)
     finally:
-        if child.is_alive():
-            child.kill()
-        child.join()
-        receiver.close()
-    if kind == "error":
-        raise value
-    return Exhausted(value) if kind == "stopped" else value
+        stop(child)
+    if kind == "result":
+        return Outcome(child.place, value, spent)
+    return Outcome(child.place, Failed(value) if kind == "error" else Exhausted(value), spent)
+
+
+def stop(child: Child) -> None:
+    if child.process.is_alive():
+        child.process.kill()
+    child.process.join()
+    child.receiver.close()

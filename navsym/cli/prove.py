@@ -1,0 +1,41 @@
+"""Decide the formulas of a claim file, one by one."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from navsym.cli.output import emit, table
+
+
+def command(
+    file: Annotated[Path, typer.Argument(help="claim file (TOML) with [symbols] and [[claim]] blocks")],
+    jobs: Annotated[int, typer.Option(min=1, help="claims decided at the same time")] = 1,
+    seconds: Annotated[float, typer.Option(min=0.1, help="limit for one claim; above it: OPEN")] = 20.0,
+    json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
+) -> int:
+    """Decide the formulas of a claim file. Status 1 when one of them is refuted or open."""
+    from navsym.text.claimfile import read_claims
+
+    claims = read_claims(file)
+
+    from navsym.methods.prove import prove
+
+    document = prove(claims, jobs=jobs, seconds=seconds)
+    emit(document, as_json=json_, text=lambda: as_text(document))
+    return 0 if all(record["status"] not in ("REFUTED", "OPEN") for record in document["claims"]) else 1
+
+
+def as_text(document: dict[str, Any]) -> str:
+    rows = [(r["id"], r["status"], r["method"], remark_of(r)) for r in document["claims"]]
+    return table(("claim", "verdict", "method", "remark"), rows)
+
+
+def remark_of(record: dict[str, Any]) -> str:
+    if record["counterexample"] is not None:
+        point = ", ".join(f"{k} = {v}" for k, v in record["counterexample"].items()) or "no symbols"
+        difference = record["difference"]
+        return f"at {point}" + (f": left - right = {difference['lower']}…" if difference else "")
+    return "; ".join(record["assumptions"]) or record["scope"] or record["evidence"]

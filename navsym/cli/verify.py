@@ -1,0 +1,137 @@
+"""Decide every claim of the papers and compare each verdict with the one its source declares."""
+
+from __future__ import annotations
+
+import difflib
+import importlib
+import pkgutil
+import sys
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from navsym.cli.output import emit, table, wants_colour, write_text
+from navsym.errors import DomainError
+
+if TYPE_CHECKING:
+    from navsym.methods.verification import PaperModule
+
+
+def command(
+    modules: Annotated[list[str] | None, typer.Argument(help="derivation modules; default: all")] = None,
+    write: Annotated[bool, typer.Option("--write", help="update the ledger of verdicts")] = False,
+    jobs: Annotated[int | None, typer.Option(help="claims decided at the same time")] = None,
+    seconds: Annotated[float, typer.Option(help="limit for one claim; above it the verdict is OPEN")] = 90.0,
+    json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
+) -> int:
+    """Decide every claim of the papers. Status 1 when a verdict is not the one declared."""
+    from navsym.methods.verification import unexpected, verify
+
+    started = time.monotonic()
+    chosen = load(modules or [])
+    bar = Progress(sum(len(module.claims) for module in chosen))
+    document = verify(chosen, jobs=jobs, seconds=seconds, progress=bar.step)
+    bar.done()
+    if write:
+        write_ledger(document)
+    wrong = unexpected(document["claims"])
+    missing = [number for paper in document["papers"] for number in paper["missing"]]
+    emit(document, as_json=json_, text=lambda: as_text(document, wrong, time.monotonic() - started))
+    return 1 if wrong or missing else 0
+
+
+def names() -> list[str]:
+    """Derivation modules that are installed, by listing the folder."""
+    package = importlib.import_module("derivations")
+    return sorted(
+        entry.name for entry in pkgutil.iter_modules(package.__path__) if not entry.name.startswith("_")
+    )
+
+
+def load(wanted: Sequence[str]) -> list[PaperModule]:
+    """Import the modules asked for, or all of them."""
+    from navsym.methods.verification import paper_module
+
+    known = names()
+    for name in wanted:
+        if name not in known:
+            close = difflib.get_close_matches(name, known, n=1)
+            advice = f"did you mean {close[0]}?" if close else "name one of them"
+            raise DomainError(
+                f"expected one of {', '.join(known)}; got {name[:60]}; {advice}", where="command line"
+            )
+    chosen = list(dict.fromkeys(wanted)) or known
+    return [paper_module(importlib.import_module(f"derivations.{name}")) for name in chosen]
+
+
+class Progress:
+    """One line on standard error that counts the claims, with the time left; silent without a terminal."""
+
+    def __init__(self, total: int):
+        self.total, self.count, self.started = total, 0, time.monotonic()
+        self.shown = wants_colour(sys.stderr)
+
+    def step(self, record: dict[str, Any]) -> None:
+        self.count += 1
+        if self.shown:
+            spent = time.monotonic() - self.started
+            left = spent / self.count * (self.total - self.count)
+            line = f"\r{self.count}/{self.total} claims, about {left:.0f} s left  {record['id'][:60]}"
+            sys.stderr.write(f"{line:<110}")
+            sys.stderr.flush()
+
+    def done(self) -> None:
+        if self.shown:
+            sys.stderr.write("\r" + " " * 110 + "\r")
+
+
+def ledger_folder() -> Path:
+    """Where the ledger lives: the folder of the derivations."""
+    return Path(next(iter(importlib.import_module("derivations").__path__)))
+
+
+def write_ledger(document: dict[str, Any]) -> None:
+    """Update ``verdicts.json`` and ``README.md`` of the derivations."""
+    import json
+
+    from navsym.report.ledger import ledger_text, merged, people_text
+
+    folder = ledger_folder()
+    path = folder / "verdicts.json"
+    old = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {"claims": [], "papers": []}
+    whole = merged(document, {record["id"]: record for record in old["claims"]}, old["papers"])
+    write_text(path, ledger_text(whole))
+    write_text(folder / "README.md", people_text(whole))
+
+
+def as_text(document: dict[str, Any], wrong: list[dict[str, Any]], seconds: float) -> str:
+    """A table that a reviewer can read, the refuted lines with their reasons, and the counts."""
+    rows = [
+        (record["number"], record["status"], record["title"], remark_of(record))
+        for record in document["claims"]
+    ]
+    blocks = [table(("claim", "verdict", "what it says", "remark"), rows)]
+    for paper in document["papers"]:
+        blocks.append(
+            f"{paper['module']}: {paper['equations']} numbered equations, {paper['claimed']} claimed, "
+            f"{paper['definitions']} definitions, missing: {', '.join(paper['missing']) or 'none'}"
+        )
+    counted = ", ".join(f"{count} {status}" for status, count in document["counts"].items() if count)
+    blocks.append(f"{len(document['claims'])} claims in {seconds:.1f} s: {counted}")
+    for record in wrong:
+        blocks.append(f"not as declared: {record['id']} is {record['status']}, declared {record['expect']}")
+    return "\n".join(blocks)
+
+
+def remark_of(record: dict[str, Any]) -> str:
+    if record["status"] == "REFUTED":
+        point = ", ".join(f"{k} = {v}" for k, v in (record["counterexample"] or {}).items())
+        where = f" (at {point})" if point else ""
+        slip = f"{record['slip']}: " if record["slip"] else ""
+        return f"{slip}{record['reason']}{where}"
+    if record["corrects"]:
+        return f"corrects {record['corrects'].partition(':')[2]}"
+    return "; ".join(record["assumptions"]) or record["scope"]

@@ -1,0 +1,62 @@
+"""A user's own formulas, decided one by one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from navsym.claims import OPEN, REFUTED, Bound, Equation, Statement, Verdict
+from navsym.proof.ladder import decide
+from navsym.proof.sandbox import Exhausted, Failed, run_many
+from navsym.text.claimfile import ClaimFile, FileClaim
+
+SECONDS = 20.0
+
+
+def prove(
+    claims: ClaimFile,
+    *,
+    jobs: int = 1,
+    seconds: float = SECONDS,
+    progress: Callable[[dict[str, Any]], None] = lambda record: None,
+) -> dict[str, Any]:
+    """Decide every claim of a file; the document of ``navsym prove``.
+
+    A claim that needs more than ``seconds`` is OPEN. Order and verdicts do not depend on ``jobs``.
+    """
+    records: dict[int, dict[str, Any]] = {}
+    for outcome in run_many(decide_claim, claims.claims, jobs, seconds):
+        verdict = outcome.value
+        if isinstance(verdict, (Exhausted, Failed)):
+            why = verdict.why if isinstance(verdict, Exhausted) else str(verdict.error)
+            verdict = Verdict(OPEN, "none", evidence=f"not decided: {why}")
+        records[outcome.place] = record_of(claims.claims[outcome.place], verdict)
+        progress(records[outcome.place])
+    return {"claims": [records[place] for place in sorted(records)]}
+
+
+def decide_claim(claim: FileClaim) -> Verdict:
+    return decide(statement_of(claim))
+
+
+def statement_of(claim: FileClaim) -> Statement:
+    """The file's claim as a statement of the ladder."""
+    if claim.relation == "=":
+        return Equation(claim.left, claim.right, claim.box, nonzero=claim.divisors)
+    return Bound(claim.left, claim.relation, claim.right, claim.box)
+
+
+def record_of(claim: FileClaim, verdict: Verdict) -> dict[str, Any]:
+    refuted = verdict.status == REFUTED
+    difference = verdict.difference
+    return {
+        "id": claim.id,
+        "status": str(verdict.status),
+        "method": verdict.method,
+        "scope": verdict.scope,
+        "assumptions": list(verdict.assumptions),
+        "evidence": verdict.evidence,
+        "counterexample": dict(verdict.counterexample or {}) if refuted else None,
+        "difference": {"lower": difference[0], "upper": difference[1]} if refuted and difference else None,
+        "certificate": verdict.certificate,
+    }

@@ -1,0 +1,63 @@
+"""Every claim of every paper, found by listing the folder: verdicts, coverage, corrections, ledger."""
+
+from __future__ import annotations
+
+import importlib
+import json
+
+import pytest
+
+from navsym.claims import REFUTED, claims_of
+from navsym.cli.verify import ledger_folder, names
+from navsym.methods.verification import paper_module, verify
+
+HOLDS = {"PROVED", "CERTIFIED"}
+
+
+@pytest.fixture(scope="module", params=names())
+def document(request):
+    module = paper_module(importlib.import_module(f"derivations.{request.param}"))
+    return verify([module], jobs=1)
+
+
+def test_every_verdict_is_the_one_that_its_source_declares(document):
+    wrong = [(r["id"], r["status"], r["expect"], r["evidence"]) for r in document["claims"] if r["status"] != r["expect"]]
+    assert not wrong
+
+
+def test_every_numbered_equation_is_claimed_or_listed_as_a_definition(document):
+    assert [paper["missing"] for paper in document["papers"]] == [[]]
+
+
+def test_every_refuted_equation_has_a_correction_that_holds(document):
+    corrected = {r["corrects"] for r in document["claims"] if r["status"] in HOLDS}
+    assert not [r["id"] for r in document["claims"] if r["status"] == "REFUTED" and r["id"] not in corrected]
+
+
+def test_every_refuted_claim_says_what_is_wrong(document):
+    assert not [r["id"] for r in document["claims"] if r["status"] == "REFUTED" and not r["reason"]]
+
+
+def test_every_open_claim_says_what_was_tried(document):
+    assert not [r["id"] for r in document["claims"] if r["status"] == "OPEN" and not r["evidence"]]
+
+
+def test_what_does_not_rest_on_proof_says_so(document):
+    """CONFIRMED is a sampled verdict: its evidence counts the points or the trials."""
+    confirmed = [r for r in document["claims"] if r["status"] == "CONFIRMED"]
+    assert not [r["id"] for r in confirmed if not any(ch.isdigit() for ch in r["evidence"] + r["scope"])]
+
+
+def test_the_ledger_holds_these_verdicts(document):
+    path = ledger_folder() / "verdicts.json"
+    stored = {r["id"]: r["status"] for r in json.loads(path.read_text(encoding="utf-8"))["claims"]}
+    paper = document["papers"][0]["module"]
+    fresh = {r["id"]: r["status"] for r in document["claims"]}
+    assert fresh == {key: status for key, status in stored.items() if key.startswith(f"{paper}:")}
+
+
+@pytest.mark.parametrize("name", names())
+def test_titles_are_sentences_and_refuted_claims_are_declared_as_such(name):
+    for claim in claims_of(importlib.import_module(f"derivations.{name}")):
+        assert len(claim.title) > 10, claim.id
+        assert (claim.slip is None) or claim.expect == REFUTED, claim.id

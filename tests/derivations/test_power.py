@@ -1,0 +1,28 @@
+"""A check that cannot fail proves nothing: every claim is run with its printed side spoiled."""
+
+from __future__ import annotations
+
+import importlib
+
+import pytest
+
+from navsym.claims import claims_of
+from navsym.cli.verify import names
+from navsym.proof.ladder import decide
+from navsym.proof.mutants import spoiled
+from navsym.proof.sandbox import Exhausted, run_many
+
+
+def spoiled_status(claim):
+    return str(decide(spoiled(claim.derive())).status)
+
+
+@pytest.mark.parametrize("name", names())
+def test_every_spoiled_claim_falls(name):
+    claims = [c for c in claims_of(importlib.import_module(f"derivations.{name}")) if c.expect != "REFUTED"]
+    held = []
+    for outcome in run_many(spoiled_status, claims, jobs=1, seconds=60):
+        assert not isinstance(outcome.value, Exhausted), (claims[outcome.place].id, outcome.value)
+        if outcome.value in ("PROVED", "CERTIFIED", "CONFIRMED"):
+            held.append(claims[outcome.place].id)
+    assert not held
