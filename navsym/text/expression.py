@@ -130,7 +130,8 @@ class Reader:
         return self.do(at, arithmetic.add, terms)
 
     def product(self) -> sp.Expr:
-        at, factors = self.token.start, [self.unary()]
+        at, sign = self.token.start, self.signs()
+        factors = [self.power()] if sign > 0 else [sp.S.NegativeOne, self.power()]
         while mark := self.take("*", "/"):
             factor = self.unary()
             factors.append(factor if mark.text == "*" else self.inverse(mark.start, factor))
@@ -142,11 +143,16 @@ class Reader:
         return self.do(at, arithmetic.invert, divisor)
 
     def unary(self) -> sp.Expr:
-        at, sign = self.token.start, 1
-        while mark := self.take("+", "-"):
-            sign = -sign if mark.text == "-" else sign
+        at, sign = self.token.start, self.signs()
         value = self.power()
         return value if sign > 0 else self.minus(at, value)
+
+    def signs(self) -> int:
+        """The product of the signs that stand here."""
+        sign = 1
+        while mark := self.take("+", "-"):
+            sign = -sign if mark.text == "-" else sign
+        return sign
 
     def minus(self, at: int, value: sp.Expr) -> sp.Expr:
         return self.do(at, arithmetic.multiply, [sp.S.NegativeOne, value])

@@ -187,6 +187,7 @@ def test_divisors_are_noted_even_where_they_cancel():
         (3 * x / (4 * y), "3*x/(4*y)"),
         ((x + y) ** 2 / 2, "(x + y)**2/2"),
         (sp.Integer(2) ** (-x), "2**(-x)"),
+        (sp.Mul(-1, x + y, 1 / sp.sin(1)), "-(x + y)/sin(1)"),
         (sp.E, "exp(1)"),
         (1 / (2 * (x + sp.pi * y) ** 2), "1/(2*(x + pi*y)**2)"),
         (sp.Mul(sp.Rational(1, 2), 1 / (x + sp.pi * y)), "1/2/(x + pi*y)"),
