@@ -5,9 +5,8 @@ The measurement is a scalar, so a candidate diagonal q = (q_1, ..., q_n) enters 
     S = s0 + sum_i h_i^2 q_i            innovation variance
     K_j = (g_j + h_j q_j) / S           gain, with g = (Phi P Phi^T) h^T and s0 = h g + R,
 
-and no candidate needs a covariance of its own. When every candidate carries its own estimate through a
-window of steps, candidates lie in the innermost dimension, so that the compiler takes several at once.
-Plain twins of both loops are in ``navsym.methods.trajectory_twins``.
+and no candidate needs a covariance of its own. Candidates that carry their own estimates are in
+``trajectory_bank``; plain twins of both in ``navsym.methods.trajectory_twins``.
 """
 
 from __future__ import annotations
@@ -41,16 +40,17 @@ def predict(
         ahead[i] = s
     # g serves as one row of Phi P before it gets its own meaning.
     for i in range(n):
-        for j in range(n):
+        for j in range(i, n):
             s = 0.0
             for k in range(i, n):
                 s += Phi[i, k] * P[k, j]
             g[j] = s
-        for j in range(n):
+        for j in range(i, n):
             s = 0.0
             for k in range(j, n):
                 s += g[k] * Phi[j, k]
             B[i, j] = s
+            B[j, i] = s
     total = 0.0
     for i in range(n):
         s = 0.0
@@ -69,22 +69,43 @@ def innovation_variances(
     step: float,
     out: Array,
 ) -> None:
-    """S of all 3^n candidates; candidate c has q_i step^(digit_i(c) - 1), digit 0 varies fastest."""
+    """S of all 3^n candidates: digit i of the number c, base 3, keeps, lowers or raises q_i.
+
+    Digit 0 keeps, so that among equal candidates the first one changes least.
+    """
     n = h.shape[0]
     base = s0
     for i in range(n):
-        base += h[i] * h[i] * q[i] / step
+        base += h[i] * h[i] * q[i]
     out[0] = base
     size = 1
     for i in range(n):
-        low = h[i] * h[i] * q[i] / step
-        middle = h[i] * h[i] * q[i]
-        first = middle - low
-        second = middle * step - low
+        own = h[i] * h[i] * q[i]
+        lowered = own / step - own
+        raised = own * step - own
         for c in range(size):
-            out[size + c] = out[c] + first
-            out[2 * size + c] = out[c] + second
+            out[size + c] = out[c] + lowered
+            out[2 * size + c] = out[c] + raised
         size *= 3
+
+
+@njit(cache=True, fastmath=True)
+def neighbours(
+    S: Array,
+    squared: float,
+) -> tuple[float, float]:
+    """Largest S up to ``squared`` and smallest S above it; minus or plus infinity when there is none.
+
+    Without branches, and with the freedom to reorder, the compiler looks at several S at once.
+    """
+    low, high = -1e308, 1e308
+    for c in range(S.shape[0]):
+        s = S[c]
+        below = s if s <= squared else -1e308
+        above = s if s > squared else 1e308
+        low = max(low, below)
+        high = min(high, above)
+    return low, high
 
 
 @njit(cache=True)
@@ -97,23 +118,18 @@ def likeliest(
     The function falls for S < squared and rises above it: only the largest S below and the smallest S
     above are compared, and two logarithms are enough for all candidates.
     """
-    below, above = -1, -1
-    low, high = -np.inf, np.inf
+    low, high = neighbours(S, squared)
+    if low < 0.0:
+        target = high
+    elif high == 1e308:
+        target = low
+    else:
+        left, right = np.log(low) + squared / low, np.log(high) + squared / high
+        target = low if left <= right else high
     for c in range(S.shape[0]):
-        s = S[c]
-        if s <= squared:
-            if s > low:
-                low, below = s, c
-        elif s < high:
-            high, above = s, c
-    if below < 0:
-        return above
-    if above < 0:
-        return below
-    left, right = np.log(low) + squared / low, np.log(high) + squared / high
-    if left == right:
-        return min(below, above)
-    return below if left < right else above
+        if S[c] == target:
+            return c
+    return 0
 
 
 @njit(cache=True)
@@ -145,7 +161,7 @@ def smallest_change(
         for i in range(n):
             digit = rest % 3
             rest //= 3
-            qi = q[i] / step if digit == 0 else (q[i] if digit == 1 else q[i] * step)
+            qi = q[i] if digit == 0 else (q[i] / step if digit == 1 else q[i] * step)
             move = (g[i] + h[i] * qi) / S[c] * innovation
             if kind == CORRECTED:
                 residual -= row[i] * move
@@ -170,7 +186,7 @@ def candidate(
     for i in range(q.shape[0]):
         digit = index % 3
         index //= 3
-        out[i] = q[i] / step if digit == 0 else (q[i] if digit == 1 else q[i] * step)
+        out[i] = q[i] if digit == 0 else (q[i] / step if digit == 1 else q[i] * step)
 
 
 @njit(cache=True)
@@ -186,14 +202,16 @@ def apply(
     P: Array,
     gain: Array,
 ) -> None:
-    """Correct by the chosen candidate: y, P and gain are written. P = (E - K h) P^-."""
+    """Correct by the chosen candidate: y, P and gain are written. P = P^- - K S K^T,
+    symmetric by construction."""
     n = y.shape[0]
     for i in range(n):
         gain[i] = (g[i] + h[i] * q[i]) / S
         y[i] = ahead[i] + gain[i] * innovation
     for i in range(n):
-        for j in range(n):
-            P[i, j] = B[i, j] - gain[i] * (g[j] + h[j] * q[j])
+        for j in range(i, n):
+            P[i, j] = B[i, j] - gain[i] * gain[j] * S
+            P[j, i] = P[i, j]
         P[i, i] += q[i]
 
 
@@ -258,123 +276,16 @@ def tune_one_step(
 
 
 @njit(cache=True)
-def bank_step(
-    Phi: Array,
-    h: Array,
-    R: float,
-    z: float,
-    ys: Array,
-    Ps: Array,
-    qs: Array,
-    cost: Array,
-    ahead: Array,
-    T: Array,
-    B: Array,
-) -> None:
-    """One step of all candidates, each with its own estimate; ``cost`` grows by log S + innovation^2 / S.
-
-    ys (n, C), Ps (n, n, C), qs (n, C), cost (C,) are overwritten; ahead (n, C), T, B (n, n, C) are scratch.
-    The correction is that of the corrected algorithm: predict, then H on the predicted state.
-    """
-    n, C = ys.shape
-    for i in range(n):
-        for c in range(C):
-            ahead[i, c] = ys[i, c]
-        for k in range(i + 1, n):
-            f = Phi[i, k]
-            for c in range(C):
-                ahead[i, c] += f * ys[k, c]
-    for i in range(n):
-        for j in range(n):
-            for c in range(C):
-                T[i, j, c] = Ps[i, j, c]
-            for k in range(i + 1, n):
-                f = Phi[i, k]
-                for c in range(C):
-                    T[i, j, c] += f * Ps[k, j, c]
-    for i in range(n):
-        for j in range(i, n):
-            for c in range(C):
-                B[i, j, c] = T[i, j, c]
-            for k in range(j + 1, n):
-                f = Phi[j, k]
-                for c in range(C):
-                    B[i, j, c] += f * T[i, k, c]
-        for c in range(C):
-            B[i, i, c] += qs[i, c]
-    h0 = h[0]
-    for c in range(C):
-        T[0, 0, c] = 1.0 / (h0 * h0 * B[0, 0, c] + R)  # 1 / S
-        T[0, 1, c] = z - h0 * ahead[0, c]  # innovation
-        cost[c] += T[0, 1, c] * T[0, 1, c] * T[0, 0, c] - np.log(T[0, 0, c])
-    for i in range(n):
-        for c in range(C):
-            ys[i, c] = ahead[i, c] + h0 * B[0, i, c] * T[0, 0, c] * T[0, 1, c]
-        for j in range(i, n):
-            for c in range(C):
-                Ps[i, j, c] = B[i, j, c] - h0 * h0 * B[0, i, c] * B[0, j, c] * T[0, 0, c]
-            if j > i:
-                for c in range(C):
-                    Ps[j, i, c] = Ps[i, j, c]
-
-
-@njit(cache=True)
-def tune_by_windows(
-    Phi: Array,
-    h: Array,
-    R: float,
-    z: Array,
-    y: Array,
-    P: Array,
-    q: Array,
-    step: float,
-    window: int,
-    floor: Array,
-    ceiling: Array,
-    states: Array,
-    gains: Array,
-    diagonals: Array,
-    values: Array,
-) -> None:
-    """The adaptive filter with all 3^n candidates carried through windows of steps.
-
-    At the end of each window the likeliest candidate becomes the centre of the next field, its estimate
-    and matrix the common start. Inside a window the middle candidate's estimate is reported.
-    """
+def run_fixed_gain(Phi: Array, row: Array, gain: Array, z: Array, y: Array, states: Array) -> None:
+    """Constant gain: y <- Phi y + gain (z - row y); Phi upper triangular, y (n,) is overwritten."""
     n = y.shape[0]
-    C = 3**n
-    ys, qs, cost = np.empty((n, C)), np.empty((n, C)), np.zeros(C)
-    Ps = np.empty((n, n, C))
-    ahead, T, B = np.empty((n, C)), np.empty((n, n, C)), np.empty((n, n, C))
-    diagonal = np.empty(n)
-    middle = C // 2
     for k in range(z.shape[0]):
-        if k % window == 0:
-            for c in range(C):
-                candidate(q, step, c, diagonal)
-                cost[c] = 0.0
-                for i in range(n):
-                    qs[i, c] = min(max(diagonal[i], floor[i]), ceiling[i])
-                    ys[i, c] = y[i]
-                    for j in range(n):
-                        Ps[i, j, c] = P[i, j]
-        bank_step(Phi, h, R, z[k], ys, Ps, qs, cost, ahead, T, B)
+        innovation = z[k]
         for i in range(n):
-            states[k, i] = ys[i, middle]
-            # After the correction P h / R is the gain; it needs no inverse.
-            gains[k, i] = Ps[0, i, middle] * h[0] / R
-            diagonals[k, i] = q[i]
-        values[k] = cost[middle]
-        if (k + 1) % window == 0:
-            best = 0
-            for c in range(1, C):
-                if cost[c] < cost[best]:
-                    best = c
-            for i in range(n):
-                y[i] = ys[i, best]
-                q[i] = qs[i, best]
-                for j in range(n):
-                    P[i, j] = Ps[i, j, best]
-                states[k, i] = y[i]
-                gains[k, i] = P[0, i] * h[0] / R
-            values[k] = cost[best]
+            innovation -= row[i] * y[i]
+        for i in range(n):
+            s = gain[i] * innovation
+            for j in range(i, n):
+                s += Phi[i, j] * y[j]
+            y[i] = s
+        states[k] = y
