@@ -33,7 +33,7 @@ def tracked(*suffixes: str) -> list[Path]:
 def run_tool(*words: str) -> str:
     """Output of a tool of this environment; empty when it found nothing."""
     done = subprocess.run(
-        [sys.executable, "-m", *words], cwd=ROOT, capture_output=True, text=True, check=False
+        [sys.executable, "-m", *words], cwd=ROOT, capture_output=True, text=True, check=False, timeout=300
     )
     return "" if done.returncode == 0 else done.stdout + done.stderr
 
