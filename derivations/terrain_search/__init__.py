@@ -1,0 +1,36 @@
+"""Naumov and Kosyachenko: a sequential search for position and velocity errors over a terrain map.
+
+The files follow the paper: ``problem`` (1)-(5), ``crossing`` (6)-(10) for one coordinate, ``directions``
+(11)-(13) for two, ``extremes`` (t_min, t_max and their middle), ``solution`` (8), (14) and what the
+sequential estimate really is, ``cost`` (complexity and its numbers), ``experiment`` (noise, accuracy
+measures, table 1).
+
+**The simple form.** With the slopes g_k of the map under the track and the times k, three symmetric matrices
+say everything: G = sum g g', M1 = sum k g g', M2 = sum k^2 g g'. A velocity error v moves the position fix by
+C v, C = G^-1 M1. The scalar t_G of the paper is the Rayleigh quotient v'M1 v / v'G v; its extremes are the
+eigenvalues of C, always real; the quadratic (12) is the condition that v be an eigenvector. Turning the
+track about C instead of t_G makes the two stages together the joint least-squares solution.
+
+Slips without a claim of their own, since nothing can be computed from them: the text calls (10) "solution
+(6)" and (9) "(9*)", and the index of the velocity step in (8) is illegible.
+"""
+
+from __future__ import annotations
+
+from navsym.claims import Paper
+
+PAPER = Paper(
+    module="terrain_search",
+    title="A sequential algorithm of correction of navigation parameters in a terrain navigation system",
+    authors=("A. I. Naumov", "S. A. Kosyachenko"),
+    year=None,
+    source="manuscript with its editors' questions",
+    language="Russian",
+    equations=tuple(str(number) for number in range(1, 15)),
+    definitions={
+        "1": "the error model of the inertial system: given, and used by 4, 6, 8 and 14",
+        "3": "the estimate is defined as the grid point of the smallest criterion",
+        "5": "the estimate is defined as the grid point of the smallest criterion",
+        "7": "the estimate is defined as the grid point of the smallest criterion",
+    },
+)

@@ -1,0 +1,285 @@
+"""One coordinate: tracks that cross the true one, equations (9) and (10)."""
+
+from __future__ import annotations
+
+import sympy as sp
+
+from derivations.terrain_search.model import (
+    SIZES,
+    crossing_time,
+    free_motion,
+    misfit,
+    n,
+    slopes,
+    speed,
+    step,
+    t,
+)
+from navsym.claims import CERTIFIED, REFUTED, Bound, Equation, claim
+
+alpha, beta, y, dV = sp.symbols("alpha beta y deltaV", real=True)
+k, index = sp.symbols("k i", real=True)
+dt = sp.Symbol("Deltat", positive=True)
+
+
+@claim("6")
+def second_stage():
+    """A hypothesis of (6) is the motion of (1) that passes through the coarse fix at t_G."""
+    x, tk, tG, fix, Vi = sp.symbols("x t_k t_G deltax Vi", real=True)
+    DVx = sp.Symbol("DeltaVx", positive=True)
+    return Equation(
+        printed=[x + fix + Vi * DVx * (tk - tG), x + fix],
+        derived=[x + free_motion(tk - tG, fix, Vi * DVx, 0)[0], x + free_motion(0, fix, Vi * DVx, 0)[0]],
+    )
+
+
+@claim("6.rest")
+def second_stage_contains_the_first():
+    """With zero velocity (6) is (2) at the coarse fix, so the second stage never fits worse."""
+    h, x, fix, tk, tG = sp.symbols("h x deltax t_k t_G", real=True)
+    a, b, c = sp.symbols("a b c", real=True)
+
+    def terrain(position):
+        return a + b * position + c * position**2
+
+    def term(velocity):
+        return (h - terrain(x + free_motion(tk - tG, fix, velocity, 0)[0])) ** 2
+
+    return Equation(printed=(h - terrain(x + fix)) ** 2, derived=term(sp.Integer(0)))
+
+
+@claim(
+    "6.time",
+    expect=REFUTED,
+    slip="paper",
+    reason="t_G of (10) counts measurements; (6), (8) and (14) subtract it from seconds, wrong at 2 Hz",
+)
+def instant_as_printed():
+    """The instant of crossing in (6) is the t_G of (10)."""
+    tG, start = sp.symbols("t_G t_0", positive=True)
+    return Equation(printed=tG, derived=start + tG * dt)
+
+
+@claim("6.time*", corrects="6.time")
+def instant():
+    """The instant of crossing is t_0 + t_G times the interval between measurements: the mean time."""
+    start = sp.Symbol("t_0", positive=True)
+    printed, derived = [], []
+    for size in SIZES:
+        q = [slope for _, slope in slopes(size)]
+        weight = sum(v * v for v in q)
+        printed.append(start + dt * crossing_time([(0, v) for v in q], (0, 1)))
+        derived.append(sum((start + m * dt) * v * v for m, v in enumerate(q)) / weight)
+    return Equation(printed=printed, derived=derived)
+
+
+@claim("9.angle")
+def angle_between_the_tracks():
+    """The angle between the inertial and the true track has the tangent deltaV / V."""
+    true, inertial = sp.Matrix([speed, 0]), sp.Matrix([speed, dV])
+    cross = true[0] * inertial[1] - true[1] * inertial[0]
+    return Equation(printed=dV / speed, derived=cross / true.dot(inertial))
+
+
+@claim(
+    "9.family",
+    expect=REFUTED,
+    slip="paper",
+    reason="the angle arctan(deltaV/V) stands where its tangent, the drift per unit of way, belongs",
+)
+def family_as_printed():
+    """The tracks of the search are y + alpha + beta k step with beta = arctan(deltaV / V)."""
+    return Equation(printed=y + alpha + sp.atan(dV / speed) * k * step, derived=drifted())
+
+
+@claim("9.family*", corrects="9.family")
+def family():
+    """The tracks of the search are y + alpha + tan(beta) k step with tan(beta) = deltaV / V."""
+    return Equation(printed=y + alpha + dV / speed * k * step, derived=drifted())
+
+
+def drifted():
+    """Cross-track coordinate of measurement k after the time k step / V, by the model (1)."""
+    return y + free_motion(k * step / speed, alpha, dV, 0)[0]
+
+
+@claim("9.small", expect=CERTIFIED)
+def the_angle_is_close_to_its_tangent():
+    """At a velocity error of at most a tenth of the speed angle and tangent differ by under 0.4 per cent."""
+    r = sp.Symbol("r", positive=True)
+    box = {r: (sp.Rational(1, 1000), sp.Rational(1, 10))}
+    return Bound(printed=r - sp.atan(r), relation="<=", derived=r / 250, box=box)
+
+
+@claim("9.crossing")
+def crossing_track():
+    """A track of the family that meets the true one at measurement t is y + beta step (k - t)."""
+    offset = sp.Symbol("a", real=True)
+    # alpha is fixed by the demand that the displacement vanish at k = t: a linear equation in alpha.
+    displacement = offset + beta * t * step
+    alpha_at_t = -displacement.subs(offset, 0) / sp.diff(displacement, offset)
+    return Equation(printed=y + beta * step * (k - t), derived=y + alpha_at_t + beta * k * step)
+
+
+def relief(position):
+    """A height profile across the track with free coefficients."""
+    return sum(sp.Symbol(f"a{m}", real=True) * position**m for m in range(4))
+
+
+def first_order():
+    """Height on the crossing track to the first order in beta."""
+    displaced = relief(y + beta * step * (k - t))
+    return relief(y) + beta * sp.diff(displaced, beta).subs(beta, 0)
+
+
+@claim(
+    "9",
+    expect=REFUTED,
+    slip="paper",
+    reason="the bracket has the letter i where the measurement is k; the line above has k",
+)
+def height_as_printed():
+    """Height on the crossing track, as printed."""
+    return Equation(
+        printed=relief(y) + sp.diff(relief(y), y) * beta * step * (index - t), derived=first_order()
+    )
+
+
+@claim("9*", corrects="9")
+def height():
+    """Height on the crossing track to the first order in beta."""
+    return Equation(printed=relief(y) + sp.diff(relief(y), y) * beta * step * (k - t), derived=first_order())
+
+
+def own_slopes(size):
+    """Slopes across the track only."""
+    return [sp.Symbol(f"q{m}", real=True) for m in range(size + 1)]
+
+
+@claim(
+    "9.sum",
+    expect=REFUTED,
+    slip="paper",
+    reason="the bracket has i - t with i bound to nothing, under a sum over k",
+)
+def criterion_as_printed():
+    """The criterion near the true track, as printed."""
+    q = own_slopes(2)
+    printed = sum((slope * beta * step * (index - t)) ** 2 for slope in q)
+    return Equation(printed=printed, derived=misfit([(0, slope) for slope in q], (0, beta), t))
+
+
+@claim("9.sum*", corrects="9.sum")
+def criterion():
+    """The criterion near the true track is sum (h_y beta step (k - t))^2."""
+    printed, derived = [], []
+    for size in SIZES:
+        q = own_slopes(size)
+        printed.append(sum((slope * beta * step * (m - t)) ** 2 for m, slope in enumerate(q)))
+        derived.append(misfit([(0, slope) for slope in q], (0, beta), t))
+    return Equation(printed=printed, derived=derived)
+
+
+def weighted_mean(q):
+    """The printed right side of (10)."""
+    return sum(m * v**2 for m, v in enumerate(q)) / sum(v**2 for v in q)
+
+
+@claim("10")
+def crossing():
+    """t_G is the mean of the measurement numbers, weighted with the squared slopes."""
+    tracks = [own_slopes(size) for size in (1, 2, 3, 4)]
+    return Equation(
+        printed=[weighted_mean(q) for q in tracks],
+        derived=[crossing_time([(0, v) for v in q], (0, beta)) for q in tracks],
+    )
+
+
+@claim("10.weights")
+def weights_sum_to_one():
+    """The weights omega are squared slopes over their sum: each is the share of one point, together one."""
+    q = own_slopes(3)
+    shift = sp.Symbol("s", real=True)
+    # If the weights sum to one, numbering the measurements from s instead of 0 moves t_G by s.
+    moved = sum((m + shift) * v**2 for m, v in enumerate(q)) / sum(v**2 for v in q)
+    return Equation(printed=[sp.Integer(1)], derived=[sp.diff(moved, shift)])
+
+
+def inner_crossing():
+    """t_G of a track of four points with squared slopes u0…u3, as numerator and denominator."""
+    u = [sp.Symbol(f"u{m}", positive=True) for m in range(4)]
+    return sum(m * w for m, w in enumerate(u)), sum(u)
+
+
+@claim("10.after")
+def crossing_is_not_before_the_start():
+    """t_G is not before the first measurement."""
+    numbers, weights = inner_crossing()
+    return Bound(printed=numbers, relation=">=", derived=0 * weights)
+
+
+@claim("10.before")
+def crossing_is_not_after_the_end():
+    """t_G is not after the last measurement."""
+    numbers, weights = inner_crossing()
+    return Bound(printed=numbers, relation="<=", derived=3 * weights)
+
+
+@claim("10.minimum")
+def second_order_condition():
+    """The second derivative of the criterion in t is not negative, and the criterion is a parabola."""
+    q = own_slopes(2)
+    curvature = sp.diff(sp.expand(misfit([(0, v) for v in q], (0, beta), t)), t, 2)
+    return Bound(printed=curvature, relation=">=", derived=sp.Integer(0))
+
+
+@claim(
+    "10.sufficient",
+    expect=REFUTED,
+    slip="paper",
+    reason="a second derivative >= 0 does not single out t_G: on ground flat across the track it is zero"
+    " and every t is a minimum; it has to be positive",
+)
+def sufficiency_as_printed():
+    """A second derivative >= 0 suffices: t_G of (10) exists and is unique on every terrain."""
+    slope = sp.Symbol("q", real=True)
+    return Bound(printed=curvature_of([slope, slope]), relation="!=", derived=sp.Integer(0))
+
+
+@claim("10.sufficient*", corrects="10.sufficient")
+def sufficiency():
+    """With one slope that is not zero the second derivative is positive and t_G unique."""
+    u, v = sp.Symbol("q0", positive=True), sp.Symbol("q1", real=True)
+    return Bound(printed=curvature_of([u, v]), relation=">", derived=sp.Integer(0))
+
+
+def curvature_of(q):
+    """Second derivative of the criterion in t, per squared beta and step."""
+    return sp.expand(sp.diff(misfit([(0, v) for v in q], (0, 1), t), t, 2) / step**2)
+
+
+@claim("10.equal.sum")
+def sum_of_numbers():
+    """The sum of 0…n is n (n + 1)/2: it starts at 0 and grows by n."""
+    printed = n * (n + 1) / 2
+    return Equation(
+        printed=[printed.subs(n, 0), printed - printed.subs(n, n - 1)], derived=[sp.Integer(0), n]
+    )
+
+
+@claim("10.equal")
+def equal_slopes():
+    """With equal slopes t_G is the middle of the track, n/2."""
+    slope = sp.Symbol("q", positive=True)
+    sizes = range(1, 11)
+    return Equation(
+        printed=[sp.Rational(size, 2) for size in sizes],
+        derived=[crossing_time([(0, slope)] * (size + 1), (0, 1)) for size in sizes],
+    )
+
+
+@claim("10.informative")
+def informative_end():
+    """t_G may lie far from the middle: one steep last point among gentle ones puts it near the end."""
+    points = [(0, 1)] * 10 + [(0, 30)]
+    return Bound(printed=crossing_time(points, (0, 1)), relation=">=", derived=sp.Rational(9, 10) * 10)

@@ -1,0 +1,321 @@
+"""Two coordinates: t_G as a function of the direction, equations (11)-(13), and its extremes."""
+
+from __future__ import annotations
+
+import sympy as sp
+
+from derivations.terrain_search.model import (
+    SIZES,
+    beta_x,
+    beta_y,
+    crossing_time,
+    moment,
+    slopes,
+    speed,
+    step,
+)
+from navsym.claims import PROVED, REFUTED, Equation, Finding, Property, claim
+
+DIRECTION = (beta_x, beta_y)
+#: The quadratic is decided on tracks of these sizes; every printed sum runs over pairs of points, so
+#: that the identity for two points (size 1) already carries over to any number.
+PAIRS = (1, 2)
+
+
+def quotient(points, way=DIRECTION):
+    """The printed right side of (11) without its factor step."""
+    bx, by = way
+    squares = [(p * bx + q * by) ** 2 for p, q in points]
+    return sum(k * s for k, s in enumerate(squares)) / sum(squares)
+
+
+@claim(
+    "11",
+    expect=REFUTED,
+    slip="paper",
+    reason="the numerator carries a factor Delta s that (10) and the range [0, n] exclude: it would be a"
+    " length",
+)
+def crossing_as_printed():
+    """t_G for a velocity error in two directions, as printed."""
+    points = slopes(1)
+    return Equation(printed=step * quotient(points), derived=crossing_time(points, DIRECTION))
+
+
+@claim("11*", corrects="11")
+def crossing():
+    """t_G for a velocity error in two directions: a Rayleigh quotient."""
+    return Equation(
+        printed=[quotient(slopes(size)) for size in SIZES],
+        derived=[crossing_time(slopes(size), DIRECTION) for size in SIZES],
+    )
+
+
+@claim(
+    "11.beta",
+    expect=REFUTED,
+    slip="paper",
+    reason="arctan of each component turns the direction unless the components are equal, and an error "
+    "along the track is no angle at all; beta has to be (deltaVx, deltaVy)/V",
+)
+def direction_as_printed():
+    """The direction in (11) is (arctan(deltaVx / V), arctan(deltaVy / V))."""
+    u, v = sp.symbols("deltaVx deltaVy", positive=True)
+    printed = crossing_time([(1, 0), (0, 1)], (sp.atan(u / speed), sp.atan(v / speed)))
+    return Equation(printed=printed, derived=crossing_time([(1, 0), (0, 1)], (u, v)))
+
+
+@claim("11.beta*", corrects="11.beta")
+def direction():
+    """The direction in (11) is that of (deltaVx, deltaVy) / V; its length does not matter."""
+    u, v = sp.symbols("deltaVx deltaVy", positive=True)
+    return Equation(
+        printed=[crossing_time(slopes(size), (u / speed, v / speed)) for size in PAIRS],
+        derived=[crossing_time(slopes(size), (u, v)) for size in PAIRS],
+    )
+
+
+@claim("11.several")
+def crossing_depends_on_the_direction():
+    """A single t_G for all directions does not exist in general: here it is 0 in one and 1 in the other."""
+    points = [(1, 0), (0, 1)]
+    found = tuple(crossing_time(points, way) for way in ((1, 0), (0, 1)))
+    return Property(True, Finding(found[0] != found[1], "exact example", PROVED, evidence=f"t_G = {found}"))
+
+
+# Equations (12) and (13): the sums, entry by entry
+
+
+def derivative(points, variable):
+    return sp.diff(quotient(points), variable)
+
+
+def numerator(points, variable, factor):
+    """Coefficients of bx^2, bx by, by^2 in (d t_G / d beta) D^2 / (2 factor), D the sum of squares."""
+    squares = sum((p * beta_x + q * beta_y) ** 2 for p, q in points)
+    polynomial = sp.Poly(sp.cancel(derivative(points, variable) * squares**2 / (2 * factor)), beta_x, beta_y)
+    return [polynomial.coeff_monomial(m) for m in (beta_x**2, beta_x * beta_y, beta_y**2)]
+
+
+def from_x(size):
+    """[A_x2, A_x1, A_x0], from the derivative of t_G by beta_x."""
+    return numerator(slopes(size), beta_x, beta_y)
+
+
+def from_y(size):
+    """[A_y2, A_y1, A_y0], from the derivative of t_G by beta_y."""
+    return numerator(slopes(size), beta_y, beta_x)
+
+
+def double_sum(size, term):
+    """sum_i i sum_j term((p_i, q_i), (p_j, q_j), i, j)."""
+    g = slopes(size)
+    pairs = [(i, j) for i in range(size + 1) for j in range(size + 1)]
+    return sp.expand(sum(i * term(g[i], g[j], i, j) for i, j in pairs))
+
+
+def mixed(i, j):
+    """The slope dh/dx that the print puts at (x_i, y_j): on the track for i = j only."""
+    return sp.Symbol(f"p{i}", real=True) if i == j else sp.Symbol(f"p{i}_{j}", real=True)
+
+
+PRINTED = {
+    "Ax2": lambda a, b, i, j: a[0] * b[0] * (a[0] * b[1] - a[1] * mixed(i, j)),
+    "Ax1": lambda a, b, i, j: (a[0] * b[1]) ** 2 - (a[1] * b[0]) ** 2,
+    "Ax0": lambda a, b, i, j: a[1] * b[1] * (a[0] * b[1] - b[1] * b[1]),
+    "Ay2": lambda a, b, i, j: a[0] * b[0] * (a[1] * b[0] - a[0] * b[1]),
+    "Ay1": lambda a, b, i, j: (a[1] * b[0]) ** 2 - (a[0] * b[1]) ** 2,
+    "Ay0": lambda a, b, i, j: a[1] * b[1] * (a[1] * b[1] - b[1] * b[1]),
+    # With the second product of the last bracket as the derivation has it.
+    "Ax2*": lambda a, b, i, j: a[0] * b[0] * (a[0] * b[1] - a[1] * b[0]),
+    "Ax0*": lambda a, b, i, j: a[1] * b[1] * (a[0] * b[1] - a[1] * b[0]),
+    "Ay0*": lambda a, b, i, j: a[1] * b[1] * (a[1] * b[0] - a[0] * b[1]),
+}
+
+
+def printed_sums(name):
+    return [double_sum(size, PRINTED[name]) for size in PAIRS]
+
+
+@claim(
+    "12.Ax2",
+    expect=REFUTED,
+    slip="scan",
+    reason="the last factor reads h(x_i, y_j)/dx: a del is lost and the point is off the track; A_y2, "
+    "its negative, has dh(x_j, y_j)/dx",
+)
+def ax2_as_printed():
+    """The sum A_x2, as printed."""
+    return Equation(printed=printed_sums("Ax2"), derived=[from_x(size)[0] for size in PAIRS])
+
+
+@claim("12.Ax2*", corrects="12.Ax2")
+def ax2():
+    """The sum A_x2."""
+    return Equation(printed=printed_sums("Ax2*"), derived=[from_x(size)[0] for size in PAIRS])
+
+
+@claim("12.Ax1")
+def ax1():
+    """The sum A_x1."""
+    return Equation(printed=printed_sums("Ax1"), derived=[from_x(size)[1] for size in PAIRS])
+
+
+@claim(
+    "12.Ax0",
+    expect=REFUTED,
+    slip="paper",
+    reason="the last product is (dh_j/dy)(dh_j/dy) where the derivative of (11) gives (dh_i/dy)(dh_j/dx)",
+)
+def ax0_as_printed():
+    """The sum A_x0, as printed."""
+    return Equation(printed=printed_sums("Ax0"), derived=[from_x(size)[2] for size in PAIRS])
+
+
+@claim("12.Ax0*", corrects="12.Ax0")
+def ax0():
+    """The sum A_x0."""
+    return Equation(printed=printed_sums("Ax0*"), derived=[from_x(size)[2] for size in PAIRS])
+
+
+@claim("13.Ay2")
+def ay2():
+    """The sum A_y2."""
+    return Equation(printed=printed_sums("Ay2"), derived=[from_y(size)[0] for size in PAIRS])
+
+
+@claim("13.Ay1")
+def ay1():
+    """The sum A_y1."""
+    return Equation(printed=printed_sums("Ay1"), derived=[from_y(size)[1] for size in PAIRS])
+
+
+@claim(
+    "13.Ay0",
+    expect=REFUTED,
+    slip="paper",
+    reason="the bracket is (dh_i/dy)(dh_j/dy) - (dh_j/dy)^2, without any slope along x; the derivative "
+    "of (11) gives (dh_i/dy)(dh_j/dx) - (dh_i/dx)(dh_j/dy)",
+)
+def ay0_as_printed():
+    """The sum A_y0, as printed."""
+    return Equation(printed=printed_sums("Ay0"), derived=[from_y(size)[2] for size in PAIRS])
+
+
+@claim("13.Ay0*", corrects="13.Ay0")
+def ay0():
+    """The sum A_y0."""
+    return Equation(printed=printed_sums("Ay0*"), derived=[from_y(size)[2] for size in PAIRS])
+
+
+@claim("12.linear")
+def sums_in_one_pass():
+    """The double sums are differences of products of single sums: six numbers, O(n) operations."""
+    printed, derived = [], []
+    for size in SIZES:
+        G0, G1 = moment(slopes(size), 0), moment(slopes(size), 1)
+        printed += [
+            sp.expand(G1[0, 0] * G0[0, 1] - G1[0, 1] * G0[0, 0]),
+            sp.expand(G1[0, 0] * G0[1, 1] - G1[1, 1] * G0[0, 0]),
+            sp.expand(G1[0, 1] * G0[1, 1] - G1[1, 1] * G0[0, 1]),
+        ]
+        derived += [double_sum(size, PRINTED[name]) for name in ("Ax2*", "Ax1", "Ax0*")]
+    return Equation(printed=printed, derived=derived)
+
+
+def quadratic_form(sums):
+    a2, a1, a0 = sums
+    return a2 * beta_x**2 + a1 * beta_x * beta_y + a0 * beta_y**2
+
+
+def scaled(size, variable):
+    """2 beta D^-2, the factor between the derivative of t_G and the quadratic form."""
+    squares = sum((p * beta_x + q * beta_y) ** 2 for p, q in slopes(size))
+    return 2 * variable / squares**2
+
+
+@claim(
+    "12",
+    expect=REFUTED,
+    slip="paper",
+    reason="the derivative is the quadratic form times 2 beta_y / D^2; only the equation '= 0' survives "
+    "without the factor, and it also vanishes at beta_y = 0",
+)
+def derivative_x_as_printed():
+    """The derivative of t_G by beta_x is the quadratic form itself."""
+    sums = [double_sum(1, PRINTED[name]) for name in ("Ax2*", "Ax1", "Ax0*")]
+    return Equation(printed=quadratic_form(sums), derived=derivative(slopes(1), beta_x))
+
+
+@claim("12*", corrects="12")
+def derivative_x():
+    """The derivative of t_G by beta_x is the quadratic form times 2 beta_y / D^2, D the sum of squares."""
+    forms = [
+        quadratic_form([double_sum(s, PRINTED[name]) for name in ("Ax2*", "Ax1", "Ax0*")]) for s in PAIRS
+    ]
+    return Equation(
+        printed=[scaled(s, beta_y) * form for s, form in zip(PAIRS, forms, strict=True)],
+        derived=[derivative(slopes(s), beta_x) for s in PAIRS],
+    )
+
+
+@claim(
+    "13",
+    expect=REFUTED,
+    slip="paper",
+    reason="the derivative is the quadratic form times 2 beta_x / D^2; only the equation '= 0' survives "
+    "without the factor, and it also vanishes at beta_x = 0",
+)
+def derivative_y_as_printed():
+    """The derivative of t_G by beta_y is the quadratic form itself."""
+    sums = [double_sum(1, PRINTED[name]) for name in ("Ay2", "Ay1", "Ay0*")]
+    return Equation(printed=quadratic_form(sums), derived=derivative(slopes(1), beta_y))
+
+
+@claim("13*", corrects="13")
+def derivative_y():
+    """The derivative of t_G by beta_y is the quadratic form times 2 beta_x / D^2, D the sum of squares."""
+    forms = [quadratic_form([double_sum(s, PRINTED[name]) for name in ("Ay2", "Ay1", "Ay0*")]) for s in PAIRS]
+    return Equation(
+        printed=[scaled(s, beta_x) * form for s, form in zip(PAIRS, forms, strict=True)],
+        derived=[derivative(slopes(s), beta_y) for s in PAIRS],
+    )
+
+
+@claim("13.sign2")
+def opposite_sums_2():
+    """A_x2 = -A_y2."""
+    return Equation(printed=[-a for a in printed_sums("Ay2")], derived=[from_x(size)[0] for size in PAIRS])
+
+
+@claim("13.sign1")
+def opposite_sums_1():
+    """A_x1 = -A_y1."""
+    return Equation(printed=[-a for a in printed_sums("Ay1")], derived=[from_x(size)[1] for size in PAIRS])
+
+
+@claim(
+    "13.sign0",
+    expect=REFUTED,
+    slip="paper",
+    reason="with A_y0 as printed the two sums are not opposite: both brackets are misprinted, "
+    "differently",
+)
+def opposite_sums_0_as_printed():
+    """A_x0 = -A_y0, with A_y0 as printed."""
+    return Equation(printed=[-a for a in printed_sums("Ay0")], derived=[from_x(size)[2] for size in PAIRS])
+
+
+@claim("13.sign0*", corrects="13.sign0")
+def opposite_sums_0():
+    """A_x0 = -A_y0, with both sums as the derivatives give them."""
+    return Equation(printed=[-a for a in printed_sums("Ay0*")], derived=[from_x(size)[2] for size in PAIRS])
+
+
+@claim("13.same")
+def one_equation():
+    """Both conditions are one equation: beta_x d/dbeta_x and -beta_y d/dbeta_y of t_G are equal."""
+    return Equation(
+        printed=[-beta_y * derivative(slopes(size), beta_y) for size in SIZES],
+        derived=[beta_x * derivative(slopes(size), beta_x) for size in SIZES],
+    )

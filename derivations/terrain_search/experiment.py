@@ -1,0 +1,220 @@
+"""The experiment: noise of the altimeter, the two accuracy measures and their units, table 1."""
+
+from __future__ import annotations
+
+import sympy as sp
+
+from navsym.claims import REFUTED, Bound, Equation, claim
+
+POSITION, FULL, SEQUENTIAL = sp.Rational("152.2"), sp.Rational("92.7"), sp.Rational("97.0")
+FULL_SPEED, SEQUENTIAL_SPEED = sp.Rational("0.48"), sp.Rational("0.55")
+scale = sp.Symbol("lamda", positive=True)
+
+
+@claim("grid.experiment")
+def ranges_of_the_experiment():
+    """41 hypotheses of 50 m and 11 of 1 m/s reach 1000 m and 5 m/s to either side."""
+    return Equation(
+        printed=[sp.Integer(41), sp.Integer(11)],
+        derived=[sp.Integer(len(range(-1000, 1001, 50))), sp.Integer(len(range(-5, 6, 1)))],
+    )
+
+
+@claim(
+    "noise",
+    expect=REFUTED,
+    slip="paper",
+    reason="a radio altimeter errs in proportion to the height that it measures, h_rv; the print has "
+    "h_abs - h_rv, the elevation of the ground, so that there would be no noise at sea level at "
+    "any height",
+)
+def noise_as_printed():
+    """The standard deviation of the height error is 0.015 (h_abs - h_rv)."""
+    absolute, above = sp.symbols("h_abs h_rv", positive=True)
+    return Equation(
+        printed=sp.Rational("0.015") * (absolute - above), derived=noise_deviation(absolute, above)
+    )
+
+
+@claim("noise*", corrects="noise")
+def noise():
+    """The standard deviation of the height error is 0.015 h_rv, 12 m at 800 m above the ground."""
+    absolute, above = sp.symbols("h_abs h_rv", positive=True)
+    return Equation(
+        printed=[sp.Rational("0.015") * above, sp.Integer(12)],
+        derived=[noise_deviation(absolute, above), noise_deviation(absolute, sp.Integer(800))],
+    )
+
+
+def noise_deviation(absolute, above):
+    """Deviation of h_abs - h_rv (1 + 0.015 e), e normal of variance one: the size of its derivative."""
+    e = sp.Symbol("e", real=True)
+    return -sp.diff(absolute - above * (1 + sp.Rational("0.015") * e), e)
+
+
+# The accuracy measures
+
+
+def errors(count):
+    """Errors of ``count`` runs in x and y."""
+    return [(sp.Symbol(f"e{m}", positive=True), sp.Symbol(f"f{m}", positive=True)) for m in range(count)]
+
+
+def printed_measure(runs, n):
+    """sqrt(sum sqrt(e^2 + f^2) / (n - 1))."""
+    return sp.sqrt(sum(sp.sqrt(e**2 + f**2) for e, f in runs) / (n - 1))
+
+
+def mean_square_measure(runs, n):
+    """sqrt(sum (e^2 + f^2) / n)."""
+    return sp.sqrt(sum(e**2 + f**2 for e, f in runs) / n)
+
+
+def stretched(runs):
+    """The same runs measured in a unit ``scale`` times smaller."""
+    return [(scale * e, scale * f) for e, f in runs]
+
+
+@claim(
+    "sigma.unit",
+    expect=REFUTED,
+    slip="paper",
+    reason="under the outer root stand lengths, not their squares: the measure is a root of metres, "
+    "though table 1 gives metres; the inner root should not be there",
+)
+def unit_as_printed():
+    """The accuracy measure is a length: in a unit 1/lambda it is lambda times as large."""
+    runs = errors(3)
+    return Equation(printed=scale * printed_measure(runs, 3), derived=printed_measure(stretched(runs), 3))
+
+
+@claim("sigma.unit*", corrects="sigma.unit")
+def unit():
+    """The root of the mean square error is a length."""
+    runs = errors(3)
+    return Equation(
+        printed=scale * mean_square_measure(runs, 3), derived=mean_square_measure(stretched(runs), 3)
+    )
+
+
+@claim(
+    "sigmaV.unit",
+    expect=REFUTED,
+    slip="paper",
+    reason="the same inner root in the velocity measure: a root of m/s where the table has m/s",
+)
+def velocity_unit_as_printed():
+    """The velocity measure is a velocity: it scales with the unit of velocity."""
+    runs = errors(2)
+    return Equation(printed=scale * printed_measure(runs, 2), derived=printed_measure(stretched(runs), 2))
+
+
+@claim("sigmaV.unit*", corrects="sigmaV.unit")
+def velocity_unit():
+    """The root of the mean square velocity error is a velocity."""
+    runs = errors(2)
+    return Equation(
+        printed=scale * mean_square_measure(runs, 2), derived=mean_square_measure(stretched(runs), 2)
+    )
+
+
+@claim(
+    "sigma.count",
+    expect=REFUTED,
+    slip="paper",
+    reason="the sum i = 0…n has n + 1 terms for n experiments",
+)
+def count_as_printed():
+    """The sum over i = 0…n has as many terms as there are experiments, n."""
+    sizes = range(2, 6)
+    return Equation(
+        printed=[sp.Integer(n) for n in sizes], derived=[sp.Integer(len(range(n + 1))) for n in sizes]
+    )
+
+
+@claim("sigma.count*", corrects="sigma.count")
+def count():
+    """The sum over i = 1…n has n terms."""
+    sizes = range(2, 6)
+    return Equation(
+        printed=[sp.Integer(n) for n in sizes], derived=[sp.Integer(len(range(1, n + 1))) for n in sizes]
+    )
+
+
+@claim(
+    "sigma.divisor",
+    expect=REFUTED,
+    slip="paper",
+    reason="the truth is known, no mean is estimated, so no degree of freedom is lost: n runs of mean "
+    "square s2 over n - 1 average n s2/(n - 1)",
+)
+def divisor_as_printed():
+    """The divisor n - 1 makes the mean square of n runs about the known truth unbiased."""
+    n, s2 = sp.Integer(100), sp.Symbol("s2", positive=True)
+    return Equation(printed=s2, derived=n * s2 / (n - 1))
+
+
+@claim("sigma.divisor*", corrects="sigma.divisor")
+def divisor():
+    """The divisor n makes it unbiased: the mean of n equal expectations."""
+    s2 = sp.Symbol("s2", positive=True)
+    sizes = (2, 20, 100)
+    return Equation(
+        printed=[s2] * len(sizes), derived=[sum(s2 for _ in range(n)) / sp.Integer(n) for n in sizes]
+    )
+
+
+def largest_error():
+    """Largest error of the position search after 1000 s: true and found hypothesis in opposite corners.
+
+    Along an axis: 1000 m found, 1000 m and 5 m/s true.
+    """
+    along = sp.Integer(1000) + 1000 + 5 * 1000
+    return sp.sqrt(2 * along**2)
+
+
+@claim(
+    "sigma.table",
+    expect=REFUTED,
+    slip="paper",
+    reason="within the stated grid and 1000 s the printed measure cannot exceed 100.5, whatever happens;"
+    " table 1 has 152.2, so it was not computed by the printed formula",
+)
+def table_as_printed():
+    """The 152.2 of table 1 can be a value of the printed measure for 100 runs."""
+    runs = 100
+    most = sp.sqrt((runs + 1) * largest_error() / (runs - 1))
+    return Bound(printed=POSITION, relation="<=", derived=most)
+
+
+@claim("sigma.table*", corrects="sigma.table")
+def table_as_mean_square():
+    """The 152.2 m of table 1 can be a root mean square error."""
+    return Bound(printed=POSITION, relation="<=", derived=largest_error())
+
+
+# Words about table 1
+
+
+@claim("table.close")
+def sequential_is_close_to_the_joint_search():
+    """By the printed digits the sequential search loses at most 15 per cent in position."""
+    return Bound(printed=SEQUENTIAL, relation="<=", derived=sp.Rational("1.15") * FULL)
+
+
+@claim("table.close.velocity")
+def sequential_is_close_in_velocity():
+    """By the printed digits the sequential search loses at most 15 per cent in velocity."""
+    return Bound(printed=SEQUENTIAL_SPEED, relation="<=", derived=sp.Rational("1.15") * FULL_SPEED)
+
+
+@claim("table.better")
+def sequential_is_better_than_the_position_search():
+    """By table 1 the position search is worse than the sequential one by more than half."""
+    return Bound(printed=POSITION, relation=">=", derived=sp.Rational("1.5") * SEQUENTIAL)
+
+
+@claim("table.real_time")
+def joint_search_keeps_up():
+    """The joint search of table 1 keeps up with the flight: 40.1 s for 1000 measurements at 2 Hz."""
+    return Bound(printed=sp.Rational("40.1"), relation="<=", derived=sp.Rational(1000, 2))

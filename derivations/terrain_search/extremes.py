@@ -1,0 +1,298 @@
+"""The extremes of t_G: the two cases of the paper, the roots, the middle of the interval as a mean."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import sympy as sp
+
+from derivations.terrain_search.directions import quotient
+from derivations.terrain_search.model import (
+    beta_x,
+    beta_y,
+    crossing_time,
+    inverse,
+    moment,
+    slopes,
+    symmetric,
+)
+from navsym.claims import PROVED, REFUTED, Bound, Equation, Finding, Property, claim
+
+G, M = symmetric("G"), symmetric("M")
+a, b = sp.symbols("a b", positive=True)
+
+
+def form_sums(G, M):
+    """(A2, A1, A0): coefficients of det[M v, G v], v = (beta_x, beta_y)."""
+    v = sp.Matrix([beta_x, beta_y])
+    polynomial = sp.Poly(sp.expand(sp.Matrix.hstack(M * v, G * v).det()), beta_x, beta_y)
+    return [polynomial.coeff_monomial(m) for m in (beta_x**2, beta_x * beta_y, beta_y**2)]
+
+
+@claim("case1.value")
+def value_without_cross_track_error():
+    """With beta_y = 0, t_G is the mean weighted with the squared slopes along x."""
+    printed, derived = [], []
+    for size in (1, 2, 3):
+        p = [slope for slope, _ in slopes(size)]
+        printed.append(sum(k * s**2 for k, s in enumerate(p)) / sum(s**2 for s in p))
+        derived.append(crossing_time(slopes(size), (beta_x, 0)))
+    return Equation(printed=printed, derived=derived)
+
+
+def slope_at_the_axis(size):
+    """d t_G / d beta_y at beta_y = 0."""
+    return sp.cancel(sp.diff(quotient(slopes(size)), beta_y).subs(beta_y, 0))
+
+
+@claim(
+    "case1",
+    expect=REFUTED,
+    slip="paper",
+    reason="at beta_y = 0 only the derivative by beta_x vanishes; t_G is stationary there if and only if"
+    " A_2 = 0",
+)
+def axis_as_printed():
+    """beta_y = 0 is a solution of the necessary conditions."""
+    return Equation(printed=sp.Integer(0), derived=slope_at_the_axis(1))
+
+
+@claim("case1*", corrects="case1")
+def axis():
+    """At beta_y = 0 the derivative of t_G by beta_y is -2 A_2 / (beta_x (sum h_x^2)^2)."""
+    printed = []
+    for size in (1, 2):
+        points = slopes(size)
+        A2 = form_sums(moment(points, 0), moment(points, 1))[0]
+        printed.append(-2 * A2 / (beta_x * sum(p**2 for p, _ in points) ** 2))
+    return Equation(printed=printed, derived=[slope_at_the_axis(size) for size in (1, 2)])
+
+
+@claim("roots")
+def roots_of_the_quadratic():
+    """The printed roots solve the quadratic when A_2 is not zero and the discriminant not negative."""
+    A2 = sp.Symbol("A2", positive=True)
+    A1, root = sp.Symbol("A1", real=True), sp.Symbol("r", nonnegative=True)
+    A0 = (A1**2 - root**2) / (4 * A2)  # any A0 with the discriminant root^2
+    discriminant = sp.sqrt(A1**2 - 4 * A2 * A0)
+    solutions = [(-A1 + root) / (2 * A2), (-A1 - root) / (2 * A2)]
+    return Equation(
+        printed=[(-A1 + discriminant) / (2 * A2), (-A1 - discriminant) / (2 * A2)], derived=solutions
+    )
+
+
+@claim("roots.solve")
+def solutions_solve():
+    """Those two numbers are zeros of A_2 b^2 + A_1 b + A_0."""
+    A2 = sp.Symbol("A2", positive=True)
+    A1, root = sp.Symbol("A1", real=True), sp.Symbol("r", real=True)
+    A0 = (A1**2 - root**2) / (4 * A2)
+    zeros = [(-A1 + root) / (2 * A2), (-A1 - root) / (2 * A2)]
+    return Equation(printed=[sp.Integer(0)] * 2, derived=[A2 * z**2 + A1 * z + A0 for z in zeros])
+
+
+@claim(
+    "roots.both",
+    expect=REFUTED,
+    slip="paper",
+    reason="when A_2 = 0 the printed roots divide by zero and one extreme lies at beta_y = 0: on the "
+    "example the equation with beta_y = 1 has one solution; the conditions have to be solved for "
+    "the direction",
+)
+def two_roots_as_printed():
+    """With beta_y = 1 the quadratic has two roots, one for t_min and one for t_max."""
+    return Property(
+        2, Finding(len(roots_on_the_example()), "exact example: slopes (1, 0) and (0, 1)", PROVED)
+    )
+
+
+def example():
+    """A track with one slope along x at the start and one along y at the end."""
+    points = [(1, 0), (0, 1)]
+    return form_sums(moment(points, 0), moment(points, 1))
+
+
+def roots_on_the_example():
+    A2, A1, A0 = (Fraction(int(v)) for v in example())
+    if A2:
+        return ["two"] * 2
+    return [-A0 / A1] if A1 else []
+
+
+@claim("roots.both*", corrects="roots.both")
+def two_directions():
+    """The directions (beta_x : beta_y) that solve it are two, here the axes, with t_G = 1 and 0."""
+    values = sorted(int(crossing_time([(1, 0), (0, 1)], way)) for way in axes_of_the_example())
+    return Property((0, 1), Finding(tuple(values), "exact example: slopes (1, 0) and (0, 1)", PROVED))
+
+
+def axes_of_the_example():
+    """Directions among the axes at which the quadratic form vanishes."""
+    A2, A1, A0 = (int(v) for v in example())
+    return [(u, v) for u, v in ((1, 0), (0, 1)) if A2 * u * u + A1 * u * v + A0 * v * v == 0]
+
+
+@claim("roots.values")
+def a_root_is_an_eigenvector():
+    """(v'Gv) M1 v - (v'M1 v) G v = W (beta_y, -beta_x): where W = 0, v is an eigenvector of G^-1 M1."""
+    v = sp.Matrix([beta_x, beta_y])
+    A2, A1, A0 = form_sums(G, M)
+    W = A2 * beta_x**2 + A1 * beta_x * beta_y + A0 * beta_y**2
+    residual = (v.T * G * v)[0] * (M * v) - (v.T * M * v)[0] * (G * v)
+    return Equation(printed=[W * beta_y, -W * beta_x], derived=list(residual))
+
+
+@claim("roots.range")
+def every_value_lies_between_the_roots():
+    """det(M1 - t_G G) = -(W / v'Gv)^2, so t_G lies between the roots of det(M1 - t G) in every direction."""
+    v = sp.Matrix([beta_x, beta_y])
+    A2, A1, A0 = form_sums(G, M)
+    W = A2 * beta_x**2 + A1 * beta_x * beta_y + A0 * beta_y**2
+    square = (v.T * G * v)[0]
+    return Equation(printed=-((W / square) ** 2), derived=(M - (v.T * M * v)[0] / square * G).det())
+
+
+@claim("roots.solvable")
+def always_solvable():
+    """The solvability that the paper tests always holds: G11^2 times the discriminant is a sum of squares."""
+    A2, A1, A0 = form_sums(G, M)
+    squares = (G[0, 0] * A1 - 2 * G[0, 1] * A2) ** 2 + 4 * G.det() * A2**2
+    return Equation(printed=squares, derived=G[0, 0] ** 2 * (A1**2 - 4 * A2 * A0))
+
+
+@claim("roots.gram")
+def information_is_not_negative():
+    """det G is a sum of squares over pairs of points, so the discriminant is never negative."""
+    printed = []
+    for size in (1, 2, 3):
+        g = slopes(size)
+        pairs = [(i, j) for i in range(size + 1) for j in range(i)]
+        printed.append(sum((g[i][0] * g[j][1] - g[i][1] * g[j][0]) ** 2 for i, j in pairs))
+    return Equation(printed=printed, derived=[moment(slopes(size), 0).det() for size in (1, 2, 3)])
+
+
+@claim("flat")
+def slopes_of_one_direction():
+    """On terrain that slopes along one direction only, A_2 = A_1 = A_0 = 0: the quadratic says nothing."""
+    c = sp.Symbol("c", real=True)
+    found = []
+    for size in (1, 2, 3):
+        points = [(p, c * p) for p, _ in slopes(size)]
+        found += form_sums(moment(points, 0), moment(points, 1))
+    return Equation(printed=[sp.Integer(0)] * len(found), derived=found)
+
+
+# The middle of the interval as a mean over directions
+
+
+def mean_over_directions():
+    """Mean over a uniform angle of t_G for G = diag(a^2, b^2).
+
+    With u = tan(angle) it is 1/pi times the integral over the line of (m11 + 2 m12 u + m22 u^2) /
+    ((a^2 + b^2 u^2)(1 + u^2)). The odd term gives zero; the even ones split into X/(1 + u^2) +
+    Y/(a^2 + b^2 u^2), whose integrals are X pi and Y pi/(a b).
+    """
+    m11, m22, u = M[0, 0], M[1, 1], sp.Symbol("u")
+    X = (m11 - m22) / (a**2 - b**2)
+    Y = m11 - a**2 * X
+    remainder = sp.expand(m11 + m22 * u**2 - sp.cancel(X * (a**2 + b**2 * u**2) + Y * (1 + u**2)))
+    assert sp.cancel(remainder) == 0
+    return X + Y / (a * b)
+
+
+BOX = {a: (2, 3), b: (sp.Rational(1, 2), 1)}
+
+
+@claim(
+    "mean",
+    expect=REFUTED,
+    slip="paper",
+    reason="t_G is not spread evenly over [t_min, t_max] when the direction is uniform: the direction "
+    "with the larger slopes counts for more; equal only when both slopes are equally strong",
+)
+def middle_as_printed():
+    """The mean of t_G over a uniform direction is the middle of [t_min, t_max], half the trace of G^-1 M1."""
+    centre = inverse(sp.diag(a**2, b**2)) * M
+    return Equation(printed=(centre[0, 0] + centre[1, 1]) / 2, derived=mean_over_directions(), box=BOX)
+
+
+@claim("mean*", corrects="mean")
+def mean():
+    """The mean of t_G over a uniform direction is tr(G^-1/2 M1) / tr(G^1/2)."""
+    root = sp.diag(a, b)
+    printed = (inverse(root) * M).trace() / root.trace()
+    return Equation(printed=printed, derived=mean_over_directions(), box=BOX)
+
+
+@claim("mean.rotated")
+def mean_in_any_axes():
+    """In any axes it is (tr(adj(G) M1) + s tr M1) / (s (tr G + 2 s)), s = sqrt(det G)."""
+    angle = sp.Symbol("phi", real=True)
+    R = sp.Matrix([[sp.cos(angle), -sp.sin(angle)], [sp.sin(angle), sp.cos(angle)]])
+    turned, moments = R * sp.diag(a**2, b**2) * R.T, R * M * R.T
+    s = a * b  # the determinant does not change
+    adjugate = sp.Matrix([[turned[1, 1], -turned[0, 1]], [-turned[1, 0], turned[0, 0]]])
+    printed = ((adjugate * moments).trace() + s * moments.trace()) / (s * (turned.trace() + 2 * s))
+    return Equation(printed=printed, derived=(M[0, 0] / a + M[1, 1] / b) / (a + b))
+
+
+@claim("mean.primitives")
+def primitives():
+    """The two integrals of the mean: primitives arctan(u) and arctan(b u / a) / (a b)."""
+    u = sp.Symbol("u", real=True)
+    return Equation(
+        printed=[sp.diff(sp.atan(u), u), sp.diff(sp.atan(b * u / a) / (a * b), u)],
+        derived=[1 / (1 + u**2), 1 / (a**2 + b**2 * u**2)],
+    )
+
+
+@claim("middle.trace")
+def middle_is_half_the_trace():
+    """The roots of det(M1 - t G) add up to tr(G^-1 M1); their difference squared is D / det(G)^2."""
+    t = sp.Symbol("t", real=True)
+    quadratic = sp.Poly(sp.expand((M - t * G).det()), t)
+    c2, c1, c0 = quadratic.all_coeffs()
+    A2, A1, A0 = form_sums(G, M)
+    return Equation(
+        printed=[(inverse(G) * M).trace(), (A1**2 - 4 * A2 * A0) / G.det() ** 2],
+        derived=[-c1 / c2, (c1**2 - 4 * c2 * c0) / c2**2],
+    )
+
+
+@claim(
+    "interval.tenth",
+    expect=REFUTED,
+    slip="paper",
+    reason="too strong outside the one figure: where the terrain slopes along x in one part of the track"
+    " and along y in the other, [t_min, t_max] is the whole track",
+)
+def width_as_printed():
+    """The interval [t_min, t_max] is at most a tenth of the track."""
+    return Bound(printed=width_of_an_example(), relation="<=", derived=sp.Rational(1, 10))
+
+
+def width_of_an_example():
+    """Width over n for one slope along x at the start and one along y at the end."""
+    points = [(1, 0), *[(0, 0)] * 9, (0, 1)]
+    A2, A1, A0 = form_sums(moment(points, 0), moment(points, 1))
+    return sp.sqrt(A1**2 - 4 * A2 * A0) / moment(points, 0).det() / 10
+
+
+@claim("interval.tenth*", corrects="interval.tenth")
+def width():
+    """The interval [t_min, t_max] may be the whole track."""
+    return Equation(printed=sp.Integer(1), derived=width_of_an_example())
+
+
+@claim("interval.half")
+def distance_from_the_middle():
+    """Half the interval bounds the error of its middle: width^2/4 - (t_G - middle)^2 = (W/D)^2 / det G."""
+    v = sp.Matrix([beta_x, beta_y])
+    A2, A1, A0 = form_sums(G, M)
+    W = A2 * beta_x**2 + A1 * beta_x * beta_y + A0 * beta_y**2
+    square = (v.T * G * v)[0]
+    middle = (inverse(G) * M).trace() / 2
+    quarter = (A1**2 - 4 * A2 * A0) / G.det() ** 2 / 4
+    return Equation(
+        printed=(W / square) ** 2 / G.det(), derived=quarter - ((v.T * M * v)[0] / square - middle) ** 2
+    )

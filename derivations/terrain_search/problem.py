@@ -1,0 +1,124 @@
+"""Statement of the problem: hypotheses, criteria (2) and (4), the bias of the position-only search."""
+
+from __future__ import annotations
+
+import sympy as sp
+
+from derivations.terrain_search.model import SIZES, free_motion, inverse, moment, n, slopes
+from navsym.claims import REFUTED, Bound, Equation, claim
+
+i, j, Vi, Vj = sp.symbols("i j Vi Vj", real=True)
+Dx, Dy, DVx, DVy, T = sp.symbols("Deltax Deltay DeltaVx DeltaVy T", positive=True)
+x, y, tk, t0, dVx, dVy = sp.symbols("x y t_k t_0 deltaVx deltaVy", real=True)
+
+
+@claim("grid.count")
+def number_of_hypotheses():
+    """Indices from -N to N are 2N + 1 hypotheses."""
+    halves = range(21)
+    return Equation(
+        printed=[2 * sp.Integer(N) + 1 for N in halves],
+        derived=[sp.Integer(len(range(-N, N + 1))) for N in halves],
+    )
+
+
+@claim(
+    "2.count",
+    expect=REFUTED,
+    slip="paper",
+    reason="the text makes n measurements, k = 1…n, while the sums (2), (4), (6) run over k = 0…n",
+)
+def measurements_as_printed():
+    """The criterion sums n measurements."""
+    return Equation(printed=n, derived=count_of(0, n))
+
+
+@claim("2.count*", corrects="2.count")
+def measurements():
+    """The criterion sums n + 1 measurements."""
+    return Equation(printed=n + 1, derived=count_of(0, n))
+
+
+def count_of(first, last):
+    """Number of integers from first to last."""
+    return last - first + 1
+
+
+@claim("2.cost")
+def position_cost():
+    """The position search evaluates Mx My hypotheses."""
+    sizes = [(a, b) for a in range(4) for b in range(4)]
+    pairs = [[(u, v) for u in range(-a, a + 1) for v in range(-b, b + 1)] for a, b in sizes]
+    return Equation(
+        printed=[(2 * sp.Integer(a) + 1) * (2 * b + 1) for a, b in sizes],
+        derived=[sp.Integer(len(p)) for p in pairs],
+    )
+
+
+@claim("4")
+def joint_hypothesis():
+    """A hypothesis of (4) is a motion of the model (1) without accelerations, and (2) when Vi = Vj = 0."""
+    tau = tk - t0
+    moved = [free_motion(tau, a, v, 0)[0] for a, v in ((i * Dx, Vi * DVx), (j * Dy, Vj * DVy))]
+    printed = [x + i * Dx + Vi * DVx * tau, y + j * Dy + Vj * DVy * tau]
+    still = [p.subs({Vi: 0, Vj: 0}) for p in printed]
+    return Equation(
+        printed=[*printed, *still],
+        derived=[x + moved[0], y + moved[1], x + i * Dx, y + j * Dy],
+    )
+
+
+@claim("bias.mean")
+def bias_on_average():
+    """Over terrain that is as likely in either direction, the fix is off by deltaV T/2 on average."""
+    velocity = sp.Matrix([dVx, dVy])
+    means = []
+    for size in SIZES[:2]:
+        points = slopes(size)
+        both = [inverse(moment(track, 0)) * moment(track, 1) for track in (points, points[::-1])]
+        means += list((both[0] + both[1]) / 2 * (T / size) * velocity)
+    return Equation(printed=[dVx * T / 2, dVy * T / 2] * len(SIZES[:2]), derived=means)
+
+
+@claim("bias.mirror")
+def bias_of_a_mirrored_profile():
+    """On a track whose slopes are the same read from either end the bias is deltaV T/2 in every flight."""
+    (a, b), (c, d), (e, f) = slopes(2)
+    biases = []
+    for points in ([(a, b), (c, d), (a, b)], [(a, b), (c, d), (e, f), (c, d), (a, b)]):
+        times = T / (len(points) - 1)
+        biases += list(inverse(moment(points, 0)) * moment(points, 1) * times * sp.Matrix([dVx, dVy]))
+    return Equation(printed=[dVx * T / 2, dVy * T / 2] * 2, derived=biases)
+
+
+@claim("bias.200")
+def bias_can_be_large():
+    """With 5 m/s on an axis the bias reaches 200 m, here after the 1000 s of the paper's run."""
+    return Bound(printed=sp.Integer(200), relation="<=", derived=sp.Rational(5 * 1000, 2))
+
+
+@claim("bias.units")
+def bias_at_the_end():
+    """Against the position at the end of the interval the same bias has the opposite sign."""
+    start, velocity = sp.symbols("deltax0 deltaV", real=True)
+    fix = start + velocity * T / 2
+    return Equation(printed=-velocity * T / 2, derived=fix - free_motion(T, start, velocity, 0)[0])
+
+
+@claim("velocity.grid")
+def velocity_hypotheses():
+    """A range of 5 m/s on either side in steps of 1 m/s is 11 hypotheses on an axis."""
+    return Equation(printed=sp.Integer(11), derived=sp.Integer(len(range(-5, 6))))
+
+
+@claim("velocity.cost")
+def growth_of_the_cost():
+    """The joint search evaluates MVx MVy times as many hypotheses as the position search."""
+    mx, my, mvx, mvy = sp.symbols("M_x M_y M_Vx M_Vy", positive=True)
+    return Equation(printed=mvx * mvy, derived=mx * my * mvx * mvy / (mx * my))
+
+
+@claim("velocity.orders")
+def more_than_two_orders():
+    """With 11 by 11 velocities the cost grows by more than two orders of magnitude."""
+    return Bound(printed=sp.Integer(len(range(-5, 6)) ** 2), relation=">", derived=sp.Integer(10) ** 2)

@@ -1,0 +1,202 @@
+"""The solution (8), (14), and what the sequential estimate is when heights are linear near the fix.
+
+Least squares over the track: with b0 = sum g z, b1 = sum k g z the joint solution (c, v) of (4) satisfies
+G c + M1 v = b0, M1 c + M2 v = b1. The first stage finds c* = G^-1 b0, the second minimises over v alone.
+"""
+
+from __future__ import annotations
+
+import sympy as sp
+
+from derivations.terrain_search.model import free_motion, inverse, symmetric
+from navsym.claims import REFUTED, Equation, claim
+
+G, M1, M2 = symmetric("G"), symmetric("M"), symmetric("N")
+b0 = sp.Matrix(sp.symbols("b01 b02", real=True))
+b1 = sp.Matrix(sp.symbols("b11 b12", real=True))
+v = sp.Matrix(sp.symbols("v_x v_y", real=True))
+tG, tn = sp.symbols("t_G t_n", real=True)
+fix_x, fix_y, Vi, Vj = sp.symbols("deltax deltay Vi Vj", real=True)
+DVx, DVy, Dx, Dy = sp.symbols("DeltaVx DeltaVy Deltax Deltay", positive=True)
+
+
+def at_the_end(fix, velocity):
+    """Error at t_n of the motion (1) that passes through ``fix`` at t_G."""
+    return free_motion(tn - tG, fix, velocity, 0)
+
+
+@claim("8.x")
+def refined_x():
+    """The refined error along x at the last time."""
+    return Equation(printed=fix_x + Vi * DVx * (tn - tG), derived=at_the_end(fix_x, Vi * DVx)[0])
+
+
+@claim(
+    "8.y",
+    expect=REFUTED,
+    slip="paper",
+    reason="the first sign is a product: (14) and the formula for x beside it have a sum",
+)
+def refined_y_as_printed():
+    """The refined error along y at the last time, as printed."""
+    return Equation(printed=fix_y * Vj * DVy * (tn - tG), derived=at_the_end(fix_y, Vj * DVy)[0])
+
+
+@claim("8.y*", corrects="8.y")
+def refined_y():
+    """The refined error along y at the last time."""
+    return Equation(printed=fix_y + Vj * DVy * (tn - tG), derived=at_the_end(fix_y, Vj * DVy)[0])
+
+
+@claim("14.position")
+def final_position():
+    """The corrected position at the last time."""
+    x, y, i, j = sp.symbols("x y i j", real=True)
+    return Equation(
+        printed=[x + Dx * i + DVx * Vi * (tn - tG), y + Dy * j + DVy * Vj * (tn - tG)],
+        derived=[x + at_the_end(Dx * i, DVx * Vi)[0], y + at_the_end(Dy * j, DVy * Vj)[0]],
+    )
+
+
+@claim("14.velocity")
+def final_velocity():
+    """The corrected velocity at the last time."""
+    Vx, Vy = sp.symbols("Vx Vy", real=True)
+    return Equation(
+        printed=[Vx + DVx * Vi, Vy + DVy * Vj],
+        derived=[Vx + at_the_end(fix_x, DVx * Vi)[1], Vy + at_the_end(fix_y, DVy * Vj)[1]],
+    )
+
+
+def centre():
+    """C = G^-1 M1."""
+    return inverse(G) * M1
+
+
+def schur():
+    """S = M2 - M1 G^-1 M1: information on the velocity when the position is unknown."""
+    return M2 - M1 * inverse(G) * M1
+
+
+@claim("centre")
+def coarse_fix():
+    """A velocity error v moves the position fix by C v, C = G^-1 M1: the criterion is stationary there."""
+    c = sp.Matrix(sp.symbols("c_x c_y", real=True))
+    criterion = (c.T * G * c - 2 * c.T * M1 * v)[0]  # sum (g'(c - k v))^2 up to what is free of c
+    at_fix = dict(zip(c, centre() * v, strict=True))
+    return Equation(
+        printed=[sp.Integer(0)] * 2,
+        derived=[sp.diff(criterion, s).subs(at_fix, simultaneous=True) for s in c],
+    )
+
+
+@claim(
+    "crossing.exists",
+    expect=REFUTED,
+    slip="paper",
+    reason="in two dimensions C v is not along v, so the coarse and the true track are skew: they meet "
+    "only when v is an eigenvector of C",
+)
+def crossing_as_printed():
+    """The coarse track meets the true one at some t: the displacement C v - t v vanishes for t = t_G."""
+    quotient = (v.T * M1 * v)[0] / (v.T * G * v)[0]
+    return Equation(printed=[sp.Integer(0)] * 2, derived=list(centre() * v - quotient * v))
+
+
+@claim("crossing.exists*", corrects="crossing.exists")
+def crossing_in_the_mean():
+    """At t_G the displacement C v - t_G v is orthogonal to v in the metric G: the tracks pass, not meet."""
+    quotient = (v.T * M1 * v)[0] / (v.T * G * v)[0]
+    return Equation(printed=sp.Integer(0), derived=(v.T * G * (centre() * v - quotient * v))[0])
+
+
+def sequential_normal(t):
+    """Matrix and right side of the second stage when it turns about the instant t, true velocity v.
+
+    Residual at k: g'((C - k) v + (k - t) w), w the hypothesis; C = G^-1 M1.
+    """
+    matrix = M2 - 2 * t * M1 + t**2 * G
+    right = (M2 - M1 * centre() - t * (M1 - G * centre())) * v
+    return matrix, right
+
+
+@claim("sequential.shrinks")
+def sequential_estimate():
+    """The second stage of the paper solves (S + R) w = S v with R = (M1 - t G) G^-1 (M1 - t G)."""
+    matrix, right = sequential_normal(tG)
+    rest = M1 - tG * G
+    printed = [*(schur() + rest * inverse(G) * rest), *(schur() * v)]
+    return Equation(printed=printed, derived=[*matrix, *right])
+
+
+@claim("sequential.shrinks.sign")
+def what_is_added_is_not_negative():
+    """x'Rx = (R0 x)' G^-1 (R0 x) with R0 = M1 - t G: nothing is added only where v is an eigenvector of C."""
+    rest = M1 - tG * G
+    x = (rest * v).T * inverse(G) * (rest * v)
+    matrix, _ = sequential_normal(tG)
+    return Equation(printed=x[0], derived=(v.T * (matrix - schur()) * v)[0])
+
+
+def two_stages():
+    """Position and velocity of the sequential search about the matrix C; b0, b1 hold errors and noise."""
+    coarse = inverse(G) * b0
+    velocity = inverse(schur()) * (b1 - M1 * coarse)
+    return coarse - centre() * velocity, velocity
+
+
+@claim("sequential.exact")
+def two_stages_are_the_joint_solution():
+    """Turning about C, the two stages solve the joint normal equations exactly, whatever the noise."""
+    position, velocity = two_stages()
+    return Equation(
+        printed=[*b0, *b1], derived=[*(G * position + M1 * velocity), *(M1 * position + M2 * velocity)]
+    )
+
+
+@claim("sequential.second")
+def second_stage_about_the_centre():
+    """With C in the place of t_G the matrix of the second stage is S and its right side b1 - M1 c*."""
+    t = centre()
+    matrix = M2 - t.T * M1 - M1 * t + t.T * G * t  # sum (k - C)' g g' (k - C)
+    right = (b1 - t.T * b0) - (M1 - t.T * G) * (inverse(G) * b0)
+    return Equation(printed=[*schur(), *(b1 - M1 * inverse(G) * b0)], derived=[*matrix, *right])
+
+
+@claim("14.centre")
+def final_position_from_the_centre():
+    """The position at t_n is the coarse fix plus (t_n - C) v: the correction that costs nothing."""
+    position, velocity = two_stages()
+    coarse = inverse(G) * b0
+    printed = coarse + (tn * sp.eye(2) - centre()) * velocity
+    return Equation(printed=list(printed), derived=list(position + tn * velocity))
+
+
+@claim("acceleration")
+def constant_acceleration():
+    """On even terrain a constant acceleration a leaves errors a n (n - 1)/12 and a n/2 at the end."""
+    a = sp.Symbol("a", real=True)
+    sizes = range(2, 8)
+    printed = [error for n in sizes for error in (a * n * (n - 1) / sp.Integer(12), a * n / sp.Integer(2))]
+    return Equation(printed=printed, derived=[error for n in sizes for error in line_fit_errors(a, n)])
+
+
+def line_fit_errors(a, n):
+    """Errors at the end, in position and velocity, of the line fitted to a k^2/2, k = 0…n."""
+    truth = [free_motion(sp.Integer(k), 0, 0, a)[0] for k in range(n + 1)]
+    sums = [sum(sp.Integer(k) ** m for k in range(n + 1)) for m in range(3)]
+    rights = [sum(truth), sum(k * y for k, y in enumerate(truth))]
+    offset, slope = inverse(sp.Matrix([[sums[0], sums[1]], [sums[1], sums[2]]])) * sp.Matrix(rights)
+    end = free_motion(sp.Integer(n), 0, 0, a)
+    return [sp.expand(end[0] - offset - slope * n), sp.expand(end[1] - slope)]
+
+
+@claim("offset")
+def constant_height_error():
+    """Without the mean of its differences the criterion is free of a constant height error."""
+    height = sp.Symbol("b", real=True)
+    d = sp.symbols("d0:4", real=True)
+    mean = sum(d) / 4
+    shifted = [x + height for x in d]
+    free = sum((x - sum(shifted) / 4) ** 2 for x in shifted)
+    return Equation(printed=sum((x - mean) ** 2 for x in d), derived=free)
