@@ -161,8 +161,8 @@ def need_constant(model: LinearModel, *, matrix_only: bool = False) -> None:
 
 
 def collected(entry: sp.Expr) -> sp.Expr:
-    """A sum with its products spread out, unless that makes it longer."""
-    spread = sp.expand_mul(entry)
+    """A sum with its products spread out, unless that makes it longer; arguments stay as they are."""
+    spread = sp.Add(*(sp.expand_mul(term, deep=False) for term in sp.Add.make_args(entry)))
     return spread if spread.count_ops() <= entry.count_ops() else entry
 
 

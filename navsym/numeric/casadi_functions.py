@@ -15,7 +15,7 @@ import re
 from collections.abc import Sequence
 from functools import reduce
 from operator import add, mul
-from typing import Any
+from typing import Any, TypeAlias
 
 import casadi as ca
 import numpy as np
@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from navsym.errors import DomainError, NotFiniteError, ShapeError, UnknownSymbolError
 
 Array = NDArray[np.float64]
-Argument = sp.Symbol | Sequence[sp.Symbol]
+Argument: TypeAlias = sp.Symbol | Sequence[sp.Symbol]
 Memo = dict[sp.Basic, Any]
 
 UNARY = {
@@ -152,7 +152,9 @@ def rounded(number: sp.Rational) -> Any:
     try:
         return ca.SX(int(number.p) / int(number.q))
     except OverflowError:
-        raise NotFiniteError("expression: expected numbers below 1.8e308; got a larger one; rescale") from None
+        raise NotFiniteError(
+            "expression: expected numbers below 1.8e308; got a larger one; rescale"
+        ) from None
 
 
 def sum_of(expression: sp.Add, memo: Memo) -> Any:

@@ -47,8 +47,8 @@ class GridProblem:
 
     regressors: Array
     functional: Array
-    bounds: Array | None = None
-    spacing: Array | None = None
+    bounds: Any = None                       # arrays once constructed
+    spacing: Any = None
 
     def __post_init__(self) -> None:
         regressors = named("regressors", self.regressors, (None, None), "unknowns by instants")
@@ -211,7 +211,7 @@ def need_one_highs(engine: str) -> None:
 def lp_by_casadi(problem: GridProblem, engine: str) -> Answer:
     import casadi as ca
 
-    m, n = problem.regressors.shape
+    n = problem.regressors.shape[1]
     A = np.hstack([problem.regressors, -problem.regressors])
     solver = conic(ca.DM(2 * n, 2 * n), A, engine)
     cost = np.concatenate([problem.bounds, problem.bounds])
@@ -305,7 +305,7 @@ def trust_table(
 
 
 def trusted_until(table: Iterable[Trust], *, tolerance: float = 1e-6) -> dict[str, float | None]:
-    """For each solver the smallest parameter down to which every larger one was solved within the tolerance."""
+    """For each solver the smallest parameter down to which it solved all within the tolerance."""
     limits: dict[str, float | None] = {}
     failed: set[str] = set()
     for row in sorted(table, key=lambda row: -row.parameter):

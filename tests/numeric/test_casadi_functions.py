@@ -73,7 +73,7 @@ def test_names_of_the_user_never_reach_the_engine():
     hostile = sp.Symbol("__import__('os').system('true')")
     assert float(casadi_function("f", [hostile], hostile**2)(3.0)) == 9.0
     for name in ("f; system(1)", "", "1f", "f__g", "f-1"):
-        with pytest.raises(DomainError, match="identifier|letters"):
+        with pytest.raises(DomainError, match="expected letters"):
             casadi_function(name, [x], x)
 
 
