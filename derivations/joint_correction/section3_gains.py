@@ -15,6 +15,7 @@ from derivations.joint_correction.section1_systems import coefficients_of_polyno
 from derivations.joint_correction.section2_groups import mu, position, velocity, w1, w2
 from derivations.joint_correction.section3_algorithm import joint_error_matrix
 from navsym.claims import CERTIFIED, Equation, Finding, Property, claim
+from navsym.methods.observability_split import inverse
 from navsym.models.inertial import EARTH, MU
 
 lam, lam_h = sp.symbols("lambda_c lambda_h", positive=True)
@@ -208,6 +209,19 @@ def decay_rate(lambda_value: sp.Rational, kappa_value: sp.Rational) -> sp.Ration
 def decay_for_a_small_link():
     """To leading order the three poles leave -lambda_c along the cube roots: (p + lambda_c)^3 = 2 i kappa lambda_c^2 (1 + lambda_c^2)."""
     return Equation(-2 * lam**2 * (1 + lam**2), sp.expand(link_polynomial(p).subs(p, -lam)))
+
+
+@claim("3.coupled.repaired")
+def link_removed_by_the_split():
+    """The two-stage split of section 1 removes the link: gains L^-1 L_0 K, with L of the chains and L_0 = L at kappa = 0,
+    give (p + lambda_c)^6 for every kappa other than 1 and -1."""
+    F, H, _ = velocity().linear()
+    H = H.subs(EARTH[2], kappa / MU)
+    L = sp.Matrix.vstack(*(H[row, :] * F**power for row in (0, 1) for power in (0, 1, 2)))
+    K = sp.zeros(6, 2)
+    K[:3, 0] = K[3:, 1] = sp.Matrix(VELOCITY_GAINS)
+    gains = sp.Matrix(inverse("L", sp.ImmutableMatrix(L))) * L.subs(kappa, 0) * K
+    return Equation((p + lam) ** 6, (p * sp.eye(6) - F + gains * H).applyfunc(sp.cancel).det(method="berkowitz"))
 
 
 # The coupled position stage

@@ -286,7 +286,7 @@ def basis_rows(vectors: Matrix, chain: Chain, ring: Ring) -> sp.ImmutableMatrix:
     for j, vector in enumerate(vectors):
         scale = chain.bottom * chain.clock**j
         entries += [ring.expression(ring.lowest(x, scale)) for x in vector]
-    return sp.ImmutableMatrix(len(vectors), len(vectors[0]) if vectors else 0, entries)
+    return sp.ImmutableMatrix(len(vectors), len(chain.vectors[0]), entries)
 
 
 def denominators(chains: Chains) -> tuple[sp.Expr, ...]:

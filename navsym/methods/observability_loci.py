@@ -171,7 +171,7 @@ def real_systems(system: list[Poly], ring: Ring) -> list[list[Poly]]:
         return [system]
     if any(not any(powers) for powers in terms):
         return []                                  # a positive constant beside squares
-    return [[ring.context.from_dict({powers: 1}) for powers in terms]]
+    return [[ring.context.from_dict({tuple(min(p, 1) for p in powers): 1}) for powers in terms]]
 
 
 def tidied(system: list[Poly], ring: Ring) -> list[Poly] | None:

@@ -66,7 +66,7 @@ class Split:
     @property
     def Phi_x(self) -> sp.ImmutableMatrix:
         """(j, i): how x or u drives the second chain; last row only (joint_correction:1.10, 1.14)."""
-        return last_row(self.j, self.link[: self.i])
+        return last_row(self.j, self.link[: self.i]) if self.j else sp.ImmutableMatrix.zeros(0, self.i)
 
     @property
     def Phi_z(self) -> sp.ImmutableMatrix:
