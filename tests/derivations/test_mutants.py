@@ -35,11 +35,15 @@ def judge(case):
     identity, mutant, printed, derived, box = case
     against_derived = decide_equation(Equation(mutant, derived, box))
     if against_derived.status == REFUTED:
-        return "refuted" if against_derived.counterexample is not None else f"{identity}: no point for {mutant}"
+        return (
+            "refuted" if against_derived.counterexample is not None else f"{identity}: no point for {mutant}"
+        )
     same = decide_equation(Equation(mutant, printed, box))
     if against_derived.status == PROVED and same.status == PROVED:
         return "equal"
-    return f"{identity}: {mutant} is {against_derived.status} against derived and {same.status} against printed"
+    return (
+        f"{identity}: {mutant} is {against_derived.status} against derived and {same.status} against printed"
+    )
 
 
 def run(chosen):
@@ -74,5 +78,10 @@ def test_all_mutants_of_the_guaranteed_velocity_formulas_fall():
 def test_a_sign_a_number_and_a_function_are_among_the_mutants():
     x = sp.Symbol("x", real=True)
     found = mutants(2 * sp.sin(x) ** 2 + 1)
-    for expected in (2 * sp.sin(x) ** 2 - 1, 3 * sp.sin(x) ** 2 + 1, 2 * sp.cos(x) ** 2 + 1, 2 * sp.sin(x) ** 3 + 1):
+    for expected in (
+        2 * sp.sin(x) ** 2 - 1,
+        3 * sp.sin(x) ** 2 + 1,
+        2 * sp.cos(x) ** 2 + 1,
+        2 * sp.sin(x) ** 3 + 1,
+    ):
         assert expected in found

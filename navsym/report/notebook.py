@@ -1,0 +1,112 @@
+"""For notebooks: show a claim with its verdict, and stop when the verdict is not the declared one."""
+
+from __future__ import annotations
+
+import html
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import sympy as sp
+
+from navsym.claims import Bound, Claim, Equation, Optimum, Property, Statement, Verdict
+from navsym.errors import NavsymError
+from navsym.proof.ladder import decide
+
+COLOURS = {
+    "PROVED": "#1a7f37",
+    "CERTIFIED": "#1a7f37",
+    "CONFIRMED": "#0969da",
+    "REFUTED": "#cf222e",
+    "OPEN": "#9a6700",
+}
+
+
+class UnexpectedVerdictError(NavsymError):
+    """A verdict that differs from the declared one."""
+
+    kind = "verdict"
+    status = 1
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Shown:
+    """A claim, its statement and its verdict, as a notebook displays them."""
+
+    claim: Claim
+    statement: Statement
+    verdict: Verdict
+
+    def _repr_html_(self) -> str:
+        """A card; every word that comes from data is escaped."""
+        verdict, colour = self.verdict, COLOURS[str(self.verdict.status)]
+        rows = [
+            f"<b>{html.escape(self.claim.id)}</b> {html.escape(self.claim.title)}",
+            *(f"<i>{name}</i> $\\displaystyle {latex}$" for name, latex in statement_latex(self.statement)),
+            f"<b style='color:{colour}'>{verdict.status}</b> by {html.escape(verdict.method)}, "
+            f"{html.escape(verdict.scope)}",
+        ]
+        rows += [html.escape(words) for words in remarks(self.claim, verdict)]
+        return (
+            f"<div style='border-left:4px solid {colour};padding-left:10px'>" + "<br>".join(rows) + "</div>"
+        )
+
+    def __repr__(self) -> str:
+        return f"{self.claim.id}: {self.verdict.status} ({self.verdict.method}; {self.verdict.scope})"
+
+
+def show(claim: Claim) -> Shown:
+    """Derive and decide a claim, and display both sides with the verdict."""
+    statement = claim.derive()
+    return Shown(claim, statement, decide(statement))
+
+
+def require(claim: Claim) -> Verdict:
+    """The verdict of a claim; raises UnexpectedVerdictError when it is not the declared one."""
+    verdict = decide(claim.derive())
+    if verdict.status != claim.expect:
+        message = f"expected {claim.id} to be {claim.expect}; got {verdict.status}: {verdict.evidence}"
+        raise UnexpectedVerdictError(message)
+    return verdict
+
+
+def remarks(claim: Claim, verdict: Verdict) -> list[str]:
+    found = []
+    if claim.reason:
+        found.append(f"{claim.slip or 'note'}: {claim.reason}")
+    if verdict.counterexample:
+        found.append("counterexample: " + ", ".join(f"{k} = {v}" for k, v in verdict.counterexample.items()))
+    if verdict.assumptions:
+        found.append("assuming " + ", ".join(verdict.assumptions))
+    return found
+
+
+def statement_latex(statement: Statement) -> list[tuple[str, str]]:
+    """The parts of a statement as (word, LaTeX)."""
+    if isinstance(statement, Equation):
+        return [("printed", side_latex(statement.printed)), ("derived", side_latex(statement.derived))]
+    if isinstance(statement, Bound):
+        relation = {"<=": r"\le", ">=": r"\ge", "!=": r"\ne"}.get(statement.relation, statement.relation)
+        return [("bound", f"{side_latex(statement.printed)} {relation} {side_latex(statement.derived)}")]
+    if isinstance(statement, Optimum):
+        names = ("dual", "support", "weights", "value")
+        return [(name, side_latex(getattr(statement, name))) for name in names]
+    assert isinstance(statement, Property)
+    return [("printed", words(statement.printed)), ("found", words(statement.derived.value))]
+
+
+def side_latex(side: Any) -> str:
+    return sp.latex(sp.Tuple(*side) if isinstance(side, (tuple, list)) else sp.sympify(side, strict=True))
+
+
+def words(value: Any) -> str:
+    return rf"\text{{{html.escape(str(value))}}}"
+
+
+def verdict_table(claims: Mapping[str, Claim] | list[Claim], choose: Callable[[Claim], bool] = bool) -> str:
+    """Claims and verdicts as aligned text, one line each."""
+    chosen = [
+        claim for claim in (claims.values() if isinstance(claims, Mapping) else claims) if choose(claim)
+    ]
+    width = max((len(claim.number) for claim in chosen), default=0)
+    return "\n".join(f"{c.number:<{width}}  {decide(c.derive()).status:<9}  {c.title}" for c in chosen)

@@ -1,0 +1,134 @@
+# ---
+# jupyter:
+#   jupytext:
+#     formats: py:percent
+#   kernelspec:
+#     display_name: Python 3
+#     language: python
+#     name: python3
+# ---
+
+# %% [markdown]
+# # A tour in ten minutes
+#
+# **Question.** A paper prints a formula for the error with which an inertial system can be corrected.
+# Is the formula right? For which intervals? What should have been printed instead, and may I put it
+# into a flight computer?
+#
+# A model is symbols; a derivation reaches a formula by its own route; a claim holds the printed side
+# beside the derived one; a verdict says how far the claim holds and why.
+
+# %%
+import matplotlib.pyplot as plt
+import numpy as np
+import sympy as sp
+
+from derivations.guaranteed_velocity import model, polynomial, system, weights
+from navsym.claims import Equation, Optimum
+from navsym.proof.ladder import decide
+from navsym.report.notebook import require, show
+
+# %% [markdown]
+# ## The model
+# Velocity error, tilt and drift of one channel, in Schuler units; the velocity is measured.
+
+# %%
+model.CHANNEL.F
+
+# %% [markdown]
+# The measurement at time τ, referred to the state at the end T, derived from the model:
+
+# %%
+model.H()
+
+# %% [markdown]
+# ## A printed line that is wrong
+# Equation (1.9) prints the second component with a minus.
+
+# %%
+show(system.second_component)
+
+# %%
+show(system.second_component_corrected)
+
+# %% [markdown]
+# The counterexample is an exact point at which a ball excludes equality: anyone can check it by hand.
+# Where does the minus come from? Reversing the time in (1.8) gives exactly the printed line:
+
+# %%
+show(system.reversed_argument)
+
+# %% [markdown]
+# ## A printed line that is right
+# The guaranteed error of the drift estimate, proved optimal by an exact primal–dual pair: no solver is
+# believed, four algebraic conditions are checked for every T of the range at once.
+
+# %%
+drift = weights.OPTIMAL_ERRORS[2]
+show(drift)
+
+# %%
+for claim in (system.second_component, system.second_component_corrected, drift):
+    require(claim)
+
+# %% [markdown]
+# ## Now change something
+# Is the printed error still the optimum when the interval is longer than the paper says, T = 3π/4?
+# Put the statement together and ask.
+
+# %%
+printed = drift.derive()
+longer = Optimum(
+    printed.regressors, printed.functional, printed.variable, printed.interval, printed.dual,
+    printed.support, printed.weights, printed.value, box={model.T: (0, 3 * sp.pi / 4)},
+)  # fmt: skip
+verdict = decide(longer)
+assert verdict.status == "REFUTED"
+verdict
+
+# %% [markdown]
+# The formulas end where a weight changes its sign: at 2π/3 for the drift.
+
+# %%
+T = np.linspace(0.3, 2 * np.pi, 400)
+first = np.cos(T / 2) / np.sin(T / 4) ** 2
+with np.errstate(divide="ignore"):
+    second = -1 / np.cos(T)
+error = np.where(2 * np.pi / 3 >= T, first, np.where(np.pi >= T, second, 1.0))
+figure, axis = plt.subplots(figsize=(7, 3.5))
+axis.plot(T, error, color="#0072b2", label="guaranteed error of $y_3$")
+axis.axvspan(0, np.pi / 2, color="#e69f00", alpha=0.15, label="range that the paper states")
+for bound in (2 * np.pi / 3, np.pi):
+    axis.axvline(bound, color="0.6", lw=0.8)
+axis.set(xlabel="T, Schuler units", ylabel=r"$d_{opt}(y_3)\,/\,\sigma$", ylim=(0, 12), xlim=(0, 2 * np.pi))
+axis.legend()
+plt.close(figure)
+figure
+
+# %% [markdown]
+# ## Your own formula
+# Any formula of the language goes through the same door.
+
+# %%
+a = sp.Symbol("a", real=True)
+right = decide(Equation(sp.sin(3 * a), 3 * sp.sin(a) - 4 * sp.sin(a) ** 3))
+wrong = decide(Equation(sp.sin(3 * a), 3 * sp.sin(a) - 4 * sp.cos(a) ** 3))
+assert (right.status, wrong.status) == ("PROVED", "REFUTED")
+right, wrong
+
+# %% [markdown]
+# The polynomial behind the proof touches its bounds at the start, in the middle and at the end:
+
+# %%
+at = np.linspace(0, np.pi / 2, 200)
+S = sp.lambdify(model.tau, polynomial.polynomial(*polynomial.coefficients()).subs(model.T, sp.pi / 2), "numpy")
+L = float(polynomial.deviation().subs(model.T, sp.pi / 2))
+figure, axis = plt.subplots(figsize=(7, 3))
+axis.plot(at, S(at) / L, color="#0072b2")
+axis.axhline(1, color="0.6", lw=0.8)
+axis.axhline(-1, color="0.6", lw=0.8)
+axis.plot([0, np.pi / 4, np.pi / 2], [-1, 1, -1], "o", color="#d55e00")
+axis.set(xlabel=r"$\tau$, Schuler units", ylabel=r"$S_0(\tau)\,/\,L_1$", title="T = π/2")
+plt.close(figure)
+assert np.abs(S(at)).max() <= L * (1 + 1e-12)
+figure
