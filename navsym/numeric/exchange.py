@@ -30,6 +30,7 @@ NEAR = 1e-7  # |f| above 1 - NEAR counts as touching
 NEGLIGIBLE = 1e-7  # weights below this part of their sum are not contacts
 ROUNDS = 8
 VERTICES = 6
+SNAP = 1e-8  # an inner contact this near to an end of its panel stands on the end
 MOST_TOUCHES = 600
 
 
@@ -212,8 +213,8 @@ def polish(panels: Panels, start: tuple[Ints, Array, Array, Array], x: Array) ->
         moved = u.copy()
         moved[inner == 1] += np.clip(step[m : m + int(inner.sum())], -0.2, 0.2)
         weights = weights + step[-l:]
-        outside = (np.abs(moved) >= 1.0) & (inner == 1)
-        u = np.clip(moved, -1.0, 1.0)
+        outside = (np.abs(moved) >= 1.0 - SNAP) & (inner == 1)
+        u = np.where(outside, np.sign(moved), moved)
         inner = np.where(outside, 0, inner)
         if np.abs(step).max() < 1e-13 * max(1.0, float(np.abs(x).max())):
             break

@@ -89,6 +89,35 @@ def spread_rows(G: Array) -> Ints:
 
 
 @njit(cache=True)
+def inverted(B: Array) -> tuple[Array, bool]:
+    """Inverse of a small matrix by Gauss and Jordan with row pivots; False when it is singular."""
+    m = B.shape[0]
+    A = B.copy()
+    X = np.eye(m)
+    for k in range(m):
+        at = k
+        for i in range(k + 1, m):
+            if abs(A[i, k]) > abs(A[at, k]):
+                at = i
+        if not abs(A[at, k]) > 1e-14:
+            return X, False
+        for j in range(m):
+            A[k, j], A[at, j] = A[at, j], A[k, j]
+            X[k, j], X[at, j] = X[at, j], X[k, j]
+        pivot = A[k, k]
+        for j in range(m):
+            A[k, j] /= pivot
+            X[k, j] /= pivot
+        for i in range(m):
+            if i != k and A[i, k] != 0.0:
+                factor = A[i, k]
+                for j in range(m):
+                    A[i, j] -= factor * A[k, j]
+                    X[i, j] -= factor * X[k, j]
+    return X, True
+
+
+@njit(cache=True)
 def simplex(G: Array, p: Array, basis: Ints, limit: int) -> tuple[Ints, Array, Array, int]:
     """Minimise ``sum |w_i|`` subject to ``sum w_i G_i = p`` over the rows of G, from a basis of m rows.
 
@@ -99,11 +128,15 @@ def simplex(G: Array, p: Array, basis: Ints, limit: int) -> tuple[Ints, Array, A
     n, m = G.shape
     basis = basis.copy()
     signs = np.ones(m)
+    weights = np.zeros(m)
+    x = np.zeros(m)
     for count in range(limit):
         B = np.empty((m, m))
         for k in range(m):
             B[k] = G[basis[k]]
-        inverse = np.linalg.inv(B)
+        inverse, regular = inverted(B)
+        if not regular:
+            return basis, weights, x, -1
         weights = p @ inverse
         if count == 0:
             for k in range(m):
@@ -117,13 +150,16 @@ def simplex(G: Array, p: Array, basis: Ints, limit: int) -> tuple[Ints, Array, A
         d = (enter * G[at]) @ inverse
         leave = -1
         ratio = np.inf
+        pivot = 0.0
         for k in range(m):
             along = signs[k] * d[k]
-            if along > 1e-11:
+            if along > 1e-10:
                 step = max(signs[k] * weights[k], 0.0) / along
-                if step < ratio:
-                    ratio = step
+                # among equal steps the largest pivot, so that the basis stays far from singular
+                if step < ratio - 1e-13 or (step <= ratio + 1e-13 and along > pivot):
+                    ratio = min(step, ratio)
                     leave = k
+                    pivot = along
         if leave < 0:
             return basis, weights, x, -1
         basis[leave] = at
@@ -148,7 +184,10 @@ def remez_steps(
         B = np.empty((m, m))
         for k in range(m):
             B[k] = chebyshev_rows(C[panel[k]], u[k])
-        x = np.linalg.solve(B, sign)
+        inverse, regular = inverted(B)
+        if not regular:
+            return u, x, np.inf
+        x = inverse @ sign
         move = 0.0
         for k in range(m):
             if inner[k] == 1:

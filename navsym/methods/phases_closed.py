@@ -1,0 +1,246 @@
+"""Closed forms of a regime: found from samples with many digits, proved as identities.
+
+Places are recognised as ``a T + b`` or as a share of the interval, the dual and the weights then
+solve linear systems with exact entries, and the pair goes to the ladder of proof as one
+:class:`~navsym.claims.Optimum`. Recognition only proposes.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+import sympy as sp
+from flint import arb
+
+from navsym.claims import OPEN, Optimum, Verdict
+from navsym.methods.phases_family import U, Family
+from navsym.methods.phases_scan import Pattern, Span, pattern_of, sample
+from navsym.proof.balls import precision
+from navsym.proof.enclosure import rational
+from navsym.proof.ladder import decide_within
+from navsym.proof.optimality_polish import Polished, polish
+from navsym.proof.products import as_product
+
+BITS = 320
+GOAL = 1e-60
+NEAR = sp.Rational(1, 10**40)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Closed:
+    """Places in u, weights, dual and value as expressions in T, and the verdict on the pair."""
+
+    panels: tuple[int, ...]
+    places: tuple[sp.Expr, ...]
+    weights: tuple[sp.Expr, ...]
+    dual: tuple[sp.Expr, ...]
+    value: sp.Expr
+    verdict: Verdict
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Sample:
+    """One member of the family with many digits."""
+
+    T: sp.Rational
+    places: tuple[sp.Rational, ...]
+    polished: Polished
+
+
+def samples_of(family: Family, span: Span, shares: Sequence[str] = ("0.23", "0.41", "0.59", "0.83")) -> list[Sample]:
+    """Members of a span whose pattern is that of the span."""
+    found = []
+    for share in shares:
+        T = (span.lower + (span.upper - span.lower) * Fraction(share)).limit_denominator(10**6)
+        one = refined(family, T, span.pattern)
+        if one is not None:
+            found.append(one)
+    return found
+
+
+def refined(family: Family, T: Fraction, pattern: Pattern | None) -> Sample | None:
+    basis, contacts = sample(family, T)
+    if pattern is not None and pattern_of(contacts) != pattern:
+        return None
+    length = sp.Rational(T.numerator, T.denominator)
+    done = polish(family.exact(length).panels, basis, contacts, BITS, GOAL)
+    places = tuple(length * number(v) for v in done.v)
+    return Sample(length, places, done)
+
+
+def number(x: arb) -> sp.Rational:
+    value = rational(x)
+    return sp.Rational(int(value.p), int(value.q))
+
+
+# -- recognition -----------------------------------------------------------------------------------
+
+
+def constant(x: sp.Rational) -> sp.Expr | None:
+    """A rational, a rational multiple of pi, or a cosine share ``(1 - cos(pi r))/2``, within 1e-40."""
+    pi = sp.Rational(str(sp.pi.evalf(90)))
+    for unit, base in ((sp.Integer(1), sp.Integer(1)), (pi, sp.pi)):
+        best = sp.Rational(x / unit).limit_denominator(720)
+        if abs(best * unit - x) < NEAR:
+            return best * base
+    if 0 < x < 1:
+        r = sp.acos(1 - 2 * sp.Float(str(sp.N(x, 90)), 90)) / sp.Float(pi, 90)
+        best = sp.Rational(str(r)).limit_denominator(120)
+        shown = (1 - sp.cos(sp.pi * best)) / 2
+        if abs(sp.Rational(str(shown.evalf(90))) - x) < NEAR:
+            return shown
+    for q in (2, 3, 5, 6):
+        root = sp.Rational(str(sp.sqrt(q).evalf(90)))
+        best = sp.Rational(x / root).limit_denominator(720)
+        if abs(best * root - x) < NEAR:
+            return best * sp.sqrt(q)
+    return None
+
+
+def place_of(values: Sequence[sp.Rational], lengths: Sequence[sp.Rational], T: sp.Symbol) -> sp.Expr | None:
+    """``a T + b`` through the first two samples, confirmed on all of them."""
+    slope = (values[1] - values[0]) / (lengths[1] - lengths[0])
+    start = values[0] - slope * lengths[0]
+    if any(abs(slope * t + start - v) > NEAR for v, t in zip(values, lengths, strict=True)):
+        return None
+    a, b = constant(slope), constant(start)
+    return None if a is None or b is None else a * T + b
+
+
+# -- exact linear algebra on the contacts ---------------------------------------------------------
+
+
+def closed_form(family: Family, span: Span, lower: sp.Expr, upper: sp.Expr, seconds: float = 40.0) -> Closed | None:
+    """Closed form of a regime, proved on (lower, upper), or None when none is recognised."""
+    found = samples_of(family, span)
+    if len(found) < 3:
+        return None
+    T = family.parameter
+    lengths = [s.T for s in found]
+    places = [place_of([s.places[i] for s in found], lengths, T) for i in range(len(span.pattern))]
+    if any(p is None for p in places):
+        return None
+    exact = tuple(p for p in places if p is not None)
+    best: Closed | None = None
+    for dual in itertools.islice(duals(family, span, exact, found[0]), 3):
+        weights = weights_of(family, span, exact, found[0])
+        if weights is None:
+            return None
+        value = tidy(sum((x * p for x, p in zip(dual, family.functional, strict=True)), sp.S.Zero))
+        verdict = proved(family, span, exact, weights, dual, value, lower, upper, seconds)
+        candidate = Closed(tuple(k for k, _, _ in span.pattern), exact, weights, dual, value, verdict)
+        if verdict.status.holds:
+            return candidate
+        best = best or candidate
+    return best
+
+
+def duals(family: Family, span: Span, places: Sequence[sp.Expr], one: Sample):  # type: ignore[no-untyped-def]
+    """Solutions x of ``x . H(u_i) = s_i sigma`` and ``x . H'(u_i) = 0``; those with most zeros first."""
+    rows, right = [], []
+    for (k, kind, s), u in zip(span.pattern, places, strict=True):
+        rows.append([h.subs(U, u) for h in family.rows[k]])
+        right.append(s * family.sigma[k])
+        if kind == "no":
+            rows.append([h.diff(U).subs(U, u) for h in family.rows[k]])
+            right.append(sp.S.Zero)
+    A = sp.Matrix(rows)
+    m = A.cols
+    numeric = np.array(A.subs(family.parameter, one.T).evalf(30).tolist(), dtype=float)
+    b = np.array([float(r) for r in right])
+    rank = int(np.linalg.matrix_rank(numeric, tol=1e-9))
+    for columns in itertools.combinations(range(m), rank):
+        picked = independent_rows(numeric[:, columns])
+        if len(picked) < rank:
+            continue
+        x = np.zeros(m)
+        x[list(columns)] = np.linalg.lstsq(numeric[:, columns], b, rcond=None)[0]
+        if np.abs(numeric @ x - b).max() > 1e-9 or not feasible(family, one, x):
+            continue
+        solved = exact_solution(A, right, picked, columns)
+        if solved is not None:
+            full = [sp.S.Zero] * m
+            for c, value in zip(columns, solved, strict=True):
+                full[c] = value
+            yield tuple(full)
+
+
+def feasible(family: Family, one: Sample, x: np.ndarray) -> bool:
+    """|x . H| <= sigma on a grid, up to rounding."""
+    from navsym.methods.guaranteed_compare import panel_numbers
+
+    for panel in family.exact(one.T).panels:
+        H, _, sigma = panel_numbers(panel, np.linspace(0.0, 1.0, 801))
+        if np.abs(x @ H).max() > sigma * (1 + 1e-9):
+            return False
+    return True
+
+
+def independent_rows(A: np.ndarray) -> list[int]:
+    """Indices of rows that span the row space, greedily."""
+    picked: list[int] = []
+    for i in range(A.shape[0]):
+        if np.linalg.matrix_rank(A[[*picked, i]], tol=1e-9) > len(picked):
+            picked.append(i)
+    return picked
+
+
+def exact_solution(
+    A: sp.Matrix, right: Sequence[sp.Expr], rows: Sequence[int], columns: Sequence[int]
+) -> list[sp.Expr] | None:
+    """Cramer's rule on the chosen rows and columns, every quotient brought to a product if it has one."""
+    block = A.extract(list(rows), list(columns))
+    b = sp.Matrix([right[i] for i in rows])
+    below = sp.expand(block.det(method="berkowitz"))
+    solved = []
+    for j in range(block.cols):
+        changed = block.copy()
+        changed[:, j] = b
+        above = sp.expand(changed.det(method="berkowitz"))
+        solved.append(tidy(above / below))
+    return solved
+
+
+def tidy(expression: sp.Expr) -> sp.Expr:
+    """A short form: the product of the normal form when there is one; nothing rests on it."""
+    if not expression.free_symbols:
+        return sp.nsimplify(expression) if expression.is_Rational else sp.radsimp(expression)
+    if not expression.has(sp.sin, sp.cos, sp.exp):
+        return sp.factor(expression)
+    product = as_product(expression)
+    choices = [expression] if product is None else [product]
+    simplified = sp.simplify(choices[0])
+    choices.append(simplified)
+    return min(choices, key=sp.count_ops)
+
+
+def weights_of(family: Family, span: Span, places: Sequence[sp.Expr], one: Sample) -> tuple[sp.Expr, ...] | None:
+    """Exact weights from ``sum w_i H(u_i) = P`` on independent rows."""
+    N = sp.Matrix([[h.subs(U, u) for h in family.rows[k]] for (k, _, _), u in zip(span.pattern, places, strict=True)]).T
+    numeric = np.array(N.subs(family.parameter, one.T).evalf(30).tolist(), dtype=float)
+    rows = independent_rows(numeric)
+    if len(rows) < N.cols:
+        return None
+    solved = exact_solution(N, family.functional, rows[: N.cols], range(N.cols))
+    return None if solved is None else tuple(solved)
+
+
+def proved(
+    family: Family, span: Span, places: Sequence[sp.Expr], weights: Sequence[sp.Expr], dual: Sequence[sp.Expr],
+    value: sp.Expr, lower: sp.Expr, upper: sp.Expr, seconds: float,
+) -> Verdict:  # fmt: skip
+    """The ladder's verdict on the pair for all T between the ends; one measurement only."""
+    if len(family.rows) != 1:
+        return Verdict(OPEN, "none", evidence="several measurements: pairs are proved for one")
+    sigma = family.sigma[0]
+    statement = Optimum(
+        regressors=family.rows[0], functional=family.functional, variable=U, interval=(sp.S.Zero, family.parameter),
+        dual=tuple(x / sigma for x in dual), support=tuple(places), weights=tuple(weights), value=value / sigma,
+        box={family.parameter: (lower, upper)},
+    )  # fmt: skip
+    with precision(128):
+        return decide_within(statement, seconds)
