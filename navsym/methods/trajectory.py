@@ -2,11 +2,11 @@
 
 Estimates n states of a polynomial motion from measurements z of its coordinate. Two forms:
 
-* ``printed``  : the gain reads the predicted matrix with the row H_p, as the paper prints it (trajectory:algorithm.K);
+* ``printed``  : the gain reads the predicted matrix with the row H_p, as printed (trajectory:algorithm.K);
 * ``corrected``: with the row H, which belongs to the state after the step (trajectory:algorithm.K*).
 
-In the corrected form a criterion of one step sees only q_1: K = (g + q_1 e_1) / (g_1 + q_1 + R). The other elements
-of Q are therefore tuned by :func:`windowed_filter`, which carries every candidate through a window of steps.
+In the corrected form a criterion of one step sees only q_1: K = (g + q_1 e_1) / (g_1 + q_1 + R). The other
+elements of Q are therefore tuned by :func:`windowed_filter`, which carries every candidate through a window.
 """
 
 from __future__ import annotations

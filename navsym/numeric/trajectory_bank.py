@@ -12,6 +12,9 @@ from numba import njit
 
 from navsym.numeric.trajectory_kernels import Array, candidate
 
+#: Candidates in a block: a multiple of what one vector instruction takes.
+LANES = 32
+
 
 @njit(cache=True, fastmath={"contract"})
 def bank_step(
@@ -137,10 +140,12 @@ def tune_by_windows(
 
     At the end of each window the likeliest candidate becomes the centre of the next field, its estimate
     and matrix the common start. Inside a window the unchanged candidate, number 0, is reported.
-    Candidates go in blocks of at most 27, whose matrices stay in the first cache for a whole window.
+    Candidates go in blocks of at most 32, whose matrices stay in the first cache for a whole window;
+    a last block that is not full repeats the last candidate.
     """
     n = y.shape[0]
-    C, W = 3**n, 3 ** min(n, 3)
+    C = 3**n
+    W = min(C, LANES)
     h0 = h[0]
     qs, ys, cost = np.empty((n, W)), np.empty((n, W)), np.empty(W)
     Ps = np.empty((n, n, W))
@@ -152,7 +157,7 @@ def tune_by_windows(
         lowest = np.inf
         for block in range(0, C, W):
             for c in range(W):
-                candidate(q, step, block + c, diagonal)
+                candidate(q, step, min(block + c, C - 1), diagonal)
                 for i in range(n):
                     qs[i, c] = min(max(diagonal[i], floor[i]), ceiling[i])
             run_block(Phi, h0, R, part, y, P, qs, ys, Ps, cost, scratch, trace)

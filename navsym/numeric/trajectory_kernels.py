@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 PREDICTED, CORRECTED, LIKELIHOOD = 0, 1, 2
 
 
-@njit(cache=True)
+@njit(cache=True, fastmath={"contract"})
 def predict(
     Phi: Array,
     y: Array,
@@ -94,7 +94,7 @@ def neighbours(
     S: Array,
     squared: float,
 ) -> tuple[float, float]:
-    """Largest S up to ``squared`` and smallest S above it; minus or plus infinity when there is none.
+    """Largest S up to ``squared`` and smallest S above it; -1e308 or 1e308 when there is none.
 
     Without branches, and with the freedom to reorder, the compiler looks at several S at once.
     """
@@ -112,24 +112,20 @@ def neighbours(
 def likeliest(
     S: Array,
     squared: float,
-) -> int:
-    """Index of the smallest log S + squared / S, the first of equals.
+) -> tuple[int, float]:
+    """Index and value of the smallest log S + squared / S, the first of equals.
 
     The function falls for S < squared and rises above it: only the largest S below and the smallest S
     above are compared, and two logarithms are enough for all candidates.
     """
     low, high = neighbours(S, squared)
-    if low < 0.0:
-        target = high
-    elif high == 1e308:
-        target = low
-    else:
-        left, right = np.log(low) + squared / low, np.log(high) + squared / high
-        target = low if left <= right else high
+    left = np.log(low) + squared / low if low > 0.0 else np.inf
+    right = np.log(high) + squared / high if high < 1e308 else np.inf
+    target = low if left <= right else high
     for c in range(S.shape[0]):
         if S[c] == target:
-            return c
-    return 0
+            return c, min(left, right)
+    return 0, np.inf
 
 
 @njit(cache=True)
@@ -189,7 +185,7 @@ def candidate(
         out[i] = q[i] if digit == 0 else (q[i] / step if digit == 1 else q[i] * step)
 
 
-@njit(cache=True)
+@njit(cache=True, fastmath={"contract"})
 def apply(
     B: Array,
     g: Array,
@@ -205,8 +201,9 @@ def apply(
     """Correct by the chosen candidate: y, P and gain are written. P = P^- - K S K^T,
     symmetric by construction."""
     n = y.shape[0]
+    inverse = 1.0 / S
     for i in range(n):
-        gain[i] = (g[i] + h[i] * q[i]) / S
+        gain[i] = (g[i] + h[i] * q[i]) * inverse
         y[i] = ahead[i] + gain[i] * innovation
     for i in range(n):
         for j in range(i, n):
@@ -254,14 +251,14 @@ def tune_one_step(
             s0 = predict(Phi, y, P, h, ahead, B, g) + R
             innovation_variances(s0, h, q, step, S)
             if kind == LIKELIHOOD:
-                best = likeliest(S, innovation * innovation)
-                values[k] = np.log(S[best]) + innovation * innovation / S[best]
+                best, values[k] = likeliest(S, innovation * innovation)
             else:
                 best, values[k] = smallest_change(
                     S, g, h, q, step, innovation, ahead, y, weights, kind, direct
                 )
             candidate(q, step, best, chosen)
-            q[:] = chosen
+            for i in range(n):
+                q[i] = chosen[i]
             apply(B, g, h, q, S[best], ahead, innovation, y, P, gain)
         else:
             for i in range(n):
@@ -272,7 +269,8 @@ def tune_one_step(
             for i in range(n):
                 y[i] = ahead[i] + gain[i] * innovation
             values[k] = innovation * innovation
-        states[k], gains[k], diagonals[k] = y, gain, q
+        for i in range(n):
+            states[k, i], gains[k, i], diagonals[k, i] = y[i], gain[i], q[i]
 
 
 @njit(cache=True)
