@@ -37,10 +37,12 @@ class Refusal(Exception):
 
 
 def too_large(expected: str, got: str) -> Refusal:
+    """A refusal for size."""
     return Refusal(TooLargeError, expected, got, "rescale, or state the formula without this power")
 
 
 def undefined(got: str) -> Refusal:
+    """A refusal for a value that does not exist or is not real."""
     return Refusal(DomainError, "a finite real value", got, "restrict or correct the expression")
 
 
@@ -51,18 +53,25 @@ def number(text: str) -> sp.Rational:
 
 
 def add(terms: list[sp.Expr]) -> sp.Expr:
+    """The sum."""
     return real(sp.Add(*terms)) if len(terms) > 1 else terms[0]
 
 
-def multiply(factors: list[sp.Expr]) -> sp.Expr:
+def bound_factors(factors: list[sp.Expr]) -> None:
+    """Refuse a product with too many factors before all of them are read."""
     if len(factors) > FACTORS:
-        raise too_large(f"at most {FACTORS} factors in a product", f"{len(factors)}")
+        raise too_large(f"at most {FACTORS} factors in a product", "more")
+
+
+def multiply(factors: list[sp.Expr]) -> sp.Expr:
+    """The product, with the size of its numbers bounded first."""
     if len(factors) > 2 and sum(number_bits(factor) for factor in factors) > 4 * BITS:
         raise too_large(f"numbers of at most {BITS} bits", "a product of many large ones")
     return real(sp.Mul(*factors)) if len(factors) > 1 else factors[0]
 
 
 def invert(divisor: sp.Expr) -> sp.Expr:
+    """One over the divisor, which must not be a zero, open or in disguise."""
     if sign(divisor) == 0:
         raise Refusal(DomainError, "a nonzero divisor", "zero", "correct the denominator")
     return real(sp.Pow(divisor, -1))

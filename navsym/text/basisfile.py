@@ -5,10 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-import sympy as sp
-
 from navsym.errors import DomainError, EmptyError, ShapeError
-from navsym.text.expression import symbol
+from navsym.text.expression import ONE, ZERO, Expr, symbol
 from navsym.text.modeltypes import BasisFile, Targets
 from navsym.text.parameters import Parameter, require_order, require_positive
 from navsym.text.schema import (
@@ -25,10 +23,11 @@ from navsym.text.schema import (
     vector,
 )
 
-Known = Mapping[str, sp.Expr]
+Known = Mapping[str, Expr]
 
 
 def read_basis(document: Table, where: str, parameters: Mapping[str, Parameter], known: Known) -> BasisFile:
+    """The [basis] table with its targets."""
     expect_keys(document, ("basis", "parameters", "targets"), where)
     place = inside(where, "basis")
     table = as_table(document["basis"], place)
@@ -49,7 +48,7 @@ def read_basis(document: Table, where: str, parameters: Mapping[str, Parameter],
     )
 
 
-def read_rows(value: Any, known: Known, where: str) -> tuple[tuple[sp.Expr, ...], ...]:
+def read_rows(value: Any, known: Known, where: str) -> tuple[tuple[Expr, ...], ...]:
     """One row of regressors, or a list of them, all of one length."""
     items = as_list(value, where, "a list of expressions")
     nested = [isinstance(item, list) for item in items]
@@ -65,7 +64,8 @@ def read_rows(value: Any, known: Known, where: str) -> tuple[tuple[sp.Expr, ...]
     )
 
 
-def read_sigmas(table: Table, known: Known, count: int, where: str) -> tuple[sp.Expr, ...]:
+def read_sigmas(table: Table, known: Known, count: int, where: str) -> tuple[Expr, ...]:
+    """One positive bound per measurement; ones where the file gives none."""
     place = inside(where, "sigma")
     value = table.get("sigma", ["1"] * count)
     if not isinstance(value, list):
@@ -76,7 +76,8 @@ def read_sigmas(table: Table, known: Known, count: int, where: str) -> tuple[sp.
     return sigmas
 
 
-def read_ends(value: Any, known: Known, where: str) -> tuple[sp.Expr, sp.Expr]:
+def read_ends(value: Any, known: Known, where: str) -> tuple[Expr, Expr]:
+    """Start and end of the variable, in order."""
     start, end = vector(value, known, where, 2, "start and end")
     require_order(start, end, where)
     return start, end
@@ -86,7 +87,7 @@ def read_targets(document: Table, known: Known, names: tuple[str, ...], where: s
     """The file's functionals, or one for every unknown."""
     n, place = len(names), inside(where, "targets")
     if "targets" not in document:
-        return {name: tuple(sp.Integer(int(i == j)) for j in range(n)) for i, name in enumerate(names)}
+        return {name: tuple(ONE if i == j else ZERO for j in range(n)) for i, name in enumerate(names)}
     targets = {}
     for label, row in as_table(document["targets"], place).items():
         here = inside(place, label)

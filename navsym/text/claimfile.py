@@ -7,10 +7,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-import sympy as sp
-
 from navsym.errors import DomainError, EmptyError, ExpressionSyntaxError, ShapeError, TooLargeError
 from navsym.text.arithmetic import sign
+from navsym.text.expression import ZERO, Expr, Matrix, Symbol
 from navsym.text.files import called
 from navsym.text.names import nearest, shown
 from navsym.text.parameters import Parameter, box_of, read_parameters, read_range, symbols_of
@@ -31,7 +30,7 @@ from navsym.text.tomlfile import read_toml
 RELATIONS = ("=", "!=", "<", "<=", ">", ">=")
 CLAIMS = 2_000
 
-Box = dict[sp.Symbol, tuple[sp.Expr, sp.Expr]]
+Box = dict[Symbol, tuple[Expr, Expr]]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -48,8 +47,8 @@ class FileClaim:
     left: Any
     right: Any
     relation: str
-    box: Mapping[sp.Symbol, tuple[sp.Expr, sp.Expr]]
-    divisors: tuple[sp.Expr, ...] = ()
+    box: Mapping[Symbol, tuple[Expr, Expr]]
+    divisors: tuple[Expr, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -85,6 +84,7 @@ def claims_from(document: Table, where: str = "") -> ClaimFile:
 
 
 def read_claim(block: Any, symbols: Mapping[str, Parameter], where: str) -> FileClaim:
+    """One [[claim]] block."""
     table = as_table(block, where)
     expect_keys(table, ("id", "left", "right", "relation", "box"), where)
     label = as_label(required(table, "id", where), inside(where, "id"))
@@ -101,7 +101,7 @@ def read_claim(block: Any, symbols: Mapping[str, Parameter], where: str) -> File
     return FileClaim(label, left, right, relation, box, tuple(dict.fromkeys(over_left + over_right)))
 
 
-def read_side(value: Any, known: Mapping[str, sp.Symbol], where: str) -> tuple[Any, tuple[sp.Expr, ...]]:
+def read_side(value: Any, known: Mapping[str, Symbol], where: str) -> tuple[Any, tuple[Expr, ...]]:
     """An expression, a column given as a list, or a matrix given as a list of rows; with its divisors."""
     if not isinstance(value, list):
         parsed = entry_noting(value, known, where)
@@ -114,10 +114,11 @@ def read_side(value: Any, known: Mapping[str, sp.Symbol], where: str) -> tuple[A
     if len({len(row) for row in cells}) > 1:
         raise ShapeError("expected rows of one length; got a ragged matrix; do correct it", where=where)
     divisors = tuple(divisor for row in cells for cell in row for divisor in cell.divisors)
-    return sp.ImmutableMatrix([[cell.expression for cell in row] for row in cells]), divisors
+    return Matrix([[cell.expression for cell in row] for row in cells]), divisors
 
 
 def require_comparable(left: Any, right: Any, relation: str, where: str) -> None:
+    """Refuse sides of different shapes, and an order between matrices."""
     shapes = [getattr(side, "shape", None) for side in (left, right)]
     if shapes[0] != shapes[1]:
         message = f"expected two sides of one shape; got {shapes[0]} and {shapes[1]}; do correct one of them"
@@ -136,7 +137,7 @@ def read_box(value: Any, symbols: Mapping[str, Parameter], where: str) -> Box:
             expect_keys({name: ends}, tuple(symbols), where)
         lower, upper = read_range(ends, place)
         parameter = symbols[name]
-        unnamed = sp.S.Zero if parameter.symbol.is_nonnegative else None
+        unnamed = ZERO if parameter.symbol.is_nonnegative else None
         low_end = unnamed if parameter.lower is None else parameter.lower
         if outside(lower, low_end) or outside(parameter.upper, upper):
             message = f"expected a range inside the declaration of {name}; got a wider one; do narrow it"
@@ -145,6 +146,6 @@ def read_box(value: Any, symbols: Mapping[str, Parameter], where: str) -> Box:
     return box
 
 
-def outside(inner: sp.Expr | None, outer: sp.Expr | None) -> bool:
+def outside(inner: Expr | None, outer: Expr | None) -> bool:
     """True when ``inner < outer`` is certain; None means no end."""
     return inner is not None and outer is not None and sign(inner - outer) == -1

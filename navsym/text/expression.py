@@ -33,7 +33,11 @@ from navsym.text.tokens import CALLS, DEPTH, Source, Token, tokenize
 
 ROOT_TOTAL = 3_000  # bits of all numbers under roots in one expression
 
-__all__ = ["Parsed", "parse", "parse_noting", "symbol", "to_text"]
+__all__ = ["Expr", "Matrix", "Parsed", "Symbol", "parse", "parse_noting", "symbol", "to_text"]
+
+# What the other files of this room need of the algebra, by our names.
+Expr, Symbol, Matrix = sp.Expr, sp.Symbol, sp.ImmutableMatrix
+ZERO, ONE = sp.S.Zero, sp.S.One
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -115,6 +119,7 @@ class Reader:
         return token
 
     def whole(self) -> sp.Expr:
+        """The text as one expression, up to its end."""
         value = self.sum()
         if self.token.kind != "end":
             self.unexpected("an operator or the end")
@@ -123,6 +128,7 @@ class Reader:
         return value
 
     def sum(self) -> sp.Expr:
+        """Terms, added in one step."""
         at, terms = self.token.start, [self.product()]
         while mark := self.take("+", "-"):
             term = self.product()
@@ -130,19 +136,23 @@ class Reader:
         return self.do(at, arithmetic.add, terms)
 
     def product(self) -> sp.Expr:
+        """Factors and inverted divisors, multiplied in one step; a leading minus is a factor."""
         at, sign = self.token.start, self.signs()
         factors = [self.power()] if sign > 0 else [sp.S.NegativeOne, self.power()]
         while mark := self.take("*", "/"):
             factor = self.unary()
             factors.append(factor if mark.text == "*" else self.inverse(mark.start, factor))
+            self.do(mark.start, arithmetic.bound_factors, factors)
         return self.do(at, arithmetic.multiply, factors)
 
     def inverse(self, at: int, divisor: sp.Expr) -> sp.Expr:
+        """One over a divisor, which is noted."""
         if divisor.free_symbols:
             self.divisors.append(divisor)
         return self.do(at, arithmetic.invert, divisor)
 
     def unary(self) -> sp.Expr:
+        """A power with signs before it."""
         at, sign = self.token.start, self.signs()
         value = self.power()
         return value if sign > 0 else self.minus(at, value)
@@ -155,9 +165,11 @@ class Reader:
         return sign
 
     def minus(self, at: int, value: sp.Expr) -> sp.Expr:
+        """The value with the other sign."""
         return self.do(at, arithmetic.multiply, [sp.S.NegativeOne, value])
 
     def power(self) -> sp.Expr:
+        """An atom, raised or not; a base under a negative exponent is a divisor."""
         base = self.atom()
         mark = self.take("**")
         if mark is None:
@@ -177,6 +189,7 @@ class Reader:
             self.source.fail(mark.start, f"at most {ROOT_TOTAL} bits under roots", got, do, TooLargeError)
 
     def atom(self) -> sp.Expr:
+        """A number, a name, a call or a sum in parentheses."""
         token = self.token
         self.position += 1
         if token.kind == "number":
@@ -191,6 +204,7 @@ class Reader:
         self.unexpected("a number, a name, a function or (")
 
     def name(self, token: Token) -> sp.Expr:
+        """A function, pi, or what the caller declared."""
         if token.text in FUNCTIONS:
             return self.function(token)
         if token.text == "pi":
@@ -204,6 +218,7 @@ class Reader:
         return self.symbols[token.text]
 
     def function(self, token: Token) -> sp.Expr:
+        """A call with as many arguments as the function takes."""
         wanted = 2 if token.text == "atan2" else 1
         opening = self.take("(") or self.unexpected(f"( after {token.text}")
         self.calls += 1
@@ -224,15 +239,18 @@ class Reader:
         return self.do(token.start, arithmetic.call, token.text, arguments)
 
     def note_pole(self, name: str, argument: sp.Expr) -> None:
+        """tan and sec divide by the cosine, cot and csc by the sine."""
         divisor = sp.cos(argument) if name in ("tan", "sec") else sp.sin(argument)
         if divisor.free_symbols:
             self.divisors.append(divisor)
 
     def close(self, opening: Token) -> None:
+        """The parenthesis that ends what ``opening`` began."""
         if not self.take(")"):
             self.unexpected(f") to close the ( of {self.source.place(opening.start).rpartition(', ')[2]}")
 
     def nested(self, token: Token, rule: Callable[[], sp.Expr]) -> sp.Expr:
+        """A rule one level deeper."""
         self.depth += 1
         if self.depth > DEPTH:
             got, do = "more", "give parts a name"
@@ -242,6 +260,7 @@ class Reader:
         return value
 
     def unexpected(self, expected: str) -> NoReturn:
+        """Refuse the token that stands here."""
         token = self.token
         got = "the end of the text" if token.kind == "end" else shown(token.text)
         implicit = token.kind in ("number", "name") or token.text == "("

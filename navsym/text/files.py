@@ -33,6 +33,7 @@ def read_text(path: str | os.PathLike[str], limit: int) -> str:
 
 
 def read_bytes(path: str | os.PathLike[str], limit: int) -> bytes:
+    """The bytes of a regular file, at most ``limit`` of them; no device or pipe is opened."""
     where = called(path)
     try:
         if not Path(path).is_file():
@@ -47,6 +48,7 @@ def read_bytes(path: str | os.PathLike[str], limit: int) -> bytes:
 
 
 def missing(where: str, got: str) -> NavsymError:
+    """The error for a file that cannot be read."""
     message = f"expected a readable file; got {got}; do check the path and the permissions"
     return NavsymError(message, where=where, kind="missing-file")
 
@@ -71,6 +73,7 @@ def decode(data: bytes, where: str) -> str:
 
 
 def not_text(got: str, where: str) -> NavsymError:
+    """The error for bytes that are not plain UTF-8."""
     return ExpressionSyntaxError(
         f"expected plain UTF-8 text; got {got}; do save it as UTF-8 without a byte order mark", where=where
     )

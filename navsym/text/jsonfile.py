@@ -47,6 +47,7 @@ def parse_json(data: bytes | str, where: str = "") -> Any:
 
 
 def unique(pairs: list[tuple[str, Any]], where: str) -> dict[str, Any]:
+    """The pairs as a table, when no key comes twice."""
     table = dict(pairs)
     if len(table) < len(pairs):
         seen: set[str] = set()
@@ -79,6 +80,7 @@ def check(document: Any, where: str) -> None:
 
 
 def check_leaf(value: Any, where: str, path: tuple[Any, ...], key: Any) -> None:
+    """Refuse a number that is not finite or does not fit a double, and broken text."""
     if isinstance(value, float):
         if not math.isfinite(value):
             got = "NaN" if value != value else "an infinite number"
@@ -91,6 +93,7 @@ def check_leaf(value: Any, where: str, path: tuple[Any, ...], key: Any) -> None:
 
 
 def check_text(value: str, where: str, path: tuple[Any, ...], key: Any) -> None:
+    """Refuse lone surrogates, which no output can carry."""
     if not value.isascii() and any("\ud800" <= char <= "\udfff" for char in value):
         message = f"expected valid Unicode; got a lone surrogate in {shown(value)}; do remove it"
         raise ExpressionSyntaxError(message, where=place_of(where, (*path, key)))
@@ -106,12 +109,15 @@ def place_of(where: str, path: tuple[Any, ...]) -> str:
 
 
 def printable(key: str) -> str:
+    """A key as it may stand in a place."""
     return ascii(key[:60])[1:-1]
 
 
 def too_deep(where: str) -> TooLargeError:
+    """The error for too many levels."""
     return TooLargeError(f"expected at most {DEPTH} levels; got more; do flatten the document", where=where)
 
 
 def too_many_digits(where: str) -> TooLargeError:
+    """The error for an integer that no double holds."""
     return TooLargeError("expected integers below 2**1023; got a larger one; do rescale it", where=where)

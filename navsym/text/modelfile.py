@@ -6,12 +6,10 @@ import os
 from collections.abc import Mapping
 from typing import Any
 
-import sympy as sp
-
 from navsym.errors import DomainError, DuplicateError, EmptyError, UnknownSymbolError
 from navsym.text.arithmetic import sign
 from navsym.text.basisfile import Known, read_basis, read_targets
-from navsym.text.expression import parse, symbol
+from navsym.text.expression import ZERO, Expr, parse, symbol
 from navsym.text.files import called
 from navsym.text.modeltypes import BasisFile, Measurement, ModelFile, Piece
 from navsym.text.names import check_name, nearest, shown
@@ -72,7 +70,7 @@ def model_from(
     return read_system(document, where, free, known)
 
 
-def read_values(values: Mapping[str, str], parameters: Mapping[str, Parameter]) -> dict[str, sp.Expr]:
+def read_values(values: Mapping[str, str], parameters: Mapping[str, Parameter]) -> dict[str, Expr]:
     """Exact numbers that replace parameters, each inside what the file declares."""
     given = {}
     for name, text in values.items():
@@ -89,7 +87,7 @@ def read_values(values: Mapping[str, str], parameters: Mapping[str, Parameter]) 
     return given
 
 
-def admitted(value: sp.Expr, parameter: Parameter) -> bool:
+def admitted(value: Expr, parameter: Parameter) -> bool:
     """False when the value certainly contradicts the declaration."""
     below = parameter.lower is not None and sign(value - parameter.lower) == -1
     above = parameter.upper is not None and sign(parameter.upper - value) == -1
@@ -98,6 +96,7 @@ def admitted(value: sp.Expr, parameter: Parameter) -> bool:
 
 
 def read_system(document: Table, where: str, parameters: Mapping[str, Parameter], known: Known) -> ModelFile:
+    """The [model] with its measurements, interval and targets."""
     expect_keys(document, tuple(key for key in TABLES if key != "basis"), where)
     place = inside(where, "model")
     model = as_table(document["model"], place)
@@ -127,7 +126,8 @@ def read_names(value: Any, where: str) -> tuple[str, ...]:
     return names
 
 
-def read_interval(document: Table, known: Known, where: str) -> sp.Expr | None:
+def read_interval(document: Table, known: Known, where: str) -> Expr | None:
+    """T of the [interval] table, above zero; None when the file has none."""
     if "interval" not in document:
         return None
     table = as_table(document["interval"], where)
@@ -138,18 +138,18 @@ def read_interval(document: Table, known: Known, where: str) -> sp.Expr | None:
 
 
 def read_pieces(
-    document: Table, model: Table, moving: Known, n: int, T: sp.Expr | None, where: str
+    document: Table, model: Table, moving: Known, n: int, T: Expr | None, where: str
 ) -> tuple[Piece, ...]:
     """F of [model], or the [[piece]] blocks in order and without gaps."""
     place, why = inside(where, "piece"), "one per state"
     if "piece" not in document:
         F = required(model, "F", inside(where, "model"))
-        return (Piece(sp.S.Zero, T, square(F, moving, inside(where, "model.F"), n, why)),)
+        return (Piece(ZERO, T, square(F, moving, inside(where, "model.F"), n, why)),)
     if "F" in model:
         raise DuplicateError("expected F or [[piece]]; got both; do remove one of them", where=place)
     blocks = as_list(document["piece"], place, "[[piece]] blocks")
     pieces = tuple(read_piece(block, moving, n, inside(place, i)) for i, block in enumerate(blocks))
-    ends = [sp.S.Zero, *(piece.end for piece in pieces)]
+    ends = [ZERO, *(piece.end for piece in pieces)]
     for i, piece in enumerate(pieces):
         if piece.start != ends[i]:
             message = f"expected a start at {brief(ends[i])}; got {brief(piece.start)}; do close the gap"
@@ -161,6 +161,7 @@ def read_pieces(
 
 
 def read_piece(block: Any, moving: Known, n: int, where: str) -> Piece:
+    """One [[piece]] block."""
     table = as_table(block, where)
     expect_keys(table, ("from", "to", "F"), where)
     fixed = {name: value for name, value in moving.items() if name != "t"}
@@ -172,6 +173,7 @@ def read_piece(block: Any, moving: Known, n: int, where: str) -> Piece:
 
 
 def read_measurements(document: Table, moving: Known, n: int, where: str) -> tuple[Measurement, ...]:
+    """The [[measurement]] blocks, with distinct names."""
     place = inside(where, "measurement")
     blocks = as_list(required(document, "measurement", where), place, "[[measurement]] blocks")
     found = []
@@ -187,7 +189,8 @@ def read_measurements(document: Table, moving: Known, n: int, where: str) -> tup
     return tuple(found)
 
 
-def read_sigma(value: Any, known: Known, where: str) -> sp.Expr:
+def read_sigma(value: Any, known: Known, where: str) -> Expr:
+    """A bound of a standard deviation, above zero."""
     sigma = entry(value, known, where)
     require_positive(sigma, "a standard deviation", where)
     return sigma

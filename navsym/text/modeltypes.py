@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-import sympy as sp
-
 from navsym.errors import ShapeError
+from navsym.text.expression import Expr, Matrix, Symbol
 from navsym.text.parameters import Parameter, box_of
 
-Targets = Mapping[str, tuple[sp.Expr, ...]]
+Targets = Mapping[str, tuple[Expr, ...]]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -18,17 +17,17 @@ class Measurement:
     """``z = h x + r`` with a standard deviation of r of at most sigma; h has one entry per state."""
 
     name: str
-    h: tuple[sp.Expr, ...]
-    sigma: sp.Expr
+    h: tuple[Expr, ...]
+    sigma: Expr
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Piece:
     """``dx/dt = F x`` from ``start`` to ``end`` (None: no end is given)."""
 
-    start: sp.Expr
-    end: sp.Expr | None
-    F: sp.ImmutableMatrix
+    start: Expr
+    end: Expr | None
+    F: Matrix
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -45,14 +44,14 @@ class ModelFile:
     name: str
     parameters: Mapping[str, Parameter]
     states: tuple[str, ...]
-    time: sp.Symbol
+    time: Symbol
     pieces: tuple[Piece, ...]
     measurements: tuple[Measurement, ...]
-    T: sp.Expr | None
+    T: Expr | None
     targets: Targets
 
     @property
-    def F(self) -> sp.ImmutableMatrix:
+    def F(self) -> Matrix:
         """The matrix of a model in one piece. Raises ShapeError when there are several."""
         if len(self.pieces) != 1:
             message = f"expected one F; got {len(self.pieces)} pieces; do use a method that takes pieces"
@@ -60,7 +59,7 @@ class ModelFile:
         return self.pieces[0].F
 
     @property
-    def box(self) -> dict[sp.Symbol, tuple[sp.Expr, sp.Expr]]:
+    def box(self) -> dict[Symbol, tuple[Expr, Expr]]:
         """Symbol -> (lower, upper) for the parameters that have a range."""
         return box_of(self.parameters)
 
@@ -77,13 +76,13 @@ class BasisFile:
 
     name: str
     parameters: Mapping[str, Parameter]
-    variable: sp.Symbol
-    H: tuple[tuple[sp.Expr, ...], ...]
-    sigma: tuple[sp.Expr, ...]
-    interval: tuple[sp.Expr, sp.Expr]
+    variable: Symbol
+    H: tuple[tuple[Expr, ...], ...]
+    sigma: tuple[Expr, ...]
+    interval: tuple[Expr, Expr]
     targets: Targets
 
     @property
-    def box(self) -> dict[sp.Symbol, tuple[sp.Expr, sp.Expr]]:
+    def box(self) -> dict[Symbol, tuple[Expr, Expr]]:
         """Symbol -> (lower, upper) for the parameters that have a range."""
         return box_of(self.parameters)

@@ -50,6 +50,7 @@ def check_name(name: object, *, where: str = "") -> str:
 
 
 def meaning(name: str) -> str:
+    """What a reserved name means."""
     return "the number pi" if name == "pi" else "a function"
 
 

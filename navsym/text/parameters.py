@@ -6,11 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
-import sympy as sp
-
 from navsym.errors import DomainError, ExpressionSyntaxError, ShapeError, TooLargeError
 from navsym.text.arithmetic import sign
-from navsym.text.expression import symbol
+from navsym.text.expression import Expr, Symbol, symbol
 from navsym.text.names import nearest, shown
 from navsym.text.schema import SIDE, Table, as_list, entry, inside, kind_of
 
@@ -34,9 +32,9 @@ class Parameter:
     """
 
     name: str
-    symbol: sp.Symbol
-    lower: sp.Expr | None
-    upper: sp.Expr | None
+    symbol: Symbol
+    lower: Expr | None
+    upper: Expr | None
     kind: Kind
 
 
@@ -49,6 +47,7 @@ def read_parameters(table: Table, where: str) -> dict[str, Parameter]:
 
 
 def read_parameter(name: str, value: Any, where: str) -> Parameter:
+    """One declaration: a range, or a word about the sign."""
     if isinstance(value, list):
         lower, upper = read_range(value, where)
         return Parameter(name, symbol(name, where=where, **sign_of(lower)), lower, upper, "range")
@@ -61,7 +60,7 @@ def read_parameter(name: str, value: Any, where: str) -> Parameter:
     return Parameter(name, made, None, None, value)  # type: ignore[arg-type]
 
 
-def read_range(value: Any, where: str) -> tuple[sp.Expr, sp.Expr]:
+def read_range(value: Any, where: str) -> tuple[Expr, Expr]:
     """Two exact numbers, the first below the second."""
     ends = as_list(value, where, "a range of two numbers")
     if len(ends) != 2:
@@ -71,7 +70,7 @@ def read_range(value: Any, where: str) -> tuple[sp.Expr, sp.Expr]:
     return lower, upper
 
 
-def require_order(lower: sp.Expr, upper: sp.Expr, where: str) -> None:
+def require_order(lower: Expr, upper: Expr, where: str) -> None:
     """Refuse ends that are not in order, as far as that can be decided."""
     if sign(upper - lower) in (0, -1):
         got = f"{brief(lower)} and {brief(upper)}"
@@ -79,7 +78,7 @@ def require_order(lower: sp.Expr, upper: sp.Expr, where: str) -> None:
         raise DomainError(message, where=where)
 
 
-def require_positive(value: sp.Expr, what: str, where: str) -> None:
+def require_positive(value: Expr, what: str, where: str) -> None:
     """Refuse a number that is not positive, and a name that is not declared to be."""
     declared = value.is_Symbol and (value.is_positive or value.is_nonnegative)
     if not declared and (value.is_Symbol or sign(value) in (0, -1) or value.is_nonpositive):
@@ -93,17 +92,18 @@ def brief(value: object) -> str:
     return text if len(text) <= 60 else f"{text[:60]}..."
 
 
-def sign_of(lower: sp.Expr) -> dict[str, bool]:
+def sign_of(lower: Expr) -> dict[str, bool]:
     """What a range with this lower end says of the sign."""
     if sign(lower) == 1:
         return {"positive": True}
     return {"nonnegative": True} if lower == 0 else {}
 
 
-def symbols_of(parameters: Mapping[str, Parameter]) -> dict[str, sp.Symbol]:
+def symbols_of(parameters: Mapping[str, Parameter]) -> dict[str, Symbol]:
+    """Name -> symbol."""
     return {name: parameter.symbol for name, parameter in parameters.items()}
 
 
-def box_of(parameters: Mapping[str, Parameter]) -> dict[sp.Symbol, tuple[sp.Expr, sp.Expr]]:
+def box_of(parameters: Mapping[str, Parameter]) -> dict[Symbol, tuple[Expr, Expr]]:
     """Symbol -> (lower, upper) for the parameters that have a range."""
     return {p.symbol: (p.lower, p.upper) for p in parameters.values() if p.kind == "range"}

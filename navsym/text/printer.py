@@ -33,6 +33,7 @@ def to_text(expression: sp.Expr) -> str:
 
 
 def refuse(part: object) -> NoReturn:
+    """Raise ExpressionSyntaxError for what the language does not have."""
     kind = type(part).__name__
     text = shown(str(part)) if not isinstance(part, str) else shown(part)
     raise ExpressionSyntaxError(
@@ -70,6 +71,7 @@ def written(e: sp.Expr) -> tuple[str, int]:
 
 
 def rational(e: sp.Rational) -> tuple[str, int]:
+    """A number; a fraction binds like a quotient, a negative one like a sum."""
     if number_bits(e) > BITS:
         raise TooLargeError(f"expected numbers of at most {BITS} bits; got a larger one; do rescale")
     if e < 0:
@@ -78,6 +80,7 @@ def rational(e: sp.Rational) -> tuple[str, int]:
 
 
 def plus(e: sp.Add) -> str:
+    """Terms in the usual order, with their signs between them."""
     text = ""
     for term in e.as_ordered_terms():
         part = write(term, SUM)
@@ -91,6 +94,7 @@ def plus(e: sp.Add) -> str:
 
 
 def times(e: sp.Mul) -> tuple[str, int]:
+    """Factors above and below one line; powers with negative rational exponents go below."""
     coefficient, rest = e.as_coeff_Mul()
     above, below = [], []
     for factor in sp.Mul.make_args(rest):
@@ -114,11 +118,13 @@ def times(e: sp.Mul) -> tuple[str, int]:
 
 
 def tight(part: tuple[str, int], floor: int) -> str:
+    """A part in parentheses when it binds less tightly than ``floor`` asks."""
     text, level = part
     return text if level >= floor else f"({text})"
 
 
 def powered(base: sp.Expr, exponent: sp.Expr) -> tuple[str, int]:
+    """A power; square roots by name, negative exponents as quotients."""
     if exponent == 1:
         return written(base)
     if exponent == sp.Rational(1, 2):

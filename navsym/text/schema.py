@@ -6,10 +6,8 @@ import re
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import Any
 
-import sympy as sp
-
 from navsym.errors import DuplicateError, EmptyError, ExpressionSyntaxError, ShapeError, TooLargeError
-from navsym.text.expression import Parsed, parse_noting
+from navsym.text.expression import Expr, Matrix, Parsed, parse_noting
 from navsym.text.names import NAME_LENGTH, nearest, shown
 from navsym.text.tomlfile import Numeral
 
@@ -41,12 +39,14 @@ def expect_keys(table: Table, known: Collection[str], where: str) -> None:
 
 
 def required(table: Table, key: str, where: str) -> Any:
+    """The value of a key that must be there."""
     if key not in table:
         raise EmptyError(f"expected the key {key}; got none; do add it", where=inside(where, key))
     return table[key]
 
 
 def as_table(value: Any, where: str) -> Table:
+    """The value, when it is a table."""
     if not isinstance(value, dict):
         message = f"expected a table; got {kind_of(value)}; do write [name] and keys below it"
         raise ShapeError(message, where=where)
@@ -66,6 +66,7 @@ def as_list(value: Any, where: str, what: str = "a list") -> Sequence[Any]:
 
 
 def as_text(value: Any, where: str, what: str) -> str:
+    """The value, when it is quoted text."""
     if not isinstance(value, str) or isinstance(value, Numeral):
         message = f"expected {what} in quotes; got {kind_of(value)}; do quote it"
         raise ExpressionSyntaxError(message, where=where)
@@ -100,6 +101,7 @@ def as_label(value: Any, where: str) -> str:
 
 
 def distinct(names: Iterable[str], where: str) -> None:
+    """Refuse a name that comes twice."""
     seen: set[str] = set()
     for name in names:
         if name in seen:
@@ -108,12 +110,13 @@ def distinct(names: Iterable[str], where: str) -> None:
         seen.add(name)
 
 
-def entry(value: Any, symbols: Mapping[str, sp.Expr], where: str) -> sp.Expr:
+def entry(value: Any, symbols: Mapping[str, Expr], where: str) -> Expr:
     """An exact expression from quoted text, or from a bare TOML number by its digits."""
     return entry_noting(value, symbols, where).expression
 
 
-def entry_noting(value: Any, symbols: Mapping[str, sp.Expr], where: str) -> Parsed:
+def entry_noting(value: Any, symbols: Mapping[str, Expr], where: str) -> Parsed:
+    """Like :func:`entry`, together with the divisors of the text."""
     if isinstance(value, int) and not isinstance(value, bool):
         value = str(value)
     if not isinstance(value, str):
@@ -124,8 +127,8 @@ def entry_noting(value: Any, symbols: Mapping[str, sp.Expr], where: str) -> Pars
 
 
 def vector(
-    value: Any, symbols: Mapping[str, sp.Expr], where: str, size: int, why: str
-) -> tuple[sp.Expr, ...]:
+    value: Any, symbols: Mapping[str, Expr], where: str, size: int, why: str
+) -> tuple[Expr, ...]:
     """A list of ``size`` expressions."""
     items = as_list(value, where, "a list of expressions")
     if len(items) != size:
@@ -134,13 +137,13 @@ def vector(
     return tuple(entry(item, symbols, inside(where, i)) for i, item in enumerate(items))
 
 
-def square(value: Any, symbols: Mapping[str, sp.Expr], where: str, size: int, why: str) -> sp.ImmutableMatrix:
+def square(value: Any, symbols: Mapping[str, Expr], where: str, size: int, why: str) -> Matrix:
     """A ``size`` by ``size`` matrix from a list of rows."""
     rows = as_list(value, where, "a list of rows")
     if len(rows) != size:
         message = f"expected {size} rows, {why}; got {len(rows)}; do correct the matrix"
         raise ShapeError(message, where=where)
-    return sp.ImmutableMatrix(
+    return Matrix(
         [list(vector(row, symbols, inside(where, i), size, why)) for i, row in enumerate(rows)]
     )
 

@@ -48,6 +48,8 @@ HINTS = {
 
 @dataclass(frozen=True, slots=True)
 class Token:
+    """A piece of the text: its kind, its characters and where it starts."""
+
     kind: str  # number, name, mark or end
     text: str
     start: int
@@ -61,6 +63,7 @@ class Source:
     where: str
 
     def place(self, at: int) -> str:
+        """``where`` with the line and column added."""
         row = self.text.count("\n", 0, at)
         column = at - (self.text.rfind("\n", 0, at) + 1) + 1
         spot = f"column {column}" if row == 0 else f"line {row + 1}, column {column}"
@@ -75,6 +78,7 @@ class Source:
     def fail(
         self, at: int, expected: str, got: str, do: str, error: type[NavsymError] = ExpressionSyntaxError
     ) -> NoReturn:
+        """Raise ``error`` at a column, with the text around it."""
         near = f" in {self.around(at)}" if self.text.strip() else ""
         raise error(f"expected {expected}; got {got}{near}; do {do}", where=self.place(at))
 
@@ -99,6 +103,7 @@ def tokenize(source: Source) -> list[Token]:
 
 
 def refuse_character(source: Source, at: int) -> NoReturn:
+    """Refuse a character that the language does not have, with a hint when there is one."""
     char = source.text[at]
     expected = "ASCII letters, digits and + - * / ** ( ) ,"
     source.fail(at, expected, character(char), HINTS.get(char, "remove it or write it in ASCII"))

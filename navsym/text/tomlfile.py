@@ -58,10 +58,12 @@ def parse_toml(data: bytes | str, where: str = "") -> dict[str, Any]:
 
 
 def numeral(text: str) -> Numeral:
+    """The digits without separators, in lower case."""
     return Numeral(text.replace("_", "").lower())
 
 
 def refused(message: str, where: str) -> NavsymError:
+    """The reader's complaint as one of ours, with its line and column."""
     found = LINE.search(message)
     line = f"line {found[1]}, column {found[2]}" if found and found[1] else "the end"
     place = f"{where}: {line}" if where else line
@@ -91,6 +93,7 @@ def bound_nesting(text: str, where: str) -> None:
 
 
 def too_deep(where: str) -> TooLargeError:
+    """The error for too many levels."""
     return TooLargeError(f"expected at most {DEPTH} levels; got more; do flatten the file", where=where)
 
 
