@@ -46,6 +46,8 @@ from navsym.models.transition_pieces import Form, Surd, Wave
 
 #: More states than this are refused: the number of terms grows too fast to be of use.
 LARGEST = 16
+#: Terms allowed in one polynomial on the way to the characteristic polynomial.
+TERMS = 4000
 Matrix = list[list[Poly]]
 
 
@@ -186,11 +188,22 @@ def characteristic_polynomial(ring: Ring, B: Matrix) -> list[Poly]:
     M = [[ring.zero] * n for _ in range(n)]
     for k in range(1, n + 1):
         M = matrix_product(B, M)
+        need_short(M)
         for i in range(n):
             M[i][i] += result[n - k + 1]
         trace = sum((B[i][j] * M[j][i] for i in range(n) for j in range(n)), ring.zero)
         result[n - k] = reduced(ring, trace / -k)
     return result
+
+
+def need_short(M: Matrix) -> None:
+    """Refuse before the polynomials outgrow any use; a dense matrix of n^2 symbols has n! terms."""
+    longest = max(len(entry) for row in M for entry in row)
+    if longest > TERMS:
+        raise TooLargeError(
+            f"A: expected polynomials of at most {TERMS} terms; got {longest}; put in numbers for parameters "
+            "or split the system"
+        )
 
 
 def matrix_product(X: Matrix, Y: Matrix) -> Matrix:

@@ -62,6 +62,36 @@ class GridProblem:
             put(self, name, positive(name, ones if value is None else value, (n,), why))
 
 
+def grid_problem(
+    regressors: Callable[..., Any],
+    functional: Any,
+    interval: tuple[float, float],
+    *constants: float,
+    intervals: int = 200,
+    sigma: float = 1.0,
+) -> GridProblem:
+    """The problem on equally spaced instants, both ends included.
+
+    regressors : casadi function H(tau, *constants) -> (m, 1), as made from a derived expression
+    constants  : its further arguments, for example T
+    intervals  : number of steps; an even one puts the middle on the grid
+
+    The spacing is that of the trapezoidal rule.
+    """
+    from navsym.numeric.casadi_functions import on_grid
+
+    start, end = interval
+    if not start < end or intervals < 1:
+        raise DomainError(
+            f"interval: expected start < end and at least one step; got {interval}, {intervals}; widen it"
+        )
+    instants = np.linspace(start, end, intervals + 1)
+    spacing = np.full(intervals + 1, (end - start) / intervals)
+    spacing[[0, -1]] /= 2
+    bounds = np.full(intervals + 1, float(sigma))
+    return GridProblem(on_grid(regressors, instants, *constants), functional, bounds, spacing)
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class ConvexResult:
     """What a solver returned, and what it is worth.

@@ -8,9 +8,11 @@ import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from navsym.claims import PROVED, Equation
 from navsym.errors import DomainError, NotFiniteError, ShapeError, TooLargeError
 from navsym.models.linear import LinearModel
 from navsym.models.transition import discrete_transition, regressors, transition_matrix
+from navsym.proof.ladder import decide
 
 t, T, tau = sp.symbols("t T tau", positive=True)
 w, v, g, R, earth = sp.symbols("w v g R Omega", positive=True)
@@ -79,6 +81,14 @@ def test_the_closed_form_solves_its_differential_equation(name):
     X = transition_matrix(A, t).matrix
     assert all(exactly_zero(entry) for entry in X.diff(t) - A * X)
     assert all(exactly_zero(entry) for entry in X.subs(t, 0) - sp.eye(A.rows))
+
+
+@pytest.mark.parametrize("name", ["schuler", "undeclared sign", "damped waves", "coupled ins"])
+def test_the_ladder_proves_the_closed_form(name):
+    A = sp.Matrix(EXAMPLES[name])
+    X = transition_matrix(A, t).matrix
+    assert decide(Equation(X.diff(t), A * X)).status is PROVED
+    assert decide(Equation(X.subs(t, 0), sp.eye(A.rows))).status is PROVED
 
 
 def ball_exponential(A, time, values):
@@ -181,6 +191,11 @@ def test_equal_rates_are_excluded_only_where_the_formula_divides_by_their_differ
 def test_what_has_no_closed_form_is_refused_in_words(A, time, error, message):
     with pytest.raises(error, match=message):
         transition_matrix(A, time)
+
+
+def test_a_dense_matrix_of_symbols_is_refused_before_it_takes_all_memory():
+    with pytest.raises(TooLargeError, match="4000 terms"):
+        transition_matrix(sp.Matrix(9, 9, sp.symbols("a0:81")), t)
 
 
 def test_a_repeated_factor_of_high_degree_is_refused_with_advice():
