@@ -9,7 +9,7 @@ from typing import Any
 
 from navsym.errors import DomainError, EmptyError, ExpressionSyntaxError, ShapeError, TooLargeError
 from navsym.text.arithmetic import sign
-from navsym.text.expression import ZERO, Expr, Matrix, Symbol
+from navsym.text.expression import ZERO, Expr, Matrix, Parsed, Symbol
 from navsym.text.files import called
 from navsym.text.names import nearest, shown
 from navsym.text.parameters import Parameter, box_of, read_parameters, read_range, symbols_of
@@ -41,6 +41,7 @@ class FileClaim:
     relation    : one of ``= != < <= > >=``
     box         : symbol -> (lower, upper), the file's ranges and those of the claim itself
     divisors    : what the text divides by, also where the algebra has cancelled it since
+    radicands   : what the text takes roots and logarithms of, likewise
     """
 
     id: str
@@ -49,6 +50,7 @@ class FileClaim:
     relation: str
     box: Mapping[Symbol, tuple[Expr, Expr]]
     divisors: tuple[Expr, ...] = ()
+    radicands: tuple[Expr, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -94,18 +96,21 @@ def read_claim(block: Any, symbols: Mapping[str, Parameter], where: str) -> File
         message = f"expected one of {' '.join(RELATIONS)}; got {shown(relation)}; do correct it: {hint}"
         raise ExpressionSyntaxError(message, where=inside(where, "relation"))
     known = symbols_of(symbols)
-    left, over_left = read_side(required(table, "left", where), known, inside(where, "left"))
-    right, over_right = read_side(required(table, "right", where), known, inside(where, "right"))
+    left, left_cells = read_side(required(table, "left", where), known, inside(where, "left"))
+    right, right_cells = read_side(required(table, "right", where), known, inside(where, "right"))
+    cells = left_cells + right_cells
     require_comparable(left, right, relation, where)
     box = box_of(symbols) | read_box(table.get("box", {}), symbols, inside(where, "box"))
-    return FileClaim(label, left, right, relation, box, tuple(dict.fromkeys(over_left + over_right)))
+    divisors = dict.fromkeys(divisor for cell in cells for divisor in cell.divisors)
+    radicands = dict.fromkeys(radicand for cell in cells for radicand in cell.radicands)
+    return FileClaim(label, left, right, relation, box, tuple(divisors), tuple(radicands))
 
 
-def read_side(value: Any, known: Mapping[str, Symbol], where: str) -> tuple[Any, tuple[Expr, ...]]:
-    """An expression, a column given as a list, or a matrix given as a list of rows; with its divisors."""
+def read_side(value: Any, known: Mapping[str, Symbol], where: str) -> tuple[Any, list[Parsed]]:
+    """An expression, a column given as a list, or a matrix given as a list of rows; with its cells."""
     if not isinstance(value, list):
         parsed = entry_noting(value, known, where)
-        return parsed.expression, parsed.divisors
+        return parsed.expression, [parsed]
     rows = [row if isinstance(row, list) else [row] for row in as_list(value, where)]
     cells = [
         [entry_noting(cell, known, inside(inside(where, i), j)) for j, cell in enumerate(as_list(row, where))]
@@ -113,8 +118,7 @@ def read_side(value: Any, known: Mapping[str, Symbol], where: str) -> tuple[Any,
     ]
     if len({len(row) for row in cells}) > 1:
         raise ShapeError("expected rows of one length; got a ragged matrix; do correct it", where=where)
-    divisors = tuple(divisor for row in cells for cell in row for divisor in cell.divisors)
-    return Matrix([[cell.expression for cell in row] for row in cells]), divisors
+    return Matrix([[cell.expression for cell in row] for row in cells]), [c for row in cells for c in row]
 
 
 def require_comparable(left: Any, right: Any, relation: str, where: str) -> None:

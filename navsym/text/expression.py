@@ -42,10 +42,15 @@ ZERO, ONE = sp.S.Zero, sp.S.One
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Parsed:
-    """An expression with what its text divides by: sympy cancels ``x/x`` before anyone can ask."""
+    """An expression with what its text takes for granted: sympy cancels ``x/x`` before anyone can ask.
+
+    divisors  : what it divides by, to be nonzero
+    radicands : what it takes roots, logarithms and fractional powers of, to be nonnegative
+    """
 
     expression: sp.Expr
     divisors: tuple[sp.Expr, ...]
+    radicands: tuple[sp.Expr, ...] = ()
 
 
 def parse(text: str, symbols: Mapping[str, sp.Symbol], *, where: str = "") -> sp.Expr:
@@ -61,7 +66,7 @@ def parse(text: str, symbols: Mapping[str, sp.Symbol], *, where: str = "") -> sp
 
 
 def parse_noting(text: str, symbols: Mapping[str, sp.Symbol], *, where: str = "") -> Parsed:
-    """Like :func:`parse`, together with every symbolic divisor that the text has."""
+    """Like :func:`parse`, together with every symbolic divisor and radicand that the text has."""
     if not isinstance(text, str):
         raise ExpressionSyntaxError(
             f'expected an expression as text; got {shown(text)}; do put it in quotes, such as "1/2"',
@@ -74,7 +79,8 @@ def parse_noting(text: str, symbols: Mapping[str, sp.Symbol], *, where: str = ""
     source = Source(text, where)
     reader = Reader(source, tokenize(source), symbols)
     try:
-        return Parsed(reader.whole(), tuple(dict.fromkeys(reader.divisors)))
+        whole = reader.whole()
+        return Parsed(whole, tuple(dict.fromkeys(reader.divisors)), tuple(dict.fromkeys(reader.radicands)))
     except RecursionError:
         source.fail(0, "less nesting", "an expression too deep to build", "give parts a name", TooLargeError)
 
@@ -105,6 +111,7 @@ class Reader:
     calls: int = 0
     root_bits: int = 0
     divisors: list[sp.Expr] = field(default_factory=list)
+    radicands: list[sp.Expr] = field(default_factory=list)
 
     @property
     def token(self) -> Token:
@@ -184,6 +191,7 @@ class Reader:
         """The algebra factors numbers under roots, again in every product: their total is bounded."""
         if exponent.is_integer is not True:
             self.root_bits += arithmetic.number_bits(base)
+            self.note_radicand(base)
         if self.root_bits > ROOT_TOTAL:
             got, do = f"more, with {self.root_bits} bits", "split the expression"
             self.source.fail(mark.start, f"at most {ROOT_TOTAL} bits under roots", got, do, TooLargeError)
@@ -234,9 +242,16 @@ class Reader:
         self.calls -= 1
         if token.text == "sqrt":
             self.count_roots(token, arguments[0], sp.S.Half)
+        if token.text == "log":
+            self.note_radicand(arguments[0])
         if token.text in ("tan", "cot", "sec", "csc"):
             self.note_pole(token.text, arguments[0])
         return self.do(token.start, arithmetic.call, token.text, arguments)
+
+    def note_radicand(self, base: sp.Expr) -> None:
+        """Remember what must be nonnegative, unless its symbols were declared so."""
+        if base.free_symbols and not base.is_nonnegative:
+            self.radicands.append(base)
 
     def note_pole(self, name: str, argument: sp.Expr) -> None:
         """tan and sec divide by the cosine, cot and csc by the sine."""

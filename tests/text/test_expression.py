@@ -174,6 +174,11 @@ def test_divisors_are_noted_even_where_they_cancel():
     assert parse_noting("tan(x)*cos(x) + 1/(x - y)", SYMBOLS).divisors == (sp.cos(x), x - y)
 
 
+def test_radicands_are_noted_unless_declared_nonnegative():
+    parsed = parse_noting("sqrt(x)**2 + (x - y)**(1/3) + log(T) + sqrt(p) + x**2 + x**y", SYMBOLS)
+    assert parsed.radicands == (x, x - y, T)
+
+
 @pytest.mark.parametrize(
     ("expression", "text"),
     [
