@@ -202,13 +202,13 @@ class Touch:
     at    : fraction of the panel, exact or a ball
     sign  : sign of f there
     exact : True when ``f = sign * bound`` holds exactly there, and f' = 0 too unless ``end``
-    end   : True for a contact at an end of the panel where only the value is known
+    end   : "from" or "to" for a contact at that end of the panel, where only the value is known
     """
 
     at: Any
     sign: int
     exact: bool = False
-    end: bool = False
+    end: str = "no"
 
 
 @dataclass(frozen=True, slots=True)
@@ -252,9 +252,11 @@ def first_cells(touches: Sequence[Touch]) -> list[Cell]:
     for i, touch in enumerate(ordered):
         before = places[i] - (places[i - 1] if i else fmpq(0))
         after = (places[i + 1] if i + 1 < len(places) else fmpq(1)) - places[i]
-        gaps = [gap for gap in (before, after) if gap > 0]
+        gaps = [g for g, end in ((before, "from"), (after, "to")) if g > 0 and touch.end != end]
         radius = min(gaps) * fmpq(3, 8) if gaps else fmpq(1)
         lower, upper = max(places[i] - radius, fmpq(0)), min(places[i] + radius, fmpq(1))
+        if touch.end == "to":  # a moving end: the ball of its places reaches to the end of the panel
+            upper = fmpq(1)
         if lower > edge:
             cells.append(Cell(edge, lower))
         cells.append(Cell(lower, upper, touch))
@@ -279,7 +281,8 @@ def split(cell: Cell) -> list[Cell]:
         middle = (cell.lower + cell.upper) / 2
         return [Cell(cell.lower, middle), Cell(middle, cell.upper)]
     c = rational(cell.touch.at)
-    lower, upper = (cell.lower + c) / 2, (cell.upper + c) / 2
+    lower = cell.lower if cell.touch.end == "from" else (cell.lower + c) / 2
+    upper = cell.upper if cell.touch.end == "to" else (cell.upper + c) / 2
     parts = [Cell(lower, upper, cell.touch)]
     if lower > cell.lower:
         parts.append(Cell(cell.lower, lower))
@@ -352,7 +355,7 @@ def exact_touch(cell: Cell, taylor: Sequence[arb], spread: arb, bound: arb) -> b
     inside = bool(place >= arb(cell.lower)) and bool(place <= arb(cell.upper))
     if not inside or not bool(-s * taylor[0] + spread < bound):
         return False
-    if not cell.touch.end:
+    if cell.touch.end == "no":
         return bool(s * taylor[2] + remainder(taylor, 2) < 0)
-    outward = s if rational(cell.touch.at) == 1 else -s
+    outward = s if cell.touch.end == "to" else -s
     return bool(outward * taylor[1] > remainder(taylor, 1))

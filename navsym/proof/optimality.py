@@ -177,8 +177,8 @@ def exact_touches(found: Polished, z: Sequence[arb]) -> list[list[Touch]]:
     """Touches by panel, with balls for the inner ones."""
     free = iter(z[len(found.dual) :])
     rows: list[list[Touch]] = [[] for _ in range(max(found.panel) + 1)]
-    for k, v, s, inner in zip(found.panel, found.v, found.sign, found.inner, strict=True):
-        rows[k].append(Touch(next(free) if inner else rational(v), s, True, not inner))
+    for i, (k, v, s, inner) in enumerate(zip(found.panel, found.v, found.sign, found.inner, strict=True)):
+        rows[k].append(Touch(next(free) if inner else rational(v), s, True, end_name(found, i)))
     return rows
 
 

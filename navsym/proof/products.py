@@ -14,7 +14,9 @@ from fractions import Fraction
 import sympy as sp
 from flint import fmpq_mpoly
 
-from navsym.proof.normal_form import Converter, Monomial, OutsideLanguageError, vanishes_identically
+from navsym.proof.converter import Converter, vanishes_identically
+from navsym.proof.ingredients import OutsideLanguageError
+from navsym.proof.monomials import Monomial
 
 Exponents = tuple[int, ...]
 
