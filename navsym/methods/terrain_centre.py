@@ -50,7 +50,7 @@ class Information:
         A2, A1, _ = self.quadratic
         det = G[0, 0] * G[1, 1] - G[0, 1] ** 2
         middle = (M[0, 0] * G[1, 1] + M[1, 1] * G[0, 0] - 2.0 * M[0, 1] * G[0, 1]) / (2.0 * det)
-        # terrain_search:discriminant: G11^2 D = (G11 A1 - 2 G12 A2)^2 + 4 det(G) A2^2
+        # terrain_search:roots.solvable: G11^2 D = (G11 A1 - 2 G12 A2)^2 + 4 det(G) A2^2
         root = math.hypot(G[0, 0] * A1 - 2.0 * G[0, 1] * A2, 2.0 * math.sqrt(det) * A2) / G[0, 0]
         return middle - root / (2.0 * det), middle + root / (2.0 * det)
 
@@ -66,7 +66,7 @@ class Information:
 
     @property
     def mean_time(self) -> float:
-        """Mean of t_G over a uniform direction: tr(G^-1/2 M1) / tr(G^1/2), terrain_search:mean.direction*."""
+        """Mean of t_G over a uniform direction: tr(G^-1/2 M1) / tr(G^1/2), terrain_search:mean.rotated."""
         G, M = self.G, self.M1
         root = math.sqrt(G[0, 0] * G[1, 1] - G[0, 1] ** 2)
         adjugate = np.array([[G[1, 1], -G[0, 1]], [-G[0, 1], G[0, 0]]])
