@@ -88,6 +88,7 @@ def linear_model(found: ModelFile) -> LinearModel:
 
 
 def piece_model(found: ModelFile, F: sp.ImmutableMatrix) -> LinearModel:
+    """The linear model of one stretch of the motion."""
     rows = [list(measurement.h) for measurement in found.measurements]
     names = tuple(measurement.name for measurement in found.measurements)
     return LinearModel(F, None, rows or None, found.states, measurements=names, time=found.time)
@@ -103,6 +104,7 @@ def derive(found: ModelFile | BasisFile) -> Derivation:
 
 
 def derive_model(found: ModelFile) -> Derivation:
+    """Like :func:`derive` for a system, in one piece or several."""
     models = tuple(piece_model(found, piece.F) for piece in found.pieces)
     for model in models:
         need_constant(model, matrix_only=True)
@@ -131,6 +133,7 @@ def derive_model(found: ModelFile) -> Derivation:
 
 
 def derive_basis(found: BasisFile) -> Derivation:
+    """Like :func:`derive` for regressors without a system: only the conditions are left to derive."""
     unknowns = len(found.H[0])
     rows = sp.ImmutableMatrix(found.H)
     taken = {str(symbol) for symbol in rows.free_symbols} | {str(found.variable)}

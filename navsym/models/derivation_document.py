@@ -63,10 +63,12 @@ def formulas(derivation: Derivation, write: Writer) -> dict[str, Any]:
 
 
 def written(matrix: sp.MatrixBase, write: Writer) -> list[list[str]]:
+    """A matrix as rows of texts."""
     return [[write(entry) for entry in row] for row in matrix.tolist()]
 
 
 def stretch_data(derivation: Derivation, stretch: Stretch, write: Writer) -> dict[str, Any]:
+    """H on one stretch, with the ends between which it holds."""
     return {
         "variable": write(derivation.instant),
         "from": write(stretch.start),
@@ -118,6 +120,7 @@ def as_text(data: dict[str, Any]) -> str:
 
 
 def measured(data: dict[str, Any], rows: list[Any]) -> list[tuple[dict[str, str], Any]]:
+    """Each measurement beside its row."""
     return list(zip(data["measurements"], rows, strict=True))
 
 
@@ -184,6 +187,7 @@ def as_latex(data: dict[str, Any]) -> str:
 
 
 def pmatrix(rows: list[list[str]]) -> str:
+    """Rows of LaTeX as a matrix in parentheses."""
     return "\\begin{pmatrix} " + " \\\\ ".join(" & ".join(row) for row in rows) + " \\end{pmatrix}"
 
 

@@ -111,6 +111,7 @@ def exact_matrix(name: str, value: Any) -> sp.ImmutableMatrix:
 
 
 def is_nested(value: Any) -> bool:
+    """True for a list of lists."""
     return isinstance(value, Sequence) and all(
         isinstance(row, Sequence) and not isinstance(row, str) for row in value
     )
@@ -143,6 +144,7 @@ def square(name: str, value: Any) -> sp.ImmutableMatrix:
 
 
 def need_shape(name: str, matrix: sp.ImmutableMatrix, shape: tuple[int, int], why: str) -> None:
+    """ShapeError unless the matrix has the shape."""
     if matrix.shape != shape:
         raise ShapeError(f"{name}: expected shape {shape}, {why}; got {matrix.shape}; complete it")
 
@@ -159,6 +161,7 @@ def different(name: str, values: Iterable[Any], count: int, why: str) -> tuple[s
 
 
 def numbered(letter: str, count: int) -> tuple[str, ...]:
+    """Default names: the letter with 1, 2, ..."""
     return tuple(f"{letter}{place + 1}" for place in range(count))
 
 

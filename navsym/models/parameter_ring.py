@@ -100,6 +100,7 @@ def collect(expression: sp.Expr, roots: dict[sp.Expr, int]) -> None:
 
 
 def note(base: sp.Expr, order: int, roots: dict[sp.Expr, int]) -> None:
+    """Remember that a root of this order of the base is needed."""
     roots[base] = lcm(order, roots.get(base, 1))
 
 
@@ -144,15 +145,18 @@ def power_fraction(ring: Ring, base: sp.Expr, exponent: sp.Rational) -> Fraction
 
 
 def variable(ring: Ring, base: sp.Expr) -> Poly:
+    """The polynomial that stands for a generator."""
     place, order = ring.powers[base]
     return ring.context.gens()[place] ** order
 
 
 def added(a: Fraction, b: Fraction) -> Fraction:
+    """Sum of two fractions in lowest terms."""
     return cancelled(a[0] * b[1] + b[0] * a[1], a[1] * b[1])
 
 
 def multiplied(a: Fraction, b: Fraction) -> Fraction:
+    """Product of two fractions in lowest terms."""
     return cancelled(a[0] * b[0], a[1] * b[1])
 
 
@@ -189,6 +193,7 @@ def halved(ring: Ring, poly: Poly, place: int, square: Poly) -> Poly:
 
 
 def number(value: fmpq) -> sp.Rational:
+    """A rational number of the ring as one of sympy."""
     return sp.Rational(int(value.p), int(value.q))
 
 
@@ -227,11 +232,13 @@ def sign(ring: Ring, poly: Poly) -> int:
 
 
 def sign_of_sum(ring: Ring, poly: Poly) -> int:
+    """The common sign of all terms, 0 when they differ or one is not decided."""
     signs = {sign_of_term(ring, exponents, c) for exponents, c in poly.to_dict().items()}
     return signs.pop() if len(signs) == 1 else 0
 
 
 def sign_of_term(ring: Ring, exponents: tuple[int, ...], coefficient: fmpq) -> int:
+    """Sign of one monomial, 0 when the declarations do not decide it."""
     result = 1 if coefficient > 0 else -1
     for generator, exponent in zip(ring.generators, exponents, strict=False):
         if exponent == 0 or generator.is_positive or (generator.is_real and exponent % 2 == 0):

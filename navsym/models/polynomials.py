@@ -19,6 +19,7 @@ def coefficients(ring: Ring, poly: Poly) -> Coefficients:
 
 
 def product(ring: Ring, a: Coefficients, b: Coefficients) -> Coefficients:
+    """Product of two polynomials."""
     result = [ring.zero] * (len(a) + len(b) - 1)
     for i, x in enumerate(a):
         for j, y in enumerate(b):
@@ -40,10 +41,12 @@ def monic_division(ring: Ring, a: Coefficients, b: Coefficients) -> tuple[Coeffi
 
 
 def monic_quotient(ring: Ring, a: Coefficients, b: Coefficients) -> Coefficients:
+    """Quotient by a monic divisor."""
     return monic_division(ring, a, b)[0]
 
 
 def monic_remainder(ring: Ring, a: Coefficients, b: Coefficients) -> Coefficients:
+    """Remainder by a monic divisor, with exactly as many coefficients as its degree."""
     return monic_division(ring, a, b)[1]
 
 
@@ -79,6 +82,7 @@ def solved(ring: Ring, rows: list[Coefficients]) -> tuple[Coefficients, Poly]:
 
 
 def lowest_terms(numerators: Coefficients, divisor: Poly) -> tuple[Coefficients, Poly]:
+    """Numerators and divisor without their common factor."""
     common = divisor
     for numerator in numerators:
         common = common.gcd(numerator)

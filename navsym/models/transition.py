@@ -154,6 +154,7 @@ def regressors(model: LinearModel, end: Any, time: Any) -> Regressors:
 
 
 def need_constant(model: LinearModel, *, matrix_only: bool = False) -> None:
+    """DomainError when F (or, unless matrix_only, H) contains the time."""
     varying = model.time in model.F.free_symbols if matrix_only else not model.constant
     if varying:
         raise DomainError(
@@ -316,6 +317,7 @@ def degenerate(ring: Ring, divisors: Iterable[Poly]) -> None:
 
 
 def hidden_identity() -> DomainError:
+    """The error for constants that are not independent, where the formula would divide by zero."""
     return DomainError(
         "A: expected a matrix whose formula has no zero divisor; got one with an identity hidden "
         "among its constants; write it in fewer constants"

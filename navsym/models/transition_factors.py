@@ -170,4 +170,5 @@ def implicit(frame: Frame, base: Coefficients, factor: sp.Expr) -> Form:
 
 
 def root_sum(monic: sp.Expr, rho: sp.Symbol, summand: sp.Expr) -> sp.Expr:
+    """The summand added up over the roots of the polynomial, left as it stands."""
     return sp.RootSum(monic, sp.Lambda(rho, summand), rho, auto=False)

@@ -123,10 +123,12 @@ Factor = tuple[Fraction, Surd]
 
 
 def direct(root: Root) -> Factor:
+    """The root itself as a constant factor."""
     return root.rational, root.surd
 
 
 def inverted(root: Root) -> Factor:
+    """1 / root as a constant factor."""
     return root.inverse, root.surd
 
 
@@ -140,4 +142,5 @@ def times(ring: Ring, *factors: Factor) -> Factor:
 
 
 def wave(ring: Ring, function: sp.Expr, *factors: Factor) -> Wave:
+    """A wave with the product of some constant factors."""
     return Wave(function, *times(ring, *factors))

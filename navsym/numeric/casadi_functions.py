@@ -87,6 +87,7 @@ def on_grid(function: ca.Function, points: Any, *constants: float) -> Array:
 
 
 def identifier(name: str) -> str:
+    """The name, if it may stand in generated code."""
     if not re.fullmatch(r"[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*", name):
         raise DomainError(f"name: expected letters, digits and single underscores; got {name!r}; rename it")
     return name
@@ -125,6 +126,7 @@ def translated(expression: sp.Expr, memo: Memo) -> Any:
 
 
 def node(expression: sp.Expr, memo: Memo) -> Any:
+    """One node of the expression, its parts translated first."""
     if isinstance(expression, sp.Rational):
         return rounded(expression)
     if expression in CONSTANTS:
@@ -192,6 +194,7 @@ def product_of(expression: sp.Mul, memo: Memo) -> Any:
 
 
 def power_of(expression: sp.Pow, memo: Memo) -> Any:
+    """A power: whole exponents by multiplication, halves by the square root, others as they are."""
     base, exponent = expression.args
     x = translated(base, memo)
     if exponent.is_Integer:

@@ -145,6 +145,7 @@ def least_squares_qp(problem: GridProblem, *, solver: str = QP_SOLVERS[0]) -> Co
 
 
 def engine_of(solver: str, known: tuple[str, ...]) -> tuple[str, str]:
+    """"programme:engine" as a pair; DomainError when it is not known."""
     if solver not in known:
         raise DomainError(f"solver: expected one of {', '.join(known)}; got {solver!r}; name one of them")
     programme, engine = solver.split(":")
@@ -188,6 +189,7 @@ def judged(
 
 
 def first_line(reason: Exception) -> str:
+    """The first line of an error of a solver, cut short."""
     return (str(reason).strip().splitlines() or [""])[0][:120]
 
 
@@ -239,6 +241,7 @@ def need_one_highs(engine: str) -> None:
 
 
 def lp_by_casadi(problem: GridProblem, engine: str) -> Answer:
+    """The linear programme through casadi, with weights = positive part - negative part."""
     import casadi as ca
 
     n = problem.regressors.shape[1]
@@ -251,6 +254,7 @@ def lp_by_casadi(problem: GridProblem, engine: str) -> Answer:
 
 
 def qp_by_casadi(problem: GridProblem, engine: str) -> Answer:
+    """The quadratic programme through casadi."""
     import casadi as ca
 
     Q = ca.diag(ca.DM(1.0 / problem.spacing))
@@ -264,6 +268,7 @@ def qp_by_casadi(problem: GridProblem, engine: str) -> Answer:
 
 
 def lp_by_cvxpy(problem: GridProblem, engine: str) -> Answer:
+    """The linear programme through cvxpy, with the absolute value left to it."""
     import cvxpy as cp
 
     weights = cp.Variable(problem.regressors.shape[1])
@@ -272,6 +277,7 @@ def lp_by_cvxpy(problem: GridProblem, engine: str) -> Answer:
 
 
 def qp_by_cvxpy(problem: GridProblem, engine: str) -> Answer:
+    """The quadratic programme through cvxpy."""
     import cvxpy as cp
 
     weights = cp.Variable(problem.regressors.shape[1])
@@ -280,6 +286,7 @@ def qp_by_cvxpy(problem: GridProblem, engine: str) -> Answer:
 
 
 def solved_by_cvxpy(problem: GridProblem, objective: Any, weights: Any, engine: str) -> Answer:
+    """Run cvxpy, and take weights, multipliers and its own word."""
     import cvxpy as cp
 
     unbiased = problem.regressors @ weights == problem.functional
