@@ -153,9 +153,18 @@ def test_a_solver_that_fails_says_so_and_gives_no_value(monkeypatch):
     assert not result.claims
 
 
+def test_a_steep_basis_is_solved_or_shown_to_fail_but_not_called_unestimable():
+    powers = np.linspace(0.0, 1.0, 101)[np.newaxis, :] ** np.arange(24)[:, np.newaxis]
+    result = guaranteed_lp(GridProblem(powers, np.eye(24)[-1]))
+    exact = 2.0 ** (2 * 23 - 1)                    # leading coefficient of the Chebyshev polynomial
+    assert result.value is None or result.residual > 1e-9 or abs(result.value / exact - 1) < 0.1
+
+
 def test_bad_problems_are_refused_in_words():
     with pytest.raises(NotEstimableError, match="rank 1 of 2"):
         guaranteed_lp(GridProblem([[1.0, 1.0], [2.0, 2.0]], [0.0, 1.0]))
+    with pytest.raises(NotEstimableError, match="rank 0 of 1"):
+        guaranteed_lp(GridProblem([[0.0, 0.0]], [1.0]))
     with pytest.raises(DomainError, match="expected one of casadi:highs"):
         guaranteed_lp(velocity_correction(1.0, "y1"), solver="simplex")
     with pytest.raises(ShapeError, match=r"bounds: expected shape \(2,\)"):
