@@ -1,0 +1,179 @@
+"""Equations (1)-(3): what sensor errors do to a reckoned position, and which errors grow."""
+
+from __future__ import annotations
+
+import sympy as sp
+
+from navsym.claims import REFUTED, Equation, Finding, Property, claim
+from navsym.models import dead_reckoning as model
+
+RECKONING = model.dead_reckoning()
+S = RECKONING.right_side()
+scale = sp.Symbol("epsilon", real=True)
+#: The whole sphere but the poles, at heights above its centre.
+SPHERE = {
+    model.latitude: (sp.Rational(-3, 2), sp.Rational(3, 2)),
+    model.height: (0, None),
+}
+
+
+def at_zero(matrix: sp.Matrix) -> sp.Matrix:
+    return matrix.subs(dict.fromkeys((*RECKONING.errors, *RECKONING.sensor_errors), 0))
+
+
+@claim("1.nonlinear")
+def nonlinear():
+    """The errors of reckoned coordinates depend on the sensor errors in a nonlinear way."""
+    point = {model.latitude: 0, model.vy: 1, model.vx: 0, model.heading: 0, model.height: 0, model.radius: 1}
+    curvature = at_zero(S.diff(model.d_heading, 2))[0].subs(point)
+    return Property(
+        printed=True,
+        derived=Finding(
+            bool(curvature != 0), "second derivative at an exact point", scope="course and log on a sphere",
+            evidence=f"d2S/dK2 = {curvature} at the equator, heading north at unit speed",
+        ),
+    )
+
+
+@claim(
+    "1.arguments",
+    expect=REFUTED,
+    slip="paper",
+    reason="the rate of the position error also depends on the readings: the same coordinates, position error "
+    "and sensor error give another rate at another speed",
+)
+def arguments():
+    """(1): S is a function of the reckoned coordinates, their errors and the sensor errors alone."""
+    other = sp.symbols("v_y' v_x' K'", real=True)
+    changed = S.subs(dict(zip((model.vy, model.vx, model.heading), other, strict=True)), simultaneous=True)
+    return Equation(printed=changed, derived=S, box=SPHERE)
+
+
+@claim("1.arguments*", corrects="1.arguments")
+def arguments_corrected():
+    """(1): S is a function of coordinates, their errors, sensor errors and readings, and of nothing else."""
+    known = {*RECKONING.reckoned, *RECKONING.errors, *RECKONING.sensor_errors, *RECKONING.readings, model.radius}
+    return Property(
+        printed=True,
+        derived=Finding(S.free_symbols <= known, "free symbols of the derived right side",
+                        scope="course and log on a sphere"),
+    )
+
+
+@claim("3.zero")
+def ideal_operation():
+    """Without errors the ideal algorithm makes none: S(psi, 0, 0) = 0."""
+    return Equation(printed=sp.zeros(2, 1), derived=at_zero(S), box=SPHERE)
+
+
+@claim("3")
+def linearised():
+    """(3): S1 dpsi + S2 d is the linear part of S."""
+    S1, S2 = RECKONING.linear_parts()
+    errors, sensors = sp.Matrix(RECKONING.errors), sp.Matrix(RECKONING.sensor_errors)
+    along = S.subs({e: scale * e for e in (*RECKONING.errors, *RECKONING.sensor_errors)}, simultaneous=True)
+    return Equation(printed=S1 * errors + S2 * sensors, derived=along.diff(scale).subs(scale, 0), box=SPHERE)
+
+
+@claim("3.jacobians")
+def jacobians():
+    """(3): the matrices S1 and S2 of course and log, differentiated by hand."""
+    S1, S2 = RECKONING.linear_parts()
+    k, p, v, u, r = model.heading, model.latitude, model.vy, model.vx, model.radius + model.height
+    north, east = v * sp.cos(k) - u * sp.sin(k), v * sp.sin(k) + u * sp.cos(k)
+    by_hand = sp.Matrix([
+        [0, 0, sp.cos(k) / r, -sp.sin(k) / r, -east / r, -north / r**2],
+        [east * sp.sin(p) / (r * sp.cos(p) ** 2), 0, sp.sin(k) / (r * sp.cos(p)), sp.cos(k) / (r * sp.cos(p)),
+         north / (r * sp.cos(p)), -east / (r**2 * sp.cos(p))],
+    ])
+    return Equation(printed=by_hand, derived=S1.row_join(S2), box=SPHERE)
+
+
+@claim("3.time")
+def unsteady():
+    """(3): S1 and S2 depend on the coordinates, hence on time."""
+    S1, S2 = RECKONING.linear_parts()
+    point = {model.latitude: sp.pi / 4, model.vy: 1, model.vx: 0, model.heading: sp.pi / 2, model.height: 0,
+             model.radius: 1}
+    slopes = [S1.diff(model.latitude)[1, 0].subs(point), S2.diff(model.latitude)[1, 0].subs(point)]
+    return Property(
+        printed=True,
+        derived=Finding(all(bool(slope != 0) for slope in slopes),
+                        "derivative by latitude at an exact point", scope="course and log on a sphere",
+                        evidence=f"dS1/dphi = {slopes[0]}, dS2/dphi = {slopes[1]} at 45 degrees, heading east"),
+    )
+
+
+@claim(
+    "2.form",
+    expect=REFUTED,
+    slip="paper",
+    reason="the rate of longitude contains the latitude, so the longitude error is fed by the latitude error; "
+    "only the latitude equation is free of the position error",
+)
+def without_feedback():
+    """(2): with course and log the rate of the position error does not contain the position error."""
+    nothing = dict.fromkeys(RECKONING.errors, 0)
+    return Equation(printed=S.subs(nothing), derived=S, box=SPHERE)
+
+
+@claim("2.form*", corrects="2.form")
+def feedback():
+    """(2): the latitude error obeys (2); to first order the longitude error adds only a latitude term."""
+    S1, S2 = RECKONING.linear_parts()
+    sensors = S2 * sp.Matrix(RECKONING.sensor_errors)
+    east = model.vy * sp.sin(model.heading) + model.vx * sp.cos(model.heading)
+    lever = east * sp.tan(model.latitude) / ((model.radius + model.height) * sp.cos(model.latitude))
+    linear = S1 * sp.Matrix(RECKONING.errors) + sensors
+    return Equation(
+        printed=[S[0].subs(dict.fromkeys(RECKONING.errors, 0)), sensors[1] + lever * model.d_latitude],
+        derived=[S[0], linear[1]],
+        box=SPHERE,
+    )
+
+
+t, drift = sp.symbols("t epsilon_p", real=True)
+rate = sp.Symbol("Omega", positive=True)
+
+
+@claim("2.growth")
+def growth():
+    """(2): a constant error of the speed lets the latitude error grow in proportion to time."""
+    north = {model.d_heading: 0, model.d_height: 0, model.d_vx: 0, model.heading: 0, model.vx: 0}
+    printed = model.d_vy * t / (model.radius + model.height)
+    return Equation(printed=[printed.diff(t), printed.subs(t, 0)], derived=[S[0].subs(north), 0], box=SPHERE)
+
+
+def platform():
+    """Misalignment of a platform with constant drifts, from zero, axis 0 along the Earth's axis.
+
+    d psi/dt = A psi + d with A = -Omega x; since A^3 = -Omega^2 A the exponential ends after A^2 and
+    psi = (t + (1 - cos Omega t)/Omega^2 A + (Omega t - sin Omega t)/Omega^3 A^2) d.
+    """
+    A = sp.Matrix([[0, 0, 0], [0, 0, rate], [0, -rate, 0]])
+    drifts = sp.Matrix([drift, *sp.symbols("epsilon_1 epsilon_2", real=True)])
+    phase = rate * t
+    integral = t * sp.eye(3) + (1 - sp.cos(phase)) / rate**2 * A + (phase - sp.sin(phase)) / rate**3 * A * A
+    return A, integral * drifts, drifts
+
+
+@claim("2.drift.equation")
+def drift_equation():
+    """Misalignment under constant drift: the closed form solves d psi/dt = -Omega x psi + drift from zero."""
+    A, psi, drifts = platform()
+    return Equation(printed=[*(A * psi + drifts), 0, 0, 0], derived=[*psi.diff(t), *psi.subs(t, 0)])
+
+
+@claim("2.drift.polar")
+def drift_about_the_axis():
+    """Gyro drift about the Earth's axis accumulates: the misalignment about it grows in proportion to time."""
+    _, psi, _ = platform()
+    return Equation(printed=drift * t, derived=psi[0])
+
+
+@claim("2.drift.across")
+def drift_across_the_axis():
+    """Gyro drift across the Earth's axis does not accumulate: (2 drift/Omega) |sin(Omega t/2)| at all times."""
+    _, psi, drifts = platform()
+    across = drifts[1] ** 2 + drifts[2] ** 2
+    return Equation(printed=4 * across * sp.sin(rate * t / 2) ** 2 / rate**2, derived=psi[1] ** 2 + psi[2] ** 2)

@@ -1,0 +1,153 @@
+"""Equations (4)-(6), (14), (19): the switching model, its Markov property, and two kinds of switching."""
+
+from __future__ import annotations
+
+from itertools import product
+
+import sympy as sp
+
+from derivations.multistructure.finite import distribution
+from navsym.claims import REFUTED, Equation, claim
+
+TWO = (0, 1)
+
+
+def chain(size, entries=distribution):
+    """P[I(k-1) = j] and p^ij(k) of a chain, free: start[j], switch[j][i]."""
+    return entries("s", size), [entries(f"p{j}", size) for j in range(size)]
+
+
+@claim("5")
+def transition_probabilities():
+    """(5): p^ij is the probability of i after j, so its columns (fixed j) sum to one (chains of 2 to 4 modes)."""
+    printed, derived = [], []
+    for size in (2, 3, 4):
+        start, switch = chain(size)
+        both = {(i, j): start[j] * switch[j][i] for i in range(size) for j in range(size)}
+        for j in range(size):
+            printed.append(1)
+            derived.append(sum(both[i, j] for i in range(size)) / start[j])
+    return Equation(printed=printed, derived=derived)
+
+
+@claim("5.prediction")
+def prediction_of_modes():
+    """(5): with these indices P[I(k) = i] is the sum over j of p^ij P[I(k-1) = j] (chains of 2 to 4 modes)."""
+    printed, derived = [], []
+    for size in (2, 3, 4):
+        start, switch = chain(size)
+        both = {(i, j): start[j] * switch[j][i] for i in range(size) for j in range(size)}
+        for i in range(size):
+            printed.append(sp.Matrix([switch[j][i] for j in range(size)]).dot(sp.Matrix(start)))
+            derived.append(sum(value for (to, _), value in both.items() if to == i))
+    return Equation(printed=printed, derived=derived)
+
+
+def path(start, switch, step, likelihood):
+    """Joint table of (x0, i0), (x1, i1, y0), (x2, i2, y1): the chain rule of (4)-(6)."""
+    table = {}
+    for x0, i0, x1, i1, y0, x2, i2, y1 in product(TWO, repeat=8):
+        table[x0, i0, x1, i1, y0, x2, i2, y1] = (
+            start[i0][x0] * likelihood[i0][x0][y0] * switch[i0][i1] * step[i1][x0][x1]
+            * likelihood[i1][x1][y1] * switch[i1][i2] * step[i2][x1][x2]
+        )
+    return table
+
+
+def summed(table, **fixed):
+    names = ("x0", "i0", "x1", "i1", "y0", "x2", "i2", "y1")
+    wanted = [(names.index(name), value) for name, value in fixed.items()]
+    return sp.expand(sp.Add(*(v for key, v in table.items() if all(key[a] == b for a, b in wanted))))
+
+
+def free(name, size=2):
+    return [sp.Symbol(f"{name}_{k}", positive=True) for k in range(size)]
+
+
+@claim("6.markov")
+def markov():
+    """Under (6): the vector of state, mode and previous measurement is Markov (two modes, two states)."""
+    table = path(
+        [free(f"s{i}") for i in TWO],
+        [distribution(f"p{j}", 2) for j in TWO],
+        [[distribution(f"f{i}{y}", 2) for y in TWO] for i in TWO],
+        [[distribution(f"l{i}{x}", 2) for x in TWO] for i in TWO],
+    )
+    now = {"x1": 0, "i1": 0, "y0": 0}
+    printed, derived = [], []
+    for x2, i2, y1 in product(TWO, repeat=3):
+        after = {"x2": x2, "i2": i2, "y1": y1}
+        before = {"x0": 1, "i0": 1}
+        printed.append(summed(table, **after, **now) / summed(table, **now))
+        derived.append(summed(table, **after, **now, **before) / summed(table, **now, **before))
+    return Equation(printed=printed, derived=derived)
+
+
+@claim(
+    "14",
+    expect=REFUTED,
+    slip="scan",
+    reason="P[I(k) = 1] is one number for all modes; the letter i was read as the digit 1, and ij as j",
+)
+def forgetful_printed():
+    """(14) as printed: p^i(k) = P[I(k) = 1] for every mode i."""
+    start, _ = chain(3)
+    box = {symbol: (0, sp.Rational(1, 3)) for symbol in start[:2]}
+    return Equation(printed=[start[0]] * 3, derived=start, box=box)
+
+
+@claim("14*", corrects="14")
+def forgetful():
+    """(14): when p^ij(k) does not depend on j it is P[I(k) = i] (chains of 2 to 4 modes)."""
+    printed, derived = [], []
+    for size in (2, 3, 4):
+        start, row = distribution("s", size), distribution("p", size)
+        for i in range(size):
+            printed.append(row[i])
+            derived.append(sum(row[i] * start[j] for j in range(size)))
+    return Equation(printed=printed, derived=derived)
+
+
+@claim(
+    "14.follows",
+    expect=REFUTED,
+    slip="paper",
+    reason="folding pi[x(k-1)] into one Gaussian forgets the state's dependence on the mode, not the mode: the mode "
+    "before is still known through g^j(k-1), and P[I(k) = i] is not its prediction",
+)
+def follows_printed():
+    """Before (14): after the Gaussian approximation the mode is predicted by P[I(k) = i] (two modes)."""
+    start, switch = chain(2)
+    seen = free("rho")
+    prior = sum(start[j] * switch[j][0] for j in TWO)
+    given = sum(seen[j] * start[j] * switch[j][0] for j in TWO) / sum(seen[j] * start[j] for j in TWO)
+    return Equation(printed=prior, derived=given, box={start[0]: (0, 1), switch[0][0]: (0, 1), switch[1][0]: (0, 1)})
+
+
+@claim("14.follows*", corrects="14.follows")
+def follows():
+    """Before (14): after the Gaussian approximation the mode is predicted by the sum of p^ij g^j(k-1)."""
+    printed, derived = [], []
+    for size in (2, 3, 4):
+        modes = range(size)
+        start, switch, seen = free("s", size), [free(f"p{j}", size) for j in modes], free("rho", size)
+        # Bayes' rule on the joint table of (Y(k-1), I(k-1), I(k)); the state no longer depends on I(k-1).
+        joint = {(i, j): seen[j] * start[j] * switch[j][i] for i in modes for j in modes}
+        evidence = sum(seen[j] * start[j] for j in modes)
+        g = [seen[j] * start[j] / evidence for j in modes]
+        printed += [sum(switch[j][i] * g[j] for j in modes) for i in modes]
+        derived += [sum(joint[i, j] for j in modes) / evidence for i in modes]
+    return Equation(printed=printed, derived=derived)
+
+
+@claim("19")
+def no_switching():
+    """(19): with the identity in place of p^ij the mode never changes, over any number of steps up to six."""
+    start = distribution("s", 3)
+    identity = sp.eye(3)
+    printed, derived = [], []
+    for steps in range(1, 7):
+        reached = identity**steps * sp.Matrix(start)
+        printed += start
+        derived += list(reached)
+    return Equation(printed=printed, derived=derived)

@@ -1,0 +1,210 @@
+"""Equations (20)-(21): modes that never switch, and the polygaussian filter."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import sympy as sp
+
+from derivations.multistructure import finite
+from derivations.multistructure.finite import Step, step
+from derivations.multistructure.recursion import UNIT
+from navsym.claims import REFUTED, Equation, Finding, Property, claim
+from navsym.methods.multimodel_exact import Leaf, Model, fractions_kit, run_exactly
+from navsym.methods.multimodel_schemes import scheme
+
+
+def frozen_steps():
+    """Steps under (19), all sizes."""
+    return [step(m, n, switch=finite.frozen) for m, n in finite.SIZES]
+
+
+def predicted(s: Step, i: int, x: int) -> sp.Expr:
+    """The single integral of (20)."""
+    return sp.expand(sum(s.f(i, x, y) * s.past[i][y] for y in s.X))
+
+
+def rho(s: Step, i: int) -> sp.Expr:
+    """f[Y(k) / Y_0^{k-1}, i]: what makes (20) sum to one."""
+    return sp.expand(sum(s.L(i, x) * predicted(s, i, x) for x in s.X))
+
+
+@claim(
+    "20",
+    expect=REFUTED,
+    slip="scan",
+    reason="an equals sign stands between the fraction and the integral where (8) has a product, as in (15)",
+)
+def partial_printed():
+    """(20) as printed: pi^i equals the fraction, and equals the integral."""
+    s = frozen_steps()[0]
+    truth = finite.partial(s, 0, 0)
+    return Equation(printed=[s.L(0, 0) / rho(s, 0), predicted(s, 0, 0)], derived=[truth, truth], box=UNIT(s))
+
+
+@claim("20*", corrects="20")
+def partial():
+    """(20) with the product of fraction and integral: (8) under (19)."""
+    cases = [(s, i) for s in frozen_steps() for i in s.I]
+    return Equation(
+        printed=[s.L(i, 0) / rho(s, i) * predicted(s, i, 0) for s, i in cases],
+        derived=[finite.partial(s, 0, i) for s, i in cases],
+    )
+
+
+@claim(
+    "20.integral",
+    expect=REFUTED,
+    slip="scan",
+    reason="there are two integral signs and one differential: integrating over x(k) too leaves no function of x(k); "
+    "(15) has one",
+)
+def double_integral_printed():
+    """(20) with the double integral as printed, over x(k-1) and x(k)."""
+    s = frozen_steps()[0]
+    doubled = sum(predicted(s, 0, x) for x in s.X)
+    return Equation(
+        printed=s.L(0, 0) / rho(s, 0) * doubled, derived=finite.partial(s, 0, 0), box=UNIT(s)
+    )
+
+
+@claim("20.integral*", corrects="20.integral")
+def single_integral():
+    """(20) with one integral, for every value of x(k)."""
+    cases = [(s, i, x) for s in frozen_steps() for i in s.I for x in s.X]
+    return Equation(
+        printed=[s.L(i, x) / rho(s, i) * predicted(s, i, x) for s, i, x in cases],
+        derived=[finite.partial(s, x, i) for s, i, x in cases],
+    )
+
+
+@claim("20.rho")
+def likelihood():
+    """Below (20): rho^i is the density of Y(k) given that the mode is i throughout (two modes and states)."""
+    s = step(2, 2, 2, entries=finite.distribution, switch=finite.frozen)
+    return Equation(printed=[rho(s, i) for i in s.I], derived=[finite.mode_likelihood(s, i) for i in s.I])
+
+
+@claim("21")
+def mode_probability():
+    """(21): (10) under (19)."""
+    printed, derived = [], []
+    for s in frozen_steps():
+        below = sp.expand(sum(rho(s, i) * s.modes[i] for i in s.I))
+        printed += [rho(s, i) * s.modes[i] / below for i in s.I]
+        derived += [finite.mode(s, i) for i in s.I]
+    return Equation(printed=printed, derived=derived)
+
+
+@claim("21.mixture")
+def mixture():
+    """Below (21): the general formula (11) holds with the weights (21) and the densities (20)."""
+    printed, derived = [], []
+    for s in frozen_steps():
+        below = sp.expand(sum(rho(s, i) * s.modes[i] for i in s.I))
+        printed.append(sum(s.L(i, 0) * predicted(s, i, 0) * s.modes[i] for i in s.I) / below)
+        derived.append(s.probability(Y=0, x=0) / s.probability(Y=0))
+    return Equation(printed=printed, derived=derived)
+
+
+@claim(
+    "21.start",
+    expect=REFUTED,
+    slip="paper",
+    reason="g^i(0) is defined as f[i / Y_0^0], after the measurement Y(0); the prior p^i is what stands before it, "
+    "so either the measurements begin at step 1 or g^i(0) needs Bayes' rule",
+)
+def start_printed():
+    """Below (21): the initial condition is g^i(0) = p^i, with measurements from step 0 on."""
+    p, rho0 = finite.distribution("p", 2), finite.free("rho", 2)
+    given = [p[i] * rho0[i] / sum(p[j] * rho0[j] for j in (0, 1)) for i in (0, 1)]
+    return Equation(printed=p, derived=given, box={p[0]: (0, 1)})
+
+
+@claim("21.start*", corrects="21.start")
+def start():
+    """Below (21): g^i(0) = p^i rho^i(0) / sum; equal to p^i when step 0 has no measurement (two to four modes)."""
+    printed, derived = [], []
+    for size in (2, 3, 4):
+        p, seen = finite.free("p", size), finite.free("rho", size)
+        joint = {(i, Y): p[i] * (seen[i] if Y == 0 else 1) for i in range(size) for Y in (0, 1)}
+        for Y in (0, 1):
+            weight = [p[i] * (seen[i] if Y == 0 else 1) for i in range(size)]
+            printed += [w / sum(weight) for w in weight]
+            derived += [joint[i, Y] / sum(joint[j, Y] for j in range(size)) for i in range(size)]
+    return Equation(printed=printed, derived=derived)
+
+
+def polygaussian_and_exact(steps: int):
+    """Mode probabilities, mean and variance of both filters, with the identity for p^ij and a Gaussian per mode."""
+    models = [[Model([[F]], [[Q]], [[Fraction(1)]], [[R]]) for F, Q, R in MODES]] * steps
+    identity = [[[Fraction(int(i == j)) for j in range(len(MODES))] for i in range(len(MODES))]] * steps
+    third = Fraction(1, len(MODES))
+    roots = [
+        Leaf(tuple(third if i == j else Fraction(0) for j in range(len(MODES))), [Fraction(i)], [[Fraction(i + 1)]])
+        for i in range(len(MODES))
+    ]
+    series = [[Fraction(value)] for value in (2, -1, 3)][:steps]
+    return [
+        run_exactly(scheme(method), models, identity, roots, series, fractions_kit())
+        for method in ("polygaussian", "exact")
+    ]
+
+
+MODES = [(Fraction(1), Fraction(0), Fraction(1)), (Fraction(1, 2), Fraction(1), Fraction(1)),
+         (Fraction(1), Fraction(4), Fraction(9))]
+
+
+@claim("19.count")
+def living_sequences():
+    """Under (19) only I of the I^(k+1) sequences have a positive probability, at every step (I = 3, k to 3)."""
+    _, exact = polygaussian_and_exact(3)
+    alive = tuple(sum(1 for leaf in step.leaves if sum(leaf.weights) > 0) for step in exact)
+    return Property(
+        printed=(3, 3, 3),
+        derived=Finding(alive, "leaves of the exact tree with positive weight counted", scope="I = 3, k = 1..3"),
+    )
+
+
+@claim("21.optimal")
+def optimal():
+    """Below (21): with a Gaussian for every mode the bank of Kalman filters gives exactly the living hypotheses."""
+    bank, exact = polygaussian_and_exact(3)
+    equal = True
+    for ours, theirs in zip(bank, exact, strict=True):
+        living = [leaf for leaf in theirs.leaves if sum(leaf.weights) > 0]
+        equal = equal and sorted(map(gaussian, ours.leaves)) == sorted(map(gaussian, living))
+    return Property(
+        printed=True,
+        derived=Finding(equal, "Gaussians of both filters compared as rational numbers", scope="I = 3, three steps"),
+    )
+
+
+def gaussian(leaf: Leaf):
+    """Mode, mean and variance of a leaf."""
+    return [weight != 0 for weight in leaf.weights].index(True), leaf.mean[0], leaf.covariance[0][0]
+
+
+@claim("21.prior")
+def prior():
+    """Below (21): one Gaussian per mode needs I filters; a sum of L common to all modes would need I L (I = 2)."""
+    return Property(
+        printed=tuple(2 * L for L in (1, 2, 3)),
+        derived=Finding(tuple(len(different_gaussians(L)) for L in (1, 2, 3)),
+                        "different Gaussians of the exact tree counted", scope="two modes, L = 1..3, one step"),
+    )
+
+
+def different_gaussians(summands: int):
+    """Gaussians after one step without switching, from a prior of several Gaussians common to two modes."""
+    share = Fraction(1, 2 * summands)
+    roots = [
+        Leaf(tuple(share if i == j else Fraction(0) for j in (0, 1)), [Fraction(number)], [[Fraction(1)]])
+        for number in range(summands) for i in (0, 1)
+    ]
+    models = [[Model([[F]], [[Q]], [[Fraction(1)]], [[R]]) for F, Q, R in MODES[:2]]]
+    identity = [[[Fraction(1), Fraction(0)], [Fraction(0), Fraction(1)]]]
+    step, = run_exactly(scheme("exact"), models, identity, roots, [[Fraction(2)]], fractions_kit())
+    return {gaussian(leaf) for leaf in step.leaves if sum(leaf.weights) > 0}
+
+

@@ -1,0 +1,347 @@
+"""Equations (15)-(17) and the words about pulsating and K-pulsating filters."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+from itertools import product
+
+import sympy as sp
+
+from derivations.multistructure import examples, finite
+from derivations.multistructure.finite import Step, step
+from derivations.multistructure.recursion import UNIT
+from navsym.claims import CERTIFIED, REFUTED, Bound, Equation, Finding, Property, claim
+from navsym.methods.multimodel_schemes import filters_at, scheme
+
+
+def forgetful_steps():
+    """Steps under (14), all sizes."""
+    return [step(m, n, switch=finite.forgetful(m)) for m, n in finite.SIZES]
+
+
+def whole(s: Step, y: int) -> sp.Expr:
+    """pi[x(k-1)], what the Gaussian approximation stands for."""
+    return sum(s.modes[j] * s.past[j][y] for j in s.I)
+
+
+def predicted(s: Step, i: int, x: int) -> sp.Expr:
+    """The integral of (15), as a sum of monomials: positive at sight, so that it may be divided by."""
+    return sp.expand(sum(s.f(i, x, y) * whole(s, y) for y in s.X))
+
+
+def rho(s: Step, i: int) -> sp.Expr:
+    """What makes (15) sum to one."""
+    return sp.expand(sum(s.L(i, x) * predicted(s, i, x) for x in s.X))
+
+
+@claim(
+    "15",
+    expect=REFUTED,
+    slip="scan",
+    reason="an equals sign stands between the fraction and the integral where (8) has a product",
+)
+def partial_printed():
+    """(15) as printed: pi^i equals the fraction, and equals the integral."""
+    s = forgetful_steps()[0]
+    truth = finite.partial(s, 0, 0)
+    return Equation(printed=[s.L(0, 0) / rho(s, 0), predicted(s, 0, 0)], derived=[truth, truth], box=UNIT(s))
+
+
+@claim("15*", corrects="15")
+def partial():
+    """(15) with the product of fraction and integral: (8) under (14)."""
+    cases = [(s, i) for s in forgetful_steps() for i in s.I]
+    return Equation(
+        printed=[s.L(i, 0) / rho(s, i) * predicted(s, i, 0) for s, i in cases],
+        derived=[finite.partial(s, 0, i) for s, i in cases],
+    )
+
+
+@claim("16")
+def mode_likelihood():
+    """(16): under (14) rho^i is the density of Y(k) given the mode at k (two modes, two states)."""
+    s = step(2, 2, 2, entries=finite.distribution, switch=finite.forgetful(2, finite.distribution))
+    return Equation(printed=[rho(s, i) for i in s.I], derived=[finite.mode_likelihood(s, i) for i in s.I])
+
+
+@claim("17")
+def mode_probability():
+    """(17): (10) under (14)."""
+    printed, derived = [], []
+    for s in forgetful_steps():
+        below = sp.expand(sum(rho(s, i) * s.p(i, 0) for i in s.I))
+        printed += [rho(s, i) * s.p(i, 0) / below for i in s.I]
+        derived += [finite.mode(s, i) for i in s.I]
+    return Equation(printed=printed, derived=derived)
+
+
+@claim("13.sequences")
+def weighing_of_sequences():
+    """Below (13): the optimal estimate weighs partial estimates by the probabilities of mode sequences."""
+    printed, derived = [], []
+    for s in finite.every_size():
+        value = [sp.Symbol(f"xi_{x}", real=True) for x in s.X]
+        evidence = s.probability(Y=0)
+        terms = []
+        for i, j in product(s.I, s.I):
+            weight = s.probability(Y=0, i=i, j=j)
+            estimate = sum(value[x] * s.probability(Y=0, x=x, i=i, j=j) for x in s.X) / weight
+            terms.append(weight / evidence * estimate)
+        printed.append(sum(terms))
+        derived.append(sum(value[x] * s.probability(Y=0, x=x) for x in s.X) / evidence)
+    return Equation(printed=printed, derived=derived)
+
+
+def leaves_by_tree(modes: int, steps: int, roots: int) -> int:
+    """Hypotheses of the exact tree, counted by growing it from one root, or one for every mode at step 0."""
+    sequences = {(j,) for j in range(modes)} if roots > 1 else {()}
+    for _ in range(steps):
+        sequences = {(*sequence, i) for sequence in sequences for i in range(modes)}
+    return len(sequences)
+
+
+GRID = [(modes, steps) for modes in (1, 2, 3, 4) for steps in range(6)]
+
+
+@claim("count.sequences")
+def number_of_sequences():
+    """Below (13): up to step k there are I^(k+1) sequences of modes, step 0 included (I to 4, k to 5)."""
+    return Property(
+        printed=tuple(modes ** (steps + 1) for modes, steps in GRID),
+        derived=Finding(
+            tuple(leaves_by_tree(modes, steps, modes) for modes, steps in GRID), "sequences enumerated",
+            scope="I = 1..4, k = 0..5; every step multiplies by I, so for all by induction",
+        ),
+    )
+
+
+@claim("count.growth")
+def growth():
+    """Below (13): the number of sequences grows without bound, if there are two modes or more."""
+    modes, n = sp.Symbol("I", positive=True), sp.Symbol("n", positive=True)
+    return Bound(printed=modes * n - n, relation=">=", derived=n, box={modes: (2, None), n: (1, None)})
+
+
+@claim("count.K")
+def number_in_an_interval():
+    """K-pulsating: within an interval of K steps the number of sequences reaches I^K (I to 4, K to 5)."""
+    cases = [(modes, K) for modes in (1, 2, 3, 4) for K in (1, 2, 3, 4, 5)]
+    found = tuple(
+        max(filters_at(scheme("k-pulsating", K), modes, 1, k) for k in range(1, 4 * K + 1)) for modes, K in cases
+    )
+    counted = tuple(leaves_by_tree(modes, K, 1) for modes, K in cases)
+    return Property(
+        printed=tuple(modes**K for modes, K in cases),
+        derived=Finding(counted if counted == found else found, "sequences enumerated, filters scheduled",
+                        scope="I = 1..4, K = 1..5, four intervals"),
+    )
+
+
+MODELS = [[examples.CALM, examples.JUMP]] * 4
+SWITCHING = [examples.STICKY] * 4
+#: Found by search: three measurements on which one fold less ends farther from the optimal estimate.
+WORSE = [[2], [3], [0]]
+
+
+def differs(first, second) -> Finding:
+    """Whether two numbers differ, by balls; undecided balls are an error, not an answer."""
+    if first.overlaps(second):
+        raise ArithmeticError("balls overlap: more bits are needed")
+    return Finding(
+        True, "ball arithmetic, 400 bits", status=CERTIFIED, scope="one model, one series of measurements",
+        evidence=f"{first.str(12, radius=False)} against {second.str(12, radius=False)}",
+    )
+
+
+@claim("17.suboptimal", expect=CERTIFIED)
+def suboptimal():
+    """Below (18): the algorithm is suboptimal: its second estimate differs from the optimal one."""
+    series = [[3], [1]]
+    pulsating = examples.enclosures("pulsating", MODELS, SWITCHING, series)[1]
+    exact = examples.enclosures("exact", MODELS, SWITCHING, series)[1]
+    return Property(printed=True, derived=differs(pulsating, exact))
+
+
+@claim("17.first")
+def first_step_is_exact():
+    """The first estimate of the pulsating filter is the optimal one, when all modes start from one Gaussian."""
+    series = [[3]]
+    pulsating = examples.run("pulsating", MODELS, SWITCHING, series)[0]
+    exact = examples.run("exact", MODELS, SWITCHING, series)[0]
+    return Equation(
+        printed=[pulsating.mean[0], pulsating.covariance[0][0]], derived=[exact.mean[0], exact.covariance[0][0]]
+    )
+
+
+def distance(method, series, **options):
+    """Distance of the last estimate from the exact one, as a ball."""
+    exact = examples.enclosures("exact", MODELS, SWITCHING, series)[-1]
+    return abs(examples.enclosures(method, MODELS, SWITCHING, series, **options)[-1] - exact)
+
+
+@claim(
+    "K.better",
+    expect=REFUTED,
+    slip="paper",
+    reason="not on every series of measurements: on this one the simplest filter ends nearer to the optimal estimate "
+    "than with K = 2; up to step K the words hold, and on average over series in the studies",
+)
+def longer_is_better():
+    """K-pulsating gives the higher quality: with K = 2 the third estimate is nearer to the optimal one."""
+    two, one = distance("k-pulsating", WORSE, depth=2), distance("pulsating", WORSE)
+    finding = differs(two, one)
+    return Property(printed=True, derived=replace(finding, value=bool(two < one)))
+
+
+@claim("K.better*", corrects="K.better")
+def exact_up_to_K():
+    """K-pulsating: up to step K every hypothesis, weight and estimate is that of the optimal filter (K = 1..4)."""
+    series = [[3], [1], [-2], [4]]
+    equal = True
+    for K in (1, 2, 3, 4):
+        pulsating = examples.in_fractions("k-pulsating", MODELS, SWITCHING, series[:K], depth=K)
+        exact = examples.in_fractions("exact", MODELS, SWITCHING, series[:K])
+        equal = equal and pulsating == exact
+    return Property(
+        printed=True,
+        derived=Finding(
+            equal, "trees compared leaf by leaf in rational arithmetic",
+            scope="one model of two modes; the argument, that no fold comes before the estimate of step K, is general",
+        ),
+    )
+
+
+SAME = [examples.CALM, examples.CALM]
+LATE = [SAME, SAME, [examples.scalar(1, 0, 1, 9), examples.scalar(1, 25, 1, 9)], SAME]
+
+
+@claim("K.fold")
+def lossless_fold():
+    """A fold where the modes agree loses nothing: K = 2 is optimal at step 4 when only step 3 tells modes apart."""
+    series = [[1], [0], [4], [1]]
+    steps = examples.run("exact", LATE, SWITCHING, series)
+    second = {(leaf.mean[0], leaf.covariance[0][0]) for leaf in steps[1].leaves}
+    return Property(
+        printed=1,
+        derived=Finding(len(second), "leaves of the exact tree compared as rational numbers",
+                        scope="this model, every series of measurements: gains do not depend on them",
+                        evidence="all leaves of step 2 are one Gaussian, so the fold of K = 2 changes nothing"),
+    )
+
+
+@claim("K.longer", expect=CERTIFIED)
+def longer_may_be_worse():
+    """A longer interval can lose: in the same example K = 3 misses the optimal estimate that K = 2 finds."""
+    series = [[1], [0], [4], [1]]
+    three = examples.enclosures("k-pulsating", LATE, SWITCHING, series, depth=3)[3]
+    exact = examples.enclosures("exact", LATE, SWITCHING, series)[3]
+    return Property(printed=True, derived=differs(three, exact))
+
+
+share, gap = sp.Symbol("epsilon", nonnegative=True), sp.Symbol("d", real=True)
+
+
+def excess(epsilon, square):
+    """Fourth cumulant over squared variance of (1-e) N(0,1) + e N(d,1): zero for a Gaussian."""
+    spread = epsilon * (1 - epsilon)
+    return spread * (1 - 6 * spread) * square**2 / (1 + spread * square) ** 2
+
+
+@claim("near.excess")
+def excess_of_two():
+    """The measure of error below: fourth cumulant of a mixture of two unit Gaussians a distance d apart."""
+    e = share
+    mean = e * gap
+    second = sum(w * (1 + (c - mean) ** 2) for w, c in ((1 - e, 0), (e, gap)))
+    fourth = sum(w * (3 + 6 * (c - mean) ** 2 + (c - mean) ** 4) for w, c in ((1 - e, 0), (e, gap)))
+    return Equation(printed=excess(e, gap**2), derived=fourth / second**2 - 3, box={e: (0, 1)})
+
+
+@claim(
+    "near",
+    expect=REFUTED,
+    slip="paper",
+    reason="g^i near one is not enough: a mode of probability epsilon at the distance 1/sqrt(epsilon) makes the "
+    "Gaussian approximation arbitrarily bad while g tends to one; the distance must be bounded",
+)
+def near_optimal():
+    """The error of the Gaussian approximation vanishes when g^i tends to one for one mode."""
+    values = [excess(Fraction(1, 10**k), Fraction(10**k)) for k in range(1, 7)]
+    return Property(
+        printed=True,
+        derived=Finding(
+            all(b < a for a, b in zip(values, values[1:], strict=False)), "exact excess kurtosis",
+            scope="g = 1 - 10^-k, unit Gaussians 10^(k/2) apart, k = 1..6",
+            evidence=f"excess kurtosis grows from {float(values[0]):.3g} to {float(values[-1]):.3g}",
+        ),
+    )
+
+
+@claim("near*", corrects="near", expect=CERTIFIED)
+def near_optimal_corrected():
+    """With the modes a bounded distance d apart the excess is at most epsilon d^4 (for epsilon up to 1/10).
+
+    Divided by epsilon d^4 and cleared of the denominator; D = d^2.
+    """
+    square = sp.Symbol("D", nonnegative=True)
+    spread = share * (1 - share)
+    return Bound(
+        printed=(1 - share) * (1 - 6 * spread), relation="<=", derived=(1 + spread * square) ** 2,
+        box={share: (0, sp.Rational(1, 10)), square: (0, None)},
+    )
+
+
+@claim("near.moments")
+def near_moments():
+    """Mean and covariance of the fold move by epsilon times the distance and no more than epsilon d^2."""
+    other = sp.Symbol("P", positive=True)
+    mean = share * gap
+    covariance = (1 - share) * (1 + mean**2) + share * (other + (gap - mean) ** 2)
+    return Equation(
+        printed=[mean, 1 + share * (other - 1) + share * (1 - share) * gap**2], derived=[share * gap, covariance]
+    )
+
+
+def memory(cases):
+    """Floats that the one-pass filter keeps beyond one Kalman filter, measured for (modes, states)."""
+    from navsym.methods.multimodel_bank import bank
+    from navsym.methods.multimodel_memory import floats_in_use
+
+    extra = []
+    for modes, n in cases:
+        unit = [[float(a == b) for b in range(n)] for a in range(n)]
+        model = {"F": unit, "Q": unit, "H": unit[:1], "R": [[1.0]]}
+        switch = [[1.0 / modes] * modes] * modes
+        made = bank([model] * modes, switch, [0.0] * n, unit, [1.0 / modes] * modes)
+        single, pulsating = floats_in_use(made, made.means[0][:1])
+        extra.append(pulsating - single)
+    return tuple(extra)
+
+
+CASES = [(modes, n) for modes in (2, 3, 8) for n in (1, 2, 6)]
+
+
+@claim(
+    "17.memory",
+    expect=REFUTED,
+    slip="paper",
+    reason="beside the probabilities of (17) the adders and the partial estimate at work must be kept, while every "
+    "model starts from the same estimate: two means, two covariances and a sum of weights",
+)
+def memory_printed():
+    """Pulsating needs more memory than Kalman only for the I probabilities of (17)."""
+    return Property(
+        printed=tuple(modes for modes, _ in CASES),
+        derived=Finding(memory(CASES), "arrays of the one-pass filter counted", scope="I = 2, 3, 8; n = 1, 2, 6"),
+    )
+
+
+@claim("17.memory*", corrects="17.memory")
+def memory_corrected():
+    """Beyond Kalman: I probabilities, one sum of weights, two means and two covariances, however many modes."""
+    return Property(
+        printed=tuple(modes + 1 + 2 * (n + n * n) for modes, n in CASES),
+        derived=Finding(memory(CASES), "arrays of the one-pass filter counted", scope="I = 2, 3, 8; n = 1, 2, 6"),
+    )
+

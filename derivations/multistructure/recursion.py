@@ -1,0 +1,277 @@
+"""Equations (7)-(11): the exact recursion for densities and mode probabilities.
+
+Decided on finite-state analogues with (modes, states) = (2,2), (3,2), (2,3); all probabilities are free.
+"""
+
+from __future__ import annotations
+
+import sympy as sp
+
+from derivations.multistructure import finite
+from derivations.multistructure.finite import Step, every_size, step
+from navsym.claims import REFUTED, Equation, claim
+
+
+def total(terms):
+    return sp.Add(*terms)
+
+
+def rho(s: Step, i: int, j: int) -> sp.Expr:
+    """The double integral of (9) with the density that belongs there, pi^j[x(k-1)]."""
+    return total(s.L(i, x) * s.f(i, x, y) * s.past[j][y] for x in s.X for y in s.X)
+
+
+def bayes_numerator(s: Step, i: int, x: int) -> sp.Expr:
+    """Numerator of (7): pi[x(k-1), j] is g^j pi^j[x(k-1)]."""
+    return s.L(i, x) * total(s.f(i, x, y) * s.p(i, j) * s.modes[j] * s.past[j][y] for j in s.I for y in s.X)
+
+
+@claim("7.chain")
+def chain():
+    """f[x(k), i(k) / x(k-1), j(k-1)] = f^i[x(k)/x(k-1)] p^ij(k)."""
+    s = finite.normalised(2)
+    return Equation(
+        printed=[s.f(i, 0, 1) * s.p(i, 0) for i in s.I],
+        derived=[s.probability(x=0, i=i, y=1, j=0) / s.probability(y=1, j=0) for i in s.I],
+    )
+
+
+@claim(
+    "7",
+    expect=REFUTED,
+    slip="scan",
+    reason="the denominator prints the transition density twice; the sum of the numerator over x and i has it "
+    "once, and without that the posterior does not sum to one",
+)
+def posterior_printed():
+    """(7) with the denominator as printed, the transition density f^i[x(k)/x(k-1)] standing there twice."""
+    s = step(2, 2)
+    doubled = total(
+        s.L(i, x) * s.f(i, x, y) ** 2 * s.p(i, j) * s.modes[j] * s.past[j][y]
+        for i in s.I for j in s.I for x in s.X for y in s.X
+    )
+    return Equation(printed=bayes_numerator(s, 0, 0) / doubled, derived=finite.posterior(s, 0, 0), box=UNIT(s))
+
+
+@claim("7*", corrects="7")
+def posterior_corrected():
+    """(7) with one transition density in the denominator: Bayes' rule for state and mode together."""
+    printed, derived = [], []
+    for s in every_size():
+        whole = total(bayes_numerator(s, i, x) for i in s.I for x in s.X)
+        printed += [bayes_numerator(s, i, 0) / whole for i in s.I]
+        derived += [finite.posterior(s, 0, i) for i in s.I]
+    return Equation(printed=printed, derived=derived)
+
+
+def state_posterior(s: Step, x: int) -> sp.Expr:
+    """f[x(k) / Y_0^k] by Bayes' rule."""
+    return s.probability(Y=0, x=x) / s.probability(Y=0)
+
+
+def UNIT(s: Step):
+    """Every free probability between zero and 1/4, so that the last one is a probability too."""
+    symbols = sorted(set().union(*(value.free_symbols for value in s.joint.values())), key=str)
+    return {symbol: (sp.Rational(1, 100), sp.Rational(1, 4)) for symbol in symbols}
+
+
+@claim(
+    "8.definition",
+    expect=REFUTED,
+    slip="paper",
+    reason="the denominator sums over i as well, which gives the joint density of state and mode; given i(k) the "
+    "sum runs over j alone, as (8) itself has it",
+)
+def partial_definition_printed():
+    """The fraction above (8): pi^i with a denominator summed over i and j."""
+    s = step(2, 2)
+    return Equation(
+        printed=s.probability(Y=0, x=0, i=0) / s.probability(Y=0), derived=finite.partial(s, 0, 0), box=UNIT(s)
+    )
+
+
+@claim("8.definition*", corrects="8.definition")
+def partial_definition():
+    """The fraction above (8) with a denominator summed over j alone."""
+    printed, derived = [], []
+    for s in every_size():
+        for i in s.I:
+            above = total(s.probability(Y=0, x=0, i=i, j=j, y=y) for j in s.I for y in s.X)
+            below = total(s.probability(Y=0, x=x, i=i, j=j, y=y) for x in s.X for j in s.I for y in s.X)
+            printed.append(above / below)
+            derived.append(finite.partial(s, 0, i))
+    return Equation(printed=printed, derived=derived)
+
+
+def right_side_of_8(s: Step, i: int, x: int) -> sp.Expr:
+    above = s.L(i, x) * total(
+        s.f(i, x, y) * total(s.p(i, j) * s.modes[j] * s.past[j][y] for j in s.I) for y in s.X
+    )
+    return above / total(rho(s, i, j) * s.p(i, j) * s.modes[j] for j in s.I)
+
+
+@claim("8")
+def partial_posterior():
+    """(8): pi^i[x(k)] from the partial densities and mode probabilities of the step before."""
+    printed, derived = [], []
+    for s in every_size():
+        printed += [right_side_of_8(s, i, 0) for i in s.I]
+        derived += [finite.partial(s, 0, i) for i in s.I]
+    return Equation(printed=printed, derived=derived)
+
+
+@claim(
+    "9",
+    expect=REFUTED,
+    slip="paper",
+    reason="the density of the state before must be pi^j[x(k-1)], of the mode before; with pi^i the left side's j "
+    "does not occur on the right",
+)
+def pair_likelihood_printed():
+    """(9) as printed, with the partial density of mode i in the double integral."""
+    s = finite.normalised(2)
+    printed = total(s.L(0, x) * s.f(0, x, y) * s.past[0][y] for x in s.X for y in s.X)
+    return Equation(printed=printed, derived=finite.pair_likelihood(s, 0, 1), box=UNIT(s))
+
+
+@claim(
+    "9.condition",
+    expect=REFUTED,
+    slip="paper",
+    reason="the condition must be j(k-1), as (10) has it: with i(k-1) the density is that of staying in mode i",
+)
+def pair_condition_printed():
+    """(9), last line as printed: rho^ij is the density of Y(k) given i(k) and i(k-1)."""
+    s = finite.normalised(2)
+    return Equation(printed=finite.pair_likelihood(s, 0, 0), derived=rho(s, 0, 1), box=UNIT(s))
+
+
+def pairs():
+    """(step, i, j): staying and switching, two and three values of the state."""
+    return [(s, 0, j) for s in map(finite.normalised, (2, 3)) for j in s.I]
+
+
+@claim("9*", corrects="9")
+def pair_likelihood():
+    """(9) with pi^j[x(k-1)]: rho^ij is the density of Y(k) given both modes."""
+    cases = pairs()
+    return Equation(
+        printed=[rho(s, i, j) for s, i, j in cases],
+        derived=[finite.pair_likelihood(s, i, j) for s, i, j in cases],
+    )
+
+
+@claim("9.condition*", corrects="9.condition")
+def pair_condition():
+    """(9), last line with the condition j(k-1)."""
+    cases = pairs()
+    return Equation(
+        printed=[finite.pair_likelihood(s, i, j) for s, i, j in cases],
+        derived=[rho(s, i, j) for s, i, j in cases],
+    )
+
+
+@claim(
+    "10.definition",
+    expect=REFUTED,
+    slip="scan",
+    reason="an integral sign stands where the sum over j must be: unsummed, the numerator still depends on j",
+)
+def mode_definition_printed():
+    """The fraction above (10): g^i with a numerator that is not summed over j."""
+    s = step(2, 2)
+    printed = s.probability(Y=0, i=0, j=1) / total(s.probability(Y=0, i=i, j=j) for i in s.I for j in s.I)
+    return Equation(printed=printed, derived=finite.mode(s, 0), box=UNIT(s))
+
+
+@claim("10.definition*", corrects="10.definition")
+def mode_definition():
+    """The fraction above (10) with a numerator summed over j."""
+    printed, derived = [], []
+    for s in every_size():
+        below = total(s.probability(Y=0, i=i, j=j) for i in s.I for j in s.I)
+        printed += [total(s.probability(Y=0, i=i, j=j) for j in s.I) / below for i in s.I]
+        derived += [finite.mode(s, i) for i in s.I]
+    return Equation(printed=printed, derived=derived)
+
+
+@claim("10.first")
+def mode_probability_by_densities():
+    """(10), first line, for two to four modes and any state: f[Y, i, j] = f[Y / i, j] p^ij g^j, summed."""
+    printed, derived = [], []
+    for size in (2, 3, 4):
+        pairs = [(i, j) for i in range(size) for j in range(size)]
+        together = {key: sp.Symbol("a_{}{}".format(*key), positive=True) for key in pairs}
+        before = {key: sp.Symbol("p_{}{}".format(*key), positive=True) * sp.Symbol(f"g_{key[1]}", positive=True)
+                  for key in pairs}
+        density = {key: together[key] / before[key] for key in pairs}
+        weight = {key: density[key] * before[key] for key in pairs}
+        whole = total(weight.values())
+        printed += [total(weight[i, j] for j in range(size)) / whole for i in range(size)]
+        derived += [total(together[i, j] for j in range(size)) / total(together.values()) for i in range(size)]
+    return Equation(printed=printed, derived=derived)
+
+
+@claim("10")
+def mode_probability():
+    """(10), second line: mode probabilities from rho^ij."""
+    printed, derived = [], []
+    for s in every_size():
+        weight = {(i, j): rho(s, i, j) * s.p(i, j) * s.modes[j] for i in s.I for j in s.I}
+        whole = total(weight.values())
+        printed += [total(weight[i, j] for j in s.I) / whole for i in s.I]
+        derived += [finite.mode(s, i) for i in s.I]
+    return Equation(printed=printed, derived=derived)
+
+
+@claim(
+    "11",
+    expect=REFUTED,
+    slip="paper",
+    reason="the sum runs over j while every factor carries i: taken literally it is I g^i pi^i; the same index "
+    "stands in (12) and (13)",
+)
+def mixture_printed():
+    """(11) as printed, summed over j."""
+    s = step(2, 2)
+    i = 0
+    printed = total(finite.mode(s, i) * finite.partial(s, 0, i) for _ in s.I)
+    return Equation(printed=printed, derived=state_posterior(s, 0), box=UNIT(s))
+
+
+@claim("11*", corrects="11")
+def mixture():
+    """(11) summed over i: the posterior is the mixture of the partial ones."""
+    printed, derived = [], []
+    for s in every_size():
+        printed.append(total(finite.mode(s, i) * finite.partial(s, 0, i) for i in s.I))
+        derived.append(state_posterior(s, 0))
+    return Equation(printed=printed, derived=derived)
+
+
+@claim(
+    "11.form",
+    expect=REFUTED,
+    slip="paper",
+    reason="the recursion needs the partial densities and mode probabilities, the form (11), and not just their "
+    "sum; (1) is the error equation and no density has that form",
+)
+def form_printed():
+    """Below (11): the recursion carries pi[x(k-1)], of whatever form, into pi[x(k)] (two forms of one sum)."""
+    s = finite.normalised(2)
+    same_sum = {s.modes[0]: sp.Rational(1, 2), s.past[0][0]: sp.Rational(1, 2), s.past[1][0]: sp.Rational(1, 2)}
+    other_parts = {s.modes[0]: sp.Rational(1, 2), s.past[0][0]: sp.Rational(3, 4), s.past[1][0]: sp.Rational(1, 4)}
+    after = state_posterior(s, 0)
+    return Equation(printed=after.subs(same_sum), derived=after.subs(other_parts), box=UNIT(s))
+
+
+@claim("11.form*", corrects="11.form")
+def form():
+    """Below (11): in the form (11) the recursion is closed: (8), (10) and (11) give pi[x(k)] from the parts."""
+    printed, derived = [], []
+    for s in every_size():
+        weight = [total(rho(s, i, j) * s.p(i, j) * s.modes[j] for j in s.I) for i in s.I]
+        whole = total(weight)
+        printed.append(total(weight[i] / whole * right_side_of_8(s, i, 0) for i in s.I))
+        derived.append(state_posterior(s, 0))
+    return Equation(printed=printed, derived=derived)
