@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 from navsym.claims import OPEN, REFUTED, Bound, Equation, Statement, Verdict
+from navsym.proof.bounds import Sign, prove_sign
+from navsym.proof.equations import is_nonzero
 from navsym.proof.ladder import decide
 from navsym.proof.sandbox import Exhausted, Failed, run_many
+from navsym.proof.wording import text_of
 from navsym.text.claimfile import ClaimFile, FileClaim
 
 SECONDS = 20.0
@@ -36,13 +40,24 @@ def prove(
 
 
 def decide_claim(claim: FileClaim) -> Verdict:
-    return decide(statement_of(claim))
+    verdict = decide(statement_of(claim))
+    if verdict.status == REFUTED:
+        return verdict
+    assumptions = dict.fromkeys((*verdict.assumptions, *text_conditions(claim)))
+    return replace(verdict, assumptions=tuple(assumptions))
+
+
+def text_conditions(claim: FileClaim) -> list[str]:
+    """What the text divides by and takes roots of, where the algebra has cancelled it since."""
+    found = [f"{text_of(d)} != 0" for d in claim.divisors if not is_nonzero(d, claim.box)]
+    at_least = (r for r in claim.radicands if not prove_sign(r, claim.box).at_least(Sign.NONNEGATIVE))
+    return found + [f"{text_of(r)} >= 0" for r in at_least]
 
 
 def statement_of(claim: FileClaim) -> Statement:
     """The file's claim as a statement of the ladder."""
     if claim.relation == "=":
-        return Equation(claim.left, claim.right, claim.box, nonzero=claim.divisors)
+        return Equation(claim.left, claim.right, claim.box)
     return Bound(claim.left, claim.relation, claim.right, claim.box)
 
 
