@@ -1,0 +1,217 @@
+"""``navsym locate``: the keys of the interfaces, the four methods, and every kind of bad input."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+from navsym.cli.main import run
+from navsym.methods.terrain_locate import METHODS, locate
+
+KEYS = {
+    "method", "position_index", "velocity_index", "criterion", "second_best", "unique",
+    "t_G", "quadratic", "fix", "correction", "evaluated",
+}  # fmt: skip
+
+
+def heights():
+    rows, columns = np.mgrid[:60, :80]
+    return 100 * np.sin(columns / 7) * np.cos(rows / 5) + 30 * np.sin(columns * rows / 200)
+
+
+def surface(x, y):
+    """Bilinear heights at (x, y), written out again so as not to lean on the package."""
+    H, u, w = heights(), np.asarray(x) / 30, np.asarray(y) / 30
+    c, r = u.astype(int), w.astype(int)
+    f, g = u - c, w - r
+    return (H[r, c] * (1 - f) + H[r, c + 1] * f) * (1 - g) + (H[r + 1, c] * (1 - f) + H[r + 1, c + 1] * f) * g
+
+
+def config(**changes):
+    t = np.arange(40.0)
+    x, y = 600 + 25 * t, 500 + 15 * t
+    h = surface(x + 60 + 1 * t, y - 30 - 2 * t)
+    return {
+        "map": {"heights": heights().tolist(), "x0": 0, "y0": 0, "dx": 30, "dy": 30},
+        "track": {"t": t.tolist(), "x": x.tolist(), "y": y.tolist(), "h": h.tolist()},
+        "position": {"step": [30, 30], "half_count": [4, 4]},
+        "velocity": {"step": [1, 1], "half_count": [3, 3]},
+        "interpolation": "bilinear",
+        **changes,
+    }
+
+
+def call(tmp_path, capsys, document, *options):
+    path = tmp_path / "config.json"
+    path.write_text(document if isinstance(document, str) else json.dumps(document))
+    status = run(["locate", str(path), "--json", *options])
+    return status, json.loads(capsys.readouterr().out)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_every_method_answers_with_the_keys_of_the_interface(tmp_path, capsys, method):
+    status, answer = call(tmp_path, capsys, config(), "--method", method)
+    assert status == 0 and set(answer) == KEYS and answer["method"] == method
+    assert set(answer["fix"]) == {"x", "y", "vx", "vy"}
+    assert set(answer["correction"]) == {"dx", "dy", "dvx", "dvy"}
+    assert (answer["t_G"] is None) == (method != "sequential")
+
+
+def test_the_full_search_finds_the_flight(tmp_path, capsys):
+    _, answer = call(tmp_path, capsys, config())
+    assert answer["position_index"] == [2, -1] and answer["velocity_index"] == [1, -2]
+    assert answer["unique"] is True and answer["criterion"] < 1e-9 < answer["second_best"]
+    assert answer["fix"] == pytest.approx({"x": 1674, "y": 977, "vx": 26, "vy": 13})
+    assert answer["correction"] == pytest.approx({"dx": 99, "dy": -108, "dvx": 1, "dvy": -2})
+    assert 0 < answer["evaluated"] <= 81 * 49
+
+
+def test_the_printed_sequential_search_follows_equation_14(tmp_path, capsys):
+    _, answer = call(tmp_path, capsys, config(), "--method", "sequential")
+    (i, j), (Vi, Vj), t_G = answer["position_index"], answer["velocity_index"], answer["t_G"]
+    assert 0 <= t_G["min"] <= t_G["mid"] <= t_G["max"] <= 39
+    assert t_G["mid"] == pytest.approx((t_G["min"] + t_G["max"]) / 2)
+    assert answer["correction"]["dx"] == pytest.approx(30 * i + Vi * (39 - t_G["mid"]))
+    assert answer["correction"]["dy"] == pytest.approx(30 * j + Vj * (39 - t_G["mid"]))
+    assert answer["evaluated"] == 81 + 49
+
+
+def test_the_criterion_map_has_a_row_for_every_j(tmp_path, capsys):
+    document = config(position={"step": [30, 30], "half_count": [4, 2]})
+    _, answer = call(tmp_path, capsys, document, "--method", "position", "--maps")
+    surface_map = np.array(answer["criterion_map"], dtype=float)
+    assert surface_map.shape == (5, 9)
+    i, j = answer["position_index"]
+    assert surface_map[j + 2, i + 4] == answer["criterion"] == surface_map.min()
+
+
+def test_inadmissible_hypotheses_are_null_in_the_criterion_map(tmp_path, capsys):
+    document = config()
+    document["track"]["x"] = [x - 580 for x in document["track"]["x"]]
+    _, answer = call(tmp_path, capsys, document, "--method", "position", "--maps")
+    assert all(row[0] is None for row in answer["criterion_map"])
+    assert all(row[4] is not None for row in answer["criterion_map"])
+
+
+def test_maps_and_tracks_come_from_files_beside_the_configuration(tmp_path, capsys):
+    document = config()
+    np.savez(tmp_path / "m.npz", heights=heights(), x0=0.0, y0=0.0, dx=30.0, dy=30.0)
+    lines = zip(*(document["track"][name] for name in "txyh"), strict=True)
+    (tmp_path / "track.csv").write_text("t,x,y,h\n" + "\n".join(",".join(map(repr, row)) for row in lines))
+    _, from_numbers = call(tmp_path, capsys, document)
+    document |= {"map": {"file": "m.npz"}, "track": {"file": "track.csv"}}
+    _, from_files = call(tmp_path, capsys, document)
+    assert from_files == from_numbers
+
+
+def test_people_get_a_table(tmp_path, capsys):
+    path = tmp_path / "config.json"
+    path.write_text(json.dumps(config()))
+    assert run(["locate", str(path)]) == 0
+    out = capsys.readouterr().out
+    assert "hypothesis [2, -1], [1, -2]" in out and "1674.000" in out
+
+
+def spoil(section, key, value):
+    def change(document):
+        document[section][key] = value
+
+    return change
+
+
+def drop(section):
+    def change(document):
+        del document[section]
+
+    return change
+
+
+def swap(document):
+    track = document["track"]
+    track["x"], track["y"] = track["y"], [x + 900 for x in track["x"]]
+
+
+def partly_off(document):
+    document["track"]["x"][-1] = 1e5
+
+
+def flat(document):
+    document["map"]["heights"] = np.full((60, 80), 3.0).tolist()
+
+
+def ridge(document):
+    document["map"]["heights"] = np.tile(np.sin(np.arange(80.0)), (60, 1)).tolist()
+
+
+def holed(document):
+    document["map"]["heights"][17][21] = -9999
+    document["map"]["nodata"] = -9999
+
+
+BAD = {
+    "outside-map": [spoil("map", "x0", 1e6), swap, partly_off],
+    "nodata": [holed],
+    "not-estimable": [flat, ridge, lambda d: d.update(track={k: v[:3] for k, v in d["track"].items()})],
+    "domain": [
+        spoil("map", "dx", -30), spoil("map", "dy", 0), spoil("position", "step", [30, -30]),
+        spoil("position", "half_count", [-1, 2]), lambda d: d.update(interpolation="cubic"),
+        spoil("track", "t", list(range(39, -1, -1))), lambda d: d.update(map={"file": "map.xyz"}),
+    ],
+    "duplicate": [spoil("track", "t", [0, 0, *range(1, 39)])],
+    "shape": [
+        spoil("track", "h", [1.0] * 39), drop("map"), drop("track"), drop("position"), drop("velocity"),
+        spoil("map", "heights", [[1, 2], [3]]), spoil("map", "heights", "x"), spoil("position", "step", 30),
+        spoil("map", "heights", [[1, "a"], [3, 4]]),
+    ],
+    "empty": [lambda d: d["map"].pop("dx"), lambda d: d["track"].pop("h"), spoil("track", "t", [])],
+    "too-large": [spoil("position", "half_count", [100000, 100000])],
+    "missing-file": [
+        lambda d: d.update(map={"file": "gone.npz"}), lambda d: d.update(track={"file": "gone.csv"}),
+    ],
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("kind", "change"), [(kind, change) for kind, changes in BAD.items() for change in changes]
+)
+def test_bad_input_is_one_document_of_its_kind(tmp_path, capsys, kind, change):
+    document = config()
+    change(document)
+    status, answer = call(tmp_path, capsys, document)
+    assert status == 2 and list(answer) == ["error"]
+    error = answer["error"]
+    assert error["kind"] == kind, error
+    assert "config.json" in error["where"] and "expected" in error["message"] and "got" in error["message"]
+
+
+def test_nan_in_the_file_and_a_wrong_method_are_refused(tmp_path, capsys):
+    text = json.dumps(config()).replace('"y": [500.0', '"y": [NaN')
+    status, answer = call(tmp_path, capsys, text)
+    assert status == 2 and answer["error"]["kind"] == "not-finite"
+    status, answer = call(tmp_path, capsys, config(), "--method", "best")
+    assert status == 2 and answer["error"]["kind"] == "domain"
+
+
+def test_feet_for_metres_are_suspected(tmp_path, capsys):
+    document = config()
+    document["map"]["heights"] = (heights() + 500).tolist()
+    document["track"]["h"] = [(h + 500) / 0.3048 for h in document["track"]["h"]]
+    path = tmp_path / "config.json"
+    path.write_text(json.dumps(document))
+    assert run(["locate", str(path), "--json"]) == 0
+    captured = capsys.readouterr()
+    assert "feet" in captured.err and "feet" not in captured.out
+
+
+def test_the_edge_of_the_grid_is_remarked():
+    found = locate(config(position={"step": [30, 30], "half_count": [1, 4]}))
+    assert any("edge of the grid" in remark for remark in found.remarks)
+
+
+def test_the_flat_direction_is_named():
+    document = config()
+    ridge(document)
+    with pytest.raises(Exception, match=r"along \(-?0.0000, -?1.0000\)"):
+        locate(document)
