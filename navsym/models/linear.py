@@ -119,6 +119,10 @@ def is_nested(value: Any) -> bool:
 
 def exact_entry(name: str, i: int, j: int, entry: Any) -> sp.Expr:
     """One entry as a sympy expression, refused when it is a float, an infinity or text."""
+    if isinstance(entry, sp.Rational):
+        return entry
+    if type(entry) is int:
+        return sp.Integer(entry)
     place = f"{name}[{i}, {j}]"
     if isinstance(entry, str | float | complex) or (isinstance(entry, sp.Basic) and entry.has(sp.Float)):
         raise DomainError(

@@ -197,6 +197,11 @@ def number(value: fmpq) -> sp.Rational:
     return sp.Rational(int(value.p), int(value.q))
 
 
+def constant_value(poly: Poly) -> sp.Rational:
+    """A polynomial without variables as a number."""
+    return sp.S.Zero if poly.is_zero() else number(poly.leading_coefficient())
+
+
 def expanded(ring: Ring, poly: Poly) -> sp.Expr:
     """A polynomial without mu as a sympy sum of monomials."""
     return sp.Add(*(
@@ -213,9 +218,11 @@ def factored(ring: Ring, poly: Poly) -> sp.Expr:
     return sp.Mul(number(content), *(expanded(ring, base) ** int(times) for base, times in factors))
 
 
-def quotient(ring: Ring, number: Poly, divisor: Poly) -> sp.Expr:
+def quotient(ring: Ring, above: Poly, divisor: Poly) -> sp.Expr:
     """A rational function as a sympy expression in factored form."""
-    top, bottom = cancelled(number, divisor)
+    if divisor.is_one() and above.is_constant():
+        return constant_value(above)
+    top, bottom = cancelled(above, divisor)
     return factored(ring, top) if bottom.is_one() else factored(ring, top) / factored(ring, bottom)
 
 
