@@ -139,7 +139,7 @@ figure
 # What each solver says of itself, beside what it is worth:
 
 # %%
-for (solver, T), (status, claims, off) in sorted(statuses.items()):
+for (solver, T), (status, _, off) in sorted(statuses.items()):
     print(f"{solver:<16} T = {T:<6} says {status[:28]:<28} relative error {off:.1e}")
 assert statuses["casadi:highs", 1.5][2] < 1e-9
 assert statuses["cvxpy:HIGHS", 0.5][2] < 1e-9

@@ -82,6 +82,7 @@ class Converter:
         self.cache: dict[sp.Basic, Quotient] = {}
 
     def generator_names(self) -> list[str]:
+        """Names of the ring's generators, the root of unity last."""
         found = self.found
         names = [f"x{i}" for i in range(len(found.symbols))]
         names += [f"z{i}" for i in range(len(found.angles))]
@@ -112,6 +113,7 @@ class Converter:
         return self.cache[expression]
 
     def convert_new(self, expression: sp.Basic) -> Quotient:
+        """One node of the tree; its arguments come from the cache."""
         if isinstance(expression, sp.Rational):
             return self.constant(Fraction(int(expression.p), int(expression.q)))
         if isinstance(expression, sp.Symbol):
@@ -150,6 +152,7 @@ class Converter:
         return value
 
     def power(self, expression: sp.Pow) -> Quotient:
+        """Powers: of signed bases by integers, of nonnegative ones by rationals, otherwise exp(q log b)."""
         base, exponent = expression.args
         if not isinstance(exponent, sp.Rational):
             self.arguments.setdefault(base)
@@ -246,6 +249,7 @@ class Converter:
         return value
 
     def trigonometric(self, expression: sp.Basic) -> Quotient:
+        """The six circular functions of z = exp(i angle)."""
         angle = expression.args[0]
         z, half = self.rotation(angle), self.constant(Fraction(1, 2))
         cosine = (z + z**-1) * half

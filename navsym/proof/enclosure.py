@@ -352,7 +352,9 @@ def exact_touch(cell: Cell, taylor: Sequence[arb], spread: arb, bound: arb) -> b
     strictly monotone up to a contact at an end of the panel."""
     assert cell.touch is not None
     s, place = cell.touch.sign, arb(cell.touch.at)
-    inside = bool(place >= arb(cell.lower)) and bool(place <= arb(cell.upper))
+    inside = (cell.touch.end == "from" or bool(place >= arb(cell.lower))) and (
+        cell.touch.end == "to" or bool(place <= arb(cell.upper))
+    )
     if not inside or not bool(-s * taylor[0] + spread < bound):
         return False
     if cell.touch.end == "no":

@@ -288,6 +288,7 @@ def is_positive(expression: sp.Basic, box: Box) -> bool:
 
 
 def is_nonzero(expression: sp.Basic, box: Box) -> bool:
+    """True when the expression is proved to keep one sign on the box."""
     return is_positive(expression, box) or is_positive(-expression, box)
 
 

@@ -42,6 +42,7 @@ def decide_bound(statement: Bound) -> Verdict:
 
 
 def decide_difference(difference: sp.Expr, relation: str, box: Box, scope: str) -> Verdict:
+    """Verdict of ``difference relation 0``: break it by a point, or prove its sign."""
     sample = search_counterexample(difference, lambda ball: contradicts(ball, relation), box)
     if sample.counterexample is None and relation in ("<", ">", "!="):
         exact = exact_zero_point(difference, box)

@@ -115,6 +115,7 @@ def gather_inverse(inverse: sp.Basic, found: Ingredients) -> None:
 
 
 def inverse_radicand(inverse: sp.Basic) -> sp.Expr:
+    """The radicand that exp(i asin u) and its kin bring along."""
     if isinstance(inverse, (sp.asin, sp.acos)):
         return 1 - inverse.args[0] ** 2
     if isinstance(inverse, sp.atan):

@@ -107,9 +107,10 @@ def equal_values(statement: Optimum) -> Verdict:
     dual_value = sum(
         (x * p for x, p in zip(statement.dual, statement.functional, strict=True)), sp.Integer(0)
     )
-    sizes = [modulus(weight, statement.box) for weight in statement.weights]
-    if any(size is None for size in sizes):
-        sizes = [sp.Abs(weight) for weight in statement.weights]
+    proved = [modulus(weight, statement.box) for weight in statement.weights]
+    sizes = [
+        sp.Abs(weight) if size is None else size for size, weight in zip(proved, statement.weights, strict=True)
+    ]
     primal_value = sum(sizes, sp.Integer(0))
     sides = Equation((statement.value, primal_value), (dual_value, dual_value), statement.box)
     return decide_equation(sides)

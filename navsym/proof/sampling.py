@@ -67,6 +67,7 @@ def range_of(symbol: sp.Symbol, box: Box) -> Range:
 
 
 def ranges(symbols: Sequence[sp.Symbol], box: Box) -> dict[sp.Symbol, Range]:
+    """Range of every symbol."""
     return {symbol: range_of(symbol, box) for symbol in symbols}
 
 

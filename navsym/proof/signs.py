@@ -53,6 +53,7 @@ def constant_sign(expression: sp.Expr) -> SignProof:
 
 
 def symbol_sign(limits: Range) -> SignProof:
+    """Sign of a symbol by its range."""
     if limits.lower is None:
         return UNKNOWN
     lower = constant_sign(limits.lower)

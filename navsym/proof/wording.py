@@ -23,6 +23,7 @@ def text_of(expression: sp.Basic) -> str:
 
 
 def point_text(point: Point) -> Mapping[str, str]:
+    """A counterexample in the language of files, by name."""
     return {symbol.name: text_of(value) for symbol, value in sorted(point.items(), key=lambda i: i[0].name)}
 
 
