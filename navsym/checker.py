@@ -76,7 +76,7 @@ def whole(item: Any, low: int, high: int) -> int:
     return int(item)
 
 def number(item: Any) -> fmpq:
-    need(isinstance(item, str) and re.fullmatch(r"-?[0-9]{1,4000}(\.[0-9]{1,4000})?(/[0-9]{0,99}[1-9])?", item), "not a number")
+    need(isinstance(item, str) and re.fullmatch(r"-?[0-9]{1,4000}(\.[0-9]{1,4000})?(/[1-9][0-9]{0,99})?", item), "not a number")
     top, _, under = item.partition("/")
     head, _, tail = top.partition(".")
     return fmpq(int(head + tail), 10 ** len(tail) * int(under or 1))
@@ -387,6 +387,12 @@ class Panel:
         rows = [value(h, {self.t: t}, Balls) + arb_series([0]) for h in self.H]
         return (basis * arb_mat([[h[k] for k in range(order + 1)] for h in rows])).tolist()  # type: ignore[no-any-return]
 
+    def around(self, place: arb, basis: arb_mat) -> list[list[arb]]:
+        """basis H, its first derivative and half its second over a ball of places, expanded about the middle."""
+        thin, wide = (self.taylor(p, arb(1), 10, basis) for p in (place.mid(), place))
+        rows, away = [[*t[:10], w[10]] for t, w in zip(thin, wide, strict=True)], place - place.mid()
+        return [[polynomial([comb(k, d) * r[k] for k in range(d, 11)], away) for d in range(3)] for r in rows]
+
 def dot(x: Any, y: Any) -> arb:
     return sum((a * b for a, b in zip(x, y, strict=True)), arb(0))
 
@@ -397,10 +403,12 @@ def middle(x: arb) -> fmpq:
 def feasible(panel: Panel, x: list[arb], basis: arb_mat, contacts: list[tuple[arb, int, str]], limit: int) -> int:
     """Prove |f| <= sigma, and < off the contacts, on a panel; returns what is left of the limit."""
     edge, high = middle(panel.ends["from"].lower()), middle(panel.ends["to"].upper())
-    marks, cells = [edge, *sorted(middle(c[0]) for c in contacts), high], []
+    low, cells = edge, []
     for c in sorted(contacts, key=lambda c: middle(c[0])):
-        r = min(abs(m - middle(c[0])) for m in marks if m != middle(c[0])) * fmpq(3, 8)
-        a, b = max(middle(c[0].lower()) - r, marks[0]), min(middle(c[0].upper()) + r, high)
+        marks = [*(middle(o[0]) for o in contacts), *([low] if c[2] != "from" else []), *([high] if c[2] != "to" else [])]
+        r = min([abs(m - middle(c[0])) for m in marks if m != middle(c[0])], default=high - low) * fmpq(3, 8)
+        a = low if c[2] == "from" else max(middle(c[0].lower()) - r, low)
+        b = high if c[2] == "to" else min(middle(c[0].upper()) + r, high)
         cells += [(a, b, c), (edge, a, None)]
         edge = max(edge, b)
     cells += [(edge, high, None)]
@@ -409,8 +417,9 @@ def feasible(panel: Panel, x: list[arb], basis: arb_mat, contacts: list[tuple[ar
         need(limit > 0, "|x.H| <= sigma is not shown")
         if a < b and not small(panel, x, basis, a, b, contact, bool(contacts)):
             c = (a + b) / 2 if contact is None else middle(contact[0])
-            cells += [(a, c, None), (c, b, None)] if contact is None else [
-                (a, (a + c) / 2, None), ((c + b) / 2, b, None), ((a + c) / 2, (c + b) / 2, contact)]
+            left = a if contact and contact[2] == "from" else (a + c) / 2
+            right = b if contact and contact[2] == "to" else (c + b) / 2
+            cells += [(a, left, None), (right, b, None), (left, right, contact)] if contact else [(a, c, None), (c, b, None)]
     return limit
 
 def small(panel: Panel, x: list[arb], basis: arb_mat, a: fmpq, b: fmpq, contact: Any, strict: bool) -> bool:
@@ -422,7 +431,7 @@ def small(panel: Panel, x: list[arb], basis: arb_mat, a: fmpq, b: fmpq, contact:
     if contact is None:
         return bool(abs(f[0]) + rest[0] < panel.sigma) or (not strict and bool(abs(f[0]) + rest[0] <= panel.sigma))
     place, s, end = contact
-    if not (arb(a) <= place and place <= arb(b) and rest[0] - s * f[0] < panel.sigma):
+    if not ((end == "from" or arb(a) <= place) and (end == "to" or place <= arb(b)) and rest[0] - s * f[0] < panel.sigma):
         return False
     return bool(s * f[2] + rest[2] < 0) if end == "no" else bool((s if end == "to" else -s) * f[1] > rest[1])
 
@@ -473,7 +482,7 @@ def contact_proof(panels: list[Panel], P: list[arb], basis: arb_mat, piece: Any,
     def system(s: arb, spread: arb) -> tuple[list[arb], list[list[arb]], list[arb]]:
         here = [polynomial(c, s) + extent.get(k, arb(0)) * spread for k, c in enumerate(z)]
         F, J = [], [[arb(0)] * (m + 2 * l) for _ in free]
-        H = [panel.taylor(here[m + i], arb(1), 2, basis) for i, panel in enumerate(on)]
+        H = [panel.around(here[m + i], basis) for i, panel in enumerate(on)]
         for i in range(l):
             F.append(dot(here[:m], [h[0] for h in H[i]]) - rows[i][3] * on[i].sigma)
             J[i][:m], J[i][m + i] = [h[0] for h in H[i]], dot(here[:m], [h[1] for h in H[i]])

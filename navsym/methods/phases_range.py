@@ -1,0 +1,49 @@
+"""Regimes without a closed form: followed and certified for every length of the interval."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+from flint import fmpq, fmpq_mat
+
+from navsym.methods.phases_closed import refined
+from navsym.methods.phases_family import Family
+from navsym.methods.phases_scan import Pattern
+from navsym.proof.decimals import decimal, exact
+from navsym.proof.enclosure import rational
+from navsym.proof.optimality_basis import make_basis
+from navsym.proof.optimality_range import Member, Ranged, Track, follow
+
+
+def fraction_of(x: fmpq) -> Fraction:
+    return Fraction(int(x.p), int(x.q))
+
+
+def followed(family: Family, pattern: Pattern, lower: Fraction, upper: Fraction) -> Ranged:
+    """Certificate pieces for the pattern from ``lower`` upwards, as far as the tests pass."""
+    track = Track(
+        family.exact(1), pattern, lambda T: member(family, pattern, T), lambda T: conditioner(family, T)
+    )
+    return follow(track, fmpq(lower.numerator, lower.denominator), fmpq(upper.numerator, upper.denominator))
+
+
+def member(family: Family, pattern: Pattern, T: fmpq) -> Member | None:
+    found = refined(family, fraction_of(T), pattern)
+    if found is None:
+        return None
+    done = found.polished
+    times = tuple(rational(v) * T for v in done.v)
+    return Member(tuple(map(rational, done.dual)), times, tuple(map(rational, done.weights)))
+
+
+def conditioner(family: Family, T: fmpq) -> fmpq_mat:
+    """The orthonormalising matrix on [0, T], rounded to twelve digits."""
+    basis = make_basis(family.exact(str_rational(T)))
+    m = basis.transform.nrows()
+    return fmpq_mat(m, m, [exact(decimal(basis.transform[i, j], 12)) for i in range(m) for j in range(m)])
+
+
+def str_rational(T: fmpq):  # type: ignore[no-untyped-def]
+    import sympy as sp
+
+    return sp.Rational(int(T.p), int(T.q))
