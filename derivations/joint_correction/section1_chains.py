@@ -53,7 +53,10 @@ def rank_of(rows: sp.MatrixBase) -> int:
 
 
 def characteristic(matrix: sp.MatrixBase) -> list[sp.Expr]:
-    """theta_1 ... theta_m of a matrix: its characteristic polynomial is p^m - theta_m p^(m-1) - ... - theta_1."""
+    """theta_1 ... theta_m of a matrix.
+
+    Its characteristic polynomial is p^m - theta_m p^(m-1) - ... - theta_1.
+    """
     values = [-value for value in coefficients_of_polynomial(matrix)[1:]]
     return values[::-1]
 
@@ -94,7 +97,7 @@ def matrix_of_x():
         L, back = coordinates(s, C1, free("z", s.rest))
         block = (L * s.G * back)[: s.m, :]
         printed += flat(C1 * companion(theta_of(s)) * inverse("C1", C1), sp.zeros(s.m, s.rest))
-        derived += flat(block[:, : s.m], block[:, s.m:])
+        derived += flat(block[:, : s.m], block[:, s.m :])
     return Equation(printed, derived)
 
 
@@ -175,7 +178,7 @@ def gain_is_unique():
     found = True
     for size in (1, 2, 3):
         G, K, row = observer(size)
-        values = coefficients_of_polynomial((G - K * row))[1:]
+        values = coefficients_of_polynomial(G - K * row)[1:]
         jacobian = sp.Matrix(values).jacobian(K)
         linear = not any(jacobian.has(symbol) for symbol in K)
         found = found and linear and rank_of(jacobian) == size
@@ -196,7 +199,7 @@ def gain_determinant():
     values = []
     for size in (1, 2, 3):
         G, K, row = observer(size)
-        values_of = coefficients_of_polynomial((G - K * row))[1:]
+        values_of = coefficients_of_polynomial(G - K * row)[1:]
         jacobian = sp.Matrix(values_of).jacobian(K)
         values.append(sp.expand(jacobian.det(method="berkowitz")) ** 2)
     return Equation([free("x", size).det() ** -2 for size in (1, 2, 3)], values)
@@ -224,10 +227,13 @@ def steady_kalman_gain():
     a = sp.Symbol("a", real=True)
     Q, R = sp.symbols("Q R", positive=True)
     root = sp.sqrt(a**2 * R**2 + Q * R)
-    return Equation([-Q * R, sp.Integer(0), sp.Integer(0)], [
-        sp.expand((a * R + root) * (a * R - root)),
-        *(sp.expand(2 * a * P + Q - P**2 / R) for P in (a * R + root, a * R - root)),
-    ])
+    return Equation(
+        [-Q * R, sp.Integer(0), sp.Integer(0)],
+        [
+            sp.expand((a * R + root) * (a * R - root)),
+            *(sp.expand(2 * a * P + Q - P**2 / R) for P in (a * R + root, a * R - root)),
+        ],
+    )
 
 
 @claim("1.two_stage.small", expect=CERTIFIED)
@@ -246,6 +252,5 @@ def error_transition():
     """The error transition matrix behind that bound solves its differential equation."""
     lam, t = sp.symbols("lam t", positive=True)
     error = companion([0, 0]) - sp.Matrix([2 * lam, lam**2]) * unit_row(2)
-    transition = sp.exp(-lam * t) * sp.Matrix([[1 - lam * t, t], [-lam**2 * t, 1 + lam * t]])
+    transition = sp.exp(-lam * t) * sp.Matrix([[1 - lam * t, t], [-(lam**2) * t, 1 + lam * t]])
     return Equation(transition.diff(t), error * transition)
-

@@ -79,9 +79,15 @@ def systems() -> tuple[System, ...]:
     one = sp.Matrix([[g[0], 0], [g[1], g[2]]])
     two = sp.Matrix([[0, 1, 0], [g[0], g[1], 0], [g[2], 1, g[3]]])
     three = sp.Matrix([[g[0], 1, 0, 0], [g[1], 0, 0, 0], [0, g[2], 0, 1], [1, 0, g[3], g[4]]])
-    four = sp.Matrix([
-        [0, 1, 0, 0, 0], [g[0], 0, 1, 0, 0], [1, g[1], 0, 0, 0], [g[2], 0, 0, 1, 1], [0, 1, 0, g[3], 2],
-    ])
+    four = sp.Matrix(
+        [
+            [0, 1, 0, 0, 0],
+            [g[0], 0, 1, 0, 0],
+            [1, g[1], 0, 0, 0],
+            [g[2], 0, 0, 1, 1],
+            [0, 1, 0, g[3], 2],
+        ]
+    )
     return (
         scrambled(one, 1, sp.Matrix([[1, 2]])),
         scrambled(two, 2, sp.Matrix([[0, 1, 1]])),
@@ -100,7 +106,7 @@ def overlapping() -> System:
 def free(name: str, size: int) -> sp.ImmutableMatrix:
     """A symbolic matrix of determinant c_1 (c_1 = 0 is excluded), not triangular for size > 1."""
     place = {"x": 0, "z": 3, "v": 6}[name]
-    first, second, third = c[place: place + 3]
+    first, second, third = c[place : place + 3]
     entries = {(0, 0): first}
     if size > 1:
         entries |= {(0, 1): first * second, (1, 0): third, (1, 1): 1 + second * third}
@@ -114,7 +120,9 @@ def flat(*matrices: sp.MatrixBase) -> list[sp.Expr]:
     return [entry for matrix in matrices for entry in matrix]
 
 
-def coordinates(system: System, C1: sp.MatrixBase, C2: sp.MatrixBase) -> tuple[sp.ImmutableMatrix, sp.ImmutableMatrix]:
+def coordinates(
+    system: System, C1: sp.MatrixBase, C2: sp.MatrixBase
+) -> tuple[sp.ImmutableMatrix, sp.ImmutableMatrix]:
     """L of (1.8) and its inverse."""
     L = sp.ImmutableMatrix.vstack(C1 * system.chain(1, system.m), C2 * system.chain(2, system.rest))
     return L, inverse("L", L)

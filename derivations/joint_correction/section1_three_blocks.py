@@ -147,12 +147,17 @@ def constant_matrices():
     first = [coefficients(A[:3, :], A[row, :]) for row in (1, 2, 3)]
     second = [coefficients(sp.Matrix.vstack(A[:2, :], B[:2, :]), B[row, :]) for row in (1, 2)]
     printed = [[0, 1, 0], [0, 0, 1], [t1, t2, t3], [0, 0, 0, 1], [d1, d2, d3, d4]]
-    return Equation([sp.sympify(x) for row in printed for x in row], [x for row in [*first, *second] for x in row])
+    return Equation(
+        [sp.sympify(x) for row in printed for x in row], [x for row in [*first, *second] for x in row]
+    )
 
 
 @claim("1.14.delta")
 def delta_relation():
-    """b_{j+1} = delta_1 a_1 + ... + delta_i a_i + delta_{i+1} b_1 + ... + delta_n b_j, delta from Cramer's rule."""
+    """b_{j+1} in the basis a_1 ... a_i, b_1 ... b_j has the coefficients delta.
+
+    The coefficients come from Cramer's rule.
+    """
     printed, derived = [], []
     for i, j in CASES:
         s = overlapping()
@@ -175,7 +180,9 @@ def outputs():
     printed, derived = [], []
     for i, j in CASES:
         s, C, rows = parts(i, j)
-        printed += flat(unit_row(i) * inverse("C11", C["u"]) * rows["u"], unit_row(j) * inverse("C22", C["w"]) * rows["w"])
+        printed += flat(
+            unit_row(i) * inverse("C11", C["u"]) * rows["u"], unit_row(j) * inverse("C22", C["w"]) * rows["w"]
+        )
         derived += flat(s.h(1).T, s.h(2).T)
     return Equation(printed, derived)
 
@@ -204,7 +211,10 @@ def u_and_w_determine_the_state():
 
 @claim("1.14.error")
 def error_dynamics():
-    """Errors of the algorithm: (u, v) form the first stage, w is driven through G_w1 by the error of u only."""
+    """Errors of the algorithm.
+
+    (u, v) form the first stage, w is driven through G_w1 by the error of u only.
+    """
     printed, derived = [], []
     i, m, j = 2, 3, 2
     theta = sp.symbols("theta1:4", real=True)
@@ -224,7 +234,10 @@ def error_dynamics():
     error = {name: truth[name] - guess[name] for name in sizes}
     F, F0 = shift(i), corner(i, m - i)
     printed += list((F - gains["u"] * unit_row(i)) * error["u"] + F0 * error["v"])
-    printed += list((last_row(m - i, theta[:i]) - gains["v"] * unit_row(i)) * error["u"] + companion(theta[i:]) * error["v"])
+    printed += list(
+        (last_row(m - i, theta[:i]) - gains["v"] * unit_row(i)) * error["u"]
+        + companion(theta[i:]) * error["v"]
+    )
     printed += list(link * error["u"] + (own - gains["w"] * unit_row(j)) * error["w"])
     derived += [*rate, *rate_w]
     return Equation(printed, derived)
@@ -244,13 +257,15 @@ def characteristic_polynomial():
 
 @claim("1.14.higher_derivatives")
 def higher_derivatives_take_longer():
-    """The variance of the r-th derivative estimated over [0, T] falls as T^-(2r+1): the higher, the slower at first.
+    """The variance of the r-th derivative estimated over [0, T] falls as T^-(2r+1).
 
-    Polynomial of degree 3 in white noise of unit intensity; information matrix with the entries
-    T^(i+j+1)/((i+j+1) i! j!).
+    So the higher derivatives are the slower ones at first. Polynomial of degree 3 in white noise of unit
+    intensity; information matrix with the entries T^(i+j+1)/((i+j+1) i! j!).
     """
     T = sp.Symbol("T", positive=True)
-    information = sp.Matrix(4, 4, lambda i, j: T ** (i + j + 1) / (sp.Integer(i + j + 1) * sp.factorial(i) * sp.factorial(j)))
+    information = sp.Matrix(
+        4, 4, lambda i, j: T ** (i + j + 1) / (sp.Integer(i + j + 1) * sp.factorial(i) * sp.factorial(j))
+    )
     covariance = inverse("information", sp.ImmutableMatrix(information))
     at_one = covariance.subs(T, 1)
     printed = [at_one[r, r] * T ** (-(2 * r + 1)) for r in range(4)]
@@ -259,8 +274,16 @@ def higher_derivatives_take_longer():
 
 @claim("1.14.choice")
 def choice_of_i():
-    """The least max(i, j) over all bases: for the overlapping system i = j = 2, not the two-stage i = m = 3."""
+    """The least max(i, j) over all bases.
+
+    For the overlapping system i = j = 2, not the two-stage i = m = 3.
+    """
     from navsym.methods.observability_split import best_split
 
     best = best_split(overlapping().found)
-    return Property((2, 2), Finding((best.i, best.j), "all determinants of a_1 ... a_i, b_1 ... b_j", scope="n = 4, m = 3, l = 4"))
+    return Property(
+        (2, 2),
+        Finding(
+            (best.i, best.j), "all determinants of a_1 ... a_i, b_1 ... b_j", scope="n = 4, m = 3, l = 4"
+        ),
+    )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sympy as sp
 
-from derivations.joint_correction.section1_chains import SIZES, coefficients, rank_of, theta_of
+from derivations.joint_correction.section1_chains import SIZES, coefficients, rank_of
 from derivations.joint_correction.section1_systems import (
     System,
     coefficients_of_polynomial,
@@ -83,7 +83,7 @@ def motion_of_z():
         L_x, L_z = C1 * s.chain(1, s.m), C2 * s.chain(2, s.rest)
         phi = phi_of(s)
         G_z1 = C2 * last_row(s.rest, phi[: s.m]) * inverse("C1", C1)
-        G_z2 = C2 * companion(phi[s.m:]) * inverse("C2", C2)
+        G_z2 = C2 * companion(phi[s.m :]) * inverse("C2", C2)
         printed += flat(G_z1 * L_x + G_z2 * L_z)
         derived += flat(L_z * s.G)
     return Equation(printed, derived)
@@ -94,7 +94,7 @@ def output_of_z():
     """sigma_2 = g_z^T z: the second measurement is a function of z alone."""
     derived, printed = [], []
     for s in systems():
-        L, back = coordinates(s, free("x", s.m), free("z", s.rest))
+        _, back = coordinates(s, free("x", s.m), free("z", s.rest))
         printed += [sp.Integer(0)] * s.m
         derived += list((s.h(2).T * back)[:, : s.m])
     return Equation(printed, derived)
@@ -108,7 +108,7 @@ def drive_of_z():
         C1, C2 = free("x", s.m), free("z", s.rest)
         L, back = coordinates(s, C1, C2)
         printed += flat(C2 * last_row(s.rest, phi_of(s)[: s.m]) * inverse("C1", C1))
-        derived += flat((L * s.G * back)[s.m:, : s.m])
+        derived += flat((L * s.G * back)[s.m :, : s.m])
     return Equation(printed, derived)
 
 
@@ -119,8 +119,8 @@ def matrix_of_z():
     for s in systems():
         C2 = free("z", s.rest)
         L, back = coordinates(s, free("x", s.m), C2)
-        printed += flat(C2 * companion(phi_of(s)[s.m:]) * inverse("C2", C2))
-        derived += flat((L * s.G * back)[s.m:, s.m:])
+        printed += flat(C2 * companion(phi_of(s)[s.m :]) * inverse("C2", C2))
+        derived += flat((L * s.G * back)[s.m :, s.m :])
     return Equation(printed, derived)
 
 
@@ -141,7 +141,8 @@ def noise_of_z():
     "1.10.gz",
     expect=REFUTED,
     slip="paper",
-    reason="a transposed row (1 0 ... 0)^T cannot be multiplied by C_2^-1 unless n - m = 1; in (1.5) and after (1.14) "
+    reason="a transposed row (1 0 ... 0)^T cannot be multiplied by C_2^-1 unless n - m = 1; in (1.5) "
+    "and after (1.14) "
     "the same row stands without the transposition",
 )
 def output_row_of_z_printed():
@@ -158,9 +159,9 @@ def output_row_of_z():
     printed, derived = [], []
     for s in systems():
         C2 = free("z", s.rest)
-        L, back = coordinates(s, free("x", s.m), C2)
+        _, back = coordinates(s, free("x", s.m), C2)
         printed += list(unit_row(s.rest) * inverse("C2", C2))
-        derived += list((s.h(2).T * back)[:, s.m:])
+        derived += list((s.h(2).T * back)[:, s.m :])
     return Equation(printed, derived)
 
 
@@ -177,7 +178,10 @@ def rows_of_phi():
 
 @claim("1.10.phi")
 def next_vector_of_the_second_chain():
-    """b_{n-m+1} = phi_1 a_1 + ... + phi_m a_m + phi_{m+1} b_1 + ... + phi_n b_{n-m}, with phi from blocks of L G L^-1."""
+    """b_{n-m+1} in the basis a_1 ... a_m, b_1 ... b_{n-m} has the coefficients phi.
+
+    Here phi is the last row of L G L^-1.
+    """
     printed, derived = [], []
     for s in systems():
         L, back = coordinates(s, sp.eye(s.m), sp.eye(s.rest))
@@ -195,16 +199,23 @@ def blocks(m: int, rest: int) -> dict[str, sp.Matrix]:
     theta = sp.symbols(f"theta1:{m + 1}", real=True)
     phi = sp.symbols(f"phi1:{m + rest + 1}", real=True)
     return {
-        "Gx": sp.Matrix(companion(theta)), "Gz1": sp.Matrix(last_row(rest, phi[:m])),
-        "Gz2": sp.Matrix(companion(phi[m:])), "gx": sp.Matrix(unit_row(m)), "gz": sp.Matrix(unit_row(rest)),
-        "Kx": sp.Matrix(k[:m]), "Kz": sp.Matrix(k[m: m + rest]),
+        "Gx": sp.Matrix(companion(theta)),
+        "Gz1": sp.Matrix(last_row(rest, phi[:m])),
+        "Gz2": sp.Matrix(companion(phi[m:])),
+        "gx": sp.Matrix(unit_row(m)),
+        "gz": sp.Matrix(unit_row(rest)),
+        "Kx": sp.Matrix(k[:m]),
+        "Kz": sp.Matrix(k[m : m + rest]),
     }
 
 
 def closed_loop(b: dict[str, sp.Matrix]) -> sp.Matrix:
     """Matrix of the errors (x - x°, z - z°), from the truth and the estimator run side by side."""
     m, rest = b["Gx"].rows, b["Gz2"].rows
-    names = [sp.symbols(f"{name}1:{size + 1}", real=True) for name, size in (("x", m), ("z", rest), ("e", m), ("f", rest))]
+    names = [
+        sp.symbols(f"{name}1:{size + 1}", real=True)
+        for name, size in (("x", m), ("z", rest), ("e", m), ("f", rest))
+    ]
     x, z, e, f = map(sp.Matrix, names)
     dx = b["Gx"] * x - (b["Gx"] * e + b["Kx"] * (b["gx"] * x - b["gx"] * e))
     dz = b["Gz1"] * x + b["Gz2"] * z - (b["Gz1"] * e + b["Gz2"] * f + b["Kz"] * (b["gz"] * z - b["gz"] * f))
@@ -241,12 +252,18 @@ def second_gain_is_unique():
         C2 = free("z", size)
         G = C2 * companion(phi) * inverse("C2", C2)
         K = sp.Matrix(k[:size])
-        jacobian = sp.Matrix(coefficients_of_polynomial((G - K * unit_row(size) * inverse("C2", C2)))[1:]).jacobian(K)
+        jacobian = sp.Matrix(
+            coefficients_of_polynomial(G - K * unit_row(size) * inverse("C2", C2))[1:]
+        ).jacobian(K)
         found = found and rank_of(jacobian) == size and not any(jacobian.has(symbol) for symbol in K)
     return Property(
         True,
-        Finding(found, "the coefficients are affine in K_z with an invertible matrix",
-                scope="n - m = 1, 2, 3, all phi and C_2", assumptions=("det C_2 != 0",)),
+        Finding(
+            found,
+            "the coefficients are affine in K_z with an invertible matrix",
+            scope="n - m = 1, 2, 3, all phi and C_2",
+            assumptions=("det C_2 != 0",),
+        ),
     )
 
 
@@ -256,8 +273,8 @@ def characteristic_polynomial_factors():
     printed, derived = [], []
     for m, rest in PAIRS:
         b = blocks(m, rest)
-        first = polynomial_of((b["Gx"] - b["Kx"] * b["gx"]))
-        second = polynomial_of((b["Gz2"] - b["Kz"] * b["gz"]))
+        first = polynomial_of(b["Gx"] - b["Kx"] * b["gx"])
+        second = polynomial_of(b["Gz2"] - b["Kz"] * b["gz"])
         printed.append(first * second)
         derived.append(polynomial_of(closed_loop(b)))
     return Equation(printed, derived)
@@ -285,7 +302,9 @@ def first_stage_ignores_the_second():
         rows = closed_loop(b)[:m, :]
         found = found and not rows[:, m:].free_symbols and not any(rows.has(s) for s in b["Kz"])
         found = found and all(value == 0 for value in rows[:, m:])
-    return Property(True, Finding(found, "entries of the closed loop", scope=f"(m, n - m) in {PAIRS}, all coefficients"))
+    return Property(
+        True, Finding(found, "entries of the closed loop", scope=f"(m, n - m) in {PAIRS}, all coefficients")
+    )
 
 
 @claim("1.two_stage.influence")
@@ -298,128 +317,3 @@ def exact_first_stage_leaves_a_free_second():
         printed += list((b["Gz2"] - b["Kz"] * b["gz"]) * f)
         derived += list(closed_loop(b)[m:, :] * sp.Matrix.vstack(sp.zeros(m, 1), f))
     return Equation(printed, derived)
-
-
-# The Remark: z = L_z° xi with rows that merely complete L_x
-
-
-def general(m: int, rest: int) -> dict[str, sp.Matrix]:
-    """The split system seen through z° = S x + T z with general S and lower triangular T."""
-    b = blocks(m, rest)
-    S = sp.Matrix(rest, m, lambda r, s: sp.Symbol(f"s{r}{s}", real=True))
-    T = sp.Matrix(rest, rest, lambda r, s: sp.Symbol(f"t{r}", positive=True) if r == s else
-                  sp.Symbol(f"t{r}{s}", real=True) if s < r else 0)
-    L = sp.Matrix(sp.BlockMatrix([[sp.eye(m), sp.zeros(m, rest)], [S, T]]))
-    back = sp.Matrix(inverse("L", sp.ImmutableMatrix(L)))
-    G = sp.Matrix(sp.BlockMatrix([[b["Gx"], sp.zeros(m, rest)], [b["Gz1"], b["Gz2"]]]))
-    turned = (L * G * back).applyfunc(sp.together)
-    row = sp.Matrix.hstack(sp.zeros(1, m), b["gz"]) * back
-    return {**b, "S": S, "T": T, "Gz1": turned[m:, :m], "Gz2": turned[m:, m:], "g1": row[:, :m], "g2": row[:, m:],
-            "upper": turned[:m, :]}
-
-
-@claim("1.13.model")
-def general_model():
-    """With any rows that complete L_x: dz/dt = G°_z1 x + G°_z2 z, sigma_2 = g_z1 x + g_z2 z, and dx/dt has no z."""
-    printed, derived = [], []
-    for m, rest in PAIRS[:4]:
-        b = general(m, rest)
-        x, z = (sp.Matrix(sp.symbols(f"{name}1:{size + 1}", real=True)) for name, size in (("x", m), ("z", rest)))
-        raw = blocks(m, rest)
-        new = b["S"] * x + b["T"] * z
-        printed += list(b["Gz1"] * x + b["Gz2"] * new) + list(b["g1"] * x + b["g2"] * new) + list(b["upper"][:, m:])
-        derived += list(b["S"] * raw["Gx"] * x + b["T"] * (raw["Gz1"] * x + raw["Gz2"] * z))
-        derived += [*list(raw["gz"] * z), *[sp.Integer(0)] * (m * rest)]
-    return Equation(printed, derived)
-
-
-@claim("1.13.error")
-def general_error():
-    """The error of (1.13): x enters z through G°_z1 - K°_z g_z1^T, so with the weight K°_z; z enters itself through
-    G°_z2 - K°_z g_z2^T."""
-    printed, derived = [], []
-    for m, rest in PAIRS[:4]:
-        b = general(m, rest)
-        e, f, x, z = (sp.Matrix(sp.symbols(f"{name}1:{size + 1}", real=True))
-                      for name, size in (("e", m), ("f", rest), ("x", m), ("z", rest)))
-        printed += list((b["Gz1"] - b["Kz"] * b["g1"]) * e + (b["Gz2"] - b["Kz"] * b["g2"]) * f)
-        innovation = (b["g1"] * x + b["g2"] * z - b["g1"] * (x - e) - b["g2"] * (z - f))[0]
-        derived += list(b["Gz1"] * x + b["Gz2"] * z - b["Gz1"] * (x - e) - b["Gz2"] * (z - f) - b["Kz"] * innovation)
-    return Equation(printed, derived)
-
-
-@claim("1.13.free_of_gain")
-def special_choice_has_no_weight():
-    """For the rows b of (1.7), S = 0, the weight K°_z is gone from the influence of x: g_z1 = 0."""
-    printed, derived = [], []
-    for m, rest in PAIRS[:4]:
-        b = general(m, rest)
-        printed += [sp.Integer(0)] * m
-        derived += list(b["g1"].subs({symbol: 0 for symbol in b["S"]}))
-    return Equation(printed, derived)
-
-
-@claim("1.13.equivalent")
-def general_variant_in_the_old_coordinates():
-    """(1.13) is (1.11) plus the injection -T^-1 S K_x of the first innovation, when K°_z = T K_z."""
-    printed, derived = [], []
-    for m, rest in PAIRS[:4]:
-        b, raw = general(m, rest), blocks(m, rest)
-        T_inverse = sp.Matrix(inverse("T", sp.ImmutableMatrix(b["T"])))
-        coupling = b["Gz1"] - b["T"] * raw["Kz"] * b["g1"]
-        itself = b["Gz2"] - b["T"] * raw["Kz"] * b["g2"]
-        first = raw["Gx"] - raw["Kx"] * raw["gx"]
-        # the error of S x + T z in the coordinates e (of x) and f (of z): S e + T f
-        printed += flat(raw["Gz1"] + T_inverse * b["S"] * raw["Kx"] * raw["gx"], raw["Gz2"] - raw["Kz"] * raw["gz"])
-        derived += flat(T_inverse * (coupling + itself * b["S"] - b["S"] * first), T_inverse * itself * b["T"])
-    return Equation(printed, derived)
-
-
-@claim(
-    "1.13.never_better",
-    expect=REFUTED,
-    slip="paper",
-    reason="too strong without a condition: (1.13) injects the first innovation into z, which an optimal filter does too; "
-    "for dx/dt = q, dz/dt = x it has the smaller steady error variance of z for a suitable S",
-)
-def general_variant_is_never_better():
-    """(1.13) is less preferable than (1.11): with equal poles its error of z is never smaller (strict reading)."""
-    plain, general_one = steady_variance(sp.Integer(0)), steady_variance(sp.Rational(-1, 3))
-    return Property(
-        True,
-        Finding(bool(general_one >= plain), "exact Lyapunov equation", scope="dx/dt = q, dz/dt = x, unit noises, unit gains",
-                evidence=f"variance of the error of z: {plain} by (1.11), {general_one} by (1.13) with S = -1/3"),
-    )
-
-
-def steady_variance(S: sp.Expr) -> sp.Expr:
-    """Steady variance of z - z° for dx/dt = q, dz/dt = x, sigma_1 = x + r_1, sigma_2 = z + r_2; K_x = K_z = 1.
-
-    Errors e of x and f of z in the old coordinates (1.13.equivalent), unit intensities:
-    de/dt = -e + q - r_1, df/dt = (1 + S) e - f - r_2 + S r_1.
-    """
-    variables = a, b, d = sp.symbols("a b d", real=True)
-    A = sp.Matrix([[-1, 0], [1 + S, -1]])
-    noise = sp.Matrix([[2, -S], [-S, 1 + S**2]])
-    P = sp.Matrix([[a, b], [b, d]])
-    system = A * P + P * A.T + noise
-    rows = sp.Matrix([system[0, 0], system[0, 1], system[1, 1]])
-    matrix = rows.jacobian(variables)
-    values = matrix.LUsolve(-rows.subs({variable: 0 for variable in variables}))
-    return sp.expand(values[2])
-
-
-@claim("1.13.never_better*", corrects="1.13.never_better")
-def neither_variant_dominates():
-    """Neither variant dominates: S = -1/3 gives (1.13) the smaller, S = 1 the larger variance of z."""
-    plain = steady_variance(sp.Integer(0))
-    better, worse = steady_variance(sp.Rational(-1, 3)), steady_variance(sp.Integer(1))
-    return Property(
-        ("smaller", "larger"),
-        Finding(
-            ("smaller" if better < plain else "not smaller", "larger" if worse > plain else "not larger"),
-            "exact Lyapunov equation",
-            scope="dx/dt = q, dz/dt = x, unit noises, unit gains",
-            evidence=f"variances {better} and {worse} against {plain}",
-        ),
-    )

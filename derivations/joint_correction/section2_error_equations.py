@@ -92,8 +92,11 @@ def climb_is_negligible():
     orders = tuple(truncate(sp.expand(value), PHYSICAL_ORDERS, 2).kept == 0 for value in values)
     return Property(
         (True,) * 4,
-        Finding(orders, "orders of all added terms, climb/(a omega_0) counted as mu^2",
-                scope="linear in the errors, alpha_3 up to rho/mu"),
+        Finding(
+            orders,
+            "orders of all added terms, climb/(a omega_0) counted as mu^2",
+            scope="linear in the errors, alpha_3 up to rho/mu",
+        ),
     )
 
 
@@ -113,7 +116,8 @@ def drift_2():
     "2.2.beta3",
     expect=REFUTED,
     slip="scan",
-    reason="index 2 for 1 in the second term: beta x omega has -omega_x1 beta_2, and the paper's own (2.8) for x_3 "
+    reason="index 2 for 1 in the second term: beta x omega has -omega_x1 beta_2, and the paper's own "
+    "(2.8) for x_3 "
     "follows only with omega_x1",
 )
 def drift_3_printed():
@@ -176,20 +180,20 @@ def computed_vertical() -> tuple[sp.Expr, sp.Expr]:
     """Turn gamma recovered from the third axis of Mu seen in Mx: e3 = e3 + gamma x e3."""
     from navsym.models.inertial_kinematics import skew
 
-    tilt = skew(ALPHA - BETA) * sp.Matrix([0, 0, 1])           # (gamma_2, -gamma_1, 0)
+    tilt = skew(ALPHA - BETA) * sp.Matrix([0, 0, 1])  # (gamma_2, -gamma_1, 0)
     return -tilt[1], tilt[0]
 
 
 # Assumptions of the section, with numbers
 
-EARTH_RATE = sp.Rational(7292115, 10**11)                      # 1/s
-EARTH_RADIUS = sp.Integer(6378137)                             # m
-GRAVITY = sp.Rational(980665, 100000)                          # m/s^2
-SCHULER_RATE = sp.sqrt(GRAVITY / EARTH_RADIUS)                 # 1/s
+EARTH_RATE = sp.Rational(7292115, 10**11)  # 1/s
+EARTH_RADIUS = sp.Integer(6378137)  # m
+GRAVITY = sp.Rational(980665, 100000)  # m/s^2
+SCHULER_RATE = sp.sqrt(GRAVITY / EARTH_RADIUS)  # 1/s
 
 
 def degree(expression: sp.Expr) -> sp.Expr:
-    """Power of 1/s of an expression in rates (1/s) and their derivatives (1/s^2), from f(2 omega)/f(omega)."""
+    """Power of 1/s of an expression in rates (1/s) and their derivatives, from f(2 omega)/f(omega)."""
     doubled = {w1: 2 * w1, w2: 2 * w2, **{rate: 4 * rate for rate in OMEGA_X_RATE[:2]}}
     ratio = sp.cancel((expression**2).subs(doubled, simultaneous=True) / expression**2)
     return sp.Rational(int(ratio).bit_length() - 1, 2)
@@ -202,11 +206,15 @@ RATE = sp.sqrt(w1**2 + w2**2)
     "2.assumption1.units",
     expect=REFUTED,
     slip="scan",
-    reason="a rate (1/s) is compared with a squared rate (1/s^2); the dot of the derivative over the root is lost, as are "
+    reason="a rate (1/s) is compared with a squared rate (1/s^2); the dot of the derivative over the "
+    "root is lost, as are "
     "the dots in (2.9) and (3.3)",
 )
 def stationarity_units_printed():
-    """(omega_x1^2 + omega_x2^2)^(1/2) < max(omega_x1^2 + omega_x2^2), as printed: both sides have one unit."""
+    """(omega_x1^2 + omega_x2^2)^(1/2) < max(omega_x1^2 + omega_x2^2), as printed.
+
+    Both sides have one unit.
+    """
     return Property(degree(RATE**2), Finding(degree(RATE), "powers of 1/s on the right and on the left side"))
 
 
@@ -233,7 +241,8 @@ def stationarity(speed: sp.Expr, course: sp.Expr, place: sp.Expr) -> tuple[sp.Ex
     "2.assumption1.orthodrome",
     expect=REFUTED,
     slip="paper",
-    reason="too strong on the rotating Earth: near a westward course at a speed close to that of the Earth's surface the "
+    reason="too strong on the rotating Earth: near a westward course at a speed close to that of the "
+    "Earth's surface the "
     "absolute rate is small and changes faster than its square",
 )
 def great_circles_are_stationary_printed():
@@ -242,28 +251,43 @@ def great_circles_are_stationary_printed():
     left, right = stationarity(*point)
     return Property(
         True,
-        Finding(bool(left < right), "exact values at one flight", scope="speed 0.9 Omega R = 419 m/s, course constant -0.99"),
+        Finding(
+            bool(left < right),
+            "exact values at one flight",
+            scope="speed 0.9 Omega R = 419 m/s, course constant -0.99",
+        ),
     )
 
 
 @claim("2.assumption1.orthodrome*", corrects="2.assumption1.orthodrome", expect=CERTIFIED)
 def great_circles_are_stationary():
-    """On every great circle up to 250 m/s the condition holds: (1 - c^2) s^2 < (s^2 + 2 s c + 1)^2 is sufficient.
+    """On every great circle up to 250 m/s the condition holds.
 
-    The left side of :func:`stationarity` is at most (1 - c^2)^2 place s^2 and its right side at least
-    (s^2 + 2 s c + 1)^2 (1 - c^2) place.
+    (1 - c^2) s^2 < (s^2 + 2 s c + 1)^2 is sufficient: the left side of :func:`stationarity` is at most
+    (1 - c^2)^2 place s^2 and its right side at least (s^2 + 2 s c + 1)^2 (1 - c^2) place.
     """
     s, course = sp.symbols("s c", real=True)
-    return Bound((1 - course**2) * s**2, "<", (s**2 + 2 * s * course + 1) ** 2,
-                 {s: (0, sp.Rational(54, 100)), course: (-1, 1)})
+    return Bound(
+        (1 - course**2) * s**2,
+        "<",
+        (s**2 + 2 * s * course + 1) ** 2,
+        {s: (0, sp.Rational(54, 100)), course: (-1, 1)},
+    )
 
 
 @claim("2.scale.mu", expect=CERTIFIED)
 def mu_is_small():
     """mu <= 0.1 for every latitude and heading up to 250 m/s."""
     v, sine, cosine = sp.symbols("v s c", real=True)
-    square = v**2 / EARTH_RADIUS**2 + 2 * v * sine * EARTH_RATE * cosine / EARTH_RADIUS + EARTH_RATE**2 * cosine**2
-    return Bound(square * EARTH_RADIUS / GRAVITY, "<=", sp.Rational(1, 100), {v: (0, 250), sine: (-1, 1), cosine: (0, 1)})
+    square = (
+        v**2 / EARTH_RADIUS**2 + 2 * v * sine * EARTH_RATE * cosine / EARTH_RADIUS + EARTH_RATE**2 * cosine**2
+    )
+    return Bound(
+        square * EARTH_RADIUS / GRAVITY,
+        "<=",
+        sp.Rational(1, 100),
+        {v: (0, 250), sine: (-1, 1), cosine: (0, 1)},
+    )
 
 
 @claim("2.scale.tau_low")
@@ -287,20 +311,29 @@ def correction_is_short():
 
 @claim("2.scale.earth", expect=CERTIFIED)
 def earth_rate_is_of_order_one():
-    """u = Omega/(mu omega_0) is 3/4 within 1/4 at 45 degrees and 250 m/s, mu being the largest over the headings."""
+    """u = Omega/(mu omega_0) is 3/4 within 1/4 at 45 degrees and 250 m/s.
+
+    mu is the largest rate over all headings.
+    """
     largest = EARTH_RATE * sp.sqrt(2) / 2 + sp.Rational(250, EARTH_RADIUS)
     return Equation(sp.Rational(3, 4), EARTH_RATE / largest, tolerance=sp.Rational(1, 4))
 
 
 @claim("2.scale.mu_u3", expect=CERTIFIED)
 def coupling_is_small():
-    """|mu u_3| = Omega |sin(latitude)|/omega_0 is at most 0.06, far from the value 1 at which (2.8) breaks."""
+    """|mu u_3| = Omega |sin(latitude)|/omega_0 is at most 0.06, far from 1, where (2.8) breaks."""
     sine = sp.Symbol("s", real=True)
-    return Bound(sine**2 * EARTH_RATE**2 * EARTH_RADIUS / GRAVITY, "<=", sp.Rational(6, 100) ** 2, {sine: (-1, 1)})
+    return Bound(
+        sine**2 * EARTH_RATE**2 * EARTH_RADIUS / GRAVITY, "<=", sp.Rational(6, 100) ** 2, {sine: (-1, 1)}
+    )
 
 
-@claim("2.scale.symbol", expect=REFUTED, slip="scan",
-       reason="the list defines v_i twice; (2.7)-(2.9) use omega_i, which it defines nowhere")
+@claim(
+    "2.scale.symbol",
+    expect=REFUTED,
+    slip="scan",
+    reason="the list defines v_i twice; (2.7)-(2.9) use omega_i, which it defines nowhere",
+)
 def omega_symbol_printed():
     """The list of dimensionless quantities names omega_xi/(mu omega_0) by v_i, as printed: no name twice."""
     names = ("pi", "sigma^c", "v", "u", "v")

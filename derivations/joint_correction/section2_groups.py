@@ -61,6 +61,7 @@ def position() -> Group:
 
 def row(number: str, title: str, printed: sp.Expr, derived: Callable[[], sp.Expr], **more: object) -> Claim:
     """A claim for one printed row."""
+
     def derive() -> Equation:
         return Equation(printed, derived())
 
@@ -90,13 +91,21 @@ POSITION_MEANING = (
 )
 
 meanings_x = tuple(
-    row(f"2.6.x{k + 1}", f"x_{k + 1} as a combination of errors, from the spectral parts of sigma^c.", printed,
-        lambda k=k: velocity().meaning[k])
+    row(
+        f"2.6.x{k + 1}",
+        f"x_{k + 1} as a combination of errors, from the spectral parts of sigma^c.",
+        printed,
+        lambda k=k: velocity().meaning[k],
+    )
     for k, printed in enumerate(VELOCITY_MEANING)
 )
 meanings_y = tuple(
-    row(f"2.7.y{k + 1}", f"y_{k + 1} as a combination of errors, from sigma^M and its derivatives.", printed,
-        lambda k=k: position().meaning[k])
+    row(
+        f"2.7.y{k + 1}",
+        f"y_{k + 1} as a combination of errors, from sigma^M and its derivatives.",
+        printed,
+        lambda k=k: position().meaning[k],
+    )
     for k, printed in enumerate(POSITION_MEANING)
 )
 
@@ -112,24 +121,44 @@ VELOCITY_ROWS = (
 )
 
 rows_x = tuple(
-    row(f"2.8.x{k + 1}", f"Derivative of x_{k + 1} up to terms of order mu^2 rho.", printed,
-        lambda k=k: velocity().rates[k])
+    row(
+        f"2.8.x{k + 1}",
+        f"Derivative of x_{k + 1} up to terms of order mu^2 rho.",
+        printed,
+        lambda k=k: velocity().rates[k],
+    )
     for k, printed in enumerate(VELOCITY_ROWS)
 )
 row_x6_printed = row(
-    "2.8.x6", "Derivative of x_6, as printed.", mu**2 * w1 * earth_drift + mu * (u1 * v3 - u3 * v1),
-    lambda: velocity().rates[5], expect=REFUTED, slip="paper",
-    reason="sign of the last bracket: x_6 contains -u_1 beta_3 and u_3 beta_1, whose drifts give -u_1 nu_3 + u_3 nu_1; the row "
+    "2.8.x6",
+    "Derivative of x_6, as printed.",
+    mu**2 * w1 * earth_drift + mu * (u1 * v3 - u3 * v1),
+    lambda: velocity().rates[5],
+    expect=REFUTED,
+    slip="paper",
+    reason="sign of the last bracket: x_6 contains -u_1 beta_3 and u_3 beta_1, whose drifts give -u_1 "
+    "nu_3 + u_3 nu_1; the row "
     "of x_3 turned by 90 degrees gives the same",
 )
 row_x6 = row(
-    "2.8.x6*", "Derivative of x_6 up to terms of order mu^2 rho.", mu**2 * w1 * earth_drift - mu * (u1 * v3 - u3 * v1),
-    lambda: velocity().rates[5], corrects="2.8.x6",
+    "2.8.x6*",
+    "Derivative of x_6 up to terms of order mu^2 rho.",
+    mu**2 * w1 * earth_drift - mu * (u1 * v3 - u3 * v1),
+    lambda: velocity().rates[5],
+    corrects="2.8.x6",
 )
-output_c1 = row("2.8.sigma1", "sigma_1^c in the variables of the group, without noise.", x2 + x3 + mu * u3 * x4,
-                lambda: velocity().outputs[0])
-output_c2 = row("2.8.sigma2", "sigma_2^c in the variables of the group, without noise.", x5 + x6 - mu * u3 * x1,
-                lambda: velocity().outputs[1])
+output_c1 = row(
+    "2.8.sigma1",
+    "sigma_1^c in the variables of the group, without noise.",
+    x2 + x3 + mu * u3 * x4,
+    lambda: velocity().outputs[0],
+)
+output_c2 = row(
+    "2.8.sigma2",
+    "sigma_2^c in the variables of the group, without noise.",
+    x5 + x6 - mu * u3 * x1,
+    lambda: velocity().outputs[1],
+)
 
 # (2.9): the position group
 
@@ -142,29 +171,57 @@ POSITION_ROWS = {
     8: -y7 + mu * w1 * v3,
 }
 rows_y = tuple(
-    row(f"2.9.y{k}", f"Derivative of y_{k} up to terms of order mu^2 rho.", printed, lambda k=k: position().rates[k - 1])
+    row(
+        f"2.9.y{k}",
+        f"Derivative of y_{k} up to terms of order mu^2 rho.",
+        printed,
+        lambda k=k: position().rates[k - 1],
+    )
     for k, printed in POSITION_ROWS.items()
 )
-DOT = ("the dot over omega is lost: beta_3 enters through the derivative of omega only (mu omega nu_3 cancels); as printed the term "
-       "has the order rho, against the paper's own remark that the inhomogeneous terms have the order mu")
+DOT = (
+    "the dot over omega is lost: beta_3 enters through the derivative of omega only (mu omega nu_3 "
+    "cancels); as printed the term "
+    "has the order rho, against the paper's own remark that the inhomogeneous terms have the order mu"
+)
 row_y2_printed = row(
-    "2.9.y2", "Derivative of y_2, as printed.", -y3 + mu**2 * (w1 * y5 - w2 * y1) * w2 + mu * w2 * b3,
-    lambda: position().rates[1], expect=REFUTED, slip="scan", reason=DOT,
+    "2.9.y2",
+    "Derivative of y_2, as printed.",
+    -y3 + mu**2 * (w1 * y5 - w2 * y1) * w2 + mu * w2 * b3,
+    lambda: position().rates[1],
+    expect=REFUTED,
+    slip="scan",
+    reason=DOT,
 )
 row_y2 = row(
-    "2.9.y2*", "Derivative of y_2 up to terms of order mu^2 rho.", -y3 + mu**2 * (w1 * y5 - w2 * y1) * w2 + mu * dw2 * b3,
-    lambda: position().rates[1], corrects="2.9.y2",
+    "2.9.y2*",
+    "Derivative of y_2 up to terms of order mu^2 rho.",
+    -y3 + mu**2 * (w1 * y5 - w2 * y1) * w2 + mu * dw2 * b3,
+    lambda: position().rates[1],
+    corrects="2.9.y2",
 )
 row_y6_printed = row(
-    "2.9.y6", "Derivative of y_6, as printed.", -y7 + mu**2 * (w2 * y1 - w1 * y5) * w1 - mu * w1 * b3,
-    lambda: position().rates[5], expect=REFUTED, slip="scan", reason=DOT,
+    "2.9.y6",
+    "Derivative of y_6, as printed.",
+    -y7 + mu**2 * (w2 * y1 - w1 * y5) * w1 - mu * w1 * b3,
+    lambda: position().rates[5],
+    expect=REFUTED,
+    slip="scan",
+    reason=DOT,
 )
 row_y6 = row(
-    "2.9.y6*", "Derivative of y_6 up to terms of order mu^2 rho.", -y7 + mu**2 * (w2 * y1 - w1 * y5) * w1 - mu * dw1 * b3,
-    lambda: position().rates[5], corrects="2.9.y6",
+    "2.9.y6*",
+    "Derivative of y_6 up to terms of order mu^2 rho.",
+    -y7 + mu**2 * (w2 * y1 - w1 * y5) * w1 - mu * dw1 * b3,
+    lambda: position().rates[5],
+    corrects="2.9.y6",
 )
-output_m1 = row("2.9.sigma1", "sigma_1^M in the variables of the group, without noise.", y1, lambda: position().outputs[0])
-output_m2 = row("2.9.sigma2", "sigma_2^M in the variables of the group, without noise.", y5, lambda: position().outputs[1])
+output_m1 = row(
+    "2.9.sigma1", "sigma_1^M in the variables of the group, without noise.", y1, lambda: position().outputs[0]
+)
+output_m2 = row(
+    "2.9.sigma2", "sigma_2^M in the variables of the group, without noise.", y5, lambda: position().outputs[1]
+)
 
 
 # Statements in words about (2.8) and (2.9)
@@ -172,23 +229,37 @@ output_m2 = row("2.9.sigma2", "sigma_2^M in the variables of the group, without 
 
 @claim("2.8.neglected")
 def neglected_terms():
-    """What (2.8) and (2.9) leave out has the order mu^2 rho exactly: no lower, and nothing of higher order either."""
+    """What (2.8) and (2.9) leave out has the order mu^2 rho exactly.
+
+    No lower, and nothing of higher order either.
+    """
     orders = {term.order for group in (velocity(), position()) for row_ in group.dropped for term in row_}
     return Property(
         (2,),
-        Finding(tuple(sorted(orders)), "bookkeeping of every monomial",
-                scope="alpha, pi, epsilon, nu, w of order rho; beta, gamma of order rho/mu; d omega/d tau of order mu",
-                evidence=f"{sum(len(r) for g in (velocity(), position()) for r in g.dropped)} terms, listed by the model"),
+        Finding(
+            tuple(sorted(orders)),
+            "bookkeeping of every monomial",
+            scope="alpha, pi, epsilon, nu, w of order rho; beta, gamma of order rho/mu; d omega/d tau "
+            "of order mu",
+            evidence=f"{sum(len(r) for g in (velocity(), position()) for r in g.dropped)} terms, listed "
+            f"by the model",
+        ),
     )
 
 
 @claim("2.8.inhomogeneous")
 def inhomogeneous_terms():
     """(2.8) and (2.9) are inhomogeneous, and all terms that make them so have the order mu (times rho)."""
-    orders = {lowest_order(f, ORDERS) for group in (velocity(), position()) for f in group.linear()[2] if f != 0}
-    highest = {truncate(f, ORDERS, 2).dropped for group in (velocity(), position()) for f in group.linear()[2]}
+    orders = {
+        lowest_order(f, ORDERS) for group in (velocity(), position()) for f in group.linear()[2] if f != 0
+    }
+    highest = {
+        truncate(f, ORDERS, 2).dropped for group in (velocity(), position()) for f in group.linear()[2]
+    }
     found = tuple(sorted(orders)) if highest == {()} else None
-    return Property((1,), Finding(found, "bookkeeping of every monomial", scope="orders as declared in 2.8.neglected"))
+    return Property(
+        (1,), Finding(found, "bookkeeping of every monomial", scope="orders as declared in 2.8.neglected")
+    )
 
 
 @claim("2.9.inhomogeneous_printed", expect=REFUTED, slip="scan", reason=DOT)
@@ -200,7 +271,9 @@ def inhomogeneous_term_as_printed():
 @claim("2.9.inhomogeneous_printed*", corrects="2.9.inhomogeneous_printed")
 def inhomogeneous_term():
     """With the derivative of omega the inhomogeneous term of y_2 has the order mu (times rho)."""
-    return Property(1, Finding(lowest_order(position().linear()[2][1], ORDERS), "bookkeeping of every monomial"))
+    return Property(
+        1, Finding(lowest_order(position().linear()[2][1], ORDERS), "bookkeeping of every monomial")
+    )
 
 
 def rank_and_drops(group: Group) -> tuple[int, tuple[str, ...]]:
@@ -215,7 +288,11 @@ def velocity_group_is_observable():
     """x_1 ... x_6 are observable by velocity information, except where mu u_3 = 1 or -1."""
     return Property(
         (6, ("mu*u_3 + 1 = 0", "mu*u_3 - 1 = 0")),
-        Finding(rank_and_drops(velocity()), "fraction-free rank, all split determinants", scope="homogeneous part of (2.8)"),
+        Finding(
+            rank_and_drops(velocity()),
+            "fraction-free rank, all split determinants",
+            scope="homogeneous part of (2.8)",
+        ),
     )
 
 
@@ -224,23 +301,44 @@ def position_group_is_observable():
     """y_1 ... y_8 are observable by position information, for all mu, omega_1, omega_2."""
     return Property(
         (8, ()),
-        Finding(rank_and_drops(position()), "fraction-free rank, a split determinant that is a number",
-                scope="homogeneous part of (2.9)"),
+        Finding(
+            rank_and_drops(position()),
+            "fraction-free rank, a split determinant that is a number",
+            scope="homogeneous part of (2.9)",
+        ),
     )
 
 
 @claim("2.6.span")
 def velocity_observes_six_combinations():
-    """At mu = 0, with mu beta kept, velocity information observes exactly the six combinations x_1 ... x_6 (u_3 = 0 or not)."""
-    return Property(6, Finding(leading_rank((0, 1), mu * BETA), "exact rank of the leading-order model",
-                               scope="mu = 0 in the motion, mu beta of order rho; u_1, u_2, u_3 arbitrary"))
+    """Velocity information observes exactly six combinations at leading order.
+
+    mu -> 0 in the motion, mu beta is kept; u_1, u_2, u_3 are arbitrary.
+    """
+    return Property(
+        6,
+        Finding(
+            leading_rank((0, 1), mu * BETA),
+            "exact rank of the leading-order model",
+            scope="mu = 0 in the motion, mu beta of order rho; u_1, u_2, u_3 arbitrary",
+        ),
+    )
 
 
 @claim("2.7.span")
 def position_observes_eight_combinations():
-    """At leading order, with gamma' of order rho kept, position information observes exactly eight combinations."""
-    return Property(8, Finding(leading_rank((2, 3), mu * BETA), "exact rank of the leading-order model",
-                               scope="mu = 0 in the motion, mu beta of order rho; omega_1, omega_2 arbitrary"))
+    """Position information observes exactly eight combinations at leading order.
+
+    mu -> 0 in the motion, the drift mu beta_3 is kept.
+    """
+    return Property(
+        8,
+        Finding(
+            leading_rank((2, 3), mu * BETA),
+            "exact rank of the leading-order model",
+            scope="mu = 0 in the motion, mu beta of order rho; omega_1, omega_2 arbitrary",
+        ),
+    )
 
 
 def leading_rank(measurements: tuple[int, ...], slow: sp.Matrix) -> int:
@@ -255,7 +353,7 @@ def leading_rank(measurements: tuple[int, ...], slow: sp.Matrix) -> int:
     place = {symbol: k for k, symbol in enumerate(FULL)}
     scale = sp.eye(16)
     velocity_only = measurements == (0, 1)
-    for symbol in (BETA if velocity_only else BETA[2:]):
+    for symbol in BETA if velocity_only else BETA[2:]:
         scale[place[symbol], place[symbol]] = mu
     F = (scale * model.F * scale.inv()).applyfunc(sp.expand).subs(mu, 0)
     H = (model.H * scale.inv()).applyfunc(sp.expand).subs(mu, 0)

@@ -18,7 +18,7 @@ from navsym.claims import REFUTED, Equation, Finding, Property, claim
 from navsym.methods.observability import observe
 from navsym.models.inertial import FULL, X, Y, joint_model
 
-x = sp.Matrix(sp.symbols("x1:7", real=True))                   # estimates x_k°
+x = sp.Matrix(sp.symbols("x1:7", real=True))  # estimates x_k°
 y = dict(zip((1, 2, 5, 6), sp.symbols("y1 y2 y5 y6", real=True), strict=True))
 sc1, sc2, sm1, sm2 = sp.symbols("sigma_c1 sigma_c2 sigma_M1 sigma_M2", real=True)
 Kc = sp.symbols("Kc1:7", real=True)
@@ -28,8 +28,12 @@ true_y2 = sp.Symbol("y2_true", real=True)
 # (3.1)
 
 common = tuple(
-    row(f"3.1.x{i}y{j}", f"x_{i} = y_{j}: one variable of both groups.", velocity().meaning[i - 1],
-        lambda j=j: position().meaning[j - 1])
+    row(
+        f"3.1.x{i}y{j}",
+        f"x_{i} = y_{j}: one variable of both groups.",
+        velocity().meaning[i - 1],
+        lambda j=j: position().meaning[j - 1],
+    )
     for i, j in ((1, 3), (2, 4), (4, 7), (5, 8))
 )
 
@@ -41,8 +45,14 @@ def overlap():
     from derivations.joint_correction.section1_chains import rank_of
 
     shared = rank_of(first) + rank_of(second) - rank_of(sp.Matrix.vstack(first, second))
-    return Property(4, Finding(shared, "exact ranks of the functionals and of their union",
-                               scope="16 error variables, all omega, u, mu"))
+    return Property(
+        4,
+        Finding(
+            shared,
+            "exact ranks of the functionals and of their union",
+            scope="16 error variables, all omega, u, mu",
+        ),
+    )
 
 
 def functionals(meaning: tuple[sp.Expr, ...]) -> sp.Matrix:
@@ -53,8 +63,14 @@ def functionals(meaning: tuple[sp.Expr, ...]) -> sp.Matrix:
 def remaining_variables():
     """After velocity correction four variables remain for the position information: y_1, y_2, y_5, y_6."""
     found = observe(joint_model())
-    return Property((6, 4), Finding((sum(found.staircase[:2]), sum(found.staircase[2:])),
-                                    "fraction-free staircase: velocity first, then position", scope="joint model (2.8), (2.9)"))
+    return Property(
+        (6, 4),
+        Finding(
+            (sum(found.staircase[:2]), sum(found.staircase[2:])),
+            "fraction-free staircase: velocity first, then position",
+            scope="joint model (2.8), (2.9)",
+        ),
+    )
 
 
 @claim("3.1.fast")
@@ -94,8 +110,12 @@ def observer_row(k: int) -> sp.Expr:
 
 
 rows_32 = tuple(
-    row(f"3.2.x{k + 1}", f"Estimate of x_{k + 1}: the homogeneous equation (2.8) and the innovation of its channel.", printed,
-        lambda k=k: observer_row(k))
+    row(
+        f"3.2.x{k + 1}",
+        f"Estimate of x_{k + 1}: the homogeneous equation (2.8) and the innovation of its channel.",
+        printed,
+        lambda k=k: observer_row(k),
+    )
     for k, printed in enumerate(PRINTED_32)
 )
 
@@ -103,7 +123,9 @@ rows_32 = tuple(
 
 
 def position_row(k: int) -> sp.Expr:
-    """Homogeneous part of (2.9) with y_3, y_7 replaced by the estimates x_1, x_4 of (3.1), plus the innovation."""
+    """Homogeneous part of (2.9) with y_3, y_7 replaced by the estimates x_1, x_4 of (3.1), plus the
+    innovation.
+    """
     F, H, _ = position().linear()
     estimates = sp.Matrix([y[1], y[2], x[0], x[1], y[5], y[6], x[3], x[4]])
     channel = 0 if k < 4 else 1
@@ -111,16 +133,33 @@ def position_row(k: int) -> sp.Expr:
 
 
 y1_printed = row(
-    "3.3.y1", "Estimate of y_1, as printed: with y_2 itself on the right.", true_y2 + Kh[1] * (sm1 - y[1]),
-    lambda: position_row(1), expect=REFUTED, slip="scan",
-    reason="the circle that marks an estimate is lost: y_2 is not known; the row of y_5 beside it has y_6 with the circle",
+    "3.3.y1",
+    "Estimate of y_1, as printed: with y_2 itself on the right.",
+    true_y2 + Kh[1] * (sm1 - y[1]),
+    lambda: position_row(1),
+    expect=REFUTED,
+    slip="scan",
+    reason="the circle that marks an estimate is lost: y_2 is not known; the row of y_5 beside it has "
+    "y_6 with the circle",
 )
-y1_row = row("3.3.y1*", "Estimate of y_1: y_2° and the innovation.", y[2] + Kh[1] * (sm1 - y[1]),
-             lambda: position_row(1), corrects="3.3.y1")
-y2_row = row("3.3.y2", "Estimate of y_2: slow rotation, Schuler estimate x_1°, and the innovation.",
-             mu**2 * w2 * (w1 * y[5] - w2 * y[1]) + Kh[2] * (sm1 - y[1]) - x[0], lambda: position_row(2))
-DOT = ("the dot of the derivative is lost on the left side: as printed the row is no differential equation, although the "
-       "algorithm is one; rows y_1 and y_2 have theirs")
+y1_row = row(
+    "3.3.y1*",
+    "Estimate of y_1: y_2° and the innovation.",
+    y[2] + Kh[1] * (sm1 - y[1]),
+    lambda: position_row(1),
+    corrects="3.3.y1",
+)
+y2_row = row(
+    "3.3.y2",
+    "Estimate of y_2: slow rotation, Schuler estimate x_1°, and the innovation.",
+    mu**2 * w2 * (w1 * y[5] - w2 * y[1]) + Kh[2] * (sm1 - y[1]) - x[0],
+    lambda: position_row(2),
+)
+DOT = (
+    "the dot of the derivative is lost on the left side: as printed the row is no differential "
+    "equation, although the "
+    "algorithm is one; rows y_1 and y_2 have theirs"
+)
 
 
 def assignment(k: int, right: sp.Expr) -> Equation:
@@ -148,14 +187,28 @@ def y6_printed():
     return assignment(6, RIGHT_6)
 
 
-y5_row = row("3.3.y5*", "Derivative of y_5°: y_6° and the innovation.", RIGHT_5, lambda: position_row(5), corrects="3.3.y5")
-y6_row = row("3.3.y6*", "Derivative of y_6°: slow rotation, Schuler estimate x_4°, and the innovation.", RIGHT_6,
-             lambda: position_row(6), corrects="3.3.y6")
+y5_row = row(
+    "3.3.y5*",
+    "Derivative of y_5°: y_6° and the innovation.",
+    RIGHT_5,
+    lambda: position_row(5),
+    corrects="3.3.y5",
+)
+y6_row = row(
+    "3.3.y6*",
+    "Derivative of y_6°: slow rotation, Schuler estimate x_4°, and the innovation.",
+    RIGHT_6,
+    lambda: position_row(6),
+    corrects="3.3.y6",
+)
 
 
 @claim("3.3.only_velocity")
 def position_gains_are_zero():
-    """On [t_0, t_1] with -K_1^h = K_2^h = K_5^h = K_6^h = 0 position innovations enter nowhere and x° is unaffected."""
+    """With the position gains zero on [t_0, t_1] position innovations enter nowhere.
+
+    The dash before K_1^h does not matter: -K = 0 and K = 0 are one condition.
+    """
     zero = dict.fromkeys(Kh.values(), 0)
     derived = [sp.diff(position_row(k).subs(zero), s) for k in (1, 2, 5, 6) for s in (sm1, sm2)]
     derived += [sp.diff(observer_row(k), s) for k in range(6) for s in (sm1, sm2, *y.values())]
@@ -163,7 +216,9 @@ def position_gains_are_zero():
 
 
 def joint_error_matrix(Kx: tuple[sp.Expr, ...] = Kc, Ky: dict[int, sp.Expr] = Kh) -> sp.Matrix:
-    """Matrix of the errors of (3.2), (3.3) in x_1 ... x_6, y_1, y_2, y_5, y_6 without the inhomogeneous terms."""
+    """Matrix of the errors of (3.2), (3.3) in x_1 ... x_6, y_1, y_2, y_5, y_6 without the inhomogeneous
+    terms.
+    """
     model = joint_model()
     gains = sp.zeros(10, 4)
     for k in range(6):
@@ -175,7 +230,10 @@ def joint_error_matrix(Kx: tuple[sp.Expr, ...] = Kc, Ky: dict[int, sp.Expr] = Kh
 
 @claim("3.3.triangular")
 def position_errors_do_not_disturb_the_velocity_stage():
-    """Errors of (3.2) drive those of (3.3) through Delta x_1 and Delta x_4 only, and are never driven by them."""
+    """Errors of (3.2) drive those of (3.3) through Delta x_1 and Delta x_4 only.
+
+    They are never driven by them.
+    """
     A = joint_error_matrix()
     printed = sp.zeros(4, 6)
     printed[1, 0] = printed[3, 3] = -1

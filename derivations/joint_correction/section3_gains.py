@@ -8,6 +8,7 @@ channels.
 from __future__ import annotations
 
 from fractions import Fraction
+from itertools import pairwise
 
 import sympy as sp
 
@@ -41,7 +42,7 @@ def position_block(gains: tuple[sp.Expr, sp.Expr], channel: int = 0) -> sp.Matri
 
 @claim("3.2.gains")
 def velocity_gains():
-    """K_1 = 1 - 3 lambda_c^2, K_2 = 3 lambda_c - lambda_c^3, K_3 = lambda_c^3 give (p + lambda_c)^3 in both channels."""
+    """Gains 1 - 3 l^2, 3 l - l^3, l^3 with l = lambda_c give (p + lambda_c)^3 in both channels."""
     derived = [polynomial_of(velocity_block(VELOCITY_GAINS, channel)) for channel in (0, 1)]
     return Equation([(p + lam) ** 3] * 2, derived)
 
@@ -51,15 +52,26 @@ def velocity_gains_are_unique():
     """These gains are the only ones: the coefficients are affine in K with determinant 1 or -1."""
     K = sp.symbols("K1:4", real=True)
     values = sp.Matrix(coefficients_of_polynomial(velocity_block(K))[1:])
-    return Equation([sp.Integer(1), *[sp.Integer(0)] * 3], [
-        values.jacobian(K).det() ** 2, *(sp.expand(value) for value in values.jacobian(K) * sp.Matrix(VELOCITY_GAINS)
-                                         + values.subs(dict.fromkeys(K, 0)) - sp.Matrix([3 * lam, 3 * lam**2, lam**3])),
-    ])
+    return Equation(
+        [sp.Integer(1), *[sp.Integer(0)] * 3],
+        [
+            values.jacobian(K).det() ** 2,
+            *(
+                sp.expand(value)
+                for value in values.jacobian(K) * sp.Matrix(VELOCITY_GAINS)
+                + values.subs(dict.fromkeys(K, 0))
+                - sp.Matrix([3 * lam, 3 * lam**2, lam**3])
+            ),
+        ],
+    )
 
 
 @claim("3.3.gains")
 def position_gains():
-    """K_1^h = 2 lambda_h and K_2^h = lambda_h^2 - mu^2 omega_2^2 (K_6^h: omega_1) give (p + lambda_h)^2 exactly."""
+    """K_1^h = 2 lambda_h and K_2^h = lambda_h^2 - mu^2 omega_2^2 give (p + lambda_h)^2 exactly.
+
+    K_6^h has omega_1 in the place of omega_2.
+    """
     derived = [
         polynomial_of(position_block((2 * lam_h, lam_h**2 - mu**2 * w**2), channel))
         for channel, w in ((0, w2), (1, w1))
@@ -86,15 +98,22 @@ def coupled_velocity_block() -> sp.Matrix:
 
 
 def link_polynomial(variable: sp.Expr) -> sp.Expr:
-    """p ((1 - 3 lambda^2) p + 3 lambda - lambda^3): the transfer of the innovation to x_1 times its denominator."""
+    """p ((1 - 3 lambda^2) p + 3 lambda - lambda^3).
+
+    The transfer of the innovation to x_1 times its denominator.
+    """
     return variable * ((1 - 3 * lam**2) * variable + 3 * lam - lam**3)
 
 
 @claim("3.coupled.characteristic")
 def coupled_characteristic_polynomial():
-    """With the link kappa = mu u_3 the six errors have (p + lambda_c)^6 + kappa^2 p^2 ((1 - 3 lambda_c^2) p + 3 lambda_c -
-    lambda_c^3)^2."""
-    return Equation((p + lam) ** 6 + kappa**2 * link_polynomial(p) ** 2, polynomial_of(coupled_velocity_block()))
+    """With the link the six errors have (p + l)^6 + kappa^2 p^2 ((1 - 3 l^2) p + 3 l - l^3)^2.
+
+    kappa = mu u_3 and l = lambda_c.
+    """
+    return Equation(
+        (p + lam) ** 6 + kappa**2 * link_polynomial(p) ** 2, polynomial_of(coupled_velocity_block())
+    )
 
 
 @claim("3.coupled.without_link")
@@ -116,7 +135,10 @@ def crossing() -> tuple[sp.Expr, sp.Expr]:
 
 @claim("3.coupled.factors")
 def coupled_polynomial_factors():
-    """The polynomial of the six errors is the sum of squares of (p + lambda_c)^3 and kappa times the link polynomial."""
+    """The polynomial of the six errors is a sum of two squares, so it factors over i.
+
+    The squares are those of (p + lambda_c)^3 and of kappa times the link polynomial.
+    """
     first, second = (p + lam) ** 3, kappa * link_polynomial(p)
     product = sp.expand((first + sp.I * second) * (first - sp.I * second))
     return Equation(product, polynomial_of(coupled_velocity_block()))
@@ -124,16 +146,24 @@ def coupled_polynomial_factors():
 
 @claim("3.coupled.crossing")
 def poles_cross_the_axis_at_one():
-    """A pole i omega on the imaginary axis satisfies 8 lambda_c^3 omega (omega^2 - 1) = 0, and omega = 0 is none."""
+    """A pole i omega on the imaginary axis has omega = 1 or -1.
+
+    8 lambda_c^3 omega (omega^2 - 1) = 0 follows, and omega = 0 is no pole.
+    """
     real, imaginary = crossing()
     combination = real * omega * (1 - 3 * lam**2) - imaginary * (3 * lam - lam**3)
-    return Equation([8 * lam**3 * omega * (omega**2 - 1), lam**3],
-                    [sp.expand(combination), real.subs(omega, 0)])
+    return Equation(
+        [8 * lam**3 * omega * (omega**2 - 1), lam**3], [sp.expand(combination), real.subs(omega, 0)]
+    )
 
 
 @claim("3.coupled.crossing_value")
 def poles_cross_at_kappa_one():
-    """At omega = 1 (-1) both parts carry the factor 1 - kappa (1 + kappa), and nothing else makes both vanish."""
+    """A pole on the imaginary axis needs kappa = 1 or -1.
+
+    At omega = 1 (-1) both parts carry the factor 1 + kappa (1 - kappa); the other factors, 3 l - l^3 and
+    1 - 3 l^2, have no common zero.
+    """
     real, imaginary = crossing()
     printed, derived = [], []
     for side in (1, -1):
@@ -145,18 +175,26 @@ def poles_cross_at_kappa_one():
 
 @claim("3.coupled.stable")
 def coupled_system_is_stable_inside():
-    """The errors of (3.2) with these gains decay for every lambda_c > 0 exactly when |mu u_3| < 1.
+    """The errors of (3.2) decay for every lambda_c > 0 exactly when |mu u_3| < 1.
 
-    No pole meets the imaginary axis for kappa other than 1 and -1 (3.coupled.crossing), so the number of poles on
-    the right is constant on {lambda > 0, |kappa| < 1} and on {kappa > 1}; it is counted at one point of each.
+    The gains are those of 3.2.gains. No pole meets the imaginary axis for kappa other than 1 and -1
+    (3.coupled.crossing), so the number of poles on the right is constant on {lambda > 0, |kappa| < 1} and
+    on {kappa > 1}; it is counted at one point of each. At kappa = 1 there is a pole on the axis.
     """
-    counts = tuple(poles_on_the_right(sp.Integer(1), value) for value in (sp.Integer(0), sp.Rational(1, 2), sp.Integer(2)))
+    counts = tuple(
+        poles_on_the_right(sp.Integer(1), value)
+        for value in (sp.Integer(0), sp.Rational(1, 2), sp.Integer(2))
+    )
     no_other = parts_never_vanish_together()
     found = counts[0] == counts[1] == 0 and counts[2] > 0 and no_other
     return Property(
         True,
-        Finding(found, "no crossing of the axis, Routh's table at one point of every region", scope="all lambda_c > 0, all real kappa",
-                evidence=f"poles on the right at lambda = 1, kappa = 0, 1/2, 2: {counts}"),
+        Finding(
+            found,
+            "no crossing of the axis, Routh's table at one point of every region",
+            scope="all lambda_c > 0, all real kappa",
+            evidence=f"poles on the right at lambda = 1, kappa = 0, 1/2, 2: {counts}",
+        ),
     )
 
 
@@ -180,20 +218,25 @@ def poles_on_the_right(lambda_value: sp.Expr, kappa_value: sp.Expr) -> int:
         padded = [*second, *[Fraction(0)] * (len(first) - len(second))]
         following = [a - first[0] / second[0] * b for a, b in zip(first[1:], padded[1:], strict=True)]
         first, second = second, following
-    return sum(1 for a, b in zip(column, column[1:], strict=False) if a * b < 0)
+    return sum(1 for a, b in pairwise(column) if a * b < 0)
 
 
 @claim("3.coupled.decay", expect=CERTIFIED)
 def true_decay_rate():
     """lambda_c = 1, mu u_3 = 1/20 (latitude near 58 degrees): the true decay rate is 0.577 instead of 1."""
-    return Equation(sp.Rational(577, 1000), decay_rate(sp.Integer(1), sp.Rational(1, 20)), tolerance=sp.Rational(1, 2000))
+    return Equation(
+        sp.Rational(577, 1000), decay_rate(sp.Integer(1), sp.Rational(1, 20)), tolerance=sp.Rational(1, 2000)
+    )
 
 
 def decay_rate(lambda_value: sp.Rational, kappa_value: sp.Rational) -> sp.Rational:
     """Decay rate, minus the largest real part of the poles: 20 digits of a ball at 200 bits."""
     from flint import ctx, fmpq, fmpq_poly
 
-    polynomial = sp.Poly(sp.expand((p + lambda_value) ** 6 + kappa_value**2 * link_polynomial(p).subs(lam, lambda_value) ** 2), p)
+    polynomial = sp.Poly(
+        sp.expand((p + lambda_value) ** 6 + kappa_value**2 * link_polynomial(p).subs(lam, lambda_value) ** 2),
+        p,
+    )
     coefficients = [fmpq(int(c.p), int(c.q)) for c in polynomial.all_coeffs()[::-1]]
     before, ctx.prec = ctx.prec, 200
     try:
@@ -207,21 +250,28 @@ def decay_rate(lambda_value: sp.Rational, kappa_value: sp.Rational) -> sp.Ration
 
 @claim("3.coupled.small_link")
 def decay_for_a_small_link():
-    """To leading order the three poles leave -lambda_c along the cube roots: (p + lambda_c)^3 = 2 i kappa lambda_c^2 (1 + lambda_c^2)."""
+    """For a small link the poles leave -lambda_c by the cube roots of 2 i kappa l^2 (1 + l^2).
+
+    To leading order, l = lambda_c; this is minus the link polynomial at p = -l, times i kappa.
+    """
     return Equation(-2 * lam**2 * (1 + lam**2), sp.expand(link_polynomial(p).subs(p, -lam)))
 
 
 @claim("3.coupled.repaired")
 def link_removed_by_the_split():
-    """The two-stage split of section 1 removes the link: gains L^-1 L_0 K, with L of the chains and L_0 = L at kappa = 0,
-    give (p + lambda_c)^6 for every kappa other than 1 and -1."""
+    """The two-stage split of section 1 removes the link: (p + lambda_c)^6 for every kappa^2 != 1.
+
+    The gains are L^-1 L_0 K, with L of the chains and L_0 = L at kappa = 0.
+    """
     F, H, _ = velocity().linear()
     H = H.subs(EARTH[2], kappa / MU)
     L = sp.Matrix.vstack(*(H[row, :] * F**power for row in (0, 1) for power in (0, 1, 2)))
     K = sp.zeros(6, 2)
     K[:3, 0] = K[3:, 1] = sp.Matrix(VELOCITY_GAINS)
     gains = sp.Matrix(inverse("L", sp.ImmutableMatrix(L))) * L.subs(kappa, 0) * K
-    return Equation((p + lam) ** 6, (p * sp.eye(6) - F + gains * H).applyfunc(sp.cancel).det(method="berkowitz"))
+    return Equation(
+        (p + lam) ** 6, (p * sp.eye(6) - F + gains * H).applyfunc(sp.cancel).det(method="berkowitz")
+    )
 
 
 # The coupled position stage
@@ -234,16 +284,21 @@ def coupled_position_block(second: tuple[sp.Expr, sp.Expr]) -> sp.Matrix:
 
 @claim("3.coupled.position")
 def coupled_position_polynomial():
-    """With gains that cancel mu^2 omega^2 the link leaves (p + lambda_h)^4 - mu^4 omega_1^2 omega_2^2: stable only for
-    lambda_h > mu |omega_1 omega_2|^(1/2), decay rate lambda_h - mu |omega_1 omega_2|^(1/2)."""
+    """With gains that cancel mu^2 omega^2 the link leaves (p + l)^4 - mu^4 omega_1^2 omega_2^2.
+
+    Stable only for l = lambda_h > mu |omega_1 omega_2|^(1/2); the decay rate is
+    lambda_h - mu |omega_1 omega_2|^(1/2).
+    """
     A = coupled_position_block((lam_h**2 - mu**2 * w2**2, lam_h**2 - mu**2 * w1**2))
     return Equation((p + lam_h) ** 4 - mu**4 * w1**2 * w2**2, polynomial_of(A))
 
 
 @claim("3.coupled.position_plain")
 def plain_position_gains_are_better():
-    """With K_2^h = K_6^h = lambda_h^2 the coupled polynomial is (p + lambda_h)^2 ((p + lambda_h)^2 + mu^2 (omega_1^2 +
-    omega_2^2)): always stable, decay rate exactly lambda_h."""
+    """With K_2^h = K_6^h = lambda_h^2 the coupled position stage decays with lambda_h exactly.
+
+    Its polynomial is (p + lambda_h)^2 ((p + lambda_h)^2 + mu^2 (omega_1^2 + omega_2^2)): always stable.
+    """
     A = coupled_position_block((lam_h**2, lam_h**2))
     return Equation((p + lam_h) ** 2 * ((p + lam_h) ** 2 + mu**2 * (w1**2 + w2**2)), polynomial_of(A))
 
@@ -253,7 +308,9 @@ def whole_polynomial():
     """The ten errors have the product of the polynomials of both stages."""
     from sympy import expand
 
-    A = joint_error_matrix((*VELOCITY_GAINS, *VELOCITY_GAINS), {1: 2 * lam_h, 2: lam_h**2, 5: 2 * lam_h, 6: lam_h**2})
+    A = joint_error_matrix(
+        (*VELOCITY_GAINS, *VELOCITY_GAINS), {1: 2 * lam_h, 2: lam_h**2, 5: 2 * lam_h, 6: lam_h**2}
+    )
     A = A.subs(EARTH[2], kappa / MU).applyfunc(expand)
     first = (p + lam) ** 6 + kappa**2 * link_polynomial(p) ** 2
     second = (p + lam_h) ** 2 * ((p + lam_h) ** 2 + mu**2 * (w1**2 + w2**2))
@@ -265,8 +322,10 @@ def whole_polynomial():
 
 @claim("3.bias.velocity")
 def steady_error_of_the_velocity_stage():
-    """A constant term d_2 in x_2' and d_3 in x_3' leave the steady errors d_2 + d_3 - 3 d_3/lambda^2, (1 - 3 lambda^2)
-    d_3/lambda^3, 3 d_3/lambda (one channel)."""
+    """Constant terms d_2 in x_2' and d_3 in x_3' leave known steady errors of one channel.
+
+    They are d_2 + d_3 - 3 d_3/l^2, (1 - 3 l^2) d_3/l^3 and 3 d_3/l with l = lambda_c.
+    """
     d2, d3 = sp.symbols("d_2 d_3", real=True)
     steady = sp.Matrix([d2 + d3 - 3 * d3 / lam**2, (1 - 3 * lam**2) * d3 / lam**3, 3 * d3 / lam])
     return Equation(list(velocity_block(VELOCITY_GAINS) * steady), [sp.Integer(0), -d2, -d3])
@@ -274,8 +333,10 @@ def steady_error_of_the_velocity_stage():
 
 @claim("3.bias.position")
 def steady_error_of_the_position_stage():
-    """Constant errors of x_1° and of the terms left out, d = Delta x_1 + d_2, leave Delta y_1 = -d/lambda_h^2 and
-    Delta y_2 = -2 d/lambda_h."""
+    """A constant drive -d of y_2' leaves Delta y_1 = -d/lambda_h^2, Delta y_2 = -2 d/lambda_h.
+
+    d gathers the steady error of x_1° and the terms left out.
+    """
     d = sp.Symbol("d", real=True)
     steady = sp.Matrix([-d / lam_h**2, -2 * d / lam_h])
     A = position_block((2 * lam_h, lam_h**2 - mu**2 * w2**2))
@@ -287,7 +348,10 @@ def steady_error_of_the_position_stage():
 
 @claim("3.preestimation.exact")
 def preestimation_frees_the_position_stage():
-    """With exact x_1° the errors of y_1, y_2 obey (p + lambda_h)^2 alone: two variables to estimate instead of four."""
+    """With exact x_1° the errors of y_1, y_2 obey (p + lambda_h)^2 alone.
+
+    Two variables remain to be estimated instead of four.
+    """
     t = sp.Symbol("t", positive=True)
     start = sp.Matrix(sp.symbols("e_1 e_2", real=True))
     A = position_block((2 * lam_h, lam_h**2 - mu**2 * w2**2))
@@ -297,7 +361,10 @@ def preestimation_frees_the_position_stage():
 
 @claim("3.preestimation.transient")
 def transient_driven_by_the_velocity_stage():
-    """Without it an error of the velocity stage drives y: Delta y_1 has the transfer -1/(p + lambda_h)^2 from Delta x_1."""
+    """Without it an error of the velocity stage drives y.
+
+    Delta y_1 has the transfer -1/(p + lambda_h)^2 from Delta x_1.
+    """
     A = position_block((2 * lam_h, lam_h**2 - mu**2 * w2**2))
     transfer = (p * sp.eye(2) - A).adjugate() * sp.Matrix([0, -1])
     return Equation([sp.Integer(-1), (p + lam_h) ** 2], [transfer[0], (p * sp.eye(2) - A).det()])
@@ -311,14 +378,20 @@ def position_only_block(gains: tuple[sp.Expr, ...]) -> sp.Matrix:
 
 @claim("3.situations.position_only")
 def position_only():
-    """Only position: gains (4 l, 6 l^2 - 1, 4 l - 4 l^3, 6 l^2 - l^4 - 1), l = lambda_h, give (p + l)^4 on y_1, y_2, x_1, x_2."""
+    """Only position: four gains in closed form give (p + lambda_h)^4 on y_1, y_2, x_1, x_2.
+
+    They are 4 l, 6 l^2 - 1, 4 l - 4 l^3, 6 l^2 - l^4 - 1 with l = lambda_h.
+    """
     gains = (4 * lam_h, 6 * lam_h**2 - 1, 4 * lam_h - 4 * lam_h**3, 6 * lam_h**2 - lam_h**4 - 1)
     return Equation((p + lam_h) ** 4, polynomial_of(position_only_block(gains)))
 
 
 @claim("3.situations.zeroing")
 def position_only_by_zeroing_oscillates():
-    """Only position with K^c = 0: the polynomial keeps the factor p^2 (p^2 + 1)^2 of the uncorrected Schuler errors."""
+    """Only position with K^c = 0.
+
+    The polynomial keeps the factor p^2 (p^2 + 1)^2 of the uncorrected Schuler errors.
+    """
     A = joint_error_matrix(tuple([sp.Integer(0)] * 6), {1: 2 * lam_h, 2: lam_h**2, 5: 2 * lam_h, 6: lam_h**2})
     slow = (p + lam_h) ** 2 * ((p + lam_h) ** 2 + mu**2 * (w1**2 + w2**2))
     return Equation(p**2 * (p**2 + 1) ** 2 * slow, polynomial_of(A))
@@ -326,7 +399,7 @@ def position_only_by_zeroing_oscillates():
 
 @claim("3.situations.neither")
 def neither_information():
-    """Neither information: all gains zero, the estimates are carried along; errors of y grow at most linearly at mu = 0."""
+    """Neither information: all gains are zero and the estimates are carried along."""
     A = joint_error_matrix(tuple([sp.Integer(0)] * 6), dict.fromkeys((1, 2, 5, 6), sp.Integer(0)))
     polynomial = p**4 * (p**2 + 1) ** 2 * (p**2 + mu**2 * (w1**2 + w2**2))
     return Equation(polynomial, polynomial_of(A))
@@ -334,9 +407,11 @@ def neither_information():
 
 @claim("3.situations.velocity_after_joint")
 def velocity_after_a_joint_session():
-    """Only velocity after a session with position: K^h = 0; x keeps its poles, y is carried along undamped."""
+    """Only velocity after a joint session: x keeps its poles, y is carried along undamped.
+
+    K^h = 0.
+    """
     A = joint_error_matrix((*VELOCITY_GAINS, *VELOCITY_GAINS), dict.fromkeys((1, 2, 5, 6), sp.Integer(0)))
     A = A.subs(EARTH[2], kappa / MU).applyfunc(sp.expand)
     first = (p + lam) ** 6 + kappa**2 * link_polynomial(p) ** 2
     return Equation(first * p**2 * (p**2 + mu**2 * (w1**2 + w2**2)), polynomial_of(A))
-

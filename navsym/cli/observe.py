@@ -19,7 +19,9 @@ if TYPE_CHECKING:
 def command(
     file: Annotated[Path, typer.Argument(help="model file (TOML) with constant F and h")],
     split: Annotated[str | None, typer.Option(help='vectors of each chain, "i,j"; default m,n-m')] = None,
-    poles: Annotated[str | None, typer.Option(help='one polynomial in p per stage: "(p+lam)**3; (p+lam)**2"')] = None,
+    poles: Annotated[
+        str | None, typer.Option(help='one polynomial in p per stage: "(p+lam)**3; (p+lam)**2"')
+    ] = None,
     set_: Annotated[list[str] | None, typer.Option("--set", help="value of a parameter: w=1/2")] = None,
     html: Annotated[Path | None, typer.Option(help="write the decomposition as a page")] = None,
     latex: Annotated[Path | None, typer.Option(help="write the decomposition as LaTeX")] = None,
@@ -59,11 +61,14 @@ def read(file: Path, settings: list[str]) -> ModelFile:
 
 
 def values_of(settings: list[str]) -> Mapping[str, str]:
+    """NAME=VALUE settings as a mapping."""
     values = {}
     for setting in settings:
         name, equals, value = setting.partition("=")
         if not equals:
-            raise ExpressionSyntaxError(f"expected NAME=VALUE; got {setting[:40]!r}; write --set w=1/2", where="--set")
+            raise ExpressionSyntaxError(
+                f"expected NAME=VALUE; got {setting[:40]!r}; write --set w=1/2", where="--set"
+            )
         values[name.strip()] = value.strip()
     return values
 
@@ -86,7 +91,9 @@ def read_split(text: str) -> tuple[int, int]:
     """Two numbers with a comma between them."""
     match = re.fullmatch(r"\s*(\d{1,3})\s*,\s*(\d{1,3})\s*", text)
     if match is None:
-        raise ExpressionSyntaxError(f'expected two numbers "i,j"; got {text[:40]!r}; write --split 3,2', where="--split")
+        raise ExpressionSyntaxError(
+            f'expected two numbers "i,j"; got {text[:40]!r}; write --split 3,2', where="--split"
+        )
     return int(match[1]), int(match[2])
 
 
@@ -98,12 +105,15 @@ def read_poles(text: str, found: ModelFile) -> tuple[tuple[Any, ...], Any]:
     declared = {name: parameter.symbol for name, parameter in found.parameters.items()}
     if "p" in declared:
         raise DuplicateError(
-            "expected p to be free for the variable of the polynomials; got a parameter p; rename the parameter",
+            "expected p to be free for the variable of the polynomials; got a parameter p; rename the "
+            "parameter",
             where="--poles",
         )
     names = set(re.findall(r"[A-Za-z][A-Za-z0-9_]*", text)) - RESERVED - declared.keys() - {"p"}
     for name in sorted(names & set(found.states)):
-        raise DuplicateError(f"expected a symbol of its own; got {name}, which is a state; rename it", where="--poles")
+        raise DuplicateError(
+            f"expected a symbol of its own; got {name}, which is a state; rename it", where="--poles"
+        )
     variable = symbol("p")
     known = {**declared, "p": variable, **{name: symbol(name, positive=True) for name in sorted(names)}}
     parts = [part.strip() for part in text.split(";")]
@@ -117,23 +127,47 @@ def as_text(data: Mapping[str, Any]) -> str:
     """Tables of the document."""
     verdict = "observable" if data["observable"] else "NOT observable"
     blocks = [f"{data['n']} states, joint dimension {data['joint_dimension']}: {verdict}\n"]
-    blocks.append(table(["measurement", "dimension", "companion"], [
-        [m["name"], str(m["dimension"]), ", ".join(m["companion"])] for m in data["measurements"]
-    ]))
+    blocks.append(
+        table(
+            ["measurement", "dimension", "companion"],
+            [[m["name"], str(m["dimension"]), ", ".join(m["companion"])] for m in data["measurements"]],
+        )
+    )
     if data["unobservable_directions"]:
         blocks.append("hidden: " + "; ".join(data["unobservable_directions"]) + "\n")
     if data["rank_drops"]:
-        blocks.append(table(["rank drops of", "where", "list complete"], [
-            [d["subspace"], d["condition"] + (" (excluded by declaration)" if d["excluded_by_declaration"] else ""),
-             "proved" if d["complete"] else "not proved"] for d in data["rank_drops"]
-        ]))
+        blocks.append(
+            table(
+                ["rank drops of", "where", "list complete"],
+                [
+                    [
+                        d["subspace"],
+                        d["condition"]
+                        + (" (excluded by declaration)" if d["excluded_by_declaration"] else ""),
+                        "proved" if d["complete"] else "not proved",
+                    ]
+                    for d in data["rank_drops"]
+                ],
+            )
+        )
     else:
         blocks.append("no rank drops\n")
     if data["splits"]:
         best = data["best_split"]
-        blocks.append(table(["i", "j", "det L", ""], [
-            [str(s["i"]), str(s["j"]), s["det_L"], "least max(i, j)" if [s["i"], s["j"]] == best else ""] for s in data["splits"]
-        ]))
+        blocks.append(
+            table(
+                ["i", "j", "det L", ""],
+                [
+                    [
+                        str(s["i"]),
+                        str(s["j"]),
+                        s["det_L"],
+                        "least max(i, j)" if [s["i"], s["j"]] == best else "",
+                    ]
+                    for s in data["splits"]
+                ],
+            )
+        )
     if data["split"]:
         blocks.append(split_text(data["split"]))
     for name, values in data["gains"].items():
@@ -143,6 +177,7 @@ def as_text(data: Mapping[str, Any]) -> str:
 
 
 def split_text(chosen: Mapping[str, Any]) -> str:
+    """The matrices of a split, row by row."""
     lines = [f"split i = {chosen['i']}, j = {chosen['j']} ({chosen['form']}), det L = {chosen['det_L']}"]
     for name in ("L", "Theta", "Phi_x", "Phi_z"):
         rows = chosen[name]

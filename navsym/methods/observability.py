@@ -117,6 +117,7 @@ def chains_of(model: LinearModel) -> Chains:
 
 
 def check(model: LinearModel) -> None:
+    """Refuse what has no chains: time-varying or too large models, zero and repeated rows."""
     if not model.constant:
         raise DomainError(
             f"expected constant F and H; got entries with the time {model.time}; freeze them at an instant"
@@ -165,9 +166,9 @@ def chain_of(name: str, row: list[Poly], bottom: Poly, matrix: Matrix, clock: Po
         coefficients = relation(vectors[:dimension], vectors[dimension], ring)
         if coefficients is not None:
             break
-        dimension += 1                  # the points were unlucky: the relation, not they, decides
+        dimension += 1  # the points were unlucky: the relation, not they, decides
     m = dimension
-    companion = tuple(                  # joint_correction:1.4
+    companion = tuple(  # joint_correction:1.4
         ring.lowest(c.top * clock**j, c.bottom * clock**m) for j, c in enumerate(coefficients)
     )
     return Chain(name, vectors[:m], bottom, clock, companion)
@@ -275,6 +276,7 @@ def observe(model: LinearModel) -> Observability:
 
 
 def measured(chain: Chain, ring: Ring) -> MeasurementObservability:
+    """The chain of one measurement in sympy."""
     rows = basis_rows(chain.vectors, chain, ring)
     companion = tuple(ring.expression(c) for c in chain.companion)
     return MeasurementObservability(chain.name, rows, companion)
@@ -313,6 +315,7 @@ def need_observable(found: Observability) -> None:
         hidden = found.unobservable
         named = "; ".join(direction_names(hidden[k, :], found.states) for k in range(hidden.rows))
         raise UnobservableError(
-            f"expected an observable pair; got rank {found.joint_dimension} of {len(found.states)}, no measurement "
+            f"expected an observable pair; got rank {found.joint_dimension} of {len(found.states)}, no "
+            f"measurement "
             f"shows the direction {named}; measure it or leave it out"
         )

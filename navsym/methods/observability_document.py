@@ -58,7 +58,9 @@ def examine(
         need_observable(found)
     two = len(found.measurements) == 2 and found.observable
     if request is not None and not two:
-        raise ShapeError(f"split: expected two measurements; got {len(found.measurements)}; choose two of them")
+        raise ShapeError(
+            f"split: expected two measurements; got {len(found.measurements)}; choose two of them"
+        )
     chosen = split(found, *(request or ())) if two else None
     return Examination(
         found=found,
@@ -111,6 +113,7 @@ def document(examination: Examination) -> dict[str, Any]:
 
 
 def measurement_data(measurement: MeasurementObservability) -> dict[str, Any]:
+    """Name, dimension, basis and companion coefficients of one measurement."""
     return {
         "name": measurement.name,
         "dimension": measurement.dimension,
@@ -120,6 +123,7 @@ def measurement_data(measurement: MeasurementObservability) -> dict[str, Any]:
 
 
 def drop_data(drop: RankDrop) -> dict[str, Any]:
+    """One rank drop; the condition holds where all its equations do."""
     condition = " and ".join(f"{to_text(zero)} = 0" for zero in drop.zeros)
     return {
         "subspace": drop.subspace,
@@ -130,6 +134,7 @@ def drop_data(drop: RankDrop) -> dict[str, Any]:
 
 
 def split_data(chosen: Split) -> dict[str, Any]:
+    """The matrices of a split as texts."""
     data = {
         "i": chosen.i,
         "j": chosen.j,

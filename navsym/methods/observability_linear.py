@@ -35,6 +35,7 @@ def at_point(matrix: Sequence[Sequence[Poly]], point: Sequence[int]) -> list[lis
 
 
 def residue(entry: Poly, point: Sequence[int]) -> int:
+    """Value of a polynomial at an integer point, modulo the prime."""
     if entry == 0:
         return 0
     return int(entry(*point) if point else entry.leading_coefficient()) % PRIME
@@ -54,6 +55,7 @@ def residue_chains(rows: Matrix, matrix: Matrix, point: Sequence[int]) -> list[l
 
 
 def residue_rank(rows: list[list[int]]) -> int:
+    """Rank of a matrix of residues."""
     return nmod_mat(len(rows), len(rows[0]), [x for row in rows for x in row], PRIME).rank() if rows else 0
 
 
@@ -66,10 +68,10 @@ def independent_rows(rows: list[list[int]]) -> list[int]:
         for pivot, other in reduced:
             if factor := rest[pivot]:
                 rest = [(x - factor * y) % PRIME for x, y in zip(rest, other, strict=True)]
-        pivot = next((k for k, x in enumerate(rest) if x), None)
-        if pivot is not None:
-            inverse = pow(rest[pivot], -1, PRIME)
-            reduced.append((pivot, [x * inverse % PRIME for x in rest]))
+        first = next((k for k, x in enumerate(rest) if x), None)
+        if first is not None:
+            inverse = pow(rest[first], -1, PRIME)
+            reduced.append((first, [x * inverse % PRIME for x in rest]))
             chosen.append(place)
     return chosen
 
@@ -80,8 +82,8 @@ class Reduced:
 
     pivot: Poly
     rows: Matrix
-    columns: tuple[int, ...]      # pivot column of each row
-    sign: int                     # of the row permutation
+    columns: tuple[int, ...]  # pivot column of each row
+    sign: int  # of the row permutation
 
 
 def reduce_rows(matrix: Matrix, ring: Ring, columns: Sequence[int] | None = None) -> Reduced:
@@ -145,7 +147,8 @@ def determinant(matrix: Matrix, ring: Ring) -> Poly:
 
 
 def permutation_sign(places: Sequence[int]) -> int:
-    inversions = sum(1 for i, a in enumerate(places) for b in places[i + 1:] if a > b)
+    """1 for an even and -1 for an odd order of the places."""
+    inversions = sum(1 for i, a in enumerate(places) for b in places[i + 1 :] if a > b)
     return -1 if inversions % 2 else 1
 
 
@@ -156,7 +159,7 @@ def determinant_slowly(matrix: Matrix, ring: Ring) -> Poly:
     total = ring.constant(0)
     for j, entry in enumerate(matrix[0]):
         if entry != 0:
-            minor = [row[:j] + row[j + 1:] for row in matrix[1:]]
+            minor = [row[:j] + row[j + 1 :] for row in matrix[1:]]
             total = total + entry * determinant_slowly(minor, ring) * (-1) ** j
     return total
 
@@ -229,7 +232,7 @@ def maximal_minors(vectors: Matrix, ring: Ring) -> list[Poly]:
         for places in combinations(range(size), count):
             total = ring.constant(0)
             for index, place in enumerate(places):
-                smaller = minors.get(places[:index] + places[index + 1:])
+                smaller = minors.get(places[:index] + places[index + 1 :])
                 if smaller is not None and vector[place] != 0:
                     total = total + smaller * vector[place] * (-1) ** (count - 1 - index)
             if total != 0:

@@ -13,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import comb
+from typing import Any
 
 import sympy as sp
 from flint import fmpz_mpoly_vec
@@ -87,6 +88,7 @@ def staircases(chains: Chains) -> list[tuple[int, ...]]:
 
 
 def compositions(total: int, caps: Sequence[int]) -> Iterator[tuple[int, ...]]:
+    """All tuples of nonnegative numbers with the given sum, each at most its cap."""
     if not caps:
         if total == 0:
             yield ()
@@ -103,12 +105,13 @@ def drops_of(sets: Sequence[Matrix], ring: Ring) -> tuple[list[list[Poly]], bool
     for rows in sets[: max(1, MINORS // max(1, wanted // len(sets)))]:
         minors += minors_of(rows, ring)
         if any(minor.is_constant() for minor in minors):
-            return [], True                       # a minor that is a number: no drop anywhere
+            return [], True  # a minor that is a number: no drop anywhere
     complete = wanted <= MINORS
     return components(minors, ring), complete
 
 
 def minors_of(rows: Matrix, ring: Ring) -> list[Poly]:
+    """The determinant of square rows, all maximal minors of longer ones; zeros are left out."""
     if len(rows) == len(rows[0]):
         value = determinant(rows, ring)
         return [value] if value != 0 else []
@@ -141,16 +144,16 @@ def branch(start: Sequence[Poly], ring: Ring) -> list[list[Poly]]:
         if steps > BRANCHES:
             closed.append(system)
             continue
-        system = tidied(system, ring)
-        if system is None:
+        tidy = tidied(system, ring)
+        if tidy is None:
             continue
-        for place, f in enumerate(system):
+        for place, f in enumerate(tidy):
             parts = alternatives(f, ring)
             if parts != [[f]]:
-                open_branches += [[*system[:place], *part, *system[place + 1:]] for part in parts]
+                open_branches += [[*tidy[:place], *part, *tidy[place + 1 :]] for part in parts]
                 break
         else:
-            closed.append(system)
+            closed.append(tidy)
     return closed
 
 
@@ -170,7 +173,7 @@ def real_systems(system: list[Poly], ring: Ring) -> list[list[Poly]]:
     if len(terms) < 2 or len(signs) > 1 or any(p % 2 for powers in terms for p in powers):
         return [system]
     if any(not any(powers) for powers in terms):
-        return []                                  # a positive constant beside squares
+        return []  # a positive constant beside squares
     return [[ring.context.from_dict({tuple(min(p, 1) for p in powers): 1}) for powers in terms]]
 
 
@@ -184,7 +187,8 @@ def tidied(system: list[Poly], ring: Ring) -> list[Poly] | None:
         if not any(divides(q, p.poly) for q in kept):
             kept.append(p.poly)
     if len(kept) > 1:
-        basis, done = fmpz_mpoly_vec(kept, ring.context).buchberger_naive(limits=LIMITS)
+        generators: Any = fmpz_mpoly_vec(kept, ring.context)
+        basis, done = generators.buchberger_naive(limits=LIMITS)
         if done:
             reduced = [p for p in basis.autoreduction(groebner=True) if p != 0]
             if any(p.is_constant() for p in reduced):

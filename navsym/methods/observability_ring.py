@@ -51,10 +51,12 @@ class Ring:
 
     @classmethod
     def over(cls, symbols: Sequence[sp.Basic]) -> Ring:
+        """The ring of the given symbols."""
         names = tuple(f"g{place}" for place in range(len(symbols)))
         return cls(tuple(symbols), fmpz_mpoly_ctx.get(names, Ordering.degrevlex))
 
     def constant(self, value: int) -> Poly:
+        """An integer as a polynomial."""
         return self.context.constant(value)
 
     def quotient(self, expression: sp.Basic) -> Quotient:
@@ -86,6 +88,7 @@ class Ring:
         return Quotient(divide(top, common), divide(bottom, common))
 
     def total(self, parts: Sequence[Quotient]) -> Quotient:
+        """Sum of quotients."""
         top, bottom = self.constant(0), self.constant(1)
         for part in parts:
             if part.bottom == bottom:
@@ -95,12 +98,14 @@ class Ring:
         return self.lowest(top, bottom)
 
     def product(self, parts: Sequence[Quotient]) -> Quotient:
+        """Product of quotients."""
         top, bottom = self.constant(1), self.constant(1)
         for part in parts:
             top, bottom = top * part.top, bottom * part.bottom
         return self.lowest(top, bottom)
 
     def power(self, base: Quotient, exponent: int) -> Quotient:
+        """Integer power of a quotient, also a negative one."""
         if abs(exponent) > EXPONENT:
             raise TooLargeError(
                 f"expected exponents up to {EXPONENT}; got {exponent}; name the power as a parameter"
@@ -118,8 +123,9 @@ class Ring:
         return sp.Add(*(self.monomial(powers, int(c)) for powers, c in value.to_dict().items()))
 
     def monomial(self, powers: Sequence[int], coefficient: int) -> sp.Expr:
+        """One term in sympy."""
         pairs = zip(self.symbols, powers, strict=True)
-        return sp.Mul(sp.Integer(coefficient), *(s**int(power) for s, power in pairs if power))
+        return sp.Mul(sp.Integer(coefficient), *(s ** int(power) for s, power in pairs if power))
 
     def factored(self, value: Poly | Quotient) -> sp.Expr:
         """Back to sympy as a product of irreducible factors."""
@@ -141,6 +147,7 @@ def divide(top: Poly, bottom: Poly) -> Poly:
 
 
 def divides(bottom: Poly, top: Poly) -> bool:
+    """True when the division leaves no remainder."""
     return divmod(top, bottom)[1] == 0
 
 

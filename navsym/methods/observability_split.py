@@ -71,7 +71,7 @@ class Split:
     @property
     def Phi_z(self) -> sp.ImmutableMatrix:
         """(j, j): companion matrix of the second chain (joint_correction:1.10, 1.14)."""
-        return companion(self.link[self.i:])
+        return companion(self.link[self.i :])
 
 
 def companion(coefficients: Sequence[sp.Expr]) -> sp.ImmutableMatrix:
@@ -129,6 +129,7 @@ def best_split(found: Observability) -> FeasibleSplit:
 
 
 def need_two(found: Observability) -> None:
+    """Refuse anything but two measurements."""
     if len(found.measurements) != 2:
         raise ShapeError(
             f"expected two measurements to split by; got {len(found.measurements)}; choose two of them"
@@ -174,6 +175,7 @@ def split(found: Observability, i: int | None = None, j: int | None = None) -> S
 
 
 def second_rows(found: Observability, j: int) -> list[list[sp.Expr]]:
+    """The first j vectors of the second chain as rows."""
     chain = found.chains.chains[1]
     return basis_rows(found.chains.first(chain, j), chain, found.chains.ring).tolist()
 
@@ -201,6 +203,7 @@ def restore(ring: Ring, value: Quotient, k: int, first: Chain, second: Chain, i:
 
 
 def not_a_basis(found: Observability, i: int, j: int) -> DomainError:
+    """The error for a split whose determinant vanishes, with the splits that exist."""
     rows = [f"a{k + 1}" for k in range(i)] + [f"b{k + 1}" for k in range(j)]
     feasible = ", ".join(f"{s.i},{s.j}" for s in splits(found)) or "none"
     return DomainError(
@@ -228,7 +231,9 @@ class TwoStageBlocks:
     g_z2: sp.ImmutableMatrix
 
 
-def two_stage_blocks(chosen: Split, C1: sp.MatrixBase | None = None, C2: sp.MatrixBase | None = None) -> TwoStageBlocks:
+def two_stage_blocks(
+    chosen: Split, C1: sp.MatrixBase | None = None, C2: sp.MatrixBase | None = None
+) -> TwoStageBlocks:
     """(1.5), (1.9), (1.10) for invertible C1 (m, m) and C2 (n - m, n - m); identity by default.
 
     Raises DomainError when the split has i < m: it then has the form u, v, w.
@@ -238,17 +243,19 @@ def two_stage_blocks(chosen: Split, C1: sp.MatrixBase | None = None, C2: sp.Matr
     one, C1_inverse = free_matrix("C1", C1, chosen.i)
     two, C2_inverse = free_matrix("C2", C2, chosen.j)
     return TwoStageBlocks(
-        L=sp.ImmutableMatrix.vstack(one * chosen.L[: chosen.i, :], two * chosen.L[chosen.i:, :]),
-        G_x=one * chosen.Theta * C1_inverse,                       # joint_correction:1.5.Gx
-        g_x=unit_row(chosen.i) * C1_inverse,                       # joint_correction:1.5.gx
-        G_z1=two * chosen.Phi_x * C1_inverse,                      # joint_correction:1.10.Gz1
-        G_z2=two * chosen.Phi_z * C2_inverse,                      # joint_correction:1.10.Gz2
+        L=sp.ImmutableMatrix.vstack(one * chosen.L[: chosen.i, :], two * chosen.L[chosen.i :, :]),
+        G_x=one * chosen.Theta * C1_inverse,  # joint_correction:1.5.Gx
+        g_x=unit_row(chosen.i) * C1_inverse,  # joint_correction:1.5.gx
+        G_z1=two * chosen.Phi_x * C1_inverse,  # joint_correction:1.10.Gz1
+        G_z2=two * chosen.Phi_z * C2_inverse,  # joint_correction:1.10.Gz2
         g_z1=sp.ImmutableMatrix.zeros(1, chosen.i),
-        g_z2=unit_row(chosen.j) * C2_inverse,                      # joint_correction:1.10.gz*
+        g_z2=unit_row(chosen.j) * C2_inverse,  # joint_correction:1.10.gz*
     )
 
 
-def free_matrix(name: str, value: sp.MatrixBase | None, size: int) -> tuple[sp.ImmutableMatrix, sp.ImmutableMatrix]:
+def free_matrix(
+    name: str, value: sp.MatrixBase | None, size: int
+) -> tuple[sp.ImmutableMatrix, sp.ImmutableMatrix]:
     """An invertible matrix and its inverse, by exact elimination."""
     if value is None:
         return sp.ImmutableMatrix.eye(size), sp.ImmutableMatrix.eye(size)
@@ -269,7 +276,9 @@ def inverse(name: str, matrix: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
             bottom = bottom * ring.lowest(q.bottom, bottom).top
     vectors = [[q.top * ring.lowest(bottom, q.bottom).top for q in column] for column in columns]
     if determinant(vectors, ring) == 0:
-        raise DomainError(f"{name}: expected an invertible matrix; got determinant 0 for all parameters; change it")
+        raise DomainError(
+            f"{name}: expected an invertible matrix; got determinant 0 for all parameters; change it"
+        )
     result = sp.zeros(size, size)
     for c in range(size):
         target = [bottom if r == c else ring.constant(0) for r in range(size)]
@@ -293,14 +302,14 @@ def general_blocks(model: LinearModel, found: Observability, L_z: sp.MatrixBase)
     L_x = found.measurements[0].basis
     n, m = len(found.states), L_x.rows
     if L_z.shape != (n - m, n):
-        raise ShapeError(f"L_z: expected shape {(n - m, n)}, rows that complete L_x; got {L_z.shape}; mend it")
+        raise ShapeError(
+            f"L_z: expected shape {(n - m, n)}, rows that complete L_x; got {L_z.shape}; mend it"
+        )
     L = sp.ImmutableMatrix.vstack(L_x, sp.ImmutableMatrix(L_z))
     back = inverse("L_x over L_z", L)
     G = lowest_terms(L * model.F * back)
     g = lowest_terms(model.H * back)
-    return TwoStageBlocks(
-        L, G[:m, :m], g[0, :m], G[m:, :m], G[m:, m:], g[1, :m], g[1, m:]
-    )
+    return TwoStageBlocks(L, G[:m, :m], g[0, :m], G[m:, :m], G[m:, m:], g[1, :m], g[1, m:])
 
 
 def lowest_terms(matrix: sp.MatrixBase) -> sp.ImmutableMatrix:
@@ -347,12 +356,12 @@ def three_blocks(
     return ThreeBlocks(
         L=sp.ImmutableMatrix.vstack(one * chosen.L[:i, :], two * chosen.L[i:, :]),
         tail=tail * chosen.tail,
-        G_u1=one * shift(i) * one_inverse,                         # joint_correction:1.14.Gu1
-        G_u2=one * corner(i, m - i) * tail_inverse,                # joint_correction:1.14.Gu2
-        G_v1=tail * theta_u * one_inverse,                         # joint_correction:1.14.Gv1
-        G_v2=tail * theta_v * tail_inverse,                        # joint_correction:1.14.Gv2
-        G_w1=two * chosen.Phi_x * one_inverse,                     # joint_correction:1.14.Gw1
-        G_w2=two * chosen.Phi_z * two_inverse,                     # joint_correction:1.14.Gw2
+        G_u1=one * shift(i) * one_inverse,  # joint_correction:1.14.Gu1
+        G_u2=one * corner(i, m - i) * tail_inverse,  # joint_correction:1.14.Gu2
+        G_v1=tail * theta_u * one_inverse,  # joint_correction:1.14.Gv1
+        G_v2=tail * theta_v * tail_inverse,  # joint_correction:1.14.Gv2
+        G_w1=two * chosen.Phi_x * one_inverse,  # joint_correction:1.14.Gw1
+        G_w2=two * chosen.Phi_z * two_inverse,  # joint_correction:1.14.Gw2
         g_u=unit_row(i) * one_inverse,
         g_w=unit_row(j) * two_inverse,
     )

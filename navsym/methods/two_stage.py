@@ -36,7 +36,9 @@ def companion_gains(theta: Sequence[sp.Expr], wanted: Sequence[sp.Expr]) -> tupl
     """
     m = len(theta)
     if len(wanted) != m:
-        raise ShapeError(f"poles: expected a polynomial of degree {m}; got degree {len(wanted)}; give one root per state")
+        raise ShapeError(
+            f"poles: expected a polynomial of degree {m}; got degree {len(wanted)}; give one root per state"
+        )
     gains: list[sp.Expr] = []
     for r in range(1, m + 1):
         known = [sp.Integer(1), *gains]
@@ -59,7 +61,8 @@ def monic_coefficients(polynomial: sp.Expr, degree: int, variable: sp.Symbol = P
     found = max(parts, default=0)
     if found != degree:
         raise ShapeError(
-            f"poles: expected degree {degree}, one root per variable of the stage; got degree {found}; change the polynomial"
+            f"poles: expected degree {degree}, one root per variable of the stage; got degree {found}; "
+            f"change the polynomial"
         )
     zero = ring.constant(0)
     values = [ring.lowest(parts.get(k, zero), parts[degree]) for k in range(degree - 1, -1, -1)]
@@ -71,16 +74,20 @@ def by_power(polynomial: Poly, place: int, ring: Ring) -> dict[int, Poly]:
     parts: dict[int, dict[tuple[int, ...], int]] = {}
     for powers, coefficient in polynomial.to_dict().items():
         rest = tuple(0 if k == place else int(power) for k, power in enumerate(powers))
-        parts.setdefault(int(powers[place]), {})[rest] = coefficient
+        parts.setdefault(int(powers[place]), {})[rest] = int(coefficient)
     return {power: ring.context.from_dict(terms) for power, terms in parts.items()}
 
 
 def hurwitz_minors(coefficients: Sequence[sp.Expr]) -> tuple[sp.Expr, ...]:
-    """Leading minors of Hurwitz' matrix of p^n + c_1 p^(n-1) + ... + c_n, all positive for a stable polynomial."""
+    """Leading minors of Hurwitz' matrix of p^n + c_1 p^(n-1) + ... + c_n, all positive for a stable
+    polynomial.
+    """
     n = len(coefficients)
     known = [sp.Integer(1), *coefficients]
-    entry = [[known[2 * (c + 1) - (r + 1)] if 0 <= 2 * (c + 1) - (r + 1) <= n else sp.Integer(0) for c in range(n)]
-             for r in range(n)]
+    entry = [
+        [known[2 * (c + 1) - (r + 1)] if 0 <= 2 * (c + 1) - (r + 1) <= n else sp.Integer(0) for c in range(n)]
+        for r in range(n)
+    ]
     ring = Ring.of(coefficients)
     quotients = [[ring.quotient(sp.sympify(x)) for x in row] for row in entry]
     bottom = ring.constant(1)
@@ -141,7 +148,9 @@ class StageGains:
     stable: tuple[bool | None, bool | None]
 
 
-def gains_by_poles(chosen: Split, first: sp.Expr, second: sp.Expr | None, variable: sp.Symbol = POLE) -> StageGains:
+def gains_by_poles(
+    chosen: Split, first: sp.Expr, second: sp.Expr | None, variable: sp.Symbol = POLE
+) -> StageGains:
     """Gains of the stages from their prescribed characteristic polynomials.
 
     The first polynomial has the degree m (also for the form u, v, w, whose first stage is (u, v)),
@@ -150,17 +159,24 @@ def gains_by_poles(chosen: Split, first: sp.Expr, second: sp.Expr | None, variab
     K_x, stable_x = stage_gains(chosen.theta, first, "first", variable)
     if second is None or chosen.j == 0:
         if second is not None and monic_coefficients(second, 0, variable):
-            raise ShapeError("poles: expected one polynomial; got two, but the first chain is the whole space; leave it out")
+            raise ShapeError(
+                "poles: expected one polynomial; got two, but the first chain is the whole space; leave "
+                "it out"
+            )
         if second is None and chosen.j:
-            raise ShapeError(f"poles: expected two polynomials, of degrees {chosen.m} and {chosen.j}; got one; add the second")
+            raise ShapeError(
+                f"poles: expected two polynomials, of degrees {chosen.m} and {chosen.j}; got one; add "
+                f"the second"
+            )
         return StageGains(K_x, (), (stable_x, True))
-    K_z, stable_z = stage_gains(chosen.link[chosen.i:], second, "second", variable)
+    K_z, stable_z = stage_gains(chosen.link[chosen.i :], second, "second", variable)
     return StageGains(K_x, K_z, (stable_x, stable_z))
 
 
 def stage_gains(
     theta: Sequence[sp.Expr], polynomial: sp.Expr, name: str, variable: sp.Symbol
 ) -> tuple[tuple[sp.Expr, ...], bool | None]:
+    """Gain of one stage, and whether its polynomial is stable."""
     wanted = monic_coefficients(polynomial, len(theta), variable)
     stable = stability(wanted)
     if stable is False:
@@ -237,7 +253,7 @@ def steady_covariance(A: sp.MatrixBase, intensity: sp.MatrixBase) -> sp.Immutabl
 
 
 def solve_exactly(augmented: sp.Matrix) -> list[sp.Expr]:
-    """Solution of a square linear system with rational-function entries; the last column is the right side."""
+    """Solution of a square linear system of rational functions; the last column is the right side."""
     ring = Ring.of(augmented)
     vectors = []
     for row in augmented.tolist():
@@ -248,7 +264,9 @@ def solve_exactly(augmented: sp.Matrix) -> list[sp.Expr]:
         vectors.append([q.top * ring.lowest(bottom, q.bottom).top for q in quotients])
     columns = [list(column) for column in zip(*vectors, strict=True)]
     if determinant(columns[:-1], ring) == 0:
-        raise DomainError("expected a regular linear system; got determinant 0 for all parameters; change the gains")
+        raise DomainError(
+            "expected a regular linear system; got determinant 0 for all parameters; change the gains"
+        )
     solution = relation(columns[:-1], columns[-1], ring)
     if solution is None:
         raise ArithmeticError("solve_exactly: the check of the solution failed")

@@ -13,10 +13,10 @@ import numpy as np
 from navsym.errors import DomainError
 from navsym.numeric.arrays import Array, frozen
 
-EARTH_RATE = 7.292115e-5           # 1/s
-EARTH_RADIUS = 6378137.0           # m
-GRAVITY = 9.80665                  # m/s^2
-SCHULER_RATE = float(np.sqrt(GRAVITY / EARTH_RADIUS))      # 1/s
+EARTH_RATE = 7.292115e-5  # 1/s
+EARTH_RADIUS = 6378137.0  # m
+GRAVITY = 9.80665  # m/s^2
+SCHULER_RATE = float(np.sqrt(GRAVITY / EARTH_RADIUS))  # 1/s
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -54,13 +54,13 @@ def great_circle(
     if not (speed > 0.0 and duration > 0.0 and step > 0.0):
         raise DomainError("expected a positive speed, duration and step; got zero or less; change them")
     count = round(duration / step)
-    t = np.arange(count + 1) * step
+    t: Array = np.arange(count + 1, dtype=np.float64) * step
     vertical, velocity, acceleration = vertical_motion(speed, latitude, heading, t)
-    omega_inertial = np.cross(vertical, velocity)            # no part along the vertical
+    omega_inertial = np.cross(vertical, velocity)  # no part along the vertical
     rate_inertial = np.cross(vertical, acceleration)
     axes = transported_axes(vertical, omega_inertial, step)
     omega = np.einsum("nij,nj->ni", axes, omega_inertial)[:, :2]
-    omega_rate = np.einsum("nij,nj->ni", axes, rate_inertial)[:, :2]   # omega x omega = 0
+    omega_rate = np.einsum("nij,nj->ni", axes, rate_inertial)[:, :2]  # omega x omega = 0
     earth = np.einsum("nij,j->ni", axes, np.array([0.0, 0.0, EARTH_RATE]))
     w0 = SCHULER_RATE
     return Flight(frozen(t * w0), frozen(omega / w0), frozen(omega_rate / w0**2), frozen(earth / w0))
@@ -73,7 +73,7 @@ def vertical_motion(speed: float, latitude: float, heading: float, t: Array) -> 
     ahead = np.cos(heading) * north + np.sin(heading) * np.array([0.0, 1.0, 0.0])
     rate = speed / EARTH_RADIUS
     angle = rate * t[:, None]
-    place = np.cos(angle) * up + np.sin(angle) * ahead       # in axes of the Earth
+    place = np.cos(angle) * up + np.sin(angle) * ahead  # in axes of the Earth
     motion = rate * (np.cos(angle) * ahead - np.sin(angle) * up)
     earth = np.array([0.0, 0.0, EARTH_RATE])
     velocity = motion + np.cross(earth, place)
@@ -88,7 +88,7 @@ def transported_axes(vertical: Array, omega: Array, step: float) -> Array:
     """Rows e1, e2, e3 of Mx in inertial axes: carried along without turning about the vertical."""
     axes = np.empty((len(vertical), 3, 3))
     first = np.cross([0.0, 0.0, 1.0], vertical[0])
-    first = first / np.linalg.norm(first)                    # east at the start
+    first = first / np.linalg.norm(first)  # east at the start
     for k, up in enumerate(vertical):
         if k:
             middle = (omega[k - 1] + omega[k]) / 2 * step

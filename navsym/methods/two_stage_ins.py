@@ -69,8 +69,11 @@ class Errors:
         w0 = SCHULER_RATE
         gamma = self.position / EARTH_RADIUS
         sigma = {
-            "alpha": self.tilt, "pi": self.velocity / EARTH_RADIUS / w0, "nu": self.drift / w0,
-            "epsilon": self.accelerometer / EARTH_RADIUS / w0**2, "w_c": self.velocity_bias / EARTH_RADIUS / w0,
+            "alpha": self.tilt,
+            "pi": self.velocity / EARTH_RADIUS / w0,
+            "nu": self.drift / w0,
+            "epsilon": self.accelerometer / EARTH_RADIUS / w0**2,
+            "w_c": self.velocity_bias / EARTH_RADIUS / w0,
             "w_M": self.position_bias / EARTH_RADIUS,
         }
         P = np.zeros((16, 16))
@@ -97,7 +100,9 @@ RATES = (*OMEGA[:2], *EARTH)
 
 @cache
 def compiled() -> tuple[object, ...]:
-    """casadi functions of (omega_1, omega_2, u_1, u_2, u_3) for F, H of truth and algorithm, and the meaning of its variables."""
+    """casadi functions of (omega_1, omega_2, u_1, u_2, u_3) for F, H of truth and algorithm, and the
+    meaning of its variables.
+    """
     from navsym.numeric.casadi_functions import casadi_function
 
     truth, algorithm = full_model(), joint_model()
@@ -105,12 +110,17 @@ def compiled() -> tuple[object, ...]:
     x, y = velocity_variables(equations), position_variables(equations)
     meaning = sp.Matrix([[sp.diff(m, s) for s in FULL] for m in (*x, y[0], y[1], y[4], y[5])])
     matrices = {"F": truth.F, "H": truth.H, "A": algorithm.F, "C": algorithm.H, "M": meaning}
-    return tuple(casadi_function(name, [list(RATES)], sp.Matrix(value).subs(MU, 1)) for name, value in matrices.items())
+    return tuple(
+        casadi_function(name, [list(RATES)], sp.Matrix(value).subs(MU, 1)) for name, value in matrices.items()
+    )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Linearised:
-    """Matrices at every instant of a flight: F (N, 16, 16), H (N, 4, 16), A (N, 10, 10), C (N, 4, 10), M (N, 10, 16)."""
+    """Matrices at every instant of a flight.
+
+    F (N, 16, 16), H (N, 4, 16), A (N, 10, 10), C (N, 4, 10), M (N, 10, 16).
+    """
 
     F: Array
     H: Array
@@ -136,16 +146,16 @@ def gains(situation: Situation, lambda_c: float, lambda_h: float) -> Array:
     (p + lambda_h)^4 on y_1, y_2, x_1, x_2 (joint_correction:3.situations.position_only).
     """
     K = np.zeros((10, 4))
-    velocity = (1 - 3 * lambda_c**2, 3 * lambda_c - lambda_c**3, lambda_c**3)      # joint_correction:3.2.gains
+    velocity = (1 - 3 * lambda_c**2, 3 * lambda_c - lambda_c**3, lambda_c**3)  # joint_correction:3.2.gains
     h = lambda_h
     for channel in (0, 1):
         if situation in (Situation.VELOCITY, Situation.BOTH):
-            K[3 * channel: 3 * channel + 3, channel] = velocity
+            K[3 * channel : 3 * channel + 3, channel] = velocity
         if situation is Situation.BOTH:
-            K[6 + 2 * channel: 8 + 2 * channel, 2 + channel] = 2 * h, h**2
+            K[6 + 2 * channel : 8 + 2 * channel, 2 + channel] = 2 * h, h**2
         if situation is Situation.POSITION:
-            K[6 + 2 * channel: 8 + 2 * channel, 2 + channel] = 4 * h, 6 * h**2 - 1
-            K[3 * channel: 3 * channel + 2, 2 + channel] = 4 * h - 4 * h**3, 6 * h**2 - h**4 - 1
+            K[6 + 2 * channel : 8 + 2 * channel, 2 + channel] = 4 * h, 6 * h**2 - 1
+            K[3 * channel : 3 * channel + 2, 2 + channel] = 4 * h - 4 * h**3, 6 * h**2 - h**4 - 1
     return K
 
 
@@ -170,7 +180,9 @@ class Plan:
         return next((k for k, s in enumerate(self.situations) if s in with_position), None)
 
 
-def plan(phases: Sequence[tuple[Situation, float]], step: float, lambda_c: float = 2.0, lambda_h: float = 3.0) -> Plan:
+def plan(
+    phases: Sequence[tuple[Situation, float]], step: float, lambda_c: float = 2.0, lambda_h: float = 3.0
+) -> Plan:
     """Phases (situation, minutes) one after the other."""
     situations = [s for s, minutes in phases for _ in range(round(minutes * 60.0 / step))]
     return Plan(tuple(situations), lambda_c, lambda_h)
@@ -190,7 +202,7 @@ class Steps:
 
 
 def steps_of(flight: Flight, chosen: Plan, errors: Errors, repaired: bool = False) -> Steps:
-    """Matrices of every step; a measurement is held over it, its noise has the variance intensity/step."""
+    """Matrices of every step; the noise is held over a step with the variance intensity/step."""
     matrices = along(flight)
     dtau = float(flight.tau[1] - flight.tau[0])
     count = len(chosen.situations)
@@ -251,14 +263,24 @@ def decoupled(K: Array, C: Array) -> Array:
 
 def chain_matrix(kappa: float) -> Array:
     """Rows a_1, a_2, a_3, b_1, b_2, b_3 of the homogeneous velocity group."""
-    return np.array([
-        [0, 1, 1, kappa, 0, 0], [-1, 0, 0, 0, kappa, 0], [0, -1, 0, -kappa, 0, 0],
-        [-kappa, 0, 0, 0, 1, 1], [0, -kappa, 0, -1, 0, 0], [kappa, 0, 0, 0, -1, 0],
-    ], dtype=float)
+    return np.array(
+        [
+            [0, 1, 1, kappa, 0, 0],
+            [-1, 0, 0, 0, kappa, 0],
+            [0, -1, 0, -kappa, 0, 0],
+            [-kappa, 0, 0, 0, 1, 1],
+            [0, -kappa, 0, -1, 0, 0],
+            [kappa, 0, 0, 0, -1, 0],
+        ],
+        dtype=float,
+    )
 
 
 def standard_deviations(steps: Steps, errors: Errors) -> Array:
-    """(N + 1, 10): standard deviations of the errors of x_1 ... x_6, y_1, y_2, y_5, y_6, propagated exactly."""
+    """(N + 1, 10).
+
+    Standard deviations of the errors of x_1 ... x_6, y_1, y_2, y_5, y_6, propagated exactly.
+    """
     P = np.zeros((26, 26))
     P[:16, :16] = errors.covariance()
     found = [spread(P, steps.M[0])]
@@ -290,6 +312,7 @@ def monte_carlo(steps: Steps, errors: Errors, runs: int, seed: int = 0) -> Array
 
 
 def rms(state: Array, M: Array) -> Array:
+    """Root mean square over the runs of M xi - estimate."""
     error = M @ state[:16] - state[16:]
     return np.sqrt((error**2).mean(axis=1))
 
@@ -304,7 +327,10 @@ def kalman_deviations(flight: Flight, chosen: Plan, errors: Errors) -> Array:
     dtau = float(flight.tau[1] - flight.tau[0])
     R = errors.noise() / dtau
     used = {
-        Situation.VELOCITY: [0, 1], Situation.POSITION: [2, 3], Situation.BOTH: [0, 1, 2, 3], Situation.NEITHER: [],
+        Situation.VELOCITY: [0, 1],
+        Situation.POSITION: [2, 3],
+        Situation.BOTH: [0, 1, 2, 3],
+        Situation.NEITHER: [],
     }
     P = errors.covariance()
     found = [np.sqrt(np.einsum("ij,jk,ik->i", matrices.M[0], P, matrices.M[0]))]
@@ -317,7 +343,9 @@ def kalman_deviations(flight: Flight, chosen: Plan, errors: Errors) -> Array:
             keep = np.eye(16) - np.outer(gain, h)
             P = keep @ P @ keep.T + np.outer(gain, gain) * R[row]
         P = (P + P.T) / 2
-        found.append(np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", matrices.M[k + 1], P, matrices.M[k + 1]), 0.0)))
+        found.append(
+            np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", matrices.M[k + 1], P, matrices.M[k + 1]), 0.0))
+        )
     return np.array(found)
 
 
@@ -357,7 +385,9 @@ def compare(
     found = {name: plan(phases, step, lambda_c, lambda_h) for name, phases in cases.items()}
     curves = {name: standard_deviations(steps_of(flight, p, errors), errors) for name, p in found.items()}
     first = found["two stages"]
-    curves["two stages, link removed"] = standard_deviations(steps_of(flight, first, errors, repaired=True), errors)
+    curves["two stages, link removed"] = standard_deviations(
+        steps_of(flight, first, errors, repaired=True), errors
+    )
     curves["Kalman filter, full model"] = kalman_deviations(flight, first, errors)
     places = [round((before + m) * 60.0 / step) for m in minutes]
     rows = {name: tuple(float(position_error(curve)[k]) for k in places) for name, curve in curves.items()}

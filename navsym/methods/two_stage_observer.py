@@ -39,12 +39,21 @@ class TwoStageObserver:
     def __post_init__(self) -> None:
         m, rest = np.shape(self.G_x)[0], np.shape(self.G_z2)[0]
         shapes = {
-            "L": (m + rest, m + rest), "G_x": (m, m), "g_x": (m,), "K_x": (m,), "G_z1": (rest, m),
-            "G_z2": (rest, rest), "g_z1": (m,), "g_z2": (rest,), "K_z": (rest,),
+            "L": (m + rest, m + rest),
+            "G_x": (m, m),
+            "g_x": (m,),
+            "K_x": (m,),
+            "G_z1": (rest, m),
+            "G_z2": (rest, rest),
+            "g_z1": (m,),
+            "g_z2": (rest,),
+            "K_z": (rest,),
         }
         for name, shape in shapes.items():
             value = getattr(self, name)
-            array = frozen(np.zeros(shape)) if 0 in shape else named(name, value, shape, "blocks of the observer")
+            array = (
+                frozen(np.zeros(shape)) if 0 in shape else named(name, value, shape, "blocks of the observer")
+            )
             object.__setattr__(self, name, array)
 
     @property
@@ -54,7 +63,10 @@ class TwoStageObserver:
 
 
 def observer(
-    blocks: TwoStageBlocks, K_x: Sequence[Any], K_z: Sequence[Any], values: Mapping[sp.Symbol, Any] | None = None
+    blocks: TwoStageBlocks,
+    K_x: Sequence[Any],
+    K_z: Sequence[Any],
+    values: Mapping[sp.Symbol, Any] | None = None,
 ) -> TwoStageObserver:
     """The observer of symbolic blocks and gains with numbers for all symbols.
 
@@ -80,7 +92,9 @@ def numbers(matrix: sp.MatrixBase, values: Mapping[sp.Symbol, Any]) -> Array:
     if exact.free_symbols:
         names = ", ".join(sorted(map(str, exact.free_symbols)))
         raise DomainError(f"expected a number for every symbol; got none for {names}; give their values")
-    return np.array([[float(entry) for entry in row] for row in exact.tolist()], dtype=float).reshape(exact.shape)
+    return np.array([[float(entry) for entry in row] for row in exact.tolist()], dtype=float).reshape(
+        exact.shape
+    )
 
 
 def closed_loop(found: TwoStageObserver) -> tuple[Array, Array]:
@@ -112,17 +126,25 @@ def run(found: TwoStageObserver, sigma: Array, step: float, start: Array | None 
     return estimates
 
 
-def run_slowly(found: TwoStageObserver, sigma: Array, step: float, start: Array | None = None, parts: int = 200) -> Array:
+def run_slowly(
+    found: TwoStageObserver, sigma: Array, step: float, start: Array | None = None, parts: int = 200
+) -> Array:
     """Twin of :func:`run`: the two stages one after the other, by many small steps of Runge and Kutta."""
     m, _ = found.stages
-    x, z = (np.zeros(size) for size in found.stages) if start is None else np.split(np.array(start, dtype=float), [m])
+    x, z = (
+        (np.zeros(size) for size in found.stages)
+        if start is None
+        else np.split(np.array(start, dtype=float), [m])
+    )
     back = np.linalg.inv(found.L)
     estimates, h = [], step / parts
 
     def rates(x: Array, z: Array, measured: Array) -> tuple[Array, Array]:
-        first = found.G_x @ x + found.K_x * (measured[0] - found.g_x @ x)                   # joint_correction:1.6
+        first = found.G_x @ x + found.K_x * (measured[0] - found.g_x @ x)  # joint_correction:1.6
         second = found.G_z1 @ x + found.G_z2 @ z
-        return first, second + found.K_z * (measured[1] - found.g_z1 @ x - found.g_z2 @ z)  # joint_correction:1.11, 1.13
+        return first, second + found.K_z * (
+            measured[1] - found.g_z1 @ x - found.g_z2 @ z
+        )  # joint_correction:1.11, 1.13
 
     for measured in sigma:
         for _ in range(parts):
@@ -160,7 +182,8 @@ def exponential(A: Array) -> Array:
 
 
 def error_covariance(A: Array, intensity: Array, P: Array, step: float, count: int) -> Array:
-    """Covariances (count + 1, n, n) of e, de/dt = A e + white noise of the given intensity, at multiples of the step.
+    """Covariances (count + 1, n, n) of e, de/dt = A e + white noise of the given intensity, at multiples of
+    the step.
 
     Exact: Van Loan's exponential gives the noise of a step.
     """
@@ -195,7 +218,8 @@ def riccati_gain(G: Array, g: Array, intensity: Array, r: float) -> tuple[Array,
     stable = values.real < -1e-9 * scale
     if stable.sum() != m:
         raise DomainError(
-            f"expected a filter with a steady state; got {int(stable.sum())} of {m} decaying modes; add process noise"
+            f"expected a filter with a steady state; got {int(stable.sum())} of {m} decaying modes; add "
+            f"process noise"
         )
     basis = vectors[:, stable]
     P = np.real(np.linalg.solve(basis[:m].T, basis[m:].T).T)
@@ -203,7 +227,9 @@ def riccati_gain(G: Array, g: Array, intensity: Array, r: float) -> tuple[Array,
     return P @ g / r, P
 
 
-def casadi_observer(blocks: TwoStageBlocks, K_x: Sequence[Any], K_z: Sequence[Any], parameters: Sequence[sp.Symbol]) -> Any:
+def casadi_observer(
+    blocks: TwoStageBlocks, K_x: Sequence[Any], K_z: Sequence[Any], parameters: Sequence[sp.Symbol]
+) -> Any:
     """Right-hand side as a casadi function (state (n,), sigma (2,), parameters) -> rate (n,)."""
     from navsym.numeric.casadi_functions import casadi_function
 

@@ -43,8 +43,13 @@ class Aided:
 
 def aiding_model() -> LinearModel:
     """dr/dt = v, dv/dt = b, db/dt = 0; velocity first, then position."""
-    return LinearModel([[0, 1, 0], [0, 0, 1], [0, 0, 0]], None, [[0, 1, 0], [1, 0, 0]], ("r", "v", "b"),
-                       measurements=("velocity", "position"))
+    return LinearModel(
+        [[0, 1, 0], [0, 0, 1], [0, 0, 0]],
+        None,
+        [[0, 1, 0], [1, 0, 0]],
+        ("r", "v", "b"),
+        measurements=("velocity", "position"),
+    )
 
 
 def reckon(record: Mapping[str, Array]) -> Aided:
@@ -70,7 +75,12 @@ def reckon(record: Mapping[str, Array]) -> Aided:
     velocity = gps_velocity[0] + np.cumsum(force * dt, axis=0)
     position = np.cumsum(velocity * dt, axis=0)
     places = fixes - start
-    return Aided(frozen(t[places]), frozen(velocity[places] - gps_velocity), frozen(position[places] - gps), frozen(gps))
+    return Aided(
+        frozen(t[places]),
+        frozen(velocity[places] - gps_velocity),
+        frozen(position[places] - gps),
+        frozen(gps),
+    )
 
 
 def horizontal_force(columns: Mapping[str, Array]) -> Array:
@@ -79,7 +89,9 @@ def horizontal_force(columns: Mapping[str, Array]) -> Array:
     ax, ay, az = columns["ax"], columns["ay"], columns["az"]
     ahead = ax * np.cos(theta) + (ay * np.sin(phi) + az * np.cos(phi)) * np.sin(theta)
     aside = ay * np.cos(phi) - az * np.sin(phi)
-    return np.column_stack([ahead * np.cos(psi) - aside * np.sin(psi), ahead * np.sin(psi) + aside * np.cos(psi)])
+    return np.column_stack(
+        [ahead * np.cos(psi) - aside * np.sin(psi), ahead * np.sin(psi) + aside * np.cos(psi)]
+    )
 
 
 def metres(latitude: Array, longitude: Array) -> Array:
@@ -99,7 +111,9 @@ def aiding_observer(rate_x: float, rate_z: float) -> TwoStageObserver:
     return observer(two_stage_blocks(chosen), found.K_x, found.K_z, values)
 
 
-def two_stage_estimates(aided: Aided, axis: int, rate_x: float = 0.2, rate_z: float = 0.2, start: float = 60.0) -> Array:
+def two_stage_estimates(
+    aided: Aided, axis: int, rate_x: float = 0.2, rate_z: float = 0.2, start: float = 60.0
+) -> Array:
     """(N, 3) estimates of (r, v, b) after every fix; position is used from ``start`` seconds on.
 
     Between two fixes the mean of both is held: held alone, a fix lags half a second behind a reckoning
@@ -128,7 +142,9 @@ def two_stage_estimates(aided: Aided, axis: int, rate_x: float = 0.2, rate_z: fl
 
 @dataclass(frozen=True, slots=True)
 class Tuning:
-    """Standard deviations of GPS velocity (m/s) and position (m), and intensities of the noise in dv/dt and db/dt."""
+    """Standard deviations of GPS velocity (m/s) and position (m), and intensities of the noise in dv/dt and
+    db/dt.
+    """
 
     velocity: float = 0.3
     position: float = 2.5
@@ -161,7 +177,8 @@ def kalman_estimates(aided: Aided, axis: int, tuning: Tuning | None = None, star
 def outage_errors(aided: Aided, estimates: tuple[Array, Array], horizon: int, start: float = 120.0) -> Array:
     """(K,) metres: error of the position predicted ``horizon`` fixes ahead without GPS, against GPS.
 
-    The estimated error (r, v, b) of the reckoning is carried on by its own model; GPS at the end is the judge.
+    The estimated error (r, v, b) of the reckoning is carried on by its own model; GPS at the end is the
+    judge.
     """
     found = []
     for k in np.flatnonzero(aided.t - aided.t[0] >= start):

@@ -34,7 +34,11 @@ Y = sp.Matrix(sp.symbols("y_1:9", real=True))
 #: Declared orders: alpha, pi, epsilon, nu, w are of order rho; beta and gamma of order rho/mu;
 #: the derivatives of omega with respect to tau are of order mu on "stationary" trajectories.
 ORDERS: Mapping[sp.Symbol, int] = {
-    MU: 1, **dict.fromkeys(BETA, -1), **dict.fromkeys(OMEGA_RATE[:2], 1), Y[0]: -1, Y[4]: -1,
+    MU: 1,
+    **dict.fromkeys(BETA, -1),
+    **dict.fromkeys(OMEGA_RATE[:2], 1),
+    Y[0]: -1,
+    Y[4]: -1,
 }
 
 #: The same for the physical equations, where mu hides in the rates.
@@ -155,9 +159,11 @@ def position_group(equations: ErrorEquations | None = None) -> Group:
     equations = equations or dimensionless()
     meaning = position_variables(equations)
     eliminated = {1: BETA[0], 3: ALPHA[0], 4: PI[0], 5: BETA[1], 7: ALPHA[1], 8: PI[1]}
-    solve = solved_for([Y[k - 1] for k in eliminated], [meaning[k - 1] for k in eliminated], eliminated.values())
+    solve = solved_for(
+        [Y[k - 1] for k in eliminated], [meaning[k - 1] for k in eliminated], list(eliminated.values())
+    )
     group = grouped(Y, meaning, solve, equations, equations.position)
-    speeds = {0: Y[1], 4: Y[5]}                      # y_2 and y_6 are the derivatives themselves
+    speeds = {0: Y[1], 4: Y[5]}  # y_2 and y_6 are the derivatives themselves
     rates = tuple(speeds.get(k, rate) for k, rate in enumerate(group.rates))
     return Group(group.variables, meaning, rates, group.outputs, group.dropped, group.dropped_outputs)
 
@@ -191,6 +197,7 @@ def grouped(
     outputs: Sequence[sp.Expr],
 ) -> Group:
     """Differentiate, express in the variables, truncate."""
+
     def written(expression: sp.Expr) -> sp.Expr:
         return sp.expand(expression.subs(solve, simultaneous=True))
 
@@ -215,7 +222,7 @@ JOINT = (*X, Y[0], Y[1], Y[4], Y[5])
 
 def joint_model() -> LinearModel:
     """Homogeneous parts of (2.8) and (2.9) together: ten variables, four measurements."""
-    same = {Y[2]: X[0], Y[3]: X[1], Y[6]: X[3], Y[7]: X[4]}      # joint_correction:3.1
+    same = {Y[2]: X[0], Y[3]: X[1], Y[6]: X[3], Y[7]: X[4]}  # joint_correction:3.1
     velocity, position = velocity_group(), position_group()
     rates = [*velocity.rates, *(position.rates[k].subs(same) for k in (0, 1, 4, 5))]
     outputs = [*velocity.outputs, *position.outputs]
@@ -244,6 +251,7 @@ def full_model(order: int | None = None) -> LinearModel:
 
 def coefficients(expressions: Sequence[sp.Expr], order: int | None) -> sp.Matrix:
     """Coefficients of the full state; powers of mu from ``order`` on are left out."""
+
     def entry(expression: sp.Expr, state: sp.Symbol) -> sp.Expr:
         value = sp.expand(sp.diff(expression, state))
         return value if order is None else truncate(value, {MU: 1}, order).kept

@@ -94,6 +94,7 @@ class ErrorEquations:
 
 
 def horizontal(v: sp.Matrix) -> sp.Matrix:
+    """The first two components."""
     return v[:2, :]
 
 
@@ -103,8 +104,8 @@ def error_equations(climb: sp.Expr = sp.S.Zero) -> ErrorEquations:
     The gyroscopes give the platform rate with the error nu, the accelerometers the force with the
     error R omega_0^2 epsilon; dp is defined by alpha' = dp + nu in the horizontal axes.
     """
-    excess = DELTA_P - horizontal(skew(ALPHA) * OMEGA_X)       # error of the computed rate, from dp
-    computed = sp.Matrix([*excess, 0])                         # the third computed rate is exactly 0
+    excess = DELTA_P - horizontal(skew(ALPHA) * OMEGA_X)  # error of the computed rate, from dp
+    computed = sp.Matrix([*excess, 0])  # the third computed rate is exactly 0
     alpha_rate = rotation_rate(ALPHA, computed + NU_X, OMEGA_X)
     beta_rate = rotation_rate(BETA, NU_X, OMEGA_X)
     rates = {
@@ -125,7 +126,7 @@ def momentum_rate(computed: sp.Matrix, alpha_rate: sp.Matrix, climb: sp.Expr) ->
     """Derivative of dp = (error of the computed rate + alpha x omega), horizontal part."""
     force = specific_force(OMEGA_X, OMEGA_X_RATE, climb)
     error = sp.Matrix([*EPSILON, 0]) * RADIUS * SCHULER**2
-    measured = force + SMALL * (error - skew(ALPHA) * force)   # axes of the platform
+    measured = force + SMALL * (error - skew(ALPHA) * force)  # axes of the platform
     rate = OMEGA_X + SMALL * computed
     excess_rate = first_order(mechanisation(measured, rate, climb))
     turning = skew(alpha_rate) * OMEGA_X + skew(ALPHA) * OMEGA_X_RATE

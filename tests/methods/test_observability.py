@@ -46,10 +46,15 @@ def random_system(seed: int) -> tuple[list[list[Fraction]], list[list[Fraction]]
     def number() -> Fraction:
         return Fraction(source.randint(-3, 3), source.choice([1, 1, 2, 3]))
 
-    F = [[number() if kind != 1 or source.random() < 0.3 else Fraction(0) for _ in range(n)] for _ in range(n)]
+    F = [
+        [number() if kind != 1 or source.random() < 0.3 else Fraction(0) for _ in range(n)] for _ in range(n)
+    ]
     if kind == 2:
         cut = source.randint(0, n - 1)
-        F = [[value if not (r < cut <= c) else Fraction(0) for c, value in enumerate(row)] for r, row in enumerate(F)]
+        F = [
+            [value if not (r < cut <= c) else Fraction(0) for c, value in enumerate(row)]
+            for r, row in enumerate(F)
+        ]
     if kind == 3:
         F = [[Fraction(source.randint(0, 1)) if r == c else Fraction(0) for c in range(n)] for r in range(n)]
     rows = [[number() if source.random() < 0.6 else Fraction(0) for _ in range(n)] for _ in range(2)]
@@ -74,7 +79,9 @@ def test_two_hundred_random_systems_agree_with_schoolbook_elimination(block):
             chain = krylov(F, h, n + 1)
             assert measurement.dimension == fraction_rank(chain)
             m = measurement.dimension
-            assert [[Fraction(int(x.p), int(x.q)) for x in measurement.basis.row(r)] for r in range(m)] == chain[:m]
+            assert [
+                [Fraction(int(x.p), int(x.q)) for x in measurement.basis.row(r)] for r in range(m)
+            ] == chain[:m]
             theta = [Fraction(int(x.p), int(x.q)) for x in measurement.companion]
             combined = [sum(t * chain[j][c] for j, t in enumerate(theta)) for c in range(n)]
             assert combined == chain[m]
@@ -95,7 +102,9 @@ def test_symbolic_dimensions_agree_with_sympys_field_of_fractions():
     field = sp.QQ.frac_field(a, b, c)
     for k, measurement in enumerate(found.measurements):
         rows = sp.Matrix.vstack(*[H[k, :] * F**j for j in range(4)])
-        assert measurement.dimension == sp.polys.matrices.DomainMatrix.from_Matrix(rows).convert_to(field).rank()
+        assert (
+            measurement.dimension == sp.polys.matrices.DomainMatrix.from_Matrix(rows).convert_to(field).rank()
+        )
 
 
 def test_companion_coefficients_of_a_full_chain_are_those_of_the_characteristic_polynomial():
@@ -132,15 +141,15 @@ def test_a_hidden_direction_is_named_by_its_states():
     found = observe(model)
     names = {direction_names(found.unobservable[k, :], found.states) for k in range(2)}
     assert names == {"drift", "2*tilt - bias"} or names == {"drift", "-2*tilt + bias"}
-    with pytest.raises(UnobservableError, match="rank 1 of 3.*drift"):
+    with pytest.raises(UnobservableError, match=r"rank 1 of 3.*drift"):
         need_observable(found)
 
 
 def test_pi_is_transcendental():
-    F = sp.Matrix([[0, 1], [-sp.pi**2, 0]])
+    F = sp.Matrix([[0, 1], [-(sp.pi**2), 0]])
     found = observe(LinearModel(F, None, [[sp.pi, 1]]))
     assert found.observable
-    assert found.measurements[0].companion == (-sp.pi**2, 0)
+    assert found.measurements[0].companion == (-(sp.pi**2), 0)
 
 
 def test_determinant_equals_its_slow_twin():
@@ -149,7 +158,10 @@ def test_determinant_equals_its_slow_twin():
     source = random.Random(1)
     gens = [ring.quotient(s).top for s in symbols]
     for size in (1, 2, 3, 4, 5):
-        matrix = [[source.choice(gens) * source.randint(-2, 2) + source.randint(-1, 1) for _ in range(size)] for _ in range(size)]
+        matrix = [
+            [source.choice(gens) * source.randint(-2, 2) + source.randint(-1, 1) for _ in range(size)]
+            for _ in range(size)
+        ]
         matrix = [[entry + ring.constant(0) for entry in row] for row in matrix]
         assert determinant(matrix, ring) == determinant_slowly(matrix, ring)
 
@@ -161,7 +173,9 @@ def test_maximal_minors_are_all_square_minors():
     a, b = (ring.quotient(s).top for s in ring.symbols)
     one, zero = ring.constant(1), ring.constant(0)
     rows = [[a, one, b, zero], [b, a, zero, one]]
-    direct = [determinant_slowly([[row[i], row[j]] for row in rows], ring) for i, j in combinations(range(4), 2)]
+    direct = [
+        determinant_slowly([[row[i], row[j]] for row in rows], ring) for i, j in combinations(range(4), 2)
+    ]
     assert sorted(map(str, maximal_minors(rows, ring))) == sorted(str(d) for d in direct if d != 0)
 
 

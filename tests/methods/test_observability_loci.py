@@ -23,7 +23,10 @@ def conditions(model: LinearModel) -> dict[str, set[frozenset[sp.Expr]]]:
 
 def test_a_chain_breaks_where_its_coupling_vanishes():
     model = LinearModel([[0, a, 0], [0, 0, b], [0, 0, 0]], None, [[1, 0, 0]])
-    assert conditions(model) == {"z1": {frozenset({a}), frozenset({b})}, "joint": {frozenset({a}), frozenset({b})}}
+    assert conditions(model) == {
+        "z1": {frozenset({a}), frozenset({b})},
+        "joint": {frozenset({a}), frozenset({b})},
+    }
 
 
 def test_a_drop_of_codimension_two_is_listed_as_two_conditions_together():

@@ -75,8 +75,17 @@ def test_the_general_variant_adds_the_gain_to_the_coupling():
 
 @pytest.mark.parametrize(
     ("text", "stable"),
-    [((p + 1) ** 3, True), (p**2 + 1, False), (p**2 - p + 1, False), ((p + lam) ** 2, True), ((p - lam) ** 2, False),
-     (p * (p + 1), False), (p**2 + a * p + 1, None), (p**3 + p**2 + p + 1, False), ((p + lam) * (p + nu) ** 2, True)],
+    [
+        ((p + 1) ** 3, True),
+        (p**2 + 1, False),
+        (p**2 - p + 1, False),
+        ((p + lam) ** 2, True),
+        ((p - lam) ** 2, False),
+        (p * (p + 1), False),
+        (p**2 + a * p + 1, None),
+        (p**3 + p**2 + p + 1, False),
+        ((p + lam) * (p + nu) ** 2, True),
+    ],
 )
 def test_stability_is_decided_by_hurwitz_and_declared_signs(text, stable):
     degree = sp.degree(sp.expand(text), p)
@@ -86,7 +95,9 @@ def test_stability_is_decided_by_hurwitz_and_declared_signs(text, stable):
 def test_hurwitz_agrees_with_the_roots_of_random_polynomials():
     source = random.Random(3)
     for _ in range(60):
-        values = [sp.Rational(source.randint(-4, 9), source.randint(1, 3)) for _ in range(source.randint(1, 5))]
+        values = [
+            sp.Rational(source.randint(-4, 9), source.randint(1, 3)) for _ in range(source.randint(1, 5))
+        ]
         roots = np.roots([1.0, *map(float, values)])
         if np.abs(roots.real).min() < 1e-6:
             continue
@@ -95,7 +106,11 @@ def test_hurwitz_agrees_with_the_roots_of_random_polynomials():
 
 def test_minors_of_a_cubic_are_the_classical_ones():
     c1, c2, c3 = sp.symbols("c1:4")
-    assert [sp.expand(m) for m in hurwitz_minors((c1, c2, c3))] == [c1, sp.expand(c1 * c2 - c3), sp.expand(c3 * (c1 * c2 - c3))]
+    assert [sp.expand(m) for m in hurwitz_minors((c1, c2, c3))] == [
+        c1,
+        sp.expand(c1 * c2 - c3),
+        sp.expand(c3 * (c1 * c2 - c3)),
+    ]
 
 
 def test_wrong_poles_are_refused():

@@ -39,7 +39,11 @@ def test_the_rate_of_a_small_rotation_is_that_of_two_turning_frames():
     vector = -np.array([after[2, 1] - after[1, 2], after[0, 2] - after[2, 0], after[1, 0] - after[0, 1]]) / 2
     symbols = sp.Matrix(sp.symbols("a1:4")), sp.Matrix(sp.symbols("b1:4")), sp.Matrix(sp.symbols("c1:4"))
     formula = kin.rotation_rate(*symbols)
-    values = {s: v for group, given in zip(symbols, (theta, excess, rate), strict=True) for s, v in zip(group, given, strict=True)}
+    values = {
+        s: v
+        for group, given in zip(symbols, (theta, excess, rate), strict=True)
+        for s, v in zip(group, given, strict=True)
+    }
     expected = np.array([float(x.subs(values)) for x in formula])
     assert np.abs((vector - theta) / h - expected).max() < 2e-4 * np.abs(expected).max()
 
@@ -73,9 +77,14 @@ def test_error_equations_follow_two_nonlinear_computers():
         true = true + h * change
     after = -np.array([C[2, 1] - C[1, 2], C[0, 2] - C[2, 0], C[1, 0] - C[0, 1]]) / 2
     dp_after = computed - true[:2] + np.array([-after[2] * true[1], after[2] * true[0]])
-    values = {kin.SCHULER: w0, **dict(zip(kin.ALPHA, alpha, strict=True)), **dict(zip(kin.DELTA_P, dp, strict=True)),
-              **dict(zip(kin.NU_X, nu, strict=True)), **dict(zip(kin.EPSILON, eps, strict=True)),
-              **dict(zip(kin.OMEGA_X[:2], omega[:2], strict=True))}
+    values = {
+        kin.SCHULER: w0,
+        **dict(zip(kin.ALPHA, alpha, strict=True)),
+        **dict(zip(kin.DELTA_P, dp, strict=True)),
+        **dict(zip(kin.NU_X, nu, strict=True)),
+        **dict(zip(kin.EPSILON, eps, strict=True)),
+        **dict(zip(kin.OMEGA_X[:2], omega[:2], strict=True)),
+    }
     rates = kin.error_equations().rates
     for k in range(2):
         expected = float(rates[kin.DELTA_P[k]].subs(values))

@@ -1,0 +1,171 @@
+"""Section 1, the Remark and (1.13): any rows that complete L_x, and what the weight K°_z costs."""
+
+from __future__ import annotations
+
+import sympy as sp
+
+from derivations.joint_correction.section1_systems import flat
+from derivations.joint_correction.section1_two_stage import PAIRS, blocks
+from navsym.claims import REFUTED, Equation, Finding, Property, claim
+from navsym.methods.observability_split import inverse
+
+
+def general(m: int, rest: int) -> dict[str, sp.Matrix]:
+    """The split system seen through z° = S x + T z with general S and lower triangular T."""
+    b = blocks(m, rest)
+    S = sp.Matrix(rest, m, lambda r, s: sp.Symbol(f"s{r}{s}", real=True))
+    T = sp.Matrix(
+        rest,
+        rest,
+        lambda r, s: (
+            sp.Symbol(f"t{r}", positive=True) if r == s else sp.Symbol(f"t{r}{s}", real=True) if s < r else 0
+        ),
+    )
+    L = sp.Matrix(sp.BlockMatrix([[sp.eye(m), sp.zeros(m, rest)], [S, T]]))
+    back = sp.Matrix(inverse("L", sp.ImmutableMatrix(L)))
+    G = sp.Matrix(sp.BlockMatrix([[b["Gx"], sp.zeros(m, rest)], [b["Gz1"], b["Gz2"]]]))
+    turned = (L * G * back).applyfunc(sp.together)
+    row = sp.Matrix.hstack(sp.zeros(1, m), b["gz"]) * back
+    return {
+        **b,
+        "S": S,
+        "T": T,
+        "Gz1": turned[m:, :m],
+        "Gz2": turned[m:, m:],
+        "g1": row[:, :m],
+        "g2": row[:, m:],
+        "upper": turned[:m, :],
+    }
+
+
+@claim("1.13.model")
+def general_model():
+    """With any rows that complete L_x the model keeps its form, and dx/dt has no z.
+
+    dz/dt = G°_z1 x + G°_z2 z, sigma_2 = g_z1 x + g_z2 z.
+    """
+    printed, derived = [], []
+    for m, rest in PAIRS[:4]:
+        b = general(m, rest)
+        x, z = (
+            sp.Matrix(sp.symbols(f"{name}1:{size + 1}", real=True)) for name, size in (("x", m), ("z", rest))
+        )
+        raw = blocks(m, rest)
+        new = b["S"] * x + b["T"] * z
+        printed += (
+            list(b["Gz1"] * x + b["Gz2"] * new) + list(b["g1"] * x + b["g2"] * new) + list(b["upper"][:, m:])
+        )
+        derived += list(b["S"] * raw["Gx"] * x + b["T"] * (raw["Gz1"] * x + raw["Gz2"] * z))
+        derived += [*list(raw["gz"] * z), *[sp.Integer(0)] * (m * rest)]
+    return Equation(printed, derived)
+
+
+@claim("1.13.error")
+def general_error():
+    """In (1.13) the error of x enters that of z with the weight K°_z.
+
+    It enters through G°_z1 - K°_z g_z1^T, and z enters itself through G°_z2 - K°_z g_z2^T.
+    """
+    printed, derived = [], []
+    for m, rest in PAIRS[:4]:
+        b = general(m, rest)
+        e, f, x, z = (
+            sp.Matrix(sp.symbols(f"{name}1:{size + 1}", real=True))
+            for name, size in (("e", m), ("f", rest), ("x", m), ("z", rest))
+        )
+        printed += list((b["Gz1"] - b["Kz"] * b["g1"]) * e + (b["Gz2"] - b["Kz"] * b["g2"]) * f)
+        innovation = (b["g1"] * x + b["g2"] * z - b["g1"] * (x - e) - b["g2"] * (z - f))[0]
+        derived += list(
+            b["Gz1"] * x + b["Gz2"] * z - b["Gz1"] * (x - e) - b["Gz2"] * (z - f) - b["Kz"] * innovation
+        )
+    return Equation(printed, derived)
+
+
+@claim("1.13.free_of_gain")
+def special_choice_has_no_weight():
+    """For the rows b of (1.7), S = 0, the weight K°_z is gone from the influence of x: g_z1 = 0."""
+    printed, derived = [], []
+    for m, rest in PAIRS[:4]:
+        b = general(m, rest)
+        printed += [sp.Integer(0)] * m
+        derived += list(b["g1"].subs({symbol: 0 for symbol in b["S"]}))
+    return Equation(printed, derived)
+
+
+@claim("1.13.equivalent")
+def general_variant_in_the_old_coordinates():
+    """(1.13) is (1.11) plus the injection -T^-1 S K_x of the first innovation, when K°_z = T K_z."""
+    printed, derived = [], []
+    for m, rest in PAIRS[:4]:
+        b, raw = general(m, rest), blocks(m, rest)
+        T_inverse = sp.Matrix(inverse("T", sp.ImmutableMatrix(b["T"])))
+        coupling = b["Gz1"] - b["T"] * raw["Kz"] * b["g1"]
+        itself = b["Gz2"] - b["T"] * raw["Kz"] * b["g2"]
+        first = raw["Gx"] - raw["Kx"] * raw["gx"]
+        # the error of S x + T z in the coordinates e (of x) and f (of z): S e + T f
+        printed += flat(
+            raw["Gz1"] + T_inverse * b["S"] * raw["Kx"] * raw["gx"], raw["Gz2"] - raw["Kz"] * raw["gz"]
+        )
+        derived += flat(
+            T_inverse * (coupling + itself * b["S"] - b["S"] * first), T_inverse * itself * b["T"]
+        )
+    return Equation(printed, derived)
+
+
+@claim(
+    "1.13.never_better",
+    expect=REFUTED,
+    slip="paper",
+    reason="too strong without a condition: (1.13) injects the first innovation into z, which an "
+    "optimal filter does too; "
+    "for dx/dt = q, dz/dt = x it has the smaller steady error variance of z for a suitable S",
+)
+def general_variant_is_never_better():
+    """(1.13) is less preferable than (1.11): never a smaller error of z (strict reading).
+
+    Both have equal poles.
+    """
+    plain, general_one = steady_variance(sp.Integer(0)), steady_variance(sp.Rational(-1, 3))
+    return Property(
+        True,
+        Finding(
+            bool(general_one >= plain),
+            "exact Lyapunov equation",
+            scope="dx/dt = q, dz/dt = x, unit noises, unit gains",
+            evidence=f"variance of the error of z: {plain} by (1.11), {general_one} by (1.13) with S = -1/3",
+        ),
+    )
+
+
+def steady_variance(S: sp.Expr) -> sp.Expr:
+    """Steady variance of z - z° for dx/dt = q, dz/dt = x, sigma_1 = x + r_1, sigma_2 = z + r_2; K_x = K_z =
+    1.
+
+    Errors e of x and f of z in the old coordinates (1.13.equivalent), unit intensities:
+    de/dt = -e + q - r_1, df/dt = (1 + S) e - f - r_2 + S r_1.
+    """
+    variables = a, b, d = sp.symbols("a b d", real=True)
+    A = sp.Matrix([[-1, 0], [1 + S, -1]])
+    noise = sp.Matrix([[2, -S], [-S, 1 + S**2]])
+    P = sp.Matrix([[a, b], [b, d]])
+    system = A * P + P * A.T + noise
+    rows = sp.Matrix([system[0, 0], system[0, 1], system[1, 1]])
+    matrix = rows.jacobian(variables)
+    values = matrix.LUsolve(-rows.subs({variable: 0 for variable in variables}))
+    return sp.expand(values[2])
+
+
+@claim("1.13.never_better*", corrects="1.13.never_better")
+def neither_variant_dominates():
+    """Neither variant dominates: S = -1/3 gives (1.13) the smaller, S = 1 the larger variance of z."""
+    plain = steady_variance(sp.Integer(0))
+    better, worse = steady_variance(sp.Rational(-1, 3)), steady_variance(sp.Integer(1))
+    return Property(
+        ("smaller", "larger"),
+        Finding(
+            ("smaller" if better < plain else "not smaller", "larger" if worse > plain else "not larger"),
+            "exact Lyapunov equation",
+            scope="dx/dt = q, dz/dt = x, unit noises, unit gains",
+            evidence=f"variances {better} and {worse} against {plain}",
+        ),
+    )

@@ -1,0 +1,169 @@
+"""The verb ``observe``: keys, exact answers, bad input."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+import sympy as sp
+
+from navsym.cli.main import run
+
+GOOD = """
+[model]
+name   = "link"
+states = ["x1", "x2", "x3", "x4", "x5", "x6"]
+F = [["0","1","0","0","0","0"], ["-1","0","0","0","0","0"], ["0","0","0","0","0","0"],
+     ["0","0","0","0","1","0"], ["0","0","0","-1","0","0"], ["0","0","0","0","0","0"]]
+[parameters]
+kappa = "real"
+[[measurement]]
+name  = "velocity"
+h     = ["0", "1", "1", "kappa", "0", "0"]
+sigma = "1"
+[[measurement]]
+name  = "second"
+h     = ["-kappa", "0", "0", "0", "1", "1"]
+sigma = "1"
+"""
+
+HIDDEN = """
+[model]
+name   = "hidden"
+states = ["a", "b"]
+F = [["0", "0"], ["0", "w"]]
+[parameters]
+w = "nonzero"
+[[measurement]]
+name  = "one"
+h     = ["1", "0"]
+sigma = "1"
+"""
+
+
+@pytest.fixture
+def observe(tmp_path, capsys):
+    def call(text: str, *options: str):
+        path = tmp_path / "model.toml"
+        path.write_text(text)
+        status = run(["observe", str(path), *options])
+        captured = capsys.readouterr()
+        return status, captured.out, captured.err
+
+    return call
+
+
+def test_the_document_has_the_promised_keys_and_exact_values(observe):
+    status, out, _ = observe(GOOD, "--json", "--poles", "(p+lam)**3; (p+lam)**3")
+    data = json.loads(out)
+    assert status == 0
+    assert data["n"] == 6 and data["observable"] is True and data["joint_dimension"] == 6
+    assert [m["name"] for m in data["measurements"]] == ["velocity", "second"]
+    assert data["measurements"][0]["dimension"] == 3
+    assert data["measurements"][0]["basis"][0] == ["0", "1", "1", "kappa", "0", "0"]
+    assert data["measurements"][0]["companion"] == ["0", "-1", "0"]
+    assert data["unobservable_basis"] == []
+    drops = {(d["subspace"], d["condition"], d["complete"]) for d in data["rank_drops"]}
+    assert drops == {("joint", "kappa + 1 = 0", True), ("joint", "kappa - 1 = 0", True)}
+    assert [(s["i"], s["j"]) for s in data["splits"]] == [(3, 3)]
+    kappa = sp.Symbol("kappa")
+    assert sp.expand(sp.sympify(data["split"]["det_L"], {"kappa": kappa}) - (kappa**2 - 1) ** 2) == 0
+    assert data["split"]["Theta"] == [["0", "1", "0"], ["0", "0", "1"], ["0", "-1", "0"]]
+    assert data["split"]["Phi_x"] == [["0"] * 3] * 3
+    assert data["gains"]["K_x"] == data["gains"]["K_z"] == ["3*lam", "3*lam**2 - 1", "lam**3 - 3*lam"]
+
+
+def test_without_options_gains_are_empty_and_the_split_is_the_two_stage_one(observe):
+    data = json.loads(observe(GOOD, "--json")[1])
+    assert data["gains"]["K_x"] == [] and data["gains"]["K_z"] == []
+    assert (data["split"]["i"], data["split"]["j"]) == (3, 3)
+
+
+def test_people_get_tables(observe):
+    status, out, _ = observe(GOOD)
+    assert status == 0
+    assert "observable" in out and "kappa - 1 = 0" in out and "det L" in out
+
+
+def test_an_unobservable_pair_is_described(observe):
+    status, out, _ = observe(HIDDEN, "--json")
+    data = json.loads(out)
+    assert status == 0
+    assert data["observable"] is False and data["joint_dimension"] == 1
+    assert data["unobservable_basis"] == [["0", "1"]]
+    assert data["unobservable_directions"] == ["b"]
+    assert data["splits"] == [] and data["split"] is None
+
+
+@pytest.mark.parametrize(
+    ("text", "options", "kind", "words"),
+    [
+        (HIDDEN, ["--poles", "p+1"], "unobservable", "direction b"),
+        (HIDDEN, ["--split", "1,1"], "unobservable", "direction b"),
+        (GOOD, ["--split", "4,2"], "domain", "det(a1, a2, a3, a4, b1, b2) = 0"),
+        (GOOD, ["--split", "4,4"], "shape", "i + j = 6"),
+        (GOOD, ["--split", "x"], "syntax", "two numbers"),
+        (GOOD, ["--poles", "(p+lam)**2; (p+lam)**3"], "shape", "degree 3"),
+        (GOOD, ["--poles", "(p-lam)**3; (p+lam)**3"], "domain", "left half-plane"),
+        (GOOD, ["--poles", "(p+1)**3; p**3"], "domain", "left half-plane"),
+        (GOOD, ["--poles", "(p+x1)**3; (p+1)**3"], "duplicate", "x1"),
+        (GOOD.replace("kappa", "p"), ["--poles", "(p+1)**3; (p+1)**3"], "duplicate", "p to be free"),
+        (GOOD, ["--poles", "__import__('os'); p"], "syntax", ""),
+        (GOOD.replace('"-kappa", "0", "0", "0", "1", "1"', '"0", "1", "1", "kappa", "0", "0"'), [], "
+        ""
+        ""
+        ""
+        ""duplicate", "row of its "
+        ""
+        ""
+        ""
+        ""
+        ""
+        ""
+        ""
+        ""
+        ""
+        ""
+        ""
+        ""
+        ""
+        ""
+        ""
+        ""
+        ""
+        ""
+        "own"),
+        (GOOD.replace('"-kappa", "0", "0", "0", "1", "1"', '"0", "0", "0", "0", "0", "0"'), [], "domain", "not zero"),
+        (GOOD.replace('["0","1","0","0","0","0"], ', '["0","1","0","0","0"], '), [], "shape", ""),
+        (GOOD.replace('"-1","0","0"', '"-sin(kappa)","0","0"'), [], "domain", "rational function"),
+        (GOOD.replace('"-1","0","0"', '"-t","0","0"'), [], "domain", "constant"),
+    ],
+)
+def test_bad_input_ends_with_status_two_and_one_clear_error(observe, text, options, kind, words):
+    status, out, _ = observe(text, "--json", *options)
+    error = json.loads(out)["error"]
+    assert status == 2
+    assert error["kind"] == kind
+    assert words in error["message"]
+
+
+def test_a_basis_file_has_no_system_to_observe(observe):
+    basis = '[basis]\nvariable = "s"\nH = ["1", "s"]\ninterval = ["0", "1"]\n[targets]\nc = ["0", "1"]\n'
+    status, out, _ = observe(basis, "--json")
+    assert status == 2
+    assert json.loads(out)["error"]["kind"] == "domain"
+
+
+def test_a_value_can_be_put_in_and_meets_the_rank_drop(observe):
+    data = json.loads(observe(GOOD, "--json", "--set", "kappa=1")[1])
+    assert data["observable"] is False
+    assert data["joint_dimension"] < 6
+
+
+def test_pages_hold_the_decomposition_and_no_markup_of_the_file(observe, tmp_path):
+    nasty = GOOD.replace('name   = "link"', 'name   = "<script>alert(1)</script>"')
+    html, latex = tmp_path / "page.html", tmp_path / "page.tex"
+    status, _, _ = observe(nasty, "--html", str(html), "--latex", str(latex))
+    assert status == 0
+    assert "<script>" not in html.read_text() and "<math" in html.read_text()
+    assert r"\Theta" in latex.read_text()

@@ -1,0 +1,70 @@
+"""What holds the 1979 paper together beyond its single rows."""
+
+from __future__ import annotations
+
+import numpy as np
+import sympy as sp
+
+from derivations import joint_correction
+from derivations.joint_correction import section1_systems, section3_gains
+from derivations.joint_correction.section2_groups import position, velocity
+from navsym.claims import REFUTED, claims_of, coverage
+from navsym.models.inertial import ORDERS
+from navsym.models.inertial_orders import lowest_order
+
+CLAIMS = claims_of(joint_correction)
+
+
+def test_every_numbered_equation_is_claimed_or_a_definition():
+    found = coverage(joint_correction.PAPER, CLAIMS)
+    assert found.missing == ()
+    assert set(found.definitions) == {"1.1", "1.2"}
+
+
+def test_refuted_rows_have_a_class_a_reason_and_a_correction():
+    corrected = {claim.corrects for claim in CLAIMS}
+    refuted = [claim for claim in CLAIMS if claim.expect is REFUTED]
+    assert {claim.number for claim in refuted} == corrected - {None}
+    assert all(claim.slip in ("paper", "scan") and len(claim.reason) > 40 for claim in refuted)
+
+
+def test_titles_are_sentences_and_numbers_are_unique():
+    assert len({claim.number for claim in CLAIMS}) == len(CLAIMS) > 135
+    assert not [claim.number for claim in CLAIMS if not claim.title.endswith(".")]
+
+
+def test_the_example_systems_have_the_sizes_that_they_promise():
+    sizes = [(s.n, s.m) for s in section1_systems.systems()]
+    assert sizes == [(2, 1), (3, 2), (4, 2), (5, 3)]
+    assert section1_systems.free("x", 3).det() == section1_systems.c[0]
+
+
+def test_the_true_decay_rate_is_that_of_the_numerical_eigenvalues():
+    A = section3_gains.coupled_velocity_block().subs(
+        {section3_gains.kappa: sp.Rational(1, 20), section3_gains.lam: 1}
+    )
+    numeric = -np.linalg.eigvals(np.array(A, dtype=float)).real.max()
+    exact = float(section3_gains.decay_rate(sp.Integer(1), sp.Rational(1, 20)))
+    assert abs(numeric - exact) < 1e-4
+
+
+def test_routh_counts_the_poles_that_numpy_finds():
+    for lam, kappa in (
+        (1, 0),
+        (1, sp.Rational(1, 2)),
+        (1, 2),
+        (2, sp.Rational(9, 10)),
+        (sp.Rational(1, 2), 3),
+    ):
+        A = section3_gains.coupled_velocity_block().subs(
+            {section3_gains.kappa: kappa, section3_gains.lam: lam}
+        )
+        right = int((np.linalg.eigvals(np.array(A, dtype=float)).real > 1e-9).sum())
+        assert section3_gains.poles_on_the_right(sp.sympify(lam), sp.sympify(kappa)) == right
+
+
+def test_every_dropped_term_is_on_record_with_its_order():
+    for group in (velocity(), position()):
+        for dropped in group.dropped:
+            for term in dropped:
+                assert term.order == lowest_order(term.term, ORDERS) >= 2
