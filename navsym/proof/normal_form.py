@@ -63,21 +63,37 @@ def reduce_to_zero(expression: sp.Expr) -> Reduction:
     for divisor in divisors_inside(expression):
         converter.divide_by(divisor)
     converter.check_divisors()
-    zero = converter.vanishes(quotient)
     return Reduction(
-        zero=zero,
+        zero=converter.vanishes(quotient),
         divisors=tuple(d for d in converter.divisors if not d.is_Number),
-        radicands=tuple(converter.radicands),
-        arguments=tuple(converter.arguments),
+        radicands=tuple(dict.fromkeys([*converter.radicands, *radicands_inside(expression)])),
+        arguments=tuple(dict.fromkeys([*converter.arguments, *logarithms_inside(expression)])),
         ring=describe(converter),
         complete=not converter.roots and not converter.atoms,
     )
 
 
+def ordered(nodes: set[sp.Basic]) -> list[sp.Basic]:
+    """Nodes of a tree in an order that does not depend on the run."""
+    return sorted(nodes, key=sp.default_sort_key)
+
+
 def divisors_inside(expression: sp.Expr) -> list[sp.Basic]:
     """Bases of negative powers anywhere in the expression, arguments of functions included."""
-    powers = sorted(expression.atoms(sp.Pow), key=sp.default_sort_key)
+    powers = ordered(expression.atoms(sp.Pow))
     return [power.base for power in powers if power.exp.is_Rational and power.exp < 0]
+
+
+def radicands_inside(expression: sp.Expr) -> list[sp.Basic]:
+    """What has to be nonnegative for roots, inverse sines and inverse cosines to be real."""
+    powers = ordered(expression.atoms(sp.Pow))
+    found = [p.base for p in powers if p.exp.is_Rational and not p.exp.is_Integer and not p.base.is_nonnegative]
+    return found + [1 - node.args[0] ** 2 for node in ordered(expression.atoms(sp.asin, sp.acos))]
+
+
+def logarithms_inside(expression: sp.Expr) -> list[sp.Basic]:
+    """Arguments of logarithms, which have to be positive."""
+    return [node.args[0] for node in ordered(expression.atoms(sp.log)) if not node.args[0].is_positive]
 
 
 def describe(converter: Converter) -> str:

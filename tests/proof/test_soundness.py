@@ -139,3 +139,10 @@ def test_a_formula_that_divides_by_an_identical_zero_is_not_proved():
 )
 def test_what_is_nearly_equal_is_not_proved_equal(left, right):
     assert decide(Equation(left, right)).status not in (PROVED, CERTIFIED)
+
+
+def test_conditions_inside_arguments_are_assumptions_too():
+    verdict = decide(Equation(sp.sin(2 * sp.sqrt(x)), 2 * sp.sin(sp.sqrt(x)) * sp.cos(sp.sqrt(x))))
+    assert verdict.status == PROVED and "x >= 0" in verdict.assumptions
+    verdict = decide(Equation(sp.cos(1 / x) ** 2 + sp.sin(1 / x) ** 2, sp.Integer(1)))
+    assert verdict.status == PROVED and "x != 0" in verdict.assumptions
