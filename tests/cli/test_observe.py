@@ -41,6 +41,11 @@ sigma = "1"
 """
 
 
+def with_second_row(row: str) -> str:
+    """The good file with another row h for its second measurement."""
+    return GOOD.replace('"-kappa", "0", "0", "0", "1", "1"', row)
+
+
 @pytest.fixture
 def observe(tmp_path, capsys):
     def call(text: str, *options: str):
@@ -109,31 +114,8 @@ def test_an_unobservable_pair_is_described(observe):
         (GOOD, ["--poles", "(p+x1)**3; (p+1)**3"], "duplicate", "x1"),
         (GOOD.replace("kappa", "p"), ["--poles", "(p+1)**3; (p+1)**3"], "duplicate", "p to be free"),
         (GOOD, ["--poles", "__import__('os'); p"], "syntax", ""),
-        (GOOD.replace('"-kappa", "0", "0", "0", "1", "1"', '"0", "1", "1", "kappa", "0", "0"'), [], "
-        ""
-        ""
-        ""
-        ""duplicate", "row of its "
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        ""
-        "own"),
-        (GOOD.replace('"-kappa", "0", "0", "0", "1", "1"', '"0", "0", "0", "0", "0", "0"'), [], "domain", "not zero"),
+        (with_second_row('"0", "1", "1", "kappa", "0", "0"'), [], "duplicate", "row of its own"),
+        (with_second_row('"0", "0", "0", "0", "0", "0"'), [], "domain", "not zero"),
         (GOOD.replace('["0","1","0","0","0","0"], ', '["0","1","0","0","0"], '), [], "shape", ""),
         (GOOD.replace('"-1","0","0"', '"-sin(kappa)","0","0"'), [], "domain", "rational function"),
         (GOOD.replace('"-1","0","0"', '"-t","0","0"'), [], "domain", "constant"),

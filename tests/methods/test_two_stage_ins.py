@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from navsym.errors import DomainError
-from navsym.methods.two_stage_flight import EARTH_RATE, EARTH_RADIUS, SCHULER_RATE, great_circle
+from navsym.methods.two_stage_flight import EARTH_RADIUS, EARTH_RATE, SCHULER_RATE, great_circle
 from navsym.methods.two_stage_ins import (
     Errors,
     Situation,
