@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 Engine = Literal["auto", "numpy", "compiled"]
 
 #: Below this many one-step filters the compiled loops do not pay for being loaded.
-WORTH_COMPILING = 20_000
+WORTH_COMPILING = 200_000
 #: Log-likelihood below which every likelihood is zero in double precision.
 UNDERFLOW = -745.0
 
