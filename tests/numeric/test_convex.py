@@ -1,5 +1,8 @@
 """Programmes on a grid against closed forms; the solvers' own words are never taken for the truth."""
 
+import sys
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 import sympy as sp
@@ -173,3 +176,11 @@ def test_bad_problems_are_refused_in_words():
         GridProblem(np.ones((1, 2)), [1.0], bounds=[1.0, 0.0])
     with pytest.raises(NotFiniteError):
         GridProblem([[1.0, np.nan]], [1.0])
+
+
+def test_a_second_highs_library_is_reported_before_it_ends_the_process(monkeypatch, tmp_path):
+    (tmp_path / "libhighs.so.1").touch()
+    monkeypatch.setitem(sys.modules, "highspy", SimpleNamespace(__file__=str(tmp_path / "__init__.py")))
+    result = guaranteed_lp(velocity_correction(1.0, "y1"), solver="casadi:highs")
+    assert result.status.startswith("failed: MissingEngineError: casadi:highs: expected one HiGHS library")
+    assert not result.claims
