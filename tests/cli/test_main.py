@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -109,6 +110,12 @@ def test_every_real_verb_has_a_help_line_and_a_command() -> None:
     for verb, path in main.verbs().items():
         assert main.help_line(path) != "(no description)", verb
         assert "def command(" in path.read_text(encoding="utf-8"), verb
+
+
+def test_the_readme_lists_every_verb_and_no_other() -> None:
+    text = (Path(__file__).resolve().parents[2] / "README.md").read_text(encoding="utf-8")
+    listed = set(re.findall(r"^\| `([a-z-]+)", text.split("## Verbs")[1].split("##")[0], flags=re.M))
+    assert listed == set(main.verbs())
 
 
 def test_a_verb_runs_with_its_options(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
