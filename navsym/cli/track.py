@@ -1,0 +1,93 @@
+"""Velocity and acceleration of a track of positions, with standard deviations.
+
+The work is done by :mod:`navsym.methods.trajectory_document`; this file reads, calls and prints.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from navsym.cli.output import emit, remark, table
+
+SHOWN = 12
+
+
+def command(
+    file: Annotated[Path, typer.Argument(help="CSV of time, latitude, longitude, height, or an RTKLIB .pos")],
+    window: Annotated[float | None, typer.Option("--window", help="seconds of the sliding window")] = None,
+    order: Annotated[int, typer.Option("--order", help="states: 2 speed, 3 acceleration, up to 6")] = 3,
+    method: Annotated[
+        str | None,
+        typer.Option("--method", help="differences, window, filter, smoother (default) or guaranteed"),
+    ] = None,
+    sigma: Annotated[
+        float | None, typer.Option("--sigma", help="standard deviation of the positions, metres")
+    ] = None,
+    gate: Annotated[
+        float, typer.Option("--gate", help="innovations beyond it are believed less; 0: off")
+    ] = 5.0,
+    policy: Annotated[
+        str, typer.Option("--policy", help="strict, or repair and list the repairs")
+    ] = "strict",
+    json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
+) -> None:
+    from navsym.errors import DomainError, NavsymError
+    from navsym.methods.trajectory_document import document
+    from navsym.methods.trajectory_estimate import Settings
+    from navsym.methods.trajectory_tracks import track_of
+    from navsym.text.readers_tracks import read_track
+
+    # A window asks for the sliding window; every other choice has to be named.
+    chosen = method or ("window" if window is not None else "smoother")
+    settings = Settings(chosen, order, window, gate, sigma is not None)  # type: ignore[arg-type]
+    if sigma is not None and not 0 < sigma < float("inf"):
+        raise DomainError(
+            f"--sigma: expected a positive number of metres; got {sigma}; leave it out if unknown"
+        )
+    if window is not None and chosen not in ("window", "guaranteed"):
+        raise DomainError(f"--window: expected method window or guaranteed with it; got {chosen}; drop one")
+    read = read_track(file, policy)  # type: ignore[arg-type]
+    try:
+        given = read.sigma if sigma is None else sigma
+        track = track_of(read.t - read.t[0], read.latitude, read.longitude, read.height, given)
+        found = document(
+            read.t, track, settings, lines=read.lines, warnings=read.warnings, repairs=read.repairs
+        )
+    except NavsymError as error:
+        raise error.at(str(file)) from None
+    for line in found["warnings"]:
+        remark(f"warning: {line}")
+    for line in found["repairs"]:
+        remark(f"repaired: {line}")
+    emit(found, as_json=json_, text=lambda: shown(found))
+
+
+def shown(found: dict[str, Any]) -> str:
+    """A table of some rows for people."""
+    rows = found["rows"]
+    step = max(1, rows // SHOWN)
+    lines = [
+        (
+            f"{found['t'][k]:.3f}",
+            *quantity(found, "velocity", k),
+            *quantity(found, "acceleration", k),
+            found["flags"][k],
+        )
+        for k in range(0, rows, step)
+    ]
+    head = ("t, s", "vE, m/s", "vN", "vU", "aE, m/s2", "aN", "aU", "row")
+    noise = found["noise"]["position_sd"]
+    text = table(head, lines, right=head[:-1])
+    summary = (
+        f"{rows} rows, method {found['method']}, {found['order']} states; noise of the positions "
+        f"{noise[0]:.3g} m horizontal, {noise[2]:.3g} m vertical"
+    )
+    return f"{summary}\n{text}"
+
+
+def quantity(found: dict[str, Any], name: str, k: int) -> list[str]:
+    pairs = zip(found[name][k], found[f"{name}_sd"][k], strict=True)
+    return [f"{value:.3f} ± {deviation:.3f}" for value, deviation in pairs]
