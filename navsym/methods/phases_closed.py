@@ -8,20 +8,22 @@ solve linear systems with exact entries, and the pair goes to the ladder of proo
 from __future__ import annotations
 
 import itertools
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 import numpy as np
 import sympy as sp
 from flint import arb
 
-from navsym.claims import OPEN, Optimum, Verdict
+from navsym.claims import OPEN, PROVED, Optimum, Verdict
 from navsym.methods.phases_family import U, Family
 from navsym.methods.phases_scan import Pattern, Span, pattern_of, sample
-from navsym.proof.balls import precision
+from navsym.proof.balls import enclose
 from navsym.proof.enclosure import rational
+from navsym.proof.equations import combine
 from navsym.proof.ladder import decide_within
+from navsym.proof.optima import SHARE, constraints, equal_values
 from navsym.proof.optimality_polish import Polished, polish
 from navsym.proof.products import as_product
 
@@ -114,28 +116,36 @@ def place_of(values: Sequence[sp.Rational], lengths: Sequence[sp.Rational], T: s
 # -- exact linear algebra on the contacts ---------------------------------------------------------
 
 
-def closed_form(family: Family, span: Span, lower: sp.Expr, upper: sp.Expr, seconds: float = 40.0) -> Closed | None:
-    """Closed form of a regime, proved on (lower, upper), or None when none is recognised."""
+def candidates(family: Family, span: Span) -> list[Closed]:
+    """Closed forms of a span as guesses, not yet proved; the dual with most zeros first."""
     found = samples_of(family, span)
     if len(found) < 3:
-        return None
+        return []
     T = family.parameter
     lengths = [s.T for s in found]
     places = [place_of([s.places[i] for s in found], lengths, T) for i in range(len(span.pattern))]
     if any(p is None for p in places):
-        return None
+        return []
     exact = tuple(p for p in places if p is not None)
-    best: Closed | None = None
+    weights = weights_of(family, span, exact, found[0])
+    if weights is None:
+        return []
+    panels, guesses = tuple(k for k, _, _ in span.pattern), []
     for dual in itertools.islice(duals(family, span, exact, found[0]), 3):
-        weights = weights_of(family, span, exact, found[0])
-        if weights is None:
-            return None
         value = tidy(sum((x * p for x, p in zip(dual, family.functional, strict=True)), sp.S.Zero))
-        verdict = proved(family, span, exact, weights, dual, value, lower, upper, seconds)
-        candidate = Closed(tuple(k for k, _, _ in span.pattern), exact, weights, dual, value, verdict)
+        guesses.append(Closed(panels, exact, weights, dual, value, Verdict(OPEN, "none")))
+    return guesses
+
+
+def prove(family: Family, guesses: Sequence[Closed], lower: sp.Expr, upper: sp.Expr, seconds: float = 60.0) -> Closed | None:
+    """The first guess that the ladder proves or certifies on the whole of (lower, upper); else the first."""
+    best: Closed | None = None
+    for guess in guesses:
+        verdict = proved(family, guess, lower, upper, seconds)
+        done = replace(guess, verdict=verdict)
         if verdict.status.holds:
-            return candidate
-        best = best or candidate
+            return done
+        best = best or done
     return best
 
 
@@ -229,18 +239,72 @@ def weights_of(family: Family, span: Span, places: Sequence[sp.Expr], one: Sampl
     return None if solved is None else tuple(solved)
 
 
-def proved(
-    family: Family, span: Span, places: Sequence[sp.Expr], weights: Sequence[sp.Expr], dual: Sequence[sp.Expr],
-    value: sp.Expr, lower: sp.Expr, upper: sp.Expr, seconds: float,
-) -> Verdict:  # fmt: skip
+def proved(family: Family, guess: Closed, lower: sp.Expr, upper: sp.Expr, seconds: float) -> Verdict:
     """The ladder's verdict on the pair for all T between the ends; one measurement only."""
     if len(family.rows) != 1:
         return Verdict(OPEN, "none", evidence="several measurements: pairs are proved for one")
     sigma = family.sigma[0]
+    # Lengths are positive: at T = 0 itself, the end of an open range, weights may be infinite.
+    T = sp.Symbol(family.parameter.name, positive=True)
+    put = lambda e: sp.sympify(e).subs(family.parameter, T)  # noqa: E731
     statement = Optimum(
-        regressors=family.rows[0], functional=family.functional, variable=U, interval=(sp.S.Zero, family.parameter),
-        dual=tuple(x / sigma for x in dual), support=tuple(places), weights=tuple(weights), value=value / sigma,
-        box={family.parameter: (lower, upper)},
+        regressors=family.rows[0], functional=family.functional, variable=U, interval=(sp.S.Zero, T),
+        dual=tuple(put(x / sigma) for x in guess.dual), support=tuple(map(put, guess.places)),
+        weights=tuple(map(put, guess.weights)), value=put(guess.value / sigma), box={T: (lower, upper)},
     )  # fmt: skip
-    with precision(128):
-        return decide_within(statement, seconds)
+    if is_polynomial(statement):
+        return decide_polynomial(statement)
+    outcome = decide_within(statement, seconds)
+    return outcome
+
+
+# -- polynomials, where the share of the interval is the only variable ----------------------------
+
+
+def is_polynomial(statement: Optimum) -> bool:
+    T = statement.interval[1]
+    f = sum((x * h for x, h in zip(statement.dual, statement.regressors, strict=True)), sp.S.Zero)
+    scaled = sp.expand(f.subs(statement.variable, T * SHARE))
+    return scaled.is_polynomial(SHARE) and scaled.free_symbols <= {SHARE} and all(c.is_Rational for c in sp.Poly(scaled, SHARE).coeffs())
+
+
+def decide_polynomial(statement: Optimum) -> Verdict:
+    """The four conditions, dual feasibility by Sturm's count on the square-free factors."""
+    T = statement.interval[1]
+    f = sum((x * h for x, h in zip(statement.dual, statement.regressors, strict=True)), sp.S.Zero)
+    scaled = sp.expand(f.subs(statement.variable, T * SHARE))
+    sides = [sp.Poly(1 - scaled, SHARE), sp.Poly(1 + scaled, SHARE)]
+    if not all(nonnegative_on_unit(side) for side in sides):
+        return Verdict(OPEN, "Sturm", evidence="the dual polynomial leaves its bound")
+    unit = {T: sp.S.One}  # weights and places scale with powers of T: prove them at T = 1 and as identities in T
+    return combine([
+        Verdict(PROVED, "Sturm's theorem on square-free factors"),
+        constraints(statement), instants_of(statement, unit), equal_values(statement),
+    ])  # fmt: skip
+
+
+def nonnegative_on_unit(polynomial: sp.Poly) -> bool:
+    """p >= 0 on [0, 1], exactly: factors of odd multiplicity have no root inside, and p > 0 somewhere."""
+    if polynomial.is_zero:
+        return True
+    _, factors = polynomial.sqf_list()
+    for factor, multiplicity in factors:
+        inner = factor
+        for end in (0, 1):
+            while inner.degree() > 0 and inner.eval(end) == 0:
+                inner = sp.quo(inner, sp.Poly(SHARE - end, SHARE))
+        if multiplicity % 2 and inner.degree() > 0 and inner.count_roots(0, 1):
+            return False
+    points = (sp.Rational(k, 997) for k in range(1, 997))
+    return bool(next(v for v in (polynomial.eval(p) for p in points) if v != 0) > 0)
+
+
+def instants_of(statement: Optimum, unit: Mapping[sp.Symbol, sp.Expr]) -> Verdict:
+    """Places c T with constants c between 0 and 1, by balls, ends exactly."""
+    for place in statement.support:
+        c = place.subs(unit)
+        linear = sp.expand(place - c * statement.interval[1]) == 0
+        inside = c in (0, 1) or (bool(enclose(c) > 0) and bool(enclose(1 - c) > 0))
+        if not linear or not inside:
+            return Verdict(OPEN, "balls", evidence=f"instant {place} is not shown to lie inside")
+    return Verdict(PROVED, "exact shares")

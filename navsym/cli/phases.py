@@ -1,0 +1,77 @@
+"""The complete solution as the interval's length varies: regimes, boundaries, closed forms."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from navsym.cli.output import dumps, emit, table, write_text
+from navsym.errors import DomainError, ExpressionSyntaxError, NavsymError
+
+
+def command(
+    file: Annotated[Path, typer.Argument(help="model or basis file whose interval ends at the parameter")],
+    target: Annotated[str | None, typer.Option(help="name of the functional; the only one by default")] = None,
+    parameter: Annotated[str, typer.Option(help="the length of the interval")] = "T",
+    range_: Annotated[str | None, typer.Option("--range", help='"0, 2*pi"; the declared range by default')] = None,
+    set_: Annotated[list[str] | None, typer.Option("--set", help="value of another parameter")] = None,
+    quick: Annotated[bool, typer.Option("--quick", help="leave regimes without a closed form uncertified")] = False,
+    out: Annotated[Path | None, typer.Option(help="write the range certificates, numbered, beside this name")] = None,
+    json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
+) -> None:
+    """Which instants, which weights, which value, on exactly which range of lengths."""
+    from navsym.methods.phases import phases
+    from navsym.methods.phases_family import family_of
+    from navsym.text.modelfile import read_model
+
+    found = read_model(file, values_of(set_ or []))
+    try:
+        lower, upper = ends_of(found, parameter, range_)
+        answer = phases(family_of(found, target, parameter), lower, upper, certify=not quick)
+    except NavsymError as error:
+        raise error.at(str(file)) from None
+    document = answer.document()
+    if out is not None:
+        for k, certificate in enumerate(answer.certificates()):
+            write_text(out.with_name(f"{out.stem}-{k + 1}.json"), dumps(certificate) + "\n")
+    emit(document, as_json=json_, text=lambda: as_text(document))
+
+
+def values_of(settings: list[str]) -> dict[str, str]:
+    values = {}
+    for setting in settings:
+        name, equals, value = setting.partition("=")
+        if not equals:
+            raise ExpressionSyntaxError(f"expected NAME=VALUE; got {setting[:40]!r}; write --set w=1/2", where="--set")
+        values[name.strip()] = value.strip()
+    return values
+
+
+def ends_of(found: Any, parameter: str, text: str | None) -> tuple[Any, Any]:
+    """The range of the option, or the one that the file declares for the parameter."""
+    from navsym.text.expression import parse
+
+    if text is not None:
+        parts = text.split(",")
+        if len(parts) != 2:
+            raise ExpressionSyntaxError(f'expected two numbers; got {text[:40]!r}; write --range "0, 2*pi"', where="--range")
+        return parse(parts[0], {}, where="--range"), parse(parts[1], {}, where="--range")
+    for symbol, ends in found.box.items():
+        if symbol.name == parameter and None not in ends:
+            return ends
+    raise DomainError(f'expected a range of {parameter}; got none; give --range "0, 2*pi"')
+
+
+def as_text(document: dict[str, Any]) -> str:
+    rows = [
+        (row["from"], row["to"], row["value"] or "implicit", "; ".join(str(s["at"] or "inside") for s in row["support"]), row["status"])
+        for row in document["regimes"]
+    ]
+    lines = [table(("from", "to", "value", "instants", "status"), rows, title=document["target"])]
+    for b in document["boundaries"]:
+        lines.append(f"{b['at'] or b['lower']}: {b['why']}")
+    if document["uncovered"]:
+        lines.append("uncovered: " + ", ".join(f"{a} to {b}" for a, b in document["uncovered"]))
+    return "\n".join(lines)
