@@ -79,6 +79,8 @@ OWNERS: dict[str, dict[str, str]] = {
     "clarabel": {"navsym/numeric/convex": "convex solver"},
     "highspy": {"navsym/numeric/convex": "convex solver"},
     "numba": {"navsym/numeric": "compiled loops"},
+    "llvmlite": {"navsym/numeric/mixture_lanes.py": "values of eight lanes inside compiled loops"},
+    "mpmath": {"navsym/methods": "roots to many digits, as candidates that navsym.proof decides"},
     "matplotlib": {"navsym/report": "plots"},
     "jinja2": {"navsym/report": "pages"},
     "IPython": {"navsym/report/notebook.py": "what notebooks show"},

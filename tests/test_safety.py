@@ -14,8 +14,11 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 
-#: Functions that execute text, wherever they come from.
-EXECUTING = frozenset({"eval", "exec", "__import__", "parse_expr", "parse_latex", "lambdify"})
+#: Built-in functions that execute text; methods of these names are something else.
+BUILTIN = frozenset({"eval", "exec", "__import__", "compile"})
+
+#: Functions of sympy that execute text, the text that they make from names included.
+EXECUTING = frozenset({"parse_expr", "parse_latex", "lambdify"})
 
 #: Modules whose files can execute code when they are read.
 UNSAFE_MODULES = frozenset({"pickle", "marshal", "shelve", "dill", "cloudpickle", "joblib", "yaml"})
@@ -62,10 +65,8 @@ def call_fault(call: ast.Call, file: str) -> str:
     function = call.func
     owner = getattr(getattr(function, "value", None), "id", "")
     name = getattr(function, "attr", getattr(function, "id", ""))
-    if name in EXECUTING and owner != "self":
+    if name in EXECUTING or (name in BUILTIN and (isinstance(function, ast.Name) or owner == "builtins")):
         return f"{name} executes text"
-    if name == "compile" and isinstance(function, ast.Name):
-        return "compile prepares text for execution"
     if owner in ("np", "numpy") and name == "load":
         return "" if says(call, "allow_pickle", False) else "np.load needs allow_pickle=False"
     if owner in ("sp", "sympy") and name in ("sympify", "S"):
@@ -132,7 +133,7 @@ SOUND = [
     "arb_mat(rows).solve(right)",
     "np.linalg.solve(A, b)",
     "np.load(path, allow_pickle=False)",
-    "self.eval(x)",
+    "polynomial.eval(x)",
     "from sympy import Symbol",
     "import importlib",
 ]
