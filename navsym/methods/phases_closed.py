@@ -18,6 +18,7 @@ from flint import arb
 
 from navsym.claims import OPEN, PROVED, Optimum, Verdict
 from navsym.methods.phases_family import U, Family
+from navsym.methods.phases_polynomial import is_monomial, monomial_weights, power_law_dual
 from navsym.methods.phases_scan import Pattern, Span, pattern_of, sample
 from navsym.proof.balls import enclose
 from navsym.proof.enclosure import rational
@@ -127,6 +128,10 @@ def candidates(family: Family, span: Span) -> list[Closed]:
     if any(p is None for p in places):
         return []
     exact = tuple(p for p in places if p is not None)
+    if is_monomial(family):
+        quick = monomial_guess(family, span, exact, found)
+        if quick is not None:
+            return [quick]
     weights = weights_of(family, span, exact, found[0])
     if weights is None:
         return []
@@ -135,6 +140,16 @@ def candidates(family: Family, span: Span) -> list[Closed]:
         value = tidy(sum((x * p for x, p in zip(dual, family.functional, strict=True)), sp.S.Zero))
         guesses.append(Closed(panels, exact, weights, dual, value, Verdict(OPEN, "none")))
     return guesses
+
+
+def monomial_guess(family: Family, span: Span, places: tuple[sp.Expr, ...], found: Sequence[Sample]) -> Closed | None:
+    duals_ = [[number(x) for x in s.polished.dual] for s in found]
+    dual = power_law_dual(family, duals_, [s.T for s in found])
+    weights = monomial_weights(family, places)
+    if dual is None or weights is None:
+        return None
+    value = sum((x * p for x, p in zip(dual, family.functional, strict=True)), sp.S.Zero)
+    return Closed(tuple(k for k, _, _ in span.pattern), places, weights, dual, value, Verdict(OPEN, "none"))
 
 
 def prove(family: Family, guesses: Sequence[Closed], lower: sp.Expr, upper: sp.Expr, seconds: float = 60.0) -> Closed | None:
