@@ -199,7 +199,26 @@ def measurements_for(made: Bank, values: Any, *, missing: bool = False) -> Array
     With ``missing`` a None or NaN is a number that did not come; otherwise it is a NotFiniteError
     that names the row. Infinities are always refused.
     """
-    p = made.channels
+    table = table_of(values, made.channels)
+    bad = ~np.isfinite(table)
+    if missing:
+        bad &= ~np.isnan(table)
+    if bad.any():
+        k, j = (int(i) for i in np.argwhere(bad)[0])
+        raise NotFiniteError(f"measurements[{k}]: expected a finite number; got {table[k, j]} in entry {j}; "
+                             "mend it, or ask for missing measurements")
+    if made.horizon is not None and len(table) > made.horizon:
+        raise ShapeError(f"measurements: expected at most {made.horizon} rows, the steps for which models are "
+                         f"given; got {len(table)}; give models for every step")
+    return arrays.frozen(table)
+
+
+def table_of(values: Any, p: int) -> Array:
+    """Rows of p numbers as an array of floats, NaN for None."""
+    if isinstance(values, np.ndarray) and values.dtype.kind in "fiu" and values.ndim == 2:
+        if values.shape[1] != p:
+            raise ShapeError(f"measurements: expected {p} columns, one per row of H; got {values.shape[1]}; match H")
+        return np.array(values, dtype=float)
     rows = list(values)
     table = np.empty((len(rows), p))
     for k, row in enumerate(rows):
@@ -208,17 +227,7 @@ def measurements_for(made: Bank, values: Any, *, missing: bool = False) -> Array
             raise ShapeError(f"measurements[{k}]: expected {p} numbers, one per row of H; got {len(entries)}; "
                              "match H")
         table[k] = [np.nan if e is None else number(e, k) for e in entries]
-    bad = ~np.isfinite(table)
-    if missing:
-        bad &= ~np.isnan(table)
-    if bad.any():
-        k, j = (int(i) for i in np.argwhere(bad)[0])
-        raise NotFiniteError(f"measurements[{k}]: expected a finite number; got {table[k, j]} in entry {j}; "
-                             "mend it, or ask for missing measurements")
-    if made.horizon is not None and len(rows) > made.horizon:
-        raise ShapeError(f"measurements: expected at most {made.horizon} rows, the steps for which models are "
-                         f"given; got {len(rows)}; give models for every step")
-    return arrays.frozen(table)
+    return table
 
 
 def number(value: Any, row: int) -> float:

@@ -32,7 +32,7 @@ def run_compiled(rule: Scheme, models: Bank, z: Array, count: int) -> multimodel
     out = (np.empty((T, m)), np.empty((T, n)), np.empty((T, n, n)), np.empty(T), np.empty(T))
     stopped = run_bank(
         BRANCHING[rule.branching], FOLDING[rule.folding], rule.period, widest, models.F, models.Q, H, r, U, rotated,
-        mixture.logs(models.mode_transition), mixture.logs(models.probabilities), models.common, models.means,
+        models.mode_transition, mixture.logs(models.mode_transition), mixture.logs(models.probabilities), models.common, models.means,
         models.covariances, z, *out,
     )
     if stopped:

@@ -95,33 +95,41 @@ def correct_group(g, n, p, came, H, r, z, x, P, scratch, log_likelihood):  # typ
 
 
 @numba.njit(**COMPILE)
-def mix_group(g, n, sources, weights, x, P, mean, covariance):  # type: ignore[no-untyped-def]
+def mix_group(g, n, sources, weights, x, P, mean, covariance, off):  # type: ignore[no-untyped-def]
     """Merge all sources with the weights of each of eight targets: the interaction of IMM.
 
     weights [source, lane] at ``(g sources + s) 8``; sources are read from x, P in the layout of lanes,
-    targets are written to mean, covariance, group g. Deviations are taken from each target's own mean.
+    targets are written to mean, covariance, group g. Deviations are taken from each target's own mean and
+    kept in off (2 sources n 8), plain and weighted, so that the inner loop holds its sums in registers.
     """
-    start, square = g * n * 8, g * n * n * 8
+    start, square, plain = g * n * 8, g * n * n * 8, sources * n * 8
     for a in range(n):
         total = spread(0.0)
         for s in range(sources):
             total = total + load(weights, (g * sources + s) * 8) * spread(x[((s // 8) * n + a) * 8 + s % 8])
         store(mean, start + a * 8, total)
-        for b in range(a + 1):
-            store(covariance, square + (a * n + b) * 8, spread(0.0))
-    for s in range(sources):
-        w = load(weights, (g * sources + s) * 8)
-        block, lane = s // 8, s % 8
-        for a in range(n):
-            off = spread(x[(block * n + a) * 8 + lane]) - load(mean, start + a * 8)
-            for b in range(a + 1):
-                other = spread(x[(block * n + b) * 8 + lane]) - load(mean, start + b * 8)
-                place = square + (a * n + b) * 8
-                inner = spread(P[((block * n + a) * n + b) * 8 + lane]) + off * other
-                store(covariance, place, load(covariance, place) + w * inner)
+        for s in range(sources):
+            deviation = spread(x[((s // 8) * n + a) * 8 + s % 8]) - total
+            store(off, (a * sources + s) * 8, deviation)
+            store(off, plain + (a * sources + s) * 8, load(weights, (g * sources + s) * 8) * deviation)
+    full = sources // 8 * 8
     for a in range(n):
-        for b in range(a):
-            store(covariance, square + (b * n + a) * 8, load(covariance, square + (a * n + b) * 8))
+        for b in range(a + 1):
+            inside, between = spread(0.0), spread(0.0)
+            left, right, given = plain + a * sources * 8, b * sources * 8, g * sources * 8
+            # Blocks of eight without divisions of the index; the second sum keeps the chains short.
+            for s in range(0, full, 8):
+                value = (s * n * n) + (a * n + b) * 8
+                for lane in range(8):
+                    step = (s + lane) * 8
+                    inside = inside + load(weights, given + step) * spread(P[value + lane])
+                    between = between + load(off, left + step) * load(off, right + step)
+            for s in range(full, sources):
+                value = spread(P[full * n * n + (a * n + b) * 8 + s - full])
+                inside = inside + load(weights, given + s * 8) * value
+                between = between + load(off, left + s * 8) * load(off, right + s * 8)
+            store(covariance, square + (a * n + b) * 8, inside + between)
+            store(covariance, square + (b * n + a) * 8, inside + between)
 
 
 @numba.njit(**COMPILE)

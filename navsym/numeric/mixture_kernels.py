@@ -114,6 +114,33 @@ def mixing_weights(sources, modes, ahead, totals, weights, terms):  # type: igno
 
 
 @numba.njit(**COMPILE)
+def mix_quickly(modes, logs, transition, totals, weights, terms):  # type: ignore[no-untyped-def]
+    """The same with one exponential per source, when every source knows its mode; False when it must not.
+
+    It must not when a weight would underflow beside the largest, or when a next mode is impossible.
+    """
+    top = logs[0]
+    for s in range(1, modes):
+        top = max(top, logs[s])
+    for s in range(modes):
+        if not logs[s] - top > -600.0:
+            return False
+        terms[s] = math.exp(logs[s] - top)
+    for i in range(((modes + 7) // 8) * 8):
+        column = min(i, modes - 1)
+        total = 0.0
+        for s in range(modes):
+            total += terms[s] * transition[s, column]
+        if not total > 1e-250:
+            return False
+        for s in range(modes):
+            weights[((i // 8) * modes + s) * 8 + i % 8] = terms[s] * transition[s, column] / total
+        if i < modes:
+            totals[i] = top + math.log(total)
+    return True
+
+
+@numba.njit(**COMPILE)
 def copy_sources(branches, modes, n, x, P, mean, covariance):  # type: ignore[no-untyped-def]
     """Branch b starts from source b // m."""
     for b in range(branches):
@@ -153,12 +180,12 @@ def fold_by_mode(branches, modes, n, weights, x, P, mean, covariance):  # type: 
 
 @numba.njit(**COMPILE)
 def run_bank(  # type: ignore[no-untyped-def]
-    branching, folding, period, widest, F, Q, H, r, U, rotated, log_p, log_prior, common, means, covariances, z,
+    branching, folding, period, widest, F, Q, H, r, U, rotated, p_mode, log_p, log_prior, common, means, covariances, z,
     probabilities, mean, covariance, log_likelihood, best,
 ):
     """Filter a series; fills probabilities (T, m), mean, covariance, log_likelihood (cumulative), best.
 
-    F, Q (T or 1, m, n, n), H rotated, r variances, U rotations (T or 1, m, p, p), log_p (T or 1, m, m),
+    F, Q (T or 1, m, n, n), H rotated, r variances, U rotations (T or 1, m, p, p), p_mode and log_p (T or 1, m, m),
     means (m, n), covariances (m, n, n), z (T, p) with NaN for missing.
     Returns 0, or the step (from 1) at which lanes cannot go on and the readable engine must take over.
     """
@@ -174,6 +201,7 @@ def run_bank(  # type: ignore[no-untyped-def]
     ahead, totals = np.zeros((size, m)), np.zeros(groups * 8)
     weights, logs, ll = np.zeros(groups * 8), np.zeros(groups * 8), np.zeros(groups * 8)
     mixing, terms = np.zeros(groups * size * 8 if branching == 1 else 8), np.zeros(size)
+    off = np.zeros(2 * size * n * 8 if branching == 1 else 8)
     current_mean, current = np.zeros(n), np.zeros((n, n))
 
     known = branching == 2 or not common
@@ -196,10 +224,12 @@ def run_bank(  # type: ignore[no-untyped-def]
             x, nx = nx, x
             P, nP = nP, P
         elif branching == 1:
-            predict_modes(sources, known, m, logs, lp, ahead, terms)
-            mixing_weights(sources, m, ahead, totals, mixing, terms)
+            pk = p_mode[min(k, p_mode.shape[0] - 1)]
+            if not (known and mix_quickly(m, logs, pk, totals, mixing, terms)):
+                predict_modes(sources, known, m, logs, lp, ahead, terms)
+                mixing_weights(sources, m, ahead, totals, mixing, terms)
             for g in range((m + 7) // 8):
-                mix_group(g, n, sources, mixing, x, P, nx, nP)
+                mix_group(g, n, sources, mixing, x, P, nx, nP, off)
         else:
             predict_modes(sources, known, m, logs, lp, ahead, terms)
             for b in range(branches):
