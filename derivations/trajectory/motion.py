@@ -127,6 +127,13 @@ def measurement_row():
     return Equation(printed=sp.Matrix([[1] + [0] * (ORDER - 1)]), derived=measured_row(ORDER))
 
 
+@claim("2.z")
+def measurement_of_the_coordinate():
+    """Without noise the measurement z = H x is the coordinate x_1; n = 8."""
+    row = sp.Matrix([[1] + [0] * (ORDER - 1)])
+    return Equation(printed=(row * sp.Matrix(moved_state(ORDER, t)))[0], derived=moved_state(ORDER, t)[0])
+
+
 def nilpotency_index(n: int) -> int:
     """Smallest q with A^q = 0, by exact powers; rho is a free symbol."""
     A = motion.dynamics(n, rho)

@@ -38,6 +38,7 @@ def squared_singular_polynomial(rows: Rows, *, equilibrate: bool = False) -> fli
 
 
 def rational_matrix(rows: Rows) -> flint.fmpq_mat:
+    """The rows as an exact matrix; ShapeError when they are ragged or empty."""
     widths = {len(row) for row in rows}
     if len(widths) != 1 or not next(iter(widths)):
         raise ShapeError(f"expected rows of one positive length; got {sorted(widths)}; mend the matrix")
@@ -98,12 +99,14 @@ def newton_from_above(polynomial: flint.fmpq_poly, bits: int) -> flint.fmpq | No
 
 
 def dyadic(x: flint.arb) -> flint.fmpq:
+    """The exact value of a ball of radius zero."""
     mantissa, exponent = x.man_exp()
     power = int(exponent)
     return flint.fmpq(mantissa) * (flint.fmpq(2**power) if power >= 0 else flint.fmpq(1, 2**-power))
 
 
 def fraction(x: flint.fmpq) -> Fraction:
+    """The same rational number for the standard library."""
     return Fraction(int(x.p), int(x.q))
 
 

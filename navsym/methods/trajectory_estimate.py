@@ -115,6 +115,7 @@ class FilterRun:
 
 
 def filtered(track: Track, noise: Noise, settings: Settings, use: Rows) -> FilterRun:
+    """Forward run of the three channels; every matrix is kept for the smoother."""
     N, n = len(track.t), settings.order
     vectors = [np.empty((3, N, n)) for _ in range(3)]
     matrices = [np.empty((3, N, n, n)) for _ in range(2)]

@@ -125,6 +125,7 @@ def track_of(
 
 
 def check_order(track: Track, order: int) -> None:
+    """DomainError for an order that is not offered, ShapeError for a track too short for it."""
     if not 2 <= order <= LARGEST_ORDER:
         raise DomainError(f"order: expected 2 to {LARGEST_ORDER} states; got {order}; 3 is usual")
     if len(track.t) < order + 1:

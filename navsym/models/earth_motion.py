@@ -71,6 +71,7 @@ def row_scaling(h: sp.Matrix) -> sp.Matrix:
 
 
 def check_order(n: int) -> None:
+    """DomainError below order one."""
     if n < 1:
         raise DomainError(f"n: expected an order of 1 or more; got {n}; choose a larger one")
 
