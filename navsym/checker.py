@@ -468,6 +468,7 @@ def contact_proof(panels: list[Panel], P: list[arb], basis: arb_mat, piece: Any,
     m, rows = len(P), [fields(c, "panel at end sign weight") for c in array(piece["contacts"])]
     read = lambda cs: [arb(number(c)) for c in array(cs)]  # noqa: E731
     need(all(row[2] in ("no", "from", "to") and row[3] in (-1, 1) and type(row[3]) is int for row in rows), "end and sign")
+    need(all(row[2] == "no" or row[1] == [] for row in rows), "an end has no place of its own")
     on = [panels[whole(row[0], 0, len(panels) - 1)] for row in rows]
     at = [read(row[1]) if row[2] == "no" else T if T and row[2] == "to" else [p.ends[row[2]]] for row, p in zip(rows, on, strict=True)]
     dual, weights, l = [read(c) for c in array(piece["dual"], m)], [read(row[4]) for row in rows], len(rows)

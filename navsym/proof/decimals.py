@@ -47,13 +47,15 @@ def placed(whole: int, exponent: int) -> str:
 
 
 def lower_end(x: arb, digits: int) -> str:
-    """A decimal below every number of the ball."""
-    return decimal(rational(x.lower()), digits, -1)
+    """A decimal below every number of the ball, by a unit of its last digit, so that a checker can see it."""
+    end = rational(x.lower())
+    return decimal(end - abs(end) * fmpq(1, 10) ** digits, digits, -1)
 
 
 def upper_end(x: arb, digits: int) -> str:
-    """A decimal above every number of the ball."""
-    return decimal(rational(x.upper()), digits, 1)
+    """A decimal above every number of the ball, by a unit of its last digit."""
+    end = rational(x.upper())
+    return decimal(end + abs(end) * fmpq(1, 10) ** digits, digits, 1)
 
 
 def exact(text: str) -> fmpq:

@@ -200,7 +200,7 @@ def contact_rows(found: Polished, centre: Sequence[fmpq], digits: int) -> list[d
     for i, k in enumerate(found.panel):
         at = next(free) if found.inner[i] else rational(found.v[i])
         rows.append({
-            "panel": k, "at": [decimal(at, digits)], "end": end_name(found, i), "sign": found.sign[i],
+            "panel": k, "at": [decimal(at, digits)] if found.inner[i] else [], "end": end_name(found, i), "sign": found.sign[i],
             "weight": [decimal(centre[len(centre) - l + i], digits)],
         })  # fmt: skip
     return rows
