@@ -49,11 +49,11 @@ SWAPS = {
 
 
 def mutants(expression: sp.Expr) -> list[sp.Expr]:
-    """All different formulas one token away, in a fixed order, without undefined ones."""
+    """All different formulas one token away, in a fixed order, without undefined and complex ones."""
     expression = sp.sympify(expression, strict=True)
     symbols = sorted(expression.free_symbols, key=str)
     found = (mutant for mutant in changed(expression, symbols) if mutant != expression)
-    finite = (m for m in found if not m.has(sp.nan, sp.zoo, sp.oo, -sp.oo))
+    finite = (m for m in found if not m.has(sp.nan, sp.zoo, sp.oo, -sp.oo, sp.I))
     return list(dict.fromkeys(finite))
 
 
