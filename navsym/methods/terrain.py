@@ -21,7 +21,7 @@ from navsym.errors import NotEstimableError, TooLargeError
 from navsym.models.terrain import TerrainMap, demand_heights
 from navsym.models.terrain_track import MOST_HYPOTHESES, Hypotheses, Track
 from navsym.numeric.search import TOGETHER, dense_masked, offset_free, padded, patch_rows, slab
-from navsym.numeric.search_bounded import search_bounded
+from navsym.numeric.search_bounded import BoundedResult, search_bounded, search_one_velocity
 
 Array = NDArray[np.float64]
 Index = tuple[int, int, int, int]
@@ -36,6 +36,7 @@ class Prepared:
     """
 
     H: Array
+    single: NDArray[np.float32]
     bx: Array
     by: Array
     z: Array
@@ -90,7 +91,8 @@ def prepare(terrain: TerrainMap, track: Track, grid: Hypotheses, *, on_map: bool
     inside = across[0] >= 0.0 and across[1] <= nx - 1 and along[0] >= 0.0 and along[1] <= ny - 1
     plain = inside and not void_within(terrain, across, along)
     bound = max(terrain.highest, float(np.abs(track.h).max()))
-    return Prepared(terrain.heights, bx, by, np.array(track.h), wx, wy, steps, grid.counts, plain, bound)
+    z = np.array(track.h)
+    return Prepared(terrain.heights, terrain.single, bx, by, z, wx, wy, steps, grid.counts, plain, bound)
 
 
 def reach(b: Array, w: Array, s: float, M: int, Mv: int) -> tuple[float, float]:
@@ -136,14 +138,17 @@ def one_slab(prepared: Prepared, Vi: int, out: Array) -> None:
     slab(*prepared.arguments, prepared.steps, (Mx, My, Mvy), Vi - Mvx // 2, patch, out)
 
 
-def search_position(terrain: TerrainMap, track: Track, grid: Hypotheses) -> Search:
+def search_position(
+    terrain: TerrainMap, track: Track, grid: Hypotheses, *, dense: bool = False
+) -> Search:
     """The best position hypothesis, velocity errors taken as zero (terrain_search:2, terrain_search:3).
 
+    dense : keep all criteria in double precision; otherwise they are summed in single precision, and
+            the lowest again in double: the same minimum, runner-up and values
     Raises OutsideMapError, NoDataError, NotEstimableError (fewer than two measurements).
     """
     need(track, 2, "two coordinates")
-    prepared = prepare(terrain, track, grid.position_only)
-    return lowest(prepared, criteria(prepared))
+    return found_by(prepare(terrain, track, grid.position_only), dense, 1)
 
 
 def search_full(
@@ -156,15 +161,20 @@ def search_full(
     Raises OutsideMapError, NoDataError, NotEstimableError (fewer than four measurements).
     """
     need(track, 4, "two coordinates and two velocities")
-    prepared = prepare(terrain, track, grid)
+    return found_by(prepare(terrain, track, grid), dense, threads)
+
+
+def found_by(prepared: Prepared, dense: bool, threads: int) -> Search:
+    """The minimum by bounding where that is possible and wanted, else by evaluating every hypothesis."""
+    total = math.prod(prepared.counts)
     # Outside this range single precision could overflow or underflow; nobody measures such heights.
-    usual = 1e-10 < prepared.bound < 1e15 and grid.size > 1
+    usual = 1e-10 < prepared.bound < 1e15 and total > 1
     if dense or not (prepared.plain and usual):
         return lowest(prepared, criteria(prepared, threads=threads))
-    found = search_bounded(*prepared.arguments, prepared.steps, prepared.counts, prepared.bound)
-    index, runner_up = unravel(found.index, grid.counts), unravel(found.runner_up, grid.counts)
+    found = quickly(prepared)
+    index, runner_up = unravel(found.index, prepared.counts), unravel(found.runner_up, prepared.counts)
     unique = is_unique(prepared, (index, found.criterion), (runner_up, found.second))
-    share = found.samples / (grid.size * track.t.size)
+    share = found.samples / (total * prepared.z.size)
     return Search(index, found.criterion, found.second, unique, found.completed, share)
 
 
@@ -175,6 +185,14 @@ def search_offset_free(terrain: TerrainMap, track: Track, grid: Hypotheses) -> S
     out = np.empty(grid.counts[2:] + grid.counts[1::-1])
     offset_free(*prepared.arguments, prepared.steps, grid.counts, out)
     return lowest(prepared, out, exactly=False)
+
+
+def quickly(prepared: Prepared) -> BoundedResult:
+    """The exact search that suits the number of velocities."""
+    p = prepared
+    if p.counts[2:] == (1, 1):
+        return search_one_velocity(p.single, p.H, p.bx, p.by, p.z, p.steps, p.counts[:2], p.bound)
+    return search_bounded(*p.arguments, p.steps, p.counts, p.bound)
 
 
 def need(track: Track, least: int, what: str) -> None:

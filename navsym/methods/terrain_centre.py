@@ -13,15 +13,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from navsym.errors import NotEstimableError
-from navsym.models.terrain import TerrainMap, bilinear
+from navsym.models.terrain import TerrainMap, blend
 
 Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
 #: Ratio of the smallest to the largest information below which a direction counts as flat.
 FLAT = 1e-12
 
@@ -99,19 +99,41 @@ def quadratic_slowly(gx: Array, gy: Array, times: Array) -> tuple[float, float, 
     return A2, A1, A0
 
 
+#: Weights of three neighbouring nodes for the slope at the first, the middle and the last of them.
+STENCILS = np.array([[-1.5, 2.0, -0.5], [-0.5, 0.0, 0.5], [0.5, -2.0, 1.5]])
+
+
 def slopes(terrain: TerrainMap, x: Array, y: Array) -> tuple[Array, Array]:
     """Slopes of the map along x and y at positions (n,): central differences at the nodes, bilinear between.
 
-    Only the nodes around the positions are differenced. At the border of the map the differences
-    are one-sided and of second order where three nodes are there; next to voids the slope is NaN.
+    At the border of the map the differences are one-sided and of second order where three nodes are
+    there; next to voids the slope is NaN. Positions have to lie on the map.
     """
     u, w = terrain.cells(x, y)
-    r0, c0 = max(int(w.min()) - 2, 0), max(int(u.min()) - 2, 0)
-    patch = terrain.heights[r0 : int(w.max()) + 5, c0 : int(u.max()) + 5]
-    order: Any = 2 if min(patch.shape) >= 3 else 1
-    gradient = np.gradient(np.asarray(patch), terrain.dy, terrain.dx, edge_order=order)
-    along_y, along_x = map(np.asarray, gradient)
-    return bilinear(along_x, u - c0, w - r0)[0], bilinear(along_y, u - c0, w - r0)[0]
+    ny, nx = terrain.heights.shape
+    c = np.clip(np.floor(u).astype(np.int64), 0, nx - 2)
+    r = np.clip(np.floor(w).astype(np.int64), 0, ny - 2)
+    f, g = u - c, w - r
+    found = []
+    for at, spacing in ((along_row, terrain.dx), (along_column, terrain.dy)):
+        low = blend(at(terrain.heights, r, c), at(terrain.heights, r, c + 1), f)
+        high = blend(at(terrain.heights, r + 1, c), at(terrain.heights, r + 1, c + 1), f)
+        found.append(blend(low, high, g) / spacing)
+    return found[0], found[1]
+
+
+def along_row(H: Array, r: Indices, c: Indices) -> Array:
+    """Slope at nodes (r, c) along x, per cell."""
+    if H.shape[1] == 2:
+        return H[r, 1] - H[r, 0]
+    first = np.clip(c - 1, 0, H.shape[1] - 3)
+    weights = STENCILS[c - first]
+    return weights[:, 0] * H[r, first] + weights[:, 1] * H[r, first + 1] + weights[:, 2] * H[r, first + 2]
+
+
+def along_column(H: Array, r: Indices, c: Indices) -> Array:
+    """Slope at nodes (r, c) along y, per cell."""
+    return along_row(H.T, c, r)
 
 
 def demand_estimable(info: Information) -> None:

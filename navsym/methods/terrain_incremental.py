@@ -46,8 +46,7 @@ def fix(state: Accumulated) -> Search:
     if not state.measurements:
         raise EmptyError("measurements: expected at least one; got none; add measurements first")
     Mx, My = state.grid.counts[:2]
-    empty = np.zeros(1)
-    shown = Prepared(
-        state.terrain.heights, empty, empty, empty, empty, empty, (1.0, 1.0), (Mx, My, 1, 1), True, 0.0
-    )
+    empty, terrain = np.zeros(1), state.terrain
+    cells = (empty, empty, empty, empty, empty, (1.0, 1.0), (Mx, My, 1, 1))
+    shown = Prepared(terrain.heights, terrain.single, *cells, plain=True, bound=0.0)
     return lowest(shown, state.values, exactly=False)

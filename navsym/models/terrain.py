@@ -24,6 +24,8 @@ class TerrainMap:
     dx, dy  : spacing, positive, in the unit of the coordinates
     nodata  : value in ``heights`` that means "none", or None
 
+    single  : the heights in single precision, for loops that prove their margin ; highest : largest |height|
+
     NaN in ``heights`` is accepted only with ``nodata=float("nan")``: otherwise it is an error.
     Raises ShapeError, NotFiniteError, EmptyError, DomainError.
     """
@@ -34,6 +36,7 @@ class TerrainMap:
     dx: float
     dy: float
     nodata: float | None = None
+    single: NDArray[np.float32] = field(init=False, repr=False)
     highest: float = field(init=False, default=0.0)
     has_voids: bool = field(init=False, default=False)
 
@@ -42,6 +45,8 @@ class TerrainMap:
         if min(heights.shape) < 2:
             raise ShapeError(f"heights: expected at least 2 x 2 nodes; got {heights.shape}; give more")
         put(self, "heights", frozen(heights))
+        with np.errstate(over="ignore"):
+            put(self, "single", frozen(heights.astype(np.float32)))
         for name in ("x0", "y0"):
             put(self, name, finite(name, getattr(self, name)))
         for name in ("dx", "dy"):

@@ -55,7 +55,7 @@ def vector(name: str, value: Any, length: int | None, why: str) -> Array:
     return frozen(array)
 
 
-def frozen(array: Array) -> Array:
+def frozen(array: Any) -> Any:
     array.flags.writeable = False
     return array
 

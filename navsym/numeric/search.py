@@ -7,8 +7,8 @@ Everything here is counted in map cells: a hypothesis ``(i, j, Vi, Vj)`` puts me
 
 with ``bx, by`` the positions of the track, ``sx, sy`` the position steps and ``wx, wy`` the
 velocity steps times the time since t0. Heights between nodes are bilinear, columns first. Every
-loop evaluates these expressions in this order, without reassociation, and adds squares in the
-order of the measurements: that makes the fast loops equal their slow twins to the last bit.
+loop evaluates these expressions in this order and adds squares in the order of the
+measurements: that makes the fast loops equal their slow twins to the last bit.
 """
 
 from __future__ import annotations
@@ -26,6 +26,23 @@ LANES = 16
 TOGETHER = 4
 
 
+#: Multiplication and addition may be fused into one rounding, in these two expressions only: the
+#: compiler has no choice how, so that scalar and vector code still agree to the last bit.
+FUSED = {"contract"}
+
+
+@njit(nogil=True, cache=True, error_model="numpy", fastmath=FUSED)
+def blend(a: Any, b: Any, f: Any) -> Any:
+    """a + f (b - a)."""
+    return a + f * (b - a)
+
+
+@njit(nogil=True, cache=True, error_model="numpy", fastmath=FUSED)
+def add_square(total: Any, d: Any) -> Any:
+    """total + d^2."""
+    return total + d * d
+
+
 @njit(nogil=True, cache=True, error_model="numpy")
 def height_at(H: np.ndarray, u: float, w: float) -> float:
     """Bilinear height at column ``u`` and row ``w`` of H (ny, nx); positions on the map only."""
@@ -34,9 +51,9 @@ def height_at(H: np.ndarray, u: float, w: float) -> float:
     r = max(min(np.int64(np.floor(w)), ny - 2), 0)
     f, g = u - c, w - r
     column, row, one = unsigned(c), unsigned(r), unsigned(1)
-    a = H[row, column] + f * (H[row, column + one] - H[row, column])
-    b = H[row + one, column] + f * (H[row + one, column + one] - H[row + one, column])
-    return a + g * (b - a)
+    a = blend(H[row, column], H[row, column + one], f)
+    b = blend(H[row + one, column], H[row + one, column + one], f)
+    return blend(a, b, g)
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
@@ -62,7 +79,7 @@ def criterion_one(
     total = 0.0
     for k in range(z.shape[0]):
         d = z[k] - height_at(H, bx[k] + (px + vx * wx[k]), by[k] + (py + vy * wy[k]))
-        total += d * d
+        total = add_square(total, d)
         if total > limit:
             break
     return total
@@ -98,19 +115,24 @@ def dense_slowly(
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
+def is_run(columns: np.ndarray) -> bool:
+    """Whether the cells are consecutive, as they are when the step equals the cell."""
+    apart = 0
+    for i in range(columns.shape[0]):
+        apart |= columns[i] - (columns[0] + i)
+    return bool(apart == 0)
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
 def place_columns(
     b: float, s: float, shift: float, nx: int, half: int, columns: np.ndarray, fraction: np.ndarray
-) -> bool:
-    """Cell and fraction of every padded i; returns whether the cells are consecutive."""
+) -> None:
+    """Cell and fraction of every padded i."""
     for i in range(columns.shape[0]):
         u = b + ((i - half) * s + shift)
         c: Any = max(min(np.int64(np.floor(u)), nx - 2), 0)
         columns[i] = c
         fraction[i] = u - c
-    apart = 0
-    for i in range(columns.shape[0]):
-        apart |= columns[i] - (columns[0] + i)
-    return apart == 0
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
@@ -139,25 +161,23 @@ def blend_columns(
     high: int,
     columns: np.ndarray,
     fraction: np.ndarray,
-    consecutive: bool,
     patch: np.ndarray,
     start: int,
 ) -> None:
     """Interpolate rows ``low..high`` of the map at all columns, once for all Vj and j."""
     width = unsigned(columns.shape[0])
+    run = is_run(columns)
     for r in range(low, high + 1):
         base = unsigned(start + (r - low) * columns.shape[0])
-        if consecutive:
+        if run:
             near = H[r, columns[0] : columns[0] + columns.shape[0] + 1]
             for i in range(width):
-                a = near[i]
-                patch[base + i] = a + fraction[i] * (near[i + unsigned(1)] - a)
+                patch[base + i] = blend(near[i], near[i + unsigned(1)], fraction[i])
         else:
             line = H[r]
             for i in range(width):
                 c = unsigned(columns[i])
-                a = line[c]
-                patch[base + i] = a + fraction[i] * (line[c + unsigned(1)] - a)
+                patch[base + i] = blend(line[c], line[c + unsigned(1)], fraction[i])
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
@@ -170,18 +190,14 @@ def add_four(patch: np.ndarray, at: np.ndarray, g: Any, z: np.ndarray, width: in
         g0, g1, g2, g3 = g[0, e], g[1, e], g[2, e], g[3, e]
         o = unsigned(e * width)
         for i in range(W):
-            a = patch[p0 + i]
-            d = z0 - (a + g0 * (patch[p0 + W + i] - a))
-            s = out[o + i] + d * d
-            a = patch[p1 + i]
-            d = z1 - (a + g1 * (patch[p1 + W + i] - a))
-            s += d * d
-            a = patch[p2 + i]
-            d = z2 - (a + g2 * (patch[p2 + W + i] - a))
-            s += d * d
-            a = patch[p3 + i]
-            d = z3 - (a + g3 * (patch[p3 + W + i] - a))
-            out[o + i] = s + d * d
+            d = z0 - blend(patch[p0 + i], patch[p0 + W + i], g0)
+            s = add_square(out[o + i], d)
+            d = z1 - blend(patch[p1 + i], patch[p1 + W + i], g1)
+            s = add_square(s, d)
+            d = z2 - blend(patch[p2 + i], patch[p2 + W + i], g2)
+            s = add_square(s, d)
+            d = z3 - blend(patch[p3 + i], patch[p3 + W + i], g3)
+            out[o + i] = add_square(s, d)
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
@@ -191,9 +207,52 @@ def add_one(patch: np.ndarray, at: np.ndarray, g: np.ndarray, z: float, width: i
     for e in range(at.shape[0]):
         p, o, ge = unsigned(at[e]), unsigned(e * width), g[e]
         for i in range(W):
-            a = patch[p + i]
-            d = z - (a + ge * (patch[p + W + i] - a))
-            out[o + i] += d * d
+            out[o + i] = add_square(out[o + i], z - blend(patch[p + i], patch[p + W + i], ge))
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def add_four_directly(
+    heights: np.ndarray,
+    nx: int,
+    start: np.ndarray,
+    rows: np.ndarray,
+    f: np.ndarray,
+    g: np.ndarray,
+    z: np.ndarray,
+    width: int,
+    out: np.ndarray,
+) -> None:
+    """:func:`add_four` from the map itself, where the step equals the cell.
+
+    With one velocity a blended row serves two hypotheses only: blending it twice is cheaper than
+    keeping it. heights : the map, flat ; start, f : (4,) first columns and the fraction that all
+    columns share ; rows, g : (4, My)
+    """
+    W, one, below = unsigned(width), unsigned(1), unsigned(nx)
+    z0, z1, z2, z3 = z[0], z[1], z[2], z[3]
+    f0, f1, f2, f3 = f[0], f[1], f[2], f[3]
+    for j in range(rows.shape[1]):
+        p0, p1 = unsigned(rows[0, j] * nx + start[0]), unsigned(rows[1, j] * nx + start[1])
+        p2, p3 = unsigned(rows[2, j] * nx + start[2]), unsigned(rows[3, j] * nx + start[3])
+        g0, g1, g2, g3 = g[0, j], g[1, j], g[2, j], g[3, j]
+        o = unsigned(j * width)
+        for i in range(W):
+            a = blend(heights[p0 + i], heights[p0 + i + one], f0)
+            b = blend(heights[p0 + below + i], heights[p0 + below + i + one], f0)
+            d = z0 - blend(a, b, g0)
+            s = add_square(out[o + i], d)
+            a = blend(heights[p1 + i], heights[p1 + i + one], f1)
+            b = blend(heights[p1 + below + i], heights[p1 + below + i + one], f1)
+            d = z1 - blend(a, b, g1)
+            s = add_square(s, d)
+            a = blend(heights[p2 + i], heights[p2 + i + one], f2)
+            b = blend(heights[p2 + below + i], heights[p2 + below + i + one], f2)
+            d = z2 - blend(a, b, g2)
+            s = add_square(s, d)
+            a = blend(heights[p3 + i], heights[p3 + i + one], f3)
+            b = blend(heights[p3 + below + i], heights[p3 + below + i + one], f3)
+            d = z3 - blend(a, b, g3)
+            out[o + i] = add_square(s, d)
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
@@ -215,26 +274,34 @@ def slab(
     steps  : (sx, sy) ; counts : (Mx, My, Mvy)
     patch  : (4, rows, W) work space, rows as :func:`patch_rows` says, W = Mx padded to LANES
     out    : (Mvy, My, W), added to; the padding is work space too
-    The type of ``patch``, ``out`` and ``z`` is that of the sums; positions are always double.
+    The type of ``patch``, ``out`` and ``z`` is that of the sums, that of H the one of the first
+    interpolation; positions are always double.
     """
     sx, sy = steps
     Mx, My, Mvy = counts
     W, capacity = out.shape[2], patch.shape[1] * out.shape[2]
-    columns, fx = np.empty(W, np.int64), np.empty(W)
+    columns, fx = np.empty((TOGETHER, W), np.int64), np.empty((TOGETHER, W), H.dtype)
     at = np.empty((TOGETHER, Mvy * My), np.int64)
     g = np.empty((TOGETHER, Mvy * My), out.dtype)
-    flat, sums = patch.reshape(-1), out.reshape(-1)
+    low, high = np.empty(TOGETHER, np.int64), np.empty(TOGETHER, np.int64)
+    flat, sums, heights = patch.reshape(-1), out.reshape(-1), H.reshape(-1)
     for k0 in range(0, z.shape[0], TOGETHER):
         m = min(TOGETHER, z.shape[0] - k0)
+        alike = m == TOGETHER and Mvy == 1
         for q in range(m):
             k = k0 + q
-            consecutive = place_columns(bx[k], sx, vx * wx[k], H.shape[1], Mx // 2, columns, fx)
-            low, high = place_rows(by[k], sy, wy[k], H.shape[0], My, Mvy, at[q], g[q])
-            blend_columns(H, low, high, columns, fx, consecutive, flat, q * capacity)
+            place_columns(bx[k], sx, vx * wx[k], H.shape[1], Mx // 2, columns[q], fx[q])
+            low[q], high[q] = place_rows(by[k], sy, wy[k], H.shape[0], My, Mvy, at[q], g[q])
+            alike = alike and is_run(columns[q]) and (fx[q] == fx[q, 0]).all()
+        if alike:
+            add_four_directly(heights, H.shape[1], columns[:, 0], at, fx[:, 0], g, z[k0 : k0 + m], W, sums)
+            continue
+        for q in range(m):
+            blend_columns(H, low[q], high[q], columns[q], fx[q], flat, q * capacity)
             for e in range(at.shape[1]):
-                at[q, e] = (at[q, e] - low) * W + q * capacity
+                at[q, e] = (at[q, e] - low[q]) * W + q * capacity
         if m == TOGETHER:
-            add_four(flat, at, g, z[k0 : k0 + TOGETHER], W, sums)
+            add_four(flat, at, g, z[k0 : k0 + m], W, sums)
         else:
             for q in range(m):
                 add_one(flat, at[q], g[q], z[k0 + q], W, sums)
@@ -300,7 +367,7 @@ def criterion_masked(
             inside = False
             break
         d = z[k] - h
-        total += d * d
+        total = add_square(total, d)
         if total > limit:
             break
     return total if inside else np.inf
@@ -368,7 +435,7 @@ def velocity_criteria(
                     total = np.inf
                     break
                 d = z[k] - h
-                total += d * d
+                total = add_square(total, d)
             out[Vi, Vj] = total
 
 

@@ -17,7 +17,10 @@ m squares moves by at most ``16 u Hm sqrt(m)``; the summation itself has the rel
 
     sqrt(exact) >= sqrt(computed / (1 + gamma)) - 16 u Hm sqrt(m),
 
-used downwards for single precision (:func:`floor_of`) and once upwards for the double sums of the
+With the first interpolation in single precision as well, as in :func:`search_one_velocity`, its
+result has an error of 10 u Hm in the place of u Hm, and the difference one of 40 u Hm; 48 are allowed.
+
+The bound is used downwards for single precision (:func:`floor_of`) and once upwards for the double sums of the
 dense search (:func:`ceiling_of`). Positions are always computed in double by the same expression,
 so they do not enter the comparison.
 """
@@ -32,7 +35,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from navsym.numeric.search import TOGETHER, criterion_one, height_at, padded, patch_rows, slab
+from navsym.numeric.search import TOGETHER, add_square, criterion_one, height_at, padded, patch_rows, slab
 
 SINGLE, DOUBLE = 2.0**-24, 2.0**-53
 #: Measurements summed for every hypothesis before the first comparison; a multiple of TOGETHER.
@@ -70,10 +73,13 @@ def ceiling_of(value: float, n: int, bound: float) -> float:
     return root * root * (1.0 + 8.0 * DOUBLE)
 
 
-def single_limit(ceiling: float, m: int, bound: float) -> float:
-    """A single-precision sum of m squares above this has an exact sum above ``ceiling``."""
+def single_limit(ceiling: float, m: int, bound: float, parts: float = 16.0) -> float:
+    """A single-precision sum of m squares above this has an exact sum above ``ceiling``.
+
+    parts : error of one difference in units of u Hm
+    """
     gamma = (m + 2) * SINGLE / (1.0 - (m + 2) * SINGLE)
-    root = math.sqrt(ceiling) + 16.0 * SINGLE * bound * math.sqrt(m)
+    root = math.sqrt(ceiling) + parts * SINGLE * bound * math.sqrt(m)
     return root * root * (1.0 + gamma) * (1.0 + 8.0 * DOUBLE)
 
 
@@ -196,7 +202,7 @@ def add_more(
         total = low[s]
         for k in range(z.shape[0]):
             d = z[k] - height_at(H, bx[k] + (px + vx * wx[k]), by[k] + (py + vy * wy[k]))
-            total += d * d
+            total = add_square(total, d)
             samples += 1
             if total > limit:
                 break
@@ -356,3 +362,33 @@ def search_bounded(
     samples += index.size * n
     completed = min(index.size + tried, total)
     return BoundedResult(best, criterion, runner_up, second, completed, samples, tuple(survivors))
+
+
+def search_one_velocity(
+    single: NDArray[np.float32],
+    H: NDArray[np.float64],
+    bx: NDArray[np.float64],
+    by: NDArray[np.float64],
+    z: NDArray[np.float64],
+    steps: tuple[float, float],
+    counts: tuple[int, int],
+    bound: float,
+) -> BoundedResult:
+    """Minimum and runner-up over positions only: all sums in single precision, the lowest in double.
+
+    single : H in single precision ; counts : (Mx, My). As exact as :func:`search_bounded`: nearby
+    positions fit nearly alike when the velocity is wrong, so that partial sums would drop few.
+    """
+    Mx, My = counts
+    n, still = z.shape[0], np.zeros_like(bx)
+    sums = np.zeros((1, 1, My, padded(Mx)), np.float32)
+    patch = np.empty((TOGETHER, patch_rows(by, still, steps[1], My, 1, H.shape[0]), padded(Mx)), np.float32)
+    slab(single, bx, by, z.astype(np.float32), still, still, steps, (Mx, My, 1), 0, patch, sums[0])
+    arguments, pair, all_counts = (H, bx, by, z, still, still), np.array(steps), (Mx, My, 1, 1)
+    flat = sums[0, 0, :, :Mx].ravel()
+    lowest = np.sort(np.argpartition(flat, min(1, flat.size - 1))[:2]).astype(np.int64)
+    _, _, _, second = settle(*arguments, pair, all_counts, lowest, np.inf)
+    limit = single_limit(ceiling_of(second, n, bound), n, bound, 48.0) if math.isfinite(second) else math.inf
+    index = np.flatnonzero(~(flat > limit)).astype(np.int64)
+    best, criterion, runner_up, second = settle(*arguments, pair, all_counts, index, second)
+    return BoundedResult(best, criterion, runner_up, second, index.size, (flat.size + index.size + 2) * n, ())

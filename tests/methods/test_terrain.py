@@ -95,7 +95,7 @@ def test_hypotheses_that_leave_the_map_are_never_chosen():
     terrain = relief()
     track = flight(terrain)
     near = Track(track.t, track.x - 690, track.y, track.h)
-    found = search_position(terrain, near, GRID)
+    found = search_position(terrain, near, GRID, dense=True)
     values = found.criteria[0, 0]
     assert np.isinf(values[:, :4]).all() and np.isfinite(values[:, 4:]).all()
     assert np.isfinite(found.criterion)
@@ -108,7 +108,7 @@ def test_a_void_under_a_hypothesis_excludes_it_and_under_the_track_is_an_error()
     row, column = int((track.y[20] + 90) / 30), int((track.x[20] + 30) / 30)
     H[row, column] = -9999
     holed = TerrainMap(H, 0, 0, 30, 30, nodata=-9999)
-    values = search_position(holed, track, GRID).criteria[0, 0]
+    values = search_position(holed, track, GRID, dense=True).criteria[0, 0]
     assert np.isinf(values).any() and np.isfinite(values[4, 4])
     H[int(track.y[20] / 30), int(track.x[20] / 30)] = -9999
     with pytest.raises(NoDataError):
@@ -159,7 +159,7 @@ def test_one_measurement_at_a_time_adds_up_to_the_batch():
     state = begin(terrain, GRID)
     for t, x, y, h in zip(track.t, track.x, track.y, track.h, strict=True):
         state = add_measurement(state, t, x, y, h)
-    batch = search_position(terrain, track, GRID)
+    batch = search_position(terrain, track, GRID, dense=True)
     assert fix(state).index == batch.index and state.measurements == 41
     assert_allclose(state.values[0, 0], batch.criteria[0, 0], rtol=1e-12)
 

@@ -24,6 +24,7 @@ from navsym.numeric.search_bounded import (
     double_limit,
     floor_of,
     search_bounded,
+    search_one_velocity,
     single_limit,
 )
 
@@ -103,6 +104,21 @@ def test_the_bounded_search_equals_the_dense_search_on_600_random_cases():
         found = search_bounded(*arguments, steps, counts, bound)
         best, criterion, second = two_lowest(dense(arguments, steps, counts))
         assert (found.index, found.criterion, found.second) == (best, criterion, second), case
+
+
+def test_the_search_in_single_precision_equals_the_dense_search_over_positions():
+    generator = np.random.default_rng(21)
+    for case in range(300):
+        (H, bx, by, z, wx, wy), steps, counts = random_case(generator, ties=case % 3 == 0)
+        if case % 2:
+            steps = (1.0, 1.0)
+        bound = max(np.abs(H).max(), np.abs(z).max())
+        if bound == 0.0 or counts[:2] == (1, 1):
+            continue
+        found = search_one_velocity(H.astype(np.float32), H, bx, by, z, steps, counts[:2], bound)
+        still = np.zeros_like(bx)
+        values = dense((H, bx, by, z, still, still), steps, (*counts[:2], 1, 1))
+        assert (found.index, found.criterion, found.second) == two_lowest(values), case
 
 
 def test_equal_criteria_are_settled_for_the_first_in_the_order_of_the_grid():
