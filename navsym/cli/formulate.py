@@ -1,0 +1,50 @@
+"""Write the guaranteed problem on a grid for casadi, for cvxpy or as an MPS file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from navsym.cli.output import emit, put, write_text
+from navsym.errors import ExpressionSyntaxError, NavsymError
+
+
+def command(
+    file: Annotated[Path, typer.Argument(help="model or basis file (TOML)")],
+    to: Annotated[str, typer.Option(help="casadi, cvxpy or mps")] = "mps",
+    kind: Annotated[str, typer.Option(help="lp, qp (white noise) or mixed")] = "lp",
+    target: Annotated[str | None, typer.Option(help="name of the functional")] = None,
+    set_: Annotated[list[str] | None, typer.Option("--set", help="value of a parameter: T=2.5")] = None,
+    grid: Annotated[int, typer.Option(help="instants per measurement")] = 201,
+    mixture: Annotated[float, typer.Option(help="factor of the quadratic term of mixed")] = 1.0,
+    out: Annotated[Path | None, typer.Option(help="file to write; standard output otherwise")] = None,
+    json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
+) -> None:
+    """The LP or QP of the problem on a grid of instants, as a file."""
+    from navsym.methods.guaranteed_formulate import formulate
+    from navsym.methods.guaranteed_problem import from_file
+    from navsym.text.modelfile import read_model
+
+    found = read_model(file, values_of(set_ or []))
+    try:
+        text = formulate(from_file(found, target), to, kind=kind, count=grid, mixture=mixture)
+    except NavsymError as error:
+        raise error.at(str(file)) from None
+    if out is not None:
+        write_text(out, text)
+    if json_:
+        emit({"to": to, "kind": kind, "grid": grid, "out": None if out is None else str(out), "text": text}, as_json=True, text="")
+    elif out is None:
+        put(text)
+
+
+def values_of(settings: list[str]) -> dict[str, str]:
+    values = {}
+    for setting in settings:
+        name, equals, value = setting.partition("=")
+        if not equals:
+            raise ExpressionSyntaxError(f"expected NAME=VALUE; got {setting[:40]!r}; write --set T=5/2", where="--set")
+        values[name.strip()] = value.strip()
+    return values
