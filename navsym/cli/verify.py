@@ -134,4 +134,9 @@ def remark_of(record: dict[str, Any]) -> str:
         return f"{slip}{record['reason']}{where}"
     if record["corrects"]:
         return f"corrects {record['corrects'].partition(':')[2]}"
-    return "; ".join(record["assumptions"]) or record["scope"]
+    return shortened("; ".join(record["assumptions"]) or record["scope"])
+
+
+def shortened(text: str, width: int = 110) -> str:
+    """The text, or its beginning with an ellipsis; the JSON document has it whole."""
+    return text if len(text) <= width else text[: width - 1] + "…"
