@@ -1,0 +1,292 @@
+"""Velocity and acceleration of tracks: identities, consistency on simulated data, edges of the Earth, real data."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy.optimize import linprog
+from scipy.stats import chi2
+
+from navsym.errors import DomainError, EmptyError, ShapeError
+from navsym.methods.trajectory_document import document
+from navsym.methods.trajectory_estimate import METHODS, Settings, estimate, least_squares, minimum_sum
+from navsym.methods.trajectory_tracks import Track, isolated_outliers, noise_of, track_of
+from navsym.models.earth_geodesy import cartesian, local_axes
+from navsym.numeric.trajectory_tracks import backward, forward, step_matrices
+
+
+def flat_track(t, position):
+    """A track in fixed axes, without an Earth."""
+    N = len(t)
+    return Track(t, position, np.ones((N, 3)), np.broadcast_to(np.eye(3), (N, 3, 3)))
+
+
+def simulated(seed, N=400, q=0.02, sigma=2.0, order=3, gaps=True):
+    """Motion driven by white noise of density q in the derivative of the given order, and noisy positions."""
+    rng = np.random.default_rng(seed)
+    steps = rng.uniform(0.5, 1.5, N) if gaps else np.ones(N)
+    if gaps:
+        steps[N // 2] = 12.0
+    t = np.cumsum(steps)
+    truth = np.zeros((3, N, order))
+    Phi, Q = np.empty((order, order)), np.empty((order, order))
+    for k in range(1, N):
+        step_matrices(t[k] - t[k - 1], q, Phi, Q)
+        for c in range(3):
+            truth[c, k] = Phi @ truth[c, k - 1] + np.linalg.cholesky(Q) @ rng.normal(size=order)
+    return t, truth, truth[:, :, 0].T + sigma * rng.normal(size=(N, 3))
+
+
+# -- kernels -------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("n", [2, 3, 5])
+def test_noise_of_two_steps_is_noise_of_the_whole(n):
+    whole, first, second = (np.empty((2, n, n)) for _ in range(3))
+    for dt, out in ((1.7, whole), (0.6, first), (1.1, second)):
+        step_matrices(dt, 0.3, out[0], out[1])
+    assert_allclose(second[0] @ first[0], whole[0], rtol=1e-13)
+    assert_allclose(second[0] @ first[1] @ second[0].T + second[1], whole[1], rtol=1e-12)
+
+
+def test_the_smoother_is_the_least_squares_fit_of_all_data():
+    """Filter and smoother against one big linear system of prior, motion and measurements."""
+    rng = np.random.default_rng(2)
+    N, n, q = 25, 2, 0.4
+    t = np.cumsum(rng.uniform(0.3, 2.0, N))
+    z, r, spread = rng.normal(size=N), rng.uniform(0.5, 2.0, N), np.array([10.0, 5.0])
+    ahead, states, gains = (np.empty((N, n)) for _ in range(3))
+    ahead_P, covariances = np.empty((N, n, n)), np.empty((N, n, n))
+    rest = np.empty(N), np.empty(N), np.empty(N, dtype=np.int64)
+    forward(t, z, r, np.ones(N, np.int64), q, spread, 0.0, ahead, ahead_P, states, covariances, gains, *rest)
+    backward(t, ahead, ahead_P, states, covariances, q)
+    information, vector = np.zeros((N * n, N * n)), np.zeros(N * n)
+    information[:n, :n] += np.diag(spread**-2.0)
+    vector[0] += z[0] / spread[0] ** 2  # the filter starts at the first measurement
+    for k in range(N):
+        information[k * n, k * n] += 1 / r[k]
+        vector[k * n] += z[k] / r[k]
+        if k:
+            Phi, Q = np.empty((n, n)), np.empty((n, n))
+            step_matrices(t[k] - t[k - 1], q, Phi, Q)
+            rows = np.zeros((n, N * n))
+            rows[:, (k - 1) * n : k * n], rows[:, k * n : (k + 1) * n] = -Phi, np.eye(n)
+            information += rows.T @ np.linalg.inv(Q) @ rows
+    solved = np.linalg.solve(information, vector).reshape(N, n)
+    assert_allclose(states, solved, atol=1e-8)
+    blocks = np.linalg.inv(information).reshape(N, n, N, n)[np.arange(N), :, np.arange(N), :]
+    assert_allclose(covariances, blocks, atol=1e-8)
+
+
+# -- weights -------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("weights", [least_squares, minimum_sum])
+@pytest.mark.parametrize("derivative", [1, 2])
+def test_weights_are_exact_for_polynomials(weights, derivative):
+    dt = np.array([-2.0, -1.3, -0.4, 0.0, 0.7, 1.1, 2.2])
+    w, deviation = weights(dt, np.ones(7), 4, derivative)
+    values = [0.0, 1.0, 2.0, 0.0][derivative] if derivative == 1 else 2.0
+    moments = [w @ dt**p for p in range(4)]
+    expected = [values if p == derivative else 0.0 for p in range(4)]
+    assert_allclose(moments, expected, atol=1e-12)
+    norm = np.abs(w).sum() if weights is minimum_sum else np.sqrt(w @ w)
+    assert_allclose(deviation, norm, rtol=1e-12)
+
+
+def test_minimum_sum_weights_are_those_of_a_linear_programme():
+    rng = np.random.default_rng(3)
+    for _ in range(5):
+        dt, sigma = np.sort(rng.uniform(-3, 2, 15)), rng.uniform(0.5, 2, 15)
+        _, value = minimum_sum(dt, sigma, 4, 1)
+        V = np.vander(dt, 4, increasing=True)
+        both = linprog(np.r_[sigma, sigma], A_eq=np.hstack([V.T, -V.T]), b_eq=[0, 1, 0, 0])
+        assert_allclose(value, both.fun, rtol=1e-9)
+
+
+def test_minimum_sum_weights_bound_the_error_of_any_noise_and_least_squares_may_not():
+    dt = np.linspace(-5, 5, 21)
+    w, value = minimum_sum(dt, np.ones(21), 3, 1)
+    v, deviation = least_squares(dt, np.ones(21), 3, 1)
+    worst = np.sign(v)
+    assert abs(v @ worst) > 1.5 * deviation
+    assert abs(w @ worst) <= value + 1e-12 < abs(v @ worst)
+
+
+# -- methods on simulated tracks -----------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_parabola_is_differentiated_exactly(method):
+    t = np.cumsum(np.random.default_rng(1).uniform(0.2, 1.8, 60))
+    position = np.column_stack([3 + 2 * t, -t + 0.05 * t**2, 0 * t])
+    found, _ = estimate(
+        flat_track(t, position), Settings(method, 3, window=12.0 if "win" in method else None)
+    )
+    assert_allclose(found.velocity[5:], np.column_stack([0 * t + 2, -1 + 0.1 * t, 0 * t])[5:], atol=2e-3)
+    assert_allclose(found.acceleration[5:, 1], 0.1, atol=2e-2)
+    assert set(found.flags) == {"used"}
+
+
+@pytest.mark.parametrize("method", ["filter", "smoother"])
+@pytest.mark.parametrize("order", [2, 3])
+def test_standard_deviations_are_consistent_with_the_errors(method, order):
+    """Normalised squared errors of independent stretches lie in the 95 % range of their mean."""
+    total, count = 0.0, 0
+    for seed in range(6):
+        t, truth, measured = simulated(seed, q=0.02, sigma=2.0, order=order)
+        found, _ = estimate(flat_track(t, measured), Settings(method, order))
+        error = (found.velocity - truth[:, :, 1].T) / found.velocity_sd
+        # Far enough apart to be independent.
+        picked = error[40:-10:40]
+        total, count = total + float((picked**2).sum()), count + picked.size
+    low, high = chi2.ppf([0.025, 0.975], count) / count
+    # The noise is estimated, not known: its own scatter widens the range.
+    assert 0.85 * low < total / count < 1.15 * high
+
+
+def test_the_noise_of_a_track_is_found():
+    scale, density = [], []
+    for seed in range(4):
+        t, _, measured = simulated(seed, N=800, q=0.02, sigma=2.0)
+        noise = noise_of(flat_track(t, measured), 3, np.ones(800, np.int64), gate=5.0)
+        scale, density = [*scale, *noise.scale[[0, 2]]], [*density, *noise.density[[0, 2]]]
+    assert_allclose(np.sqrt(scale), 2.0, rtol=0.1)
+    assert_allclose(np.median(density), 0.02, rtol=0.5)
+
+
+def test_isolated_outliers_are_left_out_and_harm_nothing():
+    t, truth, measured = simulated(1, sigma=1.0, gaps=False)
+    wild = measured.copy()
+    wild[[50, 121, 300]] += [[400.0, 0, 0], [0, -300.0, 50], [90, 90, 0]]
+    assert np.flatnonzero(isolated_outliers(flat_track(t, wild))).tolist() == [50, 121, 300]
+    clean, _ = estimate(flat_track(t, measured), Settings())
+    found, _ = estimate(flat_track(t, wild), Settings())
+    assert [k for k, flag in enumerate(found.flags) if flag == "outlier"] == [50, 121, 300]
+    assert np.abs(found.velocity - clean.velocity).max() < 4 * clean.velocity_sd.max()
+
+
+def test_the_smoother_beats_the_filter_and_both_beat_differences():
+    t, truth, measured = simulated(7, sigma=3.0, q=0.005)
+    rms = {}
+    for method in METHODS:
+        found, _ = estimate(flat_track(t, measured), Settings(method))
+        rms[method] = np.sqrt(np.mean((found.velocity - truth[:, :, 1].T)[10:] ** 2))
+    assert rms["smoother"] < rms["filter"] < rms["differences"]
+    assert rms["window"] < rms["differences"] and rms["guaranteed"] < rms["differences"]
+
+
+# -- the Earth -----------------------------------------------------------------------------------------
+
+
+def geographic(path):
+    """A track through given Earth-fixed points, by Newton's method on the closed formulas of the model."""
+    import pyproj
+
+    back = pyproj.Transformer.from_crs("EPSG:4978", "EPSG:4979", always_xy=True)
+    lon, lat, height = back.transform(*np.asarray(path).T)
+    return np.radians(lat), np.radians(lon), np.asarray(height)
+
+
+@pytest.mark.parametrize(
+    "latitude, longitude", [(0.7, np.pi), (0.7, -np.pi), (np.pi / 2, 0.3), (-np.pi / 2, 0.0)]
+)
+def test_the_date_line_and_the_poles_are_ordinary_points(latitude, longitude):
+    axes = local_axes(latitude, longitude)
+    t = np.arange(41.0)
+    speed = 10 * axes[1] + 3 * axes[0]  # towards north and east of the middle point
+    path = cartesian(latitude, longitude, 20.0) + (t[:, None] - 20.3) * speed
+    lat, lon, height = geographic(path)
+    found, _ = estimate(track_of(t, lat, lon, height), Settings("window", window=9.0))
+    expected = np.einsum("kij,j->ki", local_axes(lat, lon), speed)
+    assert_allclose(found.velocity, expected, atol=1e-4)
+
+
+def test_longitudes_may_be_written_from_zero_to_a_full_turn():
+    t = np.arange(30.0)
+    lon = np.radians(np.linspace(-0.001, 0.001, 30))
+    one = track_of(t, np.full(30, 0.5), lon, np.zeros(30))
+    two = track_of(t, np.full(30, 0.5), lon % (2 * np.pi), np.zeros(30))
+    assert_allclose(one.position, two.position, atol=1e-8)
+
+
+# -- bad input -----------------------------------------------------------------------------------------
+
+
+def test_bad_tracks_say_what_is_wrong():
+    t = np.arange(3.0)
+    with pytest.raises(EmptyError, match="at least 2 rows"):
+        track_of(t[:1], t[:1], t[:1], t[:1])
+    with pytest.raises(ShapeError, match="at least 4 rows for 3 states"):
+        estimate(track_of(t, t * 1e-6, t * 1e-6, t), Settings())
+    with pytest.raises(DomainError, match="convert degrees"):
+        track_of(t, t + 45, t, t)
+    with pytest.raises(DomainError, match="increasing times"):
+        track_of(np.array([0.0, 1.0, 1.0]), t * 0, t * 0, t)
+    with pytest.raises(DomainError, match="method"):
+        Settings("magic")
+    with pytest.raises(DomainError, match="window"):
+        Settings(window=-1.0)
+    with pytest.raises(DomainError, match="order"):
+        estimate(flat_track(np.arange(20.0), np.zeros((20, 3))), Settings(order=9))
+
+
+def test_a_track_that_stands_still_has_no_speed_and_finite_deviations():
+    t = np.arange(50.0)
+    for method in METHODS:
+        found, _ = estimate(track_of(t, t * 0 + 0.5, t * 0 + 1.0, t * 0 + 3.0), Settings(method))
+        assert np.abs(found.velocity).max() < 1e-6
+        assert np.isfinite(found.velocity_sd).all() and np.isfinite(found.acceleration_sd).all()
+
+
+# -- real data -----------------------------------------------------------------------------------------
+
+
+def real(name):
+    folder = os.environ.get("NAVSYM_DATA", "")
+    path = Path(folder) / "gnss_ins" / name
+    if not folder or not path.is_file():
+        pytest.skip(f"the recorded track is not here: set NAVSYM_DATA to a folder with gnss_ins/{name}")
+    return path
+
+
+def reference(name, columns):
+    table = np.genfromtxt(real(name), delimiter=",", skip_header=1)
+    return table[:, 0], table[:, columns]
+
+
+@pytest.mark.parametrize(
+    "method, limit", [("smoother", 0.2), ("filter", 0.3), ("window", 0.25), ("differences", 0.25)]
+)
+def test_speed_of_a_car_from_its_reference_positions(method, limit):
+    from navsym.text.readers_tracks import read_track
+
+    t, velocity = reference("pyins_gnss.csv", [5, 4, 6])
+    velocity[:, 2] *= -1
+    track = read_track(real("pyins_gnss.csv"))
+    found, _ = estimate(track_of(track.t, track.latitude, track.longitude, track.height), Settings(method))
+    assert_allclose(track.t, t)
+    assert np.sqrt(np.mean((found.velocity - velocity) ** 2, axis=0)).max() < limit
+
+
+def test_speed_of_a_car_from_single_point_positions_with_gaps_and_outliers():
+    from navsym.text.readers_tracks import read_track
+
+    t, velocity = reference("nagoya_reference.csv", [11, 12, 13])
+    read = read_track(real("nagoya_rover_1Hz_spp.pos"))
+    times = read.t - 2270 * 604800
+    track = track_of(times, read.latitude, read.longitude, read.height, read.sigma)
+    expected = np.column_stack([np.interp(times, t, velocity[:, i]) for i in range(3)])
+    rms = {}
+    for method in ("smoother", "window", "guaranteed", "differences"):
+        found, _ = estimate(track, Settings(method))
+        rms[method] = np.sqrt(np.mean((found.velocity - expected)[:, :2] ** 2))
+    assert rms["smoother"] < 1.3
+    assert rms["smoother"] < rms["window"] < rms["differences"]
+    assert rms["guaranteed"] < rms["differences"]
+    remarks = document(times, track, Settings(), lines=read.lines)["warnings"]
+    assert any("gap" in line for line in remarks) and any("left out" in line for line in remarks)
