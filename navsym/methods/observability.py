@@ -209,6 +209,69 @@ def ranks_with(basis: Matrix, chain: Chain, point: Sequence[int]) -> int:
     return sum(1 for place in rows if place >= len(basis))
 
 
+@dataclass(frozen=True, slots=True)
+class ProvedRank:
+    """Generic rank of an observability matrix with the reasons for both bounds.
+
+    point : integers for the parameters at which a minor of this size is not zero modulo a prime
+    upper : why it is not larger
+    """
+
+    rank: int
+    point: tuple[int, ...]
+    upper: str
+
+
+def proved_rank(model: LinearModel) -> ProvedRank:
+    """Generic rank of everything that the measurements observe together, and nothing else.
+
+    Below: a minor that is not zero at a point. Above: either there are no more states, or as many
+    hidden directions N are exhibited, with h N = 0 for every measurement and G N inside the span of N.
+    """
+    check(model)
+    ring = Ring.of([model.F, model.H])
+    matrix, _ = numerators([model.F[i, :] for i in range(model.size)], ring)
+    rows = [numerators([model.H[k, :]], ring)[0][0] for k in range(model.H.rows)]
+    ranks = {point: residue_rank(residue_chains(rows, matrix, point)) for point in points(ring)}
+    point = max(ranks, key=lambda key: ranks[key])
+    if ranks[point] == model.size:
+        return ProvedRank(model.size, point, "the number of states")
+    if hidden_directions(rows, matrix, ring, ranks[point], point) is not None:
+        count = model.size - ranks[point]
+        return ProvedRank(ranks[point], point, f"{count} hidden directions, invariant and seen by no measurement")
+    return ProvedRank(chains_of(model).joint_dimension, point, "relations close the staircase")
+
+
+def hidden_directions(rows: Matrix, matrix: Matrix, ring: Ring, rank: int, point: Sequence[int]) -> Matrix | None:
+    """n - rank directions that no measurement ever shows, or None when the rank was too small.
+
+    The basis takes the chains step by step, all measurements in turn, which keeps the degrees low.
+    """
+    n, step = len(matrix), list(rows)
+    basis: Matrix = []
+    residues: list[list[int]] = []
+    while len(basis) < rank:
+        for vector in step:
+            trial = [*residues, *at_point([vector], point)]
+            if residue_rank(trial) > len(residues):
+                basis.append(vector)
+                residues = trial
+        step = [transposed_times(matrix, vector, ring) for vector in step]
+    hidden = null_vectors(basis, n, ring)
+    zero = ring.constant(0)
+    for vector in hidden:
+        moved = [sum((g * x for g, x in zip(row, vector, strict=True) if g != 0), zero) for row in matrix]
+        seen = [dot(row, vector, zero) for row in rows] + [dot(row, moved, zero) for row in basis]
+        if any(value != 0 for value in seen):
+            return None
+    return hidden
+
+
+def dot(row: list[Poly], vector: list[Poly], zero: Poly) -> Poly:
+    """Scalar product of polynomial vectors."""
+    return sum((a * x for a, x in zip(row, vector, strict=True) if a != 0 and x != 0), zero)
+
+
 # The answer in sympy
 
 

@@ -9,7 +9,7 @@ import pytest
 import sympy as sp
 
 from navsym.errors import DomainError, DuplicateError, EmptyError, TooLargeError, UnobservableError
-from navsym.methods.observability import direction_names, need_observable, observe
+from navsym.methods.observability import direction_names, need_observable, observe, proved_rank
 from navsym.methods.observability_linear import determinant, determinant_slowly, maximal_minors
 from navsym.methods.observability_ring import Ring
 from navsym.models.linear import LinearModel
@@ -86,7 +86,7 @@ def test_two_hundred_random_systems_agree_with_schoolbook_elimination(block):
             combined = [sum(t * chain[j][c] for j, t in enumerate(theta)) for c in range(n)]
             assert combined == chain[m]
         both = [row for h in rows for row in krylov(F, h, n)]
-        assert found.joint_dimension == fraction_rank(both)
+        assert found.joint_dimension == fraction_rank(both) == proved_rank(model_of(F, rows)).rank
         assert found.unobservable.rows == n - found.joint_dimension
         for k in range(found.unobservable.rows):
             hidden = [Fraction(int(x.p), int(x.q)) for x in found.unobservable.row(k)]

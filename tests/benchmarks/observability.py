@@ -1,0 +1,156 @@
+"""Exact observability against sympy: rank with proof, and the row-reduced form behind it.
+
+    python tests/benchmarks/observability.py [--rounds N] [--limit SECONDS] [--only NAME]
+
+Peers: ``Matrix.rank`` (which has no proof: it trusts ``simplify`` for zeros) and
+``DomainMatrix.rref_den`` over Z[parameters], on the same observability matrices. Ours and the
+peer run alternately, each in a child process of its own, because sympy caches what it has computed
+once. A peer that runs into the limit is reported as "more than", never as a ratio of its own.
+"""
+
+from __future__ import annotations
+
+import argparse
+import multiprocessing
+import statistics
+import time
+
+import sympy as sp
+from sympy.polys.matrices import DomainMatrix
+
+from navsym.methods.observability import numerators, observe, proved_rank
+from navsym.methods.observability_linear import reduce_rows
+from navsym.methods.observability_ring import Ring
+from navsym.models.inertial import FULL, full_model
+from navsym.models.linear import LinearModel, observability_matrix
+
+a, b, c, d, e, f = sp.symbols("a b c d e f", real=True)
+
+
+def moving(count: int, measurements: tuple[int, ...]) -> LinearModel:
+    """The first states of the moving INS error model: mu, omega_1, omega_2, u_1, u_2, u_3 are symbols."""
+    model = full_model()
+    H = sp.Matrix([model.H[k, :count] for k in measurements])
+    return LinearModel(model.F[:count, :count], None, H, tuple(map(str, FULL[:count])))
+
+
+def chain(count: int) -> LinearModel:
+    """Coupled oscillators with a drift, measured at one end: six parameters, one long chain."""
+    F = sp.zeros(count, count)
+    symbols = (a, b, c, d, e, f)
+    for k in range(0, count - 1, 2):
+        F[k, k + 1] = 1
+        F[k + 1, k] = -symbols[k // 2 % 6]
+        if k + 2 < count:
+            F[k + 1, k + 2] = symbols[(k // 2 + 3) % 6]
+    return LinearModel(F, None, sp.Matrix([[1, *[0] * (count - 1)]]))
+
+
+SYSTEMS = {
+    "moving INS, 9 states, position": lambda: moving(9, (2, 3)),
+    "moving INS, 10 states, velocity and position": lambda: moving(10, (0, 1, 2, 3)),
+    "moving INS, 12 states, velocity and position": lambda: moving(12, (0, 1, 2, 3)),
+    "coupled oscillators, 9 states": lambda: chain(9),
+    "coupled oscillators, 10 states": lambda: chain(10),
+}
+
+
+def ours_rank(model: LinearModel) -> int:
+    """Rank with proof: a nonzero minor from below, the number of states or relations from above."""
+    return proved_rank(model).rank
+
+
+def sympy_rank(model: LinearModel) -> int:
+    """The peer."""
+    return sp.Matrix(observability_matrix(model)).rank()
+
+
+def square_part(model: LinearModel) -> sp.Matrix:
+    """Independent rows of the observability matrix, found beforehand: both sides reduce the same matrix."""
+    found = observe(model)
+    rows = [m.basis.row(k) for m, count in zip(found.measurements, found.staircase, strict=True) for k in range(count)]
+    return sp.Matrix([list(row) for row in rows])
+
+
+def ours_reduce(matrix: sp.Matrix) -> int:
+    """Fraction-free row-reduced form."""
+    ring = Ring.of(matrix)
+    entries, _ = numerators([matrix[r, :] for r in range(matrix.rows)], ring)
+    return len(reduce_rows(entries, ring).rows)
+
+
+def sympy_reduce(matrix: sp.Matrix) -> int:
+    """The peer: the same form over the polynomial ring."""
+    symbols = sorted(matrix.free_symbols, key=str)
+    domain = sp.ZZ[tuple(symbols)] if symbols else sp.ZZ
+    return len(DomainMatrix.from_Matrix(matrix).convert_to(domain).to_sparse().rref_den()[2])
+
+
+def ours_everything(model: LinearModel) -> int:
+    """Chains, companion coefficients and hidden directions as well."""
+    return observe(model).joint_dimension
+
+
+CONTESTS = {
+    "all": (ours_everything, sympy_rank, "Matrix.rank", lambda model: model),
+    "rank": (ours_rank, sympy_rank, "Matrix.rank", lambda model: model),
+    "reduce": (ours_reduce, sympy_reduce, "rref_den", square_part),
+}
+
+
+def timed(function, argument, limit: float) -> tuple[float | None, object]:
+    """Seconds of one call in a child process and its result; None when it does not end within the limit."""
+    context = multiprocessing.get_context("fork")
+    receiver, sender = context.Pipe(duplex=False)
+
+    def work() -> None:
+        start = time.perf_counter()
+        value = function(argument)
+        sender.send((time.perf_counter() - start, value))
+
+    child = context.Process(target=work)
+    child.start()
+    answer = receiver.recv() if receiver.poll(limit) else (None, None)
+    child.terminate()
+    child.join()
+    return answer
+
+
+def contest(name: str, kind: str, rounds: int, limit: float) -> str:
+    """One line of the report."""
+    ours, peer, peer_name, prepare = CONTESTS[kind]
+    argument = prepare(SYSTEMS[name]())
+    own, other, values = [], [], set()
+    for _ in range(rounds):
+        seconds, value = timed(ours, argument, limit)
+        own.append(seconds)
+        values.add(value)
+        if not other or other[-1] is not None:
+            seconds, value = timed(peer, argument, limit)
+            other.append(seconds)
+            values |= {value} if seconds is not None else set()
+    mine = statistics.median(own)
+    agreed = "" if len(values) == 1 else "  RANKS DIFFER"
+    if None in other:
+        verdict = f"{peer_name} more than {limit:.0f} s  > {limit / mine:.0f} x"
+    else:
+        theirs = statistics.median(other)
+        verdict = f"{peer_name} {1e3 * theirs:9.1f} ms  {theirs / mine:.1f} x"
+    return f"{name:46s} {kind:7s} ours {1e3 * mine:9.2f} ms  {verdict}{agreed}"
+
+
+def main() -> None:
+    """Print one line per system and contest."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--rounds", type=int, default=3)
+    parser.add_argument("--limit", type=float, default=60.0)
+    parser.add_argument("--only", default="")
+    options = parser.parse_args()
+    for name in SYSTEMS:
+        if options.only in name:
+            for kind in CONTESTS:
+                print(contest(name, kind, options.rounds, options.limit), flush=True)
+
+
+if __name__ == "__main__":
+    main()
