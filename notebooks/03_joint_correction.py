@@ -19,6 +19,7 @@
 
 # %%
 import os
+from itertools import pairwise
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -94,7 +95,7 @@ show(groups.row_x6_printed)
 found = observe(joint_model())
 steps = np.cumsum((0, *found.staircase))
 figure, axis = plt.subplots(figsize=(7, 3))
-for k, (low, high) in enumerate(zip(steps[:-1], steps[1:], strict=True)):
+for k, (low, high) in enumerate(pairwise(steps)):
     axis.bar(k, high - low, bottom=low, color=(BLUE, BLUE, ORANGE, ORANGE)[k])
     axis.text(k, high + 0.1, f"+{high - low}", ha="center")
 names = [measurement.name for measurement in found.measurements]
