@@ -71,15 +71,16 @@ def heading(t: Array, programme: Heading) -> Array:
         raise DomainError(f"heading: expected printed or consistent; got {programme!r}; choose one")
     phase = 2 * np.pi * t / PERIOD if programme == "printed" else 2 * np.pi * (t - YAWING[0]) / PERIOD
     wave = np.cos(phase) if programme == "printed" else np.sin(phase)
-    return np.radians(45.0 + 5.0 * wave * ((t >= YAWING[0]) & (t <= YAWING[1])))
+    angle: Array = np.radians(45.0 + 5.0 * wave * ((t >= YAWING[0]) & (t <= YAWING[1])))
+    return angle
 
 
 def course(speed: float, programme: Heading, fine: int = 20) -> Course:
     """The northern motion at |V| = speed; the integral by Simpson's rule on steps of tau / fine."""
     N = round(END / TAU)
-    t = np.arange(N + 1) * TAU
+    t = np.linspace(0.0, END, N + 1)
     north = speed * np.cos(heading(t, programme))
-    grid = np.arange(2 * fine * N + 1) * (TAU / (2 * fine))
+    grid = np.linspace(0.0, END, 2 * fine * N + 1)
     v = speed * np.cos(heading(grid, programme))
     pieces = (v[0:-2:2] + 4 * v[1:-1:2] + v[2::2]) * (TAU / fine / 6)
     position = np.concatenate(([0.0], np.cumsum(pieces)))[::fine]

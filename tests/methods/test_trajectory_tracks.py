@@ -13,8 +13,15 @@ from scipy.stats import chi2
 
 from navsym.errors import DomainError, EmptyError, ShapeError
 from navsym.methods.trajectory_document import document
-from navsym.methods.trajectory_estimate import METHODS, Settings, estimate, least_squares, minimum_sum
-from navsym.methods.trajectory_tracks import Track, isolated_outliers, noise_of, track_of
+from navsym.methods.trajectory_estimate import (
+    METHODS,
+    Settings,
+    by_method,
+    estimate,
+    least_squares,
+    minimum_sum,
+)
+from navsym.methods.trajectory_tracks import Noise, Track, isolated_outliers, noise_of, track_of
 from navsym.models.earth_geodesy import cartesian, local_axes
 from navsym.numeric.trajectory_tracks import backward, forward, step_matrices
 
@@ -147,6 +154,20 @@ def test_standard_deviations_are_consistent_with_the_errors(method, order):
     low, high = chi2.ppf([0.025, 0.975], count) / count
     # The noise is estimated, not known: its own scatter widens the range.
     assert 0.85 * low < total / count < 1.15 * high
+
+
+@pytest.mark.parametrize("method", ["filter", "smoother"])
+@pytest.mark.parametrize("order", [2, 3])
+def test_with_known_noise_the_errors_lie_in_the_95_per_cent_range(method, order):
+    noise = Noise(np.full(3, 4.0), np.full(3, 0.02))
+    errors = []
+    for seed in range(8):
+        t, truth, measured = simulated(seed, q=0.02, sigma=2.0, order=order)
+        found = by_method(flat_track(t, measured), noise, Settings(method, order), np.ones(len(t), np.int64))
+        errors.append(((found.velocity - truth[:, :, 1].T) / found.velocity_sd)[40:-10:40].ravel())
+    squares = np.concatenate(errors) ** 2
+    low, high = chi2.ppf([0.025, 0.975], squares.size) / squares.size
+    assert low < squares.mean() < high
 
 
 def test_the_noise_of_a_track_is_found():
