@@ -53,6 +53,7 @@ OWNERS: dict[str, dict[str, str]] = {
         "navsym/checker": "replays certificates with balls of its own",
         "navsym/methods": "exact linear algebra and ball arithmetic inside a method",
         "navsym/models": "exact transition matrices over a polynomial ring",
+        "navsym/export": "expected values of test vectors, rounded outwards",
         "derivations": "exact counts and ranks behind a Finding",
     },
     "numpy": {
@@ -83,6 +84,7 @@ OWNERS: dict[str, dict[str, str]] = {
     "mpmath": {"navsym/methods": "roots to many digits, as candidates that navsym.proof decides"},
     "matplotlib": {"navsym/report": "plots"},
     "jinja2": {"navsym/report": "pages"},
+    "markupsafe": {"navsym/report": "marks what is already escaped"},
     "IPython": {"navsym/report/notebook.py": "what notebooks show"},
     "ipywidgets": {"navsym/report/notebook.py": "sliders in notebooks"},
     "msgspec": {
