@@ -1,0 +1,89 @@
+"""Write the report: static HTML pages of verdicts, erratum sheets and certificates."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from navsym.cli.output import OutputError, emit, write_text
+from navsym.errors import ShapeError
+
+
+def command(
+    modules: Annotated[list[str] | None, typer.Argument(help="derivation modules; default: all")] = None,
+    out: Annotated[Path, typer.Option(help="folder for the pages; made when it is not there")] = Path("report"),
+    source: Annotated[
+        Path | None, typer.Option("--from", help="a document of navsym verify --json, or a ledger")
+    ] = None,
+    jobs: Annotated[int | None, typer.Option(help="claims decided at the same time")] = None,
+    seconds: Annotated[float, typer.Option(help="limit for one claim; above it the verdict is OPEN")] = 90.0,
+    json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
+) -> int:
+    """Decide the claims (or read verdicts with --from) and write the pages. Status 1 as in verify.
+
+    Example: navsym report guaranteed_velocity --out site
+    """
+    from navsym.cli.verify import load
+    from navsym.methods.verification import unexpected
+
+    chosen = load(modules or [])
+    document = read_document(source, modules or []) if source else decided(chosen, jobs, seconds)
+
+    from navsym.report.page import site
+
+    files = site(document, {module.name: module.paper for module in chosen})
+    write_site(out, files)
+    pages = [name for name in files if name.endswith(".html")]
+    result = {"out": str(out), "files": len(files), "pages": pages, "counts": document["counts"]}
+    emit(result, as_json=json_, text=f"{len(files)} files; open {out / 'index.html'}")
+    return 1 if unexpected(document["claims"]) else 0
+
+
+def decided(chosen: list[Any], jobs: int | None, seconds: float) -> dict[str, Any]:
+    """Verdicts decided now, with a line of progress."""
+    from navsym.cli.verify import Progress
+    from navsym.methods.verification import verify
+
+    bar = Progress(sum(len(module.claims) for module in chosen))
+    document = verify(chosen, jobs=jobs, seconds=seconds, progress=bar.step)
+    bar.done()
+    return document
+
+
+KEYS = frozenset(
+    "id paper number title status expect method scope assumptions printed derived corrects slip reason "
+    "evidence counterexample difference".split()
+)
+
+
+def read_document(path: Path, modules: list[str]) -> dict[str, Any]:
+    """A document of ``navsym verify --json`` or a ledger, cut to the modules asked for."""
+    from navsym.text.jsonfile import read_json
+
+    document = read_json(path, limit=200_000_000)
+    where = str(path)
+    expected = "a document of navsym verify --json"
+    if not isinstance(document, dict) or not {"claims", "papers", "counts"} <= set(document):
+        raise ShapeError(f"expected {expected}; got other keys; make it with navsym verify --json", where=where)
+    for place, record in enumerate(document["claims"]):
+        if not isinstance(record, dict) or (lacking := KEYS - set(record)):
+            what = ", ".join(sorted(lacking)) if isinstance(record, dict) else "the record"
+            raise ShapeError(f"expected {expected}; got no {what} in it; make it again", where=f"{where}: {place}")
+    papers = [paper for paper in document["papers"] if not modules or paper["module"] in modules]
+    kept = {paper["module"] for paper in papers}
+    claims = [record for record in document["claims"] if record["paper"] in kept]
+    statuses = [record["status"] for record in claims]
+    return {"claims": claims, "papers": papers, "counts": {s: statuses.count(s) for s in document["counts"]}}
+
+
+def write_site(out: Path, files: dict[str, str]) -> None:
+    """Write the files of the report; each whole or not at all."""
+    try:
+        (out / "certificates").mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        message = f"expected a folder that can be made; got '{error.strerror}'; choose another --out"
+        raise OutputError(message, where=str(out)) from error
+    for name, text in files.items():
+        write_text(out / name, text)

@@ -1,0 +1,238 @@
+"""The report: verdicts as a folder of plain HTML pages that need no network and no script to be read.
+
+``site`` turns the document of ``navsym verify`` into texts by file name; writing them is the
+business of the command line. Every word that comes from data is escaped by the templates; the
+only markup that data can cause is made by :mod:`navsym.report.page_formula` and
+:mod:`navsym.report.page_plot`, which escape what they take.
+"""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import json
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import jinja2
+from markupsafe import Markup
+
+from navsym.claims import Paper, equation_of
+from navsym.report.erratum import Erratum, erratum_of
+from navsym.report.page_explain import Step, steps
+from navsym.report.page_formula import Formula, formula
+from navsym.report.page_names import latex_escape
+from navsym.report.page_plot import refutation_plot
+
+Record = Mapping[str, Any]
+TEMPLATES = Path(__file__).parent / "templates"
+MARKS = {"PROVED": "✓", "CERTIFIED": "◎", "CONFIRMED": "≈", "REFUTED": "✗", "OPEN": "?"}
+WORST_FIRST = ("REFUTED", "OPEN", "CONFIRMED", "CERTIFIED", "PROVED")
+MEANINGS = {
+    "PROVED": "exact algebra decides it on the whole stated scope",
+    "CERTIFIED": "ball or rational arithmetic excludes failure on the whole stated box",
+    "CONFIRMED": "sampled only; the evidence says at how many points",
+    "REFUTED": "an exact point at which what is printed fails; the correction stands beside it",
+    "OPEN": "undecided; the evidence says what was tried",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class ClaimView:
+    """A record with everything that its card shows."""
+
+    record: Record
+    anchor: str
+    mark: str
+    printed: Formula
+    derived: Formula
+    story: tuple[tuple[Step, Formula | None], ...]
+    plot: Markup
+    correction: ClaimLink | None
+    corrects: ClaimLink | None
+    certificate: str
+
+
+@dataclass(frozen=True, slots=True)
+class ClaimLink:
+    """Number and anchor of another claim of the same page."""
+
+    number: str
+    anchor: str
+
+
+@dataclass(frozen=True, slots=True)
+class Cell:
+    """One equation of the matrix: what it is worth and where it is told."""
+
+    equation: str
+    status: str
+    mark: str
+    words: str
+    anchor: str
+
+
+@dataclass(frozen=True, slots=True)
+class PaperView:
+    """A paper with its matrix row, its claims and its erratum sheet."""
+
+    card: Paper
+    file: str
+    cells: tuple[Cell, ...]
+    claims: tuple[ClaimView, ...]
+    counts: Mapping[str, int]
+    unnumbered: int
+    erratum: Erratum
+    unexpected: tuple[str, ...]
+
+
+# -- the site --------------------------------------------------------------------------------
+
+
+def site(document: Mapping[str, Any], cards: Mapping[str, Paper]) -> dict[str, str]:
+    """All files of the report: name -> text.
+
+    document : that of ``navsym verify`` (keys claims, papers, counts), or the ledger
+    cards    : papers by module; a module without one is shown without its matrix of equations
+
+    Files: ``index.html``, ``MODULE.html``, ``MODULE.erratum.html`` and ``.tex``,
+    ``certificates/*.json`` and ``verdicts.json``.
+    """
+    modules = [paper["module"] for paper in document["papers"]]
+    papers = [
+        paper_view(cards.get(module) or bare_card(module, document), document["claims"]) for module in modules
+    ]
+    env = environment()
+    shared = {"papers": papers, "marks": MARKS, "meanings": MEANINGS}
+    files = {"index.html": env.get_template("index.html").render(shared, total=total(papers))}
+    for paper in papers:
+        files[f"{paper.file}.html"] = env.get_template("paper.html").render(shared, paper=paper)
+        files[f"{paper.file}.erratum.html"] = env.get_template("erratum.html").render(shared, paper=paper)
+        files[f"{paper.file}.erratum.tex"] = env.get_template("erratum.tex").render(paper=paper)
+    files.update(certificate_files(document["claims"]))
+    files["verdicts.json"] = json.dumps(document, ensure_ascii=False, allow_nan=False, indent=1) + "\n"
+    return files
+
+
+def environment() -> jinja2.Environment:
+    """Templates with escaping on, for HTML by the engine and for LaTeX by the filter ``tex``."""
+    env = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(TEMPLATES),
+        autoescape=lambda name: not (name or "").endswith(".tex"),
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    env.filters["tex"] = latex_escape
+    script = (TEMPLATES / "filter.js").read_text(encoding="utf-8").strip()
+    env.globals["style"] = Markup((TEMPLATES / "style.css").read_text(encoding="utf-8"))
+    env.globals["script"] = Markup(script)
+    env.globals["script_hash"] = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
+    return env
+
+
+def bare_card(module: str, document: Mapping[str, Any]) -> Paper:
+    title = next((paper["title"] for paper in document["papers"] if paper["module"] == module), module)
+    return Paper(module, title, authors=(), year=None, source="", language="", equations=())
+
+
+def total(papers: Sequence[PaperView]) -> dict[str, int]:
+    return {status: sum(paper.counts[status] for paper in papers) for status in MARKS}
+
+
+def certificate_files(records: Sequence[Record]) -> dict[str, str]:
+    """Certificates as ``navsym check`` reads them."""
+    return {
+        certificate_name(record): json.dumps(record["certificate"], ensure_ascii=False, indent=1) + "\n"
+        for record in records
+        if record.get("certificate")
+    }
+
+
+def certificate_name(record: Record) -> str:
+    return f"certificates/{slug(record['id'])}.json"
+
+
+def slug(name: str) -> str:
+    """A name that is safe in a file name and in an address; different names stay different."""
+    plain = re.sub(r"[^A-Za-z0-9.-]", "_", name)[:80].strip(".")
+    return plain if plain == name else f"{plain}-{hashlib.sha256(name.encode('utf-8', 'replace')).hexdigest()[:6]}"
+
+
+# -- one paper -------------------------------------------------------------------------------
+
+
+def paper_view(card: Paper, records: Sequence[Record]) -> PaperView:
+    """Everything that the page of one paper shows."""
+    mine = in_order(card, [record for record in records if record["paper"] == card.module])
+    statuses = [record["status"] for record in mine]
+    numbered = [equation_of(record["number"], card.equations) for record in mine]
+    return PaperView(
+        card=card,
+        file=slug(card.module),
+        cells=tuple(cell(card, equation, mine) for equation in card.equations),
+        claims=tuple(claim_views(mine)),
+        counts={status: statuses.count(status) for status in MARKS},
+        unnumbered=numbered.count(None),
+        erratum=erratum_of(card, mine),
+        unexpected=tuple(record["id"] for record in mine if record["status"] != record["expect"]),
+    )
+
+
+def in_order(card: Paper, records: Sequence[Record]) -> list[Record]:
+    """Records in the order of the paper's equations; statements without a number come last."""
+    place = {equation: i for i, equation in enumerate(card.equations)}
+
+    def rank(record: Record) -> int:
+        equation = equation_of(record["number"], card.equations)
+        return len(place) if equation is None else place[equation]
+
+    return sorted(records, key=rank)
+
+
+def cell(card: Paper, equation: str, records: Sequence[Record]) -> Cell:
+    """The worst verdict on an equation; ``definition`` or ``missing`` where there is none."""
+    about = [r for r in records if equation_of(r["number"], card.equations) == equation]
+    if not about:
+        kind = "definition" if equation in card.definitions else "missing"
+        words = card.definitions.get(equation, "neither claimed nor listed as a definition")
+        return Cell(equation, kind, "·" if kind == "definition" else "!", f"{kind}: {words}", "")
+    worst = min(about, key=lambda record: WORST_FIRST.index(record["status"]))
+    many = f"{len(about)} claims, the worst " if len(about) > 1 else ""
+    words = f"{many}{worst['status']}: {worst['title']}"
+    return Cell(equation, worst["status"].lower(), MARKS[worst["status"]], words, anchor_of(worst))
+
+
+def anchor_of(record: Record) -> str:
+    return f"c-{slug(record['number'])}"
+
+
+def claim_views(records: Sequence[Record]) -> list[ClaimView]:
+    known = {record["id"]: record for record in records}
+    corrections = {record["corrects"]: record for record in records if record["corrects"]}
+    return [
+        claim_view(record, corrections.get(record["id"]), known.get(record["corrects"])) for record in records
+    ]
+
+
+def claim_view(record: Record, correction: Record | None, corrected: Record | None) -> ClaimView:
+    story = tuple((step, formula(step.formula) if step.formula else None) for step in steps(record))
+    return ClaimView(
+        record=record,
+        anchor=anchor_of(record),
+        mark=MARKS[record["status"]],
+        printed=formula(record["printed"]),
+        derived=formula(record["derived"]),
+        story=story,
+        plot=Markup(refutation_plot(record) if record["status"] == "REFUTED" else ""),
+        correction=link(correction),
+        corrects=link(corrected),
+        certificate=certificate_name(record) if record.get("certificate") else "",
+    )
+
+
+def link(record: Record | None) -> ClaimLink | None:
+    return None if record is None else ClaimLink(record["number"], anchor_of(record))

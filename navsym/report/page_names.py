@@ -1,0 +1,71 @@
+"""Names as readers know them: Greek letters, indices, functions upright."""
+
+from __future__ import annotations
+
+import html
+import re
+
+GREEK = {
+    "alpha": "α", "beta": "β", "gamma": "γ", "delta": "δ", "epsilon": "ε", "zeta": "ζ", "eta": "η",
+    "theta": "θ", "iota": "ι", "kappa": "κ", "lambda": "λ", "mu": "μ", "nu": "ν", "xi": "ξ", "pi": "π",
+    "rho": "ρ", "sigma": "σ", "tau": "τ", "phi": "φ", "chi": "χ", "psi": "ψ", "omega": "ω", "upsilon": "υ",
+    "Gamma": "Γ", "Delta": "Δ", "Theta": "Θ", "Lambda": "Λ", "Xi": "Ξ", "Pi": "Π", "Sigma": "Σ",
+    "Phi": "Φ", "Psi": "Ψ", "Omega": "Ω", "lam": "λ", "oo": "∞", "eps": "ε",
+}  # fmt: skip
+LATEX_SPELLING = {"lam": "lambda", "oo": "infty", "eps": "varepsilon", "epsilon": "varepsilon", "phi": "varphi"}
+LATEX_FUNCTIONS = frozenset("sin cos tan cot sec csc exp log sinh cosh tanh det".split())
+STEM = re.compile(r"(?P<stem>[A-Za-z]+?)(?P<index>\d*)$")
+
+
+def split_name(name: str) -> tuple[str, str]:
+    """Stem and index: ``theta2_11`` -> theta, 2,11; ``y1`` -> y, 1; ``zT`` -> z, T."""
+    head, *rest = [part for part in name.split("_") if part] or [name]
+    match = STEM.match(head)
+    stem, index = (match["stem"], match["index"]) if match else (head, "")
+    if len(stem) == 2 and stem not in GREEK and stem[0].islower() and stem[1] in "TNm0":
+        stem, index = stem[0], stem[1] + index
+    return stem, ",".join(part for part in (index, *rest) if part)
+
+
+def mathml_name(name: str, function: bool = False) -> str:
+    """One identifier in MathML; several letters that are no Greek name stand upright."""
+    name, primes = name.rstrip("'"), "′" * name.count("'")
+    stem, index = (name, "") if function else split_name(name)
+    letter = GREEK.get(stem, stem)
+    upright = function or len(letter) > 1
+    tag = f'<mi mathvariant="normal">{html.escape(letter)}</mi>' if upright else f"<mi>{html.escape(letter)}</mi>"
+    if primes:
+        tag = f"<msup>{tag}<mo>{primes}</mo></msup>"
+    if not index:
+        return tag
+    below = "<mo>,</mo>".join(
+        f"<mn>{part}</mn>" if part.isdigit() else f"<mi>{html.escape(GREEK.get(part, part))}</mi>"
+        for part in index.split(",")
+    )
+    return f"<msub>{tag}<mrow>{below}</mrow></msub>"
+
+
+def latex_name(name: str, function: bool = False) -> str:
+    """The same identifier in LaTeX."""
+    if function:
+        return f"\\{name}" if name in LATEX_FUNCTIONS else rf"\operatorname{{{latex_escape(name)}}}"
+    name, primes = name.rstrip("'"), "'" * name.count("'")
+    stem, index = split_name(name)
+    if stem in GREEK:
+        letter = "\\" + LATEX_SPELLING.get(stem, stem) + " "
+    else:
+        letter = stem if len(stem) == 1 else rf"\mathrm{{{latex_escape(stem)}}}"
+    below = ",".join(rf"\{part}" if part in GREEK else latex_escape(part) for part in index.split(",") if part)
+    return f"{letter}{primes}_{{{below}}}" if below else letter + primes
+
+
+LATEX_ESCAPES = {
+    "\\": r"\textbackslash{}", "{": r"\{", "}": r"\}", "$": r"\$", "&": r"\&", "#": r"\#", "%": r"\%",
+    "_": r"\_", "^": r"\textasciicircum{}", "~": r"\textasciitilde{}", "<": r"\textless{}",
+    ">": r"\textgreater{}", '"': "''",
+}  # fmt: skip
+
+
+def latex_escape(text: str) -> str:
+    """Words for LaTeX: every character that it would obey is written out."""
+    return "".join(LATEX_ESCAPES.get(c, c) if c.isprintable() else " " for c in text)

@@ -1,0 +1,30 @@
+"use strict";
+// Filters the claims of a page; the page is complete without it.
+(() => {
+  const form = document.querySelector("form.filters");
+  if (!form) return;
+  const claims = [...document.querySelectorAll("article.claim")];
+  const words = new Map(claims.map((c) => [c, c.textContent.toLowerCase()]));
+  const shown = form.querySelector(".shown");
+  const apply = () => {
+    const wanted = new Set([...form.querySelectorAll("[name=status]:checked")].map((box) => box.value));
+    const text = form.elements.words.value.trim().toLowerCase();
+    let count = 0;
+    for (const claim of claims) {
+      const fits = wanted.has(claim.dataset.status) && words.get(claim).includes(text);
+      claim.hidden = !fits;
+      count += fits;
+    }
+    shown.textContent = `${count} of ${claims.length} claims`;
+  };
+  form.addEventListener("input", apply);
+  form.addEventListener("submit", (event) => event.preventDefault());
+  const open = () => {
+    const claim = document.getElementById(decodeURIComponent(location.hash.slice(1)));
+    if (claim) { claim.hidden = false; claim.scrollIntoView(); }
+  };
+  window.addEventListener("hashchange", open);
+  form.hidden = false;
+  apply();
+  open();
+})();
