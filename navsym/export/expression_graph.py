@@ -1,0 +1,290 @@
+"""One graph for all languages: every operation once, in the order in which it is computed.
+
+Equal subexpressions are one node. Sines and cosines of rational multiples of one angle share one
+sincos and follow by double angles and addition (:func:`build` with ``share``). Whole powers are
+products, a product with negative powers is one quotient. ``Graph.meaning`` is the exact formula of
+each root, which the normal form proves equal to the claim.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import reduce
+from typing import Any
+
+import sympy as sp
+
+from navsym.errors import DomainError, UnknownSymbolError
+from navsym.export.forms import MEANING, expm1, plain, sinc, x_minus_sin
+
+UNARY: dict[type, str] = {
+    sp.sin: "sin", sp.cos: "cos", sp.exp: "exp", sp.log: "log", sp.Abs: "abs",
+    sp.asin: "asin", sp.acos: "acos", sp.atan: "atan", sp.sinh: "sinh", sp.cosh: "cosh", sp.tanh: "tanh",
+    sinc: "sinc", expm1: "expm1", x_minus_sin: "x_minus_sin",
+}  # fmt: skip
+BINARY: dict[type, str] = {sp.atan2: "atan2", sp.Max: "max", sp.Min: "min"}
+MULTIPLES = 16      # above it an angle is computed by itself
+
+
+@dataclass(frozen=True, slots=True)
+class Node:
+    """One operation; ``value`` is the exact number of a constant or the place of an input."""
+
+    op: str
+    args: tuple[int, ...] = ()
+    value: Any = None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Graph:
+    """Inputs, operations in order, and the nodes that are the results."""
+
+    inputs: tuple[sp.Symbol, ...]
+    nodes: tuple[Node, ...]
+    roots: tuple[int, ...]
+
+    def uses(self) -> list[int]:
+        """How often each node is used, as an argument or as a result."""
+        counts = [0] * len(self.nodes)
+        for place in (*(a for node in self.nodes for a in node.args), *self.roots):
+            counts[place] += 1
+        return counts
+
+    def operations(self) -> Counter[str]:
+        """Number of operations of each kind."""
+        return Counter(node.op for node in self.nodes if node.op not in ("input", "const"))
+
+    def meaning(self) -> tuple[sp.Expr, ...]:
+        """Exact value of every root, written with the input symbols."""
+        done: list[sp.Expr] = []
+        for node in self.nodes:
+            done.append(value_of(node, [done[a] for a in node.args], self.inputs))
+        return tuple(plain(done[root]) for root in self.roots)
+
+
+FUNCTION_OF = {name: kind for kind, name in (*UNARY.items(), *BINARY.items())}
+
+
+def value_of(node: Node, args: list[sp.Expr], inputs: Sequence[sp.Symbol]) -> sp.Expr:
+    """Exact value of one node from those of its arguments."""
+    if node.op == "input":
+        return inputs[node.value]
+    if node.op == "const":
+        return node.value
+    if node.op in FUNCTION_OF:
+        return FUNCTION_OF[node.op](*args)
+    arithmetic = {
+        "add": lambda: args[0] + args[1], "sub": lambda: args[0] - args[1],
+        "mul": lambda: args[0] * args[1], "div": lambda: args[0] / args[1],
+        "neg": lambda: -args[0], "sqrt": lambda: sp.sqrt(args[0]),
+        "pow": lambda: args[0] ** args[1],
+    }  # fmt: skip
+    return arithmetic[node.op]()
+
+
+def build(expressions: Sequence[sp.Expr], inputs: Sequence[sp.Symbol], *, share: bool = True) -> Graph:
+    """The graph of expressions that are already in their safe form.
+
+    share : multiples of one angle from one sincos; otherwise each angle by itself
+    Raises UnknownSymbolError (a symbol that is no input) or DomainError (no counterpart in code).
+    """
+    builder = Builder(tuple(inputs))
+    if share:
+        builder.collect(expressions)
+    roots = tuple(builder.visit(sp.sympify(e, strict=True)) for e in expressions)
+    return pruned(Graph(tuple(inputs), tuple(builder.nodes), roots))
+
+
+def pruned(graph: Graph) -> Graph:
+    """The graph without operations that no result needs."""
+    needed = [False] * len(graph.nodes)
+    for root in graph.roots:
+        needed[root] = True
+    for place in range(len(graph.nodes) - 1, -1, -1):
+        if needed[place]:
+            for argument in graph.nodes[place].args:
+                needed[argument] = True
+    new: dict[int, int] = {}
+    nodes = []
+    for place, node in enumerate(graph.nodes):
+        if needed[place]:
+            new[place] = len(nodes)
+            nodes.append(Node(node.op, tuple(new[a] for a in node.args), node.value))
+    return Graph(graph.inputs, tuple(nodes), tuple(new[root] for root in graph.roots))
+
+
+class Builder:
+    """Nodes under construction; equal operations are found in ``place``."""
+
+    def __init__(self, inputs: tuple[sp.Symbol, ...]):
+        self.inputs = {symbol: i for i, symbol in enumerate(inputs)}
+        self.nodes: list[Node] = []
+        self.place: dict[Node, int] = {}
+        self.known: dict[sp.Basic, int] = {}
+        self.steps: dict[sp.Expr, sp.Rational] = {}      # direction of an angle -> common step
+
+    def put(self, op: str, *args: int, value: Any = None) -> int:
+        """The place of an operation, an old one when it is already there."""
+        node = Node(op, args, value)
+        if node not in self.place:
+            self.place[node] = len(self.nodes)
+            self.nodes.append(node)
+        return self.place[node]
+
+    def visit(self, e: sp.Expr) -> int:
+        """Place of an expression."""
+        if e not in self.known:
+            self.known[e] = self.node(e)
+        return self.known[e]
+
+    def node(self, e: sp.Expr) -> int:
+        if isinstance(e, sp.Symbol):
+            if e not in self.inputs:
+                raise UnknownSymbolError(f"expected only the inputs; got {e.name}; do list it as one")
+            return self.put("input", value=self.inputs[e])
+        if e.is_number and e.is_real:
+            return self.number(e)
+        if isinstance(e, sp.Add):
+            return self.sum(e)
+        if isinstance(e, sp.Mul):
+            return self.product(e)
+        if isinstance(e, sp.Pow):
+            return self.power(e.base, e.exp)
+        if isinstance(e, (sp.sin, sp.cos)):
+            return self.circular(e)
+        if type(e) in UNARY:
+            return self.put(UNARY[type(e)], self.visit(e.args[0]))
+        if type(e) in BINARY:
+            return reduce(lambda x, y: self.put(BINARY[type(e)], x, y), [self.visit(a) for a in e.args])
+        raise DomainError(f"expected functions that code has; got {type(e).__name__}; do rewrite the formula")
+
+    def number(self, e: sp.Expr) -> int:
+        """A constant; a negative one is the negation of a positive one."""
+        if e.is_negative:
+            return self.put("neg", self.put("const", value=-e))
+        return self.put("const", value=e)
+
+    # -- sums, products, powers ---------------------------------------
+
+    def sum(self, e: sp.Add) -> int:
+        """Positive terms first, then differences; a sum of negative terms is negated as a whole."""
+        terms = list(e.as_ordered_terms())
+        plus = [t for t in terms if not t.could_extract_minus_sign()]
+        minus = [-t for t in terms if t.could_extract_minus_sign()]
+        if not plus:
+            return self.put("neg", self.chain("add", minus))
+        return self.chain("sub", minus, self.chain("add", plus))
+
+    def chain(self, op: str, terms: Sequence[sp.Expr], start: int | None = None) -> int:
+        places = [self.visit(term) for term in terms]
+        if start is not None:
+            places.insert(0, start)
+        return reduce(lambda x, y: self.put(op, x, y), places)
+
+    def product(self, e: sp.Mul) -> int:
+        """One quotient: numerator over denominator; a dyadic coefficient scales the numerator exactly."""
+        coefficient, rest = e.as_coeff_Mul()
+        above: list[int] = []
+        below: list[int] = []
+        for factor in rest.as_ordered_factors() if isinstance(rest, sp.Mul) else [rest]:
+            base, exponent = factor.as_base_exp()
+            if exponent.is_Rational and exponent < 0:
+                below.append(self.power(base, -exponent))
+            else:
+                above.append(self.visit(factor))
+        size, dyadic = abs(coefficient), is_dyadic(coefficient)
+        scale, divisor = (size, sp.S.One) if dyadic or not size.is_Rational else (size.p, sp.Integer(size.q))
+        if scale != 1 or not above:
+            above.insert(0, self.number(sp.sympify(scale)))
+        if divisor != 1:
+            below.insert(0, self.number(divisor))
+        result = self.times(above)
+        if below:
+            result = self.put("div", result, self.times(below))
+        return self.put("neg", result) if coefficient.is_negative else result
+
+    def times(self, places: Sequence[int]) -> int:
+        return reduce(lambda x, y: self.put("mul", x, y), places)
+
+    def power(self, base: sp.Expr, exponent: sp.Expr) -> int:
+        """A power: products for whole exponents, the square root for halves, ``pow`` otherwise."""
+        if base is sp.E:
+            return self.put("exp", self.visit(exponent))
+        if exponent.is_Rational and exponent < 0:
+            return self.put("div", self.number(sp.S.One), self.power(base, -exponent))
+        if exponent.is_Integer:
+            return self.whole_power(self.visit(base), int(exponent))
+        if exponent.is_Rational and exponent.q == 2:
+            return self.whole_power(self.put("sqrt", self.visit(base)), int(exponent.p))
+        return self.put("pow", self.visit(base), self.visit(exponent))
+
+    def whole_power(self, x: int, n: int) -> int:
+        result: int | None = None
+        while n:
+            if n & 1:
+                result = x if result is None else self.put("mul", result, x)
+            n >>= 1
+            x = self.put("mul", x, x) if n else x
+        assert result is not None, "powers of zero are folded before"
+        return result
+
+    # -- angles ---------------------------------------
+
+    def collect(self, expressions: Sequence[sp.Expr]) -> None:
+        """Find the directions whose multiples occur more than once, and their common step."""
+        found: dict[sp.Expr, set[sp.Rational]] = {}
+        for e in expressions:
+            for node in sp.sympify(e).atoms(sp.sin, sp.cos):
+                coefficient, direction = direction_of(node.args[0])
+                found.setdefault(direction, set()).add(abs(coefficient))
+        for direction, coefficients in found.items():
+            step = sp.gcd_list(sorted(coefficients))
+            if len(coefficients) > 1 and max(coefficients) / step <= MULTIPLES:
+                self.steps[direction] = step
+
+    def circular(self, e: sp.Expr) -> int:
+        """sin or cos, from the shared base angle where there is one."""
+        name = UNARY[type(e)]
+        coefficient, direction = direction_of(e.args[0])
+        sign = -1 if coefficient < 0 else 1
+        step = self.steps.get(direction, abs(coefficient))
+        angle = self.visit(sp.expand(step * direction) if direction.is_Add else step * direction)
+        result = self.of_multiple(name, angle, int(abs(coefficient) / step))
+        return self.put("neg", result) if sign < 0 and name == "sin" else result
+
+    def of_multiple(self, name: str, angle: int, n: int) -> int:
+        """sin(n x) or cos(n x) by doubling and addition from sin x and cos x."""
+        if n == 1:
+            return self.put(name, angle)
+        if n % 2 == 0:
+            s = self.of_multiple("sin", angle, n // 2)
+            two = self.number(sp.Integer(2))
+            if name == "sin":
+                return self.put("mul", self.put("mul", two, s), self.of_multiple("cos", angle, n // 2))
+            return self.put("sub", self.number(sp.S.One), self.put("mul", two, self.put("mul", s, s)))
+        a, b = (n + 1) // 2, n // 2
+        sa, ca, sb, cb = (self.of_multiple(f, angle, k) for k in (a, b) for f in ("sin", "cos"))
+        if name == "sin":
+            return self.put("add", self.put("mul", sa, cb), self.put("mul", ca, sb))
+        return self.put("sub", self.put("mul", ca, cb), self.put("mul", sa, sb))
+
+
+def direction_of(angle: sp.Expr) -> tuple[sp.Rational, sp.Expr]:
+    """(coefficient, direction) with the direction in a normal sign and size."""
+    if isinstance(angle, sp.Add):
+        coefficient, direction = angle.primitive()
+    else:
+        coefficient, direction = angle.as_coeff_Mul()
+    if direction.could_extract_minus_sign():
+        coefficient, direction = -coefficient, -direction
+    return (coefficient, direction) if coefficient.is_Rational else (sp.S.One, angle)
+
+
+def is_dyadic(number: sp.Expr) -> bool:
+    """True for p/2^k with small p: multiplying by it is one rounding at most, and dividing is not needed."""
+    return bool(number.is_Rational and number.q & (number.q - 1) == 0)
+
+
+__all__ = ["MEANING", "Graph", "Node", "build"]

@@ -1,0 +1,208 @@
+"""Forms that keep their digits: differences that cancel, and quotients whose singularity is removable.
+
+Each rewriting is exact, and the graph that comes out of them is proved equal to the formula by the
+normal form (:func:`navsym.export.functions.tie_to_formula`); nothing here is trusted.
+
+    k - k cos x  =  2 k sin(x/2)^2        k exp x - k  =  k expm1(x)        x - sin x  =  x_minus_sin(x)
+    sin(q x)/x   =  q sinc(q x)           where the range of x contains zero
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import sympy as sp
+
+Ranges = Mapping[sp.Symbol, tuple[Any, Any]]
+
+
+class sinc(sp.Function):
+    """sin(x)/x, and 1 at zero."""
+
+
+class expm1(sp.Function):
+    """exp(x) - 1."""
+
+
+class x_minus_sin(sp.Function):
+    """x - sin(x)."""
+
+
+MEANING: dict[type, Callable[[sp.Expr], sp.Expr]] = {
+    sinc: lambda x: sp.sin(x) / x,
+    expm1: lambda x: sp.exp(x) - 1,
+    x_minus_sin: lambda x: x - sp.sin(x),
+}
+QUOTIENTS: dict[type, Callable[[sp.Expr], sp.Expr]] = {
+    sp.tan: lambda x: sp.sin(x) / sp.cos(x),
+    sp.cot: lambda x: sp.cos(x) / sp.sin(x),
+    sp.sec: lambda x: 1 / sp.cos(x),
+    sp.csc: lambda x: 1 / sp.sin(x),
+}
+
+
+def safe(expression: sp.Expr, ranges: Ranges) -> sp.Expr:
+    """The same value in a form that does not cancel near zero.
+
+    ranges : symbol -> (lower, upper), None for no end; a symbol that is not named is any real number
+    """
+    if not expression.args:
+        return expression
+    parts = [safe(part, ranges) for part in expression.args]
+    if type(expression) in QUOTIENTS:
+        return QUOTIENTS[type(expression)](parts[0])
+    if isinstance(expression, sp.Add):
+        return safe_sum(parts)
+    if isinstance(expression, sp.Mul):
+        return safe_product(parts, ranges)
+    return expression.func(*parts)
+
+
+def safe_sum(terms: list[sp.Expr]) -> sp.Expr:
+    """A sum with its cancelling pairs joined."""
+    left = list(terms)
+    joined: list[sp.Expr] = []
+    for term in terms:
+        if term not in left:
+            continue
+        for partner, whole in partners(term):
+            if partner in left and partner != term:
+                left.remove(term)
+                left.remove(partner)
+                joined.append(whole)
+                break
+    return sp.Add(*joined, *left)
+
+
+def partners(term: sp.Expr) -> list[tuple[sp.Expr, sp.Expr]]:
+    """(other term, what the two are together) for the pairs that cancel at zero."""
+    found = []
+    for function in sp.Mul.make_args(term):
+        rest = term / function
+        if isinstance(function, sp.cos):
+            found.append((-rest, -2 * rest * sp.sin(function.args[0] / 2) ** 2))
+        if isinstance(function, sp.cosh):
+            found.append((-rest, 2 * rest * sp.sinh(function.args[0] / 2) ** 2))
+        if isinstance(function, sp.exp):
+            found.append((-rest, rest * expm1(function.args[0])))
+        if isinstance(function, sp.sin):
+            found.append((-rest * function.args[0], -rest * x_minus_sin(function.args[0])))
+    return found
+
+
+def safe_product(factors: list[sp.Expr], ranges: Ranges) -> sp.Expr:
+    """A product with sin(q x)/x written as q sinc(q x) where x may be zero."""
+    powers = dict(factor.as_base_exp() for factor in sp.Mul.make_args(sp.Mul(*factors)))
+    for base in [b for b in powers if isinstance(b, sp.sin) and is_count(powers[b])]:
+        for symbol in sorted(base.args[0].free_symbols, key=str):
+            below = -powers.get(symbol, sp.S.Zero)
+            quotient = sp.cancel(base.args[0] / symbol)
+            if not (is_count(below) and may_vanish(symbol, ranges)) or not quotient.is_polynomial():
+                continue
+            count = min(powers[base], below)
+            powers[base] -= count
+            powers[symbol] += count
+            for extra in (sinc(base.args[0]), quotient):
+                powers[extra] = powers.get(extra, sp.S.Zero) + count
+    return sp.Mul(*(base**exponent for base, exponent in powers.items()))
+
+
+def is_count(exponent: Any) -> bool:
+    return bool(exponent.is_Integer and exponent > 0)
+
+
+def may_vanish(symbol: sp.Symbol, ranges: Ranges) -> bool:
+    """True when zero lies in the range of the symbol."""
+    if symbol.is_positive or symbol.is_negative or symbol.is_nonzero:
+        return False
+    lower, upper = ranges.get(symbol, (None, None))
+    return (lower is None or lower <= 0) and (upper is None or upper >= 0)
+
+
+def plain(expression: sp.Expr) -> sp.Expr:
+    """The expression with the functions of this file written out."""
+    return expression.replace(
+        lambda node: type(node) in MEANING, lambda node: MEANING[type(node)](*node.args)
+    )
+
+
+# -- nicer forms, as candidates ---------------------------------------
+
+
+def factored(expression: sp.Expr) -> sp.Expr | None:
+    """A candidate form of a rational function of sines and cosines of multiples of one angle.
+
+    With s, c at the base angle and s^2 = 1 - c^2 it is (A + B s)/(C + D s), A … D polynomials in c;
+    where two of them vanish the rest is factored, so that 1 - c and 1 + c become squares of half
+    angles. None when the expression is not of this kind.
+    """
+    expression = sp.sympify(expression).replace(
+        lambda n: type(n) in QUOTIENTS, lambda n: QUOTIENTS[type(n)](*n.args)
+    )
+    angle = base_angle(expression)
+    if angle is None:
+        return None
+    s, c = sp.symbols("navsym_s navsym_c")      # dummies would order themselves by their history
+    whole = expression.replace(
+        lambda n: isinstance(n, (sp.sin, sp.cos)), lambda n: multiple(n, angle, s, c)
+    )
+    above, below = (reduced(part, s, c) for part in sp.fraction(sp.together(whole)))
+    if not (above and below):
+        return None
+    parity = [(bool(part[0]), bool(part[1])) for part in (above, below)]
+    if any(all(pair) for pair in parity) or not any(parity[1]):
+        return None
+    quotient = sp.factor(sp.cancel(sum(above) / sum(below)))
+    power = (1 if parity[0][1] else 0) - (1 if parity[1][1] else 0)
+    if any(parity[0]):
+        quotient *= s**power
+    result = whole_again(quotient, angle, s, c)
+    return None if result.has(sp.nan, sp.zoo) else result
+
+
+def base_angle(expression: sp.Expr) -> sp.Expr | None:
+    """The common base of all angles, when they are rational multiples of one; else None."""
+    arguments = [node.args[0] for node in expression.atoms(sp.sin, sp.cos)]
+    split = [argument.as_coeff_Mul() for argument in arguments]
+    if not split or len({rest for _, rest in split}) != 1 or not all(k.is_Rational for k, _ in split):
+        return None
+    step = sp.gcd_list([k for k, _ in split])
+    most = max(abs(k / step) for k, _ in split)
+    return step * split[0][1] if most <= 12 else None
+
+
+def multiple(node: sp.Expr, angle: sp.Expr, s: sp.Symbol, c: sp.Symbol) -> sp.Expr:
+    """sin or cos of a multiple of the base angle as a polynomial in s and c."""
+    n = int(sp.cancel(node.args[0] / angle))
+    sign = -1 if n < 0 else 1
+    if isinstance(node, sp.cos):
+        return sp.chebyshevt(abs(n), c)
+    return sign * s * sp.chebyshevu(abs(n) - 1, c) if n else sp.S.Zero
+
+
+def reduced(part: sp.Expr, s: sp.Symbol, c: sp.Symbol) -> tuple[sp.Expr, sp.Expr] | None:
+    """(A, B) with part = A + B s modulo s^2 = 1 - c^2; None when it is no polynomial in s."""
+    if not part.is_polynomial(s, c):
+        return None
+    even, odd = sp.S.Zero, sp.S.Zero
+    for (power,), coefficient in sp.Poly(part, s).terms():
+        term = coefficient * (1 - c**2) ** (power // 2)
+        even, odd = (even, odd + term) if power % 2 else (even + term, odd)
+    return sp.expand(even), sp.expand(odd)
+
+
+def whole_again(quotient: sp.Expr, angle: sp.Expr, s: sp.Symbol, c: sp.Symbol) -> sp.Expr:
+    """s and c back to functions; 1 - c and 1 + c as squares of half angles."""
+    quotient = quotient.replace(
+        lambda n: isinstance(n, sp.Add), lambda n: half_angle(n, angle, c)
+    )
+    return quotient.subs({s: sp.sin(angle), c: sp.cos(angle)}, simultaneous=True)
+
+
+def half_angle(node: sp.Add, angle: sp.Expr, c: sp.Symbol) -> sp.Expr:
+    if sp.expand(node - (c - 1)) == 0:
+        return -2 * sp.sin(angle / 2) ** 2
+    if sp.expand(node - (c + 1)) == 0:
+        return 2 * sp.cos(angle / 2) ** 2
+    return node

@@ -1,0 +1,180 @@
+"""Graphs as assignments: what all languages share. A language adds its spelling.
+
+Every binary operation stands in parentheses of its own, so that no language's precedence matters,
+and a blank on either side of an operator, so that tests can find and corrupt it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from navsym.export.expression_graph import Graph
+from navsym.export.functions import ExportedFunction, Piece
+
+SIGNS = {"add": "+", "sub": "-", "mul": "*", "div": "/"}
+LONGEST = 76
+
+
+@dataclass(frozen=True, slots=True)
+class Spelling:
+    """How a language writes numbers and calls.
+
+    calls     : operation -> format with {0}, {1}
+    nan, inf  : how these are written, for test vectors
+    suffix    : put behind every literal (``f`` in C with float)
+    """
+
+    calls: Mapping[str, str]
+    nan: str
+    inf: str
+    suffix: str = ""
+    exponent: str = "e"
+
+    def number(self, value: float) -> str:
+        """A literal that is read back as exactly this number."""
+        if math.isnan(value):
+            return self.nan
+        if math.isinf(value):
+            return self.inf if value > 0 else f"-{self.inf}"
+        text = repr(float(value))
+        if "e" in text:
+            head, tail = text.split("e")
+            text = f"{head if '.' in head else head + '.0'}{self.exponent}{int(tail)}"
+        elif self.exponent != "e":
+            text += f"{self.exponent}0"
+        return text + self.suffix
+
+
+def calls(prefix: str = "", suffix: str = "", **special: str) -> dict[str, str]:
+    """Names of the library functions with a prefix or suffix, and those that are written otherwise."""
+    names = "sin cos exp log sqrt asin acos atan sinh cosh tanh expm1".split()
+    table = {name: f"{prefix}{name}{suffix}({{0}})" for name in names}
+    table |= {"abs": f"{prefix}fabs{suffix}({{0}})", "atan2": f"{prefix}atan2{suffix}({{0}}, {{1}})"}
+    table |= {"pow": f"{prefix}pow{suffix}({{0}}, {{1}})", "max": f"{prefix}fmax{suffix}({{0}}, {{1}})"}
+    table |= {"min": f"{prefix}fmin{suffix}({{0}}, {{1}})"}
+    table |= {"sinc": "navsym_sinc({0})", "x_minus_sin": "navsym_x_minus_sin({0})"}
+    return table | special
+
+
+def assignments(piece: Piece, names: list[str], spelling: Spelling) -> tuple[list[tuple[str, str]], list[str]]:
+    """([(temporary, expression), …], [expression of each result]).
+
+    Shared nodes and long expressions get a temporary; everything else stands where it is used.
+    """
+    graph, counts = piece.graph, piece.graph.uses()
+    text: list[str] = []
+    lines: list[tuple[str, str]] = []
+    for place, node in enumerate(graph.nodes):
+        written = node_text(graph, place, text, names, piece, spelling)
+        simple = node.op in ("input", "const") or (node.op == "neg" and graph.nodes[node.args[0]].op == "const")
+        if not simple and (counts[place] > 1 or len(written) > LONGEST):
+            name = f"t{len(lines)}"
+            lines.append((name, bare(written)))
+            written = name
+        text.append(written)
+    return lines, [bare(text[root]) for root in graph.roots]
+
+
+def node_text(
+    graph: Graph, place: int, text: list[str], names: list[str], piece: Piece, spelling: Spelling
+) -> str:
+    """One node in terms of its arguments."""
+    node = graph.nodes[place]
+    args = [text[a] for a in node.args]
+    if node.op == "input":
+        return names[node.value]
+    if node.op == "const":
+        value: Any = piece.literals[place]
+        return spelling.number(value)
+    if node.op == "neg":
+        return f"(-{args[0]})"
+    if node.op in SIGNS:
+        return f"({args[0]} {SIGNS[node.op]} {args[1]})"
+    return spelling.calls[node.op].format(*(bare(a) for a in args))
+
+
+def bare(text: str) -> str:
+    """The text without the one pair of parentheses that encloses all of it."""
+    if not (text.startswith("(") and text.endswith(")")):
+        return text
+    depth = 0
+    for place, char in enumerate(text):
+        depth += (char == "(") - (char == ")")
+        if depth == 0 and place < len(text) - 1:
+            return text
+    return text[1:-1]
+
+
+def helpers_used(function: ExportedFunction) -> list[str]:
+    """Names of the helper functions that the code needs."""
+    used = {node.op for piece in function.pieces for node in piece.graph.nodes}
+    return [name for name in ("sinc", "x_minus_sin") if name in used]
+
+
+#: 1/6, 1/20, 1/42, …: sin(x)/x = 1 - y/6 (1 - y/20 (1 - y/42 …)) with y = x^2.
+SINC_STEPS = (6, 20, 42, 72)
+#: (x - sin x) = x^3/6 (1 - y/20 (1 - y/42 (…))).
+X_MINUS_SIN_STEPS = (20, 42, 72, 110, 156, 210, 272, 342, 420)
+SINC_SWITCH = 0.0625
+X_MINUS_SIN_SWITCH = 1.0
+
+
+def horner(steps: tuple[int, ...], one: str, number: Any) -> str:
+    """The nested product 1 - y/s1 (1 - y/s2 (…))."""
+    text = f"({one} - (y / {number(float(steps[-1]))}))"
+    for step in reversed(steps[:-1]):
+        text = f"({one} - ((y / {number(float(step))}) * {text}))"
+    return text
+
+
+def summary(function: ExportedFunction) -> list[str]:
+    """What every header says: formula, source, verdict, domain, cost, bound. One line each."""
+    lines = []
+    for piece in function.pieces:
+        source = piece.source
+        where = "" if function.switch is None else f" up to {function.inputs[function.switch].name}"
+        where += "" if piece.limit is None or not where else f" = {piece.limit!r}"
+        lines += [f"Claim    {source.claim}: {source.status} ({source.method}){where if piece.limit else ''}"]
+        lines += [f"         {source.title}"] if source.title else []
+        lines += [f"Source   {source.paper}, {source.equation}"] if source.paper else []
+        lines += [f"Scope    {source.scope}"] if source.scope else []
+        lines += [f"Assumes  {'; '.join(source.assumptions)}"] if source.assumptions else []
+        lines += [f"Formula  {formula}" for formula in source.formula]
+        lines += [f"Cost     {cost(piece)}", f"Rounding {bound_text(function, piece)}"]
+        lines += [f"Tie      code graph equals the formula: {TIES[piece.tie]}"]
+    for i in function.inputs:
+        low = "any" if math.isinf(i.low) else repr(i.low)
+        high = "any" if math.isinf(i.high) else repr(i.high)
+        lines.append(f"Domain   {i.name}: {i.text}; accepted from {low} to {high}")
+    return lines
+
+
+TIES = {
+    "identical": "proved, same expression",
+    "normal form": "proved by the normal form",
+    "enclosures": "held by enclosures at the test vectors only",
+}
+
+
+def cost(piece: Piece) -> str:
+    counted = sorted(piece.graph.operations().items())
+    return ", ".join(f"{count} {op}" for op, count in counted) or "no operation"
+
+
+def bound_text(function: ExportedFunction, piece: Piece) -> str:
+    """The derived rounding bound in words."""
+    arithmetic, bound = function.arithmetic, piece.bound
+    where = f" for {', '.join(bound.where)}" if bound.where else ""
+    limits = [f"|{i.name}| <= {max(abs(i.test_low), abs(i.test_high)):g}" for i in function.inputs
+              if math.isinf(i.low) or math.isinf(i.high)]  # fmt: skip
+    where += f" with {', '.join(limits)}" if limits else ""
+    u = f"u = 2^{arithmetic.u}"
+    library = f"({u}; library functions within {arithmetic.library} or {2 * arithmetic.library} ulp)"
+    if bound.relative is not None and bound.relative < 1e6:
+        return f"relative error at most {bound.relative:.3g} u, that is {math.ceil(bound.relative)} ulp{where} {library}"
+    if bound.absolute is not None:
+        return f"absolute error at most {bound.absolute:.3g}{where} {library}"
+    return f"no bound for the whole domain; each test vector carries its own {library}"
