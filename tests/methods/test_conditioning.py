@@ -19,6 +19,7 @@ from navsym.methods.conditioning_exact import (
     squared_singular_polynomial,
 )
 from navsym.methods.conditioning_perron import condition_by_signs
+from navsym.methods.conditioning_scaling import best_scaling
 from navsym.models.earth_motion import observability_rows, power_rows
 
 fractions = st.fractions(min_value=-5, max_value=5, max_denominator=9)
@@ -135,3 +136,29 @@ def test_the_printed_digits_imply_a_radius_of_6371_km():
     assert fits(Fraction(6371000))
     # mean radius of WGS-84, equator, pole
     assert not any(fits(Fraction(x)) for x in ("6371008.8", "6378137", "6356752"))
+
+
+@pytest.mark.parametrize("n", [2, 3, 5, 8])
+def test_the_best_scaling_beats_unit_columns_and_is_stationary(n):
+    found = best_scaling(n)
+    assert found.stationarity < 1e-5
+    assert found.enclosure.lower <= found.unit.upper * (1 + Fraction(1, 10**9))
+    # van der Sluis: unit columns are within sqrt(n) of the best
+    assert found.unit.lower**2 <= n * found.enclosure.upper**2
+    for j in range(1, n):
+        for factor in (Fraction(99, 100), Fraction(101, 100)):
+            scale = [f * (factor if i == j else 1) for i, f in enumerate(found.factors)]
+            norms = np.linalg.norm(np.array(power_rows(n), dtype=float), axis=0)
+            moved = [
+                [x * s / Fraction(float(l)) for x, s, l in zip(row, scale, norms, strict=True)]
+                for row in power_rows(n)
+            ]
+            assert condition_number(moved, digits=15).upper >= found.enclosure.lower * (
+                1 - Fraction(1, 10**8)
+            )
+
+
+def test_unit_columns_are_worse_than_none_in_the_radius_channel():
+    rows = observability_rows(5, Fraction(1), Fraction(13, 20))
+    plain, scaled = (condition_number(rows, digits=20, equilibrate=flag) for flag in (False, True))
+    assert plain.upper < Fraction(9, 10) * scaled.lower
