@@ -13,9 +13,11 @@ from navsym.claims import REFUTED, Equation, claim
 
 def symmetric(name: str, size: int) -> sp.Matrix:
     """A symmetric matrix of free symbols."""
-    return sp.Matrix(
-        size, size, lambda a, b: sp.Symbol(f"{name}{min(a, b)}{max(a, b)}", positive=True if a == b else None, real=True)
-    )
+
+    def entry(a: int, b: int) -> sp.Symbol:
+        return sp.Symbol(f"{name}{min(a, b)}{max(a, b)}", positive=True if a == b else None, real=True)
+
+    return sp.Matrix(size, size, entry)
 
 
 def full(name: str, rows: int, columns: int) -> sp.Matrix:

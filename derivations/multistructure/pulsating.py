@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
-from itertools import product
+from itertools import pairwise, product
 
 import sympy as sp
 
@@ -271,7 +271,7 @@ def near_optimal():
     return Property(
         printed=True,
         derived=Finding(
-            all(b < a for a, b in zip(values, values[1:], strict=False)), "exact excess kurtosis",
+            all(b < a for a, b in pairwise(values)), "exact excess kurtosis",
             scope="g = 1 - 10^-k, unit Gaussians 10^(k/2) apart, k = 1..6",
             evidence=f"excess kurtosis grows from {float(values[0]):.3g} to {float(values[-1]):.3g}",
         ),

@@ -31,8 +31,9 @@ def command(
 
     document = read_json(file)
     try:
-        models, measurements, forget = read_bank(as_mapping(document))
-        estimate = run(models, measurements, method, depth=depth, forget=forget, missing=missing)
+        given = read_bank(as_mapping(document))
+        estimate = run(given.bank, given.measurements, method, depth=depth, forget=given.forget,
+                       missing=missing or given.missing)
     except NavsymError as error:
         raise error.at(str(file)) from None
     for remark in remarks(estimate):

@@ -19,7 +19,7 @@ from navsym.methods.multimodel_bank import Bank, bank, measurements_for, memoryl
 from navsym.methods.multimodel_schemes import Scheme, require_room, scheme
 from navsym.numeric import arrays
 
-Array = NDArray[np.float64]
+Array = NDArray[np.floating[Any]]
 Engine = Literal["auto", "numpy", "compiled"]
 
 #: Below this many one-step filters the compiled loops do not pay for being loaded.
@@ -121,8 +121,22 @@ def collected(found: list[steps.Step], models: Bank, count: int) -> Estimate:
     )
 
 
-def read_bank(document: Mapping[str, Any]) -> tuple[Bank, Any, bool]:
-    """A bank file as data: the bank, its measurements, and whether it asks for the memoryless form."""
+@dataclass(frozen=True, slots=True, eq=False)
+class BankFile:
+    """A bank file as data.
+
+    forget  : ``"memoryless": true``, the printed (14)-(17)
+    missing : ``"missing": true``, null is a number that did not come
+    """
+
+    bank: Bank
+    measurements: Any
+    forget: bool
+    missing: bool
+
+
+def read_bank(document: Mapping[str, Any]) -> BankFile:
+    """Read the keys of a bank file; errors name the key."""
     for key in ("models", "mode_transition", "initial", "measurements"):
         if key not in document:
             raise ShapeError(f"{key}: expected the keys models, mode_transition, initial and measurements; got "
@@ -133,9 +147,14 @@ def read_bank(document: Mapping[str, Any]) -> tuple[Bank, Any, bool]:
             raise ShapeError(f"initial.{key}: expected mean, covariance and probabilities; got no {key}; add it")
     if not isinstance(document["models"], list) or not isinstance(document["measurements"], list):
         raise ShapeError("models: expected lists of models and of measurements; got something else; use [ ]")
-    forget = document.get("memoryless", False)
-    if not isinstance(forget, bool):
-        raise DomainError(f"memoryless: expected true or false; got {forget!r}; write true or false")
     made = bank(document["models"], document["mode_transition"], start["mean"], start["covariance"],
                 start["probabilities"])
-    return made, document["measurements"], forget
+    return BankFile(made, document["measurements"], switch(document, "memoryless"), switch(document, "missing"))
+
+
+def switch(document: Mapping[str, Any], key: str) -> bool:
+    """An optional true or false."""
+    value = document.get(key, False)
+    if not isinstance(value, bool):
+        raise DomainError(f"{key}: expected true or false; got {value!r}; write true or false")
+    return value

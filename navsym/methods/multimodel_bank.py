@@ -200,6 +200,8 @@ def measurements_for(made: Bank, values: Any, *, missing: bool = False) -> Array
     that names the row. Infinities are always refused.
     """
     table = table_of(values, made.channels)
+    if len(table) == 0:
+        raise EmptyError("measurements: expected at least one row; got none; give the measurement of step 1")
     bad = ~np.isfinite(table)
     if missing:
         bad &= ~np.isnan(table)

@@ -18,7 +18,7 @@ from navsym.methods.multimodel_schemes import require_room, scheme
 from navsym.numeric import kalman, mixture
 from navsym.numeric.linalg import symmetrise
 
-Array = NDArray[np.float64]
+Array = NDArray[np.floating[Any]]
 #: mean (runs, T, n), covariance (runs, T, n, n), probabilities (runs, T, m), cumulative log-likelihood (runs, T)
 Batch = tuple[Array, Array, Array, Array]
 
@@ -88,8 +88,9 @@ def imm_in_numpy(models: Bank, measurements: Array) -> Batch:
         raise DomainError("mode_transition: expected every mode to be reachable; got a zero column; use run_batch")
     out = empty(measurements, models)
     runs = len(measurements)
-    log_w = np.tile(mixture.logs(models.probabilities), (runs, 1))
-    x, P = np.tile(models.means, (runs, 1, 1)), np.tile(models.covariances, (runs, 1, 1, 1))
+    log_w: Array = np.tile(mixture.logs(models.probabilities), (runs, 1))
+    x: Array = np.tile(models.means, (runs, 1, 1))
+    P: Array = np.tile(models.covariances, (runs, 1, 1, 1))
     total = np.zeros(runs)
     for k in range(measurements.shape[1]):
         x, P, log_next = mixed(log_w, models.at("mode_transition", k + 1), x, P)

@@ -13,7 +13,7 @@ from navsym.methods.multimodel_schemes import Scheme, filters_at
 from navsym.numeric import arrays, kalman, mixture
 from navsym.numeric.mixture_kernels import ALL, BY_MODE, CROSS, KEEP, MIXED, OWN, run_bank
 
-Array = NDArray[np.float64]
+Array = NDArray[np.floating[Any]]
 
 BRANCHING = {"cross": CROSS, "mixed": MIXED, "own": OWN}
 FOLDING = {"none": KEEP, "all": ALL, "by mode": BY_MODE}
@@ -31,14 +31,14 @@ def run_compiled(rule: Scheme, models: Bank, z: Array, count: int) -> multimodel
     T, m, n = len(z), models.modes, models.states
     out = (np.empty((T, m)), np.empty((T, n)), np.empty((T, n, n)), np.empty(T), np.empty(T))
     stopped = run_bank(
-        BRANCHING[rule.branching], FOLDING[rule.folding], rule.period, widest, models.F, models.Q, H, r, U, rotated,
-        models.mode_transition, mixture.logs(models.mode_transition), mixture.logs(models.probabilities), models.common, models.means,
-        models.covariances, z, *out,
+        BRANCHING[rule.branching], FOLDING[rule.folding], rule.period, widest,
+        models.F, models.Q, H, r, U, rotated, models.mode_transition, mixture.logs(models.mode_transition),
+        mixture.logs(models.probabilities), models.common, models.means, models.covariances, z, *out,
     )
     if stopped:
         return multimodel.run_in_numpy(rule, models, z, count)
     return multimodel.Estimate(
-        *(arrays.frozen(array) for array in out[:4]), count,
+        arrays.frozen(out[0]), arrays.frozen(out[1]), arrays.frozen(out[2]), arrays.frozen(out[3]), count,
         tuple(int(k) + 1 for k in np.flatnonzero(out[4] < multimodel.UNDERFLOW)),
     )
 

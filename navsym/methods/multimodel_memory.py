@@ -70,6 +70,7 @@ def floats_in_use(bank: Bank, z: Array) -> tuple[int, int]:
     """Floats that one Kalman filter and the one-pass pulsating filter keep through a step."""
     single = Workspace({"mean": bank.means[0], "P": bank.covariances[0]})
     kalman_step(bank, 1, z, single)
-    pulsating = Workspace({"mean": bank.means[0], "P": bank.covariances[0], "probabilities": bank.probabilities})
+    start = {"mean": bank.means[0], "P": bank.covariances[0], "probabilities": bank.probabilities}
+    pulsating = Workspace(dict(start))
     pulsating_step(bank, 1, z, pulsating)
     return single.floats, pulsating.floats

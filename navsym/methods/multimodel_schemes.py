@@ -67,7 +67,7 @@ def scheme(method: str, depth: int | None = None) -> Scheme:
     if depth is None:
         return known
     if method != "k-pulsating":
-        raise DomainError(f"depth: expected none with the method {method}; got {depth}; it belongs to k-pulsating")
+        raise DomainError(f"depth: expected none with {method}; got {depth}; it belongs to k-pulsating")
     if isinstance(depth, bool) or not isinstance(depth, int) or depth < 1:
         raise DomainError(f"depth: expected a whole number of steps from 1 on; got {depth!r}; give K >= 1")
     return Scheme("k-pulsating", "cross", "all", depth)

@@ -116,7 +116,7 @@ def mixed(before: Hypotheses, log_next: Array) -> Branches:
 
 
 def shares(column: Array, table: Array) -> Array:
-    """Normalised weights of one group; an impossible group takes those of all, so that numbers stay finite."""
+    """Normalised weights of one group; an impossible group takes those of all, to keep numbers finite."""
     weights, total = mixture.normalise(column)
     if total > -np.inf:
         return weights
@@ -148,7 +148,7 @@ def filtered(bank: Bank, k: int, branches: Branches, z: Array) -> tuple[Array, A
 
 def by_mode(weights: Array, modes: NDArray[np.intp], m: int) -> Array:
     """Probability of each last mode."""
-    return np.bincount(modes, weights=weights, minlength=m)
+    return np.bincount(modes, weights=weights, minlength=m).astype(float)
 
 
 def spread_over_modes(log_weights: Array, modes: NDArray[np.intp], m: int) -> Array:

@@ -97,7 +97,8 @@ def single_runs(sizes: tuple[tuple[int, int], ...], steps: int, peer_steps: int,
             difference = np.abs(ours().mean[:peer_steps] - theirs()).max()
             fast, slow = best_of(rounds, ours, theirs)
             fast, slow = fast / steps * 1e6, slow / peer_steps * 1e6
-            print(f"  {method:13s} ({modes:2d}, {states}) {fast:16.3f} {slow:12.1f} {slow / fast:7.0f}   {difference:.1e}")
+            print(f"  {method:13s} ({modes:2d}, {states}) {fast:16.3f} {slow:12.1f} {slow / fast:7.0f}", end="")
+            print(f"   {difference:.1e}")
 
 
 def batches(sizes: tuple[tuple[int, int], ...], runs: int, steps: int, rounds: int) -> None:

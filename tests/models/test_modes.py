@@ -1,0 +1,51 @@
+"""Error models of the multi-structure paper: Jacobians twice, the Schuler channel three times."""
+
+import numpy as np
+import pytest
+import sympy as sp
+from numpy.testing import assert_allclose
+
+from navsym.models import dead_reckoning, modes
+from navsym.numeric.casadi_functions import casadi_function
+
+
+@pytest.mark.parametrize("point", np.random.default_rng(2).uniform(-1.2, 1.2, (5, 6)))
+def test_jacobians_by_sympy_and_by_algorithmic_differentiation_are_equal(point):
+    import casadi as ca
+
+    model = dead_reckoning.dead_reckoning()
+    S = model.right_side().subs(dead_reckoning.radius, 3)
+    inputs = [list(model.errors), list(model.sensor_errors), [*model.reckoned, *model.readings]]
+    generated = casadi_function("S", inputs, S)
+    where = np.concatenate([point[:5], [1.0]])
+    shapes = [ca.MX.sym("e", 2), ca.MX.sym("d", 4), ca.MX.sym("u", 6)]
+    value = generated(*shapes)
+    differentiated = ca.Function("J", shapes, [ca.jacobian(value, shapes[0]), ca.jacobian(value, shapes[1])])
+    ours = model.linear_parts()
+    symbols = [*model.reckoned, *model.readings]
+    for theirs, matrix in zip(differentiated(np.zeros(2), np.zeros(4), where), ours, strict=True):
+        exact = matrix.subs(dict(zip(symbols, map(sp.Float, where), strict=True))).subs(dead_reckoning.radius, 3)
+        assert_allclose(np.array(theirs), np.array(exact.evalf(), dtype=float), rtol=1e-12, atol=1e-14)
+
+
+def test_the_schuler_transition_solves_its_equation():
+    A, symbols = modes.schuler_matrix()
+    transition, _ = modes.schuler_transition()
+    tau = sp.Symbol("tau", positive=True)
+    rest = (transition.diff(tau) - A * transition).subs({symbols["g"]: 3, symbols["R"]: 5})
+    assert all(sp.expand(entry) == 0 for entry in rest)
+    assert transition.subs(tau, 0) == sp.eye(3)
+
+
+def test_the_numbers_of_the_channel_are_those_of_its_formula():
+    channel = modes.SchulerChannel()
+    transition, symbols = modes.schuler_transition()
+    values = {symbols["g"]: modes.GRAVITY, symbols["R"]: modes.EARTH_RADIUS, symbols["tau"]: channel.tau}
+    assert_allclose(channel.transition(), np.array(transition.subs(values).evalf(30), dtype=float), rtol=1e-9)
+
+
+def test_the_channel_is_a_bank_of_three_modes():
+    channel = modes.SchulerChannel()
+    assert len(channel.models()) == len(modes.MODES) == 3
+    assert_allclose(channel.mode_transition().sum(axis=1), 1.0, atol=1e-15)
+    assert channel.models()[2]["R"][0, 0] == pytest.approx(100 * channel.models()[0]["R"][0, 0])
