@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import sympy as sp
 
 from derivations.joint_correction.section1_systems import p, polynomial_of
@@ -17,6 +19,14 @@ from derivations.joint_correction.section2_groups import (
 from navsym.claims import REFUTED, Equation, Finding, Property, claim
 from navsym.methods.observability import observe
 from navsym.models.inertial import FULL, X, Y, joint_model
+from navsym.models.linear import LinearModel
+
+
+@cache
+def joint() -> LinearModel:
+    """The joint model, derived once."""
+    return joint_model()
+
 
 x = sp.Matrix(sp.symbols("x1:7", real=True))  # estimates x_k°
 y = dict(zip((1, 2, 5, 6), sp.symbols("y1 y2 y5 y6", real=True), strict=True))
@@ -62,7 +72,7 @@ def functionals(meaning: tuple[sp.Expr, ...]) -> sp.Matrix:
 @claim("3.1.remaining")
 def remaining_variables():
     """After velocity correction four variables remain for the position information: y_1, y_2, y_5, y_6."""
-    found = observe(joint_model())
+    found = observe(joint())
     return Property(
         (6, 4),
         Finding(
@@ -219,7 +229,7 @@ def joint_error_matrix(Kx: tuple[sp.Expr, ...] = Kc, Ky: dict[int, sp.Expr] = Kh
     """Matrix of the errors of (3.2), (3.3) in x_1 ... x_6, y_1, y_2, y_5, y_6 without the inhomogeneous
     terms.
     """
-    model = joint_model()
+    model = joint()
     gains = sp.zeros(10, 4)
     for k in range(6):
         gains[k, k // 3] = Kx[k]
@@ -244,4 +254,4 @@ def position_errors_do_not_disturb_the_velocity_stage():
 def names_of_the_joint_variables():
     """The joint model keeps x_1 ... x_6 and y_1, y_2, y_5, y_6: ten variables."""
     kept = tuple(map(str, (*X, Y[0], Y[1], Y[4], Y[5])))
-    return Property(kept, Finding(joint_model().states, "states of the derived model"))
+    return Property(kept, Finding(joint().states, "states of the derived model"))
