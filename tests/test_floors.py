@@ -22,6 +22,7 @@ FLOORS = {
     "checker": 0,          # stands apart: see CHECKER below
     "claims": 1,
     "text": 1,
+    "store": 1,
     "models": 2,
     "numeric": 2,
     "proof": 3,

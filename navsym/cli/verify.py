@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from navsym.cli.output import emit, table, wants_colour, write_text
+from navsym.cli.output import emit, remark, table, wants_colour, write_text
 from navsym.errors import DomainError
 
 if TYPE_CHECKING:
@@ -25,6 +25,9 @@ def command(
     write: Annotated[bool, typer.Option("--write", help="update the ledger of verdicts")] = False,
     jobs: Annotated[int | None, typer.Option(help="claims decided at the same time")] = None,
     seconds: Annotated[float, typer.Option(help="limit for one claim; above it the verdict is OPEN")] = 90.0,
+    fresh: Annotated[
+        bool, typer.Option("--fresh", help="decide everything again, ignoring the store")
+    ] = False,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> int:
     """Decide every claim of the papers. Status 1 when a verdict is not the one declared."""
@@ -32,9 +35,16 @@ def command(
 
     started = time.monotonic()
     chosen = load(modules or [])
-    bar = Progress(sum(len(module.claims) for module in chosen))
-    document = verify(chosen, jobs=jobs, seconds=seconds, progress=bar.step)
+    kept = KeptVerdicts(chosen, fresh)
+    bar = Progress(sum(len(module.claims) for module in chosen) - len(kept.known))
+
+    def step(record: dict[str, Any]) -> None:
+        kept.keep(record)
+        bar.step(record)
+
+    document = verify(chosen, jobs=jobs, seconds=seconds, known=kept.known, progress=step)
     bar.done()
+    kept.close()
     if write:
         write_ledger(document)
     wrong = unexpected(document["claims"])
@@ -65,6 +75,42 @@ def load(wanted: Sequence[str]) -> list[PaperModule]:
             )
     chosen = list(dict.fromkeys(wanted)) or known
     return [paper_module(importlib.import_module(f"derivations.{name}")) for name in chosen]
+
+
+class KeptVerdicts:
+    """Verdicts of earlier runs whose claims and rooms have not changed; trouble is said once, never fatal."""
+
+    def __init__(self, chosen: Sequence[PaperModule], fresh: bool):
+        from navsym.methods.dependencies import fingerprint
+        from navsym.store import Store, StoreError
+
+        self.keys = {claim.id: fingerprint(claim) for module in chosen for claim in module.claims}
+        self.known: dict[str, dict[str, Any]] = {}
+        self.store: Store | None = None
+        self.lost: list[str] = []
+        try:
+            self.store = Store()
+            records = {} if fresh else self.store.get(self.keys.values())
+            self.known = {name: records[key] for name, key in self.keys.items() if key in records}
+        except StoreError as error:
+            remark(f"verdicts are not kept: {error}")
+
+    def keep(self, record: dict[str, Any]) -> None:
+        """Keep a verdict, unless it ran out of time, which another run may not."""
+        from navsym.store import StoreError
+
+        if self.store is None or record["method"] == "none":
+            return
+        try:
+            self.store.put(self.keys[record["id"]], record)
+        except StoreError as error:
+            if not self.lost:
+                remark(f"verdicts are not kept any more: {error}")
+            self.lost.append(record["id"])
+
+    def close(self) -> None:
+        if self.store is not None:
+            self.store.close()
 
 
 class Progress:

@@ -130,7 +130,7 @@ def record_from(paper: Paper, claim: Claim, statement: Statement | None, verdict
 def sides(statement: Statement) -> tuple[str, str]:
     """Printed and derived side in the language of files."""
     if isinstance(statement, Equation):
-        tail = "" if statement.tolerance is None else f" +- {text_of(sp.sympify(statement.tolerance))}"
+        tail = "" if statement.tolerance is None else f" +- {text_of(sp.sympify(statement.tolerance, strict=True))}"
         return side_text(statement.printed) + tail, side_text(statement.derived)
     if isinstance(statement, Bound):
         return f"{side_text(statement.printed)} {statement.relation} {side_text(statement.derived)}", ""

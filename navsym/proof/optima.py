@@ -71,7 +71,7 @@ def constraints(statement: Optimum) -> Verdict:
 def instants(statement: Optimum) -> Verdict:
     start, end = statement.interval
     proofs = [
-        prove_sign(sp.sympify(side), statement.box)
+        prove_sign(sp.sympify(side, strict=True), statement.box)
         for at in statement.support
         for side in (at - start, end - at)
     ]

@@ -1,0 +1,111 @@
+"""Results kept between runs: a key of what they depend on -> plain data, in one SQLite file.
+
+Every write is one transaction with a full sync, so that what was acknowledged survives a kill, and
+several processes may write at once. A store that cannot be opened, read or written never stops the
+work: the caller is told what was not kept, and old results stay as they are.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import json
+import os
+import sqlite3
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from navsym.errors import NavsymError
+
+SCHEMA = (
+    "CREATE TABLE IF NOT EXISTS results (key TEXT PRIMARY KEY, value TEXT NOT NULL, digest TEXT NOT NULL)"
+)
+
+
+class StoreError(NavsymError):
+    """A store that cannot be opened, read or written; the message names the file."""
+
+    kind = "store"
+
+
+def default_path() -> Path:
+    """``NAVSYM_CACHE`` or the user's cache folder."""
+    folder = os.environ.get("NAVSYM_CACHE")
+    if folder:
+        return Path(folder) / "results.sqlite"
+    base = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+    return Path(base) / "navsym" / "results.sqlite"
+
+
+def key_of(*parts: str) -> str:
+    """The key of a result: a digest of all that it depends on."""
+    digest = hashlib.sha256()
+    for part in parts:
+        data = part.encode("utf-8")
+        digest.update(f"{len(data)}:".encode() + data)
+    return digest.hexdigest()
+
+
+class Store:
+    """Key -> plain JSON data.
+
+    path : the file; its folder is made when it is missing
+    Raises StoreError when the file cannot be opened or is not a store.
+    """
+
+    def __init__(self, path: Path | None = None, *, seconds: float = 30.0):
+        self.path = path or default_path()
+        try:
+            self.path.parent.mkdir(parents=True, exist_ok=True)
+            # Autocommit: every statement is its own transaction; writers wait for each other.
+            self.connection = sqlite3.connect(self.path, timeout=seconds, isolation_level=None)
+            self.connection.execute("PRAGMA journal_mode=WAL")
+            self.connection.execute("PRAGMA synchronous=FULL")
+            self.connection.execute(SCHEMA)
+        except (OSError, sqlite3.Error) as error:
+            raise self.trouble("opened", error) from error
+
+    def get(self, keys: Iterable[str]) -> dict[str, Any]:
+        """What is kept under the keys; a damaged entry counts as not kept."""
+        found: dict[str, Any] = {}
+        try:
+            for key in keys:
+                row = self.connection.execute(
+                    "SELECT value, digest FROM results WHERE key = ?", (key,)
+                ).fetchone()
+                if row is not None and key_of(key, row[0]) == row[1]:
+                    found[key] = json.loads(row[0])
+        except (sqlite3.Error, ValueError) as error:
+            raise self.trouble("read", error) from error
+        return found
+
+    def put(self, key: str, value: Mapping[str, Any]) -> None:
+        """Keep a result; when this returns, a kill or a power cut does not lose it."""
+        text = json.dumps(value, ensure_ascii=False, allow_nan=False)
+        try:
+            self.connection.execute(
+                "INSERT OR REPLACE INTO results VALUES (?, ?, ?)", (key, text, key_of(key, text))
+            )
+        except sqlite3.Error as error:
+            raise self.trouble("written", error) from error
+
+    def close(self) -> None:
+        self.connection.close()
+
+    def trouble(self, what: str, error: Exception) -> StoreError:
+        message = (
+            f"expected a store that can be {what}; got {error}; "
+            "free space, mend the permissions, or set NAVSYM_CACHE to another folder"
+        )
+        return StoreError(message, where=str(self.path))
+
+
+@contextlib.contextmanager
+def opened(path: Path | None = None) -> Iterator[Store]:
+    """A store that is closed at the end."""
+    store = Store(path)
+    try:
+        yield store
+    finally:
+        store.close()
