@@ -1,0 +1,176 @@
+"""C++17: one header-only file; results come back in a structure with their status."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from navsym.export.c import HELPERS, safe_comment
+from navsym.export.functions import ExportedFunction, Output
+from navsym.export.printing import Spelling, assignments, calls, helpers_used, summary
+from navsym.export.vectors import Vector
+
+
+def spelling(real: str) -> Spelling:
+    """std:: functions are overloaded for float; literals carry the suffix."""
+    table = calls(prefix="std::") | {"abs": "std::fabs({0})"}
+    return Spelling(table, "NAN", "INFINITY", "f" if real == "float" else "")
+
+
+def files(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str) -> dict[str, str]:
+    """The header, the test program with its vectors, and the build file."""
+    return {
+        "navsym_functions.hpp": header(functions, license_),
+        "test_main.cpp": program(functions, tests, license_),
+        "CMakeLists.txt": CMAKE.format(license=license_),
+    }
+
+
+def header(functions: Sequence[ExportedFunction], license_: str) -> str:
+    real = functions[0].arithmetic.name
+    s = spelling(real)
+    used = {name for function in functions for name in helpers_used(function)}
+    helpers = [HELPERS[name](real, s).replace("static", "inline", 1) for name in ("sinc", "x_minus_sin") if name in used]
+    return "\n".join(
+        [
+            f"// {license_}",
+            "#ifndef NAVSYM_FUNCTIONS_HPP",
+            "#define NAVSYM_FUNCTIONS_HPP",
+            "",
+            "#include <array>",
+            "#include <cmath>",
+            "#include <limits>",
+            "",
+            "namespace navsym {",
+            "",
+            "enum class Status { ok = 0, domain = 1, not_finite = 2 };",
+            "",
+            *helpers,
+            "",
+            *(source(f, s) for f in functions),
+            "}  // namespace navsym",
+            "",
+            "#endif",
+            "",
+        ]
+    )
+
+
+def source(function: ExportedFunction, s: Spelling) -> str:
+    """Result structure and function."""
+    real, names = function.arithmetic.name, [i.name for i in function.inputs]
+    lines = [f"struct {function.name}_result {{", "    Status status = Status::not_finite;"]
+    lines += [f"    {member(o, real)};" for o in function.outputs] + ["};", ""]
+    lines += ["/**", *(f" * {safe_comment(line)}" for line in summary(function)), " */"]
+    arguments = ", ".join(f"{real} {n}" for n in names)
+    lines.append(f"inline {function.name}_result {function.name}({arguments}) noexcept")
+    lines += ["{", f"    {function.name}_result result;"]
+    largest = f"std::numeric_limits<{real}>::max()"
+    tests = [f"({i.name} >= {bound(i.low, s, largest)}) && ({i.name} <= {bound(i.high, s, largest)})"
+             for i in function.inputs]  # fmt: skip
+    if tests:
+        joined = "\n          && ".join(tests)
+        lines += [f"    if (!({joined})) {{", "        result.status = Status::domain;", "        return result;", "    }"]
+    targets = [f"result.{o.name}[{e}]" if o.shape else f"result.{o.name}" for o in function.outputs for e in range(o.size)]
+    for place, piece in enumerate(function.pieces):
+        temporaries, results = assignments(piece, names, s)
+        test = "" if piece.limit is None else f"if ({names[function.switch or 0]} <= {s.number(piece.limit)}) "
+        lines.append(f"    {'else ' if place else ''}{test}{{  // {piece.source.claim}")
+        lines += [f"        const {real} {name} = {text};" for name, text in temporaries]
+        lines += [f"        {target} = {text};" for target, text in zip(targets, results, strict=True)]
+        lines.append("    }")
+    finite = "\n        && ".join(f"std::isfinite({t})" for t in targets)
+    lines += [f"    if ({finite}) {{", "        result.status = Status::ok;", "    }", "    return result;", "}", ""]
+    return "\n".join(lines)
+
+
+def member(output: Output, real: str) -> str:
+    return f"std::array<{real}, {output.size}> {output.name}{{}}" if output.shape else f"{real} {output.name} = 0"
+
+
+def bound(x: float, s: Spelling, largest: str) -> str:
+    if math.isinf(x):
+        return largest if x > 0 else f"-{largest}"
+    return s.number(x)
+
+
+TEST = """static int test_{name}()
+{{
+    static const {real} in[] = {{{inputs}}};
+    static const int status[] = {{{status}}};
+    static const double lower[] = {{{lower}}};
+    static const double upper[] = {{{upper}}};
+    static const double nearest[] = {{{nearest}}};
+    int wrong = 0;
+    double worst = 0.0;
+    for (int k = 0; k < {count}; k++) {{
+        const auto result = navsym::{name}({arguments});
+        wrong += (static_cast<int>(result.status) != status[k]) ? 1 : 0;
+        if (result.status != navsym::Status::ok || status[k] != 0) {{
+            continue;
+        }}
+        const double values[] = {{{values}}};
+        for (int j = 0; j < {size}; j++) {{
+            const int at = (k * {size}) + j;
+            wrong += (values[j] >= lower[at] && values[j] <= upper[at]) ? 0 : 1;
+            const double size = std::fabs(nearest[at]) * {epsilon};
+            if (size > 0.0 && upper[at] - nearest[at] < 1000.0 * size) {{
+                worst = std::fmax(worst, std::fabs(values[j] - nearest[at]) / size);
+            }}
+        }}
+    }}
+    std::printf("{name} vectors %d wrong %d worst %.3g\\n", {count}, wrong, worst);
+    return wrong > 0 ? 1 : 0;
+}}
+"""
+
+
+def program(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str) -> str:
+    """The program that ctest runs."""
+    lines = [f"// {license_}", '#include "navsym_functions.hpp"', "", "#include <cmath>", "#include <cstdio>", ""]
+    lines += [test_function(f, tests[f.name]) for f in functions]
+    lines += ["int main()", "{", "    int failed = 0;"]
+    lines += [f"    failed += test_{f.name}();" for f in functions]
+    return "\n".join([*lines, "    return failed;", "}", ""])
+
+
+def test_function(function: ExportedFunction, found: list[Vector]) -> str:
+    s, n, real = spelling(function.arithmetic.name), len(function.inputs), function.arithmetic.name
+    d = spelling("double")
+
+    def wide(part: str) -> str:
+        return rows([d.number(x) for v in found for x in (getattr(v, part) or (0.0,) * function.size)])
+
+    accessors = [f"result.{o.name}[{e}]" if o.shape else f"result.{o.name}" for o in function.outputs for e in range(o.size)]
+    cast = "static_cast<double>({})" if real == "float" else "{}"
+    return TEST.format(
+        name=function.name, real=real, size=function.size, count=len(found),
+        inputs=rows([s.number(x) for v in found for x in v.inputs] or [s.number(0.0)]),
+        status=", ".join(str(v.status) for v in found),
+        lower=wide("lower"), upper=wide("upper"), nearest=wide("nearest"),
+        arguments=", ".join(f"in[(k * {n}) + {j}]" for j in range(n)),
+        values=", ".join(cast.format(a) for a in accessors),
+        epsilon="2.220446049250313e-16" if real == "double" else "1.1920928955078125e-07",
+    )  # fmt: skip
+
+
+def rows(numbers: list[str]) -> str:
+    return ",\n        ".join(", ".join(numbers[k : k + 4]) for k in range(0, len(numbers), 4))
+
+
+CMAKE = """# {license}
+cmake_minimum_required(VERSION 3.10)
+project(navsym_export_cpp CXX)
+
+set(CMAKE_CXX_STANDARD 17)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+
+enable_testing()
+add_executable(test_main test_main.cpp)
+if(CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
+    target_compile_options(test_main PRIVATE
+        -Wall -Wextra -Wconversion -Wdouble-promotion -pedantic -Werror)
+endif()
+add_test(NAME vectors COMMAND test_main)
+"""

@@ -1,0 +1,89 @@
+"""Writing an export: nothing outside its folder, nothing through a link, nothing overwritten unasked."""
+
+from __future__ import annotations
+
+import os
+import re
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+
+from navsym.errors import NavsymError
+
+PLAIN = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]*(?:/[A-Za-z0-9][A-Za-z0-9._-]*){0,3}")
+
+
+class FolderError(NavsymError):
+    """An output folder that must not be written."""
+
+    kind = "output"
+
+
+def write_folder(out: Path, files: Mapping[str, str], *, force: bool = False) -> list[Path]:
+    """Write files below a folder, each whole or not at all; raises FolderError before the first write.
+
+    files : relative name -> text
+    force : replace files that are there (links are refused all the same)
+    """
+    root = folder_for(out)
+    targets = {name: target_for(root, name) for name in files}
+    taken = [target for target in targets.values() if os.path.lexists(target)]
+    if taken and not force:
+        raise FolderError(
+            f"expected new files; got {len(taken)} that are there already, {taken[0].name} among them; "
+            "do add --force or choose another --out",
+            where=str(out),
+        )
+    for name, target in targets.items():
+        make_parents(root, target)
+        replace(target, files[name])
+    return list(targets.values())
+
+
+def folder_for(out: Path) -> Path:
+    """The folder itself, made when its parent is there; a link is refused."""
+    if out.is_symlink():
+        raise FolderError("expected a folder; got a symbolic link; do name the folder itself", where=str(out))
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        reason = error.strerror or type(error).__name__
+        raise FolderError(f"expected a folder that can be made; got '{reason}'; choose another", where=str(out)) from None
+    return Path(os.path.realpath(out))
+
+
+def target_for(root: Path, name: str) -> Path:
+    """The path of one file; names that could leave the folder or pass a link are refused."""
+    if not PLAIN.fullmatch(name) or ".." in name:
+        raise FolderError(f"expected a plain relative name; got {name!r}; do report this", where=str(root))
+    target = root / name
+    for part in (target, *target.parents):
+        if part == root:
+            return target
+        if part.is_symlink():
+            raise FolderError(
+                f"expected files and folders; got the symbolic link {part.name}; do remove it", where=str(root)
+            )
+        if part != target and part.exists() and not part.is_dir():
+            raise FolderError(f"expected a folder; got the file {part.name}; do remove it", where=str(root))
+    raise FolderError(f"expected a name inside the folder; got {name!r}; do report this", where=str(root))
+
+
+def make_parents(root: Path, target: Path) -> None:
+    if target.parent != root:
+        target.parent.mkdir(parents=True, exist_ok=True)
+
+
+def replace(target: Path, text: str) -> None:
+    """Temporary file beside the target, then rename."""
+    if target.is_dir():
+        raise FolderError(f"expected a file; got the folder {target.name}; do remove it", where=str(target.parent))
+    handle, name = tempfile.mkstemp(prefix=".export.", dir=target.parent)
+    try:
+        with os.fdopen(handle, "w", encoding="utf-8", newline="\n") as file:
+            file.write(text)
+        os.chmod(name, 0o644)
+        os.replace(name, target)
+    except BaseException:
+        Path(name).unlink(missing_ok=True)
+        raise

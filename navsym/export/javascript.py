@@ -1,0 +1,121 @@
+"""JavaScript (ECMAScript module): every function returns ``{status, …results}``."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from navsym.export.functions import ExportedFunction
+from navsym.export.printing import (
+    SINC_STEPS,
+    SINC_SWITCH,
+    X_MINUS_SIN_STEPS,
+    X_MINUS_SIN_SWITCH,
+    Spelling,
+    assignments,
+    calls,
+    helpers_used,
+    horner,
+    summary,
+)
+from navsym.export.python import vectors_json
+from navsym.export.vectors import Vector
+
+SPECIAL = {"abs": "Math.abs({0})", "max": "Math.max({0}, {1})", "min": "Math.min({0}, {1})"}
+SPELLING = Spelling(calls(prefix="Math.", **SPECIAL), "NaN", "Infinity")
+
+TEST = """// {license}
+// Runs every function on its vectors; the exit status is the number of functions that failed.
+import {{ readFileSync }} from "node:fs";
+import * as functions from "./navsym_functions.mjs";
+
+const tests = JSON.parse(readFileSync(new URL("./vectors.json", import.meta.url), "utf8"));
+const number = (x) => (x === "inf" ? Infinity : x === "-inf" ? -Infinity : x === "nan" ? NaN : x);
+let failed = 0;
+for (const [name, rows] of Object.entries(tests)) {{
+  let wrong = 0;
+  let worst = 0;
+  for (const row of rows) {{
+    const {{ status, ...results }} = functions[name](...row.in.map(number));
+    if (status !== row.status) {{ wrong += 1; }}
+    if (status !== 0 || row.status !== 0) {{ continue; }}
+    Object.values(results).flat().forEach((value, k) => {{
+      if (!(value >= row.lower[k] && value <= row.upper[k])) {{ wrong += 1; }}
+      const size = Math.abs(row.nearest[k]) * Number.EPSILON;
+      if (size > 0 && row.upper[k] - row.nearest[k] < 1000 * size) {{
+        worst = Math.max(worst, Math.abs(value - row.nearest[k]) / size);
+      }}
+    }});
+  }}
+  console.log(`${{name}} vectors ${{rows.length}} wrong ${{wrong}} worst ${{worst.toPrecision(3)}}`);
+  failed += wrong > 0 ? 1 : 0;
+}}
+process.exit(failed);
+"""
+
+
+def files(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str) -> dict[str, str]:
+    """The module, its vectors and the program that runs them."""
+    head = [f"// {license_}", "// Status: 0 results are valid, 1 argument outside the proved domain, 2 not finite.", ""]
+    used = {name for function in functions for name in helpers_used(function)}
+    helpers = [HELPERS[name]() for name in ("sinc", "x_minus_sin") if name in used]
+    return {
+        "navsym_functions.mjs": "\n".join([*head, *helpers, *(source(f) for f in functions)]),
+        "test_vectors.mjs": TEST.format(license=license_),
+        "vectors.json": vectors_json(functions, tests),
+    }
+
+
+def source(function: ExportedFunction) -> str:
+    """One exported function with its comment."""
+    names = [i.name for i in function.inputs]
+    lines = ["/**", *(f" * {line.replace('*/', '* /')}" for line in summary(function)), " */"]
+    lines.append(f"export function {function.name}({', '.join(names)}) {{")
+    tests = [f"{i.name} >= {bound(i.low)} && {i.name} <= {bound(i.high)}" for i in function.inputs]
+    if tests:
+        lines.append(f"  if (!({' && '.join(tests)})) {{ return {{ status: 1 }}; }}")
+    lines.append(f"  let {', '.join(f'r{k}' for k in range(function.size))};")
+    for place, piece in enumerate(function.pieces):
+        temporaries, results = assignments(piece, names, SPELLING)
+        test = "" if piece.limit is None else f"if ({names[function.switch or 0]} <= {piece.limit!r}) "
+        lines.append(f"  {'else ' if place else ''}{test}{{ // {piece.source.claim}")
+        lines += [f"    const {name} = {text};" for name, text in temporaries]
+        lines += [f"    r{k} = {text};" for k, text in enumerate(results)]
+        lines.append("  }")
+    finite = " && ".join(f"Number.isFinite(r{k})" for k in range(function.size))
+    lines += [f"  if (!({finite})) {{ return {{ status: 2 }}; }}", f"  return {{ status: 0, {fields(function)} }};", "}"]
+    return "\n".join([*lines, ""])
+
+
+def bound(x: float) -> str:
+    if x in (float("inf"), float("-inf")):
+        return "Number.MAX_VALUE" if x > 0 else "-Number.MAX_VALUE"
+    return SPELLING.number(x)
+
+
+def fields(function: ExportedFunction) -> str:
+    parts, k = [], 0
+    for output in function.outputs:
+        entries = ", ".join(f"r{k + e}" for e in range(output.size))
+        parts.append(f"{output.name}: [{entries}]" if output.shape else f"{output.name}: {entries}")
+        k += output.size
+    return ", ".join(parts)
+
+
+def sinc_helper() -> str:
+    return f"""function navsym_sinc(x) {{
+  const y = x * x;
+  return Math.abs(x) < {SINC_SWITCH} ? {horner(SINC_STEPS, "1.0", SPELLING.number)} : Math.sin(x) / x;
+}}
+"""
+
+
+def x_minus_sin_helper() -> str:
+    series = horner(X_MINUS_SIN_STEPS, "1.0", SPELLING.number)
+    return f"""function navsym_x_minus_sin(x) {{
+  const y = x * x;
+  return Math.abs(x) < {X_MINUS_SIN_SWITCH} ? ((x * y) / 6.0) * {series} : x - Math.sin(x);
+}}
+"""
+
+
+HELPERS = {"sinc": sinc_helper, "x_minus_sin": x_minus_sin_helper}
