@@ -22,12 +22,20 @@ def proven_equations(name):
                 yield claim.id, statement
 
 
-def cases(name):
-    """(id, mutant, printed entry, derived entry, box) for every mutant of every entry."""
+def sides(name):
+    """(id, printed entry, derived entry, box) of every proven equation."""
     for identity, statement in proven_equations(name):
         for printed, derived in zip(entries(statement.printed), entries(statement.derived), strict=True):
-            for mutant in mutants(printed):
-                yield identity, mutant, printed, derived, statement.box
+            yield identity, printed, derived, statement.box
+
+
+def cases(some_sides, most=None, source=None):
+    """(id, mutant, printed entry, derived entry, box): all mutants of the sides, or a sample of each."""
+    for identity, printed, derived, box in some_sides:
+        found = mutants(printed)
+        if most is not None and len(found) > most:
+            found = source.sample(found, most)
+        yield from ((identity, mutant, printed, derived, box) for mutant in found)
 
 
 def judge(case):
@@ -61,15 +69,16 @@ def run(chosen):
 
 
 def test_mutants_of_the_guaranteed_velocity_formulas_fall():
-    chosen = random.Random(1).sample(list(cases("guaranteed_velocity")), 300)
-    found, wrong = run(chosen)
+    source = random.Random(1)
+    some = source.sample(list(sides("guaranteed_velocity")), 60)
+    found, wrong = run(list(cases(some, 4, source)))
     assert not wrong
-    assert found["refuted"] > 250
+    assert found["refuted"] > 100
 
 
 @pytest.mark.slow
 def test_all_mutants_of_the_guaranteed_velocity_formulas_fall():
-    found, wrong = run(list(cases("guaranteed_velocity")))
+    found, wrong = run(list(cases(sides("guaranteed_velocity"))))
     print(found)
     assert not wrong
     assert found["refuted"] + found["equal"] >= 1000
