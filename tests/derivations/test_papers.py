@@ -7,6 +7,7 @@ import json
 
 import pytest
 
+from navsym.checker import Refused, check, load
 from navsym.claims import REFUTED, claims_of
 from navsym.cli.verify import ledger_folder, names
 from navsym.methods.verification import paper_module, verify
@@ -58,6 +59,28 @@ def test_the_ledger_holds_these_verdicts(document):
     paper = document["papers"][0]["module"]
     fresh = {r["id"]: r["status"] for r in document["claims"]}
     assert fresh == {key: status for key, status in stored.items() if key.startswith(f"{paper}:")}
+
+
+def plain_certificates(certificate):
+    """The parts of a certificate that joins several, each as a file would hold it."""
+    if certificate is None:
+        return
+    if certificate["kind"] == "all":
+        for part in certificate["of"]:
+            yield from plain_certificates(part)
+    else:
+        yield load(json.dumps(dict(certificate)))
+
+
+def test_the_independent_checker_accepts_every_certificate(document):
+    refused = []
+    for record in document["claims"]:
+        for certificate in plain_certificates(record["certificate"]):
+            try:
+                check(certificate)
+            except Refused as error:
+                refused.append((record["id"], str(error)))
+    assert not refused
 
 
 @pytest.mark.parametrize("name", names())
