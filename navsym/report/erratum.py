@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from navsym.claims import Paper, equation_of
-from navsym.report.page_explain import arithmetic, ball_words
+from navsym.report.page_explain import arithmetic, ball_words, ended
 from navsym.report.page_formula import Formula, formula
 
 Record = Mapping[str, Any]
@@ -107,10 +107,9 @@ def check_words(record: Record) -> list[str]:
         return plain_check(record, where)
     line = lines[0]
     entry_words = f" (entry {line.entry})" if line.entry else ""
-    return [
-        f"{where} the printed side{entry_words} is {ball_words(line.printed)}; "
-        f"what follows from the model is {ball_words(line.derived)}."
-    ]
+    printed, derived = ball_words(line.printed), ball_words(line.derived)
+    sentence = f"{where} the printed side{entry_words} is {printed}; what follows from the model is {derived}"
+    return [ended(sentence)]
 
 
 def plain_check(record: Record, where: str) -> list[str]:

@@ -134,14 +134,19 @@ def counterexample_steps(record: Record) -> list[Step]:
 
 def arithmetic_words(line: Arithmetic) -> str:
     entry = f"Entry {line.entry}: t" if line.entry else "T"
-    return f"{entry}he printed side is {ball_words(line.printed)}, the derived side is {ball_words(line.derived)}."
+    return ended(f"{entry}he printed side is {ball_words(line.printed)}, the derived side is {ball_words(line.derived)}")
+
+
+def ended(sentence: str) -> str:
+    """The sentence with its full stop; cut digits end with an ellipsis already."""
+    return sentence if sentence.endswith(("…", ".")) else sentence + "."
 
 
 def ball_words(ends: tuple[str, str]) -> str:
     """``0.95885…`` for ends that agree so far; both ends otherwise."""
     low, high = ends
     if low == high:
-        return low
+        return low.rstrip("0").rstrip(".") if "." in low else low
     same = next((i for i, (a, b) in enumerate(zip(low, high, strict=False)) if a != b), min(len(low), len(high)))
     shared = low[:same]
     return f"{shared[:14]}…" if "." in shared and len(shared) > 6 else f"between {low} and {high}"

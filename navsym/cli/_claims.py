@@ -1,0 +1,49 @@
+"""For the verbs that speak about one claim: find it by its id, and decide it."""
+
+from __future__ import annotations
+
+import difflib
+import json
+from typing import TYPE_CHECKING, Any
+
+from navsym.errors import DomainError
+
+if TYPE_CHECKING:
+    from navsym.claims import Claim, Paper
+
+SECONDS = 90.0
+
+
+def find(wanted: str) -> tuple[Paper, Claim]:
+    """Paper and claim of an id ``module:number``; ``module:4.3`` alone is refused with the ids that begin so."""
+    from navsym.cli.verify import load
+
+    module, _, number = wanted.partition(":")
+    (paper,) = load([module])
+    for claim in paper.claims:
+        if claim.number == number:
+            return paper.paper, claim
+    ids = [claim.id for claim in paper.claims]
+    close = [known for known in ids if known.startswith(wanted)] if number else ids
+    close = close or difflib.get_close_matches(wanted, ids, n=3)
+    advice = f"take one of {', '.join(close[:6])}" if close else f"see navsym list --paper {module}"
+    raise DomainError(f"expected the id of a claim; got {wanted[:80]}; {advice}", where="command line")
+
+
+def decide(wanted: str, seconds: float = SECONDS) -> tuple[Paper, dict[str, Any]]:
+    """Paper card and record of one claim, decided now in a limited child process."""
+    from navsym.methods.verification import PaperModule, verify
+
+    paper, claim = find(wanted)
+    document = verify([PaperModule(paper.module, paper, (claim,))], jobs=1, seconds=seconds)
+    return paper, document["claims"][0]
+
+
+def stored_records() -> dict[str, dict[str, Any]]:
+    """Records of the ledger by id; empty when there is none."""
+    from navsym.cli.verify import ledger_folder
+
+    path = ledger_folder() / "verdicts.json"
+    if not path.exists():
+        return {}
+    return {record["id"]: record for record in json.loads(path.read_text(encoding="utf-8"))["claims"]}

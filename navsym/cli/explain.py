@@ -1,0 +1,67 @@
+"""Explain a verdict step by step: what was reduced, where, and the arithmetic of a counterexample."""
+
+from __future__ import annotations
+
+import inspect
+import textwrap
+from typing import Annotated, Any
+
+import typer
+
+from navsym.cli._claims import decide, find
+from navsym.cli.output import emit
+
+WIDTH = 100
+
+
+def command(
+    claim: Annotated[str, typer.Argument(help="id of a claim, such as guaranteed_velocity:4.3.u2")],
+    seconds: Annotated[float, typer.Option(help="limit; above it the verdict is OPEN")] = 90.0,
+    json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
+) -> int:
+    """Tell why a claim has its verdict.
+
+    Example: navsym explain guaranteed_velocity:4.3.u2
+    """
+    from navsym.report.page_explain import steps
+
+    paper, found = find(claim)
+    _, record = decide(claim, seconds)
+    told = [{"heading": s.heading, "words": s.words, "formula": s.formula} for s in steps(record)]
+    corrected_by = correction_of(claim)
+    document = {
+        "id": record["id"], "status": record["status"], "paper": paper.title, "source": place_of(found.derive),
+        "corrected_by": corrected_by, "steps": told,
+    }  # fmt: skip
+    emit(document, as_json=json_, text=lambda: as_text(document))
+    return 0 if record["status"] == record["expect"] else 1
+
+
+def place_of(derive: Any) -> str:
+    """File and line of the derivation, from the folder of the derivations on."""
+    code = inspect.unwrap(derive).__code__
+    file = code.co_filename.replace("\\", "/")
+    return f"{file[file.rfind('derivations/') :]}:{code.co_firstlineno}"
+
+
+def correction_of(wanted: str) -> str | None:
+    """Id of the claim that corrects this one."""
+    from navsym.cli.verify import load
+
+    (paper,) = load([wanted.partition(":")[0]])
+    return next((claim.id for claim in paper.claims if claim.corrects_id == wanted), None)
+
+
+def as_text(document: dict[str, Any]) -> str:
+    """Numbered steps; formulas on lines of their own."""
+    lines, number = [f"{document['id']}  {document['status']}", f"{document['paper']}", ""], 0
+    for step in document["steps"]:
+        number += bool(step["heading"])
+        head = f"{number}. {step['heading']}. " if step["heading"] else "   "
+        lines.append(textwrap.fill(head + step["words"], WIDTH, subsequent_indent="   ", break_long_words=False))
+        if step["formula"]:
+            lines += ["", textwrap.fill(step["formula"], WIDTH, initial_indent="      ", subsequent_indent="      "), ""]
+    lines += ["", f"Derivation: {document['source']}"]
+    if document["corrected_by"]:
+        lines.append(f"Corrected by {document['corrected_by']}; see navsym explain {document['corrected_by']!r}")
+    return "\n".join(lines)

@@ -1,0 +1,55 @@
+"""BibTeX for a paper and for a verdict on one of its statements."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import Any
+
+from navsym.claims import Paper
+from navsym.report.page_names import latex_escape
+
+Record = Mapping[str, Any]
+
+
+def bibtex(paper: Paper, record: Record, version: str) -> str:
+    """Two entries: the paper, and the verdict with its scope and the version that decided it."""
+    key = paper_key(paper)
+    verdict = {
+        "title": f"Verdict on {record['id']}: {record['status']}",
+        "author": "{navsym contributors}",
+        "howpublished": f"navsym {version}, claim {latex_escape(record['id'])}",
+        "note": latex_escape(verdict_words(record)),
+    }
+    words = {
+        "author": " and ".join(latex_escape(author) for author in paper.authors),
+        "title": "{" + latex_escape(paper.title) + "}",
+        "year": "" if paper.year is None else str(paper.year),
+        "note": latex_escape(f"{paper.source}. In {paper.language}." if paper.language else paper.source),
+        "doi": paper.doi,
+    }
+    return block("misc", key, words) + "\n" + block("misc", f"{key}-{plain(record['number'])}", verdict)
+
+
+def verdict_words(record: Record) -> str:
+    scope = record["scope"] or "numbers"
+    words = f"{record['title']} Decided by {record['method']} for {scope}."
+    if record["assumptions"]:
+        words += f" Assuming {'; '.join(record['assumptions'])}."
+    if record["counterexample"]:
+        words += " Counterexample: " + ", ".join(f"{k} = {v}" for k, v in record["counterexample"].items()) + "."
+    return words
+
+
+def block(kind: str, key: str, fields: Mapping[str, str]) -> str:
+    lines = [f"  {name} = {{{value}}}," for name, value in fields.items() if value]
+    return "\n".join([f"@{kind}{{{key},", *lines, "}", ""])
+
+
+def paper_key(paper: Paper) -> str:
+    first = paper.authors[0].split()[-1] if paper.authors else paper.module
+    return plain(f"{first}{paper.year or ''}").lower()
+
+
+def plain(text: str) -> str:
+    return re.sub(r"[^A-Za-z0-9.]", "", text.replace("*", "corrected"))
