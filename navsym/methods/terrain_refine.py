@@ -113,22 +113,26 @@ def cell_slopes(terrain: TerrainMap, x: Array, y: Array) -> tuple[Array, Array]:
 
 
 def damped_step(J: Array, residual: Array, damping: float) -> Array:
-    """Minimiser of |J s - r|^2 + damping |D s|^2, with D the lengths of the columns."""
-    lengths = np.linalg.norm(J, axis=0)
-    rows = np.vstack([J, np.sqrt(damping) * np.diag(lengths + 1e-30)])
-    step: Array = np.linalg.lstsq(rows, np.concatenate([residual, np.zeros(J.shape[1])]), rcond=None)[0]
+    """Minimiser of |J s - r|^2 + damping |D s|^2, with D the lengths of the columns.
+
+    By the normal equations of columns of unit length: five by five at the most, and well scaled.
+    """
+    lengths = np.sqrt(np.einsum("ij,ij->j", J, J)) + 1e-300
+    unit = J / lengths
+    matrix = np.einsum("ij,ik->jk", unit, unit) + (damping + 1e-15) * np.eye(J.shape[1])
+    step: Array = np.linalg.solve(matrix, np.einsum("ij,i->j", unit, residual)) / lengths
     return step
 
 
 def spread(J: Array, residual: Array, scale: Array) -> Array:
     """Covariance in the units of the unknowns; NotEstimableError for a singular Jacobian."""
-    _, singular, rows = np.linalg.svd(J, full_matrices=False)
-    if singular[-1] <= 1e-9 * singular[0]:
-        direction = ", ".join(f"{v:.3g}" for v in rows[-1] * scale)
+    values, vectors = np.linalg.eigh(np.einsum("ij,ik->jk", J, J))
+    if values[0] <= 1e-14 * values[-1]:
+        direction = ", ".join(f"{v:.3g}" for v in vectors[:, 0] * scale)
         raise NotEstimableError(
             f"terrain: expected slopes that determine x, y, vx, vy; got none along ({direction}); "
             "fly longer or over other relief"
         )
-    half = (rows.T / singular) * np.sqrt(residual @ residual / (residual.size - J.shape[1]))
-    covariance: Array = (scale[:, None] * half) @ (scale[:, None] * half).T
+    half = scale[:, None] * vectors / np.sqrt(values)
+    covariance: Array = half @ half.T * float(residual @ residual) / (residual.size - J.shape[1])
     return covariance
