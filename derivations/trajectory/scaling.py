@@ -279,6 +279,16 @@ def observability_by_stages():
     return Equation(printed=N_f(PRINTED) * D_f(PRINTED), derived=N_p(PRINTED))
 
 
+@claim("6.Np.rows")
+def observability_row_by_row():
+    """Row x of N_p, H Phi(x tau), is row (x^0, x^1, ...) of N_f times D_f, for every real x; n = 12."""
+    x = sp.Symbol("x", positive=True)
+    n = 12
+    row = motion.first_state(n) * motion.transition(motion.dynamics(n, rho), x * tau)
+    printed = [x**j * (rho * tau**j / sp.factorial(j) if j else 1) for j in range(n)]
+    return Equation(printed=printed, derived=list(row))
+
+
 @claim("6.Np.stages")
 def observability_by_both_stages():
     """N_p = N_s D_s D_f; n = 5."""
@@ -290,6 +300,13 @@ def observability_by_both_stages():
 def scalings_multiply():
     """D = D_s D_f for positive rho and tau; n = 5."""
     return Equation(printed=D_s(PRINTED) * D_f(PRINTED), derived=D(PRINTED))
+
+
+@claim("6.D.orders")
+def scalings_multiply_for_other_orders():
+    """D = D_s D_f for positive rho and tau, column by column, n = 2 to 8."""
+    printed = [x for n in range(2, 9) for x in (D_s(n) * D_f(n)).diagonal()]
+    return Equation(printed=printed, derived=[x for n in range(2, 9) for x in D(n).diagonal()])
 
 
 @claim("6.Ns")

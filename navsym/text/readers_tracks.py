@@ -8,7 +8,6 @@ repair is listed with its line. Nothing is repaired silently. Angles leave this 
 from __future__ import annotations
 
 import csv
-import io
 import math
 import os
 import re
@@ -162,11 +161,11 @@ def looks_like_rtklib(text: str) -> bool:
 
 def rtklib_rows(text: str, log: Log) -> Iterator[Row]:
     """Rows of an RTKLIB solution in degrees: two time fields, lat, lon, height, Q, ns, sdn, sde, sdu, ..."""
-    if any("x-ecef" in line for line in text[:20000].splitlines() if line.startswith("%")):
+    if any("x-ecef" in line for line in lines_of(text[:20000]) if line.startswith("%")):
         raise DomainError(
             "expected lat/lon/height; got x/y/z-ecef; write the solution as llh", where=log.where
         )
-    for number, line in enumerate(text.splitlines(), 1):
+    for number, line in enumerate(lines_of(text), 1):
         if not line.strip() or line.startswith("%"):
             continue
         if number > LARGEST_ROWS:
@@ -214,25 +213,24 @@ def rtklib_sigma(fields: Sequence[str]) -> tuple[float, float, float] | None:
 
 def csv_rows(text: str, log: Log) -> Iterator[Row]:
     """Rows of a CSV; the separator is a comma, a semicolon or a tab."""
-    lines = [
-        (i, line) for i, line in enumerate(text.splitlines(), 1) if line.strip() and not line.startswith("#")
-    ]
+    numbered = enumerate(lines_of(text), 1)
+    lines = [(i, line) for i, line in numbered if line.strip() and not line.startswith("#")]
     if not lines:
         raise EmptyError("expected a track; got no rows; check the export", where=log.where)
     if len(lines) > LARGEST_ROWS:
         raise too_long(log)
     separator = separator_of(lines[0][1])
     first = split(lines[0][1], separator)
-    headed = any(number_of(x) is None and decimal_comma(x) is None for x in first)
-    columns, scale = (
-        columns_of(first, log, lines[0][0])
-        if headed
-        else (dict(zip("t lat lon h".split(), range(4), strict=True)), 1.0)
-    )
-    for number, line in lines[1:] if headed else lines:
+    columns, scale, start = dict(zip("t lat lon h".split(), range(4), strict=True)), 1.0, 0
+    if any(number_of(x) is None and decimal_comma(x) is None for x in first):
+        columns, scale = columns_of(first, log, lines[0][0])
+        start = 1
+    # A row of another length has a stray or decimal comma: its columns cannot be told.
+    width = max(len(first), 4)
+    for number, line in lines[start:]:
         fields = split(line, separator)
-        if len(fields) <= max(columns.values()):
-            message = f"expected at least {max(columns.values()) + 1} fields; got {len(fields)}; mend the row"
+        if len(fields) != width:
+            message = f"expected {width} fields; got {len(fields)}; mend the row"
             log.problem(ShapeError, number, message, "row left out")
             continue
         texts = [fields[columns[name]] for name in ("t", "lat", "lon", "h")]
@@ -241,13 +239,22 @@ def csv_rows(text: str, log: Log) -> Iterator[Row]:
             yield Row(row.line, row.t, row.lat, row.lon, row.h * scale)
 
 
+def lines_of(text: str) -> list[str]:
+    """Lines as an editor counts them; other separators of Unicode are ordinary characters."""
+    return re.split(r"\r\n|\n|\r", text)
+
+
 def separator_of(line: str) -> str:
     """The character that separates: a semicolon or tab wins over commas, which may be decimal."""
     return next((mark for mark in ";\t" if line.count(mark) >= 3), ",")
 
 
 def split(line: str, separator: str) -> list[str]:
-    return [x.strip() for x in next(csv.reader(io.StringIO(line), delimiter=separator), [])]
+    """Fields of a line; none when the line is not a row of a table at all."""
+    try:
+        return [x.strip() for x in next(csv.reader([line], delimiter=separator), [])]
+    except csv.Error:
+        return []
 
 
 def columns_of(header: Sequence[str], log: Log, line: int) -> tuple[dict[str, int], float]:

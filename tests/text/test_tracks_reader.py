@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 from navsym.errors import (
@@ -79,7 +81,7 @@ BAD = [
     (GOOD + "3,45,400,100\n", DomainError, "longitude", "line 5"),
     (GOOD + "2,45,10,100\n", DuplicateError, "later time", "line 5"),
     (GOOD + "1,45,10,100\n", DomainError, "later time", "line 5"),
-    (GOOD + "3,45\n", ShapeError, "at least 4 fields", "line 5"),
+    (GOOD + "3,45\n", ShapeError, "expected 4 fields", "line 5"),
     (GOOD + "3,0x2d,10,100\n", ExpressionSyntaxError, "latitude: expected a number", "line 5"),
     (GOOD + "3,__import__('os'),10,100\n", ExpressionSyntaxError, "expected a number", "line 5"),
     ("t;lat;lon;height\n0;45,5;10,5;100,0\n", ExpressionSyntaxError, "decimal point", "line 2"),
@@ -97,6 +99,23 @@ def test_strict_reading_names_the_line_of_what_is_wrong(tmp_path, text, kind, me
         read_track(write(tmp_path, text))
     assert line is None or line in str(caught.value)
     assert "expected" in caught.value.message and "got" in caught.value.message
+
+
+def test_a_decimal_comma_between_commas_is_not_taken_for_a_column(tmp_path):
+    with pytest.raises(ShapeError, match="expected 4 fields; got 5"):
+        read_track(write(tmp_path, GOOD + "3,45,0,10.0,103\n"))
+
+
+@given(st.binary(max_size=300), st.sampled_from(["strict", "repair"]))
+def test_any_bytes_are_read_or_refused_with_an_error_of_ours(tmp_path_factory, data, policy):
+    path = tmp_path_factory.mktemp("any") / "x.csv"
+    for content in (data, GOOD.encode() + data, b"% x\n" + data):
+        path.write_bytes(content)
+        try:
+            track = read_track(path, policy)
+        except NavsymError:
+            continue
+        assert (np.diff(track.t) > 0).all() and np.isfinite(track.latitude).all()
 
 
 def test_the_first_problem_counts_the_others(tmp_path):
