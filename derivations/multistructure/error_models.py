@@ -132,6 +132,39 @@ def feedback():
     )
 
 
+def discretised(S1, step):
+    """exp(S1 step): the series ends where a power of S1 vanishes, which is checked."""
+    if any(entry != 0 for entry in S1 * S1):
+        raise ValueError("S1 is not nilpotent of order two")
+    return sp.eye(S1.rows) + S1 * step
+
+
+tau = sp.Symbol("tau", positive=True)
+
+
+@claim(
+    "4.type",
+    expect=REFUTED,
+    slip="paper",
+    reason="below (5) the models of (4) are said to be of type (2), but (2) without position errors on the right gives "
+    "the identity for their block of A; it is (3) that (4) samples",
+)
+def type_printed():
+    """(4): the models that (4) switches between are of type (2) (course and log, one step)."""
+    return Equation(printed=sp.eye(2), derived=discretised(RECKONING.linear_parts()[0], tau), box=SPHERE)
+
+
+@claim("4.type*", corrects="4.type")
+def type_corrected():
+    """(4): the models that (4) switches between are of type (3): A = exp(S1 tau) for the position errors."""
+    east = model.vy * sp.sin(model.heading) + model.vx * sp.cos(model.heading)
+    lever = east * sp.tan(model.latitude) / ((model.radius + model.height) * sp.cos(model.latitude))
+    return Equation(
+        printed=sp.Matrix([[1, 0], [lever * tau, 1]]),
+        derived=discretised(RECKONING.linear_parts()[0], tau), box=SPHERE,
+    )
+
+
 t, drift = sp.symbols("t epsilon_p", real=True)
 rate = sp.Symbol("Omega", positive=True)
 

@@ -45,7 +45,7 @@ def estimate_printed():
 
 @claim("12*", corrects="12")
 def estimate():
-    """(12): the mean of the mixture is the sum over i of g^i times the partial mean."""
+    """(12): the mean of the mixture is the sum over i of g^i times the partial mean [I,n = 2,2 3,2 2,3]."""
     printed, derived = [], []
     for s in every_size():
         printed.append(sum(finite.mode(s, i) * partial_mean(s, "xi", i) for i in s.I))
@@ -99,7 +99,7 @@ def covariance_of_any_number():
 
 @claim("13.densities")
 def covariance_of_densities():
-    """(13) for posteriors of any form: finite-state densities in place of Gaussian ones."""
+    """(13) for posteriors of any form: finite-state densities in place of Gaussian ones [I,n = 2,2]."""
     printed, derived = [], []
     for s in (step(2, 2),):
         xi, eta = values(s, "xi"), values(s, "eta")

@@ -44,7 +44,7 @@ def partial_printed():
 
 @claim("20*", corrects="20")
 def partial():
-    """(20) with the product of fraction and integral: (8) under (19)."""
+    """(20) with the product of fraction and integral: (8) under (19) [I,n = 2,2 3,2 2,3]."""
     cases = [(s, i) for s in frozen_steps() for i in s.I]
     return Equation(
         printed=[s.L(i, 0) / rho(s, i) * predicted(s, i, 0) for s, i in cases],
@@ -70,7 +70,7 @@ def double_integral_printed():
 
 @claim("20.integral*", corrects="20.integral")
 def single_integral():
-    """(20) with one integral, for every value of x(k)."""
+    """(20) with one integral, for every value of x(k) [I,n = 2,2 3,2 2,3]."""
     cases = [(s, i, x) for s in frozen_steps() for i in s.I for x in s.X]
     return Equation(
         printed=[s.L(i, x) / rho(s, i) * predicted(s, i, x) for s, i, x in cases],
@@ -87,7 +87,7 @@ def likelihood():
 
 @claim("21")
 def mode_probability():
-    """(21): (10) under (19)."""
+    """(21): (10) under (19) [I,n = 2,2 3,2 2,3]."""
     printed, derived = [], []
     for s in frozen_steps():
         below = sp.expand(sum(rho(s, i) * s.modes[i] for i in s.I))
@@ -98,7 +98,7 @@ def mode_probability():
 
 @claim("21.mixture")
 def mixture():
-    """Below (21): the general formula (11) holds with the weights (21) and the densities (20)."""
+    """Below (21): the general formula (11) holds with the weights (21) and the densities (20) [I,n = 2,2 3,2 2,3]."""
     printed, derived = [], []
     for s in frozen_steps():
         below = sp.expand(sum(rho(s, i) * s.modes[i] for i in s.I))
@@ -162,7 +162,7 @@ def living_sequences():
     alive = tuple(sum(1 for leaf in step.leaves if sum(leaf.weights) > 0) for step in exact)
     return Property(
         printed=(3, 3, 3),
-        derived=Finding(alive, "leaves of the exact tree with positive weight counted", scope="I = 3, k = 1..3"),
+        derived=Finding(alive, "leaves of positive weight counted", scope="one model, I = 3, k = 1..3"),
     )
 
 
@@ -176,7 +176,7 @@ def optimal():
         equal = equal and sorted(map(gaussian, ours.leaves)) == sorted(map(gaussian, living))
     return Property(
         printed=True,
-        derived=Finding(equal, "Gaussians of both filters compared as rational numbers", scope="I = 3, three steps"),
+        derived=Finding(equal, "Gaussians of both compared as rationals", scope="one model, I = 3, three steps"),
     )
 
 

@@ -50,7 +50,7 @@ def partial_printed():
 
 @claim("15*", corrects="15")
 def partial():
-    """(15) with the product of fraction and integral: (8) under (14)."""
+    """(15) with the product of fraction and integral: (8) under (14) [I,n = 2,2 3,2 2,3]."""
     cases = [(s, i) for s in forgetful_steps() for i in s.I]
     return Equation(
         printed=[s.L(i, 0) / rho(s, i) * predicted(s, i, 0) for s, i in cases],
@@ -67,7 +67,7 @@ def mode_likelihood():
 
 @claim("17")
 def mode_probability():
-    """(17): (10) under (14)."""
+    """(17): (10) under (14) [I,n = 2,2 3,2 2,3]."""
     printed, derived = [], []
     for s in forgetful_steps():
         below = sp.expand(sum(rho(s, i) * s.p(i, 0) for i in s.I))
@@ -78,7 +78,7 @@ def mode_probability():
 
 @claim("13.sequences")
 def weighing_of_sequences():
-    """Below (13): the optimal estimate weighs partial estimates by the probabilities of mode sequences."""
+    """Below (13): the optimal estimate weighs partial ones by probabilities of mode sequences [I,n = 2,2 3,2 2,3]."""
     printed, derived = [], []
     for s in finite.every_size():
         value = [sp.Symbol(f"xi_{x}", real=True) for x in s.X]
@@ -165,7 +165,7 @@ def suboptimal():
 
 @claim("17.first")
 def first_step_is_exact():
-    """The first estimate of the pulsating filter is the optimal one, when all modes start from one Gaussian."""
+    """The first pulsating estimate is optimal when all modes start from one Gaussian (one model, two modes)."""
     series = [[3]]
     pulsating = examples.run("pulsating", MODELS, SWITCHING, series)[0]
     exact = examples.run("exact", MODELS, SWITCHING, series)[0]
@@ -294,7 +294,7 @@ def near_optimal_corrected():
 
 @claim("near.moments")
 def near_moments():
-    """Mean and covariance of the fold move by epsilon times the distance and no more than epsilon d^2."""
+    """The fold of N(0, 1) and epsilon of N(d, P): mean epsilon d, variance 1 + e (P - 1) + e (1 - e) d^2."""
     other = sp.Symbol("P", positive=True)
     mean = share * gap
     covariance = (1 - share) * (1 + mean**2) + share * (other + (gap - mean) ** 2)
@@ -310,10 +310,10 @@ def memory(cases):
 
     extra = []
     for modes, n in cases:
-        unit = [[float(a == b) for b in range(n)] for a in range(n)]
-        model = {"F": unit, "Q": unit, "H": unit[:1], "R": [[1.0]]}
-        switch = [[1.0 / modes] * modes] * modes
-        made = bank([model] * modes, switch, [0.0] * n, unit, [1.0 / modes] * modes)
+        unit = [[int(a == b) for b in range(n)] for a in range(n)]
+        model = {"F": unit, "Q": unit, "H": unit[:1], "R": [[1]]}
+        switch = [[1 / modes] * modes] * modes
+        made = bank([model] * modes, switch, [0] * n, unit, [1 / modes] * modes)
         single, pulsating = floats_in_use(made, made.means[0][:1])
         extra.append(pulsating - single)
     return tuple(extra)

@@ -28,7 +28,7 @@ def bayes_numerator(s: Step, i: int, x: int) -> sp.Expr:
 
 @claim("7.chain")
 def chain():
-    """f[x(k), i(k) / x(k-1), j(k-1)] = f^i[x(k)/x(k-1)] p^ij(k)."""
+    """f[x(k), i(k) / x(k-1), j(k-1)] = f^i[x(k)/x(k-1)] p^ij(k) [I,n = 2,2]."""
     s = finite.normalised(2)
     return Equation(
         printed=[s.f(i, 0, 1) * s.p(i, 0) for i in s.I],
@@ -55,7 +55,7 @@ def posterior_printed():
 
 @claim("7*", corrects="7")
 def posterior_corrected():
-    """(7) with one transition density in the denominator: Bayes' rule for state and mode together."""
+    """(7) with one transition density in the denominator is Bayes' rule for state and mode [I,n = 2,2 3,2 2,3]."""
     printed, derived = [], []
     for s in every_size():
         whole = total(bayes_numerator(s, i, x) for i in s.I for x in s.X)
@@ -92,7 +92,7 @@ def partial_definition_printed():
 
 @claim("8.definition*", corrects="8.definition")
 def partial_definition():
-    """The fraction above (8) with a denominator summed over j alone."""
+    """The fraction above (8) with a denominator summed over j alone [I,n = 2,2 3,2 2,3]."""
     printed, derived = [], []
     for s in every_size():
         for i in s.I:
@@ -112,7 +112,7 @@ def right_side_of_8(s: Step, i: int, x: int) -> sp.Expr:
 
 @claim("8")
 def partial_posterior():
-    """(8): pi^i[x(k)] from the partial densities and mode probabilities of the step before."""
+    """(8): pi^i[x(k)] from the partial densities and mode probabilities of the step before [I,n = 2,2 3,2 2,3]."""
     printed, derived = [], []
     for s in every_size():
         printed += [right_side_of_8(s, i, 0) for i in s.I]
@@ -153,7 +153,7 @@ def pairs():
 
 @claim("9*", corrects="9")
 def pair_likelihood():
-    """(9) with pi^j[x(k-1)]: rho^ij is the density of Y(k) given both modes."""
+    """(9) with pi^j[x(k-1)]: rho^ij is the density of Y(k) given both modes [I,n = 2,2 2,3]."""
     cases = pairs()
     return Equation(
         printed=[rho(s, i, j) for s, i, j in cases],
@@ -163,7 +163,7 @@ def pair_likelihood():
 
 @claim("9.condition*", corrects="9.condition")
 def pair_condition():
-    """(9), last line with the condition j(k-1)."""
+    """(9), last line with the condition j(k-1) [I,n = 2,2 2,3]."""
     cases = pairs()
     return Equation(
         printed=[finite.pair_likelihood(s, i, j) for s, i, j in cases],
@@ -186,7 +186,7 @@ def mode_definition_printed():
 
 @claim("10.definition*", corrects="10.definition")
 def mode_definition():
-    """The fraction above (10) with a numerator summed over j."""
+    """The fraction above (10) with a numerator summed over j [I,n = 2,2 3,2 2,3]."""
     printed, derived = [], []
     for s in every_size():
         below = total(s.probability(Y=0, i=i, j=j) for i in s.I for j in s.I)
@@ -214,7 +214,7 @@ def mode_probability_by_densities():
 
 @claim("10")
 def mode_probability():
-    """(10), second line: mode probabilities from rho^ij."""
+    """(10), second line: mode probabilities from rho^ij [I,n = 2,2 3,2 2,3]."""
     printed, derived = [], []
     for s in every_size():
         weight = {(i, j): rho(s, i, j) * s.p(i, j) * s.modes[j] for i in s.I for j in s.I}
@@ -241,7 +241,7 @@ def mixture_printed():
 
 @claim("11*", corrects="11")
 def mixture():
-    """(11) summed over i: the posterior is the mixture of the partial ones."""
+    """(11) summed over i: the posterior is the mixture of the partial ones [I,n = 2,2 3,2 2,3]."""
     printed, derived = [], []
     for s in every_size():
         printed.append(total(finite.mode(s, i) * finite.partial(s, 0, i) for i in s.I))
@@ -267,7 +267,7 @@ def form_printed():
 
 @claim("11.form*", corrects="11.form")
 def form():
-    """Below (11): in the form (11) the recursion is closed: (8), (10) and (11) give pi[x(k)] from the parts."""
+    """Below (11): in that form the recursion is closed: (8), (10), (11) give pi[x(k)] [I,n = 2,2 3,2 2,3]."""
     printed, derived = [], []
     for s in every_size():
         weight = [total(rho(s, i, j) * s.p(i, j) * s.modes[j] for j in s.I) for i in s.I]

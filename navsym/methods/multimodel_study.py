@@ -71,7 +71,7 @@ class Score:
 def simulate(models: Bank, runs: int, steps: int, seed: int) -> Signals:
     """Draw switching signals from a bank; the same seed gives the same signals."""
     rng = np.random.default_rng(seed)
-    m, n, p = models.modes, models.states, models.channels
+    n, p = models.states, models.channels
     mode = choose(rng, np.tile(models.probabilities, (runs, 1)))
     x = np.stack([rng.multivariate_normal(models.means[i], models.covariances[i]) for i in mode])
     states, modes = np.empty((runs, steps, n)), np.empty((runs, steps), dtype=np.intp)

@@ -137,7 +137,7 @@ def test_wrong_fixes_are_noticed_without_the_flag():
 
 
 def test_a_road_that_is_not_there_is_named(tmp_path):
-    with pytest.raises(NoDataError, match="nagoya_reference.csv"):
+    with pytest.raises(NoDataError, match=r"nagoya_reference\.csv"):
         multimodel_road.read_road(tmp_path)
 
 

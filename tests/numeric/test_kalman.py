@@ -64,7 +64,8 @@ def test_josephs_form_stays_positive_where_the_short_form_does_not():
 
 
 def test_a_perfect_measurement_of_a_known_state_leaves_it_and_is_impossible():
-    mean, P, log_likelihood = kalman.correct(np.zeros(1), np.zeros((1, 1)), np.ones(1), np.ones((1, 1)), np.zeros((1, 1)))
+    nothing = np.zeros((1, 1))
+    mean, P, log_likelihood = kalman.correct(np.zeros(1), nothing, np.ones(1), np.eye(1), nothing)
     assert (mean[0], P[0, 0], log_likelihood) == (0.0, 0.0, -np.inf)
 
 
