@@ -123,6 +123,7 @@ def environment() -> jinja2.Environment:
         loader=jinja2.FileSystemLoader(TEMPLATES),
         autoescape=lambda name: not (name or "").endswith(".tex"),
         undefined=jinja2.StrictUndefined,
+        finalize=visible,
         trim_blocks=True,
         lstrip_blocks=True,
     )
@@ -132,6 +133,13 @@ def environment() -> jinja2.Environment:
     env.globals["script"] = Markup(script)
     env.globals["script_hash"] = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
     return env
+
+
+def visible(value: Any) -> Any:
+    """Words without control characters: those that turn the direction of text are written out."""
+    if not isinstance(value, str) or isinstance(value, Markup) or value.isprintable():
+        return value
+    return "".join(c if c.isprintable() or c in "\n\t" else repr(c)[1:-1] for c in value)
 
 
 def bare_card(module: str, document: Mapping[str, Any]) -> Paper:

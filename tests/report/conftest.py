@@ -1,0 +1,80 @@
+"""A small report that holds every kind of verdict, built once."""
+
+from __future__ import annotations
+
+import importlib.util
+import sys
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+from navsym.claims import Paper
+from navsym.report.page import site
+
+
+def beside(name: str) -> ModuleType:
+    """A helper module of this folder."""
+    full = f"report_tests_{name}"
+    if full not in sys.modules:
+        spec = importlib.util.spec_from_file_location(full, Path(__file__).with_name(f"{name}.py"))
+        assert spec is not None and spec.loader is not None
+        sys.modules[full] = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(sys.modules[full])
+    return sys.modules[full]
+
+
+PLAIN = {
+    "title": "A formula.", "method": "normal form", "scope": "all real T", "assumptions": [], "certificate": None,
+    "counterexample": None, "difference": None, "slip": None, "reason": "", "evidence": "reduces to 0 in Q",
+}  # fmt: skip
+
+
+def plain(number: str, status: str, printed: str, derived: str, **changes: object) -> dict[str, object]:
+    base = PLAIN | {"status": status, "expect": status, "printed": printed, "derived": derived} | changes
+    return beside("hostile").record(number, "words", **base)
+
+
+@pytest.fixture(scope="session")
+def records() -> list[dict[str, object]]:
+    return [
+        plain("1", "PROVED", "sin(2*T)", "2*sin(T)*cos(T)", certificate={"kind": "identity"}),
+        plain(
+            "2", "REFUTED", "-sin(T)", "sin(T)", slip="paper", reason="the sign is lost",
+            method="exact point, ball arithmetic", scope="one point",
+            counterexample={"T": "pi/6"}, difference=["-1.0000000000000000001", "-0.9999999999999999999"],
+        ),
+        plain("2*", "PROVED", "sin(T)", "sin(T)", corrects="sample:2", title="The sine without a sign."),
+        plain("3", "CERTIFIED", "4.6 +- 1/20", "23*sqrt(3)/9", method="ball arithmetic"),
+        plain("short-name", "CONFIRMED", "exp(-a*t)", "exp(-a*t)", method="sampling", evidence="at 40 points"),
+        plain("4", "OPEN", "[[1, T], [0, 1]]", "[[1, T], [0, 1]]", method="none", evidence="nothing helped"),
+    ]  # fmt: skip
+
+
+@pytest.fixture(scope="session")
+def card() -> Paper:
+    return Paper(
+        "sample", "A sample", ("A. Author",), 1984, "A journal", "English", ("1", "2", "3", "4", "5", "6"),
+        definitions={"5": "notation"},
+    )  # fmt: skip
+
+
+@pytest.fixture(scope="session")
+def files(records: list[dict[str, object]], card: Paper) -> dict[str, str]:
+    return site(beside("hostile").document(records), {"sample": card})
+
+
+@pytest.fixture(scope="session")
+def hostile_files() -> dict[str, str]:
+    """Every hostile word as title, sides, scope, assumption, number, counterexample and paper title."""
+    hostile = beside("hostile")
+    records = [hostile.record(f"{i}", words) for i, words in enumerate(hostile.HOSTILE)]
+    records += [hostile.record(words, "plain") for words in hostile.HOSTILE]
+    document = hostile.document(records)
+    document["papers"][0]["title"] = hostile.HOSTILE[0]
+    return site(document, {})
+
+
+@pytest.fixture(scope="session")
+def hostile_words() -> tuple[str, ...]:
+    return beside("hostile").HOSTILE

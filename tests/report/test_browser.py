@@ -1,0 +1,144 @@
+"""The pages in a real browser: quiet console, visible formulas, a filter that filters, harmless words."""
+
+from __future__ import annotations
+
+import importlib.util
+from pathlib import Path
+
+import pytest
+
+from navsym.report.page import visible
+
+pytestmark = pytest.mark.browser
+SPEC = importlib.util.spec_from_file_location("report_devtools", Path(__file__).with_name("devtools.py"))
+assert SPEC is not None and SPEC.loader is not None
+devtools = importlib.util.module_from_spec(SPEC)
+SPEC.loader.exec_module(devtools)
+
+
+@pytest.fixture(scope="module")
+def browser(tmp_path_factory):
+    if devtools.found() is None:
+        pytest.skip("no Chromium on this machine: install the package chromium to run the browser tests")
+    browser = devtools.Browser(tmp_path_factory.mktemp("profile"))
+    yield browser
+    browser.close()
+
+
+@pytest.fixture
+def shown(browser, tmp_path):
+    """A function that writes files, opens one of them, and forgets earlier trouble."""
+
+    def show(files, name):
+        for file, text in files.items():
+            (tmp_path / file).parent.mkdir(exist_ok=True)
+            (tmp_path / file).write_text(text, encoding="utf-8", errors="replace")
+        browser.trouble.clear()
+        browser.open((tmp_path / name).as_uri())
+        return browser
+
+    return show
+
+
+@pytest.mark.parametrize("name", ["index.html", "sample.html", "sample.erratum.html"])
+def test_the_console_stays_quiet_and_nothing_is_requested_from_outside(shown, files, name):
+    page = shown(files, name)
+    assert page.value("document.querySelector('h1').innerText.length") > 3
+    assert not page.trouble
+
+
+def test_formulas_take_room_on_the_page(shown, files):
+    page = shown(files, "sample.html")
+    sizes = page.value(
+        "[...document.querySelectorAll('.sides math')].map(m => m.getBoundingClientRect()).map(r => [r.width, r.height])"
+    )
+    assert len(sizes) >= 10 and all(width > 5 and height > 5 for width, height in sizes)
+
+
+VISIBLE = "[...document.querySelectorAll('article.claim')].filter(c => c.offsetHeight > 0).map(c => c.dataset.status)"
+
+
+def test_the_filter_hides_verdicts_and_finds_words(shown, files):
+    page = shown(files, "sample.html")
+    assert len(page.value(VISIBLE)) == 6
+    page.value("document.querySelector('[value=PROVED]').click()")
+    assert sorted(page.value(VISIBLE)) == ["CERTIFIED", "CONFIRMED", "OPEN", "REFUTED"]
+    page.value(
+        "(() => { const box = document.querySelector('[name=words]'); box.value = 'sign is lost';"
+        "box.dispatchEvent(new Event('input', {bubbles: true})); return 0 })()"
+    )
+    assert page.value(VISIBLE) == ["REFUTED"]
+    assert page.value("document.querySelector('.shown').innerText") == "1 of 6 claims"
+    assert not page.trouble
+
+
+def test_hostile_words_do_nothing(shown, hostile_files, hostile_words):
+    page = shown(hostile_files, "sample.html")
+    titles = page.value("[...document.querySelectorAll('article .title')].map(t => t.textContent)")
+    assert set(titles) >= {visible(words) for words in hostile_words}
+    assert page.value("document.querySelectorAll('script').length") == 1
+    assert not page.trouble
+
+
+def test_a_narrow_screen_does_not_scroll_sideways(shown, files, browser):
+    browser.call("Emulation.setDeviceMetricsOverride", width=360, height=740, deviceScaleFactor=2, mobile=True)
+    for name in ("index.html", "sample.html", "sample.erratum.html"):
+        page = shown(files, name)
+        assert page.value("document.documentElement.scrollWidth") <= 360, name
+    browser.call("Emulation.clearDeviceMetricsOverride")
+
+
+CONTRAST = """
+(() => {
+  const parts = (c) => c.match(/[\\d.]+/g).map(Number);
+  const light = (c) => { const [r, g, b] = parts(c).map(v => v / 255)
+      .map(v => v <= 0.03928 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4);
+    return 0.2126 * r + 0.7152 * g + 0.0722 * b; };
+  const ground = (e) => { for (; e; e = e.parentElement) {
+      const c = getComputedStyle(e).backgroundColor; const p = parts(c);
+      if (p.length < 4 || p[3] > 0) return c; } return 'rgb(255, 255, 255)'; };
+  return [...document.querySelectorAll('p, a, li, dt, dd, h1, h2, h3, h4, summary, span, td, th, label, figcaption')]
+    .filter(e => e.offsetHeight > 0 && e.textContent.trim()).map(e => {
+      const [a, b] = [light(getComputedStyle(e).color), light(ground(e))].sort((x, y) => y - x);
+      return [(a + 0.05) / (b + 0.05), e.tagName + '.' + e.className]; })
+    .filter(([ratio]) => ratio < 4.5);
+})()
+"""
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_text_stands_out_from_its_ground(shown, files, browser, scheme):
+    browser.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": scheme}])
+    for name in ("index.html", "sample.html", "sample.erratum.html"):
+        assert shown(files, name).value(CONTRAST) == []
+    browser.call("Emulation.setEmulatedMedia", features=[])
+
+
+def test_headings_labels_and_landmarks_are_there_for_those_who_listen(shown, files):
+    for name in ("index.html", "sample.html", "sample.erratum.html"):
+        page = shown(files, name)
+        levels = page.value("[...document.querySelectorAll('h1,h2,h3,h4')].map(h => Number(h.tagName[1]))")
+        assert levels[0] == 1 and levels.count(1) == 1
+        assert all(b - a <= 1 for a, b in zip(levels, levels[1:], strict=False)), levels
+        tree = page.call("Accessibility.getFullAXTree")["nodes"]
+        roles = [node.get("role", {}).get("value") for node in tree if not node.get("ignored")]
+        assert {"main", "navigation", "heading", "link"} <= set(roles)
+        nameless = [
+            node["role"]["value"]
+            for node in tree
+            if not node.get("ignored")
+            and node.get("role", {}).get("value") in ("link", "button", "checkbox", "searchbox", "img", "form")
+            and not node.get("name", {}).get("value")
+        ]
+        assert nameless == []
+
+
+def test_everything_can_be_reached_with_the_keyboard(shown, files):
+    page = shown(files, "sample.html")
+    wanted = page.value("document.querySelectorAll('a[href], summary, input').length")
+    seen = set()
+    for _ in range(wanted + 20):
+        for kind in ("keyDown", "keyUp"):
+            page.call("Input.dispatchKeyEvent", type=kind, key="Tab", code="Tab", windowsVirtualKeyCode=9)
+        seen.add(page.value("[...document.querySelectorAll('*')].indexOf(document.activeElement)"))
+    assert len(seen) >= wanted

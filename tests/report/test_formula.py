@@ -1,0 +1,67 @@
+"""Formulas are set in type as they stand; what is not a formula is left alone."""
+
+from __future__ import annotations
+
+from xml.dom import minidom
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from navsym.report.page_formula import latex, mathml, read_formula
+from navsym.report.page_names import latex_escape, split_name
+from navsym.report.page_plot import value
+
+LATEX = [
+    ("a - (b - c)", "a - \\left( b - c \\right)"),
+    ("-(a + b)*c", " - \\left( a + b \\right)\\,c"),
+    ("a/b", "\\frac{a}{b}"),
+    ("sin(T/4)**2", "\\sin^{2}\\left( \\frac{T}{4} \\right)"),
+    ("2**(-n)", "2^{ - n}"),
+    ("(-2)**2", "\\left(  - 2 \\right)^{2}"),
+    ("sqrt(x + 1)", "\\sqrt{x + 1}"),
+    ("theta2_11", "\\theta _{2,11}"),
+    ("20 +- 1/2", "20 \\pm \\frac{1}{2}"),
+    ("det != 0", "\\mathrm{det} \\ne 0"),
+    ("6.37e+07", "6.37 \\cdot 10^{7}"),
+    ("2*3", "2 \\cdot 3"),
+]
+
+
+@pytest.mark.parametrize(("text", "expected"), LATEX)
+def test_brackets_stand_where_they_are_needed(text, expected):
+    assert latex(text) == expected
+
+
+@pytest.mark.parametrize("text", ["gain not printed", "", "a b", "(", "a +", "f(", "<b>", "x;", "((" * 60, "α", "a..b"])
+def test_words_are_no_formula(text):
+    assert mathml(text) is None and latex(text) is None
+
+
+@given(st.text(alphabet="ab1+-*/(),.[]=<>; '", max_size=30))
+def test_whatever_is_read_is_wellformed(text):
+    found = mathml(text)
+    if found is not None:
+        minidom.parseString(f"<p>{found}</p>")
+        assert latex(text) is not None
+
+
+@given(st.integers(-9, 9), st.integers(1, 9), st.integers(-3, 3))
+def test_the_tree_means_what_the_text_means(a, b, c):
+    point = {"a": float(a), "b": float(b), "c": float(c)}
+    for text, expected in [
+        ("a - b - c", a - b - c), ("a/b*c", a / b * c), ("-a**2 + b", -(a**2) + b), ("2**c", 2.0**c),
+        ("-a*b - -c", -a * b + c), ("a - (b - c)*2", a - (b - c) * 2), ("a/b/2", a / b / 2),
+    ]:  # fmt: skip
+        node = read_formula(text)
+        assert node is not None and value(node, point) == pytest.approx(expected)
+
+
+def test_names_are_split_into_stem_and_indices():
+    assert [split_name(n) for n in ("y1", "theta2_11", "zT", "sigma", "u", "omega_0")] == [
+        ("y", "1"), ("theta", "2,11"), ("z", "T"), ("sigma", ""), ("u", ""), ("omega", "0"),
+    ]  # fmt: skip
+
+
+def test_words_cannot_command_latex():
+    assert latex_escape(r"\input{x} $y$ 50%") == r"\textbackslash{}input\{x\} \$y\$ 50\%"

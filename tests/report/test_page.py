@@ -1,0 +1,153 @@
+"""The pages say what the records say, need nothing from outside, and show hostile words as text."""
+
+from __future__ import annotations
+
+import re
+from html.parser import HTMLParser
+from xml.dom import minidom
+
+import pytest
+
+from navsym.report.page import site, slug, visible
+
+
+class Reading(HTMLParser):
+    """Elements, attributes and text of a page."""
+
+    def __init__(self, text: str):
+        super().__init__(convert_charrefs=True)
+        self.elements: list[tuple[str, dict[str, str | None]]] = []
+        self.words: list[str] = []
+        self.open: list[str] = []
+        self.crossed: list[str] = []
+        self.feed(text)
+        self.close()
+
+    def handle_starttag(self, tag, attrs):
+        self.elements.append((tag, dict(attrs)))
+        if tag not in ("meta", "link", "input", "br", "path", "circle"):
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag, attrs):
+        self.elements.append((tag, dict(attrs)))
+
+    def handle_endtag(self, tag):
+        if not self.open or self.open.pop() != tag:
+            self.crossed.append(tag)
+
+    def handle_data(self, data):
+        self.words.append(data)
+
+    @property
+    def text(self):
+        return "".join(self.words)
+
+
+def pages(files):
+    return {name: Reading(text) for name, text in files.items() if name.endswith(".html")}
+
+
+def test_a_report_has_an_index_a_page_and_an_erratum_sheet_for_each_paper(files):
+    assert {"index.html", "sample.html", "sample.erratum.html", "sample.erratum.tex", "verdicts.json"} <= set(files)
+    assert "certificates/sample_1-" in " ".join(files)
+
+
+def test_tags_are_closed_in_order_and_identifiers_are_used_once(files, hostile_files):
+    for found in (files, hostile_files):
+        for name, page in pages(found).items():
+            assert not page.crossed and not page.open, name
+            ids = [a["id"] for _, a in page.elements if "id" in a]
+            assert len(ids) == len(set(ids)), name
+
+
+def test_every_link_leads_to_a_file_or_an_anchor_that_exists(files, hostile_files):
+    for found in (files, hostile_files):
+        read = pages(found)
+        anchors = {name: {a.get("id") for _, a in page.elements} for name, page in read.items()}
+        for name, page in read.items():
+            for tag, attributes in page.elements:
+                href = attributes.get("href")
+                if tag != "a" or href is None:
+                    continue
+                file, _, anchor = href.partition("#")
+                assert (file or name) in found, (name, href)
+                assert not anchor or anchor in anchors[file or name], (name, href)
+
+
+def test_nothing_is_fetched_from_outside(files, hostile_files):
+    for found in (files, hostile_files):
+        for name, page in pages(found).items():
+            for tag, attributes in page.elements:
+                for key in ("src", "href", "action", "data", "srcset"):
+                    value = attributes.get(key) or ""
+                    assert not re.match(r"(?i)\s*(https?:|//|javascript:|file:)", value), (name, tag, value)
+
+
+def test_the_page_of_a_paper_names_verdict_scope_counterexample_and_correction(files):
+    text = Reading(files["sample.html"]).text
+    for words in ("REFUTED", "all real T", "T = pi/6", "Corrected by 2*", "Slip of the paper", "0.500 s", "identity"):
+        assert words in " ".join(text.split()), words
+
+
+def test_marks_say_the_verdict_without_colour(files):
+    index = Reading(files["index.html"])
+    cells = " ".join(index.text.split())
+    for words in ("1 ✓ proved", "2 ✗ refuted", "3 ◎ certified", "4 ? open", "5 · definition", "6 ! missing"):
+        assert words in cells, words
+
+
+def test_a_refuted_formula_is_drawn_and_the_drawing_has_words(files):
+    drawings = [a for tag, a in Reading(files["sample.html"]).elements if tag == "svg"]
+    assert len(drawings) == 1
+    assert drawings[0]["role"] == "img" and "T = 0.5236 they are -0.5 and 0.5" in drawings[0]["aria-label"]
+
+
+def test_formulas_are_wellformed_mathml_with_their_latex_beside_them(files):
+    found = re.findall(r"<math .*?</math>", files["sample.html"], re.S)
+    assert len(found) >= 10
+    for formula in found:
+        minidom.parseString(formula)
+    assert r"\sin\left( 2\,T \right)" in files["sample.html"]
+
+
+def test_the_erratum_sheet_alone_is_enough_to_correct_the_paper(files):
+    text = " ".join(Reading(files["sample.erratum.html"]).text.split())
+    for words in ("equation (2)", "printed", "should read", "The sine without a sign.", "the sign is lost", "-0.5"):
+        assert words in text, words
+    tex = files["sample.erratum.tex"]
+    assert r"\[  - \sin\left( T \right) \]" in tex and r"\[ \sin\left( T \right) \]" in tex
+    assert tex.count(r"\begin{enumerate}") == tex.count(r"\end{enumerate}") == 1
+
+
+def test_hostile_words_are_shown_as_text(hostile_files, hostile_words):
+    page = Reading(hostile_files["sample.html"])
+    text = page.text
+    for words in hostile_words:
+        assert visible(words) in text, words
+
+
+def test_hostile_words_make_no_element_attribute_or_file(hostile_files, hostile_words):
+    assert len(hostile_words) == 40
+    for name, page in pages(hostile_files).items():
+        tags = [tag for tag, _ in page.elements]
+        assert tags.count("script") == (name == "sample.html"), name
+        assert not {"iframe", "img", "base", "object", "embed", "animate"} & set(tags), name
+        assert not [a for _, attributes in page.elements for a in attributes if a.startswith("on")], name
+        assert "49" not in re.findall(r"title[^<]*\b(49)\b", page.text)
+    for name in hostile_files:
+        assert re.fullmatch(r"(certificates/)?[A-Za-z0-9_][A-Za-z0-9_.-]*", name), name
+
+
+def test_hostile_words_do_not_command_latex(hostile_files, card, records):
+    tex = hostile_files["sample.erratum.tex"]
+    assert r"\input" not in tex and "\x00" not in tex
+    document = {"claims": records, "papers": [{"module": "sample", "title": "x"}], "counts": {}}
+    wild = [dict(records[1], reason=r"\input{/etc/passwd} $x$ % & # _ ^ ~", title=r"\write18{ls}")]
+    tex = site(document | {"claims": wild}, {"sample": card})["sample.erratum.tex"]
+    assert r"\input" not in tex and r"\write18" not in tex and r"\textbackslash{}input" in tex
+
+
+@pytest.mark.parametrize("name", ["", "a", "a/b", "../x", "ä", "a" * 300, "sample:4.3.u2*", "sample:4.3.u2"])
+def test_file_names_are_plain_and_different_names_stay_different(name):
+    assert re.fullmatch(r"[A-Za-z0-9_.-]*", slug(name)) and len(slug(name)) < 100
+    assert ".." not in slug(name)[:2] and slug(name) != slug(name + "*")
