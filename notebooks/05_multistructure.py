@@ -1,0 +1,229 @@
+# ---
+# jupyter:
+#   jupytext:
+#     formats: py:percent
+#   kernelspec:
+#     display_name: Python 3
+#     language: python
+#     name: python3
+# ---
+
+# %% [markdown]
+# # Signals whose model switches
+#
+# **Question.** The errors of a navigation system follow one of several models, and nobody says which or when it
+# changes. The exact estimate needs one Kalman filter for every sequence of models. What may be thrown away?
+#
+# D. Obidin, D. Makarchuk, O. Kostenko, N. Mishukova, 2018.
+
+# %%
+import os
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import numpy as np
+from ipywidgets import FloatSlider, IntSlider, interact
+
+from derivations import multistructure as paper
+from derivations.multistructure import gaussian, jump_model, moments, polygaussian, pulsating, recursion
+from navsym.claims import claims_of
+from navsym.methods import multimodel_road as road
+from navsym.methods import multimodel_study as study
+from navsym.methods.multimodel import run
+from navsym.methods.multimodel_bank import bank
+from navsym.methods.multimodel_schemes import filters_at, scheme
+from navsym.models.modes import MODES
+from navsym.report.notebook import require, show
+
+BLUE, ORANGE, GREEN, RED = "#0072b2", "#e69f00", "#009e73", "#d55e00"
+
+# %% [markdown]
+# ## The exact recursion
+# State and mode together are Markov, so Bayes' rule gives a recursion (7)-(11). Every one of its formulas is
+# total probability and Bayes' rule; they are decided with free symbols for all probabilities.
+
+# %%
+show(recursion.partial_posterior)
+
+# %%
+show(recursion.mode_probability)
+
+# %% [markdown]
+# The printed (9) takes the density of the wrong mode:
+
+# %%
+show(recursion.pair_likelihood_printed)
+show(recursion.pair_likelihood)
+
+# %% [markdown]
+# ## Why it cannot be kept up
+
+# %%
+show(pulsating.number_of_sequences)
+print("Kalman filters in step k = 1, 2, ... with three modes")
+for method, K in (("exact", None), ("k-pulsating", 3), ("gpb2", None), ("imm", None), ("pulsating", None)):
+    rule = scheme(method, K)
+    print(f"  {method:12s} {K or '':>2}", [filters_at(rule, 3, 1, k) for k in range(1, 8)])
+
+# %% [markdown]
+# ## One step, four ways to fold
+# Two modes after a surprising measurement. The exact density at step 2 has four summands; the pulsating filter
+# folded at step 1 and has two; GPB2 folds four into two afterwards; IMM folds two into each before it predicts.
+
+
+# %%
+def two_modes(stay):
+    unit = [[1.0]]
+    models = [{"F": unit, "Q": [[q]], "H": unit, "R": unit} for q in (0.0, 25.0)]
+    return bank(models, [[stay, 1 - stay], [1 - stay, stay]], [0.0], unit, [0.5, 0.5])
+
+
+def draw_folds(stay=0.9, first=3.0, second=1.0, depth=2):
+    series = [[first], [second], [0.0]]
+    x = np.linspace(-4, 8, 400)
+    figure, axes = plt.subplots(1, 3, figsize=(11, 3), sharey=True)
+    for method, colour, K in (("exact", "black", None), ("pulsating", RED, None), ("k-pulsating", ORANGE, depth),
+                              ("gpb2", GREEN, None), ("imm", BLUE, None)):
+        found = run(two_modes(stay), series, method, depth=K)
+        for k, axis in enumerate(axes):
+            mean, variance = found.mean[k, 0], found.covariance[k, 0, 0]
+            name = method if K is None else f"{method} {K}"
+            axis.plot(x, np.exp(-0.5 * (x - mean) ** 2 / variance) / np.sqrt(2 * np.pi * variance), color=colour,
+                      label=f"{name}: {found.probabilities[k, 1]:.3f}")
+            axis.set_title(f"step {k + 1}: moments, P[jump]")
+            axis.legend(fontsize=7)
+    plt.show()
+
+
+interact(
+    draw_folds,
+    stay=FloatSlider(value=0.9, min=0.5, max=0.99, step=0.01),
+    first=FloatSlider(value=3.0, min=-6.0, max=6.0, step=0.5),
+    second=FloatSlider(value=1.0, min=-6.0, max=6.0, step=0.5),
+    depth=IntSlider(value=2, min=1, max=3),
+)
+
+# %% [markdown]
+# At step 1 all are exact (no fold has come yet), and the paper's filter is suboptimal from step 2 on:
+
+# %%
+require(pulsating.first_step_is_exact)
+require(pulsating.suboptimal)
+
+# %% [markdown]
+# ## Folding: mean and covariance
+# (13) is right, its middle line is not: the spread of the partial estimates would count twice.
+
+# %%
+show(moments.covariance_of_any_number)
+show(moments.middle_printed)
+
+# %% [markdown]
+# Partial estimates need not be stored, as promised, but the adders must be: two means and two covariances.
+
+# %%
+show(pulsating.memory_printed)
+require(pulsating.memory_corrected)
+
+# %% [markdown]
+# ## Memoryless modes
+# (14)-(17) replace the chain by its unconditional probabilities. That does not follow from the Gaussian
+# approximation: the mode before is still known through its posterior.
+
+# %%
+show(jump_model.follows_printed)
+require(jump_model.follows)
+series = study.simulate(study.schuler_bank(), 200, 30, seed=2)
+loss = {}
+for forget in (False, True):
+    true = [
+        np.log(run(study.schuler_bank(), z, forget=forget).probabilities[np.arange(30), m]).mean()
+        for z, m in zip(series.measurements[:60], series.modes[:60], strict=True)
+    ]
+    loss["memoryless" if forget else "Markov"] = -float(np.mean(true))
+print({name: round(value, 3) for name, value in loss.items()}, "nats per step, lower is better")
+
+# %% [markdown]
+# ## The likelihood (18), and what is Gaussian
+# A part is Gaussian, the sum is not.
+
+# %%
+require(gaussian.likelihood)
+show(gaussian.sum_is_gaussian)
+require(gaussian.part_is_gaussian)
+
+# %% [markdown]
+# ## How to choose K
+# The paper asks for statistical modelling. The Schuler channel with a drift that jumps and a velocity that degrades;
+# quality against cost, with 95 % intervals. Excess is the squared distance from the exact estimate in units of its
+# variance.
+
+# %%
+document = study.experiment(runs=250, seed=1, steps=7)
+exact = document["methods"][0]
+plt.figure(figsize=(6, 4))
+for row in document["methods"][1:-1]:
+    label = f"K = {row['depth']}" if row["depth"] else row["method"]
+    colour = ORANGE if row["method"] in ("k-pulsating", "pulsating") else BLUE
+    plt.errorbar(row["filters_per_step"], row["excess"]["mean"], row["excess"]["half_width"], fmt="o", color=colour)
+    plt.annotate(label, (row["filters_per_step"], row["excess"]["mean"]), xytext=(5, 5), textcoords="offset points")
+plt.xlabel("Kalman filters per step")
+plt.ylabel("excess over the exact estimate")
+plt.xscale("log")
+plt.title(f"modes: {', '.join(MODES)}")
+plt.show()
+by_name = {(row["method"], row["depth"]): row for row in document["methods"]}
+assert by_name["k-pulsating", 4]["excess"]["mean"] < by_name["pulsating", None]["excess"]["mean"]
+assert exact["log_likelihood"]["mean"] >= by_name["pulsating", None]["log_likelihood"]["mean"]
+
+# %% [markdown]
+# More is not always better: on one series the longer interval ends farther from the optimum, and in one model
+# K = 3 misses what K = 2 finds, because it folds where the modes have just parted.
+
+# %%
+show(pulsating.longer_is_better)
+require(pulsating.lossless_fold)
+require(pulsating.longer_may_be_worse)
+
+# %% [markdown]
+# Nor is a confident mode enough for the Gaussian approximation; the modes must also stay near each other.
+
+# %%
+show(pulsating.near_optimal)
+require(pulsating.near_optimal_corrected)
+
+# %% [markdown]
+# ## Modes that never switch
+# The polygaussian filter is exact then, and stays a bank of I filters.
+
+# %%
+require(polygaussian.optimal)
+show(polygaussian.start_printed)
+
+# %% [markdown]
+# ## A real road
+# A car in a city: satellite positions that are fixed or float, and a fix that is wrong now and then. Velocities
+# of the reference system are integrated; the filter sees no flags.
+
+# %%
+folder = Path(os.environ.get("NAVSYM_DATA", "../shared/data")) / "gnss_ins"
+if folder.is_dir():
+    run_of_nagoya = road.read_road(folder)
+    for method in ("pulsating", "imm", "gpb2"):
+        judged = road.judge(run_of_nagoya, method)
+        print(f"{method:10s} horizontal rms {judged.rms_raw:.1f} m -> {judged.rms:.2f} m; wrong fixes noticed "
+              f"{judged.caught} of {judged.wrong_fixes}; good fixes kept {judged.kept} of {judged.good_fixes}; "
+              f"NEES {judged.nees:.0f} (2 if the noise were white, which it is not)")
+        print(judged.confusion)
+else:
+    print("the Nagoya files are not here; `navsym data get` fetches them")
+
+# %% [markdown]
+# ## All claims
+
+# %%
+found = claims_of(paper)
+refuted = [c for c in found if c.expect == "REFUTED"]
+print(len(found), "claims,", len(refuted), "refuted and corrected")
+for item in refuted:
+    print(f"  {item.number:16s} {item.slip}: {item.reason}")
