@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 
+import sympy as sp
 from flint import fmpq, fmpq_mat
 
 from navsym.methods.phases_closed import refined
@@ -21,9 +22,20 @@ def fraction_of(x: fmpq) -> Fraction:
 
 def followed(family: Family, pattern: Pattern, lower: Fraction, upper: Fraction) -> Ranged:
     """Certificate pieces for the pattern from ``lower`` upwards, as far as the tests pass."""
-    track = Track(
-        family.exact(1), pattern, lambda T: member(family, pattern, T), lambda T: conditioner(family, T)
-    )
+    members: dict[fmpq, Member | None] = {}
+    bases: list[tuple[fmpq, fmpq_mat]] = []
+
+    def solve(T: fmpq) -> Member | None:
+        if T not in members:
+            members[T] = member(family, pattern, T)
+        return members[T]
+
+    def basis(T: fmpq) -> fmpq_mat:
+        if not bases or not bases[-1][0] * fmpq(5, 6) <= T <= bases[-1][0] * fmpq(6, 5):
+            bases.append((T, conditioner(family, T)))
+        return bases[-1][1]
+
+    track = Track(family.exact(1), pattern, solve, basis)
     return follow(track, fmpq(lower.numerator, lower.denominator), fmpq(upper.numerator, upper.denominator))
 
 
@@ -38,12 +50,7 @@ def member(family: Family, pattern: Pattern, T: fmpq) -> Member | None:
 
 def conditioner(family: Family, T: fmpq) -> fmpq_mat:
     """The orthonormalising matrix on [0, T], rounded to twelve digits."""
-    basis = make_basis(family.exact(str_rational(T)))
+    basis = make_basis(family.exact(sp.Rational(int(T.p), int(T.q))))
     m = basis.transform.nrows()
     return fmpq_mat(m, m, [exact(decimal(basis.transform[i, j], 12)) for i in range(m) for j in range(m)])
 
-
-def str_rational(T: fmpq):  # type: ignore[no-untyped-def]
-    import sympy as sp
-
-    return sp.Rational(int(T.p), int(T.q))

@@ -129,14 +129,16 @@ def careful(panels: Panels, nodes: Array) -> Contacts:
     extra_panel = np.empty(0, dtype=np.int64)
     extra_u = np.empty(0)
     best: Contacts | None = None
-    for _ in range(ROUNDS):
+    for k in range(ROUNDS):
         panel = np.concatenate([np.repeat(np.arange(C.shape[0]), nodes.size), extra_panel])
         u = np.concatenate([np.tile(nodes, C.shape[0]), extra_u])
         G = np.concatenate([grid_values(C, nodes), rows_at(C, extra_panel, extra_u)])
         basis, x = dual_face(G, p)
-        found = polish(panels, merged(panels, G, p, basis, panel, u, nodes), x)
-        if best is None or found.excess < best.excess:
-            best = found
+        for reach in {1.0, 3.0**-k}:  # two contacts may be nearer than nodes: later rounds keep them apart
+            found = polish(panels, merged(panels, G, p, basis, panel, u, nodes, reach), x)
+            if best is None or found.excess < best.excess:
+                best = found
+        assert best is not None
         if best.excess < 1e-9:
             break
         more = peaks(panels, x) + peaks(panels, found.dual)
@@ -165,7 +167,7 @@ def dual_face(G: Array, p: Array) -> tuple[Ints, Array]:
 
 
 def merged(
-    panels: Panels, G: Array, p: Array, basis: Ints, panel: Ints, u: Array, nodes: Array
+    panels: Panels, G: Array, p: Array, basis: Ints, panel: Ints, u: Array, nodes: Array, reach: float
 ) -> tuple[Ints, Array, Array, Array]:
     """Contacts from basis rows: negligible ones dropped, neighbours of one sign made one."""
     weights = np.linalg.lstsq(G[basis].T, p, rcond=1e-13)[0]
@@ -176,7 +178,7 @@ def merged(
     for k in order:
         if groups:
             last = groups[-1][-1]
-            near = abs(u[basis[k]] - u[basis[last]]) <= 2.6 * spacing(nodes, u[basis[k]])
+            near = abs(u[basis[k]] - u[basis[last]]) <= 2.6 * reach * spacing(nodes, u[basis[k]])
             if near and panel[basis[k]] == panel[basis[last]] and weights[k] * weights[last] > 0:
                 groups[-1].append(int(k))
                 continue

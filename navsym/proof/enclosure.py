@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 import sympy as sp
-from flint import arb, arb_series, ctx, fmpq
+from flint import arb, arb_mat, arb_series, ctx, fmpq
 
 from navsym.proof.balls import OPERATIONS, Step, instruction
 
@@ -102,6 +102,8 @@ class Panel:
     variable    : t
     start, end  : exact ends of the piece
     sigma       : noise bound of the measurement, positive
+    values      : balls for the parameters that the expressions contain
+    mix         : matrix A when the unknowns are those of A H, else None
     """
 
     measurement: int
@@ -111,6 +113,7 @@ class Panel:
     end: sp.Expr
     sigma: sp.Expr
     values: Mapping[sp.Symbol, Any] = field(default_factory=dict)
+    mix: arb_mat | None = None
 
     @cached_property
     def program(self) -> Program:
@@ -149,7 +152,8 @@ class Panel:
             results = self.program.run(inputs)
         finally:
             ctx.cap = before
-        return [coefficients(h, order) for h in results]
+        rows = [coefficients(h, order) for h in results]
+        return rows if self.mix is None else (self.mix * arb_mat(rows)).tolist()
 
 
 def coefficients(value: Any, order: int) -> list[arb]:

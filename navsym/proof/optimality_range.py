@@ -8,7 +8,7 @@ the mean value theorem, ``F(s) in F(0) + s dF/ds``, and the contacts hold all ot
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import comb
 from typing import Any
 
@@ -19,7 +19,6 @@ from navsym.proof.balls import precision
 from navsym.proof.decimals import decimal, exact
 from navsym.proof.enclosure import ORDER, Panel, Problem, Touch, bounded, rational, total
 from navsym.proof.optimality import header
-from navsym.text.expression import to_text
 
 BITS = 200
 NODES = (fmpq(-1), fmpq(-1, 3), fmpq(1, 3), fmpq(1))
@@ -134,18 +133,21 @@ def interpolated(values: Sequence[fmpq]) -> list[fmpq]:
     return [unit * ((c[k, 0] / unit) + fmpq(1, 2)).floor() for k in range(4)]
 
 
-def moved_problem(problem: Problem, A: fmpq_mat, end: fmpq) -> Problem:
-    """The problem in the basis A H on [0, end], time as a fraction of it."""
+def moved_problem(problem: Problem, A: fmpq_mat, end: fmpq) -> tuple[Problem, list[arb]]:
+    """The problem in the basis A H on [0, end], time as a fraction of it, and A P."""
     m = A.nrows()
-    entry = lambda i, j: sp.Rational(int(A[i, j].p), int(A[i, j].q))  # noqa: E731
+    mix = arb_mat(m, m, [arb(a) for a in A.entries()])
     stop = sp.Rational(int(end.p), int(end.q))
-    panels = tuple(
-        Panel(p.measurement, tuple(sp.Add(*(entry(i, j) * h for j, h in enumerate(p.functions))) for i in range(m)),
-              p.variable, sp.S.Zero, stop, p.sigma)
-        for p in problem.panels
-    )  # fmt: skip
-    functional = tuple(sp.Add(*(entry(i, j) * q for j, q in enumerate(problem.functional))) for i in range(m))
-    return Problem(panels, functional)
+    panels = tuple(moved_panel(p, stop, mix) for p in problem.panels)
+    target = mix * arb_mat([[p] for p in problem.target()])
+    return Problem(panels, problem.functional), [target[i, 0] for i in range(m)]
+
+
+def moved_panel(panel: Panel, stop: sp.Expr, mix: arb_mat) -> Panel:
+    """The panel with other ends and another basis; the tape of its functions is kept."""
+    moved = replace(panel, start=sp.S.Zero, end=stop, mix=mix)
+    moved.__dict__["program"] = panel.program
+    return moved
 
 
 def verified(
@@ -153,17 +155,18 @@ def verified(
 ) -> tuple[dict[str, Any], int] | None:
     """Krawczyk's test for all s, signs, places and the bound off the contacts."""
     m, l, end = A.nrows(), len(track.pattern), middle + half
-    problem = moved_problem(track.problem, A, end)
+    problem, target = moved_problem(track.problem, A, end)
     z = [list(map(arb, c)) for c in curves]
     for i, (_, kind, _) in enumerate(track.pattern):
         z[m + i] = [arb(c) / arb(end) for c in curves[m + i]] if kind == "no" else ends_of(kind, middle, half, end)
     free = [k for k in range(m + 2 * l) if not m <= k < m + l or track.pattern[k - m][1] == "no"]
     radius = {k: arb(0) for k in free}
-    for attempt in range(5):
-        move = image(problem, track.pattern, z, radius, free)
+    F0, _ = moving_system(problem, target, track.pattern, [c[0] for c in z])
+    for attempt in range(4):
+        move = image(problem, target, track.pattern, z, F0, radius, free)
         if move is None:
             return None
-        if attempt and all(bool(abs(d) < radius[k]) for k, d in move.items()):
+        if attempt and all(bool(abs(d) * 10 < radius[k] * 9) for k, d in move.items()):
             break
         radius = {k: arb((abs(d).upper() * 2 + arb(10) ** (-DIGITS + 4)).upper()) for k, d in move.items()}
         radius = {k: arb(exact(decimal(r, 3, 1))) for k, r in radius.items()}
@@ -206,12 +209,11 @@ def slope(c: Sequence[arb]) -> arb:
 
 
 def image(
-    problem: Problem, pattern: Sequence[tuple[int, str, int]], z: Sequence[Sequence[arb]], radius: dict[int, arb],
-    free: Sequence[int],
+    problem: Problem, target: Sequence[arb], pattern: Sequence[tuple[int, str, int]], z: Sequence[Sequence[arb]],
+    F0: Sequence[arb], radius: dict[int, arb], free: Sequence[int],
 ) -> dict[int, arb] | None:  # fmt: skip
     """Krawczyk's image of the box relative to its moving centre, or None when F' looks singular."""
-    F0, _ = moving_system(problem, pattern, [c[0] for c in z])
-    _, wide = moving_system(problem, pattern, [at_all(c) + radius.get(k, arb(0)) * EVERY for k, c in enumerate(z)])
+    _, wide = moving_system(problem, target, pattern, [at_all(c) + radius.get(k, arb(0)) * EVERY for k, c in enumerate(z)])
     speed = [slope(c) for c in z]
     F = [f + total(row_, speed) * EVERY for f, row_ in zip(F0, wide, strict=True)]
     J = arb_mat([[row_[k] for k in free] for row_ in wide])
@@ -250,7 +252,7 @@ def derived(taylor: Sequence[arb], away: arb, d: int) -> arb:
 
 
 def moving_system(
-    problem: Problem, pattern: Sequence[tuple[int, str, int]], z: Sequence[arb]
+    problem: Problem, target: Sequence[arb], pattern: Sequence[tuple[int, str, int]], z: Sequence[arb]
 ) -> tuple[list[arb], list[list[arb]]]:
     """F and its derivatives with respect to x, all places (ends included) and weights."""
     m, l = len(problem.functional), len(pattern)
@@ -267,7 +269,7 @@ def moving_system(
         F.append(total(x, [h[1] for h in H[i]]))
         J[r][:m] = [h[1] for h in H[i]]
         J[r][m + i] = 2 * total(x, [h[2] for h in H[i]])
-    for j, p in enumerate(problem.target()):
+    for j, p in enumerate(target):
         F.append(total(w, [h[j][0] for h in H]) - p)
         for i in range(l):
             J[l + len(inner) + j][m + i] = w[i] * H[i][j][1]
@@ -290,9 +292,5 @@ def row(
         "from": fraction(middle - half), "to": fraction(middle + half),
         "basis": [[fraction(A[i, j]) for j in range(m)] for i in range(m)],
         "dual": [text(c) for c in curves[:m]], "contacts": contacts,
-        "radius": [decimal(scale[k] * fmpq(11, 10), 4, 1) for k in sorted(scale)],
+        "radius": [decimal(scale[k], 12, 1) for k in sorted(scale)],
     }  # fmt: skip
-
-
-def described(problem: Problem) -> list[str]:
-    return [to_text(h) for panel in problem.panels for h in panel.functions]

@@ -1,0 +1,164 @@
+"""Guaranteed estimation against cvxpy with HiGHS and highspy on grids: ``python tests/benchmarks/guaranteed.py``.
+
+Peers and navsym run alternately in one process; medians of a few rounds. (a) the optimum alone, (b) with its
+certificate of relative width 1e-14, (c) a thousand lengths of the interval.
+"""
+
+from __future__ import annotations
+
+import argparse
+import statistics
+import time
+import warnings
+
+import cvxpy as cp
+import highspy
+import numpy as np
+import sympy as sp
+
+from navsym.methods.guaranteed_compare import panel_numbers
+from navsym.methods.guaranteed_many import values_for_lengths
+from navsym.methods.phases_family import U, Family
+from navsym.numeric.exchange import find_contacts
+from navsym.proof.enclosure import Panel, Problem
+from navsym.proof.optimality import certify
+from navsym.proof.optimality_basis import make_basis
+from navsym.proof.optimality_polish import quick_value
+
+t = sp.Symbol("t", real=True)
+
+
+def problem(rows, functional, end):
+    return Problem((Panel(0, tuple(map(sp.sympify, rows)), t, sp.Integer(0), sp.sympify(end), sp.Integer(1)),), tuple(map(sp.sympify, functional)))
+
+
+def unit(m, k):
+    return [int(j == k) for j in range(m)]
+
+
+MIXED = [1, t, t**2, sp.sin(t), sp.cos(t), sp.sin(2 * t), sp.cos(2 * t), sp.exp(-t), t * sp.exp(-t), sp.exp(t / 2), t * sp.sin(t), t * sp.cos(t)]
+PROBLEMS = {
+    "velocity, T = pi/2, y3": problem([1, -sp.sin(sp.pi / 2 - t), sp.cos(sp.pi / 2 - t) - 1], unit(3, 2), sp.pi / 2),
+    "monomials m = 8, e6": problem([t**k for k in range(8)], unit(8, 6), 1),
+    "mixed basis of 12, sin(t)": problem(MIXED, unit(12, 3), 6),
+}
+
+
+def grid_arrays(case, count):
+    H, _, _ = panel_numbers(case.panels[0], np.linspace(0.0, 1.0, count))
+    return H, np.array([float(p) for p in case.functional])
+
+
+def by_cvxpy(H, P):
+    x = cp.Variable(len(P))
+    task = cp.Problem(cp.Maximize(P @ x), [H.T @ x <= 1, H.T @ x >= -1])
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        try:
+            task.solve(solver=cp.HIGHS)
+        except cp.SolverError:
+            return float("nan")
+    return float("nan") if task.value is None else float(task.value)
+
+
+def by_highspy(H, P):
+    m, n = H.shape
+    solver = highspy.Highs()
+    solver.setOptionValue("output_flag", False)
+    lp = highspy.HighsLp()
+    lp.num_col_, lp.num_row_ = m, n
+    lp.sense_ = highspy.ObjSense.kMaximize
+    lp.col_cost_, lp.col_lower_, lp.col_upper_ = P, np.full(m, -highspy.kHighsInf), np.full(m, highspy.kHighsInf)
+    lp.row_lower_, lp.row_upper_ = -np.ones(n), np.ones(n)
+    lp.a_matrix_.format_ = highspy.MatrixFormat.kRowwise
+    lp.a_matrix_.start_ = np.arange(0, m * n + 1, m)
+    lp.a_matrix_.index_ = np.tile(np.arange(m), n)
+    lp.a_matrix_.value_ = np.ascontiguousarray(H.T).ravel()
+    solver.passModel(lp)
+    solver.run()
+    return solver.getInfo().objective_function_value
+
+
+def alone(case):
+    basis = make_basis(case)
+    found = find_contacts(basis.panels)
+    value = quick_value(case.panels, case.target(), found)
+    return float(value.mid()) if value is not None else found.value * basis.scale
+
+
+def prepared(case):
+    """The search and the last solve only, with the basis made before, as the peers get their matrix."""
+    basis = make_basis(case)
+    target = case.target()
+
+    def run():
+        return float(quick_value(case.panels, target, find_contacts(basis.panels)).mid())
+
+    return run
+
+
+def timed(function, rounds):
+    times, value = [], None
+    for _ in range(rounds):
+        start = time.perf_counter()
+        value = function()
+        times.append(time.perf_counter() - start)
+    return times, value
+
+
+def compare_case(name, case, count, rounds):
+    H, P = grid_arrays(case, count)
+    exact = certify(case, 25)
+    reference = (float(exact.lower) + float(exact.upper)) / 2
+    run = prepared(case)
+    jobs = {
+        "cvxpy+HiGHS": lambda: by_cvxpy(H, P), "highspy": lambda: by_highspy(H, P), "navsym, search": run,
+        "navsym, whole": lambda: alone(case), "navsym, certified": lambda: certify(case, 14),
+    }  # fmt: skip
+    for job in jobs.values():
+        job()
+    seconds = {key: [] for key in jobs}
+    values = {}
+    for _ in range(rounds):
+        for key, job in jobs.items():
+            fast = key.startswith("navsym")
+            times, values[key] = timed(job, 5 if fast else 1)
+            seconds[key].append(min(times))
+    median = {key: statistics.median(s) for key, s in seconds.items()}
+    print(f"{name}: optimum {reference:.15g}, grid of {count}")
+    for key, s in median.items():
+        value = values[key]
+        error = f"width {value.width:.1e}" if key.endswith("certified") else f"error {abs(value / reference - 1):.1e}"
+        print(f"  {key:18} {1e3 * s:10.3f} ms  {error:16} cvxpy/this {median['cvxpy+HiGHS'] / s:8.0f}  highspy/this {median['highspy'] / s:8.0f}")
+
+
+def compare_lengths(count, grid):
+    rows = ((sp.Integer(1), sp.sin(U), sp.cos(U) - 1),)
+    family = Family(rows, (sp.Integer(0), sp.Integer(0), sp.Integer(1)), (sp.Integer(1),), sp.Symbol("T", positive=True), True, ("z",), "y3")
+    lengths = np.linspace(0.2, 2.0, count)
+    values_for_lengths(family, lengths[:5])
+    times, values = timed(lambda: values_for_lengths(family, lengths), 3)
+    exact = np.cos(lengths / 2) / np.sin(lengths / 4) ** 2
+    peer = []
+    for T in lengths[:: max(1, count // 5)]:
+        u = np.linspace(0.0, T, grid)
+        H = np.array([np.ones_like(u), np.sin(u), np.cos(u) - 1])
+        start = time.perf_counter()
+        by_cvxpy(H, np.array([0.0, 0.0, 1.0]))
+        peer.append(time.perf_counter() - start)
+    whole = statistics.mean(peer) * count
+    print(f"{count} lengths: navsym {1e3 * min(times):.1f} ms, worst error {np.abs(values / exact - 1).max():.1e}; cvxpy+HiGHS {whole:.1f} s (from {len(peer)} of them), ratio {whole / min(times):.0f}")
+
+
+def main(count=10_000, rounds=3, lengths=1000):
+    for name, case in PROBLEMS.items():
+        compare_case(name, case, count, rounds)
+    compare_lengths(lengths, count)
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--grid", type=int, default=10_000)
+    parser.add_argument("--rounds", type=int, default=3)
+    arguments = parser.parse_args()
+    main(arguments.grid, arguments.rounds)
