@@ -13,6 +13,7 @@ from navsym.cli.output import emit, table
 #: as_table turns that into headings and rows. Modules are imported when their name is asked for.
 EXPERIMENTS = {
     "multistructure": "navsym.methods.multimodel_study:experiment:as_table",
+    "terrain_search": "navsym.methods.terrain_experiment:study:as_table",
 }
 
 

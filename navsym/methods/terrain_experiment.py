@@ -320,6 +320,51 @@ def append_journal(path: str | Path | None, records: list[Record]) -> None:
             file.write(json.dumps([asdict(r) for r in records]) + "\n")
 
 
+def study(
+    runs: int = 20,
+    steps: int = 1000,
+    seed: int = 1,
+    *,
+    journal: str | Path | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> dict[str, Any]:
+    """What ``navsym simulate terrain_search`` runs: the experiment on the sample terrain, twice.
+
+    runs : flights over each of the five tracks ; steps : measurements of each flight
+    The errors are drawn from the whole range of the hypotheses (4 m/s) and from a fifth of it, each
+    with and without accelerometer errors.
+    """
+    drifts = ((4.0, False), (4.0, True), (0.8, False), (0.8, True))
+    settings = [Setting(measurements=steps, drift=d, accelerometers=a) for d, a in drifts]
+    return experiment(settings=settings, runs=runs, seed=seed, journal=journal, progress=progress)
+
+
+def as_table(document: dict[str, Any]) -> tuple[list[str], list[list[str]]]:
+    """Headings and rows for people, beside the printed figures of table 1."""
+    headings = [
+        "drift m/s", "accelerometers", "algorithm", "RMS m", "median m", "RMS m/s", "> 500 m", "ms",
+        "printed m", "printed m/s",
+    ]  # fmt: skip
+    rows = []
+    for row in document["rows"]:
+        printed = document["printed"].get(row["algorithm"], {})
+        rows.append(
+            [
+                f"{row['drift']:g}",
+                "with errors" if row["accelerometers"] else "perfect",
+                row["algorithm"],
+                f"{row['rms_position']:.1f}",
+                f"{row['median_position']:.1f}",
+                f"{row['rms_velocity']:.2f}",
+                f"{row['false_fixes']}",
+                f"{1e3 * row['seconds']:.1f}",
+                f"{printed['position']:.1f}" if "position" in printed else "",
+                f"{printed['velocity']:.2f}" if "velocity" in printed else "",
+            ]
+        )
+    return headings, rows
+
+
 def growth(
     terrain: TerrainMap | None = None,
     *,

@@ -13,12 +13,14 @@ from navsym.errors import DomainError
 from navsym.methods.terrain_experiment import (
     ALGORITHMS,
     Setting,
+    as_table,
     course,
     errors_over,
     experiment,
     fly,
     read_journal,
     sample_terrain,
+    study,
 )
 
 SMALL = Setting(measurements=120, speed=60.0, drift=1.0)
@@ -88,6 +90,12 @@ def test_the_altimeter_noise_is_relative_to_the_height_above_ground(ground):
 def test_a_track_longer_than_the_map_is_refused(ground):
     with pytest.raises(DomainError, match="room for a track"):
         experiment(ground, settings=[Setting(speed=400.0)], tracks=1, runs=1)
+
+
+def test_the_study_of_the_command_line_has_a_table():
+    document = study(runs=1, steps=60, seed=2)
+    headings, rows = as_table(document)
+    assert len(rows) == 4 * len(ALGORITHMS) and all(len(row) == len(headings) for row in rows)
 
 
 def test_the_rows_are_plain_data(ground):
