@@ -19,11 +19,14 @@ import sympy as sp
 from flint import fmpz_mpoly_vec
 
 from navsym.methods.observability import Chains, Observability
-from navsym.methods.observability_linear import Matrix, determinant, maximal_minors
+from navsym.methods.observability_linear import Matrix, determinant, maximal_minors, reduce_rows
 from navsym.methods.observability_ring import Poly, Ring, divide, divides, gcd_all, irreducible_factors
 
 #: More minors than this are not computed: the answer then says that it is not complete.
 MINORS = 3000
+#: So many sets of vectors are then looked at, and so many minors of each.
+SETS = 2
+CHOSEN = 4
 #: Gröbner bases: number of polynomials, terms of each, bits of a coefficient.
 LIMITS = (60, 400, 4000)
 BRANCHES = 400
@@ -99,15 +102,34 @@ def compositions(total: int, caps: Sequence[int]) -> Iterator[tuple[int, ...]]:
 
 
 def drops_of(sets: Sequence[Matrix], ring: Ring) -> tuple[list[list[Poly]], bool]:
-    """Components of the common zeros of all maximal minors of all sets of vectors."""
-    wanted = sum(comb(len(rows[0]), len(rows)) for rows in sets)
+    """Components of the common zeros of all maximal minors of all sets of vectors.
+
+    With more than MINORS of them a few stand for all: their common factors are then listed, and the
+    list is not called complete.
+    """
+    complete = sum(comb(len(rows[0]), len(rows)) for rows in sets) <= MINORS
     minors: list[Poly] = []
-    for rows in sets[: max(1, MINORS // max(1, wanted // len(sets)))]:
-        minors += minors_of(rows, ring)
+    for rows in sets if complete else sets[:SETS]:
+        minors += minors_of(rows, ring) if complete else chosen_minors(rows, ring)
         if any(minor.is_constant() for minor in minors):
             return [], True  # a minor that is a number: no drop anywhere
-    complete = wanted <= MINORS
-    return components(minors, ring), complete
+    if complete:
+        return components(minors, ring), True
+    common = gcd_all(minors, ring.constant(0))
+    return hypersurfaces(common, ring), False
+
+
+def chosen_minors(rows: Matrix, ring: Ring) -> list[Poly]:
+    """A few maximal minors that elimination finds by itself, each time without one more component."""
+    places = list(range(len(rows[0])))
+    found = []
+    for _ in range(CHOSEN):
+        reduced = reduce_rows(rows, ring, places)
+        if len(reduced.rows) < len(rows):
+            break
+        found.append(reduced.pivot)
+        places.remove(reduced.columns[-1])
+    return found
 
 
 def minors_of(rows: Matrix, ring: Ring) -> list[Poly]:
@@ -128,11 +150,20 @@ def components(polynomials: Sequence[Poly], ring: Ring) -> list[list[Poly]]:
     until every branch is a system that does not factor any more.
     """
     common = gcd_all(polynomials, ring.constant(0))
-    found = [system for f in irreducible_factors(common) for system in real_systems([f], ring)]
+    found = hypersurfaces(common, ring)
     rest = [divide(p, common) for p in polynomials]
     if not any(p.is_constant() for p in rest):
         found += branch(rest, ring)
     return irredundant(found)
+
+
+def hypersurfaces(common: Poly, ring: Ring) -> list[list[Poly]]:
+    """Real zeros of one polynomial, factor by factor; a sum of squares breaks up further."""
+    found: list[list[Poly]] = []
+    for f in irreducible_factors(common):
+        for system in real_systems([f], ring):
+            found += [system] if system == [f] else branch(system, ring)
+    return found
 
 
 def branch(start: Sequence[Poly], ring: Ring) -> list[list[Poly]]:

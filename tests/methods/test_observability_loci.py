@@ -75,3 +75,11 @@ def test_declared_signs_exclude_a_locus_without_hiding_it():
 def test_compositions_are_all_sums_within_their_caps():
     direct = {t for t in itertools.product(range(4), range(3), range(5)) if sum(t) == 6}
     assert set(compositions(6, [3, 2, 4])) == direct
+
+
+def test_too_many_minors_give_a_list_that_does_not_call_itself_complete():
+    from navsym.models.inertial import full_model
+
+    drops = rank_drops(observe(full_model()))
+    assert drops and not any(d.complete for d in drops)
+    assert "omega_2 = 0" in {d.condition for d in drops}
