@@ -116,7 +116,7 @@ def drops_of(sets: Sequence[Matrix], ring: Ring) -> tuple[list[list[Poly]], bool
     if complete:
         return components(minors, ring), True
     common = gcd_all(minors, ring.constant(0))
-    return hypersurfaces(common, ring), False
+    return irredundant(hypersurfaces(common, ring)), False
 
 
 def chosen_minors(rows: Matrix, ring: Ring) -> list[Poly]:
