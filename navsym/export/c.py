@@ -216,8 +216,9 @@ def vectors_header(functions: Sequence[ExportedFunction], tests: dict[str, list[
     for function in functions:
         found, n = tests[function.name], len(tests[function.name])
         lines.append(f"#define {function.name}_COUNT {n}")
-        lines += array_text(function.arithmetic.name, f"{function.name}_in",
-                            [x for v in found for x in v.inputs], spelling(function.arithmetic.name))  # fmt: skip
+        if function.inputs:
+            inputs = [x for v in found for x in v.inputs]
+            lines += array_text(function.arithmetic.name, f"{function.name}_in", inputs, spelling(function.arithmetic.name))
         lines.append(f"static const int {function.name}_status[] = {{{', '.join(str(v.status) for v in found)}}};")
         for part in ("lower", "upper", "nearest"):
             values = [x for v in found for x in (getattr(v, part) or (0.0,) * function.size)]

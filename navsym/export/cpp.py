@@ -143,7 +143,8 @@ def test_function(function: ExportedFunction, found: list[Vector]) -> str:
 
     accessors = [f"result.{o.name}[{e}]" if o.shape else f"result.{o.name}" for o in function.outputs for e in range(o.size)]
     cast = "static_cast<double>({})" if real == "float" else "{}"
-    return TEST.format(
+    template = TEST if n else TEST.replace("    static const {real} in[] = {{{inputs}}};\n", "")
+    return template.format(
         name=function.name, real=real, size=function.size, count=len(found),
         inputs=rows([s.number(x) for v in found for x in v.inputs] or [s.number(0.0)]),
         status=", ".join(str(v.status) for v in found),

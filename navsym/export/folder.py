@@ -25,6 +25,16 @@ def write_folder(out: Path, files: Mapping[str, str], *, force: bool = False) ->
     files : relative name -> text
     force : replace files that are there (links are refused all the same)
     """
+    targets = require_free(out, files, force=force)
+    root = Path(os.path.realpath(out))
+    for name, target in targets.items():
+        make_parents(root, target)
+        replace(target, files[name])
+    return list(targets.values())
+
+
+def require_free(out: Path, files: Mapping[str, str], *, force: bool = False) -> dict[str, Path]:
+    """The target of every name; FolderError when one must not be written."""
     root = folder_for(out)
     targets = {name: target_for(root, name) for name in files}
     taken = [target for target in targets.values() if os.path.lexists(target)]
@@ -34,10 +44,7 @@ def write_folder(out: Path, files: Mapping[str, str], *, force: bool = False) ->
             "do add --force or choose another --out",
             where=str(out),
         )
-    for name, target in targets.items():
-        make_parents(root, target)
-        replace(target, files[name])
-    return list(targets.values())
+    return targets
 
 
 def folder_for(out: Path) -> Path:

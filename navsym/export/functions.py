@@ -89,12 +89,14 @@ class Piece:
     """The function up to a limit of the switching input (None: without one).
 
     formulas : exact values of the results, in the symbols of the inputs
+    forms    : the formulas as they were made safe, equal to them
     literals : number in the code for each constant of the graph
     tie      : how the graph was tied to the formulas
     """
 
     limit: float | None
     formulas: tuple[sp.Expr, ...]
+    forms: tuple[sp.Expr, ...]
     graph: Graph
     literals: tuple[float | None, ...]
     bound: Uniform
@@ -336,9 +338,7 @@ def piece_of(
         raise RefusedError(f"expected code equal to {part.claim}; got a graph that differs; do report this")
     literals = literals_of(graph, arithmetic)
     bound = uniform_bound(graph, box, arithmetic, literals)
-    if bound.absolute is None and bound.relative is None:
-        bound = away_from_zero(graph, inputs, box, arithmetic, literals)
-    return Piece(limit, tuple(formulas), graph, literals, bound, tie, part.source)
+    return Piece(limit, tuple(formulas), tuple(forms), graph, literals, bound, tie, part.source)
 
 
 def best_form(
@@ -383,23 +383,6 @@ def spread(generator: random.Random, low: float, high: float) -> float:
 def literals_of(graph: Graph, arithmetic: Arithmetic) -> tuple[float | None, ...]:
     """The number in the code for each constant node."""
     return tuple(literal(n.value, arithmetic) if n.op == "const" else None for n in graph.nodes)
-
-
-def away_from_zero(
-    graph: Graph,
-    inputs: tuple[Input, ...],
-    box: list[tuple[float, float]],
-    arithmetic: Arithmetic,
-    literals: Sequence[float | None],
-) -> Uniform:
-    """The bound with inputs that may be almost zero kept above 1/64: what diverges there has none nearer."""
-    raised = [
-        (max(low, min(1 / 64, high / 2)), high) if 0 < low <= SMALLEST[arithmetic.name] else (low, high)
-        for low, high in box
-    ]
-    bound = uniform_bound(graph, raised, arithmetic, literals)
-    names = [i.name for i, a, b in zip(inputs, box, raised, strict=True) if a != b]
-    return Uniform(bound.relative, bound.absolute, bound.cells, tuple(f"{n} >= 1/64" for n in names))
 
 
 def tie_to_formula(graph: Graph, formulas: Sequence[sp.Expr]) -> str | None:

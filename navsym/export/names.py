@@ -22,7 +22,7 @@ TAKEN = frozenset(
     """.split()
 )
 #: A name of our own would hide the temporaries t0, t1, … of a function body.
-TEMPORARY = re.compile(r"(?:[tv]\d+|navsym_\w*|nv_\w*)")
+TEMPORARY = re.compile(r"(?:[tr]\d+|navsym_\w*|nv_\w*)")
 
 
 def identifier(text: str, taken: Iterable[str] = ()) -> str:

@@ -165,16 +165,30 @@ def cost(piece: Piece) -> str:
 
 
 def bound_text(function: ExportedFunction, piece: Piece) -> str:
-    """The derived rounding bound in words."""
-    arithmetic, bound = function.arithmetic, piece.bound
-    where = f" for {', '.join(bound.where)}" if bound.where else ""
+    """The derived rounding bounds in words, one for each output."""
+    arithmetic, place, parts = function.arithmetic, 0, []
+    for output in function.outputs:
+        entries = slice(place, place + output.size)
+        place += output.size
+        name = f"{output.name}: " if len(function.outputs) > 1 else ""
+        parts.append(name + entry_bound(piece, entries))
     limits = [f"|{i.name}| <= {max(abs(i.test_low), abs(i.test_high)):g}" for i in function.inputs
               if math.isinf(i.low) or math.isinf(i.high)]  # fmt: skip
-    where += f" with {', '.join(limits)}" if limits else ""
-    u = f"u = 2^{arithmetic.u}"
-    library = f"({u}; library functions within {arithmetic.library} or {2 * arithmetic.library} ulp)"
-    if bound.relative is not None and bound.relative < 1e6:
-        return f"relative error at most {bound.relative:.3g} u, that is {math.ceil(bound.relative)} ulp{where} {library}"
-    if bound.absolute is not None:
-        return f"absolute error at most {bound.absolute:.3g}{where} {library}"
-    return f"no bound for the whole domain; each test vector carries its own {library}"
+    where = f" with {', '.join(limits)}" if limits else ""
+    library = f"u = 2^{arithmetic.u}, library functions within {arithmetic.library} or {2 * arithmetic.library} ulp"
+    return f"{'; '.join(dict.fromkeys(parts))}{where} ({library})"
+
+
+def entry_bound(piece: Piece, entries: slice) -> str:
+    """The strongest kind of bound that all entries of one output have."""
+    bound = piece.bound
+    relative, scaled, absolute = (max(b[entries]) for b in (bound.relative, bound.scaled, bound.absolute))
+    if relative == 0:
+        return "exact"
+    if relative < 1e4:
+        return f"relative error at most {relative:.3g} u, within {math.ceil(relative - 1e-6)} ulp"
+    if scaled < 1e4:
+        return f"error at most {scaled:.3g} u times the sum of the magnitudes of its terms"
+    if math.isfinite(absolute):
+        return f"absolute error at most {absolute:.3g}"
+    return "no uniform bound; each test vector carries its own"

@@ -56,11 +56,17 @@ LIBRARY = {"sin": 2, "cos": 2, "exp": 2, "log": 2, "expm1": 2, "pow": 2, "sinc":
 
 @dataclass(frozen=True, slots=True)
 class Bounded:
-    """Exact value (a ball), and bounds of the absolute and relative error of the computed one."""
+    """Exact value (a ball), and bounds of the error of the computed one.
+
+    absolute, relative : of the error itself, and over |value|
+    scaled             : over the sum of the magnitudes of the terms, which survives cancellation
+                         (underflow aside)
+    """
 
     value: arb
     absolute: arb
     relative: arb
+    scaled: arb
 
 
 INFINITE = arb("inf")
@@ -87,11 +93,11 @@ def analyse(
         for node, literal in zip(graph.nodes, literals, strict=True):
             args = [done[a] for a in node.args]
             if node.op == "input":
-                done.append(Bounded(inputs[node.value], arb(0), arb(0)))
+                done.append(Bounded(inputs[node.value], arb(0), arb(0), arb(0)))
             elif node.op == "const":
                 value = enclose(node.value, {}, BITS)
                 error = up(value - arb(literal))
-                done.append(tightened(value, error, ratio(error, value)))
+                done.append(tightened(value, error, ratio(error, value), INFINITE))
             else:
                 done.append(rounded(node, args, arithmetic))
         return done
@@ -103,18 +109,34 @@ def rounded(node: Node, args: list[Bounded], arithmetic: Arithmetic) -> Bounded:
     absolute, relative = propagated(node, args, value)
     absolute, relative = sane(absolute), sane(relative)
     k = factor(node.op, arithmetic) * arithmetic.unit()
+    scaled = sane(carried_scale(node, args))
     if k == 0:
-        return tightened(value, absolute, relative)
+        return tightened(value, absolute, relative, scaled)
     eta = arb(0) if node.op in ("add", "sub", "sqrt") else arb(2) ** arithmetic.eta
-    carried = tightened(value, absolute, relative)
+    carried = tightened(value, absolute, relative, scaled)
     own = k * (up(value) + carried.absolute) + eta
     return tightened(
-        value, up(carried.absolute + own), up(carried.relative + k * (1 + carried.relative) + ratio(eta, value))
+        value,
+        up(carried.absolute + own),
+        up(carried.relative + k * (1 + carried.relative) + ratio(eta, value)),
+        up(carried.scaled + k * (1 + carried.scaled)),
     )
 
 
-def tightened(value: arb, absolute: arb, relative: arb) -> Bounded:
-    """Each bound made no worse than the other one implies."""
+def carried_scale(node: Node, args: list[Bounded]) -> arb:
+    """Errors of the arguments over the magnitudes of their terms, for the operations that keep terms apart."""
+    if node.op in ("add", "sub"):
+        return args[0].scaled.max(args[1].scaled)
+    if node.op == "mul":
+        return args[0].scaled + args[1].scaled + args[0].scaled * args[1].scaled
+    if node.op == "div":
+        a, b = args
+        return (a.scaled + b.relative) / (1 - b.relative) if b.relative < 1 else INFINITE
+    return args[0].scaled if node.op == "neg" else INFINITE
+
+
+def tightened(value: arb, absolute: arb, relative: arb, scaled: arb) -> Bounded:
+    """Each bound made no worse than the other ones imply."""
     absolute, relative = sane(absolute), sane(relative)
     from_relative = sane(relative * up(value)) if relative.is_finite() else INFINITE
     if from_relative < absolute:
@@ -122,7 +144,8 @@ def tightened(value: arb, absolute: arb, relative: arb) -> Bounded:
     implied = ratio(absolute, value)
     if implied < relative:
         relative = implied
-    return Bounded(value, absolute, relative)
+    scaled = sane(scaled)
+    return Bounded(value, absolute, relative, relative if relative < scaled else scaled)
 
 
 def up(x: arb) -> arb:
@@ -307,72 +330,67 @@ def relative_through(op: str, a: Bounded, wide: arb) -> arb:
 
 # -- one bound for a whole box ---------------------------------------
 
+Box = tuple[tuple[float, float], ...]
+
 
 @dataclass(frozen=True, slots=True)
 class Uniform:
-    """Bounds that hold on the whole box; None where there is none.
+    """Bounds for each result that hold on the whole box; infinite where there is none.
 
     relative : in units of u: ``|computed - exact| <= relative u |exact|``
+    scaled   : in units of u, over the sum of the magnitudes of the terms (underflow aside)
     absolute : ``|computed - exact| <= absolute``
-    where    : what the box was cut down to, in words; empty for the whole box
     """
 
-    relative: float | None
-    absolute: float | None
-    cells: int
-    where: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True, slots=True)
-class Cell:
-    """A box with its bounds (largest over the results)."""
-
-    box: tuple[tuple[Any, Any], ...]
-    relative: float
-    absolute: float
+    relative: tuple[float, ...]
+    scaled: tuple[float, ...]
+    absolute: tuple[float, ...]
 
 
 def uniform_bound(
-    graph: Graph, box: Sequence[tuple[Any, Any]], arithmetic: Arithmetic, literals: Sequence[Any], cells: int = CELLS
+    graph: Graph, box: Sequence[tuple[float, float]], arithmetic: Arithmetic, literals: Sequence[Any], cells: int = CELLS
 ) -> Uniform:
-    """The bound over a box of exact ends, by subdividing where it is worst.
+    """Bounds over a box of exact ends, by subdividing where they are worst.
 
-    A box that ends at zero is first cut geometrically, since relative bounds repeat there.
+    A side that comes near zero is first cut geometrically, since relative bounds repeat there.
     """
-    queue: list[tuple[float, int, Cell]] = []
-    for number, part in enumerate(starting_cells(box)):
-        cell = measured(graph, part, arithmetic, literals)
-        heapq.heappush(queue, (-cell.relative, number, cell))
-    count = len(queue)
-    while count < cells:
-        _, number, worst = heapq.heappop(queue)
-        halves = split(worst.box)
-        if not halves:
-            heapq.heappush(queue, (-worst.relative, number, worst))
-            break
-        for half in halves:
-            cell = measured(graph, half, arithmetic, literals)
-            count += 1
-            heapq.heappush(queue, (-cell.relative, count + 10_000, cell))
-    relative = max(cell.relative for _, _, cell in queue)
-    absolute = max(cell.absolute for _, _, cell in queue)
-    return Uniform(finite_or_none(relative), finite_or_none(absolute), len(queue))
+    queue: list[tuple[float, int, Box, Uniform]] = []
+    waiting = starting_cells(box)
+    count = 0
+    while waiting or (queue and count < cells):
+        if not waiting:
+            _, _, worst, _ = queue[0]
+            waiting = split(worst)
+            if not waiting:
+                break
+            heapq.heappop(queue)
+        part = waiting.pop()
+        found = measured(graph, part, arithmetic, literals)
+        count += 1
+        heapq.heappush(queue, (-badness(found), count, part, found))
+    return Uniform(*(tuple(map(max, zip(*(getattr(u, name) for *_, u in queue), strict=True)))
+                     for name in ("relative", "scaled", "absolute")))  # fmt: skip
 
 
-def starting_cells(box: Sequence[tuple[Any, Any]]) -> list[tuple[tuple[Any, Any], ...]]:
-    """The box, cut geometrically towards a zero end when it has one variable."""
-    if len(box) != 1:
-        return [tuple(box)]
-    low, high = box[0]
-    if not (0 < low and high > 4 * low):
-        return [tuple(box)]
-    ends = [high]
-    while ends[-1] > 4 * low and len(ends) < GEOMETRIC:
-        ends.append(ends[-1] / 4)
-    return [((low if i == len(ends) - 1 else ends[i + 1], end),) for i, end in enumerate(ends)]
+def badness(found: Uniform) -> float:
+    """What a cell costs: the relative bounds, each capped, so that one zero does not hide the others."""
+    return sum(min(r, 1e6) for r in found.relative) + sum(min(r, 1e12) for r in found.scaled)
 
 
-def split(box: tuple[tuple[Any, Any], ...]) -> list[tuple[tuple[Any, Any], ...]]:
+def starting_cells(box: Sequence[tuple[float, float]]) -> list[Box]:
+    """The box, cut geometrically along the first side that comes near zero."""
+    for place, (low, high) in enumerate(box):
+        if 0 < low and high > 4 * low:
+            ends = [high]
+            while ends[-1] > 4 * low and len(ends) < GEOMETRIC:
+                ends.append(ends[-1] / 4)
+            ends.append(low)
+            pairs = zip(ends[1:], ends, strict=False)
+            return [(*box[:place], pair, *box[place + 1 :]) for pair in pairs]
+    return [tuple(box)]
+
+
+def split(box: Box) -> list[Box]:
     """Two halves along the side that is widest relative to its size."""
     if not box:
         return []
@@ -385,27 +403,24 @@ def split(box: tuple[tuple[Any, Any], ...]) -> list[tuple[tuple[Any, Any], ...]]
     return [(*box[:side], end, *box[side + 1 :]) for end in ((low, middle), (middle, high))]
 
 
-def measured(
-    graph: Graph, box: tuple[tuple[Any, Any], ...], arithmetic: Arithmetic, literals: Sequence[Any]
-) -> Cell:
+def measured(graph: Graph, box: Box, arithmetic: Arithmetic, literals: Sequence[Any]) -> Uniform:
     """Bounds of one cell, with floats as ends."""
     with precision(BITS):
         balls = [arb(low).union(arb(high)) if low != high else arb(low) for low, high in box]
     found = analyse(graph, balls, arithmetic, literals)
     results = [found[root] for root in graph.roots]
     with precision(BITS):
-        relative = max((upper_float(r.relative / arithmetic.unit()) for r in results), default=0.0)
-        absolute = max((upper_float(r.absolute) for r in results), default=0.0)
-    return Cell(box, relative, absolute)
+        unit = arithmetic.unit()
+        return Uniform(
+            tuple(upper_float(r.relative / unit) for r in results),
+            tuple(upper_float(r.scaled / unit) for r in results),
+            tuple(upper_float(r.absolute) for r in results),
+        )
 
 
 def upper_float(x: arb) -> float:
     """A float not below x; infinite when x is not finite."""
     return float(x.upper()) * (1 + 2.0**-50) if x.is_finite() else float("inf")
-
-
-def finite_or_none(x: float) -> float | None:
-    return x if x < float("inf") else None
 
 
 def with_library(arithmetic: Arithmetic, ulps: int) -> Arithmetic:

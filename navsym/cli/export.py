@@ -1,0 +1,130 @@
+"""Write proved formulas as code with vectors, bounds and certificates, compiled and run."""
+
+from __future__ import annotations
+
+import difflib
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from navsym.cli.output import emit, table
+from navsym.errors import DomainError, NavsymError
+
+if TYPE_CHECKING:
+    from navsym.export.functions import ExportedFunction, Material
+
+
+def command(
+    claims: Annotated[
+        list[str], typer.Argument(help="module:number, FILE.toml:id, or regimes joined as A+B+C; or a ready-made name")
+    ],
+    to: Annotated[str, typer.Option("--to", help="languages, such as c,cpp,rust,python")] = "c",
+    out: Annotated[Path, typer.Option("--out", help="folder to write")] = Path("export"),
+    real: Annotated[str, typer.Option("--real", help="double or float")] = "double",
+    force: Annotated[bool, typer.Option("--force", help="replace files that are there")] = False,
+    allow_confirmed: Annotated[bool, typer.Option("--allow-confirmed", help="accept claims held by samples")] = False,
+    license_: Annotated[str, typer.Option("--license", help="SPDX identifier for the headers")] = "Apache-2.0",
+    vectors: Annotated[int, typer.Option("--vectors", min=4, max=100_000, help="vectors for each function")] = 48,
+    run: Annotated[bool, typer.Option("--run/--no-run", help="compile and run what this machine can")] = True,
+    json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
+) -> int:
+    """Refuses a claim that does not hold, naming the one that corrects it."""
+    from navsym.export.package import Order, export
+    from navsym.export.targets import chosen
+
+    if real not in ("double", "float"):
+        raise DomainError(f"expected double or float; got {real[:20]!r}; do correct it", where="--real")
+    targets = tuple(chosen(to.split(","), real))
+    functions = [function_for(claim, real, allow_confirmed) for claim in expanded(claims)]
+    words = ["navsym", "export", *claims, "--to", to, "--real", real, "--license", license_, "--vectors", str(vectors)]
+    words += ["--allow-confirmed"] if allow_confirmed else []
+    order = Order(targets, license_, vectors, tuple(words))
+    document = export(functions, order, out, force=force, execute=run)
+    emit(document, as_json=json_, text=lambda: as_text(document))
+    return 0
+
+
+def expanded(claims: list[str]) -> list[str]:
+    """Ready-made names replaced by what they stand for."""
+    from navsym.export.ready import READY
+
+    return [part for claim in claims for part in READY.get(claim, (claim,))]
+
+
+def function_for(text: str, real: str, allow_confirmed: bool) -> ExportedFunction:
+    """The function of one argument; ``name=A+B`` gives it a name."""
+    from navsym.export.functions import function_of
+    from navsym.export.names import identifier
+
+    name, _, claims = text.rpartition("=") if "=" in text else ("", "", text)
+    parts = [material_for(part, allow_confirmed) for part in claims.split("+")]
+    return function_of(parts, real=real, name=identifier(name) if name else None)
+
+
+def material_for(text: str, allow_confirmed: bool) -> Material:
+    """A claim of a paper or of a file, decided."""
+    module, colon, number = text.rpartition(":")
+    if not colon or not module or not number:
+        raise DomainError(f"expected MODULE:NUMBER or FILE.toml:ID; got {text[:80]!r}; do correct it", where="command line")
+    if module.endswith(".toml"):
+        return from_file(Path(module), number, allow_confirmed)
+    return from_paper(module, number, allow_confirmed)
+
+
+def from_paper(module: str, number: str, allow_confirmed: bool) -> Material:
+    from navsym.claims import equation_of
+    from navsym.cli.verify import load
+    from navsym.export.functions import material
+    from navsym.proof.ladder import decide_within
+
+    (found,) = load([module])
+    by_number = {claim.number: claim for claim in found.claims}
+    if number not in by_number:
+        raise unknown(number, list(by_number), module)
+    claim = by_number[number]
+    statement = claim.derive()
+    corrections = [c.id for c in found.claims if c.corrects == number]
+    equation = equation_of(number, found.paper.equations)
+    return material(
+        claim.id, statement, decide_within(statement, 90.0),
+        title=claim.title,
+        paper=", ".join([*found.paper.authors, found.paper.title, str(found.paper.year or "")]).strip(", "),
+        equation=f"equation ({equation})" if equation else f"statement {number}",
+        correction=corrections[0] if corrections else None,
+        allow_confirmed=allow_confirmed,
+    )  # fmt: skip
+
+
+def from_file(path: Path, wanted: str, allow_confirmed: bool) -> Material:
+    from navsym.export.functions import material
+    from navsym.methods.prove import decide_claim, statement_of
+    from navsym.text.claimfile import read_claims
+
+    claims = {claim.id: claim for claim in read_claims(path).claims}
+    if wanted not in claims:
+        raise unknown(wanted, list(claims), path.name)
+    claim = claims[wanted]
+    return material(
+        f"{path.stem}:{wanted}", statement_of(claim), decide_claim(claim),
+        title=f"Claim {wanted} of a claim file", equation=f"claim {wanted}", paper=path.name,
+        allow_confirmed=allow_confirmed,
+    )  # fmt: skip
+
+
+def unknown(name: str, known: list[str], where: str) -> NavsymError:
+    close = difflib.get_close_matches(name, known, n=1)
+    advice = f"did you mean {close[0]}?" if close else f"known are {', '.join(known[:8])}"
+    return DomainError(f"expected a claim of {where}; got {name[:60]}; {advice}", where="command line")
+
+
+def as_text(document: dict[str, Any]) -> str:
+    rows = []
+    for language in document["languages"]:
+        found = language["functions"].values()
+        worst = max((f["worst"] for f in found), default=None)
+        count = sum(f["vectors"] for f in found)
+        rows.append((language["language"], language["status"], count or "", "" if worst is None else f"{worst:.2g}", language["why"]))
+    lines = [f"{f['name']}: {'; '.join(f['rounding'])}" for f in document["functions"]]
+    head = table(("language", "status", "vectors", "worst eps", "remark"), rows)
+    return "\n".join([*lines, head, f"{document['files']} files in {document['out']}"])

@@ -1,0 +1,203 @@
+"""A whole export: code in every language, vectors, certificates and a manifest that regenerates it."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import platform
+import shlex
+import tempfile
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from navsym import __version__
+from navsym.errors import DomainError, DuplicateError, NavsymError
+from navsym.export.folder import require_free, write_folder
+from navsym.export.functions import ExportedFunction, Piece
+from navsym.export.printing import bound_text
+from navsym.export.roundtrip import MANIFEST, Outcome, run_target
+from navsym.export.targets import Target
+from navsym.export.vectors import Vector, vectors
+from navsym.proof.certificates import identity_certificate
+
+COUNT = 48
+LICENSE = "Apache-2.0"
+
+
+@dataclass(frozen=True, slots=True)
+class Order:
+    """What is wanted: languages, licence, number of vectors, and the command for the manifest."""
+
+    targets: tuple[Target, ...]
+    license: str = LICENSE
+    count: int = COUNT
+    command: tuple[str, ...] = ()
+
+
+def files_of(functions: Sequence[ExportedFunction], order: Order) -> dict[str, str]:
+    """Relative name -> text of everything that is exported, the manifest included."""
+    names = [function.name.lower() for function in functions]
+    if len(set(names)) < len(names):
+        raise DuplicateError("expected functions with different names; got one name twice; do name each claim once")
+    notice = f"SPDX-License-Identifier: {license_id(order.license)}"
+    found: dict[str, str] = {}
+    for target in order.targets:
+        tests = vectors_for(functions, target, order.count)
+        made = target.files()(functions, tests, notice)
+        found |= {f"{target.name}/{name}": text for name, text in made.items()}
+    for function in functions:
+        found |= certificates(function)
+    found[MANIFEST] = json.dumps(manifest(functions, order, found), indent=2) + "\n"
+    return found
+
+
+def license_id(text: str) -> str:
+    if not text or len(text) > 80 or not all(c.isascii() and (c.isalnum() or c in ".-+() ") for c in text):
+        raise DomainError(f"expected an SPDX identifier such as Apache-2.0; got {text[:40]!r}; do correct --license")
+    return text
+
+
+def vectors_for(functions: Sequence[ExportedFunction], target: Target, count: int) -> dict[str, list[Vector]]:
+    """Vectors of every function for the library of one target."""
+    return {f.name: vectors(f, count, library=target.library, widen=target.widen) for f in functions}
+
+
+# -- certificates ---------------------------------------
+
+
+def certificates(function: ExportedFunction) -> dict[str, str]:
+    """The claim's own certificates, and those that the code graph equals the claim's formula.
+
+    One file for each, in a form that ``navsym check`` replays.
+    """
+    found = {}
+    for place, piece in enumerate(function.pieces):
+        stem = f"certificates/{function.name}" + (f".{place}" if len(function.pieces) > 1 else "")
+        for kind, parts in (("claim", singly(piece.source.certificate)), ("graph", ties_of(piece))):
+            for number, part in enumerate(parts):
+                tail = f".{number}" if len(parts) > 1 else ""
+                found[f"{stem}.{kind}{tail}.json"] = json.dumps(part, indent=2) + "\n"
+    return found
+
+
+def singly(certificate: Mapping[str, Any] | None) -> list[dict[str, Any]]:
+    """A certificate of several parts as its parts."""
+    if certificate is None:
+        return []
+    parts = certificate["of"] if certificate.get("kind") == "all" else [certificate]
+    return [dict(part) for part in parts if part]
+
+
+def ties_of(piece: Piece) -> list[dict[str, Any]]:
+    """``formula = graph`` for every result that was rewritten, for the independent checker."""
+    if piece.tie != "normal form":
+        return []
+    pairs = zip(piece.formulas, piece.graph.meaning(), strict=True)
+    found = {(left, right): identity_certificate(left, right) for left, right in pairs if left != right}
+    return [dict(part) for part in found.values() if part is not None]
+
+
+# -- manifest ---------------------------------------
+
+
+def manifest(functions: Sequence[ExportedFunction], order: Order, files: Mapping[str, str]) -> dict[str, Any]:
+    """What was exported from what, with which versions, and how to make it again byte for byte."""
+    return {
+        "navsym": __version__,
+        "made_with": {"python": platform.python_version()} | {p: version(p) for p in ("sympy", "python-flint", "numpy")},
+        "command": shlex.join(order.command),
+        "license": order.license,
+        "real": functions[0].arithmetic.name,
+        "languages": [target.name for target in order.targets],
+        "functions": [function_record(function) for function in functions],
+        "files": {name: hashlib.sha256(text.encode()).hexdigest() for name, text in sorted(files.items())},
+    }
+
+
+def function_record(function: ExportedFunction) -> dict[str, Any]:
+    return {
+        "name": function.name,
+        "inputs": [{"name": i.name, "symbol": i.symbol.name, "range": i.text} | ends(i.low, i.high) for i in function.inputs],
+        "outputs": [{"name": o.name, "shape": list(o.shape)} for o in function.outputs],
+        "pieces": [piece_record(function, piece) for piece in function.pieces],
+    }
+
+
+def ends(low: float, high: float) -> dict[str, float | None]:
+    """Accepted range; null where it has no end."""
+    infinite = float("inf")
+    return {"low": None if low == -infinite else low, "high": None if high == infinite else high}
+
+
+def piece_record(function: ExportedFunction, piece: Piece) -> dict[str, Any]:
+    source = {k: v for k, v in asdict(piece.source).items() if k != "certificate"}
+    return {
+        "up_to": piece.limit,
+        "source": source,
+        "operations": dict(sorted(piece.graph.operations().items())),
+        "rounding": bound_text(function, piece),
+        "tie": piece.tie,
+    }
+
+
+# -- the door ---------------------------------------
+
+
+class FailedError(NavsymError):
+    """Generated code that does not hold; it is not written."""
+
+    kind = "failed"
+    status = 1
+
+
+def export(
+    functions: Sequence[ExportedFunction], order: Order, out: Path, *, force: bool = False, execute: bool = True
+) -> dict[str, Any]:
+    """Make an export, run it, and write it when it held; the document of ``navsym export``.
+
+    Keys: ``out``, ``functions`` (name, claims, bound), ``languages`` (status, why, vectors, worst),
+    ``files``. Raises FailedError when a language's vectors fail, FolderError when nothing may be written.
+    """
+    files = files_of(functions, order)
+    require_free(out, files, force=force)
+    with tempfile.TemporaryDirectory(prefix="navsym-export-") as trial:
+        write_folder(Path(trial), files, force=True)
+        outcomes = [run_or_not(Path(trial), target, execute) for target in order.targets]
+    failed = [outcome for outcome in outcomes if outcome.status == "failed"]
+    if failed:
+        raise FailedError(
+            f"expected {failed[0].language} code inside its enclosures; got {failed[0].why}; "
+            "nothing was written; do leave this language out, and report the claim"
+        )
+    written = write_folder(out, files, force=force)
+    return {
+        "out": str(out),
+        "functions": [summary_record(function) for function in functions],
+        "languages": [outcome_record(outcome) for outcome in outcomes],
+        "files": len(written),
+    }
+
+
+def run_or_not(folder: Path, target: Target, execute: bool) -> Outcome:
+    if not execute:
+        return Outcome(target.name, "not executed", "not asked for", {})
+    return run_target(folder / target.name, target)
+
+
+def summary_record(function: ExportedFunction) -> dict[str, Any]:
+    return {
+        "name": function.name,
+        "claims": [source.claim for source in function.sources],
+        "status": sorted({source.status for source in function.sources}),
+        "rounding": [bound_text(function, piece) for piece in function.pieces],
+    }
+
+
+def outcome_record(outcome: Outcome) -> dict[str, Any]:
+    functions = {
+        name: {"vectors": n, "wrong": wrong, "worst": worst} for name, (n, wrong, worst) in outcome.functions.items()
+    }
+    return {"language": outcome.language, "status": outcome.status, "why": outcome.why, "functions": functions}

@@ -1,0 +1,151 @@
+"""Compile what was exported, run it on its vectors, and say what came of it.
+
+Nothing is "verified" that did not run: a missing toolchain is reported as "not executed".
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from navsym.export.targets import SANITIZERS, TARGETS, Target
+
+SECONDS = 120
+LINE = re.compile(r"(\w+) vectors (\d+) wrong (\d+) worst (\S+)")
+MANIFEST = "manifest.json"
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What a language's vectors said.
+
+    status    : "verified", "failed" or "not executed"
+    functions : name -> (vectors, wrong, worst error in units of 2^-52 relative, or 2^-23 for float)
+    """
+
+    language: str
+    status: str
+    why: str
+    functions: dict[str, tuple[int, int, float]]
+
+
+def run_target(folder: Path, target: Target, *, sanitize: bool = False) -> Outcome:
+    """Build and run the vectors of one language's folder; the build goes to a temporary folder."""
+    tool = target.executable()
+    if tool is None:
+        return Outcome(target.name, "not executed", f"{target.module or target.tool} is not on this machine", {})
+    text = ""
+    with tempfile.TemporaryDirectory(prefix="navsym-run-") as build:
+        for step in steps_of(target, folder, tool, build, sanitize):
+            done, text = run(step, folder)
+            if done != 0:
+                return Outcome(target.name, "failed", words(text) or f"exit status {done}", measured(text))
+    return Outcome(target.name, "verified", "", measured(text))
+
+
+def steps_of(target: Target, folder: Path, tool: str, build: str, sanitize: bool) -> list[list[str]]:
+    """The commands with their places filled in."""
+    table = {"{tool}": [tool], "{python}": [sys.executable], "{c}": [p.name for p in sorted(folder.glob("*.c"))]}
+    made = []
+    for step in target.steps:
+        command = [w for word in step for w in table.get(word, [word.replace("{build}", build)])]
+        if sanitize and target.name in ("c", "cpp") and word_is_compiler(command, tool):
+            command[1:1] = SANITIZERS
+        made.append(command)
+    return made
+
+
+def word_is_compiler(command: list[str], tool: str) -> bool:
+    return command[0] == tool
+
+
+def run(command: list[str], folder: Path) -> tuple[int, str]:
+    """Exit status and output of one command without a shell, limited in time."""
+    quiet = {"PYTHONDONTWRITEBYTECODE": "1", "ASAN_OPTIONS": "detect_leaks=0"}
+    try:
+        done = subprocess.run(
+            command, cwd=folder, capture_output=True, text=True, timeout=SECONDS, check=False, env=os.environ | quiet
+        )
+    except subprocess.TimeoutExpired:
+        return -1, f"stopped after {SECONDS} s"
+    except OSError as error:
+        return -1, error.strerror or "cannot be started"
+    return done.returncode, done.stdout + done.stderr
+
+
+def measured(text: str) -> dict[str, tuple[int, int, float]]:
+    return {name: (int(n), int(wrong), float(worst)) for name, n, wrong, worst in LINE.findall(text)}
+
+
+def words(text: str) -> str:
+    """The first lines that say what went wrong."""
+    bad = [f"{name}: {wrong} of {n} vectors outside" for name, n, wrong, _ in LINE.findall(text) if wrong != "0"]
+    lines = bad or [line for line in text.splitlines() if line.strip()][:3]
+    return "; ".join(lines)[:300]
+
+
+# -- a whole export ---------------------------------------
+
+
+def check_export(folder: Path) -> list[dict[str, Any]]:
+    """Rows ``{"path", "kind", "status", "why"}`` for the code of an exported folder.
+
+    The manifest's hashes are compared first; then every language runs its vectors. A language whose
+    toolchain is missing is accepted for its hashes only, and the row says so.
+    """
+    folder = Path(folder)
+    if not (folder / MANIFEST).is_file():
+        return []
+    try:
+        manifest = json.loads((folder / MANIFEST).read_text("utf-8"))
+        files = dict(manifest["files"])
+        languages = [str(name) for name in manifest["languages"]]
+    except (OSError, ValueError, KeyError, TypeError):
+        return [row(folder / MANIFEST, "manifest", "expected a manifest of navsym export; got something else")]
+    rows = [row(folder / MANIFEST, "manifest", hash_trouble(folder, files))]
+    return rows + [language_row(folder, name) for name in languages]
+
+
+def check_folder(folder: Path) -> list[dict[str, Any]]:
+    """The same, under the name by which ``navsym check`` looks for it."""
+    return check_export(folder)
+
+
+def language_row(folder: Path, name: str) -> dict[str, Any]:
+    target = TARGETS.get(name)
+    if target is None or not (folder / name).is_dir():
+        return row(folder / name, "code", "expected a folder of a known language; got none")
+    with tempfile.TemporaryDirectory(prefix="navsym-check-") as copy:
+        place = Path(shutil.copytree(folder / name, Path(copy) / name, symlinks=True))
+        outcome = run_target(place, target)
+    if outcome.status == "failed":
+        return row(folder / name, "code", outcome.why)
+    why = f"not executed: {outcome.why}" if outcome.status == "not executed" else ""
+    if not why:
+        vectors = sum(n for n, _, _ in outcome.functions.values())
+        why = f"{len(outcome.functions)} functions, {vectors} vectors inside their enclosures"
+    return {"path": str(folder / name), "kind": f"code:{name}", "status": "ACCEPTED", "why": why}
+
+
+def hash_trouble(folder: Path, files: dict[str, Any]) -> str:
+    """What differs from the manifest, in words; empty when nothing does."""
+    for name, digest in files.items():
+        path = folder / str(name)
+        if ".." in Path(name).parts or Path(name).is_absolute() or path.is_symlink() or not path.is_file():
+            return f"{name}: expected a plain file of the export; got none"
+        if hashlib.sha256(path.read_bytes()).hexdigest() != digest:
+            return f"{name}: not as exported (its hash differs)"
+    return ""
+
+
+def row(path: Path, kind: str, why: str) -> dict[str, Any]:
+    return {"path": str(path), "kind": kind, "status": "REJECTED" if why else "ACCEPTED", "why": why}
