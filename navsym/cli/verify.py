@@ -45,11 +45,12 @@ def command(
     document = verify(chosen, jobs=jobs, seconds=seconds, known=kept.known, progress=step)
     bar.done()
     kept.close()
-    if write:
+    if write or not ledger_file().exists():
         write_ledger(document)
+    changed = differences(document)
     wrong = unexpected(document["claims"])
     missing = [number for paper in document["papers"] for number in paper["missing"]]
-    emit(document, as_json=json_, text=lambda: as_text(document, wrong, time.monotonic() - started))
+    emit(document, as_json=json_, text=lambda: as_text(document, wrong, changed, time.monotonic() - started))
     return 1 if wrong or missing else 0
 
 
@@ -139,21 +140,32 @@ def ledger_folder() -> Path:
     return Path(next(iter(importlib.import_module("derivations").__path__)))
 
 
+def ledger_file() -> Path:
+    return ledger_folder() / "verdicts.json"
+
+
+def differences(document: dict[str, Any]) -> list[str]:
+    """Claims whose verdict is not the one in the ledger, or that it does not have."""
+    from navsym.report.ledger import read_ledger
+
+    stored = read_ledger(ledger_file())
+    return [r["id"] for r in document["claims"] if stored.get(r["id"], {}).get("status") != r["status"]]
+
+
 def write_ledger(document: dict[str, Any]) -> None:
     """Update ``verdicts.json`` and ``README.md`` of the derivations."""
     import json
 
     from navsym.report.ledger import ledger_text, merged, people_text
 
-    folder = ledger_folder()
-    path = folder / "verdicts.json"
+    path = ledger_file()
     old = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {"claims": [], "papers": []}
     whole = merged(document, {record["id"]: record for record in old["claims"]}, old["papers"])
     write_text(path, ledger_text(whole))
-    write_text(folder / "README.md", people_text(whole))
+    write_text(ledger_folder() / "README.md", people_text(whole))
 
 
-def as_text(document: dict[str, Any], wrong: list[dict[str, Any]], seconds: float) -> str:
+def as_text(document: dict[str, Any], wrong: list[dict[str, Any]], changed: list[str], seconds: float) -> str:
     """A table that a reviewer can read, the refuted lines with their reasons, and the counts."""
     rows = [
         (record["number"], record["status"], record["title"], remark_of(record))
@@ -167,6 +179,10 @@ def as_text(document: dict[str, Any], wrong: list[dict[str, Any]], seconds: floa
         )
     counted = ", ".join(f"{count} {status}" for status, count in document["counts"].items() if count)
     blocks.append(f"{len(document['claims'])} claims in {seconds:.1f} s: {counted}")
+    if changed:
+        blocks.append(f"the ledger differs in {len(changed)} claims, {changed[0]} first; --write updates it")
+    else:
+        blocks.append(f"the ledger {ledger_file().name} agrees")
     for record in wrong:
         blocks.append(f"not as declared: {record['id']} is {record['status']}, declared {record['expect']}")
     return "\n".join(blocks)
