@@ -345,3 +345,26 @@ def omega_symbol():
     """With omega_i = omega_xi/(mu omega_0) every symbol of (2.6)-(2.9) is defined once."""
     names = ("pi", "sigma^c", "omega", "u", "nu")
     return Property(True, Finding(len(set(names)) == len(names), "names of the corrected list"))
+
+
+@claim(
+    "2.scale.noise",
+    expect=REFUTED,
+    slip="paper",
+    reason="(2.6) and (2.8) use w_10^c, w_20^c and r^c without the index x, but the list of dimensionless quantities leaves "
+    "them out; with w_x10^c itself (2.6) would add a rate in 1/s to numbers",
+)
+def noise_symbols_printed():
+    """The list of dimensionless quantities defines every symbol of (2.6) that differs from (2.1)-(2.5)."""
+    listed = {"pi", "sigma^c", "omega", "u", "nu", "mu", "tau"}
+    used = {"pi", "omega", "u", "nu", "mu", "w^c", "tau"}
+    return Property(True, Finding(used <= listed, "symbols of the list and of (2.6)"))
+
+
+@claim("2.scale.noise*", corrects="2.scale.noise")
+def noise_symbols():
+    """With w_i^c = w_xi^c/omega_0, scaled as sigma^c is, it enters sigma_i^c with the coefficient one."""
+    from navsym.models.inertial import W_C0, dimensionless
+
+    velocity = dimensionless().velocity
+    return Equation([sp.Integer(1)] * 2, [sp.diff(s, w) for s, w in zip(velocity, W_C0, strict=True)])
