@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -18,6 +18,8 @@ import numpy as np
 from navsym.errors import DomainError
 from navsym.methods.trajectory_tracks import (
     GAP,
+    PLAUSIBLE,
+    Mask,
     Noise,
     Rows,
     Track,
@@ -35,6 +37,8 @@ from navsym.numeric.trajectory_tracks import DOUBTED, backward, forward
 Method = Literal["differences", "window", "filter", "smoother", "guaranteed"]
 METHODS = ("differences", "window", "filter", "smoother", "guaranteed")
 CHANNELS = ("east", "north", "up")
+#: How often the track is smoothed again without the worst positions.
+DEPARTURE_ROUNDS = 12
 
 #: Weights and deviation of a derivative at zero: times, standard deviations, order, which derivative.
 Weights = Callable[[Array, Array, int, int], tuple[Array, float]]
@@ -71,7 +75,46 @@ def estimate(track: Track, settings: Settings) -> tuple[TrackEstimate, Noise]:
     if settings.gate > 0:
         use[isolated_outliers(track)] = 0
     noise = noise_of(track, settings.order, use, gate=settings.gate, fixed_scale=settings.fixed_scale)
+    # The filter stands for what can be known at the time; the others may look at the whole track.
+    if settings.gate > 0 and settings.method != "filter":
+        for _ in range(DEPARTURE_ROUNDS):
+            found = departures(track, noise, settings, use)
+            if not found.any():
+                break
+            use[found] = 0
+        use[agreeing(track, noise, settings, use)] = 1
     return by_method(track, noise, settings, use), noise
+
+
+def departures(track: Track, noise: Noise, settings: Settings, use: Rows) -> Mask:
+    """(N,) True where a position contradicts all others, further than its neighbours do.
+
+    Baarda's test on the linear smoother: the residual e has the variance r - P, and without its own vote the
+    position would be off by e r / (r - P). Both count: the test has to exceed the gate, and the offset what
+    a plausible acceleration does in a step, so that a manoeuvre passes. The worst of a neighbourhood goes
+    first, because it draws the track away from the others.
+    """
+    run = filtered(track, noise, replace(settings, gate=0.0), use)
+    smoothed(track, noise, run)
+    r, P = (track.variance * noise.scale).T, run.covariances[:, :, 0, 0]
+    share = np.maximum(1.0 - P / r, 1e-6)
+    residual = np.abs(track.position.T - run.states[:, :, 0])
+    test = residual / np.sqrt(r * share) / settings.gate
+    offset = residual / share / (PLAUSIBLE / 2 * np.median(np.diff(track.t)) ** 2)
+    score = np.where(use, np.minimum(test, offset), 0.0).max(axis=0)
+    highest = np.lib.stride_tricks.sliding_window_view(np.pad(score, 4), 9).max(axis=1)
+    away: Mask = (score > 1.0) & (score == highest)
+    return away
+
+
+def agreeing(track: Track, noise: Noise, settings: Settings, use: Rows) -> Mask:
+    """(N,) True for rows left out that agree with the track of the others: an outlier had blamed them."""
+    run = filtered(track, noise, replace(settings, gate=0.0), use)
+    smoothed(track, noise, run)
+    deviation = np.sqrt((track.variance * noise.scale).T + run.covariances[:, :, 0, 0])
+    test = np.abs(track.position.T - run.states[:, :, 0]) / deviation
+    fits: Mask = (use == 0) & (test < settings.gate).all(axis=0)
+    return fits
 
 
 def by_method(track: Track, noise: Noise, settings: Settings, use: Rows) -> TrackEstimate:

@@ -191,6 +191,25 @@ def test_isolated_outliers_are_left_out_and_harm_nothing():
     assert np.abs(found.velocity - clean.velocity).max() < 4 * clean.velocity_sd.max()
 
 
+@pytest.mark.parametrize("method", ["window", "guaranteed", "smoother"])
+def test_neighbouring_outliers_and_outliers_beside_gaps_harm_little(method):
+    t, _, measured = simulated(1, sigma=1.0)
+    wild = measured.copy()
+    wild[[50, 51, 198, 201]] += [[400.0, 0, 0], [-300.0, 100.0, 0], [0, 80.0, 0], [0, 0, -90.0]]
+    clean, _ = estimate(flat_track(t, measured), Settings(method))
+    found, _ = estimate(flat_track(t, wild), Settings(method))
+    assert [k for k, flag in enumerate(found.flags) if flag == "outlier"] == [50, 51, 198, 201]
+    assert np.abs(found.velocity - clean.velocity).max() < 4 * clean.velocity_sd.max()
+
+
+def test_a_manoeuvre_is_not_an_outlier():
+    t = np.arange(200.0)
+    turn = np.where(t < 100, 20.0 * t, 2000 + 12.0 * (t - 100))  # brakes from 20 to 12 m/s in a second
+    position = np.column_stack([turn, 0 * t, 0 * t]) + np.random.default_rng(3).normal(size=(200, 3)) * 0.3
+    found, _ = estimate(flat_track(t, position), Settings())
+    assert "outlier" not in found.flags
+
+
 def test_the_smoother_beats_the_filter_and_both_beat_differences():
     t, truth, measured = simulated(7, sigma=3.0, q=0.005)
     rms = {}
