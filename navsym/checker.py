@@ -26,7 +26,7 @@ Bounds of f = x.H: a cell around c of half width r passes when |f(c)| + sum |f_k
 over the whole cell; around an exact contact (there "<" elsewhere) when f is concave, or monotone up to the end of the
 panel. Other cells are halved, 4 cells + 200 at most.
 """
-# ruff: noqa: E302, E305, E501
+# ruff: noqa: E501
 
 from __future__ import annotations
 
@@ -39,6 +39,7 @@ from math import comb
 from typing import Any
 
 from flint import arb, arb_mat, arb_series, ctx, fmpq, fmpq_mat, fmpz, fmpz_mod_ctx, fmpz_mod_poly_ctx
+
 
 class Refused(Exception):
     """The certificate does not prove what it says."""
@@ -246,7 +247,7 @@ class Dice:
     def root(self, a: int, q: int) -> int:
         """One of the q-th roots of a; the branch says which."""
         need(q <= 6, "expected a root of order six at most")
-        roots = fmpz_mod_poly_ctx(fmpz_mod_ctx(self.p))([-a] + [0] * (q - 1) + [1]).roots()
+        roots = fmpz_mod_poly_ctx(fmpz_mod_ctx(self.p))([fmpz(-a)] + [fmpz(0)] * (q - 1) + [fmpz(1)]).roots()  # type: ignore[arg-type]
         if len(roots) < q:
             raise Retry
         self.roots[q, a] = sorted(int(r) for r, _ in roots)[self.branch // self.radix % q]
@@ -298,7 +299,8 @@ def everywhere(test: Any) -> None:
 
 # -- the kinds ---------------------------------------------------------------------------------------------------------
 def named(symbols: Any, dice: Dice) -> dict[str, Any]:
-    return {s: dice.symbol(s) for s in array(symbols) if need(isinstance(s, str), "expected names") is None}
+    need(all(isinstance(s, str) for s in array(symbols)), "expected names")
+    return {s: dice.symbol(s) for s in symbols}
 
 def equal(x: Exact, y: Exact, why: str) -> None:
     need(x.a == y.a, why)
@@ -413,13 +415,15 @@ def feasible(panel: Panel, x: list[arb], basis: arb_mat, contacts: list[tuple[ar
         edge = max(edge, b)
     cells += [(edge, high, None)]
     while cells:
-        (a, b, contact), limit = cells.pop(), limit - 1
+        a, b, contact = cells.pop()
+        limit -= 1
         need(limit > 0, "|x.H| <= sigma is not shown")
         if a < b and not small(panel, x, basis, a, b, contact, bool(contacts)):
-            c = (a + b) / 2 if contact is None else middle(contact[0])
-            left = a if contact and contact[2] == "from" else (a + c) / 2
-            right = b if contact and contact[2] == "to" else (c + b) / 2
-            cells += [(a, left, None), (right, b, None), (left, right, contact)] if contact else [(a, c, None), (c, b, None)]
+            centre = (a + b) / 2 if contact is None else middle(contact[0])
+            left = a if contact and contact[2] == "from" else (a + centre) / 2
+            right = b if contact and contact[2] == "to" else (centre + b) / 2
+            cells += [(a, left, None), (right, b, None), (left, right, contact)] if contact else [
+                (a, centre, None), (centre, b, None)]
     return limit
 
 def small(panel: Panel, x: list[arb], basis: arb_mat, a: fmpq, b: fmpq, contact: Any, strict: bool) -> bool:

@@ -100,7 +100,9 @@ figure.tight_layout()
 # %%
 lengths = np.linspace(0.3, 6.2, 1000)
 for state, answer in ANSWER.items():
-    difference = values_for_lengths(FAMILY[state], lengths) / curve(answer, lambda r: r.closed.value, lengths) - 1
+    difference = (
+        values_for_lengths(FAMILY[state], lengths) / curve(answer, lambda r: r.closed.value, lengths) - 1
+    )
     print(state, f"largest relative difference {np.nanmax(np.abs(difference)):.1e}")
     assert np.nanmax(np.abs(difference)) < 1e-9
 
@@ -123,11 +125,13 @@ def draw(length=1.5, state="y3"):
     at = np.array([np.ones_like(places), np.sin(places), np.cos(places) - 1.0])
     plt.plot(length - np.array(places), x @ at, "o")
     plt.xlabel("time")
-    plt.title(f"{state}, T = {length:.2f}: error {float(regime.closed.value.subs(family.parameter, length)):.4f}")
+    plt.title(
+        f"{state}, T = {length:.2f}: error {float(regime.closed.value.subs(family.parameter, length)):.4f}"
+    )
     plt.show()
 
 
-interact(draw, length=FloatSlider(value=1.5, min=0.3, max=6.2, step=0.05), state=list(FAMILY));
+interact(draw, length=FloatSlider(value=1.5, min=0.3, max=6.2, step=0.05), state=list(FAMILY))
 
 # %% [markdown]
 # ## Where a grid and a linear programme are wrong
@@ -152,7 +156,10 @@ for length in ("1/100", "1/4", "5/2"):
 # %%
 solution = solve(FAMILY["y3"].problem(sp.pi / 2), 20)
 reached = np.std(realise(solution, 100_000, seed=1))
-print(f"guaranteed {solution.value:.4f}, reached in simulation {reached:.4f}, best of a search {search_correlations(solution, 2000):.4f}")
+print(
+    f"guaranteed {solution.value:.4f}, reached in simulation {reached:.4f}, "
+    f"best of a search {search_correlations(solution, 2000):.4f}"
+)
 assert abs(reached / solution.value - 1) < 0.02
 
 # %% [markdown]
@@ -175,7 +182,9 @@ else:
     day = 86400.0 * (reference[0, 0] // 86400.0)
     at = np.interp(clock, reference[:, 0] - day, reference[:, 1])
     noise = east - at
-    print(f"{noise.size} epochs, median |noise| {np.median(np.abs(noise)):.3f} m/s, largest {np.abs(noise).max():.1f} m/s")
+    print(
+        f"{noise.size} epochs, median |noise| {np.median(np.abs(noise)):.3f} m/s, largest {np.abs(noise).max():.1f} m/s"
+    )
 
 # %%
 if noise is not None:
@@ -192,7 +201,9 @@ if noise is not None:
         errors["guaranteed"].append(nearest @ noise[inside][picked])
         errors["least squares"].append((np.linalg.pinv(H.T) @ noise[inside])[1])
     for name, values in errors.items():
-        print(f"{name:14} median |error| {np.median(np.abs(values)):.3f}, worst {np.max(np.abs(values)):.3f} m/s")
+        print(
+            f"{name:14} median |error| {np.median(np.abs(values)):.3f}, worst {np.max(np.abs(values)):.3f} m/s"
+        )
     plt.figure(figsize=(8, 3))
     for name, values in errors.items():
         plt.plot(np.abs(values), label=name)

@@ -22,7 +22,9 @@ def command(
     """Accept or reject every certificate; the exit status is 1 when one is rejected."""
     rows = [row for path in paths for row in check_path(path)]
     if not rows:
-        raise EmptyError("expected certificates; got none; name JSON files or exported folders", where=str(paths[0]))
+        raise EmptyError(
+            "expected certificates; got none; name JSON files or exported folders", where=str(paths[0])
+        )
     emit({"checked": rows}, as_json=json_, text=lambda: as_text(rows))
     if any(row["status"] != "ACCEPTED" for row in rows):
         raise typer.Exit(1)

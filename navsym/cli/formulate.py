@@ -35,7 +35,11 @@ def command(
     if out is not None:
         write_text(out, text)
     if json_:
-        emit({"to": to, "kind": kind, "grid": grid, "out": None if out is None else str(out), "text": text}, as_json=True, text="")
+        emit(
+            {"to": to, "kind": kind, "grid": grid, "out": None if out is None else str(out), "text": text},
+            as_json=True,
+            text="",
+        )
     elif out is None:
         put(text)
 
@@ -45,6 +49,8 @@ def values_of(settings: list[str]) -> dict[str, str]:
     for setting in settings:
         name, equals, value = setting.partition("=")
         if not equals:
-            raise ExpressionSyntaxError(f"expected NAME=VALUE; got {setting[:40]!r}; write --set T=5/2", where="--set")
+            raise ExpressionSyntaxError(
+                f"expected NAME=VALUE; got {setting[:40]!r}; write --set T=5/2", where="--set"
+            )
         values[name.strip()] = value.strip()
     return values

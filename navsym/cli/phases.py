@@ -13,12 +13,20 @@ from navsym.errors import DomainError, ExpressionSyntaxError, NavsymError
 
 def command(
     file: Annotated[Path, typer.Argument(help="model or basis file whose interval ends at the parameter")],
-    target: Annotated[str | None, typer.Option(help="name of the functional; the only one by default")] = None,
+    target: Annotated[
+        str | None, typer.Option(help="name of the functional; the only one by default")
+    ] = None,
     parameter: Annotated[str, typer.Option(help="the length of the interval")] = "T",
-    range_: Annotated[str | None, typer.Option("--range", help='"0, 2*pi"; the declared range by default')] = None,
+    range_: Annotated[
+        str | None, typer.Option("--range", help='"0, 2*pi"; the declared range by default')
+    ] = None,
     set_: Annotated[list[str] | None, typer.Option("--set", help="value of another parameter")] = None,
-    quick: Annotated[bool, typer.Option("--quick", help="leave regimes without a closed form uncertified")] = False,
-    out: Annotated[Path | None, typer.Option(help="write the range certificates, numbered, beside this name")] = None,
+    quick: Annotated[
+        bool, typer.Option("--quick", help="leave regimes without a closed form uncertified")
+    ] = False,
+    out: Annotated[
+        Path | None, typer.Option(help="write the range certificates, numbered, beside this name")
+    ] = None,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> None:
     """Which instants, which weights, which value, on exactly which range of lengths."""
@@ -44,7 +52,9 @@ def values_of(settings: list[str]) -> dict[str, str]:
     for setting in settings:
         name, equals, value = setting.partition("=")
         if not equals:
-            raise ExpressionSyntaxError(f"expected NAME=VALUE; got {setting[:40]!r}; write --set w=1/2", where="--set")
+            raise ExpressionSyntaxError(
+                f"expected NAME=VALUE; got {setting[:40]!r}; write --set w=1/2", where="--set"
+            )
         values[name.strip()] = value.strip()
     return values
 
@@ -56,7 +66,9 @@ def ends_of(found: Any, parameter: str, text: str | None) -> tuple[Any, Any]:
     if text is not None:
         parts = text.split(",")
         if len(parts) != 2:
-            raise ExpressionSyntaxError(f'expected two numbers; got {text[:40]!r}; write --range "0, 2*pi"', where="--range")
+            raise ExpressionSyntaxError(
+                f'expected two numbers; got {text[:40]!r}; write --range "0, 2*pi"', where="--range"
+            )
         return parse(parts[0], {}, where="--range"), parse(parts[1], {}, where="--range")
     for symbol, ends in found.box.items():
         if symbol.name == parameter and None not in ends:
@@ -66,7 +78,13 @@ def ends_of(found: Any, parameter: str, text: str | None) -> tuple[Any, Any]:
 
 def as_text(document: dict[str, Any]) -> str:
     rows = [
-        (row["from"], row["to"], row["value"] or "implicit", "; ".join(str(s["at"] or "inside") for s in row["support"]), row["status"])
+        (
+            row["from"],
+            row["to"],
+            row["value"] or "implicit",
+            "; ".join(str(s["at"] or "inside") for s in row["support"]),
+            row["status"],
+        )
         for row in document["regimes"]
     ]
     lines = [table(("from", "to", "value", "instants", "status"), rows, title=document["target"])]

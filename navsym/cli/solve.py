@@ -13,10 +13,14 @@ from navsym.errors import ExpressionSyntaxError, NavsymError
 
 def command(
     file: Annotated[Path, typer.Argument(help="model or basis file (TOML)")],
-    target: Annotated[str | None, typer.Option(help="name of the functional; the only one by default")] = None,
+    target: Annotated[
+        str | None, typer.Option(help="name of the functional; the only one by default")
+    ] = None,
     set_: Annotated[list[str] | None, typer.Option("--set", help="value of a parameter: T=2.5")] = None,
     digits: Annotated[int, typer.Option(help="certified digits of the value")] = 30,
-    compare: Annotated[bool, typer.Option("--compare", help="least squares, Kalman and solvers beside it")] = False,
+    compare: Annotated[
+        bool, typer.Option("--compare", help="least squares, Kalman and solvers beside it")
+    ] = False,
     out: Annotated[Path | None, typer.Option(help="write the certificate to this file")] = None,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> None:
@@ -68,6 +72,9 @@ def as_text(document: dict[str, Any]) -> str:
 
 
 def comparison(data: dict[str, Any]) -> str:
-    rows = [("least squares", "", data["least_squares"]), ("Kalman, white noise", "", data["kalman_white_noise"])]
+    rows = [
+        ("least squares", "", data["least_squares"]),
+        ("Kalman, white noise", "", data["kalman_white_noise"]),
+    ]
     rows += [(row["solver"], row["status"], row["value"]) for row in data["solvers"]]
     return table(("estimator", "status", "guaranteed deviation"), rows, right=("guaranteed deviation",))

@@ -90,7 +90,7 @@ def solve(problem: GuaranteedProblem, digits: int = 30) -> GuaranteedSolution:
         raise NavsymError(message, kind="domain")
     exact, kept, basis = independent(problem)
     found = certify(exact, digits, basis)
-    status = CERTIFIED if found.width <= 10.0**-min(digits, 300) else OPEN
+    status = CERTIFIED if found.width <= 10.0 ** -min(digits, 300) else OPEN
     dual = ["0"] * len(problem.functional)
     for k, x in zip(kept, found.dual, strict=True):
         dual[k] = decimal(x, digits)
@@ -109,7 +109,12 @@ def support_rows(
             panel = exact.panels[k]
             name = problem.measurements[panel.measurement]
             start, end = panel.time(arb(0)), panel.time(arb(1))
-            rows.append((float(panel.time(v).mid()), Support(name, decimal(start + (end - start) * v, digits), decimal(w, digits))))
+            rows.append(
+                (
+                    float(panel.time(v).mid()),
+                    Support(name, decimal(start + (end - start) * v, digits), decimal(w, digits)),
+                )
+            )
     return tuple(row for _, row in sorted(rows, key=lambda pair: (pair[1].measurement, pair[0])))
 
 

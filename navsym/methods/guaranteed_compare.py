@@ -91,7 +91,9 @@ def grid_problem(problem: GuaranteedProblem, count: int = GRID) -> GridProblem:
     v = np.linspace(0.0, 1.0, count)
     parts = [panel_numbers(panel, v) for panel in problem.exact().panels]
     bounds = np.concatenate([np.full(count, sigma) for _, _, sigma in parts])
-    return GridProblem(np.hstack([H for H, _, _ in parts]), np.array([float(p) for p in problem.functional]), bounds)
+    return GridProblem(
+        np.hstack([H for H, _, _ in parts]), np.array([float(p) for p in problem.functional]), bounds
+    )
 
 
 def solver_row(grid: GridProblem, name: str, optimum: float) -> dict[str, Any]:
@@ -108,7 +110,9 @@ def solver_row(grid: GridProblem, name: str, optimum: float) -> dict[str, Any]:
 
 def worst_covariance(solution: GuaranteedSolution) -> Array:
     """Covariance of the noise at the support instants that reaches the guaranteed deviation."""
-    signed = np.array([np.sign(float(row.weight)) * bound_of(solution, row.measurement) for row in solution.support])
+    signed = np.array(
+        [np.sign(float(row.weight)) * bound_of(solution, row.measurement) for row in solution.support]
+    )
     return np.outer(signed, signed)
 
 
@@ -121,7 +125,9 @@ def realise(solution: GuaranteedSolution, runs: int, seed: int = 0) -> Array:
     """Errors of the estimate in ``runs`` realisations of the worst noise."""
     random = np.random.default_rng(seed)
     weights = np.array([float(w) for w in solution.weights])
-    signed = np.array([np.sign(float(r.weight)) * bound_of(solution, r.measurement) for r in solution.support])
+    signed = np.array(
+        [np.sign(float(r.weight)) * bound_of(solution, r.measurement) for r in solution.support]
+    )
     noise = random.standard_normal(runs)[:, None] * signed
     errors: Array = noise @ weights
     return errors

@@ -65,7 +65,8 @@ def formulate(
     """
     if to not in FORMATS or kind not in KINDS:
         raise DomainError(
-            f"expected one of {', '.join(FORMATS)} and one of {', '.join(KINDS)}; got {to!r} and {kind!r}; name one of each"
+            f"expected one of {', '.join(FORMATS)} and one of {', '.join(KINDS)}; got {to!r} and {kind!r}; "
+            "name one of each"
         )
     if not np.isfinite(mixture) or mixture <= 0:
         raise DomainError(f"mixture: expected a positive number; got {mixture}; choose one")
@@ -110,17 +111,18 @@ linear = np.array({linear})
 quadratic = np.array({quadratic})
 '''
 
-CVXPY = '''import cvxpy as cp
+CVXPY = """import cvxpy as cp
 
 a, b = cp.Variable(len(times), nonneg=True), cp.Variable(len(times), nonneg=True)
 cost = linear @ (a + b) + cp.sum(cp.multiply(quadratic / 2, cp.square(a - b)))
 problem = cp.Problem(cp.Minimize(cost), [H @ (a - b) == P])
 
 if __name__ == "__main__":
-    print(problem.solve(solver=cp.HIGHS if not quadratic.any() else cp.CLARABEL), [(t, w) for t, w in zip(times, a.value - b.value) if abs(w) > 1e-6])
-'''
+    value = problem.solve(solver=cp.CLARABEL if quadratic.any() else cp.HIGHS)
+    print(value, [(t, w) for t, w in zip(times, a.value - b.value) if abs(w) > 1e-6])
+"""
 
-CASADI = '''import casadi as ca
+CASADI = """import casadi as ca
 
 n = len(times)
 Q = ca.diag(ca.DM(quadratic))
@@ -132,7 +134,7 @@ if __name__ == "__main__":
     answer = solver(h=h, g=np.r_[linear, linear], a=A, lba=P, uba=P, lbx=0)
     x = np.array(answer["x"]).ravel()
     print(float(answer["cost"]), [(t, w) for t, w in zip(times, x[:n] - x[n:]) if abs(w) > 1e-6])
-'''
+"""
 
 
 def script(grid: Grid, linear: Array, quadratic: Array, to: str) -> str:

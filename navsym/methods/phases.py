@@ -202,7 +202,12 @@ def regime_row(family: Family, regime: Regime) -> dict[str, Any]:
         row["dual"] = [to_text(x) for x in closed.dual]
         row["method"] = closed.verdict.method
     else:
-        row |= {"value": None, "support": pattern_rows(family, regime.span), "dual": None, "table": list(regime.table)}
+        row |= {
+            "value": None,
+            "support": pattern_rows(family, regime.span),
+            "dual": None,
+            "table": list(regime.table),
+        }
     row["status"] = str(regime.status)
     if regime.slivers:
         row["slivers"] = [dict(zip(("from", "to", "lower", "upper"), s, strict=True)) for s in regime.slivers]
@@ -213,7 +218,8 @@ def pattern_rows(family: Family, span: Span) -> list[dict[str, Any]]:
     """The instants of an implicit regime: which ends, how many inside, with which signs."""
     names = {"from": "T", "to": "0"} if family.backward else {"from": "0", "to": "T"}
     rows = [
-        {"measurement": family.measurements[k], "at": names.get(kind), "sign": s} for k, kind, s in span.pattern
+        {"measurement": family.measurements[k], "at": names.get(kind), "sign": s}
+        for k, kind, s in span.pattern
     ]
     return rows[::-1] if family.backward else rows
 

@@ -17,7 +17,7 @@ import sympy as sp
 from flint import arb
 
 from navsym.claims import OPEN, PROVED, Optimum, Verdict
-from navsym.methods.phases_family import U, Family
+from navsym.methods.phases_family import Family, U
 from navsym.methods.phases_polynomial import is_monomial, monomial_weights, power_law_dual
 from navsym.methods.phases_scan import Pattern, Span, pattern_of, sample
 from navsym.proof.balls import enclose
@@ -54,7 +54,9 @@ class Sample:
     polished: Polished
 
 
-def samples_of(family: Family, span: Span, shares: Sequence[str] = ("0.23", "0.41", "0.59", "0.83")) -> list[Sample]:
+def samples_of(
+    family: Family, span: Span, shares: Sequence[str] = ("0.23", "0.41", "0.59", "0.83")
+) -> list[Sample]:
     """Members of a span whose pattern is that of the span."""
     found = []
     for share in shares:
@@ -66,6 +68,7 @@ def samples_of(family: Family, span: Span, shares: Sequence[str] = ("0.23", "0.4
 
 
 def refined(family: Family, T: Fraction, pattern: Pattern | None) -> Sample | None:
+    """The member of length T with about 90 digits, or None when its pattern is another one."""
     basis, contacts = sample(family, T)
     if pattern is not None and pattern_of(contacts) != pattern:
         return None
@@ -76,6 +79,7 @@ def refined(family: Family, T: Fraction, pattern: Pattern | None) -> Sample | No
 
 
 def number(x: arb) -> sp.Rational:
+    """Midpoint of a ball as an exact rational."""
     value = rational(x)
     return sp.Rational(int(value.p), int(value.q))
 
@@ -142,7 +146,9 @@ def candidates(family: Family, span: Span) -> list[Closed]:
     return guesses
 
 
-def monomial_guess(family: Family, span: Span, places: tuple[sp.Expr, ...], found: Sequence[Sample]) -> Closed | None:
+def monomial_guess(
+    family: Family, span: Span, places: tuple[sp.Expr, ...], found: Sequence[Sample]
+) -> Closed | None:
     duals_ = [[number(x) for x in s.polished.dual] for s in found]
     dual = power_law_dual(family, duals_, [s.T for s in found])
     weights = monomial_weights(family, places)
@@ -152,7 +158,9 @@ def monomial_guess(family: Family, span: Span, places: tuple[sp.Expr, ...], foun
     return Closed(tuple(k for k, _, _ in span.pattern), places, weights, dual, value, Verdict(OPEN, "none"))
 
 
-def prove(family: Family, guesses: Sequence[Closed], lower: sp.Expr, upper: sp.Expr, seconds: float = 60.0) -> Closed | None:
+def prove(
+    family: Family, guesses: Sequence[Closed], lower: sp.Expr, upper: sp.Expr, seconds: float = 60.0
+) -> Closed | None:
     """The first guess that the ladder proves or certifies on the whole of (lower, upper); else the first."""
     best: Closed | None = None
     for guess in guesses:
@@ -243,9 +251,13 @@ def tidy(expression: sp.Expr) -> sp.Expr:
     return min(choices, key=sp.count_ops)
 
 
-def weights_of(family: Family, span: Span, places: Sequence[sp.Expr], one: Sample) -> tuple[sp.Expr, ...] | None:
+def weights_of(
+    family: Family, span: Span, places: Sequence[sp.Expr], one: Sample
+) -> tuple[sp.Expr, ...] | None:
     """Exact weights from ``sum w_i H(u_i) = P`` on independent rows."""
-    N = sp.Matrix([[h.subs(U, u) for h in family.rows[k]] for (k, _, _), u in zip(span.pattern, places, strict=True)]).T
+    N = sp.Matrix(
+        [[h.subs(U, u) for h in family.rows[k]] for (k, _, _), u in zip(span.pattern, places, strict=True)]
+    ).T
     numeric = np.array(N.subs(family.parameter, one.T).evalf(30).tolist(), dtype=float)
     rows = independent_rows(numeric)
     if len(rows) < N.cols:
@@ -280,7 +292,11 @@ def is_polynomial(statement: Optimum) -> bool:
     T = statement.interval[1]
     f = sum((x * h for x, h in zip(statement.dual, statement.regressors, strict=True)), sp.S.Zero)
     scaled = sp.expand(f.subs(statement.variable, T * SHARE))
-    return scaled.is_polynomial(SHARE) and scaled.free_symbols <= {SHARE} and all(c.is_Rational for c in sp.Poly(scaled, SHARE).coeffs())
+    return (
+        scaled.is_polynomial(SHARE)
+        and scaled.free_symbols <= {SHARE}
+        and all(c.is_Rational for c in sp.Poly(scaled, SHARE).coeffs())
+    )
 
 
 def decide_polynomial(statement: Optimum) -> Verdict:
@@ -291,7 +307,9 @@ def decide_polynomial(statement: Optimum) -> Verdict:
     sides = [sp.Poly(1 - scaled, SHARE), sp.Poly(1 + scaled, SHARE)]
     if not all(nonnegative_on_unit(side) for side in sides):
         return Verdict(OPEN, "Sturm", evidence="the dual polynomial leaves its bound")
-    unit = {T: sp.S.One}  # weights and places scale with powers of T: prove them at T = 1 and as identities in T
+    unit = {
+        T: sp.S.One
+    }  # weights and places scale with powers of T: prove them at T = 1 and as identities in T
     return combine([
         Verdict(PROVED, "Sturm's theorem on square-free factors"),
         constraints(statement), instants_of(statement, unit), equal_values(statement),

@@ -44,7 +44,9 @@ class Boundary:
     proved: bool
 
 
-def boundary(family: Family, left: Span, right: Span, before: Closed | None, after: Closed | None) -> Boundary:
+def boundary(
+    family: Family, left: Span, right: Span, before: Closed | None, after: Closed | None
+) -> Boundary:
     """The change from one span to the next, as exactly as it can be had."""
     guess = float(left.upper)
     for expression, why in events(family, left, before, right, after):
@@ -66,11 +68,20 @@ def events(
             continue
         for i, w in enumerate(closed.weights):
             if w.free_symbols:
-                yield sp.fraction(sp.together(w))[0], f"the weight at {family.time(closed.places[i])} vanishes"
+                yield (
+                    sp.fraction(sp.together(w))[0],
+                    f"the weight at {family.time(closed.places[i])} vanishes",
+                )
         for i, (_, kind, _) in enumerate(span.pattern):
             if kind == "no":
-                yield T - closed.places[i], f"the instant {family.time(closed.places[i])} reaches an end of the interval"
-                yield closed.places[i], f"the instant {family.time(closed.places[i])} reaches an end of the interval"
+                yield (
+                    T - closed.places[i],
+                    f"the instant {family.time(closed.places[i])} reaches an end of the interval",
+                )
+                yield (
+                    closed.places[i],
+                    f"the instant {family.time(closed.places[i])} reaches an end of the interval",
+                )
 
 
 def exact_root(expression: sp.Expr, T: sp.Symbol, guess: float) -> sp.Expr | None:
@@ -119,7 +130,10 @@ def anchor(family: Family, span: Span, edge: Fraction, side: int) -> tuple[Conta
 
 def rooms(found: Polished) -> list[tuple[str, arb]]:
     """Quantities that are positive inside a regime: sizes of the weights, distances to the ends."""
-    sizes = [(f"the weight of contact {i + 1} vanishes", s * w) for i, (s, w) in enumerate(zip(found.sign, found.weights, strict=True))]
+    sizes = [
+        (f"the weight of contact {i + 1} vanishes", s * w)
+        for i, (s, w) in enumerate(zip(found.sign, found.weights, strict=True))
+    ]
     gaps = [
         (f"contact {i + 1} reaches an end of the interval", gap)
         for i, v in enumerate(found.v) if found.inner[i] for gap in (v, 1 - v)
@@ -179,7 +193,10 @@ def enclosed(family: Family, left: Span, right: Span, root: sp.Rational, why: st
     """Exact contacts of the left pattern just below and of the right pattern just above the root."""
     for places in (32, 24, 16, 10, 6):
         delta = sp.Rational(1, 10**places) * root
-        below, above = (sp.Rational(round(v * 10 ** (places + 4)), 10 ** (places + 4)) for v in (root - delta, root + delta))
+        below, above = (
+            sp.Rational(round(v * 10 ** (places + 4)), 10 ** (places + 4))
+            for v in (root - delta, root + delta)
+        )
         if proves(family, left, below, -1) and proves(family, right, above, 1):
             return Boundary(None, exact_decimal(below), exact_decimal(above), why, True)
     text = decimal(fmpq(int(root.p), int(root.q)), 20)

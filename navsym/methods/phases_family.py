@@ -67,11 +67,17 @@ def family_of(found: ModelFile | BasisFile, target: str | None, parameter: str) 
     else:
         family = backward(found, name, functional, parameter)
     others = sorted(
-        {s.name for part in (*family.functional, *family.sigma, *(h for r in family.rows for h in r)) for s in part.free_symbols}
+        {
+            s.name
+            for part in (*family.functional, *family.sigma, *(h for r in family.rows for h in r))
+            for s in part.free_symbols
+        }
         - {U.name}
     )
     if others:
-        raise DomainError(f"expected one parameter, {parameter}; got also {', '.join(others)}; give --set {others[0]}=…")
+        raise DomainError(
+            f"expected one parameter, {parameter}; got also {', '.join(others)}; give --set {others[0]}=…"
+        )
     return family
 
 
@@ -108,5 +114,7 @@ def settled(h: sp.Expr, symbol: sp.Symbol) -> sp.Expr:
 
 def need_length(end: sp.Expr, parameter: str) -> sp.Symbol:
     if not isinstance(end, sp.Symbol) or end.name != parameter:
-        raise DomainError(f"expected an interval that ends at the parameter {parameter}; got the end {end}; write T = \"{parameter}\"")
+        raise DomainError(
+            f'expected an interval that ends at the parameter {parameter}; got the end {end}; write T = "{parameter}"'
+        )
     return end

@@ -14,7 +14,7 @@ from collections.abc import Sequence
 
 import sympy as sp
 
-from navsym.methods.phases_family import U, Family
+from navsym.methods.phases_family import Family, U
 
 NEAR = sp.Rational(1, 10**35)
 
@@ -65,7 +65,9 @@ def recognised_product(shares: Sequence[sp.Expr]) -> list[sp.Rational] | None:
     return None if any(a is None for a in found) else [a for a in found if a is not None]
 
 
-def power_law_dual(family: Family, duals: Sequence[Sequence[sp.Rational]], lengths: Sequence[sp.Rational]) -> tuple[sp.Expr, ...] | None:
+def power_law_dual(
+    family: Family, duals: Sequence[Sequence[sp.Rational]], lengths: Sequence[sp.Rational]
+) -> tuple[sp.Expr, ...] | None:
     """Dual ``x_k = d_k / T**k`` with rational d_k, agreed on by all samples."""
     T, found = family.parameter, []
     for k in range(len(family.functional)):

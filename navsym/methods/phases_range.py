@@ -17,6 +17,7 @@ from navsym.proof.optimality_range import Member, Ranged, Track, follow
 
 
 def fraction_of(x: fmpq) -> Fraction:
+    """The same rational number for Python."""
     return Fraction(int(x.p), int(x.q))
 
 
@@ -53,4 +54,3 @@ def conditioner(family: Family, T: fmpq) -> fmpq_mat:
     basis = make_basis(family.exact(sp.Rational(int(T.p), int(T.q))))
     m = basis.transform.nrows()
     return fmpq_mat(m, m, [exact(decimal(basis.transform[i, j], 12)) for i in range(m) for j in range(m)])
-

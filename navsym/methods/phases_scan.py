@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import pairwise
 
 import numpy as np
 import sympy as sp
@@ -39,6 +40,7 @@ def sample(family: Family, T: Fraction) -> tuple[Basis, Contacts]:
 
 
 def ordered(found: Contacts) -> Contacts:
+    """The same contacts by panel and place."""
     order = np.lexsort((found.u, found.panel))
     return Contacts(
         found.panel[order], found.u[order], found.inner[order], found.sign[order], found.weights[order],
@@ -47,6 +49,7 @@ def ordered(found: Contacts) -> Contacts:
 
 
 def pattern_of(found: Contacts) -> Pattern:
+    """Panel, kind of place and sign of every contact."""
     kinds = ["no" if i else ("to" if u > 0 else "from") for i, u in zip(found.inner, found.u, strict=True)]
     return tuple((int(k), kind, int(s)) for k, kind, s in zip(found.panel, kinds, found.sign, strict=True))
 
@@ -63,14 +66,16 @@ def scan(family: Family, lower: Fraction, upper: Fraction, count: int = COUNT) -
     width = upper - lower
     places = [lower + width * Fraction(2 * k + 1, 2 * count) for k in range(count)]
     cuts: list[tuple[Fraction, Fraction]] = []
-    for a, b in zip(places, places[1:], strict=False):
+    for a, b in pairwise(places):
         changes(at, a, b, cuts)
     edges = [lower, *((a + b) / 2 for a, b in cuts), upper]
-    spans = [Span(a, b, at((a + b) / 2)) for a, b in zip(edges, edges[1:], strict=False)]
+    spans = [Span(a, b, at((a + b) / 2)) for a, b in pairwise(edges)]
     return joined([s for s in spans if s.upper - s.lower > Fraction(1, 20000) * width])
 
 
-def changes(at: Callable[[Fraction], Pattern], a: Fraction, b: Fraction, cuts: list[tuple[Fraction, Fraction]]) -> None:
+def changes(
+    at: Callable[[Fraction], Pattern], a: Fraction, b: Fraction, cuts: list[tuple[Fraction, Fraction]]
+) -> None:
     """Brackets of all changes between a and b that bisection sees."""
     if at(a) == at(b):
         return

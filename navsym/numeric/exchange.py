@@ -105,8 +105,8 @@ def settled(panels: Panels, panel: Ints, u: Array, sign: Array, weights: Array) 
     inner = ((u > -1.0) & (u < 1.0)).astype(np.int64)
     B = rows_at(panels.coefficients, panel, u)
     try:
-        x = np.linalg.solve(B, sign)
-        weights = np.linalg.solve(B.T, panels.functional)
+        x = np.asarray(np.linalg.solve(B, sign), dtype=np.float64)
+        weights = np.asarray(np.linalg.solve(B.T, panels.functional), dtype=np.float64)
     except np.linalg.LinAlgError:
         return None
     if (weights * sign <= NEGLIGIBLE * np.abs(weights).sum()).any():
@@ -272,9 +272,7 @@ def peaks(panels: Panels, x: Array) -> list[tuple[int, float]]:
     return [(k, v) for k, v, height in local_maxima(panels, x) if height > 1.0 + 1e-12]
 
 
-def survey(
-    panels: Panels, x: Array, panel: Ints, u: Array
-) -> tuple[float, tuple[tuple[int, float], ...]]:
+def survey(panels: Panels, x: Array, panel: Ints, u: Array) -> tuple[float, tuple[tuple[int, float], ...]]:
     """Largest ``|f| - 1``, and the near-touching maxima that are not among the given contacts."""
     heights = local_maxima(panels, x)
     excess = max((h for _, _, h in heights), default=1.0) - 1.0

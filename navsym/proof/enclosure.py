@@ -168,6 +168,7 @@ def combination(x: Sequence[arb], series: Sequence[Sequence[arb]]) -> list[arb]:
 
 
 def total(x: Sequence[arb], y: Sequence[arb]) -> arb:
+    """Sum of the products ``x_i y_i``."""
     value = arb(0)
     for a, b in zip(x, y, strict=True):
         value += a * b

@@ -200,7 +200,8 @@ def contact_rows(found: Polished, centre: Sequence[fmpq], digits: int) -> list[d
     for i, k in enumerate(found.panel):
         at = next(free) if found.inner[i] else rational(found.v[i])
         rows.append({
-            "panel": k, "at": [decimal(at, digits)] if found.inner[i] else [], "end": end_name(found, i), "sign": found.sign[i],
+            "panel": k, "at": [decimal(at, digits)] if found.inner[i] else [], "end": end_name(found, i),
+            "sign": found.sign[i],
             "weight": [decimal(centre[len(centre) - l + i], digits)],
         })  # fmt: skip
     return rows
@@ -308,8 +309,8 @@ def cost(problem: Problem, support: Sequence[tuple[int, fmpq]], weights: Sequenc
 def near_touches(problem: Problem, found: Polished, places: int) -> list[list[Touch]]:
     """Where the dual polynomial is expected at its bound: contacts and further near maxima."""
     rows: list[list[Touch]] = [[] for _ in problem.panels]
-    for k, v, s in zip(found.panel, found.v, found.sign, strict=True):
-        rows[k].append(Touch(exact(decimal(v, places)), s))
+    for k, at_ball, s in zip(found.panel, found.v, found.sign, strict=True):
+        rows[k].append(Touch(exact(decimal(at_ball, places)), s))
     for k, v in found.touching:
         f = total(found.dual, problem.panels[k].rows(arb(v)))
         at = exact(decimal(peak(problem.panels[k], found.dual, v), places))

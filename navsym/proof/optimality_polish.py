@@ -58,7 +58,7 @@ def polish(panels: Sequence[Panel], basis: Basis, contacts: Contacts, bits: int,
         inner = [bool(i) for i in contacts.inner]
         last = np.inf
         for _ in range(STEPS):
-            F = residual(panels, basis, contacts.panel, x, v, w, p, signs, inner)
+            F = residual(panels, basis, contacts.panel.tolist(), x, v, w, p, signs, inner)
             size = max(float(abs(f).mid()) for f in F)
             if size < goal or (size > 0.5 * last and size < 1e-12):
                 break
@@ -123,7 +123,9 @@ def residual(
     return [a.mid() for a in [*values, *slopes, *balance]]
 
 
-def quick_value(panels: Sequence[Panel], problem_target: Sequence[arb], contacts: Contacts, bits: int = 128) -> arb | None:
+def quick_value(
+    panels: Sequence[Panel], problem_target: Sequence[arb], contacts: Contacts, bits: int = 128
+) -> arb | None:
     """``sum sigma |w|`` for a full alternance, weights solved at ``bits`` bits at the double contacts.
 
     The value depends on the contacts only to second order, so that contacts to 1e-9 give it to 1e-18.
@@ -132,7 +134,10 @@ def quick_value(panels: Sequence[Panel], problem_target: Sequence[arb], contacts
     if contacts.u.size != len(problem_target):
         return None
     with precision(bits):
-        columns = [panels[k].rows(arb(as_fraction(float(u)))) for k, u in zip(contacts.panel, contacts.u, strict=True)]
+        columns = [
+            panels[k].rows(arb(as_fraction(float(u))))
+            for k, u in zip(contacts.panel, contacts.u, strict=True)
+        ]
         weights = arb_mat(columns).transpose().solve(arb_mat([[p] for p in problem_target]))
         value = arb(0)
         for i, k in enumerate(contacts.panel):

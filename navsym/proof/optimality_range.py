@@ -109,7 +109,10 @@ def piece(track: Track, a: fmpq, b: fmpq) -> tuple[dict[str, Any], int] | None:
     with precision(BITS):
         dual = conditioned(found, A)
         curves = [
-            interpolated(values) for values in zip(*[[*d, *m.times, *m.weights] for d, m in zip(dual, found, strict=True)], strict=True)
+            interpolated(values)
+            for values in zip(
+                *[[*d, *m.times, *m.weights] for d, m in zip(dual, found, strict=True)], strict=True
+            )
         ]
         return verified(track, A, curves, middle, half)
 
@@ -158,7 +161,9 @@ def verified(
     problem, target = moved_problem(track.problem, A, end)
     z = [list(map(arb, c)) for c in curves]
     for i, (_, kind, _) in enumerate(track.pattern):
-        z[m + i] = [arb(c) / arb(end) for c in curves[m + i]] if kind == "no" else ends_of(kind, middle, half, end)
+        z[m + i] = (
+            [arb(c) / arb(end) for c in curves[m + i]] if kind == "no" else ends_of(kind, middle, half, end)
+        )
     free = [k for k in range(m + 2 * l) if not m <= k < m + l or track.pattern[k - m][1] == "no"]
     radius = {k: arb(0) for k in free}
     F0, _ = moving_system(problem, target, track.pattern, [c[0] for c in z])
@@ -213,7 +218,9 @@ def image(
     F0: Sequence[arb], radius: dict[int, arb], free: Sequence[int],
 ) -> dict[int, arb] | None:  # fmt: skip
     """Krawczyk's image of the box relative to its moving centre, or None when F' looks singular."""
-    _, wide = moving_system(problem, target, pattern, [at_all(c) + radius.get(k, arb(0)) * EVERY for k, c in enumerate(z)])
+    _, wide = moving_system(
+        problem, target, pattern, [at_all(c) + radius.get(k, arb(0)) * EVERY for k, c in enumerate(z)]
+    )
     speed = [slope(c) for c in z]
     F = [f + total(row_, speed) * EVERY for f, row_ in zip(F0, wide, strict=True)]
     J = arb_mat([[row_[k] for k in free] for row_ in wide])
@@ -278,13 +285,25 @@ def moving_system(
 
 
 def row(
-    track: Track, A: fmpq_mat, curves: Sequence[Sequence[fmpq]], radius: dict[int, arb], middle: fmpq, half: fmpq, end: fmpq
+    track: Track,
+    A: fmpq_mat,
+    curves: Sequence[Sequence[fmpq]],
+    radius: dict[int, arb],
+    middle: fmpq,
+    half: fmpq,
+    end: fmpq,
 ) -> dict[str, Any]:
     """The piece as plain data; places are times."""
     m, l = A.nrows(), len(track.pattern)
     text = lambda c: [fraction(a) if a.q > 10**80 else decimal(a, 60) for a in c]  # noqa: E731
     contacts = [
-        {"panel": k, "at": text(curves[m + i]) if kind == "no" else [], "end": kind, "sign": s, "weight": text(curves[m + l + i])}
+        {
+            "panel": k,
+            "at": text(curves[m + i]) if kind == "no" else [],
+            "end": kind,
+            "sign": s,
+            "weight": text(curves[m + l + i]),
+        }
         for i, (k, kind, s) in enumerate(track.pattern)
     ]
     scale = {k: (rational(r) * end if m <= k < m + l else rational(r)) for k, r in radius.items()}

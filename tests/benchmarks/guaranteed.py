@@ -18,7 +18,7 @@ import sympy as sp
 
 from navsym.methods.guaranteed_compare import panel_numbers
 from navsym.methods.guaranteed_many import values_for_lengths
-from navsym.methods.phases_family import U, Family
+from navsym.methods.phases_family import Family, U
 from navsym.numeric.exchange import find_contacts
 from navsym.proof.enclosure import Panel, Problem
 from navsym.proof.optimality import certify
@@ -29,16 +29,34 @@ t = sp.Symbol("t", real=True)
 
 
 def problem(rows, functional, end):
-    return Problem((Panel(0, tuple(map(sp.sympify, rows)), t, sp.Integer(0), sp.sympify(end), sp.Integer(1)),), tuple(map(sp.sympify, functional)))
+    return Problem(
+        (Panel(0, tuple(map(sp.sympify, rows)), t, sp.Integer(0), sp.sympify(end), sp.Integer(1)),),
+        tuple(map(sp.sympify, functional)),
+    )
 
 
 def unit(m, k):
     return [int(j == k) for j in range(m)]
 
 
-MIXED = [1, t, t**2, sp.sin(t), sp.cos(t), sp.sin(2 * t), sp.cos(2 * t), sp.exp(-t), t * sp.exp(-t), sp.exp(t / 2), t * sp.sin(t), t * sp.cos(t)]
+MIXED = [
+    1,
+    t,
+    t**2,
+    sp.sin(t),
+    sp.cos(t),
+    sp.sin(2 * t),
+    sp.cos(2 * t),
+    sp.exp(-t),
+    t * sp.exp(-t),
+    sp.exp(t / 2),
+    t * sp.sin(t),
+    t * sp.cos(t),
+]
 PROBLEMS = {
-    "velocity, T = pi/2, y3": problem([1, -sp.sin(sp.pi / 2 - t), sp.cos(sp.pi / 2 - t) - 1], unit(3, 2), sp.pi / 2),
+    "velocity, T = pi/2, y3": problem(
+        [1, -sp.sin(sp.pi / 2 - t), sp.cos(sp.pi / 2 - t) - 1], unit(3, 2), sp.pi / 2
+    ),
     "monomials m = 8, e6": problem([t**k for k in range(8)], unit(8, 6), 1),
     "mixed basis of 12, sin(t)": problem(MIXED, unit(12, 3), 6),
 }
@@ -68,7 +86,11 @@ def by_highspy(H, P):
     lp = highspy.HighsLp()
     lp.num_col_, lp.num_row_ = m, n
     lp.sense_ = highspy.ObjSense.kMaximize
-    lp.col_cost_, lp.col_lower_, lp.col_upper_ = P, np.full(m, -highspy.kHighsInf), np.full(m, highspy.kHighsInf)
+    lp.col_cost_, lp.col_lower_, lp.col_upper_ = (
+        P,
+        np.full(m, -highspy.kHighsInf),
+        np.full(m, highspy.kHighsInf),
+    )
     lp.row_lower_, lp.row_upper_ = -np.ones(n), np.ones(n)
     lp.a_matrix_.format_ = highspy.MatrixFormat.kRowwise
     lp.a_matrix_.start_ = np.arange(0, m * n + 1, m)
@@ -128,13 +150,28 @@ def compare_case(name, case, count, rounds):
     print(f"{name}: optimum {reference:.15g}, grid of {count}")
     for key, s in median.items():
         value = values[key]
-        error = f"width {value.width:.1e}" if key.endswith("certified") else f"error {abs(value / reference - 1):.1e}"
-        print(f"  {key:18} {1e3 * s:10.3f} ms  {error:16} cvxpy/this {median['cvxpy+HiGHS'] / s:8.0f}  highspy/this {median['highspy'] / s:8.0f}")
+        error = (
+            f"width {value.width:.1e}"
+            if key.endswith("certified")
+            else f"error {abs(value / reference - 1):.1e}"
+        )
+        print(
+            f"  {key:18} {1e3 * s:10.3f} ms  {error:16} cvxpy/this {median['cvxpy+HiGHS'] / s:8.0f}"
+            f"  highspy/this {median['highspy'] / s:8.0f}"
+        )
 
 
 def compare_lengths(count, grid):
     rows = ((sp.Integer(1), sp.sin(U), sp.cos(U) - 1),)
-    family = Family(rows, (sp.Integer(0), sp.Integer(0), sp.Integer(1)), (sp.Integer(1),), sp.Symbol("T", positive=True), True, ("z",), "y3")
+    family = Family(
+        rows,
+        (sp.Integer(0), sp.Integer(0), sp.Integer(1)),
+        (sp.Integer(1),),
+        sp.Symbol("T", positive=True),
+        True,
+        ("z",),
+        "y3",
+    )
     lengths = np.linspace(0.2, 2.0, count)
     values_for_lengths(family, lengths[:5])
     times, values = timed(lambda: values_for_lengths(family, lengths), 3)
@@ -147,7 +184,10 @@ def compare_lengths(count, grid):
         by_cvxpy(H, np.array([0.0, 0.0, 1.0]))
         peer.append(time.perf_counter() - start)
     whole = statistics.mean(peer) * count
-    print(f"{count} lengths: navsym {1e3 * min(times):.1f} ms, worst error {np.abs(values / exact - 1).max():.1e}; cvxpy+HiGHS {whole:.1f} s (from {len(peer)} of them), ratio {whole / min(times):.0f}")
+    print(
+        f"{count} lengths: navsym {1e3 * min(times):.1f} ms, worst error {np.abs(values / exact - 1).max():.1e}; "
+        f"cvxpy+HiGHS {whole:.1f} s (from {len(peer)} of them), ratio {whole / min(times):.0f}"
+    )
 
 
 def main(count=10_000, rounds=3, lengths=1000):

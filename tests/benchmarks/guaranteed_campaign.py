@@ -1,4 +1,4 @@
-"""Random guaranteed problems and altered certificates: ``python tests/benchmarks/guaranteed_campaign.py --problems 2000``.
+"""Random guaranteed problems and altered certificates: ``python tests/benchmarks/guaranteed_campaign.py``.
 
 Each problem has 2 to 8 functions (powers, sines, cosines, exponentials, products), T from 0.1 to 10, unit,
 random or degenerate functionals. Three routes must agree: the certified enclosure, the independent checker,
@@ -31,7 +31,16 @@ t = sp.Symbol("t", real=True)
 def some_function(rng):
     w = sp.Rational(rng.randint(1, 12), rng.choice([1, 2, 4, 5]))
     a = sp.Rational(rng.randint(-6, 4), rng.choice([4, 5, 8]))
-    kinds = [t ** rng.randint(0, 5), sp.sin(w * t), sp.cos(w * t), sp.exp(a * t), t * sp.sin(w * t), t * sp.exp(a * t), sp.exp(a * t) * sp.cos(w * t), sp.cos(w * t) - 1]
+    kinds = [
+        t ** rng.randint(0, 5),
+        sp.sin(w * t),
+        sp.cos(w * t),
+        sp.exp(a * t),
+        t * sp.sin(w * t),
+        t * sp.exp(a * t),
+        sp.exp(a * t) * sp.cos(w * t),
+        sp.cos(w * t) - 1,
+    ]
     return rng.choice(kinds)
 
 
@@ -157,17 +166,36 @@ def main(problems=2000, alterations=5000, seed=1, digits=12):
         counts["certified"] += solution.width <= 10.0**-digits
         counts[solution.certificate["kind"]] += 1
         if solution.width > 10.0**-digits:
-            bad.append((k, solution.width, str(problem.stretches[0].rows), str(problem.functional), str(problem.interval)))
+            bad.append(
+                (
+                    k,
+                    solution.width,
+                    str(problem.stretches[0].rows),
+                    str(problem.functional),
+                    str(problem.interval),
+                )
+            )
         if not accepted(solution.certificate):
             counts["CONTRADICTION: checker refuses"] += 1
-            bad.append((k, "checker", str(problem.stretches[0].rows), str(problem.functional), str(problem.interval)))
+            bad.append(
+                (k, "checker", str(problem.stretches[0].rows), str(problem.functional), str(problem.interval))
+            )
         else:
             certificates.append(dict(solution.certificate))
         if k % 4 == 0:
             grid = on_grid(problem)
             if grid is not None and grid < float(solution.lower) * (1 - 1e-5):
                 counts["grid below lower bound"] += 1
-                bad.append((k, grid, solution.lower, str(problem.stretches[0].rows), str(problem.functional), str(problem.interval)))
+                bad.append(
+                    (
+                        k,
+                        grid,
+                        solution.lower,
+                        str(problem.stretches[0].rows),
+                        str(problem.functional),
+                        str(problem.interval),
+                    )
+                )
     passed = []
     for k in range(alterations if certificates else 0):
         forged = altered(rng.choice(certificates), rng)

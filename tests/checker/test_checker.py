@@ -163,7 +163,11 @@ def test_an_extra_contact_with_a_weight_of_the_wrong_sign_is_refused():
     """T = 0.8 for the functional of the value at zero: the alternating solution has a wrong sign."""
     item = copy.deepcopy(PARABOLA)
     item["functional"] = ["1", "0", "0"]
-    item["contacts"][0]["weight"], item["contacts"][1]["weight"], item["contacts"][2]["weight"] = ["1"], ["-1"], ["1"]
+    item["contacts"][0]["weight"], item["contacts"][1]["weight"], item["contacts"][2]["weight"] = (
+        ["1"],
+        ["-1"],
+        ["1"],
+    )
     assert verdict(item)
 
 
@@ -194,7 +198,23 @@ def test_identities_of_school_are_accepted(left, right):
 
 @pytest.mark.parametrize(
     "text",
-    ["1e5", "0x10", "1_0", "__import__", "x.y", "x[0]", "lambda: 1", "x if y else z", "x;y", "'a'", "x**y", "f(x, y)", "", "((", "х"],
+    [
+        "1e5",
+        "0x10",
+        "1_0",
+        "__import__",
+        "x.y",
+        "x[0]",
+        "lambda: 1",
+        "x if y else z",
+        "x;y",
+        "'a'",
+        "x**y",
+        "f(x, y)",
+        "",
+        "((",
+        "х",
+    ],
 )
 def test_anything_outside_the_language_is_refused(text):
     assert verdict({"kind": "identity", "left": text, "right": text, "symbols": ["x", "y"]})
@@ -202,7 +222,14 @@ def test_anything_outside_the_language_is_refused(text):
 
 @pytest.mark.parametrize(
     "text",
-    ['{"kind": "gap", "kind": "gap"}', '{"bits": 1.5}', '{"bits": NaN}', '{"bits": Infinity}', "[1,", "[" * 100000],
+    [
+        '{"kind": "gap", "kind": "gap"}',
+        '{"bits": 1.5}',
+        '{"bits": NaN}',
+        '{"bits": Infinity}',
+        "[1,",
+        "[" * 100000,
+    ],
 )
 def test_floats_duplicates_and_broken_json_are_refused(text):
     with pytest.raises(Refused):
@@ -228,7 +255,9 @@ def alterations(item, rng):
         node = node[key]
     old = node[path[-1]]
     if isinstance(old, str) and old.replace(".", "").replace("-", "").isdigit():
-        node[path[-1]] = rng.choice([old + "1" if "." in old else old + ".1", "-" + old if old[0] != "-" else old[1:], "7"])
+        node[path[-1]] = rng.choice(
+            [old + "1" if "." in old else old + ".1", "-" + old if old[0] != "-" else old[1:], "7"]
+        )
     elif isinstance(old, int):
         node[path[-1]] = rng.choice([-old - 1, old + 1, "1", 0.5])
     elif isinstance(old, str):
@@ -240,7 +269,9 @@ def alterations(item, rng):
 
 def harmless(path, old, new) -> bool:
     """Changes that leave the statement true: bounds made wider, another label, a hint moved within its box."""
-    return old == new or path[-1] in ("lower", "upper", "variable", "kind") or "radius" in path or "null" in path
+    return (
+        old == new or path[-1] in ("lower", "upper", "variable", "kind") or "radius" in path or "null" in path
+    )
 
 
 def test_random_alterations_do_not_pass():

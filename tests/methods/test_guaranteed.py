@@ -22,7 +22,10 @@ from navsym.text.modelfile import model_from
 
 t = sp.Symbol("t", real=True)
 VELOCITY = {
-    "model": {"name": "velocity", "states": ["y1", "y2", "y3"], "F": [["0", "-1", "0"], ["0", "0", "1"], ["0", "-1", "0"]]},
+    "model": {
+        "name": "velocity", "states": ["y1", "y2", "y3"],
+        "F": [["0", "-1", "0"], ["0", "0", "1"], ["0", "-1", "0"]],
+    },
     "parameters": {"T": ["0", "2*pi"]},
     "measurement": [{"name": "velocity", "h": ["1", "0", "0"], "sigma": "1"}],
     "interval": {"T": "T"},

@@ -98,7 +98,10 @@ def test_noise_bounds_scale_the_optimum():
 
 def test_two_measurements_are_never_worse_than_the_better_one():
     H = (sp.Integer(1), t), (sp.Integer(0), sp.Integer(1))
-    panels = tuple(Panel(j, row, t, sp.Integer(0), sp.Integer(1), s) for j, (row, s) in enumerate(zip(H, (sp.Integer(1), sp.Rational(3, 2)))))
+    panels = tuple(
+        Panel(j, row, t, sp.Integer(0), sp.Integer(1), s)
+        for j, (row, s) in enumerate(zip(H, (sp.Integer(1), sp.Rational(3, 2)), strict=True))
+    )
     both = certify(Problem(panels, (sp.Integer(0), sp.Integer(1))), 20)
     assert both.lower <= sp.Rational(3, 2) <= both.upper
     assert accepted(both) in ("gap", "touch")
