@@ -1,7 +1,7 @@
 """casadi: the independent second source. Its own translator and its own C generator, no printer of ours.
 
 The order of its operations is not ours, so the rounding error in its vectors is multiplied by a stated factor
-(``targets.py``); a formula that needs a helper of ours against cancellation has no casadi form.
+(``targets.py``); a formula that needs a helper of ours against cancellation has no casadi form and is left out.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ import sympy as sp
 
 from navsym.export.forms import plain
 from navsym.export.functions import ExportedFunction
+from navsym.export.printing import helpers_used
 from navsym.export.python import vectors_json
 from navsym.export.vectors import Vector
 from navsym.numeric.casadi_functions import casadi_function
@@ -66,7 +67,8 @@ def files(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]],
     """Serialised functions, their generated C, vectors and test."""
     found: dict[str, str] = {}
     index = {}
-    tests = {name: [v for v in rows if v.status == 0] for name, rows in tests.items()}
+    functions = [f for f in functions if not helpers_used(f)]
+    tests = {f.name: [v for v in tests[f.name] if v.status == 0] for f in functions}
     for function in functions:
         pieces = []
         for place, piece in enumerate(function.pieces):

@@ -348,15 +348,18 @@ def best_form(
     box: list[tuple[float, float]],
     arithmetic: Arithmetic,
 ) -> sp.Expr:
-    """The printed form, unless its factored form keeps a bit more in the mean and is proved equal."""
+    """The printed form, unless its factored form is proved equal and costs less.
+
+    Cost: bits lost in the mean, and a tenth of a bit for each operation.
+    """
     printed = safe(formula, ranges)
     nicer = factored(formula)
     if nicer is None:
         return printed
     other = safe(nicer, ranges)
     graphs = [build([form], symbols, share=False) for form in (printed, other)]
-    lost = [lost_digits(graph, box, arithmetic) for graph in graphs]
-    better = lost[1] < lost[0] - 1 and tie_to_formula(graphs[1], [formula]) in ("identical", "normal form")
+    costs = [lost_digits(graph, box, arithmetic) + 0.1 * graph.operations().total() for graph in graphs]
+    better = costs[1] < costs[0] - 0.5 and tie_to_formula(graphs[1], [formula]) in ("identical", "normal form")
     return other if better else printed
 
 

@@ -176,8 +176,8 @@ def ratio(error: arb, value: arb) -> arb:
 ARITHMETIC_VALUES: dict[str, Callable[..., arb]] = {
     "add": lambda x, y: x + y,
     "sub": lambda x, y: x - y,
-    "mul": lambda x, y: x * y,
-    "div": lambda x, y: x / y,
+    "mul": lambda x, y: by_ends(x, y) if apart(x, y) else x * y,
+    "div": lambda x, y: by_ends(x, inverse(y)) if apart(x, y) else x / y,
     "neg": lambda x: -x,
     "abs": abs,
     "sqrt": lambda x: x.sqrt() if x >= 0 else arb("nan"),
@@ -194,11 +194,28 @@ ARITHMETIC_VALUES: dict[str, Callable[..., arb]] = {
 }
 
 
+def apart(x: arb, y: arb) -> bool:
+    """True when both balls are wide and have a sign: then ends are tighter than middle and radius."""
+    return not (x.contains(0) or y.contains(0) or (x.rad() == 0 and y.rad() == 0))
+
+
+def by_ends(x: arb, y: arb) -> arb:
+    """The product of two balls with a sign, from the least and the greatest magnitude."""
+    size = (down(x) * down(y)).union(up(x) * up(y))
+    return size if (x > 0) == (y > 0) else -size
+
+
+def inverse(x: arb) -> arb:
+    """1/x of a ball with a sign, from its ends."""
+    size = (1 / up(x)).union(1 / down(x))
+    return size if x > 0 else -size
+
+
 def exact_value(node: Node, args: list[Bounded]) -> arb:
     """The exact value of an operation over the exact values of its arguments."""
     balls = [a.value for a in args]
     if node.op == "mul" and node.args[0] == node.args[1]:
-        return balls[0] ** 2
+        return (down(balls[0]) ** 2).union(up(balls[0]) ** 2)
     if node.op in ARITHMETIC_VALUES:
         return arb(ARITHMETIC_VALUES[node.op](*balls))
     return arb(getattr(balls[0], node.op)())

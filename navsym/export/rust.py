@@ -13,6 +13,7 @@ from navsym.export.printing import (
     X_MINUS_SIN_SWITCH,
     Spelling,
     assignments,
+    bare,
     helpers_used,
     horner,
     summary,
@@ -99,7 +100,7 @@ def sinc_helper(kind: str, s: Spelling) -> str:
     return f"""fn navsym_sinc(x: {kind}) -> {kind} {{
     let y = x * x;
     if {kind}::abs(x) < {s.number(SINC_SWITCH)} {{
-        return {horner(SINC_STEPS, s.number(1.0), s.number)};
+        return {bare(horner(SINC_STEPS, s.number(1.0), s.number))};
     }}
     {kind}::sin(x) / x
 }}
