@@ -20,8 +20,9 @@ from numpy.typing import NDArray
 from navsym.errors import NotEstimableError, TooLargeError
 from navsym.models.terrain import TerrainMap, demand_heights
 from navsym.models.terrain_track import MOST_HYPOTHESES, Hypotheses, Track
-from navsym.numeric.search import TOGETHER, dense_masked, offset_free, padded, patch_rows, slab
+from navsym.numeric.search import TOGETHER, padded, patch_rows, slab
 from navsym.numeric.search_bounded import BoundedResult, search_bounded, search_one_velocity
+from navsym.numeric.search_masked import dense_masked, offset_free
 
 Array = NDArray[np.float64]
 Index = tuple[int, int, int, int]
@@ -196,6 +197,7 @@ def quickly(prepared: Prepared) -> BoundedResult:
 
 
 def need(track: Track, least: int, what: str) -> None:
+    """NotEstimableError when the track has fewer than ``least`` measurements."""
     if track.t.size < least:
         raise NotEstimableError(
             f"track: expected at least {least} measurements for {what}; got {track.t.size}; fly longer"

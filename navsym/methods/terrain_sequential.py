@@ -19,7 +19,7 @@ from navsym.methods.terrain import Search, criteria, lowest, need, prepare
 from navsym.methods.terrain_centre import Information, demand_estimable, information, slopes
 from navsym.models.terrain import TerrainMap
 from navsym.models.terrain_track import Hypotheses, Track
-from navsym.numeric.search import velocity_criteria
+from navsym.numeric.search_masked import velocity_criteria
 
 Array = NDArray[np.float64]
 

@@ -56,6 +56,7 @@ def vector(name: str, value: Any, length: int | None, why: str) -> Array:
 
 
 def frozen(array: Any) -> Any:
+    """The same array, read-only from now on."""
     array.flags.writeable = False
     return array
 
@@ -94,12 +95,14 @@ def spacing(name: str, value: Any) -> float:
 
 
 def pair(name: str, value: Any) -> Sequence[Any]:
+    """Two entries, for x and y; ShapeError otherwise."""
     if isinstance(value, str | bytes) or not hasattr(value, "__len__") or len(value) != 2:
         raise ShapeError(f"{name}: expected two entries, for x and y; got {value!r:.60}; give both")
     return list(value)
 
 
 def step(name: str, value: Any) -> float:
+    """A positive length; DomainError otherwise."""
     number = finite(name, value)
     if isinstance(value, bool) or number <= 0.0:
         raise DomainError(f"{name}: expected a positive step; got {value!r:.60}; give its length")
@@ -107,6 +110,7 @@ def step(name: str, value: Any) -> float:
 
 
 def count(name: str, value: Any) -> int:
+    """An integer of at least 0; DomainError otherwise."""
     number = finite(name, value)
     if isinstance(value, bool) or number != int(number) or number < 0:
         raise DomainError(

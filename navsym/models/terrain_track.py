@@ -10,8 +10,8 @@ import numpy as np
 from navsym.errors import DomainError, DuplicateError, TooLargeError
 from navsym.models.terrain_gate import Array, count, pair, put, step, vector
 
-#: Largest number of hypotheses whose criteria are kept at once (1 GB of doubles).
-MOST_HYPOTHESES = 2**27
+#: Largest number of hypotheses whose criteria are kept at once (half a GB of doubles).
+MOST_HYPOTHESES = 2**26
 
 
 @dataclass(frozen=True, slots=True, eq=False)

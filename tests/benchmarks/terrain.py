@@ -185,7 +185,7 @@ def main() -> None:
         print(f"heights of {arguments.map} on cells of {CELL:g} m")
     velocities = 1 if arguments.tiny else 5
     grid = Hypotheses((CELL, CELL), (half, half), (1, 1), (velocities, velocities))
-    position_part(terrain, 2 * n - 2, half, repeats)
+    position_part(terrain, 2 * n - 2, half, 3 * repeats)
     dense_part(terrain, n, grid, min(repeats, 3))
     bounded_part(terrain, n, grid, repeats, flights)
     coarse = Hypotheses((37.0, 37.0), (half, half), (1, 1), (velocities, velocities))

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
+from pathlib import Path
+
 import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
@@ -10,10 +14,8 @@ from navsym.numeric import search_bounded as bounded_module
 from navsym.numeric.search import (
     TOGETHER,
     criterion_one,
-    dense_masked,
     dense_slowly,
     height_at,
-    offset_free,
     padded,
     patch_rows,
     slab,
@@ -27,6 +29,7 @@ from navsym.numeric.search_bounded import (
     search_one_velocity,
     single_limit,
 )
+from navsym.numeric.search_masked import dense_masked, offset_free
 
 
 def random_case(generator, *, ties=False):
@@ -190,3 +193,11 @@ def test_scores_prefer_measurements_that_tell_hypotheses_apart():
         H, bx, by, z, zero, zero, (1.0, 1.0), (9, 1, 1, 1), probes, np.zeros(n, dtype=np.bool_)
     )
     assert score[-1] > 0.0 and score[0] == 0.0
+
+
+def test_the_benchmark_runs_in_small():
+    script = Path(__file__).parents[1] / "benchmarks" / "terrain.py"
+    done = subprocess.run(
+        [sys.executable, str(script), "--tiny"], capture_output=True, text=True, timeout=300, check=False
+    )
+    assert done.returncode == 0 and "exact joint, median" in done.stdout, done.stderr
