@@ -12,6 +12,7 @@ from navsym.cli._claims import decide, find
 from navsym.cli.output import emit
 
 WIDTH = 100
+FORMULA = " " * 6
 
 
 def command(
@@ -60,7 +61,7 @@ def as_text(document: dict[str, Any]) -> str:
         head = f"{number}. {step['heading']}. " if step["heading"] else "   "
         lines.append(textwrap.fill(head + step["words"], WIDTH, subsequent_indent="   ", break_long_words=False))
         if step["formula"]:
-            lines += ["", textwrap.fill(step["formula"], WIDTH, initial_indent="      ", subsequent_indent="      "), ""]
+            lines += ["", textwrap.fill(step["formula"], WIDTH, initial_indent=FORMULA, subsequent_indent=FORMULA), ""]
     lines += ["", f"Derivation: {document['source']}"]
     if document["corrected_by"]:
         lines.append(f"Corrected by {document['corrected_by']}; see navsym explain {document['corrected_by']!r}")

@@ -53,7 +53,7 @@ class ClaimView:
     plot: Markup
     correction: ClaimLink | None
     corrects: ClaimLink | None
-    certificate: str
+    certificates: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -154,14 +154,22 @@ def total(papers: Sequence[PaperView]) -> dict[str, int]:
 def certificate_files(records: Sequence[Record]) -> dict[str, str]:
     """Certificates as ``navsym check`` reads them."""
     return {
-        certificate_name(record): json.dumps(record["certificate"], ensure_ascii=False, indent=1) + "\n"
+        name: json.dumps(part, ensure_ascii=False, indent=1) + "\n"
         for record in records
-        if record.get("certificate")
+        for name, part in certificates(record)
     }
 
 
-def certificate_name(record: Record) -> str:
-    return f"certificates/{slug(record['id'])}.json"
+def certificates(record: Record) -> list[tuple[str, Any]]:
+    """File names and certificates of a record: one for each entry where a claim has several."""
+    whole = record.get("certificate")
+    if not whole:
+        return []
+    parts = whole["of"] if whole.get("kind") == "all" and isinstance(whole.get("of"), list) else [whole]
+    name = f"certificates/{slug(record['id'])}"
+    if len(parts) == 1:
+        return [(f"{name}.json", parts[0])]
+    return [(f"{name}.{place}.json", part) for place, part in enumerate(parts, start=1)]
 
 
 def slug(name: str) -> str:
@@ -238,7 +246,7 @@ def claim_view(record: Record, correction: Record | None, corrected: Record | No
         plot=Markup(refutation_plot(record) if record["status"] == "REFUTED" else ""),
         correction=link(correction),
         corrects=link(corrected),
-        certificate=certificate_name(record) if record.get("certificate") else "",
+        certificates=tuple(name for name, _ in certificates(record)),
     )
 
 

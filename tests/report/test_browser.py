@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import itertools
 from pathlib import Path
 
 import pytest
@@ -50,7 +51,8 @@ def test_the_console_stays_quiet_and_nothing_is_requested_from_outside(shown, fi
 def test_formulas_take_room_on_the_page(shown, files):
     page = shown(files, "sample.html")
     sizes = page.value(
-        "[...document.querySelectorAll('.sides math')].map(m => m.getBoundingClientRect()).map(r => [r.width, r.height])"
+        "[...document.querySelectorAll('.sides math')].map(m => m.getBoundingClientRect())"
+        ".map(r => [r.width, r.height])"
     )
     assert len(sizes) >= 10 and all(width > 5 and height > 5 for width, height in sizes)
 
@@ -119,7 +121,7 @@ def test_headings_labels_and_landmarks_are_there_for_those_who_listen(shown, fil
         page = shown(files, name)
         levels = page.value("[...document.querySelectorAll('h1,h2,h3,h4')].map(h => Number(h.tagName[1]))")
         assert levels[0] == 1 and levels.count(1) == 1
-        assert all(b - a <= 1 for a, b in zip(levels, levels[1:], strict=False)), levels
+        assert all(b - a <= 1 for a, b in itertools.pairwise(levels)), levels
         tree = page.call("Accessibility.getFullAXTree")["nodes"]
         roles = [node.get("role", {}).get("value") for node in tree if not node.get("ignored")]
         assert {"main", "navigation", "heading", "link"} <= set(roles)

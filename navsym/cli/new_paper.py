@@ -1,0 +1,39 @@
+"""Make a derivation module for another paper: its card, its equations, and an example claim."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from navsym.cli.output import emit, write_text
+from navsym.errors import DuplicateError
+
+
+def command(
+    name: Annotated[str, typer.Argument(help="module name, such as schuler_pendulum")],
+    title: Annotated[str, typer.Option(help="title of the paper")] = "",
+    author: Annotated[list[str] | None, typer.Option(help="author; may be repeated")] = None,
+    year: Annotated[int | None, typer.Option(help="year")] = None,
+    source: Annotated[str, typer.Option(help="journal, volume, pages")] = "",
+    language: Annotated[str, typer.Option(help="language of the paper")] = "English",
+    equations: Annotated[str, typer.Option(help='every number printed, such as "1-6" or "1.1-1.9, 2.1"')] = "1",
+    folder: Annotated[Path | None, typer.Option(help="where; default: the folder of derivations")] = None,
+    json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
+) -> None:
+    """Write derivations/NAME.py. It passes the generic tests at once; add claims with navsym new-claim.
+
+    Example: navsym new-paper schuler_pendulum --author "A. Author" --year 1923 --equations "1-6"
+    """
+    from navsym.cli.verify import ledger_folder
+    from navsym.text.scaffold import check_module_name, equation_numbers, module_source
+
+    path = (folder or ledger_folder()) / f"{check_module_name(name)}.py"
+    if path.exists() or path.with_suffix("").exists():
+        message = f"expected a new module; got {name}, which exists; do choose another name"
+        raise DuplicateError(message, where=str(path))
+    text = module_source(name, title, author or [], year, source, language, equation_numbers(equations))
+    write_text(path, text)
+    advice = f"navsym verify {name}; then navsym new-claim {name} NUMBER --printed … --derived …"
+    emit({"path": str(path), "module": name}, as_json=json_, text=f"{path}\nnext: {advice}")

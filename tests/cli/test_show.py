@@ -1,0 +1,66 @@
+"""show, explain and cite speak about one claim, and refuse what is none with the way to the right one."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from navsym.cli.main import run
+
+REMARK = "alpha_beta_filter:remark.critical"
+
+
+def document(capsys, *words):
+    status = run([*words, "--json"])
+    return status, json.loads(capsys.readouterr().out)
+
+
+def test_show_has_both_sides_and_the_verdict(capsys):
+    status, record = document(capsys, "show", "alpha_beta_filter:12.stable")
+    assert status == 0 and record["status"] == record["expect"] == "PROVED"
+    assert record["printed"] == "4*r" and record["derived"] and record["scope"] == "all r in (0, 1]"
+
+
+def test_show_prints_lines_for_people(capsys):
+    assert run(["show", REMARK]) == 0
+    text = capsys.readouterr().out
+    assert text.startswith(f"{REMARK}  REFUTED\n") and "  at       r = 1/2" in text
+
+
+def test_explain_works_the_counterexample_out_and_names_the_correction(capsys):
+    status, told = document(capsys, "explain", REMARK)
+    assert status == 0 and told["corrected_by"] == f"{REMARK}*"
+    assert told["source"].startswith("derivations/alpha_beta_filter.py:")
+    words = " ".join(step["words"] for step in told["steps"])
+    assert "At r = 1/2" in words and "The printed side is 0, the derived side is -0.4375" in words
+
+
+def test_explain_names_the_ring_in_which_a_difference_vanished(capsys):
+    assert run(["explain", "alpha_beta_filter:4"]) == 0
+    text = capsys.readouterr().out
+    assert "reduces to 0 in Q[r]" in " ".join(text.split()) or "reduces to 0 in Q" in " ".join(text.split())
+    assert "navsym check" in text
+
+
+def test_cite_gives_bibtex_of_paper_and_verdict(capsys):
+    status, cited = document(capsys, "cite", "alpha_beta_filter:8", "--fresh")
+    assert status == 0 and cited["status"] == "PROVED"
+    assert "@misc{kalata1984," in cited["bibtex"] and "alpha\\_beta\\_filter:8" in cited["bibtex"]
+
+
+@pytest.mark.parametrize("verb", ["show", "explain", "cite"])
+@pytest.mark.parametrize(
+    ("wanted", "hint"),
+    [
+        ("alpha_beta_filter:remark", "alpha_beta_filter:remark.critical"),
+        ("alpha_beta_filter", "alpha_beta_filter:4"),
+        ("alpha_beta_filter:qqqqqqqq", "navsym list"),
+        ("alpha_beta_filte:4", "did you mean alpha_beta_filter?"),
+        ("", "name one of them"),
+        ("<script>:1", "expected one of"),
+    ],
+)
+def test_an_id_that_is_none_gets_advice(capsys, verb, wanted, hint):
+    status, answer = document(capsys, verb, wanted)
+    assert status == 2 and answer["error"]["kind"] == "domain" and hint in answer["error"]["message"]
