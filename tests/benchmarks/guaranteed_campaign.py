@@ -149,11 +149,14 @@ def accepted(item) -> bool:
     return True
 
 
-def main(problems=2000, alterations=5000, seed=1, digits=12):
+def main(problems=2000, alterations=5000, seed=1, digits=12, seconds=1e9):
     rng = random.Random(seed)
+    begun = time.perf_counter()
     counts, bad, spent = Counter(), [], 0.0
     certificates = []
     for k in range(problems):
+        if time.perf_counter() - begun > seconds / 2:
+            break
         problem = made(rng)
         start = time.perf_counter()
         try:
@@ -198,6 +201,8 @@ def main(problems=2000, alterations=5000, seed=1, digits=12):
                 )
     passed = []
     for k in range(alterations if certificates else 0):
+        if time.perf_counter() - begun > seconds:
+            break
         forged = altered(rng.choice(certificates), rng)
         if forged in certificates:
             continue
@@ -218,5 +223,6 @@ if __name__ == "__main__":
     parser.add_argument("--problems", type=int, default=2000)
     parser.add_argument("--alterations", type=int, default=5000)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--seconds", type=float, default=1e9, help="stop after this time and report what was done")
     arguments = parser.parse_args()
-    main(arguments.problems, arguments.alterations, arguments.seed)
+    main(arguments.problems, arguments.alterations, arguments.seed, seconds=arguments.seconds)
