@@ -25,7 +25,8 @@ def find(wanted: str) -> tuple[Paper, Claim]:
             return paper.paper, claim
     ids = [claim.id for claim in paper.claims]
     close = [known for known in ids if known.startswith(wanted)] if number else ids
-    close = close or difflib.get_close_matches(wanted, ids, n=3)
+    if not close:
+        close = [f"{module}:{n}" for n in difflib.get_close_matches(number, [c.number for c in paper.claims])]
     advice = f"take one of {', '.join(close[:6])}" if close else f"see navsym list --paper {module}"
     raise DomainError(f"expected the id of a claim; got {wanted[:80]}; {advice}", where="command line")
 

@@ -133,8 +133,9 @@ def counterexample_steps(record: Record) -> list[Step]:
 
 
 def arithmetic_words(line: Arithmetic) -> str:
-    entry = f"Entry {line.entry}: t" if line.entry else "T"
-    return ended(f"{entry}he printed side is {ball_words(line.printed)}, the derived side is {ball_words(line.derived)}")
+    start = f"Entry {line.entry}: the" if line.entry else "The"
+    sides = f"printed side is {ball_words(line.printed)}, the derived side is {ball_words(line.derived)}"
+    return ended(f"{start} {sides}")
 
 
 def ended(sentence: str) -> str:

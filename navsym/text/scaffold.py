@@ -85,8 +85,9 @@ def module_source(
         check_number(number)
     lines = "".join(f"        {number!r}: {'not looked at yet'!r},\n" for number in equations)
     return MODULE.format(
-        name=check_module_name(name), heading=plain(title) or name, title=title or name, authors=tuple(authors), year=year,
-        source=source, language=language, equations=tuple(equations), definitions=lines,
+        name=check_module_name(name), heading=plain(title) or name, title=title or name,
+        authors=tuple(authors), year=year, source=source, language=language,
+        equations=tuple(equations), definitions=lines,
     )  # fmt: skip
 
 
