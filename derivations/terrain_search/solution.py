@@ -172,6 +172,18 @@ def final_position_from_the_centre():
     return Equation(printed=list(printed), derived=list(position + tn * velocity))
 
 
+@claim("halves")
+def two_windows():
+    """Two position fixes over different windows give the velocity: v = (C_b - C_a)^-1 (c_b - c_a)."""
+    first, second = symmetric("A"), symmetric("B")           # sums of the first and the second window
+    moved, moved_later = symmetric("P"), symmetric("Q")
+    start = sp.Matrix(sp.symbols("c_x c_y", real=True))
+    centres = inverse(first) * moved, inverse(second) * moved_later
+    fixes = [start + centre_of * v for centre_of in centres]
+    difference = centres[1] - centres[0]
+    return Equation(printed=list(difference * v), derived=list(fixes[1] - fixes[0]))
+
+
 @claim("acceleration")
 def constant_acceleration():
     """On even terrain a constant acceleration a leaves errors a n (n - 1)/12 and a n/2 at the end."""

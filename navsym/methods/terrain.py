@@ -22,7 +22,7 @@ from navsym.models.terrain import TerrainMap, demand_heights
 from navsym.models.terrain_track import MOST_HYPOTHESES, Hypotheses, Track
 from navsym.numeric.search import TOGETHER, padded, patch_rows, slab
 from navsym.numeric.search_bounded import BoundedResult, search_bounded, search_one_velocity
-from navsym.numeric.search_masked import dense_masked, offset_free
+from navsym.numeric.search_masked import dense_masked, offset_free, profile
 
 Array = NDArray[np.float64]
 Index = tuple[int, int, int, int]
@@ -79,9 +79,12 @@ def prepare(terrain: TerrainMap, track: Track, grid: Hypotheses, *, on_map: bool
 
     on_map : raise OutsideMapError or NoDataError when the inertial track itself has no heights
     """
-    if on_map:
-        demand_heights(terrain, track.x, track.y, terrain.sample(track.x, track.y)[1])
     bx, by = terrain.cells(track.x, track.y)
+    if on_map:
+        under = np.empty(bx.size)
+        profile(terrain.heights, bx, by, under)
+        if np.isnan(under).any():
+            demand_heights(terrain, track.x, track.y, terrain.sample(track.x, track.y)[1])
     wx = grid.velocity_step[0] * track.elapsed / terrain.dx
     wy = grid.velocity_step[1] * track.elapsed / terrain.dy
     steps = (grid.step[0] / terrain.dx, grid.step[1] / terrain.dy)
