@@ -1,0 +1,46 @@
+"""Compare two formulas, claim files, models or exports: proved equal, or the worst point shown."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+import typer
+
+from navsym.cli.output import emit, table
+from navsym.errors import ExpressionSyntaxError
+
+
+def command(
+    old: Annotated[str, typer.Argument(help="a formula, a claim or model file (TOML), or an exported folder")],
+    new: Annotated[str, typer.Argument(help="the same kind of thing")],
+    box: Annotated[list[str] | None, typer.Option("--range", help='range of a symbol, such as "T=0,2*pi"')] = None,
+    json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
+) -> int:
+    """Status 1 unless every formula is proved equal to its counterpart."""
+    from navsym.export.differences import compare, formulas_of
+
+    ranges = dict(read_range(text) for text in box or [])
+    document = compare(formulas_of(old, ranges), formulas_of(new, ranges))
+    emit(document, as_json=json_, text=lambda: as_text(document))
+    return 0 if document["equal"] else 1
+
+
+def read_range(text: str) -> tuple[str, tuple[Any, Any]]:
+    """``"T=0,2*pi"`` as a name and two exact ends."""
+    from navsym.text.expression import parse
+
+    name, equals, ends = text.partition("=")
+    parts = ends.split(",")
+    if not equals or len(parts) != 2:
+        raise ExpressionSyntaxError(f"expected NAME=LOWER,UPPER; got {text[:60]!r}; do correct it", where="--range")
+    lower, upper = (parse(part, {}, where="--range") for part in parts)
+    return name.strip(), (lower, upper)
+
+
+def as_text(document: dict[str, Any]) -> str:
+    rows = []
+    for record in document["differences"]:
+        point = ", ".join(f"{k} = {v}" for k, v in (record["worst"] or {}).items())
+        size = f"old - new = {record['difference'][0]}…" if record["difference"] else ""
+        rows.append((record["name"], record["status"], f"{size} at {point}" if point else record["why"]))
+    return table(("formula", "status", "where"), rows)

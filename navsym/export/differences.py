@@ -1,0 +1,206 @@
+"""Two formulas, claim files, models or exports side by side: proved equal, or the worst point shown."""
+
+from __future__ import annotations
+
+import json
+import random
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import sympy as sp
+from flint import arb
+
+from navsym.claims import REFUTED, Equation
+from navsym.errors import DomainError, NavsymError
+from navsym.proof.balls import enclose, hull
+from navsym.proof.ladder import decide
+from navsym.proof.sampling import range_of
+from navsym.proof.wording import decimal_ends, text_of
+from navsym.text.expression import parse, symbol
+from navsym.text.files import read_text
+from navsym.text.tokens import Source, tokenize
+
+POINTS = 400
+LIMIT = 20_000_000
+Record = dict[str, Any]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Formula:
+    """A named formula with the ranges of its symbols."""
+
+    name: str
+    expression: sp.Expr
+    box: Mapping[sp.Symbol, tuple[Any, Any]]
+
+
+def compare(old: Mapping[str, Formula], new: Mapping[str, Formula]) -> Record:
+    """The document of ``navsym diff``.
+
+    ``differences``: one record each, ``{"name", "status", "worst", "difference", "why"}`` with status EQUAL
+    (proved), DIFFERENT (worst point found, its difference enclosed), OPEN, ONLY-OLD or ONLY-NEW. ``equal``:
+    true when every formula is proved equal.
+    """
+    records = [record_for(name, old.get(name), new.get(name)) for name in dict.fromkeys([*old, *new])]
+    return {"equal": all(r["status"] == "EQUAL" for r in records), "differences": records}
+
+
+def record_for(name: str, old: Formula | None, new: Formula | None) -> Record:
+    if old is None or new is None:
+        status = "ONLY-NEW" if old is None else "ONLY-OLD"
+        return {"name": name, "status": status, "worst": None, "difference": None, "why": "no counterpart"}
+    left, right = old.expression, in_terms_of(new.expression, old)
+    box = common_box(old, new)
+    verdict = decide(Equation(left, right, box))
+    if verdict.status.holds:
+        return {"name": name, "status": "EQUAL", "worst": None, "difference": None, "why": verdict.method}
+    if verdict.status != REFUTED:
+        return {"name": name, "status": "OPEN", "worst": None, "difference": None, "why": verdict.evidence}
+    point, difference = worst_point(left - right, box)
+    if point is None or difference is None:
+        return {"name": name, "status": "DIFFERENT", "worst": dict(verdict.counterexample or {}),
+                "difference": list(verdict.difference or ()), "why": "counterexample"}  # fmt: skip
+    return {
+        "name": name,
+        "status": "DIFFERENT",
+        "worst": {s.name: text_of(value) for s, value in point.items()},
+        "difference": list(decimal_ends(difference)),
+        "why": f"largest of {POINTS} points",
+    }
+
+
+def in_terms_of(expression: sp.Expr, other: Formula) -> sp.Expr:
+    """The same formula with the other one's symbols, by name."""
+    known = {s.name: s for s in (*other.expression.free_symbols, *other.box)}
+    return expression.xreplace({s: known[s.name] for s in expression.free_symbols if s.name in known})
+
+
+def common_box(old: Formula, new: Formula) -> dict[sp.Symbol, tuple[Any, Any]]:
+    """The ranges of both, by the symbols of the old one; where both have one, the overlap."""
+    known = {s.name: s for s in (*old.expression.free_symbols, *old.box)}
+    box = dict(old.box)
+    for s, (lower, upper) in new.box.items():
+        mine = known.get(s.name, s)
+        low, high = box.get(mine, (None, None))
+        box[mine] = (larger(low, lower), smaller(high, upper))
+    return box
+
+
+def larger(a: Any, b: Any) -> Any:
+    if a is None or b is None:
+        return b if a is None else a
+    return a if enclose(sp.sympify(a - b), {}) >= 0 else b
+
+
+def smaller(a: Any, b: Any) -> Any:
+    if a is None or b is None:
+        return b if a is None else a
+    return b if enclose(sp.sympify(a - b), {}) >= 0 else a
+
+
+def worst_point(difference: sp.Expr, box: Mapping[Any, Any]) -> tuple[dict[sp.Symbol, sp.Expr] | None, arb | None]:
+    """The sampled point where two formulas are farthest apart, with the difference enclosed there."""
+    generator = random.Random(0)
+    symbols = sorted(difference.free_symbols, key=lambda s: s.name)
+    best: tuple[dict[sp.Symbol, sp.Expr] | None, arb | None] = (None, None)
+    for _ in range(POINTS):
+        point = {s: random_in(s, box, generator) for s in symbols}
+        found = enclose(difference, {s: hull(v, v) for s, v in point.items()}, 128)
+        if found.is_finite() and (best[1] is None or abs(found).lower() > abs(best[1]).upper()):
+            best = point, found
+    return best
+
+
+def random_in(s: sp.Symbol, box: Mapping[Any, Any], generator: random.Random) -> sp.Expr:
+    """An exact number of the range, short enough to read; ends and quarters are likely."""
+    limits = range_of(s, box)
+    low = limits.lower if limits.lower is not None else (limits.upper - 10 if limits.upper is not None else -10)
+    high = limits.upper if limits.upper is not None else low + 20
+    share = sp.Rational(generator.choice([1, 4, *range(4), *(generator.randint(0, 100) for _ in range(12))]), 100)
+    if generator.random() < 0.2:
+        share = sp.Rational(generator.randint(0, 4), 4)
+    value = low + (high - low) * share
+    return high if limits.open_lower and share == 0 else value
+
+
+# -- what can be compared ---------------------------------------
+
+
+def formulas_of(text: str, ranges: Mapping[str, tuple[Any, Any]]) -> dict[str, Formula]:
+    """Formulas of an argument: an export's folder, a claim or model file, or the text of one formula."""
+    path = Path(text)
+    if path.is_dir():
+        return of_export(path)
+    if text.endswith(".toml"):
+        return of_file(path)
+    return {"formula": of_text(text, ranges)}
+
+
+def of_text(text: str, ranges: Mapping[str, tuple[Any, Any]], where: str = "") -> Formula:
+    """A formula whose names are real symbols, with ranges where some are given."""
+    from navsym.text.names import RESERVED
+
+    names = {t.text for t in tokenize(Source(text, where)) if t.kind == "name"} - RESERVED
+    symbols = {name: symbol(name, where=where) for name in sorted(names)}
+    box = {symbols[name]: ends for name, ends in ranges.items() if name in symbols}
+    return Formula("formula", parse(text, symbols, where=where), box)
+
+
+def of_file(path: Path) -> dict[str, Formula]:
+    """Left sides of a claim file, or the entries of a model's F and H."""
+    from navsym.text.tomlfile import read_toml
+
+    document = read_toml(path)
+    if "claim" in document:
+        from navsym.text.claimfile import claims_from
+
+        claims = claims_from(document, str(path)).claims
+        return {c.id: Formula(c.id, c.left, c.box) for c in claims if not isinstance(c.left, sp.MatrixBase)}
+    return of_model(path)
+
+
+def of_model(path: Path) -> dict[str, Formula]:
+    """Entries of F and of the measurement rows, by their places."""
+    from navsym.text.modelfile import read_model
+
+    model = read_model(path)
+    found: dict[str, Formula] = {}
+    for name in ("F", "H", "regressors"):
+        matrix = getattr(model, name, None)
+        if isinstance(matrix, sp.MatrixBase):
+            for i in range(matrix.rows):
+                for j in range(matrix.cols):
+                    label = f"{name}[{i + 1},{j + 1}]"
+                    found[label] = Formula(label, matrix[i, j], {})
+    if not found:
+        raise DomainError("expected a model with F; got another kind; do compare formulas", where=str(path))
+    return found
+
+
+def of_export(folder: Path) -> dict[str, Formula]:
+    """Formulas of an export's manifest, one for each result and regime."""
+    where = str(folder / "manifest.json")
+    try:
+        manifest = json.loads(read_text(folder / "manifest.json", LIMIT))
+        functions = [(str(f["name"]), f["inputs"], f["pieces"]) for f in manifest["functions"]]
+        found = {}
+        for name, inputs, pieces in functions:
+            ranges = {str(i["symbol"]): exact_ends(i) for i in inputs}
+            for place, piece in enumerate(pieces):
+                for line in piece["source"]["formula"]:
+                    result, _, text = str(line).partition(" = ")
+                    label = f"{name}.{result}" + (f" (regime {place + 1})" if len(pieces) > 1 else "")
+                    found[label] = of_text(text, ranges, where)
+        return found
+    except NavsymError:
+        raise
+    except (ValueError, KeyError, TypeError, AttributeError):
+        raise DomainError("expected a manifest of navsym export; got something else; do export again", where=where) from None
+
+
+def exact_ends(record: Mapping[str, Any]) -> tuple[Any, Any]:
+    """Accepted range of an input as exact numbers."""
+    ends = (record["low"], record["high"])
+    return tuple(None if e is None else sp.Rational(*float(e).as_integer_ratio()) for e in ends)  # type: ignore[return-value]

@@ -1,0 +1,58 @@
+"""Functions that the export tests share: a weight, an estimate, regimes, a matrix, removable singularities."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import sympy as sp
+
+from derivations.guaranteed_velocity import beyond, weights
+from navsym.claims import Claim, Equation, Statement
+from navsym.export.functions import ExportedFunction, Material, function_of, material
+from navsym.proof.ladder import decide
+
+w = sp.Symbol("w", real=True)
+lam = sp.Symbol("lambda", real=True)
+beta = sp.Symbol("beta", positive=True)
+
+
+def of_claim(claim: Claim) -> Material:
+    statement = claim.derive()
+    return material(claim.id, statement, decide(statement), title=claim.title)
+
+
+def of_statement(name: str, statement: Statement) -> Material:
+    return material(f"sample:{name}", statement, decide(statement))
+
+
+def versine() -> Equation:
+    return Equation((1 - sp.cos(w)) / w**2, 2 * sp.sin(w / 2) ** 2 / w**2, {w: (-1, 1)})
+
+
+def lag() -> Equation:
+    return Equation(w - sp.sin(w), w - 2 * sp.sin(w / 2) * sp.cos(w / 2), {w: (-3, 3)})
+
+
+def rotation() -> Equation:
+    c, s = sp.cos(lam), sp.sin(lam)
+    printed = sp.Matrix([[c, s / beta], [-beta * s, c]])
+    half = lam / 2
+    other = sp.Matrix([[1 - 2 * sp.sin(half) ** 2, s / beta], [-beta * s, sp.cos(half) ** 2 - sp.sin(half) ** 2]])
+    return Equation(printed, other, {lam: (-3, 3), beta: (sp.Rational(1, 10), 2)})
+
+
+@cache
+def functions(real: str = "double") -> tuple[ExportedFunction, ...]:
+    regimes = (beyond.drift_holds_to_two_thirds_of_pi, beyond.drift_with_two_instants, beyond.drift_with_half_a_period)
+    return (
+        function_of([of_claim(weights.WEIGHTS[8])], real=real),
+        function_of([of_claim(weights.tilt_estimate_corrected)], real=real),
+        function_of([of_claim(claim) for claim in regimes], real=real, name="velocity_correction_y3"),
+        function_of([of_statement("versine", versine())], real=real),
+        function_of([of_statement("lag", lag())], real=real),
+        function_of([of_statement("rotation", rotation())], real=real),
+    )
+
+
+def by_name(name: str, real: str = "double") -> ExportedFunction:
+    return next(f for f in functions(real) if f.name.endswith(name))

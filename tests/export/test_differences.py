@@ -1,0 +1,54 @@
+"""``navsym diff``: equal is proved, different is shown at its worst point."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from navsym.cli.main import run
+
+
+def document(capsys, *words: str) -> tuple[int, dict]:
+    status = run(["diff", *words, "--json"])
+    return status, json.loads(capsys.readouterr().out)
+
+
+def test_two_forms_of_one_formula_are_proved_equal(capsys) -> None:
+    status, found = document(capsys, "cos(x)**2 - sin(x)**2", "cos(2*x)")
+    assert status == 0 and found["equal"] and found["differences"][0]["status"] == "EQUAL"
+
+
+def test_a_lost_sign_is_shown_where_it_costs_most(capsys) -> None:
+    status, found = document(capsys, "sin(x)", "0 - sin(x)", "--range", "x=0,pi/2")
+    (record,) = found["differences"]
+    assert status == 1 and record["status"] == "DIFFERENT"
+    assert record["worst"] == {"x": "pi/2"} and float(record["difference"][0]) == pytest.approx(2)
+
+
+def test_claim_files_are_compared_claim_by_claim(capsys, tmp_path: Path) -> None:
+    text = '[symbols]\na = "real"\n[[claim]]\nid = "one"\nleft = "{}"\nright = "a"\n'
+    old, new = tmp_path / "old.toml", tmp_path / "new.toml"
+    old.write_text(text.format("a + a"))
+    new.write_text(text.format("2*a") + '[[claim]]\nid = "two"\nleft = "a"\nright = "a"\n')
+    status, found = document(capsys, str(old), str(new))
+    assert status == 1
+    assert {r["name"]: r["status"] for r in found["differences"]} == {"one": "EQUAL", "two": "ONLY-NEW"}
+
+
+def test_exports_are_compared_by_their_formulas(capsys, tmp_path: Path) -> None:
+    for name in ("a", "b"):
+        words = ["export", f"weight=guaranteed_velocity:4.12.Phi3{'1' if name == 'a' else '2'}", "--no-run"]
+        assert run([*words, "--out", str(tmp_path / name), "--vectors", "4"]) == 0
+    capsys.readouterr()
+    status, found = document(capsys, str(tmp_path / "a"), str(tmp_path / "a"))
+    assert status == 0 and found["equal"]
+    status, found = document(capsys, str(tmp_path / "a"), str(tmp_path / "b"))
+    assert status == 1 and found["differences"][0]["status"] == "DIFFERENT"
+
+
+@pytest.mark.parametrize("words", [("x +", "x"), ("", "x"), ("x", "missing.toml"), ("x", "x", "--range", "x=1")])
+def test_bad_input_is_bad_input(capsys, words: tuple[str, ...]) -> None:
+    status, found = document(capsys, *words)
+    assert status == 2 and "expected" in found["error"]["message"]

@@ -1,0 +1,122 @@
+"""Every language that is here compiles without a warning, runs its vectors, and notices a corrupted operator."""
+
+from __future__ import annotations
+
+import re
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from navsym.export.package import Order, files_of
+from navsym.export.roundtrip import run_target
+from navsym.export.targets import TARGETS
+
+HERE = [name for name, target in TARGETS.items() if target.executable() is not None]
+QUICK = [name for name in HERE if name in ("c", "python", "javascript")]
+SLOW = [name for name in HERE if name not in QUICK and name != "casadi"]
+
+
+def exported(functions, language: str, folder: Path, count: int = 16) -> Path:
+    for name, text in files_of(functions, Order((TARGETS[language],), count=count)).items():
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+    return folder / language
+
+
+@pytest.mark.parametrize("language", HERE)
+def test_all_samples_stay_inside_their_enclosures(samples, language: str, tmp_path: Path) -> None:
+    outcome = run_target(exported(samples.functions(), language, tmp_path), TARGETS[language])
+    assert outcome.status == "verified", outcome.why
+    assert all(wrong == 0 for _, wrong, _ in outcome.functions.values())
+    assert len(outcome.functions) >= len(samples.functions()) - 2      # casadi leaves out what needs a helper
+
+
+@pytest.mark.parametrize(
+    "language",
+    [pytest.param(n, marks=[] if n == "c" else pytest.mark.slow) for n in HERE if "float" in TARGETS[n].reals],
+)
+def test_single_precision_stays_inside_its_enclosures(samples, language: str, tmp_path: Path) -> None:
+    outcome = run_target(exported(samples.functions("float"), language, tmp_path), TARGETS[language])
+    assert outcome.status == "verified", outcome.why
+
+
+@pytest.mark.skipif("c" not in HERE, reason="needs a C compiler")
+def test_sanitizers_find_nothing_in_the_c_code(samples, tmp_path: Path) -> None:
+    outcome = run_target(exported(samples.functions(), "c", tmp_path), TARGETS["c"], sanitize=True)
+    assert outcome.status == "verified", outcome.why
+
+
+def test_a_language_without_its_tool_is_not_called_verified(samples, tmp_path: Path, monkeypatch) -> None:
+    monkeypatch.setattr(shutil, "which", lambda name: None)
+    outcome = run_target(exported([samples.by_name("versine")], "rust", tmp_path), TARGETS["rust"])
+    assert outcome.status == "not executed"
+
+
+# -- corruption ---------------------------------------
+
+OTHER = {"+": "-", "-": "+", "*": "/", "/": "*"}
+SWAPS = {"sin(": "cos(", "cos(": "sin("}
+ASSIGNMENT = re.compile(r"^\s+(?:(?:const|let)\s+(?:double\s+|auto\s+)?)?[\w.\[\]: ]+ = .*|^\s{12,}.*,$")
+
+
+def corrupted(text: str, start: int) -> Iterator[tuple[str, str]]:
+    """(what, text with one operator or function changed) for every one after a place."""
+    place = start
+    for line in text[start:].splitlines(keepends=True):
+        if ASSIGNMENT.match(line) and "status" not in line and "Formula" not in line:
+            for found in re.finditer(r" ([-+*/]) |(?<![\w_])(?:sin|cos)\(", line):
+                old = found.group(0)
+                new = SWAPS.get(old) or f" {OTHER[found.group(1)]} "
+                at = place + found.start()
+                yield f"{line.strip()} : {old} -> {new}", text[:at] + new + text[at + len(old) :]
+        place += len(line)
+
+
+SOURCE_OF = {
+    "c": "{name}.c", "cpp": "navsym_functions.hpp", "python": "navsym_functions.py",
+    "javascript": "navsym_functions.mjs", "rust": "navsym_functions.rs", "fortran": "navsym_functions.f90",
+    "julia": "NavsymFunctions.jl", "octave": "{name}.m",
+}  # fmt: skip
+
+
+def survivors(function, language: str, tmp_path: Path) -> tuple[int, list[str]]:
+    """Number of corruptions of one function's source, and those that its vectors did not notice."""
+    folder = exported([function], language, tmp_path)
+    path = folder / SOURCE_OF[language].format(name=function.name)
+    original = path.read_text()
+    start = original.rindex(f"{function.name}(")
+    tried, left = 0, []
+    for what, text in corrupted(original, start):
+        path.write_text(text)
+        tried += 1
+        if run_target(folder, TARGETS[language]).status == "verified":
+            left.append(what)
+    path.write_text(original)
+    return tried, left
+
+
+@pytest.mark.parametrize("language", QUICK)
+def test_every_corrupted_operator_is_caught(samples, language: str, tmp_path: Path) -> None:
+    for name in ("Phi33",) if language == "python" else ("Phi33", "versine"):
+        tried, left = survivors(samples.by_name(name), language, tmp_path / name)
+        assert tried >= 3 and not left, left
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("language", QUICK + SLOW)
+def test_every_corrupted_operator_of_every_sample_is_caught(samples, language: str, tmp_path: Path) -> None:
+    for function in samples.functions():
+        _, left = survivors(function, language, tmp_path / function.name)
+        assert not left, left
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("real", ["double", "float"])
+def test_a_hundred_thousand_points_lie_inside_their_enclosures(samples, real: str, tmp_path: Path) -> None:
+    function = samples.by_name("Phi33", real)
+    outcome = run_target(exported([function], "c", tmp_path, 100_000), TARGETS["c"])
+    assert outcome.status == "verified", outcome.why
+    assert outcome.functions[function.name][0] >= 100_000

@@ -1,0 +1,148 @@
+"""What does not hold does not leave; what leaves stays in its folder."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+import sympy as sp
+
+from navsym.claims import CONFIRMED, OPEN, Bound, Equation, Finding, Property, Verdict
+from navsym.cli.main import run
+from navsym.errors import DomainError, NavsymError
+from navsym.export.folder import FolderError, write_folder
+from navsym.export.functions import RefusedError, function_of, material
+from navsym.export.names import function_name, identifier
+from navsym.export.package import Order, files_of
+from navsym.export.targets import chosen
+from navsym.proof.ladder import decide
+
+a = sp.Symbol("a", real=True)
+TRUE = Equation(sp.sin(2 * a), 2 * sp.sin(a) * sp.cos(a))
+
+
+def test_a_refuted_claim_names_its_correction(capsys, tmp_path: Path) -> None:
+    assert run(["export", "guaranteed_velocity:4.14.y2", "--out", str(tmp_path / "x"), "--json"]) == 2
+    error = json.loads(capsys.readouterr().out)["error"]
+    assert error["kind"] == "refused" and "export guaranteed_velocity:4.14.y2*" in error["message"]
+    assert not (tmp_path / "x").exists()
+
+
+def test_a_user_formula_that_is_wrong_is_refused(capsys, tmp_path: Path) -> None:
+    file = tmp_path / "mine.toml"
+    file.write_text('[symbols]\na = "real"\n[[claim]]\nid = "half"\nleft = "sin(2*a)"\nright = "2*sin(a)"\n')
+    assert run(["export", f"{file}:half", "--out", str(tmp_path / "x")]) == 2
+    assert "refuted" in capsys.readouterr().err
+
+
+def test_a_user_formula_that_holds_is_exported_and_checked(capsys, tmp_path: Path) -> None:
+    file = tmp_path / "mine.toml"
+    text = '[symbols]\nlambda = "real"\nT = ["0", "2"]\nt = ["0", "2"]\n[[claim]]\nid = "double"\n'
+    file.write_text(f'{text}left = "sin(2*lambda)*T*t"\nright = "2*t*T*sin(lambda)*cos(lambda)"\n')
+    out = tmp_path / "out"
+    assert run(["export", f"{file}:double", "--to", "c,python", "--out", str(out), "--vectors", "12", "--json"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert {row["language"]: row["status"] for row in document["languages"]} == {"c": "verified", "python": "verified"}
+    assert run(["check", str(out), "--json"]) == 0
+    rows = json.loads(capsys.readouterr().out)["checked"]
+    assert rows and all(row["status"] == "ACCEPTED" for row in rows)
+    assert {row["kind"] for row in rows} >= {"manifest", "code:c", "code:python", "identity"}
+
+
+def test_open_and_confirmed_claims_are_refused() -> None:
+    with pytest.raises(RefusedError, match="OPEN"):
+        material("m:1", TRUE, Verdict(OPEN, "none", evidence="not decided"))
+    with pytest.raises(RefusedError, match="allow-confirmed"):
+        material("m:1", TRUE, Verdict(CONFIRMED, "sampling"))
+    assert material("m:1", TRUE, Verdict(CONFIRMED, "sampling"), allow_confirmed=True).source.status == "CONFIRMED"
+
+
+def test_an_inequality_and_a_fact_have_nothing_to_compute() -> None:
+    for statement in (Bound(a**2, ">=", 0), Property(True, Finding(True, "by hand"))):
+        with pytest.raises(RefusedError, match="nothing to compute"):
+            material("m:1", statement, decide(statement))
+
+
+def test_regimes_with_a_gap_are_refused() -> None:
+    T = sp.Symbol("T", positive=True)
+    parts = [Equation(T, T, {T: (0, 1)}), Equation(T**2, T**2, {T: (2, 3)})]
+    with pytest.raises(DomainError, match="adjoin"):
+        function_of([material(f"m:{k}", s, decide(s)) for k, s in enumerate(parts)])
+
+
+@pytest.mark.parametrize("name", ["lambda", "for", "E", "I", "y0", "gamma", "t1", "pi", "class", "fn", "ω", "x'", "1a", "*/"])
+def test_every_name_becomes_one_that_all_languages_accept(name: str) -> None:
+    made = identifier(name)
+    assert made.isascii() and made.isidentifier() and made != "lambda"
+
+
+def test_names_differ_without_regard_to_case() -> None:
+    assert identifier("t", ["T"]).lower() != "t"
+    assert function_name("guaranteed_velocity:4.8*") == "guaranteed_velocity_4_8_corrected"
+
+
+def test_nothing_is_overwritten_unasked(tmp_path: Path) -> None:
+    write_folder(tmp_path / "e", {"c/a.c": "one"})
+    with pytest.raises(FolderError, match="--force"):
+        write_folder(tmp_path / "e", {"c/a.c": "two"})
+    write_folder(tmp_path / "e", {"c/a.c": "two"}, force=True)
+    assert (tmp_path / "e" / "c" / "a.c").read_text() == "two"
+
+
+@pytest.mark.parametrize("name", ["../a", "/etc/x", "c/../../a", "c\\a", "", ".hidden", "a\0b", "c//a"])
+def test_names_that_could_leave_the_folder_are_refused(tmp_path: Path, name: str) -> None:
+    with pytest.raises(FolderError):
+        write_folder(tmp_path / "e", {name: "x"}, force=True)
+
+
+def test_links_are_not_followed(tmp_path: Path) -> None:
+    outside = tmp_path / "outside"
+    outside.mkdir()
+    out = tmp_path / "e"
+    out.mkdir()
+    (out / "c").symlink_to(outside)
+    (out / "manifest.json").symlink_to(outside / "stolen")
+    for name in ("c/a.c", "manifest.json"):
+        with pytest.raises(FolderError, match="symbolic link"):
+            write_folder(out, {name: "x"}, force=True)
+    (tmp_path / "link").symlink_to(out)
+    with pytest.raises(FolderError, match="symbolic link"):
+        write_folder(tmp_path / "link", {"a": "x"})
+    assert not list(outside.iterdir())
+
+
+def test_a_changed_file_is_noticed(capsys, tmp_path: Path) -> None:
+    out = tmp_path / "e"
+    assert run(["export", "guaranteed_velocity:4.12.Phi31", "--to", "python", "--out", str(out), "--vectors", "8"]) == 0
+    capsys.readouterr()
+    source = out / "python" / "navsym_functions.py"
+    source.write_text(source.read_text() + "\n# touched\n")
+    assert run(["check", str(out), "--json"]) == 1
+    rows = json.loads(capsys.readouterr().out)["checked"]
+    assert any(row["kind"] == "manifest" and "hash" in row["why"] for row in rows)
+
+
+def test_a_comment_cannot_be_closed_by_a_title(samples) -> None:
+    function = function_of([material("m:1", TRUE, decide(TRUE), title='*/ int x; /* """ ??/')])
+    files = files_of([function], Order(tuple(chosen(["c", "cpp", "javascript"], "double")), count=4))
+    assert "*/ int x" not in "".join(text for name, text in files.items() if not name.endswith(".json"))
+
+
+@pytest.mark.parametrize("license_", ["", "MIT\n*/", "x" * 100, "Ünicode"])
+def test_a_licence_is_an_identifier(samples, license_: str) -> None:
+    with pytest.raises(DomainError, match="SPDX"):
+        files_of([samples.by_name("versine")], Order(tuple(chosen(["c"], "double")), license=license_, count=4))
+
+
+@pytest.mark.parametrize("argument", ["nothing", "guaranteed_velocity:", "guaranteed_velocity:9.9", "no_module:1", "x.toml:a"])
+def test_bad_arguments_are_bad_input(argument: str, tmp_path: Path, capsys) -> None:
+    assert run(["export", argument, "--out", str(tmp_path / "o")]) == 2
+    assert "expected" in capsys.readouterr().err
+
+
+def test_unknown_languages_are_named() -> None:
+    with pytest.raises(NavsymError, match="cobol"):
+        chosen(["cobol"], "double")
+    with pytest.raises(NavsymError, match="only double"):
+        chosen(["javascript"], "float")
