@@ -104,15 +104,14 @@ def overlapping() -> System:
 
 
 def free(name: str, size: int) -> sp.ImmutableMatrix:
-    """A symbolic matrix of determinant c_1 (c_1 = 0 is excluded), not triangular for size > 1."""
+    """A matrix of determinant c_1 (c_1 = 0 is excluded): full for size 2, triangular for more."""
     place = {"x": 0, "z": 3, "v": 6}[name]
     first, second, third = c[place : place + 3]
-    entries = {(0, 0): first}
-    if size > 1:
-        entries |= {(0, 1): first * second, (1, 0): third, (1, 1): 1 + second * third}
-    for extra in range(2, size):
-        entries |= {(extra, extra): sp.Integer(1), (extra, 0): second}
-    return sp.ImmutableMatrix(size, size, lambda r, s: entries.get((r, s), 0))
+    if size == 2:
+        return sp.ImmutableMatrix([[first, first * second], [third, 1 + second * third]])
+    return sp.ImmutableMatrix(
+        size, size, lambda r, s: (first if r == 0 else 1) if r == s else (r + 2 * s) % 3 if s > r else 0
+    )
 
 
 def flat(*matrices: sp.MatrixBase) -> list[sp.Expr]:

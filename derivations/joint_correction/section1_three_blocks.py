@@ -9,7 +9,15 @@ import sympy as sp
 from derivations.joint_correction.section1_chains import coefficients, theta_of
 from derivations.joint_correction.section1_systems import System, flat, free, k, overlapping, polynomial_of
 from navsym.claims import Equation, Finding, Property, claim
-from navsym.methods.observability_split import companion, corner, inverse, last_row, shift, unit_row
+from navsym.methods.observability_split import (
+    companion,
+    corner,
+    inverse,
+    last_row,
+    lowest_terms,
+    shift,
+    unit_row,
+)
 
 #: Splits i, j of the overlapping system (n = 4, m = 3) that have all three parts.
 CASES = ((2, 2), (1, 3))
@@ -168,8 +176,8 @@ def delta_relation():
         for r in range(4):
             changed = basis.as_mutable()
             changed[r, :] = target
-            delta.append(sp.cancel(changed.det(method="berkowitz") / det))
-        printed += list(sp.Matrix([delta]) * basis)
+            delta.append(changed.det(method="berkowitz") / det)
+        printed += list(lowest_terms(sp.Matrix([delta])) * basis)
         derived += list(target)
     return Equation(printed, derived)
 

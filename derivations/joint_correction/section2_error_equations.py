@@ -351,8 +351,8 @@ def omega_symbol():
     "2.scale.noise",
     expect=REFUTED,
     slip="paper",
-    reason="(2.6) and (2.8) use w_10^c, w_20^c and r^c without the index x, but the list of dimensionless quantities leaves "
-    "them out; with w_x10^c itself (2.6) would add a rate in 1/s to numbers",
+    reason="(2.6) and (2.8) use w_10^c, w_20^c and r^c without the index x, but the list of dimensionless "
+    "quantities leaves them out; with w_x10^c itself (2.6) would add a rate in 1/s to numbers",
 )
 def noise_symbols_printed():
     """The list of dimensionless quantities defines every symbol of (2.6) that differs from (2.1)-(2.5)."""

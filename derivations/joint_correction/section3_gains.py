@@ -16,7 +16,7 @@ from derivations.joint_correction.section1_systems import coefficients_of_polyno
 from derivations.joint_correction.section2_groups import mu, position, velocity, w1, w2
 from derivations.joint_correction.section3_algorithm import joint_error_matrix
 from navsym.claims import CERTIFIED, Equation, Finding, Property, claim
-from navsym.methods.observability_split import inverse
+from navsym.methods.observability_split import inverse, lowest_terms
 from navsym.models.inertial import EARTH, MU
 
 lam, lam_h = sp.symbols("lambda_c lambda_h", positive=True)
@@ -268,10 +268,9 @@ def link_removed_by_the_split():
     L = sp.Matrix.vstack(*(H[row, :] * F**power for row in (0, 1) for power in (0, 1, 2)))
     K = sp.zeros(6, 2)
     K[:3, 0] = K[3:, 1] = sp.Matrix(VELOCITY_GAINS)
-    gains = sp.Matrix(inverse("L", sp.ImmutableMatrix(L))) * L.subs(kappa, 0) * K
-    return Equation(
-        (p + lam) ** 6, (p * sp.eye(6) - F + gains * H).applyfunc(sp.cancel).det(method="berkowitz")
-    )
+    gains = lowest_terms(sp.Matrix(inverse("L", sp.ImmutableMatrix(L))) * L.subs(kappa, 0) * K)
+    errors = lowest_terms(F - gains * H)
+    return Equation((p + lam) ** 6, lowest_terms(sp.Matrix([polynomial_of(errors)]))[0])
 
 
 # The coupled position stage
