@@ -22,7 +22,12 @@ from navsym.claims.statement import Box
 from navsym.proof.balls import DEFAULT_BITS, UnsupportedError, enclose, exact_ball, precision, tape
 from navsym.proof.contacts import contact_order, end_contact, guessed_points
 from navsym.proof.exact_signs import angle_sign, bounded_terms, is_entire, multilinear_sign
-from navsym.proof.normal_form import OutsideLanguageError
+from navsym.proof.normal_form import (
+    OutsideLanguageError,
+    divisors_inside,
+    logarithms_inside,
+    radicands_inside,
+)
 from navsym.proof.products import as_product
 from navsym.proof.sampling import Range, ranges
 from navsym.proof.signs import UNKNOWN, Limits, Sign, SignProof, constant_sign, symbol_sign
@@ -58,7 +63,7 @@ def attempt(expression: sp.Expr, limits: Limits, wanted: Sign, budget: int, dept
     product = as_product(expression) if depth == 0 else None
     if product is not None:
         by_product = product_sign(product, limits, budget, depth)
-        if by_product.at_least(wanted):
+        if by_product.at_least(wanted) and is_defined(expression, limits, budget, depth):
             return replace(by_product, reason=f"product form {product}")
     by_factors = product_sign(expression, limits, budget, depth)
     if by_factors.at_least(wanted):
@@ -194,9 +199,11 @@ def inner_contact(expression: sp.Expr, limits: Limits, wanted: Sign, budget: int
 
 def monotone(expression: sp.Expr, limits: Limits, wanted: Sign, budget: int, depth: int) -> SignProof:
     """Reduce to the end of one range at which the expression is smallest."""
-    if expression.has(*JUMPING):
+    if expression.has(*JUMPING) or not is_defined(expression, limits, budget, depth):
         return UNKNOWN
     for symbol, limit in limits.items():
+        if limit.integer:
+            continue  # sympy simplifies derivatives by it, cos(2 pi n) = 1 say
         slope = sp.diff(expression, symbol)
         for direction, end in ((1, limit.lower), (-1, limit.upper)):
             if end is None:
@@ -216,6 +223,24 @@ def monotone(expression: sp.Expr, limits: Limits, wanted: Sign, budget: int, dep
                 exact = floor.exact and rising.exact
                 return SignProof(sign, f"monotone in {symbol}", floor.boxes + rising.boxes, exact)
     return UNKNOWN
+
+
+def is_defined(expression: sp.Expr, limits: Limits, budget: int, depth: int) -> bool:
+    """No divisor, radicand or argument of a logarithm leaves its range: the expression is continuous.
+
+    Factoring may cancel a pole, and so may a derivative: that of atan(tan(x)) is 1.
+    """
+
+    def reaches(inside: sp.Basic, wanted: Sign) -> bool:
+        own = {s: limits[s] for s in inside.free_symbols}
+        return attempt(inside, own, wanted, budget // 4, depth + 1).at_least(wanted)
+
+    divisors = dict.fromkeys(divisors_inside(expression))
+    return (
+        all(reaches(d, Sign.POSITIVE) or reaches(-d, Sign.POSITIVE) for d in divisors)
+        and all(reaches(r, Sign.NONNEGATIVE) for r in dict.fromkeys(radicands_inside(expression)))
+        and all(reaches(a, Sign.POSITIVE) for a in dict.fromkeys(logarithms_inside(expression)))
+    )
 
 
 def monotone_sign(floor: SignProof, rising: SignProof, limit: Range, direction: int) -> Sign:

@@ -149,6 +149,8 @@ def prove_equal(printed: sp.Expr, derived: sp.Expr, statement: Equation, sample:
         by_squares,
         by_derivative,
     )
+    if sample.points == 0:  # what exists nowhere is equal to everything
+        return sampled(sample, scope_of(printed - derived, statement.box), "equality")
     for rung in rungs:
         proof = rung(printed, derived, statement.box)
         if proof is not None:
@@ -258,7 +260,7 @@ def by_derivative(printed: sp.Expr, derived: sp.Expr, box: Box) -> Proof | None:
     if len(difference.free_symbols) != 1:
         return None
     (symbol,) = difference.free_symbols
-    if difference.has(sp.Abs, sp.sign, sp.Max, sp.Min, sp.atan2):
+    if symbol.is_integer or difference.has(sp.Abs, sp.sign, sp.Max, sp.Min, sp.atan2):
         return None
     reduction = reduce_to_zero(sp.diff(difference, symbol))
     if not reduction.zero or not smooth_on(difference, box):

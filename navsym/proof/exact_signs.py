@@ -22,6 +22,15 @@ def is_entire(expression: sp.Expr) -> bool:
     return isinstance(expression, ENTIRE) and all(is_entire(a) for a in expression.args)
 
 
+def is_polynomial(expression: sp.Expr) -> bool:
+    """True when the symbols occur in sums, products and whole powers only."""
+    if not expression.free_symbols or isinstance(expression, sp.Symbol):
+        return True
+    if isinstance(expression, sp.Pow):
+        return isinstance(expression.exp, sp.Integer) and expression.exp > 0 and is_polynomial(expression.base)
+    return isinstance(expression, (sp.Add, sp.Mul)) and all(is_polynomial(a) for a in expression.args)
+
+
 def bounded_terms(expression: sp.Expr, limits: Limits) -> SignProof:
     """A sum whose terms have exact least values: c sin(u) >= -|c|, c u**2 >= 0, c >= c."""
     least = [least_value(term) for term in sp.Add.make_args(expression)]
@@ -116,6 +125,8 @@ def corner_values(angle: sp.Expr, limits: Limits) -> list[sp.Expr] | None:
     None when the expression is not multilinear, the box is not bounded or it has many corners.
     """
     symbols = sorted(angle.free_symbols, key=str)
+    if not is_polynomial(angle):
+        return None  # expanding it could cancel a pole
     if len(symbols) > 4 or any(limits[s].lower is None or limits[s].upper is None for s in symbols):
         return None
     for monomial in linear_terms(angle):

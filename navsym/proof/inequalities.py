@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import sympy as sp
 from flint import arb
@@ -12,7 +13,7 @@ from navsym.claims.verdict import CERTIFIED, OPEN, PROVED, REFUTED, Verdict
 from navsym.errors import DomainError
 from navsym.proof.balls import UnsupportedError, tape
 from navsym.proof.bounds import Sign, SignProof, prove_sign
-from navsym.proof.equations import decide_equation, sampled
+from navsym.proof.equations import decide_equation, remaining_assumptions, sampled, with_sides
 from navsym.proof.normal_form import OutsideLanguageError, reduce_to_zero, vanishes_identically
 from navsym.proof.sampling import points, search_counterexample, value_at
 from navsym.proof.wording import decimal_ends, point_text, scope_of
@@ -36,16 +37,27 @@ def decide_bound(statement: Bound) -> Verdict:
     difference = sp.sympify(statement.printed, strict=True) - sp.sympify(statement.derived, strict=True)
     scope = scope_of(difference, statement.box)
     try:
-        return decide_difference(difference, statement.relation, statement.box, scope)
+        sides = [sp.sympify(side, strict=True) for side in (statement.printed, statement.derived)]
+        verdict = decide_difference(difference, statement.relation, statement.box, scope, sides)
+        if not verdict.status.holds:
+            return verdict
+        # Subtraction and the algebra may have cancelled what is not defined everywhere.
+        conditions = with_sides(reduce_to_zero(difference), *sides)
+        assumed = remaining_assumptions(conditions, Equation(*sides, statement.box))
+        return replace(verdict, assumptions=assumed)
     except (UnsupportedError, OutsideLanguageError) as error:
         return Verdict(OPEN, "none", scope, evidence=str(error))
 
 
-def decide_difference(difference: sp.Expr, relation: str, box: Box, scope: str) -> Verdict:
-    """Verdict of ``difference relation 0``: break it by a point, or prove its sign."""
-    sample = search_counterexample(difference, lambda ball: contradicts(ball, relation), box)
+def decide_difference(
+    difference: sp.Expr, relation: str, box: Box, scope: str, sides: Sequence[sp.Expr] = ()
+) -> Verdict:
+    """Verdict of ``difference relation 0``: break it by a point where the sides exist, or prove its sign."""
+    sample = search_counterexample(difference, lambda ball: contradicts(ball, relation), box, sides=sides)
+    if sample.points == 0:
+        return sampled(sample, scope, f"printed {relation} derived")
     if sample.counterexample is None and relation in ("<", ">", "!="):
-        exact = exact_zero_point(difference, box)
+        exact = exact_zero_point(difference, box, sides)
         if exact is not None:
             evidence = "the difference is exactly zero there"
             return Verdict(
@@ -78,12 +90,15 @@ def contradicts(ball: arb, relation: str) -> bool:
     return EXCLUDES[relation](ball)
 
 
-def exact_zero_point(difference: sp.Expr, box: Box) -> dict[str, str] | None:
+def exact_zero_point(difference: sp.Expr, box: Box, sides: Sequence[sp.Expr] = ()) -> dict[str, str] | None:
     """An exact point of the box at which the difference vanishes, proved by the normal form."""
-    program = tape(difference)
-    for point in points(sorted(difference.free_symbols, key=str), box, 24):
+    program, others = tape(difference), [tape(side) for side in sides]
+    symbols = sorted(difference.free_symbols | set().union(*(s.free_symbols for s in sides)), key=str)
+    for point in points(symbols, box, 24):
         ball = value_at(program, point)
         if not ball.is_finite() or not ball.contains(0):
+            continue
+        if not all(value_at(other, point).is_finite() for other in others):
             continue
         if vanishes_identically(difference.subs(point)):
             return dict(point_text(point))

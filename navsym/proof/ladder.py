@@ -76,6 +76,9 @@ def same_value(printed: object, found: object) -> bool:
     """Equality of exact values; True is not 1, and a float is never compared."""
     if isinstance(printed, float) or isinstance(found, float):
         raise TypeError("expected exact values in a property; got a float; use Fraction or Rational")
+    if isinstance(printed, (tuple, list)) and isinstance(found, (tuple, list)):
+        pairs = zip(printed, found, strict=False)
+        return len(printed) == len(found) and all(same_value(p, f) for p, f in pairs)
     return isinstance(printed, bool) == isinstance(found, bool) and printed == found
 
 

@@ -81,7 +81,10 @@ def ordered(nodes: set[sp.Basic]) -> list[sp.Basic]:
 def divisors_inside(expression: sp.Expr) -> list[sp.Basic]:
     """Bases of negative powers anywhere in the expression, arguments of functions included."""
     powers = ordered(expression.atoms(sp.Pow))
-    return [power.base for power in powers if power.exp.is_Rational and power.exp < 0]
+    found = [power.base for power in powers if power.exp.is_Rational and power.exp < 0]
+    found += [sp.cos(node.args[0]) for node in ordered(expression.atoms(sp.tan, sp.sec))]
+    found += [sp.sin(node.args[0]) for node in ordered(expression.atoms(sp.cot, sp.csc))]
+    return found + [sum(a**2 for a in node.args) for node in ordered(expression.atoms(sp.atan2))]
 
 
 def radicands_inside(expression: sp.Expr) -> list[sp.Basic]:
@@ -92,8 +95,10 @@ def radicands_inside(expression: sp.Expr) -> list[sp.Basic]:
 
 
 def logarithms_inside(expression: sp.Expr) -> list[sp.Basic]:
-    """Arguments of logarithms, which have to be positive."""
-    return [node.args[0] for node in ordered(expression.atoms(sp.log)) if not node.args[0].is_positive]
+    """Arguments of logarithms and bases of general powers, which have to be positive."""
+    found = [node.args[0] for node in ordered(expression.atoms(sp.log))]
+    found += [p.base for p in ordered(expression.atoms(sp.Pow)) if not p.exp.is_Rational]
+    return [argument for argument in found if not argument.is_positive]
 
 
 def describe(converter: Converter) -> str:

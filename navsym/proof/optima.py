@@ -91,6 +91,8 @@ def feasibility(statement: Optimum) -> Verdict:
         (x * h for x, h in zip(statement.dual, statement.regressors, strict=True)), sp.Integer(0)
     )
     start, end = statement.interval
+    if SHARE in sp.Tuple(polynomial, start, end).free_symbols:
+        return Verdict(OPEN, "none", evidence="the name share is taken by the position in the interval")
     box = {**statement.box, SHARE: (0, 1)}
     verdicts = []
     for side in (1 - polynomial, 1 + polynomial):

@@ -15,7 +15,8 @@ import sympy as sp
 from flint import arb
 
 from navsym.claims.statement import Box
-from navsym.proof.balls import Tape, enclose, exact_ball, tape
+from navsym.errors import DomainError
+from navsym.proof.balls import Tape, UnsupportedError, enclose, exact_ball, tape
 
 Point = dict[sp.Symbol, sp.Expr]
 
@@ -42,7 +43,7 @@ class Range:
         """Rigorous membership of an exact number."""
         if self.integer and not value.is_Integer:
             return False
-        if (self.nonzero and value == 0) or (self.open_lower and value == self.lower):
+        if (self.nonzero and exact_ball(value).contains(0)) or (self.open_lower and value == self.lower):
             return False
         below = self.lower is not None and value != self.lower and not exact_ball(value - self.lower) > 0
         above = self.upper is not None and value != self.upper and not exact_ball(self.upper - value) > 0
@@ -56,14 +57,35 @@ def range_of(symbol: sp.Symbol, box: Box) -> Range:
     upper = None if upper is None else sp.sympify(upper, strict=True)
     lower = None if lower is sp.S.NegativeInfinity else lower
     upper = None if upper is sp.S.Infinity else upper
+    refuse_declarations(symbol)
     integer, nonzero = bool(symbol.is_integer), bool(symbol.is_nonzero)
+    limits = Range(lower, upper, False, nonzero, integer)
     if symbol.is_positive and (lower is None or not exact_ball(lower) > 0):
-        return Range(sp.Integer(0), upper, True, True, integer)
-    if symbol.is_nonnegative and lower is None:
-        return Range(sp.Integer(0), upper, False, nonzero, integer)
-    if symbol.is_negative and upper is None:
-        return Range(lower, sp.Integer(0), False, True, integer)
-    return Range(lower, upper, False, nonzero, integer)
+        limits = Range(sp.Integer(0), upper, True, True, integer)
+    elif symbol.is_nonnegative and (lower is None or exact_ball(lower) < 0):
+        limits = Range(sp.Integer(0), upper, False, nonzero, integer)
+    elif symbol.is_nonpositive and (upper is None or exact_ball(upper) > 0):
+        limits = Range(lower, sp.Integer(0), False, nonzero, integer)
+    return refuse_empty(symbol, limits)
+
+
+def refuse_declarations(symbol: sp.Symbol) -> None:
+    """What a range cannot say: sympy would simplify by it, and points of the range would not obey it."""
+    strange = ("even", "odd", "prime", "composite", "irrational", "noninteger", "imaginary", "zero")
+    declared = [name for name in strange if symbol.assumptions0.get(name)]
+    if declared or not symbol.is_commutative or symbol.is_real is False:
+        what = ", ".join(declared) or "not a real number"
+        raise UnsupportedError(f"expected a real symbol or an integer one; got {symbol}: {what}; declare it so")
+
+
+def refuse_empty(symbol: sp.Symbol, limits: Range) -> Range:
+    """An empty range would make every statement true."""
+    if limits.lower is not None and limits.upper is not None:
+        width = exact_ball(limits.upper - limits.lower, 256)
+        if width < 0 or (limits.open_lower and width <= 0):
+            message = f"expected a lower end below the upper one; got {symbol} in [{limits.lower}, {limits.upper}]"
+            raise DomainError(f"{message}; do correct the range")
+    return limits
 
 
 def ranges(symbols: Sequence[sp.Symbol], box: Box) -> dict[sp.Symbol, Range]:

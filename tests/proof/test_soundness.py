@@ -12,7 +12,9 @@ import mpmath
 import pytest
 import sympy as sp
 
-from navsym.claims import CERTIFIED, PROVED, REFUTED, Bound, Equation
+from navsym.claims import CERTIFIED, PROVED, REFUTED, Bound, Equation, Finding, Property
+from navsym.errors import DomainError
+from navsym.proof.balls import UnsupportedError
 from navsym.proof.bounds import Sign, prove_sign
 from navsym.proof.ladder import decide
 
@@ -146,3 +148,88 @@ def test_conditions_inside_arguments_are_assumptions_too():
     assert verdict.status == PROVED and "x >= 0" in verdict.assumptions
     verdict = decide(Equation(sp.cos(1 / x) ** 2 + sp.sin(1 / x) ** 2, sp.Integer(1)))
     assert verdict.status == PROVED and "x != 0" in verdict.assumptions
+
+
+# -- holes found by reading, and what closed them ------------------------------------------------
+
+
+def holds(statement) -> bool:
+    return decide(statement).status in (PROVED, CERTIFIED)
+
+
+def test_a_derivative_that_lost_its_pole_does_not_make_a_function_monotone():
+    """The derivative of atan(tan(x)) is 1; all three looks at inner points lie left of pi/2."""
+    assert prove_sign(sp.atan(sp.tan(x)), {x: (0, sp.Rational(8, 5))}).sign == Sign.UNKNOWN
+
+
+@pytest.mark.parametrize(
+    ("expression", "range_"),
+    [
+        (sp.tan(x) * sp.cos(x), (sp.Rational(1, 10), 3)),
+        ((1 - sp.cos(x) ** 2) / sp.sin(x), (sp.Rational(1, 10), sp.pi)),
+        ((x**2 + x) / x, (sp.Rational(-1, 2), 1)),
+    ],
+)
+def test_a_pole_that_factoring_cancels_leaves_no_proved_sign(expression, range_):
+    assert not holds(Bound(expression, ">=", sp.Integer(0), {x: range_}))
+
+
+def test_bounds_list_what_their_sides_divide_by():
+    assert "cos(x) != 0" in decide(Bound(sp.tan(x) * sp.cos(x), ">=", sp.sin(x))).assumptions
+    assert "x != 0" in decide(Bound(x + 1 / x, ">=", 1 / x, {x: (0, 5)})).assumptions
+
+
+def test_a_point_where_a_side_does_not_exist_refutes_no_bound():
+    assert decide(Bound(sp.log(x) + x, ">=", sp.log(x), {x: (-1, 1)})).status != REFUTED
+    assert decide(Bound(1 / x + x, "!=", 1 / x, {x: (-1, 1)})).status != REFUTED
+
+
+def test_poles_and_powers_inside_arguments_are_assumptions():
+    inside = sp.tan(x)
+    verdict = decide(Equation(sp.sin(2 * inside), 2 * sp.sin(inside) * sp.cos(inside)))
+    assert "cos(x) != 0" in verdict.assumptions
+    y = sp.Symbol("y", real=True)
+    verdict = decide(Equation(sp.sin(2 * x**y), 2 * sp.sin(x**y) * sp.cos(x**y)))
+    assert "x > 0" in verdict.assumptions
+    verdict = decide(Equation(sp.atan2(x, y) * (x + 1), x * sp.atan2(x, y) + sp.atan2(x, y)))
+    assert "x**2 + y**2 != 0" in verdict.assumptions
+
+
+def test_what_exists_nowhere_is_not_proved_equal():
+    root = sp.sqrt(-1 - x**2)
+    assert not holds(Equation((root + x) ** 2, -1 - x**2 + 2 * x * root + x**2))
+    constant = sp.sqrt(1 - sp.sqrt(2))
+    assert not holds(Equation((constant + 1) ** 2, 2 - sp.sqrt(2) + 2 * constant))
+
+
+def test_dividing_by_a_hidden_zero_is_not_proved():
+    zero = sp.sqrt(3 + 2 * sp.sqrt(2)) - 1 - sp.sqrt(2)
+    assert not holds(Equation((zero**2 + x) / zero, zero + x / zero))
+
+
+@pytest.mark.parametrize("range_", [(3, 1), (sp.pi, 3)])
+def test_an_empty_range_is_refused_and_does_not_hang(range_):
+    with pytest.raises(DomainError):
+        decide(Bound(x, ">=", sp.Integer(0), {x: range_}))
+
+
+def test_a_positive_symbol_in_a_negative_range_is_refused():
+    with pytest.raises(DomainError):
+        decide(Bound(T, "<=", sp.Integer(0), {T: (-2, -1)}))
+
+
+def test_ranges_obey_what_the_symbol_was_declared_to_be():
+    low, high = sp.Symbol("low", nonpositive=True), sp.Symbol("high", nonnegative=True)
+    assert decide(Bound(low, "<=", sp.Integer(0))).status == PROVED
+    assert decide(Bound(high, ">=", sp.Rational(-1, 2), {high: (-1, 1)})).status == PROVED
+
+
+@pytest.mark.parametrize("declared", [{"even": True}, {"commutative": False}, {"imaginary": True}])
+def test_declarations_that_a_range_cannot_hold_are_refused(declared):
+    a, b = sp.symbols("a b", **declared)
+    with pytest.raises(UnsupportedError):
+        decide(Equation(a * b, b * a + a - b))
+
+
+def test_values_inside_tuples_are_compared_like_values():
+    assert decide(Property((True,), Finding((1,), "count"))).status == REFUTED
