@@ -11,7 +11,7 @@ import math
 import numba
 import numpy as np
 
-from navsym.numeric.mixture_filter import COMPILE, LOG_TWO_PI
+from navsym.numeric.mixture_filter import COMPILE, LOG_TWO_PI, aligned
 from navsym.numeric.mixture_lanes import load, spread, store
 
 
@@ -163,11 +163,11 @@ def run_eight(  # type: ignore[no-untyped-def]
     """
     runs, T, p = z.shape
     m, n = F.shape[1], F.shape[2]
-    x, P, y, S = np.zeros(m * n * 8), np.zeros(m * n * n * 8), np.zeros(m * n * 8), np.zeros(m * n * n * 8)
-    logs, totals, weights, mixing = np.zeros(m * 8), np.zeros(m * 8), np.zeros(m * 8), np.zeros(m * m * 8)
-    ll, zl, off = np.zeros(m * 8), np.zeros(p * 8), np.zeros(m * n * 8)
-    scratch = np.zeros((n * n + 2 * n + 2) * 8)
-    now_mean, now = np.zeros(n * 8), np.zeros(n * n * 8)
+    x, P, y, S = aligned(m * n * 8), aligned(m * n * n * 8), aligned(m * n * 8), aligned(m * n * n * 8)
+    logs, totals, weights, mixing = aligned(m * 8), aligned(m * 8), aligned(m * 8), aligned(m * m * 8)
+    ll, zl, off = aligned(m * 8), aligned(p * 8), aligned(m * n * 8)
+    scratch = aligned((n * n + 2 * n + 2) * 8)
+    now_mean, now = aligned(n * 8), aligned(n * n * 8)
     total_log = np.zeros(8)
     for i in range(m):
         for lane in range(8):

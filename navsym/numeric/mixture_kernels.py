@@ -11,7 +11,7 @@ import math
 import numba
 import numpy as np
 
-from navsym.numeric.mixture_filter import COMPILE, correct_group, mix_group, moments, predict_group
+from navsym.numeric.mixture_filter import COMPILE, aligned, correct_group, mix_group, moments, predict_group
 
 #: Branching and folding by number, because compiled code has no words.
 CROSS, MIXED, OWN = 0, 1, 2
@@ -133,8 +133,9 @@ def mix_quickly(modes, logs, transition, totals, weights, terms):  # type: ignor
             total += terms[s] * transition[s, column]
         if not total > 1e-250:
             return False
+        inverse = 1.0 / total
         for s in range(modes):
-            weights[((i // 8) * modes + s) * 8 + i % 8] = terms[s] * transition[s, column] / total
+            weights[((i // 8) * modes + s) * 8 + i % 8] = terms[s] * transition[s, column] * inverse
         if i < modes:
             totals[i] = top + math.log(total)
     return True
@@ -192,16 +193,16 @@ def run_bank(  # type: ignore[no-untyped-def]
     T, m, n, p = z.shape[0], F.shape[1], F.shape[2], z.shape[1]
     size = max(widest, m)
     groups = (size + 7) // 8
-    x, P = np.zeros(groups * n * 8), np.zeros(groups * n * n * 8)
-    nx, nP = np.zeros(groups * n * 8), np.zeros(groups * n * n * 8)
-    lanes = (np.zeros(groups * n * n * 8), np.zeros(groups * n * n * 8), np.zeros(groups * p * n * 8),
-             np.zeros(groups * p * 8))
-    zl, came = np.zeros(groups * p * 8), np.zeros(p, dtype=np.bool_)
-    scratch = np.zeros((n * n + 2 * n + 2) * 8)
-    ahead, totals = np.zeros((size, m)), np.zeros(groups * 8)
-    weights, logs, ll = np.zeros(groups * 8), np.zeros(groups * 8), np.zeros(groups * 8)
-    mixing, terms = np.zeros(groups * size * 8 if branching == 1 else 8), np.zeros(size)
-    off = np.zeros(2 * size * n * 8 if branching == 1 else 8)
+    x, P = aligned(groups * n * 8), aligned(groups * n * n * 8)
+    nx, nP = aligned(groups * n * 8), aligned(groups * n * n * 8)
+    lanes = (aligned(groups * n * n * 8), aligned(groups * n * n * 8), aligned(groups * p * n * 8),
+             aligned(groups * p * 8))
+    zl, came = aligned(groups * p * 8), np.zeros(p, dtype=np.bool_)
+    scratch = aligned((n * n + 2 * n + 3) * 8)
+    ahead, totals = np.zeros((size, m)), aligned(groups * 8)
+    weights, logs, ll = aligned(groups * 8), aligned(groups * 8), aligned(groups * 8)
+    mixing, terms = aligned(groups * size * 8 if branching == 1 else 8), aligned(size)
+    off = aligned(size * n * 8 if branching == 1 else 8)
     current_mean, current = np.zeros(n), np.zeros((n, n))
 
     known = branching == 2 or not common
@@ -228,8 +229,6 @@ def run_bank(  # type: ignore[no-untyped-def]
             if not (known and mix_quickly(m, logs, pk, totals, mixing, terms)):
                 predict_modes(sources, known, m, logs, lp, ahead, terms)
                 mixing_weights(sources, m, ahead, totals, mixing, terms)
-            for g in range((m + 7) // 8):
-                mix_group(g, n, sources, mixing, x, P, nx, nP, off)
         else:
             predict_modes(sources, known, m, logs, lp, ahead, terms)
             for b in range(branches):
@@ -243,6 +242,9 @@ def run_bank(  # type: ignore[no-untyped-def]
         for g in range(used):
             for lane in range(8):
                 ll[g * 8 + lane] = 0.0
+            if branching == 1:
+                # Mixed, predicted and corrected group by group, while its numbers are near.
+                mix_group(g, n, sources, mixing, x, P, nx, nP, off)
             predict_group(g, n, lanes[0], lanes[1], nx, nP, scratch)
             if not correct_group(g, n, p, came, lanes[2], lanes[3], zl, nx, nP, scratch, ll):
                 return k + 1
