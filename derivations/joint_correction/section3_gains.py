@@ -261,16 +261,21 @@ def decay_for_a_small_link():
 def link_removed_by_the_split():
     """The two-stage split of section 1 removes the link: (p + lambda_c)^6 for every kappa^2 != 1.
 
-    The gains are L^-1 L_0 K, with L of the chains and L_0 = L at kappa = 0.
+    The gains are L^-1 L_0 K, with L of the chains and L_0 = L at kappa = 0. In chain coordinates the errors
+    have then the same matrix for every kappa, and at kappa = 0 it has the polynomial (p + lambda_c)^6.
     """
     F, H, _ = velocity().linear()
     H = H.subs(EARTH[2], kappa / MU)
-    L = sp.Matrix.vstack(*(H[row, :] * F**power for row in (0, 1) for power in (0, 1, 2)))
+    L = sp.ImmutableMatrix.vstack(*(H[row, :] * F**power for row in (0, 1) for power in (0, 1, 2)))
+    L_0 = L.subs(kappa, 0)
+    back, back_0 = inverse("L", L), inverse("L_0", L_0)
     K = sp.zeros(6, 2)
     K[:3, 0] = K[3:, 1] = sp.Matrix(VELOCITY_GAINS)
-    gains = lowest_terms(sp.Matrix(inverse("L", sp.ImmutableMatrix(L))) * L.subs(kappa, 0) * K)
-    errors = lowest_terms(F - gains * H)
-    return Equation((p + lam) ** 6, lowest_terms(sp.Matrix([polynomial_of(errors)]))[0])
+    free = F - K * H.subs(kappa, 0)
+    repaired = L * (F - lowest_terms(back * L_0 * K) * H) * back
+    return Equation(
+        [(p + lam) ** 6, *(L_0 * free * back_0)], [polynomial_of(free), *lowest_terms(sp.Matrix(repaired))]
+    )
 
 
 # The coupled position stage
