@@ -29,6 +29,7 @@ FLOORS = {
     "methods": 4,
     "export": 5,
     "report": 5,
+    "testing": 5,
     "cli": 6,
     "__main__": 7,
 }
@@ -47,6 +48,7 @@ OWNERS: dict[str, dict[str, str]] = {
         "navsym/numeric/casadi_functions.py": "the bridge from expressions to fast functions",
         "navsym/export": "printed code starts from an expression",
         "navsym/report": "formulas as LaTeX and MathML",
+        "navsym/testing": "strategies of expressions",
         "derivations": "the derivations themselves",
     },
     "flint": {
@@ -66,6 +68,7 @@ OWNERS: dict[str, dict[str, str]] = {
         "navsym/export": "test vectors",
         "navsym/report": "plots",
         "navsym/cli": "arrays in documents",
+        "navsym/testing": "strategies of arrays",
     },
     "scipy": {
         "navsym/numeric": "reference algorithms beside our own",
@@ -98,6 +101,7 @@ OWNERS: dict[str, dict[str, str]] = {
     "dask": {"navsym/cli/sweep.py": "sweeps on a cluster"},
     "distributed": {"navsym/cli/sweep.py": "sweeps on a cluster"},
     "pyarrow": {"navsym/cli/sweep.py": "tables of sweeps"},
+    "hypothesis": {"navsym/testing": "strategies for users' own tests"},
     "rasterio": {"navsym/text": "GeoTIFF maps"},
     "pooch": {"navsym/text": "data sets, cached and checked", "navsym/cli/data.py": "the verb data"},
 }

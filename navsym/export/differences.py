@@ -91,16 +91,18 @@ def common_box(old: Formula, new: Formula) -> dict[sp.Symbol, tuple[Any, Any]]:
 def larger(a: Any, b: Any) -> Any:
     if a is None or b is None:
         return b if a is None else a
-    return a if enclose(sp.sympify(a - b), {}) >= 0 else b
+    return a if enclose(sp.sympify(a - b, strict=True), {}) >= 0 else b
 
 
 def smaller(a: Any, b: Any) -> Any:
     if a is None or b is None:
         return b if a is None else a
-    return b if enclose(sp.sympify(a - b), {}) >= 0 else a
+    return b if enclose(sp.sympify(a - b, strict=True), {}) >= 0 else a
 
 
-def worst_point(difference: sp.Expr, box: Mapping[Any, Any]) -> tuple[dict[sp.Symbol, sp.Expr] | None, arb | None]:
+def worst_point(
+    difference: sp.Expr, box: Mapping[Any, Any]
+) -> tuple[dict[sp.Symbol, sp.Expr] | None, arb | None]:
     """The sampled point where two formulas are farthest apart, with the difference enclosed there."""
     generator = random.Random(0)
     symbols = sorted(difference.free_symbols, key=lambda s: s.name)
@@ -116,9 +118,13 @@ def worst_point(difference: sp.Expr, box: Mapping[Any, Any]) -> tuple[dict[sp.Sy
 def random_in(s: sp.Symbol, box: Mapping[Any, Any], generator: random.Random) -> sp.Expr:
     """An exact number of the range, short enough to read; ends and quarters are likely."""
     limits = range_of(s, box)
-    low = limits.lower if limits.lower is not None else (limits.upper - 10 if limits.upper is not None else -10)
+    low = (
+        limits.lower if limits.lower is not None else (limits.upper - 10 if limits.upper is not None else -10)
+    )
     high = limits.upper if limits.upper is not None else low + 20
-    share = sp.Rational(generator.choice([1, 4, *range(4), *(generator.randint(0, 100) for _ in range(12))]), 100)
+    share = sp.Rational(
+        generator.choice([1, 4, *range(4), *(generator.randint(0, 100) for _ in range(12))]), 100
+    )
     if generator.random() < 0.2:
         share = sp.Rational(generator.randint(0, 4), 4)
     value = low + (high - low) * share
@@ -197,7 +203,9 @@ def of_export(folder: Path) -> dict[str, Formula]:
     except NavsymError:
         raise
     except (ValueError, KeyError, TypeError, AttributeError):
-        raise DomainError("expected a manifest of navsym export; got something else; do export again", where=where) from None
+        raise DomainError(
+            "expected a manifest of navsym export; got something else; do export again", where=where
+        ) from None
 
 
 def exact_ends(record: Mapping[str, Any]) -> tuple[Any, Any]:

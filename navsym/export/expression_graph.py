@@ -25,7 +25,7 @@ UNARY: dict[type, str] = {
     sinc: "sinc", expm1: "expm1", x_minus_sin: "x_minus_sin",
 }  # fmt: skip
 BINARY: dict[type, str] = {sp.atan2: "atan2", sp.Max: "max", sp.Min: "min"}
-MULTIPLES = 16      # above it an angle is computed by itself
+MULTIPLES = 16  # above it an angle is computed by itself
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,7 +123,7 @@ class Builder:
         self.nodes: list[Node] = []
         self.place: dict[Node, int] = {}
         self.known: dict[sp.Basic, int] = {}
-        self.steps: dict[sp.Expr, sp.Rational] = {}      # direction of an angle -> common step
+        self.steps: dict[sp.Expr, sp.Rational] = {}  # direction of an angle -> common step
 
     def put(self, op: str, *args: int, value: Any = None) -> int:
         """The place of an operation, an old one when it is already there."""
@@ -197,7 +197,7 @@ class Builder:
         size, dyadic = abs(coefficient), is_dyadic(coefficient)
         scale, divisor = (size, sp.S.One) if dyadic or not size.is_Rational else (size.p, sp.Integer(size.q))
         if scale != 1 or not above:
-            above.insert(0, self.number(sp.sympify(scale)))
+            above.insert(0, self.number(sp.sympify(scale, strict=True)))
         if divisor != 1:
             below.insert(0, self.number(divisor))
         result = self.times(above)
@@ -236,7 +236,7 @@ class Builder:
         """Find the directions whose multiples occur more than once, and their common step."""
         found: dict[sp.Expr, set[sp.Rational]] = {}
         for e in expressions:
-            for node in sp.sympify(e).atoms(sp.sin, sp.cos):
+            for node in sp.sympify(e, strict=True).atoms(sp.sin, sp.cos):
                 coefficient, direction = direction_of(node.args[0])
                 found.setdefault(direction, set()).add(abs(coefficient))
         for direction, coefficients in found.items():

@@ -137,16 +137,14 @@ def factored(expression: sp.Expr) -> sp.Expr | None:
     where two of them vanish the rest is factored, so that 1 - c and 1 + c become squares of half
     angles. None when the expression is not of this kind.
     """
-    expression = sp.sympify(expression).replace(
+    expression = sp.sympify(expression, strict=True).replace(
         lambda n: type(n) in QUOTIENTS, lambda n: QUOTIENTS[type(n)](*n.args)
     )
     angle = base_angle(expression)
     if angle is None:
         return None
-    s, c = sp.symbols("navsym_s navsym_c")      # dummies would order themselves by their history
-    whole = expression.replace(
-        lambda n: isinstance(n, (sp.sin, sp.cos)), lambda n: multiple(n, angle, s, c)
-    )
+    s, c = sp.symbols("navsym_s navsym_c")  # dummies would order themselves by their history
+    whole = expression.replace(lambda n: isinstance(n, (sp.sin, sp.cos)), lambda n: multiple(n, angle, s, c))
     above, below = (reduced(part, s, c) for part in sp.fraction(sp.together(whole)))
     if not (above and below):
         return None
@@ -194,9 +192,7 @@ def reduced(part: sp.Expr, s: sp.Symbol, c: sp.Symbol) -> tuple[sp.Expr, sp.Expr
 
 def whole_again(quotient: sp.Expr, angle: sp.Expr, s: sp.Symbol, c: sp.Symbol) -> sp.Expr:
     """s and c back to functions; 1 - c and 1 + c as squares of half angles."""
-    quotient = quotient.replace(
-        lambda n: isinstance(n, sp.Add), lambda n: half_angle(n, angle, c)
-    )
+    quotient = quotient.replace(lambda n: isinstance(n, sp.Add), lambda n: half_angle(n, angle, c))
     return quotient.subs({s: sp.sin(angle), c: sp.cos(angle)}, simultaneous=True)
 
 

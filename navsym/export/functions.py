@@ -22,12 +22,12 @@ from navsym.export.forms import factored, safe
 from navsym.export.names import function_name, identifier
 from navsym.export.rounding import ARITHMETICS, BITS, LIBRARY, Arithmetic, Uniform, analyse, uniform_bound
 from navsym.proof.balls import enclose, precision
-from navsym.proof.normal_form import OutsideLanguageError, reduce_to_zero
+from navsym.proof.normal_form import OutsideLanguageError, reduce_to_zero, vanishes_identically
 from navsym.proof.sampling import range_of
 from navsym.proof.wording import text_of
 
-SMALLEST = {"double": 2.0**-60, "float": 2.0**-20}      # stands for an open end at zero
-LARGE = 1000.0            # of a symbol without a range, for vectors and bounds
+SMALLEST = {"double": 2.0**-60, "float": 2.0**-20}  # stands for an open end at zero
+LARGE = 1000.0  # of a symbol without a range, for vectors and bounds
 MOST_OUTPUTS = 400
 SAMPLES = 12
 
@@ -137,7 +137,9 @@ def require_exportable(claim: str, verdict: Verdict, correction: str | None, all
         raise RefusedError(f"expected a claim that holds; got {claim}, which is refuted; {advice}")
     if verdict.status == CONFIRMED:
         advice = "add --allow-confirmed if samples are enough for you"
-        raise RefusedError(f"expected a proved claim; got {claim}, which is only CONFIRMED by samples; {advice}")
+        raise RefusedError(
+            f"expected a proved claim; got {claim}, which is only CONFIRMED by samples; {advice}"
+        )
     raise RefusedError(
         f"expected a proved claim; got {claim}, which is {verdict.status} ({verdict.evidence[:160]}); prove it first"
     )
@@ -156,7 +158,9 @@ def results_of(statement: Statement, claim: str) -> list[tuple[Output, list[sp.E
         parts += [("instants", statement.support), ("dual", statement.dual)]
         return [entries(side, name) for name, side in parts]
     kind = "an inequality" if isinstance(statement, Bound) else "a fact"
-    raise RefusedError(f"expected an equation or an optimum; got {claim}, {kind}; there is nothing to compute")
+    raise RefusedError(
+        f"expected an equation or an optimum; got {claim}, {kind}; there is nothing to compute"
+    )
 
 
 def entries(side: Any, name: str) -> tuple[Output, list[sp.Expr]]:
@@ -205,7 +209,7 @@ def inside(end: Any, direction: int, real: str = "double") -> float:
     """The number of the type nearest to an exact end on its inner side (1: not below it, -1: not above)."""
     kind = np.float32 if real == "float" else np.float64
     ball = enclose(sp.sympify(end, strict=True), {}, 200)
-    value = kind(float(sp.N(sp.sympify(end), 40)))
+    value = kind(float(sp.N(sp.sympify(end, strict=True), 40)))
     while (ball > float(value)) if direction > 0 else (ball < float(value)):
         value = np.nextafter(value, kind(direction * np.inf))
     return float(value)
@@ -251,7 +255,9 @@ def material(
     return Material(claim, results, box, source)
 
 
-def function_of(parts: Sequence[Material], *, real: str = "double", name: str | None = None) -> ExportedFunction:
+def function_of(
+    parts: Sequence[Material], *, real: str = "double", name: str | None = None
+) -> ExportedFunction:
     """The function of one claim, or of several regimes that follow each other in one parameter."""
     name = name or function_name("_then_".join(part.claim for part in parts))
     parts, switch_symbol = in_order(parts)
@@ -262,7 +268,14 @@ def function_of(parts: Sequence[Material], *, real: str = "double", name: str | 
     arithmetic = ARITHMETICS[real]
     outputs, padded = common_outputs(parts)
     pieces = tuple(
-        piece_of(part, formulas, inputs, arithmetic, limit_of(part, switch_symbol, k == len(parts) - 1, real), switch_symbol)
+        piece_of(
+            part,
+            formulas,
+            inputs,
+            arithmetic,
+            limit_of(part, switch_symbol, k == len(parts) - 1, real),
+            switch_symbol,
+        )
         for k, (part, formulas) in enumerate(zip(parts, padded, strict=True))
     )
     places = {i.symbol: k for k, i in enumerate(inputs)}
@@ -280,8 +293,10 @@ def in_order(parts: Sequence[Material]) -> tuple[list[Material], sp.Symbol | Non
     (symbol,) = symbols
     ordered = sorted(parts, key=lambda part: inside(part.box[symbol][0], 1))
     for before, after in zip(ordered, ordered[1:], strict=False):
-        if sp.simplify(before.box[symbol][1] - after.box[symbol][0]) != 0:
-            raise DomainError(f"expected regimes that adjoin; got a gap before {after.claim}; do add the missing one")
+        if not vanishes_identically(before.box[symbol][1] - after.box[symbol][0]):
+            raise DomainError(
+                f"expected regimes that adjoin; got a gap before {after.claim}; do add the missing one"
+            )
     return ordered, symbol
 
 
@@ -306,9 +321,13 @@ def common_outputs(parts: Sequence[Material]) -> tuple[tuple[Output, ...], list[
         sizes = [part.results[k][0].shape for part in parts]
         shape = max(sizes, key=lambda s: int(np.prod(s, dtype=int)))
         if any(len(s) != len(shape) or (len(s) != 1 and s != shape) for s in sizes):
-            raise ShapeError(f"expected {name} of one shape in all regimes; got several; do export them singly")
+            raise ShapeError(
+                f"expected {name} of one shape in all regimes; got several; do export them singly"
+            )
         outputs.append(Output(name, shape))
-        columns.append([part.results[k][1] + [sp.S.Zero] * (outputs[k].size - len(part.results[k][1])) for part in parts])
+        columns.append(
+            [part.results[k][1] + [sp.S.Zero] * (outputs[k].size - len(part.results[k][1])) for part in parts]
+        )
     return tuple(outputs), [[e for column in columns for e in column[p]] for p in range(len(parts))]
 
 
@@ -325,7 +344,9 @@ def piece_of(
     box = [(i.test_low, i.test_high) for i in inputs]
     if switch is not None:
         k = symbols.index(switch)
-        low, high = (inside(end, d, arithmetic.name) for end, d in zip(part.box[switch], (1, -1), strict=True))
+        low, high = (
+            inside(end, d, arithmetic.name) for end, d in zip(part.box[switch], (1, -1), strict=True)
+        )
         box[k] = (max(box[k][0], low), min(box[k][1], high))
     ranges = {i.symbol: (i.low, i.high) for i in inputs}
     forms = [best_form(formula, symbols, ranges, box, arithmetic) for formula in formulas]
@@ -359,7 +380,10 @@ def best_form(
     other = safe(nicer, ranges)
     graphs = [build([form], symbols, share=False) for form in (printed, other)]
     costs = [lost_digits(graph, box, arithmetic) + 0.1 * graph.operations().total() for graph in graphs]
-    better = costs[1] < costs[0] - 0.5 and tie_to_formula(graphs[1], [formula]) in ("identical", "normal form")
+    better = costs[1] < costs[0] - 0.5 and tie_to_formula(graphs[1], [formula]) in (
+        "identical",
+        "normal form",
+    )
     return other if better else printed
 
 

@@ -167,7 +167,7 @@ def drop_dependent(
     rest = problem.functional[k] - sum((c * problem.functional[j] for j, c in pairs), sp.S.Zero)
     if decide(Equation(rest, sp.S.Zero)).status is not PROVED:
         direction = {j: -c for j, c in pairs} | {k: sp.S.One}
-        words = ", ".join(to_text(sp.sympify(direction.get(j, 0))) for j in range(len(problem.functional)))
+        words = ", ".join(to_text(sp.sympify(direction.get(j, 0), strict=True)) for j in range(len(problem.functional)))
         raise NotEstimableError(
             f"functional: expected one that the measurements determine; got one that changes along the null "
             f"direction [{words}] which no measurement shows; estimate another combination"

@@ -16,17 +16,18 @@ import numpy as np
 import sympy as sp
 from flint import arb
 
-from navsym.claims import OPEN, PROVED, Optimum, Verdict
+from navsym.claims import OPEN, PROVED, Equation, Optimum, Verdict
 from navsym.methods.phases_family import Family, U
 from navsym.methods.phases_polynomial import is_monomial, monomial_weights, power_law_dual
 from navsym.methods.phases_scan import Pattern, Span, pattern_of, sample
 from navsym.proof.balls import enclose
 from navsym.proof.enclosure import rational
-from navsym.proof.equations import combine
-from navsym.proof.ladder import decide_within
-from navsym.proof.optima import SHARE, constraints, equal_values
+from navsym.proof.equations import combine, decide_equation
+from navsym.proof.ladder import DEFAULT_MEGABYTES, decide_within
+from navsym.proof.optima import SHARE, constraints, equal_values, feasibility, instants
 from navsym.proof.optimality_polish import Polished, polish
 from navsym.proof.products import as_product
+from navsym.proof.sandbox import Exhausted, run_limited
 
 BITS = 320
 GOAL = 1e-60
@@ -267,22 +268,44 @@ def weights_of(
 
 
 def proved(family: Family, guess: Closed, lower: sp.Expr, upper: sp.Expr, seconds: float) -> Verdict:
-    """The ladder's verdict on the pair for all T between the ends; one measurement only."""
-    if len(family.rows) != 1:
-        return Verdict(OPEN, "none", evidence="several measurements: pairs are proved for one")
-    sigma = family.sigma[0]
+    """The ladder's verdict on the pair for all T between the ends."""
     # Lengths are positive: at T = 0 itself, the end of an open range, weights may be infinite.
     T = sp.Symbol(family.parameter.name, positive=True)
-    put = lambda e: sp.sympify(e).subs(family.parameter, T)  # noqa: E731
-    statement = Optimum(
-        regressors=family.rows[0], functional=family.functional, variable=U, interval=(sp.S.Zero, T),
-        dual=tuple(put(x / sigma) for x in guess.dual), support=tuple(map(put, guess.places)),
-        weights=tuple(map(put, guess.weights)), value=put(guess.value / sigma), box={T: (lower, upper)},
-    )  # fmt: skip
-    if is_polynomial(statement):
-        return decide_polynomial(statement)
-    outcome = decide_within(statement, seconds)
-    return outcome
+    put = lambda e: sp.sympify(e, strict=True).subs(family.parameter, T)  # noqa: E731
+    statements = [
+        Optimum(
+            regressors=tuple(h / sigma for h in row), functional=family.functional, variable=U,
+            interval=(sp.S.Zero, T), dual=tuple(map(put, guess.dual)), support=tuple(map(put, guess.places)),
+            weights=tuple(put(w * family.sigma[k]) for w, k in zip(guess.weights, guess.panels, strict=True)),
+            value=put(guess.value), box={T: (lower, upper)},
+        )  # fmt: skip
+        for row, sigma in zip(family.rows, family.sigma, strict=True)
+    ]
+    if len(statements) > 1:
+        outcome = run_limited(decide_jointly, (statements, guess.panels), seconds, DEFAULT_MEGABYTES)
+        return Verdict(OPEN, "none", evidence="stopped") if isinstance(outcome, Exhausted) else outcome
+    if is_polynomial(statements[0]):
+        return decide_polynomial(statements[0])
+    return decide_within(statements[0], seconds)
+
+
+def decide_jointly(statements: Sequence[Optimum], panels: Sequence[int]) -> Verdict:
+    """The four conditions for several measurements, each statement with the regressors of one over its bound."""
+    first = statements[0]
+    sums = tuple(
+        sum(
+            (
+                w * statements[k].regressors[j].subs(first.variable, at)
+                for w, at, k in zip(first.weights, first.support, panels, strict=True)
+            ),
+            sp.S.Zero,
+        )
+        for j in range(len(first.functional))
+    )
+    balance = decide_equation(Equation(sums, tuple(first.functional), first.box))
+    feasible_ = [feasibility(statement) for statement in statements]
+    verdict = combine([balance, instants(first), *feasible_, equal_values(first)])
+    return replace(verdict, method=f"exact primal-dual pair ({verdict.method})")
 
 
 # -- polynomials, where the share of the interval is the only variable ----------------------------

@@ -88,7 +88,10 @@ def exact_root(expression: sp.Expr, T: sp.Symbol, guess: float) -> sp.Expr | Non
     """A recognised root near the guess, proved to be one."""
     if T not in expression.free_symbols:
         return None
-    function = sp.lambdify(T, expression, "mpmath")
+
+    def function(t: mpmath.mpf) -> mpmath.mpf:
+        return mpmath.mpf(str(sp.N(expression.subs(T, sp.Float(mpmath.nstr(t, 60), 60)), 60)))
+
     with mpmath.workdps(60):
         try:
             root = mpmath.findroot(function, mpmath.mpf(guess), tol=1e-50)

@@ -43,7 +43,7 @@ class Family:
 
     def problem(self, T: Any) -> GuaranteedProblem:
         """The member with an exact length."""
-        stretch = Stretch(sp.S.Zero, sp.sympify(T), self.rows)
+        stretch = Stretch(sp.S.Zero, sp.sympify(T, strict=True), self.rows)
         return GuaranteedProblem((stretch,), self.functional, self.sigma, U, self.measurements, self.target)
 
     def exact(self, T: Any) -> Problem:

@@ -40,6 +40,7 @@ def prove(
 
 
 def decide_claim(claim: FileClaim) -> Verdict:
+    """Verdict of one claim, with what its text divides by and takes roots of among the assumptions."""
     verdict = decide(statement_of(claim))
     if verdict.status == REFUTED:
         return verdict

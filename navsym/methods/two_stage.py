@@ -44,7 +44,7 @@ def companion_gains(theta: Sequence[sp.Expr], wanted: Sequence[sp.Expr]) -> tupl
         known = [sp.Integer(1), *gains]
         gains.append(wanted[r - 1] + sum(theta[m - r + q] * known[q] for q in range(r)))
     ring = Ring.of([*theta, *wanted])
-    return tuple(ring.expression(ring.quotient(sp.sympify(gain))) for gain in gains)
+    return tuple(ring.expression(ring.quotient(sp.sympify(gain, strict=True))) for gain in gains)
 
 
 def monic_coefficients(polynomial: sp.Expr, degree: int, variable: sp.Symbol = POLE) -> tuple[sp.Expr, ...]:
@@ -89,7 +89,7 @@ def hurwitz_minors(coefficients: Sequence[sp.Expr]) -> tuple[sp.Expr, ...]:
         for r in range(n)
     ]
     ring = Ring.of(coefficients)
-    quotients = [[ring.quotient(sp.sympify(x)) for x in row] for row in entry]
+    quotients = [[ring.quotient(sp.sympify(x, strict=True)) for x in row] for row in entry]
     bottom = ring.constant(1)
     for row in quotients:
         for q in row:
@@ -247,7 +247,7 @@ def steady_covariance(A: sp.MatrixBase, intensity: sp.MatrixBase) -> sp.Immutabl
         for k in range(n):
             row[number[k, c]] += A[r, k]
             row[number[r, k]] += A[c, k]
-        rows.append([*row, -sp.sympify(intensity[r, c])])
+        rows.append([*row, -sp.sympify(intensity[r, c], strict=True)])
     values = solve_exactly(sp.Matrix(rows))
     return sp.ImmutableMatrix(n, n, lambda r, c: values[number[r, c]])
 
@@ -257,7 +257,7 @@ def solve_exactly(augmented: sp.Matrix) -> list[sp.Expr]:
     ring = Ring.of(augmented)
     vectors = []
     for row in augmented.tolist():
-        quotients = [ring.quotient(sp.sympify(x)) for x in row]
+        quotients = [ring.quotient(sp.sympify(x, strict=True)) for x in row]
         bottom = ring.constant(1)
         for q in quotients:
             bottom = bottom * ring.lowest(q.bottom, bottom).top

@@ -74,7 +74,7 @@ class Noise:
 
 def arbitrary(sigmas: Sequence[sp.Expr]) -> Noise:
     """No process noise, and measurement errors of unknown correlation with the bounds ``sigmas``."""
-    return Noise(measurement=tuple(ArbitraryCorrelation(sp.sympify(sigma)) for sigma in exact(sigmas)))
+    return Noise(measurement=tuple(ArbitraryCorrelation(sp.sympify(sigma, strict=True)) for sigma in exact(sigmas)))
 
 
 def exact(values: Sequence[object]) -> Sequence[object]:

@@ -56,7 +56,7 @@ def program(expressions: Sequence[sp.Expr]) -> Program:
             place[node] = len(steps) - 1
         return place[node]
 
-    outputs = tuple(visit(sp.sympify(e)) for e in expressions)
+    outputs = tuple(visit(sp.sympify(e, strict=True)) for e in expressions)
     return Program(tuple(steps), outputs)
 
 
