@@ -16,7 +16,7 @@ from navsym.numeric.trajectory_kernels import Array, candidate
 LANES = 32
 
 
-@njit(cache=True, fastmath={"contract"})
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
 def bank_step(
     Phi: Array,
     h0: float,
@@ -76,7 +76,7 @@ def bank_step(
                 Ps[i, j, c] = B[i, j, c] - B[0, i, c] * B[0, j, c] * T[0, 1, c]
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def run_block(
     Phi: Array,
     h0: float,
@@ -118,7 +118,7 @@ def run_block(
         cost[c] += misfit[c]
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def tune_by_windows(
     Phi: Array,
     h: Array,

@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 PREDICTED, CORRECTED, LIKELIHOOD = 0, 1, 2
 
 
-@njit(cache=True, fastmath={"contract"})
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
 def predict(
     Phi: Array,
     y: Array,
@@ -61,7 +61,7 @@ def predict(
     return total
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def innovation_variances(
     s0: float,
     h: Array,
@@ -89,7 +89,7 @@ def innovation_variances(
         size *= 3
 
 
-@njit(cache=True, fastmath=True)
+@njit(cache=True, error_model="numpy", fastmath=True)
 def neighbours(
     S: Array,
     squared: float,
@@ -108,7 +108,7 @@ def neighbours(
     return low, high
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def likeliest(
     S: Array,
     squared: float,
@@ -128,7 +128,7 @@ def likeliest(
     return 0, np.inf
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def smallest_change(
     S: Array,
     g: Array,
@@ -171,7 +171,7 @@ def smallest_change(
     return best, value
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def candidate(
     q: Array,
     step: float,
@@ -185,7 +185,7 @@ def candidate(
         out[i] = q[i] if digit == 0 else (q[i] / step if digit == 1 else q[i] * step)
 
 
-@njit(cache=True, fastmath={"contract"})
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
 def apply(
     B: Array,
     g: Array,
@@ -212,7 +212,7 @@ def apply(
         P[i, i] += q[i]
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def tune_one_step(
     Phi: Array,
     h: Array,
@@ -273,7 +273,7 @@ def tune_one_step(
             states[k, i], gains[k, i], diagonals[k, i] = y[i], gain[i], q[i]
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def run_fixed_gain(Phi: Array, row: Array, gain: Array, z: Array, y: Array, states: Array) -> None:
     """Constant gain: y <- Phi y + gain (z - row y); Phi upper triangular, y (n,) is overwritten."""
     n = y.shape[0]

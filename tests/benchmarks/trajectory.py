@@ -35,15 +35,15 @@ ROUNDS = 5
 
 
 def alternately(*jobs: Callable[[], object], rounds: int = ROUNDS) -> list[float]:
-    """Least time of each job in seconds; the jobs take turns, so that all see the same machine."""
+    """Least CPU time of each job in seconds; the jobs take turns, so that all see the same machine."""
     best = [np.inf] * len(jobs)
     for job in jobs:
         job()                                              # compile, warm caches
     for _ in range(rounds):
         for i, job in enumerate(jobs):
-            began = time.perf_counter()
+            began = time.process_time()
             job()
-            best[i] = min(best[i], time.perf_counter() - began)
+            best[i] = min(best[i], time.process_time() - began)
     return best
 
 
@@ -131,7 +131,7 @@ def compare_filters(n: int, steps: int, loop_steps: int) -> None:
         lambda: adaptive_filter(z, model, start, tuning),
         lambda: batched_one_step(z, model, start, tuning),
         lambda: adaptive_filter_slowly(z[:loop_steps], model, start, tuning),
-        rounds=3,
+        rounds=7,
     )
     ours, batched, loop = ours / steps, batched / steps, loop / loop_steps
     print(f"one-step criterion, n = {n}, {3**n} candidates: {1e6 * ours:.2f} us a step; batched numpy "
@@ -140,7 +140,7 @@ def compare_filters(n: int, steps: int, loop_steps: int) -> None:
     ours, batched = alternately(
         lambda: windowed_filter(z, model, start, tuning, window=window),
         lambda: batched_windows(z, model, start, tuning, window),
-        rounds=3,
+        rounds=7,
     )
     print(f"every candidate carried, n = {n}: {1e6 * ours / steps:.1f} us a step; batched numpy "
           f"{batched / ours:.1f} x slower")
@@ -162,7 +162,7 @@ def compare_conditioning(n: int, digits: int = 30) -> None:
         ours_time, theirs_time = alternately(
             lambda rows=rows, e=equilibrate: condition_number(rows, digits=digits, equilibrate=e),
             lambda rows=rows, e=equilibrate, w=working: mpmath_condition(rows, e, w),
-            rounds=3,
+            rounds=7,
         )
         print(f"condition number {name}, n = {n}, {digits} digits: {1e3 * ours_time:.2f} ms; mpmath "
               f"({working} digits, no guarantee) {theirs_time / ours_time:.1f} x slower")
