@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import importlib
+import inspect
+from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
-from navsym.cli.output import emit, table
+from navsym.cli.output import emit, remark, table
 
 #: Name -> "module:experiment:as_table". The experiment takes runs, seed, steps and returns plain data;
 #: as_table turns that into headings and rows. Modules are imported when their name is asked for.
@@ -22,6 +24,7 @@ def command(
     runs: Annotated[int | None, typer.Option("--runs", help="Monte-Carlo runs")] = None,
     steps: Annotated[int | None, typer.Option("--steps", help="steps of each run")] = None,
     seed: Annotated[int, typer.Option("--seed", help="same seed, same answer")] = 1,
+    journal: Annotated[Path | None, typer.Option("--journal", help="keep finished runs here, go on from it")] = None,
     json_: Annotated[bool, typer.Option("--json", help="one JSON document")] = False,
 ) -> None:
     """The numbers of one study, with confidence intervals."""
@@ -31,7 +34,18 @@ def command(
         raise DomainError(f"name: expected one of {', '.join(EXPERIMENTS)}; got {name!r}; choose one")
     module_name, experiment, as_table = EXPERIMENTS[name].split(":")
     module = importlib.import_module(module_name)
-    given = {"runs": runs, "steps": steps}
-    options = {key: value for key, value in given.items() if value is not None}
+    given = {"runs": runs, "steps": steps, "journal": journal}
+    options: dict[str, Any] = {key: value for key, value in given.items() if value is not None}
+    accepted = inspect.signature(getattr(module, experiment)).parameters
+    if journal is not None and "journal" not in accepted:
+        raise DomainError(f"--journal: expected an experiment that can go on; got {name}; leave it out")
+    if "progress" in accepted:
+        options["progress"] = progress
     document: dict[str, Any] = getattr(module, experiment)(seed=seed, **options)
     emit(document, as_json=json_, text=lambda: table(*getattr(module, as_table)(document)))
+
+
+def progress(finished: int, total: int) -> None:
+    """A remark for every tenth of the runs."""
+    if finished == total or (10 * finished) // total > (10 * (finished - 1)) // total:
+        remark(f"{finished} of {total} runs")

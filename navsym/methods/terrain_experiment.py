@@ -17,6 +17,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
+from zlib import crc32
 
 import numpy as np
 from numpy.typing import NDArray
@@ -194,7 +195,8 @@ def experiment(
     """Table 1 again: ``{"rows": [...], "printed": {...}, "flights": N}``, errors in metres and m/s.
 
     terrain  : the map to match with (None: matplotlib's sample) ; ground : the map flown over (None: the same)
-    journal  : a file to which every finished flight is appended; flights found there are not flown again
+    journal  : a file to which every finished flight is appended; flights found there, with the same
+               setting, seed and maps, are not flown again
     progress : called with (finished, all) flights
     Same arguments, same answer, except for the times.
     """
@@ -205,11 +207,12 @@ def experiment(
     wanted = [(s, k, r) for s in settings for k in range(tracks) for r in range(runs)]
     if not wanted:
         raise EmptyError("settings: expected at least one; got none; give one")
+    stamp = {"seed": seed, "maps": f"{crc32(terrain.heights.data):08x}-{crc32(ground.heights.data):08x}"}
     done = read_journal(journal)
     records: list[Record] = []
     for finished, (setting, k, r) in enumerate(wanted):
-        key = (label(setting), k, r)
-        flown = done.get(key) or one_flight(terrain, ground, setting, k, r, seed)
+        key = (json.dumps({**asdict(setting), **stamp}, sort_keys=True), k, r)
+        flown = done.get(key) or one_flight(terrain, ground, setting, key, seed)
         if key not in done:
             append_journal(journal, flown)
         records += flown
@@ -218,15 +221,11 @@ def experiment(
     return {"rows": table(records), "printed": PRINTED, "flights": len(wanted)}
 
 
-def label(setting: Setting) -> str:
-    """The setting in one line, as it stands in a journal."""
-    return json.dumps(asdict(setting), sort_keys=True)
-
-
 def one_flight(
-    terrain: TerrainMap, ground: TerrainMap, setting: Setting, k: int, r: int, seed: int
+    terrain: TerrainMap, ground: TerrainMap, setting: Setting, key: tuple[str, int, int], seed: int
 ) -> list[Record]:
-    """All algorithms on flight r over track k."""
+    """All algorithms on one flight; key: setting in one line, track k, run r."""
+    name_of_setting, k, r = key
     start, heading = course(ground, setting, k, seed)
     flight = fly(ground, start, heading, setting, np.random.default_rng([seed, 7, k, r]))
     records = []
@@ -235,7 +234,7 @@ def one_flight(
         shift, velocity = algorithm(terrain, flight.track)
         seconds = time.thread_time() - began
         errors = (float(np.hypot(*(shift - flight.shift))), float(np.hypot(*(velocity - flight.velocity))))
-        records.append(Record(label(setting), k, r, name, *errors, seconds))
+        records.append(Record(name_of_setting, k, r, name, *errors, seconds))
     return records
 
 

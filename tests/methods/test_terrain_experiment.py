@@ -54,6 +54,8 @@ def test_an_interrupted_run_goes_on_where_it_stopped(ground, tmp_path):
     assert without_times(again) == without_times(whole)
     assert seen == [(1, 4), (2, 4), (3, 4), (4, 4)]
     assert len(read_journal(journal)) >= 3
+    other = experiment(ground, settings=[SMALL], tracks=2, runs=2, seed=9, journal=journal)
+    assert without_times(other) != without_times(whole)
 
 
 def test_without_noise_and_errors_on_the_grid_the_joint_search_is_exact(ground):
