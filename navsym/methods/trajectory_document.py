@@ -76,15 +76,15 @@ def remarks(track: Track, found: TrackEstimate, noise: Noise, settings: Settings
     uneven = int(((np.abs(steps - usual) > JITTER * usual) & (steps < 5 * usual)).sum())
     if uneven:
         out.append(f"{uneven} steps differ from the usual {usual:.3g} s by more than half of it")
-    return out + doubts(track, noise, settings)
+    return out + doubts(track, found, noise, settings)
 
 
-def doubts(track: Track, noise: Noise, settings: Settings) -> list[str]:
+def doubts(track: Track, found: TrackEstimate, noise: Noise, settings: Settings) -> list[str]:
     """Whether the standard deviations can be believed: innovations should be as large as they say."""
-    run = filtered(
-        track, noise, Settings("filter", settings.order, gate=0.0), np.ones(len(track.t), np.int64)
-    )
-    mean = float((run.innovations**2 / run.variances)[:, settings.order :].mean())
+    use = np.array([flag != "outlier" for flag in found.flags], dtype=np.int64)
+    run = filtered(track, noise, Settings("filter", settings.order, gate=0.0), use)
+    kept = np.flatnonzero(use)[settings.order :]
+    mean = float((run.innovations**2 / run.variances)[:, kept].mean())
     if CONSISTENT[0] <= mean <= CONSISTENT[1] or not math.isfinite(mean):
         return []
     side = "optimistic" if mean > 1 else "pessimistic"
