@@ -14,6 +14,10 @@ from navsym.errors import DomainError, EmptyError, NotFiniteError, ShapeError
 Array = NDArray[np.float64]
 
 
+#: Sizes that no map, track or step in any unit has; within them no sum of squares overflows.
+LARGEST, SMALLEST = 1e15, 1e-12
+
+
 def put(owner: Any, name: str, value: Any) -> None:
     """Set a field of a frozen dataclass while it is being made."""
     object.__setattr__(owner, name, value)
@@ -38,11 +42,16 @@ def numbers(name: str, value: Any, ndim: int, why: str) -> Array:
 
 
 def all_finite(name: str, array: Array) -> Array:
-    """The same array; NotFiniteError when it holds NaN or an infinity."""
+    """The same array; NotFiniteError when it holds NaN or an infinity, DomainError above LARGEST."""
     if not np.isfinite(array).all():
         place = [int(i) for i in np.argwhere(~np.isfinite(array))[0]]
         raise NotFiniteError(
             f"{name}: expected finite numbers; got {array[tuple(place)]} at index {place}; remove or mend it"
+        )
+    if np.abs(array).max() > LARGEST:
+        place = [int(i) for i in np.argwhere(np.abs(array) > LARGEST)[0]]
+        raise DomainError(
+            f"{name}: expected numbers below {LARGEST:g}; got {array[tuple(place)]:g} at index {place}; check the unit"
         )
     return array
 
@@ -75,18 +84,18 @@ def with_voids(heights: Any, nodata: float | None) -> Array:
 def finite(name: str, value: Any) -> float:
     """A finite float; DomainError otherwise."""
     try:
-        number = float(value)
+        number = math.nan if isinstance(value, str | bytes | bool) else float(value)
     except (TypeError, ValueError, OverflowError):
         number = math.nan
-    if not math.isfinite(number):
-        raise DomainError(f"{name}: expected a finite number; got {value!r:.60}; mend it")
+    if not abs(number) <= LARGEST:
+        raise DomainError(f"{name}: expected a finite number below {LARGEST:g}; got {value!r:.60}; mend it")
     return number
 
 
 def spacing(name: str, value: Any) -> float:
     """A positive float; the message for a negative one says what to do with north-up rasters."""
     number = finite(name, value)
-    if number <= 0.0:
+    if number < SMALLEST:
         raise DomainError(
             f"{name}: expected a positive spacing; got {number:g}; "
             "reverse the rows (or columns) so that y (or x) grows with the index"
@@ -104,7 +113,7 @@ def pair(name: str, value: Any) -> Sequence[Any]:
 def step(name: str, value: Any) -> float:
     """A positive length; DomainError otherwise."""
     number = finite(name, value)
-    if isinstance(value, bool) or number <= 0.0:
+    if number < SMALLEST:
         raise DomainError(f"{name}: expected a positive step; got {value!r:.60}; give its length")
     return number
 
@@ -112,7 +121,7 @@ def step(name: str, value: Any) -> float:
 def count(name: str, value: Any) -> int:
     """An integer of at least 0; DomainError otherwise."""
     number = finite(name, value)
-    if isinstance(value, bool) or number != int(number) or number < 0:
+    if number != int(number) or number < 0:
         raise DomainError(
             f"{name}: expected an integer of at least 0; got {value!r:.60}; indices run from -N to N"
         )

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from navsym.errors import DomainError, DuplicateError, TooLargeError
-from navsym.models.terrain_gate import Array, count, pair, put, step, vector
+from navsym.models.terrain_gate import SMALLEST, Array, count, pair, put, step, vector
 
 #: Largest number of hypotheses whose criteria are kept at once (half a GB of doubles).
 MOST_HYPOTHESES = 2**26
@@ -38,6 +38,8 @@ class Track:
             raise DuplicateError(
                 f"t: expected distinct times; got {self.t[k]:g} at entries {k} and {k + 1}; drop one"
             )
+        if (np.abs(steps) < SMALLEST).any():
+            raise DomainError(f"t: expected times at least {SMALLEST:g} s apart; got closer ones; check the unit")
         if (steps < 0.0).any():
             k = int(np.flatnonzero(steps < 0.0)[0])
             raise DomainError(

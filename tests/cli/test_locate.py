@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import json
+import random
 
 import numpy as np
 import pytest
 
 from navsym.cli.main import run
+from navsym.errors import NavsymError
 from navsym.methods.terrain_locate import METHODS, locate
 
 KEYS = {
@@ -215,3 +217,37 @@ def test_the_flat_direction_is_named():
     ridge(document)
     with pytest.raises(Exception, match=r"along \(-?0.0000, -?1.0000\)"):
         locate(document)
+
+
+ABSURD = [None, True, "30", -1, 0, 1e-320, 1e308, -1e155, 10**400, [], {}, [1], [[1]], [1e308, 1], ["1", 2], 2**63]
+
+
+def places(value, path=()):
+    """Paths to some of the values inside a document."""
+    items = value.items() if isinstance(value, dict) else []
+    if isinstance(value, list) and value and len(path) < 4:
+        items = [(k, value[k]) for k in {0, len(value) - 1}]
+    for key, inner in items:
+        yield (*path, key)
+        yield from places(inner, (*path, key))
+
+
+def test_absurd_values_anywhere_are_refused_or_harmless():
+    small = config(position={"step": [30, 30], "half_count": [1, 1]})
+    small["velocity"]["half_count"] = [1, 1]
+    small["map"]["heights"] = [row[:45] for row in small["map"]["heights"][:40]]
+    small["track"] = {name: values[:12] for name, values in small["track"].items()}
+    generator, text = random.Random(0), json.dumps(small)
+    everywhere = list(places(small))
+    for _ in range(600):
+        document, path = json.loads(text), generator.choice(everywhere)
+        inner = document
+        for key in path[:-1]:
+            inner = inner[key]
+        inner[path[-1]] = generator.choice(ABSURD)
+        try:
+            answer = locate(document, generator.choice(METHODS), maps=True).document
+        except NavsymError as error:
+            assert "expected" in error.message and "got" in error.message
+        else:
+            json.dumps(answer, allow_nan=False)
