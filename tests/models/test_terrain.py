@@ -123,7 +123,7 @@ def test_a_grid_counts_its_hypotheses():
         (((0, 1), (1, 1)), DomainError, r"step\[0\]: expected a positive step"),
         (((1, 1), (-1, 1)), DomainError, r"half_count\[0\]"),
         (((1, 1), (1.5, 1)), DomainError, "integer"),
-        (((1, 1), (True, 1)), DomainError, "integer"),
+        (((1, 1), (True, 1)), DomainError, "finite number"),
         ((1, (1, 1)), ShapeError, "two entries"),
         (((1, 1), (9000, 9000)), TooLargeError, "18001 x 18001 x 1 x 1 = 324036001"),
     ],
