@@ -71,6 +71,16 @@ def test_all_candidates_in_one_pass_equal_one_at_a_time(n, form, criterion):
         assert_allclose(one, two, rtol=1e-12, atol=1e-12 * np.abs(two).max(), err_msg=name)
 
 
+def test_the_243_candidates_of_the_paper_in_one_pass_equal_one_at_a_time():
+    tuning = Tuning(1.0, stop=12)
+    for form in ("printed", "corrected"):
+        first = Start(np.zeros(5), np.eye(5), np.full(5, 1e-6))
+        fast = adaptive_filter(Z[:20], normalised(5, form), first, tuning)
+        slow = adaptive_filter_slowly(Z[:20], normalised(5, form), first, tuning)
+        assert_allclose(fast.states, slow.states, atol=1e-12 * np.abs(slow.states).max())
+        assert_allclose(fast.diagonals, slow.diagonals, rtol=1e-12)
+
+
 @pytest.mark.parametrize("n", [1, 2, 3, 4])
 def test_carried_candidates_equal_single_filters(n):
     fast = windowed_filter(Z, normalised(n), start(n), Tuning(1.0), window=8)
