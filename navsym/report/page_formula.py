@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 from markupsafe import Markup
 
-from navsym.report.page_names import latex_name, mathml_name
+from navsym.report.page_names import latex_name, letter_of, mathml_name, split_name
 
 LONGEST = 4_000
 FOLDED = 700
@@ -215,7 +215,9 @@ def mathml_matrix(rows: list[list[str]]) -> str:
 MATHML_SIGNS = {
     "-": "−", "*": "⁢", "<=": "≤", ">=": "≥", "!=": "≠", "+-": "±",
 }  # fmt: skip
-LATEX_SIGNS = {"*": r"\,", "<=": r" \le ", ">=": r" \ge ", "!=": r" \ne ", "+-": r" \pm ", ";": r";\quad "}
+LATEX_SIGNS = {
+    "*": r"\,", "<=": r" \le ", ">=": r" \ge ", "!=": r" \ne ", "+-": r" \pm ", "·": r" \cdot ", ";": r";\quad ",
+}  # fmt: skip
 
 POWER_OF_TEN = "<mrow><mn>{}</mn><mo>·</mo><msup><mn>10</mn><mn>{}</mn></msup></mrow>"
 MATHML = Style(
@@ -274,10 +276,17 @@ def write_two(sign: str, left: int, right: int) -> Callable[[Node, Style], str]:
 
 def write_product(node: Node, style: Style) -> str:
     first, second = node.parts
-    sign = "·" if style is MATHML and unwrapped(second).kind == "number" else "*"
-    if style is LATEX and unwrapped(second).kind == "number":
-        return style.row([write(first, style, PRODUCT), r" \cdot ", write(second, style, PRODUCT)])
+    dotted = unwrapped(second).kind == "number" or any(is_word(part) for part in node.parts)
+    sign = "·" if dotted else "*"
     return style.row([write(first, style, PRODUCT), style.sign(sign), write(second, style, PRODUCT)])
+
+
+def is_word(node: Node) -> bool:
+    """A name of several letters, or a product that ends in one: a dot keeps it from running into the next."""
+    node = unwrapped(node)
+    if node.kind == "product":
+        node = unwrapped(node.parts[1])
+    return node.kind == "name" and len(letter_of(split_name(node.text)[0])) > 1
 
 
 def write_power(node: Node, style: Style) -> str:

@@ -22,17 +22,26 @@ def split_name(name: str) -> tuple[str, str]:
     head, *rest = [part for part in name.split("_") if part] or [name]
     match = STEM.match(head)
     stem, index = (match["stem"], match["index"]) if match else (head, "")
-    if len(stem) == 2 and stem not in GREEK and stem[0].islower() and stem[1] in "TNm0":
-        stem, index = stem[0], stem[1] + index
+    greek = max((name for name in GREEK if stem.startswith(name)), key=len, default="")
+    base = stem[len(greek) :]
+    if len(base) == 2 and (base[0].isupper() or base[1] in "TNm"):      # zT, Vj, DeltaVy
+        stem, index = greek + base[0], base[1] + index
     return stem, ",".join(part for part in (index, *rest) if part)
+
+
+def letter_of(stem: str) -> str:
+    """The stem with a Greek name at its beginning as a letter: ``DeltaV`` -> ΔV, ``tau`` -> τ."""
+    greek = max((name for name in GREEK if stem.startswith(name)), key=len, default="")
+    rest = stem[len(greek) :]
+    return GREEK[greek] + rest if greek and len(rest) < 2 else stem
 
 
 def mathml_name(name: str, function: bool = False) -> str:
     """One identifier in MathML; several letters that are no Greek name stand upright."""
     name, primes = name.rstrip("'"), "′" * name.count("'")
     stem, index = (name, "") if function else split_name(name)
-    letter = GREEK.get(stem, stem)
-    upright = function or len(letter) > 1
+    letter = stem if function else letter_of(stem)
+    upright = function or len(letter) > 2
     tag = f'<mi mathvariant="normal">{html.escape(letter)}</mi>' if upright else f"<mi>{html.escape(letter)}</mi>"
     if primes:
         tag = f"<msup>{tag}<mo>{primes}</mo></msup>"
@@ -51,8 +60,9 @@ def latex_name(name: str, function: bool = False) -> str:
         return f"\\{name}" if name in LATEX_FUNCTIONS else rf"\operatorname{{{latex_escape(name)}}}"
     name, primes = name.rstrip("'"), "'" * name.count("'")
     stem, index = split_name(name)
-    if stem in GREEK:
-        letter = "\\" + LATEX_SPELLING.get(stem, stem) + " "
+    greek = max((known for known in GREEK if stem.startswith(known)), key=len, default="")
+    if greek and len(stem) <= len(greek) + 1:
+        letter = "\\" + LATEX_SPELLING.get(greek, greek) + " " + stem[len(greek) :]
     else:
         letter = stem if len(stem) == 1 else rf"\mathrm{{{latex_escape(stem)}}}"
     below = ",".join(rf"\{part}" if part in GREEK else latex_escape(part) for part in index.split(",") if part)
