@@ -1,0 +1,86 @@
+"""Campaigns: many small attacks in batches, kept in the store, so that a stopped one goes on.
+
+A campaign is a list of batches, each plain data, and a judge that turns a batch into counts and a
+list of what went wrong. What is kept depends on the batch, on the deciding rooms and on the engines:
+when any of them changes the batch is run again.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from navsym.methods.dependencies import rooms_digest
+from navsym.proof.sandbox import Exhausted, Failed, run_many
+from navsym.store import Store, key_of
+
+#: What a judge returns: counts by outcome, wrong results, undecided ones, exact points of refutations.
+Result = dict[str, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class Batch:
+    """One piece of a campaign.
+
+    name  : text that fixes what is attacked; the same name gives the same attacks
+    items : what the judge receives
+    """
+
+    name: str
+    items: Any
+
+
+def result(counts: Counter[str], wrong: list[Any], undecided: list[Any], kept: list[Any]) -> Result:
+    """The record of one batch: plain data for the store."""
+    return {"counts": dict(counts), "wrong": wrong, "open": undecided, "kept": kept}
+
+
+def run_campaign(
+    campaign: str,
+    batches: Sequence[Batch],
+    judge: Callable[[Any], Result],
+    *,
+    store: Store | None = None,
+    jobs: int = 1,
+    seconds: float = 300.0,
+    progress: Callable[[int, int], None] = lambda done, of: None,
+) -> dict[str, Any]:
+    """Judge every batch that is not yet in the store; the document of ``navsym campaign``.
+
+    Keys: ``campaign``, ``batches``, ``resumed`` (taken from the store), ``counts``, ``wrong`` (must be
+    empty), ``open`` (undecided, with the reason) and ``stopped`` (batches over their limit).
+    """
+    keys = [key_of("campaign", campaign, batch.name, rooms_digest()) for batch in batches]
+    known = store.get(keys) if store is not None else {}
+    todo = [place for place, key in enumerate(keys) if key not in known]
+    results, stopped = [known[key] for key in keys if key in known], []
+    for outcome in run_many(lambda place: judge(batches[place].items), todo, jobs, seconds):
+        place = todo[outcome.place]
+        if isinstance(outcome.value, (Exhausted, Failed)):
+            stopped.append(f"{batches[place].name}: {reason(outcome.value)}")
+        else:
+            results.append(outcome.value)
+            if store is not None:
+                store.put(keys[place], outcome.value)
+        progress(len(results) + len(stopped), len(batches))
+    return {**document(campaign, len(batches), results, stopped), "resumed": len(known)}
+
+
+def reason(value: Exhausted | Failed) -> str:
+    return value.why if isinstance(value, Exhausted) else str(value.error)
+
+
+def document(campaign: str, batches: int, results: Sequence[Result], stopped: list[str]) -> dict[str, Any]:
+    counts: Counter[str] = Counter()
+    for found in results:
+        counts.update(found["counts"])
+    return {
+        "campaign": campaign,
+        "batches": batches,
+        "counts": dict(sorted(counts.items())),
+        "wrong": [item for found in results for item in found["wrong"]],
+        "open": [item for found in results for item in found["open"]],
+        "stopped": sorted(stopped),
+    }
