@@ -387,6 +387,7 @@ class Panel:
         ctx.cap = order + 1
         t = arb_series([self.origin + self.width * place, self.width * r])
         rows = [value(h, {self.t: t}, Balls) + arb_series([0]) for h in self.H]
+        need(all(h.prec > order for h in rows), "a series lost terms")
         return (basis * arb_mat([[h[k] for k in range(order + 1)] for h in rows])).tolist()  # type: ignore[no-any-return]
 
     def around(self, place: arb, basis: arb_mat) -> list[list[arb]]:

@@ -23,7 +23,8 @@ from navsym.proof.optimality import header
 BITS = 200
 NODES = (fmpq(-1), fmpq(-1, 3), fmpq(1, 3), fmpq(1))
 DIGITS = 28
-SMALLEST = fmpq(1, 10**7)
+#: Pieces shorter than this part of the length are not worth their number: a sliver is left instead.
+SMALLEST = fmpq(1, 20000)
 EVERY = arb(0, 1)
 
 
@@ -81,7 +82,7 @@ def follow(track: Track, lower: fmpq, upper: fmpq, most: int = 4000) -> Ranged:
         made = piece(track, at, end)
         if made is None:
             step = step / 2
-            if step < SMALLEST * lower:
+            if step < SMALLEST * at:
                 break
             continue
         pieces.append(made[0])
