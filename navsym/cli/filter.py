@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from navsym.cli.output import emit
+from navsym.cli.output import emit, remark
 
 if TYPE_CHECKING:
     from navsym.methods.multimodel import Estimate
@@ -36,8 +36,8 @@ def command(
                        missing=missing or given.missing)
     except NavsymError as error:
         raise error.at(str(file)) from None
-    for remark in remarks(estimate):
-        typer.echo(remark, err=True)
+    for sentence in remarks(estimate):
+        remark(sentence)
     emit(as_document(estimate), as_json=json_, text=lambda: as_text(estimate))
 
 

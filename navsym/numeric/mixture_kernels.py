@@ -154,28 +154,29 @@ def copy_sources(branches, modes, n, x, P, mean, covariance):  # type: ignore[no
 
 
 @numba.njit(**COMPILE)
-def fold_by_mode(branches, modes, n, weights, x, P, mean, covariance):  # type: ignore[no-untyped-def]
-    """Merge the branches of every last mode: GPB2."""
+def fold_by_mode(branches, modes, n, logs, totals, weights, x, P, mean, covariance):  # type: ignore[no-untyped-def]
+    """Merge the branches of every last mode: GPB2.
+
+    Shares come from logarithms, logs (branches,) and their sums totals (m,): a mode whose weight underflows
+    today may be the right one tomorrow, and must not forget how its branches compare. weights is overwritten.
+    """
     for i in range(modes):
-        whole = 0.0
-        for b in range(i, branches, modes):
-            whole += weights[b]
         g, lane = i // 8, i % 8
+        for b in range(i, branches, modes):
+            weights[b] = math.exp(logs[b] - totals[i]) if totals[i] > -np.inf else modes / branches
         for a in range(n):
             total = 0.0
             for b in range(i, branches, modes):
-                share = weights[b] / whole if whole > 0.0 else modes / branches
-                total += share * x[((b // 8) * n + a) * 8 + b % 8]
+                total += weights[b] * x[((b // 8) * n + a) * 8 + b % 8]
             mean[(g * n + a) * 8 + lane] = total
         for a in range(n):
             for c in range(n):
                 total = 0.0
                 for b in range(i, branches, modes):
-                    share = weights[b] / whole if whole > 0.0 else modes / branches
                     block, other = b // 8, b % 8
                     off = x[(block * n + a) * 8 + other] - mean[(g * n + a) * 8 + lane]
                     off *= x[(block * n + c) * 8 + other] - mean[(g * n + c) * 8 + lane]
-                    total += share * (P[((block * n + a) * n + c) * 8 + other] + off)
+                    total += weights[b] * (P[((block * n + a) * n + c) * 8 + other] + off)
                 covariance[((g * n + a) * n + c) * 8 + lane] = total
 
 
@@ -297,7 +298,7 @@ def run_bank(  # type: ignore[no-untyped-def]
                     terms[count] = logs[b]
                     count += 1
                 totals[i] = log_sum(terms, count)
-            fold_by_mode(branches, m, n, weights, nx, nP, x, P)
+            fold_by_mode(branches, m, n, logs, totals, weights, nx, nP, x, P)
             for i in range(m):
                 logs[i] = totals[i]
             sources, known = m, True

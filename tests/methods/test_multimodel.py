@@ -222,6 +222,17 @@ def test_a_likelihood_of_1e_minus_300_does_not_kill_a_mode(engine):
     assert found.probabilities[-1, 0] == pytest.approx(1.0)
 
 
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("method", ["pulsating", "k-pulsating", "gpb2", "imm", "polygaussian"])
+def test_modes_whose_weights_underflow_and_come_back_are_the_same_in_both_engines(method, seed):
+    models, z = random_bank(seed, modes=5), 200.0 * series(seed, 9)
+    assert run(models, z, method, engine="numpy").impossible
+    compiled, readable = run(models, z, method, engine="compiled"), run(models, z, method, engine="numpy")
+    assert_allclose(compiled.probabilities, readable.probabilities, atol=1e-9)
+    assert_allclose(compiled.mean, readable.mean, rtol=1e-9, atol=1e-9)
+    assert_allclose(compiled.log_likelihood, readable.log_likelihood, rtol=1e-11)
+
+
 @pytest.mark.parametrize("engine", ["numpy", "compiled"])
 def test_an_impossible_measurement_is_reported_and_the_estimate_continues(engine):
     models = random_bank(10)
