@@ -42,6 +42,10 @@ SINGLE, DOUBLE = 2.0**-24, 2.0**-53
 FIRST = 32
 #: Measurements added to the survivors after that; the last stage takes all that remain.
 STAGES = (32, 64)
+#: The position search first looks at one measurement of so many.
+EVERY = 8
+#: Error of a difference, in units of u Hm, when both interpolations are single.
+BLENDED = 48.0
 #: Hypotheses on which the next measurements are chosen.
 PROBES = 32
 
@@ -94,10 +98,10 @@ def double_limit(ceiling: float, n: int, bound: float) -> float:
     return root * root * (1.0 + 8.0 * DOUBLE)
 
 
-def floor_of(sums: NDArray[np.float32], m: int, bound: float) -> NDArray[np.float64]:
+def floor_of(sums: NDArray[np.float32], m: int, bound: float, parts: float = 16.0) -> NDArray[np.float64]:
     """Lower bounds of the exact sums of m squares, from their single-precision values."""
     gamma = (m + 2) * SINGLE / (1.0 - (m + 2) * SINGLE)
-    roots = np.sqrt(sums.astype(np.float64) / (1.0 + gamma)) - 16.0 * SINGLE * bound * math.sqrt(m)
+    roots = np.sqrt(sums.astype(np.float64) / (1.0 + gamma)) - parts * SINGLE * bound * math.sqrt(m)
     return np.maximum(roots, 0.0) ** 2 * (1.0 - 8.0 * DOUBLE)
 
 
@@ -374,21 +378,54 @@ def search_one_velocity(
     counts: tuple[int, int],
     bound: float,
 ) -> BoundedResult:
-    """Minimum and runner-up over positions only: all sums in single precision, the lowest in double.
+    """Minimum and runner-up over positions only, as exact as :func:`search_bounded`.
 
-    single : H in single precision ; counts : (Mx, My). As exact as :func:`search_bounded`: nearby
-    positions fit nearly alike when the velocity is wrong, so that partial sums would drop few.
+    single : H in single precision ; counts : (Mx, My)
+
+    Every eighth measurement is summed in single precision for all positions. When few survive, they are
+    summed on in double; when many do, as with a wrong velocity, which makes all positions fit alike, the
+    other measurements follow in single precision too. The last few are evaluated completely.
     """
-    Mx, My = counts
     n, still = z.shape[0], np.zeros_like(bx)
-    sums = np.zeros((1, 1, My, padded(Mx)), np.float32)
-    patch = np.empty((TOGETHER, patch_rows(by, still, steps[1], My, 1, H.shape[0]), padded(Mx)), np.float32)
-    slab(single, bx, by, z.astype(np.float32), still, still, steps, (Mx, My, 1), 0, patch, sums[0])
-    arguments, pair, all_counts = (H, bx, by, z, still, still), np.array(steps), (Mx, My, 1, 1)
-    flat = sums[0, 0, :, :Mx].ravel()
-    lowest = np.sort(np.argpartition(flat, min(1, flat.size - 1))[:2]).astype(np.int64)
+    arguments, pair, all_counts = (H, bx, by, z, still, still), np.array(steps), (*counts, 1, 1)
+    early = np.arange(n) % EVERY == 0
+    sums = np.zeros((1, 1, counts[1], padded(counts[0])), np.float32)
+    flat = add_single(single, arguments, steps, counts, early, sums)
+    lowest = np.sort(np.argpartition(flat, min(8, flat.size - 1))[:8]).astype(np.int64)
     _, _, _, second = settle(*arguments, pair, all_counts, lowest, np.inf)
-    limit = single_limit(ceiling_of(second, n, bound), n, bound, 48.0) if math.isfinite(second) else math.inf
-    index = np.flatnonzero(~(flat > limit)).astype(np.int64)
+    ceiling, m = ceiling_of(second, n, bound) if math.isfinite(second) else math.inf, int(early.sum())
+    index = below(flat, ceiling, m, bound)
+    samples = flat.size * m + lowest.size * n
+    if index.size * EVERY < flat.size:
+        low, limit = floor_of(flat[index], m, bound, BLENDED), double_limit(ceiling, n, bound)
+        part = (bx[~early], by[~early], z[~early], still[~early], still[~early])
+        samples += add_more(H, *part, pair, all_counts, index, low, limit)
+        index = index[low <= limit]
+    else:
+        flat = add_single(single, arguments, steps, counts, ~early, sums)
+        index, samples = below(flat, ceiling, n, bound), samples + flat.size * (n - m)
     best, criterion, runner_up, second = settle(*arguments, pair, all_counts, index, second)
-    return BoundedResult(best, criterion, runner_up, second, index.size, (flat.size + index.size + 2) * n, ())
+    completed = min(index.size + lowest.size, flat.size)
+    return BoundedResult(best, criterion, runner_up, second, completed, samples + index.size * n, (index.size,))
+
+
+def add_single(
+    single: NDArray[np.float32],
+    arguments: tuple,
+    steps: tuple[float, float],
+    counts: tuple[int, int],
+    chosen: NDArray[np.bool_],
+    sums: NDArray[np.float32],
+) -> NDArray[np.float32]:
+    """Add the chosen measurements to sums (1, 1, My, W); returns them as a flat copy without padding."""
+    _, bx, by, z, wx, wy = (a if a.ndim == 2 else a[chosen] for a in arguments)
+    rows = patch_rows(by, wy, steps[1], counts[1], 1, single.shape[0])
+    patch = np.empty((TOGETHER, rows, sums.shape[3]), np.float32)
+    slab(single, bx, by, z.astype(np.float32), wx, wy, steps, (*counts, 1), 0, patch, sums[0])
+    return sums[0, 0, :, : counts[0]].ravel()
+
+
+def below(flat: NDArray[np.float32], ceiling: float, m: int, bound: float) -> NDArray[np.int64]:
+    """Indices, ascending, of the hypotheses that the sums of m squares do not exclude."""
+    limit = single_limit(ceiling, m, bound, BLENDED) if math.isfinite(ceiling) else math.inf
+    return np.flatnonzero(~(flat > limit)).astype(np.int64)
