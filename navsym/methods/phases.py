@@ -14,6 +14,7 @@ from fractions import Fraction
 from typing import Any
 
 import sympy as sp
+from flint import fmpq
 
 from navsym.claims import CERTIFIED, OPEN, Status
 from navsym.errors import DomainError
@@ -24,6 +25,7 @@ from navsym.methods.phases_family import Family
 from navsym.methods.phases_range import followed, fraction_of
 from navsym.methods.phases_scan import Span, scan
 from navsym.proof.balls import enclose
+from navsym.proof.decimals import decimal
 from navsym.proof.enclosure import rational
 from navsym.text.expression import to_text
 
@@ -108,7 +110,7 @@ def phases(family: Family, lower: sp.Expr, upper: sp.Expr, *, certify: bool = Tr
             uncovered += holes
         else:
             regimes.append(Regime(span, a, b, closed, OPEN, table_of(family, span)))
-            uncovered.append((to_text(a), to_text(b)))
+            uncovered.append((end_text(a), end_text(b)))
     return Phases(family, lower, upper, tuple(regimes), changes, tuple(uncovered))
 
 
@@ -149,7 +151,7 @@ def certified(
             continue
         row = sliver(family, a, b)
         if row is None:
-            holes.append((to_text(a), to_text(b)))
+            holes.append((end_text(a), end_text(b)))
         else:
             slivers.append(row)
     document = done.document(family.exact(1), family.parameter.name) if done.pieces else None
@@ -176,7 +178,7 @@ def sliver(family: Family, lower: sp.Expr, upper: sp.Expr) -> tuple[str, str, st
     if lower == 0 or bool(enclose((upper - lower) / upper) > sp.Rational(1, 4)):
         return None
     first, last = solve(family.problem(lower), 15), solve(family.problem(upper), 15)
-    return to_text(lower), to_text(upper), last.lower, first.upper
+    return end_text(lower), end_text(upper), last.lower, first.upper
 
 
 def table_of(family: Family, span: Span) -> tuple[dict[str, str], ...]:
@@ -190,7 +192,7 @@ def table_of(family: Family, span: Span) -> tuple[dict[str, str], ...]:
 
 
 def regime_row(family: Family, regime: Regime) -> dict[str, Any]:
-    row: dict[str, Any] = {"from": to_text(regime.lower), "to": to_text(regime.upper)}
+    row: dict[str, Any] = {"from": end_text(regime.lower), "to": end_text(regime.upper)}
     if regime.closed is not None:
         closed = regime.closed
         order = range(len(closed.places) - 1, -1, -1) if family.backward else range(len(closed.places))
@@ -212,6 +214,13 @@ def regime_row(family: Family, regime: Regime) -> dict[str, Any]:
     if regime.slivers:
         row["slivers"] = [dict(zip(("from", "to", "lower", "upper"), s, strict=True)) for s in regime.slivers]
     return row
+
+
+def end_text(end: sp.Expr) -> str:
+    """An end in the language of files; the middle of an enclosure as a decimal of 34 digits."""
+    if end.is_Rational and end.q > 10**9:
+        return decimal(fmpq(int(end.p), int(end.q)), 34)
+    return to_text(end)
 
 
 def pattern_rows(family: Family, span: Span) -> list[dict[str, Any]]:

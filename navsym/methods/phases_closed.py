@@ -278,7 +278,7 @@ def proved(family: Family, guess: Closed, lower: sp.Expr, upper: sp.Expr, second
             interval=(sp.S.Zero, T), dual=tuple(map(put, guess.dual)), support=tuple(map(put, guess.places)),
             weights=tuple(put(w * family.sigma[k]) for w, k in zip(guess.weights, guess.panels, strict=True)),
             value=put(guess.value), box={T: (lower, upper)},
-        )  # fmt: skip
+        )
         for row, sigma in zip(family.rows, family.sigma, strict=True)
     ]
     if len(statements) > 1:

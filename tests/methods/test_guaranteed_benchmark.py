@@ -1,0 +1,53 @@
+"""The benchmark and the campaign run on tiny sizes; times are never asserted."""
+
+from __future__ import annotations
+
+import importlib.util
+from pathlib import Path
+
+import numpy as np
+import pytest
+import sympy as sp
+
+from navsym.errors import DomainError
+from navsym.methods.guaranteed_many import values_for_lengths
+from navsym.methods.phases_family import U, Family
+
+FOLDER = Path(__file__).parent.parent / "benchmarks"
+
+
+def script(name):
+    spec = importlib.util.spec_from_file_location(name, FOLDER / f"{name}.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def velocity(state):
+    rows = ((sp.Integer(1), sp.sin(U), sp.cos(U) - 1),)
+    functional = tuple(sp.Integer(int(k == state)) for k in range(3))
+    return Family(rows, functional, (sp.Integer(1),), sp.Symbol("T", positive=True), True, ("z",), "y")
+
+
+def test_the_benchmark_prints_ratios(capsys):
+    script("guaranteed").main(count=100, rounds=1, lengths=10)
+    assert capsys.readouterr().out.count("cvxpy/this") == 15
+
+
+def test_a_small_campaign_has_no_contradiction(capsys):
+    counts = script("guaranteed_campaign").main(problems=6, alterations=12, seed=5)
+    assert counts["certified"] == counts["solved"] > 0
+    assert not any(key.isupper() or "CONTRADICTION" in key or "below" in key for key in counts)
+
+
+@pytest.mark.parametrize(("state", "lower", "upper"), [(2, 0.05, 2.0), (1, 0.05, 4.1)])
+def test_many_lengths_at_once_follow_the_closed_form(state, lower, upper):
+    T = np.random.default_rng(1).uniform(lower, upper, 60)
+    exact = 2 / np.tan(T / 4) if state == 1 else np.cos(T / 2) / np.sin(T / 4) ** 2
+    assert np.allclose(values_for_lengths(velocity(state), T), exact, rtol=1e-9)
+
+
+def test_lengths_that_are_none_are_refused():
+    for bad in ([], [1.0, 0.0], [np.nan]):
+        with pytest.raises(DomainError, match="positive finite"):
+            values_for_lengths(velocity(1), bad)
