@@ -11,7 +11,7 @@ import sympy as sp
 
 from navsym.errors import DomainError
 from navsym.methods.guaranteed_many import values_for_lengths
-from navsym.methods.phases_family import U, Family
+from navsym.methods.phases_family import Family, U
 
 FOLDER = Path(__file__).parent.parent / "benchmarks"
 
