@@ -1,0 +1,73 @@
+"""The documentation builds with warnings fatal, and every block of it that can run is run."""
+
+from __future__ import annotations
+
+import re
+import shlex
+import subprocess
+import sys
+import textwrap
+from pathlib import Path
+
+import pytest
+
+from navsym.cli.main import run
+
+DOCS = Path(__file__).parent.parent / "docs"
+PAGES = sorted(DOCS.glob("*.md"))
+BLOCK = re.compile(r"^(?P<indent> *)```(?P<kind>\w+)\n(?P<body>.*?)^ *```$", re.M | re.S)
+
+
+def blocks(path):
+    for found in BLOCK.finditer(path.read_text(encoding="utf-8")):
+        yield found["kind"], textwrap.dedent(found["body"])
+
+
+RUNNING = [path for path in PAGES if any(kind in ("python", "sh", "toml") for kind, _ in blocks(path))]
+
+
+@pytest.mark.parametrize("path", RUNNING, ids=lambda path: path.stem)
+def test_every_block_runs_in_order(path, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    script = []
+    for kind, body in blocks(path):
+        if kind == "toml":
+            (tmp_path / body.splitlines()[0].removeprefix("# file: ")).write_text(body, encoding="utf-8")
+        elif kind == "sh":
+            for line in body.splitlines():
+                program, *words = shlex.split(line)
+                assert program == "navsym" and run(words) == 0, (line, capsys.readouterr())
+        elif kind == "python":
+            script.append(body)
+    if script:
+        (tmp_path / "page.py").write_text("\n".join(script), encoding="utf-8")
+        done = subprocess.run(
+            [sys.executable, "page.py"], cwd=tmp_path, capture_output=True, text=True, check=False, timeout=120
+        )
+        assert done.returncode == 0, done.stderr
+
+
+def test_the_blocks_are_found():
+    assert sum(kind == "sh" for path in RUNNING for kind, _ in blocks(path)) >= 6
+
+
+def test_the_site_builds_without_a_warning(tmp_path):
+    for needed in ("sphinx", "myst_parser", "furo"):
+        pytest.importorskip(needed)
+    command = [sys.executable, "-m", "sphinx", "-W", "--keep-going", "-q", "-b", "html", "-d", str(tmp_path / "d")]
+    done = subprocess.run(
+        [*command, str(DOCS), str(tmp_path / "site")], capture_output=True, text=True, check=False, timeout=300
+    )
+    assert done.returncode == 0, done.stderr[-3000:]
+    assert "Riccati" in (tmp_path / "site" / "new_paper.html").read_text(encoding="utf-8")
+    page = (tmp_path / "site" / "reference" / "proof.html").read_text(encoding="utf-8")
+    assert "decide_equation" in page
+
+
+def test_the_glossary_has_three_languages_in_every_line():
+    rows = [line for line in (DOCS / "glossary.md").read_text(encoding="utf-8").splitlines() if line.startswith("| ")]
+    assert len(rows) > 25
+    for row in rows[2:]:
+        english, russian, ukrainian = (cell.strip() for cell in row.strip("|").split("|"))
+        assert english.isascii() and re.search("[а-яё]", russian) and re.search("[а-яієїґ]", ukrainian)
+        assert not re.search("[ыэёъ]", ukrainian) and not re.search("[ієїґ]", russian)
