@@ -32,7 +32,8 @@ from navsym.text.expression import to_text
 POINTS = 5
 #: An implicit regime is followed down to this part of the range; below it nothing is claimed.
 FLOOR = Fraction(1, 60)
-SLIVER = Fraction(1, 2000)
+#: Parts of a regime left to two-sided certificates at either end; larger ones where the first is too near.
+SLIVERS = (Fraction(1, 2000), Fraction(1, 200), Fraction(1, 30))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -140,9 +141,12 @@ def certified(
 ) -> tuple[Regime, list[tuple[str, str]]]:
     """A regime followed rigorously; holes that are left, as pairs of texts."""
     width = span.upper - span.lower
-    start = rounded(max(span.lower + SLIVER * width, FLOOR * span.upper), SLIVER * width, 1)
-    stop = rounded(span.upper - SLIVER * width, SLIVER * width, -1)
-    done = followed(family, span.pattern, start, stop)
+    for part in SLIVERS:
+        start = rounded(max(span.lower + part * width, FLOOR * span.upper), part * width, 1)
+        stop = rounded(span.upper - part * width, part * width, -1)
+        done = followed(family, span.pattern, start, stop)
+        if done.pieces:
+            break
     reached = fraction_of(done.reached)
     holes: list[tuple[str, str]] = []
     slivers = []
@@ -155,7 +159,7 @@ def certified(
         else:
             slivers.append(row)
     document = done.document(family.exact(1), family.parameter.name) if done.pieces else None
-    status = CERTIFIED if done.pieces and not holes else OPEN if not done.pieces else CERTIFIED
+    status = CERTIFIED if done.pieces else OPEN
     regime = Regime(span, lower, upper, closed if closed and closed.verdict.status.holds else None, status,
                     table_of(family, span), document, tuple(slivers))  # fmt: skip
     return regime, holes
