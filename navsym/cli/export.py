@@ -17,15 +17,22 @@ if TYPE_CHECKING:
 
 def command(
     claims: Annotated[
-        list[str], typer.Argument(help="module:number, FILE.toml:id, or regimes joined as A+B+C; or a ready-made name")
+        list[str],
+        typer.Argument(help="module:number, FILE.toml:id, or regimes joined as A+B+C; or a ready-made name"),
     ],
     to: Annotated[str, typer.Option("--to", help="languages, such as c,cpp,rust,python")] = "c",
     out: Annotated[Path, typer.Option("--out", help="folder to write")] = Path("export"),
     real: Annotated[str, typer.Option("--real", help="double or float")] = "double",
     force: Annotated[bool, typer.Option("--force", help="replace files that are there")] = False,
-    allow_confirmed: Annotated[bool, typer.Option("--allow-confirmed", help="accept claims held by samples")] = False,
-    license_: Annotated[str, typer.Option("--license", help="SPDX identifier for the headers")] = "Apache-2.0",
-    vectors: Annotated[int, typer.Option("--vectors", min=4, max=100_000, help="vectors for each function")] = 48,
+    allow_confirmed: Annotated[
+        bool, typer.Option("--allow-confirmed", help="accept claims held by samples")
+    ] = False,
+    license_: Annotated[
+        str, typer.Option("--license", help="SPDX identifier for the headers")
+    ] = "Apache-2.0",
+    vectors: Annotated[
+        int, typer.Option("--vectors", min=4, max=100_000, help="vectors for each function")
+    ] = 48,
     run: Annotated[bool, typer.Option("--run/--no-run", help="compile and run what this machine can")] = True,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> int:
@@ -37,7 +44,19 @@ def command(
         raise DomainError(f"expected double or float; got {real[:20]!r}; do correct it", where="--real")
     targets = tuple(chosen(to.split(","), real))
     functions = [function_for(claim, real, allow_confirmed) for claim in expanded(claims)]
-    words = ["navsym", "export", *claims, "--to", to, "--real", real, "--license", license_, "--vectors", str(vectors)]
+    words = [
+        "navsym",
+        "export",
+        *claims,
+        "--to",
+        to,
+        "--real",
+        real,
+        "--license",
+        license_,
+        "--vectors",
+        str(vectors),
+    ]
     words += ["--allow-confirmed"] if allow_confirmed else []
     order = Order(targets, license_, vectors, tuple(words))
     document = export(functions, order, out, force=force, execute=run)
@@ -53,9 +72,15 @@ def expanded(claims: list[str]) -> list[str]:
 
 
 def function_for(text: str, real: str, allow_confirmed: bool) -> ExportedFunction:
-    """The function of one argument; ``name=A+B`` gives it a name."""
+    """The function of one argument; ``name=A+B`` gives it a name; a step is composed of its stages."""
     from navsym.export.functions import function_of
     from navsym.export.names import identifier
+    from navsym.export.ready import STEPS
+    from navsym.export.steps import step_function
+
+    if text in STEPS:
+        stages = [material_for(stage.claim, allow_confirmed) for stage in STEPS[text].stages]
+        return step_function(STEPS[text], stages, identifier(text), real)
 
     name, _, claims = text.rpartition("=") if "=" in text else ("", "", text)
     parts = [material_for(part, allow_confirmed) for part in claims.split("+")]
@@ -66,7 +91,9 @@ def material_for(text: str, allow_confirmed: bool) -> Material:
     """A claim of a paper or of a file, decided."""
     module, colon, number = text.rpartition(":")
     if not colon or not module or not number:
-        raise DomainError(f"expected MODULE:NUMBER or FILE.toml:ID; got {text[:80]!r}; do correct it", where="command line")
+        raise DomainError(
+            f"expected MODULE:NUMBER or FILE.toml:ID; got {text[:80]!r}; do correct it", where="command line"
+        )
     if module.endswith(".toml"):
         return from_file(Path(module), number, allow_confirmed)
     return from_paper(module, number, allow_confirmed)
@@ -124,7 +151,15 @@ def as_text(document: dict[str, Any]) -> str:
         found = language["functions"].values()
         worst = max((f["worst"] for f in found), default=None)
         count = sum(f["vectors"] for f in found)
-        rows.append((language["language"], language["status"], count or "", "" if worst is None else f"{worst:.2g}", language["why"]))
+        rows.append(
+            (
+                language["language"],
+                language["status"],
+                count or "",
+                "" if worst is None else f"{worst:.2g}",
+                language["why"],
+            )
+        )
     lines = [f"{f['name']}: {'; '.join(f['rounding'])}" for f in document["functions"]]
     head = table(("language", "status", "vectors", "worst eps", "remark"), rows)
     return "\n".join([*lines, head, f"{document['files']} files in {document['out']}"])

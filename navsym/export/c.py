@@ -18,6 +18,7 @@ from navsym.export.printing import (
     horner,
     summary,
 )
+from navsym.export.steps import c_state_header
 from navsym.export.vectors import Vector
 
 STATUS = """/* {license} */
@@ -41,16 +42,40 @@ def spelling(real: str) -> Spelling:
     return Spelling(calls(suffix=suffix), "NAN", "INFINITY", suffix)
 
 
-def files(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str) -> dict[str, str]:
+def files(
+    functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str
+) -> dict[str, str]:
     """File name -> text of the whole C folder."""
     found = {"navsym_status.h": STATUS.format(license=license_)}
     for function in functions:
         found[f"{function.name}.h"] = header(function, license_)
         found[f"{function.name}.c"] = source(function, license_)
+        if function.state:
+            found[f"{function.name}_state.h"] = c_state_header(function, spelling(function.arithmetic.name), license_)
     found["test_vectors.h"] = vectors_header(functions, tests, license_)
     found["test_main.c"] = test_program(functions, tests, license_)
     found["CMakeLists.txt"] = cmake([f.name for f in functions], license_)
     return found
+
+
+WASI = """// {license}
+// Runs the test program that was compiled to WebAssembly; its exit status is ours.
+import {{ readFileSync }} from "node:fs";
+import {{ argv, exit }} from "node:process";
+import {{ WASI }} from "node:wasi";
+
+const wasi = new WASI({{ version: "preview1", args: ["run"], returnOnExit: true }});
+const module = await WebAssembly.compile(readFileSync(argv[2]));
+const instance = await WebAssembly.instantiate(module, wasi.getImportObject());
+exit(wasi.start(instance));
+"""
+
+
+def wasm_files(
+    functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str
+) -> dict[str, str]:
+    """The C folder with a runner for its WebAssembly."""
+    return files(functions, tests, license_) | {"run_wasi.mjs": WASI.format(license=license_)}
 
 
 def parameters(function: ExportedFunction) -> str:
@@ -123,7 +148,14 @@ def shape_text(output: Output) -> str:
 def source(function: ExportedFunction, license_: str) -> str:
     """Definition: domain test, the formulas of each regime, finiteness test, results."""
     s = spelling(function.arithmetic.name)
-    lines = [f"/* {license_} */", f'#include "{function.name}.h"', "", "#include <float.h>", "#include <math.h>", ""]
+    lines = [
+        f"/* {license_} */",
+        f'#include "{function.name}.h"',
+        "",
+        "#include <float.h>",
+        "#include <math.h>",
+        "",
+    ]
     for name in helpers_used(function):
         lines += [HELPERS[name](function.arithmetic.name, s), ""]
     lines += [signature(function), "{", *body(function, s), "}", ""]
@@ -142,8 +174,12 @@ def body(function: ExportedFunction, s: Spelling) -> list[str]:
         lines += [f"        const {real} {name} = {text};" for name, text in temporaries]
         lines += [f"        r{k} = {text};" for k, text in enumerate(results)]
         lines.append("    }")
-    finite = "\n          && ".join(f"({s.calls['abs'].format(f'r{k}')} <= {largest})" for k in range(function.size))
-    lines += [f"    if (!({finite})) {{", "        return NAVSYM_NOT_FINITE;", "    }"]
+    if function.always_finite:
+        lines.append("    /* Proved: no operation overflows in the domain, so that the results need no test. */")
+    else:
+        tests = (f"({s.calls['abs'].format(f'r{k}')} <= {largest})" for k in range(function.size))
+        finite = "\n          && ".join(tests)
+        lines += [f"    if (!({finite})) {{", "        return NAVSYM_NOT_FINITE;", "    }"]
     return [*lines, *stores(function), "    return NAVSYM_OK;"]
 
 
@@ -209,17 +245,26 @@ HELPERS = {"sinc": sinc_helper, "x_minus_sin": x_minus_sin_helper}
 # -- vectors, test program, build ---------------------------------------
 
 
-def vectors_header(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str) -> str:
+def vectors_header(
+    functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str
+) -> str:
     """Constant arrays: arguments, status, lower and upper bounds, nearest values."""
-    lines = [f"/* {license_} */", "/* Bounds are rigorous enclosures widened by the derived rounding error. */"]
+    lines = [
+        f"/* {license_} */",
+        "/* Bounds are rigorous enclosures widened by the derived rounding error. */",
+    ]
     lines += ["#ifndef NAVSYM_TEST_VECTORS_H", "#define NAVSYM_TEST_VECTORS_H", "", "#include <math.h>", ""]
     for function in functions:
         found, n = tests[function.name], len(tests[function.name])
         lines.append(f"#define {function.name}_COUNT {n}")
         if function.inputs:
             inputs = [x for v in found for x in v.inputs]
-            lines += array_text(function.arithmetic.name, f"{function.name}_in", inputs, spelling(function.arithmetic.name))
-        lines.append(f"static const int {function.name}_status[] = {{{', '.join(str(v.status) for v in found)}}};")
+            lines += array_text(
+                function.arithmetic.name, f"{function.name}_in", inputs, spelling(function.arithmetic.name)
+            )
+        lines.append(
+            f"static const int {function.name}_status[] = {{{', '.join(str(v.status) for v in found)}}};"
+        )
         for part in ("lower", "upper", "nearest"):
             values = [x for v in found for x in (getattr(v, part) or (0.0,) * function.size)]
             lines += array_text("double", f"{function.name}_{part}", values, spelling("double"))

@@ -63,7 +63,9 @@ sys.exit(main())
 '''
 
 
-def files(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str) -> dict[str, str]:
+def files(
+    functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str
+) -> dict[str, str]:
     """Serialised functions, their generated C, vectors and test."""
     found: dict[str, str] = {}
     index = {}
@@ -73,7 +75,9 @@ def files(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]],
         pieces = []
         for place, piece in enumerate(function.pieces):
             name = f"f{place}_{function.name.strip('_')}"[:60].replace("__", "_").rstrip("_")
-            made = casadi_function(name, [i.symbol for i in function.inputs], sp.Matrix([plain(form) for form in piece.forms]))
+            made = casadi_function(
+                name, [i.symbol for i in function.inputs], sp.Matrix([plain(form) for form in piece.forms])
+            )
             found[f"{name}.casadi"] = made.serialize()
             found[f"{name}.c"] = generated(made, name)
             pieces.append({"file": f"{name}.casadi", "limit": piece.limit})

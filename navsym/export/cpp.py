@@ -17,7 +17,9 @@ def spelling(real: str) -> Spelling:
     return Spelling(table, "NAN", "INFINITY", "f" if real == "float" else "")
 
 
-def files(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str) -> dict[str, str]:
+def files(
+    functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str
+) -> dict[str, str]:
     """The header, the test program with its vectors, and the build file."""
     return {
         "navsym_functions.hpp": header(functions, license_),
@@ -30,7 +32,11 @@ def header(functions: Sequence[ExportedFunction], license_: str) -> str:
     real = functions[0].arithmetic.name
     s = spelling(real)
     used = {name for function in functions for name in helpers_used(function)}
-    helpers = [HELPERS[name](real, s).replace("static", "inline", 1) for name in ("sinc", "x_minus_sin") if name in used]
+    helpers = [
+        HELPERS[name](real, s).replace("static", "inline", 1)
+        for name in ("sinc", "x_minus_sin")
+        if name in used
+    ]
     return "\n".join(
         [
             f"// {license_}",
@@ -70,22 +76,44 @@ def source(function: ExportedFunction, s: Spelling) -> str:
              for i in function.inputs]  # fmt: skip
     if tests:
         joined = "\n          && ".join(tests)
-        lines += [f"    if (!({joined})) {{", "        result.status = Status::domain;", "        return result;", "    }"]
-    targets = [f"result.{o.name}[{e}]" if o.shape else f"result.{o.name}" for o in function.outputs for e in range(o.size)]
+        lines += [
+            f"    if (!({joined})) {{",
+            "        result.status = Status::domain;",
+            "        return result;",
+            "    }",
+        ]
+    targets = [
+        f"result.{o.name}[{e}]" if o.shape else f"result.{o.name}"
+        for o in function.outputs
+        for e in range(o.size)
+    ]
     for place, piece in enumerate(function.pieces):
         temporaries, results = assignments(piece, names, s)
-        test = "" if piece.limit is None else f"if ({names[function.switch or 0]} <= {s.number(piece.limit)}) "
+        test = (
+            "" if piece.limit is None else f"if ({names[function.switch or 0]} <= {s.number(piece.limit)}) "
+        )
         lines.append(f"    {'else ' if place else ''}{test}{{  // {piece.source.claim}")
         lines += [f"        const {real} {name} = {text};" for name, text in temporaries]
         lines += [f"        {target} = {text};" for target, text in zip(targets, results, strict=True)]
         lines.append("    }")
     finite = "\n        && ".join(f"std::isfinite({t})" for t in targets)
-    lines += [f"    if ({finite}) {{", "        result.status = Status::ok;", "    }", "    return result;", "}", ""]
+    lines += [
+        f"    if ({finite}) {{",
+        "        result.status = Status::ok;",
+        "    }",
+        "    return result;",
+        "}",
+        "",
+    ]
     return "\n".join(lines)
 
 
 def member(output: Output, real: str) -> str:
-    return f"std::array<{real}, {output.size}> {output.name}{{}}" if output.shape else f"{real} {output.name} = 0"
+    return (
+        f"std::array<{real}, {output.size}> {output.name}{{}}"
+        if output.shape
+        else f"{real} {output.name} = 0"
+    )
 
 
 def bound(x: float, s: Spelling, largest: str) -> str:
@@ -127,7 +155,14 @@ TEST = """static int test_{name}()
 
 def program(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str) -> str:
     """The program that ctest runs."""
-    lines = [f"// {license_}", '#include "navsym_functions.hpp"', "", "#include <cmath>", "#include <cstdio>", ""]
+    lines = [
+        f"// {license_}",
+        '#include "navsym_functions.hpp"',
+        "",
+        "#include <cmath>",
+        "#include <cstdio>",
+        "",
+    ]
     lines += [test_function(f, tests[f.name]) for f in functions]
     lines += ["int main()", "{", "    int failed = 0;"]
     lines += [f"    failed += test_{f.name}();" for f in functions]
@@ -141,7 +176,11 @@ def test_function(function: ExportedFunction, found: list[Vector]) -> str:
     def wide(part: str) -> str:
         return rows([d.number(x) for v in found for x in (getattr(v, part) or (0.0,) * function.size)])
 
-    accessors = [f"result.{o.name}[{e}]" if o.shape else f"result.{o.name}" for o in function.outputs for e in range(o.size)]
+    accessors = [
+        f"result.{o.name}[{e}]" if o.shape else f"result.{o.name}"
+        for o in function.outputs
+        for e in range(o.size)
+    ]
     cast = "static_cast<double>({})" if real == "float" else "{}"
     template = TEST if n else TEST.replace("    static const {real} in[] = {{{inputs}}};\n", "")
     return template.format(

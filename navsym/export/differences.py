@@ -170,19 +170,22 @@ def of_file(path: Path) -> dict[str, Formula]:
 def of_model(path: Path) -> dict[str, Formula]:
     """Entries of F and of the measurement rows, by their places."""
     from navsym.text.modelfile import read_model
+    from navsym.text.modeltypes import ModelFile
 
     model = read_model(path)
-    found: dict[str, Formula] = {}
-    for name in ("F", "H", "regressors"):
-        matrix = getattr(model, name, None)
-        if isinstance(matrix, sp.MatrixBase):
-            for i in range(matrix.rows):
-                for j in range(matrix.cols):
-                    label = f"{name}[{i + 1},{j + 1}]"
-                    found[label] = Formula(label, matrix[i, j], {})
-    if not found:
-        raise DomainError("expected a model with F; got another kind; do compare formulas", where=str(path))
-    return found
+    if isinstance(model, ModelFile):
+        matrices = {f"F{k + 1 if len(model.pieces) > 1 else ''}": p.F for k, p in enumerate(model.pieces)}
+        rows = [list(m.h) for m in model.measurements]
+    else:
+        matrices, rows = {}, [list(row) for row in model.H]
+    matrices["H"] = sp.Matrix(rows)
+    return {
+        label: Formula(label, matrix[i, j], model.box)
+        for name, matrix in matrices.items()
+        for i in range(matrix.rows)
+        for j in range(matrix.cols)
+        for label in (f"{name}[{i + 1},{j + 1}]",)
+    }
 
 
 def of_export(folder: Path) -> dict[str, Formula]:

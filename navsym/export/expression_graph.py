@@ -107,7 +107,7 @@ def pruned(graph: Graph) -> Graph:
             for argument in graph.nodes[place].args:
                 needed[argument] = True
     new: dict[int, int] = {}
-    nodes = []
+    nodes: list[Node] = []
     for place, node in enumerate(graph.nodes):
         if needed[place]:
             new[place] = len(nodes)

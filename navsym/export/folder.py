@@ -55,7 +55,9 @@ def folder_for(out: Path) -> Path:
         out.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         reason = error.strerror or type(error).__name__
-        raise FolderError(f"expected a folder that can be made; got '{reason}'; choose another", where=str(out)) from None
+        raise FolderError(
+            f"expected a folder that can be made; got '{reason}'; choose another", where=str(out)
+        ) from None
     return Path(os.path.realpath(out))
 
 
@@ -69,7 +71,8 @@ def target_for(root: Path, name: str) -> Path:
             return target
         if part.is_symlink():
             raise FolderError(
-                f"expected files and folders; got the symbolic link {part.name}; do remove it", where=str(root)
+                f"expected files and folders; got the symbolic link {part.name}; do remove it",
+                where=str(root),
             )
         if part != target and part.exists() and not part.is_dir():
             raise FolderError(f"expected a folder; got the file {part.name}; do remove it", where=str(root))
@@ -84,7 +87,9 @@ def make_parents(root: Path, target: Path) -> None:
 def replace(target: Path, text: str) -> None:
     """Temporary file beside the target, then rename."""
     if target.is_dir():
-        raise FolderError(f"expected a file; got the folder {target.name}; do remove it", where=str(target.parent))
+        raise FolderError(
+            f"expected a file; got the folder {target.name}; do remove it", where=str(target.parent)
+        )
     handle, name = tempfile.mkstemp(prefix=".export.", dir=target.parent)
     try:
         with os.fdopen(handle, "w", encoding="utf-8", newline="\n") as file:

@@ -9,6 +9,7 @@ import math
 import random
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -106,7 +107,11 @@ class Piece:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ExportedFunction:
-    """A function ready to be printed in any language."""
+    """A function ready to be printed in any language.
+
+    switch : place of the input that chooses the piece
+    state  : (place of an input, place of the result that replaces it) of a stateful step
+    """
 
     name: str
     inputs: tuple[Input, ...]
@@ -114,11 +119,18 @@ class ExportedFunction:
     pieces: tuple[Piece, ...]
     arithmetic: Arithmetic
     switch: int | None = None
+    state: tuple[tuple[int, int], ...] = ()
 
     @property
     def size(self) -> int:
         """Number of results, all outputs together."""
         return sum(output.size for output in self.outputs)
+
+    @property
+    def always_finite(self) -> bool:
+        """Proved: nothing overflows for any accepted argument, so that no test of the results is needed."""
+        whole = all(i.low == i.test_low and i.high == i.test_high for i in self.inputs)
+        return whole and all(piece.bound.finite for piece in self.pieces)
 
     @property
     def sources(self) -> tuple[Source, ...]:
@@ -165,6 +177,7 @@ def results_of(statement: Statement, claim: str) -> list[tuple[Output, list[sp.E
 
 def entries(side: Any, name: str) -> tuple[Output, list[sp.Expr]]:
     """Scalar, vector or matrix as an output and its entries in row-major order."""
+    shape: tuple[int, ...]
     if isinstance(side, sp.MatrixBase):
         shape = (side.rows,) if side.cols == 1 else (side.rows, side.cols)
         flat = [sp.sympify(x, strict=True) for x in side]
@@ -292,12 +305,17 @@ def in_order(parts: Sequence[Material]) -> tuple[list[Material], sp.Symbol | Non
         raise DomainError(f"expected regimes in one parameter; got {len(symbols)}; do export them singly")
     (symbol,) = symbols
     ordered = sorted(parts, key=lambda part: inside(part.box[symbol][0], 1))
-    for before, after in zip(ordered, ordered[1:], strict=False):
-        if not vanishes_identically(before.box[symbol][1] - after.box[symbol][0]):
+    for before, after in pairwise(ordered):
+        if not same_number(before.box[symbol][1], after.box[symbol][0]):
             raise DomainError(
                 f"expected regimes that adjoin; got a gap before {after.claim}; do add the missing one"
             )
     return ordered, symbol
+
+
+def same_number(a: Any, b: Any) -> bool:
+    """Equality of exact numbers, by the normal form."""
+    return vanishes_identically(sp.sympify(a, strict=True) - sp.sympify(b, strict=True))
 
 
 def joined_box(parts: Sequence[Material], switch: sp.Symbol | None) -> Mapping[Any, Any]:

@@ -53,9 +53,15 @@ process.exit(failed);
 """
 
 
-def files(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str) -> dict[str, str]:
+def files(
+    functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str
+) -> dict[str, str]:
     """The module, its vectors and the program that runs them."""
-    head = [f"// {license_}", "// Status: 0 results are valid, 1 argument outside the proved domain, 2 not finite.", ""]
+    head = [
+        f"// {license_}",
+        "// Status: 0 results are valid, 1 argument outside the proved domain, 2 not finite.",
+        "",
+    ]
     used = {name for function in functions for name in helpers_used(function)}
     helpers = [HELPERS[name]() for name in ("sinc", "x_minus_sin") if name in used]
     return {
@@ -82,7 +88,11 @@ def source(function: ExportedFunction) -> str:
         lines += [f"    r{k} = {text};" for k, text in enumerate(results)]
         lines.append("  }")
     finite = " && ".join(f"Number.isFinite(r{k})" for k in range(function.size))
-    lines += [f"  if (!({finite})) {{ return {{ status: 2 }}; }}", f"  return {{ status: 0, {fields(function)} }};", "}"]
+    lines += [
+        f"  if (!({finite})) {{ return {{ status: 2 }}; }}",
+        f"  return {{ status: 0, {fields(function)} }};",
+        "}",
+    ]
     return "\n".join([*lines, ""])
 
 

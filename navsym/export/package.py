@@ -41,7 +41,9 @@ def files_of(functions: Sequence[ExportedFunction], order: Order) -> dict[str, s
     """Relative name -> text of everything that is exported, the manifest included."""
     names = [function.name.lower() for function in functions]
     if len(set(names)) < len(names):
-        raise DuplicateError("expected functions with different names; got one name twice; do name each claim once")
+        raise DuplicateError(
+            "expected functions with different names; got one name twice; do name each claim once"
+        )
     notice = f"SPDX-License-Identifier: {license_id(order.license)}"
     found: dict[str, str] = {}
     for target in order.targets:
@@ -56,7 +58,9 @@ def files_of(functions: Sequence[ExportedFunction], order: Order) -> dict[str, s
 
 def license_id(text: str) -> str:
     if not text or len(text) > 80 or not all(c.isascii() and (c.isalnum() or c in ".-+() ") for c in text):
-        raise DomainError(f"expected an SPDX identifier such as Apache-2.0; got {text[:40]!r}; do correct --license")
+        raise DomainError(
+            f"expected an SPDX identifier such as Apache-2.0; got {text[:40]!r}; do correct --license"
+        )
     return text
 
 
@@ -107,7 +111,8 @@ def manifest(functions: Sequence[ExportedFunction], order: Order, files: Mapping
     """What was exported from what, with which versions, and how to make it again byte for byte."""
     return {
         "navsym": __version__,
-        "made_with": {"python": platform.python_version()} | {p: version(p) for p in ("sympy", "python-flint", "numpy")},
+        "made_with": {"python": platform.python_version()}
+        | {p: version(p) for p in ("sympy", "python-flint", "numpy")},
         "command": shlex.join(order.command),
         "license": order.license,
         "real": functions[0].arithmetic.name,
@@ -120,7 +125,10 @@ def manifest(functions: Sequence[ExportedFunction], order: Order, files: Mapping
 def function_record(function: ExportedFunction) -> dict[str, Any]:
     return {
         "name": function.name,
-        "inputs": [{"name": i.name, "symbol": i.symbol.name, "range": i.text} | ends(i.low, i.high) for i in function.inputs],
+        "inputs": [
+            {"name": i.name, "symbol": i.symbol.name, "range": i.text} | ends(i.low, i.high)
+            for i in function.inputs
+        ],
         "outputs": [{"name": o.name, "shape": list(o.shape)} for o in function.outputs],
         "pieces": [piece_record(function, piece) for piece in function.pieces],
     }
@@ -154,7 +162,12 @@ class FailedError(NavsymError):
 
 
 def export(
-    functions: Sequence[ExportedFunction], order: Order, out: Path, *, force: bool = False, execute: bool = True
+    functions: Sequence[ExportedFunction],
+    order: Order,
+    out: Path,
+    *,
+    force: bool = False,
+    execute: bool = True,
 ) -> dict[str, Any]:
     """Make an export, run it, and write it when it held; the document of ``navsym export``.
 
@@ -198,6 +211,12 @@ def summary_record(function: ExportedFunction) -> dict[str, Any]:
 
 def outcome_record(outcome: Outcome) -> dict[str, Any]:
     functions = {
-        name: {"vectors": n, "wrong": wrong, "worst": worst} for name, (n, wrong, worst) in outcome.functions.items()
+        name: {"vectors": n, "wrong": wrong, "worst": worst}
+        for name, (n, wrong, worst) in outcome.functions.items()
     }
-    return {"language": outcome.language, "status": outcome.status, "why": outcome.why, "functions": functions}
+    return {
+        "language": outcome.language,
+        "status": outcome.status,
+        "why": outcome.why,
+        "functions": functions,
+    }

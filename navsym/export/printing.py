@@ -59,7 +59,9 @@ def calls(prefix: str = "", suffix: str = "", **special: str) -> dict[str, str]:
     return table | special
 
 
-def assignments(piece: Piece, names: list[str], spelling: Spelling) -> tuple[list[tuple[str, str]], list[str]]:
+def assignments(
+    piece: Piece, names: list[str], spelling: Spelling
+) -> tuple[list[tuple[str, str]], list[str]]:
     """([(temporary, expression), …], [expression of each result]).
 
     Shared nodes and long expressions get a temporary; everything else stands where it is used.
@@ -69,7 +71,9 @@ def assignments(piece: Piece, names: list[str], spelling: Spelling) -> tuple[lis
     lines: list[tuple[str, str]] = []
     for place, node in enumerate(graph.nodes):
         written = node_text(graph, place, text, names, piece, spelling)
-        simple = node.op in ("input", "const") or (node.op == "neg" and graph.nodes[node.args[0]].op == "const")
+        simple = node.op in ("input", "const") or (
+            node.op == "neg" and graph.nodes[node.args[0]].op == "const"
+        )
         if not simple and (counts[place] > 1 or len(written) > LONGEST):
             name = f"t{len(lines)}"
             lines.append((name, bare(written)))
@@ -175,7 +179,9 @@ def bound_text(function: ExportedFunction, piece: Piece) -> str:
     limits = [f"|{i.name}| <= {max(abs(i.test_low), abs(i.test_high)):g}" for i in function.inputs
               if math.isinf(i.low) or math.isinf(i.high)]  # fmt: skip
     where = f" with {', '.join(limits)}" if limits else ""
-    library = f"u = 2^{arithmetic.u}, library functions within {arithmetic.library} or {2 * arithmetic.library} ulp"
+    library = (
+        f"u = 2^{arithmetic.u}, library functions within {arithmetic.library} or {2 * arithmetic.library} ulp"
+    )
     return f"{'; '.join(dict.fromkeys(parts))}{where} ({library})"
 
 

@@ -110,7 +110,9 @@ sys.exit(main())
 '''
 
 
-def files(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str) -> dict[str, str]:
+def files(
+    functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str
+) -> dict[str, str]:
     """The module, its vectors and the program that runs them."""
     real = "float32" if functions[0].arithmetic.name == "float" else "float64"
     head = HEAD.format(
@@ -170,7 +172,9 @@ def docstring(function: ExportedFunction) -> list[str]:
 
 
 def checks(function: ExportedFunction) -> list[str]:
-    largest = "np.finfo(np.float32).max" if function.arithmetic.name == "float" else "np.finfo(np.float64).max"
+    largest = (
+        "np.finfo(np.float32).max" if function.arithmetic.name == "float" else "np.finfo(np.float64).max"
+    )
     lines = []
     for i in function.inputs:
         low = repr(i.low) if math.isfinite(i.low) else f"-{largest}"

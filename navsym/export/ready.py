@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from navsym.export.steps import Stage, Step
+
 _GV = "guaranteed_velocity"
 
 #: Name -> arguments of ``navsym export``.
@@ -22,5 +24,24 @@ READY: dict[str, tuple[str, ...]] = {
         "earth_up=trajectory:earth.rotation.xi3",
         "earth_latitude_rate=trajectory:kinematics.phi_rate",
         "earth_longitude_rate=trajectory:kinematics.lambda_rate*",
+    ),
+}
+
+_AHEAD = ("m11", "m12", "m13", "", "m22", "m23", "", "", "m33")
+_AFTER = ("n11", "n12", "n13", "", "n22", "n23", "", "", "n33")
+_COVARIANCE = ("p11", "p12", "p13", "p22", "p23", "p33")
+
+#: Name -> a stateful step.
+STEPS: dict[str, Step] = {
+    "trajectory-filter": Step(
+        stages=(
+            Stage("trajectory:algorithm.P_ahead", _AHEAD),
+            Stage("trajectory:algorithm.K*", ("K1", "K2", "K3")),
+            Stage("trajectory:algorithm.C", ("g1", "g2", "g3")),
+            Stage("trajectory:algorithm.P", _AFTER),
+        ),
+        outputs={"estimate": ("g1", "g2", "g3"), "covariance": tuple(n for n in _AFTER if n)},
+        state={"f1": "g1", "f2": "g2", "f3": "g3"}
+        | {old: f"n{old[1:]}" for old in _COVARIANCE},
     ),
 }

@@ -23,7 +23,7 @@ from navsym.proof.balls import enclose, precision
 
 BITS = 128
 CELLS = 160
-GEOMETRIC = 40      # cells that halve their distance to zero
+GEOMETRIC = 40  # cells that halve their distance to zero
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,20 +32,22 @@ class Arithmetic:
 
     u       : unit roundoff as a power of two
     eta     : half the smallest subnormal, as a power of two
+    top     : every number below this power of two is finite
     library : accuracy of sin, cos, exp, log, expm1, pow in ulps; the other functions have twice this
     """
 
     name: str
     u: int
     eta: int
+    top: int
     library: int = 1
 
     def unit(self) -> arb:
         return arb(2) ** self.u
 
 
-DOUBLE = Arithmetic("double", -53, -1075)
-FLOAT = Arithmetic("float", -24, -150)
+DOUBLE = Arithmetic("double", -53, -1075, 1023)
+FLOAT = Arithmetic("float", -24, -150, 127)
 ARITHMETICS = {"double": DOUBLE, "float": FLOAT}
 
 #: Accuracy in units of u; of library functions per ulp of the stated accuracy; helpers include their series.
@@ -357,15 +359,21 @@ class Uniform:
     relative : in units of u: ``|computed - exact| <= relative u |exact|``
     scaled   : in units of u, over the sum of the magnitudes of the terms (underflow aside)
     absolute : ``|computed - exact| <= absolute``
+    finite   : no operation can overflow anywhere in the box
     """
 
     relative: tuple[float, ...]
     scaled: tuple[float, ...]
     absolute: tuple[float, ...]
+    finite: bool
 
 
 def uniform_bound(
-    graph: Graph, box: Sequence[tuple[float, float]], arithmetic: Arithmetic, literals: Sequence[Any], cells: int = CELLS
+    graph: Graph,
+    box: Sequence[tuple[float, float]],
+    arithmetic: Arithmetic,
+    literals: Sequence[Any],
+    cells: int = CELLS,
 ) -> Uniform:
     """Bounds over a box of exact ends, by subdividing where they are worst.
 
@@ -385,8 +393,12 @@ def uniform_bound(
         found = measured(graph, part, arithmetic, literals)
         count += 1
         heapq.heappush(queue, (-badness(found), count, part, found))
-    return Uniform(*(tuple(map(max, zip(*(getattr(u, name) for *_, u in queue), strict=True)))
-                     for name in ("relative", "scaled", "absolute")))  # fmt: skip
+    every = [cell[-1] for cell in queue]
+    relative, scaled, absolute = (
+        tuple(map(max, zip(*(getattr(u, name) for u in every), strict=True)))
+        for name in ("relative", "scaled", "absolute")
+    )
+    return Uniform(relative, scaled, absolute, finite=all(u.finite for u in every))
 
 
 def badness(found: Uniform) -> float:
@@ -397,7 +409,7 @@ def badness(found: Uniform) -> float:
 def starting_cells(box: Sequence[tuple[float, float]]) -> list[Box]:
     """The box, cut geometrically along the first side that comes near zero."""
     for place, (low, high) in enumerate(box):
-        if 0 < low and high > 4 * low:
+        if low > 0 and high > 4 * low:
             ends = [high]
             while ends[-1] > 4 * low and len(ends) < GEOMETRIC:
                 ends.append(ends[-1] / 4)
@@ -427,11 +439,12 @@ def measured(graph: Graph, box: Box, arithmetic: Arithmetic, literals: Sequence[
     found = analyse(graph, balls, arithmetic, literals)
     results = [found[root] for root in graph.roots]
     with precision(BITS):
-        unit = arithmetic.unit()
+        unit, largest = arithmetic.unit(), arb(2) ** arithmetic.top
         return Uniform(
             tuple(upper_float(r.relative / unit) for r in results),
             tuple(upper_float(r.scaled / unit) for r in results),
             tuple(upper_float(r.absolute) for r in results),
+            all(bool(up(node.value) + node.absolute < largest) for node in found),
         )
 
 

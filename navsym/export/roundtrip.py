@@ -42,7 +42,9 @@ def run_target(folder: Path, target: Target, *, sanitize: bool = False) -> Outco
     """Build and run the vectors of one language's folder; the build goes to a temporary folder."""
     tool = target.executable()
     if tool is None:
-        return Outcome(target.name, "not executed", f"{target.module or target.tool} is not on this machine", {})
+        return Outcome(
+            target.name, "not executed", f"{target.module or target.tool} is not on this machine", {}
+        )
     text = ""
     with tempfile.TemporaryDirectory(prefix="navsym-run-") as build:
         for step in steps_of(target, folder, tool, build, sanitize):
@@ -54,7 +56,11 @@ def run_target(folder: Path, target: Target, *, sanitize: bool = False) -> Outco
 
 def steps_of(target: Target, folder: Path, tool: str, build: str, sanitize: bool) -> list[list[str]]:
     """The commands with their places filled in."""
-    table = {"{tool}": [tool], "{python}": [sys.executable], "{c}": [p.name for p in sorted(folder.glob("*.c"))]}
+    table = {
+        "{tool}": [tool],
+        "{python}": [sys.executable],
+        "{c}": [p.name for p in sorted(folder.glob("*.c"))],
+    }
     made = []
     for step in target.steps:
         command = [w for word in step for w in table.get(word, [word.replace("{build}", build)])]
@@ -73,7 +79,13 @@ def run(command: list[str], folder: Path) -> tuple[int, str]:
     quiet = {"PYTHONDONTWRITEBYTECODE": "1", "ASAN_OPTIONS": "detect_leaks=0"}
     try:
         done = subprocess.run(
-            command, cwd=folder, capture_output=True, text=True, timeout=SECONDS, check=False, env=os.environ | quiet
+            command,
+            cwd=folder,
+            capture_output=True,
+            text=True,
+            timeout=SECONDS,
+            check=False,
+            env=os.environ | quiet,
         )
     except subprocess.TimeoutExpired:
         return -1, f"stopped after {SECONDS} s"
@@ -88,7 +100,9 @@ def measured(text: str) -> dict[str, tuple[int, int, float]]:
 
 def words(text: str) -> str:
     """The first lines that say what went wrong."""
-    bad = [f"{name}: {wrong} of {n} vectors outside" for name, n, wrong, _ in LINE.findall(text) if wrong != "0"]
+    bad = [
+        f"{name}: {wrong} of {n} vectors outside" for name, n, wrong, _ in LINE.findall(text) if wrong != "0"
+    ]
     lines = bad or [line for line in text.splitlines() if line.strip()][:3]
     return "; ".join(lines)[:300]
 
@@ -110,7 +124,9 @@ def check_export(folder: Path) -> list[dict[str, Any]]:
         files = dict(manifest["files"])
         languages = [str(name) for name in manifest["languages"]]
     except (OSError, ValueError, KeyError, TypeError):
-        return [row(folder / MANIFEST, "manifest", "expected a manifest of navsym export; got something else")]
+        return [
+            row(folder / MANIFEST, "manifest", "expected a manifest of navsym export; got something else")
+        ]
     rows = [row(folder / MANIFEST, "manifest", hash_trouble(folder, files))]
     return rows + [language_row(folder, name) for name in languages]
 

@@ -27,7 +27,9 @@ def spelling(real: str) -> Spelling:
     special = {"log": "ln", "expm1": "exp_m1", "pow": "powf"}
     one = "sin cos exp log sqrt asin acos atan sinh cosh tanh expm1 abs".split()
     table = {name: f"{kind}::{special.get(name, name)}({{0}})" for name in one}
-    table |= {name: f"{kind}::{special.get(name, name)}({{0}}, {{1}})" for name in ("atan2", "pow", "max", "min")}
+    table |= {
+        name: f"{kind}::{special.get(name, name)}({{0}}, {{1}})" for name in ("atan2", "pow", "max", "min")
+    }
     table |= {"sinc": "navsym_sinc({0})", "x_minus_sin": "navsym_x_minus_sin({0})"}
     return Spelling(table, f"{kind}::NAN", f"{kind}::INFINITY", f"_{kind}")
 
@@ -36,7 +38,9 @@ def rust_type(real: str) -> str:
     return "f32" if real == "float" else "f64"
 
 
-def files(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str) -> dict[str, str]:
+def files(
+    functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str
+) -> dict[str, str]:
     """The module and the test program with its vectors."""
     return {
         "navsym_functions.rs": module(functions, license_),
@@ -48,7 +52,12 @@ def module(functions: Sequence[ExportedFunction], license_: str) -> str:
     real = functions[0].arithmetic.name
     s, kind = spelling(real), rust_type(real)
     used = {name for function in functions for name in helpers_used(function)}
-    lines = [f"// {license_}", "//! Functions exported by navsym.", "#![allow(non_snake_case, non_camel_case_types, dead_code)]", ""]
+    lines = [
+        f"// {license_}",
+        "//! Functions exported by navsym.",
+        "#![allow(non_snake_case, non_camel_case_types, dead_code)]",
+        "",
+    ]
     lines += ["/// Why there is no result.", "#[derive(Clone, Copy, Debug, PartialEq, Eq)]"]
     lines += ["pub enum Status {", "    Domain = 1,", "    NotFinite = 2,", "}", ""]
     lines += [HELPERS[name](kind, s) for name in ("sinc", "x_minus_sin") if name in used]
@@ -63,7 +72,10 @@ def source(function: ExportedFunction, s: Spelling, kind: str) -> str:
     lines += [f"/// {line}" for line in ("```text", *summary(function), "```")]
     arguments = ", ".join(f"{n}: {kind}" for n in names)
     lines.append(f"pub fn {function.name}({arguments}) -> Result<{function.name}_result, Status> {{")
-    tests = [f"({i.name} >= {bound(i.low, s, kind)}) && ({i.name} <= {bound(i.high, s, kind)})" for i in function.inputs]
+    tests = [
+        f"({i.name} >= {bound(i.low, s, kind)}) && ({i.name} <= {bound(i.high, s, kind)})"
+        for i in function.inputs
+    ]
     if tests:
         lines += [f"    if !({' && '.join(tests)}) {{", "        return Err(Status::Domain);", "    }"]
     lines.append(f"    let r: [{kind}; {function.size}];")
@@ -154,7 +166,11 @@ TEST = """fn test_{name}() -> i32 {{
 
 def program(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str) -> str:
     """The test program."""
-    lines = [f"// {license_}", "#![allow(non_snake_case, unused_variables, clippy::all)]", "mod navsym_functions;"]
+    lines = [
+        f"// {license_}",
+        "#![allow(non_snake_case, unused_variables, clippy::all)]",
+        "mod navsym_functions;",
+    ]
     lines += ["use navsym_functions::*;", ""]
     lines += [test_function(f, tests[f.name]) for f in functions]
     lines += ["fn main() {", "    let mut failed = 0;"]
@@ -169,7 +185,11 @@ def test_function(function: ExportedFunction, found: list[Vector]) -> str:
     def wide(part: str) -> str:
         return ", ".join(d.number(x) for v in found for x in (getattr(v, part) or (0.0,) * function.size))
 
-    accessors = [f"result.{o.name}[{e}]" if o.shape else f"result.{o.name}" for o in function.outputs for e in range(o.size)]
+    accessors = [
+        f"result.{o.name}[{e}]" if o.shape else f"result.{o.name}"
+        for o in function.outputs
+        for e in range(o.size)
+    ]
     return TEST.format(
         name=function.name, kind=kind, size=function.size, count=len(found), total=len(found) * function.size,
         inputs_size=len(found) * n,

@@ -24,7 +24,9 @@ from navsym.export.vectors import Vector
 
 JULIA = Spelling(calls(abs="abs({0})", atan2="atan({0}, {1})", pow="({0})^({1})", max="max({0}, {1})",
                        min="min({0}, {1})"), "NaN", "Inf")  # fmt: skip
-OCTAVE = Spelling(calls(abs="abs({0})", pow="({0})^({1})", max="max({0}, {1})", min="min({0}, {1})"), "NaN", "Inf")
+OCTAVE = Spelling(
+    calls(abs="abs({0})", pow="({0})^({1})", max="max({0}, {1})", min="min({0}, {1})"), "NaN", "Inf"
+)
 FORTRAN = Spelling(
     calls(abs="abs({0})", pow="(({0})**({1}))", max="max({0}, {1})", min="min({0}, {1})", expm1="navsym_expm1({0})"),
     "nan", "inf", exponent="d",
@@ -45,7 +47,9 @@ def vectors_text(functions: Sequence[ExportedFunction], tests: dict[str, list[Ve
 # -- Julia ---------------------------------------
 
 
-def julia_files(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str) -> dict[str, str]:
+def julia_files(
+    functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str
+) -> dict[str, str]:
     """Module and test script."""
     number = JULIA.number
     head = [f"# {license_}", "# Every function returns (status, results...); results are there when status == 0.",
@@ -87,7 +91,9 @@ def branch(function: ExportedFunction, place: int, first: str, later: str, last:
     return f"{later if place else first} ({condition})"
 
 
-def domain(function: ExportedFunction, largest: str, s: Spelling, both: str = " && ", true: str = "true") -> str:
+def domain(
+    function: ExportedFunction, largest: str, s: Spelling, both: str = " && ", true: str = "true"
+) -> str:
     """Comparisons of every argument with its range, in this language."""
     tests = []
     for i in function.inputs:
@@ -136,10 +142,15 @@ main()
 # -- Octave and MATLAB ---------------------------------------
 
 
-def octave_files(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str) -> dict[str, str]:
+def octave_files(
+    functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str
+) -> dict[str, str]:
     """One file for each function, the two helpers, and the test script."""
     number = OCTAVE.number
-    helper = "function f = {name}(x)\n  y = x * x;\n  if abs(x) < {switch}\n    f = {series};\n  else\n    f = {direct};\n  end\nend\n"
+    helper = (
+        "function f = {name}(x)\n  y = x * x;\n  if abs(x) < {switch}\n    f = {series};\n"
+        "  else\n    f = {direct};\n  end\nend\n"
+    )
     found = {
         "navsym_sinc.m": helper.format(name="navsym_sinc", switch=SINC_SWITCH,
                                        series=horner(SINC_STEPS, "1.0", number), direct="sin(x) / x"),
@@ -213,7 +224,9 @@ end
 # -- Fortran ---------------------------------------
 
 
-def fortran_files(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str) -> dict[str, str]:
+def fortran_files(
+    functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str
+) -> dict[str, str]:
     """Module and test program; names up to 63 characters, lines continued at 120."""
     names = {f.name: f"nv{k}_{f.name}"[:63] if len(f.name) > 63 else f.name for k, f in enumerate(functions)}
     number = FORTRAN.number
@@ -228,7 +241,8 @@ def fortran_files(functions: Sequence[ExportedFunction], tests: dict[str, list[V
              f"      f = ((x * y) / 6.0d0) * {horner(X_MINUS_SIN_STEPS, '1.0d0', number)}", "    else",
              "      f = x - sin(x)", "    end if", "  end function", "",
              "  pure elemental function navsym_expm1(x) result(f)", "    real(real64), intent(in) :: x",
-             "    real(real64) :: f", "    f = 2.0d0 * sinh(x / 2.0d0) * exp(x / 2.0d0)", "  end function", ""]  # fmt: skip
+             "    real(real64) :: f", "    f = 2.0d0 * sinh(x / 2.0d0) * exp(x / 2.0d0)",
+             "  end function", ""]  # fmt: skip
     for function in functions:
         lines += fortran_source(function, names[function.name])
     lines += ["end module navsym_functions", ""]
@@ -259,7 +273,10 @@ def fortran_source(function: ExportedFunction, name: str) -> list[str]:
     arguments = ", ".join([*names, *(o.name for o in function.outputs), "status"])
     lines = [*(f"  ! {line}" for line in summary(function)), f"  pure subroutine {name}({arguments})"]
     lines += [f"    real(real64), intent(in) :: {n}" for n in names]
-    lines += [f"    real(real64), intent(out) :: {o.name}{f'({o.size})' if o.shape else ''}" for o in function.outputs]
+    lines += [
+        f"    real(real64), intent(out) :: {o.name}{f'({o.size})' if o.shape else ''}"
+        for o in function.outputs
+    ]
     lines += ["    integer, intent(out) :: status", f"    real(real64) :: r({function.size})"]
     lines += [f"    real(real64) :: t{k}" for k in range(max(len(t) for t, _ in pieces))]
     lines += [f"    {o.name} = 0.0d0" for o in function.outputs]
@@ -289,7 +306,8 @@ def fortran_test(functions: Sequence[ExportedFunction], names: dict[str, str], l
              "  use navsym_functions", "  implicit none", f"  integer, parameter :: total = {len(functions)}",
              "  character(len=200) :: name", "  character(len=20000) :: line",
              f"  real(real64) :: v({widest}), r({most}), unit, worst(total)",
-             "  integer :: expected, status, io, n, m, j, k, counts(total), wrong(total)", "  counts = 0", "  wrong = 0",
+             "  integer :: expected, status, io, n, m, j, k, counts(total), wrong(total)",
+             "  counts = 0", "  wrong = 0",
              "  worst = 0.0d0", '  open(10, file="vectors.txt", status="old")', "  do",
              '    read(10, "(a)", iostat=io) line', "    if (io /= 0) exit", "    read(line, *) name",
              "    select case (trim(name))"]  # fmt: skip
@@ -299,7 +317,8 @@ def fortran_test(functions: Sequence[ExportedFunction], names: dict[str, str], l
             outputs.append(f"r({k + 1}:{k + output.size})" if output.shape else f"r({k + 1})")
             k += output.size
         arguments = ", ".join([*(f"v({j + 1})" for j in range(n)), *outputs, "status"])
-        lines += [f'    case ("{function.name}")', f"      n = {n}", f"      m = {function.size}", f"      k = {number}",
+        lines += [f'    case ("{function.name}")', f"      n = {n}", f"      m = {function.size}",
+                  f"      k = {number}",
                   "      read(line, *) name, expected, v(1:n + 3 * m)",
                   f"      call {names[function.name]}({arguments})"]  # fmt: skip
     lines += ["    end select", "    counts(k) = counts(k) + 1", "    if (status /= expected) wrong(k) = wrong(k) + 1",
@@ -312,4 +331,11 @@ def fortran_test(functions: Sequence[ExportedFunction], names: dict[str, str], l
     for number, function in enumerate(functions, start=1):
         lines.append(f'  print "(a,i0,a,i0,a,f0.3)", "{function.name} vectors ", counts({number}), " wrong ", '
                      f'wrong({number}), " worst ", worst({number})')  # fmt: skip
-    return "\n".join([*(p for line in lines for p in continued(line)), "  if (any(wrong > 0)) error stop 1", "end program", ""])
+    return "\n".join(
+        [
+            *(p for line in lines for p in continued(line)),
+            "  if (any(wrong > 0)) error stop 1",
+            "end program",
+            "",
+        ]
+    )

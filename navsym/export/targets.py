@@ -57,18 +57,26 @@ TARGETS = {
                (("{tool}", "-std=c99", "-O2", "-ffp-contract=off", *WARNINGS, "{c}", "-o", "{build}/run", "-lm"),
                 ("{build}/run",)), reals=BOTH),
         Target("cpp", "navsym.export.cpp:files", "g++",
-               (("{tool}", "-std=c++17", "-O1", "-ffp-contract=off", *WARNINGS, "test_main.cpp", "-o", "{build}/run"),
+               (("{tool}", "-std=c++17", "-O1", "-ffp-contract=off", *WARNINGS, "test_main.cpp",
+                 "-o", "{build}/run"),
                 ("{build}/run",)), reals=BOTH),
-        Target("python", "navsym.export.python:files", "", (("{python}", "-B", "test_vectors.py"),), library=4, reals=BOTH),
+        Target("python", "navsym.export.python:files", "", (("{python}", "-B", "test_vectors.py"),),
+               library=4, reals=BOTH),
         Target("javascript", "navsym.export.javascript:files", "node", (("{tool}", "test_vectors.mjs"),)),
         Target("rust", "navsym.export.rust:files", "rustc",
                (("{tool}", "--edition=2021", "-D", "warnings", "test_main.rs", "-o", "{build}/run"), ("{build}/run",)),
                reals=BOTH),
-        Target("casadi", "navsym.export.casadi:files", "", (("{python}", "-B", "test_vectors.py"),), widen=64, module="casadi"),
+        Target("casadi", "navsym.export.casadi:files", "", (("{python}", "-B", "test_vectors.py"),),
+               widen=64, module="casadi"),
         Target("fortran", "navsym.export.scripts:fortran_files", "gfortran",
                (("{tool}", "-std=f2008", "-Wall", "-J", "{build}", "navsym_functions.f90", "test_vectors.f90",
                  "-o", "{build}/run"), ("{build}/run",)), library=2),
-        Target("julia", "navsym.export.scripts:julia_files", "julia", (("{tool}", "--startup-file=no", "test_vectors.jl"),)),
+        Target("julia", "navsym.export.scripts:julia_files", "julia",
+               (("{tool}", "--startup-file=no", "test_vectors.jl"),)),
+        Target("wasm", "navsym.export.c:wasm_files", "node",
+               (("{python}", "-m", "ziglang", "cc", "-target", "wasm32-wasi", "-O2", "-std=c99", "-ffp-contract=off",
+                 *WARNINGS, "{c}", "-o", "{build}/run.wasm", "-lm"),
+                ("{tool}", "--no-warnings", "run_wasi.mjs", "{build}/run.wasm")), module="ziglang"),
         Target("octave", "navsym.export.scripts:octave_files", "octave",
                (("{tool}", "--no-gui", "--quiet", "--eval", "test_vectors"),), library=2),
     )
@@ -81,9 +89,13 @@ def chosen(names: Sequence[str], real: str) -> list[Target]:
     found = []
     for name in dict.fromkeys(ALIASES.get(n.strip().lower(), n.strip().lower()) for n in names if n.strip()):
         if name not in TARGETS:
-            raise DomainError(f"expected languages among {', '.join(TARGETS)}; got {name[:40]!r}; do correct --to")
+            raise DomainError(
+                f"expected languages among {', '.join(TARGETS)}; got {name[:40]!r}; do correct --to"
+            )
         if real not in TARGETS[name].reals:
-            raise DomainError(f"expected a language with {real}; got {name}, which has only double; do leave it out")
+            raise DomainError(
+                f"expected a language with {real}; got {name}, which has only double; do leave it out"
+            )
         found.append(TARGETS[name])
     if not found:
         raise DomainError(f"expected at least one language; got none; do name some of {', '.join(TARGETS)}")

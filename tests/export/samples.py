@@ -37,13 +37,19 @@ def rotation() -> Equation:
     c, s = sp.cos(lam), sp.sin(lam)
     printed = sp.Matrix([[c, s / beta], [-beta * s, c]])
     half = lam / 2
-    other = sp.Matrix([[1 - 2 * sp.sin(half) ** 2, s / beta], [-beta * s, sp.cos(half) ** 2 - sp.sin(half) ** 2]])
+    other = sp.Matrix(
+        [[1 - 2 * sp.sin(half) ** 2, s / beta], [-beta * s, sp.cos(half) ** 2 - sp.sin(half) ** 2]]
+    )
     return Equation(printed, other, {lam: (-3, 3), beta: (sp.Rational(1, 10), 2)})
 
 
 @cache
 def functions(real: str = "double") -> tuple[ExportedFunction, ...]:
-    regimes = (beyond.drift_holds_to_two_thirds_of_pi, beyond.drift_with_two_instants, beyond.drift_with_half_a_period)
+    regimes = (
+        beyond.drift_holds_to_two_thirds_of_pi,
+        beyond.drift_with_two_instants,
+        beyond.drift_with_half_a_period,
+    )
     return (
         function_of([of_claim(weights.WEIGHTS[8])], real=real),
         function_of([of_claim(weights.tilt_estimate_corrected)], real=real),

@@ -22,7 +22,7 @@ T = sp.Symbol("T", positive=True)
     [
         (1 - 2 * sp.cos(T / 2)) / (4 * sp.sin(T / 4) ** 2),
         sp.sin(7 * x) * sp.cos(5 * x) - sp.tan(x / 2),
-        -x**5 / 3 - y / (x**2 + 1) + sp.Rational(7, 3) * sp.sqrt(x**2 + 2) ** 3,
+        -(x**5) / 3 - y / (x**2 + 1) + sp.Rational(7, 3) * sp.sqrt(x**2 + 2) ** 3,
         sp.exp(x) - 1 + sp.cosh(y) - 1,
         3 - 3 * sp.cos(x * y) + 2 * x - 2 * sp.sin(x),
         sp.Integer(-5) / 7,
@@ -56,7 +56,9 @@ def test_a_quotient_of_positive_numbers_keeps_its_division() -> None:
 
 
 def test_a_factored_form_is_the_same_function() -> None:
-    formula = (sp.sin(T / 2) - sp.sin(T)) / (sp.sin(T) * (sp.cos(T / 2) - 1) - sp.sin(T / 2) * (sp.cos(T) - 1))
+    formula = (sp.sin(T / 2) - sp.sin(T)) / (
+        sp.sin(T) * (sp.cos(T / 2) - 1) - sp.sin(T / 2) * (sp.cos(T) - 1)
+    )
     nicer = factored(formula)
     assert nicer is not None
     assert reduce_to_zero(formula - nicer).zero

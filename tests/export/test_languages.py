@@ -31,12 +31,16 @@ def test_all_samples_stay_inside_their_enclosures(samples, language: str, tmp_pa
     outcome = run_target(exported(samples.functions(), language, tmp_path), TARGETS[language])
     assert outcome.status == "verified", outcome.why
     assert all(wrong == 0 for _, wrong, _ in outcome.functions.values())
-    assert len(outcome.functions) >= len(samples.functions()) - 2      # casadi leaves out what needs a helper
+    assert len(outcome.functions) >= len(samples.functions()) - 2  # casadi leaves out what needs a helper
 
 
 @pytest.mark.parametrize(
     "language",
-    [pytest.param(n, marks=[] if n == "c" else pytest.mark.slow) for n in HERE if "float" in TARGETS[n].reals],
+    [
+        pytest.param(n, marks=[] if n == "c" else pytest.mark.slow)
+        for n in HERE
+        if "float" in TARGETS[n].reals
+    ],
 )
 def test_single_precision_stays_inside_its_enclosures(samples, language: str, tmp_path: Path) -> None:
     outcome = run_target(exported(samples.functions("float"), language, tmp_path), TARGETS[language])
