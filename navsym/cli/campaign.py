@@ -19,6 +19,7 @@ def command(
     inputs: Annotated[int, typer.Option(min=1, help="inputs of parser and certificates")] = 10_000,
     seed: Annotated[int, typer.Option(min=0)] = 0,
     jobs: Annotated[int, typer.Option(min=1, help="batches at the same time")] = 1,
+    seconds: Annotated[float, typer.Option(min=1.0, help="limit for one batch")] = 3600.0,
     fresh: Annotated[bool, typer.Option("--fresh", help="do not resume from the store")] = False,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> int:
@@ -30,14 +31,21 @@ def command(
     document = (
         by_tests(name)
         if name in TESTED
-        else in_batches(name, modules or [], share, inputs, seed, jobs, fresh)
+        else in_batches(name, modules or [], share, inputs, seed, jobs, seconds, fresh)
     )
     emit(document, as_json=json_, text=lambda: as_text(document))
     return 1 if document["wrong"] or document["stopped"] else 0
 
 
 def in_batches(
-    name: str, modules: list[str], share: float, inputs: int, seed: int, jobs: int, fresh: bool
+    name: str,
+    modules: list[str],
+    share: float,
+    inputs: int,
+    seed: int,
+    jobs: int,
+    seconds: float,
+    fresh: bool,
 ) -> dict[str, Any]:
     from navsym.methods import campaign_certificates, campaign_mutants, campaign_parser
     from navsym.methods.campaign import run_campaign
@@ -53,9 +61,9 @@ def in_batches(
         batches = campaign_certificates.batches(honest_certificates(), inputs, seed)
         judge = campaign_certificates.judge
     if fresh:
-        return run_campaign(name, batches, judge, jobs=jobs, progress=told)
+        return run_campaign(name, batches, judge, jobs=jobs, seconds=seconds, progress=told)
     with opened() as store:
-        return run_campaign(name, batches, judge, store=store, jobs=jobs, progress=told)
+        return run_campaign(name, batches, judge, store=store, jobs=jobs, seconds=seconds, progress=told)
 
 
 def papers(names: list[str]) -> list[Any]:

@@ -17,12 +17,11 @@ import sympy as sp
 from navsym.claims import REFUTED, Box, Claim, Equation
 from navsym.errors import NavsymError
 from navsym.methods.campaign import Batch, Result, result
+from navsym.methods.dependencies import fingerprint
 from navsym.proof.equations import decide_equation, entries
 from navsym.proof.mutants import mutants
 from navsym.proof.sampling import points
 from navsym.proof.wording import text_of
-
-BATCH = 25
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -53,24 +52,22 @@ def mutants_of(claims: Iterable[Claim]) -> Iterator[Mutant]:
 
 
 def batches(claims: Iterable[Claim], share: float = 1.0, seed: int = 0) -> list[Batch]:
-    """Batches of mutants, a random share of them; the same ones for the same seed."""
-    source = random.Random(seed)
-    chosen = [mutant for mutant in mutants_of(claims) if share >= 1.0 or source.random() < share]
-    groups = [chosen[i : i + BATCH] for i in range(0, len(chosen), BATCH)]
-    return [Batch("\n".join(described(m) for m in group), group) for group in groups]
+    """One batch for each claim that is declared to hold; a random share of its mutants, fixed by the seed."""
+    held = [claim for claim in claims if claim.expect.holds]
+    return [Batch(f"{fingerprint(claim)} {share} {seed}", (claim, share, seed)) for claim in held]
 
 
-def described(mutant: Mutant) -> str:
-    return f"{mutant.claim}: {mutant.formula} = {mutant.derived} on {sorted(mutant.box.items(), key=str)}"
-
-
-def judge(group: list[Mutant]) -> Result:
+def judge(task: tuple[Claim, float, int]) -> Result:
     """Counts: refuted, proved (equal to what was derived) and open; wrong: a proof that numbers deny."""
+    claim, share, seed = task
+    source = random.Random(f"{claim.id} {seed}")
     counts: Counter[str] = Counter()
     wrong: list[Any] = []
     undecided: list[Any] = []
     kept: list[Any] = []
-    for mutant in group:
+    for mutant in mutants_of([claim]):
+        if source.random() >= share:
+            continue
         status, why, point = verdict_of(mutant)
         entry = {"claim": mutant.claim, "formula": text_of(mutant.formula)}
         counts[status] += 1
