@@ -1,0 +1,29 @@
+"""The experiments of the papers from the command line: one JSON document each, and a table for people."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from navsym.cli.main import run
+
+
+@pytest.mark.parametrize(("name", "options"), [("joint_correction", []), ("trajectory", ["--runs", "1"])])
+def test_an_experiment_is_one_document(name, options, capsys):
+    assert run(["simulate", name, *options, "--json"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert document["experiment"] == name and document["rows"]
+
+
+def test_the_optimal_filter_is_never_worse_than_an_observer(capsys):
+    assert run(["simulate", "joint_correction", "--json"]) == 0
+    rows = json.loads(capsys.readouterr().out)["rows"]
+    best = [row["position_m"] for row in rows if row["estimator"].startswith("Kalman")][0]
+    for row in rows:
+        assert all(kalman <= 1.001 * other for kalman, other in zip(best, row["position_m"], strict=True))
+
+
+def test_an_unknown_experiment_names_the_known_ones(capsys):
+    assert run(["simulate", "nothing", "--json"]) == 2
+    assert "joint_correction" in json.loads(capsys.readouterr().out)["error"]["message"]
