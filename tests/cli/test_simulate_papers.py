@@ -19,7 +19,7 @@ def test_an_experiment_is_one_document(name, options, capsys):
 def test_the_optimal_filter_is_never_worse_than_an_observer(capsys):
     assert run(["simulate", "joint_correction", "--json"]) == 0
     rows = json.loads(capsys.readouterr().out)["rows"]
-    best = [row["position_m"] for row in rows if row["estimator"].startswith("Kalman")][0]
+    best = next(row["position_m"] for row in rows if row["estimator"].startswith("Kalman"))
     for row in rows:
         assert all(kalman <= 1.001 * other for kalman, other in zip(best, row["position_m"], strict=True))
 
