@@ -151,3 +151,18 @@ def test_hostile_words_do_not_command_latex(hostile_files, card, records):
 def test_file_names_are_plain_and_different_names_stay_different(name):
     assert re.fullmatch(r"[A-Za-z0-9_.-]*", slug(name)) and len(slug(name)) < 100
     assert ".." not in slug(name)[:2] and slug(name) != slug(name + "*")
+
+
+def test_braces_of_latex_are_balanced_whatever_the_words(files, hostile_files):
+    for found in (files, hostile_files):
+        tex = re.sub(r"\\[{}\\]", "", found["sample.erratum.tex"])
+        assert tex.count("{") == tex.count("}")
+        assert tex.count(r"\left") == tex.count(r"\right")
+
+
+def test_the_ledger_is_enough_for_the_pages(records, card):
+    kept = [{k: v for k, v in record.items() if k not in ("certificate", "seconds")} for record in records]
+    document = {"claims": kept, "papers": [{"module": "sample", "title": "A sample"}], "counts": {}}
+    found = site(document, {"sample": card})
+    assert found["sample.html"].count("<article") == len(records)
+    assert not [name for name in found if name.startswith("certificates/")]
