@@ -421,8 +421,8 @@ def feasible(panel: Panel, x: list[arb], basis: arb_mat, contacts: list[tuple[ar
         need(limit > 0, "|x.H| <= sigma is not shown")
         if a < b and not small(panel, x, basis, a, b, contact, bool(contacts)):
             centre = (a + b) / 2 if contact is None else middle(contact[0])
-            left = a if contact and contact[2] == "from" else (a + centre) / 2
-            right = b if contact and contact[2] == "to" else (centre + b) / 2
+            left = a if contact and contact[2] == "from" else (3 * a + centre) / 4
+            right = b if contact and contact[2] == "to" else (centre + 3 * b) / 4
             cells += [(a, left, None), (right, b, None), (left, right, contact)] if contact else [
                 (a, centre, None), (centre, b, None)]
     return limit

@@ -26,6 +26,8 @@ DIGITS = 28
 #: Pieces shorter than this part of the length are not worth their number: a sliver is left instead.
 SMALLEST = fmpq(1, 20000)
 EVERY = arb(0, 1)
+#: The bound is proved here for a box wider by this part, so that a checker with other cells has room.
+WIDER = arb(0.25)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -188,7 +190,7 @@ def verified(
         touches[k].append(Touch(v, s, True, kind))
     cells = 0
     for panel, mine in zip(problem.panels, touches, strict=True):
-        used = bounded(panel, here[:m], mine, 400)
+        used = bounded(panel, [x + x.rad() * WIDER * EVERY for x in here[:m]], mine, 400)
         if used is None:
             return None
         cells += used
