@@ -37,9 +37,9 @@ typedef enum {{
 
 
 def spelling(real: str) -> Spelling:
-    """C with ``double`` or ``float``; float has its own functions, so that nothing is promoted."""
+    """C with ``double`` or ``float``; float has its own functions, so that nothing is promoted (NAN is a float)."""
     suffix = "f" if real == "float" else ""
-    return Spelling(calls(suffix=suffix), "NAN", "INFINITY", suffix)
+    return Spelling(calls(suffix=suffix), f"({real})NAN", f"({real})INFINITY", suffix)
 
 
 def files(
