@@ -54,7 +54,7 @@ def mutants_of(claims: Iterable[Claim]) -> Iterator[Mutant]:
 def batches(claims: Iterable[Claim], share: float = 1.0, seed: int = 0) -> list[Batch]:
     """One batch for each claim that is declared to hold; a random share of its mutants, fixed by the seed."""
     held = [claim for claim in claims if claim.expect.holds]
-    return [Batch(f"{fingerprint(claim)} {share} {seed}", (claim, share, seed)) for claim in held]
+    return [Batch(f"{claim.id} {fingerprint(claim)} {share} {seed}", (claim, share, seed)) for claim in held]
 
 
 def judge(task: tuple[Claim, float, int]) -> Result:
