@@ -19,6 +19,8 @@ STEM = re.compile(r"(?P<stem>[A-Za-z]+?)(?P<index>\d*)$")
 
 def split_name(name: str) -> tuple[str, str]:
     """Stem and index: ``theta2_11`` -> theta, 2,11; ``y1`` -> y, 1; ``zT`` -> z, T."""
+    if name.endswith("_"):                       # pi_ is a symbol and must not look like the number pi
+        return name, ""
     head, *rest = [part for part in name.split("_") if part] or [name]
     match = STEM.match(head)
     stem, index = (match["stem"], match["index"]) if match else (head, "")
@@ -62,7 +64,7 @@ def latex_name(name: str, function: bool = False) -> str:
     stem, index = split_name(name)
     greek = max((known for known in GREEK if stem.startswith(known)), key=len, default="")
     if greek and len(stem) <= len(greek) + 1:
-        letter = "\\" + LATEX_SPELLING.get(greek, greek) + " " + stem[len(greek) :]
+        letter = "\\" + LATEX_SPELLING.get(greek, greek) + " " + latex_escape(stem[len(greek) :])
     else:
         letter = stem if len(stem) == 1 else rf"\mathrm{{{latex_escape(stem)}}}"
     below = ",".join(rf"\{part}" if part in GREEK else latex_escape(part) for part in index.split(",") if part)

@@ -25,6 +25,8 @@ LATEX = [
     ("det != 0", "\\mathrm{det} \\ne 0"),
     ("6.37e+07", "6.37 \\cdot 10^{7}"),
     ("2*3", "2 \\cdot 3"),
+    ("pi*pi_", "\\pi  \\cdot \\pi \\_"),
+    ("DeltaV*t_G", "\\Delta V \\cdot t_{G}"),
 ]
 
 
