@@ -128,7 +128,8 @@ def counterexample_steps(record: Record) -> list[Step]:
             found.append(Step("", arithmetic_words(line)))
     if record["difference"]:
         low, high = record["difference"]
-        found.append(Step("", f"The side on the left minus the other lies between {low} and {high}: not zero."))
+        value = f"is {ball_words((low, high))}" if low == high else f"lies between {low} and {high}"
+        found.append(Step("", f"The side on the left minus the other {value}: not zero."))
     return found
 
 
