@@ -14,6 +14,9 @@ from navsym.errors import DomainError, NavsymError
 if TYPE_CHECKING:
     from navsym.export.functions import ExportedFunction, Material
 
+SECONDS = 90.0
+MEGABYTES = 4096
+
 
 def command(
     claims: Annotated[
@@ -114,7 +117,7 @@ def from_paper(module: str, number: str, allow_confirmed: bool) -> Material:
     corrections = [c.id for c in found.claims if c.corrects == number]
     equation = equation_of(number, found.paper.equations)
     return material(
-        claim.id, statement, decide_within(statement, 90.0),
+        claim.id, statement, decide_within(statement, SECONDS),
         title=claim.title,
         paper=", ".join([*found.paper.authors, found.paper.title, str(found.paper.year or "")]).strip(", "),
         equation=f"equation ({equation})" if equation else f"statement {number}",
@@ -126,14 +129,18 @@ def from_paper(module: str, number: str, allow_confirmed: bool) -> Material:
 def from_file(path: Path, wanted: str, allow_confirmed: bool) -> Material:
     from navsym.export.functions import material
     from navsym.methods.prove import decide_claim, statement_of
+    from navsym.proof.ladder import exhausted
+    from navsym.proof.sandbox import Exhausted, run_limited
     from navsym.text.claimfile import read_claims
 
     claims = {claim.id: claim for claim in read_claims(path).claims}
     if wanted not in claims:
         raise unknown(wanted, list(claims), path.name)
     claim = claims[wanted]
+    outcome = run_limited(decide_claim, (claim,), SECONDS, MEGABYTES)
+    verdict = exhausted(outcome) if isinstance(outcome, Exhausted) else outcome
     return material(
-        f"{path.stem}:{wanted}", statement_of(claim), decide_claim(claim),
+        f"{path.stem}:{wanted}", statement_of(claim), verdict,
         title=f"Claim {wanted} of a claim file", equation=f"claim {wanted}", paper=path.name,
         allow_confirmed=allow_confirmed,
     )  # fmt: skip

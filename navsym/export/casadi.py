@@ -1,7 +1,8 @@
 """casadi: the independent second source. Its own translator and its own C generator, no printer of ours.
 
 The order of its operations is not ours, so the rounding error in its vectors is multiplied by a stated factor
-(``targets.py``); a formula that needs a helper of ours against cancellation has no casadi form and is left out.
+(``targets.py``); a formula that needs a helper of ours against cancellation has no casadi form and is left out,
+as is a constant.
 """
 
 from __future__ import annotations
@@ -69,7 +70,7 @@ def files(
     """Serialised functions, their generated C, vectors and test."""
     found: dict[str, str] = {}
     index = {}
-    functions = [f for f in functions if not helpers_used(f)]
+    functions = [f for f in functions if f.inputs and not helpers_used(f)]
     tests = {f.name: [v for v in tests[f.name] if v.status == 0] for f in functions}
     for function in functions:
         pieces = []

@@ -103,7 +103,8 @@ def words(text: str) -> str:
     bad = [
         f"{name}: {wrong} of {n} vectors outside" for name, n, wrong, _ in LINE.findall(text) if wrong != "0"
     ]
-    lines = bad or [line for line in text.splitlines() if line.strip()][:3]
+    lines = bad or [line for line in text.splitlines() if line.strip()]
+    lines = lines[-1:] if lines and lines[0].startswith("Traceback") else lines[:3]
     return "; ".join(lines)[:300]
 
 
