@@ -94,10 +94,16 @@ def altered_optimum(honest: dict[str, Any], source: random.Random) -> tuple[dict
     places = [place for field in PROOF_FIELDS if field in item for place in leaves(item[field], (field,))]
     place = source.choice(places)
     put(item, place, changed(get(item, place), source))
-    low, high = (decimal(item[name]) for name in BOUNDS)
-    true_low, true_high = (decimal(honest[name]) for name in BOUNDS)
-    lost = low is None or high is None or low > true_high or high < true_low
-    return item, lost
+    return item, lost_optimum(item, honest)
+
+
+def lost_optimum(item: dict[str, Any], honest: dict[str, Any]) -> bool:
+    """True when the bounds are no numbers or cannot hold the optimum that the honest ones enclose."""
+    bounds = [decimal(source[name]) for source in (item, honest) for name in BOUNDS]
+    if any(bound is None for bound in bounds):
+        return True
+    low, high, true_low, true_high = (bound for bound in bounds if bound is not None)
+    return low > true_high or high < true_low
 
 
 def leaves(value: Any, place: tuple[Any, ...]) -> list[tuple[Any, ...]]:

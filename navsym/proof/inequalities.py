@@ -43,7 +43,7 @@ def decide_bound(statement: Bound) -> Verdict:
             return verdict
         # Subtraction and the algebra may have cancelled what is not defined everywhere.
         conditions = with_sides(reduce_to_zero(difference), *sides)
-        assumed = remaining_assumptions(conditions, Equation(*sides, statement.box))
+        assumed = remaining_assumptions(conditions, Equation(sides[0], sides[1], statement.box))
         return replace(verdict, assumptions=assumed)
     except (UnsupportedError, OutsideLanguageError) as error:
         return Verdict(OPEN, "none", scope, evidence=str(error))
