@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated, Any
 
 import typer
@@ -58,7 +59,7 @@ def in_batches(
     elif name == "parser":
         batches, judge = campaign_parser.batches(inputs, seed), campaign_parser.judge
     else:
-        batches = campaign_certificates.batches(honest_certificates(), inputs, seed)
+        batches = campaign_certificates.batches(campaign_certificates.honest_certificates(), inputs, seed)
         judge = campaign_certificates.judge
     if fresh:
         return run_campaign(name, batches, judge, jobs=jobs, seconds=seconds, progress=told)
@@ -76,34 +77,11 @@ def papers(names: list[str]) -> list[Any]:
     return [paper_module(importlib.import_module(f"derivations.{name}")) for name in chosen]
 
 
-def honest_certificates() -> list[dict[str, Any]]:
-    """Certificates of our own making: three identities and three optima."""
-    import sympy as sp
-
-    from navsym.methods.guaranteed import solve
-    from navsym.methods.guaranteed_problem import from_regressors
-    from navsym.proof.certificates import identity_certificate
-
-    a, b = sp.symbols("a b", real=True)
-    identities = [
-        identity_certificate(sp.sin(a + b), sp.sin(a) * sp.cos(b) + sp.cos(a) * sp.sin(b)),
-        identity_certificate(sp.cos(3 * a), 4 * sp.cos(a) ** 3 - 3 * sp.cos(a)),
-        identity_certificate((a**3 - b**3) / (a - b), a**2 + a * b + b**2),
-    ]
-    s = sp.Symbol("t", real=True)
-    bases = ([1, s], [1, s, s**2], [1, sp.sin(s)])
-    optima = []
-    for basis in bases:
-        target = [0] * (len(basis) - 1) + [1]
-        optima.append(dict(solve(from_regressors([basis], target, s, (0, 1)), 12).certificate))
-    return [dict(item) for item in identities if item is not None] + optima
-
-
 def by_tests(name: str) -> dict[str, Any]:
-    """Campaigns that are tables of cases under tests/: one outcome for each case."""
-    import contextlib
-    import importlib
+    """Campaigns that are tables of cases under tests/: one outcome for each case, from pytest's own record."""
+    import subprocess
     import sys
+    import tempfile
 
     from navsym.cli.verify import ledger_folder
     from navsym.errors import NavsymError
@@ -113,30 +91,46 @@ def by_tests(name: str) -> dict[str, Any]:
         raise NavsymError(
             f"expected {TESTED[name]}; got an installation without tests; run it from a checkout"
         )
-    counter = Counter()
-    with contextlib.redirect_stdout(sys.stderr):
-        importlib.import_module("pytest").main(["-q", "-p", "no:cacheprovider", str(path)], plugins=[counter])
-    counts = {key: len(found) for key, found in counter.found.items()}
+    with tempfile.TemporaryDirectory() as folder:
+        record = Path(folder) / "record.xml"
+        subprocess.run(
+            [
+                sys.executable,
+                "-m",
+                "pytest",
+                "-q",
+                "-p",
+                "no:cacheprovider",
+                f"--junitxml={record}",
+                str(path),
+            ],
+            stdout=sys.stderr,
+            check=False,
+        )
+        found = outcomes(record)
     return {
         "campaign": name,
-        "batches": sum(counts.values()),
-        "counts": counts,
-        "wrong": counter.found["failed"],
-        "open": counter.found["skipped"],
-        "stopped": [],
+        "batches": sum(len(cases) for cases in found.values()),
+        "counts": {outcome: len(cases) for outcome, cases in found.items()},
+        "wrong": found["failed"],
+        "open": found["skipped"],
+        "stopped": [] if any(found.values()) else ["pytest left no record"],
         "resumed": 0,
     }
 
 
-class Counter:
-    """A pytest plugin that notes the outcome of each case."""
+def outcomes(record: Path) -> dict[str, list[str]]:
+    """Names of the cases by outcome."""
+    from xml.etree import ElementTree
 
-    def __init__(self) -> None:
-        self.found: dict[str, list[str]] = {"passed": [], "failed": [], "skipped": []}
-
-    def pytest_runtest_logreport(self, report: Any) -> None:
-        if report.when == "call" or report.outcome != "passed":
-            self.found[report.outcome].append(report.nodeid)
+    found: dict[str, list[str]] = {"passed": [], "failed": [], "skipped": []}
+    if not record.exists():
+        return found
+    for case in ElementTree.parse(record).iter("testcase"):
+        tags = {child.tag for child in case}
+        outcome = "failed" if tags & {"failure", "error"} else "skipped" if "skipped" in tags else "passed"
+        found[outcome].append(case.get("name", "?"))
+    return found
 
 
 def told(done: int, of: int) -> None:

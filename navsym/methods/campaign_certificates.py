@@ -18,6 +18,9 @@ import sympy as sp
 from navsym.checker import Refused, check
 from navsym.errors import NavsymError
 from navsym.methods.campaign import Batch, Result, result
+from navsym.methods.guaranteed import solve
+from navsym.methods.guaranteed_problem import from_regressors
+from navsym.proof.certificates import identity_certificate
 from navsym.proof.mutants import mutants
 from navsym.text.expression import parse, symbol, to_text
 
@@ -34,6 +37,23 @@ def batches(honest: list[dict[str, Any]], inputs: int, seed: int = 0) -> list[Ba
         Batch(f"{seed} {k} {size[k]} {honest[k % len(honest)]}", (honest[k % len(honest)], size[k], seed + k))
         for k in range(count)
     ]
+
+
+def honest_certificates() -> list[dict[str, Any]]:
+    """Certificates of our own making: three identities and three optima."""
+    a, b = sp.symbols("a b", real=True)
+    identities = [
+        identity_certificate(sp.sin(a + b), sp.sin(a) * sp.cos(b) + sp.cos(a) * sp.sin(b)),
+        identity_certificate(sp.cos(3 * a), 4 * sp.cos(a) ** 3 - 3 * sp.cos(a)),
+        identity_certificate((a**3 - b**3) / (a - b), a**2 + a * b + b**2),
+    ]
+    s = sp.Symbol("t", real=True)
+    bases = ([1, s], [1, s, s**2], [1, sp.sin(s)])
+    optima = []
+    for basis in bases:
+        target = [0] * (len(basis) - 1) + [1]
+        optima.append(dict(solve(from_regressors([basis], target, s, (0, 1)), 12).certificate))
+    return [dict(item) for item in identities if item is not None] + optima
 
 
 def judge(task: tuple[dict[str, Any], int, int]) -> Result:
