@@ -39,6 +39,7 @@ def decide_within(
 
 
 def exhausted(outcome: Exhausted) -> Verdict:
+    """OPEN, with the limit that was met."""
     return Verdict(OPEN, "none", evidence=f"stopped: {outcome.why}; nothing is known")
 
 

@@ -69,6 +69,7 @@ def constraints(statement: Optimum) -> Verdict:
 
 
 def instants(statement: Optimum) -> Verdict:
+    """start <= t_j <= end for every printed instant."""
     start, end = statement.interval
     proofs = [
         prove_sign(sp.sympify(side, strict=True), statement.box)
