@@ -14,7 +14,8 @@ from navsym.export.vectors import Vector
 def spelling(real: str) -> Spelling:
     """std:: functions are overloaded for float; literals carry the suffix."""
     table = calls(prefix="std::") | {"abs": "std::fabs({0})"}
-    return Spelling(table, f"static_cast<{real}>(NAN)", f"static_cast<{real}>(INFINITY)", "f" if real == "float" else "")
+    nan, inf = (f"static_cast<{real}>({word})" for word in ("NAN", "INFINITY"))
+    return Spelling(table, nan, inf, "f" if real == "float" else "")
 
 
 def files(

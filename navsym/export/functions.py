@@ -8,8 +8,6 @@ from __future__ import annotations
 import math
 import random
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -17,13 +15,16 @@ import sympy as sp
 from flint import arb
 
 from navsym.claims import CONFIRMED, REFUTED, Bound, Equation, Optimum, Statement, Verdict
-from navsym.errors import DomainError, NavsymError, ShapeError
+from navsym.errors import NavsymError, ShapeError
 from navsym.export.expression_graph import Graph, build
 from navsym.export.forms import factored, safe
 from navsym.export.names import function_name, identifier
-from navsym.export.rounding import ARITHMETICS, BITS, LIBRARY, Arithmetic, Uniform, analyse, uniform_bound
-from navsym.proof.balls import enclose, precision
-from navsym.proof.normal_form import OutsideLanguageError, reduce_to_zero, vanishes_identically
+from navsym.export.parts import ExportedFunction, Input, Material, Output, Piece, Source, inside
+from navsym.export.regimes import common_outputs, in_order, joined_box, limit_of
+from navsym.export.rounding import ARITHMETICS, BITS, LIBRARY, Arithmetic, analyse
+from navsym.export.uniform import uniform_bound
+from navsym.proof.balls import precision
+from navsym.proof.normal_form import OutsideLanguageError, reduce_to_zero
 from navsym.proof.sampling import range_of
 from navsym.proof.wording import text_of
 
@@ -37,104 +38,6 @@ class RefusedError(NavsymError):
     """A claim that must not be exported."""
 
     kind = "refused"
-
-
-@dataclass(frozen=True, slots=True)
-class Source:
-    """Where a function comes from, in words and with its certificate."""
-
-    claim: str
-    title: str
-    paper: str
-    equation: str
-    status: str
-    method: str
-    scope: str
-    assumptions: tuple[str, ...]
-    formula: tuple[str, ...]
-    certificate: Mapping[str, Any] | None = None
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Input:
-    """One argument.
-
-    low, high   : accepted range as doubles, inside the proved one; infinite where it has no end
-    test_low, test_high : the range of vectors and of the rounding bound
-    """
-
-    symbol: sp.Symbol
-    name: str
-    low: float
-    high: float
-    open_low: bool
-    test_low: float
-    test_high: float
-    text: str
-
-
-@dataclass(frozen=True, slots=True)
-class Output:
-    """One result: a scalar (shape empty), a vector or a matrix in row-major order."""
-
-    name: str
-    shape: tuple[int, ...] = ()
-
-    @property
-    def size(self) -> int:
-        return int(np.prod(self.shape, dtype=int))
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Piece:
-    """The function up to a limit of the switching input (None: without one).
-
-    formulas : exact values of the results, in the symbols of the inputs
-    forms    : the formulas as they were made safe, equal to them
-    literals : number in the code for each constant of the graph
-    tie      : how the graph was tied to the formulas
-    """
-
-    limit: float | None
-    formulas: tuple[sp.Expr, ...]
-    forms: tuple[sp.Expr, ...]
-    graph: Graph
-    literals: tuple[float | None, ...]
-    bound: Uniform
-    tie: str
-    source: Source
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class ExportedFunction:
-    """A function ready to be printed in any language.
-
-    switch : place of the input that chooses the piece
-    state  : (place of an input, place of the result that replaces it) of a stateful step
-    """
-
-    name: str
-    inputs: tuple[Input, ...]
-    outputs: tuple[Output, ...]
-    pieces: tuple[Piece, ...]
-    arithmetic: Arithmetic
-    switch: int | None = None
-    state: tuple[tuple[int, int], ...] = ()
-
-    @property
-    def size(self) -> int:
-        """Number of results, all outputs together."""
-        return sum(output.size for output in self.outputs)
-
-    @property
-    def always_finite(self) -> bool:
-        """Proved: nothing overflows for any accepted argument, so that no test of the results is needed."""
-        whole = all(i.low == i.test_low and i.high == i.test_high for i in self.inputs)
-        return whole and all(piece.bound.finite for piece in self.pieces)
-
-    @property
-    def sources(self) -> tuple[Source, ...]:
-        return tuple(piece.source for piece in self.pieces)
 
 
 # -- refusal ---------------------------------------
@@ -218,27 +121,7 @@ def input_of(symbol: sp.Symbol, name: str, box: Mapping[Any, Any], real: str) ->
     return Input(symbol, name, float(low), float(high), opened, float(test_low), float(test_high), text)
 
 
-def inside(end: Any, direction: int, real: str = "double") -> float:
-    """The number of the type nearest to an exact end on its inner side (1: not below it, -1: not above)."""
-    kind = np.float32 if real == "float" else np.float64
-    ball = enclose(sp.sympify(end, strict=True), {}, 200)
-    value = kind(float(sp.N(sp.sympify(end, strict=True), 40)))
-    while (ball > float(value)) if direction > 0 else (ball < float(value)):
-        value = np.nextafter(value, kind(direction * np.inf))
-    return float(value)
-
-
 # -- the function ---------------------------------------
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Material:
-    """What a decided claim brings: results, box and source."""
-
-    claim: str
-    results: list[tuple[Output, list[sp.Expr]]]
-    box: Mapping[Any, Any]
-    source: Source
 
 
 def material(
@@ -294,59 +177,6 @@ def function_of(
     places = {i.symbol: k for k, i in enumerate(inputs)}
     switch = None if switch_symbol is None else places[switch_symbol]
     return ExportedFunction(name, inputs, outputs, pieces, arithmetic, switch)
-
-
-def in_order(parts: Sequence[Material]) -> tuple[list[Material], sp.Symbol | None]:
-    """Regimes sorted along the one parameter in which they adjoin; raises DomainError on a gap."""
-    if len(parts) == 1:
-        return list(parts), None
-    symbols = {s for part in parts for s in part.box}
-    if len(symbols) != 1:
-        raise DomainError(f"expected regimes in one parameter; got {len(symbols)}; do export them singly")
-    (symbol,) = symbols
-    ordered = sorted(parts, key=lambda part: inside(part.box[symbol][0], 1))
-    for before, after in pairwise(ordered):
-        if not same_number(before.box[symbol][1], after.box[symbol][0]):
-            raise DomainError(
-                f"expected regimes that adjoin; got a gap before {after.claim}; do add the missing one"
-            )
-    return ordered, symbol
-
-
-def same_number(a: Any, b: Any) -> bool:
-    """Equality of exact numbers, by the normal form."""
-    return vanishes_identically(sp.sympify(a, strict=True) - sp.sympify(b, strict=True))
-
-
-def joined_box(parts: Sequence[Material], switch: sp.Symbol | None) -> Mapping[Any, Any]:
-    if switch is None:
-        return parts[0].box
-    return {switch: (parts[0].box[switch][0], parts[-1].box[switch][1])}
-
-
-def limit_of(part: Material, switch: sp.Symbol | None, last: bool, real: str) -> float | None:
-    """The last double of a regime; the next double lies inside the next one."""
-    return None if switch is None or last else inside(part.box[switch][1], -1, real)
-
-
-def common_outputs(parts: Sequence[Material]) -> tuple[tuple[Output, ...], list[list[sp.Expr]]]:
-    """Outputs large enough for all regimes; shorter vectors end with zeros."""
-    names = [output.name for output, _ in parts[0].results]
-    if any([output.name for output, _ in part.results] != names for part in parts):
-        raise ShapeError("expected regimes with the same outputs; got different ones; do export them singly")
-    outputs, columns = [], []
-    for k, name in enumerate(names):
-        sizes = [part.results[k][0].shape for part in parts]
-        shape = max(sizes, key=lambda s: int(np.prod(s, dtype=int)))
-        if any(len(s) != len(shape) or (len(s) != 1 and s != shape) for s in sizes):
-            raise ShapeError(
-                f"expected {name} of one shape in all regimes; got several; do export them singly"
-            )
-        outputs.append(Output(name, shape))
-        columns.append(
-            [part.results[k][1] + [sp.S.Zero] * (outputs[k].size - len(part.results[k][1])) for part in parts]
-        )
-    return tuple(outputs), [[e for column in columns for e in column[p]] for p in range(len(parts))]
 
 
 def piece_of(

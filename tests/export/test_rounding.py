@@ -12,7 +12,8 @@ from flint import arb
 
 from navsym.export.expression_graph import build
 from navsym.export.forms import safe
-from navsym.export.rounding import DOUBLE, FLOAT, analyse, uniform_bound
+from navsym.export.rounding import DOUBLE, FLOAT, analyse
+from navsym.export.uniform import uniform_bound
 from navsym.export.vectors import vectors
 from navsym.proof.balls import enclose
 

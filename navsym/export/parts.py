@@ -1,0 +1,133 @@
+"""The nouns of the export: sources, arguments, results, regimes and functions, as plain data."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import sympy as sp
+
+from navsym.export.expression_graph import Graph
+from navsym.export.rounding import Arithmetic
+from navsym.export.uniform import Uniform
+from navsym.proof.balls import enclose
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """Where a function comes from, in words and with its certificate."""
+
+    claim: str
+    title: str
+    paper: str
+    equation: str
+    status: str
+    method: str
+    scope: str
+    assumptions: tuple[str, ...]
+    formula: tuple[str, ...]
+    certificate: Mapping[str, Any] | None = None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Input:
+    """One argument.
+
+    low, high   : accepted range as doubles, inside the proved one; infinite where it has no end
+    test_low, test_high : the range of vectors and of the rounding bound
+    """
+
+    symbol: sp.Symbol
+    name: str
+    low: float
+    high: float
+    open_low: bool
+    test_low: float
+    test_high: float
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Output:
+    """One result: a scalar (shape empty), a vector or a matrix in row-major order."""
+
+    name: str
+    shape: tuple[int, ...] = ()
+
+    @property
+    def size(self) -> int:
+        return int(np.prod(self.shape, dtype=int))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Piece:
+    """The function up to a limit of the switching input (None: without one).
+
+    formulas : exact values of the results, in the symbols of the inputs
+    forms    : the formulas as they were made safe, equal to them
+    literals : number in the code for each constant of the graph
+    tie      : how the graph was tied to the formulas
+    """
+
+    limit: float | None
+    formulas: tuple[sp.Expr, ...]
+    forms: tuple[sp.Expr, ...]
+    graph: Graph
+    literals: tuple[float | None, ...]
+    bound: Uniform
+    tie: str
+    source: Source
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ExportedFunction:
+    """A function ready to be printed in any language.
+
+    switch : place of the input that chooses the piece
+    state  : (place of an input, place of the result that replaces it) of a stateful step
+    """
+
+    name: str
+    inputs: tuple[Input, ...]
+    outputs: tuple[Output, ...]
+    pieces: tuple[Piece, ...]
+    arithmetic: Arithmetic
+    switch: int | None = None
+    state: tuple[tuple[int, int], ...] = ()
+
+    @property
+    def size(self) -> int:
+        """Number of results, all outputs together."""
+        return sum(output.size for output in self.outputs)
+
+    @property
+    def always_finite(self) -> bool:
+        """Proved: nothing overflows for any accepted argument, so that no test of the results is needed."""
+        whole = all(i.low == i.test_low and i.high == i.test_high for i in self.inputs)
+        return whole and all(piece.bound.finite for piece in self.pieces)
+
+    @property
+    def sources(self) -> tuple[Source, ...]:
+        return tuple(piece.source for piece in self.pieces)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Material:
+    """What a decided claim brings: results, box and source."""
+
+    claim: str
+    results: list[tuple[Output, list[sp.Expr]]]
+    box: Mapping[Any, Any]
+    source: Source
+
+
+def inside(end: Any, direction: int, real: str = "double") -> float:
+    """The number of the type nearest to an exact end on its inner side (1: not below it, -1: not above)."""
+    kind = np.float32 if real == "float" else np.float64
+    ball = enclose(sp.sympify(end, strict=True), {}, 200)
+    value = kind(float(sp.N(sp.sympify(end, strict=True), 40)))
+    while (ball > float(value)) if direction > 0 else (ball < float(value)):
+        value = np.nextafter(value, kind(direction * np.inf))
+    return float(value)
