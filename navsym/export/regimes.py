@@ -37,6 +37,7 @@ def same_number(a: Any, b: Any) -> bool:
 
 
 def joined_box(parts: Sequence[Material], switch: sp.Symbol | None) -> Mapping[Any, Any]:
+    """The box of one claim, or the range of the parameter over all regimes."""
     if switch is None:
         return parts[0].box
     return {switch: (parts[0].box[switch][0], parts[-1].box[switch][1])}
