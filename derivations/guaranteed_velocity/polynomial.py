@@ -316,11 +316,11 @@ def proved_sign(weight: sp.Expr) -> int:
 
 @claim("4.9.L2")
 def value_of_second_deviation():
-    """L2 = 1."""
+    """The second deviation L2 is 1."""
     return Equation(printed=sp.Integer(1), derived=optimal_deviation(0), box=STATED)
 
 
 @claim("4.9.L3")
 def value_of_third_deviation():
-    """L3 = tan(T/4)/2."""
+    """The third deviation L3 is tan(T/4)/2."""
     return Equation(printed=sp.tan(T / 4) / 2, derived=optimal_deviation(1), box=STATED)

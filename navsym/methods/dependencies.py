@@ -57,7 +57,7 @@ def note_function(function: Any, found: dict[str, str], queue: list[Any]) -> Non
     if not isinstance(function, FunctionType):
         found[f"object {function!r}"] = ""
         return
-    module = sys.modules[function.__module__] if function.__module__ in sys.modules else None
+    module = sys.modules.get(function.__module__)
     code = function.__code__
     found[f"code {code.co_filename}:{code.co_name}"] = code_text(code)
     for cell in function.__closure__ or ():
@@ -95,8 +95,9 @@ def note_imported(module: ModuleType, name: str, found: dict[str, str], queue: l
         return
     origin, original = source
     whole = sys.modules.get(f"{origin}.{original}" if original else origin)
-    if whole is not None:  # a module is imported by name: all of its text counts
-        found[f"{module.__name__}.{name}"] = ast.unparse(tree_of(whole)) if whole.__file__ else ""
+    if whole is not None and whole.__file__:  # imported as a whole: all that it defines and imports counts
+        found[f"{module.__name__}.{name}"] = ast.unparse(tree_of(whole))
+        queue.append((whole, [*definitions(whole), *imports(whole)]))
     elif origin in sys.modules:
         found[f"{module.__name__}.{name}"] = f"from {origin}"
         queue.append((sys.modules[origin], [original]))

@@ -77,4 +77,4 @@ def test_touching_a_constant_changes_what_reaches_it(prints, monkeypatch):
     assert before[1] == after[1]
 
 
-from navsym.methods.dependencies import reachable_sources as ORIGINAL  # noqa: E402, N812
+from navsym.methods.dependencies import reachable_sources as ORIGINAL  # noqa: E402
