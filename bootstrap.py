@@ -243,7 +243,9 @@ def update(venv: str, stamp: "dict[str, str]") -> None:
 def command_for(python: str, arguments: "list[str]") -> "list[str]":
     """The command line of a verb: pytest for ``test``, navsym for everything else."""
     if arguments[0] == "test":
-        return [python, "-m", "pytest", *arguments[1:]]
+        # The whole suite runs on two cores, whole files apart: what a file prepares is prepared once.
+        given = arguments[1:] or (["-n", "2", "--dist", "loadfile"] if (os.cpu_count() or 1) > 1 else [])
+        return [python, "-m", "pytest", *given]
     return [python, "-P", "-m", "navsym", *arguments]      # -P: no module is taken from the user's folder
 
 

@@ -257,6 +257,7 @@ def test_the_stamp_is_written_last(
 
 def test_verbs_and_their_arguments_are_passed_on_unchanged(bootstrap: ModuleType) -> None:
     assert bootstrap.command_for("py", ["test", "-k", "a b"]) == ["py", "-m", "pytest", "-k", "a b"]
+    assert bootstrap.command_for("py", ["test"])[:3] == ["py", "-m", "pytest"]
     words = ["solve", "my file.toml", "--json"]
     assert bootstrap.command_for("py", words) == ["py", "-P", "-m", "navsym", *words]
 
