@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import functools
 import importlib
 import importlib.util
 import shutil
+import subprocess
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -43,10 +45,23 @@ class Target:
         return found
 
     def executable(self) -> str | None:
-        """Path of the tool on this machine, or None."""
+        """Path of the tool on this machine, or None; a tool that does not answer is not there."""
         if self.module and importlib.util.find_spec(self.module) is None:
             return None
-        return sys.executable if not self.tool else shutil.which(self.tool)
+        return sys.executable if not self.tool else answering(self.tool)
+
+
+@functools.cache
+def answering(tool: str) -> str | None:
+    """Path of a program that tells its version: a stub on the path, without its compiler, does not."""
+    path = shutil.which(tool)
+    if path is None:
+        return None
+    try:
+        done = subprocess.run([path, "--version"], stdin=subprocess.DEVNULL, capture_output=True, timeout=60)
+    except (OSError, subprocess.TimeoutExpired):
+        return None
+    return path if done.returncode == 0 else None
 
 
 BOTH = ("double", "float")

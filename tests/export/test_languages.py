@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shutil
 from collections.abc import Iterator
@@ -11,7 +12,7 @@ import pytest
 
 from navsym.export.package import Order, files_of
 from navsym.export.roundtrip import run_target
-from navsym.export.targets import TARGETS
+from navsym.export.targets import TARGETS, answering
 
 HERE = [name for name, target in TARGETS.items() if target.executable() is not None]
 QUICK = [name for name in HERE if name in ("c", "python", "javascript")]
@@ -124,3 +125,12 @@ def test_a_hundred_thousand_points_lie_inside_their_enclosures(samples, real: st
     outcome = run_target(exported([function], "c", tmp_path, 100_000), TARGETS["c"])
     assert outcome.status == "verified", outcome.why
     assert outcome.functions[function.name][0] >= 100_000
+
+
+def test_a_stub_that_cannot_answer_is_not_a_compiler(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    stub = tmp_path / "rustc-stub"
+    stub.write_text("#!/bin/sh\nexit 1\n")
+    stub.chmod(0o755)
+    monkeypatch.setenv("PATH", str(tmp_path), prepend=os.pathsep)
+    assert answering("rustc-stub") is None
+    assert answering("no-such-program-at-all") is None
