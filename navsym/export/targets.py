@@ -51,17 +51,20 @@ class Target:
         return sys.executable if not self.tool else answering(self.tool)
 
 
-@functools.cache
 def answering(tool: str) -> str | None:
     """Path of a program that tells its version: a stub on the path, without its compiler, does not."""
     path = shutil.which(tool)
-    if path is None:
-        return None
+    return path if path is not None and answers(path) else None
+
+
+@functools.cache
+def answers(path: str) -> bool:
+    """True when the program ends well after being asked for its version."""
     try:
         done = subprocess.run([path, "--version"], stdin=subprocess.DEVNULL, capture_output=True, timeout=60)
     except (OSError, subprocess.TimeoutExpired):
-        return None
-    return path if done.returncode == 0 else None
+        return False
+    return done.returncode == 0
 
 
 BOTH = ("double", "float")
