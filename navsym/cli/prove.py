@@ -17,6 +17,10 @@ def command(
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> int:
     """Decide the formulas of a claim file. Status 1 when one of them is refuted or open."""
+    from navsym.text.tomlfile import read_toml
+
+    read_toml(file)  # a file that is none is refused before the slow import of the algebra
+
     from navsym.text.claimfile import read_claims
 
     claims = read_claims(file)
