@@ -18,6 +18,7 @@ import sys
 SUPPORTED = ((3, 11), (3, 12), (3, 13))
 ROOT = os.path.dirname(os.path.realpath(__file__))
 LOCK = "requirements.lock"
+EXTRAS = "requirements-extra.lock"   # jupyterlab, documentation, cross compilers, GeoTIFF
 INPUTS = (LOCK, "pyproject.toml")
 STAMP = "navsym-stamp.json"
 MINE = "navsym-bootstrap"      # stands in every environment made here; nothing else is ever removed
@@ -33,6 +34,7 @@ ASTRAY = (
 USAGE = """usage: python3 bootstrap.py VERB [arguments]
 
   test [pytest arguments]   run the tests
+  extras                    add jupyterlab, sphinx, cross compilers and GeoTIFF to the environment
   doctor                    what this machine lacks
   --help                    this text, then every verb of navsym
 
@@ -168,25 +170,39 @@ def make_venv(venv: str) -> None:
     run([sys.executable, "-m", "venv", venv], advice % sys.version_info[:2])
 
 
-def locked() -> int:
-    """How many packages the lock holds."""
-    with open(os.path.join(ROOT, LOCK), encoding="utf-8") as file:
+def locked(lock: str = LOCK) -> int:
+    """How many packages a lock holds."""
+    with open(os.path.join(ROOT, lock), encoding="utf-8") as file:
         return sum("==" in line for line in file)
 
 
-def install(venv: str) -> None:
-    """The locked packages by their hashes, then this checkout itself, editable."""
-    pip = [python_of(venv), "-m", "pip", "install", "--quiet"]
+def install_locked(venv: str, lock: str) -> None:
+    """The packages of a lock, by their hashes."""
     advice = (
         "pip could not install the locked packages; this needs a network, a mirror in PIP_INDEX_URL, or "
         "PIP_NO_INDEX=1 with PIP_FIND_LINKS=/folder/of/wheels; then run the same command again, "
         "finished downloads are kept"
     )
-    run([*pip, "--require-hashes", "-r", LOCK], advice)
+    run([python_of(venv), "-m", "pip", "install", "--quiet", "--require-hashes", "-r", lock], advice)
+
+
+def install(venv: str) -> None:
+    """The locked packages, then this checkout itself, editable."""
+    install_locked(venv, LOCK)
     run(
-        [*pip, "--no-deps", "--no-build-isolation", "--no-index", "-e", "."],
+        [python_of(venv), "-m", "pip", "install", "--quiet", "--no-deps", "--no-build-isolation", "--no-index",
+         "-e", "."],
         "pip could not install this checkout; is it complete?",
     )
+
+
+def install_extras(venv: str) -> None:
+    """What is optional; the locked packages that are there already stay as they are."""
+    say("adding the optional packages of %s to %s (%d with their needs)"
+        % (EXTRAS, os.path.basename(venv), locked(EXTRAS)))
+    with alone(ROOT):
+        install_locked(venv, EXTRAS)
+    say("the optional packages are ready")
 
 
 @contextlib.contextmanager
@@ -279,6 +295,9 @@ def main(arguments: "list[str]") -> int:
             return 2
     try:
         python = prepare(ROOT)
+        if arguments[0] == "extras":
+            install_extras(choose(ROOT))
+            return 0
     except Trouble as trouble:
         return fail(str(trouble), as_json)
     except OSError as error:

@@ -21,6 +21,7 @@ import navsym
 
 ROOT = Path(__file__).resolve().parents[1]
 LOCK = (ROOT / "requirements.lock").read_text(encoding="utf-8")
+EXTRA_LOCK = (ROOT / "requirements-extra.lock").read_text(encoding="utf-8")
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 
 HEAVY = ["sympy", "flint", "numpy", "scipy", "casadi", "cvxpy", "osqp", "clarabel", "highspy", "numba"]
@@ -73,9 +74,9 @@ def test_the_help_loads_no_engine() -> None:
 # The lock
 
 
-def lock_entries() -> dict[str, str]:
+def lock_entries(lock: str = LOCK) -> dict[str, str]:
     """``name==version ; marker`` -> its block of hashes."""
-    blocks = re.split(r"^(?=\S)", LOCK, flags=re.M)
+    blocks = re.split(r"^(?=\S)", lock, flags=re.M)
     return {block.split("\\")[0].strip(): block for block in blocks if block.strip()}
 
 
@@ -84,19 +85,30 @@ def normal(name: str) -> str:
     return re.sub(r"[-_.]+", "-", re.split(r"[<>=!~;\[ ]", name)[0]).lower()
 
 
-def locked() -> set[str]:
+def locked(lock: str = LOCK) -> set[str]:
     """Names of all locked distributions."""
-    return {normal(entry) for entry in lock_entries()}
+    return {normal(entry) for entry in lock_entries(lock)}
 
 
-def test_every_line_of_the_lock_pins_one_version_and_its_hashes() -> None:
-    for entry, block in lock_entries().items():
+@pytest.mark.parametrize("lock", [LOCK, EXTRA_LOCK], ids=["packages", "extras"])
+def test_every_line_of_the_lock_pins_one_version_and_its_hashes(lock: str) -> None:
+    for entry, block in lock_entries(lock).items():
         assert re.match(r"[\w.-]+==[\w.]+( ;.*)?$", entry), entry
         assert re.findall(r"--hash=sha256:[0-9a-f]{64}\b", block), entry
 
 
-def test_the_lock_names_no_host_and_no_path() -> None:
-    assert not re.search(r"://|@|--index|--find|file:|^-e|^/", LOCK, flags=re.M)
+@pytest.mark.parametrize("lock", [LOCK, EXTRA_LOCK], ids=["packages", "extras"])
+def test_the_lock_names_no_host_and_no_path(lock: str) -> None:
+    assert not re.search(r"://|@|--index|--find|file:|^-e|^/", lock, flags=re.M)
+
+
+def test_the_lock_of_extras_holds_every_extra_and_disagrees_with_the_lock_nowhere() -> None:
+    extras = PROJECT["project"]["optional-dependencies"]
+    wanted = [*extras["notebook"], *extras["docs"], *extras["cross"], *extras["maps"]]
+    assert {normal(name) for name in wanted} <= locked(EXTRA_LOCK)
+    versions = {entry.split(" ;")[0] for entry in lock_entries()}
+    shared = {entry.split(" ;")[0] for entry in lock_entries(EXTRA_LOCK) if normal(entry) in locked()}
+    assert shared <= versions
 
 
 def test_the_lock_holds_everything_that_bootstrap_installs() -> None:
@@ -142,7 +154,7 @@ def checkout(tmp_path: Path) -> Path:
     """A checkout with a space in its path and nothing but what bootstrap reads."""
     root = tmp_path / "a checkout"
     root.mkdir()
-    for name in ("bootstrap.py", "pyproject.toml", "requirements.lock"):
+    for name in ("bootstrap.py", "pyproject.toml", "requirements.lock", "requirements-extra.lock"):
         shutil.copy(ROOT / name, root / name)
     return root
 
@@ -207,6 +219,17 @@ def test_a_changed_lock_updates_in_place(bootstrap: ModuleType, finished: Path) 
     with (finished.parent / "requirements.lock").open("a") as file:
         file.write("\n")
     assert state(bootstrap, finished) == "stale"
+
+
+def test_extras_are_added_to_the_environment_that_is_there(
+    bootstrap: ModuleType, finished: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    steps: list[list[str]] = []
+    monkeypatch.setattr(bootstrap, "ROOT", str(finished.parent))
+    monkeypatch.setattr(bootstrap, "run", lambda command, advice: steps.append(command))
+    assert bootstrap.main(["extras"]) == 0
+    assert [step[-2:] for step in steps] == [["-r", "requirements-extra.lock"]]
+    assert steps[0][0] == bootstrap.python_of(str(finished)) and "--require-hashes" in steps[0]
 
 
 def test_a_moved_checkout_makes_its_environment_again(bootstrap: ModuleType, finished: Path) -> None:
