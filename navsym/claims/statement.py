@@ -27,6 +27,8 @@ class Equation:
     tolerance        : None for equality; an exact number for ``|printed - derived| <= tolerance``,
                        which is how a printed numeral is meant (half a unit of its last digit)
     nonzero          : expressions that the statement takes to be nonzero
+    exists           : expressions that must have a value: points where one has none are not points of the
+                       statement, though the algebra may have cancelled what is undefined there
     """
 
     printed: Any
@@ -34,6 +36,7 @@ class Equation:
     box: Box = field(default_factory=dict)
     tolerance: Any = None
     nonzero: tuple[Any, ...] = ()
+    exists: tuple[Any, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -41,13 +44,14 @@ class Bound:
     """``printed relation derived`` on the whole box; relation is one of ``= != < <= > >=``.
 
     The printed side stands on the left: ``Bound(det, "!=", 0, box)`` says that the printed
-    determinant does not vanish anywhere in the box.
+    determinant does not vanish anywhere in the box. ``exists``: as in :class:`Equation`.
     """
 
     printed: Any
     relation: str
     derived: Any
     box: Box = field(default_factory=dict)
+    exists: tuple[Any, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, eq=False)

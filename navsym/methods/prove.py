@@ -6,9 +6,11 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
+import sympy as sp
+
 from navsym.claims import OPEN, REFUTED, Bound, Equation, Statement, Verdict
 from navsym.proof.bounds import Sign, prove_sign
-from navsym.proof.equations import is_nonzero
+from navsym.proof.equations import is_nonzero, is_positive
 from navsym.proof.ladder import decide
 from navsym.proof.sandbox import Exhausted, Failed, run_many
 from navsym.proof.wording import text_of
@@ -49,17 +51,27 @@ def decide_claim(claim: FileClaim) -> Verdict:
 
 
 def text_conditions(claim: FileClaim) -> list[str]:
-    """What the text divides by and takes roots of, where the algebra has cancelled it since."""
+    """What the text divides by and takes roots and logarithms of, where the algebra has cancelled it since."""
     found = [f"{text_of(d)} != 0" for d in claim.divisors if not is_nonzero(d, claim.box)]
     at_least = (r for r in claim.radicands if not prove_sign(r, claim.box).at_least(Sign.NONNEGATIVE))
-    return found + [f"{text_of(r)} >= 0" for r in at_least]
+    found += [f"{text_of(r)} >= 0" for r in at_least]
+    return found + [f"{text_of(a)} > 0" for a in claim.arguments if not is_positive(a, claim.box)]
+
+
+def existing(claim: FileClaim) -> tuple[sp.Expr, ...]:
+    """Expressions with a value exactly where the text has one, whatever the algebra has cancelled."""
+    return (
+        *(1 / divisor for divisor in claim.divisors),
+        *(sp.sqrt(radicand) for radicand in claim.radicands),
+        *(sp.log(argument) for argument in claim.arguments),
+    )
 
 
 def statement_of(claim: FileClaim) -> Statement:
     """The file's claim as a statement of the ladder."""
     if claim.relation == "=":
-        return Equation(claim.left, claim.right, claim.box)
-    return Bound(claim.left, claim.relation, claim.right, claim.box)
+        return Equation(claim.left, claim.right, claim.box, exists=existing(claim))
+    return Bound(claim.left, claim.relation, claim.right, claim.box, existing(claim))
 
 
 def record_of(claim: FileClaim, verdict: Verdict) -> dict[str, Any]:

@@ -86,7 +86,7 @@ def decide_entry(printed: sp.Expr, derived: sp.Expr, statement: Equation) -> Ver
         if statement.tolerance is not None:
             return decide_numeral(printed, derived, statement)
         sample = search_counterexample(
-            printed - derived, lambda b: not b.contains(0), box, sides=(printed, derived)
+            printed - derived, lambda b: not b.contains(0), box, sides=finite_sides(printed, derived, statement)
         )
         if sample.counterexample is not None:
             return refuted(sample, box)
@@ -95,6 +95,12 @@ def decide_entry(printed: sp.Expr, derived: sp.Expr, statement: Equation) -> Ver
         return Verdict(OPEN, "normal form", scope_of(printed - derived, box), evidence=str(error))
     except (UnsupportedError, OutsideLanguageError) as error:
         return Verdict(OPEN, "none", scope_of(printed - derived, box), evidence=str(error))
+
+
+def finite_sides(printed: sp.Expr, derived: sp.Expr, statement: Equation) -> tuple[sp.Expr, ...]:
+    """What has to have a value at a point of the statement."""
+    divisors = (sp.sympify(part, strict=True) for part in statement.nonzero)
+    return (printed, derived, *statement.exists, *(1 / part for part in divisors if part != 0))
 
 
 def refuted(sample: Sample, box: Box) -> Verdict:
@@ -117,7 +123,10 @@ def decide_numeral(printed: sp.Expr, derived: sp.Expr, statement: Equation) -> V
     tolerance = sp.sympify(statement.tolerance, strict=True)
     difference, box = printed - derived, statement.box
     sample = search_counterexample(
-        difference, lambda ball: bool(abs(ball) > enclose(tolerance)), box, sides=(printed, derived)
+        difference,
+        lambda ball: bool(abs(ball) > enclose(tolerance)),
+        box,
+        sides=finite_sides(printed, derived, statement),
     )
     if sample.counterexample is not None:
         return refuted(sample, box)
@@ -286,6 +295,7 @@ def smooth_on(expression: sp.Expr, box: Box) -> bool:
 
 
 def is_positive(expression: sp.Basic, box: Box) -> bool:
+    """True when the expression is proved to be positive on the box."""
     return prove_sign(expression, box, Sign.POSITIVE).at_least(Sign.POSITIVE)
 
 

@@ -31,14 +31,17 @@ EXCLUDES: dict[str, Callable[[arb], bool]] = {
 def decide_bound(statement: Bound) -> Verdict:
     """Verdict of an inequality; ``=`` is handed to the equations."""
     if statement.relation == "=":
-        return decide_equation(Equation(statement.printed, statement.derived, statement.box))
+        return decide_equation(
+            Equation(statement.printed, statement.derived, statement.box, exists=statement.exists)
+        )
     if statement.relation not in EXCLUDES:
         raise DomainError(f"expected one of = != < <= > >=; got {statement.relation!r}; correct the relation")
     difference = sp.sympify(statement.printed, strict=True) - sp.sympify(statement.derived, strict=True)
     scope = scope_of(difference, statement.box)
     try:
         sides = [sp.sympify(side, strict=True) for side in (statement.printed, statement.derived)]
-        verdict = decide_difference(difference, statement.relation, statement.box, scope, sides)
+        existing = (*sides, *statement.exists)
+        verdict = decide_difference(difference, statement.relation, statement.box, scope, existing)
         if not verdict.status.holds:
             return verdict
         # Subtraction and the algebra may have cancelled what is not defined everywhere.

@@ -41,7 +41,8 @@ class FileClaim:
     relation    : one of ``= != < <= > >=``
     box         : symbol -> (lower, upper), the file's ranges and those of the claim itself
     divisors    : what the text divides by, also where the algebra has cancelled it since
-    radicands   : what the text takes roots and logarithms of, likewise
+    radicands   : what the text takes roots of, to be nonnegative, likewise
+    arguments   : what the text takes logarithms and symbolic powers of, to be positive, likewise
     """
 
     id: str
@@ -51,6 +52,7 @@ class FileClaim:
     box: Mapping[Symbol, tuple[Expr, Expr]]
     divisors: tuple[Expr, ...] = ()
     radicands: tuple[Expr, ...] = ()
+    arguments: tuple[Expr, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -101,9 +103,11 @@ def read_claim(block: Any, symbols: Mapping[str, Parameter], where: str) -> File
     cells = left_cells + right_cells
     require_comparable(left, right, relation, where)
     box = box_of(symbols) | read_box(table.get("box", {}), symbols, inside(where, "box"))
-    divisors = dict.fromkeys(divisor for cell in cells for divisor in cell.divisors)
-    radicands = dict.fromkeys(radicand for cell in cells for radicand in cell.radicands)
-    return FileClaim(label, left, right, relation, box, tuple(divisors), tuple(radicands))
+    noted = [
+        tuple(dict.fromkeys(part for cell in cells for part in getattr(cell, name)))
+        for name in ("divisors", "radicands", "arguments")
+    ]
+    return FileClaim(label, left, right, relation, box, *noted)
 
 
 def read_side(value: Any, known: Mapping[str, Symbol], where: str) -> tuple[Any, list[Parsed]]:

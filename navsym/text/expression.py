@@ -45,12 +45,14 @@ class Parsed:
     """An expression with what its text takes for granted: sympy cancels ``x/x`` before anyone can ask.
 
     divisors  : what it divides by, to be nonzero
-    radicands : what it takes roots, logarithms and fractional powers of, to be nonnegative
+    radicands : what it takes roots and fractional powers of, and 1 - u**2 for asin(u) and acos(u), nonnegative
+    arguments : what it takes logarithms and symbolic powers of, to be positive
     """
 
     expression: sp.Expr
     divisors: tuple[sp.Expr, ...]
     radicands: tuple[sp.Expr, ...] = ()
+    arguments: tuple[sp.Expr, ...] = ()
 
 
 def parse(text: str, symbols: Mapping[str, sp.Symbol], *, where: str = "") -> sp.Expr:
@@ -80,7 +82,8 @@ def parse_noting(text: str, symbols: Mapping[str, sp.Symbol], *, where: str = ""
     reader = Reader(source, tokenize(source), symbols)
     try:
         whole = reader.whole()
-        return Parsed(whole, tuple(dict.fromkeys(reader.divisors)), tuple(dict.fromkeys(reader.radicands)))
+        noted = (reader.divisors, reader.radicands, reader.arguments)
+        return Parsed(whole, *(tuple(dict.fromkeys(found)) for found in noted))
     except RecursionError:
         source.fail(0, "less nesting", "an expression too deep to build", "give parts a name", TooLargeError)
 
@@ -112,6 +115,7 @@ class Reader:
     root_bits: int = 0
     divisors: list[sp.Expr] = field(default_factory=list)
     radicands: list[sp.Expr] = field(default_factory=list)
+    arguments: list[sp.Expr] = field(default_factory=list)
 
     @property
     def token(self) -> Token:
@@ -191,7 +195,8 @@ class Reader:
         """The algebra factors numbers under roots, again in every product: their total is bounded."""
         if exponent.is_integer is not True:
             self.root_bits += arithmetic.number_bits(base)
-            self.note_radicand(base)
+            note = self.note_radicand if exponent.is_number else self.note_argument
+            note(base)
         if self.root_bits > ROOT_TOTAL:
             got, do = f"more, with {self.root_bits} bits", "split the expression"
             self.source.fail(mark.start, f"at most {ROOT_TOTAL} bits under roots", got, do, TooLargeError)
@@ -242,11 +247,24 @@ class Reader:
         self.calls -= 1
         if token.text == "sqrt":
             self.count_roots(token, arguments[0], sp.S.Half)
-        if token.text == "log":
-            self.note_radicand(arguments[0])
-        if token.text in ("tan", "cot", "sec", "csc"):
-            self.note_pole(token.text, arguments[0])
+        self.note_domain(token.text, arguments)
         return self.do(token.start, arithmetic.call, token.text, arguments)
+
+    def note_domain(self, name: str, arguments: list[sp.Expr]) -> None:
+        """Remember where the function exists."""
+        if name == "log":
+            self.note_argument(arguments[0])
+        if name in ("asin", "acos"):
+            self.note_radicand(1 - arguments[0] ** 2)
+        if name in ("tan", "cot", "sec", "csc"):
+            self.note_pole(name, arguments[0])
+        if name == "atan2" and any(part.free_symbols for part in arguments):
+            self.divisors.append(sp.Add(*(part**2 for part in arguments)))
+
+    def note_argument(self, base: sp.Expr) -> None:
+        """Remember what must be positive, unless its symbols were declared so."""
+        if base.free_symbols and not base.is_positive:
+            self.arguments.append(base)
 
     def note_radicand(self, base: sp.Expr) -> None:
         """Remember what must be nonnegative, unless its symbols were declared so."""

@@ -12,11 +12,13 @@ import mpmath
 import pytest
 import sympy as sp
 
-from navsym.claims import CERTIFIED, PROVED, REFUTED, Bound, Equation, Finding, Property
+from navsym.claims import CERTIFIED, OPEN, PROVED, REFUTED, Bound, Equation, Finding, Property
 from navsym.errors import DomainError
+from navsym.methods.prove import prove
 from navsym.proof.balls import UnsupportedError
 from navsym.proof.bounds import Sign, prove_sign
 from navsym.proof.ladder import decide
+from navsym.text.claimfile import claims_from
 
 x = sp.Symbol("x", real=True)
 T = sp.Symbol("T", positive=True)
@@ -233,3 +235,45 @@ def test_declarations_that_a_range_cannot_hold_are_refused(declared):
 
 def test_values_inside_tuples_are_compared_like_values():
     assert decide(Property((True,), Finding((1,), "count"))).status == REFUTED
+
+
+# -- formulas of files: what the algebra cancels while it reads ------------------------------------
+
+
+def proved(left, relation, right, **symbols):
+    """The record of one formula of a claim file."""
+    claim = {"id": "one", "left": left, "relation": relation, "right": right}
+    document = {"symbols": symbols or {"x": "real"}, "claim": [claim]}
+    return prove(claims_from(document, "f"))["claims"][0]
+
+
+@pytest.mark.parametrize(
+    ("left", "relation", "right"),
+    [
+        ("x**2/x", "!=", "0"),
+        ("sqrt(x)**2", ">=", "0"),
+        ("cos(acos(x))", "<=", "2"),
+        ("exp(log(x))", ">", "0"),
+        ("x**2/x", "<", "0.00001 + x**2/x + x**2*(x/x)"),
+    ],
+)
+def test_a_point_where_the_text_has_no_value_refutes_nothing(left, relation, right):
+    assert proved(left, relation, right)["status"] != REFUTED
+
+
+def test_the_domain_of_an_inverse_sine_that_cancels_is_assumed():
+    assert proved("sin(asin(x))", "=", "x")["assumptions"] == ["1 - x**2 >= 0"]
+    assert proved("exp(log(x))", "=", "x")["assumptions"] == ["x > 0"]
+    assert proved("x**y*x**(-y)", "=", "1", x="real", y="real")["assumptions"] == ["x > 0"]
+
+
+@pytest.mark.parametrize(
+    "nowhere", ["log(-1 - x**2)", "asin(2 + x**2)", "sqrt(-1 - x**2)", "1/(sin(x)**2 + cos(x)**2 - 1)"]
+)
+def test_a_text_that_has_a_value_nowhere_is_not_proved(nowhere):
+    assert proved(f"{nowhere} - {nowhere}", "=", "0")["status"] == OPEN
+
+
+def test_what_a_claim_takes_to_be_nonzero_is_no_counterexample():
+    n = sp.Symbol("n", real=True)
+    assert decide(Equation(sp.sign(n) ** 2, sp.Integer(1), nonzero=(n,))).status != REFUTED

@@ -176,7 +176,14 @@ def test_divisors_are_noted_even_where_they_cancel():
 
 def test_radicands_are_noted_unless_declared_nonnegative():
     parsed = parse_noting("sqrt(x)**2 + (x - y)**(1/3) + log(T) + sqrt(p) + x**2 + x**y", SYMBOLS)
-    assert parsed.radicands == (x, x - y, T)
+    assert parsed.radicands == (x, x - y)
+    assert parsed.arguments == (T, x)
+
+
+def test_where_inverse_sines_and_angles_exist_is_noted():
+    parsed = parse_noting("sin(asin(x)) + acos(x/2) + atan2(y, x)", SYMBOLS)
+    assert parsed.radicands == (1 - x**2, 1 - x**2 / 4)
+    assert parsed.divisors == (x**2 + y**2,)
 
 
 @pytest.mark.parametrize(
