@@ -268,7 +268,7 @@ def test_the_domain_of_an_inverse_sine_that_cancels_is_assumed():
 
 
 @pytest.mark.parametrize(
-    "nowhere", ["log(-1 - x**2)", "asin(2 + x**2)", "sqrt(-1 - x**2)", "1/(sin(x)**2 + cos(x)**2 - 1)"]
+    "nowhere", ["log(-1 - x**2)", "asin(2 + x**2)", "1/(sin(x)**2 + cos(x)**2 - 1)"]
 )
 def test_a_text_that_has_a_value_nowhere_is_not_proved(nowhere):
     assert proved(f"{nowhere} - {nowhere}", "=", "0")["status"] == OPEN
