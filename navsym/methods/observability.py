@@ -105,6 +105,7 @@ def chains_of(model: LinearModel) -> Chains:
     """
     check(model)
     ring = Ring.of([model.F, model.H])
+    own_rows(model, ring)
     n = model.size
     matrix, clock = numerators([model.F[i, :] for i in range(n)], ring)
     rows = [numerators([model.H[k, :]], ring) for k in range(model.H.rows)]
@@ -117,7 +118,7 @@ def chains_of(model: LinearModel) -> Chains:
 
 
 def check(model: LinearModel) -> None:
-    """Refuse what has no chains: time-varying or too large models, zero and repeated rows."""
+    """Refuse what has no chains: time-varying or too large models, and models without a measurement."""
     if not model.constant:
         raise DomainError(
             f"expected constant F and H; got entries with the time {model.time}; freeze them at an instant"
@@ -126,24 +127,38 @@ def check(model: LinearModel) -> None:
         raise TooLargeError(f"expected at most {STATES} states; got {model.size}; split the model")
     if model.H.rows == 0:
         raise EmptyError("expected at least one measurement; got none; add a row h")
+
+
+def own_rows(model: LinearModel, ring: Ring) -> None:
+    """Refuse rows h that are zero or equal, also in disguise: (a + 1)^2 and a^2 + 2 a + 1 are one number."""
+    seen: dict[tuple[str, ...], str] = {}
     for k, name in enumerate(model.measurements):
-        if not any(model.H[k, :]):
+        quotients = [ring.quotient(entry) for entry in model.H[k, :]]
+        if all(q.top == 0 for q in quotients):
             raise DomainError(f"measurement {name}: expected a row h that is not zero; got zeros; remove it")
-        for earlier in range(k):
-            if all(sp.expand(entry) == 0 for entry in model.H[k, :] - model.H[earlier, :]):
-                raise DuplicateError(
-                    f"measurement {name}: expected a row of its own; got that of "
-                    f"{model.measurements[earlier]}; remove one of them"
-                )
+        key = tuple(f"{q.top}/{q.bottom}" for q in quotients)
+        if key in seen:
+            raise DuplicateError(
+                f"measurement {name}: expected a row of its own; got that of {seen[key]}; remove one of them"
+            )
+        seen[key] = name
 
 
 def numerators(rows: Sequence[sp.Matrix], ring: Ring) -> tuple[Matrix, Poly]:
     """Entries times their least common denominator, and that denominator."""
-    quotients = [[ring.quotient(entry) for entry in row] for row in rows]
+    known: dict[sp.Basic, Quotient] = {}
+    quotients: list[list[Quotient]] = []
+    for row in rows:
+        for entry in row:
+            if entry not in known:
+                known[entry] = ring.quotient(entry)
+        quotients.append([known[entry] for entry in row])
+    bottoms = [q.bottom for q in known.values() if q.bottom != 1]
+    if not bottoms:
+        return [[q.top for q in row] for row in quotients], ring.constant(1)
     bottom = ring.constant(1)
-    for row in quotients:
-        for q in row:
-            bottom = bottom * ring.lowest(q.bottom, bottom).top
+    for b in bottoms:
+        bottom = bottom * ring.lowest(b, bottom).top
     return [[q.top * ring.lowest(bottom, q.bottom).top for q in row] for row in quotients], bottom
 
 
@@ -230,6 +245,7 @@ def proved_rank(model: LinearModel) -> ProvedRank:
     """
     check(model)
     ring = Ring.of([model.F, model.H])
+    own_rows(model, ring)
     matrix, _ = numerators([model.F[i, :] for i in range(model.size)], ring)
     rows = [numerators([model.H[k, :]], ring)[0][0] for k in range(model.H.rows)]
     ranks = {point: residue_rank(residue_chains(rows, matrix, point)) for point in points(ring)}
@@ -358,7 +374,8 @@ def denominators(chains: Chains) -> tuple[sp.Expr, ...]:
     """What must not vanish for the model itself to make sense."""
     ring = chains.ring
     bottoms = [chains.clock, *(chain.bottom for chain in chains.chains)]
-    return tuple(dict.fromkeys(ring.factored(b) for b in bottoms if not b.is_constant()))
+    written = dict.fromkeys(ring.factored(b) for b in bottoms if not b.is_constant())
+    return tuple(value for value in written if not value.is_Number)
 
 
 def direction_names(vector: Sequence[sp.Expr], states: Sequence[str]) -> str:

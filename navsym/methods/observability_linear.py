@@ -78,7 +78,10 @@ def independent_rows(rows: list[list[int]]) -> list[int]:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Reduced:
-    """Row-reduced form without fractions: ``pivot * identity`` on the pivot columns."""
+    """Row-reduced form without fractions: ``pivot * identity`` on the pivot columns.
+
+    The result of :func:`eliminated` is triangular there instead.
+    """
 
     pivot: Poly
     rows: Matrix
@@ -87,13 +90,39 @@ class Reduced:
 
 
 def reduce_rows(matrix: Matrix, ring: Ring, columns: Sequence[int] | None = None) -> Reduced:
-    """Bareiss-Jordan elimination of a matrix, pivots taken from the given columns (all by default).
+    """Row-reduced form without fractions, pivots taken from the given columns (all by default).
 
-    Every division is exact; the last pivot is the determinant of the pivot block up to the sign.
-    The sparsest entry is taken as pivot, which keeps the intermediate minors small.
+    Bareiss' elimination downwards, then each free column by substitution upwards: a column that is a pivot
+    needs no arithmetic at all. Every division is exact; the last pivot is the determinant of the pivot
+    block up to the sign.
+    """
+    found = eliminated(matrix, ring, columns)
+    size = len(found.rows)
+    width = len(matrix[0]) if matrix else 0
+    zero = ring.constant(0)
+    rows = [[zero] * width for _ in range(size)]
+    for row, column in zip(rows, found.columns, strict=True):
+        row[column] = found.pivot
+    for column in (k for k in range(width) if k not in found.columns):
+        for k in range(size - 1, -1, -1):
+            upper = found.rows[k]
+            total = found.pivot * upper[column] if upper[column] != 0 else zero
+            for later in range(k + 1, size):
+                factor = upper[found.columns[later]]
+                if factor != 0 and rows[later][column] != 0:
+                    total = total - factor * rows[later][column]
+            rows[k][column] = divide(total, upper[found.columns[k]]) if total != 0 else zero
+    return Reduced(found.pivot, rows, found.columns, found.sign)
+
+
+def eliminated(matrix: Matrix, ring: Ring, columns: Sequence[int] | None = None) -> Reduced:
+    """Bareiss' triangular form: row k has zeros in the pivot columns of the earlier rows.
+
+    The pivot is the entry with the fewest terms, among equals the one whose row and column hold the fewest
+    others (Markowitz): that keeps the intermediate minors small.
     """
     rows = [list(row) for row in matrix]
-    free = list(range(len(rows[0]))) if columns is None else list(columns)
+    free = list(range(len(rows[0]))) if columns is None and rows else list(columns or ())
     last, sign, taken = ring.constant(1), 1, []
     for step in range(len(rows)):
         place = sparsest(rows, step, free)
@@ -111,36 +140,46 @@ def reduce_rows(matrix: Matrix, ring: Ring, columns: Sequence[int] | None = None
 
 
 def sparsest(rows: Matrix, step: int, columns: Sequence[int]) -> tuple[int, int] | None:
-    """Place of the nonzero entry with the fewest terms among the rows not yet used."""
+    """Place of the best pivot among the rows not yet used, None when they are zero there."""
+    sizes = [[len(row[j]) for j in columns] for row in rows[step:]]
+    filled = [sum(1 for size in row if size) for row in sizes]
+    used = [sum(1 for size in column if size) for column in zip(*sizes, strict=True)]
     best, place = None, None
-    for i in range(step, len(rows)):
-        for j in columns:
-            size = len(rows[i][j])
-            if size and (best is None or size < best):
-                best, place = size, (i, j)
-                if best == 1:
-                    return place
+    for i, row in enumerate(sizes):
+        for j, size in enumerate(row):
+            if size:
+                score = (size, (filled[i] - 1) * (used[j] - 1))
+                if best is None or score < best:
+                    best, place = score, (step + i, columns[j])
+                    if score == (1, 0):
+                        return place
     return place
 
 
 def eliminate(rows: Matrix, step: int, column: int, last: Poly) -> None:
-    """One step of Bareiss-Jordan: clear the column everywhere but in the row of the step."""
+    """One step of Bareiss: clear the column in the rows below."""
     pivot_row = rows[step]
     pivot = pivot_row[column]
-    for i, row in enumerate(rows):
-        if i == step:
-            continue
+    one = last == 1
+    held = [(k, y) for k, y in enumerate(pivot_row) if y != 0]
+    for i in range(step + 1, len(rows)):
+        row = rows[i]
         factor = row[column]
         if factor == 0:
             if pivot != last:
-                rows[i] = [divide(pivot * x, last) if x != 0 else x for x in row]
+                rows[i] = [x if x == 0 else pivot * x if one else divide(pivot * x, last) for x in row]
             continue
-        rows[i] = [divide(pivot * x - factor * y, last) for x, y in zip(row, pivot_row, strict=True)]
+        cleared = [x if x == 0 else pivot * x for x in row]
+        for k, y in held:
+            cleared[k] = cleared[k] - factor * y
+        rows[i] = cleared if one else [x if x == 0 else divide(x, last) for x in cleared]
 
 
 def determinant(matrix: Matrix, ring: Ring) -> Poly:
     """Determinant of a square matrix, by fraction-free elimination."""
-    reduced = reduce_rows(matrix, ring)
+    if not matrix:
+        return ring.constant(1)
+    reduced = eliminated(matrix, ring)
     if len(reduced.rows) < len(matrix):
         return ring.constant(0)
     return reduced.pivot * reduced.sign * permutation_sign(reduced.columns)

@@ -186,7 +186,11 @@ def test_maximal_minors_are_all_square_minors():
         ([[0, 1], [0, 0]], [[0, 0]], DomainError, "not zero"),
         ([[0, 1], [0, 0]], [[1, 0], [1, 0]], DuplicateError, "row of its own"),
         ([[0, sp.Symbol("t", real=True)], [0, 0]], [[1, 0]], DomainError, "constant"),
-        ([[0, sp.sin(sp.Symbol("a"))], [0, 0]], [[1, 0]], DomainError, "rational function"),
+        ([[0, sp.exp(sp.Symbol("a"))], [0, 0]], [[1, 0]], DomainError, "rational function"),
+        ([[0, sp.sin(sp.Symbol("a") ** 2)], [0, 0]], [[1, 0]], DomainError, "angles such as"),
+        ([[0, sp.cos(sp.Symbol("a") + sp.pi / 3)], [0, 0]], [[1, 0]], DomainError, "multiples of pi/2"),
+        ([[0, sp.cos(99 * sp.Symbol("a"))], [0, 0]], [[1, 0]], TooLargeError, "multiples of an angle"),
+        ([[0, 0], [0, 0]], [[sp.sin(sp.Symbol("a")) ** 2 + sp.cos(sp.Symbol("a")) ** 2 - 1, 0]], DomainError, "not zero"),
         ([[0, sp.Symbol("a") ** 100], [0, 0]], [[1, 0]], TooLargeError, "exponents"),
     ],
 )
