@@ -22,7 +22,9 @@ from navsym.models.terrain import TerrainMap, demand_heights
 from navsym.models.terrain_track import MOST_HYPOTHESES, Hypotheses, Track
 from navsym.numeric.search import TOGETHER, padded, patch_rows, slab
 from navsym.numeric.search_bounded import BoundedResult, search_bounded, search_one_velocity
-from navsym.numeric.search_masked import dense_masked, offset_free, profile
+from navsym.numeric.search_lattice import fits, lattice, rounded
+from navsym.numeric.search_margins import DOUBLE, PLAIN, parts_about_the_mean
+from navsym.numeric.search_masked import dense_masked, profile
 
 Array = NDArray[np.float64]
 Index = tuple[int, int, int, int]
@@ -49,8 +51,15 @@ class Prepared:
     bound: float
 
     @property
-    def arguments(self) -> tuple[Array, Array, Array, Array, Array, Array]:
+    def case(self) -> tuple[Array, Array, Array, Array, Array, Array]:
+        """What the compiled loops take: see :mod:`navsym.numeric.search_sample`."""
         return self.H, self.bx, self.by, self.z, self.wx, self.wy
+
+    @property
+    def on_lattice(self) -> bool:
+        """Whether :mod:`navsym.numeric.search_lattice` applies: positions only, the step is the cell."""
+        alike = self.counts[2:] == (1, 1) and self.steps == (1.0, 1.0) and self.plain
+        return alike and fits(self.H, self.bx, self.by, self.counts[:2], padded(self.counts[0]))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -79,7 +88,7 @@ def prepare(terrain: TerrainMap, track: Track, grid: Hypotheses, *, on_map: bool
 
     on_map : raise OutsideMapError or NoDataError when the inertial track itself has no heights
     """
-    bx, by = terrain.cells(track.x, track.y)
+    bx, by = (rounded(b, max(terrain.heights.shape)) for b in terrain.cells(track.x, track.y))
     if on_map:
         under = np.empty(bx.size)
         profile(terrain.heights, bx, by, under)
@@ -113,15 +122,21 @@ def void_within(terrain: TerrainMap, across: tuple[float, float], along: tuple[f
     return bool(np.isnan(terrain.heights[rows, columns]).any())
 
 
-def criteria(prepared: Prepared, *, threads: int = 1) -> Array:
-    """Criteria of all hypotheses (Mvx, Mvy, My, Mx), in double precision; inf where inadmissible."""
+def criteria(prepared: Prepared, *, threads: int = 1, centred: bool = False) -> Array:
+    """Criteria of all hypotheses (Mvx, Mvy, My, Mx), in double precision; inf where inadmissible.
+
+    centred : less the mean difference of each hypothesis, ``sum (d - mean d)^2``
+    """
     Mx, My, Mvx, Mvy = prepared.counts
-    if not prepared.plain:
+    if centred or not prepared.plain:
         out = np.empty((Mvx, Mvy, My, Mx))
-        dense_masked(*prepared.arguments, prepared.steps, prepared.counts, out)
+        dense_masked(prepared.case, prepared.steps, prepared.counts, centred, out.reshape(-1))
         return out
     sums = np.zeros((Mvx, Mvy, My, padded(Mx)))
-    each_velocity(lambda Vi: one_slab(prepared, Vi, sums[Vi]), Mvx, threads)
+    if prepared.on_lattice:
+        lattice(*prepared.case[:4], (Mx, My), sums[0, 0])
+    else:
+        each_velocity(lambda Vi: one_slab(prepared, Vi, sums[Vi]), Mvx, threads)
     return sums[..., :Mx]
 
 
@@ -139,64 +154,65 @@ def one_slab(prepared: Prepared, Vi: int, out: Array) -> None:
     Mx, My, Mvx, Mvy = prepared.counts
     rows = patch_rows(prepared.by, prepared.wy, prepared.steps[1], My, Mvy, prepared.H.shape[0])
     patch = np.empty((TOGETHER, rows, out.shape[2]))
-    slab(*prepared.arguments, prepared.steps, (Mx, My, Mvy), Vi - Mvx // 2, patch, out)
+    slab(prepared.case, prepared.steps, (Mx, My, Mvy), float(Vi - Mvx // 2), False, patch, out)
 
 
 def search_position(
-    terrain: TerrainMap, track: Track, grid: Hypotheses, *, dense: bool = False
+    terrain: TerrainMap, track: Track, grid: Hypotheses, *, dense: bool = False, offset_free: bool = False
 ) -> Search:
     """The best position hypothesis, velocity errors taken as zero (terrain_search:2, terrain_search:3).
 
-    dense : keep all criteria in double precision; otherwise they are summed in single precision, and
-            the lowest again in double: the same minimum, runner-up and values
-    Raises OutsideMapError, NoDataError, NotEstimableError (fewer than two measurements).
+    dense       : keep all criteria in double precision; otherwise they may be summed in single precision, and
+                  the lowest again in double: the same minimum, runner-up and values
+    offset_free : the criterion ``sum (d - mean d)^2``, free of a constant height error (terrain_search:offset)
+    Raises OutsideMapError, NoDataError, NotEstimableError (fewer than two measurements, three without offset).
     """
-    need(track, 2, "two coordinates")
-    return found_by(prepare(terrain, track, grid.position_only), dense, 1)
+    need(track, *((3, "two coordinates and the height offset") if offset_free else (2, "two coordinates")))
+    return found_by(prepare(terrain, track, grid.position_only), dense, 1, offset_free)
 
 
 def search_full(
-    terrain: TerrainMap, track: Track, grid: Hypotheses, *, dense: bool = False, threads: int = 1
+    terrain: TerrainMap,
+    track: Track,
+    grid: Hypotheses,
+    *,
+    dense: bool = False,
+    threads: int = 1,
+    offset_free: bool = False,
 ) -> Search:
     """The best hypothesis in position and velocity (terrain_search:4, terrain_search:5).
 
-    dense : evaluate every hypothesis and keep the criteria; otherwise search by bounding, which
-            returns the same minimum, runner-up and values without them.
-    Raises OutsideMapError, NoDataError, NotEstimableError (fewer than four measurements).
+    dense       : evaluate every hypothesis and keep the criteria; otherwise search by bounding, which
+                  returns the same minimum, runner-up and values without them.
+    offset_free : the criterion ``sum (d - mean d)^2``, free of a constant height error (terrain_search:offset)
+    Raises OutsideMapError, NoDataError, NotEstimableError (fewer than four measurements, five without offset).
     """
-    need(track, 4, "two coordinates and two velocities")
-    return found_by(prepare(terrain, track, grid), dense, threads)
+    what = "two coordinates and two velocities"
+    need(track, *((5, f"{what} and the height offset") if offset_free else (4, what)))
+    return found_by(prepare(terrain, track, grid), dense, threads, offset_free)
 
 
-def found_by(prepared: Prepared, dense: bool, threads: int) -> Search:
+def found_by(prepared: Prepared, dense: bool, threads: int, centred: bool) -> Search:
     """The minimum by bounding where that is possible and wanted, else by evaluating every hypothesis."""
     total = math.prod(prepared.counts)
     # Outside this range single precision could overflow or underflow; nobody measures such heights.
-    usual = 1e-10 < prepared.bound < 1e15 and total > 1
-    if dense or not (prepared.plain and usual):
-        return lowest(prepared, criteria(prepared, threads=threads))
-    found = quickly(prepared)
+    usual = 1e-10 < prepared.bound < 1e15 and total > 1 and (prepared.z.size >= 4 or not centred)
+    # On the lattice all criteria in double precision take less time than some of them in single.
+    if dense or not (prepared.plain and usual) or (prepared.on_lattice and not centred):
+        return lowest(prepared, criteria(prepared, threads=threads, centred=centred), centred=centred)
+    found = quickly(prepared, centred)
     index, runner_up = unravel(found.index, prepared.counts), unravel(found.runner_up, prepared.counts)
-    unique = is_unique(prepared, (index, found.criterion), (runner_up, found.second))
+    unique = is_unique(prepared, (index, found.criterion), (runner_up, found.second), centred)
     share = found.samples / (total * prepared.z.size)
     return Search(index, found.criterion, found.second, unique, found.completed, share)
 
 
-def search_offset_free(terrain: TerrainMap, track: Track, grid: Hypotheses) -> Search:
-    """Like the dense search, with the criterion ``sum (d - mean d)^2``: free of a constant height error."""
-    need(track, 3 if grid.counts[2:] == (1, 1) else 5, "the corrections and the height offset")
-    prepared = prepare(terrain, track, grid)
-    out = np.empty(grid.counts[2:] + grid.counts[1::-1])
-    offset_free(*prepared.arguments, prepared.steps, grid.counts, out)
-    return lowest(prepared, out, exactly=False)
-
-
-def quickly(prepared: Prepared) -> BoundedResult:
+def quickly(prepared: Prepared, centred: bool) -> BoundedResult:
     """The exact search that suits the number of velocities."""
     p = prepared
-    if p.counts[2:] == (1, 1):
-        return search_one_velocity(p.single, p.H, p.bx, p.by, p.z, p.steps, p.counts[:2], p.bound)
-    return search_bounded(*p.arguments, p.steps, p.counts, p.bound)
+    if p.counts[2:] == (1, 1) and not centred:
+        return search_one_velocity(p.single, p.case, p.steps, p.counts[:2], p.bound)
+    return search_bounded(p.case, p.steps, p.counts, p.bound, centred=centred)
 
 
 def need(track: Track, least: int, what: str) -> None:
@@ -207,7 +223,7 @@ def need(track: Track, least: int, what: str) -> None:
         )
 
 
-def lowest(prepared: Prepared, values: Array, *, exactly: bool = True) -> Search:
+def lowest(prepared: Prepared, values: Array, *, exactly: bool = True, centred: bool = False) -> Search:
     """Minimum and runner-up of an array of criteria (Mvx, Mvy, My, Mx)."""
     flat = np.ravel(values)
     best = int(flat.argmin())
@@ -219,7 +235,7 @@ def lowest(prepared: Prepared, values: Array, *, exactly: bool = True) -> Search
         at = int(others.argmin())
         runner_up = unravel(at + (at >= best), prepared.counts)
         if exactly:
-            unique = is_unique(prepared, (index, float(flat[best])), (runner_up, second))
+            unique = is_unique(prepared, (index, float(flat[best])), (runner_up, second), centred)
         else:
             unique = True if second > flat[best] * (1.0 + 1e-9) else None
     return Search(index, float(flat[best]), second, unique, values.size, 1.0, values)
@@ -236,20 +252,23 @@ def unravel(flat: int, counts: Index) -> Index:
 # Uniqueness
 
 
-def is_unique(prepared: Prepared, best: tuple[Index, float], second: tuple[Index, float]) -> bool | None:
+def is_unique(
+    prepared: Prepared, best: tuple[Index, float], second: tuple[Index, float], centred: bool = False
+) -> bool | None:
     """Whether the smallest criterion belongs to one hypothesis only.
 
     True when the two smallest double sums differ by more than their rounding can; False when the
     two criteria are equal as rational numbers; None otherwise.
     """
     n = prepared.z.size
-    slack = 16.0 * 2.0**-53 * (prepared.bound + position_noise(prepared)) * math.sqrt(n)
-    grow = (n + 4) * 2.0**-53
+    parts = parts_about_the_mean(n) if centred else PLAIN
+    slack = DOUBLE * (parts * prepared.bound + PLAIN * position_noise(prepared)) * math.sqrt(n)
+    grow = (n + 4) * DOUBLE
     upper = math.sqrt(best[1]) * (1.0 + grow) + slack
     lower = math.sqrt(second[1]) * (1.0 - grow) - slack
     if lower > upper:
         return True
-    if n > 5000 or exact_criterion(prepared, best[0]) != exact_criterion(prepared, second[0]):
+    if n > 5000 or exact_criterion(prepared, best[0], centred) != exact_criterion(prepared, second[0], centred):
         return None
     return False
 
@@ -260,16 +279,17 @@ def position_noise(prepared: Prepared) -> float:
     return 4.0 * largest * prepared.bound
 
 
-def exact_criterion(prepared: Prepared, index: Index) -> Fraction:
+def exact_criterion(prepared: Prepared, index: Index, centred: bool = False) -> Fraction:
     """The criterion as a rational number, of the numbers in cells that the loops are given."""
     i, j, Vi, Vj = index
     sx, sy = map(Fraction, prepared.steps)
-    total = Fraction(0)
+    found = []
     for k in range(prepared.z.size):
         u = Fraction(prepared.bx[k]) + i * sx + Vi * Fraction(prepared.wx[k])
         w = Fraction(prepared.by[k]) + j * sy + Vj * Fraction(prepared.wy[k])
-        total += (Fraction(prepared.z[k]) - exact_height(prepared.H, u, w)) ** 2
-    return total
+        found.append(Fraction(prepared.z[k]) - exact_height(prepared.H, u, w))
+    mean = sum(found, Fraction(0)) / len(found) if centred else Fraction(0)
+    return sum(((d - mean) ** 2 for d in found), Fraction(0))
 
 
 def exact_height(H: Array, u: Fraction, w: Fraction) -> Fraction:

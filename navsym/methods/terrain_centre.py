@@ -28,7 +28,10 @@ FLAT = 1e-12
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Information:
-    """G, M1, M2 (2, 2), slopes squared, times slopes squared and so on."""
+    """G, M1, M2 (2, 2), slopes squared, times slopes squared and so on.
+
+    M1 is not symmetric when the means were taken off (``information(..., centred=True)``).
+    """
 
     G: Array
     M1: Array
@@ -40,13 +43,18 @@ class Information:
         return np.asarray(np.linalg.solve(self.G, self.M1), dtype=np.float64)
 
     @property
+    def symmetric(self) -> Array:
+        """The symmetric part of M1, all of it that quadratic forms see."""
+        return 0.5 * (self.M1 + self.M1.T)
+
+    @property
     def interval(self) -> tuple[float, float]:
         """(t_min, t_max): smallest and largest t_G over all directions of the velocity error.
 
         The roots of det(M1 - t G) = a t^2 - b t + c; the discriminant is computed as a sum of
         squares, so that it is never negative and loses nothing when the roots are close.
         """
-        G, M = self.G, self.M1
+        G, M = self.G, self.symmetric
         A2, A1, _ = self.quadratic
         det = G[0, 0] * G[1, 1] - G[0, 1] ** 2
         middle = (M[0, 0] * G[1, 1] + M[1, 1] * G[0, 0] - 2.0 * M[0, 1] * G[0, 1]) / (2.0 * det)
@@ -57,7 +65,7 @@ class Information:
     @property
     def quadratic(self) -> tuple[float, float, float]:
         """(A2, A1, A0) of terrain_search:12*, from four products instead of double sums."""
-        G, M = self.G, self.M1
+        G, M = self.G, self.symmetric
         return (
             float(M[0, 0] * G[0, 1] - M[0, 1] * G[0, 0]),          # terrain_search:12.Ax2*
             float(M[0, 0] * G[1, 1] - M[1, 1] * G[0, 0]),          # terrain_search:12.Ax1
@@ -67,7 +75,7 @@ class Information:
     @property
     def mean_time(self) -> float:
         """Mean of t_G over a uniform direction: tr(G^-1/2 M1) / tr(G^1/2), terrain_search:mean.rotated."""
-        G, M = self.G, self.M1
+        G, M = self.G, self.symmetric
         root = math.sqrt(G[0, 0] * G[1, 1] - G[0, 1] ** 2)
         adjugate = np.array([[G[1, 1], -G[0, 1]], [-G[0, 1], G[0, 0]]])
         return float((np.sum(adjugate * M) + root * np.trace(M)) / (root * (np.trace(G) + 2.0 * root)))
@@ -78,13 +86,19 @@ class Information:
         return float(v @ self.M1 @ v / (v @ self.G @ v))
 
 
-def information(gx: Array, gy: Array, times: Array) -> Information:
-    """The sums G, M1, M2 of slopes (n,), (n,) at times (n,); unknown slopes (NaN) are left out."""
+def information(gx: Array, gy: Array, times: Array, *, centred: bool = False) -> Information:
+    """The sums G, M1, M2 of slopes (n,), (n,) at times (n,); unknown slopes (NaN) are left out.
+
+    centred : take off the means of g and of t g over the track, which an unknown constant height error takes
+              away (terrain_search:offset.centre)
+    """
     known = np.isfinite(gx) & np.isfinite(gy)
     g, times = np.stack([gx[known], gy[known]]), np.asarray(times, dtype=float)[known]
-    G = g @ g.T
-    M1, M2 = (g * times) @ g.T, (g * times**2) @ g.T
-    return Information(G, 0.5 * (M1 + M1.T), 0.5 * (M2 + M2.T))
+    moving = g * times
+    if centred:
+        g, moving = g - g.mean(axis=1, keepdims=True), moving - moving.mean(axis=1, keepdims=True)
+    M1, M2 = g @ moving.T, moving @ moving.T
+    return Information(g @ g.T, M1 if centred else 0.5 * (M1 + M1.T), M2)
 
 
 def quadratic_slowly(gx: Array, gy: Array, times: Array) -> tuple[float, float, float]:

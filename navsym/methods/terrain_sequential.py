@@ -52,27 +52,28 @@ class Sequential:
 
 
 def search_sequential(
-    terrain: TerrainMap, track: Track, grid: Hypotheses, *, improved: bool = False
+    terrain: TerrainMap, track: Track, grid: Hypotheses, *, improved: bool = False, offset_free: bool = False
 ) -> Sequential:
     """Position first, then velocity.
 
-    improved : turn about the matrix centre C instead of the middle of [t_min, t_max]
+    improved    : turn about the matrix centre C instead of the middle of [t_min, t_max]
+    offset_free : both stages and t_G without the means that a constant height error takes away
     Raises OutsideMapError, NoDataError, NotEstimableError (fewer than four measurements, or flat).
     """
-    need(track, 4, "two coordinates and two velocities")
+    need(track, 5 if offset_free else 4, "two coordinates, two velocities and the height offset if it is unknown")
     position = prepare(terrain, track, grid.position_only)
-    coarse = lowest(position, criteria(position))
+    coarse = lowest(position, criteria(position, centred=offset_free), centred=offset_free)
     i, j = coarse.index[:2]
     start = np.array([i * grid.step[0], j * grid.step[1]])
     gx, gy = slopes(terrain, track.x + start[0], track.y + start[1])
-    numbered = information(gx, gy, np.arange(track.t.size, dtype=np.float64))
+    numbered = information(gx, gy, np.arange(track.t.size, dtype=np.float64), centred=offset_free)
     demand_estimable(numbered)
     low, high = numbered.interval
     middle = 0.5 * (low + high)
-    timed = information(gx, gy, track.elapsed)
+    timed = information(gx, gy, track.elapsed, centred=offset_free)
     instant = float(np.interp(middle, np.arange(track.t.size), track.elapsed))
     centre = timed.centre if improved else instant * np.eye(2)
-    values = velocity_stage(terrain, track, grid, start, centre)
+    values = velocity_stage(terrain, track, grid, start, centre, offset_free)
     Vi, Vj, criterion, second = two_lowest(values)
     velocity = np.array([Vi * grid.velocity_step[0], Vj * grid.velocity_step[1]])
     shift = start + (track.elapsed[-1] * np.eye(2) - centre) @ velocity          # terrain_search:14
@@ -85,7 +86,7 @@ def search_sequential(
 
 
 def velocity_stage(
-    terrain: TerrainMap, track: Track, grid: Hypotheses, start: Array, centre: Array
+    terrain: TerrainMap, track: Track, grid: Hypotheses, start: Array, centre: Array, centred: bool
 ) -> Array:
     """Criteria (Mvx, Mvy) of the velocities, the track turning about ``centre`` (terrain_search:6)."""
     bx, by = terrain.cells(track.x + start[0], track.y + start[1])
@@ -93,7 +94,8 @@ def velocity_stage(
     cells = centre * spacing[None, :] / spacing[:, None]      # from map units to cells, row by row
     steps = (grid.velocity_step[0] / terrain.dx, grid.velocity_step[1] / terrain.dy)
     out = np.empty(grid.counts[2:])
-    velocity_criteria(terrain.heights, bx, by, track.h, track.elapsed, cells, steps, grid.counts[2:], out)
+    case = (terrain.heights, bx, by, np.array(track.h), track.elapsed, track.elapsed)
+    velocity_criteria(case, cells, steps, grid.counts[2:], centred, out)
     return out
 
 

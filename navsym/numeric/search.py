@@ -1,14 +1,8 @@
 """Compiled loops of the terrain search: criteria of a grid of hypotheses against a height map.
 
-Everything here is counted in map cells: a hypothesis ``(i, j, Vi, Vj)`` puts measurement k at
-
-    u = bx[k] + ((i - Nx) sx + (Vi - Nvx) wx[k])     column coordinate
-    w = by[k] + ((j - Ny) sy + (Vj - Nvy) wy[k])     row coordinate
-
-with ``bx, by`` the positions of the track, ``sx, sy`` the position steps and ``wx, wy`` the
-velocity steps times the time since t0. Heights between nodes are bilinear, columns first. Every
-loop evaluates these expressions in this order and adds squares in the order of the
-measurements: that makes the fast loops equal their slow twins to the last bit.
+A case and its shifts are those of :mod:`navsym.numeric.search_sample`: hypothesis ``(i, j, Vi, Vj)`` is the shift
+``((i - Nx) sx, (j - Ny) sy, Vi - Nvx, Vj - Nvy)``. Rows of the map are interpolated once for all hypotheses that
+read them.
 """
 
 from __future__ import annotations
@@ -18,7 +12,7 @@ from typing import Any
 import numpy as np
 from numba import njit
 
-unsigned = np.uint64
+from navsym.numeric.search_sample import COMPILE, add_square, blend, criterion_one, shift_of, unsigned
 
 #: Rows of hypotheses are padded to this many entries, so that vector loops have no remainder.
 LANES = 16
@@ -26,95 +20,18 @@ LANES = 16
 TOGETHER = 4
 
 
-#: Multiplication and addition may be fused into one rounding, in these two expressions only: the
-#: compiler has no choice how, so that scalar and vector code still agree to the last bit.
-FUSED = {"contract"}
-
-
-@njit(nogil=True, cache=True, error_model="numpy", fastmath=FUSED)
-def blend(a: Any, b: Any, f: Any) -> Any:
-    """a + f (b - a)."""
-    return a + f * (b - a)
-
-
-@njit(nogil=True, cache=True, error_model="numpy", fastmath=FUSED)
-def add_square(total: Any, d: Any) -> Any:
-    """total + d^2."""
-    return total + d * d
-
-
-@njit(nogil=True, cache=True, error_model="numpy")
-def height_at(H: np.ndarray, u: float, w: float) -> float:
-    """Bilinear height at column ``u`` and row ``w`` of H (ny, nx); positions on the map only."""
-    ny, nx = H.shape
-    c = max(min(np.int64(np.floor(u)), nx - 2), 0)
-    r = max(min(np.int64(np.floor(w)), ny - 2), 0)
-    f, g = u - c, w - r
-    column, row, one = unsigned(c), unsigned(r), unsigned(1)
-    a = blend(H[row, column], H[row, column + one], f)
-    b = blend(H[row + one, column], H[row + one, column + one], f)
-    return blend(a, b, g)
-
-
-@njit(nogil=True, cache=True, error_model="numpy")
-def criterion_one(
-    H: np.ndarray,
-    bx: np.ndarray,
-    by: np.ndarray,
-    z: np.ndarray,
-    wx: np.ndarray,
-    wy: np.ndarray,
-    px: float,
-    py: float,
-    vx: float,
-    vy: float,
-    limit: float,
-) -> float:
-    """Sum of squared height differences of one hypothesis, abandoned once it exceeds ``limit``.
-
-    px, py : (i - Nx) sx and (j - Ny) sy, in cells ; vx, vy : Vi - Nvx and Vj - Nvy
-
-    An abandoned sum is a lower bound above ``limit``: rounded sums of squares never decrease.
-    """
-    total = 0.0
-    for k in range(z.shape[0]):
-        d = z[k] - height_at(H, bx[k] + (px + vx * wx[k]), by[k] + (py + vy * wy[k]))
-        total = add_square(total, d)
-        if total > limit:
-            break
-    return total
-
-
-@njit(nogil=True, cache=True, error_model="numpy")
-def dense_slowly(
-    H: np.ndarray,
-    bx: np.ndarray,
-    by: np.ndarray,
-    z: np.ndarray,
-    wx: np.ndarray,
-    wy: np.ndarray,
-    steps: Any,
-    counts: Any,
-    out: np.ndarray,
-) -> None:
-    """Twin of :func:`slab` for all Vi: four plain loops. out : (Mvx, Mvy, My, Mx)."""
-    sx, sy = steps
-    Mx, My, Mvx, Mvy = counts
-    for Vi in range(Mvx):
-        for Vj in range(Mvy):
-            for j in range(My):
-                for i in range(Mx):
-                    px, py = (i - Mx // 2) * sx, (j - My // 2) * sy
-                    out[Vi, Vj, j, i] = criterion_one(
-                        H, bx, by, z, wx, wy, px, py, Vi - Mvx // 2, Vj - Mvy // 2, np.inf
-                    )
+@njit(**COMPILE)
+def dense_slowly(case: Any, steps: Any, counts: Any, out: np.ndarray) -> None:
+    """Twin of :func:`slab` for all Vi, one hypothesis at a time. out : flat, in the order Vi, Vj, j, i."""
+    for index in range(out.shape[0]):
+        out[index] = criterion_one(case, shift_of(index, counts, steps), np.inf)
 
 
 # The fast loops. Unsigned loop variables spare the test for negative indices, which would keep
 # the compiler from using vector instructions.
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@njit(**COMPILE)
 def is_run(columns: np.ndarray) -> bool:
     """Whether the cells are consecutive, as they are when the step equals the cell."""
     apart = 0
@@ -123,7 +40,7 @@ def is_run(columns: np.ndarray) -> bool:
     return bool(apart == 0)
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@njit(**COMPILE)
 def place_columns(
     b: float, s: float, shift: float, nx: int, half: int, columns: np.ndarray, fraction: np.ndarray
 ) -> None:
@@ -135,7 +52,7 @@ def place_columns(
         fraction[i] = u - c
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@njit(**COMPILE)
 def place_rows(
     b: float, s: float, w: float, ny: int, My: int, Mvy: int, rows: np.ndarray, fraction: np.ndarray
 ) -> tuple[int, int]:
@@ -154,7 +71,7 @@ def place_rows(
     return low, high + 1
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@njit(**COMPILE)
 def blend_columns(
     H: np.ndarray,
     low: int,
@@ -180,7 +97,7 @@ def blend_columns(
                 patch[base + i] = blend(line[c], line[c + unsigned(1)], fraction[i])
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@njit(**COMPILE)
 def add_four(patch: np.ndarray, at: np.ndarray, g: Any, z: np.ndarray, width: int, out: np.ndarray) -> None:
     """Add four measurements to every hypothesis: one pass over ``out`` instead of four."""
     W = unsigned(width)
@@ -200,7 +117,7 @@ def add_four(patch: np.ndarray, at: np.ndarray, g: Any, z: np.ndarray, width: in
             out[o + i] = add_square(s, d)
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
+@njit(**COMPILE)
 def add_one(patch: np.ndarray, at: np.ndarray, g: np.ndarray, z: float, width: int, out: np.ndarray) -> None:
     """Add one measurement to every hypothesis."""
     W = unsigned(width)
@@ -210,101 +127,62 @@ def add_one(patch: np.ndarray, at: np.ndarray, g: np.ndarray, z: float, width: i
             out[o + i] = add_square(out[o + i], z - blend(patch[p + i], patch[p + W + i], ge))
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
-def add_four_directly(
-    heights: np.ndarray,
-    nx: int,
-    start: np.ndarray,
-    rows: np.ndarray,
-    f: np.ndarray,
-    g: np.ndarray,
-    z: np.ndarray,
-    width: int,
-    out: np.ndarray,
-) -> None:
-    """:func:`add_four` from the map itself, where the step equals the cell.
+@njit(**COMPILE)
+def add_four_centred(patch: np.ndarray, at: np.ndarray, g: Any, z: np.ndarray, width: int, out: np.ndarray) -> None:
+    """:func:`add_four` less the square of the mean: ``sum (d - mean d)^2`` of each four measurements.
 
-    With one velocity a blended row serves two hypotheses only: blending it twice is cheaper than
-    keeping it. heights : the map, flat ; start, f : (4,) first columns and the fraction that all
-    columns share ; rows, g : (4, My)
+    As three squares of contrasts, so that nothing cancels: never more than the same sum over all measurements.
     """
-    W, one, below = unsigned(width), unsigned(1), unsigned(nx)
+    W, half, quarter = unsigned(width), out.dtype.type(0.5), out.dtype.type(0.25)
     z0, z1, z2, z3 = z[0], z[1], z[2], z[3]
-    f0, f1, f2, f3 = f[0], f[1], f[2], f[3]
-    for j in range(rows.shape[1]):
-        p0, p1 = unsigned(rows[0, j] * nx + start[0]), unsigned(rows[1, j] * nx + start[1])
-        p2, p3 = unsigned(rows[2, j] * nx + start[2]), unsigned(rows[3, j] * nx + start[3])
-        g0, g1, g2, g3 = g[0, j], g[1, j], g[2, j], g[3, j]
-        o = unsigned(j * width)
+    for e in range(at.shape[1]):
+        p0, p1, p2, p3 = unsigned(at[0, e]), unsigned(at[1, e]), unsigned(at[2, e]), unsigned(at[3, e])
+        g0, g1, g2, g3 = g[0, e], g[1, e], g[2, e], g[3, e]
+        o = unsigned(e * width)
         for i in range(W):
-            a = blend(heights[p0 + i], heights[p0 + i + one], f0)
-            b = blend(heights[p0 + below + i], heights[p0 + below + i + one], f0)
-            d = z0 - blend(a, b, g0)
-            s = add_square(out[o + i], d)
-            a = blend(heights[p1 + i], heights[p1 + i + one], f1)
-            b = blend(heights[p1 + below + i], heights[p1 + below + i + one], f1)
-            d = z1 - blend(a, b, g1)
-            s = add_square(s, d)
-            a = blend(heights[p2 + i], heights[p2 + i + one], f2)
-            b = blend(heights[p2 + below + i], heights[p2 + below + i + one], f2)
-            d = z2 - blend(a, b, g2)
-            s = add_square(s, d)
-            a = blend(heights[p3 + i], heights[p3 + i + one], f3)
-            b = blend(heights[p3 + below + i], heights[p3 + below + i + one], f3)
-            d = z3 - blend(a, b, g3)
-            out[o + i] = add_square(s, d)
+            d0 = z0 - blend(patch[p0 + i], patch[p0 + W + i], g0)
+            d1 = z1 - blend(patch[p1 + i], patch[p1 + W + i], g1)
+            d2 = z2 - blend(patch[p2 + i], patch[p2 + W + i], g2)
+            d3 = z3 - blend(patch[p3 + i], patch[p3 + W + i], g3)
+            a, b, c = d0 - d1, d2 - d3, (d0 + d1) - (d2 + d3)
+            out[o + i] += half * add_square(a * a, b) + quarter * (c * c)
 
 
-@njit(nogil=True, cache=True, error_model="numpy")
-def slab(
-    H: np.ndarray,
-    bx: np.ndarray,
-    by: np.ndarray,
-    z: np.ndarray,
-    wx: np.ndarray,
-    wy: np.ndarray,
-    steps: Any,
-    counts: Any,
-    vx: float,
-    patch: np.ndarray,
-    out: np.ndarray,
-) -> None:
+@njit(**COMPILE)
+def slab(case: Any, steps: Any, counts: Any, vx: float, centred: bool, patch: np.ndarray, out: np.ndarray) -> None:
     """Add all measurements to the criteria of one velocity hypothesis ``vx = Vi - Nvx``.
 
-    steps  : (sx, sy) ; counts : (Mx, My, Mvy)
-    patch  : (4, rows, W) work space, rows as :func:`patch_rows` says, W = Mx padded to LANES
-    out    : (Mvy, My, W), added to; the padding is work space too
-    The type of ``patch``, ``out`` and ``z`` is that of the sums, that of H the one of the first
+    steps   : (sx, sy) ; counts : (Mx, My, Mvy)
+    centred : take the mean off each four measurements; what is left of a multiple of four is not used then
+    patch   : (4, rows, W) work space, rows as :func:`patch_rows` says, W = Mx padded to LANES
+    out     : (Mvy, My, W), added to; the padding is work space too
+    The type of ``patch``, ``out`` and of z is that of the sums, that of H the one of the first
     interpolation; positions are always double.
     """
+    H, bx, by, z, wx, wy = case
     sx, sy = steps
     Mx, My, Mvy = counts
     W, capacity = out.shape[2], patch.shape[1] * out.shape[2]
-    columns, fx = np.empty((TOGETHER, W), np.int64), np.empty((TOGETHER, W), H.dtype)
+    columns, fx = np.empty(W, np.int64), np.empty(W, H.dtype)
     at = np.empty((TOGETHER, Mvy * My), np.int64)
     g = np.empty((TOGETHER, Mvy * My), out.dtype)
-    low, high = np.empty(TOGETHER, np.int64), np.empty(TOGETHER, np.int64)
-    flat, sums, heights = patch.reshape(-1), out.reshape(-1), H.reshape(-1)
+    flat, sums = patch.reshape(-1), out.reshape(-1)
     for k0 in range(0, z.shape[0], TOGETHER):
         m = min(TOGETHER, z.shape[0] - k0)
-        alike = m == TOGETHER and Mvy == 1
         for q in range(m):
             k = k0 + q
-            place_columns(bx[k], sx, vx * wx[k], H.shape[1], Mx // 2, columns[q], fx[q])
-            low[q], high[q] = place_rows(by[k], sy, wy[k], H.shape[0], My, Mvy, at[q], g[q])
-            alike = alike and is_run(columns[q]) and (fx[q] == fx[q, 0]).all()
-        if alike:
-            add_four_directly(heights, H.shape[1], columns[:, 0], at, fx[:, 0], g, z[k0 : k0 + m], W, sums)
-            continue
-        for q in range(m):
-            blend_columns(H, low[q], high[q], columns[q], fx[q], flat, q * capacity)
+            place_columns(bx[k], sx, vx * wx[k], H.shape[1], Mx // 2, columns, fx)
+            low, high = place_rows(by[k], sy, wy[k], H.shape[0], My, Mvy, at[q], g[q])
+            blend_columns(H, low, high, columns, fx, flat, q * capacity)
             for e in range(at.shape[1]):
-                at[q, e] = (at[q, e] - low[q]) * W + q * capacity
-        if m == TOGETHER:
-            add_four(flat, at, g, z[k0 : k0 + m], W, sums)
-        else:
-            for q in range(m):
+                at[q, e] = (at[q, e] - low) * W + q * capacity
+        if m < TOGETHER:
+            for q in range(0 if not centred else m, m):
                 add_one(flat, at[q], g[q], z[k0 + q], W, sums)
+        elif centred:
+            add_four_centred(flat, at, g, z[k0 : k0 + m], W, sums)
+        else:
+            add_four(flat, at, g, z[k0 : k0 + m], W, sums)
 
 
 def padded(Mx: int) -> int:

@@ -74,7 +74,7 @@ def plain(terrain: TerrainMap, track: Track, grid: Hypotheses, threads: int = 2)
     cuts = [(k * Mvx // threads, (k + 1) * Mvx // threads) for k in range(threads)]
 
     def part(cut: tuple[int, int]) -> None:
-        plain_loop(*p.arguments, *p.steps, *p.counts, *cut, out)
+        plain_loop(*p.case, *p.steps, *p.counts, *cut, out)
 
     with ThreadPoolExecutor(threads) as pool:
         list(pool.map(part, cuts))

@@ -14,7 +14,6 @@ from navsym.methods.terrain import (
     exact_criterion,
     prepare,
     search_full,
-    search_offset_free,
     search_position,
 )
 from navsym.methods.terrain_incremental import add_measurement, begin, fix
@@ -150,7 +149,7 @@ def test_a_constant_height_error_does_not_move_the_offset_free_fix():
     track = flight(terrain, noise=1.0)
     raised = Track(track.t, track.x, track.y, track.h + 80.0)
     assert search_full(terrain, raised, GRID).index != (2, -1, 1, -2)
-    assert search_offset_free(terrain, raised, GRID).index == (2, -1, 1, -2)
+    assert search_full(terrain, raised, GRID, offset_free=True).index == (2, -1, 1, -2)
 
 
 def test_one_measurement_at_a_time_adds_up_to_the_batch():

@@ -10,26 +10,19 @@ import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
 
-from navsym.numeric import search_bounded as bounded_module
-from navsym.numeric.search import (
-    TOGETHER,
-    criterion_one,
-    dense_slowly,
-    height_at,
-    padded,
-    patch_rows,
-    slab,
-)
-from navsym.numeric.search_bounded import (
-    BoundedResult,
+from navsym.numeric.search import TOGETHER, dense_slowly, padded, patch_rows, slab
+from navsym.numeric.search_bounded import BoundedResult, search_bounded, search_one_velocity
+from navsym.numeric.search_margins import (
+    CONTRASTS,
     ceiling_of,
     double_limit,
     floor_of,
-    search_bounded,
-    search_one_velocity,
+    parts_about_the_mean,
     single_limit,
 )
-from navsym.numeric.search_masked import dense_masked, offset_free
+from navsym.numeric.search_masked import dense_masked
+from navsym.numeric.search_sample import criterion_one, height_at
+from navsym.numeric.search_stages import scores
 
 
 def random_case(generator, *, ties=False):
@@ -59,14 +52,14 @@ def random_case(generator, *, ties=False):
     return (H, bx, by, z, wx, wy), steps, counts
 
 
-def dense(arguments, steps, counts, dtype=np.float64):
+def dense(arguments, steps, counts, dtype=np.float64, centred=False):
     """Criteria by the vector loop."""
     H, bx, by, z, wx, wy = arguments
     Mx, My, Mvx, Mvy = counts
     out = np.zeros((Mvx, Mvy, My, padded(Mx)), dtype)
     patch = np.empty((TOGETHER, patch_rows(by, wy, steps[1], My, Mvy, H.shape[0]), padded(Mx)), dtype)
     for Vi in range(Mvx):
-        slab(H, bx, by, z.astype(dtype), wx, wy, steps, (Mx, My, Mvy), Vi - Mvx // 2, patch, out[Vi])
+        slab((H, bx, by, z.astype(dtype), wx, wy), steps, (Mx, My, Mvy), float(Vi - Mvx // 2), centred, patch, out[Vi])
     return out[..., :Mx]
 
 
@@ -83,7 +76,7 @@ def two_lowest(values):
 def test_the_vector_loop_equals_the_plain_loop_to_the_last_bit(seed, ties):
     arguments, steps, counts = random_case(np.random.default_rng(seed), ties=ties)
     slow = np.empty((counts[2], counts[3], counts[1], counts[0]))
-    dense_slowly(*arguments, steps, counts, slow)
+    dense_slowly(arguments, steps, counts, slow.reshape(-1))
     assert_array_equal(dense(arguments, steps, counts), slow)
 
 
@@ -91,7 +84,7 @@ def test_the_vector_loop_equals_the_plain_loop_to_the_last_bit(seed, ties):
 def test_the_masked_loop_equals_the_plain_loop_on_the_map(seed):
     arguments, steps, counts = random_case(np.random.default_rng(seed))
     masked = np.empty((counts[2], counts[3], counts[1], counts[0]))
-    dense_masked(*arguments, steps, counts, masked)
+    dense_masked(arguments, steps, counts, False, masked.reshape(-1))
     assert_array_equal(dense(arguments, steps, counts), masked)
 
 
@@ -104,7 +97,7 @@ def test_the_bounded_search_equals_the_dense_search_on_600_random_cases():
         bound = max(np.abs(arguments[0]).max(), np.abs(arguments[3]).max())
         if bound == 0.0:
             continue
-        found = search_bounded(*arguments, steps, counts, bound)
+        found = search_bounded(arguments, steps, counts, bound)
         best, criterion, second = two_lowest(dense(arguments, steps, counts))
         assert (found.index, found.criterion, found.second) == (best, criterion, second), case
 
@@ -118,7 +111,7 @@ def test_the_search_in_single_precision_equals_the_dense_search_over_positions()
         bound = max(np.abs(H).max(), np.abs(z).max())
         if bound == 0.0 or counts[:2] == (1, 1):
             continue
-        found = search_one_velocity(H.astype(np.float32), H, bx, by, z, steps, counts[:2], bound)
+        found = search_one_velocity(H.astype(np.float32), (H, bx, by, z, wx, wy), steps, counts[:2], bound)
         still = np.zeros_like(bx)
         values = dense((H, bx, by, z, still, still), steps, (*counts[:2], 1, 1))
         assert (found.index, found.criterion, found.second) == two_lowest(values), case
@@ -128,7 +121,7 @@ def test_equal_criteria_are_settled_for_the_first_in_the_order_of_the_grid():
     arguments, steps, counts = random_case(np.random.default_rng(3), ties=True)
     counts = (5, 5, 3, 3)
     values = dense(arguments, steps, counts)
-    found = search_bounded(*arguments, steps, counts, 9.0)
+    found = search_bounded(arguments, steps, counts, 9.0)
     assert found.criterion == found.second == values.min()
     assert found.index == int(values.argmin())
 
@@ -154,14 +147,14 @@ def test_the_margins_only_widen():
 
 def test_a_sum_that_is_abandoned_lies_above_the_limit():
     arguments, steps, _ = random_case(np.random.default_rng(1))
-    whole = criterion_one(*arguments, steps[0], 0.0, 0, 0, np.inf)
-    part = criterion_one(*arguments, steps[0], 0.0, 0, 0, whole / 2)
+    whole = criterion_one(arguments, (steps[0], 0.0, 0.0, 0.0), np.inf)
+    part = criterion_one(arguments, (steps[0], 0.0, 0.0, 0.0), whole / 2)
     assert whole / 2 < part <= whole
 
 
 def test_the_bounded_search_says_what_it_cost():
     arguments, steps, _ = random_case(np.random.default_rng(2))
-    found = search_bounded(*arguments, steps, (7, 7, 5, 5), 1e4)
+    found = search_bounded(arguments, steps, (7, 7, 5, 5), 1e4)
     assert isinstance(found, BoundedResult)
     assert 0 < found.completed <= 7 * 7 * 5 * 5
     assert all(a >= b for a, b in zip(found.survivors, found.survivors[1:], strict=False))
@@ -172,12 +165,12 @@ def test_the_offset_free_criterion_is_the_least_over_all_offsets():
     counts = (3, 3, 3, 1)
     H, bx, by, z, wx, wy = arguments
     out = np.empty((3, 1, 3, 3))
-    offset_free(*arguments, steps, counts, out)
+    dense_masked(arguments, steps, counts, True, out.reshape(-1))
     offsets = np.linspace(-200, 200, 41)
     for b in offsets:
         assert (dense((H, bx, by, z - b, wx, wy), steps, counts) >= out - 1e-6).all()
     shifted = np.empty_like(out)
-    offset_free(H, bx, by, z + 123.0, wx, wy, steps, counts, shifted)
+    dense_masked((H, bx, by, z + 123.0, wx, wy), steps, counts, True, shifted.reshape(-1))
     np.testing.assert_allclose(shifted, out, rtol=1e-9, atol=1e-6)
 
 
@@ -189,10 +182,11 @@ def test_scores_prefer_measurements_that_tell_hypotheses_apart():
     z = np.array([height_at(H, u, w) for u, w in zip(bx, by, strict=True)])
     zero = np.zeros(n)
     probes = np.arange(9)
-    score = bounded_module.scores(
-        H, bx, by, z, zero, zero, (1.0, 1.0), (9, 1, 1, 1), probes, np.zeros(n, dtype=np.bool_)
-    )
+    case, grid, unused = (H, bx, by, z, zero, zero), ((1.0, 1.0), (9, 1, 1, 1)), np.zeros(n, dtype=np.bool_)
+    score = scores(case, *grid, False, probes, unused)
     assert score[-1] > 0.0 and score[0] == 0.0
+    late = scores(case, *grid, True, probes, np.arange(n) < 10)
+    assert (late[:10] == -1.0).all() and late[-1] > late[12] > 0.0
 
 
 def test_the_benchmark_runs_in_small():
