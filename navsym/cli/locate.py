@@ -17,6 +17,9 @@ def command(
     config: Annotated[Path, typer.Argument(help="JSON: map, track, position and velocity hypotheses")],
     method: Annotated[str, typer.Option("--method", help="position, full, sequential or refined")] = "full",
     maps: Annotated[bool, typer.Option("--maps", help="add the criterion over positions, row = j")] = False,
+    offset_free: Annotated[
+        bool, typer.Option("--offset-free", help="heights have an unknown constant error; estimate it too")
+    ] = False,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> None:
     from navsym.errors import NavsymError
@@ -25,7 +28,7 @@ def command(
 
     document = read_json(config)
     try:
-        found = locate(document, method, folder=config.parent, maps=maps)
+        found = locate(document, method, folder=config.parent, maps=maps, offset_free=offset_free)
     except NavsymError as error:
         raise error if error.where.startswith(str(config)) else error.at(str(config)) from None
     for line in found.remarks:
@@ -49,6 +52,8 @@ def shown(document: dict[str, Any]) -> str:
         f"{document['velocity_index']}, {document['evaluated']} evaluated",
         f"criterion {document['criterion']:.6g}, second best {second}, unique {document['unique']}",
     ]
+    if "height_offset" in document:
+        lines.append(f"height offset {document['height_offset']:.3f} m, measured minus mapped")
     if document["t_G"]:
         t_G = "t_G from {min:.2f} to {max:.2f}, middle {mid:.2f} (measurements)"
         lines.append(t_G.format(**document["t_G"]))

@@ -1,54 +1,46 @@
-"""All formulas one token away from the proven ones: refuted with an exact point, or proved equal.
+"""All formulas one token away from the proven ones: refuted with an exact point, or proved to hold as well.
 
-A mutant that the ladder holds for true is looked at once more by another route: both sides are
-evaluated to forty digits at points of the box. A difference there is a false proof, the worst defect.
+A mutant is evaluated at exact points first, where nearly all fall; what is left is decided like a claim.
+What the ladder holds for true is looked at once more by another route: both sides are evaluated to forty
+digits at points of the box. A difference there is a false proof, the worst defect.
 """
 
 from __future__ import annotations
 
 import random
+import signal
 from collections import Counter
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import sympy as sp
 
-from navsym.claims import REFUTED, Box, Claim, Equation
+from navsym.claims import REFUTED, Bound, Claim, Equation, Optimum
 from navsym.errors import NavsymError
 from navsym.methods.campaign import Batch, Result, result
+from navsym.methods.campaign_points import (
+    Assertion,
+    Change,
+    changes,
+    derived_parts,
+    free_symbols,
+    printed_parts,
+    refuting_point,
+    rows,
+    spoilt,
+)
 from navsym.methods.dependencies import fingerprint
-from navsym.proof.equations import decide_equation, entries
-from navsym.proof.mutants import mutants
+from navsym.proof.ladder import decide
+from navsym.proof.mutants import is_formula
 from navsym.proof.sampling import points
-from navsym.proof.wording import text_of
+from navsym.proof.wording import point_text, text_of
+
+SECONDS = 20.0  # for one mutant that no point has refuted
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Mutant:
-    """A formula one token away from a printed one, beside what was derived."""
-
-    claim: str
-    formula: sp.Expr
-    derived: sp.Expr
-    box: Box
-
-
-def equations(claims: Iterable[Claim]) -> Iterator[tuple[str, Equation]]:
-    """The equations without tolerance among the claims that are declared to hold."""
-    for claim in claims:
-        if claim.expect.holds:
-            statement = claim.derive()
-            if isinstance(statement, Equation) and statement.tolerance is None:
-                yield claim.id, statement
-
-
-def mutants_of(claims: Iterable[Claim]) -> Iterator[Mutant]:
-    """Every mutant of every entry of every equation."""
-    for name, statement in equations(claims):
-        for printed, derived in zip(entries(statement.printed), entries(statement.derived), strict=True):
-            for formula in mutants(printed):
-                yield Mutant(name, formula, derived, statement.box)
+class OutOfTimeError(Exception):
+    """A mutant took longer than its share of time."""
 
 
 def batches(claims: Iterable[Claim], share: float = 1.0, seed: int = 0) -> list[Batch]:
@@ -58,44 +50,145 @@ def batches(claims: Iterable[Claim], share: float = 1.0, seed: int = 0) -> list[
 
 
 def judge(task: tuple[Claim, float, int]) -> Result:
-    """Counts: refuted, proved (equal to what was derived) and open; wrong: a proof that numbers deny."""
+    """Counts by outcome and by kind of change; wrong: a proof that numbers deny.
+
+    Outcomes: refuted (an exact point is kept), held (proved to be true as well), undefined (no real
+    formula, or without a value at every point), open.
+    """
     claim, share, seed = task
-    source = random.Random(f"{claim.id} {seed}")
+    statement = claim.derive()
+    if not isinstance(statement, (Equation, Bound, Optimum)):
+        return result(Counter(), [], [], [])
+    return judged(claim.id, statement, share, random.Random(f"{claim.id} {seed}"))
+
+
+def judged(name: str, statement: Assertion, share: float, source: random.Random) -> Result:
     counts: Counter[str] = Counter()
     wrong: list[Any] = []
     undecided: list[Any] = []
-    kept: list[Any] = []
-    for mutant in mutants_of([claim]):
+    table = rows(statement)
+    where: list[int | None] = []
+    slow: list[Any] = []
+    for change in changes(statement):
         if source.random() >= share:
             continue
-        status, why, point = verdict_of(mutant)
-        entry = {"claim": mutant.claim, "formula": text_of(mutant.formula)}
-        counts[status] += 1
-        if status == "refuted":
-            kept.append({**entry, "point": point})
-        elif status == "open":
-            undecided.append({**entry, "why": why})
-        elif differs(mutant):
-            wrong.append({**entry, "why": "proved, and yet the sides differ to forty digits"})
-    return result(counts, wrong, undecided, kept)
+        place = None if change.box is not None else refuting_point(statement, change, table)
+        outcome, why = ("refuted", "") if place is not None else slowly(statement, change, slow)
+        counts.update((outcome, f"kind {change.kind}"))
+        where.append(place)
+        if outcome in ("open", "wrong"):
+            entry = {"claim": name, "change": words_of(statement, change), "why": why}
+            (wrong if outcome == "wrong" else undecided).append(entry)
+    used = sorted({place for place in where if place is not None})
+    kept = {"claim": name, "points": {k: dict(point_text(table[k].point)) for k in used}, "at": where}
+    return result(counts, wrong, undecided, [kept, *({"claim": name, **item} for item in slow)])
 
 
-def verdict_of(mutant: Mutant) -> tuple[str, str, dict[str, str] | None]:
+def slowly(statement: Assertion, change: Change, kept: list[Any]) -> tuple[str, str]:
+    """Outcome of a mutant that no point of the table has refuted, with the reason."""
     try:
-        verdict = decide_equation(Equation(mutant.formula, mutant.derived, mutant.box))
-    except NavsymError as error:
-        return "open", str(error), None
+        with limited(SECONDS):
+            return decided(statement, change, kept)
+    except OutOfTimeError:
+        return "open", f"more than {SECONDS:g} s"
+    except (NavsymError, RecursionError) as error:
+        return "open", str(error)
+
+
+def decided(statement: Assertion, change: Change, kept: list[Any]) -> tuple[str, str]:
+    mutant = spoilt(statement, change)
+    if not all(is_formula(part) for part in printed_parts(mutant)):
+        return "undefined", "no real formula"
+    verdict = decide(mutant)
     if verdict.status == REFUTED and verdict.counterexample is not None:
-        return "refuted", verdict.evidence, dict(verdict.counterexample)
-    return ("proved" if verdict.status.holds else "open"), f"{verdict.status}: {verdict.evidence}", None
+        kept.append({"change": words_of(statement, change), "point": dict(verdict.counterexample)})
+        return "refuted", verdict.evidence
+    if not verdict.status.holds and same_formulas(statement, mutant):
+        return "held", "the formulas are proved equal to the printed ones"
+    if verdict.status.holds:
+        return ("wrong", "proved, and numbers deny it") if differs(mutant) else ("held", verdict.evidence)
+    if valueless(mutant):
+        return "undefined", "no value at any point"
+    return "open", f"{verdict.status}: {verdict.evidence}"
 
 
-def differs(mutant: Mutant, count: int = 4, digits: int = 40) -> bool:
-    """True when both sides are numbers at a point of the box and are not equal there."""
-    difference = mutant.formula - mutant.derived
-    symbols = sorted(difference.free_symbols, key=str)
-    for point in points(symbols, mutant.box, count, seed=99):
-        value = difference.subs(point).evalf(digits)
-        if value.is_Float and abs(value) > sp.Float(10) ** (-digits // 2):
-            return True
+def same_formulas(statement: Assertion, mutant: Assertion) -> bool:
+    """True when every changed formula is proved equal to the one that was printed, on the same box."""
+    if statement.box != mutant.box or (isinstance(statement, Equation) and statement.tolerance is not None):
+        return False
+    pairs = zip(printed_parts(statement), printed_parts(mutant), strict=True)
+    changed = [(old, new) for old, new in pairs if old != new]
+    return all(decide(Equation(new, old, statement.box)).status.holds for old, new in changed)
+
+
+def valueless(mutant: Assertion) -> bool:
+    """True when some printed formula has no finite value at any point of the box."""
+    table = rows(mutant)
+    return any(not any(row.values.of(part).is_finite() for row in table) for part in printed_parts(mutant))
+
+
+@contextmanager
+def limited(seconds: float) -> Iterator[None]:
+    """Raise OutOfTimeError in the block after so many seconds of this process."""
+
+    def ring(*_: object) -> None:
+        raise OutOfTimeError
+
+    before = signal.signal(signal.SIGALRM, ring)
+    signal.setitimer(signal.ITIMER_REAL, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+
+
+def words_of(statement: Assertion, change: Change) -> str:
+    """The change in words, with its place in the formula."""
+    if change.box is not None:
+        ends = "; ".join(f"{s} in [{text_of(low)}, {text_of(high)}]" for s, (low, high) in change.box.items())
+        return f"range: {ends}"
+    if change.order is not None:
+        return f"{change.kind}: entries in the order {list(change.order)}"
+    assert change.edit is not None
+    node: Any = printed_parts(statement)[change.part]
+    for place in change.edit.path:
+        node = node.args[place]
+    words = f"{text_of(node)} -> {text_of(change.edit.replacement)}"
+    return f"{change.kind} in entry {change.part + 1} at {list(change.edit.path)}: {words}"
+
+
+# -- the second look -----------------------------------------------------------------------------
+
+DENIES: dict[str, Callable[[sp.Expr, sp.Expr], bool]] = {
+    "=": lambda value, least: abs(value) > least,
+    "!=": lambda value, least: False,  # a number near zero is not zero
+    "<": lambda value, least: value > least,
+    "<=": lambda value, least: value > least,
+    ">": lambda value, least: value < -least,
+    ">=": lambda value, least: value < -least,
+}
+
+
+def differs(mutant: Assertion, count: int = 4, digits: int = 40) -> bool:
+    """True when both sides are numbers at a point of the box and the statement does not hold there.
+
+    Of an optimum the equality of value and dual value is looked at.
+    """
+    relation = mutant.relation if isinstance(mutant, Bound) else "="
+    least = sp.Float(10) ** (-digits // 2)
+    if isinstance(mutant, Equation) and mutant.tolerance is not None:
+        least += sp.sympify(mutant.tolerance, strict=True).evalf(digits)
+    for point in points(free_symbols(mutant), mutant.box, count, seed=99):
+        for difference in differences_of(mutant):
+            value = difference.subs(point).evalf(digits)
+            if value.is_Float and DENIES[relation](value, least):
+                return True
     return False
+
+
+def differences_of(mutant: Assertion) -> list[sp.Expr]:
+    if isinstance(mutant, Optimum):
+        of_dual = sum(x * p for x, p in zip(mutant.dual, mutant.functional, strict=True))
+        return [sp.sympify(mutant.value - of_dual, strict=True)]
+    return [p - d for p, d in zip(printed_parts(mutant), derived_parts(mutant), strict=True)]

@@ -16,16 +16,20 @@ from dataclasses import dataclass
 import sympy as sp
 
 from navsym.errors import DomainError, DuplicateError, EmptyError, TooLargeError, UnobservableError
+from navsym.methods.observability_companion import chain_relation, dot
 from navsym.methods.observability_linear import (
     Matrix,
     at_point,
+    eliminated,
     independent_rows,
     null_vectors,
     points,
     relation,
     residue_chains,
     residue_rank,
+    transposed_times,
 )
+from navsym.methods.observability_reduction import krylov_remainder, krylov_rows
 from navsym.methods.observability_ring import Poly, Quotient, Ring
 from navsym.models.linear import LinearModel
 
@@ -162,23 +166,14 @@ def numerators(rows: Sequence[sp.Matrix], ring: Ring) -> tuple[Matrix, Poly]:
     return [[q.top * ring.lowest(bottom, q.bottom).top for q in row] for row in quotients], bottom
 
 
-def transposed_times(matrix: Matrix, vector: list[Poly], ring: Ring) -> list[Poly]:
-    """G^T a for sparse polynomial entries."""
-    total = [ring.constant(0)] * len(vector)
-    for row, factor in zip(matrix, vector, strict=True):
-        if factor != 0:
-            total = [t + factor * x if x != 0 else t for t, x in zip(total, row, strict=True)]
-    return total
-
-
 def chain_of(name: str, row: list[Poly], bottom: Poly, matrix: Matrix, clock: Poly, ring: Ring) -> Chain:
     """Vectors up to the first dependent one; its relation proves that the chain ends there."""
     vectors = [row]
-    dimension = generic_rank([row], matrix, ring)
+    dimension, point = generic_rank([row], matrix, ring)
     while True:
         while len(vectors) <= dimension:
             vectors.append(transposed_times(matrix, vectors[-1], ring))
-        coefficients = relation(vectors[:dimension], vectors[dimension], ring)
+        coefficients = ending(vectors, dimension, matrix, ring, point)
         if coefficients is not None:
             break
         dimension += 1  # the points were unlucky: the relation, not they, decides
@@ -189,39 +184,64 @@ def chain_of(name: str, row: list[Poly], bottom: Poly, matrix: Matrix, clock: Po
     return Chain(name, vectors[:m], bottom, clock, companion)
 
 
-def generic_rank(rows: Matrix, matrix: Matrix, ring: Ring) -> int:
-    """Largest rank of the chains of the rows at the integer points: a proved lower bound.
+def ending(
+    vectors: Matrix, dimension: int, matrix: Matrix, ring: Ring, point: Sequence[int]
+) -> list[Quotient] | None:
+    """The coefficients of the last vector in the others, checked; None when it does not depend on them."""
+    found = chain_relation(vectors, dimension, matrix, ring, point)
+    if found is not None:
+        return [Quotient(theta, ring.constant(1)) for theta in found]
+    return relation(vectors[:dimension], vectors[dimension], ring)
+
+
+def generic_rank(rows: Matrix, matrix: Matrix, ring: Ring) -> tuple[int, tuple[int, ...]]:
+    """Largest rank of the chains of the rows at the integer points, a proved lower bound, and its point.
 
     The chains run in residues, so that this takes microseconds even for many symbols.
     """
-    return max(residue_rank(residue_chains(rows, matrix, point)) for point in points(ring))
+    ranks = {point: residue_rank(residue_chains(rows, matrix, point)) for point in points(ring)}
+    best = max(ranks, key=lambda point: ranks[point])
+    return ranks[best], best
 
 
 def joint_staircase(chains: tuple[Chain, ...], matrix: Matrix, ring: Ring, n: int) -> tuple[int, ...]:
     """How many vectors of every chain are needed after those of the earlier chains.
 
-    The lower bound is a nonzero minor at a point; unless it is n already, a relation shows for
-    every chain that its next vector depends on the basis, which is then closed under G^T.
+    The counts at a point are a proved lower bound of the rank; elimination of what is not regular everywhere
+    proves the upper one. Where they differ the points were unlucky, and relations decide.
     """
+    tries = [staircase_at(chains, point) for point in points(ring)]
+    counts = max(tries, key=sum)
+    starts = [(chain.vectors[0], chain.dimension) for chain in chains]
+    rest = krylov_remainder(starts, matrix, ring)
+    upper = n if sum(counts) == n else rest.regular + len(eliminated(rest.rows, ring).rows)
+    return counts if sum(counts) == upper else staircase_by_relations(chains, ring, n)
+
+
+def staircase_at(chains: tuple[Chain, ...], point: Sequence[int]) -> tuple[int, ...]:
+    """The counts at a point, modulo the prime."""
+    rows = at_point([vector for chain in chains for vector in chain.vectors], point)
+    chosen = set(independent_rows(rows))
+    counts, first = [], 0
+    for chain in chains:
+        counts.append(sum(1 for k in range(first, first + chain.dimension) if k in chosen))
+        first += chain.dimension
+    return tuple(counts)
+
+
+def staircase_by_relations(chains: tuple[Chain, ...], ring: Ring, n: int) -> tuple[int, ...]:
+    """Twin of :func:`joint_staircase` that proves every dependence by a relation; slow."""
     counts: list[int] = []
     basis: Matrix = []
     for chain in chains:
-        ranks = [ranks_with(basis, chain, point) for point in points(ring)]
-        count = max(ranks) if len(basis) < n else 0
-        while len(basis) + count < n:
-            following = chain.vectors[count] if count < chain.dimension else None
-            if following is None or relation([*basis, *chain.vectors[:count]], following, ring) is not None:
+        count = 0
+        while len(basis) + count < n and count < chain.dimension:
+            if relation([*basis, *chain.vectors[:count]], chain.vectors[count], ring) is not None:
                 break
             count += 1
         basis = [*basis, *chain.vectors[:count]]
         counts.append(count)
     return tuple(counts)
-
-
-def ranks_with(basis: Matrix, chain: Chain, point: Sequence[int]) -> int:
-    """How many leading vectors of the chain are independent of the basis at a point."""
-    rows = independent_rows(at_point([*basis, *chain.vectors], point))
-    return sum(1 for place in rows if place >= len(basis))
 
 
 @dataclass(frozen=True, slots=True)
@@ -283,11 +303,6 @@ def hidden_directions(rows: Matrix, matrix: Matrix, ring: Ring, rank: int, point
     return hidden
 
 
-def dot(row: list[Poly], vector: list[Poly], zero: Poly) -> Poly:
-    """Scalar product of polynomial vectors."""
-    return sum((a * x for a, x in zip(row, vector, strict=True) if a != 0 and x != 0), zero)
-
-
 # The answer in sympy
 
 
@@ -340,9 +355,10 @@ def observe(model: LinearModel) -> Observability:
     """
     chains = chains_of(model)
     ring, n = chains.ring, chains.size
-    hidden = null_vectors(chains.staircase_vectors(chains.staircase), n, ring)
-    if chains.joint_dimension == n:
-        hidden = []
+    hidden: Matrix = []
+    if chains.joint_dimension < n:
+        starts = [(chain.vectors[0], chain.dimension) for chain in chains.chains]
+        hidden = null_vectors(krylov_rows(starts, chains.matrix, chains.joint_dimension, ring), n, ring)
     entries = [ring.expression(x) for vector in hidden for x in vector]
     return Observability(
         states=model.states,

@@ -185,6 +185,15 @@ def determinant(matrix: Matrix, ring: Ring) -> Poly:
     return reduced.pivot * reduced.sign * permutation_sign(reduced.columns)
 
 
+def transposed_times(matrix: Matrix, vector: list[Poly], ring: Ring) -> list[Poly]:
+    """G^T a for sparse polynomial entries."""
+    total = [ring.constant(0)] * len(vector)
+    for row, factor in zip(matrix, vector, strict=True):
+        if factor != 0:
+            total = [t + factor * x if x != 0 else t for t, x in zip(total, row, strict=True)]
+    return total
+
+
 def permutation_sign(places: Sequence[int]) -> int:
     """1 for an even and -1 for an odd order of the places."""
     inversions = sum(1 for i, a in enumerate(places) for b in places[i + 1 :] if a > b)

@@ -73,10 +73,11 @@ def refined(family: Family, T: Fraction, pattern: Pattern | None) -> Sample | No
     basis, contacts = sample(family, T)
     if pattern is not None and pattern_of(contacts) != pattern:
         return None
-    length = sp.Rational(T.numerator, T.denominator)
-    done = polish(family.exact(length).panels, basis, contacts, BITS, GOAL)
-    places = tuple(length * number(v) for v in done.v)
-    return Sample(length, places, done)
+    value = sp.Rational(T.numerator, T.denominator)
+    done = polish(family.exact(value).panels, basis, contacts, BITS, GOAL)
+    start, end = (sp.Rational(str(sp.N(e, 95))) if not e.is_Rational else e for e in family.ends(value))
+    places = tuple(start + (end - start) * number(v) for v in done.v)
+    return Sample(value, places, done)
 
 
 def number(x: arb) -> sp.Rational:

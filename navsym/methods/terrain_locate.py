@@ -58,6 +58,7 @@ def locate(
     *,
     folder: str | os.PathLike[str] = ".",
     maps: bool = False,
+    offset_free: bool = False,
 ) -> Located:
     """Fix the position of a track over a map.
 
@@ -66,6 +67,8 @@ def locate(
              ``"frame": "local"``: then in metres east and north of its south-west node.
     method : ``position``, ``full`` (t0 the first time), ``sequential`` (the paper's) or ``refined``
     folder : where relative file names start ; maps : add the criterion over positions, row = j
+    offset_free : the criterion without its mean, for heights with an unknown constant error; the document then
+             has its estimate as ``height_offset``, measured minus mapped
 
     t_G and quadratic count time in measurements from 0, as the paper does. The fix holds at the
     last time; the inertial velocity there is the difference quotient of the last two positions.
@@ -82,12 +85,14 @@ def locate(
     terrain = map_of(block(config, "map"), Path(folder))
     track = track_of(block(config, "track"), Path(folder))
     grid = grid_of(config, method)
-    answer = SEARCHES[method](terrain, track, grid)
+    answer = SEARCHES[method](terrain, track, grid, offset_free)
     document = written(method, track, grid, answer)
+    if offset_free:
+        document["height_offset"] = height_offset(terrain, track, answer)
     if maps:
-        rows = criterion_map(terrain, track, grid, answer)
+        rows = criterion_map(terrain, track, grid, answer, offset_free)
         document["criterion_map"] = [[nullable(q) for q in row] for row in rows]
-    return Located(document, remarks(terrain, track, grid, answer))
+    return Located(document, remarks(terrain, track, grid, answer, offset_free))
 
 
 # The configuration
@@ -164,13 +169,13 @@ def grid_of(config: Mapping[str, Any], method: str) -> Hypotheses:
 # The methods
 
 
-def by_position(terrain: TerrainMap, track: Track, grid: Hypotheses) -> Answer:
-    found = search_position(terrain, track, grid)
+def by_position(terrain: TerrainMap, track: Track, grid: Hypotheses, offset_free: bool) -> Answer:
+    found = search_position(terrain, track, grid, offset_free=offset_free)
     return checked(terrain, track, answer_of(found, track, grid))
 
 
-def by_full(terrain: TerrainMap, track: Track, grid: Hypotheses) -> Answer:
-    found = search_full(terrain, track, grid)
+def by_full(terrain: TerrainMap, track: Track, grid: Hypotheses, offset_free: bool) -> Answer:
+    found = search_full(terrain, track, grid, offset_free=offset_free)
     return checked(terrain, track, answer_of(found, track, grid))
 
 
@@ -198,20 +203,20 @@ def corrected(track: Track, answer: Answer) -> tuple[Array, Array]:
     return track.x + dx, track.y + dy
 
 
-def by_sequence(terrain: TerrainMap, track: Track, grid: Hypotheses) -> Answer:
-    found = search_sequential(terrain, track, grid)
+def by_sequence(terrain: TerrainMap, track: Track, grid: Hypotheses, offset_free: bool) -> Answer:
+    found = search_sequential(terrain, track, grid, offset_free=offset_free)
     return Answer(
         found.index, found.criterion, found.second_best, found.unique,
         found.shift, found.velocity, found.evaluated, found.t_G, found.quadratic,
     )
 
 
-def by_refinement(terrain: TerrainMap, track: Track, grid: Hypotheses) -> Answer:
+def by_refinement(terrain: TerrainMap, track: Track, grid: Hypotheses, offset_free: bool) -> Answer:
     """The full search, then the minimum between its grid points."""
-    start = by_full(terrain, track, grid)
+    start = by_full(terrain, track, grid, offset_free)
     velocity = start.velocity
     position = start.shift - velocity * track.elapsed[-1]
-    fine = refine(terrain, track, (position[0], position[1]), (velocity[0], velocity[1]))
+    fine = refine(terrain, track, (position[0], position[1]), (velocity[0], velocity[1]), offset=offset_free)
     shift = fine.position + fine.velocity * track.elapsed[-1]
     return Answer(
         start.index, fine.criterion, start.second_best, start.unique, shift, fine.velocity, start.evaluated
@@ -250,20 +255,29 @@ def written(method: str, track: Track, grid: Hypotheses, answer: Answer) -> dict
     }
 
 
-def criterion_map(terrain: TerrainMap, track: Track, grid: Hypotheses, answer: Answer) -> Array:
+def height_offset(terrain: TerrainMap, track: Track, answer: Answer) -> float:
+    """Mean of the measured less the mapped heights under the correction found."""
+    return float((track.h - terrain.height(*corrected(track, answer))).mean())
+
+
+def criterion_map(
+    terrain: TerrainMap, track: Track, grid: Hypotheses, answer: Answer, offset_free: bool = False
+) -> Array:
     """Criteria over positions (My, Mx) at the velocity of the coarse solution: row = j, column = i."""
     at = answer.index[2:] if answer.t_G is None else (0, 0)
     vx, vy = (v * s for v, s in zip(at, grid.velocity_step, strict=True))
     moved = Track(track.t, track.x + vx * track.elapsed, track.y + vy * track.elapsed, track.h)
-    return criteria(prepare(terrain, moved, grid.position_only, on_map=False))[0, 0]
+    return criteria(prepare(terrain, moved, grid.position_only, on_map=False), centred=offset_free)[0, 0]
 
 
-def remarks(terrain: TerrainMap, track: Track, grid: Hypotheses, answer: Answer) -> tuple[str, ...]:
+def remarks(
+    terrain: TerrainMap, track: Track, grid: Hypotheses, answer: Answer, offset_free: bool = False
+) -> tuple[str, ...]:
     """Things that a person should look at: units, the edge of the grid, ties."""
     found = []
     x, y = corrected(track, answer)
     mapped, flags = terrain.sample(x, y)
-    if (flags == ON_MAP).all() and looks_like_feet(track.h, mapped):
+    if (flags == ON_MAP).all() and not offset_free and looks_like_feet(track.h, mapped):
         found.append("the measured heights fit the map far better as feet; expected metres")
     ends = (*grid.half_count, *grid.velocity_half_count)
     if any(n > 0 and abs(k) == n for k, n in zip(answer.index, ends, strict=True)):

@@ -80,6 +80,22 @@ def test_the_printed_sequential_search_follows_equation_14(tmp_path, capsys):
     assert answer["evaluated"] == 81 + 49
 
 
+@pytest.mark.parametrize("method", METHODS)
+def test_an_unknown_height_error_is_estimated_and_does_not_move_the_fix(tmp_path, capsys, method):
+    document = config()
+    _, flat_answer = call(tmp_path, capsys, document, "--method", method, "--offset-free")
+    document["track"]["h"] = [h + 500.0 for h in document["track"]["h"]]
+    status, answer = call(tmp_path, capsys, document, "--method", method, "--offset-free", "--maps")
+    assert status == 0 and set(answer) == {*KEYS, "height_offset", "criterion_map"}
+    assert answer["position_index"] == flat_answer["position_index"]
+    assert answer["velocity_index"] == flat_answer["velocity_index"]
+    assert answer["height_offset"] == pytest.approx(flat_answer["height_offset"] + 500.0)
+    if method in ("full", "refined"):
+        assert answer["position_index"] == [2, -1] and answer["height_offset"] == pytest.approx(500.0)
+    plain = call(tmp_path, capsys, document, "--method", method)[1]
+    assert plain["criterion"] > answer["criterion"]
+
+
 def test_the_criterion_map_has_a_row_for_every_j(tmp_path, capsys):
     document = config(position={"step": [30, 30], "half_count": [4, 2]})
     _, answer = call(tmp_path, capsys, document, "--method", "position", "--maps")

@@ -12,6 +12,7 @@ from numpy.testing import assert_array_equal
 
 from navsym.numeric.search import TOGETHER, dense_slowly, padded, patch_rows, slab
 from navsym.numeric.search_bounded import BoundedResult, search_bounded, search_one_velocity
+from navsym.numeric.search_lattice import fits, lattice, rounded
 from navsym.numeric.search_margins import (
     CONTRASTS,
     ceiling_of,
@@ -102,6 +103,46 @@ def test_the_bounded_search_equals_the_dense_search_on_600_random_cases():
         assert (found.index, found.criterion, found.second) == (best, criterion, second), case
 
 
+def lowest_by_bounding(arguments, steps, counts, centred):
+    bound = max(np.abs(arguments[0]).max(), np.abs(arguments[3]).max())
+    found = search_bounded(arguments, steps, counts, bound, centred=centred)
+    return found.index, found.criterion, found.second
+
+
+def offset_free(arguments, steps, counts):
+    out = np.empty((counts[2], counts[3], counts[1], counts[0]))
+    dense_masked(arguments, steps, counts, True, out.reshape(-1))
+    return out
+
+
+def test_without_the_height_offset_bounding_equals_the_dense_search_on_500_random_cases():
+    generator = np.random.default_rng(22)
+    done = 0
+    while done < 500:
+        arguments, steps, counts = random_case(generator, ties=done % 3 == 0)
+        H, bx, by, z, wx, wy = arguments
+        if counts == (1, 1, 1, 1) or not H.any():
+            continue
+        raised = (H, bx, by, z + generator.choice([0.0, 7.0, -1e4]), wx, wy)
+        found = lowest_by_bounding(raised, steps, counts, True)
+        assert found == two_lowest(offset_free(raised, steps, counts)), done
+        done += 1
+
+
+def test_contrasts_of_four_in_single_precision_stay_within_their_margin():
+    generator = np.random.default_rng(6)
+    for _ in range(40):
+        arguments, steps, counts = random_case(generator)
+        n = arguments[3].size // 4 * 4
+        some = (arguments[0], *(a[:n] for a in arguments[1:]))
+        bound = max(np.abs(some[0]).max(), np.abs(some[3]).max())
+        exact, single = offset_free(some, steps, counts), dense(some, steps, counts, np.float32, centred=True)
+        ceilings = [ceiling_of(e, n, bound, parts_about_the_mean(n)) for e in exact.ravel()]
+        for ceiling, s in zip(ceilings, single.ravel(), strict=True):
+            assert s <= single_limit(ceiling, n, bound, CONTRASTS)
+        assert (floor_of(single, n, bound, CONTRASTS) <= exact * (1 + 1e-12)).all()
+
+
 def test_the_search_in_single_precision_equals_the_dense_search_over_positions():
     generator = np.random.default_rng(21)
     for case in range(300):
@@ -115,6 +156,38 @@ def test_the_search_in_single_precision_equals_the_dense_search_over_positions()
         still = np.zeros_like(bx)
         values = dense((H, bx, by, z, still, still), steps, (*counts[:2], 1, 1))
         assert (found.index, found.criterion, found.second) == two_lowest(values), case
+
+
+@pytest.mark.parametrize("n", [1, 3, 4, 5, 63, 64])
+def test_the_lattice_equals_the_plain_loop_to_the_last_bit(n):
+    generator = np.random.default_rng(n)
+    H = 300 * generator.normal(size=(61, 70))
+    counts = (int(generator.choice([7, 9, 17])), 11)
+    bx = rounded(generator.uniform(10, 50, n), 70)
+    by = rounded(generator.uniform(10, 50, n), 70)
+    z = 300 * generator.normal(size=n)
+    out, still = np.zeros((counts[1], padded(counts[0]))), np.zeros(n)
+    assert fits(H, bx, by, counts, out.shape[1])
+    lattice(H, bx, by, z, counts, out)
+    values = dense((H, bx, by, z, still, still), (1.0, 1.0), (*counts, 1, 1))
+    assert_array_equal(out[:, : counts[0]], values[0, 0])
+
+
+def test_the_lattice_is_left_where_it_would_read_past_the_map():
+    H, low, high = np.zeros((30, 30)), np.array([10.0]), np.array([26.0])
+    assert fits(H, low, low, (7, 7), 16)
+    assert not fits(H, high, low, (7, 7), 16)                # the last column is a border of its own
+    assert not fits(H, low, high, (7, 7), 16)
+    assert not fits(H, np.array([2.0]), low, (7, 7), 16)     # off the map
+    assert not fits(H, np.array([20.0]), np.array([25.0]), (7, 7), 48)   # the padding would end past the array
+
+
+def test_rounded_positions_keep_their_fraction_across_powers_of_two():
+    b = rounded(np.array([127.3, 1.1]), 1500)
+    for shift in range(-100, 1300):
+        moved = b[0] + shift
+        assert moved - np.floor(moved) == b[0] - np.floor(b[0])
+    assert np.abs(b - [127.3, 1.1]).max() < 1e-12
 
 
 def test_equal_criteria_are_settled_for_the_first_in_the_order_of_the_grid():
