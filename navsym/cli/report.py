@@ -33,12 +33,21 @@ def command(
 
     from navsym.report.page import site
 
-    files = site(document, {module.name: module.paper for module in chosen})
+    files = site(document, {module.name: module.paper for module in chosen}, wordings())
     write_site(out, files)
     pages = [name for name in files if name.endswith(".html")]
     result = {"out": str(out), "files": len(files), "pages": pages, "counts": document["counts"]}
     emit(result, as_json=json_, text=f"{len(files)} files; open {out / 'index.html'}")
     return 1 if unexpected(document["claims"]) else 0
+
+
+def wordings() -> dict[str, Any]:
+    """Wording of the erratum sheets by module, from the folder beside the derivations."""
+    from navsym.cli.verify import ledger_folder
+    from navsym.report.wording import read_wording
+
+    files = sorted((ledger_folder() / "errata").glob("*.toml"))
+    return {path.stem: read_wording(path.read_text(encoding="utf-8"), path.name) for path in files}
 
 
 def decided(chosen: list[Any], jobs: int | None, seconds: float) -> dict[str, Any]:

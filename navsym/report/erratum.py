@@ -1,42 +1,58 @@
-"""The erratum sheet of a paper: what to replace, by what, and how to see that it is so.
+"""The erratum sheet of a paper: where it slips, what to replace by what, and how to see that it is so.
 
-Entries come from refuted claims that name a slip, each with the proved claim that corrects it.
-Slips of the scan are kept apart from slips of the authors.
+Entries come from refuted claims that name a slip, each with the proved claim that corrects it; their
+wording for an editor comes from a file beside the derivation, or is made from the formulas where there
+is none. Slips of the scan are kept apart from slips of the authors.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import re
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from navsym.claims import Paper, equation_of
 from navsym.report.page_explain import arithmetic, ball_words, ended
 from navsym.report.page_formula import Formula, formula
+from navsym.report.wording import Wording, Words, pattern_of
 
 Record = Mapping[str, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One line of a correction that changes several figures: what, as printed, as it should be."""
+
+    what: str
+    wrong: str
+    right: str
 
 
 @dataclass(frozen=True, slots=True)
 class Entry:
     """One correction.
 
+    ids    : claims that it is about
     place  : where in the paper, in words
     slip   : "paper" or "scan"
-    what   : what the statement is about
-    wrong, right : as printed, and as it should read (None when no correction is proved)
-    reason : what is wrong, one sentence
+    words  : wording for an editor, or None
+    wrong, right : as printed, and as it should read, made from the claims (None without a proved correction)
+    rows   : figures, for a correction of several
+    reason : what is wrong
     check  : how to convince oneself, sentences
     status : verdict on the corrected statement
     """
 
-    id: str
+    ids: tuple[str, ...]
     place: str
     slip: str
+    words: Wording | None
     what: str
     wrong: Formula
     right: Formula | None
     right_words: str
+    rows: tuple[Row, ...]
     reason: str
     check: tuple[str, ...]
     status: str
@@ -44,7 +60,7 @@ class Entry:
 
 @dataclass(frozen=True, slots=True)
 class Erratum:
-    """All corrections of one paper, slips of the authors first."""
+    """All corrections of one paper in the order of the paper."""
 
     paper: Paper
     entries: tuple[Entry, ...]
@@ -58,27 +74,63 @@ class Erratum:
         return tuple(entry for entry in self.entries if entry.slip == "scan")
 
 
-def erratum_of(paper: Paper, records: Sequence[Record]) -> Erratum:
-    """The sheet of one paper from its records; records of other papers must not be among them."""
+def erratum_of(paper: Paper, records: Sequence[Record], words: Words | None = None) -> Erratum:
+    """The sheet of one paper from its records; records of other papers must not be among them.
+
+    Entries with wording stand in the order of the file of wordings, which is that of the paper.
+    """
+    words = words or {}
     corrections = {record["corrects"]: record for record in records if record["corrects"]}
     refuted = [r for r in records if r["status"] == "REFUTED" and r["slip"] in ("paper", "scan")]
-    return Erratum(paper, tuple(entry(paper, record, corrections.get(record["id"])) for record in refuted))
+    order = {pattern: place for place, pattern in enumerate(words)}
+    entries = [
+        entry(paper, group, corrections, words.get(pattern or ""))
+        for pattern, group in sorted(grouped(refuted, words), key=lambda pair: order.get(pair[0] or "", len(order)))
+    ]
+    return Erratum(paper, tuple(entries))
 
 
-def entry(paper: Paper, record: Record, correction: Record | None) -> Entry:
+def grouped(refuted: Iterable[Record], words: Words) -> list[tuple[str | None, list[Record]]]:
+    """Records that one wording covers come together; every other record stands alone."""
+    found: list[tuple[str | None, list[Record]]] = []
+    for record in refuted:
+        pattern = pattern_of(record["number"], words)
+        known = next((group for key, group in found if key == pattern), None) if pattern else None
+        if known is None:
+            found.append((pattern, [record]))
+        else:
+            known.append(record)
+    return found
+
+
+def entry(paper: Paper, group: Sequence[Record], corrections: Mapping[str, Record], words: Wording | None) -> Entry:
+    record = group[0]
+    fixed = [corrections.get(r["id"]) for r in group]
+    correction = fixed[0]
     holds = correction is not None and correction["status"] in ("PROVED", "CERTIFIED", "CONFIRMED")
     return Entry(
-        id=record["id"],
+        ids=tuple(r["id"] for r in group),
         place=place_of(paper, record["number"]),
         slip=record["slip"],
+        words=words,
         what=record["title"],
         wrong=printed_side(record),
         right=printed_side(correction) if holds and correction is not None else None,
         right_words=correction["title"] if holds and correction is not None else "",
-        reason=record["reason"],
-        check=tuple(check_words(record)),
+        rows=tuple(row(*pair) for pair in zip(group, fixed, strict=True)) if len(group) > 1 else (),
+        reason=ended(capital(words.why if words and words.why else record["reason"])),
+        check=tuple(check_words(record)) if len(group) == 1 else (),
         status=correction["status"] if correction is not None else "",
     )
+
+
+def row(record: Record, correction: Record | None) -> Row:
+    what = re.sub(r", as .*$", "", record["title"]).rstrip(".")
+    return Row(what, record["printed"], correction["printed"] if correction is not None else "none proved")
+
+
+def capital(sentence: str) -> str:
+    return sentence[:1].upper() + sentence[1:]
 
 
 def printed_side(record: Record) -> Formula:
@@ -99,23 +151,13 @@ def place_of(paper: Paper, number: str) -> str:
 
 
 def check_words(record: Record) -> list[str]:
-    """Arithmetic that a reader can repeat."""
+    """Arithmetic that a reader can repeat, where the sides are numbers at the counterexample."""
     point = record["counterexample"] or {}
-    lines = [line for line in arithmetic(record) if line.differs]
+    line = next((line for line in arithmetic(record) if line.differs), None)
+    if line is None or len(point) > 6 or (not point and line.entry):
+        return []
     where = "With " + ", ".join(f"{name} = {value}" for name, value in point.items()) if point else "As it stands"
-    if not lines:
-        return plain_check(record, where)
-    line = lines[0]
     entry_words = f" (entry {line.entry})" if line.entry else ""
     printed, derived = ball_words(line.printed), ball_words(line.derived)
     sentence = f"{where} the printed side{entry_words} is {printed}; what follows from the model is {derived}"
     return [ended(sentence)]
-
-
-def plain_check(record: Record, where: str) -> list[str]:
-    """The same where the sides are words, relations or whole optima."""
-    if record["difference"]:
-        return [f"{where} the two sides of what is printed differ by {record['difference'][0]}."]
-    if record["derived"] in ("True", "False"):
-        return [f"Decided by: {record['method']}, for {record['scope']}."] if record["scope"] else []
-    return [f"The model gives: {record['derived']}."] if 0 < len(record["derived"]) < 300 else []

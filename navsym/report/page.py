@@ -22,10 +22,13 @@ from markupsafe import Markup
 
 from navsym.claims import Paper, equation_of
 from navsym.report.erratum import Erratum, erratum_of
+from navsym.report.latex_math import sentence_html, sentence_latex
+from navsym.report.page_code import Snippet, snippets
 from navsym.report.page_explain import Step, steps
 from navsym.report.page_formula import Formula, formula
 from navsym.report.page_names import latex_escape
 from navsym.report.page_plot import refutation_plot
+from navsym.report.wording import Words
 
 Record = Mapping[str, Any]
 TEMPLATES = Path(__file__).parent / "templates"
@@ -40,6 +43,9 @@ MEANINGS = {
 }
 
 
+IN_WORDS = {"True": "it holds", "False": "it does not hold"}
+
+
 @dataclass(frozen=True, slots=True)
 class ClaimView:
     """A record with everything that its card shows."""
@@ -51,6 +57,7 @@ class ClaimView:
     derived: Formula
     story: tuple[tuple[Step, Formula | None], ...]
     plot: Markup
+    code: tuple[Snippet, ...]
     correction: ClaimLink | None
     corrects: ClaimLink | None
     certificates: tuple[str, ...]
@@ -92,18 +99,22 @@ class PaperView:
 # -- the site --------------------------------------------------------------------------------
 
 
-def site(document: Mapping[str, Any], cards: Mapping[str, Paper]) -> dict[str, str]:
+def site(
+    document: Mapping[str, Any], cards: Mapping[str, Paper], words: Mapping[str, Words] | None = None
+) -> dict[str, str]:
     """All files of the report: name -> text.
 
     document : that of ``navsym verify`` (keys claims, papers, counts), or the ledger
     cards    : papers by module; a module without one is shown without its matrix of equations
+    words    : wording of erratum sheets by module
 
     Files: ``index.html``, ``MODULE.html``, ``MODULE.erratum.html`` and ``.tex``,
     ``certificates/*.json`` and ``verdicts.json``.
     """
-    modules = [paper["module"] for paper in document["papers"]]
+    modules, words = [paper["module"] for paper in document["papers"]], words or {}
     papers = [
-        paper_view(cards.get(module) or bare_card(module, document), document["claims"]) for module in modules
+        paper_view(cards.get(module) or bare_card(module, document), document["claims"], words.get(module))
+        for module in modules
     ]
     env = environment()
     shared = {"papers": papers, "marks": MARKS, "meanings": MEANINGS}
@@ -127,7 +138,7 @@ def environment() -> jinja2.Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    env.filters["tex"] = latex_escape
+    env.filters |= {"tex": latex_escape, "slug": slug, "sentence": sentence_html, "sentence_tex": sentence_latex}
     script = (TEMPLATES / "filter.js").read_text(encoding="utf-8").strip()
     env.globals["style"] = Markup((TEMPLATES / "style.css").read_text(encoding="utf-8"))
     env.globals["script"] = Markup(script)
@@ -181,7 +192,7 @@ def slug(name: str) -> str:
 # -- one paper -------------------------------------------------------------------------------
 
 
-def paper_view(card: Paper, records: Sequence[Record]) -> PaperView:
+def paper_view(card: Paper, records: Sequence[Record], words: Words | None = None) -> PaperView:
     """Everything that the page of one paper shows."""
     mine = in_order(card, [record for record in records if record["paper"] == card.module])
     statuses = [record["status"] for record in mine]
@@ -193,7 +204,7 @@ def paper_view(card: Paper, records: Sequence[Record]) -> PaperView:
         claims=tuple(claim_views(mine)),
         counts={status: statuses.count(status) for status in MARKS},
         unnumbered=numbered.count(None),
-        erratum=erratum_of(card, mine),
+        erratum=erratum_of(card, mine, words),
         unexpected=tuple(record["id"] for record in mine if record["status"] != record["expect"]),
     )
 
@@ -240,14 +251,20 @@ def claim_view(record: Record, correction: Record | None, corrected: Record | No
         record=record,
         anchor=anchor_of(record),
         mark=MARKS[record["status"]],
-        printed=formula(record["printed"]),
-        derived=formula(record["derived"]),
+        printed=side(record["printed"]),
+        derived=side(record["derived"]),
         story=story,
         plot=Markup(refutation_plot(record) if record["status"] == "REFUTED" else ""),
+        code=snippets(record),
         correction=link(correction),
         corrects=link(corrected),
         certificates=tuple(name for name, _ in certificates(record)),
     )
+
+
+def side(text: str) -> Formula:
+    """A side set in type; what is only said to hold or not comes in words."""
+    return Formula(IN_WORDS[text], None, None) if text in IN_WORDS else formula(text)
 
 
 def link(record: Record | None) -> ClaimLink | None:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
+from decimal import Decimal, InvalidOperation
 from typing import Any
 
 from navsym.errors import NavsymError
@@ -145,13 +146,28 @@ def ended(sentence: str) -> str:
 
 
 def ball_words(ends: tuple[str, str]) -> str:
-    """``0.95885…`` for ends that agree so far; both ends otherwise."""
+    """``0.95885…`` for ends that agree so far, ``0.995`` for ends on both sides of it; both ends otherwise."""
     low, high = ends
     if low == high:
         return low.rstrip("0").rstrip(".") if "." in low else low
+    if (rounded := common_rounding(low, high)) is not None:
+        return rounded
     same = next((i for i, (a, b) in enumerate(zip(low, high, strict=False)) if a != b), min(len(low), len(high)))
     shared = low[:same]
     return f"{shared[:14]}…" if "." in shared and len(shared) > 6 else f"between {low} and {high}"
+
+
+def common_rounding(low: str, high: str) -> str | None:
+    """The number of at most eight digits between two ends that are nearer than that; None where there is none."""
+    try:
+        first, second = (Decimal(end) for end in (low, high))
+        middle = Decimal(f"{(first + second) / 2:.8g}")
+    except InvalidOperation:
+        return None
+    if not first <= middle <= second or second - first > abs(middle) * Decimal("1e-12"):
+        return None
+    plain = format(middle.normalize(), "f")
+    return plain if len(plain) < 16 else format(middle.normalize(), "E")
 
 
 def slip_words(record: Record) -> str:

@@ -1,6 +1,14 @@
 "use strict";
-// Filters the claims of a page; the page is complete without it.
+// Filters the claims of a page, and lets the keyboard reach what is wider than the page; both work without it too.
 (() => {
+  const reach = () => {
+    for (const box of document.querySelectorAll(".formula, .change dd")) {
+      if (box.scrollWidth > box.clientWidth) box.tabIndex = 0; else box.removeAttribute("tabindex");
+    }
+  };
+  window.addEventListener("resize", reach);
+  document.addEventListener("toggle", reach, true);
+  reach();
   const form = document.querySelector("form.filters");
   if (!form) return;
   const claims = [...document.querySelectorAll("article.claim")];
