@@ -21,6 +21,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from navsym import __version__
+from navsym.cli._progress import Ticker
 from navsym.cli.output import dumps, put, visible, wants_colour
 from navsym.errors import ExpressionSyntaxError, MissingEngineError, NavsymError
 
@@ -131,8 +132,9 @@ def call(module: str, verb: str, arguments: list[str]) -> int:
         rich_markup_mode=None,                      # square brackets in help are TOML, not markup
         context_settings={"help_option_names": ["-h", "--help"]},
     )
-    app.command(name=verb)(guarded(importlib.import_module(module).command))
-    result = app(args=arguments, prog_name=f"navsym {verb}", standalone_mode=False)
+    with Ticker(verb):
+        app.command(name=verb)(guarded(importlib.import_module(module).command))
+        result = app(args=arguments, prog_name=f"navsym {verb}", standalone_mode=False)
     return result if isinstance(result, int) else 0
 
 

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import IO, Any
 
+from navsym.cli._progress import LINE
 from navsym.errors import NavsymError
 
 #: Colours of the words that a reader looks for first.
@@ -68,6 +69,7 @@ def plain(value: Any) -> Any:
 def put(text: str, stream: IO[str] | None = None) -> None:
     """Write text in UTF-8, whatever the locale says; lone surrogates of file names become '?'."""
     stream = sys.stdout if stream is None else stream
+    LINE.clear()
     stream.flush()
     data = text.encode("utf-8", "replace")
     raw = getattr(stream, "buffer", None)

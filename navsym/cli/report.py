@@ -7,6 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
+from navsym.cli._progress import Progress
 from navsym.cli.output import OutputError, emit, write_text
 from navsym.errors import ShapeError
 
@@ -19,25 +20,25 @@ def command(
     ] = None,
     jobs: Annotated[int | None, typer.Option(help="claims decided at the same time")] = None,
     seconds: Annotated[float, typer.Option(help="limit for one claim; above it the verdict is OPEN")] = 90.0,
+    fresh: Annotated[
+        bool, typer.Option("--fresh", help="decide everything again, ignoring the store")
+    ] = False,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> int:
     """Decide the claims (or read verdicts with --from) and write the pages. Status 1 as in verify.
 
     Example: navsym report guaranteed_velocity --out site
     """
-    from navsym.cli.verify import load
+    from navsym.cli.verify import decided, load
     from navsym.methods.verification import unexpected
 
     chosen = load(modules or [])
-    document = read_document(source, modules or []) if source else decided(chosen, jobs, seconds)
+    document = read_document(source, modules or []) if source else decided(chosen, jobs, seconds, fresh)
 
-    from navsym.report.page import site
-
-    files = site(document, {module.name: module.paper for module in chosen}, wordings())
-    write_site(out, files)
-    pages = [name for name in files if name.endswith(".html")]
-    result = {"out": str(out), "files": len(files), "pages": pages, "counts": document["counts"]}
-    emit(result, as_json=json_, text=f"{len(files)} files; open {out / 'index.html'}")
+    names = write_pages(out, document, {module.name: module.paper for module in chosen})
+    pages = [name for name in names if name.endswith(".html")]
+    result = {"out": str(out), "files": len(names), "pages": pages, "counts": document["counts"]}
+    emit(result, as_json=json_, text=f"{len(names)} files; open {out / 'index.html'}")
     return 1 if unexpected(document["claims"]) else 0
 
 
@@ -48,17 +49,6 @@ def wordings() -> dict[str, Any]:
 
     files = sorted((ledger_folder() / "errata").glob("*.toml"))
     return {path.stem: read_wording(path.read_text(encoding="utf-8"), path.name) for path in files}
-
-
-def decided(chosen: list[Any], jobs: int | None, seconds: float) -> dict[str, Any]:
-    """Verdicts decided now, with a line of progress."""
-    from navsym.cli.verify import Progress
-    from navsym.methods.verification import verify
-
-    bar = Progress(sum(len(module.claims) for module in chosen))
-    document = verify(chosen, jobs=jobs, seconds=seconds, progress=bar.step)
-    bar.done()
-    return document
 
 
 KEYS = frozenset(
@@ -87,12 +77,19 @@ def read_document(path: Path, modules: list[str]) -> dict[str, Any]:
     return {"claims": claims, "papers": papers, "counts": {s: statuses.count(s) for s in document["counts"]}}
 
 
-def write_site(out: Path, files: dict[str, str]) -> None:
-    """Write the files of the report; each whole or not at all."""
+def write_pages(out: Path, document: dict[str, Any], cards: dict[str, Any]) -> list[str]:
+    """Write the files of the report as they are made, each whole or not at all; their names."""
+    from navsym.report.page import pages
+
     try:
         (out / "certificates").mkdir(parents=True, exist_ok=True)
     except OSError as error:
         message = f"expected a folder that can be made; got '{error.strerror}'; choose another --out"
         raise OutputError(message, where=str(out)) from error
-    for name, text in files.items():
-        write_text(out / name, text)
+    names, words = [], wordings()
+    resume = f"finished pages are in {out}, the index is not; the same command makes them all in seconds"
+    with Progress("claims set in type", len(document["claims"]), resume) as bar:
+        for name, text in pages(document, cards, words, progress=bar.step):
+            write_text(out / name, text)
+            names.append(name)
+    return names

@@ -5,7 +5,6 @@ from __future__ import annotations
 import difflib
 import importlib
 import pkgutil
-import sys
 import time
 from collections.abc import Sequence
 from pathlib import Path
@@ -13,7 +12,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from navsym.cli.output import emit, remark, table, wants_colour, write_text
+from navsym.cli._progress import Progress
+from navsym.cli.output import emit, remark, table, write_text
 from navsym.errors import DomainError
 
 if TYPE_CHECKING:
@@ -31,20 +31,11 @@ def command(
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> int:
     """Decide every claim of the papers. Status 1 when a verdict is not the one declared."""
-    from navsym.methods.verification import unexpected, verify
+    from navsym.methods.verification import unexpected
 
     started = time.monotonic()
     chosen = load(modules or [])
-    kept = KeptVerdicts(chosen, fresh)
-    bar = Progress(sum(len(module.claims) for module in chosen) - len(kept.known))
-
-    def step(record: dict[str, Any]) -> None:
-        kept.keep(record)
-        bar.step(record)
-
-    document = verify(chosen, jobs=jobs, seconds=seconds, known=kept.known, progress=step)
-    bar.done()
-    kept.close()
+    document = decided(chosen, jobs, seconds, fresh)
     if write or not ledger_file().exists():
         write_ledger(document)
     changed = differences(document)
@@ -76,6 +67,25 @@ def load(wanted: Sequence[str]) -> list[PaperModule]:
             )
     chosen = list(dict.fromkeys(wanted)) or known
     return [paper_module(importlib.import_module(f"derivations.{name}")) for name in chosen]
+
+
+def decided(chosen: Sequence[PaperModule], jobs: int | None, seconds: float, fresh: bool) -> dict[str, Any]:
+    """The document of all verdicts: those that are kept and still valid, the others decided now and kept."""
+    from navsym.methods.verification import verify
+
+    kept = KeptVerdicts(chosen, fresh)
+    missing = sum(len(module.claims) for module in chosen) - len(kept.known)
+    resume = "the verdicts so far are kept: the same command (without --fresh) goes on from there"
+    try:
+        with Progress("claims", missing, resume) as bar:
+
+            def step(record: dict[str, Any]) -> None:
+                kept.keep(record)
+                bar.step(record["id"])
+
+            return verify(chosen, jobs=jobs, seconds=seconds, known=kept.known, progress=step)
+    finally:
+        kept.close()
 
 
 class KeptVerdicts:
@@ -112,27 +122,6 @@ class KeptVerdicts:
     def close(self) -> None:
         if self.store is not None:
             self.store.close()
-
-
-class Progress:
-    """One line on standard error that counts the claims, with the time left; silent without a terminal."""
-
-    def __init__(self, total: int):
-        self.total, self.count, self.started = total, 0, time.monotonic()
-        self.shown = wants_colour(sys.stderr)
-
-    def step(self, record: dict[str, Any]) -> None:
-        self.count += 1
-        if self.shown:
-            spent = time.monotonic() - self.started
-            left = spent / self.count * (self.total - self.count)
-            line = f"\r{self.count}/{self.total} claims, about {left:.0f} s left  {record['id'][:60]}"
-            sys.stderr.write(f"{line:<110}")
-            sys.stderr.flush()
-
-    def done(self) -> None:
-        if self.shown:
-            sys.stderr.write("\r" + " " * 110 + "\r")
 
 
 def ledger_folder() -> Path:

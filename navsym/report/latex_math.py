@@ -16,7 +16,11 @@ from markupsafe import Markup
 from navsym.errors import ExpressionSyntaxError
 from navsym.report.page_names import GREEK, latex_escape
 
-TOKEN = re.compile(r"\\begin\{(?P<open>[a-z]+)\}|\\end\{(?P<close>[a-z]+)\}|\\(?P<word>[A-Za-z]+|.)|(?P<number>\d+(?:\.\d+)?)|(?P<char>\S)", re.S)  # fmt: skip
+TOKEN = re.compile(
+    r"\\begin\{(?P<open>[a-z]+)\}|\\end\{(?P<close>[a-z]+)\}|\\(?P<word>[A-Za-z]+|.)|"
+    r"(?P<number>\d+(?:\.\d+)?)|(?P<char>\S)",
+    re.S,
+)
 LETTERS = GREEK | {"varphi": "φ", "varepsilon": "ε", "ell": "ℓ", "partial": "∂", "infty": "∞"}
 FUNCTIONS = frozenset("sin cos tan cot exp log ln max min det arctan diag tr".split())
 SIGNS = {

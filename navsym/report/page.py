@@ -12,7 +12,7 @@ import base64
 import hashlib
 import json
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -102,30 +102,39 @@ class PaperView:
 def site(
     document: Mapping[str, Any], cards: Mapping[str, Paper], words: Mapping[str, Words] | None = None
 ) -> dict[str, str]:
-    """All files of the report: name -> text.
+    """All files of the report: name -> text; see :func:`pages`."""
+    return dict(pages(document, cards, words))
+
+
+def pages(
+    document: Mapping[str, Any],
+    cards: Mapping[str, Paper],
+    words: Mapping[str, Words] | None = None,
+    *,
+    progress: Callable[[str], None] = lambda claim: None,
+) -> Iterator[tuple[str, str]]:
+    """The files of the report, name and text, as they are made; the index comes last.
 
     document : that of ``navsym verify`` (keys claims, papers, counts), or the ledger
     cards    : papers by module; a module without one is shown without its matrix of equations
     words    : wording of erratum sheets by module
+    progress : called with the id of each claim that is set in type
 
-    Files: ``index.html``, ``MODULE.html``, ``MODULE.erratum.html`` and ``.tex``,
-    ``certificates/*.json`` and ``verdicts.json``.
+    Files: ``certificates/*.json``, ``verdicts.json``, ``MODULE.html``, ``MODULE.erratum.html`` and
+    ``.tex``, ``index.html``.
     """
-    modules, words = [paper["module"] for paper in document["papers"]], words or {}
-    papers = [
-        paper_view(cards.get(module) or bare_card(module, document), document["claims"], words.get(module))
-        for module in modules
-    ]
-    env = environment()
-    shared = {"papers": papers, "marks": MARKS, "meanings": MEANINGS}
-    files = {"index.html": env.get_template("index.html").render(shared, total=total(papers))}
-    for paper in papers:
-        files[f"{paper.file}.html"] = env.get_template("paper.html").render(shared, paper=paper)
-        files[f"{paper.file}.erratum.html"] = env.get_template("erratum.html").render(shared, paper=paper)
-        files[f"{paper.file}.erratum.tex"] = env.get_template("erratum.tex").render(paper=paper)
-    files.update(certificate_files(document["claims"]))
-    files["verdicts.json"] = json.dumps(document, ensure_ascii=False, allow_nan=False, indent=1) + "\n"
-    return files
+    words, env, papers = words or {}, environment(), []
+    shared = {"marks": MARKS, "meanings": MEANINGS}
+    yield from certificate_files(document["claims"]).items()
+    yield "verdicts.json", json.dumps(document, ensure_ascii=False, allow_nan=False, indent=1) + "\n"
+    for module in (paper["module"] for paper in document["papers"]):
+        card = cards.get(module) or bare_card(module, document)
+        paper = paper_view(card, document["claims"], words.get(module), progress)
+        papers.append(paper)
+        yield f"{paper.file}.html", env.get_template("paper.html").render(shared, paper=paper)
+        yield f"{paper.file}.erratum.html", env.get_template("erratum.html").render(shared, paper=paper)
+        yield f"{paper.file}.erratum.tex", env.get_template("erratum.tex").render(paper=paper)
+    yield "index.html", env.get_template("index.html").render(shared, papers=papers, total=total(papers))
 
 
 def environment() -> jinja2.Environment:
@@ -192,7 +201,9 @@ def slug(name: str) -> str:
 # -- one paper -------------------------------------------------------------------------------
 
 
-def paper_view(card: Paper, records: Sequence[Record], words: Words | None = None) -> PaperView:
+def paper_view(
+    card: Paper, records: Sequence[Record], words: Words | None, progress: Callable[[str], None]
+) -> PaperView:
     """Everything that the page of one paper shows."""
     mine = in_order(card, [record for record in records if record["paper"] == card.module])
     statuses = [record["status"] for record in mine]
@@ -201,7 +212,7 @@ def paper_view(card: Paper, records: Sequence[Record], words: Words | None = Non
         card=card,
         file=slug(card.module),
         cells=tuple(cell(card, equation, mine) for equation in card.equations),
-        claims=tuple(claim_views(mine)),
+        claims=tuple(claim_views(mine, progress)),
         counts={status: statuses.count(status) for status in MARKS},
         unnumbered=numbered.count(None),
         erratum=erratum_of(card, mine, words),
@@ -237,12 +248,12 @@ def anchor_of(record: Record) -> str:
     return f"c-{slug(record['number'])}"
 
 
-def claim_views(records: Sequence[Record]) -> list[ClaimView]:
+def claim_views(records: Sequence[Record], progress: Callable[[str], None]) -> Iterator[ClaimView]:
     known = {record["id"]: record for record in records}
     corrections = {record["corrects"]: record for record in records if record["corrects"]}
-    return [
-        claim_view(record, corrections.get(record["id"]), known.get(record["corrects"])) for record in records
-    ]
+    for record in records:
+        yield claim_view(record, corrections.get(record["id"]), known.get(record["corrects"]))
+        progress(record["id"])
 
 
 def claim_view(record: Record, correction: Record | None, corrected: Record | None) -> ClaimView:

@@ -43,7 +43,9 @@ def snippets(record: Record) -> tuple[Snippet, ...]:
         return ()
     tree = read_formula(record["printed"])
     names = sorted(symbols(tree)) if tree is not None else []
-    if tree is None or unwrapped(tree).kind == "name" or not names or len(record["printed"]) > LONGEST or set(names) & RESERVED:
+    if tree is None or unwrapped(tree).kind == "name" or len(record["printed"]) > LONGEST:
+        return ()
+    if not names or set(names) & RESERVED:
         return ()
     called = NAME.sub("_", record["id"].partition(":")[2]).strip("_")
     called = called if called[0].isalpha() else f"eq_{called}"

@@ -1,0 +1,135 @@
+"""What a person sees while a verb works: one line with count, time left and what is being done.
+
+On a terminal the line is drawn again and again at the bottom and leaves no trace; elsewhere a remark
+comes every ten seconds. Nothing is shown for what takes less than two seconds.
+"""
+
+from __future__ import annotations
+
+import shutil
+import sys
+import threading
+import time
+from collections.abc import Callable
+from types import TracebackType
+
+PATIENCE = 2.0           # seconds without a word
+BETWEEN_REMARKS = 10.0   # seconds, where there is no terminal
+BETWEEN_TICKS = 0.5
+
+
+class Line:
+    """The line at the bottom of the terminal: there is one terminal, hence one line."""
+
+    def __init__(self) -> None:
+        self.text = ""
+        self.lock = threading.Lock()
+
+    @property
+    def drawn(self) -> bool:
+        """True where a line can be drawn: standard error is a terminal that obeys control sequences."""
+        from navsym.cli.output import wants_colour
+
+        return wants_colour(sys.stderr)
+
+    def show(self, text: str) -> None:
+        width = shutil.get_terminal_size().columns - 1
+        with self.lock:
+            self.text = text[:width]
+            sys.stderr.write(f"\r\x1b[2K{self.text}")
+            sys.stderr.flush()
+
+    def clear(self) -> None:
+        """Take the line away, so that other text can be written."""
+        with self.lock:
+            if self.text:
+                self.text = ""
+                sys.stderr.write("\r\x1b[2K")
+                sys.stderr.flush()
+
+
+LINE = Line()
+
+
+class Progress:
+    """Counts the steps of a long job; as a context it says how to go on when it is interrupted.
+
+    what   : what is counted, ``"claims"``
+    total  : how many there are
+    resume : what is left after Ctrl-C and how to go on, a sentence
+    """
+
+    def __init__(self, what: str, total: int, resume: str = "", clock: Callable[[], float] = time.monotonic):
+        self.what, self.total, self.resume, self.clock = what, total, resume, clock
+        self.count, self.started = 0, clock()
+        self.told = self.started + PATIENCE - BETWEEN_REMARKS
+
+    def step(self, doing: str = "") -> None:
+        """One more is done; ``doing`` names it."""
+        self.to(self.count + 1, doing)
+
+    def to(self, count: int, doing: str = "") -> None:
+        """``count`` of them are done."""
+        self.count = count
+        now = self.clock()
+        if now - self.started < PATIENCE or count >= self.total:
+            return
+        if LINE.drawn:
+            LINE.show(self.words(now, doing))
+        elif now - self.told >= BETWEEN_REMARKS:
+            self.told = now
+            from navsym.cli.output import remark
+
+            remark(self.words(now, ""))
+
+    def words(self, now: float, doing: str) -> str:
+        left = (now - self.started) / max(self.count, 1) * (self.total - self.count)
+        told = f"{self.count} of {self.total} {self.what}, about {duration(left)} left"
+        return f"{told}  {doing}" if doing else told
+
+    def __enter__(self) -> Progress:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        LINE.clear()
+        if kind is KeyboardInterrupt and self.resume:
+            from navsym.cli.output import remark
+
+            remark(f"stopped at {self.count} of {self.total} {self.what}; {self.resume}")
+
+
+class Ticker:
+    """For a verb that cannot count: after two seconds it says on a terminal for how long it has been working."""
+
+    def __init__(self, verb: str):
+        self.verb, self.started, self.over = verb, time.monotonic(), threading.Event()
+
+    def __enter__(self) -> Ticker:
+        if LINE.drawn:
+            threading.Thread(target=self.run, daemon=True).start()
+        return self
+
+    def run(self) -> None:
+        shown = ""
+        while not self.over.wait(BETWEEN_TICKS):
+            spent = time.monotonic() - self.started
+            if spent >= PATIENCE and LINE.text == shown:     # never over the line of a job that counts
+                shown = f"{self.verb}: working for {duration(spent)}, Ctrl-C stops it"
+                LINE.show(shown)
+                shown = LINE.text
+
+    def __exit__(self, *_: object) -> None:
+        self.over.set()
+        LINE.clear()
+
+
+def duration(seconds: float) -> str:
+    """``8 s``, ``2 min 5 s``, ``1 h 3 min``."""
+    whole = round(seconds)
+    if whole < 60:
+        return f"{whole} s"
+    if whole < 3600:
+        return f"{whole // 60} min {whole % 60} s"
+    return f"{whole // 3600} h {whole % 3600 // 60} min"
