@@ -55,18 +55,24 @@ class Progress:
     """Counts the steps of a long job; as a context it says how to go on when it is interrupted.
 
     what   : what is counted, ``"claims"``
-    total  : how many there are
+    total  : how many there are; 0 when the job itself will say so
     resume : what is left after Ctrl-C and how to go on, a sentence
     """
 
-    def __init__(self, what: str, total: int, resume: str = "", clock: Callable[[], float] = time.monotonic):
+    def __init__(self, what: str, total: int = 0, resume: str = "", clock: Callable[[], float] = time.monotonic):
         self.what, self.total, self.resume, self.clock = what, total, resume, clock
-        self.count, self.started = 0, clock()
+        self.count, self.before, self.started = 0, 0, clock()
         self.told = self.started + PATIENCE - BETWEEN_REMARKS
 
     def step(self, doing: str = "") -> None:
         """One more is done; ``doing`` names it."""
         self.to(self.count + 1, doing)
+
+    def told_by_job(self, done: int, of: int) -> None:
+        """For jobs that report both numbers; what an earlier run has left counts as done, not as fast."""
+        if not self.total:
+            self.total, self.before = of, max(done - 1, 0)
+        self.to(done)
 
     def to(self, count: int, doing: str = "") -> None:
         """``count`` of them are done."""
@@ -83,7 +89,7 @@ class Progress:
             remark(self.words(now, ""))
 
     def words(self, now: float, doing: str) -> str:
-        left = (now - self.started) / max(self.count, 1) * (self.total - self.count)
+        left = (now - self.started) / max(self.count - self.before, 1) * (self.total - self.count)
         told = f"{self.count} of {self.total} {self.what}, about {duration(left)} left"
         return f"{told}  {doing}" if doing else told
 
@@ -97,7 +103,8 @@ class Progress:
         if kind is KeyboardInterrupt and self.resume:
             from navsym.cli.output import remark
 
-            remark(f"stopped at {self.count} of {self.total} {self.what}; {self.resume}")
+            done = f"at {self.count} of {self.total} {self.what}" if self.count else f"before any of the {self.what}"
+            remark(f"stopped {done}; {self.resume}")
 
 
 class Ticker:

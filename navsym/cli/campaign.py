@@ -7,6 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
+from navsym.cli._progress import Progress
 from navsym.cli.output import emit, table
 
 NAMES = ("mutants", "engines", "parser", "certificates", "identities")
@@ -62,9 +63,12 @@ def in_batches(
         batches = campaign_certificates.batches(campaign_certificates.honest_certificates(), inputs, seed)
         judge = campaign_certificates.judge
     if fresh:
-        return run_campaign(name, batches, judge, jobs=jobs, seconds=seconds, progress=told)
-    with opened() as store:
-        return run_campaign(name, batches, judge, store=store, jobs=jobs, seconds=seconds, progress=told)
+        with Progress("batches", resume="with --fresh nothing is kept: leave it out to be able to go on") as bar:
+            return run_campaign(name, batches, judge, jobs=jobs, seconds=seconds, progress=bar.told_by_job)
+    with opened() as store, Progress("batches", resume="they are kept: the same command goes on from there") as bar:
+        return run_campaign(
+            name, batches, judge, store=store, jobs=jobs, seconds=seconds, progress=bar.told_by_job
+        )
 
 
 def papers(names: list[str]) -> list[Any]:
@@ -131,13 +135,6 @@ def outcomes(record: Path) -> dict[str, list[str]]:
         outcome = "failed" if tags & {"failure", "error"} else "skipped" if "skipped" in tags else "passed"
         found[outcome].append(case.get("name", "?"))
     return found
-
-
-def told(done: int, of: int) -> None:
-    import sys
-
-    if done % 20 == 0 or done == of:
-        print(f"{done} of {of} batches", file=sys.stderr, flush=True)
 
 
 def as_text(document: dict[str, Any]) -> str:

@@ -7,6 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
+from navsym.cli._progress import Progress
 from navsym.cli.output import emit, table
 
 
@@ -27,7 +28,18 @@ def command(
 
     from navsym.methods.prove import prove
 
-    document = prove(claims, jobs=jobs, seconds=seconds)
+    found: list[dict[str, Any]] = []
+    try:
+        with Progress("formulas", len(claims.claims), "those decided follow; run it again for the rest") as bar:
+
+            def step(record: dict[str, Any]) -> None:
+                found.append(record)
+                bar.step(record["id"])
+
+            document = prove(claims, jobs=jobs, seconds=seconds, progress=step)
+    except KeyboardInterrupt:
+        emit({"claims": found, "interrupted": True}, as_json=json_, text=lambda: as_text({"claims": found}))
+        raise
     emit(document, as_json=json_, text=lambda: as_text(document))
     return 0 if all(record["status"] not in ("REFUTED", "OPEN") for record in document["claims"]) else 1
 

@@ -9,7 +9,8 @@ from typing import Annotated, Any
 
 import typer
 
-from navsym.cli.output import emit, remark, table
+from navsym.cli._progress import Progress
+from navsym.cli.output import emit, table
 
 #: Name -> "module:experiment:as_table". The experiment takes runs, seed, steps and returns plain data;
 #: as_table turns that into headings and rows. Modules are imported when their name is asked for.
@@ -41,13 +42,17 @@ def command(
     accepted = inspect.signature(getattr(module, experiment)).parameters
     if journal is not None and "journal" not in accepted:
         raise DomainError(f"--journal: expected an experiment that can go on; got {name}; leave it out")
-    if "progress" in accepted:
-        options["progress"] = progress
-    document: dict[str, Any] = getattr(module, experiment)(seed=seed, **options)
+    with Progress("runs", resume=resume(journal, "journal" in accepted)) as bar:
+        if "progress" in accepted:
+            options["progress"] = bar.told_by_job
+        document: dict[str, Any] = getattr(module, experiment)(seed=seed, **options)
     emit(document, as_json=json_, text=lambda: table(*getattr(module, as_table)(document)))
 
 
-def progress(finished: int, total: int) -> None:
-    """A remark for every tenth of the runs."""
-    if finished == total or (10 * finished) // total > (10 * (finished - 1)) // total:
-        remark(f"{finished} of {total} runs")
+def resume(journal: Path | None, possible: bool) -> str:
+    """How to go on after Ctrl-C."""
+    if journal is not None:
+        return f"finished runs are in {journal}: the same command goes on from there"
+    if possible:
+        return "nothing is kept: with --journal FILE finished runs are kept, and the same command goes on"
+    return "nothing is kept: fewer --runs take less time"

@@ -9,6 +9,7 @@ from typing import Annotated, Any
 
 import typer
 
+from navsym.cli._progress import Progress
 from navsym.cli.output import emit
 
 
@@ -41,11 +42,12 @@ def run_sweep(sweep: Any, *, workers: int, scheduler: str | None, fresh: bool) -
         known = {} if fresh else store.get(keys)
         rows = [known[key] for key in keys if key in known]
         missing = [index for index, key in enumerate(keys) if key not in known]
-        with computed(sweep, missing, workers, scheduler) as results:
+        resume = "their rows are kept: the same command (without --fresh) goes on from there"
+        with computed(sweep, missing, workers, scheduler) as results, Progress("jobs", resume=resume) as bar:
             for row in results:
                 store.put(keys[row["index"]], row)
                 rows.append(row)
-                told(len(rows), sweep.jobs)
+                bar.told_by_job(len(rows), sweep.jobs)
     return {**summary(sweep, rows), "resumed": len(known)}
 
 
@@ -69,13 +71,6 @@ def computed(
         # Not pure: a row is computed again rather than taken from another session's cluster memory.
         futures = [client.submit(run_job, sweep, index, pure=False) for index in indices]
         yield (row for _, row in as_completed(futures, with_results=True))
-
-
-def told(done: int, of: int) -> None:
-    import sys
-
-    if done % max(1, of // 10) == 0:
-        print(f"{done} of {of} jobs", file=sys.stderr, flush=True)
 
 
 def as_text(document: dict[str, Any]) -> str:
