@@ -22,6 +22,9 @@ def command(
     missing: Annotated[
         bool, typer.Option("--missing", help="null is a number that did not come, not an error")
     ] = False,
+    form: Annotated[
+        str, typer.Option("--form", help="how covariances are kept: joseph, or the factors qr, potter, ud")
+    ] = "joseph",
     json_: Annotated[bool, typer.Option("--json", help="one JSON document")] = False,
 ) -> None:
     """Mode probabilities, mean, covariance and log-likelihood after every measurement."""
@@ -33,7 +36,7 @@ def command(
     try:
         given = read_bank(as_mapping(document))
         estimate = run(given.bank, given.measurements, method, depth=depth, forget=given.forget,
-                       missing=missing or given.missing)
+                       missing=missing or given.missing, form=form)
     except NavsymError as error:
         raise error.at(str(file)) from None
     for sentence in remarks(estimate):

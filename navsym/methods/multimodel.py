@@ -14,41 +14,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navsym.errors import DomainError, ShapeError
-from navsym.methods import multimodel_steps as steps
 from navsym.methods.multimodel_bank import Bank, bank, measurements_for, memoryless
-from navsym.methods.multimodel_schemes import Scheme, require_room, scheme
-from navsym.numeric import arrays
+from navsym.methods.multimodel_engine import Estimate, run_in_numpy
+from navsym.methods.multimodel_schemes import require_room, scheme
+from navsym.numeric.forms import form_of
 
 Array = NDArray[np.floating[Any]]
 Engine = Literal["auto", "numpy", "compiled"]
 
 #: Below this many one-step filters the compiled loops do not pay for being loaded.
 WORTH_COMPILING = 200_000
-#: Log-likelihood below which every likelihood is zero in double precision.
-UNDERFLOW = -745.0
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Estimate:
-    """What a filter says after every step k = 1 .. T.
-
-    probabilities : (T, m)     of the modes, given the measurements so far
-    mean          : (T, n)     of the state
-    covariance    : (T, n, n)  of its error
-    log_likelihood: (T,)       of all measurements so far
-    filters_run   : one-step Kalman filters that ran, all steps together
-    impossible    : steps whose measurement has a likelihood below the smallest double under every mode; the
-                    weights are right all the same, because they are kept as logarithms
-    left_out      : steps whose measurement had to be left out, because even its logarithm has no number
-    """
-
-    probabilities: Array
-    mean: Array
-    covariance: Array
-    log_likelihood: Array
-    filters_run: int
-    impossible: tuple[int, ...] = ()
-    left_out: tuple[int, ...] = ()
 
 
 def run(
@@ -60,6 +35,7 @@ def run(
     forget: bool = False,
     missing: bool = False,
     engine: Engine = "auto",
+    form: str = "joseph",
 ) -> Estimate:
     """Filter a series of measurements (T, p); the first row is at step 1.
 
@@ -68,11 +44,13 @@ def run(
     forget  : the printed (14)-(17): the unconditional P[I(k) = i] in place of p^ij(k)
     missing : NaN or None is a number that did not come, instead of an error
     engine  : compiled loops, numpy, or whichever fits
+    form    : how covariances are kept: joseph, or the factors qr, potter, ud (numpy only), which keep twice the
+              digits where covariances are nearly singular
 
     Raises the errors of the bank, DomainError for a method that does not exist, TooLargeError for a tree
     that does not fit.
     """
-    rule = scheme(method, depth)
+    rule, kept = scheme(method, depth), form_of(form)
     z = measurements_for(models, measurements, missing=missing)
     if forget:
         if rule.branching == "own":
@@ -81,44 +59,22 @@ def run(
         models = memoryless(models, len(z))
     roots = 1 if models.common else models.modes
     count = require_room(rule, models.modes, models.states, roots, len(z))
-    if compiled_fits(rule, models, z, count, engine):
+    if compiled_fits(count, engine, form):
         from navsym.methods import multimodel_fast
 
         return multimodel_fast.run_compiled(rule, models, z, count)
-    return run_in_numpy(rule, models, z, count)
+    return run_in_numpy(rule, models, z, count, kept)
 
 
-def compiled_fits(rule: Scheme, models: Bank, z: Array, count: int, engine: Engine) -> bool:
-    """Whether to use the compiled loops: asked for, or worth their start-up time."""
+def compiled_fits(count: int, engine: Engine, form: str) -> bool:
+    """Whether to use the compiled loops, which know Joseph's form: asked for, or worth their start-up time."""
     if engine not in ("auto", "numpy", "compiled"):
         raise DomainError(f"engine: expected auto, numpy or compiled; got {engine!r}; choose one")
+    if form != "joseph":
+        if engine == "compiled":
+            raise DomainError(f"engine: expected numpy with the form {form}; got compiled; leave it out")
+        return False
     return engine == "compiled" or (engine == "auto" and count >= WORTH_COMPILING)
-
-
-def run_in_numpy(rule: Scheme, models: Bank, z: Array, count: int) -> Estimate:
-    """The readable engine: one :func:`multimodel_steps.advance` per row."""
-    now = steps.start(models, rule)
-    found: list[steps.Step] = []
-    for k, row in enumerate(z, start=1):
-        step = steps.advance(rule, k, models, now, row)
-        now = step.hypotheses
-        found.append(step)
-    return collected(found, models, count)
-
-
-def collected(found: list[steps.Step], models: Bank, count: int) -> Estimate:
-    """Stack what the steps found."""
-    T, m, n = len(found), models.modes, models.states
-    best = [step.best for step in found]
-    return Estimate(
-        arrays.frozen(np.array([s.probabilities for s in found]).reshape(T, m)),
-        arrays.frozen(np.array([s.mean for s in found]).reshape(T, n)),
-        arrays.frozen(np.array([s.covariance for s in found]).reshape(T, n, n)),
-        arrays.frozen(np.cumsum([s.log_likelihood for s in found])),
-        count,
-        tuple(k for k, b in enumerate(best, start=1) if b < UNDERFLOW),
-        tuple(k for k, b in enumerate(best, start=1) if b == -np.inf),
-    )
 
 
 @dataclass(frozen=True, slots=True, eq=False)

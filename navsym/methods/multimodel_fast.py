@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from navsym.methods import multimodel
 from navsym.methods.multimodel_bank import Bank
+from navsym.methods.multimodel_engine import UNDERFLOW, Estimate, run_in_numpy
 from navsym.methods.multimodel_schemes import Scheme, filters_at
 from navsym.numeric import arrays, kalman, mixture
 from navsym.numeric.mixture_kernels import ALL, BY_MODE, CROSS, KEEP, MIXED, OWN, run_bank
@@ -21,13 +21,13 @@ FOLDING = {"none": KEEP, "all": ALL, "by mode": BY_MODE}
 WIDEST = 4096
 
 
-def run_compiled(rule: Scheme, models: Bank, z: Array, count: int) -> multimodel.Estimate:
-    """The same estimate as :func:`navsym.methods.multimodel.run_in_numpy`, to rounding."""
+def run_compiled(rule: Scheme, models: Bank, z: Array, count: int) -> Estimate:
+    """The same estimate as :func:`navsym.methods.multimodel_engine.run_in_numpy`, to rounding."""
     widest = widest_branching(rule, models, len(z))
     H, r, U, rotated = independent_scalars(models)
     partly = np.isnan(z).any(axis=1) & ~np.isnan(z).all(axis=1)
     if widest > WIDEST or (rotated and partly.any()):
-        return multimodel.run_in_numpy(rule, models, z, count)
+        return run_in_numpy(rule, models, z, count)
     T, m, n = len(z), models.modes, models.states
     out = (np.empty((T, m)), np.empty((T, n)), np.empty((T, n, n)), np.empty(T), np.empty(T))
     stopped = run_bank(
@@ -36,10 +36,10 @@ def run_compiled(rule: Scheme, models: Bank, z: Array, count: int) -> multimodel
         mixture.logs(models.probabilities), models.common, models.means, models.covariances, z, *out,
     )
     if stopped:
-        return multimodel.run_in_numpy(rule, models, z, count)
-    return multimodel.Estimate(
+        return run_in_numpy(rule, models, z, count)
+    return Estimate(
         arrays.frozen(out[0]), arrays.frozen(out[1]), arrays.frozen(out[2]), arrays.frozen(out[3]), count,
-        tuple(int(k) + 1 for k in np.flatnonzero(out[4] < multimodel.UNDERFLOW)),
+        tuple(int(k) + 1 for k in np.flatnonzero(out[4] < UNDERFLOW)),
     )
 
 

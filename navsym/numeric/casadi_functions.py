@@ -47,17 +47,25 @@ LESS_ONE = {
 }
 
 
-def casadi_function(name: str, arguments: Sequence[Argument], expression: Any) -> ca.Function:
+def casadi_function(
+    name: str,
+    arguments: Sequence[Argument],
+    expression: Any,
+    named: Sequence[tuple[sp.Symbol, sp.Expr]] = (),
+) -> ca.Function:
     """A casadi function of the given arguments.
 
     name       : an identifier; it also names the function in code that casadi generates
     arguments  : symbols, or sequences of symbols for vector arguments, in the order of the inputs
     expression : a scalar or a matrix; its shape is the shape of the output
+    named      : values in order, which later ones and the expression may call by their symbols
 
     Raises UnknownSymbolError (a symbol that is no argument), DomainError (a function that has no
     counterpart, a name that is no identifier), NotFiniteError (a number beyond double precision).
     """
     inputs, memo = inputs_of(arguments)
+    for symbol, value in named:
+        memo[symbol] = translated(value, memo)
     return ca.Function(identifier(name), inputs, [output_of(expression, memo)])
 
 
@@ -139,6 +147,9 @@ def node(expression: sp.Expr, memo: Memo) -> Any:
         return power_of(expression, memo)
     if isinstance(expression, sp.atan2):
         return ca.atan2(*(translated(part, memo) for part in expression.args))
+    if isinstance(expression, (sp.Min, sp.Max)):
+        pick = ca.fmin if isinstance(expression, sp.Min) else ca.fmax
+        return reduce(pick, [translated(part, memo) for part in expression.args])
     function = UNARY.get(type(expression))
     if function is not None:
         return function(translated(expression.args[0], memo))

@@ -73,9 +73,18 @@ def factor_of(S: Array) -> tuple[Array, NDArray[np.bool_]]:
     try:
         return np.linalg.cholesky(S), np.ones(S.shape[:-2], dtype=bool)
     except np.linalg.LinAlgError:
-        regular = np.linalg.eigvalsh(S)[..., 0] > 0.0
-        safe = np.where(regular[..., None, None], S, np.eye(S.shape[-1]))
-        return np.linalg.cholesky(safe), regular
+        flat = [factor_or_none(one) for one in S.reshape(-1, *S.shape[-2:])]
+        regular = np.array([one is not None for one in flat]).reshape(S.shape[:-2])
+        factors = np.array([np.eye(S.shape[-1]) if one is None else one for one in flat])
+        return factors.reshape(S.shape), regular
+
+
+def factor_or_none(S: Array) -> Array | None:
+    """Cholesky factor, or None. Eigenvalues would not do: positive ones may still have no factor in doubles."""
+    try:
+        return np.linalg.cholesky(S)
+    except np.linalg.LinAlgError:
+        return None
 
 
 def solve_factored(factor: Array, B: Array) -> Array:

@@ -7,6 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from navsym.errors import DomainError, EmptyError, NavsymError, NotFiniteError, ShapeError, TooLargeError
+from navsym.methods import multimodel_steps as steps_module
 from navsym.methods.multimodel import read_bank, run
 from navsym.methods.multimodel_bank import bank
 from navsym.methods.multimodel_exact import Leaf, Model, fractions_kit, run_exactly
@@ -270,8 +271,10 @@ def test_an_unreachable_mode_has_probability_zero_and_no_nan():
 ])
 def test_filters_run_counts_the_kalman_filters_of_every_step(method, depth, steps, monkeypatch):
     ran = []
-    original = kalman.predict
-    monkeypatch.setattr(kalman, "predict", lambda mean, *rest: (ran.append(len(mean)), original(mean, *rest))[1])
+    original = steps_module.filtered
+    monkeypatch.setattr(
+        steps_module, "filtered", lambda models, k, b, *rest: (ran.append(len(b.modes)), original(models, k, b, *rest))[1]
+    )
     found = run(random_bank(13), series(13, steps), method, depth=depth, engine="numpy")
     assert found.filters_run == sum(ran)
 

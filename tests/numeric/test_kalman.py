@@ -75,6 +75,16 @@ def test_an_innovation_too_large_to_square_is_impossible_and_not_nan():
     assert np.isfinite(mean).all() and np.isfinite(P).all()
 
 
+def test_a_covariance_whose_eigenvalues_are_positive_but_which_has_no_factor_is_singular_and_no_traceback():
+    delta = 1e-8
+    for seed in range(40):
+        a, b = np.random.default_rng(seed).uniform(0.5, 1.5, 2)
+        H = np.array([[a, b], [a, b + delta]])
+        x, P, ll = kalman.correct(np.zeros((2, 2)), np.eye(2), np.ones(2), np.stack([H, np.eye(2)]),
+                           np.stack([delta**2 * np.eye(2), np.eye(2)]))
+        assert np.isfinite(x).all() and np.isfinite(P).all() and np.isfinite(ll[1]) and not np.isnan(ll[0])
+
+
 def test_rotated_scalars_say_the_same_as_the_vector():
     rng = np.random.default_rng(5)
     P, H, R, z = random_spd(rng, 3), rng.standard_normal((3, 3)), random_spd(rng, 3), rng.standard_normal(3)
