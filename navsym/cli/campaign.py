@@ -17,15 +17,22 @@ TESTED = {"engines": "tests/engines", "identities": "tests/proof/test_textbook.p
 def command(
     name: Annotated[str, typer.Argument(help=" | ".join(NAMES))],
     modules: Annotated[list[str] | None, typer.Argument(help="papers, for mutants; default: all")] = None,
-    share: Annotated[float, typer.Option(min=0.0, max=1.0, help="share of the mutants")] = 1.0,
-    inputs: Annotated[int, typer.Option(min=1, help="inputs of parser and certificates")] = 10_000,
-    seed: Annotated[int, typer.Option(min=0)] = 0,
+    share: Annotated[float, typer.Option(min=0.0, max=1.0, help="share of the mutants that are tried")] = 1.0,
+    inputs: Annotated[
+        int, typer.Option(min=1, help="number of inputs, for parser and certificates"),
+    ] = 10_000,
+    seed: Annotated[int, typer.Option(min=0, help="seed of the random choices")] = 0,
     jobs: Annotated[int, typer.Option(min=1, help="batches at the same time")] = 1,
-    seconds: Annotated[float, typer.Option(min=1.0, help="limit for one batch")] = 3600.0,
-    fresh: Annotated[bool, typer.Option("--fresh", help="do not resume from the store")] = False,
+    seconds: Annotated[float, typer.Option(min=1.0, help="limit for one batch, seconds")] = 3600.0,
+    fresh: Annotated[
+        bool, typer.Option("--fresh", help="do everything again, ignoring what is kept"),
+    ] = False,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> int:
-    """Run a campaign; it resumes where it was stopped. Status 1 when anything wrong was found."""
+    """Run a campaign; it resumes where it was stopped. Status 1 when anything wrong was found.
+
+    Example: navsym campaign mutants guaranteed_velocity --share 0.02 --jobs 2
+    """
     from navsym.errors import DomainError
 
     if name not in NAMES:

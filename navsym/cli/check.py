@@ -19,7 +19,10 @@ def command(
     paths: Annotated[list[Path], typer.Argument(help="certificates (JSON) or folders of them")],
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> None:
-    """Accept or reject every certificate; the exit status is 1 when one is rejected."""
+    """Accept or reject every certificate; status 1 when one is rejected.
+
+    Example: navsym check report/certificates
+    """
     rows = [row for path in paths for row in check_path(path)]
     if not rows:
         raise EmptyError(

@@ -26,6 +26,10 @@ def command(
     digits: Annotated[int, typer.Option("--digits", help="significant digits of the enclosures")] = 30,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> None:
+    """Certified 2-norm condition numbers of the matrices N_p, N_pN, N_f and N_s, beside double precision.
+
+    Example: navsym condition --n 20 --tau 0.2 --rho 1/6371000
+    """
     from navsym.methods.conditioning import document
 
     found = document(n, exact("--rho", rho), exact("--tau", tau), digits)

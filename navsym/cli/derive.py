@@ -13,12 +13,19 @@ from navsym.errors import ExpressionSyntaxError, NavsymError
 
 def command(
     file: Annotated[Path, typer.Argument(help="model file (TOML)")],
-    latex: Annotated[bool, typer.Option("--latex", help="print LaTeX; with --json add it")] = False,
-    set_: Annotated[list[str] | None, typer.Option("--set", help="value of a parameter: w=1/2")] = None,
-    out: Annotated[Path | None, typer.Option(help="write the text to a file")] = None,
+    latex: Annotated[
+        bool, typer.Option("--latex", help="print LaTeX instead of text; with --json add it"),
+    ] = False,
+    set_: Annotated[
+        list[str] | None, typer.Option("--set", help="value of a parameter, such as w=1/2; may be repeated"),
+    ] = None,
+    out: Annotated[Path | None, typer.Option(help="write the text to this file")] = None,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> None:
-    """Derive the transition matrix, the regressors and the conditions of optimality from a model."""
+    """Derive the transition matrix, the regressors and the conditions of optimality from a model.
+
+    Example: navsym derive examples/schuler-velocity.toml
+    """
     from navsym.models.derivation import derive
     from navsym.models.derivation_document import as_latex, as_text, document
     from navsym.text.modelfile import read_model

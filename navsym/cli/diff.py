@@ -14,13 +14,18 @@ def command(
     old: Annotated[
         str, typer.Argument(help="a formula, a claim or model file (TOML), or an exported folder")
     ],
-    new: Annotated[str, typer.Argument(help="the same kind of thing")],
+    new: Annotated[str, typer.Argument(help="what it is compared with, of the same kind")],
     box: Annotated[
-        list[str] | None, typer.Option("--range", help='range of a symbol, such as "T=0,2*pi"')
+        list[str] | None, typer.Option("--range", help='range of a symbol, such as "T=0,2*pi"; may be repeated')
     ] = None,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> int:
-    """Status 1 unless every formula is proved equal to its counterpart."""
+    """Compare two formulas, files or folders exactly. Status 1 unless every formula is proved equal.
+
+    Example: navsym diff "sin(2*a)" "2*sin(a)*cos(a)"
+
+    Example: navsym diff build/old build/new
+    """
     from navsym.export.differences import compare, formulas_of
 
     ranges = dict(read_range(text) for text in box or [])

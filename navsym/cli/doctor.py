@@ -84,8 +84,11 @@ class Finding:
     advice: str
 
 
-def command(json_: Annotated[bool, typer.Option("--json", help="Print one JSON document.")] = False) -> int:
-    """What this machine has and lacks. Exit status 3 when something required is missing."""
+def command(json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False) -> int:
+    """What this machine has and lacks. Status 3 when something required is missing.
+
+    Example: navsym doctor
+    """
     findings = examine()
     complete = all(item.found for item in findings if item.required)
     emit(document_of(findings, complete), as_json=json_, text=lambda: text_of(findings, complete))

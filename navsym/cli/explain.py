@@ -17,7 +17,7 @@ FORMULA = " " * 6
 
 def command(
     claim: Annotated[str, typer.Argument(help="id of a claim, such as guaranteed_velocity:4.3.u2")],
-    seconds: Annotated[float, typer.Option(help="limit; above it the verdict is OPEN")] = 90.0,
+    seconds: Annotated[float, typer.Option(help="limit, seconds; above it the verdict is OPEN")] = 90.0,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> int:
     """Tell why a claim has its verdict.

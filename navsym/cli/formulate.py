@@ -14,15 +14,22 @@ from navsym.errors import ExpressionSyntaxError, NavsymError
 def command(
     file: Annotated[Path, typer.Argument(help="model or basis file (TOML)")],
     to: Annotated[str, typer.Option(help="casadi, cvxpy or mps")] = "mps",
-    kind: Annotated[str, typer.Option(help="lp, qp (white noise) or mixed")] = "lp",
-    target: Annotated[str | None, typer.Option(help="name of the functional")] = None,
-    set_: Annotated[list[str] | None, typer.Option("--set", help="value of a parameter: T=2.5")] = None,
-    grid: Annotated[int, typer.Option(help="instants per measurement")] = 201,
-    mixture: Annotated[float, typer.Option(help="factor of the quadratic term of mixed")] = 1.0,
+    kind: Annotated[str, typer.Option(help="lp (worst correlation), qp (white noise) or mixed")] = "lp",
+    target: Annotated[
+        str | None, typer.Option(help="name of the target; not needed where the file has one"),
+    ] = None,
+    set_: Annotated[
+        list[str] | None, typer.Option("--set", help="value of a parameter, such as T=2.5; may be repeated"),
+    ] = None,
+    grid: Annotated[int, typer.Option(help="number of instants of each measurement")] = 201,
+    mixture: Annotated[float, typer.Option(help="factor of the quadratic term, for --kind mixed")] = 1.0,
     out: Annotated[Path | None, typer.Option(help="file to write; standard output otherwise")] = None,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> None:
-    """The LP or QP of the problem on a grid of instants, as a file."""
+    """Write the LP or QP of the problem on a grid of instants for another program.
+
+    Example: navsym formulate examples/schuler-velocity.toml --target drift --set T=1 --to mps --out drift.mps
+    """
     from navsym.methods.guaranteed_formulate import formulate
     from navsym.methods.guaranteed_problem import from_file
     from navsym.text.modelfile import read_model

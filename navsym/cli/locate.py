@@ -22,6 +22,12 @@ def command(
     ] = False,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> None:
+    """Fix a position, and the errors of velocity, over a height map from a measured profile.
+
+    Positions are in metres of the map, velocities in m/s, the criterion in square metres.
+
+    Example: navsym locate flight.json --method sequential
+    """
     from navsym.errors import NavsymError
     from navsym.methods.terrain_locate import locate
     from navsym.text.jsonfile import read_json

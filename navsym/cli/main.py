@@ -71,7 +71,18 @@ def dispatch(arguments: list[str]) -> int:
     if arguments[0] in ("-V", "--version"):
         put(f"navsym {__version__}\n")
         return 0
+    if arguments[:2] == ["completion", "words"]:       # at every press of Tab: without typer
+        return complete(arguments[2:])
     return call(module_of(arguments[0]), arguments[0], arguments[1:])
+
+
+def complete(arguments: list[str]) -> int:
+    """Print what may come next, one word a line, for the scripts of ``navsym completion``."""
+    from navsym.cli._completion import candidates
+
+    found = candidates(" ".join(arguments), verbs())
+    put("".join(f"{word}\n" for word in found))
+    return 0
 
 
 # Verbs

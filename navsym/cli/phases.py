@@ -14,22 +14,27 @@ from navsym.errors import DomainError, ExpressionSyntaxError, NavsymError
 def command(
     file: Annotated[Path, typer.Argument(help="model or basis file whose interval ends at the parameter")],
     target: Annotated[
-        str | None, typer.Option(help="name of the functional; the only one by default")
+        str | None, typer.Option(help="name of the target; not needed where the file has one")
     ] = None,
-    parameter: Annotated[str, typer.Option(help="the length of the interval")] = "T",
+    parameter: Annotated[str, typer.Option(help="name of the parameter that is the interval's length")] = "T",
     range_: Annotated[
-        str | None, typer.Option("--range", help='"0, 2*pi"; the declared range by default')
+        str | None, typer.Option("--range", help='its range, such as "0, 2*pi"; default: the declared one')
     ] = None,
-    set_: Annotated[list[str] | None, typer.Option("--set", help="value of another parameter")] = None,
+    set_: Annotated[
+        list[str] | None, typer.Option("--set", help="value of another parameter, such as w=1/2; may be repeated"),
+    ] = None,
     quick: Annotated[
         bool, typer.Option("--quick", help="leave regimes without a closed form uncertified")
     ] = False,
     out: Annotated[
-        Path | None, typer.Option(help="write the range certificates, numbered, beside this name")
+        Path | None, typer.Option(help="write the certificates to files of this name, numbered")
     ] = None,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> None:
-    """Which instants, which weights, which value, on exactly which range of lengths."""
+    """Which instants, which weights and which value are optimal, on exactly which range of lengths.
+
+    Example: navsym phases examples/schuler-velocity.toml --target drift --range "0, 2*pi"
+    """
     from navsym.methods.phases import phases
     from navsym.methods.phases_family import family_of
     from navsym.text.modelfile import read_model

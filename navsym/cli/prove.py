@@ -14,10 +14,15 @@ from navsym.cli.output import emit, table
 def command(
     file: Annotated[Path, typer.Argument(help="claim file (TOML) with [symbols] and [[claim]] blocks")],
     jobs: Annotated[int, typer.Option(min=1, help="claims decided at the same time")] = 1,
-    seconds: Annotated[float, typer.Option(min=0.1, help="limit for one claim; above it: OPEN")] = 20.0,
+    seconds: Annotated[
+        float, typer.Option(min=0.1, help="limit for one claim, seconds; above it the verdict is OPEN"),
+    ] = 20.0,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> int:
-    """Decide the formulas of a claim file. Status 1 when one of them is refuted or open."""
+    """Decide the formulas of a claim file. Status 1 when one of them is refuted or open.
+
+    Example: navsym prove examples/formulas.toml
+    """
     from navsym.text.tomlfile import read_toml
 
     read_toml(file)  # a file that is none is refused before the slow import of the algebra

@@ -14,14 +14,20 @@ from navsym.errors import ShapeError
 
 def command(
     modules: Annotated[list[str] | None, typer.Argument(help="derivation modules; default: all")] = None,
-    out: Annotated[Path, typer.Option(help="folder for the pages; made when it is not there")] = Path("report"),
+    out: Annotated[
+        Path, typer.Option(help="folder for the pages; made when it is not there"),
+    ] = Path("report"),
     source: Annotated[
-        Path | None, typer.Option("--from", help="a document of navsym verify --json, or a ledger")
+        Path | None, typer.Option("--from", help="take verdicts from a document of navsym verify --json, or a ledger")
     ] = None,
-    jobs: Annotated[int | None, typer.Option(help="claims decided at the same time")] = None,
-    seconds: Annotated[float, typer.Option(help="limit for one claim; above it the verdict is OPEN")] = 90.0,
+    jobs: Annotated[
+        int | None, typer.Option(help="claims decided at the same time; default: one per core"),
+    ] = None,
+    seconds: Annotated[
+        float, typer.Option(help="limit for one claim, seconds; above it the verdict is OPEN"),
+    ] = 90.0,
     fresh: Annotated[
-        bool, typer.Option("--fresh", help="decide everything again, ignoring the store")
+        bool, typer.Option("--fresh", help="decide everything again, ignoring what is kept")
     ] = False,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> int:

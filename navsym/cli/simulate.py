@@ -23,14 +23,25 @@ EXPERIMENTS = {
 
 
 def command(
-    name: Annotated[str, typer.Argument(help="name of the experiment")],
-    runs: Annotated[int | None, typer.Option("--runs", help="Monte-Carlo runs")] = None,
-    steps: Annotated[int | None, typer.Option("--steps", help="steps of each run")] = None,
+    name: Annotated[
+        str, typer.Argument(help="joint_correction, multistructure, terrain_search or trajectory"),
+    ],
+    runs: Annotated[
+        int | None, typer.Option("--runs", help="Monte-Carlo runs; default: those of the study"),
+    ] = None,
+    steps: Annotated[
+        int | None, typer.Option("--steps", help="time steps of each run; default: those of the study"),
+    ] = None,
     seed: Annotated[int, typer.Option("--seed", help="same seed, same answer")] = 1,
-    journal: Annotated[Path | None, typer.Option("--journal", help="keep finished runs here, go on from it")] = None,
-    json_: Annotated[bool, typer.Option("--json", help="one JSON document")] = False,
+    journal: Annotated[
+        Path | None, typer.Option("--journal", help="keep finished runs in this file and go on from it"),
+    ] = None,
+    json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> None:
-    """The numbers of one study, with confidence intervals."""
+    """Run the numerical experiment of a paper again; its figures, with confidence intervals where it is random.
+
+    Example: navsym simulate multistructure --runs 200 --seed 1
+    """
     from navsym.errors import DomainError
 
     if name not in EXPERIMENTS:

@@ -14,17 +14,24 @@ from navsym.errors import ExpressionSyntaxError, NavsymError
 def command(
     file: Annotated[Path, typer.Argument(help="model or basis file (TOML)")],
     target: Annotated[
-        str | None, typer.Option(help="name of the functional; the only one by default")
+        str | None, typer.Option(help="name of the target; not needed where the file has one")
     ] = None,
-    set_: Annotated[list[str] | None, typer.Option("--set", help="value of a parameter: T=2.5")] = None,
+    set_: Annotated[
+        list[str] | None, typer.Option("--set", help="value of a parameter, such as T=2.5; may be repeated"),
+    ] = None,
     digits: Annotated[int, typer.Option(help="certified digits of the value")] = 30,
     compare: Annotated[
-        bool, typer.Option("--compare", help="least squares, Kalman and solvers beside it")
+        bool, typer.Option("--compare", help="put least squares, Kalman and convex solvers beside it")
     ] = False,
     out: Annotated[Path | None, typer.Option(help="write the certificate to this file")] = None,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> None:
-    """Minimise the guaranteed standard deviation; the value is enclosed, the certificate replayable."""
+    """Minimise the guaranteed standard deviation; the value is enclosed, the certificate replayable.
+
+    The value is in units of sigma per unit of the target; instants are measured from the start of the interval.
+
+    Example: navsym solve examples/schuler-velocity.toml --target drift --set T=pi/2
+    """
     from navsym.methods.guaranteed import solve
     from navsym.methods.guaranteed_problem import from_file
     from navsym.text.modelfile import read_model

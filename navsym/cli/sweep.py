@@ -17,10 +17,17 @@ def command(
     config: Annotated[Path, typer.Argument(help='JSON: {"kind": "filter", "jobs": 100, "seed": 1, …}')],
     workers: Annotated[int, typer.Option(min=0, help="local processes; 0 computes in this one")] = 2,
     scheduler: Annotated[str | None, typer.Option(help="tcp://host:port of a running dask scheduler")] = None,
-    fresh: Annotated[bool, typer.Option("--fresh", help="do not resume from the store")] = False,
+    fresh: Annotated[
+        bool, typer.Option("--fresh", help="do everything again, ignoring what is kept"),
+    ] = False,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> int:
-    """Every job has its own seed sequence: the rows are the same bits whoever computes them."""
+    """Compute the jobs of a study that are not kept yet, and sum them up; stopped, it goes on where it was.
+
+    Every job has its own seed sequence: the rows are the same bits whoever computes them.
+
+    Example: navsym sweep study.json --workers 2
+    """
     from navsym.methods.sweep import sweep_from
     from navsym.text.jsonfile import read_json
 

@@ -17,23 +17,31 @@ SHOWN = 12
 
 def command(
     file: Annotated[Path, typer.Argument(help="CSV of time, latitude, longitude, height, or an RTKLIB .pos")],
-    window: Annotated[float | None, typer.Option("--window", help="seconds of the sliding window")] = None,
-    order: Annotated[int, typer.Option("--order", help="states: 2 speed, 3 acceleration, up to 6")] = 3,
+    window: Annotated[
+        float | None, typer.Option("--window", help="length of the sliding window, seconds; chooses --method window"),
+    ] = None,
+    order: Annotated[
+        int, typer.Option("--order", help="states of the motion: 2 to speed, 3 to acceleration, up to 6"),
+    ] = 3,
     method: Annotated[
         str | None,
         typer.Option("--method", help="differences, window, filter, smoother (default) or guaranteed"),
     ] = None,
     sigma: Annotated[
-        float | None, typer.Option("--sigma", help="standard deviation of the positions, metres")
+        float | None, typer.Option("--sigma", help="standard deviation of the positions, metres; default: that of the file")
     ] = None,
     gate: Annotated[
-        float, typer.Option("--gate", help="innovations beyond it are believed less; 0: off")
+        float, typer.Option("--gate", help="innovations beyond so many standard deviations are believed less; 0: off")
     ] = 5.0,
     policy: Annotated[
-        str, typer.Option("--policy", help="strict, or repair and list the repairs")
+        str, typer.Option("--policy", help="bad rows: strict refuses them, repair mends and lists them")
     ] = "strict",
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> None:
+    """Velocity (m/s) and acceleration (m/s^2) from measured positions, with standard deviations.
+
+    Example: navsym track drive.csv --order 3 --sigma 0.5
+    """
     from navsym.errors import DomainError, NavsymError
     from navsym.methods.trajectory_document import document
     from navsym.methods.trajectory_estimate import Settings

@@ -22,15 +22,26 @@ if TYPE_CHECKING:
 
 def command(
     modules: Annotated[list[str] | None, typer.Argument(help="derivation modules; default: all")] = None,
-    write: Annotated[bool, typer.Option("--write", help="update the ledger of verdicts")] = False,
-    jobs: Annotated[int | None, typer.Option(help="claims decided at the same time")] = None,
-    seconds: Annotated[float, typer.Option(help="limit for one claim; above it the verdict is OPEN")] = 90.0,
+    write: Annotated[
+        bool, typer.Option("--write", help="write the verdicts to the ledger derivations/verdicts.json"),
+    ] = False,
+    jobs: Annotated[
+        int | None, typer.Option(help="claims decided at the same time; default: one per core"),
+    ] = None,
+    seconds: Annotated[
+        float, typer.Option(help="limit for one claim, seconds; above it the verdict is OPEN"),
+    ] = 90.0,
     fresh: Annotated[
-        bool, typer.Option("--fresh", help="decide everything again, ignoring the store")
+        bool, typer.Option("--fresh", help="decide everything again, ignoring what is kept")
     ] = False,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> int:
-    """Decide every claim of the papers. Status 1 when a verdict is not the one declared."""
+    """Decide every claim of the papers. Status 1 when a verdict is not the one declared.
+
+    Verdicts are kept, so that a stopped run goes on and a second one takes seconds.
+
+    Example: navsym verify guaranteed_velocity
+    """
     from navsym.methods.verification import unexpected
 
     started = time.monotonic()

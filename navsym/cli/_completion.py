@@ -1,0 +1,152 @@
+"""What may come next on a command line, found without importing a verb: it is asked at every press of Tab.
+
+Verbs are listed, options are read from the sources, claims from the ledger.
+"""
+
+from __future__ import annotations
+
+import ast
+import json
+import shlex
+from collections.abc import Callable, Iterable
+from pathlib import Path
+
+STATUSES = ("PROVED", "CERTIFIED", "CONFIRMED", "REFUTED", "OPEN")
+DERIVATIONS = Path(__file__).parents[2] / "derivations"
+
+
+def candidates(line: str, verbs: dict[str, Path]) -> list[str]:
+    """Words that complete the last word of a line; none where a file name is wanted.
+
+    line  : the command line up to the cursor, with the program's name
+    verbs : verb -> source file
+    """
+    words, last = split(line)
+    if not words:
+        return begin(last, (*verbs, "--help", "--version"))
+    verb, before = words[0], words[1:]
+    if verb not in verbs:
+        return []
+    if before and before[-1] in VALUES:
+        return begin(last, VALUES[before[-1]]())
+    if last.startswith("-"):
+        return begin(last, options(verbs[verb]))
+    return begin(last, POSITIONAL[verb]()) if verb in POSITIONAL else []
+
+
+def split(line: str) -> tuple[list[str], str]:
+    """Finished words after the program's name, and the one that is being written."""
+    try:
+        words = shlex.split(line)
+    except ValueError:                               # an open quote
+        words = line.split()
+    last = "" if not words or line[-1:].isspace() else words.pop()
+    return words[1:], last
+
+
+def begin(start: str, words: Iterable[str]) -> list[str]:
+    return [word for word in words if word.startswith(start)]
+
+
+def options(source: Path) -> list[str]:
+    """Options of a verb as its source declares them: ``typer.Option("--json")``, or by the parameter's name."""
+    tree = ast.parse(source.read_bytes())
+    command = next(n for n in tree.body if isinstance(n, ast.FunctionDef) and n.name == "command")
+    found = []
+    for argument in (*command.args.args, *command.args.kwonlyargs):
+        call = option_call(argument.annotation)
+        if call is not None:
+            words = [a.value for a in call.args if isinstance(a, ast.Constant) and isinstance(a.value, str)]
+            named = [word for text in words for word in text.split("/") if word.startswith("--")]
+            found += named or ["--" + argument.arg.strip("_").replace("_", "-")]
+    return [*found, "--help"]
+
+
+def option_call(annotation: ast.expr | None) -> ast.Call | None:
+    """The call of ``typer.Option`` in an annotation."""
+    for node in ast.walk(annotation) if annotation is not None else ():
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr == "Option":
+            return node
+    return None
+
+
+def modules() -> list[str]:
+    """Derivation modules, files or folders."""
+    return sorted(
+        path.stem
+        for path in DERIVATIONS.glob("*")
+        if not path.name.startswith("_") and (path.suffix == ".py" or (path / "__init__.py").exists())
+    )
+
+
+def claims() -> list[str]:
+    """Ids of all claims, from the ledger."""
+    try:
+        document = json.loads((DERIVATIONS / "verdicts.json").read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return []
+    return [record["id"] for record in document["claims"]]
+
+
+def datasets() -> list[str]:
+    """Words after ``navsym data``."""
+    from navsym.text.datasets import DATASETS
+
+    return ["list", "get", *DATASETS]
+
+
+POSITIONAL: dict[str, Callable[[], Iterable[str]]] = {
+    "show": claims,
+    "explain": claims,
+    "cite": claims,
+    "export": claims,
+    "verify": modules,
+    "report": modules,
+    "new-claim": modules,
+    "simulate": lambda: ("joint_correction", "multistructure", "terrain_search", "trajectory"),
+    "campaign": lambda: ("mutants", "engines", "parser", "certificates", "identities", *modules()),
+    "data": datasets,
+    "completion": lambda: SHELLS,
+}
+VALUES: dict[str, Callable[[], Iterable[str]]] = {
+    "--paper": modules,
+    "--status": lambda: STATUSES,
+    "--slip": lambda: ("paper", "scan", "any"),
+    "--real": lambda: ("double", "float"),
+    "--policy": lambda: ("strict", "repair"),
+}
+
+
+# -- scripts -----------------------------------------------------------------------------------
+
+SHELLS = ("bash", "zsh", "fish")
+#: Claim ids hold colons, at which bash ends a word: what stands before the last one is cut off again.
+BASH = r"""# completion of navsym for bash
+_navsym() {
+    local line="${COMP_LINE:0:COMP_POINT}" word prefix
+    local last="${line##*[[:space:]]}"
+    COMPREPLY=()
+    prefix=""
+    if [[ "$last" == *:* && "$COMP_WORDBREAKS" == *:* ]]; then prefix="${last%"${last##*:}"}"; fi
+    while IFS= read -r word; do COMPREPLY+=("${word#"$prefix"}"); done < <(navsym completion words "$line" 2>/dev/null)
+}
+complete -o default -F _navsym navsym
+"""
+ZSH = r"""#compdef navsym
+# completion of navsym for zsh
+_navsym() {
+    local -a found
+    found=("${(@f)$(navsym completion words "${(j: :)words[1,CURRENT]}" 2>/dev/null)}")
+    if [[ -n "${found[1]}" ]]; then compadd -- "${found[@]}"; else _files; fi
+}
+compdef _navsym navsym
+"""
+FISH = r"""# completion of navsym for fish
+complete -c navsym -a '(navsym completion words (commandline -cp) 2>/dev/null)'
+"""
+SCRIPTS = {"bash": BASH, "zsh": ZSH, "fish": FISH}
+PLACES = {
+    "bash": ".local/share/bash-completion/completions/navsym",
+    "zsh": ".zfunc/_navsym",
+    "fish": ".config/fish/completions/navsym.fish",
+}

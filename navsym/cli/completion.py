@@ -1,0 +1,40 @@
+"""Completion of verbs, options and claim ids in bash, zsh or fish."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from navsym.cli._completion import PLACES, SCRIPTS, SHELLS
+from navsym.cli.output import OutputError, emit, write_text
+from navsym.errors import DomainError
+
+
+def command(
+    shell: Annotated[str, typer.Argument(help="bash, zsh or fish")],
+    install: Annotated[
+        bool, typer.Option("--install", help="write the script where the shell looks for it")
+    ] = False,
+    json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
+) -> None:
+    """Print the script that completes verbs, options and claim ids, or install it for this user.
+
+    Example: navsym completion bash --install
+    Example: eval "$(navsym completion bash)"        (this shell only)
+    """
+    if shell not in SCRIPTS:
+        raise DomainError(f"expected one of {', '.join(SHELLS)}; got {shell[:40]}; name one", where="completion")
+    if not install:
+        emit({"shell": shell, "script": SCRIPTS[shell]}, as_json=json_, text=SCRIPTS[shell])
+        return
+    path = Path.home() / PLACES[shell]
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        message = f"expected a folder that can be made; got '{error.strerror}'; print the script and place it yourself"
+        raise OutputError(message, where=str(path)) from error
+    write_text(path, SCRIPTS[shell])
+    hint = "; add  fpath+=~/.zfunc  before compinit in ~/.zshrc" if shell == "zsh" else ""
+    emit({"shell": shell, "path": str(path)}, as_json=json_, text=f"{path}: open a new shell{hint}")
