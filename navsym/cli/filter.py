@@ -14,20 +14,27 @@ if TYPE_CHECKING:
 
 
 def command(
-    file: Annotated[Path, typer.Argument(metavar="BANK.json", help="models, transitions, start, measurements")],
+    file: Annotated[
+        Path, typer.Argument(metavar="BANK.json", help="JSON: models, mode_transition, initial, measurements"),
+    ],
     method: Annotated[
         str, typer.Option("--method", help="pulsating, k-pulsating, polygaussian, imm, gpb2 or exact")
     ] = "pulsating",
-    depth: Annotated[int | None, typer.Option("--depth", help="K of k-pulsating, default 2")] = None,
+    depth: Annotated[
+        int | None, typer.Option("--depth", help="K of k-pulsating: steps between two mergers  [default: 2]"),
+    ] = None,
     missing: Annotated[
-        bool, typer.Option("--missing", help="null is a number that did not come, not an error")
+        bool, typer.Option("--missing", help="take null in a measurement for a number that did not come")
     ] = False,
     form: Annotated[
         str, typer.Option("--form", help="how covariances are kept: joseph, or the factors qr, potter, ud")
     ] = "joseph",
-    json_: Annotated[bool, typer.Option("--json", help="one JSON document")] = False,
+    json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> None:
-    """Mode probabilities, mean, covariance and log-likelihood after every measurement."""
+    """Mode probabilities, mean, covariance and log-likelihood after every measurement.
+
+    Example: navsym filter bank.json --method k-pulsating --depth 2
+    """
     from navsym.errors import NavsymError
     from navsym.methods.multimodel import read_bank, run
     from navsym.text.jsonfile import read_json

@@ -18,16 +18,23 @@ if TYPE_CHECKING:
 
 def command(
     file: Annotated[Path, typer.Argument(help="model file (TOML) with constant F and h")],
-    split: Annotated[str | None, typer.Option(help='vectors of each chain, "i,j"; default m,n-m')] = None,
-    poles: Annotated[
-        str | None, typer.Option(help='one polynomial in p per stage: "(p+lam)**3; (p+lam)**2"')
+    split: Annotated[
+        str | None, typer.Option(help='vectors taken from each measurement, such as "2,1"; default m,n-m'),
     ] = None,
-    set_: Annotated[list[str] | None, typer.Option("--set", help="value of a parameter: w=1/2")] = None,
-    html: Annotated[Path | None, typer.Option(help="write the decomposition as a page")] = None,
-    latex: Annotated[Path | None, typer.Option(help="write the decomposition as LaTeX")] = None,
+    poles: Annotated[
+        str | None, typer.Option(help='wanted polynomials in p, one per stage, such as "(p+1)**2; p+2"')
+    ] = None,
+    set_: Annotated[
+        list[str] | None, typer.Option("--set", help="value of a parameter, such as w=1/2; may be repeated"),
+    ] = None,
+    html: Annotated[Path | None, typer.Option(help="write the decomposition to this HTML file")] = None,
+    latex: Annotated[Path | None, typer.Option(help="write the decomposition to this LaTeX file")] = None,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> None:
-    """Exact observability of a model: dimensions, rank drops, splits, gains by poles."""
+    """Exact observability of a model: dimensions, rank drops, splits, gains by poles.
+
+    Example: navsym observe examples/schuler-velocity.toml
+    """
     from navsym.methods.observability_document import document, examine
     from navsym.methods.observability_pages import as_html, as_latex
 
@@ -151,7 +158,9 @@ def as_text(data: Mapping[str, Any]) -> str:
             )
         )
     else:
-        blocks.append("no rank drops\n")
+        blocks.append("no rank drops found\n")
+    unsure = [name for name, complete in data["rank_drops_complete"].items() if not complete]
+    blocks.append(f"list of rank drops not proved complete for {', '.join(unsure)}\n" if unsure else "")
     if data["splits"]:
         best = data["best_split"]
         blocks.append(
@@ -173,7 +182,7 @@ def as_text(data: Mapping[str, Any]) -> str:
     for name, values in data["gains"].items():
         if name != "stable" and values:
             blocks.append(f"{name} = ({', '.join(values)})\n")
-    return "\n".join(blocks)
+    return "\n".join(block for block in blocks if block)
 
 
 def split_text(chosen: Mapping[str, Any]) -> str:
