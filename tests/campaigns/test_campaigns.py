@@ -6,15 +6,18 @@ import json
 
 import sympy as sp
 
-from navsym.claims import Claim, Equation
+from navsym.claims import Bound, Claim, Equation, Optimum
 from navsym.cli.main import run
 from navsym.methods import campaign_certificates, campaign_mutants, campaign_parser
 from navsym.methods.campaign import Batch, run_campaign
-from navsym.methods.campaign_mutants import Mutant, differs
+from navsym.methods.campaign_mutants import differs
+from navsym.methods.campaign_points import changes
 from navsym.proof.certificates import identity_certificate
+from navsym.proof.mutants import KINDS, edited, edits
+from navsym.proof.pointwise import values_at
 from navsym.store import opened
 
-x = sp.Symbol("x", real=True)
+x, y = sp.symbols("x y", real=True)
 LINE = {
     "kind": "gap", "variable": "t", "functional": ["0", "1"], "bits": 80, "cells": 40,
     "panels": [{"measurement": 0, "from": "0", "to": "2", "sigma": "1", "H": ["1", "t"]}],
@@ -53,9 +56,41 @@ def test_every_mutant_of_an_identity_is_refuted_or_proved():
     assert document["counts"]["refuted"] >= 6 and not document["wrong"] and not document["open"]
 
 
+def test_every_kind_of_change_is_made():
+    matrix = sp.Matrix([[x, sp.sin(y) ** 2], [2 * x + y, 1]])
+    kinds = {change.kind for change in changes(Equation(matrix, matrix, {x: (0, 1)}))}
+    assert kinds == set(KINDS)
+
+
+def test_a_mutant_has_the_value_of_the_formula_that_sympy_builds():
+    formula = (2 * x + y**3) ** 2 / sp.exp(x * y) - sp.sqrt(3 * x + y) * sp.atan2(x, y)
+    values = values_at({x: sp.Rational(1, 3), y: sp.Rational(5, 7)})
+    for edit in edits(formula):
+        direct = values_at({x: sp.Rational(1, 3), y: sp.Rational(5, 7)}).of(edited(formula, edit))
+        assert values.edited(formula, edit).overlaps(direct), edit
+
+
+def test_mutants_of_inequalities_numerals_and_optima_fall():
+    t, end = sp.Symbol("t", real=True), sp.Symbol("T", positive=True)
+    box = {end: (sp.Integer(1), sp.Integer(2))}
+    zero, one = sp.Integer(0), sp.Integer(1)
+    slope = ((one, t), (zero, one), t, (zero, end), (-one, 2 / end), (zero, end), (-1 / end, 1 / end), 2 / end, box)
+    statements = {
+        "bound": Bound(sp.sin(end), ">", sp.Rational(1, 2), box),
+        "numeral": Equation(sp.Rational("3.14"), sp.pi, tolerance=sp.Rational("0.005")),
+        "optimum": Optimum(*slope),
+    }
+    for name, statement in statements.items():
+        found = campaign_mutants.judge((Claim("sample", "1", name, lambda s=statement: s), 1.0, 0))
+        assert found["counts"]["refuted"] >= 4 and not found["wrong"], name
+        stored = found["kept"][0]
+        assert all(place is None or str(place) in stored["points"] for place in stored["at"])
+
+
 def test_the_second_look_sees_a_false_proof():
-    assert differs(Mutant("sample:1", sp.sin(2 * x), 2 * sp.sin(x), {}))
-    assert not differs(Mutant("sample:1", sp.sin(2 * x), 2 * sp.sin(x) * sp.cos(x), {}))
+    assert differs(Equation(sp.sin(2 * x), 2 * sp.sin(x)))
+    assert not differs(Equation(sp.sin(2 * x), 2 * sp.sin(x) * sp.cos(x)))
+    assert differs(Bound(x, "<", 2 * x))
 
 
 def test_damaged_files_are_read_or_refused():
