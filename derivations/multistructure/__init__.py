@@ -4,7 +4,11 @@ The files follow the paper: error models (1)-(3), the jump model (4)-(6) with (1
 (7)-(11), moments (12)-(13), the Gaussian step (15)-(18), the pulsating filters, the polygaussian filter
 (19)-(21). Recurrences for densities are total probability and Bayes' rule: they are decided on finite-state
 analogues with free symbols for every probability (:mod:`derivations.multistructure.finite`), where integrals
-are sums, and again for Gaussian families. Words are decided by counting, or by one exact example.
+are sums, for any number of modes by induction (:mod:`derivations.multistructure.any_number`), and again for Gaussian
+families. Words are decided by counting, by one exact example, or by an integral in balls.
+
+Slips without a claim of their own, since nothing can be computed from them: the text below (11) says "in the form (1)"
+for the form (11), and "the j-th step" above (12) for the k-th.
 """
 
 from __future__ import annotations

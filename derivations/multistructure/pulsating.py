@@ -1,8 +1,7 @@
-"""Equations (15)-(17) and the words about pulsating and K-pulsating filters."""
+"""Equations (15)-(17) and the words about the pulsating filter."""
 
 from __future__ import annotations
 
-from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise, product
 
@@ -12,7 +11,6 @@ from derivations.multistructure import examples, finite
 from derivations.multistructure.finite import Step, step
 from derivations.multistructure.recursion import UNIT
 from navsym.claims import CERTIFIED, REFUTED, Bound, Equation, Finding, Property, claim
-from navsym.methods.multimodel_schemes import filters_at, scheme
 
 
 def forgetful_steps():
@@ -123,25 +121,8 @@ def growth():
     return Bound(printed=modes * n - n, relation=">=", derived=n, box={modes: (2, None), n: (1, None)})
 
 
-@claim("count.K")
-def number_in_an_interval():
-    """K-pulsating: within an interval of K steps the number of sequences reaches I^K (I to 4, K to 5)."""
-    cases = [(modes, K) for modes in (1, 2, 3, 4) for K in (1, 2, 3, 4, 5)]
-    found = tuple(
-        max(filters_at(scheme("k-pulsating", K), modes, 1, k) for k in range(1, 4 * K + 1)) for modes, K in cases
-    )
-    counted = tuple(leaves_by_tree(modes, K, 1) for modes, K in cases)
-    return Property(
-        printed=tuple(modes**K for modes, K in cases),
-        derived=Finding(counted if counted == found else found, "sequences enumerated, filters scheduled",
-                        scope="I = 1..4, K = 1..5, four intervals"),
-    )
-
-
 MODELS = [[examples.CALM, examples.JUMP]] * 4
 SWITCHING = [examples.STICKY] * 4
-#: Found by search: three measurements on which one fold less ends farther from the optimal estimate.
-WORSE = [[2], [3], [0]]
 
 
 def differs(first, second) -> Finding:
@@ -172,71 +153,6 @@ def first_step_is_exact():
     return Equation(
         printed=[pulsating.mean[0], pulsating.covariance[0][0]], derived=[exact.mean[0], exact.covariance[0][0]]
     )
-
-
-def distance(method, series, **options):
-    """Distance of the last estimate from the exact one, as a ball."""
-    exact = examples.enclosures("exact", MODELS, SWITCHING, series)[-1]
-    return abs(examples.enclosures(method, MODELS, SWITCHING, series, **options)[-1] - exact)
-
-
-@claim(
-    "K.better",
-    expect=REFUTED,
-    slip="paper",
-    reason="not on every series of measurements: on this one the simplest filter ends nearer to the optimal estimate "
-    "than with K = 2; up to step K the words hold, and on average over series in the studies",
-)
-def longer_is_better():
-    """K-pulsating gives the higher quality: with K = 2 the third estimate is nearer to the optimal one."""
-    two, one = distance("k-pulsating", WORSE, depth=2), distance("pulsating", WORSE)
-    finding = differs(two, one)
-    return Property(printed=True, derived=replace(finding, value=bool(two < one)))
-
-
-@claim("K.better*", corrects="K.better")
-def exact_up_to_K():
-    """K-pulsating: up to step K every hypothesis, weight and estimate is that of the optimal filter (K = 1..4)."""
-    series = [[3], [1], [-2], [4]]
-    equal = True
-    for K in (1, 2, 3, 4):
-        pulsating = examples.in_fractions("k-pulsating", MODELS, SWITCHING, series[:K], depth=K)
-        exact = examples.in_fractions("exact", MODELS, SWITCHING, series[:K])
-        equal = equal and pulsating == exact
-    return Property(
-        printed=True,
-        derived=Finding(
-            equal, "trees compared leaf by leaf in rational arithmetic",
-            scope="one model of two modes; the argument, that no fold comes before the estimate of step K, is general",
-        ),
-    )
-
-
-SAME = [examples.CALM, examples.CALM]
-LATE = [SAME, SAME, [examples.scalar(1, 0, 1, 9), examples.scalar(1, 25, 1, 9)], SAME]
-
-
-@claim("K.fold")
-def lossless_fold():
-    """A fold where the modes agree loses nothing: K = 2 is optimal at step 4 when only step 3 tells modes apart."""
-    series = [[1], [0], [4], [1]]
-    steps = examples.run("exact", LATE, SWITCHING, series)
-    second = {(leaf.mean[0], leaf.covariance[0][0]) for leaf in steps[1].leaves}
-    return Property(
-        printed=1,
-        derived=Finding(len(second), "leaves of the exact tree compared as rational numbers",
-                        scope="this model, every series of measurements: gains do not depend on them",
-                        evidence="all leaves of step 2 are one Gaussian, so the fold of K = 2 changes nothing"),
-    )
-
-
-@claim("K.longer", expect=CERTIFIED)
-def longer_may_be_worse():
-    """A longer interval can lose: in the same example K = 3 misses the optimal estimate that K = 2 finds."""
-    series = [[1], [0], [4], [1]]
-    three = examples.enclosures("k-pulsating", LATE, SWITCHING, series, depth=3)[3]
-    exact = examples.enclosures("exact", LATE, SWITCHING, series)[3]
-    return Property(printed=True, derived=differs(three, exact))
 
 
 share, gap = sp.Symbol("epsilon", nonnegative=True), sp.Symbol("d", real=True)

@@ -9,7 +9,7 @@ import sympy as sp
 
 from derivations.multistructure import finite
 from derivations.multistructure.finite import Step, every_size, step
-from navsym.claims import REFUTED, Equation, claim
+from navsym.claims import REFUTED, Bound, Equation, claim
 
 
 def total(terms):
@@ -249,25 +249,12 @@ def mixture():
     return Equation(printed=printed, derived=derived)
 
 
-@claim(
-    "11.form",
-    expect=REFUTED,
-    slip="paper",
-    reason="the recursion needs the partial densities and mode probabilities, the form (11), and not just their "
-    "sum; (1) is the error equation and no density has that form",
-)
-def form_printed():
-    """Below (11): the recursion carries pi[x(k-1)], of whatever form, into pi[x(k)] (two forms of one sum)."""
-    s = finite.normalised(2)
-    same_sum = {s.modes[0]: sp.Rational(1, 2), s.past[0][0]: sp.Rational(1, 2), s.past[1][0]: sp.Rational(1, 2)}
-    other_parts = {s.modes[0]: sp.Rational(1, 2), s.past[0][0]: sp.Rational(3, 4), s.past[1][0]: sp.Rational(1, 4)}
-    after = state_posterior(s, 0)
-    return Equation(printed=after.subs(same_sum), derived=after.subs(other_parts), box=UNIT(s))
-
-
-@claim("11.form*", corrects="11.form")
+@claim("11.form")
 def form():
-    """Below (11): in that form the recursion is closed: (8), (10), (11) give pi[x(k)] [I,n = 2,2 3,2 2,3]."""
+    """Below (11): in the form (11) the recursion is closed: (8), (10), (11) give pi[x(k)] [I,n = 2,2 3,2 2,3].
+
+    The text says "in the form (1)", which is the error equation and no density: the number (11) lost a digit.
+    """
     printed, derived = [], []
     for s in every_size():
         weight = [total(rho(s, i, j) * s.p(i, j) * s.modes[j] for j in s.I) for i in s.I]
@@ -275,3 +262,25 @@ def form():
         printed.append(total(weight[i] / whole * right_side_of_8(s, i, 0) for i in s.I))
         derived.append(state_posterior(s, 0))
     return Equation(printed=printed, derived=derived)
+
+
+@claim("11.parts")
+def parts_are_needed():
+    """Below (11): the parts are needed: two priors of one sum pi[x(k-1)] but other parts give other posteriors.
+
+    Everything but the parts is the same in both: modes 1/2 each, the state kept, and a mode that is kept.
+    """
+    s = finite.normalised(2)
+    half, quarter = sp.Rational(1, 2), sp.Rational(1, 4)
+    # Mode 0 keeps the state and mode 1 turns it; modes stay; the measurement tells the modes apart by 3 : 1.
+    known = {s.modes[0]: half, s.switch[0][0]: sp.Integer(1), s.switch[1][0]: sp.Integer(0)}
+    for i in s.I:
+        for y in s.X:
+            known[s.transition[i][y][0]] = sp.Integer(int(y == i))
+        for x in s.X:
+            known[s.likelihood[i][x][0]] = 3 * quarter if i == 0 else quarter
+    after = [
+        state_posterior(s, 0).subs({**known, s.past[0][0]: a, s.past[1][0]: 1 - a}, simultaneous=True)
+        for a in (half, 3 * quarter)
+    ]
+    return Bound(printed=after[0], relation="!=", derived=after[1])
