@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import html
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
+from navsym.claims.display import card, verdict_words
 from navsym.claims.statement import Statement
 from navsym.claims.verdict import PROVED, Status
 
@@ -42,6 +44,16 @@ class Claim:
     @property
     def corrects_id(self) -> str | None:
         return None if self.corrects is None else f"{self.module}:{self.corrects}"
+
+    def _repr_html_(self) -> str:
+        """A card for notebooks; nothing is derived or decided for it."""
+        lines = [f"<b>{html.escape(self.id)}</b> {html.escape(self.title)}"]
+        lines.append(f"declared {verdict_words(str(self.expect))}")
+        if self.corrects_id:
+            lines.append(html.escape(f"corrects {self.corrects_id}"))
+        if self.reason:
+            lines.append(html.escape(f"{self.slip or 'note'}: {self.reason}"))
+        return card(lines, str(self.expect))
 
 
 def claim(

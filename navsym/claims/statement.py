@@ -11,6 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from navsym.claims.display import SIGNS, displayed, latex_of
 from navsym.claims.verdict import PROVED, Status
 
 #: Box: symbol -> (lower, upper), exact numbers, None for an end at infinity.
@@ -36,6 +37,11 @@ class Equation:
     box: Box = field(default_factory=dict)
     tolerance: Any = None
     nonzero: tuple[Any, ...] = ()
+
+    def _repr_latex_(self) -> str:
+        """Both sides for notebooks, with a question mark: a statement is not yet a verdict."""
+        within = "" if self.tolerance is None else rf" \pm {latex_of(self.tolerance)}"
+        return displayed(rf"{latex_of(self.printed)}{within} \overset{{?}}{{=}} {latex_of(self.derived)}")
     exists: tuple[Any, ...] = ()
 
 
@@ -51,6 +57,10 @@ class Bound:
     relation: str
     derived: Any
     box: Box = field(default_factory=dict)
+
+    def _repr_latex_(self) -> str:
+        sign = rf"\overset{{?}}{{{SIGNS.get(self.relation, self.relation)}}}"
+        return displayed(f"{latex_of(self.printed)} {sign} {latex_of(self.derived)}")
     exists: tuple[Any, ...] = ()
 
 
@@ -82,6 +92,15 @@ class Optimum:
     value: Any
     box: Box = field(default_factory=dict)
 
+    def _repr_latex_(self) -> str:
+        """The problem, and the solution that is asserted."""
+        t, (start, end) = latex_of(self.variable), self.interval
+        over = rf"\int_{{{latex_of(start)}}}^{{{latex_of(end)}}}"
+        problem = rf"\min {over} |\Phi|\,d{t}, \quad {over} {latex_of(self.regressors)}^T\, \Phi\,d{t} = "
+        found = rf"{latex_of(self.weights)} \text{{ at }} {latex_of(self.support)}"
+        answer = rf"{latex_of(self.functional)}^T: \quad {found}"
+        return displayed(rf"{problem}{answer}, \quad \text{{value }} {latex_of(self.value)}")
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Finding:
@@ -111,6 +130,9 @@ class Property:
 
     printed: Any
     derived: Finding
+
+    def _repr_latex_(self) -> str:
+        return displayed(rf"{latex_of(self.printed)} \overset{{?}}{{=}} {latex_of(self.derived.value)}")
 
 
 Statement = Equation | Bound | Optimum | Property

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import html
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Any
+
+from navsym.claims.display import card, verdict_words
 
 
 class Status(StrEnum):
@@ -54,3 +57,15 @@ class Verdict:
     counterexample: Mapping[str, str] | None = None
     difference: tuple[str, str] | None = None
     certificate: Mapping[str, Any] | None = field(default=None, repr=False)
+
+    def _repr_html_(self) -> str:
+        """A card for notebooks."""
+        head = f"{verdict_words(str(self.status))} by {html.escape(self.method)}"
+        lines = [f"{head}, {html.escape(self.scope)}" if self.scope else head]
+        if self.counterexample:
+            point = ", ".join(f"{name} = {value}" for name, value in self.counterexample.items())
+            between = f"; the difference is {self.difference[0]}" if self.difference else ""
+            lines.append(html.escape(f"at {point}{between}"))
+        if self.assumptions:
+            lines.append(html.escape("assuming " + ", ".join(self.assumptions)))
+        return card(lines, str(self.status))

@@ -7,6 +7,7 @@ deviation ``min sum_j sigma_j integral |Phi_j|`` (Lidov 1964; Martirosyan 2023, 
 
 from __future__ import annotations
 
+import html
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
@@ -15,6 +16,7 @@ import sympy as sp
 from flint import arb
 
 from navsym.claims import CERTIFIED, OPEN, PROVED, Equation, Status
+from navsym.claims.display import card, shortened, table, verdict_words
 from navsym.errors import NavsymError, NotEstimableError
 from navsym.methods.guaranteed_problem import GuaranteedProblem
 from navsym.proof.balls import precision
@@ -67,6 +69,13 @@ class GuaranteedSolution:
     def value(self) -> float:
         """Middle of the enclosure as a float, for plots."""
         return (float(self.lower) + float(self.upper)) / 2
+
+    def _repr_html_(self) -> str:
+        """The estimator as a table, for notebooks."""
+        value = self.lower if self.lower == self.upper else f"{shortened(self.lower)} to {shortened(self.upper)}"
+        head = f"{html.escape(self.problem.target)}: {html.escape(value)} {verdict_words(str(self.status))}"
+        rows = [(row.measurement, shortened(row.at), shortened(row.weight)) for row in self.support]
+        return card([head, table(("measurement", "instant", "weight"), rows)], str(self.status))
 
     def document(self) -> dict[str, Any]:
         """The answer of ``navsym solve``."""

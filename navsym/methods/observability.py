@@ -15,6 +15,7 @@ from dataclasses import dataclass
 
 import sympy as sp
 
+from navsym.claims.display import card, displayed, latex_of, table
 from navsym.errors import DomainError, DuplicateError, EmptyError, TooLargeError, UnobservableError
 from navsym.methods.observability_companion import chain_relation, dot
 from navsym.methods.observability_linear import (
@@ -338,6 +339,16 @@ class Observability:
     unobservable: sp.ImmutableMatrix
     assumptions: tuple[sp.Expr, ...]
     chains: Chains
+
+    def _repr_html_(self) -> str:
+        """Dimensions and companion coefficients as a table, for notebooks."""
+        n, word = len(self.states), "observable" if self.observable else "not observable"
+        rows = [
+            (m.name, f"{m.dimension} of {n}", k, displayed(latex_of(m.companion)))
+            for m, k in zip(self.measurements, self.staircase, strict=True)
+        ]
+        heads = ("measurement", "observes", "taken", "companion coefficients")
+        return card([f"<b>{word}</b>: {self.joint_dimension} of {n} dimensions", table(heads, rows)])
 
     @property
     def joint_dimension(self) -> int:

@@ -12,6 +12,7 @@ from typing import Any
 
 import sympy as sp
 
+from navsym.claims.display import displayed, latex_of, latex_words
 from navsym.errors import DomainError, DuplicateError, EmptyError, NotFiniteError, ShapeError
 from navsym.models.noise import Noise
 
@@ -85,6 +86,15 @@ class LinearModel:
                 f"state: expected one of {', '.join(self.states)}; got {state!r}; name one of them"
             )
         return sp.ImmutableMatrix(self.size, 1, lambda i, _: int(i == place))
+
+    def _repr_latex_(self) -> str:
+        """The equations of the model with named states, for notebooks."""
+        states = r" \\\\ ".join(rf"\text{{{latex_words(name)}}}" for name in self.states)
+        x = rf"\begin{{bmatrix}} {states} \end{{bmatrix}}"
+        noise = rf" + {latex_of(self.G)} w" if self.G.cols else ""
+        lines = [rf"\frac{{d}}{{d{latex_of(self.time)}}} x = {latex_of(self.F)} x{noise}"]
+        lines += [rf"z = {latex_of(self.H)} x + r"] if self.H.rows else []
+        return displayed(r", \qquad ".join([*lines, rf"x = {x}"]))
 
     def at(self, values: Mapping[sp.Symbol, Any]) -> LinearModel:
         """The model with exact values or expressions put in for some of its parameters.

@@ -5,21 +5,11 @@ from __future__ import annotations
 import html
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
-
-import sympy as sp
 
 from navsym.claims import Bound, Claim, Equation, Optimum, Property, Statement, Verdict
+from navsym.claims.display import SIGNS, card, latex_of, verdict_words
 from navsym.errors import NavsymError
 from navsym.proof.ladder import decide
-
-COLOURS = {
-    "PROVED": "#1a7f37",
-    "CERTIFIED": "#1a7f37",
-    "CONFIRMED": "#0969da",
-    "REFUTED": "#cf222e",
-    "OPEN": "#9a6700",
-}
 
 
 class UnexpectedVerdictError(NavsymError):
@@ -39,17 +29,14 @@ class Shown:
 
     def _repr_html_(self) -> str:
         """A card; every word that comes from data is escaped."""
-        verdict, colour = self.verdict, COLOURS[str(self.verdict.status)]
+        verdict = self.verdict
         rows = [
             f"<b>{html.escape(self.claim.id)}</b> {html.escape(self.claim.title)}",
             *(f"<i>{name}</i> $\\displaystyle {latex}$" for name, latex in statement_latex(self.statement)),
-            f"<b style='color:{colour}'>{verdict.status}</b> by {html.escape(verdict.method)}, "
-            f"{html.escape(verdict.scope)}",
+            f"{verdict_words(str(verdict.status))} by {html.escape(verdict.method)}, {html.escape(verdict.scope)}",
         ]
         rows += [html.escape(words) for words in remarks(self.claim, verdict)]
-        return (
-            f"<div style='border-left:4px solid {colour};padding-left:10px'>" + "<br>".join(rows) + "</div>"
-        )
+        return card(rows, str(verdict.status))
 
     def __repr__(self) -> str:
         return f"{self.claim.id}: {self.verdict.status} ({self.verdict.method}; {self.verdict.scope})"
@@ -84,23 +71,15 @@ def remarks(claim: Claim, verdict: Verdict) -> list[str]:
 def statement_latex(statement: Statement) -> list[tuple[str, str]]:
     """The parts of a statement as (word, LaTeX)."""
     if isinstance(statement, Equation):
-        return [("printed", side_latex(statement.printed)), ("derived", side_latex(statement.derived))]
+        return [("printed", latex_of(statement.printed)), ("derived", latex_of(statement.derived))]
     if isinstance(statement, Bound):
-        relation = {"<=": r"\le", ">=": r"\ge", "!=": r"\ne"}.get(statement.relation, statement.relation)
-        return [("bound", f"{side_latex(statement.printed)} {relation} {side_latex(statement.derived)}")]
+        relation = SIGNS.get(statement.relation, statement.relation)
+        return [("bound", f"{latex_of(statement.printed)} {relation} {latex_of(statement.derived)}")]
     if isinstance(statement, Optimum):
         names = ("dual", "support", "weights", "value")
-        return [(name, side_latex(getattr(statement, name))) for name in names]
+        return [(name, latex_of(getattr(statement, name))) for name in names]
     assert isinstance(statement, Property)
-    return [("printed", words(statement.printed)), ("found", words(statement.derived.value))]
-
-
-def side_latex(side: Any) -> str:
-    return sp.latex(sp.Tuple(*side) if isinstance(side, (tuple, list)) else sp.sympify(side, strict=True))
-
-
-def words(value: Any) -> str:
-    return rf"\text{{{html.escape(str(value))}}}"
+    return [("printed", latex_of(statement.printed)), ("found", latex_of(statement.derived.value))]
 
 
 def verdict_table(claims: Mapping[str, Claim] | list[Claim], choose: Callable[[Claim], bool] = bool) -> str:

@@ -50,6 +50,10 @@ class ModelFile:
     T: Expr | None
     targets: Targets
 
+    def _repr_latex_(self) -> str:
+        """The matrix of the system, for notebooks."""
+        return str(self.F._repr_latex_())
+
     @property
     def F(self) -> Matrix:
         """The matrix of a model in one piece. Raises ShapeError when there are several."""
