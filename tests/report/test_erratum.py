@@ -1,0 +1,215 @@
+"""Erratum sheets: worded for an editor, complete, and real LaTeX."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+import shutil
+import subprocess
+from pathlib import Path
+from xml.dom import minidom
+
+import pytest
+
+from navsym.claims import Paper
+from navsym.errors import NavsymError
+from navsym.report.erratum import erratum_of
+from navsym.report.latex_math import mathml, sentence_html, sentence_latex
+from navsym.report.page import environment, site
+from navsym.report.page_code import snippets
+from navsym.report.page_formula import read_formula
+from navsym.report.page_plot import value
+from navsym.report.wording import pattern_of, read_wording
+
+DERIVATIONS = Path(__file__).parents[2] / "derivations"
+LEDGER = json.loads((DERIVATIONS / "verdicts.json").read_text(encoding="utf-8"))
+SHEETS = sorted((DERIVATIONS / "errata").glob("*.toml"))
+MODULES = [path.stem for path in SHEETS]
+
+
+def words_of(module):
+    path = DERIVATIONS / "errata" / f"{module}.toml"
+    return read_wording(path.read_text(encoding="utf-8"), path.name)
+
+
+def refuted(module):
+    return [r for r in LEDGER["claims"] if r["paper"] == module and r["status"] == "REFUTED" and r["slip"]]
+
+
+# -- wording ---------------------------------------------------------------------------------
+
+
+def test_every_paper_with_a_slip_has_a_sheet():
+    assert {r["paper"] for r in LEDGER["claims"] if r["status"] == "REFUTED" and r["slip"]} == set(MODULES)
+
+
+@pytest.mark.parametrize("module", MODULES)
+def test_every_slip_is_worded_and_no_wording_is_left_over(module):
+    words, numbers = words_of(module), [r["number"] for r in refuted(module)]
+    assert [n for n in numbers if pattern_of(n, words) is None] == []
+    assert set(words) - {pattern_of(n, words) for n in numbers} == set()
+
+
+@pytest.mark.parametrize("module", MODULES)
+def test_a_correction_names_a_place_changes_something_and_gives_a_reason(module):
+    for number, worded in words_of(module).items():
+        assert worded.printed != worded.correct, number
+        assert re.search(r"(?i)equation|section|formula|table|paragraph|definition|matrix|after|before|experiment|"
+                         r"studies|study|measure|rule|system|model|conclusion|case|sentence|criterion", worded.where), number
+        assert worded.why.rstrip().endswith((".", ")", "?")), number
+
+
+def test_what_covers_several_figures_becomes_a_table():
+    records = [r for r in LEDGER["claims"] if r["paper"] == "trajectory"]
+    card = Paper("trajectory", "T", (), 2018, "", "", ())
+    entries = erratum_of(card, records, words_of("trajectory")).entries
+    (table,) = [entry for entry in entries if entry.rows]
+    assert len(table.rows) == 16 and len(table.ids) == 16
+    assert {row.wrong for row in table.rows}.isdisjoint({row.right for row in table.rows})
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["[a", '["1"]\nwhere = "x"', '["1"]\nwhere="x"\nprinted="y"\ncorrect="z"\nmore="!"', 'a = 1',
+     '["1"]\nwhere="x"\nprinted="$\\\\input{y}$"\ncorrect="z"', '["1"]\nwhere="x $"\nprinted="y"\ncorrect="z"'],
+)  # fmt: skip
+def test_wording_that_is_none_is_refused_with_its_place(text):
+    with pytest.raises(NavsymError, match="expected .*; got "):
+        read_wording(text, "sheet")
+
+
+# -- formulas --------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("module", MODULES)
+def test_formulas_of_the_sheets_are_wellformed_mathml(module):
+    for worded in words_of(module).values():
+        for text in (worded.where, worded.printed, worded.correct, worded.why):
+            for formula in re.findall(r"<math.*?</math>", sentence_html(text), re.S):
+                minidom.parseString(formula)
+
+
+@pytest.mark.parametrize(
+    ("source", "part"),
+    [
+        (r"\frac{a}{b}", "<mfrac><mrow><mi>a</mi></mrow><mrow><mi>b</mi></mrow></mfrac>"),
+        (r"x_1^2", "<msubsup><mi>x</mi><mn>1</mn><mn>2</mn></msubsup>"),
+        (r"\sum_{j=1}^l", "<munderover><mo>∑</mo>"),
+        (r"\dot y", '<mover accent="true"><mi>y</mi>'),
+        (r"\begin{pmatrix}1&0\\0&1\end{pmatrix}", "<mtable><mtr><mtd>"),
+        (r"^2", "<msup><mrow></mrow><mn>2</mn></msup>"),
+        (r"\left(x\right)^2", "<mo>(</mo>"),
+    ],
+)
+def test_the_small_part_of_latex_is_read(source, part):
+    assert part in mathml(source)
+    minidom.parseString(f"<p>{mathml(source).replace('<wbr>', '')}</p>")
+
+
+@pytest.mark.parametrize(
+    "source",
+    [r"\input{x}", r"\write18", r"\def\a{b}", "{a", r"\frac{a}", r"\begin{tabular}", "a}b", "a & b", r"\left x", "#1", "~"],
+)
+def test_what_is_not_on_the_list_is_refused(source):
+    with pytest.raises(NavsymError, match="expected"):
+        sentence_latex(f"words ${source}$ words")
+
+
+def test_words_around_formulas_are_escaped_in_both_notations():
+    assert sentence_html("<b> & $x$") == "&lt;b&gt; &amp; <math><mrow><mi>x</mi></mrow></math>"
+    assert sentence_latex("5 % of $x$ & more_") == r"5 \% of $x$ \& more\_"
+
+
+def test_a_long_formula_may_be_broken_before_signs_but_not_behind_them():
+    assert mathml("a=b+c-d").count("<wbr>") == 3
+    assert mathml("(-a)").count("<wbr>") == 0 and mathml("=-a").count("<wbr>") == 0
+
+
+# -- LaTeX -----------------------------------------------------------------------------------
+
+
+def compiled(tex, folder, wide=False):
+    """Pages of a document that pdflatex makes; overfull lines only where they are allowed."""
+    (folder / "sheet.tex").write_text(tex, encoding="utf-8")
+    done = subprocess.run(
+        ["pdflatex", "-no-shell-escape", "-interaction=nonstopmode", "-halt-on-error", "sheet.tex"],
+        cwd=folder, capture_output=True, text=True, check=False, timeout=120, errors="replace",
+    )  # fmt: skip
+    assert done.returncode == 0, done.stdout[-2000:]
+    assert wide or "Overfull" not in done.stdout
+    found = re.search(r"Output written on sheet.pdf \((\d+) page", done.stdout)
+    assert found is not None
+    return int(found.group(1))
+
+
+needs_latex = pytest.mark.skipif(shutil.which("pdflatex") is None, reason="no pdflatex: install texlive-latex-base")
+
+
+@needs_latex
+@pytest.mark.parametrize("module", MODULES)
+def test_the_sheet_of_every_paper_compiles_and_no_line_is_too_wide(module, tmp_path):
+    document = {
+        "claims": [r for r in LEDGER["claims"] if r["paper"] == module],
+        "papers": [p for p in LEDGER["papers"] if p["module"] == module], "counts": LEDGER["counts"],
+    }  # fmt: skip
+    files = site(document, {}, {module: words_of(module)})
+    assert 2 <= compiled(files[f"{module}.erratum.tex"], tmp_path) <= 12
+
+
+@needs_latex
+def test_a_sheet_without_wording_and_one_without_entries_compile(files, card, tmp_path):
+    assert compiled(files["sample.erratum.tex"], tmp_path) == 1
+    tex = site({"claims": [], "papers": [{"module": "sample", "title": "x"}], "counts": {}}, {"sample": card})
+    assert compiled(tex["sample.erratum.tex"], tmp_path) == 1
+
+
+@needs_latex
+def test_hostile_words_compile(hostile_words, records, card, tmp_path):
+    wild = [
+        dict(records[1], number=f"9.{i}", id=f"sample:9.{i}", title=words, reason=words)
+        for i, words in enumerate(hostile_words)
+    ]
+    document = {"claims": wild, "papers": [{"module": "sample", "title": "x"}], "counts": {}}
+    tex = site(document, {"sample": card})["sample.erratum.tex"]
+    plain = "".join(c if ord(c) < 0x250 else "?" for c in tex)       # letters of fonts that are not loaded
+    compiled(plain, tmp_path, wide=True)           # one of the words has hundreds of letters
+
+
+def test_the_filters_of_the_templates_are_there():
+    assert {"tex", "sentence", "sentence_tex", "slug"} <= set(environment().filters)
+
+
+# -- code ------------------------------------------------------------------------------------
+
+
+def test_code_beside_a_proved_formula_computes_what_is_printed():
+    tried = 0
+    for record in LEDGER["claims"]:
+        for snippet in snippets(record)[:1]:
+            names = sorted(re.search(r"\((.*)\):", snippet.text).group(1).split(", "))
+            point = {name: 0.3 + 0.1 * place for place, name in enumerate(names)}
+            room: dict = {}
+            exec(snippet.text, room)                        # our own text, in a test
+            function = next(item for key, item in room.items() if callable(item))
+            try:
+                expected = value(read_formula(record["printed"]), point)
+            except (ValueError, ArithmeticError):
+                continue
+            assert math.isclose(function(**point), expected, rel_tol=1e-12, abs_tol=1e-12), record["id"]
+            tried += 1
+    assert tried > 60
+
+
+@pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
+def test_the_c_beside_proved_formulas_compiles_without_a_warning(tmp_path):
+    texts = [s.text.replace("eq_", f"f{i}_eq_", 1) for i, r in enumerate(LEDGER["claims"]) for s in snippets(r)[1:]]
+    named = [re.sub(r"double (\w+)\(", rf"double g{i}_\1(", t, count=1) for i, t in enumerate(texts)]
+    (tmp_path / "all.c").write_text("\n".join(named), encoding="utf-8")
+    command = ["cc", "-std=gnu11", "-Wall", "-Wextra", "-Werror", "-c", "all.c"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False, timeout=120)
+    assert done.returncode == 0, done.stderr[-2000:]
+
+
+def test_a_refuted_formula_gets_no_code(records):
+    assert snippets(records[1]) == () and snippets(records[0])[0].language == "Python"
