@@ -23,30 +23,41 @@ def command(
         list[str],
         typer.Argument(help="module:number, FILE.toml:id, or regimes joined as A+B+C; or a ready-made name"),
     ],
-    to: Annotated[str, typer.Option("--to", help="languages, such as c,cpp,rust,python")] = "c",
-    out: Annotated[Path, typer.Option("--out", help="folder to write")] = Path("export"),
-    real: Annotated[str, typer.Option("--real", help="double or float")] = "double",
+    to: Annotated[
+        str, typer.Option("--to", help="languages separated by commas: see the documentation for all"),
+    ] = "c",
+    out: Annotated[
+        Path, typer.Option("--out", help="folder for the code; made when it is not there"),
+    ] = Path("export"),
+    real: Annotated[
+        str, typer.Option("--real", help="floating-point type of the code: double or float"),
+    ] = "double",
     force: Annotated[bool, typer.Option("--force", help="replace files that are there")] = False,
     allow_confirmed: Annotated[
-        bool, typer.Option("--allow-confirmed", help="accept claims held by samples")
+        bool, typer.Option("--allow-confirmed", help="accept claims that were only sampled (CONFIRMED)")
     ] = False,
     license_: Annotated[
         str, typer.Option("--license", help="SPDX identifier for the headers")
     ] = "Apache-2.0",
     vectors: Annotated[
-        int, typer.Option("--vectors", min=4, max=100_000, help="vectors for each function")
+        int, typer.Option("--vectors", min=4, max=100_000, help="test vectors for each function")
     ] = 48,
-    run: Annotated[bool, typer.Option("--run/--no-run", help="compile and run what this machine can")] = True,
+    run: Annotated[
+        bool, typer.Option("--run/--no-run", help="compile and run the code on its vectors where this machine can"),
+    ] = True,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> int:
-    """Refuses a claim that does not hold, naming the one that corrects it."""
+    """Write formulas that hold as code; what does not hold is refused, and what corrects it is named.
+
+    Example: navsym export guaranteed_velocity:4.13.y3 --to c,python --out build/drift
+    """
     from navsym.export.package import Order, export
     from navsym.export.targets import chosen
 
     if real not in ("double", "float"):
         raise DomainError(f"expected double or float; got {real[:20]!r}; do correct it", where="--real")
     targets = tuple(chosen(to.split(","), real))
-    functions = [function_for(claim, real, allow_confirmed) for claim in expanded(claims)]
+    functions = [f for claim in expanded(claims) for f in functions_for(claim, real, allow_confirmed)]
     words = [
         "navsym",
         "export",
@@ -74,20 +85,17 @@ def expanded(claims: list[str]) -> list[str]:
     return [part for claim in claims for part in READY.get(claim, (claim,))]
 
 
-def function_for(text: str, real: str, allow_confirmed: bool) -> ExportedFunction:
-    """The function of one argument; ``name=A+B`` gives it a name; a step is composed of its stages."""
+def functions_for(text: str, real: str, allow_confirmed: bool) -> list[ExportedFunction]:
+    """The functions of one argument; ``name=A+B`` gives a name; a ready-made program has two."""
     from navsym.export.functions import function_of
     from navsym.export.names import identifier
-    from navsym.export.ready import STEPS
-    from navsym.export.steps import step_function
+    from navsym.export.ready import ALGORITHMS, algorithm
 
-    if text in STEPS:
-        stages = [material_for(stage.claim, allow_confirmed) for stage in STEPS[text].stages]
-        return step_function(STEPS[text], stages, identifier(text), real)
-
+    if text in ALGORITHMS:
+        return algorithm(text, lambda claim: material_for(claim, allow_confirmed), real)
     name, _, claims = text.rpartition("=") if "=" in text else ("", "", text)
     parts = [material_for(part, allow_confirmed) for part in claims.split("+")]
-    return function_of(parts, real=real, name=identifier(name) if name else None)
+    return [function_of(parts, real=real, name=identifier(name) if name else None)]
 
 
 def material_for(text: str, allow_confirmed: bool) -> Material:

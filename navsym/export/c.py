@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from navsym.export.functions import ExportedFunction, Output
+from navsym.export.parts import Argument, ExportedFunction, Output
 from navsym.export.printing import (
     SINC_STEPS,
     SINC_SWITCH,
@@ -14,11 +14,13 @@ from navsym.export.printing import (
     Spelling,
     assignments,
     calls,
+    code_names,
     helpers_used,
     horner,
     summary,
+    unit_of,
 )
-from navsym.export.steps import c_state_header
+from navsym.export.programs import c_header, c_through_state, output_places
 from navsym.export.vectors import Vector
 
 STATUS = """/* {license} */
@@ -51,7 +53,7 @@ def files(
         found[f"{function.name}.h"] = header(function, license_)
         found[f"{function.name}.c"] = source(function, license_)
         if function.state:
-            found[f"{function.name}_state.h"] = c_state_header(function, spelling(function.arithmetic.name), license_)
+            found[f"{function.state.program}.h"] = c_header(function, license_)
     found["test_vectors.h"] = vectors_header(functions, tests, license_)
     found["test_main.c"] = test_program(functions, tests, license_)
     found["CMakeLists.txt"] = cmake([f.name for f in functions], license_)
@@ -80,8 +82,12 @@ def wasm_files(
 
 def parameters(function: ExportedFunction) -> str:
     real = function.arithmetic.name
-    values = [f"{real} {i.name}" for i in function.inputs]
+    values = [value_parameter(a, real) for a in function.called_with]
     return ", ".join([*values, *(result_parameter(o, real) for o in function.outputs)]) or "void"
+
+
+def value_parameter(argument: Argument, real: str) -> str:
+    return f"const {real} {argument.name}[{argument.size}]" if argument.size else f"{real} {argument.name}"
 
 
 def result_parameter(output: Output, real: str) -> str:
@@ -97,8 +103,8 @@ def header(function: ExportedFunction, license_: str) -> str:
     """Declaration with everything a reader must know before calling it."""
     guard = f"NAVSYM_{function.name.upper()}_H"
     lines = [f" * {line}" for line in summary(function)]
-    params = [f" * @param[in]  {i.name}  {i.text}" for i in function.inputs]
-    params += [f" * @param[out] {o.name}  {shape_text(o)}" for o in function.outputs]
+    params = [f" * @param[in]  {text}" for text in argument_texts(function)]
+    params += [f" * @param[out] {o.name}  {shape_text(o)}; unit {unit_of(o.unit)}" for o in function.outputs]
     return "\n".join(
         [
             f"/* {license_} */",
@@ -131,6 +137,16 @@ def header(function: ExportedFunction, license_: str) -> str:
             "",
         ]
     )
+
+
+def argument_texts(function: ExportedFunction) -> list[str]:
+    """Name, meaning and unit of every argument."""
+    found = []
+    for a in function.called_with:
+        entries = function.inputs[a.first : a.first + (a.size or 1)]
+        text = ", ".join(i.symbol.name for i in entries) if a.size else entries[0].text
+        found.append(f"{a.name}  {text}; unit {unit_of(entries[0].unit)}")
+    return found
 
 
 def safe_comment(text: str) -> str:
@@ -169,7 +185,7 @@ def body(function: ExportedFunction, s: Spelling) -> list[str]:
     lines += ["", *domain_test(function, s, largest)]
     for place, piece in enumerate(function.pieces):
         condition = "" if piece.limit is None else f"if ({switch_name(function)} <= {s.number(piece.limit)}) "
-        temporaries, results = assignments(piece, [i.name for i in function.inputs], s)
+        temporaries, results = assignments(piece, code_names(function), s)
         lines.append(f"    {'else ' if place else ''}{condition}{{ /* {piece.source.claim} */")
         lines += [f"        const {real} {name} = {text};" for name, text in temporaries]
         lines += [f"        r{k} = {text};" for k, text in enumerate(results)]
@@ -191,10 +207,13 @@ def switch_name(function: ExportedFunction) -> str:
 def domain_test(function: ExportedFunction, s: Spelling, largest: str) -> list[str]:
     """Comparisons that NaN fails; one line for each argument."""
     tests = []
-    for i in function.inputs:
+    for i, name in zip(function.inputs, code_names(function), strict=True):
+        if math.isinf(i.low) and math.isinf(i.high):
+            tests.append(f"({s.calls['abs'].format(name)} <= {largest})")
+            continue
         low = s.number(i.low) if math.isfinite(i.low) else f"-{largest}"
         high = s.number(i.high) if math.isfinite(i.high) else largest
-        tests.append(f"({i.name} >= {low}) && ({i.name} <= {high})")
+        tests.append(f"({name} >= {low}) && ({name} <= {high})")
     if not tests:
         return []
     joined = "\n          && ".join(tests)
@@ -314,7 +333,7 @@ TEST = """static int test_{name}(void)
     int k;
     for (k = 0; k < {name}_COUNT; k++) {{
         {real} r[{size}] = {{{zero}}};
-        const navsym_status status = {name}({arguments});
+        const navsym_status status = {call}({arguments});
         int j;
         if ((int)status != {name}_status[k]) {{
             wrong++;
@@ -341,25 +360,25 @@ def test_program(functions: Sequence[ExportedFunction], tests: dict[str, list[Ve
     real = functions[0].arithmetic.name
     return PROGRAM.format(
         license=license_,
-        includes="\n".join(f'#include "{f.name}.h"' for f in functions),
+        includes="\n".join(f'#include "{f.state.program if f.state else f.name}.h"' for f in functions),
         unit="2^-52" if real == "double" else "2^-23",
         epsilon="2.220446049250313e-16" if real == "double" else "1.1920928955078125e-07",
-        tests="\n".join(test_function(f) for f in functions),
+        tests="\n".join(text for f in functions for text in (*c_through_state(f), test_function(f))),
         calls="\n".join(f"    failed += test_{f.name}();" for f in functions),
     )
 
 
 def test_function(function: ExportedFunction) -> str:
     n, real = len(function.inputs), function.arithmetic.name
-    arguments = [f"{function.name}_in[(k * {n}) + {j}]" for j in range(n)]
-    place = 0
-    for output in function.outputs:
-        arguments.append(f"&r[{place}]")
-        place += output.size
+    arguments = []
+    for a in function.called_with:
+        arguments.append(f"{'&' if a.size else ''}{function.name}_in[(k * {n}) + {a.first}]")
+    arguments += [f"&r[{place}]" for place in output_places(function)]
     zero = "0.0f" if real == "float" else "0.0"
     return TEST.format(
-        name=function.name, size=function.size, real=real, zero=zero, arguments=", ".join(arguments)
-    )
+        name=function.name, size=function.size, real=real, zero=zero, arguments=", ".join(arguments),
+        call=f"through_{function.name}" if function.state else function.name,
+    )  # fmt: skip
 
 
 def cmake(names: Sequence[str], license_: str) -> str:

@@ -17,7 +17,7 @@ from typing import Any
 import sympy as sp
 
 from navsym.export.forms import plain
-from navsym.export.functions import ExportedFunction
+from navsym.export.parts import ExportedFunction
 from navsym.export.printing import helpers_used
 from navsym.export.python import vectors_json
 from navsym.export.vectors import Vector
@@ -77,7 +77,10 @@ def files(
         for place, piece in enumerate(function.pieces):
             name = f"f{place}_{function.name.strip('_')}"[:60].replace("__", "_").rstrip("_")
             made = casadi_function(
-                name, [i.symbol for i in function.inputs], sp.Matrix([plain(form) for form in piece.forms])
+                name,
+                [i.symbol for i in function.inputs],
+                sp.Matrix([plain(form) for form in piece.forms]),
+                [(symbol, plain(form)) for symbol, _, form in piece.lets],
             )
             found[f"{name}.casadi"] = made.serialize()
             found[f"{name}.c"] = generated(made, name)

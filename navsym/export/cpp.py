@@ -6,8 +6,9 @@ import math
 from collections.abc import Sequence
 
 from navsym.export.c import HELPERS, safe_comment
-from navsym.export.functions import ExportedFunction, Output
-from navsym.export.printing import Spelling, assignments, calls, helpers_used, summary
+from navsym.export.parts import Argument, ExportedFunction, Output
+from navsym.export.printing import Spelling, assignments, calls, code_names, helpers_used, summary
+from navsym.export.programs import cpp_program, cpp_through_state, through_accessors
 from navsym.export.vectors import Vector
 
 
@@ -54,7 +55,7 @@ def header(functions: Sequence[ExportedFunction], license_: str) -> str:
             "",
             *helpers,
             "",
-            *(source(f, s) for f in functions),
+            *(text for f in functions for text in (source(f, s), *cpp_program(f))),
             "}  // namespace navsym",
             "",
             "#endif",
@@ -65,16 +66,16 @@ def header(functions: Sequence[ExportedFunction], license_: str) -> str:
 
 def source(function: ExportedFunction, s: Spelling) -> str:
     """Result structure and function."""
-    real, names = function.arithmetic.name, [i.name for i in function.inputs]
+    real, names = function.arithmetic.name, code_names(function)
     lines = [f"struct {function.name}_result {{", "    Status status = Status::not_finite;"]
     lines += [f"    {member(o, real)};" for o in function.outputs] + ["};", ""]
     lines += ["/**", *(f" * {safe_comment(line)}" for line in summary(function)), " */"]
-    arguments = ", ".join(f"{real} {n}" for n in names)
+    arguments = ", ".join(parameter(a, real) for a in function.called_with)
     lines.append(f"inline {function.name}_result {function.name}({arguments}) noexcept")
     lines += ["{", f"    {function.name}_result result;"]
     largest = f"std::numeric_limits<{real}>::max()"
-    tests = [f"({i.name} >= {bound(i.low, s, largest)}) && ({i.name} <= {bound(i.high, s, largest)})"
-             for i in function.inputs]  # fmt: skip
+    tests = [f"({n} >= {bound(i.low, s, largest)}) && ({n} <= {bound(i.high, s, largest)})"
+             for i, n in zip(function.inputs, names, strict=True)]  # fmt: skip
     if tests:
         joined = "\n          && ".join(tests)
         lines += [
@@ -109,6 +110,11 @@ def source(function: ExportedFunction, s: Spelling) -> str:
     return "\n".join(lines)
 
 
+def parameter(argument: Argument, real: str) -> str:
+    kind = f"const std::array<{real}, {argument.size}>& " if argument.size else f"{real} "
+    return f"{kind}{argument.name}"
+
+
 def member(output: Output, real: str) -> str:
     return (
         f"std::array<{real}, {output.size}> {output.name}{{}}"
@@ -133,7 +139,7 @@ TEST = """static int test_{name}()
     int wrong = 0;
     double worst = 0.0;
     for (int k = 0; k < {count}; k++) {{
-        const auto result = navsym::{name}({arguments});
+{call}
         wrong += (static_cast<int>(result.status) != status[k]) ? 1 : 0;
         if (result.status != navsym::Status::ok || status[k] != 0) {{
             continue;
@@ -177,11 +183,7 @@ def test_function(function: ExportedFunction, found: list[Vector]) -> str:
     def wide(part: str) -> str:
         return rows([d.number(x) for v in found for x in (getattr(v, part) or (0.0,) * function.size)])
 
-    accessors = [
-        f"result.{o.name}[{e}]" if o.shape else f"result.{o.name}"
-        for o in function.outputs
-        for e in range(o.size)
-    ]
+    accessors = through_accessors(function)
     cast = "static_cast<double>({})" if real == "float" else "{}"
     template = TEST if n else TEST.replace("    static const {real} in[] = {{{inputs}}};\n", "")
     return template.format(
@@ -189,10 +191,20 @@ def test_function(function: ExportedFunction, found: list[Vector]) -> str:
         inputs=rows([s.number(x) for v in found for x in v.inputs] or [s.number(0.0)]),
         status=", ".join(str(v.status) for v in found),
         lower=wide("lower"), upper=wide("upper"), nearest=wide("nearest"),
-        arguments=", ".join(f"in[(k * {n}) + {j}]" for j in range(n)),
+        call=cpp_through_state(function, real) if function.state else cpp_call(function, real),
         values=", ".join(cast.format(a) for a in accessors),
         epsilon="2.220446049250313e-16" if real == "double" else "1.1920928955078125e-07",
     )  # fmt: skip
+
+
+def cpp_call(function: ExportedFunction, real: str) -> str:
+    """The call of one vector; arrays are filled from the row."""
+    n = len(function.inputs)
+    words = []
+    for a in function.called_with:
+        entries = [f"in[(k * {n}) + {a.first + e}]" for e in range(a.size or 1)]
+        words.append(f"std::array<{real}, {a.size}>{{{', '.join(entries)}}}" if a.size else entries[0])
+    return f"        const auto result = navsym::{function.name}({', '.join(words)});"
 
 
 def rows(numbers: list[str]) -> str:

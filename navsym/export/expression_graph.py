@@ -4,6 +4,9 @@ Equal subexpressions are one node. Sines and cosines of rational multiples of on
 sincos and follow by double angles and addition (:func:`build` with ``share``). Whole powers are
 products, a product with negative powers is one quotient. ``Graph.meaning`` is the exact formula of
 each root, which the normal form proves equal to the claim.
+
+A long computation is a chain of named values (``lets``): a later formula refers to an earlier one by its symbol,
+so that every link is proved by itself and no formula is ever written out in full.
 """
 
 from __future__ import annotations
@@ -17,7 +20,7 @@ from typing import Any
 import sympy as sp
 
 from navsym.errors import DomainError, UnknownSymbolError
-from navsym.export.forms import MEANING, expm1, plain, sinc, x_minus_sin
+from navsym.export.forms import MEANING, common_step, expm1, plain, sinc, x_minus_sin
 
 UNARY: dict[type, str] = {
     sp.sin: "sin", sp.cos: "cos", sp.exp: "exp", sp.log: "log", sp.Abs: "abs",
@@ -54,14 +57,31 @@ class Graph:
 
     def operations(self) -> Counter[str]:
         """Number of operations of each kind."""
-        return Counter(node.op for node in self.nodes if node.op not in ("input", "const"))
+        return Counter(node.op for node in self.nodes if node.op not in ("input", "const", "let"))
 
     def meaning(self) -> tuple[sp.Expr, ...]:
-        """Exact value of every root, written with the input symbols."""
+        """Exact value of every root, written with the symbols of the inputs and of the named values."""
+        done = self.values()
+        return tuple(plain(done[root]) for root in self.roots)
+
+    def named_meanings(self) -> dict[sp.Symbol, sp.Expr]:
+        """Exact value of every named value, written with the inputs and the names before it."""
+        done = self.values()
+        return {node.value: plain(done[node.args[0]]) for node in self.nodes if node.op == "let"}
+
+    def values(self) -> list[sp.Expr]:
         done: list[sp.Expr] = []
         for node in self.nodes:
             done.append(value_of(node, [done[a] for a in node.args], self.inputs))
-        return tuple(plain(done[root]) for root in self.roots)
+        return done
+
+    def without_names(self) -> Graph:
+        """The same operations without the names; what they made different and is equal becomes one node."""
+        builder, new = Builder(self.inputs), []
+        for node in self.nodes:
+            args = [new[a] for a in node.args]
+            new.append(args[0] if node.op == "let" else builder.put(node.op, *args, value=node.value))
+        return pruned(Graph(self.inputs, tuple(builder.nodes), tuple(new[root] for root in self.roots)))
 
 
 FUNCTION_OF = {name: kind for kind, name in (*UNARY.items(), *BINARY.items())}
@@ -71,7 +91,7 @@ def value_of(node: Node, args: list[sp.Expr], inputs: Sequence[sp.Symbol]) -> sp
     """Exact value of one node from those of its arguments."""
     if node.op == "input":
         return inputs[node.value]
-    if node.op == "const":
+    if node.op in ("const", "let"):
         return node.value
     if node.op in FUNCTION_OF:
         return FUNCTION_OF[node.op](*args)
@@ -84,15 +104,24 @@ def value_of(node: Node, args: list[sp.Expr], inputs: Sequence[sp.Symbol]) -> sp
     return arithmetic[node.op]()
 
 
-def build(expressions: Sequence[sp.Expr], inputs: Sequence[sp.Symbol], *, share: bool = True) -> Graph:
+def build(
+    expressions: Sequence[sp.Expr],
+    inputs: Sequence[sp.Symbol],
+    *,
+    share: bool = True,
+    lets: Sequence[tuple[sp.Symbol, sp.Expr]] = (),
+) -> Graph:
     """The graph of expressions that are already in their safe form.
 
     share : multiples of one angle from one sincos; otherwise each angle by itself
+    lets  : named values in order; expressions and later values may contain their symbols
     Raises UnknownSymbolError (a symbol that is no input) or DomainError (no counterpart in code).
     """
     builder = Builder(tuple(inputs))
     if share:
-        builder.collect(expressions)
+        builder.collect([*(form for _, form in lets), *expressions])
+    for name, form in lets:
+        builder.known[name] = builder.put("let", builder.visit(sp.sympify(form, strict=True)), value=name)
     roots = tuple(builder.visit(sp.sympify(e, strict=True)) for e in expressions)
     return pruned(Graph(tuple(inputs), tuple(builder.nodes), roots))
 
@@ -240,7 +269,7 @@ class Builder:
                 coefficient, direction = direction_of(node.args[0])
                 found.setdefault(direction, set()).add(abs(coefficient))
         for direction, coefficients in found.items():
-            step = sp.gcd_list(sorted(coefficients))
+            step = common_step(coefficients)
             if len(coefficients) > 1 and max(coefficients) / step <= MULTIPLES:
                 self.steps[direction] = step
 

@@ -9,7 +9,8 @@ normal form (:func:`navsym.export.functions.tie_to_formula`); nothing here is tr
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import math
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 import sympy as sp
@@ -165,9 +166,18 @@ def base_angle(expression: sp.Expr) -> sp.Expr | None:
     split = [argument.as_coeff_Mul() for argument in arguments]
     if not split or len({rest for _, rest in split}) != 1 or not all(k.is_Rational for k, _ in split):
         return None
-    step = sp.gcd_list([k for k, _ in split])
+    step = common_step([k for k, _ in split])
     most = max(abs(k / step) for k, _ in split)
     return step * split[0][1] if most <= 12 else None
+
+
+def common_step(numbers: Iterable[sp.Rational]) -> sp.Rational:
+    """The largest number of which all the given ones are whole multiples, whatever their order.
+
+    sympy's ``gcd_list`` stops at the first 1: it gives 1 for (1, 1/2) and 1/2 for (1/2, 1).
+    """
+    found = [abs(sp.Rational(k)) for k in numbers]
+    return sp.Rational(math.gcd(*(int(k.p) for k in found)), math.lcm(*(int(k.q) for k in found)))
 
 
 def multiple(node: sp.Expr, angle: sp.Expr, s: sp.Symbol, c: sp.Symbol) -> sp.Expr:

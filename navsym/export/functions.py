@@ -5,33 +5,27 @@ A claim that does not hold is refused here, and nowhere later; a refuted one nam
 
 from __future__ import annotations
 
-import math
-import random
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
-import numpy as np
 import sympy as sp
-from flint import arb
 
 from navsym.claims import CONFIRMED, REFUTED, Bound, Equation, Optimum, Statement, Verdict
 from navsym.errors import NavsymError, ShapeError
-from navsym.export.expression_graph import Graph, build
-from navsym.export.forms import factored, safe
-from navsym.export.names import function_name, identifier
-from navsym.export.parts import ExportedFunction, Input, Material, Output, Piece, Source, inside
+from navsym.export.choice import best_form, best_graph, literals_of, tie_to_formula
+from navsym.export.expression_graph import Graph
+from navsym.export.forms import safe
+from navsym.export.inputs import arguments_of, inputs_of, with_whole_arrays
+from navsym.export.names import function_name
+from navsym.export.parts import ExportedFunction, Input, Layout, Material, Output, Piece, Source, inside
 from navsym.export.regimes import common_outputs, in_order, joined_box, limit_of
-from navsym.export.rounding import ARITHMETICS, BITS, LIBRARY, Arithmetic, analyse
-from navsym.export.uniform import uniform_bound
-from navsym.proof.balls import precision
-from navsym.proof.normal_form import OutsideLanguageError, reduce_to_zero
-from navsym.proof.sampling import range_of
+from navsym.export.rounding import ARITHMETICS, Arithmetic
+from navsym.export.uniform import CELLS, uniform_bound
 from navsym.proof.wording import text_of
 
-SMALLEST = {"double": 2.0**-60, "float": 2.0**-20}  # stands for an open end at zero
-LARGE = 1000.0  # of a symbol without a range, for vectors and bounds
 MOST_OUTPUTS = 400
-SAMPLES = 12
+WORK = 40_000  # nodes times cells that the uniform bound may cost
 
 
 class RefusedError(NavsymError):
@@ -93,34 +87,6 @@ def entries(side: Any, name: str) -> tuple[Output, list[sp.Expr]]:
     return Output(name, shape), flat
 
 
-# -- inputs ---------------------------------------
-
-
-def inputs_of(symbols: Sequence[sp.Symbol], box: Mapping[Any, Any], real: str) -> tuple[Input, ...]:
-    """Arguments in alphabetical order, with ranges rounded into the proved ones."""
-    made: list[Input] = []
-    for symbol in sorted(symbols, key=lambda s: (s.name.lower(), s.name)):
-        name = identifier(symbol.name, [*(i.name for i in made), "value", "weights", "instants", "dual"])
-        made.append(input_of(symbol, name, box, real))
-    return tuple(made)
-
-
-def input_of(symbol: sp.Symbol, name: str, box: Mapping[Any, Any], real: str) -> Input:
-    """One argument: accepted range, and the range in which vectors and bounds live."""
-    limits = range_of(symbol, box)
-    low = -np.inf if limits.lower is None else inside(limits.lower, 1, real)
-    high = np.inf if limits.upper is None else inside(limits.upper, -1, real)
-    opened = bool(limits.open_lower) and limits.lower is not None
-    test_high = min(high, max(LARGE, 2 * abs(low))) if np.isfinite(low) else min(high, LARGE)
-    test_low = max(low, -max(LARGE, 2 * abs(high))) if np.isfinite(high) else max(low, -LARGE)
-    if opened and low == 0.0:
-        test_low = low = SMALLEST[real]
-        opened = False
-    text = f"{'-oo' if limits.lower is None else text_of(limits.lower)} {'<' if limits.open_lower else '<='} "
-    text += f"{symbol.name} <= {'oo' if limits.upper is None else text_of(limits.upper)}"
-    return Input(symbol, name, float(low), float(high), opened, float(test_low), float(test_high), text)
-
-
 # -- the function ---------------------------------------
 
 
@@ -152,17 +118,22 @@ def material(
 
 
 def function_of(
-    parts: Sequence[Material], *, real: str = "double", name: str | None = None
+    parts: Sequence[Material],
+    *,
+    real: str = "double",
+    name: str | None = None,
+    layout: Layout = Layout(),  # noqa: B008 - frozen
 ) -> ExportedFunction:
     """The function of one claim, or of several regimes that follow each other in one parameter."""
     name = name or function_name("_then_".join(part.claim for part in parts))
     parts, switch_symbol = in_order(parts)
-    symbols = sorted({s for part in parts for _, flat in part.results for e in flat for s in e.free_symbols}
-                     | ({switch_symbol} if switch_symbol is not None else set()), key=str)  # fmt: skip
+    needed = needed_symbols(parts) | ({switch_symbol} if switch_symbol is not None else set())
+    symbols = with_whole_arrays(sorted(needed, key=str), layout)
     box = joined_box(parts, switch_symbol)
-    inputs = inputs_of(symbols, box, real)
-    arithmetic = ARITHMETICS[real]
     outputs, padded = common_outputs(parts)
+    inputs = inputs_of(symbols, box, real, layout, [o.name for o in outputs])
+    outputs = tuple(replace(o, unit=layout.units.get(o.name, o.unit)) for o in outputs)
+    arithmetic = ARITHMETICS[real]
     pieces = tuple(
         piece_of(
             part,
@@ -176,7 +147,16 @@ def function_of(
     )
     places = {i.symbol: k for k, i in enumerate(inputs)}
     switch = None if switch_symbol is None else places[switch_symbol]
-    return ExportedFunction(name, inputs, outputs, pieces, arithmetic, switch)
+    arguments = arguments_of(inputs, layout) if layout.arrays else ()
+    return ExportedFunction(name, inputs, outputs, pieces, arithmetic, switch, arguments)
+
+
+def needed_symbols(parts: Sequence[Material]) -> set[sp.Symbol]:
+    """Symbols of the results and named values that are no named values themselves."""
+    formulas = [e for part in parts for _, flat in part.results for e in flat]
+    formulas += [e for part in parts for _, e in part.lets]
+    named = {s for part in parts for s, _ in part.lets}
+    return {s for e in formulas for s in e.free_symbols} - named
 
 
 def piece_of(
@@ -189,102 +169,35 @@ def piece_of(
 ) -> Piece:
     """The graph of one regime: the form of each formula that keeps most digits, tied to the formula."""
     symbols = [i.symbol for i in inputs]
-    box = [(i.test_low, i.test_high) for i in inputs]
-    if switch is not None:
-        k = symbols.index(switch)
-        low, high = (
-            inside(end, d, arithmetic.name) for end, d in zip(part.box[switch], (1, -1), strict=True)
-        )
-        box[k] = (max(box[k][0], low), min(box[k][1], high))
+    box = box_of(part, inputs, switch, arithmetic)
     ranges = {i.symbol: (i.low, i.high) for i in inputs}
-    forms = [best_form(formula, symbols, ranges, box, arithmetic) for formula in formulas]
-    graph = min(
-        (build(forms, symbols, share=share) for share in (True, False)),
-        key=lambda g: lost_digits(g, box, arithmetic) + sum(LIBRARY.get(n.op, 0) for n in g.nodes) / 4,
-    )
-    tie = tie_to_formula(graph, formulas)
+    plainly = bool(part.lets)  # the choice of forms needs values of all symbols; a chain keeps its forms
+    forms = [safe(f, ranges) if plainly else best_form(f, symbols, ranges, box, arithmetic) for f in formulas]
+    lets = [(name, safe(formula, ranges)) for name, formula in part.lets]
+    tied, graph = best_graph(forms, symbols, lets, box, arithmetic)
+    equals, tie = tie_to_formula(tied, formulas, dict(part.lets))
     if tie is None:
         raise RefusedError(f"expected code equal to {part.claim}; got a graph that differs; do report this")
     literals = literals_of(graph, arithmetic)
-    bound = uniform_bound(graph, box, arithmetic, literals)
-    return Piece(limit, tuple(formulas), tuple(forms), graph, literals, bound, tie, part.source)
-
-
-def best_form(
-    formula: sp.Expr,
-    symbols: Sequence[sp.Symbol],
-    ranges: Mapping[sp.Symbol, Any],
-    box: list[tuple[float, float]],
-    arithmetic: Arithmetic,
-) -> sp.Expr:
-    """The printed form, unless its factored form is proved equal and costs less.
-
-    Cost: bits lost in the mean, and a tenth of a bit for each operation.
-    """
-    printed = safe(formula, ranges)
-    nicer = factored(formula)
-    if nicer is None:
-        return printed
-    other = safe(nicer, ranges)
-    graphs = [build([form], symbols, share=False) for form in (printed, other)]
-    costs = [lost_digits(graph, box, arithmetic) + 0.1 * graph.operations().total() for graph in graphs]
-    better = costs[1] < costs[0] - 0.5 and tie_to_formula(graphs[1], [formula]) in (
-        "identical",
-        "normal form",
+    bound = uniform_bound(graph, box, arithmetic, literals, cells=cells_for(graph))
+    named = tuple((name, formula, form) for (name, formula), (_, form) in zip(part.lets, lets, strict=True))
+    return Piece(
+        limit, tuple(formulas), tuple(forms), graph, literals, bound, tie, part.source, named, tuple(equals)
     )
-    return other if better else printed
 
 
-def lost_digits(graph: Graph, box: list[tuple[float, float]], arithmetic: Arithmetic) -> float:
-    """Mean over sample points of the bits that the derived bound concedes, 60 where there is none."""
-    generator = random.Random(0)
-    literals, total = literals_of(graph, arithmetic), 0.0
-    for _ in range(SAMPLES):
-        with precision(BITS):
-            point = [arb(spread(generator, low, high)) for low, high in box]
-            done = analyse(graph, point, arithmetic, literals)
-            worst = max(float(done[r].relative / arithmetic.unit()) for r in graph.roots)
-        total += min(60.0, math.log2(worst)) if worst > 1 else 0.0
-    return total / SAMPLES
+def box_of(
+    part: Material, inputs: Sequence[Input], switch: sp.Symbol | None, arithmetic: Arithmetic
+) -> list[tuple[float, float]]:
+    """Where vectors and bounds of one regime live."""
+    box = [(i.test_low, i.test_high) for i in inputs]
+    if switch is not None:
+        k = [i.symbol for i in inputs].index(switch)
+        low, high = (inside(end, d, arithmetic.name) for end, d in zip(part.box[switch], (1, -1), strict=True))
+        box[k] = (max(box[k][0], low), min(box[k][1], high))
+    return box
 
 
-def spread(generator: random.Random, low: float, high: float) -> float:
-    """A number of the range, often near zero when the range is positive."""
-    if low > 0 and generator.random() < 0.5:
-        return math.exp(generator.uniform(math.log(max(low, high * 1e-6)), math.log(high)))
-    return generator.uniform(low, high)
-
-
-def literals_of(graph: Graph, arithmetic: Arithmetic) -> tuple[float | None, ...]:
-    """The number in the code for each constant node."""
-    return tuple(literal(n.value, arithmetic) if n.op == "const" else None for n in graph.nodes)
-
-
-def tie_to_formula(graph: Graph, formulas: Sequence[sp.Expr]) -> str | None:
-    """How the exact meaning of the graph is known to be the formula; None when they differ.
-
-    "identical" or "normal form" is a proof. "enclosures" means that the normal form has no answer
-    (an atom outside its ring), and only the vectors hold the graph to the formula.
-    """
-    ties = {"identical"}
-    for meaning, formula in zip(graph.meaning(), formulas, strict=True):
-        if meaning == formula:
-            continue
-        try:
-            reduction = reduce_to_zero(meaning - formula)
-        except (OutsideLanguageError, NavsymError):
-            ties.add("enclosures")
-            continue
-        if not reduction.zero:
-            if reduction.complete:
-                return None
-            ties.add("enclosures")
-        else:
-            ties.add("normal form")
-    return next(tie for tie in ("enclosures", "normal form", "identical") if tie in ties)
-
-
-def literal(value: sp.Expr, arithmetic: Arithmetic) -> float:
-    """The number that stands in the code for an exact constant: the nearest of the type."""
-    nearest = int(value.p) / int(value.q) if value.is_Rational else float(sp.N(value, 40))
-    return float(np.float32(nearest)) if arithmetic.name == "float" else nearest
+def cells_for(graph: Graph) -> int:
+    """Cells of the uniform bound: fewer for a long graph, whose bound is rarely uniform."""
+    return max(2, min(CELLS, WORK // (len(graph.nodes) + 1)))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from navsym.export.functions import ExportedFunction
+from navsym.export.parts import ExportedFunction
 from navsym.export.printing import (
     SINC_STEPS,
     SINC_SWITCH,
@@ -13,10 +13,12 @@ from navsym.export.printing import (
     Spelling,
     assignments,
     calls,
+    code_names,
     helpers_used,
     horner,
     summary,
 )
+from navsym.export.programs import calls_table, js_program
 from navsym.export.python import vectors_json
 from navsym.export.vectors import Vector
 
@@ -30,12 +32,29 @@ import * as functions from "./navsym_functions.mjs";
 
 const tests = JSON.parse(readFileSync(new URL("./vectors.json", import.meta.url), "utf8"));
 const number = (x) => (x === "inf" ? Infinity : x === "-inf" ? -Infinity : x === "nan" ? NaN : x);
+const calls = {calls};
+
+// Numbers of a row as arguments; a step runs through its state, which must follow its results.
+function call(name, row) {{
+  const given = calls[name].arguments.map(([first, size]) => (size ? row.slice(first, first + size) : row[first]));
+  const state = calls[name].state;
+  if (!state) {{ return functions[name](...given); }}
+  const program = new functions[state.program]();
+  const others = given.filter((_, k) => !state.fields.some((f) => f.argument === k));
+  for (const f of state.fields) {{ program[f.name] = f.argument < 0 ? 0 : given[f.argument]; }}
+  const before = JSON.stringify(program);
+  const {{ status, ...results }} = program.step(...others);
+  if (status !== 0 && JSON.stringify(program) !== before) {{ return {{ status: -1 }}; }}
+  for (const f of state.fields) {{ if (status === 0 && f.output) {{ results[f.output] = program[f.name]; }} }}
+  return {{ status, ...results }};
+}}
+
 let failed = 0;
 for (const [name, rows] of Object.entries(tests)) {{
   let wrong = 0;
   let worst = 0;
   for (const row of rows) {{
-    const {{ status, ...results }} = functions[name](...row.in.map(number));
+    const {{ status, ...results }} = call(name, row.in.map(number));
     if (status !== row.status) {{ wrong += 1; }}
     if (status !== 0 || row.status !== 0) {{ continue; }}
     Object.values(results).flat().forEach((value, k) => {{
@@ -65,18 +84,21 @@ def files(
     used = {name for function in functions for name in helpers_used(function)}
     helpers = [HELPERS[name]() for name in ("sinc", "x_minus_sin") if name in used]
     return {
-        "navsym_functions.mjs": "\n".join([*head, *helpers, *(source(f) for f in functions)]),
-        "test_vectors.mjs": TEST.format(license=license_),
+        "navsym_functions.mjs": "\n".join(
+            [*head, *helpers, *(text for f in functions for text in (source(f), *js_program(f)))]
+        ),
+        "test_vectors.mjs": TEST.format(license=license_, calls=calls_table(functions)),
         "vectors.json": vectors_json(functions, tests),
     }
 
 
 def source(function: ExportedFunction) -> str:
     """One exported function with its comment."""
-    names = [i.name for i in function.inputs]
+    names = code_names(function)
     lines = ["/**", *(f" * {line.replace('*/', '* /')}" for line in summary(function)), " */"]
-    lines.append(f"export function {function.name}({', '.join(names)}) {{")
-    tests = [f"{i.name} >= {bound(i.low)} && {i.name} <= {bound(i.high)}" for i in function.inputs]
+    arguments = ", ".join(a.name for a in function.called_with)
+    lines.append(f"export function {function.name}({arguments}) {{")
+    tests = [f"{n} >= {bound(i.low)} && {n} <= {bound(i.high)}" for i, n in zip(function.inputs, names, strict=True)]
     if tests:
         lines.append(f"  if (!({' && '.join(tests)})) {{ return {{ status: 1 }}; }}")
     lines.append(f"  let {', '.join(f'r{k}' for k in range(function.size))};")

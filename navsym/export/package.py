@@ -16,7 +16,7 @@ from typing import Any
 from navsym import __version__
 from navsym.errors import DomainError, DuplicateError, NavsymError
 from navsym.export.folder import require_free, write_folder
-from navsym.export.functions import ExportedFunction, Piece
+from navsym.export.parts import ExportedFunction, Piece
 from navsym.export.printing import bound_text
 from navsym.export.roundtrip import MANIFEST, Outcome, run_target
 from navsym.export.targets import Target
@@ -99,8 +99,7 @@ def ties_of(piece: Piece) -> list[dict[str, Any]]:
     """``formula = graph`` for every result that was rewritten, for the independent checker."""
     if piece.tie != "normal form":
         return []
-    pairs = zip(piece.formulas, piece.graph.meaning(), strict=True)
-    found = {(left, right): identity_certificate(left, right) for left, right in pairs if left != right}
+    found = {(left, right): identity_certificate(left, right) for left, right in piece.equals if left != right}
     return [dict(part) for part in found.values() if part is not None]
 
 

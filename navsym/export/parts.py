@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -47,6 +47,7 @@ class Input:
     test_low: float
     test_high: float
     text: str
+    unit: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,18 +56,46 @@ class Output:
 
     name: str
     shape: tuple[int, ...] = ()
+    unit: str = ""
 
     @property
     def size(self) -> int:
         return int(np.prod(self.shape, dtype=int))
 
 
+@dataclass(frozen=True, slots=True)
+class Argument:
+    """One argument as the caller sees it: a number (size 0) or an array of ``size`` inputs from ``first`` on."""
+
+    name: str
+    first: int
+    size: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """How the caller wants to see a function.
+
+    arrays : name of an array argument -> symbols of its entries
+    order  : arguments that come first, in this order; the others follow in alphabetical order
+    tests  : symbol -> range of vectors and of the rounding bound, where it is narrower than the accepted one
+    units  : symbol, array or output -> unit
+    """
+
+    arrays: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    order: tuple[str, ...] = ()
+    tests: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    units: Mapping[str, str] = field(default_factory=dict)
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Piece:
     """The function up to a limit of the switching input (None: without one).
 
-    formulas : exact values of the results, in the symbols of the inputs
+    formulas : exact values of the results, in the symbols of the inputs and of the named values
     forms    : the formulas as they were made safe, equal to them
+    lets     : named values in order: symbol, formula, safe form
+    equals   : (formula, exact meaning of its node) for every named value and result
     literals : number in the code for each constant of the graph
     tie      : how the graph was tied to the formulas
     """
@@ -79,14 +108,17 @@ class Piece:
     bound: Uniform
     tie: str
     source: Source
+    lets: tuple[tuple[sp.Symbol, sp.Expr, sp.Expr], ...] = ()
+    equals: tuple[tuple[sp.Expr, sp.Expr], ...] = ()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ExportedFunction:
     """A function ready to be printed in any language.
 
-    switch : place of the input that chooses the piece
-    state  : (place of an input, place of the result that replaces it) of a stateful step
+    switch    : place of the input that chooses the piece
+    arguments : the inputs as the caller sees them; empty means each input by itself
+    state     : what a stateful step keeps, and how
     """
 
     name: str
@@ -95,7 +127,13 @@ class ExportedFunction:
     pieces: tuple[Piece, ...]
     arithmetic: Arithmetic
     switch: int | None = None
-    state: tuple[tuple[int, int], ...] = ()
+    arguments: tuple[Argument, ...] = ()
+    state: State | None = None
+
+    @property
+    def called_with(self) -> tuple[Argument, ...]:
+        """Arguments in order; without arrays, every input by itself."""
+        return self.arguments or tuple(Argument(i.name, k) for k, i in enumerate(self.inputs))
 
     @property
     def size(self) -> int:
@@ -114,6 +152,21 @@ class ExportedFunction:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class State:
+    """What a program keeps between its steps.
+
+    program : name of the program
+    fields  : names of the fields, each with the output of the step that replaces it, "" for one that stays;
+              the step takes a field as the argument of the same name
+    init    : the function that makes the first state; its outputs are the fields
+    """
+
+    program: str
+    fields: tuple[tuple[str, str], ...]
+    init: ExportedFunction
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Material:
     """What a decided claim brings: results, box and source."""
 
@@ -121,6 +174,7 @@ class Material:
     results: list[tuple[Output, list[sp.Expr]]]
     box: Mapping[Any, Any]
     source: Source
+    lets: tuple[tuple[sp.Symbol, sp.Expr], ...] = ()
 
 
 def inside(end: Any, direction: int, real: str = "double") -> float:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from navsym.export.expression_graph import Graph
-from navsym.export.functions import ExportedFunction, Piece
+from navsym.export.parts import ExportedFunction, Piece
 
 SIGNS = {"add": "+", "sub": "-", "mul": "*", "div": "/"}
 LONGEST = 76
@@ -112,6 +112,13 @@ def bare(text: str) -> str:
     return text[1:-1]
 
 
+def code_names(function: ExportedFunction, entry: str = "{0}[{1}]") -> list[str]:
+    """The name of every input in code: a number by itself, or an entry of its array."""
+    return [
+        entry.format(a.name, k) if a.size else a.name for a in function.called_with for k in range(a.size or 1)
+    ]
+
+
 def helpers_used(function: ExportedFunction) -> list[str]:
     """Names of the helper functions that the code needs."""
     used = {node.op for piece in function.pieces for node in piece.graph.nodes}
@@ -152,8 +159,12 @@ def summary(function: ExportedFunction) -> list[str]:
     for i in function.inputs:
         low = "any" if math.isinf(i.low) else repr(i.low)
         high = "any" if math.isinf(i.high) else repr(i.high)
-        lines.append(f"Domain   {i.name}: {i.text}; accepted from {low} to {high}")
-    return lines
+        lines.append(f"Domain   {i.name}: {i.text}; accepted from {low} to {high}; unit {unit_of(i.unit)}")
+    return lines + [f"Result   {o.name}: unit {unit_of(o.unit)}" for o in function.outputs]
+
+
+def unit_of(text: str) -> str:
+    return text or "not stated"
 
 
 TIES = {

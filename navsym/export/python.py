@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from navsym.export.functions import ExportedFunction
+from navsym.export.parts import ExportedFunction
 from navsym.export.printing import (
     SINC_STEPS,
     SINC_SWITCH,
@@ -14,9 +14,11 @@ from navsym.export.printing import (
     Spelling,
     assignments,
     calls,
+    code_names,
     horner,
     summary,
 )
+from navsym.export.programs import calls_table, python_program
 from navsym.export.vectors import Vector
 
 SPECIAL = {"abs": "np.abs({0})", "max": "np.maximum({0}, {1})", "min": "np.minimum({0}, {1})"}
@@ -30,8 +32,10 @@ HEAD = '''# {license}
 import numpy as np
 
 
-def _checked(name, values, low, high):
+def _checked(name, values, low, high, size=None):
     values = np.asarray(values, dtype=np.{real})
+    if size is not None and values.shape[-1:] != (size,):
+        raise ValueError(f"{{name}}: expected {{size}} entries in the last axis; got shape {{values.shape}}")
     if not np.all((values >= low) & (values <= high)):
         raise ValueError(f"{{name}}: expected numbers from {{low!r}} to {{high!r}}; got others")
     return values
@@ -72,16 +76,33 @@ def numbers(values):
     return [float(v) for v in values]
 
 
-def call(function, arguments):
+CALLS = {calls}
+
+
+def call(name, row):
+    given = [row[first:first + size] if size else row[first] for first, size in CALLS[name]["arguments"]]
     try:
         with np.errstate(all="ignore"):
-            results = function(*arguments)
+            results = stepped(name, given) if CALLS[name]["state"] else getattr(module, name)(*given)
     except ValueError:
         return 1, []
     except ArithmeticError:
         return 2, []
     results = results if isinstance(results, tuple) else (results,)
     return 0, [float(x) for r in results for x in np.ravel(r)]
+
+
+def stepped(name, given):
+    """The step through its state, which must follow its results."""
+    state = CALLS[name]["state"]
+    program = object.__new__(getattr(module, state["program"]))
+    for f in state["fields"]:
+        setattr(program, f["name"], 0.0 if f["argument"] < 0 else given[f["argument"]])
+    taken = {{f["argument"] for f in state["fields"]}}
+    results = program.step(*(x for k, x in enumerate(given) if k not in taken))
+    fields = {{f["output"]: getattr(program, f["name"]) for f in state["fields"] if f["output"]}}
+    results = results if isinstance(results, tuple) else (results,)
+    return tuple(fields.get(name, value) for name, value in zip(state["outputs"], results, strict=True))
 
 
 def main():
@@ -91,7 +112,7 @@ def main():
     for name, rows in tests.items():
         wrong, worst = 0, 0.0
         for row in rows:
-            status, results = call(getattr(module, name), numbers(row["in"]))
+            status, results = call(name, numbers(row["in"]))
             wrong += status != row["status"]
             if status or row["status"]:
                 continue
@@ -125,8 +146,12 @@ def files(
     )
     epsilon = "2.0**-52" if real == "float64" else "2.0**-23"
     return {
-        "navsym_functions.py": "\n\n".join([head, *(source(f) for f in functions)]),
-        "test_vectors.py": TEST.format(license=license_, epsilon=epsilon),
+        "navsym_functions.py": "\n\n".join(
+            [head, *(text for f in functions for text in (source(f), *python_program(f)))]
+        ),
+        "test_vectors.py": TEST.format(
+            license=license_, epsilon=epsilon, calls=calls_table(functions, python=True)
+        ),
         "vectors.json": vectors_json(functions, tests),
     }
 
@@ -151,9 +176,11 @@ def row_text(v: Vector) -> str:
 
 def source(function: ExportedFunction) -> str:
     """One function: arrays in, arrays out, one mask for each regime."""
-    names = [i.name for i in function.inputs]
-    lines = [f"def {function.name}({', '.join(names)}):", *docstring(function), *checks(function)]
-    shape = f"np.broadcast_shapes({', '.join(f'{n}.shape' for n in names)})" if names else "()"
+    names, arguments = code_names(function, "{0}[..., {1}]"), function.called_with
+    signature = ", ".join(a.name for a in arguments)
+    lines = [f"def {function.name}({signature}):", *docstring(function), *checks(function)]
+    shapes = ", ".join(f"{a.name}.shape{'[:-1]' if a.size else ''}" for a in arguments)
+    shape = f"np.broadcast_shapes({shapes})" if names else "()"
     kind = "np.float32" if function.arithmetic.name == "float" else "np.float64"
     lines.append(f"    shape = {shape}")
     if len(function.pieces) == 1:
@@ -176,10 +203,13 @@ def checks(function: ExportedFunction) -> list[str]:
         "np.finfo(np.float32).max" if function.arithmetic.name == "float" else "np.finfo(np.float64).max"
     )
     lines = []
-    for i in function.inputs:
-        low = repr(i.low) if math.isfinite(i.low) else f"-{largest}"
-        high = repr(i.high) if math.isfinite(i.high) else largest
-        lines.append(f'    {i.name} = _checked("{i.name}", {i.name}, {low}, {high})')
+    for a in function.called_with:
+        entries = function.inputs[a.first : a.first + (a.size or 1)]
+        lows = [repr(i.low) if math.isfinite(i.low) else f"-{largest}" for i in entries]
+        highs = [repr(i.high) if math.isfinite(i.high) else largest for i in entries]
+        low, high = (ends[0] if len(set(ends)) == 1 else f"np.array([{', '.join(ends)}])" for ends in (lows, highs))
+        size = f", {a.size}" if a.size else ""
+        lines.append(f'    {a.name} = _checked("{a.name}", {a.name}, {low}, {high}{size})')
     return lines
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from navsym.export.functions import ExportedFunction, Output
+from navsym.export.parts import Argument, ExportedFunction, Output
 from navsym.export.printing import (
     SINC_STEPS,
     SINC_SWITCH,
@@ -14,10 +14,12 @@ from navsym.export.printing import (
     Spelling,
     assignments,
     bare,
+    code_names,
     helpers_used,
     horner,
     summary,
 )
+from navsym.export.programs import rust_program, rust_through_state, through_accessors
 from navsym.export.vectors import Vector
 
 
@@ -61,20 +63,20 @@ def module(functions: Sequence[ExportedFunction], license_: str) -> str:
     lines += ["/// Why there is no result.", "#[derive(Clone, Copy, Debug, PartialEq, Eq)]"]
     lines += ["pub enum Status {", "    Domain = 1,", "    NotFinite = 2,", "}", ""]
     lines += [HELPERS[name](kind, s) for name in ("sinc", "x_minus_sin") if name in used]
-    return "\n".join([*lines, *(source(f, s, kind) for f in functions)])
+    return "\n".join([*lines, *(text for f in functions for text in (source(f, s, kind), *rust_program(f, kind)))])
 
 
 def source(function: ExportedFunction, s: Spelling, kind: str) -> str:
     """Result structure and function."""
-    names = [i.name for i in function.inputs]
+    names = code_names(function)
     lines = ["#[derive(Clone, Copy, Debug)]", f"pub struct {function.name}_result {{"]
     lines += [f"    pub {o.name}: {member(o, kind)}," for o in function.outputs] + ["}", ""]
     lines += [f"/// {line}" for line in ("```text", *summary(function), "```")]
-    arguments = ", ".join(f"{n}: {kind}" for n in names)
+    arguments = ", ".join(parameter(a, kind) for a in function.called_with)
     lines.append(f"pub fn {function.name}({arguments}) -> Result<{function.name}_result, Status> {{")
     tests = [
-        f"({i.name} >= {bound(i.low, s, kind)}) && ({i.name} <= {bound(i.high, s, kind)})"
-        for i in function.inputs
+        f"({n} >= {bound(i.low, s, kind)}) && ({n} <= {bound(i.high, s, kind)})"
+        for i, n in zip(function.inputs, names, strict=True)
     ]
     if tests:
         lines += [f"    if !({' && '.join(tests)}) {{", "        return Err(Status::Domain);", "    }"]
@@ -87,6 +89,10 @@ def source(function: ExportedFunction, s: Spelling, kind: str) -> str:
         lines += ["        r = [", *(f"            {text}," for text in results), "        ];", "    }"]
     lines += ["    if !r.iter().all(|x| x.is_finite()) {", "        return Err(Status::NotFinite);", "    }"]
     return "\n".join([*lines, f"    Ok({function.name}_result {{ {fields(function)} }})", "}", ""])
+
+
+def parameter(argument: Argument, kind: str) -> str:
+    return f"{argument.name}: &[{kind}; {argument.size}]" if argument.size else f"{argument.name}: {kind}"
 
 
 def member(output: Output, kind: str) -> str:
@@ -142,10 +148,10 @@ TEST = """fn test_{name}() -> i32 {{
     let mut wrong = 0;
     let mut worst = 0.0_f64;
     for k in 0..{count} {{
-        match {name}({arguments}) {{
+        match {call} {{
             Err(s) => wrong += if s as i32 == status[k] {{ 0 }} else {{ 1 }},
             Ok(_) if status[k] != 0 => wrong += 1,
-            Ok(result) => {{
+            Ok({found}) => {{
                 let values: [f64; {size}] = [{values}];
                 for j in 0..{size} {{
                     let at = k * {size} + j;
@@ -185,18 +191,25 @@ def test_function(function: ExportedFunction, found: list[Vector]) -> str:
     def wide(part: str) -> str:
         return ", ".join(d.number(x) for v in found for x in (getattr(v, part) or (0.0,) * function.size))
 
-    accessors = [
-        f"result.{o.name}[{e}]" if o.shape else f"result.{o.name}"
-        for o in function.outputs
-        for e in range(o.size)
-    ]
+    accessors = through_accessors(function)
     return TEST.format(
         name=function.name, kind=kind, size=function.size, count=len(found), total=len(found) * function.size,
         inputs_size=len(found) * n,
         inputs=", ".join(s.number(x) for v in found for x in v.inputs),
         status=", ".join(str(v.status) for v in found),
         lower=wide("lower"), upper=wide("upper"), nearest=wide("nearest"),
-        arguments=", ".join(f"input[k * {n} + {j}]" for j in range(n)),
+        call=rust_through_state(function) if function.state else rust_call(function),
+        found="(result, s)" if function.state else "result",
         values=", ".join(f"f64::from({a})" if real == "float" else a for a in accessors),
         epsilon="f64::EPSILON" if real == "double" else "f64::from(f32::EPSILON)",
     )  # fmt: skip
+
+
+def rust_call(function: ExportedFunction) -> str:
+    """The call of one vector; arrays are filled from the row."""
+    n = len(function.inputs)
+    words = []
+    for a in function.called_with:
+        entries = [f"input[k * {n} + {a.first + e}]" for e in range(a.size or 1)]
+        words.append(f"&[{', '.join(entries)}]" if a.size else entries[0])
+    return f"{function.name}({', '.join(words)})"

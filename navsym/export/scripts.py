@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from navsym.export.functions import ExportedFunction
+from navsym.export.parts import ExportedFunction
 from navsym.export.printing import (
     SINC_STEPS,
     SINC_SWITCH,
@@ -277,7 +277,7 @@ def fortran_source(function: ExportedFunction, name: str) -> list[str]:
         f"    real(real64), intent(out) :: {o.name}{f'({o.size})' if o.shape else ''}"
         for o in function.outputs
     ]
-    lines += ["    integer, intent(out) :: status", f"    real(real64) :: r({function.size})"]
+    lines += ["    integer, intent(out) :: status", f"    real(real64) :: nv_r({function.size})"]
     lines += [f"    real(real64) :: t{k}" for k in range(max(len(t) for t, _ in pieces))]
     lines += [f"    {o.name} = 0.0d0" for o in function.outputs]
     test = domain(function, "huge(1.0d0)", FORTRAN, " .and. ", ".true.")
@@ -289,12 +289,12 @@ def fortran_source(function: ExportedFunction, name: str) -> list[str]:
         word = word.replace(repr(limit), FORTRAN.number(limit)) if limit is not None else word
         lines += [f"    {word}{then}"] if len(pieces) > 1 else []
         lines += [f"      {t} = {text}" for t, text in temporaries]
-        lines += [f"      r({k + 1}) = {text}" for k, text in enumerate(results)]
+        lines += [f"      nv_r({k + 1}) = {text}" for k, text in enumerate(results)]
     lines += ["    end if"] if len(pieces) > 1 else []
-    lines += ["    status = 2", "    if (.not. all(ieee_is_finite(r))) return"]
+    lines += ["    status = 2", "    if (.not. all(ieee_is_finite(nv_r))) return"]
     k = 0
     for output in function.outputs:
-        lines.append(f"    {output.name} = r({k + 1}{f':{k + output.size}' if output.shape else ''})")
+        lines.append(f"    {output.name} = nv_r({k + 1}{f':{k + output.size}' if output.shape else ''})")
         k += output.size
     return [*lines, "    status = 0", "  end subroutine", ""]
 

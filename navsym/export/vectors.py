@@ -15,9 +15,9 @@ from dataclasses import dataclass
 import numpy as np
 from flint import arb
 
-from navsym.export.functions import ExportedFunction, Input, Piece
+from navsym.export.parts import ExportedFunction, Input, Piece
 from navsym.export.rounding import BITS, Arithmetic, analyse, with_library
-from navsym.proof.balls import enclose, precision, tape
+from navsym.proof.balls import Tape, enclose, precision, tape
 
 OK, DOMAIN, NOT_FINITE = 0, 1, 2
 LARGEST = {"double": 2.0**1000, "float": 2.0**120}
@@ -62,8 +62,7 @@ def vector_at(
     with precision(BITS):
         balls = [arb(x) for x in point]
         errors = [r for r in roots(piece, balls, arithmetic)]
-        named = dict(zip(piece.graph.inputs, balls, strict=True))
-        exact = [enclose(t, named, BITS) for t in tapes(piece)]
+        exact = exact_values(piece, balls)
         ends = [ends_of(value, error * widen) for value, error in zip(exact, errors, strict=True)]
     if any(end is None for end in ends):
         return None
@@ -73,15 +72,25 @@ def vector_at(
     return Vector(tuple(point), OK, lower, upper, nearest)
 
 
-_TAPES: dict[int, tuple[Piece, list]] = {}
+def exact_values(piece: Piece, balls: Sequence[arb]) -> list[arb]:
+    """The formulas of the claim at a point, named values first."""
+    named = dict(zip(piece.graph.inputs, balls, strict=True))
+    lets, formulas = tapes(piece)
+    for (name, _, _), flattened in zip(piece.lets, lets, strict=True):
+        named[name] = enclose(flattened, named, BITS)
+    return [enclose(t, named, BITS) for t in formulas]
 
 
-def tapes(piece: Piece) -> list:
-    """Flattened formulas of a piece, made once."""
+_TAPES: dict[int, tuple[Piece, list[Tape], list[Tape]]] = {}
+
+
+def tapes(piece: Piece) -> tuple[list[Tape], list[Tape]]:
+    """Flattened named values and formulas of a piece, made once."""
     known = _TAPES.get(id(piece))
     if known is None or known[0] is not piece:
-        known = _TAPES[id(piece)] = (piece, [tape(f) for f in piece.formulas])
-    return known[1]
+        lets, formulas = [tape(f) for _, f, _ in piece.lets], [tape(f) for f in piece.formulas]
+        known = _TAPES[id(piece)] = (piece, lets, formulas)
+    return known[1], known[2]
 
 
 def roots(piece: Piece, balls: Sequence[arb], arithmetic: Arithmetic) -> list[arb]:

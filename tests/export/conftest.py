@@ -22,5 +22,10 @@ def load(name: str) -> ModuleType:
 
 
 @pytest.fixture(scope="session")
+def programs() -> ModuleType:
+    return load("programs")
+
+
+@pytest.fixture(scope="session")
 def samples() -> ModuleType:
     return load("samples")

@@ -1,0 +1,88 @@
+"""Arguments of a function: their order, arrays, units, and ranges rounded into the proved ones."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import sympy as sp
+
+from navsym.errors import ShapeError
+from navsym.export.names import identifier
+from navsym.export.parts import Argument, Input, Layout, inside
+from navsym.proof.sampling import range_of
+from navsym.proof.wording import text_of
+
+SMALLEST = {"double": 2.0**-60, "float": 2.0**-20}  # stands for an open end at zero
+LARGE = 1000.0  # of a symbol without a range, for vectors and bounds
+
+
+def inputs_of(
+    symbols: Sequence[sp.Symbol],
+    box: Mapping[Any, Any],
+    real: str,
+    layout: Layout = Layout(),  # noqa: B008 - frozen
+    outputs: Sequence[str] = (),
+) -> tuple[Input, ...]:
+    """Inputs in the order of the layout, then of the alphabet, with ranges rounded into the proved ones."""
+    made: list[Input] = []
+    taken = ["value", "weights", "instants", "dual", *outputs, *layout.arrays]
+    for symbol in in_layout(symbols, layout):
+        name = identifier(symbol.name, [*(i.name for i in made), *taken])
+        made.append(with_layout(input_of(symbol, name, box, real), layout))
+    return tuple(made)
+
+
+def with_whole_arrays(symbols: Sequence[sp.Symbol], layout: Layout) -> list[sp.Symbol]:
+    """The symbols, and those entries of their arrays that no formula needs."""
+    present = {s.name for s in symbols}
+    touched = [entries for entries in layout.arrays.values() if present & set(entries)]
+    missing = [sp.Symbol(e, real=True) for entries in touched for e in entries if e not in present]
+    return [*symbols, *missing]
+
+
+def in_layout(symbols: Sequence[sp.Symbol], layout: Layout) -> list[sp.Symbol]:
+    """Symbols in the order of the arguments; entries of an array stay together."""
+    words = [entry for name in layout.order for entry in layout.arrays.get(name, (name,))]
+    words += [entry for name, entries in layout.arrays.items() if name not in layout.order for entry in entries]
+    place = {word: k for k, word in enumerate(words)}
+    return sorted(symbols, key=lambda s: (place.get(s.name, len(place)), s.name.lower(), s.name))
+
+
+def with_layout(made: Input, layout: Layout) -> Input:
+    """The input with its unit, and with the narrower range of its vectors."""
+    array = next((a for a, entries in layout.arrays.items() if made.symbol.name in entries), "")
+    unit = layout.units.get(made.symbol.name) or layout.units.get(array, "")
+    low, high = layout.tests.get(made.symbol.name) or layout.tests.get(array, (made.test_low, made.test_high))
+    return replace(made, unit=unit, test_low=max(low, made.low), test_high=min(high, made.high))
+
+
+def arguments_of(inputs: Sequence[Input], layout: Layout) -> tuple[Argument, ...]:
+    """Arrays of the layout as arguments, where all of their entries are inputs; other inputs by themselves."""
+    first = {entries[0]: (name, len(entries)) for name, entries in layout.arrays.items()}
+    names, found, k = [i.symbol.name for i in inputs], [], 0
+    while k < len(inputs):
+        name, size = first.get(names[k], (inputs[k].name, 0))
+        if size and tuple(names[k : k + size]) != tuple(layout.arrays[name]):
+            raise ShapeError(f"expected all {size} entries of {name} as inputs; got some; do correct the layout")
+        found.append(Argument(name, k, size))
+        k += size or 1
+    return tuple(found)
+
+
+def input_of(symbol: sp.Symbol, name: str, box: Mapping[Any, Any], real: str) -> Input:
+    """One argument: accepted range, and the range in which vectors and bounds live."""
+    limits = range_of(symbol, box)
+    low = -np.inf if limits.lower is None else inside(limits.lower, 1, real)
+    high = np.inf if limits.upper is None else inside(limits.upper, -1, real)
+    opened = bool(limits.open_lower) and limits.lower is not None
+    test_high = min(high, max(LARGE, 2 * abs(low))) if np.isfinite(low) else min(high, LARGE)
+    test_low = max(low, -max(LARGE, 2 * abs(high))) if np.isfinite(high) else max(low, -LARGE)
+    if opened and low == 0.0:
+        test_low = low = SMALLEST[real]
+        opened = False
+    text = f"{'-oo' if limits.lower is None else text_of(limits.lower)} {'<' if limits.open_lower else '<='} "
+    text += f"{symbol.name} <= {'oo' if limits.upper is None else text_of(limits.upper)}"
+    return Input(symbol, name, float(low), float(high), opened, float(test_low), float(test_high), text)
