@@ -52,7 +52,8 @@ def second_stage_contains_the_first():
     "6.time",
     expect=REFUTED,
     slip="paper",
-    reason="t_G of (10) counts measurements; (6), (8) and (14) subtract it from seconds, wrong at 2 Hz",
+    reason="read as one and the same t_G: that of (10) counts measurements (the text calls it relative time), while "
+    "(6), (8) and (14) subtract it from seconds, which is wrong at 2 Hz",
 )
 def instant_as_printed():
     """The instant of crossing in (6) is the t_G of (10)."""
@@ -233,24 +234,35 @@ def second_order_condition():
     return Bound(printed=curvature, relation=">=", derived=sp.Integer(0))
 
 
-@claim(
-    "10.sufficient",
-    expect=REFUTED,
-    slip="paper",
-    reason="a second derivative >= 0 does not single out t_G: on ground flat across the track it is zero"
-    " and every t is a minimum; it has to be positive",
-)
-def sufficiency_as_printed():
-    """A second derivative >= 0 suffices: t_G of (10) exists and is unique on every terrain."""
-    slope = sp.Symbol("q", real=True)
-    return Bound(printed=curvature_of([slope, slope]), relation="!=", derived=sp.Integer(0))
-
-
-@claim("10.sufficient*", corrects="10.sufficient")
+@claim("10.sufficient")
 def sufficiency():
-    """With one slope that is not zero the second derivative is positive and t_G unique."""
+    """A second derivative >= 0 suffices here: I_n(t) exceeds I_n(t_G) by half of it times (t - t_G)^2, at every t."""
+    printed, derived = [], []
+    for size in SIZES:
+        q = own_slopes(size)
+        parabola = misfit([(0, v) for v in q], (0, beta), t)
+        curvature = sp.diff(sp.expand(parabola), t, 2)
+        centre = crossing_time([(0, v) for v in q], (0, beta))
+        printed.append(curvature / 2 * (t - centre) ** 2)
+        derived.append(parabola - parabola.subs(t, centre))
+    return Equation(printed=printed, derived=derived)
+
+
+@claim("10.unique")
+def uniqueness():
+    """With one slope that is not zero the second derivative is positive and t_G the only minimum."""
     u, v = sp.Symbol("q0", positive=True), sp.Symbol("q1", real=True)
     return Bound(printed=curvature_of([u, v]), relation=">", derived=sp.Integer(0))
+
+
+@claim("10.flat")
+def flat_across():
+    """On ground flat across the track the criterion is zero at every t: (10) is 0/0 and names no instant."""
+    flat = [(0, 0)] * 3
+    numerator, denominator = (sum(m**power * q**2 for m, (_, q) in enumerate(flat)) for power in (1, 0))
+    return Equation(
+        printed=[sp.Integer(0)] * 3, derived=[misfit(flat, (0, beta), t), sp.Integer(numerator), sp.Integer(denominator)]
+    )
 
 
 def curvature_of(q):

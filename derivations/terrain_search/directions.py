@@ -223,6 +223,20 @@ def sums_in_one_pass():
     return Equation(printed=printed, derived=derived)
 
 
+@claim("12.linear.any")
+def sums_in_one_pass_for_any_track():
+    """For any number of measurements: every term of the double sums is a difference of products of two single terms."""
+    i = sp.Symbol("i", real=True)
+    p, q, u, w = sp.symbols("p_i q_i p_j q_j", real=True)
+    printed = [
+        (i * p * p) * (u * w) - (i * p * q) * (u * u),
+        (i * p * p) * (w * w) - (i * q * q) * (u * u),
+        (i * p * q) * (w * w) - (i * q * q) * (u * w),
+    ]
+    terms = [PRINTED[name]((p, q), (u, w), 0, 0) for name in ("Ax2*", "Ax1", "Ax0*")]
+    return Equation(printed=printed, derived=[i * term for term in terms])
+
+
 def quadratic_form(sums):
     a2, a1, a0 = sums
     return a2 * beta_x**2 + a1 * beta_x * beta_y + a0 * beta_y**2

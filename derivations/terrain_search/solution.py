@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import sympy as sp
 
-from derivations.terrain_search.model import free_motion, inverse, symmetric
+from derivations.terrain_search.model import free_motion, inverse, slopes, symmetric
 from navsym.claims import REFUTED, Equation, claim
 
 G, M1, M2 = symmetric("G"), symmetric("M"), symmetric("N")
@@ -201,6 +201,38 @@ def line_fit_errors(a, n):
     offset, slope = inverse(sp.Matrix([[sums[0], sums[1]], [sums[1], sums[2]]])) * sp.Matrix(rights)
     end = free_motion(sp.Integer(n), 0, 0, a)
     return [sp.expand(end[0] - offset - slope * n), sp.expand(end[1] - slope)]
+
+
+@claim("offset.centre")
+def coarse_fix_with_an_unknown_height():
+    """With an unknown constant height error the fix moves by C v, C = G^-1 M1 of slopes less their means."""
+    c = sp.Matrix(sp.symbols("c_x c_y", real=True))
+    height = sp.Symbol("b", real=True)
+    derived = []
+    for size in (2, 3):
+        g = [sp.Matrix(pair) for pair in slopes(size)]
+        criterion = sum(((s.T * (c - k * v))[0] - height) ** 2 for k, s in enumerate(g))
+        mean = sum(g, sp.zeros(2, 1)) / len(g)
+        moving = sum((k * s for k, s in enumerate(g)), sp.zeros(2, 1)) / len(g)
+        G0 = sum(((s - mean) * (s - mean).T for s in g), sp.zeros(2, 2))
+        M0 = sum(((s - mean) * (k * s - moving).T for k, s in enumerate(g)), sp.zeros(2, 2))
+        fix = inverse(G0) * M0 * v
+        at_fix = {**dict(zip(c, fix, strict=True)), height: (mean.T * fix)[0] - (moving.T * v)[0]}
+        derived += [sp.diff(criterion, s).subs(at_fix, simultaneous=True) for s in (*c, height)]
+    return Equation(printed=[sp.Integer(0)] * len(derived), derived=derived)
+
+
+@claim("offset.groups")
+def groups_about_their_own_means():
+    """Squares about the means of groups are at most those about the whole mean: what bounding without offset rests on.
+
+    For groups of m and n measurements with means a and b the difference is m n (a - b)^2 / (m + n).
+    """
+    m, n = sp.symbols("m n", positive=True)
+    a, b, S = sp.symbols("a b S", real=True)
+    whole = (m * a + n * b) / (m + n)
+    # sum (d - c)^2 over a group is its squares about its mean plus m (mean - c)^2; S: both squares about own means.
+    return Equation(printed=S + m * n * (a - b) ** 2 / (m + n), derived=S + m * (a - whole) ** 2 + n * (b - whole) ** 2)
 
 
 @claim("offset")
