@@ -16,7 +16,7 @@ from navsym.methods.observability import (
     need_observable,
     observe,
 )
-from navsym.methods.observability_loci import RankDrop, rank_drops
+from navsym.methods.observability_loci import RankDrop, drops_and_completeness
 from navsym.methods.observability_split import FeasibleSplit, Split, best_split, split, splits
 from navsym.methods.two_stage import POLE, StageGains, gains_by_poles, stage_gains
 from navsym.models.linear import LinearModel
@@ -27,12 +27,14 @@ from navsym.text.expression import to_text
 class Examination:
     """Everything about one model.
 
+    drops_complete : subspace -> whether its list of drops is proved to hold all of them
     splits, best, chosen are None when there are not two measurements or the pair is unobservable;
     gains is None unless poles were asked for.
     """
 
     found: Observability
     drops: tuple[RankDrop, ...]
+    drops_complete: dict[str, bool]
     splits: tuple[FeasibleSplit, ...]
     best: FeasibleSplit | None
     chosen: Split | None
@@ -62,9 +64,11 @@ def examine(
             f"split: expected two measurements; got {len(found.measurements)}; choose two of them"
         )
     chosen = split(found, *(request or ())) if two else None
+    drops, complete = drops_and_completeness(found)
     return Examination(
         found=found,
-        drops=rank_drops(found),
+        drops=drops,
+        drops_complete=complete,
         splits=splits(found) if two else (),
         best=best_split(found) if two else None,
         chosen=chosen,
@@ -103,6 +107,7 @@ def document(examination: Examination) -> dict[str, Any]:
             direction_names(found.unobservable[k, :], found.states) for k in range(found.unobservable.rows)
         ],
         "rank_drops": [drop_data(drop) for drop in examination.drops],
+        "rank_drops_complete": examination.drops_complete,
         "assumptions": [f"{to_text(a)} != 0" for a in found.assumptions],
         "splits": [{"i": s.i, "j": s.j, "det_L": to_text(s.determinant)} for s in examination.splits],
         "best_split": [examination.best.i, examination.best.j] if examination.best else None,

@@ -53,17 +53,18 @@ def excluded(zero: sp.Expr) -> bool:
 
 def rank_drops(found: Observability) -> tuple[RankDrop, ...]:
     """Drops of every measurement's subspace and of the joint one, with completeness."""
-    ring = found.chains.ring
-    return tuple(
+    return drops_and_completeness(found)[0]
+
+
+def drops_and_completeness(found: Observability) -> tuple[tuple[RankDrop, ...], dict[str, bool]]:
+    """The drops, and for every subspace whether its list is proved complete, also when it is empty."""
+    ring, answer = found.chains.ring, all_drops(found.chains)
+    drops = tuple(
         RankDrop(name, tuple(ring.condition(f) for f in system), complete)
-        for name, (systems, complete) in all_drops(found.chains).items()
+        for name, (systems, complete) in answer.items()
         for system in systems
     )
-
-
-def drops_complete(found: Observability) -> dict[str, bool]:
-    """Whether the list of drops of each subspace is proved complete, also when it is empty."""
-    return {name: complete for name, (_, complete) in all_drops(found.chains).items()}
+    return drops, {name: complete for name, (_, complete) in answer.items()}
 
 
 def all_drops(chains: Chains) -> dict[str, tuple[list[System], bool]]:

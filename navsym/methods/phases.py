@@ -1,22 +1,25 @@
-"""The complete solution as the length of the interval varies: regimes, boundaries, closed forms.
+"""The complete solution as a parameter varies: regimes, boundaries, closed forms.
 
-A regime is a range of lengths with one pattern of instants. Where instants, weights and value have a
-closed form it is proved as a primal-dual pair for all lengths of the regime; elsewhere the optimum is
-certified for every length by contacts that are followed rigorously, and slivers around boundaries by
-two-sided certificates: the value never increases with T, so the values at both ends enclose it.
+A regime is a range of the parameter with one pattern of instants. Where instants, weights and value have a
+closed form it is proved as a primal-dual pair for all values of the regime; elsewhere the optimum is
+certified for every value by contacts that are followed rigorously, and slivers around boundaries by
+two-sided certificates.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import html
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
+from itertools import pairwise
 from typing import Any
 
 import sympy as sp
 from flint import fmpq
 
 from navsym.claims import CERTIFIED, OPEN, Status
+from navsym.claims.display import card, displayed, latex_of, table
 from navsym.errors import DomainError
 from navsym.methods.guaranteed import solve
 from navsym.methods.phases_closed import Closed, candidates, number, prove
@@ -24,16 +27,19 @@ from navsym.methods.phases_events import Boundary, boundary
 from navsym.methods.phases_family import Family
 from navsym.methods.phases_range import followed, fraction_of
 from navsym.methods.phases_scan import Span, scan
+from navsym.methods.phases_singular import Singular, singular_values
+from navsym.methods.phases_slivers import Sliver, slivers
 from navsym.proof.balls import enclose
-from navsym.proof.decimals import decimal
+from navsym.proof.decimals import decimal, lower_end, upper_end
+from navsym.proof.decimals import exact as exact_decimal
 from navsym.proof.enclosure import rational
+from navsym.proof.optimality_range import Ranged
 from navsym.text.expression import to_text
 
 POINTS = 5
-#: An implicit regime is followed down to this part of the range; below it nothing is claimed.
-FLOOR = Fraction(1, 60)
-#: Parts of a regime left to two-sided certificates at either end; larger ones where the first is too near.
-SLIVERS = (Fraction(1, 2000), Fraction(1, 200), Fraction(1, 30))
+#: Next to a singular value this part of the range is left, and named in ``uncovered``.
+MARGIN = Fraction(1, 100_000)
+DIGITS = 34
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -45,7 +51,7 @@ class Regime:
     status       : PROVED, CERTIFIED or OPEN for every length in the regime
     table        : enclosures at some lengths, for regimes without a closed form
     certificate  : of kind "range", or None
-    slivers      : ends that the range certificate leaves to two-sided ones: (from, to, lower, upper)
+    slivers      : two-sided certificates of what the range certificate leaves
     """
 
     span: Span
@@ -55,7 +61,7 @@ class Regime:
     status: Status
     table: tuple[dict[str, str], ...] = ()
     certificate: Mapping[str, Any] | None = None
-    slivers: tuple[tuple[str, str, str, str], ...] = ()
+    slivers: tuple[Sliver, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -70,8 +76,22 @@ class Phases:
     uncovered: tuple[tuple[str, str], ...] = field(default=())
 
     def certificates(self) -> list[dict[str, Any]]:
-        """The range certificates of the regimes without a closed form, for ``navsym check``."""
-        return [dict(regime.certificate) for regime in self.regimes if regime.certificate is not None]
+        """Certificates of the regimes without a closed form and of slivers, for ``navsym check``."""
+        ranges = [dict(regime.certificate) for regime in self.regimes if regime.certificate is not None]
+        return ranges + [dict(s.certificate) for regime in self.regimes for s in regime.slivers]
+
+    def _repr_html_(self) -> str:
+        """The regimes as a table, for notebooks."""
+        name, heads = self.family.parameter.name, ("from", "to", "value", "instants", "verdict")
+        rows = [
+            (
+                displayed(latex_of(r.lower)), displayed(latex_of(r.upper)),
+                displayed(latex_of(r.closed.value)) if r.closed else "a table of enclosures",
+                displayed(latex_of(r.closed.places)) if r.closed else "", str(r.status),
+            )
+            for r in self.regimes
+        ]  # fmt: skip
+        return card([html.escape(f"{self.family.target} by {name}"), table(heads, rows)])
 
     def document(self) -> dict[str, Any]:
         """The answer of ``navsym phases``."""
@@ -88,101 +108,143 @@ class Phases:
 
 
 def phases(family: Family, lower: sp.Expr, upper: sp.Expr, *, certify: bool = True) -> Phases:
-    """All regimes for lengths between two exact numbers, 0 <= lower < upper.
+    """All regimes for values of the parameter between two exact numbers.
 
-    certify : follow regimes without a closed form rigorously (seconds to a minute each)
+    The range is split at singular values. certify : follow regimes without a closed form rigorously.
+    Raises DomainError for a range without length, and lengths of the interval below zero.
     """
-    low, high = inner_range(lower, upper)
+    need_range(family, lower, upper)
+    singular = singular_values(family, lower, upper)
+    inner = [s for s in singular if bool(enclose(s.at - lower) > 0) and bool(enclose(upper - s.at) > 0)]
+    cuts = [lower, *(s.at for s in inner), upper]
+    names = {s.at for s in singular}
+    parts = [stretch(family, a, b, names, certify) for a, b in pairwise(cuts)]
+    regimes = [regime for part in parts for regime in part.regimes]
+    changes = [event(s) for s in singular if not (s.at == lower == 0 and family.growing)]
+    changes += [b for part in parts for b in part.boundaries]
+    changes.sort(key=lambda b: sp.Rational(b.lower))
+    uncovered = [pair for part in parts for pair in part.uncovered]
+    return Phases(family, lower, upper, tuple(regimes), tuple(changes), tuple(uncovered))
+
+
+def event(singular: Singular) -> Boundary:
+    """A singular value as a boundary."""
+    ball = enclose(singular.at, bits=200)
+    return Boundary(singular.at, lower_end(ball, DIGITS), upper_end(ball, DIGITS), singular.why, True)
+
+
+def need_range(family: Family, lower: sp.Expr, upper: sp.Expr) -> None:
+    for end in (lower, upper):
+        if end.free_symbols or not enclose(end).is_finite():
+            raise DomainError(f"range: expected finite numbers; got {end}; give two numbers")
+    if not bool(enclose(upper - lower) > 0):
+        raise DomainError(f"range: expected from < to; got {lower} to {upper}; exchange or mend them")
+    if family.growing and not bool(enclose(lower) >= 0):
+        raise DomainError(f"range: expected lengths 0 <= from < to; got {lower} to {upper}; mend them")
+
+
+def stretch(family: Family, lower: sp.Expr, upper: sp.Expr, singular: set[sp.Expr], certify: bool) -> Phases:
+    """All regimes between two values without a singular one inside."""
+    low, high = inner_range(lower, upper, singular)
     spans = scan(family, low, high)
     guesses = [candidates(family, span) for span in spans]
     firsts = [g[0] if g else None for g in guesses]
     pairs = zip(spans, spans[1:], firsts, firsts[1:], strict=False)
     changes = tuple(boundary(family, a, b, c, d) for a, b, c, d in pairs)
     cuts = [lower, *(middle_of(b) for b in changes), upper]
+    limits = limits_of(family, lower, upper, low, high, changes, singular)
     regimes, uncovered = [], []
     for k, span in enumerate(spans):
-        a, b = cuts[k], cuts[k + 1]
-        closed = prove(family, guesses[k], a, b) if guesses[k] else None
-        if closed is not None and closed.verdict.status.holds:
-            regimes.append(Regime(span, a, b, closed, closed.verdict.status))
-        elif certify:
-            regime, holes = certified(family, span, a, b, closed)
-            regimes.append(regime)
-            uncovered += holes
-        else:
-            regimes.append(Regime(span, a, b, closed, OPEN, table_of(family, span)))
-            uncovered.append((end_text(a), end_text(b)))
+        closed = prove(family, guesses[k], cuts[k], cuts[k + 1]) if guesses[k] else None
+        held = closed if closed is not None and closed.verdict.status.holds else None
+        regime, holes = regime_of(family, span, (cuts[k], cuts[k + 1]), limits[k], held, certify)
+        regimes.append(regime)
+        uncovered += holes
     return Phases(family, lower, upper, tuple(regimes), changes, tuple(uncovered))
 
 
-def inner_range(lower: sp.Expr, upper: sp.Expr) -> tuple[Fraction, Fraction]:
-    """Rational lengths just inside the range; zero length is a singularity and is left by a small step."""
-    for end in (lower, upper):
-        if not enclose(end).is_finite():
-            raise DomainError(f"range: expected finite lengths; got {end}; give two numbers")
-    if not bool(enclose(lower) >= 0) or not bool(enclose(upper - lower) > 0):
-        raise DomainError(f"range: expected 0 <= from < to; got {lower} to {upper}; exchange or mend them")
-    high = inside(upper, -1)
-    low = high / 400 if lower == 0 else inside(lower, 1)
-    return low, high
-
-
-def inside(end: sp.Expr, side: int) -> Fraction:
-    value = fraction_of(rational(enclose(end)))
-    return (value * (1 + side * Fraction(1, 10**9))).limit_denominator(10**12)
+def inner_range(lower: sp.Expr, upper: sp.Expr, singular: set[sp.Expr]) -> tuple[Fraction, Fraction]:
+    """Rational values just inside the range, further inside at singular ends."""
+    a, b = (fraction_of(rational(enclose(e, bits=200))) for e in (lower, upper))
+    steps = [Fraction(1, 400) if e in singular else Fraction(1, 10**9) for e in (lower, upper)]
+    low, high = a + steps[0] * (b - a), b - steps[1] * (b - a)
+    return low.limit_denominator(10**12), high.limit_denominator(10**12)
 
 
 def middle_of(b: Boundary) -> sp.Expr:
     return b.at if b.at is not None else (sp.Rational(b.lower) + sp.Rational(b.upper)) / 2
 
 
-def certified(
-    family: Family, span: Span, lower: sp.Expr, upper: sp.Expr, closed: Closed | None
+Limits = tuple[fmpq, fmpq, fmpq, fmpq]
+
+
+def limits_of(
+    family: Family, lower: sp.Expr, upper: sp.Expr, low: Fraction, high: Fraction,
+    changes: Sequence[Boundary], singular: set[sp.Expr],
+) -> list[Limits]:  # fmt: skip
+    """For every regime: where it must be covered (outer) and where exact contacts are followed (inner)."""
+    part = MARGIN * (high - low)
+    margin = fmpq(part.numerator, part.denominator)
+    marks = [end_marks(family, lower, -1, singular, margin)]
+    marks += [(exact_decimal(b.lower), exact_decimal(b.upper)) for b in changes]
+    marks.append(end_marks(family, upper, 1, singular, margin))
+    done: list[Limits] = []
+    for k, (left, right) in enumerate(pairwise(marks)):
+        outer = left[0] if k == 0 else (left[0] + left[1]) / 2
+        done.append((outer, left[1], right[0], right[1] if k == len(changes) else (right[0] + right[1]) / 2))
+    return done
+
+
+def end_marks(
+    family: Family, end: sp.Expr, side: int, singular: set[sp.Expr], margin: fmpq
+) -> tuple[fmpq, fmpq]:
+    """An end of the range as two rationals in order, the outer at or beyond it, the inner where contacts start."""
+    ball = enclose(end, bits=200)
+    if end.is_Rational:
+        at = fmpq(int(end.p), int(end.q))
+    else:
+        at = exact_decimal(lower_end(ball, DIGITS) if side < 0 else upper_end(ball, DIGITS))
+    vanishing = side < 0 and end == 0 and family.growing
+    inner = at - side * margin if end in singular and not vanishing else at
+    return (at, inner) if side < 0 else (inner, at)
+
+
+def regime_of(
+    family: Family, span: Span, ends: tuple[sp.Expr, sp.Expr], limits: Limits, closed: Closed | None, certify: bool
 ) -> tuple[Regime, list[tuple[str, str]]]:
-    """A regime followed rigorously; holes that are left, as pairs of texts."""
-    width = span.upper - span.lower
-    for part in SLIVERS:
-        start = rounded(max(span.lower + part * width, FLOOR * span.upper), part * width, 1)
-        stop = rounded(span.upper - part * width, part * width, -1)
-        done = followed(family, span.pattern, start, stop)
-        if done.pieces:
-            break
-    reached = fraction_of(done.reached)
-    holes: list[tuple[str, str]] = []
-    slivers = []
-    for a, b in ((lower, exact(start)), (exact(reached), upper)):
-        if bool(enclose(b - a) <= 0):
-            continue
-        row = sliver(family, a, b)
-        if row is None:
-            holes.append((end_text(a), end_text(b)))
+    """One regime: its proved closed form, or contacts followed for every value, slivers and holes."""
+    a, b = ends
+    if closed is not None:
+        return Regime(span, a, b, closed, closed.verdict.status), []
+    if not certify:
+        return Regime(span, a, b, None, OPEN, table_of(family, span)), [(end_text(a), end_text(b))]
+    done = followed(family, span.pattern, limits[1], limits[2])
+    holes, thin = [], []
+    for left, right in rests(done, limits):
+        made = slivers(family, left, right)
+        if made is None:
+            holes.append((end_text(number_of(left)), end_text(number_of(right))))
         else:
-            slivers.append(row)
-    document = done.document(family.exact(1), family.parameter.name) if done.pieces else None
+            thin += made
     status = CERTIFIED if done.pieces else OPEN
-    regime = Regime(span, lower, upper, closed if closed and closed.verdict.status.holds else None, status,
-                    table_of(family, span), document, tuple(slivers))  # fmt: skip
-    return regime, holes
+    document = done.document(family.moving, family.parameter.name) if done.pieces else None
+    return Regime(span, a, b, None, status, table_of(family, span), document, tuple(thin)), holes
 
 
-def rounded(x: Fraction, room: Fraction, side: int) -> Fraction:
-    """A short decimal next to x, on the given side of it and well within the room."""
-    unit = Fraction(1)
-    while unit * 4 > room:
-        unit /= 10
-    return (x // unit + (1 if side > 0 else 0)) * unit
+def rests(done: Ranged, limits: Limits) -> list[tuple[fmpq, fmpq]]:
+    """Stretches of the regime that the followed contacts leave."""
+    if not done.pieces:
+        return [(limits[0], limits[3])]
+    first, last = done.ends
+    return [(a, b) for a, b in ((limits[0], first), (last, limits[3])) if a < b]
+
+
+def number_of(x: fmpq) -> sp.Rational:
+    return sp.Rational(int(x.p), int(x.q))
 
 
 def exact(x: Fraction) -> sp.Rational:
     return sp.Rational(x.numerator, x.denominator)
-
-
-def sliver(family: Family, lower: sp.Expr, upper: sp.Expr) -> tuple[str, str, str, str] | None:
-    """Bounds of the value between two lengths, from the values there: it never increases with T."""
-    if lower == 0 or bool(enclose((upper - lower) / upper) > sp.Rational(1, 4)):
-        return None
-    first, last = solve(family.problem(lower), 15), solve(family.problem(upper), 15)
-    return end_text(lower), end_text(upper), last.lower, first.upper
 
 
 def table_of(family: Family, span: Span) -> tuple[dict[str, str], ...]:
@@ -216,7 +278,9 @@ def regime_row(family: Family, regime: Regime) -> dict[str, Any]:
         }
     row["status"] = str(regime.status)
     if regime.slivers:
-        row["slivers"] = [dict(zip(("from", "to", "lower", "upper"), s, strict=True)) for s in regime.slivers]
+        row["slivers"] = [
+            dict(zip(("from", "to", "lower", "upper"), s.row(), strict=True)) for s in regime.slivers
+        ]
     return row
 
 
@@ -229,7 +293,8 @@ def end_text(end: sp.Expr) -> str:
 
 def pattern_rows(family: Family, span: Span) -> list[dict[str, Any]]:
     """The instants of an implicit regime: which ends, how many inside, with which signs."""
-    names = {"from": "T", "to": "0"} if family.backward else {"from": "0", "to": "T"}
+    ends = (to_text(family.time(family.start)), to_text(family.time(family.stop)))
+    names = dict(zip(("from", "to"), ends, strict=True))
     rows = [
         {"measurement": family.measurements[k], "at": names.get(kind), "sign": s}
         for k, kind, s in span.pattern

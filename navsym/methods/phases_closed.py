@@ -120,6 +120,15 @@ def place_of(values: Sequence[sp.Rational], lengths: Sequence[sp.Rational], T: s
     return None if a is None or b is None else a * T + b
 
 
+def place_from(values: Sequence[sp.Rational], parameters: Sequence[sp.Rational], p: sp.Symbol) -> sp.Expr | None:
+    """A place linear in the parameter or in its reciprocal."""
+    found = place_of(values, parameters, p)
+    if found is not None or any(v == 0 for v in parameters):
+        return found
+    scaled = place_of([v * q for v, q in zip(values, parameters, strict=True)], parameters, p)
+    return None if scaled is None else sp.expand(scaled / p)
+
+
 # -- exact linear algebra on the contacts ---------------------------------------------------------
 
 
@@ -130,11 +139,11 @@ def candidates(family: Family, span: Span) -> list[Closed]:
         return []
     T = family.parameter
     lengths = [s.T for s in found]
-    places = [place_of([s.places[i] for s in found], lengths, T) for i in range(len(span.pattern))]
+    places = [place_from([s.places[i] for s in found], lengths, T) for i in range(len(span.pattern))]
     if any(p is None for p in places):
         return []
     exact = tuple(p for p in places if p is not None)
-    if is_monomial(family):
+    if is_monomial(family) and family.growing:
         quick = monomial_guess(family, span, exact, found)
         if quick is not None:
             return [quick]
@@ -179,14 +188,14 @@ def duals(family: Family, span: Span, places: Sequence[sp.Expr], one: Sample):  
     rows, right = [], []
     for (k, kind, s), u in zip(span.pattern, places, strict=True):
         rows.append([h.subs(U, u) for h in family.rows[k]])
-        right.append(s * family.sigma[k])
+        right.append(sp.sympify(s * family.sigma[k], strict=True))
         if kind == "no":
             rows.append([h.diff(U).subs(U, u) for h in family.rows[k]])
             right.append(sp.S.Zero)
     A = sp.Matrix(rows)
     m = A.cols
     numeric = np.array(A.subs(family.parameter, one.T).evalf(30).tolist(), dtype=float)
-    b = np.array([float(r) for r in right])
+    b = np.array([float(family.at(r, one.T)) for r in right])
     rank = int(np.linalg.matrix_rank(numeric, tol=1e-9))
     for columns in itertools.combinations(range(m), rank):
         picked = independent_rows(numeric[:, columns])
@@ -269,14 +278,14 @@ def weights_of(
 
 
 def proved(family: Family, guess: Closed, lower: sp.Expr, upper: sp.Expr, seconds: float) -> Verdict:
-    """The ladder's verdict on the pair for all T between the ends."""
-    # Lengths are positive: at T = 0 itself, the end of an open range, weights may be infinite.
-    T = sp.Symbol(family.parameter.name, positive=True)
+    """The ladder's verdict on the pair for all values between the ends."""
+    # At zero itself, the end of an open range, weights may be infinite: hence positive, not nonnegative.
+    T = sp.Symbol(family.parameter.name, positive=True) if bool(enclose(lower) >= 0) else family.parameter
     put = lambda e: sp.sympify(e, strict=True).subs(family.parameter, T)  # noqa: E731
     statements = [
         Optimum(
-            regressors=tuple(h / sigma for h in row), functional=family.functional, variable=U,
-            interval=(sp.S.Zero, T), dual=tuple(map(put, guess.dual)), support=tuple(map(put, guess.places)),
+            regressors=tuple(put(h / sigma) for h in row), functional=tuple(map(put, family.functional)), variable=U,
+            interval=(put(family.start), put(family.stop)), dual=tuple(map(put, guess.dual)), support=tuple(map(put, guess.places)),
             weights=tuple(put(w * family.sigma[k]) for w, k in zip(guess.weights, guess.panels, strict=True)),
             value=put(guess.value), box={T: (lower, upper)},
         )
@@ -285,7 +294,7 @@ def proved(family: Family, guess: Closed, lower: sp.Expr, upper: sp.Expr, second
     if len(statements) > 1:
         outcome = run_limited(decide_jointly, (statements, guess.panels), seconds, DEFAULT_MEGABYTES)
         return Verdict(OPEN, "none", evidence="stopped") if isinstance(outcome, Exhausted) else outcome
-    if is_polynomial(statements[0]):
+    if family.growing and is_polynomial(statements[0]):
         return decide_polynomial(statements[0])
     return decide_within(statements[0], seconds)
 

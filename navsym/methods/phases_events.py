@@ -62,7 +62,6 @@ def events(
     family: Family, left: Span, before: Closed | None, right: Span, after: Closed | None
 ) -> Iterator[tuple[sp.Expr, str]]:
     """Expressions that vanish at the change, with words: a weight, or the room of an instant."""
-    T = family.parameter
     for closed, span in ((before, left), (after, right)):
         if closed is None:
             continue
@@ -75,11 +74,11 @@ def events(
         for i, (_, kind, _) in enumerate(span.pattern):
             if kind == "no":
                 yield (
-                    T - closed.places[i],
+                    family.stop - closed.places[i],
                     f"the instant {family.time(closed.places[i])} reaches an end of the interval",
                 )
                 yield (
-                    closed.places[i],
+                    closed.places[i] - family.start,
                     f"the instant {family.time(closed.places[i])} reaches an end of the interval",
                 )
 

@@ -54,7 +54,9 @@ def follow_from_zero(family: Family, track: Track, upper: fmpq) -> Ranged:
     else:
         return Ranged(())
     assert first is not None
-    pieces = [first, *march(powers, first.ends[1], end, upper, 3)]
+    # Scaled rows know their last coefficient as a ball only: too little next to the end of the regime.
+    near = max(end, simple(upper * fmpq(7, 8), upper))
+    pieces = [first, *march(powers, first.ends[1], end, near, 3)]
     last = pieces[-1]
     return Ranged((*pieces, *march(track, last.ends[1], last.upper, upper)))
 

@@ -3,11 +3,21 @@
 from __future__ import annotations
 
 import itertools
+import random
 
+import pytest
 import sympy as sp
 
+from navsym.errors import DuplicateError
 from navsym.methods.observability import observe
-from navsym.methods.observability_loci import compositions, rank_drops
+from navsym.methods.observability_loci import (
+    all_drops,
+    compositions,
+    drops_and_completeness,
+    drops_by_minors,
+    rank_drops,
+    staircases,
+)
 from navsym.models.linear import LinearModel
 
 a, b, c, w = sp.symbols("a b c w", real=True)
@@ -77,9 +87,123 @@ def test_compositions_are_all_sums_within_their_caps():
     assert set(compositions(6, [3, 2, 4])) == direct
 
 
-def test_too_many_minors_give_a_list_that_does_not_call_itself_complete():
+def test_the_full_error_model_of_sixteen_states_has_a_complete_list():
     from navsym.models.inertial import full_model
 
-    drops = rank_drops(observe(full_model()))
-    assert drops and not any(d.complete for d in drops)
-    assert "omega_2 = 0" in {d.condition for d in drops}
+    drops, complete = drops_and_completeness(observe(full_model()))
+    assert all(complete.values())
+    joint = {d.condition for d in drops if d.subspace == "joint"}
+    assert joint == {
+        "mu = 0",
+        "mu**2*omega_1**2 + mu**2*omega_2**2 - 1 = 0",
+        "omega_1 = 0 and omega_2 = 0 and u_2 = 0 and u_1 = 0",
+    }
+
+
+def random_symbolic_model(seed: int) -> LinearModel:
+    source = random.Random(seed)
+    n = source.randint(3, 4)
+    entries = [0, 0, 0, 1, -1, a, b, c, a * b, a + c, b - 1, a**2 - b]
+    F = sp.Matrix(n, n, lambda i, j: source.choice(entries))
+    H = sp.Matrix([[1, *[source.choice(entries) for _ in range(n - 1)]], [source.choice(entries), 1, *[0] * (n - 2)]])
+    return LinearModel(F, None, H)
+
+
+@pytest.mark.parametrize("seed", range(16))
+def test_drops_by_cases_hold_at_a_point_exactly_where_the_rank_is_smaller(seed):
+    model = random_symbolic_model(seed)
+    found = observe(model)
+    drops, complete = drops_and_completeness(found)
+    for values in itertools.product((0, 1, -1), (0, 1, -2), (0, 1)):
+        at = dict(zip((a, b, c), values, strict=True))
+        F, H = model.F.subs(at), model.H.subs(at)
+        ranks = {
+            name: sp.Matrix.vstack(*[H[k, :] * F**j for k in rows for j in range(model.size)]).rank()
+            for name, rows in (("z1", [0]), ("z2", [1]), ("joint", [0, 1]))
+        }
+        generic = {m.name: m.dimension for m in found.measurements} | {"joint": found.joint_dimension}
+        for name, rank in ranks.items():
+            listed = [d for d in drops if d.subspace == name]
+            on_a_locus = any(all(zero.subs(at) == 0 for zero in d.zeros) for d in listed)
+            assert not on_a_locus or rank < generic[name], (name, at)
+            assert on_a_locus or not complete[name] or rank == generic[name], (name, at)
+
+
+@pytest.mark.parametrize("seed", range(16, 28))
+def test_drops_by_cases_are_the_common_zeros_of_all_minors(seed):
+    chains = observe(random_symbolic_model(seed)).chains
+    fast, complete = all_drops(chains)["joint"]
+    slow = drops_by_minors([chains.staircase_vectors(s) for s in staircases(chains)], chains.ring)
+    size = len(chains.ring.symbols)
+    for point in itertools.product(range(-3, 4), repeat=size):
+        on_slow, on_fast = (any(all(f(*point) == 0 for f in system) for system in listed) for listed in (slow, fast))
+        assert on_fast == on_slow or (on_slow and not complete), point
+
+
+def test_a_list_that_is_too_long_to_prove_says_so():
+    symbols = sp.symbols("a b c d e f", real=True)
+    F = sp.Matrix(9, 9, lambda i, j: symbols[(3 * i + j * j) % 6] + (i * j) % 4 * symbols[(i + 2 * j) % 6])
+    found = observe(LinearModel(F, None, [[1, *[0] * 8]]))
+    _, complete = drops_and_completeness(found)
+    assert found.joint_dimension == 9 and complete == {"z1": False, "joint": False}
+
+
+# Angles
+
+
+def test_a_latitude_under_sines_and_cosines_is_exact():
+    phi = sp.Symbol("phi", real=True)
+    F = sp.Matrix([[0, w * sp.sin(phi), 0], [-w * sp.sin(phi), 0, w * sp.cos(phi)], [0, -w * sp.cos(phi), 0]])
+    found = observe(LinearModel(F, None, [[1, 0, 0]]))
+    assert found.joint_dimension == 3
+    # Cayley and Hamilton for a rotation: the squares of sine and cosine have gone.
+    assert found.measurements[0].companion == (0, -(w**2), 0)
+    assert conditions_by_name(found)["joint"] == {"w = 0", "sin(phi) = 0", "cos(phi) = 0"}
+
+
+def conditions_by_name(found) -> dict[str, set[str]]:
+    drops, complete = drops_and_completeness(found)
+    assert all(complete.values())
+    listed: dict[str, set[str]] = {}
+    for drop in drops:
+        listed.setdefault(drop.subspace, set()).add(drop.condition.replace("(phi/2)", "/2(phi)"))
+    return {name: merged(values) for name, values in listed.items()}
+
+
+def merged(values: set[str]) -> set[str]:
+    """sin(phi/2) = 0 or cos(phi/2) = 0 together are sin(phi) = 0."""
+    halves = {"sin/2(phi) = 0", "cos/2(phi) = 0"}
+    return (values - halves) | {"sin(phi) = 0"} if halves <= values else values
+
+
+def test_a_drop_at_one_end_of_the_circle_is_found_with_half_the_angle():
+    phi = sp.Symbol("phi", real=True)
+    found = observe(LinearModel([[0, 1 + sp.cos(phi)], [0, 0]], None, [[1, 0]]))
+    assert {d.condition for d in rank_drops(found)} == {"cos(phi/2) = 0"}
+    found = observe(LinearModel([[0, 2 + sp.cos(phi)], [0, 0]], None, [[1, 0]]))
+    assert all(sp.N(d.zeros[0].subs(phi, sp.Rational(k, 7))) != 0 for d in rank_drops(found) for k in range(50))
+
+
+def test_pythagoras_makes_a_row_vanish_and_two_rows_equal():
+    phi = sp.Symbol("phi", real=True)
+    with pytest.raises(DuplicateError):
+        observe(LinearModel([[0, 1], [0, 0]], None, [[sp.cos(2 * phi), 1], [1 - 2 * sp.sin(phi) ** 2, 1]]))
+    hidden = observe(LinearModel([[0, 0], [0, 0]], None, [[sp.cos(phi), sp.sin(phi)]])).unobservable
+    assert sp.simplify(hidden[0, 0] * sp.cos(phi) + hidden[0, 1] * sp.sin(phi)) == 0
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_angles_agree_with_numbers_for_the_angle(seed):
+    phi, source = sp.Symbol("phi", real=True), random.Random(seed)
+    pool = [0, 1, sp.sin(phi), sp.cos(phi), a * sp.sin(phi), sp.tan(phi), sp.cos(2 * phi) - 1, sp.sin(phi / 2)]
+    F = sp.Matrix(4, 4, lambda i, j: source.choice(pool))
+    found = observe(LinearModel(F, None, [[1, 0, 0, 0]]))
+    at = {phi: sp.Rational(source.randint(1, 9), 7), a: sp.Rational(3, 5)}
+    numbers = sp.Matrix(F.subs(at)).evalf(40)
+    row, rows = sp.Matrix([[1, 0, 0, 0]]), []
+    for _ in range(found.joint_dimension + 1):
+        rows.append(row)
+        row = row * numbers
+    theta = [sp.N(value.subs(at), 40) for value in found.measurements[0].companion]
+    combined = sum((t * r for t, r in zip(theta, rows, strict=False)), sp.zeros(1, 4))
+    assert max(abs(x) for x in combined - rows[found.joint_dimension]) < 1e-25
