@@ -73,8 +73,8 @@ def test_the_shell_itself_completes_an_id_with_a_colon(shell, tmp_path):
     program = tmp_path / "navsym"
     program.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m navsym "$@"\n')
     program.chmod(0o755)
-    env = {**os.environ, "PATH": f"{tmp_path}:{os.environ['PATH']}", "LINE": "navsym explain guaranteed_velocity:4.3.u2"}
-    env |= {"PYTHONPATH": str(ROOT), "HOME": str(tmp_path)}
+    env = {**os.environ, "PATH": f"{tmp_path}:{os.environ['PATH']}", "PYTHONPATH": str(ROOT), "HOME": str(tmp_path)}
+    env["LINE"] = "navsym explain guaranteed_velocity:4.3.u2"
     done = subprocess.run([shell, "-c", ASK[shell]], env=env, capture_output=True, text=True, check=True)
     found = [word.removeprefix("guaranteed_velocity:") for word in done.stdout.split()]
     assert found == ["4.3.u2", "4.3.u2*"]

@@ -9,6 +9,17 @@
   window.addEventListener("resize", reach);
   document.addEventListener("toggle", reach, true);
   reach();
+  // Paper cannot be scrolled: what is wider than a sheet is set smaller while it is printed.
+  const sheet = 600;
+  window.addEventListener("beforeprint", () => {
+    for (const math of document.querySelectorAll(".formula math")) {
+      const width = math.getBoundingClientRect().width;
+      if (width > sheet) math.style.fontSize = `${Math.max(0.3, 0.85 * sheet / width)}rem`;
+    }
+  });
+  window.addEventListener("afterprint", () => {
+    for (const math of document.querySelectorAll(".formula math")) math.style.fontSize = "";
+  });
   const form = document.querySelector("form.filters");
   if (!form) return;
   const claims = [...document.querySelectorAll("article.claim")];
