@@ -40,9 +40,14 @@ def predict_mode(i, n, F, Q, x, P, scratch):  # type: ignore[no-untyped-def]
 
 
 @numba.njit(**COMPILE)
-def correct_mode(i, n, p, H, r, z, x, P, scratch, log_likelihood):  # type: ignore[no-untyped-def]
-    """Correct mode i of eight runs by scalars z [c] at 8 c; the same order as in ``correct_group``."""
+def correct_mode(i, n, p, H, r, z, x, P, scratch, log_likelihood, volume):  # type: ignore[no-untyped-def]
+    """Correct mode i of eight runs by scalars z [c] at 8 c; the same order as in ``correct_group``.
+
+    The log-likelihood is what it adds to log_likelihood less half the log of the volume, the product of the
+    variances: one logarithm later serves several of them and the prediction of the mode.
+    """
     start, square = i * n * 8, i * n * n * 8
+    store(volume, i * 8, spread(1.0))
     for c in range(p):
         variance, innovation = spread(r[c]), load(z, c * 8)
         for a in range(n):
@@ -52,18 +57,24 @@ def correct_mode(i, n, p, H, r, z, x, P, scratch, log_likelihood):  # type: igno
             store(scratch, a * 8, v)
             variance = variance + spread(H[c, a]) * v
             innovation = innovation - spread(H[c, a]) * load(x, start + a * 8)
+        inverse = spread(1.0) / variance
+        weight = innovation * inverse
         store(scratch, 2 * n * 8, variance)
-        store(scratch, 2 * n * 8 + 8, innovation * innovation / variance)
+        store(scratch, 2 * n * 8 + 8, innovation * weight)
         for lane in range(8):
             s, distance = scratch[2 * n * 8 + lane], scratch[2 * n * 8 + 8 + lane]
             if not (s > 0.0 and distance < np.inf):
                 return False
-            log_likelihood[i * 8 + lane] -= 0.5 * (distance + math.log(s) + LOG_TWO_PI)
-        weight = innovation / variance
+            log_likelihood[i * 8 + lane] -= 0.5 * (distance + LOG_TWO_PI)
+            product = volume[i * 8 + lane] * s
+            if not 1e-200 < product < 1e200:
+                log_likelihood[i * 8 + lane] -= 0.5 * (math.log(volume[i * 8 + lane]) + math.log(s))
+                product = 1.0
+            volume[i * 8 + lane] = product
         for a in range(n):
             v = load(scratch, a * 8)
             store(x, start + a * 8, load(x, start + a * 8) + v * weight)
-            gain = v / variance
+            gain = v * inverse
             store(scratch, (n + a) * 8, gain)
             for b in range(n):
                 place = square + (a * n + b) * 8
@@ -104,24 +115,33 @@ def merge_modes(m, n, weights, place, x, P, target, mean, covariance, off):  # t
 
 
 @numba.njit(**COMPILE)
-def mode_weights(m, branching, p_mode, logs, totals, mixing):  # type: ignore[no-untyped-def]
-    """log P[next mode] in totals and, for IMM, P[mode | next mode] in mixing [target, source], lane by lane."""
+def mode_weights(m, branching, p_mode, logs, totals, shares, mixing, raw):  # type: ignore[no-untyped-def]
+    """P[next mode] as exp(totals) shares and, for IMM, P[mode | next mode] in mixing [target, source].
+
+    One exponential per mode serves all next modes; raw (m 8) is work space. A next mode whose share would underflow is
+    done again in logarithms.
+    """
     for lane in range(8):
         top = -np.inf
         for s in range(m):
             top = max(top, logs[s * 8 + lane])
-        for i in range(m):
-            total = 0.0
+        for s in range(m):
+            raw[s * 8 + lane] = math.exp(logs[s * 8 + lane] - top)
+            totals[s * 8 + lane] = top
+    for i in range(m):
+        total = load(raw, 0) * spread(p_mode[0, i])
+        for s in range(1, m):
+            total = total + load(raw, s * 8) * spread(p_mode[s, i])
+        store(shares, i * 8, total)
+        if branching == 1:
+            inverse = spread(1.0) / total
             for s in range(m):
-                total += math.exp(logs[s * 8 + lane] - top) * p_mode[s, i]
-            if total < 1e-290:
-                total = slow_column(m, i, lane, top, p_mode, logs, mixing)
-                totals[i * 8 + lane] = total
-                continue
-            totals[i * 8 + lane] = top + math.log(total)
-            if branching == 1:
-                for s in range(m):
-                    mixing[(i * m + s) * 8 + lane] = math.exp(logs[s * 8 + lane] - top) * p_mode[s, i] / total
+                store(mixing, (i * m + s) * 8, load(raw, s * 8) * spread(p_mode[s, i]) * inverse)
+        for lane in range(8):
+            if shares[i * 8 + lane] < 1e-290:
+                top = totals[i * 8 + lane]
+                totals[i * 8 + lane] = slow_column(m, i, lane, top, p_mode, logs, mixing)
+                shares[i * 8 + lane] = 1.0
 
 
 @numba.njit(**COMPILE)
@@ -166,6 +186,7 @@ def run_eight(  # type: ignore[no-untyped-def]
     x, P, y, S = aligned(m * n * 8), aligned(m * n * n * 8), aligned(m * n * 8), aligned(m * n * n * 8)
     logs, totals, weights, mixing = aligned(m * 8), aligned(m * 8), aligned(m * 8), aligned(m * m * 8)
     ll, zl, off = aligned(m * 8), aligned(p * 8), aligned(m * n * 8)
+    shares, volume = aligned(m * 8), aligned(m * 8)
     scratch = aligned((n * n + 2 * n + 2) * 8)
     now_mean, now = aligned(n * 8), aligned(n * n * 8)
     total_log = np.zeros(8)
@@ -183,8 +204,9 @@ def run_eight(  # type: ignore[no-untyped-def]
         if branching == 2:
             for j in range(m * 8):
                 totals[j] = logs[j]
+                shares[j] = 1.0
         else:
-            mode_weights(m, branching, pk, logs, totals, mixing)
+            mode_weights(m, branching, pk, logs, totals, shares, mixing, weights)
         if branching == 1:
             for i in range(m):
                 merge_modes(m, n, mixing, i * m, x, P, i, y, S, off)
@@ -202,12 +224,13 @@ def run_eight(  # type: ignore[no-untyped-def]
                     zl[c * 8 + lane] = value
             store(ll, i * 8, spread(0.0))
             predict_mode(i, n, f[i], q[i], x, P, scratch)
-            if not correct_mode(i, n, p, h[i], v[i], zl, x, P, scratch, ll):
+            if not correct_mode(i, n, p, h[i], v[i], zl, x, P, scratch, ll, volume):
                 return False
         for lane in range(8):
             top = -np.inf
             for i in range(m):
-                logs[i * 8 + lane] = totals[i * 8 + lane] + ll[i * 8 + lane]
+                share = shares[i * 8 + lane] / math.sqrt(volume[i * 8 + lane])
+                logs[i * 8 + lane] = totals[i * 8 + lane] + ll[i * 8 + lane] + math.log(share)
                 top = max(top, logs[i * 8 + lane])
             if top == -np.inf:
                 return False
