@@ -61,6 +61,8 @@ def judge(task: tuple[str, int, int]) -> Result:
     counts: Counter[str] = Counter()
     wrong: list[Any] = []
     slowest = 0.0
+    if reader in READERS:
+        answer(*READERS[reader])  # what is loaded or compiled at the first call is not the file's doing
     for name, data in inputs:
         before, memory = time.process_time(), peak()
         outcome = answer(READERS[name][0], data)

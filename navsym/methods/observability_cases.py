@@ -30,7 +30,7 @@ MINORS = 3
 #: A variable is replaced by at most so many terms; longer solutions stay equations.
 SOLUTION = 12
 #: Products of terms for one entry on the way; beyond that a minor is not formed, and the list not called complete.
-PRODUCTS = 1_000_000
+PRODUCTS = 60_000
 
 
 @dataclass(slots=True)

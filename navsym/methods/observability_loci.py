@@ -17,7 +17,7 @@ from navsym.methods.observability import Chains, Observability
 from navsym.methods.observability_cases import drops_by_cases
 from navsym.methods.observability_linear import Matrix, determinant, maximal_minors
 from navsym.methods.observability_reduction import krylov_remainder
-from navsym.methods.observability_ring import Poly, Ring
+from navsym.methods.observability_ring import Poly, Ring, odd
 from navsym.methods.observability_zeros import System, components, irredundant
 
 
@@ -62,9 +62,32 @@ def drops_and_completeness(found: Observability) -> tuple[tuple[RankDrop, ...], 
     drops = tuple(
         RankDrop(name, tuple(ring.condition(f) for f in system), complete)
         for name, (systems, complete) in answer.items()
-        for system in systems
+        for system in whole_angles(systems, ring)
     )
     return drops, {name: complete for name, (_, complete) in answer.items()}
+
+
+def whole_angles(systems: list[System], ring: Ring) -> list[System]:
+    """Two equations in half an angle that make one in the whole angle stand as that one.
+
+    sin(x/2) = 0 or cos(x/2) = 0 is sin(x) = 0; f = 0 or its mirror image (cos(x/2) with the other sign) = 0 is
+    one equation as well.
+    """
+    listed = list(systems)
+    for sine, cosine in ring.pairs():
+        S, C = ring.context.gen(sine), ring.context.gen(cosine)
+        singles = [f for (f,) in (system for system in listed if len(system) == 1) if odd(f, cosine)]
+        while singles:
+            f = singles.pop()
+            mirror = f.compose(*(-C if k == cosine else ring.context.gen(k) for k in range(len(ring.symbols))))
+            partners = {"S": [C], "C": [S]}.get("S" if f == S else "C" if f == C else "", [mirror, -mirror])
+            other = next((g for g in singles if any(g == partner for partner in partners)), None)
+            if other is not None:
+                singles.remove(other)
+                place = next(k for k, system in enumerate(listed) if system == [f])
+                listed[place] = [f * other]
+                listed.remove([other])
+    return listed
 
 
 def all_drops(chains: Chains) -> dict[str, tuple[list[System], bool]]:

@@ -50,7 +50,7 @@ class Regime:
     closed       : closed form, or None
     status       : PROVED, CERTIFIED or OPEN for every length in the regime
     table        : enclosures at some lengths, for regimes without a closed form
-    certificate  : of kind "range", or None
+    certificates : of kind "range" and what belongs to it
     slivers      : two-sided certificates of what the range certificate leaves
     """
 
@@ -60,7 +60,7 @@ class Regime:
     closed: Closed | None
     status: Status
     table: tuple[dict[str, str], ...] = ()
-    certificate: Mapping[str, Any] | None = None
+    certificates: tuple[Mapping[str, Any], ...] = ()
     slivers: tuple[Sliver, ...] = ()
 
 
@@ -77,7 +77,7 @@ class Phases:
 
     def certificates(self) -> list[dict[str, Any]]:
         """Certificates of the regimes without a closed form and of slivers, for ``navsym check``."""
-        ranges = [dict(regime.certificate) for regime in self.regimes if regime.certificate is not None]
+        ranges = [dict(c) for regime in self.regimes for c in regime.certificates]
         return ranges + [dict(s.certificate) for regime in self.regimes for s in regime.slivers]
 
     def _repr_html_(self) -> str:
@@ -226,14 +226,14 @@ def regime_of(
             holes.append((end_text(number_of(left)), end_text(number_of(right))))
         else:
             thin += made
-    status = CERTIFIED if done.pieces else OPEN
-    document = done.document(family.moving, family.parameter.name) if done.pieces else None
-    return Regime(span, a, b, None, status, table_of(family, span), document, tuple(thin)), holes
+    status = CERTIFIED if done.ends is not None else OPEN
+    documents = tuple(done.certificates(family.moving, family.parameter.name))
+    return Regime(span, a, b, None, status, table_of(family, span), documents, tuple(thin)), holes
 
 
 def rests(done: Ranged, limits: Limits) -> list[tuple[fmpq, fmpq]]:
     """Stretches of the regime that the followed contacts leave."""
-    if not done.pieces:
+    if done.ends is None:
         return [(limits[0], limits[3])]
     first, last = done.ends
     return [(a, b) for a, b in ((limits[0], first), (last, limits[3])) if a < b]

@@ -167,6 +167,8 @@ def closing(
     first, second = (rooms(forced(family, T, pattern, contacts, T0)) for T in (T0, (T0 + target) / 2))
     best: tuple[float, int] | None = None
     for i, ((_, a), (_, b)) in enumerate(zip(first, second, strict=True)):
+        if not (a.is_finite() and b.is_finite()):
+            continue
         drop = float((a - b).mid())
         if drop != 0.0:
             zero = float(T0) + float(a.mid()) / drop * float((target - T0) / 2)
@@ -187,7 +189,10 @@ def closing(
         q = step
         if abs(q - target) > abs(T0 - target) * 3 + sp.Rational(1, 1000):
             return None
-        fq = number(rooms(forced(family, q, pattern, contacts, T0))[i][1].mid())
+        room = rooms(forced(family, q, pattern, contacts, T0))[i][1]
+        if not room.is_finite():
+            return None
+        fq = number(room.mid())
     return q, first[i][0]
 
 

@@ -11,7 +11,7 @@ from flint import fmpq, fmpq_mat
 from navsym.methods.phases_closed import refined
 from navsym.methods.phases_family import Family
 from navsym.methods.phases_scan import Pattern
-from navsym.methods.phases_vanishing import echelon, scaled
+from navsym.methods.phases_vanishing import echelon, scaled, scaled_certificate
 from navsym.proof.decimals import decimal, exact
 from navsym.proof.enclosure import rational
 from navsym.proof.optimality_basis import make_basis
@@ -39,26 +39,20 @@ def followed(family: Family, pattern: Pattern, lower: fmpq, upper: fmpq) -> Rang
 
 
 def follow_from_zero(family: Family, track: Track, upper: fmpq) -> Ranged:
-    """A first piece that begins at the length zero, then pieces scaled by powers, then pieces as usual."""
+    """A first piece that begins at the length zero, scaled by powers, then pieces as usual."""
     form = echelon(family)
     if form is None:
         return Ranged(())
     powers = replace(track, moving=lambda a, b: scaled(family, form, a, b))
-    end = upper
+    end = min(upper, simple(form.reach, form.reach))
     for _ in range(12):
         start = track.first(end / 2)
         first = None if start is None else piece(powers, start, fmpq(0), end)
         if first is not None:
-            break
+            rest = march(track, first.ends[1], end, upper)
+            return Ranged(tuple(rest), (first, scaled_certificate(family, form, first)))
         end = simple(end / 2, end)
-    else:
-        return Ranged(())
-    assert first is not None
-    # Scaled rows know their last coefficient as a ball only: too little next to the end of the regime.
-    near = max(end, simple(upper * fmpq(7, 8), upper))
-    pieces = [first, *march(powers, first.ends[1], end, near, 3)]
-    last = pieces[-1]
-    return Ranged((*pieces, *march(track, last.ends[1], last.upper, upper)))
+    return Ranged(())
 
 
 def member(family: Family, pattern: Pattern, p: fmpq) -> Member | None:

@@ -117,7 +117,8 @@ def test_an_unobservable_pair_is_described(observe):
         (with_second_row('"0", "1", "1", "kappa", "0", "0"'), [], "duplicate", "row of its own"),
         (with_second_row('"0", "0", "0", "0", "0", "0"'), [], "domain", "not zero"),
         (GOOD.replace('["0","1","0","0","0","0"], ', '["0","1","0","0","0"], '), [], "shape", ""),
-        (GOOD.replace('"-1","0","0"', '"-sin(kappa)","0","0"'), [], "domain", "rational function"),
+        (GOOD.replace('"-1","0","0"', '"-exp(kappa)","0","0"'), [], "domain", "rational function"),
+        (GOOD.replace('"-1","0","0"', '"-sin(kappa**2)","0","0"'), [], "domain", "angles such as"),
         (GOOD.replace('"-1","0","0"', '"-t","0","0"'), [], "domain", "constant"),
     ],
 )
@@ -149,3 +150,12 @@ def test_pages_hold_the_decomposition_and_no_markup_of_the_file(observe, tmp_pat
     assert status == 0
     assert "<script>" not in html.read_text() and "<math" in html.read_text()
     assert r"\Theta" in latex.read_text()
+
+
+def test_sines_and_cosines_of_a_latitude_are_answered_exactly(tmp_path, capsys):
+    path = tmp_path / "latitude.toml"
+    path.write_text(GOOD.replace('"-1","0","0"', '"-cos(kappa)**2","0","sin(kappa)"'))
+    assert run(["observe", str(path), "--json"]) == 0
+    data = json.loads(capsys.readouterr().out)
+    assert data["rank_drops_complete"] == {"velocity": True, "second": True, "joint": True}
+    assert "sin(kappa)" in json.dumps(data["measurements"])
