@@ -19,14 +19,18 @@
 # beside the derived one; a verdict says how far the claim holds and why.
 
 # %%
+import tempfile
+from pathlib import Path
+
 import matplotlib.pyplot as plt
 import numpy as np
 import sympy as sp
 
 from derivations.guaranteed_velocity import model, polynomial, system, weights
 from navsym.claims import Equation, Optimum
+from navsym.cli.main import run as navsym
 from navsym.proof.ladder import decide
-from navsym.report.notebook import require, show
+from navsym.report.notebook import explore, require, show
 
 # %% [markdown]
 # ## The model
@@ -132,3 +136,36 @@ axis.set(xlabel=r"$\tau$, Schuler units", ylabel=r"$S_0(\tau)\,/\,L_1$", title="
 plt.close(figure)
 assert np.abs(S(at)).max() <= L * (1 + 1e-12)
 figure
+
+# %% [markdown]
+# Move T. Up to 2π/3 the polynomial stays in its band and touches it three times; beyond, the formulas go
+# on to be numbers but are no longer an estimator: the middle of the band is left.
+
+# %%
+general = sp.lambdify((model.tau, model.T), polynomial.polynomial(*polynomial.coefficients()), "numpy")
+bound_of = sp.lambdify(model.T, polynomial.deviation(), "numpy")
+
+
+def polynomial_for(T):
+    at = np.linspace(0, T, 200)
+    figure, axis = plt.subplots(figsize=(7, 3))
+    axis.axhspan(-1, 1, color="0.93")
+    axis.plot(at, general(at, T) / bound_of(T), color="#0072b2")
+    axis.plot([0, T / 2, T], [-1, 1, -1], "o", color="#d55e00")
+    axis.set(xlabel=r"$\tau$, Schuler units", ylabel=r"$S_0(\tau)\,/\,L_1$", title=f"T = {T:.2f}")
+    plt.close(figure)
+    return figure
+
+
+explore(polynomial_for, T=(0.3, 2.9, 1.5))
+
+# %% [markdown]
+# ## Out of the house
+# What is proved leaves as code, with test vectors, an error bound and a certificate that `navsym check` replays.
+
+# %%
+with tempfile.TemporaryDirectory() as folder:
+    words = ["export", "guaranteed_velocity:4.13.y3", "--to", "python", "--out", folder, "--vectors", "8"]
+    assert navsym(words) == 0
+    source = (Path(folder) / "python" / "navsym_functions.py").read_text(encoding="utf-8")
+print(source)

@@ -18,6 +18,9 @@
 # S. R. Martirosyan, Reports of NAS RA 123 (2), 2023.
 
 # %%
+import tempfile
+from pathlib import Path
+
 import matplotlib.pyplot as plt
 import numpy as np
 import sympy as sp
@@ -25,9 +28,10 @@ import sympy as sp
 from derivations import guaranteed_velocity as paper
 from derivations.guaranteed_velocity import beyond, duality, model, polynomial, system, weights
 from navsym.claims import claims_of
+from navsym.cli.main import run as navsym
 from navsym.numeric.casadi_functions import casadi_function, on_grid
 from navsym.numeric.convex import LP_SOLVERS, GridProblem, guaranteed_lp, least_squares_qp
-from navsym.report.notebook import require, show, verdict_table
+from navsym.report.notebook import explore, require, show, verdict_table
 
 BLUE, ORANGE, GREEN, RED = "#0072b2", "#e69f00", "#009e73", "#d55e00"
 
@@ -190,6 +194,25 @@ plt.close(figure)
 figure
 
 # %% [markdown]
+# How long must one measure? Move T: the guaranteed errors of tilt and drift, in units of the noise.
+
+
+# %%
+def errors_for(T):
+    tilt = 2 / np.tan(T / 4) if 4 * np.pi / 3 >= T else -1 / np.sin(T) if 3 * np.pi / 2 >= T else 1.0
+    drift = np.cos(T / 2) / np.sin(T / 4) ** 2 if 2 * np.pi / 3 >= T else -1 / np.cos(T) if np.pi >= T else 1.0
+    figure, axis = plt.subplots(figsize=(7, 2))
+    axis.barh(["velocity $y_1$", "tilt $y_2$", "drift $y_3$"], [1.0, tilt, drift], color=[GREEN, BLUE, RED])
+    minutes = T * np.sqrt(6.371e6 / 9.81) / 60
+    axis.set(xlabel=r"guaranteed error, $\sigma$", title=f"T = {T:.2f}, that is {minutes:.0f} minutes")
+    plt.close(figure)
+    assert tilt >= 1 - 1e-9 and drift >= 1 - 1e-9
+    return figure
+
+
+explore(errors_for, T=(0.5, 6.2, 1.5))
+
+# %% [markdown]
 # ## Every refuted line, with its reason
 
 # %%
@@ -200,3 +223,14 @@ for claim in refuted:
 
 # %%
 print(verdict_table(list(claims_of(paper)), lambda claim: claim.number.startswith("4.1")))
+
+# %% [markdown]
+# ## Out of the house
+# The corrected estimate of the tilt as code. The printed one is refused: what does not hold is not exported.
+
+# %%
+with tempfile.TemporaryDirectory() as folder:
+    words = ["export", "guaranteed_velocity:4.14.y2*", "--to", "python", "--out", folder, "--vectors", "8"]
+    assert navsym(words) == 0
+    source = (Path(folder) / "python" / "navsym_functions.py").read_text(encoding="utf-8")
+print(source)

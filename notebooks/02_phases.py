@@ -18,6 +18,7 @@
 
 # %%
 import os
+import tempfile
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -25,6 +26,7 @@ import numpy as np
 import sympy as sp
 from ipywidgets import FloatSlider, interact
 
+from navsym.cli.main import run as navsym
 from navsym.methods.guaranteed import solve
 from navsym.methods.guaranteed_compare import compare, realise, search_correlations
 from navsym.methods.guaranteed_many import values_for_lengths
@@ -218,3 +220,14 @@ if noise is not None:
 # epochs hits it fully, while least squares spreads every outlier over all estimates. The guarantee bounds
 # the error by the noise's deviation whatever its correlation; it does not promise to beat averaging when
 # the noise happens to be white.
+
+# %% [markdown]
+# ## Out of the house
+# The guaranteed error of the tilt as code, on the range for which it is proved.
+
+# %%
+with tempfile.TemporaryDirectory() as folder:
+    words = ["export", "guaranteed_velocity:4.13.y2", "--to", "python", "--out", folder, "--vectors", "8"]
+    assert navsym(words) == 0
+    source = (Path(folder) / "python" / "navsym_functions.py").read_text(encoding="utf-8")
+print(source)

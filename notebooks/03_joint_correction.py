@@ -19,6 +19,7 @@
 
 # %%
 import os
+import tempfile
 from itertools import pairwise
 from pathlib import Path
 
@@ -31,6 +32,7 @@ from derivations.joint_correction import section2_error_equations as errors_of_s
 from derivations.joint_correction import section2_groups as groups
 from derivations.joint_correction import section3_gains as analysis
 from navsym.claims import claims_of
+from navsym.cli.main import run as navsym
 from navsym.methods import two_stage_ins as experiment
 from navsym.methods import two_stage_real as aiding
 from navsym.methods.observability import observe
@@ -257,3 +259,14 @@ print(len(claims), "claims,", len(refuted), "of them refuted:")
 for claim in refuted:
     print(f"  {claim.number:28s} {claim.slip:6s} {claim.reason}")
 assert full_model().size == 16
+
+# %% [markdown]
+# ## Out of the house
+# The corrected row of the estimator for y5 as code.
+
+# %%
+with tempfile.TemporaryDirectory() as folder:
+    words = ["export", "joint_correction:3.3.y5*", "--to", "python", "--out", folder, "--vectors", "8"]
+    assert navsym(words) == 0
+    source = (Path(folder) / "python" / "navsym_functions.py").read_text(encoding="utf-8")
+print(source)

@@ -19,6 +19,7 @@
 
 # %%
 import os
+import tempfile
 from fractions import Fraction
 from pathlib import Path
 
@@ -28,6 +29,7 @@ import numpy as np
 from derivations import trajectory as paper
 from derivations.trajectory import algorithm, earth, experiment, gain, motion, remarks, scaling, table
 from navsym.claims import claims_of
+from navsym.cli.main import run as navsym
 from navsym.methods.conditioning import condition_numbers
 from navsym.methods.conditioning_scaling import best_scaling
 from navsym.methods.trajectory import (
@@ -51,7 +53,7 @@ from navsym.methods.trajectory_experiment import (
     experiment as rerun,
 )
 from navsym.methods.trajectory_tracks import track_of
-from navsym.report.notebook import require, show
+from navsym.report.notebook import explore, require, show
 from navsym.text.readers_tracks import read_track
 
 BLUE, ORANGE, GREEN, RED = "#0072b2", "#e69f00", "#009e73", "#d55e00"
@@ -91,6 +93,29 @@ plt.close(figure)
 assert all(found[n]["N_s"].trustworthy for n in orders if n <= 18)
 assert not found[30]["N_s"].trustworthy
 figure
+
+# %% [markdown]
+# A shorter step makes it worse. Move the step and the order: certified values, and what double precision
+# makes of the worst of them.
+
+
+# %%
+def conditioning_for(step, order):
+    found = condition_numbers(round(order), "1/6371000", str(round(step, 3)), digits=12)
+    names, values = ("N_p", "N_f", "N_s"), []
+    figure, axis = plt.subplots(figsize=(7, 2))
+    for place, (name, colour) in enumerate(zip(names, (RED, ORANGE, BLUE), strict=True)):
+        values.append(float(found[name].enclosure.lower))
+        axis.barh(place, values[-1], color=colour)
+        axis.plot(found[name].double, place, "|", color="black", markersize=14, markeredgewidth=2)
+    axis.set(xscale="log", xlim=(1, 1e32), yticks=range(3), yticklabels=names, xlabel="condition number",
+             title=f"n = {round(order)}, τ = {step:.2f} s; bar: certified, mark: double precision")  # fmt: skip
+    plt.close(figure)
+    assert values[2] <= values[1]
+    return figure
+
+
+explore(conditioning_for, step=(0.05, 2.0, 0.2), order=(2, 24, 10))
 
 # %% [markdown]
 # ## The table, printed against true
@@ -265,3 +290,14 @@ for claim in refuted:
     require(claim)
     print(f"{claim.number:<28} {claim.slip}: {claim.reason}")
 require(scaling.scalings_multiply)
+
+# %% [markdown]
+# ## Out of the house
+# The corrected rate of longitude as code.
+
+# %%
+with tempfile.TemporaryDirectory() as folder:
+    words = ["export", "trajectory:kinematics.lambda_rate*", "--to", "python", "--out", folder, "--vectors", "8"]
+    assert navsym(words) == 0
+    source = (Path(folder) / "python" / "navsym_functions.py").read_text(encoding="utf-8")
+print(source)

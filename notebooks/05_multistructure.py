@@ -18,6 +18,7 @@
 
 # %%
 import os
+import tempfile
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -27,6 +28,7 @@ from ipywidgets import FloatSlider, IntSlider, interact
 from derivations import multistructure as paper
 from derivations.multistructure import gaussian, jump_model, moments, polygaussian, pulsating, recursion
 from navsym.claims import claims_of
+from navsym.cli.main import run as navsym
 from navsym.methods import multimodel_road as road
 from navsym.methods import multimodel_study as study
 from navsym.methods.multimodel import run
@@ -227,3 +229,14 @@ refuted = [c for c in found if c.expect == "REFUTED"]
 print(len(found), "claims,", len(refuted), "refuted and corrected")
 for item in refuted:
     print(f"  {item.number:16s} {item.slip}: {item.reason}")
+
+# %% [markdown]
+# ## Out of the house
+# The likelihood of an innovation, equation (18), as code.
+
+# %%
+with tempfile.TemporaryDirectory() as folder:
+    words = ["export", "multistructure:18", "--to", "python", "--out", folder, "--vectors", "8"]
+    assert navsym(words) == 0
+    source = (Path(folder) / "python" / "navsym_functions.py").read_text(encoding="utf-8")
+print(source)

@@ -17,6 +17,8 @@
 
 # %%
 import math
+import tempfile
+from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -26,6 +28,7 @@ from matplotlib.colors import LightSource
 from derivations import terrain_search as paper
 from derivations.terrain_search import cost, crossing, directions, experiment, extremes, problem, solution
 from navsym.claims import claims_of
+from navsym.cli.main import run as navsym
 from navsym.methods.terrain import criteria, prepare, search_full, search_position
 from navsym.methods.terrain_accuracy import accuracy_map
 from navsym.methods.terrain_centre import information, slopes
@@ -247,3 +250,14 @@ for claim in claims_of(paper):
         print(f"{claim.number:<18} {claim.slip}: {claim.reason}")
 require(problem.bias_on_average)
 assert search_position(terrain, track, GRID).criterion >= full.criterion
+
+# %% [markdown]
+# ## Out of the house
+# The corrected position at the last time as code.
+
+# %%
+with tempfile.TemporaryDirectory() as folder:
+    words = ["export", "terrain_search:8.y*", "--to", "python", "--out", folder, "--vectors", "8"]
+    assert navsym(words) == 0
+    source = (Path(folder) / "python" / "navsym_functions.py").read_text(encoding="utf-8")
+print(source)
