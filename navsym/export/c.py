@@ -21,6 +21,7 @@ from navsym.export.printing import (
     unit_of,
 )
 from navsym.export.programs import c_header, c_through_state, output_places
+from navsym.export.tools import deviations_page
 from navsym.export.vectors import Vector
 
 STATUS = """/* {license} */
@@ -57,27 +58,8 @@ def files(
     found["test_vectors.h"] = vectors_header(functions, tests, license_)
     found["test_main.c"] = test_program(functions, tests, license_)
     found["CMakeLists.txt"] = cmake([f.name for f in functions], license_)
+    found["MISRA_DEVIATIONS.md"] = deviations_page(license_)
     return found
-
-
-WASI = """// {license}
-// Runs the test program that was compiled to WebAssembly; its exit status is ours.
-import {{ readFileSync }} from "node:fs";
-import {{ argv, exit }} from "node:process";
-import {{ WASI }} from "node:wasi";
-
-const wasi = new WASI({{ version: "preview1", args: ["run"], returnOnExit: true }});
-const module = await WebAssembly.compile(readFileSync(argv[2]));
-const instance = await WebAssembly.instantiate(module, wasi.getImportObject());
-exit(wasi.start(instance));
-"""
-
-
-def wasm_files(
-    functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str
-) -> dict[str, str]:
-    """The C folder with a runner for its WebAssembly."""
-    return files(functions, tests, license_) | {"run_wasi.mjs": WASI.format(license=license_)}
 
 
 def parameters(function: ExportedFunction) -> str:

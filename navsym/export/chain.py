@@ -144,7 +144,10 @@ def bound(link: Link, part: Material, names: Names) -> list[tuple[sp.Symbol, sp.
 def overlap(one: tuple[Any, Any], other: tuple[Any, Any]) -> tuple[Any, Any]:
     """What lies in both ranges; None is an end at infinity."""
     lows, highs = ([x for x in ends if x is not None] for ends in zip(one, other, strict=True))
-    return (max(lows, key=sp.sympify, default=None), min(highs, key=sp.sympify, default=None))
+    return (
+        max((sp.sympify(x, strict=True) for x in lows), default=None),
+        min((sp.sympify(x, strict=True) for x in highs), default=None),
+    )
 
 
 def part_of(link: Link, decided: Decided) -> Material:

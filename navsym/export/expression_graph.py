@@ -70,6 +70,7 @@ class Graph:
         return {node.value: plain(done[node.args[0]]) for node in self.nodes if node.op == "let"}
 
     def values(self) -> list[sp.Expr]:
+        """Exact value of every node."""
         done: list[sp.Expr] = []
         for node in self.nodes:
             done.append(value_of(node, [done[a] for a in node.args], self.inputs))
@@ -77,7 +78,8 @@ class Graph:
 
     def without_names(self) -> Graph:
         """The same operations without the names; what they made different and is equal becomes one node."""
-        builder, new = Builder(self.inputs), []
+        builder = Builder(self.inputs)
+        new: list[int] = []
         for node in self.nodes:
             args = [new[a] for a in node.args]
             new.append(args[0] if node.op == "let" else builder.put(node.op, *args, value=node.value))

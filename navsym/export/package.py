@@ -18,6 +18,7 @@ from navsym.errors import DomainError, DuplicateError, NavsymError
 from navsym.export.folder import require_free, write_folder
 from navsym.export.parts import ExportedFunction, Piece
 from navsym.export.printing import bound_text
+from navsym.export.programs import state_record
 from navsym.export.roundtrip import MANIFEST, Outcome, run_target
 from navsym.export.targets import Target
 from navsym.export.vectors import Vector, vectors
@@ -125,10 +126,12 @@ def function_record(function: ExportedFunction) -> dict[str, Any]:
     return {
         "name": function.name,
         "inputs": [
-            {"name": i.name, "symbol": i.symbol.name, "range": i.text} | ends(i.low, i.high)
+            {"name": i.name, "symbol": i.symbol.name, "range": i.text, "unit": i.unit or None} | ends(i.low, i.high)
             for i in function.inputs
         ],
-        "outputs": [{"name": o.name, "shape": list(o.shape)} for o in function.outputs],
+        "arguments": [{"name": a.name, "inputs": [a.first, a.size or 1]} for a in function.called_with],
+        "outputs": [{"name": o.name, "shape": list(o.shape), "unit": o.unit or None} for o in function.outputs],
+        "state": state_record(function),
         "pieces": [piece_record(function, piece) for piece in function.pieces],
     }
 

@@ -164,6 +164,7 @@ def summary(function: ExportedFunction) -> list[str]:
 
 
 def unit_of(text: str) -> str:
+    """The unit in words."""
     return text or "not stated"
 
 

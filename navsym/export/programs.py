@@ -37,6 +37,7 @@ def extras(function: ExportedFunction) -> list[Output]:
 
 
 def output_places(function: ExportedFunction) -> list[int]:
+    """Where each output begins among all results."""
     places, at = [], 0
     for output in function.outputs:
         places.append(at)

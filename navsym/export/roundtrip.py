@@ -20,7 +20,7 @@ from typing import Any
 from navsym.export.targets import SANITIZERS, TARGETS, Target
 
 SECONDS = 120
-LINE = re.compile(r"(\w+) vectors (\d+) wrong (\d+) worst (\S+)")
+LINE = re.compile(r"(\w+) vectors (\d+) wrong (\d+) worst ([-+.\w]+)")
 MANIFEST = "manifest.json"
 
 
@@ -43,7 +43,7 @@ def run_target(folder: Path, target: Target, *, sanitize: bool = False) -> Outco
     tool = target.executable()
     if tool is None:
         return Outcome(
-            target.name, "not executed", f"{target.module or target.tool} is not on this machine", {}
+            target.name, "not executed", f"{target.missing_module() or target.tool} is not on this machine", {}
         )
     text = ""
     with tempfile.TemporaryDirectory(prefix="navsym-run-") as build:
@@ -51,7 +51,11 @@ def run_target(folder: Path, target: Target, *, sanitize: bool = False) -> Outco
             done, text = run(step, folder)
             if done != 0:
                 return Outcome(target.name, "failed", words(text) or f"exit status {done}", measured(text))
-    return Outcome(target.name, "verified", "", measured(text))
+    found = measured(text)
+    if not found:
+        return Outcome(target.name, "not executed", f"no vectors ran: {words(text)}".rstrip(": "), {})
+    wrong = any(bad for _, bad, _ in found.values())
+    return Outcome(target.name, "failed" if wrong else "verified", words(text) if wrong else "", found)
 
 
 def steps_of(target: Target, folder: Path, tool: str, build: str, sanitize: bool) -> list[list[str]]:
@@ -129,7 +133,8 @@ def check_export(folder: Path) -> list[dict[str, Any]]:
             row(folder / MANIFEST, "manifest", "expected a manifest of navsym export; got something else")
         ]
     rows = [row(folder / MANIFEST, "manifest", hash_trouble(folder, files))]
-    return rows + [language_row(folder, name) for name in languages]
+    rows += [language_row(folder, name) for name in languages]
+    return rows + ([misra_row(folder / "c")] if "c" in languages and (folder / "c").is_dir() else [])
 
 
 def check_folder(folder: Path) -> list[dict[str, Any]]:
@@ -151,6 +156,18 @@ def language_row(folder: Path, name: str) -> dict[str, Any]:
         vectors = sum(n for n, _, _ in outcome.functions.values())
         why = f"{len(outcome.functions)} functions, {vectors} vectors inside their enclosures"
     return {"path": str(folder / name), "kind": f"code:{name}", "status": "ACCEPTED", "why": why}
+
+
+def misra_row(folder: Path) -> dict[str, Any]:
+    """Findings of the MISRA add-on; accepted when none lies outside the written deviations, or when it is not there."""
+    from navsym.export.tools import misra
+
+    said = misra(folder)
+    if said.status == "failed":
+        return row(folder, "misra", said.why)
+    counted = ", ".join(f"{count} of rule {rule} (deviation)" for rule, count in said.counts.items())
+    why = f"not executed: {said.why}" if said.status == "not executed" else counted or "no findings"
+    return {"path": str(folder), "kind": "misra", "status": "ACCEPTED", "why": why}
 
 
 def hash_trouble(folder: Path, files: dict[str, Any]) -> str:

@@ -36,7 +36,7 @@ class Target:
     library: int = 1
     reals: tuple[str, ...] = ("double",)
     widen: int = 1
-    module: str = ""
+    modules: tuple[str, ...] = ()
 
     def files(self) -> Callable[..., dict[str, str]]:
         """The function that makes the files, imported when it is first needed."""
@@ -46,9 +46,13 @@ class Target:
 
     def executable(self) -> str | None:
         """Path of the tool on this machine, or None; a tool that does not answer is not there."""
-        if self.module and importlib.util.find_spec(self.module) is None:
+        if self.missing_module():
             return None
         return sys.executable if not self.tool else answering(self.tool)
+
+    def missing_module(self) -> str:
+        """The first Python package that is needed and not installed, or the empty string."""
+        return next((name for name in self.modules if importlib.util.find_spec(name) is None), "")
 
 
 def answering(tool: str) -> str | None:
@@ -68,6 +72,10 @@ def answers(path: str) -> bool:
 
 
 BOTH = ("double", "float")
+HEADLESS = (
+    "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
+    "--disable-background-networking", "--disable-component-update", "--disable-sync", "--virtual-time-budget=20000",
+)  # fmt: skip
 TARGETS = {
     target.name: target
     for target in (
@@ -85,16 +93,18 @@ TARGETS = {
                (("{tool}", "--edition=2021", "-D", "warnings", "test_main.rs", "-o", "{build}/run"), ("{build}/run",)),
                reals=BOTH),
         Target("casadi", "navsym.export.casadi:files", "", (("{python}", "-B", "test_vectors.py"),),
-               widen=64, module="casadi"),
+               widen=64, modules=("casadi",)),
         Target("fortran", "navsym.export.scripts:fortran_files", "gfortran",
                (("{tool}", "-std=f2008", "-Wall", "-J", "{build}", "navsym_functions.f90", "test_vectors.f90",
                  "-o", "{build}/run"), ("{build}/run",)), library=2),
         Target("julia", "navsym.export.scripts:julia_files", "julia",
                (("{tool}", "--startup-file=no", "test_vectors.jl"),)),
-        Target("wasm", "navsym.export.c:wasm_files", "node",
+        Target("wasm", "navsym.export.wasm:wasm_files", "",
                (("{python}", "-m", "ziglang", "cc", "-target", "wasm32-wasi", "-O2", "-std=c99", "-ffp-contract=off",
                  *WARNINGS, "{c}", "-o", "{build}/run.wasm", "-lm"),
-                ("{tool}", "--no-warnings", "run_wasi.mjs", "{build}/run.wasm")), module="ziglang"),
+                ("{python}", "-B", "run_wasi.py", "{build}/run.wasm")), modules=("ziglang", "wasmtime"), reals=BOTH),
+        Target("html", "navsym.export.wasm:page_files", "chromium",
+               (("{tool}", *HEADLESS, "--user-data-dir={build}/profile", "--dump-dom", "index.html"),), reals=BOTH),
         Target("octave", "navsym.export.scripts:octave_files", "octave",
                (("{tool}", "--no-gui", "--quiet", "--eval", "test_vectors"),), library=2),
     )

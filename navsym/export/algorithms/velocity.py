@@ -40,7 +40,7 @@ def queue(material: Material) -> Material:
     """
     found: dict[str, list[sp.Expr]] = {output.name: flat for output, flat in material.results}
     ((symbol, ends),) = material.box.items()
-    middle = {symbol: enclose((sp.sympify(ends[0]) + sp.sympify(ends[1])) / 2)}
+    middle = {symbol: enclose(sum(sp.sympify(end, strict=True) for end in ends) / 2)}
     pairs = sorted(
         zip(found["instants"], found["weights"], strict=True), key=lambda pair: float(enclose(pair[0], middle).mid())
     )
