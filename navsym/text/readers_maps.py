@@ -11,6 +11,7 @@ import io
 import math
 import os
 import re
+import warnings
 import zipfile
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -117,7 +118,7 @@ def opened_zip(path: Path) -> zipfile.ZipFile:
     except FileNotFoundError:
         message = "expected a readable map file; got nothing there; check the path"
         raise NavsymError(message, where=called(path), kind="missing-file") from None
-    except (OSError, zipfile.BadZipFile, ValueError) as reason:
+    except Exception as reason:                # zipfile has many: BadZipFile, NotImplementedError, struct errors
         raise damaged(path, "an npz archive", reason) from None
 
 
@@ -160,7 +161,9 @@ def npy_header(file: Any) -> tuple[tuple[int, ...], bool, np.dtype[Any]]:
     readers = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.read_array_header_2_0}
     if version not in readers:
         raise ValueError(f"version {version} of the npy format")
-    shape, fortran, dtype = readers[version](file, max_header_size=4096)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")     # numpy warns of headers that only Python 2 wrote
+        shape, fortran, dtype = readers[version](file, max_header_size=4096)
     return shape, bool(fortran), dtype
 
 
@@ -231,7 +234,7 @@ def read_geotiff(path: Path) -> Raster:
         message = "expected a readable map file; got nothing there; check the path"
         raise NavsymError(message, where=called(path), kind="missing-file")
     try:
-        with rasterio.open(path) as source:
+        with warnings.catch_warnings(action="ignore"), rasterio.open(path) as source:
             shape, transform = (source.height, source.width), source.transform
             checked_size((shape, np.dtype(source.dtypes[0])), called(path))
             geographic = bool(source.crs is not None and source.crs.is_geographic)

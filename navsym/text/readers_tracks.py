@@ -36,7 +36,9 @@ Policy = Literal["strict", "repair"]
 
 LARGEST_FILE = 256 * 1024 * 1024
 LARGEST_ROWS = 2_000_000
+MOST_PROBLEMS = 1_000  # after so many a strict reading gives up: the file is something else
 FOOT = 0.3048
+DECIMAL = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d{1,3})?|[+-]?(nan|inf|infinity)", re.I | re.A)
 GPS_EPOCH = datetime(1980, 1, 6, tzinfo=UTC)
 
 #: Column -> names that mean it, lower case, units in brackets removed.
@@ -95,6 +97,8 @@ class Log:
     def problem(self, kind: type[NavsymError], line: int, message: str, repair: str) -> None:
         if self.policy == "strict":
             self.errors.append(kind(message, where=f"{self.where}: line {line}"))
+            if len(self.errors) >= MOST_PROBLEMS:
+                self.check()
         else:
             self.repairs.append(f"line {line}: {repair} ({message})")
 
@@ -106,7 +110,8 @@ class Log:
         if others:
             lines = ", ".join(e.where.rsplit(" ", 1)[-1] for e in others[:8])
             more = ", ..." if len(others) > 8 else ""
-            first.message += f"; {len(others)} more rows have problems (lines {lines}{more})"
+            count = f"{len(others)}" + (" or" if len(self.errors) >= MOST_PROBLEMS else "")
+            first.message += f"; {count} more rows have problems (lines {lines}{more})"
             first.args = (first.message,)
         raise first
 
@@ -296,11 +301,7 @@ def value_of(text: str, line: int, log: Log) -> float | None:
 
 def number_of(text: str) -> float | None:
     """A decimal number, nan or inf; None for anything else (no underscores, no hexadecimals)."""
-    if re.fullmatch(
-        r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d{1,3})?|[+-]?(nan|inf|infinity)", text.strip(), re.I | re.A
-    ):
-        return float(text)
-    return None
+    return float(text) if DECIMAL.fullmatch(text.strip()) else None
 
 
 def decimal_comma(text: str) -> float | None:

@@ -95,7 +95,7 @@ def test_the_second_look_sees_a_false_proof():
 
 def test_damaged_files_are_read_or_refused():
     document = run_campaign("parser", campaign_parser.batches(2000, 3), campaign_parser.judge)
-    assert not document["wrong"] and sum(document["counts"].values()) == 2000
+    assert not document["wrong"] and sum(document["counts"].values()) > 2000
 
 
 def test_a_reader_that_crashes_is_noticed(monkeypatch):
