@@ -150,8 +150,7 @@ def integer_power(x: Any, n: int) -> Any:
     if n < 0:
         return reciprocal(integer_power(x, -n))
     if isinstance(x, arb):
-        # The square of a ball around zero would reach below zero; the square of its modulus does not.
-        return abs(x) ** n if n % 2 == 0 else x**n
+        return ball_power(x, n)
     result: Any = arb_series([arb(1)])
     while n:
         if n & 1:
@@ -166,6 +165,18 @@ def reciprocal(x: Any) -> Any:
     if constant_term(x).contains(0):
         return undefined(x)
     return 1 / x
+
+
+def ball_power(x: arb, n: int) -> arb:
+    """x**n of a ball, n >= 0; flint's own is NaN where the midpoint is exactly zero, and below zero around it."""
+    around_zero = n > 0 and x.mid() == 0 and x.is_finite() and not x.is_exact()
+    power = arb(0, x.rad() ** n) if around_zero else x**n
+    return not_negative(power) if n % 2 == 0 else power
+
+
+def not_negative(x: arb) -> arb:
+    """The part of a ball that is not below zero, for what cannot be negative."""
+    return x.nonnegative_part() if x.is_finite() and not x >= 0 else x
 
 
 def rational_power(x: Any, p: int, q: int) -> Any:
@@ -193,7 +204,7 @@ def logarithm(x: Any) -> Any:
 
 def absolute(x: Any) -> Any:
     if isinstance(x, arb):
-        return abs(x)
+        return not_negative(abs(x))
     head = constant_term(x)
     if head > 0:
         return x

@@ -12,6 +12,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import sympy as sp
+from flint import arb
 
 from navsym.claims.statement import Box, Equation
 from navsym.claims.verdict import CERTIFIED, CONFIRMED, OPEN, PROVED, REFUTED, Verdict
@@ -25,10 +26,14 @@ from navsym.proof.normal_form import (
     reduce_to_zero,
     vanishes_identically,
 )
-from navsym.proof.sampling import Sample, points, search_counterexample
+from navsym.proof.sampling import Point, Sample, points, search_counterexample
+from navsym.proof.second_look import BITS, Look, second_look
 from navsym.proof.wording import decimal_ends, point_text, scope_of, text_of
 
 ENOUGH_POINTS = 32
+
+#: Functions inside an angle that make angles depend on each other: |a| and a, say.
+BENT = (sp.Abs, sp.sign, sp.Max, sp.Min)
 
 
 def decide_equation(statement: Equation) -> Verdict:
@@ -86,10 +91,13 @@ def decide_entry(printed: sp.Expr, derived: sp.Expr, statement: Equation) -> Ver
         if statement.tolerance is not None:
             return decide_numeral(printed, derived, statement)
         sample = search_counterexample(
-            printed - derived, lambda b: not b.contains(0), box, sides=finite_sides(printed, derived, statement)
+            printed - derived,
+            lambda b: not b.contains(0),
+            box,
+            sides=finite_sides(printed, derived, statement),
         )
         if sample.counterexample is not None:
-            return refuted(sample, box)
+            return refuted(sample)
         return prove_equal(printed, derived, statement, sample)
     except UndefinedExpressionError as error:
         return Verdict(OPEN, "normal form", scope_of(printed - derived, box), evidence=str(error))
@@ -103,16 +111,9 @@ def finite_sides(printed: sp.Expr, derived: sp.Expr, statement: Equation) -> tup
     return (printed, derived, *statement.exists, *(1 / part for part in divisors if part != 0))
 
 
-def refuted(sample: Sample, box: Box) -> Verdict:
+def refuted(sample: Sample) -> Verdict:
     assert sample.counterexample is not None and sample.difference is not None
-    return Verdict(
-        REFUTED,
-        method="exact point, ball arithmetic",
-        scope="one point",
-        evidence=f"the sides differ by {decimal_ends(sample.difference)[0]} at an exact point",
-        counterexample=point_text(sample.counterexample),
-        difference=decimal_ends(sample.difference),
-    )
+    return broken(sample.counterexample, sample.difference)
 
 
 # -- numerals ---------------------------------------
@@ -129,10 +130,17 @@ def decide_numeral(printed: sp.Expr, derived: sp.Expr, statement: Equation) -> V
         sides=finite_sides(printed, derived, statement),
     )
     if sample.counterexample is not None:
-        return refuted(sample, box)
+        return refuted(sample)
     for side in (tolerance - difference, tolerance + difference):
         if not prove_sign(side, box).at_least(Sign.NONNEGATIVE):
-            return sampled(sample, scope_of(difference, box), f"within {tolerance}")
+            look = second_look(
+                difference,
+                lambda ball: bool(abs(ball) > enclose(tolerance, bits=BITS)),
+                box,
+                finite_sides(printed, derived, statement),
+                goals=(tolerance - difference, tolerance + difference),
+            )
+            return after_look(look, sample, scope_of(difference, box), f"within {tolerance}")
     return Verdict(
         CERTIFIED,
         method="ball arithmetic",
@@ -164,7 +172,40 @@ def prove_equal(printed: sp.Expr, derived: sp.Expr, statement: Equation, sample:
         proof = rung(printed, derived, statement.box)
         if proof is not None:
             return proved(proof, printed, derived, statement)
-    return sampled(sample, scope_of(printed - derived, statement.box), "equality")
+    return unproved(printed, derived, statement, sample)
+
+
+def unproved(printed: sp.Expr, derived: sp.Expr, statement: Equation, sample: Sample) -> Verdict:
+    """What no rung proves: broken by a second look, or sampled; OPEN when the normal form denies it."""
+    difference, scope = printed - derived, scope_of(printed - derived, statement.box)
+    sides = finite_sides(printed, derived, statement)
+    look = second_look(difference, lambda ball: not ball.contains(0), statement.box, sides)
+    verdict = after_look(look, sample, scope, "equality")
+    if verdict.status == CONFIRMED and not difference.has(*BENT) and reduce_to_zero(difference).complete:
+        evidence = f"{verdict.evidence}, and the normal form of printed - derived is not zero"
+        return replace(verdict, status=OPEN, method="normal form", evidence=evidence)
+    return verdict
+
+
+def after_look(look: Look, sample: Sample, scope: str, what: str) -> Verdict:
+    """REFUTED by the point of a second look, else what the samples say."""
+    if look.counterexample is None or look.difference is None:
+        return sampled(sample, scope, what)
+    return broken(look.counterexample, look.difference, look.exact)
+
+
+def broken(point: Point, difference: arb, exact: bool = False) -> Verdict:
+    """REFUTED at one exact point."""
+    ends = ("0", "0") if exact else decimal_ends(difference)
+    evidence = (
+        "the difference is exactly zero there"
+        if exact
+        else f"the sides differ by {ends[0]} at an exact point"
+    )
+    method = "exact point" if exact else "exact point, ball arithmetic"
+    return Verdict(
+        REFUTED, method, "one point", evidence=evidence, counterexample=point_text(point), difference=ends
+    )
 
 
 def proved(proof: Proof, printed: sp.Expr, derived: sp.Expr, statement: Equation) -> Verdict:

@@ -9,14 +9,22 @@ import sympy as sp
 from flint import arb
 
 from navsym.claims.statement import Bound, Box, Equation
-from navsym.claims.verdict import CERTIFIED, OPEN, PROVED, REFUTED, Verdict
+from navsym.claims.verdict import CERTIFIED, OPEN, PROVED, Verdict
 from navsym.errors import DomainError
 from navsym.proof.balls import UnsupportedError, tape
 from navsym.proof.bounds import Sign, SignProof, prove_sign
-from navsym.proof.equations import decide_equation, remaining_assumptions, sampled, with_sides
+from navsym.proof.equations import (
+    after_look,
+    broken,
+    decide_equation,
+    remaining_assumptions,
+    sampled,
+    with_sides,
+)
 from navsym.proof.normal_form import OutsideLanguageError, reduce_to_zero, vanishes_identically
-from navsym.proof.sampling import points, search_counterexample, value_at
-from navsym.proof.wording import decimal_ends, point_text, scope_of
+from navsym.proof.sampling import Point, Sample, points, search_counterexample, value_at
+from navsym.proof.second_look import second_look
+from navsym.proof.wording import point_text, scope_of
 
 #: relation -> when a finite ball of printed - derived contradicts it.
 EXCLUDES: dict[str, Callable[[arb], bool]] = {
@@ -26,6 +34,10 @@ EXCLUDES: dict[str, Callable[[arb], bool]] = {
     ">=": lambda ball: bool(ball < 0),
     "!=": lambda ball: bool(ball == 0),
 }
+
+
+#: Relations that equality breaks.
+STRICT = ("<", ">", "!=")
 
 
 def decide_bound(statement: Bound) -> Verdict:
@@ -59,41 +71,48 @@ def decide_difference(
     sample = search_counterexample(difference, lambda ball: contradicts(ball, relation), box, sides=sides)
     if sample.points == 0:
         return sampled(sample, scope, f"printed {relation} derived")
-    if sample.counterexample is None and relation in ("<", ">", "!="):
+    if sample.counterexample is None and relation in STRICT:
         exact = exact_zero_point(difference, box, sides)
         if exact is not None:
-            evidence = "the difference is exactly zero there"
-            return Verdict(
-                REFUTED,
-                "exact point",
-                "one point",
-                evidence=evidence,
-                counterexample=exact,
-                difference=("0", "0"),
-            )
+            return broken(exact, arb(0), exact=True)
     if sample.counterexample is not None:
         assert sample.difference is not None
-        low, high = decimal_ends(sample.difference)
-        return Verdict(
-            REFUTED,
-            method="exact point, ball arithmetic",
-            scope="one point",
-            evidence=f"printed - derived lies in [{low}, {high}] at an exact point",
-            counterexample=point_text(sample.counterexample),
-            difference=(low, high),
-        )
+        return broken(sample.counterexample, sample.difference)
     proof = prove_relation(difference, relation, box)
     if proof.sign != Sign.UNKNOWN:
         status = PROVED if proof.exact else CERTIFIED
         return Verdict(status, "sign on the box", scope, evidence=proof.reason)
-    return sampled(sample, scope, f"printed {relation} derived")
+    return unproved_relation(difference, relation, box, scope, sides, sample)
+
+
+def unproved_relation(
+    difference: sp.Expr, relation: str, box: Box, scope: str, sides: Sequence[sp.Expr], sample: Sample
+) -> Verdict:
+    """What has no proof of sign: broken by a second look, or sampled; never CONFIRMED across a change of sign."""
+    goal = {"<": -difference, "<=": -difference, ">": difference, ">=": difference, "!=": difference**2}
+    look = second_look(
+        difference,
+        lambda ball: contradicts(ball, relation),
+        box,
+        sides,
+        relation in STRICT,
+        (goal[relation],),
+    )
+    if relation == "!=" and look.counterexample is None and look.positive and look.negative:
+        places = " and ".join(str(dict(point_text(point))) for point in (look.negative, look.positive))
+        evidence = (
+            f"printed - derived changes its sign between {places}: a continuous difference has a zero there"
+        )
+        return Verdict(OPEN, "sampling", scope, evidence=evidence)
+    return after_look(look, sample, scope, f"printed {relation} derived")
 
 
 def contradicts(ball: arb, relation: str) -> bool:
+    """True for a finite ball of ``printed - derived`` that excludes the relation."""
     return EXCLUDES[relation](ball)
 
 
-def exact_zero_point(difference: sp.Expr, box: Box, sides: Sequence[sp.Expr] = ()) -> dict[str, str] | None:
+def exact_zero_point(difference: sp.Expr, box: Box, sides: Sequence[sp.Expr] = ()) -> Point | None:
     """An exact point of the box at which the difference vanishes, proved by the normal form."""
     program, others = tape(difference), [tape(side) for side in sides]
     symbols = sorted(difference.free_symbols | set().union(*(s.free_symbols for s in sides)), key=str)
@@ -104,7 +123,7 @@ def exact_zero_point(difference: sp.Expr, box: Box, sides: Sequence[sp.Expr] = (
         if not all(value_at(other, point).is_finite() for other in others):
             continue
         if vanishes_identically(difference.subs(point)):
-            return dict(point_text(point))
+            return point
     return None
 
 
