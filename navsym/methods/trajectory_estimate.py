@@ -16,6 +16,7 @@ from typing import Literal
 import numpy as np
 
 from navsym.errors import DomainError
+from navsym.methods.trajectory_marginal import noise_points
 from navsym.methods.trajectory_tracks import (
     GAP,
     PLAUSIBLE,
@@ -83,7 +84,28 @@ def estimate(track: Track, settings: Settings) -> tuple[TrackEstimate, Noise]:
                 break
             use[found] = 0
         use[agreeing(track, noise, settings, use)] = 1
+    if settings.method in ("filter", "smoother"):
+        return marginal(track, noise, settings, use), noise
     return by_method(track, noise, settings, use), noise
+
+
+def marginal(track: Track, noise: Noise, settings: Settings, use: Rows) -> TrackEstimate:
+    """Filter or smoother, averaged over what the noise may be; gains and flags are those of the likeliest."""
+    points = noise_points(
+        track, settings.order, use, noise, gate=settings.gate, fixed_scale=settings.fixed_scale
+    )
+    found = [by_method(track, point.noise, settings, use) for point in points]
+    weights = np.array([point.weight for point in points])
+    speed = mixture(weights, [f.velocity for f in found], [f.velocity_sd for f in found])
+    change = mixture(weights, [f.acceleration for f in found], [f.acceleration_sd for f in found])
+    return TrackEstimate(*speed, *change, found[0].flags, found[0].gains)
+
+
+def mixture(weights: Array, means: list[Array], deviations: list[Array]) -> tuple[Array, Array]:
+    """Mean and standard deviation of a mixture, element by element."""
+    values, spread = np.array(means), np.array(deviations)
+    mean = np.einsum("p,pkc->kc", weights, values)
+    return mean, np.sqrt(np.einsum("p,pkc->kc", weights, spread**2 + (values - mean) ** 2))
 
 
 def departures(track: Track, noise: Noise, settings: Settings, use: Rows) -> Mask:
