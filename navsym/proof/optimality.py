@@ -101,8 +101,8 @@ def touch(problem: Problem, basis: Basis, found: Polished, digits: int, bits: in
         lower, upper = lower_end(value, digits + 4), upper_end(value, digits + 4)
         document = header(problem, "touch", bits, cells) | {
             "dual": [[decimal(c, places + loss + 8)] for c in centre[:m]],
-            "contacts": contact_rows(found, centre, places + loss + 8),
-            "radius": [decimal(r, 3, 1) for r in radius],
+            "contacts": contact_rows(found, costs(problem, found, centre), places + loss + 8),
+            "radius": [decimal(r, 3, 1) for r in costs(problem, found, radius)],
             "lower": lower,
             "upper": upper,
         }
@@ -191,6 +191,13 @@ def covered(problem: Problem, x: Sequence[arb], touches: Sequence[Sequence[Touch
             return None
         cells += used
     return cells
+
+
+def costs(problem: Problem, found: Polished, values: Sequence[fmpq]) -> list[fmpq]:
+    """The weights at the end of the unknowns times their sigma: what a certificate holds."""
+    head = len(values) - len(found.panel)
+    bounds = [problem.panels[k].bound() for k in found.panel]
+    return [*values[:head], *(rational(s * arb(w)) for s, w in zip(bounds, values[head:], strict=True))]
 
 
 def contact_rows(found: Polished, centre: Sequence[fmpq], digits: int) -> list[dict[str, Any]]:

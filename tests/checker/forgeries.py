@@ -1,0 +1,271 @@
+"""Every check of the checker with a certificate that fails only there, and what else it must accept or refuse.
+
+:func:`discrepancies` runs all of it against any module that has the checker's three names: the checker
+itself, a mutant of it.
+"""
+
+from __future__ import annotations
+
+import copy
+import json
+import re
+from collections.abc import Iterator
+from typing import Any
+
+from tests.checker.examples import (
+    ALL,
+    CONSTANT,
+    EXPONENTIAL,
+    GAP,
+    GOOD,
+    IDENTITY,
+    PARABOLA,
+    POSITIVITY,
+    RANGE,
+    RANK,
+    SLIVER,
+    TOUCH,
+)
+
+
+def changed(item, path, value):
+    """A copy with one entry replaced; the path is a list of keys and indices."""
+    forged = copy.deepcopy(item)
+    place = forged
+    for key in path[:-1]:
+        place = place[key]
+    if value is ...:
+        del place[path[-1]]
+    else:
+        place[path[-1]] = value
+    return forged
+
+
+def verdict(item, module) -> str:
+    """Empty when accepted, else the reason."""
+    try:
+        module.check(module.load(json.dumps(item)))
+    except module.Refused as why:
+        return str(why)
+    return ""
+
+
+LINE = ["contacts", 0]
+FORGERIES = [
+    (IDENTITY, ["right"], "2*sin(a)*cos(a)*1.0000001", "the sides differ"),
+    (IDENTITY, ["right"], "2*sin(a)*cos(b)", "unknown name b"),
+    (IDENTITY, ["right"], "sin(2*a) + 0/(a - a)", "division by zero"),
+    (IDENTITY, ["right"], "sin(2*a) + 0*sqrt(a - a)", "root of zero"),
+    (IDENTITY, ["right"], "sin(2*a) + 0*sqrt(%s)" % (2**101), "root of a large number"),
+    (IDENTITY, ["right"], "sin(2*a) + 0*a**1000000", "too large a power"),
+    (IDENTITY, ["right"], "sin(2*a) + 0*gamma(a)", "function gamma"),
+    (IDENTITY, ["right"], "sin(2*a) + 0*sin_x(a)", "function sin_x"),
+    (IDENTITY, ["right"], "sin(2*a) + 0*log_1(a)", "function log_1"),
+    (IDENTITY, ["right"], "sin(2*a) + 0*cos(a/5041)", "too many generators"),
+    (IDENTITY, ["right"], 5, "expected a text"),
+    (IDENTITY, ["right"], "2*sin(a)*cos(a)#", "unexpected characters"),
+    (IDENTITY, ["right"], "2*sin(a)*cos(a", "not an expression"),
+    (IDENTITY, ["right"], "sin(2*a) % 1", "unexpected characters"),
+    (IDENTITY, ["right"], "sin(2*a) // 1", "not an expression"),
+    (IDENTITY, ["kind"], "unheard-of", "known kind"),
+    (IDENTITY, ["kind"], 3, "expected a text"),
+    (IDENTITY, ["symbols"], ["a", 1], "expected a text"),
+    (IDENTITY, ["symbols"], "a", "expected a list"),
+    (IDENTITY, ["note"], "more", "expected exactly the keys"),
+    (IDENTITY, ["left"], ..., "expected exactly the keys"),
+    (ALL, ["of", 0, "right"], "sin(a)", "the sides differ"),
+    (ALL, ["of", 1], 7, "expected a text"),
+    (EXPONENTIAL, ["solution", 0, 1], "sin(w*t)", "X' differs"),
+    (EXPONENTIAL, ["solution"], [["2*cos(w*t)", "2*sin(w*t)/w"], ["-2*w*sin(w*t)", "2*cos(w*t)"]], "X\\(0\\) differs"),
+    (EXPONENTIAL, ["variable"], "w", "not a symbol"),
+    (EXPONENTIAL, ["matrix"], [["0", "1", "0"], ["-w**2", "0"]], "expected 2 entries"),
+    (RANK, ["null"], [["b", "a"]], "does not vanish"),
+    (RANK, ["null"], [["0", "0"]], "may be dependent"),
+    (RANK, ["point"], {"a": "0", "b": "0"}, "may be dependent"),
+    (RANK, ["point"], {"a": "1"}, "point gives every symbol"),
+    (RANK, ["point"], ["a"], "point gives every symbol"),
+    (RANK, ["point", "a"], "1/0", "not a number"),
+    (RANK, ["point", "a"], "nan", "not a number"),
+    (RANK, ["rank"], 2, "entries"),
+    (RANK, ["rank"], -1, "integer from"),
+    (RANK, ["rank"], True, "integer from"),
+    (RANK, ["rows"], [2], "integer from"),
+    (RANK, ["rows"], [], "expected 1 entries"),
+    (POSITIVITY, ["expression"], "0.9 - sin(x)*cos(y)", "not shown to be positive"),
+    (POSITIVITY, ["expression"], "1/(x - 1) + 5", "not shown to be positive"),
+    (POSITIVITY, ["expression"], "1 + log(x - 1)**2", "not shown to be positive"),
+    (POSITIVITY, ["expression"], "1 + exp_1(x)", "exp_1 beyond 1"),
+    (POSITIVITY, ["expression"], "1 + x**1000", "a large exponent"),
+    (POSITIVITY, ["box", "x"], ["0"], "entries"),
+    (POSITIVITY, ["bits"], 29, "integer from"),
+    (POSITIVITY, ["cells"], -1, "integer from"),
+    (GAP, ["dual"], ["-1.001", "1.001"], "is not shown"),
+    (GAP, ["dual"], ["-1", "1"], "is not shown"),
+    (GAP, ["lower"], "0.9991", "lower bound is above"),
+    (GAP, ["upper"], "0.9999", "cost more"),
+    (GAP, ["support"], [[0, "0"], [0, "1.5"]], "outside its panel"),
+    (GAP, ["support"], [[0, "-0.5"], [0, "1"]], "outside its panel"),
+    (GAP, ["support"], [[0, "0"], [0, "0"]], "singular"),
+    (GAP, ["support"], [[0, "0"], [1, "1"]], "integer from"),
+    (GAP, ["support"], [[0, "0"]], "expected 2 entries"),
+    (GAP, ["panels", 0, "sigma"], "0", "positive"),
+    (GAP, ["panels", 0, "to"], "0", "positive"),
+    (GAP, ["panels", 0, "H"], ["1", "t", "t**2"], "expected 2 entries"),
+    (GAP, ["panels", 0, "H"], ["1", "(t**8)/(t**7)"], "Error"),
+    (GAP, ["dual"], ["-0.999", "0.999", "0"], "entries"),
+    (GAP, ["bits"], 10, "integer from"),
+    (GAP, ["cells"], True, "integer from"),
+    (SLIVER, ["to"], "1.2", "cost more"),
+    (SLIVER, ["functional"], ["p - 1"], "lower bound is above"),
+    (SLIVER, ["parameter"], 1, "expected a text"),
+    (SLIVER, ["from"], "0", "positive"),
+    (TOUCH, [*LINE, "sign"], 1, "Krawczyk"),
+    (TOUCH, [*LINE, "sign"], 2, "integer from"),
+    (TOUCH, [*LINE, "sign"], 0, "not zero"),
+    (TOUCH, [*LINE, "sign"], True, "integer from"),
+    (TOUCH, [*LINE, "end"], "start", "KeyError"),
+    (TOUCH, [*LINE, "panel"], 1, "integer from"),
+    (TOUCH, [*LINE, "at"], ["0"], "no place of its own"),
+    (TOUCH, ["radius"], ["0"] * 4, "not zero"),
+    (TOUCH, ["radius"], ["0.000001"] * 3, "entries"),
+    (TOUCH, ["dual"], [["-1.1"], ["1"]], "Krawczyk"),
+    (TOUCH, ["upper"], "0.99999991", "not between the bounds"),
+    (TOUCH, ["lower"], "1.00000001", "not between the bounds"),
+    (CONSTANT, ["panels", 0, "sigma"], "1", "Krawczyk"),
+    (CONSTANT, ["panels", 0, "H"], ["2 - 5*t"], "is not shown"),
+    (CONSTANT, ["panels", 0, "H"], ["2 + t"], "is not shown"),
+    (CONSTANT, ["panels", 0, "H"], ["2"], "is not shown"),
+    (PARABOLA, ["contacts", 1, "at"], ["0.51"], "Krawczyk"),
+    (RANGE, ["to"], "1.03", "do not reach the end"),
+    (RANGE, ["to"], "1.01", "do not reach the end"),
+    (RANGE, ["from"], "0.99", "leave a hole"),
+    (RANGE, ["pieces", 0, "to"], "1", "leave a hole"),
+    (RANGE, ["pieces", 0, "basis"], [["1", "1", "0"], ["1", "1", "0"], ["0", "0", "1"]], "singular basis"),
+    (RANGE, ["pieces", 0, "basis", 0, 0], "1.5", "Krawczyk"),
+    (RANGE, ["pieces", 0, "note"], "1", "expected exactly the keys"),
+    (RANGE, ["panels", 0, "to"], "1.01", "Krawczyk"),
+    (RANGE, ["pieces", 0, "dual", 1, 1], "0.5", "Krawczyk"),
+    (RANGE, ["cells"], 0, ""),
+]  # fmt: skip
+
+
+# The value at zero, seen as 2 t - t**2 on [0, 1/2]: its stationary point 1 is the place 2 of the panel.
+STATIONARY = {
+    "kind": "touch", "variable": "t", "functional": ["1"], "bits": 80, "cells": 40,
+    "panels": [{"measurement": 0, "from": "0", "to": "1/2", "sigma": "1", "H": ["2*t - t**2"]}],
+    "dual": [["1"]], "contacts": [{"panel": 0, "at": ["2"], "end": "no", "sign": 1, "weight": ["1"]}],
+    "radius": ["0.0001"] * 3, "lower": "0.999", "upper": "1.001",
+}  # fmt: skip
+# The same to the left of its panel [3/2, 2].
+LEFT = changed(changed(STATIONARY, ["panels", 0, "from"], "3/2"), ["panels", 0, "to"], "2")
+# One number seen twice: the weights 2 and -1 satisfy the system of the optimum, and cost more than 1.
+TWICE = {
+    "kind": "touch", "variable": "t", "functional": ["0", "1"], "bits": 80, "cells": 40,
+    "panels": [{"measurement": 0, "from": "0", "to": "1", "sigma": "1", "H": ["1 - 2*t", "1"]},
+               {"measurement": 1, "from": "0", "to": "1", "sigma": "1", "H": ["1/2 - t/4", "1"]}],
+    "dual": [["0"], ["1"]],
+    "contacts": [
+        {"panel": 0, "at": [], "end": "from", "sign": 1, "weight": ["-1"]},
+        {"panel": 1, "at": [], "end": "from", "sign": 1, "weight": ["2"]},
+    ],
+    "radius": ["0.0001"] * 4, "lower": "0.999", "upper": "1.001",
+}  # fmt: skip
+FORGERIES += [
+    (STATIONARY, ["kind"], "touch", "outside its panel"),
+    (LEFT, ["contacts", 0, "at"], ["-1"], "outside its panel"),
+    (TWICE, ["kind"], "touch", "wrong sign"),
+]
+
+SYMBOLS = ["T", "x", "y", "lambda", "a_1"]
+EQUAL = [
+    ("cos(pi/12)", "(sqrt(6) + sqrt(2))/4"),
+    ("cos(pi/5)", "(1 + sqrt(5))/4"),
+    ("cos(3*pi/7) + cos(5*pi/7) + cos(pi/7)", "1/2"),
+    ("tan(T/4)", "(1 - cos(T/2))/sin(T/2)"),
+    ("cot(x)*sec(x)", "csc(x)"),
+    ("cosh(x)**2 - sinh(x)**2", "1"),
+    ("tanh(2*x)", "2*tanh(x)/(1 + tanh(x)**2)"),
+    ("exp(x + y)", "exp(x)*exp(y)"),
+    ("exp(2)", "exp(1)**2"),
+    ("exp(-x/2)**2", "1/exp(x)"),
+    ("lambda*x", "x*lambda"),
+    ("0.5*x", "x/2"),
+    ("sin(x + pi/2)", "cos(x)"),
+    ("sin(-x)", "-sin(x)"),
+    ("sin((x**2 - y**2)/(x - y))", "sin(x + y)"),
+    ("1/(sqrt(x) + 1)", "(sqrt(x) - 1)/(x - 1)"),
+    ("x**(-1/2)*x**(-1/2)", "1/x"),
+    ("x**(1/2)*x**(1/3)", "x**(5/6)"),
+    ("sqrt(12)", "2*sqrt(3)"),
+    ("sqrt(2)*sqrt(3/2)", "sqrt(3)"),
+    ("7**(3/2)", "7*sqrt(7)"),
+    ("2**(5/2)", "4*sqrt(2)"),
+    ("8**(-1/3)", "1/2"),
+    ("sqrt(x + sqrt(x))**4", "x**2 + 2*x*sqrt(x) + x"),
+    ("abs(x)**2", "x**2"),
+    ("abs(-x)", "abs(x)"),
+    ("log((x**2 - 1)/(x - 1)) + atan(a_1) + asin(y) + acos(y)", "acos(y) + asin(y) + atan(a_1*1.0) + log(x + 1)"),
+    ("x*sin_1(x)", "sin(x)"),
+    ("x**2*cos_2(x)", "cos(x) - 1"),
+    ("x**3*exp_3(x)", "exp(x) - 1 - x - x**2/2"),
+    ("x**5*sin_5(x)", "sin(x) - x + x**3/6"),
+    ("exp_0(x)", "exp(x)"),
+    ("+x - -x", "2*x"),
+    ("x**0", "1"),
+    ("1/(1/x + 1/y)", "x*y/(x + y)"),
+    ("1/(1 + 1/(1 + 1/x))", "(x + 1)/(2*x + 1)"),
+    ("cos(x/5040)**2", "1 - sin(x/5040)**2"),
+]  # fmt: skip
+UNEQUAL = [
+    ("sqrt(x**2)", "x"),
+    ("sqrt(x)*sqrt(y)", "sqrt(x*y)"),
+    ("abs(x)", "x"),
+    ("cos(x)", "sin(x)"),
+    ("cos(pi/7)", "cos(2*pi/7)"),
+    ("exp(x)", "exp(-x)"),
+    ("exp(x)", "cos(x)"),
+    ("sin_2(x)", "sin_3(x)"),
+    ("sin(x)", "sin(x + 2)"),
+    ("log(x)", "atan(x)"),
+    ("log(x)", "log(y)"),
+    ("pi", "3.14159"),
+    ("sqrt(2)", "-sqrt(2)"),
+    ("sqrt(7)", "sqrt(11)"),
+    ("x", "y"),
+    ("1/x", "x"),
+    ("0", "1"),
+]
+OUTSIDE = [
+    "1e5", "0x10", "1_0", "__import__", "_x", "x.y", "x[0]", "lambda: 1",
+    "x if y else z", "x;y", "'a'", "x**y", "f(x, y)", "",
+    "((", "x + 1.", "1.5.2", "sin", "sin(x)(y)", "pi(x)", "sin(x=1)", "2 x", "x\\n", "~x", "not x", "x < y",
+    "(x, y)", "x**(1/0)", "x**sin(1)", "х",
+]  # fmt: skip
+BROKEN = [
+    '{"kind": "gap", "kind": "gap"}', '{"bits": 1.5}', '{"bits": NaN}', '{"bits": Infinity}', "[1,", "[" * 100000,
+    '{"kind": 1e3}',
+]  # fmt: skip
+
+
+def identity(left: str, right: str) -> dict[str, Any]:
+    return {"kind": "identity", "left": left, "right": right, "symbols": SYMBOLS}
+
+
+def discrepancies(module: Any) -> Iterator[str]:
+    """What a module with the checker's names answers otherwise than it must."""
+    yield from (f"refused: {item}" for item in GOOD if verdict(item, module) != "")
+    for item, path, value, why in FORGERIES:
+        if not re.search(why, verdict(changed(item, path, value), module) or "accepted"):
+            yield f"not refused for {why}: {path} {value}"
+    yield from (f"refused: {pair}" for pair in EQUAL if verdict(identity(*pair), module) != "")
+    yield from (f"accepted: {pair}" for pair in UNEQUAL if verdict(identity(*pair), module) != "the sides differ")
+    yield from (f"accepted: {text}" for text in OUTSIDE if verdict(identity(text, text), module) == "")
+    yield from (f"read: {text[:30]}" for text in BROKEN if readable(text, module))
+
+
+def readable(text: str, module: Any) -> bool:
+    try:
+        module.load(text)
+    except module.Refused:
+        return False
+    return True
