@@ -12,6 +12,7 @@ import math
 import os
 import re
 import warnings
+import struct
 import zipfile
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -33,9 +34,12 @@ from navsym.errors import (
     TooLargeError,
 )
 from navsym.text.files import called, read_bytes, read_text
+from navsym.text.geotiff import Damaged, read_plain
 
 #: Largest number of heights in a map file, and of bytes in a track file.
 MOST_HEIGHTS, MOST_BYTES = 200_000_000, 64_000_000
+#: Largest GeoTIFF, bytes.
+MOST_TIFF_BYTES = 8 * MOST_HEIGHTS
 #: Mean radius of the Earth, metres, for the local frame of a tile.
 EARTH = 6_371_008.8
 SRTM_VOID = -32768
@@ -222,19 +226,36 @@ def read_hgt(path: Path) -> Raster:
 
 
 def read_geotiff(path: Path) -> Raster:
-    """First band of an upright GeoTIFF, by rasterio (the extra ``maps``)."""
+    """First band of an upright GeoTIFF: plain files by :mod:`navsym.text.geotiff`, others by rasterio if it is there.
+
+    Raises MissingEngineError for a file that needs the extra ``maps``.
+    """
+    data = read_bytes(path, MOST_TIFF_BYTES)
+    try:
+        plain = read_plain(data, MOST_HEIGHTS)
+    except OverflowError as reason:
+        raise TooLargeError(
+            f"expected at most {MOST_HEIGHTS} numbers; got {reason!s:.60}; cut the map", where=called(path)
+        ) from None
+    except (Damaged, struct.error, UnicodeDecodeError) as reason:
+        raise damaged(path, "a GeoTIFF", reason) from None
+    if plain is not None:
+        return upright(plain.heights, plain.transform, plain.nodata, plain.geographic, path)
+    return by_rasterio(path)
+
+
+def by_rasterio(path: Path) -> Raster:
+    """Files that are not plain: compressed in other ways, tiled by planes, placed by a matrix."""
     try:
         import rasterio
     except ModuleNotFoundError:
         raise MissingEngineError(
-            "expected the Python package rasterio to read GeoTIFF; got none; install the extra navsym[maps]",
+            "expected one band of numbers, uncompressed or deflated, placed by a tie point and a scale, or the Python "
+            "package rasterio; got another GeoTIFF and no rasterio; install the extra navsym[maps]",
             where=called(path),
         ) from None
-    if not path.is_file():
-        message = "expected a readable map file; got nothing there; check the path"
-        raise NavsymError(message, where=called(path), kind="missing-file")
     try:
-        with warnings.catch_warnings(action="ignore"), rasterio.open(path) as source:
+        with rasterio.open(path) as source:
             shape, transform = (source.height, source.width), source.transform
             checked_size((shape, np.dtype(source.dtypes[0])), called(path))
             geographic = bool(source.crs is not None and source.crs.is_geographic)
