@@ -35,25 +35,19 @@ def predict_group(g, n, F, Q, x, P, scratch):  # type: ignore[no-untyped-def]
         for c in range(1, n):
             total = total + load(F, square + (a * n + c) * 8) * load(x, start + c * 8)
         store(scratch, a * 8, total)
-        full = n // 3 * 3
-        # Three columns at once, so that every entry of F is loaded for three products.
-        for b in range(0, full, 3):
-            first, second, third = spread(0.0), spread(0.0), spread(0.0)
-            for c in range(n):
-                entry, row = load(F, square + (a * n + c) * 8), square + (c * n + b) * 8
-                first = first + entry * load(P, row)
-                second = second + entry * load(P, row + 8)
-                third = third + entry * load(P, row + 16)
-            store(scratch, (n + a * n + b) * 8, first)
-            store(scratch, (n + a * n + b) * 8 + 8, second)
-            store(scratch, (n + a * n + b) * 8 + 16, third)
-        for b in range(full, n):
-            total = spread(0.0)
-            for c in range(n):
-                total = total + load(F, square + (a * n + c) * 8) * load(P, square + (c * n + b) * 8)
-            store(scratch, (n + a * n + b) * 8, total)
     for a in range(n):
         store(x, start + a * 8, load(scratch, a * 8))
+    rows, columns = n // 2 * 2, n // 3 * 3
+    for a in range(0, rows, 2):
+        for b in range(0, columns, 3):
+            six_of_product(n, F, square, P, square, scratch, n * 8, a, b)
+        for b in range(columns, n):
+            one_of_product(n, F, square, P, square, scratch, n * 8, a, b)
+            one_of_product(n, F, square, P, square, scratch, n * 8, a + 1, b)
+    for a in range(rows, n):
+        for b in range(n):
+            one_of_product(n, F, square, P, square, scratch, n * 8, a, b)
+    for a in range(n):
         full = (a + 1) // 3 * 3
         for b in range(0, full, 3):
             place = square + (a * n + b) * 8
@@ -71,6 +65,34 @@ def predict_group(g, n, F, Q, x, P, scratch):  # type: ignore[no-untyped-def]
             for c in range(n):
                 total = total + load(F, square + (b * n + c) * 8) * load(scratch, (n + a * n + c) * 8)
             store_twice(P, square, n, a, b, total)
+
+
+@numba.njit(inline="always", **COMPILE)
+def six_of_product(n, A, at_a, B, at_b, out, at_out, a, b):  # type: ignore[no-untyped-def]
+    """Entries [a, b..b+2] and [a+1, b..b+2] of a product: five loads for six products."""
+    s0, s1, s2, t0, t1, t2 = spread(0.0), spread(0.0), spread(0.0), spread(0.0), spread(0.0), spread(0.0)
+    for c in range(n):
+        up, down = load(A, at_a + (a * n + c) * 8), load(A, at_a + (a * n + n + c) * 8)
+        row = at_b + (c * n + b) * 8
+        p0, p1, p2 = load(B, row), load(B, row + 8), load(B, row + 16)
+        s0, s1, s2 = s0 + up * p0, s1 + up * p1, s2 + up * p2
+        t0, t1, t2 = t0 + down * p0, t1 + down * p1, t2 + down * p2
+    place = at_out + (a * n + b) * 8
+    store(out, place, s0)
+    store(out, place + 8, s1)
+    store(out, place + 16, s2)
+    store(out, place + n * 8, t0)
+    store(out, place + n * 8 + 8, t1)
+    store(out, place + n * 8 + 16, t2)
+
+
+@numba.njit(inline="always", **COMPILE)
+def one_of_product(n, A, at_a, B, at_b, out, at_out, a, b):  # type: ignore[no-untyped-def]
+    """Entry [a, b] of a product."""
+    total = spread(0.0)
+    for c in range(n):
+        total = total + load(A, at_a + (a * n + c) * 8) * load(B, at_b + (c * n + b) * 8)
+    store(out, at_out + (a * n + b) * 8, total)
 
 
 @numba.njit(inline="always", **COMPILE)
@@ -120,22 +142,21 @@ def correct_group(g, n, p, came, H, r, z, x, P, scratch, log_likelihood):  # typ
         for a in range(n):
             v = load(scratch, a * 8)
             store(x, start + a * 8, load(x, start + a * 8) + v * weight)
-            gain = v * inverse
-            store(scratch, (n + a) * 8, gain)
-            for b in range(n):
-                place = square + (a * n + b) * 8
-                store(P, place, load(P, place) - gain * load(scratch, b * 8))
+            store(scratch, (n + a) * 8, v * inverse)
         noise = load(r, (g * p + c) * 8)
         for a in range(n):
-            left = noise * load(scratch, (n + a) * 8)
-            for b in range(n):
-                left = left - load(P, square + (a * n + b) * 8) * load(H, row + b * 8)
-            store(scratch, a * 8, left)
-        for a in range(n):
+            # One row of P1 at a time: its sum with h is needed before any entry of the result.
+            gain, line = load(scratch, (n + a) * 8), square + a * n * 8
+            left = noise * gain
             for b in range(a + 1):
-                place = square + (a * n + b) * 8
-                value = load(P, place) + load(scratch, a * 8) * load(scratch, (n + b) * 8)
-                store(P, place, value)
+                entry = load(P, line + b * 8) - gain * load(scratch, b * 8)
+                left = left - entry * load(H, row + b * 8)
+                store(scratch, (2 * n + 3 + b) * 8, entry)
+            for b in range(a + 1, n):
+                left = left - (load(P, line + b * 8) - gain * load(scratch, b * 8)) * load(H, row + b * 8)
+            for b in range(a + 1):
+                value = load(scratch, (2 * n + 3 + b) * 8) + left * load(scratch, (n + b) * 8)
+                store(P, line + b * 8, value)
                 store(P, square + (b * n + a) * 8, value)
     for lane in range(8):
         log_likelihood[g * 8 + lane] -= 0.5 * math.log(scratch[2 * n * 8 + 16 + lane])
@@ -159,12 +180,40 @@ def mix_group(g, n, sources, weights, x, P, mean, covariance, off):  # type: ign
         for s in range(sources):
             deviation = spread(x[((s // 8) * n + a) * 8 + s % 8]) - total
             store(off, (a * sources + s) * 8, deviation)
-    for a in range(n):
-        paired = (a + 1) // 2 * 2
-        for b in range(0, paired, 2):
-            mix_pair(g, n, sources, weights, P, covariance, off, a, b)
-        if paired <= a:
-            mix_one(g, n, sources, weights, P, covariance, off, a, a)
+    even = n // 2 * 2
+    for a in range(0, even, 2):
+        for b in range(0, a + 2, 2):
+            mix_four(g, n, sources, weights, P, covariance, off, a, b)
+    if even < n:
+        for b in range(0, even, 2):
+            mix_pair(g, n, sources, weights, P, covariance, off, even, b)
+        mix_one(g, n, sources, weights, P, covariance, off, even, even)
+
+
+@numba.njit(inline="always", **COMPILE)
+def mix_four(g, n, sources, weights, P, covariance, off, a, b):  # type: ignore[no-untyped-def]
+    """Entries [a, b], [a, b + 1], [a + 1, b], [a + 1, b + 1]: nine loads for four entries, and see mix_pair."""
+    square, up, given = g * n * n * 8, a * sources * 8, g * sources * 8
+    down, one, two = up + sources * 8, b * sources * 8, (b + 1) * sources * 8
+    i00, i01, i10, i11 = spread(0.0), spread(0.0), spread(0.0), spread(0.0)
+    d00, d01, d10, d11 = spread(0.0), spread(0.0), spread(0.0), spread(0.0)
+    for block in range(0, sources, 8):
+        value = block * n * n + (a * n + b) * 8
+        for lane in range(min(8, sources - block)):
+            step = (block + lane) * 8
+            w = load(weights, given + step)
+            e0, e1 = w * load(off, up + step), w * load(off, down + step)
+            f0, f1 = load(off, one + step), load(off, two + step)
+            i00 = i00 + w * spread(P[value + lane])
+            i01 = i01 + w * spread(P[value + 8 + lane])
+            i10 = i10 + w * spread(P[value + n * 8 + lane])
+            i11 = i11 + w * spread(P[value + n * 8 + 8 + lane])
+            d00, d01, d10, d11 = d00 + e0 * f0, d01 + e0 * f1, d10 + e1 * f0, d11 + e1 * f1
+    store_twice(covariance, square, n, a, b, i00 + d00)
+    store_twice(covariance, square, n, a + 1, b, i10 + d10)
+    store_twice(covariance, square, n, a + 1, b + 1, i11 + d11)
+    if b < a:
+        store_twice(covariance, square, n, a, b + 1, i01 + d01)
 
 
 @numba.njit(inline="always", **COMPILE)

@@ -199,7 +199,7 @@ def run_bank(  # type: ignore[no-untyped-def]
     lanes = (aligned(groups * n * n * 8), aligned(groups * n * n * 8), aligned(groups * p * n * 8),
              aligned(groups * p * 8))
     zl, came = aligned(groups * p * 8), np.zeros(p, dtype=np.bool_)
-    scratch = aligned((n * n + 2 * n + 3) * 8)
+    scratch = aligned((n * n + 3 * n + 3) * 8)
     ahead, totals = np.zeros((size, m)), aligned(groups * 8)
     weights, logs, ll = aligned(groups * 8), aligned(groups * 8), aligned(groups * 8)
     mixing, terms = aligned(groups * size * 8 if branching == 1 else 8), aligned(size)
