@@ -1,7 +1,9 @@
-"""Attack navsym on purpose and print the figures: mutants, engines, parser, certificates, identities."""
+"""Attack navsym on purpose and print the figures: mutants, damaged files, killed writers, full disks and more."""
 
 from __future__ import annotations
 
+import sys
+import time
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -10,8 +12,18 @@ import typer
 from navsym.cli._progress import Progress
 from navsym.cli.output import emit, table
 
-NAMES = ("mutants", "engines", "parser", "certificates", "identities")
+#: Campaign -> what is attacked, for the table of TRUST.md.
+NAMES = {
+    "mutants": "mutants of the formulas",
+    "parser": "damaged files, and files that lie about their size",
+    "certificates": "altered certificates",
+    "kills": "writers of the store killed at random moments",
+    "disk": "full disk, read-only folder, stale lock, clock set back",
+    "engines": "engines: known wrong answers",
+    "identities": "textbook identities and their near misses",
+}
 TESTED = {"engines": "tests/engines", "identities": "tests/proof/test_textbook.py"}
+INPUTS = {"kills": 200}  # otherwise ten thousand
 
 
 def command(
@@ -19,14 +31,16 @@ def command(
     modules: Annotated[list[str] | None, typer.Argument(help="papers, for mutants; default: all")] = None,
     share: Annotated[float, typer.Option(min=0.0, max=1.0, help="share of the mutants that are tried")] = 1.0,
     inputs: Annotated[
-        int, typer.Option(min=1, help="number of inputs, for parser and certificates"),
-    ] = 10_000,
+        int | None,
+        typer.Option(min=1, help="number of damaged files, certificates or kills; default 10000, 200 kills"),
+    ] = None,
     seed: Annotated[int, typer.Option(min=0, help="seed of the random choices")] = 0,
     jobs: Annotated[int, typer.Option(min=1, help="batches at the same time")] = 1,
     seconds: Annotated[float, typer.Option(min=1.0, help="limit for one batch, seconds")] = 3600.0,
     fresh: Annotated[
         bool, typer.Option("--fresh", help="do everything again, ignoring what is kept"),
     ] = False,
+    markdown: Annotated[bool, typer.Option("--markdown", help="print the row for TRUST.md")] = False,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> int:
     """Run a campaign; it resumes where it was stopped. Status 1 when anything wrong was found.
@@ -37,38 +51,39 @@ def command(
 
     if name not in NAMES:
         raise DomainError(f"expected one of {', '.join(NAMES)}; got {name}; correct the name", where="NAME")
-    document = (
-        by_tests(name)
-        if name in TESTED
-        else in_batches(name, modules or [], share, inputs, seed, jobs, seconds, fresh)
-    )
-    emit(document, as_json=json_, text=lambda: as_text(document))
-    return 1 if document["wrong"] or document["stopped"] else 0
+    started = time.monotonic()
+    if name in TESTED:
+        document = by_tests(name)
+    else:
+        chosen = chosen_batches(name, modules or [], share, inputs or INPUTS.get(name, 10_000), seed)
+        document = in_batches(name, *chosen, jobs=jobs, seconds=seconds, fresh=fresh)
+    spent = time.monotonic() - started
+    emit(document, as_json=json_, text=lambda: row(document, spent) if markdown else as_text(document))
+    return 1 if document["wrong"] or document["stopped"] or document["unsaved"] else 0
 
 
-def in_batches(
-    name: str,
-    modules: list[str],
-    share: float,
-    inputs: int,
-    seed: int,
-    jobs: int,
-    seconds: float,
-    fresh: bool,
-) -> dict[str, Any]:
-    from navsym.methods import campaign_certificates, campaign_mutants, campaign_parser
+def chosen_batches(name: str, modules: list[str], share: float, inputs: int, seed: int) -> tuple[Any, Any]:
+    """The batches of a campaign and their judge."""
+    from navsym.methods import campaign_certificates, campaign_mutants, campaign_parser, campaign_store
+
+    if name == "mutants":
+        claims = [claim for module in papers(modules) for claim in module.claims]
+        return campaign_mutants.batches(claims, share, seed), campaign_mutants.judge
+    if name == "parser":
+        return campaign_parser.batches(inputs, seed), campaign_parser.judge
+    if name == "kills":
+        return campaign_store.kill_batches(inputs, seed), campaign_store.judge_kills
+    if name == "disk":
+        return campaign_store.disk_batches(), campaign_store.judge_disk
+    honest = campaign_certificates.honest_certificates()
+    return campaign_certificates.batches(honest, inputs, seed), campaign_certificates.judge
+
+
+def in_batches(name: str, batches: Any, judge: Any, *, jobs: int, seconds: float, fresh: bool) -> dict[str, Any]:
+    """Judge the batches, those first that are not kept from an earlier run."""
     from navsym.methods.campaign import run_campaign
     from navsym.store import opened
 
-    judge: Any
-    if name == "mutants":
-        chosen = [claim for module in papers(modules) for claim in module.claims]
-        batches, judge = campaign_mutants.batches(chosen, share, seed), campaign_mutants.judge
-    elif name == "parser":
-        batches, judge = campaign_parser.batches(inputs, seed), campaign_parser.judge
-    else:
-        batches = campaign_certificates.batches(campaign_certificates.honest_certificates(), inputs, seed)
-        judge = campaign_certificates.judge
     if fresh:
         with Progress("batches", resume="with --fresh nothing is kept: leave it out to be able to go on") as bar:
             return run_campaign(name, batches, judge, jobs=jobs, seconds=seconds, progress=bar.told_by_job)
@@ -127,6 +142,7 @@ def by_tests(name: str) -> dict[str, Any]:
         "open": found["skipped"],
         "stopped": [] if any(found.values()) else ["pytest left no record"],
         "resumed": 0,
+        "unsaved": [],
     }
 
 
@@ -144,6 +160,25 @@ def outcomes(record: Path) -> dict[str, list[str]]:
     return found
 
 
+def row(document: dict[str, Any], seconds: float) -> str:
+    """The row of the table in TRUST.md: what was attacked, the command, the outcome, the date."""
+    import datetime
+    import shlex
+
+    words = shlex.join(word for word in sys.argv[1:] if word not in ("--markdown", "--fresh"))
+    said = [f"{count:,} {outcome}" for outcome, count in document["counts"].items() if not is_kind(outcome)]
+    said += [f"{len(document[name])} {name}" for name in ("wrong", "stopped") if document[name] or name == "wrong"]
+    took = f"{seconds / 60:.0f} min" if seconds > 90 else f"{seconds:.0f} s"
+    took += f", {document['resumed']} of {document['batches']} batches kept from before" * bool(document["resumed"])
+    date = datetime.date.today().isoformat()
+    return f"| {NAMES[document['campaign']]} | `navsym {words}` | {', '.join(said)} ({took}) | {date} |"
+
+
+def is_kind(outcome: str) -> bool:
+    """Counts by the kind of change stand beside those by outcome."""
+    return outcome.startswith("kind ")
+
+
 def as_text(document: dict[str, Any]) -> str:
     rows = [(outcome, str(count)) for outcome, count in document["counts"].items()]
     lines = [table((document["campaign"], "count"), rows)]
@@ -153,4 +188,5 @@ def as_text(document: dict[str, Any]) -> str:
     lines += [f"wrong: {item}" for item in document["wrong"][:20]]
     lines += [f"open: {item}" for item in document["open"][:20]]
     lines += [f"stopped: {item}" for item in document["stopped"][:20]]
+    lines += [f"not kept: {item}" for item in document["unsaved"][:20]]
     return "\n".join(lines)

@@ -38,6 +38,8 @@ def command(
 ) -> int:
     """Decide every claim of the papers. Status 1 when a verdict is not the one declared.
 
+    Status 3 when all are but some could not be kept; they are named.
+
     Verdicts are kept, so that a stopped run goes on and a second one takes seconds.
 
     Example: navsym verify guaranteed_velocity
@@ -53,7 +55,7 @@ def command(
     wrong = unexpected(document["claims"])
     missing = [number for paper in document["papers"] for number in paper["missing"]]
     emit(document, as_json=json_, text=lambda: as_text(document, wrong, changed, time.monotonic() - started))
-    return 1 if wrong or missing else 0
+    return 1 if wrong or missing else 3 if document.get("unsaved") else 0
 
 
 def names() -> list[str]:
@@ -94,13 +96,14 @@ def decided(chosen: Sequence[PaperModule], jobs: int | None, seconds: float, fre
                 kept.keep(record)
                 bar.step(record["id"])
 
-            return verify(chosen, jobs=jobs, seconds=seconds, known=kept.known, progress=step)
+            document = verify(chosen, jobs=jobs, seconds=seconds, known=kept.known, progress=step)
     finally:
         kept.close()
+    return {**document, "unsaved": kept.lost} if kept.lost else document
 
 
 class KeptVerdicts:
-    """Verdicts of earlier runs whose claims and rooms have not changed; trouble is said once, never fatal."""
+    """Verdicts of earlier runs whose claims and rooms have not changed; what could not be kept is in ``lost``."""
 
     def __init__(self, chosen: Sequence[PaperModule], fresh: bool):
         from navsym.methods.dependencies import fingerprint
@@ -115,6 +118,7 @@ class KeptVerdicts:
             records = {} if fresh else self.store.get(self.keys.values())
             self.known = {name: records[key] for name, key in self.keys.items() if key in records}
         except StoreError as error:
+            self.lost = [name for name in self.keys if name not in self.known]
             remark(f"verdicts are not kept: {error}")
 
     def keep(self, record: dict[str, Any]) -> None:
@@ -122,7 +126,7 @@ class KeptVerdicts:
         from navsym.store import StoreError
 
         if self.store is None or record["method"] == "none":
-            return
+            return  # without a store all are named as lost already
         try:
             self.store.put(self.keys[record["id"]], record)
         except StoreError as error:
@@ -133,6 +137,8 @@ class KeptVerdicts:
     def close(self) -> None:
         if self.store is not None:
             self.store.close()
+        if self.lost:
+            remark(f"not kept: {len(self.lost)} verdicts: {', '.join(self.lost[:12])}{' …' * (len(self.lost) > 12)}")
 
 
 def ledger_folder() -> Path:

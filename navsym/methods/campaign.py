@@ -14,7 +14,7 @@ from typing import Any
 
 from navsym.methods.dependencies import rooms_digest
 from navsym.proof.sandbox import Exhausted, Failed, run_many
-from navsym.store import Store, key_of
+from navsym.store import Store, StoreError, key_of
 
 #: What a judge returns: counts by outcome, wrong results, undecided ones, exact points of refutations.
 Result = dict[str, Any]
@@ -50,22 +50,34 @@ def run_campaign(
     """Judge every batch that is not yet in the store; the document of ``navsym campaign``.
 
     Keys: ``campaign``, ``batches``, ``resumed`` (taken from the store), ``counts``, ``wrong`` (must be
-    empty), ``open`` (undecided, with the reason) and ``stopped`` (batches over their limit).
+    empty), ``open`` (undecided, with the reason), ``stopped`` (batches over their limit) and ``unsaved``
+    (batches that the store did not take: they count here, and another run will do them again).
     """
     keys = [key_of("campaign", campaign, batch.name, rooms_digest()) for batch in batches]
     known = store.get(keys) if store is not None else {}
     todo = [place for place, key in enumerate(keys) if key not in known]
     results, stopped = [known[key] for key in keys if key in known], []
+    unsaved: list[str] = []
     for outcome in run_many(lambda place: judge(batches[place].items), todo, jobs, seconds):
         place = todo[outcome.place]
         if isinstance(outcome.value, (Exhausted, Failed)):
             stopped.append(f"{batches[place].name}: {reason(outcome.value)}")
         else:
             results.append(outcome.value)
-            if store is not None:
-                store.put(keys[place], outcome.value)
+            if store is not None and not kept(store, keys[place], outcome.value):
+                unsaved.append(batches[place].name)
         progress(len(results) + len(stopped), len(batches))
-    return {**document(campaign, len(batches), results, stopped), "resumed": len(known)}
+    whole = document(campaign, len(batches), results, stopped)
+    return {**whole, "resumed": len(known), "unsaved": unsaved}
+
+
+def kept(store: Store, key: str, value: Result) -> bool:
+    """True when the store took the result."""
+    try:
+        store.put(key, value)
+    except StoreError:
+        return False
+    return True
 
 
 def reason(value: Exhausted | Failed) -> str:

@@ -1,0 +1,66 @@
+"""Killed writers and troubled disks, in small; in full by ``navsym campaign kills`` and ``campaign disk``."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from navsym.cli.main import run
+from navsym.methods import campaign_store
+from navsym.methods.campaign import Batch, run_campaign
+from navsym.methods.campaign_store import TROUBLES, balance, judge_disk, judge_kills
+from navsym.store import Store, StoreError
+
+
+def test_four_writers_killed_lose_nothing_that_was_acknowledged():
+    found = judge_kills((3, 5))
+    assert not found["wrong"]
+    assert found["counts"]["kills"] == 12 and found["counts"]["acknowledged"] > 20
+
+
+@pytest.mark.parametrize("trouble", [name for name in TROUBLES if name != "full disk"])
+def test_trouble_is_said_and_old_results_are_intact(trouble):
+    assert not judge_disk(trouble)["wrong"]
+
+
+@pytest.mark.slow
+def test_a_full_disk_is_said_and_every_lost_verdict_named():
+    assert not judge_disk("full disk")["wrong"]
+
+
+def test_a_lost_result_is_noticed(tmp_path):
+    store = Store(tmp_path / "s.sqlite")
+    store.put("0-1", {"item": 1})
+    (tmp_path / "acknowledged-0").write_text("0-1\n0-2\n")
+    (tmp_path / "done-0").write_text("0-1\n0-1\n0-1\n0-2\n")
+    _, wrong = balance(tmp_path, 1, 1)
+    assert len(wrong) == 2 and wrong[0] == "lost: 0-2" and "2 repeated" in wrong[1]
+
+
+def test_results_that_the_store_does_not_take_are_counted_and_named(tmp_path, monkeypatch):
+    def full(self, key, value):
+        raise StoreError("expected a store that can be written; got database or disk is full")
+
+    store = Store(tmp_path / "s.sqlite")
+    monkeypatch.setattr(Store, "put", full)
+    judge = lambda item: {"counts": {"seen": 1}, "wrong": [], "open": [], "kept": []}  # noqa: E731
+    document = run_campaign("c", [Batch("one", 1), Batch("two", 2)], judge, store=store)
+    assert document["counts"] == {"seen": 2} and sorted(document["unsaved"]) == ["one", "two"]
+
+
+def test_verify_says_which_verdicts_were_not_kept(tmp_path, monkeypatch, capsys):
+    monkeypatch.setenv("NAVSYM_CACHE", str(tmp_path))
+    (tmp_path / "results.sqlite").write_bytes(b"something else" * 500)
+    assert run(["verify", "alpha_beta_filter", "--json"]) == 3
+    captured = capsys.readouterr()
+    assert len(json.loads(captured.out)["unsaved"]) > 10 and "not kept" in captured.err
+
+
+def test_the_campaign_prints_its_row(monkeypatch, tmp_path, capsys):
+    monkeypatch.setenv("NAVSYM_CACHE", str(tmp_path))
+    monkeypatch.setattr("sys.argv", ["navsym", "campaign", "kills", "--inputs", "4", "--markdown"])
+    assert run(["campaign", "kills", "--inputs", "4", "--markdown"]) == 0
+    row = capsys.readouterr().out
+    assert row.startswith("| writers of the store") and "`navsym campaign kills --inputs 4`" in row
+    assert campaign_store.WRITERS == 4 and "0 wrong" in row
