@@ -154,10 +154,16 @@ def source(function: ExportedFunction, license_: str) -> str:
         "#include <math.h>",
         "",
     ]
-    for name in helpers_used(function):
-        lines += [HELPERS[name](function.arithmetic.name, s), ""]
+    for text in helper_texts(function):
+        lines += [text, ""]
     lines += [signature(function), "{", *body(function, s), "}", ""]
     return "\n".join(lines)
+
+
+def helper_texts(function: ExportedFunction) -> list[str]:
+    """The helper functions that the code needs."""
+    s = spelling(function.arithmetic.name)
+    return [HELPERS[name](function.arithmetic.name, s) for name in helpers_used(function)]
 
 
 def body(function: ExportedFunction, s: Spelling) -> list[str]:

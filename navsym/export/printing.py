@@ -66,17 +66,25 @@ def assignments(
 
     Shared nodes and long expressions get a temporary; everything else stands where it is used.
     """
+    lines, results = loops_of(piece, names, spelling, frozenset())
+    return [(name, text) for name, text, _ in lines], results
+
+
+def loops_of(
+    piece: Piece, names: list[str], spelling: Spelling, apart: frozenset[str]
+) -> tuple[list[tuple[str, str, bool]], list[str]]:
+    """The same with every operation of ``apart`` in an assignment of its own, marked True."""
     graph, counts = piece.graph, piece.graph.uses()
     text: list[str] = []
-    lines: list[tuple[str, str]] = []
+    lines: list[tuple[str, str, bool]] = []
     for place, node in enumerate(graph.nodes):
         written = node_text(graph, place, text, names, piece, spelling)
         simple = node.op in ("input", "const") or (
             node.op == "neg" and graph.nodes[node.args[0]].op == "const"
         )
-        if not simple and (counts[place] > 1 or len(written) > LONGEST):
+        if not simple and (counts[place] > 1 or len(written) > LONGEST or node.op in apart):
             name = f"t{len(lines)}"
-            lines.append((name, bare(written)))
+            lines.append((name, bare(written), node.op in apart))
             written = name
         text.append(written)
     return lines, [bare(text[root]) for root in graph.roots]

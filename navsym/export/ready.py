@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from navsym.export.algorithms import earth, observer, pulsating, terrain, trajectory, velocity
+from navsym.export.algorithms import earth, kalman, observer, pulsating, terrain, trajectory, velocity
 from navsym.export.chain import Chain, Decided, Program
 from navsym.export.names import identifier
 from navsym.export.parts import ExportedFunction
@@ -30,6 +30,7 @@ READY: dict[str, tuple[str, ...]] = {
     "pulsating": ("pulsating-filter",),
     "trajectory": ("trajectory-filter",),
     "terrain": ("terrain-crossing", "terrain-t-G", "terrain-t-G-extremes", "terrain-correction"),
+    "kalman": ("kalman-update-9-3",),
     "earth": ("earth-geocentric", "earth-trihedron", "earth-rates"),
 }
 
@@ -41,6 +42,7 @@ ALGORITHMS: dict[str, Chain | Program] = {
     "two-stage-observer": observer.OBSERVER,
     "pulsating-filter": pulsating.FILTER,
     "trajectory-filter": trajectory.FILTER,
+    "kalman-update-9-3": kalman.update(9, 3),
     "terrain-crossing": terrain.CROSSING,
     "terrain-t-G": terrain.DIRECTION,
     "terrain-t-G-extremes": terrain.EXTREMES,

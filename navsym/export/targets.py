@@ -94,6 +94,7 @@ TARGETS = {
                reals=BOTH),
         Target("casadi", "navsym.export.casadi:files", "", (("{python}", "-B", "test_vectors.py"),),
                widen=64, modules=("casadi",)),
+        Target("batch", "navsym.export.batch:files", "gcc", (("{python}", "-B", "test_vectors.py"),), library=4, reals=BOTH),
         Target("fortran", "navsym.export.scripts:fortran_files", "gfortran",
                (("{tool}", "-std=f2008", "-Wall", "-J", "{build}", "navsym_functions.f90", "test_vectors.f90",
                  "-o", "{build}/run"), ("{build}/run",)), library=2),
