@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from navsym.methods.trajectory_estimate import Settings, estimate, filtered, gaps
+from navsym.methods.trajectory_estimate import Settings, estimate, filtered, gaps, largest_gap
 from navsym.methods.trajectory_tracks import Noise, Rows, Track, TrackEstimate, memory
 from navsym.numeric.arrays import Array
 
@@ -45,6 +45,7 @@ def document(
         "acceleration_sd": found.acceleration_sd.tolist(),
         "flags": list(found.flags),
         "gains": found.gains,
+        "certificate": certificate(track, found, noise, settings),
         "noise": {
             "position_sd": np.sqrt(noise.scale * np.median(track.variance, axis=0)).tolist(),
             "density": noise.density.tolist(),
@@ -53,6 +54,16 @@ def document(
         "warnings": [*warnings, *remarks(track, found, noise, settings, rows)],
         "repairs": list(repairs),
     }
+
+
+def certificate(track: Track, found: TrackEstimate, noise: Noise, settings: Settings) -> dict[str, Any] | None:
+    """Exact duality bounds of the weights of the guaranteed method; null for the other methods."""
+    span = window_in_use(track, noise, settings)
+    if settings.method != "guaranteed" or span is None:
+        return None
+    use = np.array([flag != "outlier" for flag in found.flags], dtype=np.int64)
+    kind = "least sum of absolute weights between exact rational bounds (linear duality)"
+    return {"kind": kind, **largest_gap(track, settings, use, span)}
 
 
 def window_in_use(track: Track, noise: Noise, settings: Settings) -> float | None:

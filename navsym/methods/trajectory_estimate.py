@@ -16,6 +16,7 @@ from typing import Literal
 import numpy as np
 
 from navsym.errors import DomainError
+from navsym.methods.trajectory_certificate import minimum_sum_certificate
 from navsym.methods.trajectory_marginal import noise_points
 from navsym.methods.trajectory_tracks import (
     GAP,
@@ -40,6 +41,8 @@ METHODS = ("differences", "window", "filter", "smoother", "guaranteed")
 CHANNELS = ("east", "north", "up")
 #: How often the track is smoothed again without the worst positions.
 DEPARTURE_ROUNDS = 12
+#: So many different windows of the guaranteed method are certified.
+EXAMINED = 400
 
 #: Weights and deviation of a derivative at zero: times, standard deviations, order, which derivative.
 Weights = Callable[[Array, Array, int, int], tuple[Array, float]]
@@ -332,6 +335,17 @@ def minimum_sum(dt: Array, sigma: Array, order: int, derivative: int) -> tuple[A
 
     The guaranteed estimator on the samples: the sum bounds the standard deviation whatever the correlation.
     """
+    w, value, _, _ = minimum_sum_solution(dt, sigma, order, derivative)
+    return w, value
+
+
+def minimum_sum_solution(
+    dt: Array, sigma: Array, order: int, derivative: int
+) -> tuple[Array, float, list[int], Array]:
+    """(weights, sum, rows that carry them, dual polynomial in the time over the largest |dt|).
+
+    Without a solution in the allowed number of exchanges: the weights of least squares and no rows.
+    """
     V, unit = design(dt, order)
     # Orthonormal columns, so that the exchange meets no nearly dependent rows.
     Q, R = np.linalg.qr(V)
@@ -340,12 +354,35 @@ def minimum_sum(dt: Array, sigma: Array, order: int, derivative: int) -> tuple[A
     functional = np.linalg.solve(R.T, target)
     scale = float(np.abs(functional).max())
     rows = np.ascontiguousarray(Q / sigma[:, None])
-    basis, found, _, count = simplex(rows, functional / scale, spread_rows(rows), 50 * order)
+    basis, found, dual, count = simplex(rows, functional / scale, spread_rows(rows), 50 * order)
     if count < 0:
-        return least_squares(dt, sigma, order, derivative)
+        w, _ = least_squares(dt, sigma, order, derivative)
+        return w, float(np.abs(w * sigma).sum()), [], np.zeros(order)
     w = np.zeros(len(dt))
     w[basis] = found * scale / sigma[basis]
-    return w, float(np.abs(w * sigma).sum())
+    return w, float(np.abs(w * sigma).sum()), basis.tolist(), np.linalg.solve(R, dual)
+
+
+def largest_gap(track: Track, settings: Settings, use: Rows, span: float) -> dict[str, float | int]:
+    """Certificates of the weights in use: how many were examined, and the largest relative gap of their sums.
+
+    Windows of equal times and deviations share their weights and are examined once.
+    """
+    seen: dict[tuple[bytes, bytes, int], float] = {}
+    for k, rows in enumerate(sliding_windows(track, use, span, settings.order)):
+        dt = np.round(track.t[rows] - track.t[k], 6)
+        sigma = np.sqrt(track.variance[rows, 0])
+        for d in (1, 2):
+            key = (dt.tobytes(), sigma.tobytes(), d)
+            if d < min(settings.order, len(rows)) and key not in seen and len(seen) < EXAMINED:
+                seen[key] = certified_gap(dt, sigma, min(settings.order, len(rows)), d)
+    return {"examined": len(seen), "largest_gap": max(seen.values(), default=0.0)}
+
+
+def certified_gap(dt: Array, sigma: Array, order: int, derivative: int) -> float:
+    """Relative distance of exact bounds of the least sum; one when there is no solution to certify."""
+    _, _, nodes, dual = minimum_sum_solution(dt, sigma, order, derivative)
+    return minimum_sum_certificate(dt, sigma, order, derivative, nodes, dual.tolist()).gap if nodes else 1.0
 
 
 def gaps(track: Track) -> Rows:

@@ -12,6 +12,7 @@ from scipy.optimize import linprog
 from scipy.stats import chi2
 
 from navsym.errors import DomainError, EmptyError, ShapeError
+from navsym.methods.trajectory_certificate import minimum_sum_certificate
 from navsym.methods.trajectory_document import document
 from navsym.methods.trajectory_estimate import (
     METHODS,
@@ -20,6 +21,7 @@ from navsym.methods.trajectory_estimate import (
     estimate,
     least_squares,
     minimum_sum,
+    minimum_sum_solution,
 )
 from navsym.methods.trajectory_marginal import covariance_root, noise_points
 from navsym.methods.trajectory_tracks import Fit, Noise, Track, isolated_outliers, noise_of, track_of
@@ -114,6 +116,30 @@ def test_minimum_sum_weights_are_those_of_a_linear_programme():
         V = np.vander(dt, 4, increasing=True)
         both = linprog(np.r_[sigma, sigma], A_eq=np.hstack([V.T, -V.T]), b_eq=[0, 1, 0, 0])
         assert_allclose(value, both.fun, rtol=1e-9)
+
+
+@pytest.mark.parametrize("order", [2, 3, 4, 6])
+def test_minimum_sum_weights_carry_exact_bounds_from_both_sides(order):
+    rng = np.random.default_rng(order)
+    for derivative in (1, 2) if order > 2 else (1,):
+        dt, sigma = np.round(np.sort(rng.uniform(-30, 20, 40)), 6), rng.uniform(0.5, 2, 40)
+        w, value, nodes, dual = minimum_sum_solution(dt, sigma, order, derivative)
+        found = minimum_sum_certificate(dt, sigma, order, derivative, nodes, dual)
+        assert found.lower <= found.upper and found.gap < 1e-12
+        assert_allclose(float(found.upper), value, rtol=1e-10)
+        # Bounds hold for any proposal: a wrong dual only lowers the lower one.
+        spoiled = minimum_sum_certificate(dt, sigma, order, derivative, nodes, dual * [1.5, *[1.0] * (order - 1)])
+        assert spoiled.lower <= found.upper and spoiled.gap >= found.gap
+        # Other nodes are feasible too, and no better.
+        other = sorted(rng.choice(40, order, replace=False).tolist())
+        assert minimum_sum_certificate(dt, sigma, order, derivative, other, dual).upper >= found.lower
+
+
+def test_the_guaranteed_method_reports_its_certificates():
+    t, _, measured = simulated(2, N=80)
+    data = document(t, flat_track(t, measured), Settings("guaranteed", window=15.0))
+    assert data["certificate"]["examined"] >= 60 and data["certificate"]["largest_gap"] < 1e-10
+    assert document(t, flat_track(t, measured), Settings())["certificate"] is None
 
 
 def test_minimum_sum_weights_bound_the_error_of_any_noise_and_least_squares_may_not():
