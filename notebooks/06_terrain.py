@@ -32,8 +32,9 @@ from navsym.cli.main import run as navsym
 from navsym.methods.terrain import criteria, prepare, search_full, search_position
 from navsym.methods.terrain_accuracy import accuracy_map
 from navsym.methods.terrain_centre import information, slopes
-from navsym.methods.terrain_experiment import GRID, Setting, course, fly, sample_terrain
+from navsym.methods.terrain_experiment import GRID
 from navsym.methods.terrain_experiment import experiment as rerun
+from navsym.methods.terrain_flights import Setting, course, fly, sample_terrain
 from navsym.methods.terrain_refine import refine
 from navsym.methods.terrain_sequential import search_sequential
 from navsym.models.terrain_track import Track

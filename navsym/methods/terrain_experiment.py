@@ -9,12 +9,10 @@ same one). Speed, ranges of the errors and length of the track are not in the pa
 
 from __future__ import annotations
 
-import importlib.util
 import json
-import math
 import time
 from collections.abc import Callable, Iterable
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 from zlib import crc32
@@ -22,103 +20,23 @@ from zlib import crc32
 import numpy as np
 from numpy.typing import NDArray
 
-from navsym.errors import DomainError, EmptyError, MissingEngineError
+from navsym.errors import DomainError, EmptyError
 from navsym.methods.terrain import search_full, search_position
+from navsym.methods.terrain_flights import Setting, course, fly, sample_terrain, terrain_from
 from navsym.methods.terrain_refine import refine
 from navsym.methods.terrain_sequential import search_sequential
-from navsym.models.terrain import ON_MAP, TerrainMap
+from navsym.methods.terrain_table import PRINTED, Record, table, verdicts
+from navsym.methods.terrain_table import as_table as as_table  # what `simulate` shows beside the document
+from navsym.models.terrain import TerrainMap
 from navsym.models.terrain_track import Hypotheses, Track
-from navsym.text.readers_maps import local_frame, read_map
+from navsym.text.datasets import dataset, local_copy
 
 Array = NDArray[np.float64]
 Correction = tuple[Array, Array]
 
-#: Figures of table 1: seconds, position (m), velocity (m/s).
-PRINTED: dict[str, dict[str, float]] = {
-    "position": {"seconds": 2.0, "position": 152.2},
-    "full": {"seconds": 40.1, "position": 92.7, "velocity": 0.48},
-    "sequential": {"seconds": 2.2, "position": 97.0, "velocity": 0.55},
-}
-RATE = 2.0
-
-
-@dataclass(frozen=True, slots=True)
-class Setting:
-    """What is varied between experiments.
-
-    measurements   : number of them, at 2 Hz ; speed : m/s over ground ; clearance : m above the mean ground
-    shift, drift   : initial position (m) and velocity errors (m/s) are uniform in -shift…shift, -drift…drift
-    altimeter      : relative standard deviation of the height above ground
-    accelerometers : whether accelerometer errors are added, mean and variance as printed
-    """
-
-    measurements: int = 1000
-    speed: float = 40.0
-    clearance: float = 800.0
-    shift: float = 800.0
-    drift: float = 4.0
-    altimeter: float = 0.015
-    accelerometers: bool = False
-    mean: float = 0.001
-    variance: float = 0.005
-
-
 GRID = Hypotheses((50.0, 50.0), (20, 20), (1.0, 1.0), (5, 5))
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Flight:
-    """A recorded track and the correction that would have been right at its end."""
-
-    track: Track
-    shift: Array
-    velocity: Array
-
-
-def sample_terrain() -> TerrainMap:
-    """The elevation sample that comes with matplotlib, in local metres."""
-    spec = importlib.util.find_spec("matplotlib")
-    if spec is None or spec.origin is None:
-        raise MissingEngineError("expected matplotlib for its elevation sample; got none; install navsym in full")
-    name = "mpl-data/sample_data/jacksboro_fault_dem.npz"
-    return terrain_from(Path(spec.origin).parent / name)
-
-
-def terrain_from(path: str | Path) -> TerrainMap:
-    """A map file as a map in local metres."""
-    raster = local_frame(read_map(path))
-    return TerrainMap(raster.heights, raster.x0, raster.y0, raster.dx, raster.dy, nodata=raster.nodata)
-
-
-def errors_over(times: Array, setting: Setting, generator: np.random.Generator) -> tuple[Array, Array]:
-    """Corrections (n, 2) of position and velocity over time: model (1), integrated sample by sample."""
-    shift = generator.uniform(-setting.shift, setting.shift, 2)
-    drift = generator.uniform(-setting.drift, setting.drift, 2)
-    noise = generator.normal(setting.mean, math.sqrt(setting.variance), (times.size - 1, 2))
-    steps = np.diff(times)[:, None] * (noise if setting.accelerometers else 0.0 * noise)
-    velocity = drift + np.vstack([np.zeros((1, 2)), np.cumsum(steps, axis=0)])
-    # Exact for an acceleration that is constant between samples.
-    moved = 0.5 * (velocity[1:] + velocity[:-1]) * np.diff(times)[:, None]
-    return shift + np.vstack([np.zeros((1, 2)), np.cumsum(moved, axis=0)]), velocity
-
-
-def fly(
-    ground: TerrainMap, start: Array, heading: float, setting: Setting, generator: np.random.Generator
-) -> Flight:
-    """One flight over ``ground``: straight, at a constant absolute altitude.
-
-    start : (2,) position in the middle of the track ; heading : of the way, radians from the x axis
-    """
-    t = np.arange(setting.measurements) / RATE
-    way = setting.speed * (t - 0.5 * t[-1])
-    truth = start + way[:, None] * np.array([math.cos(heading), math.sin(heading)])
-    position, velocity = errors_over(t, setting, generator)
-    heights = ground.height(truth[:, 0], truth[:, 1])
-    altitude = heights.mean() + setting.clearance
-    above = altitude - heights
-    measured = altitude - above * (1.0 + setting.altimeter * generator.normal(size=t.size))
-    inertial = truth - position
-    return Flight(Track(t, inertial[:, 0], inertial[:, 1], measured), position[-1], velocity[-1])
+#: The two products of one tile, as data sets: flown over, matched with.
+TILES = ("nasadem", "srtm")
 
 
 # The algorithms: each gives the corrections of position and velocity at the last time
@@ -168,23 +86,11 @@ ALGORITHMS: dict[str, Callable[[TerrainMap, Track], Correction]] = {
 # Runs
 
 
-@dataclass(frozen=True, slots=True)
-class Record:
-    """One algorithm on one flight: errors (m, m/s) at the last time and the time taken."""
-
-    setting: str
-    track: int
-    run: int
-    algorithm: str
-    position: float
-    velocity: float
-    seconds: float
-
-
 def experiment(
     terrain: TerrainMap | None = None,
     ground: TerrainMap | None = None,
     *,
+    name: str = "one map",
     settings: Iterable[Setting] = (Setting(), Setting(accelerometers=True)),
     tracks: int = 5,
     runs: int = 20,
@@ -192,8 +98,9 @@ def experiment(
     journal: str | Path | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> dict[str, Any]:
-    """Table 1 again: ``{"rows": [...], "printed": {...}, "flights": N}``, errors in metres and m/s.
+    """Table 1 again: ``{"rows", "printed", "verdicts", "flights"}``, errors in metres and m/s.
 
+    name     : of the ground, for the table
     terrain  : the map to match with (None: matplotlib's sample) ; ground : the map flown over (None: the same)
     journal  : a file to which every finished flight is appended; flights found there, with the same
                setting, seed and maps, are not flown again
@@ -207,7 +114,7 @@ def experiment(
     wanted = [(s, k, r) for s in settings for k in range(tracks) for r in range(runs)]
     if not wanted:
         raise EmptyError("settings: expected at least one; got none; give one")
-    stamp = {"seed": seed, "maps": f"{crc32(terrain.heights.data):08x}-{crc32(ground.heights.data):08x}"}
+    stamp = {"seed": seed, "ground": name, "maps": f"{crc32(terrain.heights.data):08x}-{crc32(ground.heights.data):08x}"}
     done = read_journal(journal)
     records: list[Record] = []
     for finished, (setting, k, r) in enumerate(wanted):
@@ -218,7 +125,8 @@ def experiment(
         records += flown
         if progress is not None:
             progress(finished + 1, len(wanted))
-    return {"rows": table(records), "printed": PRINTED, "flights": len(wanted)}
+    rows = table(records)
+    return {"rows": rows, "printed": PRINTED, "verdicts": verdicts(rows), "flights": len(wanted)}
 
 
 def one_flight(
@@ -236,62 +144,6 @@ def one_flight(
         errors = (float(np.hypot(*(shift - flight.shift))), float(np.hypot(*(velocity - flight.velocity))))
         records.append(Record(name_of_setting, k, r, name, *errors, seconds))
     return records
-
-
-def course(ground: TerrainMap, setting: Setting, k: int, seed: int) -> tuple[Array, float]:
-    """Middle and heading of track k: random, with room for all hypotheses inside the map."""
-    generator = np.random.default_rng([seed, 3, k])
-    left, right, bottom, top = ground.extent
-    length = setting.speed * (setting.measurements - 1) / RATE
-    # Room for the errors at the end and for the hypotheses about them.
-    room = setting.shift + (setting.drift + 1.5) * (setting.measurements / RATE) + 200.0
-    for _ in range(1000):
-        heading = generator.uniform(0.0, 2.0 * math.pi)
-        middle = np.array([generator.uniform(left, right), generator.uniform(bottom, top)])
-        half = 0.5 * length * np.array([math.cos(heading), math.sin(heading)])
-        ends = np.array([middle - half, middle + half])
-        inside = (ends[:, 0] - room > left) & (ends[:, 0] + room < right)
-        inside &= (ends[:, 1] - room > bottom) & (ends[:, 1] + room < top)
-        if inside.all() and (ground.sample(*between(ends))[1] == ON_MAP).all():
-            return middle, heading
-    raise DomainError(
-        f"ground: expected room for a track of {length / 1000:.1f} km and its hypotheses; got a map of "
-        f"{(right - left) / 1000:.1f} by {(top - bottom) / 1000:.1f} km; fly slower or shorter"
-    )
-
-
-def between(ends: Array) -> tuple[Array, Array]:
-    """Points along the straight line from ends[0] to ends[1]."""
-    share = np.linspace(0.0, 1.0, 200)
-    x, y = (ends[0, k] + share * (ends[1, k] - ends[0, k]) for k in (0, 1))
-    return x, y
-
-
-def table(records: list[Record]) -> list[dict[str, Any]]:
-    """One row for each setting and algorithm.
-
-    ``rms_position`` and ``rms_velocity`` are root mean square errors; ``printed_measure`` is the paper's
-    formula sqrt(sum |e| / (N - 1)), whose unit is the root of a metre (terrain_search:sigma.unit).
-    """
-    rows = []
-    for key in dict.fromkeys((r.setting, r.algorithm) for r in records):
-        chosen = [r for r in records if (r.setting, r.algorithm) == key]
-        position = np.array([r.position for r in chosen])
-        velocity = np.array([r.velocity for r in chosen])
-        rows.append(
-            {
-                **json.loads(key[0]),
-                "algorithm": key[1],
-                "rms_position": float(np.sqrt(np.mean(position**2))),
-                "median_position": float(np.median(position)),
-                "rms_velocity": float(np.sqrt(np.mean(velocity**2))),
-                "false_fixes": int((position > 500.0).sum()),
-                "printed_measure": float(np.sqrt(position.sum() / max(position.size - 1, 1))),
-                "seconds": float(np.median([r.seconds for r in chosen])),
-                "printed": PRINTED.get(key[1], {}).get("position"),
-            }
-        )
-    return rows
 
 
 # The journal
@@ -327,41 +179,40 @@ def study(
     journal: str | Path | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> dict[str, Any]:
-    """What ``navsym simulate terrain_search`` runs: the experiment on the sample terrain, twice.
+    """What ``navsym simulate terrain_search`` runs: the experiment on the sample terrain and, if it is there, on a tile.
 
     runs : flights over each of the five tracks ; steps : measurements of each flight
     The errors are drawn from the whole range of the hypotheses (4 m/s) and from a fifth of it, each
-    with and without accelerometer errors.
+    with and without accelerometer errors. The tile is flown over as one product and matched as another.
     """
     drifts = ((4.0, False), (4.0, True), (0.8, False), (0.8, True))
     settings = [Setting(measurements=steps, drift=d, accelerometers=a) for d, a in drifts]
-    return experiment(settings=settings, runs=runs, seed=seed, journal=journal, progress=progress)
+    places = grounds()
+    rows: list[dict[str, Any]] = []
+    each = len(settings) * 5 * runs
+    for number, (name, terrain, ground) in enumerate(places):
+        told = None if progress is None else shifted(progress, number * each, len(places) * each)
+        rows += experiment(
+            terrain, ground, name=name, settings=settings, runs=runs, seed=seed, journal=journal, progress=told
+        )["rows"]
+    found = {"rows": rows, "printed": PRINTED, "verdicts": verdicts(rows), "flights": len(places) * each}
+    missing = "" if len(places) > 1 else "the tile N44W072 is not in NAVSYM_DATA; `navsym data list` says where it is"
+    return {"experiment": "terrain_search", **found, "remarks": [missing] if missing else []}
 
 
-def as_table(document: dict[str, Any]) -> tuple[list[str], list[list[str]]]:
-    """Headings and rows for people, beside the printed figures of table 1."""
-    headings = [
-        "drift m/s", "accelerometers", "algorithm", "RMS m", "median m", "RMS m/s", "> 500 m", "ms",
-        "printed m", "printed m/s",
-    ]  # fmt: skip
-    rows = []
-    for row in document["rows"]:
-        printed = document["printed"].get(row["algorithm"], {})
-        rows.append(
-            [
-                f"{row['drift']:g}",
-                "with errors" if row["accelerometers"] else "perfect",
-                row["algorithm"],
-                f"{row['rms_position']:.1f}",
-                f"{row['median_position']:.1f}",
-                f"{row['rms_velocity']:.2f}",
-                f"{row['false_fixes']}",
-                f"{1e3 * row['seconds']:.1f}",
-                f"{printed['position']:.1f}" if "position" in printed else "",
-                f"{printed['velocity']:.2f}" if "velocity" in printed else "",
-            ]
-        )
-    return headings, rows
+def grounds() -> list[tuple[str, TerrainMap, TerrainMap]]:
+    """(name, map to match with, map to fly over): the sample, and the tile when both of its products are there."""
+    sample = sample_terrain()
+    places = [("matplotlib's Jacksboro sample", sample, sample)]
+    flown, matched = (local_copy(dataset(name)) for name in TILES)
+    if flown is not None and matched is not None:
+        places.append(("N44W072, NASADEM flown, SRTM matched", terrain_from(matched), terrain_from(flown)))
+    return places
+
+
+def shifted(progress: Callable[[int, int], None], before: int, total: int) -> Callable[[int, int], None]:
+    """Progress of one part of several."""
+    return lambda finished, _: progress(before + finished, total)
 
 
 def growth(

@@ -7,13 +7,16 @@ import json
 from navsym.cli.main import run
 
 
-def test_an_experiment_prints_one_document_and_goes_on_from_its_journal(tmp_path, capsys):
+def test_an_experiment_prints_one_document_and_goes_on_from_its_journal(tmp_path, capsys, monkeypatch):
+    monkeypatch.delenv("NAVSYM_DATA", raising=False)
+    monkeypatch.setenv("NAVSYM_CACHE", str(tmp_path / "none"))
     journal = tmp_path / "runs.jsonl"
     words = ["simulate", "terrain_search", "--runs", "1", "--steps", "60", "--journal", str(journal), "--json"]
     assert run(words) == 0
     first = capsys.readouterr()
     document = json.loads(first.out)
-    assert {"rows", "printed", "flights"} == set(document) and document["flights"] == 20
+    assert set(document) == {"experiment", "rows", "printed", "verdicts", "flights", "remarks"}
+    assert document["flights"] == 20
     assert "20 of 20 runs" in first.err
     size = journal.stat().st_size
     assert run(words) == 0

@@ -4,24 +4,16 @@ from __future__ import annotations
 
 import json
 import math
+import os
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
 from navsym.errors import DomainError
-from navsym.methods.terrain_experiment import (
-    ALGORITHMS,
-    Setting,
-    as_table,
-    course,
-    errors_over,
-    experiment,
-    fly,
-    read_journal,
-    sample_terrain,
-    study,
-)
+from navsym.methods.terrain_experiment import ALGORITHMS, experiment, grounds, read_journal, study
+from navsym.methods.terrain_flights import Setting, course, errors_over, fly, sample_terrain
+from navsym.methods.terrain_table import as_table, rms_interval
 
 SMALL = Setting(measurements=120, speed=60.0, drift=1.0)
 
@@ -94,10 +86,41 @@ def test_a_track_longer_than_the_map_is_refused(ground):
         experiment(ground, settings=[Setting(speed=400.0)], tracks=1, runs=1)
 
 
-def test_the_study_of_the_command_line_has_a_table():
-    document = study(runs=1, steps=60, seed=2)
+def test_the_study_of_the_command_line_has_a_table_and_a_verdict_for_every_printed_error(monkeypatch):
+    monkeypatch.delenv("NAVSYM_DATA", raising=False)
+    monkeypatch.setenv("NAVSYM_CACHE", "/nowhere")
+    seen = []
+    document = study(runs=1, steps=60, seed=2, progress=lambda k, n: seen.append((k, n)))
     headings, rows = as_table(document)
     assert len(rows) == 4 * len(ALGORITHMS) and all(len(row) == len(headings) for row in rows)
+    assert seen[-1] == (20, 20) and document["remarks"]
+    assert len(document["verdicts"]) == 4 * 5
+    for verdict in document["verdicts"]:
+        assert verdict["status"] in ("CONFIRMED", "OPEN") and "95 % interval" in verdict["evidence"]
+        assert "simulated altimeter" in verdict["scope"]
+    json.dumps(document, allow_nan=False)
+
+
+def test_with_the_tile_at_hand_the_study_flies_over_one_product_and_matches_the_other():
+    if not os.environ.get("NAVSYM_DATA"):
+        pytest.skip("the elevation tile is not here: set NAVSYM_DATA")
+    (_, sample, same), (name, matched, flown) = grounds()
+    assert same is sample and matched is not flown and "NASADEM flown" in name
+    document = study(runs=1, steps=60)
+    assert {row["ground"] for row in document["rows"]} == {"matplotlib's Jacksboro sample", name}
+    assert document["flights"] == 40 and not document["remarks"]
+
+
+def test_the_interval_covers_the_rms_of_correlated_flights_as_often_as_it_says():
+    generator, covered = np.random.default_rng(4), 0
+    tracks = np.repeat(np.arange(8), 10)
+    for _ in range(400):
+        scale = generator.gamma(4.0, 0.25, 8)                 # mean square of a track, mean one
+        errors = np.sqrt(scale[tracks]) * generator.normal(size=80)
+        low, high = rms_interval(errors, tracks)
+        covered += low <= 1.0 <= high
+    assert 0.88 < covered / 400 < 0.99
+    assert rms_interval(errors, np.zeros(80)) is None
 
 
 def test_the_rows_are_plain_data(ground):

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from navsym.methods.terrain import search_full
-from navsym.methods.terrain_experiment import GRID, Setting, course, experiment, fly, terrain_from
+from navsym.methods.terrain_experiment import GRID, experiment
+from navsym.methods.terrain_flights import Setting, course, fly, terrain_from
 
 
 def product(name):
