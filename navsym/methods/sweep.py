@@ -4,12 +4,19 @@ Every job has a seed sequence of its own, spawned from (seed, index), so that it
 on who computes it, in what order or beside how many others.
 
 * ``filter``: Monte Carlo of the Schuler bank; one job simulates ``runs`` series and scores one method;
-* ``guaranteed``: the guaranteed value of a last coefficient of ``degree`` over lengths T; one job is one T.
+* ``terrain``: Monte Carlo of fixes over matplotlib's map; one job is one flight, matched by every algorithm;
+* ``guaranteed``: the guaranteed value of a last coefficient of ``degree`` over lengths T; one job is one T;
+* ``phases``: the guaranteed value of a constant beside cos(w t) and sin(w t), with the number of its
+  instants, over lengths T and frequencies w; one job is one pair;
+* ``two-stage``: position errors after the first fix over the decay rates of the two stages; one job is one pair.
+
+A study over two parameters has ``columns`` values of the second one for each value of the first.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+import functools
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import asdict, dataclass
 from fractions import Fraction
 from typing import Any
@@ -19,7 +26,7 @@ import numpy as np
 from navsym.errors import DomainError
 from navsym.store import key_of
 
-KINDS = ("filter", "guaranteed")
+KINDS = ("filter", "terrain", "guaranteed", "phases", "two-stage")
 METHODS = ("pulsating", "imm", "polygaussian", "gpb2", "k-pulsating", "exact")
 
 
@@ -28,7 +35,10 @@ class Sweep:
     """A study: kind, number of jobs, seed, and what the kind needs.
 
     runs, steps, method : of ``filter``
-    degree, start, end  : of ``guaranteed``; jobs are equally spaced lengths from start to end
+    degree              : of ``guaranteed``
+    start, end          : range of the first parameter, T or lambda_c; equally spaced values
+    columns             : number of values of the second parameter, w or lambda_h; it divides jobs
+    second_start, second_end : range of the second parameter
     """
 
     kind: str
@@ -40,6 +50,9 @@ class Sweep:
     degree: int = 1
     start: str = "1"
     end: str = "2"
+    columns: int = 1
+    second_start: str = "1"
+    second_end: str = "2"
 
     def __post_init__(self) -> None:
         if self.kind not in KINDS:
@@ -48,15 +61,30 @@ class Sweep:
             raise DomainError(
                 f"method: expected one of {', '.join(METHODS)}; got {self.method!r}; correct it"
             )
-        limits = {"jobs": 10**6, "runs": 10**5, "steps": 10**5, "degree": 12}
+        limits = {"jobs": 10**6, "runs": 10**5, "steps": 10**5, "degree": 12, "columns": 10**6}
         for name, limit in limits.items():
             value = getattr(self, name)
             if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= limit:
                 raise DomainError(f"{name}: expected an integer from 1 to {limit}; got {value!r}; correct it")
         if isinstance(self.seed, bool) or not isinstance(self.seed, int) or self.seed < 0:
             raise DomainError(f"seed: expected a nonnegative integer; got {self.seed!r}; correct it")
-        if not 0 < length(self.start) <= length(self.end):
-            raise DomainError(f"range: expected 0 < start <= end; got {self.start}, {self.end}; correct it")
+        if self.jobs % self.columns:
+            raise DomainError(f"columns: expected a divisor of {self.jobs} jobs; got {self.columns}; correct it")
+        for low, high in ((self.start, self.end), (self.second_start, self.second_end)):
+            if not 0 < length(low) <= length(high):
+                raise DomainError(f"range: expected 0 < start <= end; got {low}, {high}; correct it")
+
+    def parameters(self, index: int) -> tuple[Fraction, Fraction]:
+        """The pair of parameters of a job."""
+        row, column = divmod(index, self.columns)
+        first = spaced(self.start, self.end, row, self.jobs // self.columns)
+        return first, spaced(self.second_start, self.second_end, column, self.columns)
+
+
+def spaced(start: str, end: str, place: int, count: int) -> Fraction:
+    """One of ``count`` equally spaced exact values."""
+    low, high = length(start), length(end)
+    return low + (high - low) * Fraction(place, max(1, count - 1))
 
 
 def length(text: Any) -> Fraction:
@@ -89,7 +117,7 @@ def fingerprint(sweep: Sweep) -> str:
 
 def run_job(sweep: Sweep, index: int) -> dict[str, Any]:
     """One job: a row of plain numbers that depends on the sweep and the index only."""
-    return filter_job(sweep, index) if sweep.kind == "filter" else guaranteed_job(sweep, index)
+    return JOBS[sweep.kind](sweep, index)
 
 
 def filter_job(sweep: Sweep, index: int) -> dict[str, Any]:
@@ -110,13 +138,65 @@ def guaranteed_job(sweep: Sweep, index: int) -> dict[str, Any]:
     from navsym.methods.guaranteed import solve
     from navsym.methods.guaranteed_problem import from_regressors
 
-    low, high = length(sweep.start), length(sweep.end)
-    T = low + (high - low) * Fraction(index, max(1, sweep.jobs - 1))
+    T, _ = sweep.parameters(index)
     t = sp.Symbol("t", real=True)
     end = sp.Rational(T.numerator, T.denominator)
     target = [0] * sweep.degree + [1]
     found = solve(from_regressors([[t**k for k in range(sweep.degree + 1)]], target, t, (0, end)), 15)
     return {"index": index, "T": str(T), "lower": found.lower, "upper": found.upper}
+
+
+def phases_job(sweep: Sweep, index: int) -> dict[str, Any]:
+    import sympy as sp
+
+    from navsym.methods.guaranteed import solve
+    from navsym.methods.guaranteed_problem import from_regressors
+
+    T, w = sweep.parameters(index)
+    t = sp.Symbol("t", real=True)
+    angle = sp.Rational(w.numerator, w.denominator) * t
+    problem = from_regressors(
+        [[sp.Integer(1), sp.cos(angle), sp.sin(angle)]], [1, 0, 0], t, (0, sp.Rational(T.numerator, T.denominator))
+    )
+    found = solve(problem, 15)
+    bounds = {"lower": found.lower, "upper": found.upper, "instants": len(found.support)}
+    return {"index": index, "T": str(T), "w": str(w), **bounds}
+
+
+def terrain_job(sweep: Sweep, index: int) -> dict[str, Any]:
+    from navsym.methods.terrain_experiment import Setting, one_flight
+
+    terrain = matching_map()
+    flown = one_flight(terrain, terrain, Setting(), (sweep.kind, index, 0), sweep.seed)
+    errors = {f"{name} of {record.algorithm}": getattr(record, name) for record in flown for name in ERRORS}
+    return {"index": index, **errors}
+
+
+ERRORS = ("position", "velocity")
+
+
+@functools.cache
+def matching_map() -> Any:
+    from navsym.methods.terrain_experiment import sample_terrain
+
+    return sample_terrain()
+
+
+def two_stage_job(sweep: Sweep, index: int) -> dict[str, Any]:
+    from navsym.methods.two_stage_flight import great_circle
+    from navsym.methods.two_stage_ins import Errors, compare
+
+    first, second = sweep.parameters(index)
+    flight = great_circle(duration=7200.0, step=20.0)
+    found = compare(flight, Errors(), lambda_c=float(first), lambda_h=float(second))
+    last = {name: float(errors[-1]) for name, errors in found.rows.items()}
+    return {"index": index, "lambda_c": str(first), "lambda_h": str(second), **last}
+
+
+JOBS: dict[str, Callable[[Sweep, int], dict[str, Any]]] = {
+    "filter": filter_job, "terrain": terrain_job, "guaranteed": guaranteed_job, "phases": phases_job,
+    "two-stage": two_stage_job,
+}  # fmt: skip
 
 
 def summary(sweep: Sweep, rows: Iterable[Mapping[str, Any]]) -> dict[str, Any]:

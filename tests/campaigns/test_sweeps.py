@@ -1,4 +1,4 @@
-"""Sweeps: the same bits whoever computes, resumed by what is missing, closed forms met."""
+"""Sweeps: the same bits whoever computes, resumed by missing shards, closed forms met."""
 
 from __future__ import annotations
 
@@ -7,9 +7,12 @@ from fractions import Fraction
 
 import pytest
 
-from navsym.cli.sweep import run_sweep
+from navsym.cli.main import run
 from navsym.errors import DomainError
+from navsym.methods import sweep_shards
 from navsym.methods.sweep import Sweep, run_job, sweep_from
+from navsym.methods.sweep_run import run_sweep
+from navsym.methods.sweep_shards import cut
 
 
 @pytest.fixture(autouse=True)
@@ -17,31 +20,55 @@ def own_store(monkeypatch, tmp_path):
     monkeypatch.setenv("NAVSYM_CACHE", str(tmp_path))
 
 
-SMALL = Sweep("filter", jobs=4, seed=3, runs=4, steps=6)
+SMALL = Sweep("filter", jobs=6, seed=3, runs=4, steps=6)
 
 
-def embedded(sweep, fresh=False):
-    return run_sweep(sweep, workers=0, scheduler=None, fresh=fresh)
+def embedded(sweep, **options):
+    return run_sweep(sweep, workers=0, size=2, **options)
 
 
 def test_a_job_depends_on_its_index_and_nothing_else():
-    backwards = [run_job(SMALL, index) for index in reversed(range(4))][::-1]
+    backwards = [run_job(SMALL, index) for index in reversed(range(6))][::-1]
     assert backwards == embedded(SMALL)["rows"]
-    assert len({row["mse0"] for row in backwards}) == 4
+    assert len({row["mse0"] for row in backwards}) == 6
 
 
-@pytest.mark.slow
-def test_two_processes_give_the_bits_of_one():
-    alone = json.dumps(embedded(SMALL)["rows"])
-    together = run_sweep(SMALL, workers=2, scheduler=None, fresh=True)
-    assert json.dumps(together["rows"]) == alone
+def test_the_cut_into_shards_does_not_change_a_bit(tmp_path):
+    whole = run_sweep(SMALL, size=6, folder=tmp_path / "a")["rows"]
+    assert json.dumps(whole) == json.dumps(run_sweep(SMALL, size=1, folder=tmp_path / "b")["rows"])
 
 
-def test_a_second_run_computes_what_is_missing_only(monkeypatch):
-    first = embedded(SMALL)
-    monkeypatch.setattr("navsym.methods.sweep.run_job", lambda sweep, index: 1 / 0)
-    second = embedded(SMALL)
-    assert second["resumed"] == 4 and second["rows"] == first["rows"]
+def test_shards_cover_every_job_once():
+    assert [list(part) for part in cut(5, 2)] == [[0, 1], [2, 3], [4]]
+    assert len(cut(10**6)) <= 256 and sum(map(len, cut(10**6))) == 10**6
+
+
+def test_a_second_run_computes_what_is_missing_only(monkeypatch, tmp_path):
+    first = embedded(SMALL, folder=tmp_path / "s")
+    files = sorted((tmp_path / "s").glob("*.parquet"))
+    assert len(files) == 3
+    files[1].unlink()
+    files[2].write_bytes(files[2].read_bytes()[:-7])  # cut short
+    seen = []
+    monkeypatch.setattr("navsym.methods.sweep_run.run_job", lambda sweep, k: seen.append(k) or run_job(sweep, k))
+    second = embedded(SMALL, folder=tmp_path / "s")
+    assert seen == [2, 3, 4, 5] and second["resumed"] == 2 and second["rows"] == first["rows"]
+
+
+def test_shards_of_another_study_are_not_mixed_in(tmp_path):
+    embedded(SMALL, folder=tmp_path / "s")
+    other = Sweep("filter", jobs=6, seed=4, runs=4, steps=6)
+    assert embedded(other, folder=tmp_path / "s")["resumed"] == 0
+
+
+def test_a_shard_that_cannot_be_kept_is_named_and_the_rows_are_there(monkeypatch, tmp_path):
+    def full(*_):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(sweep_shards.os, "replace", full)
+    document = embedded(SMALL, folder=tmp_path / "s")
+    assert len(document["unsaved"]) == 3 and "No space" in document["unsaved"][0]
+    assert document["done"] == 6 and not list((tmp_path / "s").iterdir())
 
 
 def test_the_guaranteed_slope_over_lengths_is_two_over_T():
@@ -49,6 +76,30 @@ def test_the_guaranteed_slope_over_lengths_is_two_over_T():
     document = embedded(Sweep("guaranteed", jobs=3, degree=1, start="1", end="2"))
     for row in document["rows"]:
         assert Fraction(row["lower"]) <= 2 / Fraction(row["T"]) <= Fraction(row["upper"])
+
+
+def test_the_value_over_length_and_frequency_depends_on_their_product():
+    """Beside cos(w t) and sin(w t) a constant is as hard to estimate on [0, T] as beside cos(s), sin(s) on [0, w T]."""
+    grid = Sweep("phases", jobs=4, columns=2, start="1", end="2", second_start="1/2", second_end="1")
+    rows = {(row["T"], row["w"]): row for row in embedded(grid)["rows"]}
+    assert set(rows) == {("1", "1/2"), ("1", "1"), ("2", "1/2"), ("2", "1")}
+    one, two = rows["1", "1"], rows["2", "1/2"]
+    assert Fraction(one["lower"]) <= Fraction(two["upper"]) and Fraction(two["lower"]) <= Fraction(one["upper"])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", ["terrain", "two-stage"])
+def test_other_studies_run_too(kind):
+    document = embedded(Sweep(kind, jobs=2, columns=1 if kind == "terrain" else 2))
+    assert document["done"] == 2 and document["rows"][0] != document["rows"][1]
+
+
+def test_a_scheduler_that_does_not_answer_is_said(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr("navsym.methods.sweep_run.SECONDS_TO_CONNECT", 1)
+    config = tmp_path / "c.json"
+    config.write_text('{"kind": "filter", "jobs": 2}')
+    assert run(["sweep", str(config), "--scheduler", "tcp://127.0.0.1:9", "--json"]) == 3
+    assert json.loads(capsys.readouterr().out)["error"]["kind"] == "missing"
 
 
 @pytest.mark.parametrize(
@@ -62,6 +113,8 @@ def test_the_guaranteed_slope_over_lengths_is_two_over_T():
         {"kind": "guaranteed", "jobs": 2, "start": "2", "end": "1"},
         {"kind": "guaranteed", "jobs": 2, "start": "1e9999999"},
         {"kind": "filter", "jobs": 2, "surplus": 1},
+        {"kind": "phases", "jobs": 3, "columns": 2},
+        {"kind": "phases", "jobs": 4, "columns": 2, "second_start": "0"},
         [1],
     ],
 )
