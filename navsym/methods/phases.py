@@ -227,8 +227,7 @@ def regime_of(
         else:
             thin += made
     status = CERTIFIED if done.ends is not None else OPEN
-    documents = tuple(done.certificates(family.moving, family.parameter.name))
-    return Regime(span, a, b, None, status, table_of(family, span), documents, tuple(thin)), holes
+    return Regime(span, a, b, None, status, table_of(family, span), done.documents, tuple(thin)), holes
 
 
 def rests(done: Ranged, limits: Limits) -> list[tuple[fmpq, fmpq]]:

@@ -129,6 +129,26 @@ def place_from(values: Sequence[sp.Rational], parameters: Sequence[sp.Rational],
     return None if scaled is None else sp.expand(scaled / p)
 
 
+def place_or_share(
+    family: Family, values: Sequence[sp.Rational], parameters: Sequence[sp.Rational]
+) -> sp.Expr | None:
+    found = place_from(values, parameters, family.parameter)
+    return share_of(family, values, parameters) if found is None else found
+
+
+def share_of(family: Family, values: Sequence[sp.Rational], parameters: Sequence[sp.Rational]) -> sp.Expr | None:
+    """A fixed share of the interval, to nine digits: where the dual polynomial is flat, no place is better known."""
+    shares = []
+    for value, p in zip(values, parameters, strict=True):
+        start, end = (sp.Rational(str(sp.N(e, 40))) for e in family.ends(p))
+        share = (value - start) / (end - start)
+        best = share.limit_denominator(60)
+        if abs(best - share) > sp.Rational(1, 10**9):
+            return None
+        shares.append(best)
+    return family.start + (family.stop - family.start) * shares[0] if len(set(shares)) == 1 else None
+
+
 # -- exact linear algebra on the contacts ---------------------------------------------------------
 
 
@@ -137,9 +157,9 @@ def candidates(family: Family, span: Span) -> list[Closed]:
     found = samples_of(family, span)
     if len(found) < 3:
         return []
-    T = family.parameter
     lengths = [s.T for s in found]
-    places = [place_from([s.places[i] for s in found], lengths, T) for i in range(len(span.pattern))]
+    columns = [[s.places[i] for s in found] for i in range(len(span.pattern))]
+    places = [place_or_share(family, c, lengths) for c in columns]
     if any(p is None for p in places):
         return []
     exact = tuple(p for p in places if p is not None)
@@ -285,7 +305,8 @@ def proved(family: Family, guess: Closed, lower: sp.Expr, upper: sp.Expr, second
     statements = [
         Optimum(
             regressors=tuple(put(h / sigma) for h in row), functional=tuple(map(put, family.functional)), variable=U,
-            interval=(put(family.start), put(family.stop)), dual=tuple(map(put, guess.dual)), support=tuple(map(put, guess.places)),
+            interval=(put(family.start), put(family.stop)), dual=tuple(map(put, guess.dual)),
+            support=tuple(map(put, guess.places)),
             weights=tuple(put(w * family.sigma[k]) for w, k in zip(guess.weights, guess.panels, strict=True)),
             value=put(guess.value), box={T: (lower, upper)},
         )

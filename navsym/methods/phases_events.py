@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -13,15 +13,15 @@ from flint import arb, arb_mat, fmpq
 
 from navsym.claims import PROVED, Equation
 from navsym.methods.phases_closed import BITS, GOAL, Closed, constant, number
-from navsym.methods.phases_family import Family
+from navsym.methods.phases_family import Family, U
 from navsym.methods.phases_scan import Pattern, Span, pattern_of, sample
 from navsym.numeric.exchange import Contacts
 from navsym.proof.balls import enclose, precision
 from navsym.proof.decimals import decimal, lower_end, upper_end
-from navsym.proof.enclosure import rational
+from navsym.proof.enclosure import Problem, rational, total
 from navsym.proof.ladder import decide
-from navsym.proof.optimality import touch
-from navsym.proof.optimality_basis import make_basis
+from navsym.proof.optimality import peak, touch
+from navsym.proof.optimality_basis import as_fraction, make_basis
 from navsym.proof.optimality_polish import Polished, polish
 
 DIGITS = 34
@@ -61,7 +61,9 @@ def boundary(
 def events(
     family: Family, left: Span, before: Closed | None, right: Span, after: Closed | None
 ) -> Iterator[tuple[sp.Expr, str]]:
-    """Expressions that vanish at the change, with words: a weight, or the room of an instant."""
+    """Expressions that vanish at the change, with words: a weight, the room of an instant, the room below the bound."""
+    yield from rooms_below(family, before, after, right)
+    yield from rooms_below(family, after, before, left)
     for closed, span in ((before, left), (after, right)):
         if closed is None:
             continue
@@ -81,6 +83,18 @@ def events(
                     closed.places[i] - family.start,
                     f"the instant {family.time(closed.places[i])} reaches an end of the interval",
                 )
+
+
+def rooms_below(
+    family: Family, closed: Closed | None, other: Closed | None, span: Span
+) -> Iterator[tuple[sp.Expr, str]]:
+    """What one dual polynomial leaves below the bound at the instants of the other regime."""
+    if closed is None or other is None:
+        return
+    for (k, _, sign), u in zip(span.pattern, other.places, strict=True):
+        f = sum((x * h.subs(U, u) for x, h in zip(closed.dual, family.rows[k], strict=True)), sp.S.Zero)
+        room = sp.fraction(sp.together(family.sigma[k] - sign * f))[0]
+        yield room, f"the dual polynomial reaches its bound at {family.time(u)}"
 
 
 def exact_root(expression: sp.Expr, T: sp.Symbol, guess: float) -> sp.Expr | None:
@@ -130,8 +144,12 @@ def anchor(family: Family, span: Span, edge: Fraction, side: int) -> tuple[Conta
     return None
 
 
-def rooms(found: Polished) -> list[tuple[str, arb]]:
-    """Quantities that are positive inside a regime: sizes of the weights, distances to the ends."""
+Others = Sequence[tuple[int, float, int]]
+
+
+def rooms(found: Polished, problem: Problem, others: Others) -> list[tuple[str, arb]]:
+    """Quantities that are positive inside a regime: sizes of the weights, distances to the ends, rooms below the
+    bound near the contacts of the regime beyond (panel, u, sign)."""
     sizes = [
         (f"the weight of contact {i + 1} vanishes", s * w)
         for i, (s, w) in enumerate(zip(found.sign, found.weights, strict=True))
@@ -140,17 +158,27 @@ def rooms(found: Polished) -> list[tuple[str, arb]]:
         (f"contact {i + 1} reaches an end of the interval", gap)
         for i, v in enumerate(found.v) if found.inner[i] for gap in (v, 1 - v)
     ]  # fmt: skip
-    return sizes + gaps
+    below = []
+    for k, u, s in others:
+        place = as_fraction(u)
+        if all(j != k or bool(abs(v - arb(place)) > 1e-3) for j, v in zip(found.panel, found.v, strict=True)):
+            panel = problem.panels[k]
+            f = total(found.dual, panel.rows(arb(peak(panel, found.dual, place))))
+            why = f"the dual polynomial reaches its bound at another instant of measurement {k + 1}"
+            below.append((why, panel.bound() - s * f))
+    return sizes + gaps + below
 
 
 def implicit(family: Family, left: Span, right: Span) -> Boundary:
     """The length at which a room of one of the two patterns closes; enclosed by two exact-contact proofs."""
     edge = left.upper
-    for span, side in ((left, -1), (right, 1)):
-        start = anchor(family, span, edge, side)
+    starts = [anchor(family, span, edge, side) for span, side in ((left, -1), (right, 1))]
+    for span, start, beyond in ((left, starts[0], starts[1]), (right, starts[1], starts[0])):
         if start is None:
             continue
-        found = closing(family, span.pattern, start, edge)
+        c = None if beyond is None else beyond[0]
+        others = [] if c is None else list(zip(c.panel.tolist(), c.u.tolist(), c.sign.tolist(), strict=True))
+        found = closing(family, span.pattern, start, edge, others)
         if found is not None:
             root, why = found
             return enclosed(family, left, right, root, why)
@@ -159,12 +187,17 @@ def implicit(family: Family, left: Span, right: Span) -> Boundary:
 
 
 def closing(
-    family: Family, pattern: Pattern, start: tuple[Contacts, sp.Rational], edge: Fraction
+    family: Family, pattern: Pattern, start: tuple[Contacts, sp.Rational], edge: Fraction, others: Others
 ) -> tuple[sp.Rational, str] | None:
     """Secant steps on the room that closes next to the edge."""
     contacts, T0 = start
+
+    def rooms_at(T: sp.Rational) -> list[tuple[str, arb]]:
+        with precision(BITS):
+            return rooms(forced(family, T, pattern, contacts, T0), family.exact(T), others)
+
     target = sp.Rational(edge.numerator, edge.denominator)
-    first, second = (rooms(forced(family, T, pattern, contacts, T0)) for T in (T0, (T0 + target) / 2))
+    first, second = (rooms_at(T) for T in (T0, (T0 + target) / 2))
     best: tuple[float, int] | None = None
     for i, ((_, a), (_, b)) in enumerate(zip(first, second, strict=True)):
         if not (a.is_finite() and b.is_finite()):
@@ -189,7 +222,7 @@ def closing(
         q = step
         if abs(q - target) > abs(T0 - target) * 3 + sp.Rational(1, 1000):
             return None
-        room = rooms(forced(family, q, pattern, contacts, T0))[i][1]
+        room = rooms_at(q)[i][1]
         if not room.is_finite():
             return None
         fq = number(room.mid())

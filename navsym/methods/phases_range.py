@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from fractions import Fraction
 
 import sympy as sp
@@ -11,12 +10,13 @@ from flint import fmpq, fmpq_mat
 from navsym.methods.phases_closed import refined
 from navsym.methods.phases_family import Family
 from navsym.methods.phases_scan import Pattern
-from navsym.methods.phases_vanishing import echelon, scaled, scaled_certificate
+from navsym.methods.phases_vanishing import Echelon, echelon, rescaled, scaled, scaled_certificate, tied
 from navsym.proof.decimals import decimal, exact
 from navsym.proof.enclosure import rational
 from navsym.proof.optimality_basis import make_basis
+from navsym.proof.optimality_march import follow, march, simple
 from navsym.proof.optimality_moving import Member, Moving
-from navsym.proof.optimality_range import Ranged, Track, follow, march, piece, simple
+from navsym.proof.optimality_range import Piece, Ranged, Track, piece, range_document
 
 
 def fraction_of(x: fmpq) -> Fraction:
@@ -26,6 +26,28 @@ def fraction_of(x: fmpq) -> Fraction:
 
 def followed(family: Family, pattern: Pattern, lower: fmpq, upper: fmpq) -> Ranged:
     """Certificate pieces for the pattern between two values, as far as the tests pass."""
+    form = echelon(family) if family.growing else None
+    if form is None:
+        found = follow(plain_track(family, pattern), max(lower, upper / 400) if family.growing else lower, upper)
+        documents = [range_document(family.moving, family.parameter.name, found)] if found else []
+        return Ranged(tuple(found), tuple(documents))
+    start, documents = [], []
+    if lower == 0:
+        start = from_zero(family, form, pattern, upper)
+        if not start:
+            return Ranged((), ())
+        lower = start[-1].upper
+        documents.append(scaled_certificate(family, form, start))
+    scaled_family = rescaled(family, form)
+    rest = follow(plain_track(scaled_family, pattern), lower, upper) if lower < upper else []
+    if rest:
+        document = range_document(scaled_family.moving, family.parameter.name, rest)
+        documents.append(tied(family, form, document))
+    return Ranged((*start, *rest), tuple(documents))
+
+
+def plain_track(family: Family, pattern: Pattern) -> Track:
+    """The problem in an orthonormal basis that is renewed now and then."""
     bases: list[tuple[fmpq, fmpq, fmpq_mat]] = []
 
     def moving(a: fmpq, b: fmpq) -> Moving:
@@ -34,25 +56,24 @@ def followed(family: Family, pattern: Pattern, lower: fmpq, upper: fmpq) -> Rang
             bases.append((middle, half, conditioner(family, middle)))
         return Moving(family.moving, family.parameter, bases[-1][2], middle, half)
 
-    track = Track(family.moving, family.parameter, pattern, lambda p: member(family, pattern, p), moving)
-    return follow_from_zero(family, track, upper) if lower == 0 and family.growing else follow(track, lower, upper)
+    return Track(family.moving, family.parameter, pattern, lambda p: member(family, pattern, p), moving)
 
 
-def follow_from_zero(family: Family, track: Track, upper: fmpq) -> Ranged:
-    """A first piece that begins at the length zero, scaled by powers, then pieces as usual."""
-    form = echelon(family)
-    if form is None:
-        return Ranged(())
-    powers = replace(track, moving=lambda a, b: scaled(family, form, a, b))
-    end = min(upper, simple(form.reach, form.reach))
+def from_zero(family: Family, form: Echelon, pattern: Pattern, upper: fmpq) -> list[Piece]:
+    """Pieces from the length zero on, scaled by powers of the length, as far as their series are sharp."""
+    track = Track(
+        family.moving, family.parameter, pattern, lambda p: member(family, pattern, p),
+        lambda a, b: scaled(family, form, a, b),
+    )  # fmt: skip
+    last = min(simple(upper * fmpq(7, 8), upper), simple(form.reach, form.reach))
+    end = last
     for _ in range(12):
         start = track.first(end / 2)
-        first = None if start is None else piece(powers, start, fmpq(0), end)
+        first = None if start is None else piece(track, start, fmpq(0), end)
         if first is not None:
-            rest = march(track, first.ends[1], end, upper)
-            return Ranged(tuple(rest), (first, scaled_certificate(family, form, first)))
+            return [first, *march(track, first.ends[1], end, last, 3)]
         end = simple(end / 2, end)
-    return Ranged(())
+    return []
 
 
 def member(family: Family, pattern: Pattern, p: fmpq) -> Member | None:

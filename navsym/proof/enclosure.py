@@ -7,9 +7,9 @@ time, its ends and its noise bound. Time on a panel is ``t = start + (end - star
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 from math import comb
 from typing import Any
 
@@ -225,22 +225,30 @@ class Cell:
     touch: Touch | None = None
 
 
+#: Taylor coefficients of f in w on a cell, fraction ``centre + radius w``; the last one over the whole cell.
+Expansion = Callable[[Cell, fmpq, fmpq], list[arb]]
+
+
 def bounded(panel: Panel, x: Sequence[arb], touches: Sequence[Touch], limit: int = 4000) -> int | None:
-    """Number of cells that prove ``|x . H| <= sigma`` on the whole panel, or None.
+    """Number of cells that prove ``|x . H| <= sigma`` on the whole panel, or None."""
+    return covered(panel.bound(), touches, limit, partial(expansion, panel, x))
+
+
+def covered(bound: arb, touches: Sequence[Touch], limit: int, expand: Expansion) -> int | None:
+    """Number of cells that prove ``|f| <= bound`` for the function with these expansions, or None.
 
     Cells around touches pass by curvature or slope, all others by Taylor bounds; a cell that
     fails is halved. With exact touches the other cells must stay strictly below the bound.
     """
     strict = any(t.exact for t in touches)
     stack = first_cells(touches)
-    bound = panel.bound()
     used = 0
     while stack:
         cell = stack.pop()
         used += 1
         if used > limit:
             return None
-        if passes(panel, x, cell, bound, strict):
+        if passes(expand, cell, bound, strict):
             continue
         if cell.upper - cell.lower < fmpq(1, 1 << 400):
             return None
@@ -249,17 +257,16 @@ def bounded(panel: Panel, x: Sequence[arb], touches: Sequence[Touch], limit: int
 
 
 def first_cells(touches: Sequence[Touch]) -> list[Cell]:
-    """[0, 1] cut half-way between neighbouring touches, each touch in the middle third of its cell."""
+    """[0, 1] cut between neighbouring touches; ends of the panel do not count as neighbours."""
     ordered = sorted(touches, key=lambda t: float(rational(t.at)))
-    places = [rational(t.at) for t in ordered]
+    reach = [extent(t) for t in ordered]
     cells: list[Cell] = []
     edge = fmpq(0)
     for i, touch in enumerate(ordered):
-        before = places[i] - (places[i - 1] if i else fmpq(0))
-        after = (places[i + 1] if i + 1 < len(places) else fmpq(1)) - places[i]
-        gaps = [g for g, end in ((before, "from"), (after, "to")) if g > 0 and touch.end != end]
-        radius = min(gaps) * fmpq(3, 8) if gaps else fmpq(1)
-        lower, upper = max(places[i] - radius, fmpq(0)), min(places[i] + radius, fmpq(1))
+        gaps = [reach[i][0] - reach[i - 1][1]] if i else []
+        gaps += [reach[i + 1][0] - reach[i][1]] if i + 1 < len(reach) else []
+        radius = max(min(gaps), fmpq(0)) * fmpq(3, 8) if gaps else fmpq(1)
+        lower, upper = max(reach[i][0] - radius, fmpq(0)), min(reach[i][1] + radius, fmpq(1))
         if touch.end == "to":  # a moving end: the ball of its places reaches to the end of the panel
             upper = fmpq(1)
         if lower > edge:
@@ -269,6 +276,13 @@ def first_cells(touches: Sequence[Touch]) -> list[Cell]:
     if edge < 1:
         cells.append(Cell(edge, fmpq(1)))
     return cells
+
+
+def extent(touch: Touch) -> tuple[fmpq, fmpq]:
+    """Ends of the ball of the place, or the exact place twice."""
+    if isinstance(touch.at, arb):
+        return rational(touch.at.lower()), rational(touch.at.upper())
+    return rational(touch.at), rational(touch.at)
 
 
 def rational(x: Any) -> fmpq:
@@ -281,13 +295,13 @@ def rational(x: Any) -> fmpq:
 
 
 def split(cell: Cell) -> list[Cell]:
-    """Halves of a plain cell; a touch keeps a cell of half the width, in the middle of two more."""
+    """Halves of a plain cell; a touch keeps a cell half-way nearer to its places, in the middle of two more."""
     if cell.touch is None:
         middle = (cell.lower + cell.upper) / 2
         return [Cell(cell.lower, middle), Cell(middle, cell.upper)]
-    c = rational(cell.touch.at)
-    lower = cell.lower if cell.touch.end == "from" else (cell.lower + c) / 2
-    upper = cell.upper if cell.touch.end == "to" else (cell.upper + c) / 2
+    left, right = extent(cell.touch)
+    lower = cell.lower if cell.touch.end == "from" else (cell.lower + left) / 2
+    upper = cell.upper if cell.touch.end == "to" else (cell.upper + right) / 2
     parts = [Cell(lower, upper, cell.touch)]
     if lower > cell.lower:
         parts.append(Cell(cell.lower, lower))
@@ -306,11 +320,11 @@ def interval(lower: fmpq, upper: fmpq) -> arb:
     return arb((lower + upper) / 2) + arb((upper - lower) / 2) * arb(0, 1)
 
 
-def passes(panel: Panel, x: Sequence[arb], cell: Cell, bound: arb, strict: bool) -> bool:
+def passes(expand: Expansion, cell: Cell, bound: arb, strict: bool) -> bool:
     """``|f| <= bound`` on the cell (``<`` off an exact touch), from one Taylor expansion with remainder."""
     centre = (cell.lower + cell.upper) / 2 if cell.touch is None else rational(cell.touch.at)
     radius = max(centre - cell.lower, cell.upper - centre)
-    taylor = expansion(panel, x, cell, centre, radius)
+    taylor = expand(cell, centre, radius)
     spread = remainder(taylor, 0)
     if cell.touch is not None and cell.touch.exact:
         return exact_touch(cell, taylor, spread, bound)
@@ -353,8 +367,8 @@ def near_touch(cell: Cell, taylor: Sequence[arb], spread: arb, bound: arb) -> bo
 
 
 def exact_touch(cell: Cell, taylor: Sequence[arb], spread: arb, bound: arb) -> bool:
-    """``|f| < bound`` on the cell off the contact: strictly concave with f' = 0 at an inner contact,
-    strictly monotone up to a contact at an end of the panel."""
+    """``|f| < bound`` on the cell off the contact: strictly concave with f' = 0 at an inner contact; strictly
+    monotone up to a contact at an end of the panel, or concave with an outward slope there."""
     assert cell.touch is not None
     s, place = cell.touch.sign, arb(cell.touch.at)
     inside = (cell.touch.end == "from" or bool(place >= arb(cell.lower))) and (
@@ -362,7 +376,8 @@ def exact_touch(cell: Cell, taylor: Sequence[arb], spread: arb, bound: arb) -> b
     )
     if not inside or not bool(-s * taylor[0] + spread < bound):
         return False
+    concave = bool(s * taylor[2] + remainder(taylor, 2) < 0)
     if cell.touch.end == "no":
-        return bool(s * taylor[2] + remainder(taylor, 2) < 0)
-    outward = s if cell.touch.end == "to" else -s
-    return bool(outward * taylor[1] > remainder(taylor, 1))
+        return concave
+    outward = (s if cell.touch.end == "to" else -s) * taylor[1]
+    return bool(outward > remainder(taylor, 1)) or (concave and bool(outward > 0))

@@ -63,18 +63,86 @@ def test_monomials_have_one_regime_with_shifted_chebyshev_polynomials(k):
     assert sp.simplify(regime.closed.value * answer.family.parameter**k) == abs(shifted)
 
 
-@pytest.mark.slow
+def accepted(answer):
+    return [checker.check(checker.load(json.dumps(c))) for c in answer.certificates()]
+
+
 def test_a_regime_without_a_closed_form_is_certified_for_every_length():
     answer = phases(family(POSITION, "y1"), sp.Integer(2), sp.Rational(5, 2))
     (regime,) = answer.regimes
     assert regime.status == "CERTIFIED" and regime.closed is None
-    (certificate,) = answer.certificates()
-    assert checker.check(checker.load(json.dumps(certificate))) == "range"
+    assert accepted(answer) == ["all"]
     assert answer.uncovered == ()
 
 
-def test_a_parameter_that_is_not_the_length_is_refused():
-    with pytest.raises(DomainError, match="ends at the parameter"):
+@pytest.mark.slow
+def test_position_alone_is_certified_for_every_length_from_zero_to_a_full_period():
+    answer = phases(family(POSITION, "y3"), sp.Integer(0), 2 * sp.pi)
+    assert answer.uncovered == () and len(answer.regimes) == 5
+    assert {regime.status for regime in answer.regimes} == {"CERTIFIED"}
+    assert all(float(sp.Rational(b.upper) - sp.Rational(b.lower)) < 1e-30 for b in answer.boundaries)
+    assert set(accepted(answer)) == {"all", "sliver"}
+
+
+def test_the_range_certificate_of_another_functional_is_refused():
+    answer = phases(family(POSITION, "y1"), sp.Integer(2), sp.Rational(9, 4))
+    (certificate,) = json.loads(json.dumps(answer.certificates()))
+    certificate["of"][0]["functional"] = ["0", "0", "0", "1"]
+    with pytest.raises(checker.Refused):
+        checker.check(certificate)
+
+
+SCHULER = {
+    "model": {
+        "name": "Schuler oscillator", "states": ["v", "phi", "drift"],
+        "F": [["0", "-1", "0"], ["w**2", "0", "1"], ["0", "0", "0"]],
+    },
+    "parameters": {"w": ["1/2", "2"], "Tf": ["0", "7"], "s": ["1/10", "10"]},
+    "measurement": [
+        {"name": "velocity", "h": ["1", "0", "0"], "sigma": "1"},
+        {"name": "tilt", "h": ["0", "1", "0"], "sigma": "s"},
+    ],
+    "interval": {"T": "Tf"},
+}  # fmt: skip
+
+
+def test_the_frequency_is_a_parameter_like_any_other():
+    document = json.loads(json.dumps(SCHULER))
+    del document["measurement"][1], document["parameters"]["s"]
+    found = model_from(document, values={"Tf": "2"})
+    answer = phases(family_of(found, "drift", "w"), sp.Rational(1, 2), sp.Integer(2))
+    assert answer.uncovered == ()
+    assert {regime.status for regime in answer.regimes} <= {"PROVED", "CERTIFIED"}
+    assert set(accepted(answer)) <= {"range", "sliver"}
+
+
+def test_the_ratio_of_two_noise_bounds_is_a_parameter():
+    found = model_from(SCHULER, values={"Tf": "2", "w": "1"})
+    answer = phases(family_of(found, "drift", "s"), sp.Rational(1, 10), sp.Integer(4))
+    assert answer.uncovered == ()
+    assert set(accepted(answer)) <= {"range", "sliver"}
+
+
+def test_the_length_may_have_any_name():
+    found = model_from(SCHULER, values={"w": "1", "s": "5"})
+    answer = phases(family_of(found, "v", "Tf"), sp.Integer(0), sp.Integer(1))
+    assert answer.family.growing and answer.uncovered == ()
+
+
+def test_a_range_with_a_singular_value_is_split_there():
+    document = {
+        "basis": {"variable": "u", "H": ["1", "sin(2*u)", "sin(p*u)"], "interval": ["0", "1"]},
+        "parameters": {"p": ["1", "3"]}, "targets": {"c": ["1", "0", "0"]},
+    }  # fmt: skip
+    answer = phases(family_of(model_from(document), "c", "p"), sp.Integer(1), sp.Integer(3))
+    (split,) = [b for b in answer.boundaries if b.at == 2]
+    assert "dependent" in split.why
+
+
+def test_a_parameter_that_the_file_does_not_have_is_refused():
+    with pytest.raises(DomainError, match="a parameter of the file"):
         family_of(model_from(VELOCITY), "y1", "w")
-    with pytest.raises(DomainError, match="0 <= from < to"):
+    with pytest.raises(DomainError, match="from < to"):
         phases(family(VELOCITY, "y1"), sp.Integer(2), sp.Integer(1))
+    with pytest.raises(DomainError, match="lengths"):
+        phases(family(VELOCITY, "y1"), sp.Integer(-1), sp.Integer(1))
