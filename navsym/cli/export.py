@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -42,6 +43,9 @@ def command(
     vectors: Annotated[
         int, typer.Option("--vectors", min=4, max=100_000, help="test vectors for each function")
     ] = 48,
+    unit: Annotated[
+        list[str] | None, typer.Option("--unit", help="unit of a symbol or result, such as T=s; may be repeated")
+    ] = None,
     run: Annotated[
         bool, typer.Option("--run/--no-run", help="compile and run the code on its vectors where this machine can"),
     ] = True,
@@ -57,7 +61,8 @@ def command(
     if real not in ("double", "float"):
         raise DomainError(f"expected double or float; got {real[:20]!r}; do correct it", where="--real")
     targets = tuple(chosen(to.split(","), real))
-    functions = [f for claim in expanded(claims) for f in functions_for(claim, real, allow_confirmed)]
+    units = dict(read_unit(text) for text in unit or [])
+    functions = [f for claim in expanded(claims) for f in functions_for(claim, real, allow_confirmed, units)]
     words = [
         "navsym",
         "export",
@@ -72,6 +77,7 @@ def command(
         str(vectors),
     ]
     words += ["--allow-confirmed"] if allow_confirmed else []
+    words += [word for text in unit or [] for word in ("--unit", text)]
     order = Order(targets, license_, vectors, tuple(words))
     document = export(functions, order, out, force=force, execute=run)
     emit(document, as_json=json_, text=lambda: as_text(document))
@@ -85,17 +91,29 @@ def expanded(claims: list[str]) -> list[str]:
     return [part for claim in claims for part in READY.get(claim, (claim,))]
 
 
-def functions_for(text: str, real: str, allow_confirmed: bool) -> list[ExportedFunction]:
+def read_unit(text: str) -> tuple[str, str]:
+    """``"T=s"`` as a name and a unit."""
+    name, equals, words = (part.strip() for part in text.partition("="))
+    if not (name and equals and words) or len(words) > 60 or not (words.isascii() and words.isprintable()):
+        raise DomainError(f"expected NAME=UNIT in ASCII; got {text[:60]!r}; do correct it", where="--unit")
+    return name, words
+
+
+def functions_for(
+    text: str, real: str, allow_confirmed: bool, units: Mapping[str, str] | None = None
+) -> list[ExportedFunction]:
     """The functions of one argument; ``name=A+B`` gives a name; a ready-made program has two."""
     from navsym.export.functions import function_of
     from navsym.export.names import identifier
-    from navsym.export.ready import ALGORITHMS, algorithm
+    from navsym.export.parts import Layout
+    from navsym.export.ready import ALGORITHMS, UNITS, algorithm
 
     if text in ALGORITHMS:
         return algorithm(text, lambda claim: material_for(claim, allow_confirmed), real)
     name, _, claims = text.rpartition("=") if "=" in text else ("", "", text)
     parts = [material_for(part, allow_confirmed) for part in claims.split("+")]
-    return [function_of(parts, real=real, name=identifier(name) if name else None)]
+    known = {**UNITS.get(claims.partition(":")[0], {}), **(units or {})}
+    return [function_of(parts, real=real, name=identifier(name) if name else None, layout=Layout(units=known))]
 
 
 def material_for(text: str, allow_confirmed: bool) -> Material:

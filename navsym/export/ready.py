@@ -34,6 +34,12 @@ READY: dict[str, tuple[str, ...]] = {
     "earth": ("earth-geocentric", "earth-trihedron", "earth-rates"),
 }
 
+#: Paper -> symbol or result -> unit, for claims that are exported by themselves.
+UNITS: dict[str, dict[str, str]] = {
+    _GV: velocity.UNITS | {"tau": "1/omega_0 (Schuler time)", "z0": "any, say m/s", "zm": "that of z0",
+                           "zT": "that of z0", "dual": "1", "sigma": "unit of z"},
+}  # fmt: skip
+
 #: Name -> a chain (one function) or a program (a first state and a step).
 ALGORITHMS: dict[str, Chain | Program] = {
     "velocity-estimator-y1": velocity.estimator("y1"),

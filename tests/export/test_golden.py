@@ -8,9 +8,13 @@ from pathlib import Path
 import pytest
 
 from navsym.export.package import Order, files_of
+from navsym.export.ready import READY
 from navsym.export.targets import TARGETS
 
 GOLDEN = Path(__file__).resolve().parents[1] / "golden" / "export"
+READY_GOLDEN = GOLDEN.with_name("export-ready")
+READY_LANGUAGES = ("c", "cpp", "python", "javascript", "rust")
+VECTORS = 2
 LANGUAGES = ("c", "cpp", "python", "javascript", "rust", "fortran", "julia", "octave")
 
 
@@ -47,16 +51,47 @@ def test_generated_code_is_the_code_that_was_read(fresh: dict[str, str], languag
             assert text == golden.get(name), f"{name} differs; read it, then run this file with --update"
 
 
+# -- every ready-made export ---------------------------------------
+
+
+def ready_functions(name: str) -> list:
+    from navsym.cli.export import expanded, functions_for
+
+    return [f for claim in expanded([name]) for f in functions_for(claim, "double", False)]
+
+
+def ready_files(name: str) -> dict[str, str]:
+    """Code in five languages and the certificates; tests and vectors are made by the same writers as above."""
+    files = files_of(ready_functions(name), Order(tuple(TARGETS[n] for n in READY_LANGUAGES), count=VECTORS))
+    words = ("test_", "vectors.", "CMakeLists", "MISRA", "manifest")
+    return {f"{n}.golden": text for n, text in files.items() if not n.rpartition("/")[2].startswith(words)}
+
+
+@pytest.mark.parametrize("name", READY)
+def test_every_ready_made_export_is_the_code_that_was_read(name: str) -> None:
+    folder, fresh = READY_GOLDEN / name, ready_files(name)
+    golden = {p.relative_to(folder).as_posix(): p.read_text() for p in sorted(folder.rglob("*.golden"))}
+    assert sorted(fresh) == sorted(golden)
+    changed = [file for file, text in fresh.items() if text != golden[file]]
+    assert not changed, f"{changed} differ; read them, then run this file with --update"
+
+
+def rewrite(folder: Path, files: dict[str, str]) -> None:
+    for path in folder.rglob("*.golden"):
+        path.unlink()
+    for name, text in files.items():
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+
+
 def update() -> None:
     sys.path.insert(0, str(Path(__file__).parent))
     import samples
 
-    for path in GOLDEN.rglob("*.golden"):
-        path.unlink()
-    for name, text in generated(samples).items():
-        path = GOLDEN / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text)
+    rewrite(GOLDEN, generated(samples))
+    for name in READY:
+        rewrite(READY_GOLDEN / name, ready_files(name))
 
 
 if __name__ == "__main__" and "--update" in sys.argv:

@@ -57,7 +57,8 @@ def one_measurement(k: int, n: int) -> tuple[Link, ...]:
         Link(tuple(f"K{k}_{i}" for i in range(n)), "", tuple(g[i] * real(f"q{k}") for i in range(n))),
         Link(tuple(f"x{k + 1}at{i}" for i in range(n)), "", tuple(real(f"{x}{i}") + gain[i] * v for i in range(n))),
         Link(tuple(f"P{k + 1}at{i}_{j}" for i, j in pairs), "",
-             tuple(entry(P, i, j) - g[i] * gain[j] for i, j in pairs), information, cites=("multistructure:8.correct",)),
+             tuple(entry(P, i, j) - g[i] * gain[j] for i, j in pairs), information,
+             cites=("multistructure:8.correct",)),
     )  # fmt: skip
 
 
