@@ -1,23 +1,33 @@
-"""Settings of the documentation site: Markdown by MyST, the reference from docstrings without importing."""
+"""Settings of the documentation site: Markdown and notebooks by MyST, the reference from docstrings without importing.
+
+Notebooks are shown as they stand; ``NAVSYM_DOCS_EXECUTE=1`` runs them and shows what they show (some minutes).
+"""
 
 from __future__ import annotations
 
 import ast
 import html
+import os
+import sys
 from pathlib import Path
 from typing import Any
 
 from docutils import nodes
 
 ROOT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT))
 project = "navsym"
 author = "navsym contributors"
 html_title = "navsym"
-extensions = ["myst_parser"]
+extensions = ["myst_nb"]
 myst_enable_extensions = ["dollarmath", "deflist"]
 html_theme = "furo"
-html_math_renderer = "source"            # pages ask no network for anything: formulas stay as LaTeX source
+html_math_renderer = "mathml"            # pages ask no network for anything
 exclude_patterns = ["_build"]
+nb_execution_mode = "force" if os.environ.get("NAVSYM_DOCS_EXECUTE") else "off"
+nb_execution_timeout = 300
+nb_execution_raise_on_error = True
+nb_render_text_lexer = "text"
 suppress_warnings: list[str] = []
 
 ROOMS = {
@@ -66,17 +76,44 @@ def write_reference(folder: Path) -> None:
             target.write_text(text, encoding="utf-8")
 
 
+def write_notebooks(folder: Path) -> None:
+    """The notebooks of the project as pages; a page is only written when it has changed."""
+    import jupytext
+
+    folder.mkdir(exist_ok=True)
+    for path in sorted((ROOT / "notebooks").glob("*.py")):
+        target = folder / f"{path.stem}.ipynb"
+        if not target.exists() or target.stat().st_mtime < path.stat().st_mtime:
+            jupytext.write(jupytext.read(path), target)
+
+
+def formula(source: str, display: bool) -> str:
+    """MathML of a formula; what the small converter does not know stays as its source."""
+    from navsym.errors import NavsymError
+    from navsym.report.latex_math import mathml
+
+    try:
+        return str(mathml(source.strip(), display=display))
+    except NavsymError:
+        return f"<code>{html.escape(source.strip())}</code>"
+
+
 def inline_formula(writer: Any, node: Any) -> None:
-    writer.body.append(f'<code class="math">{html.escape(node.astext())}</code>')
+    writer.body.append(f'<span class="math">{formula(node.astext(), False)}</span>')
     raise nodes.SkipNode
 
 
 def displayed_formula(writer: Any, node: Any) -> None:
-    writer.body.append(f'<pre class="math">{html.escape(node.astext())}</pre>')
+    writer.body.append(f'<p class="math" style="overflow-x:auto">{formula(node.astext(), True)}</p>')
     raise nodes.SkipNode
 
 
+def generate(app: Any) -> None:
+    write_reference(Path(app.srcdir) / "reference")
+    write_notebooks(Path(app.srcdir) / "notebooks")
+
+
 def setup(app: Any) -> None:
-    """The reference is written before the sources are read; formulas are shown without a script."""
-    app.add_html_math_renderer("source", (inline_formula, None), (displayed_formula, None))
-    app.connect("builder-inited", lambda app: write_reference(Path(app.srcdir) / "reference"))
+    """Reference and notebooks are written before the sources are read; formulas are shown without a script."""
+    app.add_html_math_renderer("mathml", (inline_formula, None), (displayed_formula, None))
+    app.connect("builder-inited", generate)

@@ -52,7 +52,7 @@ def test_the_blocks_are_found():
 
 
 def test_the_site_builds_without_a_warning(tmp_path):
-    for needed in ("sphinx", "myst_parser", "furo"):
+    for needed in ("sphinx", "myst_nb", "furo"):
         pytest.importorskip(needed)
     command = [sys.executable, "-m", "sphinx", "-W", "--keep-going", "-q", "-b", "html", "-d", str(tmp_path / "d")]
     done = subprocess.run(

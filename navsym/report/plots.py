@@ -15,6 +15,7 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.colors import LightSource
 from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
 
 #: The palette of Okabe and Ito, told apart with every common colour blindness.
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#f0e442", "#000000")
@@ -52,12 +53,14 @@ def dual_polynomial(times: Array, values: Array, support: Array, *, sigma: float
     for bound in (-sigma, sigma):
         axes.axhline(bound, color="0.4", linewidth=1, linestyle="--")
     axes.plot(support, np.interp(support, times, values), "o", color=COLOURS[1], label="instants of measurement")
-    axes.set(xlabel=f"time, {unit}", ylabel="dual polynomial, 1")
-    axes.legend(loc="best", frameon=False)
+    axes.set(xlabel=f"time, {unit}", ylabel="dual polynomial, 1", ylim=(-1.15 * sigma, 1.15 * sigma))
+    axes.legend(loc="lower center", frameon=False)
     return made
 
 
-def phase_diagram(regimes: Rows, *, parameter: str, unit: str, quantity: str) -> Figure:
+def phase_diagram(
+    regimes: Rows, *, parameter: str, unit: str, quantity: str, logarithmic: bool = False
+) -> Figure:
     """The optimum over a parameter, one colour and line style for each regime, boundaries as lines.
 
     regimes : each with ``at`` (n,) values of the parameter, ``value`` (n,) and ``label``
@@ -67,7 +70,7 @@ def phase_diagram(regimes: Rows, *, parameter: str, unit: str, quantity: str) ->
         axes.plot(regime["at"], regime["value"], STYLES[place % 4], color=COLOURS[place % 7], label=regime["label"])
         if place:
             axes.axvline(regime["at"][0], color="0.6", linewidth=0.8)
-    axes.set(xlabel=f"{parameter}, {unit}", ylabel=quantity)
+    axes.set(xlabel=f"{parameter}, {unit}", ylabel=quantity, yscale="log" if logarithmic else "linear")
     axes.legend(loc="best", frameon=False)
     return made
 
@@ -81,8 +84,9 @@ def mode_ribbon(times: Array, probabilities: Array, names: Sequence[str], *, tru
     made, axes = figure(height=3.0)
     axes.stackplot(times, probabilities.T, colors=COLOURS[: probabilities.shape[1]], labels=names, step="mid")
     if truth is not None:
-        for mode in range(probabilities.shape[1]):
-            axes.fill_between(times, 1.03, 1.09, where=truth == mode, color=COLOURS[mode], step="mid", linewidth=0)
+        step = float(times[1] - times[0]) if len(times) > 1 else 1.0
+        axes.bar(times, 0.06, width=step, bottom=1.03, color=[COLOURS[mode] for mode in truth], linewidth=0)
+        axes.annotate("truth", (1.01, 1.06), xycoords=("axes fraction", "data"), va="center", fontsize=9)
     axes.set(xlabel="time, s", ylabel="probability of the mode", ylim=(0, 1.1 if truth is not None else 1))
     axes.legend(loc="center left", bbox_to_anchor=(1, 0.5), frameon=False)
     return made
@@ -99,38 +103,56 @@ def error_ribbon(times: Array, error: Array, deviation: Array, *, quantity: str,
 
 
 def criterion_surface(
-    heights: Array, criterion: Array, *, cell: float, track: Array, found: tuple[float, float]
+    heights: Array,
+    criterion: Array,
+    *,
+    cell: float,
+    track: Array,
+    origin: tuple[float, float] = (0.0, 0.0),
+    step: float = 1.0,
 ) -> Figure:
-    """The map in shaded relief, the criterion as contours over it, the track and the fix.
+    """The map in shaded relief with the track; around its last point the criterion over displacements, and the fix.
 
-    heights   : (rows, columns), row = y, in metres
-    criterion : the same shape; NaN where no hypothesis lies
-    cell      : side of a cell in metres
+    heights   : (rows, columns), row = y, in metres; the first cell lies at ``origin``
+    criterion : (rows, columns) over displacements of the track, the middle one being zero
+    cell      : side of a cell of the map in metres
+    step      : step of the displacements in metres
     track     : (n, 2) x and y in metres
     """
-    made, axes = figure(6.5, 5.5)
+    made, axes = figure(7.0, 4.8)
     rows, columns = heights.shape
-    extent = (0.0, columns * cell, 0.0, rows * cell)
+    left, bottom = origin[0] / 1000, origin[1] / 1000
+    extent = (left, left + columns * cell / 1000, bottom, bottom + rows * cell / 1000)
     shade = LightSource(azdeg=315, altdeg=45).hillshade(heights, vert_exag=2.0, dx=cell, dy=cell)
     axes.imshow(shade, cmap="gray", origin="lower", extent=extent, vmin=-0.5, vmax=1.2)
-    x = (np.arange(columns) + 0.5) * cell
-    y = (np.arange(rows) + 0.5) * cell
-    drawn = axes.contour(x, y, criterion, levels=8, cmap="viridis", linewidths=1)
-    made.colorbar(drawn, ax=axes, label="criterion, m²")
-    axes.plot(track[:, 0], track[:, 1], color=COLOURS[1], linewidth=2, label="track")
-    axes.plot(*found, "*", color=COLOURS[4], markeredgecolor="black", markersize=14, label="fix")
+    displaced = [(np.arange(n) - n // 2) * step for n in criterion.shape]
+    x, y = (track[-1, axis] + displaced[1 - axis] for axis in (0, 1))
+    drawn = axes.contourf(x / 1000, y / 1000, np.sqrt(criterion / len(track)), levels=9, cmap="viridis", alpha=0.75)
+    made.colorbar(drawn, ax=axes, label="root mean square misfit, m", location="bottom", shrink=0.5)
+    axes.plot(track[:, 0] / 1000, track[:, 1] / 1000, color=COLOURS[1], linewidth=2, label="inertial track")
+    row, column = np.unravel_index(np.nanargmin(criterion), criterion.shape)
+    fix = (x[column] / 1000, y[row] / 1000)
+    axes.plot(*fix, "*", color=COLOURS[4], markeredgecolor="black", markersize=14, label="fix at the end")
     axes.grid(False)
-    axes.set(xlabel="x, m", ylabel="y, m", aspect="equal")
-    axes.legend(loc="upper right")
+    axes.set(xlabel="x, km", ylabel="y, km", aspect="equal")
+    for limit, values, (low, high) in ((axes.set_xlim, x, extent[:2]), (axes.set_ylim, y, extent[2:])):
+        along = np.r_[values, track[:, 0 if limit == axes.set_xlim else 1]] / 1000
+        limit(max(low, along.min() - 1.5), min(high, along.max() + 1.5))
+    axes.legend(loc="best")
     return made
 
 
-def condition_numbers(sizes: Array, printed: Array, certified: Array) -> Figure:
-    """Condition numbers as printed beside the certified ones, logarithmic; a gap is a misprint."""
+def condition_numbers(sizes: Array, printed: Array, certified: Array, double: Array | None = None) -> Figure:
+    """Condition numbers as printed beside the certified ones, logarithmic; a gap is a misprint.
+
+    double : what double precision makes of them, or None
+    """
     made, axes = figure()
     axes.semilogy(sizes, certified, "o-", color=COLOURS[0], label="certified")
+    if double is not None:
+        axes.semilogy(sizes, double, "s--", color=COLOURS[2], markerfacecolor="none", label="double precision")
     axes.semilogy(sizes, printed, "x", color=COLOURS[1], markersize=9, markeredgewidth=2, label="printed")
-    axes.set(xlabel="order n, 1", ylabel="condition number, 1")
+    axes.set(xlabel="order n, 1", ylabel="condition number, 1", xticks=sizes)
     axes.legend(loc="best", frameon=False)
     return made
 
@@ -143,8 +165,52 @@ def observability_ladder(names: Sequence[str], ranks: Array, size: int) -> Figur
     made, axes = figure(height=3.0)
     powers = np.arange(1, ranks.shape[1] + 1)
     for place, (name, row) in enumerate(zip(names, ranks, strict=True)):
-        axes.step(powers, row + 0.05 * place, STYLES[place % 4], where="mid", color=COLOURS[place % 7], label=name)
-    axes.axhline(size, color="0.4", linewidth=1, linestyle="--")
-    axes.set(xlabel="rows h, hF, hF², …, 1", ylabel="rank, 1", ylim=(0, size + 0.5), xticks=powers)
-    axes.legend(loc="lower right", frameon=False)
+        shift = 0.13 * (place - len(names) / 2)              # equal stairs would hide each other
+        axes.step(powers, row + shift, STYLES[place % 4], where="mid", color=COLOURS[place % 7], label=name)
+    axes.axhline(size, color="0.4", linewidth=1, linestyle="--", label=f"all {size} states")
+    axes.set(xlabel="rows used of h, hF, hF², …, number", ylabel="rank, number of states", ylim=(0, size + 0.8))
+    axes.set(xticks=powers, yticks=range(0, size + 1, 1 if size < 8 else 2))
+    axes.legend(loc="center left", bbox_to_anchor=(1, 0.5), frameon=False)
     return made
+
+
+def verdict_matrix(papers: Sequence[tuple[str, Sequence[tuple[str, str]]]], *, columns: int = 20) -> Figure:
+    """Papers and their numbered equations, one square each, in the colour and with the mark of the worst verdict.
+
+    papers : (name, ((equation, status), ...)) with a status of ``MARKS``, or ``"definition"``
+    """
+    lines = [max(1, -(-len(equations) // columns)) for _, equations in papers]
+    height = sum(lines) + 0.75 * len(papers) + 1.1
+    made = Figure(figsize=(9.2, 0.34 * height + 0.2), layout="constrained")
+    axes = made.add_subplot()
+    axes.set(xlim=(-0.1, columns), ylim=(height, -0.1), aspect="auto")
+    axes.set_axis_off()
+    top = 0.0
+    for (name, equations), rows in zip(papers, lines, strict=True):
+        axes.text(0, top + 0.45, name, fontsize=9, fontweight="bold", va="center")
+        for place, (equation, status) in enumerate(equations):
+            square(axes, place % columns, top + 0.75 + place // columns, equation, status)
+        top += 0.75 + rows
+    for place, status in enumerate((*SQUARES,)):
+        x = place * columns / len(SQUARES)
+        square(axes, x, top + 0.25, "", status)
+        axes.text(x + 1.05, top + 0.7, status, fontsize=8, va="center")
+    return made
+
+
+#: Ground, ink and mark of a square; luminance tells refuted from proved as well as the hue.
+SQUARES = {
+    "PROVED": ("#cfe8f6", "#00476e", "✓"),
+    "CERTIFIED": ("#9fd3cb", "#003d33", "◎"),
+    "REFUTED": ("#c8480b", "#ffffff", "✗"),
+    "OPEN": ("#f5e3a1", "#4d3b00", "?"),
+    "definition": ("#efefef", "#595959", "·"),
+}
+
+
+def square(axes: Axes, x: float, y: float, equation: str, status: str) -> None:
+    """One equation: its number and the mark of its verdict."""
+    ground, ink, mark = SQUARES[status]
+    axes.add_patch(Rectangle((x + 0.04, y + 0.06), 0.92, 0.84, facecolor=ground, edgecolor=ink, linewidth=0.6))
+    text = f"{equation} {mark}".strip()
+    axes.text(x + 0.5, y + 0.5, text, ha="center", va="center", fontsize=7.2, color=ink)

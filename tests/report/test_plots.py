@@ -21,7 +21,7 @@ PICTURES = {
     "modes": lambda: plots.mode_ribbon(t, P, ("calm", "rough"), truth=(t > 0.5).astype(int)),
     "errors": lambda: plots.error_ribbon(t, 0.1 * np.sin(9 * t), 0.1 + 0 * t, quantity="velocity error", unit="m/s"),
     "surface": lambda: plots.criterion_surface(
-        100 * BUMPS, BUMPS**2, cell=90.0, track=np.array([[0.0, 0.0], [3000.0, 3000.0]]), found=(900.0, 900.0)
+        100 * BUMPS, BUMPS[:21, :21] ** 2, cell=90.0, track=np.array([[0.0, 0.0], [3000.0, 3000.0]]), step=50.0
     ),
     "conditions": lambda: plots.condition_numbers(np.arange(2, 6), 10.0 ** np.arange(2, 6), 10.0 ** np.arange(2, 6)),
     "ladder": lambda: plots.observability_ladder(("v", "p"), np.array([[1, 2, 2], [1, 2, 3]]), 3),

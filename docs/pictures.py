@@ -1,0 +1,191 @@
+"""The pictures of the README and of the documentation: ``python docs/pictures.py`` writes docs/pictures/*.svg.
+
+Every picture is computed here from models, data that come with matplotlib, or the ledger.
+"""
+
+from __future__ import annotations
+
+import importlib
+import json
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+import sympy as sp
+from matplotlib.figure import Figure
+
+ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT))
+
+from navsym.claims import equation_of  # noqa: E402
+from navsym.report import plots  # noqa: E402
+
+WORST_FIRST = ("REFUTED", "OPEN", "CONFIRMED", "CERTIFIED", "PROVED")
+CHANNEL = {
+    "model": {
+        "name": "velocity channel",
+        "states": ["velocity", "tilt", "drift"],
+        "F": [["0", "-1", "0"], ["0", "0", "1"], ["0", "-1", "0"]],
+    },
+    "parameters": {"T": ["0", "2*pi"]},
+    "measurement": [{"name": "velocity", "h": ["1", "0", "0"], "sigma": "1"}],
+    "interval": {"T": "T"},
+}
+
+
+def verdicts() -> Figure:
+    """Every numbered equation of the papers with the worst verdict on it, from the ledger."""
+    document = json.loads((ROOT / "derivations" / "verdicts.json").read_text(encoding="utf-8"))
+    papers = []
+    for module in ("guaranteed_velocity", "joint_correction", "multistructure", "terrain_search", "trajectory"):
+        card = importlib.import_module(f"derivations.{module}").PAPER
+        records = [record for record in document["claims"] if record["paper"] == module]
+        cells = [(equation, worst(equation, card.equations, records)) for equation in card.equations]
+        names = [author.split()[-1] for author in card.authors]
+        author = " and ".join(names) if len(names) < 3 else f"{names[0]} et al."
+        refuted = sum(record["status"] == "REFUTED" for record in records)
+        name = f"{author} {card.year}" if card.year else author
+        papers.append((f"{name} · {len(records)} claims, {refuted} refuted", cells))
+    return plots.verdict_matrix(papers)
+
+
+def worst(equation: str, equations: Sequence[str], records: Sequence[Mapping[str, str]]) -> str:
+    """The worst verdict on an equation; a definition where there is none."""
+    found = [r["status"] for r in records if equation_of(r["number"], equations) == equation]
+    return min(found, key=WORST_FIRST.index) if found else "definition"
+
+
+def phases() -> Figure:
+    """Guaranteed deviation of the drift by the length of the interval, every regime proved."""
+    from navsym.methods.phases import phases as solved
+    from navsym.methods.phases_family import family_of
+    from navsym.text.modelfile import model_from
+
+    family = family_of(model_from(CHANNEL), "drift", "T")
+    regimes = []
+    for regime in solved(family, sp.Integer(0), 2 * sp.pi).regimes:
+        at = np.linspace(max(float(regime.lower), 0.6), float(regime.upper) - 1e-6, 200)
+        value = sp.lambdify(family.parameter, regime.closed.value, "numpy")(at) + 0 * at
+        label = f"{len(regime.closed.places)} instants: {regime.closed.value}"
+        regimes.append({"at": at, "value": value, "label": label})
+    return plots.phase_diagram(
+        regimes, parameter="length of the interval T", unit="Schuler units",
+        quantity="guaranteed deviation of the drift, σ", logarithmic=True,
+    )
+
+
+def dual() -> Figure:
+    """The dual polynomial of the drift between its bounds, T = pi/2."""
+    from derivations.guaranteed_velocity import model, polynomial
+
+    T = np.pi / 2
+    at = np.linspace(0, T, 300)
+    whole = polynomial.polynomial(*polynomial.coefficients()).subs(model.T, sp.pi / 2)
+    S = sp.lambdify(model.tau, whole, "numpy")(at)
+    deviation = float(polynomial.deviation().subs(model.T, sp.pi / 2))
+    return plots.dual_polynomial(at, S / deviation, np.array([0, T / 2, T]), unit="Schuler units")
+
+
+def ladder() -> Figure:
+    """Rank of the rows h, hF, hF^2, ... for the velocity and the position of the full error model."""
+    from navsym.models.inertial import full_model
+
+    model = full_model()
+    values = {s: sp.Rational(k + 3, 7) for k, s in enumerate(sorted(model.F.free_symbols, key=str))}
+    F, H = model.F.subs(values), model.H.subs(values)
+    names = model.measurements
+    ranks = []
+    for k in range(H.rows):
+        rows, row, reached = [], H[k, :], []
+        for _ in range(model.size):
+            rows.append(row)
+            reached.append(sp.Matrix.vstack(*rows).rank())
+            row = row * F
+        ranks.append(reached)
+    together, row, reached = [], H, []
+    for _ in range(model.size):
+        together.append(row)
+        reached.append(sp.Matrix.vstack(*together).rank())
+        row = row * F
+    return plots.observability_ladder((*names, "all four"), np.array([*ranks, reached])[:, :10], model.size)
+
+
+def modes() -> Figure:
+    """Mode probabilities of the pulsating filter on a simulated switching signal."""
+    from navsym.methods import multimodel_study as study
+    from navsym.methods.multimodel import run
+    from navsym.models.modes import MODES
+
+    models = study.schuler_bank()
+    series = study.simulate(models, 1, 60, seed=9)
+    found = run(models, series.measurements[0], "pulsating")
+    return plots.mode_ribbon(np.arange(1, 61), found.probabilities, MODES, truth=series.modes[0])
+
+
+def surface() -> Figure:
+    """The criterion over positions on shaded relief, the track and the fix."""
+    from navsym.methods.terrain import criteria, prepare
+    from navsym.methods.terrain_experiment import GRID
+    from navsym.methods.terrain_flights import Setting, course, fly, sample_terrain
+
+    terrain = sample_terrain()
+    setting = Setting(measurements=260, speed=60.0, drift=0.0)
+    start, heading = course(terrain, setting, 1, 5)
+    flight = fly(terrain, start, heading, setting, np.random.default_rng(11))
+    found = criteria(prepare(terrain, flight.track, GRID.position_only))[0, 0]
+    return plots.criterion_surface(
+        terrain.heights, found, cell=terrain.dx, track=np.c_[flight.track.x, flight.track.y],
+        origin=(terrain.extent[0], terrain.extent[2]), step=50.0,
+    )
+
+
+def errors() -> Figure:
+    """An error of the northern speed with the ribbon that the smoother claims."""
+    from navsym.methods.trajectory_estimate import Settings, estimate
+    from navsym.methods.trajectory_tracks import track_of
+
+    t, radius = np.arange(0.0, 240.0, 1.0), 6_371_000.0
+    random = np.random.default_rng(5)
+    acceleration = np.cumsum(random.normal(scale=0.05, size=t.size))
+    speed = 20.0 + np.cumsum(acceleration)
+    north = np.cumsum(speed) - speed / 2
+    noise = random.normal(size=t.size)
+    track = track_of(t, np.radians(45) + (north + noise) / radius, 0 * t, 0 * t, 1.0)
+    answer, _ = estimate(track, Settings())
+    scale = np.polyfit(speed, answer.velocity[:, 1], 1)[0]
+    error = answer.velocity[:, 1] / scale - speed
+    return plots.error_ribbon(t, error, answer.velocity_sd[:, 1], quantity="error of the northern speed", unit="m/s")
+
+
+def conditions() -> Figure:
+    """Condition numbers of N_f: certified, as printed, and in double precision."""
+    from derivations.trajectory import table
+    from navsym.methods.conditioning import condition_numbers
+
+    orders = np.array([2, 3, 4, 5, 10, 15, 19, 20])
+    found = [condition_numbers(int(n), "1/6371000", "1/5", digits=15)["N_f"] for n in orders]
+    printed = [float(row[2]) if (row := table.PRINTED.get((int(n), "tau0.2"))) else np.nan for n in orders]
+    return plots.condition_numbers(
+        orders, np.array(printed), np.array([float(f.enclosure.lower) for f in found]),
+        double=np.array([f.double or np.nan for f in found]),
+    )
+
+
+PICTURES: dict[str, Callable[[], Figure]] = {
+    "verdicts": verdicts, "phases": phases, "dual": dual, "ladder": ladder, "modes": modes, "surface": surface,
+    "errors": errors, "conditions": conditions,
+}  # fmt: skip
+
+
+def main(names: list[str]) -> None:
+    """Write the pictures of these names, or all."""
+    folder = Path(__file__).parent / "pictures"
+    folder.mkdir(exist_ok=True)
+    for name in names or PICTURES:
+        (folder / f"{name}.svg").write_text(plots.svg(PICTURES[name]()), encoding="utf-8")
+        print(folder / f"{name}.svg")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
