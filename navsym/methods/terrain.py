@@ -35,6 +35,7 @@ class Prepared:
     """A map, a track and a grid of hypotheses, counted in cells, as the compiled loops want them.
 
     plain : every hypothesis stays on the map and off its voids, so the fast loops may run
+    whole : there are no voids where a hypothesis may look, so that the bounded search may run
     bound : at least the largest absolute height of map and profile
     """
 
@@ -49,6 +50,7 @@ class Prepared:
     counts: Index
     plain: bool
     bound: float
+    whole: bool = True
 
     @property
     def case(self) -> tuple[Array, Array, Array, Array, Array, Array]:
@@ -102,10 +104,11 @@ def prepare(terrain: TerrainMap, track: Track, grid: Hypotheses, *, on_map: bool
     across = reach(bx, wx, steps[0], Mx, Mvx)
     along = reach(by, wy, steps[1], My, Mvy)
     inside = across[0] >= 0.0 and across[1] <= nx - 1 and along[0] >= 0.0 and along[1] <= ny - 1
-    plain = inside and not void_within(terrain, across, along)
+    whole = not void_within(terrain, across, along)
+    plain = inside and whole
     bound = max(terrain.highest, float(np.abs(track.h).max()))
     z = np.array(track.h)
-    return Prepared(terrain.heights, terrain.single, bx, by, z, wx, wy, steps, grid.counts, plain, bound)
+    return Prepared(terrain.heights, terrain.single, bx, by, z, wx, wy, steps, grid.counts, plain, bound, whole)
 
 
 def reach(b: Array, w: Array, s: float, M: int, Mv: int) -> tuple[float, float]:
@@ -117,8 +120,7 @@ def reach(b: Array, w: Array, s: float, M: int, Mv: int) -> tuple[float, float]:
 def void_within(terrain: TerrainMap, across: tuple[float, float], along: tuple[float, float]) -> bool:
     if not terrain.has_voids:
         return False
-    rows = slice(math.floor(along[0]), math.floor(along[1]) + 2)
-    columns = slice(math.floor(across[0]), math.floor(across[1]) + 2)
+    rows, columns = (slice(max(math.floor(low), 0), max(math.floor(high) + 2, 0)) for low, high in (along, across))
     return bool(np.isnan(terrain.heights[rows, columns]).any())
 
 
@@ -198,11 +200,16 @@ def found_by(prepared: Prepared, dense: bool, threads: int, centred: bool) -> Se
     # Outside this range single precision could overflow or underflow; nobody measures such heights.
     usual = 1e-10 < prepared.bound < 1e15 and total > 1 and (prepared.z.size >= 4 or not centred)
     # On the lattice all criteria in double precision take less time than some of them in single.
-    if dense or not (prepared.plain and usual) or (prepared.on_lattice and not centred):
+    positions_only = prepared.counts[2:] == (1, 1)
+    if dense or not (prepared.whole and usual) or (positions_only and not prepared.plain) or (
+        prepared.on_lattice and not centred
+    ):
         return lowest(prepared, criteria(prepared, threads=threads, centred=centred), centred=centred)
     found = quickly(prepared, centred)
-    index, runner_up = unravel(found.index, prepared.counts), unravel(found.runner_up, prepared.counts)
-    unique = is_unique(prepared, (index, found.criterion), (runner_up, found.second), centred)
+    if found.index < 0:
+        return lowest(prepared, criteria(prepared, threads=threads, centred=centred), centred=centred)
+    index, runner_up = unravel(found.index, prepared.counts), unravel(max(found.runner_up, 0), prepared.counts)
+    unique = math.isinf(found.second) or is_unique(prepared, (index, found.criterion), (runner_up, found.second), centred)
     share = found.samples / (total * prepared.z.size)
     return Search(index, found.criterion, found.second, unique, found.completed, share)
 
@@ -212,7 +219,7 @@ def quickly(prepared: Prepared, centred: bool) -> BoundedResult:
     p = prepared
     if p.counts[2:] == (1, 1) and not centred:
         return search_one_velocity(p.single, p.case, p.steps, p.counts[:2], p.bound)
-    return search_bounded(p.case, p.steps, p.counts, p.bound, centred=centred)
+    return search_bounded(p.case, p.steps, p.counts, p.bound, centred=centred, inside=p.plain)
 
 
 def need(track: Track, least: int, what: str) -> None:

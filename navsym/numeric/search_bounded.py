@@ -16,7 +16,9 @@ The margin for rounding is proved at the head of :mod:`navsym.numeric.search_mar
 
 from __future__ import annotations
 
+import functools
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -35,7 +37,16 @@ from navsym.numeric.search_margins import (
     single_limit,
 )
 from navsym.numeric.search_sample import shift_of
-from navsym.numeric.search_stages import add_more, evaluate, keep, lowest_per_velocity, scores, settle
+from navsym.numeric.search_stages import (
+    add_more,
+    evaluate,
+    keep,
+    lowest_per_velocity,
+    on_map,
+    scores,
+    settle,
+    shut_out,
+)
 
 #: Measurements summed for every hypothesis before the first comparison; a multiple of TOGETHER.
 FIRST = 32
@@ -92,7 +103,8 @@ def neighbours(index: int, counts: Counts, lag: tuple[float, float]) -> list[int
 
 
 def descend(
-    case: Case, steps: NDArray[np.float64], counts: Counts, centred: bool, start: NDArray[np.int64]
+    case: Case, steps: NDArray[np.float64], counts: Counts, centred: bool, start: NDArray[np.int64],
+    allowed: Callable[[NDArray[np.int64]], NDArray[np.bool_]],
 ) -> tuple[float, float, int]:
     """Walk downhill on the grid from the best of ``start``; the two lowest values and the evaluations."""
     known: dict[int, float] = {}
@@ -101,7 +113,10 @@ def descend(
 
     def value(index: int) -> float:
         if index not in known:
-            known[index] = evaluate(case, shift(index, counts, steps), np.inf, centred, work)
+            inside = bool(allowed(np.array([index]))[0])
+            known[index] = (
+                evaluate(case, shift(index, counts, steps), np.inf, centred, work) if inside else math.inf
+            )
         return known[index]
 
     wx, wy = case[4], case[5]
@@ -116,6 +131,30 @@ def descend(
         best = lower
     two = sorted(known.values())[:2]
     return two[0], two[-1] if len(two) > 1 else math.inf, len(known)
+
+
+def borders(
+    case: Case, steps: NDArray[np.float64], counts: Counts, inside: bool
+) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """(Mvx, Mx) and (Mvy, My): hypotheses that stay between the first and the last column, and row."""
+    H, bx, by, _, wx, wy = case
+    Mx, My, Mvx, Mvy = counts
+    if inside:
+        return np.ones((Mvx, Mx), np.bool_), np.ones((Mvy, My), np.bool_)
+    return (
+        on_map(bx, wx, float(steps[0]), Mx, Mvx, float(H.shape[1] - 1)),
+        on_map(by, wy, float(steps[1]), My, Mvy, float(H.shape[0] - 1)),
+    )
+
+
+def admissible(
+    sides: tuple[NDArray[np.bool_], NDArray[np.bool_]], counts: Counts, index: NDArray[np.int64]
+) -> NDArray[np.bool_]:
+    """Whether hypotheses of flat indices stay on the map."""
+    Mx, My, _, Mvy = counts
+    i, rest = index % Mx, index // Mx
+    j, rest = rest % My, rest // My
+    return np.asarray(sides[0][rest // Mvy, i] & sides[1][rest % Mvy, j])
 
 
 def part_of(case: Case, chosen: NDArray[Any]) -> Case:
@@ -152,7 +191,8 @@ def probes_among(index: NDArray[np.int64]) -> NDArray[np.int64]:
 
 
 def search_bounded(
-    case: Case, steps: tuple[float, float], counts: Counts, bound: float, *, centred: bool = False
+    case: Case, steps: tuple[float, float], counts: Counts, bound: float, *, centred: bool = False,
+    inside: bool = False,
 ) -> BoundedResult:
     """Minimum and runner-up of the criterion over all Mx My Mvx Mvy hypotheses, exactly.
 
@@ -160,20 +200,27 @@ def search_bounded(
     steps   : (sx, sy) position steps in cells ; counts : (Mx, My, Mvx, Mvy), all odd
     bound   : at least the largest absolute height of H and z
     centred : the criterion free of a constant height error; at least four measurements then
+    inside  : True when every hypothesis is known to stay on the map
 
-    Every hypothesis must stay on the map. The result equals that of the dense double search,
-    ties included; see the proof of the margin in :mod:`navsym.numeric.search_margins`.
+    Hypotheses that leave the map are never chosen; at least one must stay on it. The result equals that of the
+    dense double search, ties included; see the proof of the margin in :mod:`navsym.numeric.search_margins`.
     """
     pair = np.array(steps, dtype=np.float64)
     n, total = case[3].shape[0], math.prod(counts)
+    across, along = sides = borders(case, pair, counts, inside)
+    allowed = functools.partial(admissible, sides, counts)
+    everyone = bool(across.all() and along.all())
+    open_to = np.arange(total) if everyone else np.flatnonzero(allowed(np.arange(total)))
     parts, first = (parts_about_the_mean(n), CONTRASTS) if centred else (PLAIN, PLAIN)
     used = np.zeros(n, dtype=np.bool_)
-    score = scores(case, pair, counts, centred, probes_among(np.arange(total)), used)
+    score = scores(case, pair, counts, centred, probes_among(open_to), used)
     chosen = best_measurements(score, min(FIRST, n // TOGETHER * TOGETHER if centred else n))
     used[chosen] = True
     sums = first_sums(case, pair, counts, centred, chosen)
+    if not everyone:
+        shut_out(sums, across, along)
     found, value = lowest_per_velocity(sums, counts[0], counts[1])
-    _, second, tried = descend(case, pair, counts, centred, found[np.argsort(value)[:8]])
+    _, second, tried = descend(case, pair, counts, centred, found[np.argsort(value)[:8]], allowed)
     ceiling = ceiling_of(second, n, bound, parts)
     index, partial = np.empty(total, np.int64), np.empty(total, np.float32)
     count = keep(sums, counts[0], counts[1], single_limit(ceiling, chosen.size, bound, first), index, partial)

@@ -53,6 +53,33 @@ def scores(case: Any, steps: Any, counts: Any, centred: bool, probes: np.ndarray
 
 
 @njit(**COMPILE)
+def on_map(b: np.ndarray, w: np.ndarray, s: float, M: int, Mv: int, last: float) -> np.ndarray:
+    """(Mv, M): whether one coordinate of a hypothesis stays within 0…last at every measurement."""
+    out = np.empty((Mv, M), np.bool_)
+    for v in range(Mv):
+        for i in range(M):
+            shift, rate, inside = (i - M // 2) * s, 1.0 * (v - Mv // 2), True
+            for k in range(b.shape[0]):
+                u = b[k] + (shift + rate * w[k])
+                if not 0.0 <= u <= last:
+                    inside = False
+                    break
+            out[v, i] = inside
+    return out
+
+
+@njit(**COMPILE)
+def shut_out(sums: np.ndarray, across: np.ndarray, along: np.ndarray) -> None:
+    """Infinite sums for hypotheses that leave the map. sums : (Mvx, Mvy, My, W), across (Mvx, Mx), along (Mvy, My)."""
+    for Vi in range(sums.shape[0]):
+        for Vj in range(sums.shape[1]):
+            for j in range(sums.shape[2]):
+                for i in range(across.shape[1]):
+                    if not (across[Vi, i] and along[Vj, j]):
+                        sums[Vi, Vj, j, i] = np.inf
+
+
+@njit(**COMPILE)
 def lowest_per_velocity(sums: np.ndarray, Mx: int, My: int) -> tuple[np.ndarray, np.ndarray]:
     """Flat index of the smallest partial sum of each (Vi, Vj). sums : (Mvx, Mvy, My, W)."""
     Mvx, Mvy = sums.shape[:2]
@@ -79,7 +106,7 @@ def keep(sums: np.ndarray, Mx: int, My: int, limit: float, index: np.ndarray, va
         for j in range(My):
             for i in range(Mx):
                 s = sums[v // Mvy, v % Mvy, j, i]
-                if not (s > limit):
+                if not (s > limit) and s < np.inf:
                     index[count] = (v * My + j) * Mx + i
                     value[count] = s
                     count += 1

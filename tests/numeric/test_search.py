@@ -129,6 +129,24 @@ def test_without_the_height_offset_bounding_equals_the_dense_search_on_500_rando
         done += 1
 
 
+@pytest.mark.parametrize("centred", [False, True])
+def test_hypotheses_that_leave_the_map_are_shut_out_of_the_bounded_search_as_of_the_dense_one(centred):
+    generator, some_out = np.random.default_rng(23), 0
+    for case in range(200):
+        (H, bx, by, z, wx, wy), steps, counts = random_case(generator, ties=case % 3 == 0)
+        if counts == (1, 1, 1, 1) or not H.any():
+            continue
+        left, top = int(generator.integers(20, 27)), int(generator.integers(20, 27))
+        cut = np.ascontiguousarray(H[top : top + 18, left : left + 17])
+        arguments = (cut, np.clip(bx - left, 0, 16), np.clip(by - top, 0, 17), z, wx, wy)
+        out = np.empty((counts[2], counts[3], counts[1], counts[0]))
+        dense_masked(arguments, steps, counts, centred, out.reshape(-1))
+        some_out += bool(np.isinf(out).any() and np.isfinite(out).sum() > 1)
+        found = lowest_by_bounding(arguments, steps, counts, centred)
+        assert found == two_lowest(out), case
+    assert some_out > 80
+
+
 def test_contrasts_of_four_in_single_precision_stay_within_their_margin():
     generator = np.random.default_rng(6)
     for _ in range(40):
