@@ -1,6 +1,7 @@
-"""A descent to where an expression is low: a search in floats, which proves nothing.
+"""A descent to where an expression is low: a search, which proves nothing.
 
-What it returns is a guess; the caller evaluates it exactly.
+A compass search in floats comes first, then Newton's steps on the gradient with 640 bits. What it
+returns is a guess; the caller evaluates it exactly.
 """
 
 from __future__ import annotations
@@ -11,16 +12,19 @@ from collections.abc import Callable, Iterator
 from fractions import Fraction
 
 import sympy as sp
-from flint import arb
+from flint import arb, arb_mat, fmpq
 
-from navsym.proof.balls import UnsupportedError, enclose, exact_ball, tape
+from navsym.proof.balls import Tape, UnsupportedError, enclose, exact_ball, precision, tape
 from navsym.proof.sampling import Range
 
 STARTS = 16
 KEPT = 3
 STEPS = 400
+ROUNDS = 8
+BITS = 640
 
 Place = list[float]
+Guess = dict[sp.Symbol, Fraction]
 
 
 def lowest(goal: sp.Expr, limits: dict[sp.Symbol, Range]) -> Iterator[dict[sp.Symbol, Fraction]]:
@@ -40,12 +44,15 @@ def lowest(goal: sp.Expr, limits: dict[sp.Symbol, Range]) -> Iterator[dict[sp.Sy
             return math.inf
         return float(ball.mid()) if ball.is_finite() else math.inf
 
+    polish = polisher(goal, symbols)
     for place in sorted(starts(len(symbols)), key=value)[:KEPT]:
         found = compass(value, place)
         try:
-            yield {s: Fraction(to(x)) for s, to, x in zip(symbols, maps, found, strict=True)}
+            rough = {s: Fraction(to(x)) for s, to, x in zip(symbols, maps, found, strict=True)}
         except (OverflowError, ValueError):
             continue
+        yield rough
+        yield from polish(rough)
 
 
 def stretch(limit: Range) -> Callable[[float], float]:
@@ -82,3 +89,51 @@ def compass(value: Callable[[Place], float], place: Place) -> Place:
                 place, here, moved = trial, there, True
         step = step if moved else step / 2
     return place
+
+
+# -- Newton ---------------------------------------
+
+
+def polisher(
+    goal: sp.Expr, symbols: list[sp.Symbol]
+) -> Callable[[dict[sp.Symbol, Fraction]], Iterator[Guess]]:
+    """Newton's method towards a zero of the gradient; it yields nothing where there is no gradient."""
+    gradient = [sp.diff(goal, symbol) for symbol in symbols]
+    hessian = [[sp.diff(slope, symbol) for symbol in symbols] for slope in gradient]
+    try:
+        slopes, curves = [tape(g) for g in gradient], [[tape(h) for h in row] for row in hessian]
+    except UnsupportedError:
+        return lambda rough: iter(())
+
+    def polish(rough: dict[sp.Symbol, Fraction]) -> Iterator[Guess]:
+        at = {s: arb(fmpq(x.numerator, x.denominator)) for s, x in rough.items()}
+        for _ in range(ROUNDS):
+            step = newton_step(slopes, curves, at)
+            if step is None or not all(abs(float(d)) < 1e-3 for d in step):
+                return
+            with precision(BITS):
+                at = {s: arb((at[s] - d).mid()) for s, d in zip(symbols, step, strict=True)}
+        yield {s: exact(x) for s, x in at.items()}
+
+    return polish
+
+
+def newton_step(slopes: list[Tape], curves: list[list[Tape]], at: dict[sp.Symbol, arb]) -> list[arb] | None:
+    """Solution of hessian * step = gradient by midpoints; None where it is singular or undefined."""
+    size = len(slopes)
+    right = arb_mat([[enclose(program, at, BITS).mid()] for program in slopes])
+    matrix = arb_mat([[enclose(program, at, BITS).mid() for program in row] for row in curves])
+    if not all(entry.is_finite() for entry in (*right.entries(), *matrix.entries())):
+        return None
+    try:
+        with precision(BITS):
+            solution = matrix.solve(right)
+    except ZeroDivisionError:
+        return None
+    return [solution[i, 0].mid() for i in range(size)]
+
+
+def exact(value: arb) -> Fraction:
+    """The midpoint of a ball as a fraction."""
+    mantissa, exponent = value.mid().man_exp()
+    return Fraction(int(mantissa)) * Fraction(2) ** int(exponent)

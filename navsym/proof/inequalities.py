@@ -23,7 +23,7 @@ from navsym.proof.equations import (
 )
 from navsym.proof.normal_form import OutsideLanguageError, reduce_to_zero, vanishes_identically
 from navsym.proof.sampling import Point, Sample, points, search_counterexample, value_at
-from navsym.proof.second_look import second_look
+from navsym.proof.second_look import Look, second_look
 from navsym.proof.wording import point_text, scope_of
 
 #: relation -> when a finite ball of printed - derived contradicts it.
@@ -35,6 +35,15 @@ EXCLUDES: dict[str, Callable[[arb], bool]] = {
     "!=": lambda ball: bool(ball == 0),
 }
 
+
+#: relation -> what is low where printed - derived comes nearest to contradicting it.
+GOALS: dict[str, Callable[[sp.Expr], tuple[sp.Expr, ...]]] = {
+    "<": lambda d: (-d,),
+    "<=": lambda d: (-d,),
+    ">": lambda d: (d,),
+    ">=": lambda d: (d,),
+    "!=": lambda d: (d**2, d, -d),
+}
 
 #: Relations that equality breaks.
 STRICT = ("<", ">", "!=")
@@ -89,22 +98,35 @@ def unproved_relation(
     difference: sp.Expr, relation: str, box: Box, scope: str, sides: Sequence[sp.Expr], sample: Sample
 ) -> Verdict:
     """What has no proof of sign: broken by a second look, or sampled; never CONFIRMED across a change of sign."""
-    goal = {"<": -difference, "<=": -difference, ">": difference, ">=": difference, "!=": difference**2}
     look = second_look(
         difference,
         lambda ball: contradicts(ball, relation),
         box,
         sides,
         relation in STRICT,
-        (goal[relation],),
+        GOALS[relation](difference),
     )
-    if relation == "!=" and look.counterexample is None and look.positive and look.negative:
+    doubt = doubt_of(look, relation)
+    if doubt:
+        return Verdict(OPEN, "sampling", scope, evidence=doubt)
+    return after_look(look, sample, scope, f"printed {relation} derived")
+
+
+def doubt_of(look: Look, relation: str) -> str:
+    """Why a relation without a counterexample must not be CONFIRMED; empty when nothing speaks against it."""
+    if look.counterexample is not None:
+        return ""
+    if relation == "!=" and look.positive and look.negative:
         places = " and ".join(str(dict(point_text(point))) for point in (look.negative, look.positive))
-        evidence = (
+        return (
             f"printed - derived changes its sign between {places}: a continuous difference has a zero there"
         )
-        return Verdict(OPEN, "sampling", scope, evidence=evidence)
-    return after_look(look, sample, scope, f"printed {relation} derived")
+    if look.touching is not None:
+        near = {symbol.name: f"{float(value):.12g}" for symbol, value in look.touching.items()}
+        return (
+            f"the sides come within 1e-60 of each other near {near}: equality there would break the relation"
+        )
+    return ""
 
 
 def contradicts(ball: arb, relation: str) -> bool:

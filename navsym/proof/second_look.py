@@ -30,7 +30,8 @@ ORDINARY = 24
 SHARP = 1e-100
 FAR = tuple(sp.Integer(10) ** k for k in (3, 12, 31))
 NEAR = tuple(1 / value for value in FAR)
-DENOMINATORS = (1, 2, 3, 4, 6, 12, 100, 10**12)
+DENOMINATORS = (1, 2, 3, 4, 6, 12, 100, 10**12, 10**150)
+TOUCHING = 1e-60
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,6 +43,9 @@ class Look:
     exact: bool = False  # the difference is exactly zero there
     positive: Point | None = None
     negative: Point | None = None
+    touching: Point | None = (
+        None  # the difference is almost zero there, and equality would break the relation
+    )
 
 
 def second_look(
@@ -64,7 +68,7 @@ def second_look(
     places = itertools.chain(
         points(symbols, box, ORDINARY), special_points(limits), *(descents(goal, limits) for goal in goals)
     )
-    positive = negative = None
+    positive = negative = touching = None
     for point in places:
         ball = sharp_value(difference, point, sides)
         if ball is None:
@@ -73,9 +77,10 @@ def second_look(
             return Look(point, ball)
         if zero_breaks and ball.contains(0) and is_zero_at(difference, point):
             return Look(point, arb(0), exact=True)
+        touching = point if zero_breaks and abs(ball) < TOUCHING else touching
         positive = point if positive is None and ball > 0 else positive
         negative = point if negative is None and ball < 0 else negative
-    return Look(positive=positive, negative=negative)
+    return Look(positive=positive, negative=negative, touching=touching)
 
 
 def sharp_value(difference: sp.Expr, point: Point, sides: Sequence[sp.Expr]) -> arb | None:

@@ -80,6 +80,17 @@ def test_two_sides_that_change_order_are_not_confirmed_to_be_different(expressio
     assert "changes its sign" in verdict.evidence
 
 
+@pytest.mark.parametrize("relation", [">", "!="])
+def test_sides_that_touch_at_an_irrational_point_are_not_confirmed_to_be_apart(relation):
+    verdict = decide(Bound((x**3 - x - 1) ** 2, relation, sp.Integer(0), {x: (1, 2)}))
+    assert verdict.status == OPEN
+
+
+def test_a_bound_that_fails_by_little_around_an_irrational_point_is_refuted():
+    assert decide(Bound((x**2 - 2) ** 2, ">=", sp.Rational(1, 10**30))).status == REFUTED
+    assert decide(Bound((x**3 - x - 1) ** 2 - TINY, ">", sp.Integer(0), {x: (1, 2)})).status == REFUTED
+
+
 def test_what_is_true_but_not_proved_stays_confirmed():
     verdict = decide(Bound(MOTZKIN, ">=", sp.Integer(0)))
     assert verdict.status == CONFIRMED
