@@ -7,8 +7,9 @@ from typing import Annotated
 
 import typer
 
+from navsym.cli._settings import values_of
 from navsym.cli.output import emit, put, write_text
-from navsym.errors import ExpressionSyntaxError, NavsymError
+from navsym.errors import NavsymError
 
 
 def command(
@@ -34,7 +35,7 @@ def command(
     from navsym.methods.guaranteed_problem import from_file
     from navsym.text.modelfile import read_model
 
-    found = read_model(file, values_of(set_ or []))
+    found = read_model(file, values_of(set_))
     try:
         text = formulate(from_file(found, target), to, kind=kind, count=grid, mixture=mixture)
     except NavsymError as error:
@@ -50,14 +51,3 @@ def command(
     elif out is None:
         put(text)
 
-
-def values_of(settings: list[str]) -> dict[str, str]:
-    values = {}
-    for setting in settings:
-        name, equals, value = setting.partition("=")
-        if not equals:
-            raise ExpressionSyntaxError(
-                f"expected NAME=VALUE; got {setting[:40]!r}; write --set T=5/2", where="--set"
-            )
-        values[name.strip()] = value.strip()
-    return values

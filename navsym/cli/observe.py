@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from navsym.cli._settings import values_of
 from navsym.cli.output import emit, table, write_text
 from navsym.errors import DomainError, DuplicateError, ExpressionSyntaxError, NavsymError
 
@@ -65,19 +66,6 @@ def read(file: Path, settings: list[str]) -> ModelFile:
             "expected a [model] with F and h; got a [basis] of regressors; give the system", where=str(file)
         )
     return found
-
-
-def values_of(settings: list[str]) -> Mapping[str, str]:
-    """NAME=VALUE settings as a mapping."""
-    values = {}
-    for setting in settings:
-        name, equals, value = setting.partition("=")
-        if not equals:
-            raise ExpressionSyntaxError(
-                f"expected NAME=VALUE; got {setting[:40]!r}; write --set w=1/2", where="--set"
-            )
-        values[name.strip()] = value.strip()
-    return values
 
 
 def linear_model(found: ModelFile) -> Any:

@@ -1,4 +1,4 @@
-"""The complete solution as the interval's length varies: regimes, boundaries, closed forms."""
+"""The complete solution as a parameter varies: regimes, boundaries, closed forms."""
 
 from __future__ import annotations
 
@@ -7,12 +7,13 @@ from typing import Annotated, Any
 
 import typer
 
+from navsym.cli._settings import values_of
 from navsym.cli.output import dumps, emit, table, write_text
 from navsym.errors import DomainError, ExpressionSyntaxError, NavsymError
 
 
 def command(
-    file: Annotated[Path, typer.Argument(help="model or basis file whose interval ends at the parameter")],
+    file: Annotated[Path, typer.Argument(help="model or basis file (TOML)")],
     target: Annotated[
         str | None, typer.Option(help="name of the target; not needed where the file has one")
     ] = None,
@@ -31,7 +32,7 @@ def command(
     ] = None,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> None:
-    """Which instants, which weights and which value are optimal, on exactly which range of lengths.
+    """Which instants, which weights and which value are optimal, on exactly which range of a parameter.
 
     Example: navsym phases examples/schuler-velocity.toml --target drift --range "0, 2*pi"
     """
@@ -39,7 +40,7 @@ def command(
     from navsym.methods.phases_family import family_of
     from navsym.text.modelfile import read_model
 
-    found = read_model(file, values_of(set_ or []))
+    found = read_model(file, values_of(set_))
     try:
         lower, upper = ends_of(found, parameter, range_)
         answer = phases(family_of(found, target, parameter), lower, upper, certify=not quick)
@@ -50,18 +51,6 @@ def command(
         for k, certificate in enumerate(answer.certificates()):
             write_text(out.with_name(f"{out.stem}-{k + 1}.json"), dumps(certificate) + "\n")
     emit(document, as_json=json_, text=lambda: as_text(document))
-
-
-def values_of(settings: list[str]) -> dict[str, str]:
-    values = {}
-    for setting in settings:
-        name, equals, value = setting.partition("=")
-        if not equals:
-            raise ExpressionSyntaxError(
-                f"expected NAME=VALUE; got {setting[:40]!r}; write --set w=1/2", where="--set"
-            )
-        values[name.strip()] = value.strip()
-    return values
 
 
 def ends_of(found: Any, parameter: str, text: str | None) -> tuple[Any, Any]:

@@ -7,8 +7,9 @@ from typing import Annotated, Any
 
 import typer
 
+from navsym.cli._settings import values_of
 from navsym.cli.output import dumps, emit, table, write_text
-from navsym.errors import ExpressionSyntaxError, NavsymError
+from navsym.errors import NavsymError
 
 
 def command(
@@ -36,7 +37,7 @@ def command(
     from navsym.methods.guaranteed_problem import from_file
     from navsym.text.modelfile import read_model
 
-    found = read_model(file, values_of(set_ or []))
+    found = read_model(file, values_of(set_))
     try:
         solution = solve(from_file(found, target), digits)
     except NavsymError as error:
@@ -49,17 +50,6 @@ def command(
     if out is not None:
         write_text(out, dumps(document["certificate"]) + "\n")
     emit(document, as_json=json_, text=lambda: as_text(document))
-
-
-def values_of(settings: list[str]) -> dict[str, str]:
-    values = {}
-    for setting in settings:
-        name, equals, value = setting.partition("=")
-        if not equals:
-            message = f"expected NAME=VALUE; got {setting[:40]!r}; write --set T=5/2"
-            raise ExpressionSyntaxError(message, where="--set")
-        values[name.strip()] = value.strip()
-    return values
 
 
 def as_text(document: dict[str, Any]) -> str:

@@ -14,7 +14,7 @@ import numpy as np
 from flint import arb, arb_mat, fmpq
 from numpy.typing import NDArray
 
-from navsym.errors import TooLargeError
+from navsym.errors import NotFiniteError, TooLargeError
 from navsym.numeric.exchange import Panels
 from navsym.proof.balls import precision
 from navsym.proof.enclosure import Panel, Problem, rational
@@ -64,6 +64,11 @@ def samples(panels: Sequence[Panel], count: int, bits: int) -> arb_mat:
         for panel in panels:
             sigma = panel.bound()
             rows += [[h / sigma for h in panel.rows(arb(v))] for v in fractions]
+            if not all(h.is_finite() for row in rows[-count:] for h in row):
+                raise NotFiniteError(
+                    f"regressors: expected functions that are finite on the interval; got {panel.functions} between "
+                    f"{panel.start} and {panel.end}; change the interval"
+                )
         return arb_mat(rows)
 
 
