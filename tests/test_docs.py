@@ -62,6 +62,10 @@ def test_the_site_builds_without_a_warning(tmp_path):
     assert "Riccati" in (tmp_path / "site" / "new_paper.html").read_text(encoding="utf-8")
     page = (tmp_path / "site" / "reference" / "proof.html").read_text(encoding="utf-8")
     assert "decide_equation" in page
+    for path in (tmp_path / "site").rglob("*.html"):
+        text = path.read_text(encoding="utf-8")
+        assert 'class="math"><code>' not in text, f"{path.name}: a formula that is not set in type"
+        assert not re.search(r"<(script|link|img)[^>]*(src|href)=\"https?:", text), f"{path.name} asks a network"
 
 
 def test_the_glossary_has_three_languages_in_every_line():

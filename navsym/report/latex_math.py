@@ -26,7 +26,7 @@ FUNCTIONS = frozenset("sin cos tan cot exp log ln max min det arctan diag tr".sp
 SIGNS = {
     "cdot": "·", "times": "×", "le": "≤", "ge": "≥", "ne": "≠", "ll": "≪", "gg": "≫", "approx": "≈", "pm": "±",
     "to": "→", "in": "∈", "ldots": "…", "colon": ":", "|": "‖", "circ": "∘", "sum": "∑", "int": "∫", "iint": "∬",
-    "{": "{", "}": "}", "%": "%",
+    "{": "{", "}": "}", "%": "%", "top": "⊤", "mid": "∣", "forall": "∀", "dots": "…", "cdots": "⋯",
 }  # fmt: skip
 SPACES = {",": "0.17em", ";": "0.28em", " ": "0.25em", "quad": "1em"}
 ACCENTS = {"dot": "˙", "hat": "^", "tilde": "~", "bar": "¯", "overline": "¯"}
@@ -137,19 +137,21 @@ class Reader:
             return f"<msqrt>{self.atom()}</msqrt>"
         if word in ACCENTS:
             return f'<mover accent="true">{self.atom()}<mo stretchy="false">{ACCENTS[word]}</mo></mover>'
-        if word in ("mathrm", "text"):
+        if word in ("mathrm", "text", "operatorname"):
             return self.upright()
         if word == "left":
             return self.fenced()
         raise self.refuse(f"\\{word}")
 
     def upright(self) -> str:
-        if self.take()["char"] != "{":
+        opening = self.take()
+        if opening["char"] != "{":
             raise self.refuse("no brace")
-        words = []
         while (token := self.take())["char"] != "}":
-            words.append(token.group())
-        return f'<mi mathvariant="normal">{html.escape("".join(words))}</mi>'
+            if token["word"] is not None:
+                raise self.refuse(token.group())
+        words = self.source[opening.end() : token.start()]
+        return f"<mtext>{html.escape(words)}</mtext>"
 
     def fenced(self) -> str:
         left = self.bracket()
