@@ -156,7 +156,7 @@ def longer_is_better_on_average():
 
 @claim("K.second", expect=CERTIFIED)
 def second_estimate_is_better():
-    """K-pulsating: the second estimate with K = 2 is optimal, with K = 1 it is not, in the mean over all measurements."""
+    """K-pulsating: the second estimate is optimal with K = 2 and not with K = 1, in the mean over measurements."""
     one, two = mean_square_distances()
     return Property(printed=True, derived=lower(two[1], one[1]))
 

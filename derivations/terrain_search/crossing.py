@@ -261,7 +261,8 @@ def flat_across():
     flat = [(0, 0)] * 3
     numerator, denominator = (sum(m**power * q**2 for m, (_, q) in enumerate(flat)) for power in (1, 0))
     return Equation(
-        printed=[sp.Integer(0)] * 3, derived=[misfit(flat, (0, beta), t), sp.Integer(numerator), sp.Integer(denominator)]
+        printed=[sp.Integer(0)] * 3,
+        derived=[misfit(flat, (0, beta), t), sp.Integer(numerator), sp.Integer(denominator)],
     )
 
 

@@ -50,7 +50,7 @@ def slope_at_the_axis(size):
     expect=REFUTED,
     slip="paper",
     reason="read as a case of solving (12), (13), which is how it is introduced: at beta_y = 0 only the derivative by"
-    " beta_x vanishes, and t_G is stationary there if and only if A_2 = 0; the value given for it is right (case1.value)",
+    " beta_x vanishes, and t_G is stationary there if and only if A_2 = 0; its value is right (case1.value)",
 )
 def axis_as_printed():
     """Read as a case of the solution: beta_y = 0 always solves the necessary conditions."""

@@ -209,7 +209,8 @@ def found_by(prepared: Prepared, dense: bool, threads: int, centred: bool) -> Se
     if found.index < 0:
         return lowest(prepared, criteria(prepared, threads=threads, centred=centred), centred=centred)
     index, runner_up = unravel(found.index, prepared.counts), unravel(max(found.runner_up, 0), prepared.counts)
-    unique = math.isinf(found.second) or is_unique(prepared, (index, found.criterion), (runner_up, found.second), centred)
+    best, second = (index, found.criterion), (runner_up, found.second)
+    unique = math.isinf(found.second) or is_unique(prepared, best, second, centred)
     share = found.samples / (total * prepared.z.size)
     return Search(index, found.criterion, found.second, unique, found.completed, share)
 

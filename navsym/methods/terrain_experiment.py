@@ -114,7 +114,8 @@ def experiment(
     wanted = [(s, k, r) for s in settings for k in range(tracks) for r in range(runs)]
     if not wanted:
         raise EmptyError("settings: expected at least one; got none; give one")
-    stamp = {"seed": seed, "ground": name, "maps": f"{crc32(terrain.heights.data):08x}-{crc32(ground.heights.data):08x}"}
+    maps = f"{crc32(terrain.heights.data):08x}-{crc32(ground.heights.data):08x}"
+    stamp = {"seed": seed, "ground": name, "maps": maps}
     done = read_journal(journal)
     records: list[Record] = []
     for finished, (setting, k, r) in enumerate(wanted):
@@ -179,7 +180,7 @@ def study(
     journal: str | Path | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> dict[str, Any]:
-    """What ``navsym simulate terrain_search`` runs: the experiment on the sample terrain and, if it is there, on a tile.
+    """What ``navsym simulate terrain_search`` runs: the experiment on the sample terrain and on a tile.
 
     runs : flights over each of the five tracks ; steps : measurements of each flight
     The errors are drawn from the whole range of the hypotheses (4 m/s) and from a fifth of it, each

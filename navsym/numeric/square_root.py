@@ -31,8 +31,7 @@ def triangular(A: Array) -> Array:
     """
     n, m = A.shape[-2:]
     wide = A if m >= n else np.concatenate([A, np.zeros((*A.shape[:-1], n - m))], axis=-1)
-    R = np.linalg.qr(transposed(wide[..., ::-1, :]), mode="r")
-    S = transposed(R)[..., ::-1, ::-1]
+    S = transposed(np.asarray(np.linalg.qr(transposed(wide[..., ::-1, :]), mode="r")))[..., ::-1, ::-1]
     signs = np.where(np.diagonal(S, axis1=-2, axis2=-1) < 0.0, -1.0, 1.0)
     return np.asarray(S * signs[..., None, :])
 
@@ -82,7 +81,7 @@ def correct_by_qr(mean: Array, S: Array, z: Array, H: Array, R: Array) -> tuple[
     T = triangular(np.concatenate([upper, np.concatenate([HS, noise], axis=-1)], axis=-2))
     X, Y, Z = T[..., n:, n:], T[..., :n, n:], T[..., :n, :n]
     spread = np.diagonal(X, axis1=-2, axis2=-1)
-    regular = (spread > 0.0).all(axis=-1)
+    regular = np.asarray((spread > 0.0).all(axis=-1))
     X = np.where(regular[..., None, None], X, np.eye(p))
     white = np.linalg.solve(X, (z - times(H, mean))[..., None])[..., 0]
     distance, volume = squared(white), np.log(np.where(regular[..., None], spread, 1.0)).sum(axis=-1)

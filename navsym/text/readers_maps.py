@@ -11,8 +11,8 @@ import io
 import math
 import os
 import re
-import warnings
 import struct
+import warnings
 import zipfile
 from collections.abc import Callable
 from dataclasses import dataclass

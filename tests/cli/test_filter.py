@@ -101,17 +101,83 @@ def test_an_impossible_measurement_is_remarked_on_standard_error(tmp_path, capsy
     assert np.isfinite(document["mean"]).all()
 
 
-@pytest.mark.parametrize(("changes", "kind"), [
-    ({"mode_transition": [[0.9, 0.2], [0.2, 0.8]]}, "domain"),
-    ({"models": []}, "empty"),
-    ({"measurements": [[1.0, 2.0]]}, "shape"),
-    ({"initial": {"mean": [0.0], "covariance": [[-1.0]], "probabilities": [0.5, 0.5]}}, "domain"),
+def model(**changes):
+    return {"models": [{"F": UNIT, "Q": [[0.0]], "H": UNIT, "R": UNIT, **changes}] * 2}
+
+
+def start(**changes):
+    return {"initial": {"mean": [0.0], "covariance": UNIT, "probabilities": [0.75, 0.25], **changes}}
+
+
+INDEFINITE = {
+    "models": [{"F": np.eye(2).tolist(), "Q": [[1, 2], [2, 1]], "H": [[1, 0]], "R": UNIT}],
+    "mode_transition": [[1.0]], **start(mean=[0, 0], covariance=np.eye(2).tolist(), probabilities=[1.0]),
+}
+
+
+@pytest.mark.parametrize(("changes", "options", "kind", "words"), [
+    ({"mode_transition": [[0.9, 0.2], [0.2, 0.8]]}, (), "domain", "row 0 sums to 1.1"),
+    ({"mode_transition": [[1.2, -0.2], [0.2, 0.8]]}, (), "domain", "negative"),
+    ({"mode_transition": [[1.0]]}, (), "shape", "mode_transition"),
+    ({"mode_transition": []}, (), None, "mode_transition"),
+    (model(Q=[[-1.0]]), (), "domain", "models[0].Q"),
+    (model(R=[[-1.0]]), (), "domain", "models[0].R"),
+    (INDEFINITE, (), "domain", "models[0].Q"),
+    (start(covariance=[[-1.0]]), (), "domain", "initial.covariance"),
+    (start(probabilities=[0.0, 0.0]), (), "domain", "sums to 0"),
+    (start(probabilities=[0.5, 0.25, 0.25]), (), "shape", "initial.probabilities"),
+    (start(mean=[0.0, 1.0]), (), "shape", "initial.mean"),
+    (model(H=[[1.0, 0.0]]), (), "shape", "models[0].H"),
+    (model(F=[[1.0], [0.0]]), (), "shape", "models[0].F"),
+    (model(F=[[[1.0]], [[1.0]]]), (), "shape", "measurements"),
+    ({"models": []}, (), "empty", "models"),
+    ({"measurements": []}, (), "empty", "measurements"),
+    ({"measurements": [[1.0, 2.0]]}, (), "shape", "measurements[0]"),
+    ({"measurements": [[1.0], [None]]}, (), "not-finite", "measurements[1]"),
+    ({"measurements": [[1.0], [True]]}, (), "shape", "measurements[1]"),
+    ({"measurements": [[0.0]] * 60}, ("--method", "exact"), "too-large", str(2**60)),
+    ({"measurements": [[0.0]] * 60}, ("--method", "k-pulsating", "--depth", "50"), "too-large", str(2**50)),
+    ({}, ("--method", "k-pulsating", "--depth", "0"), "domain", "depth"),
+    ({}, ("--method", "imm", "--depth", "2"), "domain", "depth"),
+    ({}, ("--method", "kalman"), "domain", "method"),
+    ({}, ("--form", "cholesky"), "domain", "form"),
+    ({"memoryless": True}, ("--method", "polygaussian"), "domain", "memoryless"),
+    ({"memoryless": 1}, (), "domain", "memoryless"),
 ])
-def test_bad_input_is_a_document_with_status_two(tmp_path, capsys, changes, kind):
+def test_bad_input_is_a_document_with_status_two(tmp_path, capsys, changes, options, kind, words):
     path = bank_file(tmp_path, **changes)
+    status, document, _ = answer(capsys, path, *options)
+    assert status == 2 and list(document) == ["error"]
+    error = document["error"]
+    assert error["kind"] == kind or kind is None
+    assert error["where"].startswith(path) and words in error["message"] and "expected" in error["message"]
+
+
+def test_nan_in_the_file_is_named_with_its_place(tmp_path, capsys):
+    path = bank_file(tmp_path)
+    with open(path) as file:
+        text = file.read()
+    with open(path, "w") as file:
+        file.write(text.replace("[3.0]", "[NaN]"))
     status, document, _ = answer(capsys, path)
-    assert (status, document["error"]["kind"]) == (2, kind)
-    assert document["error"]["where"].startswith(path)
+    assert (status, document["error"]["kind"]) == (2, "not-finite")
+
+
+@pytest.mark.parametrize("form", ["joseph", "qr", "potter", "ud"])
+def test_every_form_gives_the_same_document(tmp_path, capsys, form):
+    _, plain, _ = answer(capsys, bank_file(tmp_path), "--method", "gpb2")
+    status, document, _ = answer(capsys, bank_file(tmp_path), "--method", "gpb2", "--form", form)
+    assert status == 0
+    for key in plain:
+        assert np.asarray(document[key]) == pytest.approx(np.asarray(plain[key]), rel=1e-11, abs=1e-12)
+
+
+def test_rows_of_the_transition_matrix_say_where_from(tmp_path, capsys):
+    """Mode 0 always passes to mode 1 and mode 1 stays: from step 1 on nothing but mode 1 is possible."""
+    for method in ("pulsating", "imm", "gpb2", "exact", "k-pulsating"):
+        path = bank_file(tmp_path, mode_transition=[[0.0, 1.0], [0.0, 1.0]], **start(probabilities=[1.0, 0.0]))
+        _, document, _ = answer(capsys, path, "--method", method)
+        assert document["probabilities"] == [[0.0, 1.0]] * 3
 
 
 def test_a_tree_too_large_is_refused_with_its_count(tmp_path, capsys):

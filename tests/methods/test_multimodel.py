@@ -272,9 +272,12 @@ def test_an_unreachable_mode_has_probability_zero_and_no_nan():
 def test_filters_run_counts_the_kalman_filters_of_every_step(method, depth, steps, monkeypatch):
     ran = []
     original = steps_module.filtered
-    monkeypatch.setattr(
-        steps_module, "filtered", lambda models, k, b, *rest: (ran.append(len(b.modes)), original(models, k, b, *rest))[1]
-    )
+
+    def counted(models, k, branches, *rest):
+        ran.append(len(branches.modes))
+        return original(models, k, branches, *rest)
+
+    monkeypatch.setattr(steps_module, "filtered", counted)
     found = run(random_bank(13), series(13, steps), method, depth=depth, engine="numpy")
     assert found.filters_run == sum(ran)
 

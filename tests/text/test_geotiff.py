@@ -72,7 +72,9 @@ def relief(dtype="f4", shape=(37, 41)):
 
 
 @pytest.mark.parametrize("dtype", ["u1", "i2", "u2", "i4", "f4", "f8"])
-@pytest.mark.parametrize("layout", [{}, {"rows": 5}, {"tile": 16}, {"deflate": True, "rows": 7}, {"order": ">", "tile": 16}])
+@pytest.mark.parametrize("layout", [
+    {}, {"rows": 5}, {"tile": 16}, {"deflate": True, "rows": 7}, {"order": ">", "tile": 16},
+])
 def test_a_written_raster_comes_back_with_its_place(tmp_path, dtype, layout):
     heights = relief(dtype)
     (tmp_path / "m.tif").write_bytes(geotiff(heights, **layout))
@@ -148,7 +150,9 @@ def test_damaged_files_are_damaged_and_nothing_else():
         data = bytearray(generator.choice(good))
         for _ in range(generator.randint(1, 6)):
             # The directory and its long values stand at the end.
-            data[-generator.randint(1, 400) if generator.random() < 0.7 else generator.randrange(len(data))] = generator.randrange(256)
+            late = generator.random() < 0.7
+            place = -generator.randint(1, 400) if late else generator.randrange(len(data))
+            data[place] = generator.randrange(256)
         if generator.random() < 0.2:
             data = data[: generator.randrange(len(data))]
         try:
