@@ -295,3 +295,19 @@ def choice_of_i():
             (best.i, best.j), "all determinants of a_1 ... a_i, b_1 ... b_j", scope="n = 4, m = 3, l = 4"
         ),
     )
+
+
+@claim("1.14.gains_unique")
+def gains_of_the_first_stage_are_unique():
+    """Prescribed roots of the (u, v) stage determine K_u and K_v together, those of the w stage K_w.
+
+    The coefficients are affine in the gains with a matrix of determinant 1 or -1 for all theta and delta.
+    """
+    theta, delta = sp.symbols("theta1:4", real=True), sp.symbols("delta1:5", real=True)
+    values = []
+    for matrix, size, gains in ((companion(theta), 3, k[:3]), (companion(delta[2:]), 2, k[3:5])):
+        polynomial = polynomial_of(matrix - sp.Matrix(gains) * unit_row(size))
+        p = next(symbol for symbol in polynomial.free_symbols if symbol.name == "p")
+        rows = sp.Matrix([sp.expand(polynomial).coeff(p, size - 1 - r) for r in range(size)])
+        values.append(sp.expand(rows.jacobian(gains).det(method="berkowitz")) ** 2)
+    return Equation([sp.Integer(1), sp.Integer(1)], values)

@@ -317,3 +317,53 @@ def exact_first_stage_leaves_a_free_second():
         printed += list((b["Gz2"] - b["Kz"] * b["gz"]) * f)
         derived += list(closed_loop(b)[m:, :] * sp.Matrix.vstack(sp.zeros(m, 1), f))
     return Equation(printed, derived)
+
+
+@claim("1.two_stage.linear")
+def influence_is_proportional():
+    """What an error of x at t_1 leaves in z at t is proportional to it: small when it is small.
+
+    m = n - m = 1: error of z after time t for the error e of x at t_1, poles a and b different.
+    """
+    a, b, t = sp.symbols("a b t", positive=True)
+    drive, e, factor = sp.symbols("phi e c", real=True)
+
+    def left(error: sp.Expr) -> sp.Expr:
+        return drive * error * (sp.exp(-a * t) - sp.exp(-b * t)) / (b - a)
+
+    moved = left(e).diff(t) + b * left(e) - drive * e * sp.exp(-a * t)
+    return Equation([factor * left(e), sp.Integer(0), sp.Integer(0)], [left(factor * e), moved, left(e).subs(t, 0)])
+
+
+@claim("1.two_stage.dimension")
+def fewer_variables_settle_sooner():
+    """A stage of k equal poles has the slowest transient exp(-s) sum s^i/i!, i < k: each variable more adds to it.
+
+    s = lam t. The difference of k + 1 and k variables is exp(-s) s^k/k! > 0; the sum solves
+    (d/ds + 1) f_k = f_{k-1}, f_0 = 0, as a chain of k equal poles does.
+    """
+    s = sp.Symbol("s", positive=True)
+
+    def transient(k: int) -> sp.Expr:
+        return sp.exp(-s) * sum((s**i / sp.factorial(i) for i in range(k)), sp.Integer(0))
+
+    sizes = range(1, 8)
+    printed = [sp.exp(-s) * s**k / sp.factorial(k) for k in sizes] + [transient(k - 1) for k in sizes]
+    derived = [transient(k + 1) - transient(k) for k in sizes]
+    return Equation(printed, derived + [transient(k).diff(s) + transient(k) for k in sizes])
+
+
+@claim("1.9.noise")
+def noises_of_the_measurements():
+    """r_x = r_1 and r_z = r_2: the change of variables leaves the noise of the measurements alone."""
+    printed, derived = [], []
+    r1, r2 = sp.symbols("r_1 r_2", real=True)
+    for s in systems()[:3]:
+        state = sp.Matrix(sp.symbols(f"xi1:{s.n + 1}", real=True))
+        x, z = s.chain(1, s.m) * state, s.chain(2, s.rest) * state
+        printed += [r1, r2]
+        derived += [
+            (s.h(1).T * state)[0] + r1 - (unit_row(s.m) * x)[0],
+            (s.h(2).T * state)[0] + r2 - (unit_row(s.rest) * z)[0],
+        ]
+    return Equation(printed, derived)

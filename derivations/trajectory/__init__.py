@@ -1,7 +1,7 @@
 """Devyatisilny and Shurygin 2018: derivatives of a measured position, conditioning, adaptive filter.
 
 Split along the paper: ``earth`` (basic model notions), ``motion`` (equations 1 to 4), ``scaling`` (equations
-5 and 6), ``table`` (condition numbers), ``algorithm`` (dynamic inversion) and ``experiment``.
+5 and 6), ``table`` (condition numbers), ``algorithm`` (dynamic inversion), ``experiment``, ``gain`` and ``figures``.
 """
 
 from navsym.claims import Paper

@@ -222,3 +222,19 @@ def criterion_units_printed():
 def criterion_units():
     """The terms of J have one unit when weighted by tau^2 and tau^4."""
     return Property(printed=True, derived=commensurate(2, 4))
+
+
+@claim("algorithm.P.not_covariance")
+def matrix_is_not_the_covariance():
+    """Strictly speaking P is no covariance: with a Q of its own choice it differs from that of the errors; n = 1.
+
+    State x' = x without noise, tuned with q > 0: P tends to K R, K the steady gain, while the error, driven by
+    the measurement noise alone, tends to K R/(2 - K): smaller for every 0 < K < 1.
+    """
+    root = sp.Symbol("K", positive=True)  # steady gain, 0 < K < 1
+    matrix = root * R  # P = K R for H = 1
+    error = root * R / (2 - root)  # E e^2 = (1 - K)^2 E e^2 + K^2 R
+    balance = error - (1 - root) ** 2 * error - root**2 * R
+    return Equation(
+        printed=[R * root * (1 - root) / (2 - root), sp.Integer(0)], derived=[matrix - error, balance]
+    )

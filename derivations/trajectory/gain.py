@@ -8,7 +8,7 @@ from fractions import Fraction
 import flint
 
 from derivations.trajectory.experiment import TAU, ball
-from navsym.claims import CERTIFIED, CONFIRMED, OPEN, REFUTED, Finding, Property, claim
+from navsym.claims import CERTIFIED, REFUTED, Finding, Property, claim
 from navsym.methods.trajectory_stability import (
     gain_stability,
     harmonic_lag,
@@ -140,59 +140,3 @@ def yawing_acceleration_error_printed():
 def yawing_acceleration_error():
     """|V| = 100 m/s: lag of the acceleration behind the first harmonic of the yawing, printed gain."""
     return Property(printed="0.06", derived=yawing_lag(3, 2))
-
-
-# -- figures that the paper does not determine --------------------------------------------------------
-
-
-def not_determined(found: str, why: str) -> Finding:
-    """A sampled or missing value: it neither confirms nor refutes."""
-    return Finding(
-        found, "rerun of the experiment", CONFIRMED, scope="one run of the paper, not published", evidence=why
-    )
-
-
-@claim("experiment.sigma_v.straight.100", expect=OPEN)
-def straight_speed_error():
-    """|V| = 100 m/s, straight course: 0.019 m/s; the printed gain alone passes 0.0164 m/s of noise."""
-    why = "one run of unknown noise; a sample figure scatters by about 10 % around 0.0164"
-    return Property(printed="0.019", derived=not_determined(str(stationary_deviation(2, 4).value), why))
-
-
-@claim("experiment.sigma_a.straight.100", expect=OPEN)
-def straight_acceleration_error():
-    """|V| = 100 m/s, straight course: 0.003 m/s^2; the printed gain alone passes 0.0006 m/s^2 of noise."""
-    why = "how much of the transients after the tuning and after the jump of the heading counts is not said"
-    return Property(printed="0.003", derived=not_determined(str(stationary_deviation(3, 4).value), why))
-
-
-def open_figure(number: str, printed: str, title: str):
-    """A figure for |V| = 2 or 300 m/s: the tuned gain of that run is not printed."""
-
-    def derive() -> Property:
-        return Property(
-            printed=printed, derived=not_determined("gain not printed", "the gain of this run is missing")
-        )
-
-    derive.__doc__ = title
-    return claim(number, expect=OPEN, title=title)(derive)
-
-
-SPEED_FIGURES = tuple(
-    open_figure(
-        f"experiment.sigma_v.{part}.{speed}", printed, f"|V| = {speed} m/s, {part} course: {printed} m/s"
-    )
-    for speed, part, printed in (
-        (2, "straight", "0.06"),
-        (2, "yaw", "0.07"),
-        (300, "straight", "0.08"),
-        (300, "yaw", "0.09"),
-    )
-)
-
-
-@claim("experiment.figures", expect=OPEN)
-def figures_look_alike():
-    """The curves for 2 and 300 m/s look like those of figures 1 to 4."""
-    why = "the curves are not published as numbers; tuning, first values and noise are not given"
-    return Property(printed=True, derived=not_determined("figures not given as numbers", why))
