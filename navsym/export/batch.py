@@ -16,8 +16,9 @@ from navsym.export.python import vectors_json
 from navsym.export.vectors import Vector
 
 BLOCK = 512
-LIBRARY = frozenset({"sin", "cos", "exp", "log", "pow", "expm1", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh",
-                     "sinc", "x_minus_sin"})  # fmt: skip
+LIBRARY = frozenset(
+    "sin cos exp log pow expm1 asin acos atan atan2 sinh cosh tanh sinc x_minus_sin".split()
+)
 
 HEAD = """/* {license} */
 /* Many points at once. Inputs and results are rows of n numbers; all rows lie one behind the other. */
@@ -236,17 +237,20 @@ def in_arrays(text: str, arrays: dict[str, str]) -> str:
 def pointwise(function: ExportedFunction) -> str:
     """A loop around the plain function, for regimes."""
     real = function.arithmetic.name
-    start = source(function, "").index(f"navsym_status {function.name}(")
-    plain = source(function, "")[start:].replace(f"navsym_status {function.name}(", f"static int {function.name}_at(", 1)
+    head = f"navsym_status {function.name}("
+    text = source(function, "")
+    plain = text[text.index(head) :].replace(head, f"static int {function.name}_at(", 1)
     n = len(function.inputs)
     words = [f"&x[{a.first}]" if a.size else f"x[{a.first}]" for a in function.called_with]
     at = 0
     for output in function.outputs:
         words.append(f"&r[{at}]")
         at += output.size
-    lines = [plain, *signature(function), f"    {real} x[{n}], r[{function.size}];", "    long k;", "    int j, status;"]
+    lines = [plain, *signature(function), f"    {real} x[{n}], r[{function.size}];"]
+    lines += ["    long k;", "    int j, status;"]
     lines += ["    for (k = 0; k < n; k++) {", f"        for (j = 0; j < {n}; j++) {{ x[j] = in[(j * n) + k]; }}"]
-    lines += [f"        status = {function.name}_at({', '.join(words)});", "        if (status != 0) { return status; }"]
+    lines += [f"        status = {function.name}_at({', '.join(words)});"]
+    lines += ["        if (status != 0) { return status; }"]
     lines += [f"        for (j = 0; j < {function.size}; j++) {{ out[(j * n) + k] = r[j]; }}", "    }"]
     return "\n".join([*lines, "    return NAVSYM_OK;", "}", ""])
 

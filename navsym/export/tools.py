@@ -37,13 +37,15 @@ class Said:
     """What a tool said.
 
     status : "passed", "failed" or "not executed"
-    counts : rule or file -> number
+    counts : rule -> findings, or function -> bytes
+    files  : file -> findings
     """
 
     tool: str
     status: str
     why: str
     counts: Mapping[str, int] = field(default_factory=dict)
+    files: Mapping[str, int] = field(default_factory=dict)
 
 
 def misra(folder: Path) -> Said:
@@ -59,11 +61,12 @@ def misra(folder: Path) -> Said:
     status, text = run([*command, *sources], folder)
     if status != 0:
         return Said("cppcheck", "not executed", f"cppcheck ended with status {status}: {text[:160]}")
-    found = Counter(match.group(1) for line in text.splitlines() if (match := MISRA_LINE.match(line)))
+    matches = [match for line in text.splitlines() if (match := MISRA_LINE.match(line))]
+    found, files = Counter(m.group(1) for m in matches), Counter(m.group(2) for m in matches)
     beyond = sorted(set(found) - set(DEVIATIONS))
     other = [line for line in text.splitlines() if line.strip() and not MISRA_LINE.match(line)]
     why = f"rules broken: {', '.join(beyond)}" if beyond else "; ".join(other[:3])
-    return Said("cppcheck", "failed" if beyond or other else "passed", why, dict(sorted(found.items())))
+    return Said("cppcheck", "failed" if beyond or other else "passed", why, dict(sorted(found.items())), files)
 
 
 def ctest(folder: Path) -> Said:

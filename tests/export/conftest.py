@@ -22,6 +22,11 @@ def load(name: str) -> ModuleType:
 
 
 @pytest.fixture(scope="session")
+def corruption() -> ModuleType:
+    return load("corruption")
+
+
+@pytest.fixture(scope="session")
 def programs() -> ModuleType:
     return load("programs")
 

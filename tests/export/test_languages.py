@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 import os
-import re
 import shutil
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 from navsym.export.package import Order, files_of
+from navsym.export.ready import READY
 from navsym.export.roundtrip import run_target
 from navsym.export.targets import TARGETS, answering
 
 HERE = [name for name, target in TARGETS.items() if target.executable() is not None]
 QUICK = [name for name in HERE if name in ("c", "python", "javascript")]
-SLOW = [name for name in HERE if name not in QUICK and name != "casadi"]
+SLOW = [name for name in HERE if name not in (*QUICK, "casadi", "wasm", "html")]
 
 
 def exported(functions, language: str, folder: Path, count: int = 16) -> Path:
@@ -62,60 +61,32 @@ def test_a_language_without_its_tool_is_not_called_verified(samples, tmp_path: P
 
 # -- corruption ---------------------------------------
 
-OTHER = {"+": "-", "-": "+", "*": "/", "/": "*"}
-SWAPS = {"sin(": "cos(", "cos(": "sin("}
-ASSIGNMENT = re.compile(r"^\s+(?:(?:const|let)\s+(?:double\s+|auto\s+)?)?[\w.\[\]: ]+ = .*|^\s{12,}.*,$")
-
-
-def corrupted(text: str, start: int) -> Iterator[tuple[str, str]]:
-    """(what, text with one operator or function changed) for every one after a place."""
-    place = start
-    for line in text[start:].splitlines(keepends=True):
-        if ASSIGNMENT.match(line) and "status" not in line and "Formula" not in line:
-            for found in re.finditer(r" ([-+*/]) |(?<![\w_])(?:sin|cos)\(", line):
-                old = found.group(0)
-                new = SWAPS.get(old) or f" {OTHER[found.group(1)]} "
-                at = place + found.start()
-                yield f"{line.strip()} : {old} -> {new}", text[:at] + new + text[at + len(old) :]
-        place += len(line)
-
-
-SOURCE_OF = {
-    "c": "{name}.c", "cpp": "navsym_functions.hpp", "python": "navsym_functions.py",
-    "javascript": "navsym_functions.mjs", "rust": "navsym_functions.rs", "fortran": "navsym_functions.f90",
-    "julia": "NavsymFunctions.jl", "octave": "{name}.m",
-}  # fmt: skip
-
-
-def survivors(function, language: str, tmp_path: Path) -> tuple[int, list[str]]:
-    """Number of corruptions of one function's source, and those that its vectors did not notice."""
-    folder = exported([function], language, tmp_path)
-    path = folder / SOURCE_OF[language].format(name=function.name)
-    original = path.read_text()
-    start = original.rindex(f"{function.name}(")
-    tried, left = 0, []
-    for what, text in corrupted(original, start):
-        path.write_text(text)
-        tried += 1
-        if run_target(folder, TARGETS[language]).status == "verified":
-            left.append(what)
-    path.write_text(original)
-    return tried, left
-
 
 @pytest.mark.parametrize("language", QUICK)
-def test_every_corrupted_operator_is_caught(samples, language: str, tmp_path: Path) -> None:
+def test_every_corrupted_operator_is_caught(samples, corruption, language: str, tmp_path: Path) -> None:
     for name in ("Phi33",) if language == "python" else ("Phi33", "versine"):
-        tried, left = survivors(samples.by_name(name), language, tmp_path / name)
+        tried, left = corruption.survivors(samples.by_name(name), language, tmp_path / name)
         assert tried >= 3 and not left, left
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("language", QUICK + SLOW)
-def test_every_corrupted_operator_of_every_sample_is_caught(samples, language: str, tmp_path: Path) -> None:
+def test_every_corrupted_operator_of_every_sample_is_caught(samples, corruption, language: str, tmp_path: Path) -> None:
     for function in samples.functions():
-        _, left = survivors(function, language, tmp_path / function.name)
+        _, left = corruption.survivors(function, language, tmp_path / function.name)
         assert not left, left
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("language", QUICK + SLOW)
+def test_a_corrupted_operator_of_every_ready_made_function_is_caught(corruption, language: str, tmp_path: Path) -> None:
+    assert not corruption.campaign(list(READY), [language], 1, tmp_path)["left"]
+
+
+@pytest.mark.parametrize("name", ["trajectory", "earth"])
+def test_a_corrupted_operator_of_ready_made_code_is_caught(corruption, name: str, tmp_path: Path) -> None:
+    found = corruption.campaign([name], [n for n in QUICK if n != "c"], 1, tmp_path)
+    assert found["tried"] and not found["left"]
 
 
 @pytest.mark.slow

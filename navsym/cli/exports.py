@@ -1,0 +1,63 @@
+"""The ready-made exports in every language: vectors, worst error, bound, MISRA findings, size."""
+
+from __future__ import annotations
+
+import shlex
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from navsym.cli.output import emit, table
+from navsym.errors import DomainError
+
+EVERY = "c,cpp,python,batch,javascript,rust,fortran,casadi,wasm,julia,octave"
+
+
+def command(
+    names: Annotated[list[str] | None, typer.Argument(help="ready-made names; all when none is given")] = None,
+    to: Annotated[str, typer.Option("--to", help="languages")] = EVERY,
+    real: Annotated[str, typer.Option("--real", help="double or float")] = "double",
+    vectors: Annotated[int, typer.Option("--vectors", min=4, max=200_000, help="vectors for each function")] = 48,
+    write: Annotated[Path | None, typer.Option("--write", help="write the table as a markdown page")] = None,
+    json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
+) -> int:
+    """Compile and run everything that this machine can, and say what it cannot.
+
+    Example: navsym exports --write docs/exports.md
+    """
+    from navsym.cli.export import functions_for
+    from navsym.export.ready import READY
+    from navsym.export.table import as_markdown, closing_table
+    from navsym.export.targets import TARGETS, chosen
+
+    wanted = names or list(READY)
+    unknown = [name for name in wanted if name not in READY]
+    if unknown:
+        raise DomainError(f"expected ready-made names among {', '.join(READY)}; got {unknown[0][:40]!r}; correct it")
+    spoken = [n for n in to.split(",") if real in (TARGETS[n].reals if n in TARGETS else (real,))]
+    targets = chosen(spoken, real)
+    groups = {n: [f for claim in READY[n] for f in functions_for(claim, real, False)] for n in wanted}
+    document = closing_table(groups, targets, vectors)
+    words = ["navsym", "exports", *(names or []), *(["--to", to] if to != EVERY else []),
+             *(["--real", real] if real != "double" else []), "--vectors", str(vectors)]  # fmt: skip
+    if write is not None:
+        write.write_text(as_markdown(document, shlex.join(words)), encoding="utf-8")
+    emit(document, as_json=json_, text=lambda: as_text(document))
+    said = [*document["languages"].values(), *document["tools"].values()]
+    return 1 if any(record["status"] == "failed" for record in said) else 0
+
+
+def as_text(document: dict[str, Any]) -> str:
+    """One line for each function, one for each language and tool."""
+    from navsym.export.table import cell
+
+    names = [n for n, record in document["languages"].items() if record["status"] != "not executed"]
+    rows = [
+        (f["name"], *(cell(f["languages"][n]) for n in names), f["misra"] if f["misra"] is not None else "-",
+         f["cortex_m4_bytes"] or "-")
+        for f in document["functions"]
+    ]  # fmt: skip
+    said = [(name, r["status"], r["why"]) for name, r in (*document["languages"].items(), *document["tools"].items())]
+    head = ("function", *names, "MISRA", "M4 bytes")
+    return "\n".join([table(head, rows), table(("what", "status", "remark"), said)])

@@ -1,0 +1,118 @@
+"""The closing table: functions by languages, with vectors, worst error, bound, findings and size."""
+
+from __future__ import annotations
+
+import platform
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from navsym.export.folder import write_folder
+from navsym.export.package import Order, files_of
+from navsym.export.parts import ExportedFunction
+from navsym.export.printing import bound_text
+from navsym.export.roundtrip import Outcome, run_target
+from navsym.export.targets import Target
+from navsym.export.tools import Said, cortex_m4_sizes, ctest, misra
+
+Record = dict[str, Any]
+
+
+def closing_table(groups: dict[str, Sequence[ExportedFunction]], targets: Sequence[Target], count: int) -> Record:
+    """Export every group, run every language, ask every tool; the document of ``navsym exports``.
+
+    Keys: ``functions`` (name, group, status, claims, bound, languages, misra, cortex_m4_bytes), ``languages`` and
+    ``tools`` (status, why), ``vectors``, ``machine``.
+    """
+    records: list[Record] = []
+    languages: dict[str, Record] = {}
+    tools: dict[str, Record] = {}
+    for group, functions in groups.items():
+        with tempfile.TemporaryDirectory(prefix="navsym-table-") as folder:
+            write_folder(Path(folder), files_of(functions, Order(tuple(targets), count=count)), force=True)
+            outcomes = [run_target(Path(folder) / target.name, target) for target in targets]
+            said = tools_on(Path(folder) / "c")
+        for outcome in outcomes:
+            worse(languages, outcome.language, outcome.status, outcome.why)
+        for name, what in said.items():
+            worse(tools, name, what.status, what.why)
+        records += [function_row(group, f, outcomes, said) for f in functions]
+    return {"functions": records, "languages": languages, "tools": tools, "vectors": count,
+            "machine": f"{platform.machine()} {platform.system()}, Python {platform.python_version()}"}  # fmt: skip
+
+
+def tools_on(folder: Path) -> dict[str, Said]:
+    """MISRA, ctest and size, where C was exported."""
+    if not folder.is_dir():
+        return {}
+    return {"misra": misra(folder), "ctest": ctest(folder), "cortex_m4": cortex_m4_sizes(folder)}
+
+
+def worse(table: dict[str, Record], name: str, status: str, why: str) -> None:
+    """Keep the worst that was said about a language or a tool over all groups."""
+    order = ("verified", "passed", "not executed", "failed")
+    if name not in table or order.index(status) > order.index(table[name]["status"]):
+        table[name] = {"status": status, "why": why}
+
+
+def function_row(
+    group: str, function: ExportedFunction, outcomes: Sequence[Outcome], said: dict[str, Said]
+) -> Record:
+    """One function: what every language measured, and what the tools found in its C."""
+    measured = {}
+    for outcome in outcomes:
+        vectors, wrong, worst = outcome.functions.get(function.name, (0, 0, None))
+        status = outcome.status if vectors or outcome.status != "verified" else "left out"
+        measured[outcome.language] = {"status": status, "vectors": vectors, "wrong": wrong, "worst": worst}
+    found, size = said.get("misra"), said.get("cortex_m4")
+    return {
+        "name": function.name,
+        "group": group,
+        "status": sorted({source.status for source in function.sources}),
+        "claims": [source.claim for source in function.sources],
+        "bound": "; ".join(dict.fromkeys(bound_text(function, piece) for piece in function.pieces)),
+        "languages": measured,
+        "misra": found.files.get(f"{function.name}.c", 0) if found and found.status != "not executed" else None,
+        "cortex_m4_bytes": size.counts.get(function.name) if size else None,
+    }
+
+
+# -- markdown ---------------------------------------
+
+INTRODUCTION = """Every function was compiled and run on about {} vectors in its domain, and on those that must be
+refused; every result lay inside the ball enclosure of its formula, widened by the derived rounding bound. A language's
+column is the worst error in ulp of the nearest number, where the bound is below a thousand ulp; `-` is left out or not
+executed. All C and C++ is compiled with `-Wall -Wextra -Wconversion -Wdouble-promotion -pedantic -Werror`: no warning
+is left."""
+CLOSING = """MISRA counts findings of cppcheck's add-on, all of them in the list of deviations that goes with the code
+(`MISRA_DEVIATIONS.md`). M4 bytes are code and constants at `-Os` for a Cortex-M4, without the C library."""
+SHORT = {"javascript": "js", "fortran": "f90"}
+
+
+def as_markdown(document: Record, command: str) -> str:
+    """The page that is committed; produced, never edited."""
+    names = [n for n, record in document["languages"].items() if record["status"] != "not executed"]
+    lines = ["---", "orphan: true", "---", "", "# Ready-made exports", ""]
+    lines += [f"Produced by `{command}`; do not edit. {document['machine']}.", ""]
+    lines += [INTRODUCTION.format(document["vectors"]), ""]
+    head = ["function", *(SHORT.get(n, n) for n in names), "vectors", "MISRA", "M4 bytes"]
+    lines += [f"| {' | '.join(head)} |", f"| --- |{' ---: |' * (len(head) - 1)}"]
+    for record in document["functions"]:
+        cells = [cell(record["languages"][n]) for n in names]
+        vectors = max(found["vectors"] for found in record["languages"].values())
+        tail = ["-" if record[key] is None else str(record[key]) for key in ("misra", "cortex_m4_bytes")]
+        lines.append(f"| {' | '.join([record['name'], *cells, str(vectors), *tail])} |")
+    lines += ["", "## Verdicts and bounds", "", "| function | verdict | bound |", "| --- | --- | --- |"]
+    for record in document["functions"]:
+        lines.append(f"| {record['name']} | {', '.join(record['status'])} | {record['bound'].replace('|', '/')} |")
+    lines += ["", "## Languages and tools", "", "| what | status | remark |", "| --- | --- | --- |"]
+    for name, record in (*document["languages"].items(), *document["tools"].items()):
+        lines.append(f"| {name} | {record['status']} | {record['why'].replace('|', '/')} |")
+    return "\n".join([*lines, "", CLOSING, ""])
+
+
+def cell(found: Record) -> str:
+    if found["status"] == "verified":
+        return f"{found['worst']:.3g}"
+    return {"left out": "-", "not executed": "-"}.get(found["status"], found["status"])
