@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import ast
+import json
 import re
 import shlex
 import subprocess
@@ -75,3 +77,22 @@ def test_the_glossary_has_three_languages_in_every_line():
         english, russian, ukrainian = (cell.strip() for cell in row.strip("|").split("|"))
         assert english.isascii() and re.search("[а-яё]", russian) and re.search("[а-яієїґ]", ukrainian)
         assert not re.search("[ыэёъ]", ukrainian) and not re.search("[ієїґ]", russian)
+
+
+def test_the_picture_of_the_readme_agrees_with_the_ledger():
+    ledger = json.loads((DOCS.parent / "derivations" / "verdicts.json").read_text(encoding="utf-8"))
+    picture = (DOCS / "pictures" / "verdicts.svg").read_text(encoding="utf-8")
+    assert "docs/pictures/verdicts.svg" in (DOCS.parent / "README.md").read_text(encoding="utf-8")
+    for module in ("guaranteed_velocity", "joint_correction", "multistructure", "terrain_search", "trajectory"):
+        statuses = [record["status"] for record in ledger["claims"] if record["paper"] == module]
+        words = f"{len(statuses)} claims, {statuses.count('REFUTED')} refuted"
+        assert words in picture, f"{module}: run python docs/pictures.py verdicts"
+
+
+def test_every_picture_of_the_site_is_made_by_the_command():
+    tree = ast.parse((DOCS / "pictures.py").read_text(encoding="utf-8"))
+    table = next(n.value for n in tree.body if isinstance(n, ast.AnnAssign) and n.target.id == "PICTURES")
+    made = {key.value for key in table.keys}
+    assert {path.stem for path in (DOCS / "pictures").glob("*.svg")} == made
+    used = set(re.findall(r"pictures/(\w+)\.svg", (DOCS / "pictures.md").read_text(encoding="utf-8")))
+    assert used == made

@@ -154,9 +154,9 @@ def fetch(name: str) -> Path:
     try:
         return Path(pooch.retrieve(data.address, f"sha256:{data.sha256}", target.name, target.parent))
     except (OSError, ValueError) as error:
-        reason = " ".join(str(error).split())[:150] or type(error).__name__
+        reason = "no answer" if isinstance(error, OSError) else "a file with another checksum"
         message = (
-            f"expected {data.path} or a network; got '{reason}'; set NAVSYM_DATA to a folder with this file, "
-            f"or fetch {data.address} yourself"
+            f"expected {data.path} or a network; got {reason} ({type(error).__name__}); set NAVSYM_DATA to a folder "
+            f"that has {data.path}, or fetch {data.address} yourself and put it at {target}"
         )
         raise MissingEngineError(message, where=data.name) from error
