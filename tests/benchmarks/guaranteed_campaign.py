@@ -11,9 +11,14 @@ from __future__ import annotations
 import argparse
 import copy
 import json
+import os
 import random
 import time
 from collections import Counter
+from concurrent.futures import ProcessPoolExecutor
+from contextlib import ExitStack
+from functools import partial
+from pathlib import Path
 
 import numpy as np
 import sympy as sp
@@ -26,6 +31,8 @@ from navsym.methods.guaranteed_compare import panel_numbers
 from navsym.methods.guaranteed_problem import from_regressors
 
 t = sp.Symbol("t", real=True)
+#: Certificates of the first problems are kept for alterations.
+KEPT = 300
 
 
 def some_function(rng):
@@ -135,12 +142,6 @@ def scaled(text, tenths):
     return f"{value.numerator}/{value.denominator}" if len(str(value.denominator)) < 90 else "7"
 
 
-def difference(forged, certificates):
-    """What was changed, for the reader who judges whether it is still true."""
-    near = min(certificates, key=lambda c: sum(c.get(k) != v for k, v in forged.items()))
-    return [(k, near.get(k), v) for k, v in forged.items() if near.get(k) != v]
-
-
 def accepted(item) -> bool:
     try:
         checker.check(checker.load(json.dumps(item)))
@@ -149,80 +150,121 @@ def accepted(item) -> bool:
     return True
 
 
-def main(problems=2000, alterations=5000, seed=1, digits=12, seconds=1e9):
-    rng = random.Random(seed)
-    begun = time.perf_counter()
-    counts, bad, spent = Counter(), [], 0.0
-    certificates = []
-    for k in range(problems):
-        if time.perf_counter() - begun > seconds / 2:
-            break
-        problem = made(rng)
-        start = time.perf_counter()
+def problem_record(seed, k, digits):
+    """Problem k solved, checked and compared with a grid; plain data."""
+    problem = made(random.Random(f"problem {seed} {k}"))
+    record = {"problem": k, "functions": str(problem.stretches[0].rows), "P": str(problem.functional)}
+    record["T"] = str(problem.interval[1])
+    start = time.perf_counter()
+    try:
+        solution = solve(problem, digits)
+    except NavsymError as error:
+        return record | {"refused": error.kind}
+    record |= {"seconds": time.perf_counter() - start, "width": solution.width, "kind": solution.certificate["kind"]}
+    record |= {"unique": solution.unique, "accepted": accepted(solution.certificate)}
+    grid = on_grid(problem) if k % 4 == 0 else None
+    record["grid_below"] = grid is not None and grid < float(solution.lower) * (1 - 1e-5)
+    if k < KEPT:
+        record["certificate"] = dict(solution.certificate)
+    return record
+
+
+def alteration_record(seed, k, certificates):
+    """Alteration k of a kept certificate: whether it was refused."""
+    rng = random.Random(f"alteration {seed} {k}")
+    original = rng.choice(certificates)
+    forged = altered(original, rng)
+    if forged == original:
+        return {"alteration": k, "same": True}
+    record = {"alteration": k, "kind": forged["kind"], "accepted": accepted(forged)}
+    if record["accepted"]:
+        record["changed"] = str([(key, original.get(key), v) for key, v in forged.items() if original.get(key) != v])
+    return record
+
+
+def known(path, name):
+    """Records of one kind that an earlier run has written; a torn last line is left out."""
+    if path is None or not path.exists():
+        return {}
+    found = {}
+    for line in path.read_text().splitlines():
         try:
-            solution = solve(problem, digits)
-        except NavsymError as error:
-            counts[f"refused: {error.kind}"] += 1
+            record = json.loads(line)
+        except ValueError:
             continue
-        spent += time.perf_counter() - start
-        counts["solved"] += 1
-        counts["certified"] += solution.width <= 10.0**-digits
-        counts[solution.certificate["kind"]] += 1
-        if solution.width > 10.0**-digits:
-            bad.append(
-                (
-                    k,
-                    solution.width,
-                    str(problem.stretches[0].rows),
-                    str(problem.functional),
-                    str(problem.interval),
-                )
-            )
-        if not accepted(solution.certificate):
-            counts["CONTRADICTION: checker refuses"] += 1
-            bad.append(
-                (k, "checker", str(problem.stretches[0].rows), str(problem.functional), str(problem.interval))
-            )
-        else:
-            certificates.append(dict(solution.certificate))
-        if k % 4 == 0:
-            grid = on_grid(problem)
-            if grid is not None and grid < float(solution.lower) * (1 - 1e-5):
-                counts["grid below lower bound"] += 1
-                bad.append(
-                    (
-                        k,
-                        grid,
-                        solution.lower,
-                        str(problem.stretches[0].rows),
-                        str(problem.functional),
-                        str(problem.interval),
-                    )
-                )
-    passed = []
-    for k in range(alterations if certificates else 0):
-        if time.perf_counter() - begun > seconds:
-            break
-        forged = altered(rng.choice(certificates), rng)
-        if forged in certificates:
-            continue
-        counts["altered"] += 1
-        if accepted(forged):
-            counts["ALTERED AND ACCEPTED"] += 1
-            passed.append(k)
-            print("accepted:", difference(forged, certificates))
-    print(dict(counts))
-    print(f"{1e3 * spent / max(1, counts['solved']):.1f} ms a problem")
-    for row in bad[:12]:
-        print(row)
-    return counts
+        if name in record:
+            found[record[name]] = record
+    return found
+
+
+def run(name, tasks, function, path, jobs, until):
+    """Records of the tasks that are not known yet, in processes; every one is written at once."""
+    records = known(path, name)
+    missing = [k for k in tasks if k not in records]
+    with ExitStack() as stack:
+        each = map if jobs == 1 else stack.enter_context(ProcessPoolExecutor(jobs)).map
+        file = stack.enter_context((path or Path(os.devnull)).open("a"))
+        for start in range(0, len(missing), 8 * jobs):
+            if time.perf_counter() > until:
+                break
+            for record in each(function, missing[start : start + 8 * jobs]):
+                file.write(json.dumps(record) + "\n")
+                file.flush()
+                records[record[name]] = record
+    return records
+
+
+def table_of(problems, alterations, digits):
+    """The figures of the campaign as rows of text."""
+    solved = [r for r in problems.values() if "width" in r]
+    refused = Counter(r["refused"] for r in problems.values() if "refused" in r)
+    only, several = (sum(r["unique"] is word for r in solved) for word in (True, False))
+    certified = [r for r in solved if r["width"] <= 10.0**-digits]
+    altered_ = [r for r in alterations.values() if not r.get("same")]
+    rows = [
+        ("problems", len(problems)), ("solved", len(solved)),
+        (f"certified at 1e-{digits}", f"{len(certified)} ({100 * len(certified) / max(1, len(solved)):.2f} %)"),
+        *((f"by {kind}", n) for kind, n in sorted(Counter(r["kind"] for r in solved).items())),
+        *((f"refused: {kind}", n) for kind, n in sorted(refused.items())),
+        ("contradictions: checker refuses", sum(not r["accepted"] for r in solved)),
+        ("contradictions: grid below the lower bound", sum(r["grid_below"] for r in solved)),
+        ("proved unique / proved not unique", f"{only} / {several}"),
+        ("median and largest time, ms", "{:.1f} / {:.0f}".format(*times_of(solved))),
+        ("altered certificates", len(altered_)), ("of these accepted", sum(r["accepted"] for r in altered_)),
+    ]  # fmt: skip
+    return "\n".join(f"{name:45} {value}" for name, value in rows)
+
+
+def times_of(solved):
+    seconds = sorted(1e3 * r["seconds"] for r in solved) or [0.0]
+    return seconds[len(seconds) // 2], seconds[-1]
+
+
+def main(problems=2000, alterations=5000, seed=1, digits=12, seconds=1e9, jobs=1, out=None):
+    begun = time.perf_counter()
+    done = run(
+        "problem", range(problems), partial(problem_record, seed, digits=digits), out, jobs, begun + seconds / 2
+    )
+    kept = [done[k]["certificate"] for k in sorted(done) if done[k].get("accepted") and "certificate" in done[k]]
+    tasks = range(alterations if kept else 0)
+    forged = run(
+        "alteration", tasks, partial(alteration_record, seed, certificates=kept), out, jobs, begun + seconds
+    )
+    print(table_of(done, forged, digits))
+    for record in [*done.values(), *forged.values()]:
+        wide = record.get("width", 0.0) > 10.0**-digits
+        if wide or record.get("accepted") is ("alteration" in record) or record.get("grid_below"):
+            print({k: v for k, v in record.items() if k != "certificate"})
+    return done, forged
 
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--problems", type=int, default=2000)
-    parser.add_argument("--alterations", type=int, default=5000)
+    parser.add_argument("--alterations", type=int, default=6000)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--seconds", type=float, default=1e9, help="stop after this time and report what was done")
-    arguments = parser.parse_args()
-    main(arguments.problems, arguments.alterations, arguments.seed, seconds=arguments.seconds)
+    parser.add_argument("--jobs", type=int, default=1)
+    parser.add_argument("--out", type=Path, help="records, a line each; a second run goes on where the first stopped")
+    a = parser.parse_args()
+    main(a.problems, a.alterations, a.seed, seconds=a.seconds, jobs=a.jobs, out=a.out)

@@ -34,10 +34,16 @@ def test_the_benchmark_prints_ratios(capsys):
     assert capsys.readouterr().out.count("cvxpy/this") == 15
 
 
-def test_a_small_campaign_has_no_contradiction(capsys):
-    counts = script("guaranteed_campaign").main(problems=6, alterations=12, seed=5)
-    assert counts["certified"] == counts["solved"] > 0
-    assert not any(key.isupper() or "CONTRADICTION" in key or "below" in key for key in counts)
+def test_a_small_campaign_has_no_contradiction_and_goes_on_where_it_stopped(tmp_path, capsys):
+    out = tmp_path / "records.jsonl"
+    campaign = script("guaranteed_campaign").main
+    campaign(problems=3, alterations=6, seed=5, out=out)
+    first = out.read_text()
+    done, forged = campaign(problems=6, alterations=12, seed=5, out=out)
+    assert out.read_text().startswith(first) and len(done) == 6 and len(forged) == 12
+    assert all(r["width"] <= 1e-12 and r["accepted"] and not r["grid_below"] for r in done.values())
+    assert not any(r.get("accepted") for r in forged.values())
+    assert "certified at 1e-12" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(("state", "lower", "upper"), [(2, 0.05, 2.0), (1, 0.05, 4.1)])
