@@ -41,7 +41,7 @@ def command(
 
     document = read_json(file)
     try:
-        given = read_bank(as_mapping(document))
+        given = read_bank(document)
         estimate = run(given.bank, given.measurements, method, depth=depth, forget=given.forget,
                        missing=missing or given.missing, form=form)
     except NavsymError as error:
@@ -49,16 +49,6 @@ def command(
     for sentence in remarks(estimate):
         remark(sentence)
     emit(as_document(estimate), as_json=json_, text=lambda: as_text(estimate))
-
-
-def as_mapping(document: Any) -> dict[str, Any]:
-    """The top level of the file must be an object."""
-    from navsym.errors import ShapeError
-
-    if not isinstance(document, dict):
-        raise ShapeError("expected an object with models, mode_transition, initial and measurements; got "
-                         f"{type(document).__name__}; see the interfaces")
-    return document
 
 
 def as_document(estimate: Estimate) -> dict[str, Any]:

@@ -93,6 +93,9 @@ class BankFile:
 
 def read_bank(document: Mapping[str, Any]) -> BankFile:
     """Read the keys of a bank file; errors name the key."""
+    if not isinstance(document, Mapping):
+        raise ShapeError("expected an object with models, mode_transition, initial and measurements; got "
+                         f"{type(document).__name__}; see the interfaces")
     for key in ("models", "mode_transition", "initial", "measurements"):
         if key not in document:
             raise ShapeError(f"{key}: expected the keys models, mode_transition, initial and measurements; got "

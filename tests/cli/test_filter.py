@@ -153,6 +153,14 @@ def test_bad_input_is_a_document_with_status_two(tmp_path, capsys, changes, opti
     assert error["where"].startswith(path) and words in error["message"] and "expected" in error["message"]
 
 
+@pytest.mark.parametrize("text", ["9", "[]", '"x"', "null", "true"])
+def test_a_document_that_is_no_object_is_refused(tmp_path, capsys, text):
+    path = tmp_path / "bank.json"
+    path.write_text(text)
+    status, document, _ = answer(capsys, str(path))
+    assert (status, document["error"]["kind"]) == (2, "shape")
+
+
 def test_nan_in_the_file_is_named_with_its_place(tmp_path, capsys):
     path = bank_file(tmp_path)
     with open(path) as file:
