@@ -190,8 +190,8 @@ assert by_name["k-pulsating", 4]["excess"]["mean"] < by_name["pulsating", None][
 assert exact["log_likelihood"]["mean"] >= by_name["pulsating", None]["log_likelihood"]["mean"]
 
 # %% [markdown]
-# Up to step K nothing is lost, and on average over the steps of an interval K = 2 beats K = 1; but not at every step. In
-# the model of the claims below the state keeps or turns its sign and is measured once, so that averages over
+# Up to step K nothing is lost, and on average over the steps of an interval K = 2 beats K = 1; but not at every step.
+# In the model of the claims below the state keeps or turns its sign and is measured once, so that averages over
 # all measurements are certified integrals over one number. And K = 3 can miss what K = 2 finds, because it folds where
 # the modes have just parted.
 
@@ -222,7 +222,7 @@ figure
 stays = (0.5, 0.8, 0.95, 0.99)
 study_of_stays = study.switching_study(stays, runs=150, steps=60)
 figure, axes = plt.subplots(1, 2, figsize=(11, 3.6))
-for place, (axis, name) in enumerate(zip(axes, ("log_loss", "nees"), strict=True)):
+for axis, name in zip(axes, ("log_loss", "nees"), strict=True):
     for number, label in enumerate(("pulsating", "K = 2", "K = 3", "K = 4", "gpb2", "imm")):
         scores = [getattr(study_of_stays[stay][number], name) for stay in stays]
         axis.errorbar(
@@ -296,8 +296,9 @@ if folder.is_dir():
     judged = road.judge(run_of_nagoya, "imm")
     figure, axis = plt.subplots(figsize=(10, 2.6))
     seconds = 0.2 * np.arange(len(run_of_nagoya.flag))
-    axis.plot(seconds, np.where(run_of_nagoya.flag < 0, np.nan, run_of_nagoya.flag), color="0.6", label="receiver's flag")
-    axis.plot(seconds, judged.estimate.probabilities.argmax(axis=1) + 0.08, color=RED, lw=0.8, label="most probable mode")
+    flag, guess = run_of_nagoya.flag, judged.estimate.probabilities.argmax(axis=1)
+    axis.plot(seconds, np.where(flag < 0, np.nan, flag), color="0.6", label="receiver's flag")
+    axis.plot(seconds, guess + 0.08, color=RED, lw=0.8, label="most probable mode")
     axis.set(yticks=(0, 1, 2), yticklabels=road.QUALITY, xlabel="s")
     axis.legend(fontsize=7)
     plt.show()
