@@ -63,6 +63,65 @@ SLIVER = {
     "to": "1.1", "panels": [{"measurement": 0, "from": "0", "to": "p", "sigma": "1", "H": ["1 - t/p"]}],
     "dual": ["0.999"], "support": [[0, "0"]], "lower": "0.998", "upper": "1.11",
 }  # fmt: skip
+# The line 1 + t - p t seen for p in [1, 1.02] with a noise bound that depends on p, on [0, p]: all of it at t = 0.
+MOVING = {
+    "kind": "range", "variable": "t", "functional": ["p**2"], "bits": 90, "cells": 20,
+    "panels": [{"measurement": 0, "from": "0", "to": "p", "sigma": "1 + p/10", "H": ["p + 1 - t*p"]}],
+    "parameter": "p", "from": "1", "to": "1.02",
+    "pieces": [{
+        "from": "1", "to": "1.02", "basis": [["1"]],
+        "dual": [["0.547761194029850", "-0.00222766763198", "0.000011082923542"]],
+        "contacts": [{
+            "panel": 0, "at": [], "end": "from", "sign": 1,
+            "weight": ["0.558771194029850", "0.008792332368010", "0.000021082923542"],
+        }],
+        "radius": ["0.000001"] * 2,
+    }],
+}  # fmt: skip
+# The slope for every T in [1, 1.02] in two pieces, seen as (1, 1 + t).
+SLOPES = {
+    "kind": "range", "variable": "t", "functional": ["0", "1"], "bits": 90, "cells": 20,
+    "panels": [{"measurement": 0, "from": "0", "to": "T", "sigma": "1", "H": ["1", "t"]}],
+    "parameter": "T", "from": "1", "to": "51/50",
+    "pieces": [{
+        "from": ends[0], "to": ends[1], "basis": [["1", "0"], ["1", "1"]],
+        "dual": [["-2.98019801980198", rise, "-0.00019411802958"], ["1.98019801980198", fall, "0.000194118029585"]],
+        "contacts": [
+            {"panel": 0, "at": [], "end": "from", "sign": -1, "weight": ["-0.99009900990099"]},
+            {"panel": 0, "at": [], "end": "to", "sign": 1, "weight": ["0.99009900990099"]},
+        ],
+        "radius": ["0.05"] * 4,
+    } for ends, rise, fall in (
+        (("1", "1.01"), "0.01", "-0.01"), (("1.01", "51/50"), "0.01", "-0.01"),
+    )],
+}  # fmt: skip
+# One number whose regressor is largest at an end of [0, 1], where its slope is nearly zero.
+FLAT = {
+    "kind": "touch", "variable": "t", "functional": ["1"], "bits": 400, "cells": 0,
+    "panels": [{"measurement": 0, "from": "0", "to": "1", "sigma": "1", "H": ["1 + (t - 1)/10**45 - (t - 1)**2/2"]}],
+    "dual": [["1"]], "contacts": [{"panel": 0, "at": [], "end": "to", "sign": 1, "weight": ["1"]}],
+    "radius": ["0.000001"] * 2, "lower": "0.99999", "upper": "1.00001",
+}  # fmt: skip
+# The same at the other end, of the other sign, beside a second panel that is not needed.
+FLAT_LEFT = FLAT | {
+    "panels": [
+        {"measurement": 1, "from": "0", "to": "1", "sigma": "1", "H": ["t/2 - 1/4"]},
+        {"measurement": 0, "from": "0", "to": "1", "sigma": "1", "H": ["t/10**45 + t**2/2 - 1"]},
+    ],
+    "contacts": [{"panel": 1, "at": [], "end": "from", "sign": -1, "weight": ["-1"]}],
+}  # fmt: skip
+# Bounds that are met exactly: the optimum 2 from below, the cost 2 from above.
+EXACT = {
+    "kind": "gap", "variable": "t", "functional": ["1"], "bits": 53, "cells": 100000, "dual": ["0.5"], "support": [[0, "1"]],
+    "panels": [{"measurement": 0, "from": "0", "to": "1", "sigma": "1", "H": ["t"]}], "lower": "0.5", "upper": "1",
+}  # fmt: skip
+# Positive on this box and no larger one.
+EDGE = {
+    "kind": "positivity", "expression": "x*(1 - x)*(y + 2)*(3 - y)", "bits": 30, "cells": 50000,
+    "box": {"x": ["0.001", "0.999"], "y": ["-1.999", "2.999"]},
+}  # fmt: skip
+# As many cells as 14 announced ones allow: 255.
+CELLS = {"kind": "positivity", "expression": "x - x + 1/65", "bits": 64, "cells": 14, "box": {"x": ["0", "1"]}}
 IDENTITY = {"kind": "identity", "left": "sin(2*a)", "right": "2*sin(a)*cos(a)", "symbols": ["a"]}
 EXPONENTIAL = {
     "kind": "exponential", "matrix": [["0", "1"], ["-w**2", "0"]], "variable": "t", "symbols": ["w"],
@@ -77,4 +136,7 @@ POSITIVITY = {
     "bits": 64, "cells": 60,
 }  # fmt: skip
 ALL = {"kind": "all", "of": [IDENTITY, RANK]}
-GOOD = [GAP, TOUCH, PARABOLA, RANGE, CONSTANT, SLIVER, IDENTITY, EXPONENTIAL, RANK, POSITIVITY, ALL]
+GOOD = [
+    IDENTITY, EXPONENTIAL, RANK, POSITIVITY, EDGE, CELLS, ALL, GAP, EXACT, SLIVER, TOUCH, PARABOLA, CONSTANT, FLAT,
+    FLAT_LEFT, RANGE, MOVING, SLOPES,
+]  # fmt: skip

@@ -12,18 +12,27 @@ import re
 from collections.abc import Iterator
 from typing import Any
 
+from flint import arb, arb_series, ctx
+
 from tests.checker.examples import (
     ALL,
+    CELLS,
     CONSTANT,
+    EDGE,
+    EXACT,
     EXPONENTIAL,
+    FLAT,
+    FLAT_LEFT,
     GAP,
     GOOD,
     IDENTITY,
+    MOVING,
     PARABOLA,
     POSITIVITY,
     RANGE,
     RANK,
     SLIVER,
+    SLOPES,
     TOUCH,
 )
 
@@ -145,7 +154,45 @@ FORGERIES = [
     (RANGE, ["pieces", 0, "note"], "1", "expected exactly the keys"),
     (RANGE, ["panels", 0, "to"], "1.01", "Krawczyk"),
     (RANGE, ["pieces", 0, "dual", 1, 1], "0.5", "Krawczyk"),
-    (RANGE, ["cells"], 0, ""),
+    (MOVING, ["panels", 0, "sigma"], "1 + p/9", "Krawczyk"),
+    (MOVING, ["panels", 0, "from"], "p/100", "Krawczyk"),
+    (MOVING, ["panels", 0, "H"], ["p + 1 + t*(p - 1)"], "is not shown"),
+    (MOVING, ["functional"], ["p"], "Krawczyk"),
+    (MOVING, ["parameter"], "r", "unknown name p"),
+    (MOVING, ["panels", 0, "to"], "p - 1", "positive"),
+    (SLOPES, ["pieces", 0, "to"], "1.005", "leave a hole"),
+    (SLOPES, ["pieces", 1, "from"], "1.005", "leave a hole"),
+    (SLOPES, ["to"], "1.01", "do not reach the end"),
+    (SLOPES, ["pieces", 1, "radius"], ["0.0001"] * 4, "Krawczyk"),
+    (FLAT, ["panels", 0, "H"], ["1 - (t - 1)/10 - (t - 1)**2/2"], "is not shown"),
+    (FLAT, ["panels", 0, "H"], ["1 + (t - 1)/10 - 8*(t - 1)**2"], "is not shown"),
+    (FLAT, ["contacts", 0, "end"], "from", "Krawczyk"),
+    (FLAT_LEFT, ["panels", 1, "H"], ["t**2/2 - 1 - t/10"], "is not shown"),
+    (FLAT_LEFT, ["panels", 0, "H"], ["2*t - 1/4"], "is not shown"),
+    (FLAT_LEFT, ["panels", 0, "H"], ["-2*t + 1/4"], "is not shown"),
+    (EXACT, ["lower"], "0.5000000000000001", "lower bound is above"),
+    (EXACT, ["upper"], "0.9999999999999999", "cost more"),
+    (EXACT, ["bits"], 52, "integer from"),
+    (EXACT, ["bits"], 20001, "integer from"),
+    (EXACT, ["cells"], 100001, "integer from"),
+    (EXACT, ["cells"], -1, "integer from"),
+    (EXACT | {"cells": 5}, ["dual"], ["2"], "is not shown"),
+    (EXACT | {"cells": 5}, ["dual"], ["-2"], "is not shown"),
+    (EXACT, ["support"], [[0, "1", "1"]], "too many values"),
+    (EXACT, ["support"], [[-1, "1"]], "integer from"),
+    (EDGE | {"cells": 400}, ["box", "x"], ["-0.001", "0.999"], "not shown"),
+    (EDGE | {"cells": 400}, ["box", "x"], ["0.001", "1.001"], "not shown"),
+    (EDGE | {"cells": 400}, ["box", "y"], ["-2.001", "2.999"], "not shown"),
+    (EDGE | {"cells": 400}, ["box", "y"], ["-1.999", "3.001"], "not shown"),
+    (EDGE, ["bits"], 20001, "integer from"),
+    (EDGE, ["cells"], 50001, "integer from"),
+    (CELLS, ["cells"], 13, "not shown"),
+    (CELLS, ["box"], {}, "unknown name x"),
+    (CELLS, ["expression"], "x - x", "not shown"),
+    (CELLS, ["expression"], "1 + 2**1000", "a large exponent"),
+    (IDENTITY, ["right"], "sin(2*a) + 0*a**500000", "too large a power"),
+    (IDENTITY, ["right"], "sin(2*a) + 0*(a - a)**0", "division by zero"),
+    (IDENTITY, ["right"], f"sin(2*a) + 0*sqrt({2**100})", "root of a large number"),
 ]  # fmt: skip
 
 
@@ -213,6 +260,7 @@ EQUAL = [
     ("+x - -x", "2*x"),
     ("x**0", "1"),
     ("1/(1/x + 1/y)", "x*y/(x + y)"),
+    ("0*x**499999 + 0*sqrt(%d)" % (2**100 - 1), "0"),
     ("1/(1 + 1/(1 + 1/x))", "(x + 1)/(2*x + 1)"),
     ("cos(x/5040)**2", "1 - sin(x/5040)**2"),
 ]  # fmt: skip
@@ -234,6 +282,26 @@ UNEQUAL = [
     ("x", "y"),
     ("1/x", "x"),
     ("0", "1"),
+]
+# Functions of a parameter p = 3/2 - 5 s + 7 s**2, and the series that they are.
+FUNCTIONS: list[tuple[str, Any]] = [
+    ("p", lambda p: p),
+    ("2 - p*p + pi", lambda p: 2 - p * p + arb.pi()),
+    ("exp(p)", lambda p: p.exp()),
+    ("sin(p)", lambda p: p.sin()),
+    ("cos(p)", lambda p: p.cos()),
+    ("log(p)", lambda p: p.log()),
+    ("atan(p)", lambda p: p.atan()),
+    ("1/p", lambda p: 1 / p),
+    ("p**3 + p**0", lambda p: p * p * p + 1),
+    ("p**(-2)", lambda p: 1 / (p * p)),
+    ("p**(1/2)", lambda p: (p.log() / 2).exp()),
+    ("p**(-3/2)", lambda p: (p.log() * arb(-1.5)).exp()),
+    ("sinh(p) + cosh(p)*tanh(p)", lambda p: p.exp() - 1 / p.exp()),
+    ("sin_2(p/2)", lambda p: ((p / 2).sin() - p / 2) / (p * p / 4)),
+    ("cos_1(p/2)", lambda p: ((p / 2).cos() - 1) / (p / 2)),
+    ("exp_3(p/2)", lambda p: ((p / 2).exp() - 1 - p / 2 - p * p / 8) / (p * p * p / 8)),
+    ("exp_0(p/2)*sin_0(p/2)*cos_0(p/2)", lambda p: (p / 2).exp() * p.sin() / 2),
 ]
 OUTSIDE = [
     "1e5", "0x10", "1_0", "__import__", "_x", "x.y", "x[0]", "lambda: 1",
@@ -261,6 +329,19 @@ def discrepancies(module: Any) -> Iterator[str]:
     yield from (f"accepted: {pair}" for pair in UNEQUAL if verdict(identity(*pair), module) != "the sides differ")
     yield from (f"accepted: {text}" for text in OUTSIDE if verdict(identity(text, text), module) == "")
     yield from (f"read: {text[:30]}" for text in BROKEN if readable(text, module))
+    yield from (f"enclosed: {text}" for text, series in FUNCTIONS if not enclosed(text, series, module))
+
+
+def enclosed(text: str, series: Any, module: Any) -> bool:
+    """The jet of a function of the parameter overlaps its series, and is as narrow as that."""
+    before, ctx.cap = ctx.cap, 3
+    parts = arb(1.5), arb(-5), arb(7)
+    try:
+        jet = module.value(module.parse(text), {"p": module.Jet(*parts)}, module.Balls).parts
+        exact = series(arb_series(list(parts)))
+        return all(part.overlaps(exact[k]) and part.rad() < 1e-9 for k, part in enumerate(map(arb, jet)))
+    finally:
+        ctx.cap = before
 
 
 def readable(text: str, module: Any) -> bool:

@@ -14,10 +14,12 @@ from tests.checker.forgeries import (
     BROKEN,
     EQUAL,
     FORGERIES,
+    FUNCTIONS,
     OUTSIDE,
     STATIONARY,
     UNEQUAL,
     changed,
+    enclosed,
     identity,
     readable,
     verdict,
@@ -57,6 +59,11 @@ def test_anything_outside_the_language_is_refused(text):
 @pytest.mark.parametrize("text", BROKEN, ids=lambda text: text[:20])
 def test_floats_duplicates_and_broken_json_are_refused(text):
     assert not readable(text, checker)
+
+
+@pytest.mark.parametrize(("text", "series"), FUNCTIONS, ids=lambda x: x if isinstance(x, str) else "")
+def test_a_function_of_the_parameter_has_its_two_derivatives(text, series):
+    assert enclosed(text, series, checker)
 
 
 def test_an_answer_leaves_the_precision_of_the_caller_alone():

@@ -1,0 +1,170 @@
+"""Mutants of the checker: each change of one token has to be noticed by a certificate, or be explained.
+
+``navsym campaign checker-mutants`` runs this file by pytest, one case for each mutant; run by itself it prints
+the raw score, that is the share of all mutants that :func:`discrepancies` notices, and the survivors. A mutant that
+runs out of its time or memory is noticed. ``survivors.txt`` explains the ones that live on, line by line.
+"""
+
+from __future__ import annotations
+
+import ast
+import copy
+import os
+import resource
+import signal
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+SOURCE = ROOT / "navsym" / "checker.py"
+EXPLAINED = Path(__file__).with_name("survivors.txt")
+SECONDS, MEMORY = 20, 3 * 2**30
+COMPARISONS: dict[type[ast.cmpop], type[ast.cmpop]] = {
+    ast.Lt: ast.LtE, ast.LtE: ast.Lt, ast.Gt: ast.GtE, ast.GtE: ast.Gt, ast.Eq: ast.NotEq, ast.NotEq: ast.Eq,
+    ast.In: ast.NotIn, ast.NotIn: ast.In, ast.Is: ast.IsNot, ast.IsNot: ast.Is,
+}  # fmt: skip
+REVERSED = {ast.Lt: ast.Gt, ast.LtE: ast.GtE, ast.Gt: ast.Lt, ast.GtE: ast.LtE}
+OPERATORS: dict[type[ast.operator], type[ast.operator]] = {
+    ast.Add: ast.Sub, ast.Sub: ast.Add, ast.Mult: ast.Add, ast.Div: ast.Mult, ast.FloorDiv: ast.Mult,
+    ast.Mod: ast.Add, ast.Pow: ast.Mult, ast.BitOr: ast.BitAnd,
+}  # fmt: skip
+
+
+def mutants(source: str) -> Iterator[tuple[str, int, int]]:
+    """Name (change and line, numbered when there are several alike), place of the node, number of the change."""
+    seen: dict[str, int] = {}
+    tree = ast.parse(source)
+    silent = set(map(id, silent_nodes(tree)))
+    for place, node in enumerate(ast.walk(tree)):
+        for number, what in enumerate(() if id(node) in silent else changes(node)):
+            line = source.splitlines()[node.lineno - 1].strip()
+            key = f"{what} | {line}"
+            seen[key] = seen.get(key, 0) + 1
+            yield f"{key} | {seen[key]}", place, number
+
+
+def silent_nodes(tree: ast.Module) -> Iterator[ast.AST]:
+    """What no answer depends on: annotations, ``strict=`` and the words of reasons."""
+    for node in ast.walk(tree):
+        parts = [getattr(node, name, None) for name in ("annotation", "returns")]
+        if isinstance(node, ast.JoinedStr) or (isinstance(node, ast.keyword) and node.arg == "strict"):
+            parts.append(node)
+        for part in parts:
+            if isinstance(part, ast.AST):
+                yield from ast.walk(part)
+
+
+def mutated(source: str, place: int, number: int) -> ast.Module:
+    tree = ast.parse(source)
+    apply(tree, list(ast.walk(tree))[place], number)
+    return ast.fix_missing_locations(tree)
+
+
+def changes(node: ast.AST) -> list[str]:
+    """Names of the mutants of one node, in the order of :func:`apply`."""
+    if isinstance(node, ast.Compare):
+        names = [f"{type(op).__name__} to {COMPARISONS[type(op)].__name__}" for op in node.ops]
+        return names + [f"{type(op).__name__} turned round" for op in node.ops if type(op) in REVERSED]
+    if isinstance(node, ast.BinOp):
+        return [f"{type(node.op).__name__} to {OPERATORS[type(node.op)].__name__}"]
+    if isinstance(node, ast.BoolOp):
+        return ["and to or" if isinstance(node.op, ast.And) else "or to and"]
+    if isinstance(node, ast.UnaryOp):
+        return [f"{type(node.op).__name__} dropped"]
+    if isinstance(node, ast.IfExp):
+        return ["branches exchanged"]
+    if isinstance(node, ast.Constant) and type(node.value) in (int, bool):
+        return [f"{node.value} changed"]
+    if isinstance(node, ast.Expr) and not isinstance(node.value, ast.Constant):
+        return ["need dropped" if "need(" in ast.unparse(node)[:5] else "statement dropped"]
+    return ["statement dropped"] if isinstance(node, ast.AugAssign) else []
+
+
+def apply(tree: ast.Module, node: ast.AST, number: int) -> None:
+    """Make the mutant of this number at this node of the tree."""
+    if isinstance(node, ast.Compare):
+        round_about = [k for k, op in enumerate(node.ops) if type(op) in REVERSED]
+        k = number if number < len(node.ops) else round_about[number - len(node.ops)]
+        table = COMPARISONS if number < len(node.ops) else REVERSED
+        node.ops[k] = table[type(node.ops[k])]()
+    elif isinstance(node, ast.BinOp):
+        node.op = OPERATORS[type(node.op)]()
+    elif isinstance(node, ast.BoolOp):
+        node.op = ast.Or() if isinstance(node.op, ast.And) else ast.And()
+    elif isinstance(node, ast.IfExp):
+        node.body, node.orelse = node.orelse, node.body
+    elif isinstance(node, ast.Constant):
+        node.value = (not node.value) if isinstance(node.value, bool) else node.value + 1
+    else:
+        replace(tree, node, node.operand if isinstance(node, ast.UnaryOp) else ast.Pass())
+
+
+def replace(tree: ast.Module, old: ast.AST, new: ast.AST) -> None:
+    for parent in ast.walk(tree):
+        for field, value in ast.iter_fields(parent):
+            if value is old:
+                setattr(parent, field, new)
+            elif isinstance(value, list) and any(item is old for item in value):
+                value[[item is old for item in value].index(True)] = new
+
+
+def noticed(source: str, place: int, number: int) -> bool:
+    """True when the mutant answers one certificate otherwise; judged in a process of its own."""
+    child = os.fork()
+    if child == 0:
+        signal.alarm(SECONDS)
+        resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
+        os._exit(judged(mutated(source, place, number)))
+    return os.waitpid(child, 0)[1] != 0
+
+
+def judged(tree: ast.Module) -> int:
+    from tests.checker.forgeries import discrepancies
+
+    module = ModuleType("mutant")
+    try:
+        exec(compile(tree, "mutant", "exec"), module.__dict__)
+        return int(next(discrepancies(module), None) is not None)
+    except BaseException:
+        return 1
+
+
+def explained() -> set[str]:
+    """Names of the mutants that survive, each with its reason in the line below it."""
+    lines = EXPLAINED.read_text(encoding="utf-8").splitlines()
+    return {line for line in lines if line and not line.startswith(("#", "    "))}
+
+
+@pytest.mark.parametrize(("name", "place", "number"), [
+    pytest.param(*mutant, id=mutant[0]) for mutant in mutants(SOURCE.read_text(encoding="utf-8"))
+])  # fmt: skip
+def test_a_mutant_is_noticed_or_explained(name, place, number):
+    if noticed(SOURCE.read_text(encoding="utf-8"), place, number):
+        return
+    assert name in explained()
+    pytest.skip("survives, see survivors.txt")
+
+
+def main() -> None:
+    """``python tests/checker/mutants.py [PART OF]``: the score of all mutants, or of every OF-th from PART."""
+    sys.path.insert(0, str(ROOT))
+    import tests.checker.forgeries  # noqa: F401  once, before the children
+
+    source = SOURCE.read_text(encoding="utf-8")
+    every = list(mutants(source))
+    chosen = every[int(sys.argv[1]) :: int(sys.argv[2])] if len(sys.argv) > 2 else every
+    alive = []
+    for name, place, number in chosen:
+        if not noticed(source, place, number):
+            alive.append(name)
+            print(name, flush=True)
+    print(f"{len(chosen) - len(alive)} of {len(chosen)} noticed: {100 * (1 - len(alive) / len(chosen)):.1f} %")
+
+
+if __name__ == "__main__":
+    main()
