@@ -19,6 +19,8 @@ from navsym.claims import CERTIFIED, OPEN, PROVED, Equation, Status
 from navsym.claims.display import card, shortened, table, verdict_words
 from navsym.errors import NavsymError, NotEstimableError
 from navsym.methods.guaranteed_problem import GuaranteedProblem
+from navsym.methods.guaranteed_unique import several_optimal
+from navsym.numeric.exchange import find_contacts
 from navsym.proof.balls import precision
 from navsym.proof.decimals import decimal
 from navsym.proof.enclosure import Problem, rational
@@ -46,7 +48,7 @@ class GuaranteedSolution:
     support      : instants and weights
     dual         : x, decimal strings; ``x . H_j(t)`` is the dual polynomial
     lower, upper : decimal strings that enclose the guaranteed standard deviation
-    unique       : True only when the estimator is proved to be the only optimal one, else None
+    unique       : True or False only when the estimator is proved to be, or not to be, the only optimal one
     certificate  : plain data for ``navsym check``
     status       : CERTIFIED when the enclosure is as narrow as was asked for, else OPEN
     """
@@ -99,13 +101,16 @@ def solve(problem: GuaranteedProblem, digits: int = 30) -> GuaranteedSolution:
         raise NavsymError(message, kind="domain")
     exact, kept, basis = independent(problem)
     found = certify(exact, digits, basis)
+    unique = found.unique
+    if unique is None and several_optimal(exact, find_contacts(basis.panels), found.dual):
+        unique = False
     status = CERTIFIED if found.width <= 10.0 ** -min(digits, 300) else OPEN
     dual = ["0"] * len(problem.functional)
     for k, x in zip(kept, found.dual, strict=True):
         dual[k] = decimal(x, digits)
     return GuaranteedSolution(
         problem, support_rows(problem, exact, found, digits), tuple(dual), found.certificate["lower"],
-        found.certificate["upper"], found.unique, found.certificate, status, found.width,
+        found.certificate["upper"], unique, found.certificate, status, found.width,
     )  # fmt: skip
 
 
