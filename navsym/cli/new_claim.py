@@ -19,6 +19,7 @@ def command(
     title: Annotated[str, typer.Option(help="what the equation says, one sentence")] = "",
     corrects: Annotated[str, typer.Option(help="number of the refuted claim that this one replaces")] = "",
     reason: Annotated[str, typer.Option(help="for a refuted claim: what is wrong")] = "",
+    slip: Annotated[str, typer.Option(help="for a refuted claim: who slipped, paper or scan")] = "paper",
     folder: Annotated[Path | None, typer.Option(help="where; default: the folder of derivations")] = None,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> None:
@@ -37,7 +38,10 @@ def command(
     sentence = title or f"Equation ({number.rstrip('*')}) as it stands in the paper."
     why = reason or ("say here what is wrong" if verdict.status == "REFUTED" else "")
     source = path.read_text(encoding="utf-8")
-    text = with_claim(source, number, sentence, printed, derived, str(verdict.status), corrects, why)
+    if slip not in ("paper", "scan"):
+        raise DomainError(f"expected paper or scan; got {slip[:40]}; name one", where="--slip")
+    who = slip if verdict.status == "REFUTED" else ""
+    text = with_claim(source, number, sentence, printed, derived, str(verdict.status), corrects, why, who)
     write_text(path, text)
     document = {
         "path": str(path), "id": f"{module}:{number}", "status": str(verdict.status), "evidence": verdict.evidence,
@@ -57,5 +61,7 @@ def decided(printed: str, derived: str) -> Any:
 def as_text(document: dict[str, Any]) -> str:
     lines = [f"{document['id']}  {document['status']}  {document['evidence']}", document["path"]]
     if document["status"] == "REFUTED":
-        lines.append(f"next: the correction, navsym new-claim … '{document['id'].partition(':')[2]}*' --corrects …")
+        module, _, number = document["id"].partition(":")
+        command = f"navsym new-claim {module} '{number}*' --corrects {number} --printed … --derived …"
+        lines.append(f"next: its correction, {command}")
     return "\n".join(lines)

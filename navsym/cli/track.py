@@ -28,7 +28,7 @@ def command(
         typer.Option("--method", help="differences, window, filter, smoother (default) or guaranteed"),
     ] = None,
     sigma: Annotated[
-        float | None, typer.Option("--sigma", help="standard deviation of the positions, metres; default: that of the file")
+        float | None, typer.Option("--sigma", help="standard deviation of positions, metres; default: the file's")
     ] = None,
     gate: Annotated[
         float, typer.Option("--gate", help="innovations beyond so many standard deviations are believed less; 0: off")

@@ -30,13 +30,13 @@ import sympy as sp
 from navsym.claims import Equation, Paper, Status, claim
 
 PAPER = Paper(
-    module={name!r},
-    title={title!r},
-    authors={authors!r},
-    year={year!r},
-    source={source!r},
-    language={language!r},
-    equations={equations!r},
+    module={name},
+    title={title},
+    authors={authors},
+    year={year},
+    source={source},
+    language={language},
+    equations={equations},
     definitions={{
 {definitions}    }},
 )
@@ -83,12 +83,22 @@ def module_source(
     """A derivation module that passes the generic tests: every equation is listed, one example is proved."""
     for number in equations:
         check_number(number)
-    lines = "".join(f"        {number!r}: {'not looked at yet'!r},\n" for number in equations)
+    lines = "".join(f'        "{number}": "not looked at yet",\n' for number in equations)
     return MODULE.format(
-        name=check_module_name(name), heading=plain(title) or name, title=title or name,
-        authors=tuple(authors), year=year, source=source, language=language,
-        equations=tuple(equations), definitions=lines,
+        name=quoted(check_module_name(name)), heading=plain(title) or name, title=quoted(title or name),
+        authors=several(authors), year=year, source=quoted(source), language=quoted(language),
+        equations=several(equations), definitions=lines,
     )  # fmt: skip
+
+
+def quoted(text: str) -> str:
+    """A string as Python source, in double quotes where that needs no escaping."""
+    return repr(text) if set(text) & set("\"'\\") or not text.isprintable() else f'"{text}"'
+
+
+def several(texts: Sequence[str]) -> str:
+    """A tuple of strings as Python source."""
+    return "(" + ", ".join(quoted(text) for text in texts) + ("," if len(texts) == 1 else "") + ")"
 
 
 def equation_numbers(text: str) -> tuple[str, ...]:
@@ -124,8 +134,9 @@ def plain(text: str) -> str:
 
 
 def with_claim(
-    source: str, number: str, title: str, printed: str, derived: str, expect: str, corrects: str, reason: str
-) -> str:
+    source: str, number: str, title: str, printed: str, derived: str, expect: str, corrects: str, reason: str,
+    slip: str = "",
+) -> str:  # fmt: skip
     """The source of a module with one more claim at its end.
 
     Raises DuplicateError when the number is claimed already, DomainError when the file is not a
@@ -141,6 +152,7 @@ def with_claim(
     symbols = "".join(f'{name} = sp.Symbol("{name}", real=True)\n' for name in names)
     arguments = [f'"{number}"', f"expect=Status.{expect}"]
     arguments += [f'corrects="{check_number(corrects)}"'] if corrects else []
+    arguments += [f'slip="{slip}"'] if slip else []
     arguments += [f'reason="{plain(reason)}"'] if reason else []
     block = CLAIM.format(
         arguments=", ".join(arguments), function=function_name(number, known), title=plain(title),
