@@ -77,9 +77,31 @@ def quarter_period_to_the_minute():
 
 @claim("1.4")
 def measured_component():
-    """The measurement picks the first state: z - w = y1 (y4 in the other channel)."""
+    """The measurement of the first channel picks its first state: z1 - w1 = y1."""
     y1, y2, y3 = sp.symbols("y1 y2 y3", real=True)
     return Equation(printed=y1, derived=(sp.Matrix(CHANNEL.H) * sp.Matrix([y1, y2, y3]))[0])
+
+
+def second_measurement():
+    """z2 - w2 by (1.7): H(tau)* q_II at tau = T, where q_II holds the states of the second channel."""
+    return (H().subs(tau, T).T * sp.Matrix(sp.symbols("y4 y5 y6", real=True)))[0]
+
+
+@claim(
+    "1.4.z2",
+    expect=REFUTED,
+    slip="paper",
+    reason="y2 is the tilt of the other channel: z2 measures y4 = pi_2, as (1.7) and (4.16), y4 = z2(T), have it",
+)
+def second_measured_component():
+    """The measurement of the second channel, z2 - w2 = y2, as printed."""
+    return Equation(printed=sp.Symbol("y2", real=True), derived=second_measurement())
+
+
+@claim("1.4.z2*", corrects="1.4.z2")
+def second_measured_component_corrected():
+    """The measurement of the second channel picks its first state: z2 - w2 = y4."""
+    return Equation(printed=sp.Symbol("y4", real=True), derived=second_measurement())
 
 
 @claim("1.7")
