@@ -112,7 +112,8 @@ FLAT_LEFT = FLAT | {
 }  # fmt: skip
 # Bounds that are met exactly: the optimum 2 from below, the cost 2 from above.
 EXACT = {
-    "kind": "gap", "variable": "t", "functional": ["1"], "bits": 53, "cells": 100000, "dual": ["0.5"], "support": [[0, "1"]],
+    "kind": "gap", "variable": "t", "functional": ["1"], "bits": 53, "cells": 100000, "dual": ["0.5"],
+    "support": [[0, "1"]],
     "panels": [{"measurement": 0, "from": "0", "to": "1", "sigma": "1", "H": ["t"]}], "lower": "0.5", "upper": "1",
 }  # fmt: skip
 # Positive on this box and no larger one.
@@ -135,8 +136,16 @@ POSITIVITY = {
     "kind": "positivity", "expression": "2 - sin(x)*cos(y) - y/10", "box": {"x": ["0", "pi"], "y": ["-1", "1"]},
     "bits": 64, "cells": 60,
 }  # fmt: skip
+# One row; and a dual that is a little off inside its box, as the bounds are not.
+ROW = RANK | {"matrix": [["a", "b"]]}
+OFFSET = CONSTANT | {
+    "dual": [["1.0000003"]], "contacts": [CONSTANT["contacts"][0] | {"weight": ["1.0000002"]}],
+    "lower": "0.99999999", "upper": "1.00000001",
+}  # fmt: skip
+DIGITS = CELLS | {"bits": 20000, "cells": 50000}
 ALL = {"kind": "all", "of": [IDENTITY, RANK]}
 GOOD = [
-    IDENTITY, EXPONENTIAL, RANK, POSITIVITY, EDGE, CELLS, ALL, GAP, EXACT, SLIVER, TOUCH, PARABOLA, CONSTANT, FLAT,
+    IDENTITY, ROW, OFFSET, DIGITS, EXPONENTIAL, RANK, POSITIVITY, EDGE, CELLS, ALL,
+    GAP, EXACT, SLIVER, TOUCH, PARABOLA, CONSTANT, FLAT,
     FLAT_LEFT, RANGE, MOVING, SLOPES,
 ]  # fmt: skip

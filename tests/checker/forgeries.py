@@ -59,8 +59,32 @@ def verdict(item, module) -> str:
     return ""
 
 
+# The value at zero, seen as 2 t - t**2 on [0, 1/2]: its stationary point 1 is the place 2 of the panel.
+STATIONARY = {
+    "kind": "touch", "variable": "t", "functional": ["1"], "bits": 80, "cells": 40,
+    "panels": [{"measurement": 0, "from": "0", "to": "1/2", "sigma": "1", "H": ["2*t - t**2"]}],
+    "dual": [["1"]], "contacts": [{"panel": 0, "at": ["2"], "end": "no", "sign": 1, "weight": ["1"]}],
+    "radius": ["0.0001"] * 3, "lower": "0.999", "upper": "1.001",
+}  # fmt: skip
+# The same to the left of its panel [3/2, 2].
+LEFT = changed(changed(STATIONARY, ["panels", 0, "from"], "3/2"), ["panels", 0, "to"], "2")
+# One number seen twice: the weights 2 and -1 satisfy the system of the optimum, and cost more than 1.
+TWICE = {
+    "kind": "touch", "variable": "t", "functional": ["0", "1"], "bits": 80, "cells": 40,
+    "panels": [{"measurement": 0, "from": "0", "to": "1", "sigma": "1", "H": ["1 - 2*t", "1"]},
+               {"measurement": 1, "from": "0", "to": "1", "sigma": "1", "H": ["1/2 - t/4", "1"]}],
+    "dual": [["0"], ["1"]],
+    "contacts": [
+        {"panel": 0, "at": [], "end": "from", "sign": 1, "weight": ["-1"]},
+        {"panel": 1, "at": [], "end": "from", "sign": 1, "weight": ["2"]},
+    ],
+    "radius": ["0.0001"] * 4, "lower": "0.999", "upper": "1.001",
+}  # fmt: skip
 LINE = ["contacts", 0]
 FORGERIES = [
+    (STATIONARY, ["kind"], "touch", "outside its panel"),
+    (LEFT, ["contacts", 0, "at"], ["-1"], "outside its panel"),
+    (TWICE, ["kind"], "touch", "wrong sign"),
     (IDENTITY, ["right"], "2*sin(a)*cos(a)*1.0000001", "the sides differ"),
     (IDENTITY, ["right"], "2*sin(a)*cos(b)", "unknown name b"),
     (IDENTITY, ["right"], "sin(2*a) + 0/(a - a)", "division by zero"),
@@ -166,6 +190,14 @@ FORGERIES = [
     (SLOPES, ["pieces", 1, "radius"], ["0.0001"] * 4, "Krawczyk"),
     (FLAT, ["panels", 0, "H"], ["1 - (t - 1)/10 - (t - 1)**2/2"], "is not shown"),
     (FLAT, ["panels", 0, "H"], ["1 + (t - 1)/10 - 8*(t - 1)**2"], "is not shown"),
+    (STATIONARY, ["panels", 0], {
+        "measurement": 0, "from": "-3/2", "to": "1/4", "sigma": "1", "H": ["1 + (t - 2)**2/16"],
+    }, "outside its panel"),
+    (changed(STATIONARY, ["contacts", 0, "at"], ["0.5"]), ["panels", 0], {
+        "measurement": 0, "from": "0", "to": "4", "sigma": "1", "H": ["1 + (t - 2)**2/16"],
+    }, "is not shown"),
+    (IDENTITY, ["right"], "sin(2*a) + 0/(1/a + 1/(a + 1) - (2*a + 1)/(a*(a + 1)))", "division by zero"),
+    (IDENTITY, ["right"], "sin(2*a) + 0*sqrt(1/a + 1/(a + 1) - (2*a + 1)/(a*(a + 1)))", "root of zero"),
     (FLAT, ["contacts", 0, "end"], "from", "Krawczyk"),
     (FLAT_LEFT, ["panels", 1, "H"], ["t**2/2 - 1 - t/10"], "is not shown"),
     (FLAT_LEFT, ["panels", 0, "H"], ["2*t - 1/4"], "is not shown"),
@@ -195,33 +227,6 @@ FORGERIES = [
     (IDENTITY, ["right"], f"sin(2*a) + 0*sqrt({2**100})", "root of a large number"),
 ]  # fmt: skip
 
-
-# The value at zero, seen as 2 t - t**2 on [0, 1/2]: its stationary point 1 is the place 2 of the panel.
-STATIONARY = {
-    "kind": "touch", "variable": "t", "functional": ["1"], "bits": 80, "cells": 40,
-    "panels": [{"measurement": 0, "from": "0", "to": "1/2", "sigma": "1", "H": ["2*t - t**2"]}],
-    "dual": [["1"]], "contacts": [{"panel": 0, "at": ["2"], "end": "no", "sign": 1, "weight": ["1"]}],
-    "radius": ["0.0001"] * 3, "lower": "0.999", "upper": "1.001",
-}  # fmt: skip
-# The same to the left of its panel [3/2, 2].
-LEFT = changed(changed(STATIONARY, ["panels", 0, "from"], "3/2"), ["panels", 0, "to"], "2")
-# One number seen twice: the weights 2 and -1 satisfy the system of the optimum, and cost more than 1.
-TWICE = {
-    "kind": "touch", "variable": "t", "functional": ["0", "1"], "bits": 80, "cells": 40,
-    "panels": [{"measurement": 0, "from": "0", "to": "1", "sigma": "1", "H": ["1 - 2*t", "1"]},
-               {"measurement": 1, "from": "0", "to": "1", "sigma": "1", "H": ["1/2 - t/4", "1"]}],
-    "dual": [["0"], ["1"]],
-    "contacts": [
-        {"panel": 0, "at": [], "end": "from", "sign": 1, "weight": ["-1"]},
-        {"panel": 1, "at": [], "end": "from", "sign": 1, "weight": ["2"]},
-    ],
-    "radius": ["0.0001"] * 4, "lower": "0.999", "upper": "1.001",
-}  # fmt: skip
-FORGERIES += [
-    (STATIONARY, ["kind"], "touch", "outside its panel"),
-    (LEFT, ["contacts", 0, "at"], ["-1"], "outside its panel"),
-    (TWICE, ["kind"], "touch", "wrong sign"),
-]
 
 SYMBOLS = ["T", "x", "y", "lambda", "a_1"]
 EQUAL = [
@@ -260,7 +265,7 @@ EQUAL = [
     ("+x - -x", "2*x"),
     ("x**0", "1"),
     ("1/(1/x + 1/y)", "x*y/(x + y)"),
-    ("0*x**499999 + 0*sqrt(%d)" % (2**100 - 1), "0"),
+    (f"0*x**499999 + 0*sqrt({2**100 - 1})", "0"),
     ("1/(1 + 1/(1 + 1/x))", "(x + 1)/(2*x + 1)"),
     ("cos(x/5040)**2", "1 - sin(x/5040)**2"),
 ]  # fmt: skip

@@ -8,7 +8,6 @@ runs out of its time or memory is noticed. ``survivors.txt`` explains the ones t
 from __future__ import annotations
 
 import ast
-import copy
 import os
 import resource
 import signal
