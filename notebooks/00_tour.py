@@ -37,7 +37,7 @@ from navsym.report.notebook import explore, require, show
 # Velocity error, tilt and drift of one channel, in Schuler units; the velocity is measured.
 
 # %%
-model.CHANNEL.F
+model.CHANNEL
 
 # %% [markdown]
 # The measurement at time τ, referred to the state at the end T, derived from the model:

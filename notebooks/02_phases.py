@@ -58,6 +58,7 @@ for state, answer in ANSWER.items():
         print(f"{state}  {regime.lower} < T < {regime.upper}:  {regime.closed.value}  {regime.status}")
 assert all(r.status == "PROVED" for a in ANSWER.values() for r in a.regimes)
 assert all(not a.uncovered for a in ANSWER.values())
+ANSWER["y3"]
 
 # %% [markdown]
 # ## The phase diagram

@@ -23,7 +23,6 @@ import tempfile
 import tomllib
 from pathlib import Path
 
-import ipywidgets
 import matplotlib.pyplot as plt
 import numpy as np
 import sympy as sp
@@ -35,6 +34,7 @@ from navsym.methods.guaranteed_problem import from_file
 from navsym.methods.observability import observe
 from navsym.models.derivation import linear_model
 from navsym.proof.ladder import decide
+from navsym.report.notebook import explore
 from navsym.testing import ClaimFailedError, assert_claim
 from navsym.text.modelfile import model_from
 
@@ -65,7 +65,7 @@ frequency = ["0", "1", "0"]
 """
 document = tomllib.loads(CLOCK)
 clock = model_from(document)
-clock.F
+linear_model(clock)
 
 # %% [markdown]
 # ## 2. Can it be observed at all?
@@ -73,17 +73,17 @@ clock.F
 # %%
 observability = observe(linear_model(clock))
 assert observability.observable
-observability.observable
+observability
 
 # %% [markdown]
 # ## 3. The answer for one interval
 # The value is enclosed by a lower and an upper bound that meet; the certificate can be replayed elsewhere.
 
 # %%
-found = solve(from_file(model_from(document, values={"T": "2"}))).document()
-assert found["status"] in ("PROVED", "CERTIFIED")
-assert found["value"]["lower"].startswith("3.99999") or found["value"]["lower"].startswith("4")
-found["value"], [(row["at"][:8], row["weight"][:8]) for row in found["support"]]
+found = solve(from_file(model_from(document, values={"T": "2"})))
+assert found.status in ("PROVED", "CERTIFIED")
+assert found.lower.startswith("3.99999") or found.lower.startswith("4")
+found
 
 # %% [markdown]
 # ## 4. Change a parameter
@@ -91,17 +91,12 @@ found["value"], [(row["at"][:8], row["weight"][:8]) for row in found["support"]]
 
 
 # %%
-def guaranteed_deviation(T: str) -> float:
-    return float(solve(from_file(model_from(document, values={"T": T})), digits=8).document()["value"]["upper"])
+def estimator(T: float):
+    return solve(from_file(model_from(document, values={"T": f"{T:.2f}"})), digits=8)
 
 
-def answer(T: float) -> str:
-    return f"T = {T}: {guaranteed_deviation(str(T)):.6f}"
-
-
-slider = ipywidgets.FloatSlider(value=2.0, min=0.5, max=8.0, step=0.5, description="T")
-assert [round(guaranteed_deviation(T), 6) for T in ("1", "2", "4")] == [8, 4, 2]
-ipywidgets.interactive(answer, T=slider)
+assert [round(float(estimator(T).upper), 6) for T in (1, 2, 4)] == [8, 4, 2]
+explore(estimator, T=(0.5, 8.0, 2.0))
 
 # %% [markdown]
 # It looks like $8\sigma/T$. What looks so for three values is not yet a formula.
