@@ -102,7 +102,7 @@ def solve(problem: GuaranteedProblem, digits: int = 30) -> GuaranteedSolution:
     exact, kept, basis = independent(problem)
     found = certify(exact, digits, basis)
     unique = found.unique
-    if unique is None and several_optimal(exact, find_contacts(basis.panels), found.dual):
+    if unique is None and not problem.error and several_optimal(exact, find_contacts(basis.panels), found.dual):
         unique = False
     status = CERTIFIED if found.width <= 10.0 ** -min(digits, 300) else OPEN
     dual = ["0"] * len(problem.functional)

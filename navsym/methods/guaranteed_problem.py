@@ -7,8 +7,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import sympy as sp
+from flint import arb, fmpq
 
 from navsym.errors import DomainError, EmptyError, NotFiniteError, ShapeError
+from navsym.methods.guaranteed_varying import ERROR, error_bound, regressors_of, steps_of, varying
 from navsym.models.linear import LinearModel, exact_entry
 from navsym.models.transition import regressors, transition_matrix
 from navsym.proof.balls import enclose
@@ -37,6 +39,7 @@ class GuaranteedProblem:
     variable     : t
     measurements : names
     target       : name of the functional
+    error        : bound of the error of regressors that contain ERROR; zero when they are exact
 
     Raises ShapeError, EmptyError, NotFiniteError and DomainError (no length, sigma <= 0, P = 0, free symbols).
     """
@@ -47,6 +50,7 @@ class GuaranteedProblem:
     variable: sp.Symbol
     measurements: tuple[str, ...] = ()
     target: str = "target"
+    error: sp.Rational = sp.S.Zero
 
     def __post_init__(self) -> None:
         put = object.__setattr__
@@ -65,10 +69,15 @@ class GuaranteedProblem:
     def interval(self) -> tuple[sp.Expr, sp.Expr]:
         return self.stretches[0].start, self.stretches[-1].end
 
+    @property
+    def unknown(self) -> dict[sp.Symbol, arb]:
+        """A ball for the error of the regressors."""
+        return {ERROR: arb(0, arb(fmpq(int(self.error.p), int(self.error.q))).upper())} if self.error else {}
+
     def exact(self) -> Problem:
         """The same for the proofs: one panel per stretch and measurement, empty rows left out."""
         panels = [
-            Panel(j, row, self.variable, stretch.start, stretch.end, self.sigma[j])
+            Panel(j, row, self.variable, stretch.start, stretch.end, self.sigma[j], self.unknown)
             for stretch in self.stretches
             for j, row in enumerate(stretch.rows)
         ]
@@ -100,7 +109,7 @@ def need_numbers(problem: GuaranteedProblem) -> None:
         *(h for s in problem.stretches for row in s.rows for h in row),
     ]
     parts += [e for s in problem.stretches for e in (s.start, s.end)]
-    free = sorted({x.name for part in parts for x in part.free_symbols - {problem.variable}})
+    free = sorted({x.name for part in parts for x in part.free_symbols - {problem.variable, *problem.unknown}})
     if free:
         raise DomainError(
             f"expected a value for every parameter; got none for {', '.join(free)}; give --set {free[0]}=…"
@@ -144,10 +153,22 @@ def from_file(found: ModelFile | BasisFile, target: str | None = None) -> Guaran
         return GuaranteedProblem((stretch,), functional, found.sigma, found.variable, target=name)
     if found.T is None:
         raise EmptyError("expected the length of the interval; got no [interval]; add T", where="interval.T")
+    stretches, error = varying_stretches(found) if varying(found) else (stretches_of(found), sp.S.Zero)
     return GuaranteedProblem(
-        stretches_of(found), functional, tuple(m.sigma for m in found.measurements), found.time,
-        tuple(m.name for m in found.measurements), name,
+        stretches, functional, tuple(m.sigma for m in found.measurements), found.time,
+        tuple(m.name for m in found.measurements), name, error,
     )  # fmt: skip
+
+
+def varying_stretches(found: ModelFile) -> tuple[tuple[Stretch, ...], sp.Rational]:
+    """Polynomial regressors where F depends on the time, and the bound of their error."""
+    if not found.measurements:
+        raise EmptyError("expected a measurement; got none; add a [[measurement]]", where="measurement")
+    made = [(step, *regressors_of(found, step)) for step in steps_of(found)]
+    stretches = tuple(
+        Stretch(sp.Rational(str(step.start)), sp.Rational(str(step.end)), rows) for step, rows, _ in made
+    )
+    return stretches, sp.Rational(str(error_bound([bound for _, _, bound in made])))
 
 
 def chosen_target(found: ModelFile | BasisFile, target: str | None) -> tuple[str, tuple[sp.Expr, ...]]:

@@ -9,7 +9,9 @@ whole space gives
   (joint_correction:1.14);
 * any rows L_z that complete L_x: the general variant of the Remark (joint_correction:1.13).
 
-Everything is exact for symbolic systems; C_1, C_2, C_11, C_12, C_22 are free invertible matrices.
+Everything is exact for symbolic systems; C_1, C_2, C_11, C_12, C_22 are free invertible matrices. The splits
+are those of two scalar measurements, for any n and any dimensions m, l of what they observe; the paper defines
+none for more. For more measurements ``Observability.staircase`` gives a basis of chain vectors.
 """
 
 from __future__ import annotations
@@ -132,7 +134,8 @@ def need_two(found: Observability) -> None:
     """Refuse anything but two measurements."""
     if len(found.measurements) != 2:
         raise ShapeError(
-            f"expected two measurements to split by; got {len(found.measurements)}; choose two of them"
+            f"expected two measurements to split by; got {len(found.measurements)}; choose two of them "
+            "(splits are defined for two)"
         )
 
 

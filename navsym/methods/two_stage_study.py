@@ -4,11 +4,31 @@ from __future__ import annotations
 
 from typing import Any
 
-from navsym.methods.two_stage_flight import great_circle
-from navsym.methods.two_stage_ins import Errors, compare
+import numpy as np
+
+from navsym.methods.two_stage_flight import EARTH_RADIUS, SCHULER_RATE, Flight, great_circle
+from navsym.methods.two_stage_ins import (
+    Errors,
+    Situation,
+    compare,
+    kalman_deviations,
+    plan,
+    position_error,
+    standard_deviations,
+    steps_of,
+)
 
 #: Decay rates (lambda_c, lambda_h) of the two stages, in Schuler units.
 DECAYS = ((2.0, 3.0), (2.0, 5.0))
+
+#: What the last paragraph of the paper lists, one after the other: situation and minutes.
+SITUATIONS = (
+    (Situation.VELOCITY, 40.0),
+    (Situation.BOTH, 20.0),
+    (Situation.VELOCITY, 15.0),
+    (Situation.NEITHER, 10.0),
+    (Situation.POSITION, 25.0),
+)
 
 
 def study(seed: int = 1) -> dict[str, Any]:
@@ -22,7 +42,36 @@ def study(seed: int = 1) -> dict[str, Any]:
         found = compare(flight, Errors(), lambda_c=lambda_c, lambda_h=lambda_h)
         for name, errors in found.rows.items():
             rows.append({"lambda_c": lambda_c, "lambda_h": lambda_h, "estimator": name, "position_m": list(errors)})
-    return {"experiment": "joint_correction", "seed": seed, "minutes": list(found.minutes), "rows": rows}
+    return {
+        "experiment": "joint_correction",
+        "seed": seed,
+        "minutes": list(found.minutes),
+        "rows": rows,
+        "situations": situations(flight),
+    }
+
+
+def situations(flight: Flight) -> list[dict[str, Any]]:
+    """Errors at the end of every situation: algorithm and Kalman filter of the full model, exact covariances."""
+    step = float(flight.tau[1] - flight.tau[0]) / SCHULER_RATE
+    chosen = plan(SITUATIONS, step, *DECAYS[0])
+    curves = {
+        "two stages": standard_deviations(steps_of(flight, chosen, Errors()), Errors()),
+        "Kalman filter, full model": kalman_deviations(flight, chosen, Errors()),
+    }
+    ends = np.cumsum([round(minutes * 60.0 / step) for _, minutes in SITUATIONS])
+    speed = EARTH_RADIUS * SCHULER_RATE
+    return [
+        {
+            "situation": str(situation),
+            "minutes": minutes,
+            "estimator": name,
+            "position_m": float(position_error(curve)[end]),
+            "velocity_error_mps": float(np.hypot(curve[end, 1], curve[end, 4]) * speed),
+        }
+        for (situation, minutes), end in zip(SITUATIONS, ends, strict=True)
+        for name, curve in curves.items()
+    ]
 
 
 def as_table(document: dict[str, Any]) -> tuple[list[str], list[list[str]]]:
