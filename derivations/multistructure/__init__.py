@@ -8,7 +8,8 @@ are sums, for any number of modes by induction (:mod:`derivations.multistructure
 families. Words are decided by counting, by one exact example, or by an integral in balls.
 
 Slips without a claim of their own, since nothing can be computed from them: the text below (11) says "in the form (1)"
-for the form (11), and "the j-th step" above (12) for the k-th.
+for the form (11), and "the j-th step" above (12) for the k-th, and "P(k+1)" below (18)
+for P(k).
 """
 
 from __future__ import annotations

@@ -165,6 +165,60 @@ def type_corrected():
     )
 
 
+f, df, tilt = sp.symbols("f Deltaf beta", real=True)
+gravity = sp.Symbol("g", positive=True)
+
+
+def inertial_rate():
+    """Rate of the velocity error of one horizontal axis: the reading taken as it is, less what truly accelerates.
+
+    A platform tilted by beta carries an accelerometer that reads f = a cos(beta) + g sin(beta) + df.
+    """
+    true = (f - df - gravity * sp.sin(tilt)) / sp.cos(tilt)
+    return f - true
+
+
+LEVEL = {tilt: (-sp.Rational(3, 2), sp.Rational(3, 2))}
+
+
+@claim("1.inertial")
+def inertial_is_nonlinear():
+    """Below (1): an inertial system obeys an equation of type (1), nonlinear in its tilt and zero without errors."""
+    rate = inertial_rate()
+    at_rest = {tilt: 0, df: 0}
+    curvature = rate.diff(tilt, 2).subs(at_rest).subs({f: 1, gravity: 10})
+    return Property(
+        printed=(0, True),
+        derived=Finding((int(rate.subs(at_rest)), bool(curvature != 0)), "value and second derivative at an exact point",
+                        scope="one horizontal axis, a tilted platform", evidence=f"d2S/dbeta2 = {curvature} at f = 1"),
+    )
+
+
+@claim("3.inertial")
+def inertial_linearised():
+    """(3) for one inertial axis: the velocity error grows with the accelerometer error plus g times the tilt."""
+    rate = inertial_rate()
+    at_rest = {tilt: 0, df: 0}
+    linear = sum(rate.diff(s).subs(at_rest) * s for s in (tilt, df))
+    return Equation(printed=df + gravity * tilt, derived=linear)
+
+
+@claim("2.growth.every")
+def every_sensor_error_grows():
+    """Below (2): with course and log every constant sensor error (speeds, course, height) gives a growing one.
+
+    North-east at unit speed from 45 degrees: each column of S2 is a constant rate that is not zero.
+    """
+    _, S2 = RECKONING.linear_parts()
+    point = {model.latitude: sp.pi / 4, model.heading: sp.pi / 4, model.vy: 1, model.vx: 0, model.height: 0,
+             model.radius: 1}
+    rates = tuple(any(bool(entry.subs(point) != 0) for entry in S2.col(k)) for k in range(S2.cols))
+    return Property(
+        printed=(True,) * 4,
+        derived=Finding(rates, "columns of S2 at an exact point", scope="course and log on a sphere, one motion"),
+    )
+
+
 t, drift = sp.symbols("t epsilon_p", real=True)
 rate = sp.Symbol("Omega", positive=True)
 

@@ -34,6 +34,19 @@ def number_in_an_interval():
     )
 
 
+@claim("17.cost")
+def cost_of_pulsating():
+    """The pulsating filter cuts the cost: I Kalman filters in every step, where the exact one needs I^k at step k."""
+    cases = [(modes, k) for modes in (2, 3, 4) for k in (1, 2, 3, 4)]
+    found = tuple(
+        (filters_at(scheme("pulsating"), modes, 1, k), leaves_by_tree(modes, k, 1)) for modes, k in cases
+    )
+    return Property(
+        printed=tuple((modes, modes**k) for modes, k in cases),
+        derived=Finding(found, "filters scheduled, sequences enumerated", scope="I = 2..4, k = 1..4"),
+    )
+
+
 #: A state that keeps or changes its sign, measured once, at step 1, by a good or a poor sensor.
 TURNING = (examples.scalar(1, 0, 1, 1), examples.scalar(-1, 0, 1, 9))
 #: Variances of the measurement under the two modes.

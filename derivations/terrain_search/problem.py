@@ -44,6 +44,18 @@ def count_of(first, last):
     return last - first + 1
 
 
+@claim("1.height")
+def height_error_of_the_model():
+    """The height error b of (1) moves the fix of (2): beside (n + 1) b^2 it adds 2 b sum d, which hypotheses differ in."""
+    b = sp.Symbol("deltaH", real=True)
+    printed, derived = [], []
+    for size in (1, 2, 3):
+        d = sp.symbols(f"d0:{size + 1}", real=True)
+        printed.append(2 * b * sum(d) + (size + 1) * b**2)
+        derived.append(sum((each + b) ** 2 for each in d) - sum(each**2 for each in d))
+    return Equation(printed=printed, derived=derived)
+
+
 @claim("2.cost")
 def position_cost():
     """The position search evaluates Mx My hypotheses."""
