@@ -24,7 +24,7 @@ from navsym.claims import Paper, equation_of
 from navsym.report.erratum import Erratum, erratum_of
 from navsym.report.latex_math import sentence_html, sentence_latex
 from navsym.report.page_code import Snippet, snippets
-from navsym.report.page_explain import Step, steps
+from navsym.report.page_explain import Step, ball_words, steps
 from navsym.report.page_formula import Formula, formula
 from navsym.report.page_names import latex_escape
 from navsym.report.page_plot import refutation_plot
@@ -148,6 +148,7 @@ def environment() -> jinja2.Environment:
         lstrip_blocks=True,
     )
     env.filters |= {"tex": latex_escape, "slug": slug, "sentence": sentence_html, "sentence_tex": sentence_latex}
+    env.filters["ends"] = lambda difference: ball_words(tuple(difference))
     script = (TEMPLATES / "filter.js").read_text(encoding="utf-8").strip()
     env.globals["style"] = Markup((TEMPLATES / "style.css").read_text(encoding="utf-8"))
     env.globals["script"] = Markup(script)
