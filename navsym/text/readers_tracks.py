@@ -103,17 +103,23 @@ class Log:
             self.repairs.append(f"line {line}: {repair} ({message})")
 
     def check(self) -> None:
-        """Raise the first problem; the message counts the others and names their lines."""
+        """Raise the first problem; the message counts the other rows and names their lines, each once."""
         if not self.errors:
             return
-        first, others = self.errors[0], self.errors[1:]
+        first, *rest = self.errors
+        here = line_of(first)
+        others = list(dict.fromkeys(line_of(error) for error in rest if line_of(error) != here))
         if others:
-            lines = ", ".join(e.where.rsplit(" ", 1)[-1] for e in others[:8])
-            more = ", ..." if len(others) > 8 else ""
+            lines = ", ".join(others[:8]) + (", ..." if len(others) > 8 else "")
             count = f"{len(others)}" + (" or" if len(self.errors) >= MOST_PROBLEMS else "")
-            first.message += f"; {count} more rows have problems (lines {lines}{more})"
+            first.message += f"; {count} more rows have problems (lines {lines})"
             first.args = (first.message,)
         raise first
+
+
+def line_of(error: NavsymError) -> str:
+    """Number of the line that an error names."""
+    return error.where.rsplit(" ", 1)[-1]
 
 
 def read_track(path: str | os.PathLike[str], policy: Policy = "strict") -> TrackFile:

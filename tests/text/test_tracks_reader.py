@@ -164,3 +164,9 @@ def test_an_unknown_policy_is_refused(tmp_path):
 def test_a_missing_file_is_named(tmp_path):
     with pytest.raises(NavsymError, match="readable file"):
         read_track(tmp_path / "no.csv")
+
+
+def test_a_row_with_several_bad_fields_is_named_once(tmp_path):
+    rows = "".join(f"{k},x,y,z\n" for k in range(3, 6))
+    with pytest.raises(NavsymError, match=r"; 2 more rows have problems \(lines 6, 7\)"):
+        read_track(write(tmp_path, GOOD + rows))
