@@ -189,7 +189,7 @@ def inertial_is_nonlinear():
     curvature = rate.diff(tilt, 2).subs(at_rest).subs({f: 1, gravity: 10})
     return Property(
         printed=(0, True),
-        derived=Finding((int(rate.subs(at_rest)), bool(curvature != 0)), "value and second derivative at an exact point",
+        derived=Finding((int(rate.subs(at_rest)), bool(curvature != 0)), "value, second derivative at a point",
                         scope="one horizontal axis, a tilted platform", evidence=f"d2S/dbeta2 = {curvature} at f = 1"),
     )
 
