@@ -20,6 +20,7 @@ from navsym.claims.display import card, shortened, table, verdict_words
 from navsym.errors import NavsymError, NotEstimableError
 from navsym.methods.guaranteed_problem import GuaranteedProblem
 from navsym.methods.guaranteed_unique import several_optimal
+from navsym.methods.guaranteed_varying import ERROR
 from navsym.numeric.exchange import find_contacts
 from navsym.proof.balls import precision
 from navsym.proof.decimals import decimal
@@ -108,10 +109,19 @@ def solve(problem: GuaranteedProblem, digits: int = 30) -> GuaranteedSolution:
     dual = ["0"] * len(problem.functional)
     for k, x in zip(kept, found.dual, strict=True):
         dual[k] = decimal(x, digits)
+    certificate = with_error(problem, found.certificate)
     return GuaranteedSolution(
         problem, support_rows(problem, exact, found, digits), tuple(dual), found.certificate["lower"],
-        found.certificate["upper"], unique, found.certificate, status, found.width,
+        found.certificate["upper"], unique, certificate, status, found.width,
     )  # fmt: skip
+
+
+def with_error(problem: GuaranteedProblem, certificate: Mapping[str, Any]) -> Mapping[str, Any]:
+    """The certificate; where regressors have an error, it holds for every value of it up to its bound."""
+    if not problem.error:
+        return certificate
+    bound = to_text(problem.error)
+    return {**certificate, "kind": "sliver", "parameter": ERROR.name, "from": f"-{bound}", "to": bound}
 
 
 def support_rows(

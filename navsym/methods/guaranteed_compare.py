@@ -34,8 +34,9 @@ class Sampled:
 
 def panel_numbers(panel: Panel, v: Array) -> tuple[Array, float, float]:
     """H (m, n) at fractions v of a panel, its length and its noise bound, in double precision."""
-    start, end, sigma = (float(x) for x in panel.ends.numbers(panel.values))
-    inputs = {**panel.values, panel.variable: start + (end - start) * v}
+    values = {symbol: float(ball.mid()) for symbol, ball in panel.values.items()}
+    start, end, sigma = (float(x) for x in panel.ends.numbers(values))
+    inputs = {**values, panel.variable: start + (end - start) * v}
     rows = [np.broadcast_to(np.asarray(h, dtype=float), v.shape) for h in panel.program.numbers(inputs)]
     return np.array(rows), end - start, sigma
 

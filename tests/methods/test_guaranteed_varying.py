@@ -1,0 +1,67 @@
+"""Models whose F depends on the time: rigorous Taylor integration against closed forms."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+import sympy as sp
+
+from navsym import checker
+from navsym.errors import DomainError, NavsymError
+from navsym.methods.guaranteed import solve
+from navsym.methods.guaranteed_compare import compare
+from navsym.methods.guaranteed_problem import from_file
+from navsym.text.modelfile import model_from
+
+
+def model(F, h, T, target, pieces=None):
+    n = len(h)
+    document = {
+        "model": {"states": [f"x{k}" for k in range(n)], "F": F},
+        "measurement": [{"name": "z", "h": h, "sigma": "1"}], "interval": {"T": T}, "targets": {"c": target},
+    }  # fmt: skip
+    if pieces is not None:
+        del document["model"]["F"]
+        document["piece"] = pieces
+    return from_file(model_from(document))
+
+
+def encloses(solution, value):
+    exact = sp.Rational(str(sp.N(value, 50)))
+    return sp.Rational(solution.lower) <= exact <= sp.Rational(solution.upper)
+
+
+def test_a_rate_that_grows_with_time_has_its_gauss_function():
+    """x' = -2 t x: H(tau) = exp(T^2 - tau^2) is largest at 0."""
+    solution = solve(model([["-2*t"]], ["1"], "1", ["1"]), 25)
+    assert encloses(solution, sp.exp(-1)) and solution.status == "CERTIFIED"
+    assert checker.check(checker.load(json.dumps(dict(solution.certificate)))) == "sliver"
+
+
+def test_a_double_integrator_whose_gain_varies():
+    """x' = (1 + t) v: position at T from its measurements is its own; v costs 2 over the distance of a unit speed."""
+    solution = solve(model([["0", "1+t"], ["0", "0"]], ["1", "0"], "2", ["0", "1"]), 25)
+    assert encloses(solution, sp.Rational(2, 4))
+
+
+def test_pieces_may_vary_and_agree_with_one_piece():
+    F = [["0", "1+t"], ["0", "0"]]
+    pieces = [{"from": "0", "to": "1", "F": F}, {"from": "1", "to": "2", "F": F}]
+    solution = solve(model(F, ["1", "0"], "2", ["0", "1"], pieces), 20)
+    assert encloses(solution, sp.Rational(1, 2))
+
+
+@pytest.mark.slow
+def test_an_oscillator_that_stiffens_is_within_least_squares():
+    solution = solve(model([["0", "1"], ["-(1+t/2)", "sin(t)/4"]], ["1", "0"], "2", ["0", "1"]), 20)
+    assert solution.status == "CERTIFIED"
+    beside = compare(solution, ())
+    assert solution.value <= beside["least_squares"]
+
+
+def test_ends_that_are_not_rational_and_singularities_are_refused():
+    with pytest.raises(DomainError, match="rational ends"):
+        model([["-2*t"]], ["1"], "pi", ["1"])
+    with pytest.raises(NavsymError, match="steps of order"):
+        model([["1/(t-1/2)"]], ["1"], "1", ["1"])
