@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import importlib.util
 import itertools
+import json
 from pathlib import Path
 
 import pytest
 
-from navsym.report.page import visible
+from navsym.report.page import site, visible
+from navsym.report.wording import read_wording
 
 pytestmark = pytest.mark.browser
 SPEC = importlib.util.spec_from_file_location("report_devtools", Path(__file__).with_name("devtools.py"))
@@ -144,3 +146,71 @@ def test_everything_can_be_reached_with_the_keyboard(shown, files):
             page.call("Input.dispatchKeyEvent", type=kind, key="Tab", code="Tab", windowsVirtualKeyCode=9)
         seen.add(page.value("[...document.querySelectorAll('*')].indexOf(document.activeElement)"))
     assert len(seen) >= wanted
+
+
+LEDGER = Path(__file__).parents[2] / "derivations" / "verdicts.json"
+
+
+@pytest.fixture(scope="module")
+def real(tmp_path_factory):
+    """Pages of the paper with the widest formulas, and of the one with the longest words, from the ledger."""
+    document = json.loads(LEDGER.read_text(encoding="utf-8"))
+    chosen = ("joint_correction", "trajectory")
+    cut = {
+        "claims": [r for r in document["claims"] if r["paper"] in chosen],
+        "papers": [p for p in document["papers"] if p["module"] in chosen], "counts": document["counts"],
+    }  # fmt: skip
+    words = {}
+    for name in chosen:
+        sheet = LEDGER.parent / "errata" / f"{name}.toml"
+        words[name] = read_wording(sheet.read_text(encoding="utf-8"), sheet.name)
+    folder = tmp_path_factory.mktemp("real")
+    for name, text in site(cut, {}, words).items():
+        (folder / name).parent.mkdir(exist_ok=True)
+        (folder / name).write_text(text, encoding="utf-8")
+    return folder
+
+
+@pytest.mark.parametrize("width", [360, 768, 1280])
+def test_the_pages_of_real_papers_fit_phone_tablet_and_desk(real, browser, width):
+    browser.call(
+        "Emulation.setDeviceMetricsOverride", width=width, height=800, deviceScaleFactor=1, mobile=width < 500
+    )
+    browser.trouble.clear()
+    for page in sorted(real.glob("*.html")):
+        browser.open(page.as_uri())
+        assert browser.value("document.documentElement.scrollWidth") <= width, page.name
+    browser.call("Emulation.clearDeviceMetricsOverride")
+    assert not browser.trouble
+
+
+def test_what_is_wider_than_the_page_can_be_reached_and_scrolled_with_the_keyboard(real, browser):
+    browser.call("Emulation.setDeviceMetricsOverride", width=360, height=800, deviceScaleFactor=1, mobile=True)
+    browser.open((real / "joint_correction.html").as_uri())
+    wide = "[...document.querySelectorAll('.formula')].filter(b => b.scrollWidth > b.clientWidth)"
+    assert browser.value(f"{wide}.length") > 20
+    assert browser.value(f"{wide}.every(b => b.tabIndex === 0)")
+    assert browser.value("[...document.querySelectorAll('.formula')].some(b => b.tabIndex === -1)")
+    browser.call("Emulation.clearDeviceMetricsOverride")
+
+
+def test_on_paper_wide_formulas_are_set_smaller_and_controls_are_left_out(real, browser):
+    browser.open((real / "joint_correction.html").as_uri())
+    widths = "[...document.querySelectorAll('.formula math')].map(m => m.getBoundingClientRect().width)"
+    before = browser.value(f"Math.max(...{widths})")
+    browser.value("window.dispatchEvent(new Event('beforeprint'))")
+    assert browser.value(f"Math.max(...{widths})") < before
+    browser.value("window.dispatchEvent(new Event('afterprint'))")
+    assert browser.value(f"Math.max(...{widths})") == before
+    browser.call("Emulation.setEmulatedMedia", media="print")
+    assert browser.value("getComputedStyle(document.querySelector('.filters')).display") == "none"
+    browser.call("Emulation.setEmulatedMedia", media="")
+
+
+def test_the_sheet_of_a_real_paper_shows_place_wrong_and_right_formulas(real, browser):
+    browser.open((real / "trajectory.erratum.html").as_uri())
+    entries = browser.value("document.querySelectorAll('.erratum > li').length")
+    assert entries >= 20
+    assert browser.value("document.querySelectorAll('.change .wrong').length") == entries
+    assert browser.value("document.querySelectorAll('.change .right math').length") >= 15
+    assert browser.value("document.querySelectorAll('table.figures tbody tr').length") == 16
