@@ -46,7 +46,7 @@ def count_of(first, last):
 
 @claim("1.height")
 def height_error_of_the_model():
-    """The height error b of (1) moves the fix of (2): it adds (n + 1) b^2, and 2 b sum d, which depends on the track."""
+    """The height error b of (1) moves the fix of (2): it adds (n + 1) b^2 and 2 b sum d, which hypotheses share not."""
     b = sp.Symbol("deltaH", real=True)
     printed, derived = [], []
     for size in (1, 2, 3):

@@ -46,9 +46,18 @@ def command(
                        missing=missing or given.missing, form=form)
     except NavsymError as error:
         raise error.at(str(file)) from None
+    if method == "polygaussian" and not stays(given.bank.mode_transition):
+        remark("mode_transition is not used: polygaussian takes modes that never switch, equation (19)")
     for sentence in remarks(estimate):
         remark(sentence)
     emit(as_document(estimate), as_json=json_, text=lambda: as_text(estimate))
+
+
+def stays(mode_transition: Any) -> bool:
+    """Whether no mode ever leads to another."""
+    import numpy as np
+
+    return bool((mode_transition == np.eye(mode_transition.shape[-1])).all())
 
 
 def as_document(estimate: Estimate) -> dict[str, Any]:

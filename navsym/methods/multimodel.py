@@ -13,7 +13,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from navsym.errors import DomainError, ShapeError
+from navsym.errors import DomainError, ShapeError, UnknownSymbolError
 from navsym.methods.multimodel_bank import Bank, bank, measurements_for, memoryless
 from navsym.methods.multimodel_engine import Estimate, run_in_numpy
 from navsym.methods.multimodel_schemes import require_room, scheme
@@ -21,6 +21,9 @@ from navsym.numeric.forms import form_of
 
 Array = NDArray[np.floating[Any]]
 Engine = Literal["auto", "numpy", "compiled"]
+
+KEYS = ("models", "mode_transition", "initial", "measurements", "memoryless", "missing")
+KEYS_OF_MODEL, KEYS_OF_START = ("F", "Q", "H", "R"), ("mean", "covariance", "probabilities")
 
 #: Below this many one-step filters the compiled loops do not pay for being loaded.
 WORTH_COMPILING = 200_000
@@ -96,7 +99,8 @@ def read_bank(document: Mapping[str, Any]) -> BankFile:
     if not isinstance(document, Mapping):
         raise ShapeError("expected an object with models, mode_transition, initial and measurements; got "
                          f"{type(document).__name__}; see the interfaces")
-    for key in ("models", "mode_transition", "initial", "measurements"):
+    only_known(document, KEYS, "")
+    for key in KEYS[:4]:
         if key not in document:
             raise ShapeError(f"{key}: expected the keys models, mode_transition, initial and measurements; got "
                              f"no {key}; add it")
@@ -106,9 +110,34 @@ def read_bank(document: Mapping[str, Any]) -> BankFile:
             raise ShapeError(f"initial.{key}: expected mean, covariance and probabilities; got no {key}; add it")
     if not isinstance(document["models"], list) or not isinstance(document["measurements"], list):
         raise ShapeError("models: expected lists of models and of measurements; got something else; use [ ]")
+    only_known(start, KEYS_OF_START, "initial.")
+    for i, model in enumerate(document["models"]):
+        if isinstance(model, Mapping):
+            only_known(model, KEYS_OF_MODEL, f"models[{i}].")
+    for key in KEYS[:3]:
+        no_truth_values(document[key], key)
     made = bank(document["models"], document["mode_transition"], start["mean"], start["covariance"],
                 start["probabilities"])
     return BankFile(made, document["measurements"], switch(document, "memoryless"), switch(document, "missing"))
+
+
+def only_known(table: Mapping[str, Any], known: tuple[str, ...], place: str) -> None:
+    """UnknownSymbolError for a key that the interface does not have: it may be a misspelt one that it has."""
+    for key in table:
+        if key not in known:
+            raise UnknownSymbolError(
+                f"{place}{key!s:.40}: expected the keys {', '.join(known)}; got {key!r:.40}; correct or remove it"
+            )
+
+
+def no_truth_values(value: Any, place: str) -> None:
+    """ShapeError for a true or false among numbers, which would pass for 1 or 0."""
+    if isinstance(value, bool):
+        raise ShapeError(f"{place}: expected numbers; got {value!r}; give a number")
+    items = value.items() if isinstance(value, Mapping) else enumerate(value) if isinstance(value, list) else ()
+    for key, inner in items:
+        if not isinstance(inner, int | float) or isinstance(inner, bool):
+            no_truth_values(inner, f"{place}.{key}" if isinstance(key, str) else f"{place}[{key}]")
 
 
 def switch(document: Mapping[str, Any], key: str) -> bool:

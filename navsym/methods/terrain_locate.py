@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from navsym.errors import DomainError, EmptyError, NavsymError, ShapeError
 from navsym.methods.terrain import Search, criteria, prepare, search_full, search_position
-from navsym.methods.terrain_centre import demand_estimable, information, slopes
+from navsym.methods.terrain_centre import demand_estimable, one_sided
 from navsym.methods.terrain_refine import refine
 from navsym.methods.terrain_sequential import search_sequential
 from navsym.models.terrain import ON_MAP, TerrainMap
@@ -192,7 +192,7 @@ def answer_of(found: Search, track: Track, grid: Hypotheses) -> Answer:
 def checked(terrain: TerrainMap, track: Track, answer: Answer) -> Answer:
     """The same answer; NotEstimableError when the terrain under it is flat."""
     x, y = corrected(track, answer)
-    demand_estimable(information(*slopes(terrain, x, y), track.elapsed))
+    demand_estimable(one_sided(terrain, x, y))
     return answer
 
 

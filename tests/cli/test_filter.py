@@ -143,6 +143,11 @@ INDEFINITE = {
     ({}, ("--form", "cholesky"), "domain", "form"),
     ({"memoryless": True}, ("--method", "polygaussian"), "domain", "memoryless"),
     ({"memoryless": 1}, (), "domain", "memoryless"),
+    ({"memoryles": True}, (), "unknown-symbol", "memoryles"),
+    (model(G=UNIT), (), "unknown-symbol", "models[0].G"),
+    (start(mode=1), (), "unknown-symbol", "initial.mode"),
+    (start(mean=[True]), (), "shape", "initial.mean"),
+    (model(Q=[[False]]), (), "shape", "models[0].Q"),
 ])
 def test_bad_input_is_a_document_with_status_two(tmp_path, capsys, changes, options, kind, words):
     path = bank_file(tmp_path, **changes)
@@ -159,6 +164,13 @@ def test_a_document_that_is_no_object_is_refused(tmp_path, capsys, text):
     path.write_text(text)
     status, document, _ = answer(capsys, str(path))
     assert (status, document["error"]["kind"]) == (2, "shape")
+
+
+def test_polygaussian_says_that_it_does_not_use_the_transitions(tmp_path, capsys):
+    _, _, remarks = answer(capsys, bank_file(tmp_path), "--method", "polygaussian")
+    assert "mode_transition is not used" in remarks
+    path = bank_file(tmp_path, mode_transition=[[1.0, 0.0], [0.0, 1.0]])
+    assert "mode_transition" not in answer(capsys, path, "--method", "polygaussian")[2]
 
 
 def test_nan_in_the_file_is_named_with_its_place(tmp_path, capsys):

@@ -228,6 +228,20 @@ def test_the_edge_of_the_grid_is_remarked():
     assert any("edge of the grid" in remark for remark in found.remarks)
 
 
+@pytest.mark.parametrize("method", ["position", "full"])
+def test_heights_that_repeat_every_second_node_are_not_flat(method):
+    """Central differences are zero at every node; the criterion tells the hypotheses apart, with ties."""
+    heights_of_two = np.tile([[0.0, 10.0], [5.0, 20.0]], (20, 20))
+    x, y = 500.0 + 50.0 * np.arange(8), np.full(8, 400.0)
+    document = {
+        "map": {"heights": heights_of_two.tolist(), "x0": 0, "y0": 0, "dx": 50, "dy": 40},
+        "track": {"t": list(range(8)), "x": x.tolist(), "y": y.tolist(), "h": [0.0, 10.0] * 4},
+        "position": {"step": [50, 40], "half_count": [3, 3]}, "velocity": {"step": [1, 1], "half_count": [0, 0]},
+    }
+    answer = locate(document, method).document
+    assert answer["criterion"] == answer["second_best"] == 0.0 and answer["unique"] is False
+
+
 def test_the_flat_direction_is_named():
     document = config()
     ridge(document)
