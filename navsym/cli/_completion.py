@@ -11,6 +11,7 @@ import shlex
 from collections.abc import Callable, Iterable
 from pathlib import Path
 
+SHELLS = ("bash", "zsh", "fish")
 STATUSES = ("PROVED", "CERTIFIED", "CONFIRMED", "REFUTED", "OPEN")
 DERIVATIONS = Path(__file__).parents[2] / "derivations"
 
@@ -119,7 +120,6 @@ VALUES: dict[str, Callable[[], Iterable[str]]] = {
 
 # -- scripts -----------------------------------------------------------------------------------
 
-SHELLS = ("bash", "zsh", "fish")
 #: Claim ids hold colons, at which bash ends a word: what stands before the last one is cut off again.
 BASH = r"""# completion of navsym for bash
 _navsym() {

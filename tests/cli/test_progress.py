@@ -81,8 +81,8 @@ sys.exit(main.run(["slow"]))
 def test_on_a_terminal_the_line_counts_and_ctrl_c_ends_with_130_and_advice():
     outer, inner = pty.openpty()
     env = {**os.environ, "TERM": "xterm", "NO_COLOR": ""}
-    command = [sys.executable, "-c", PROGRAM]
-    child = subprocess.Popen(command, cwd=ROOT, env=env, stdin=inner, stdout=inner, stderr=inner, start_new_session=True)
+    command, ends = [sys.executable, "-c", PROGRAM], {"stdin": inner, "stdout": inner, "stderr": inner}
+    child = subprocess.Popen(command, cwd=ROOT, env=env, start_new_session=True, **ends)
     os.close(inner)
     seen, sent, end = b"", False, time.monotonic() + 60
     while time.monotonic() < end:
