@@ -21,8 +21,13 @@ NAMES = {
     "disk": "full disk, read-only folder, stale lock, clock set back",
     "engines": "engines: known wrong answers",
     "identities": "textbook identities and their near misses",
+    "filters": "NEES and NIS over 10,000 runs; every linear case against least squares",
+    "fidelity": "what is decided is what is printed: every claim",
 }
-TESTED = {"engines": "tests/engines", "identities": "tests/proof/test_textbook.py"}
+TESTED = {
+    "engines": "tests/engines", "identities": "tests/proof/test_textbook.py", "filters": "tests/honesty",
+    "fidelity": "tests/fidelity",
+}
 INPUTS = {"kills": 200}  # otherwise ten thousand
 
 
