@@ -53,5 +53,8 @@ def as_text(document: dict[str, Any]) -> str:
     for record in document["differences"]:
         point = ", ".join(f"{k} = {v}" for k, v in (record["worst"] or {}).items())
         size = f"old - new = {record['difference'][0]}…" if record["difference"] else ""
-        rows.append((record["name"], record["status"], f"{size} at {point}" if point else record["why"]))
+        words = f"{size} at {point or 'every point'}" if size else record["why"]
+        if record["assumptions"]:
+            words += f"; taken: {'; '.join(record['assumptions'])}"
+        rows.append((record["name"], record["status"], words))
     return table(("formula", "status", "where"), rows)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import random
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -13,7 +13,7 @@ import sympy as sp
 from flint import arb
 
 from navsym.claims import REFUTED, Equation
-from navsym.errors import DomainError, NavsymError
+from navsym.errors import DomainError, EmptyError, NavsymError
 from navsym.proof.balls import enclose, hull
 from navsym.proof.ladder import decide
 from navsym.proof.sampling import range_of
@@ -39,10 +39,13 @@ class Formula:
 def compare(old: Mapping[str, Formula], new: Mapping[str, Formula]) -> Record:
     """The document of ``navsym diff``.
 
-    ``differences``: one record each, ``{"name", "status", "worst", "difference", "why"}`` with status EQUAL
-    (proved), DIFFERENT (worst point found, its difference enclosed), OPEN, ONLY-OLD or ONLY-NEW. ``equal``:
-    true when every formula is proved equal.
+    ``differences``: one record each, ``{"name", "status", "worst", "difference", "why", "assumptions"}`` with status
+    EQUAL (proved, on one and the same range), OVERLAP (proved equal, but the ranges differ), DIFFERENT (worst point
+    found, its difference enclosed), OPEN, ONLY-OLD or ONLY-NEW. ``equal``: true when every formula is proved equal.
+    Raises EmptyError when there is nothing to compare.
     """
+    if not old and not new:
+        raise EmptyError("expected formulas; got none on either side; do name files that hold some")
     records = [record_for(name, old.get(name), new.get(name)) for name in dict.fromkeys([*old, *new])]
     return {"equal": all(r["status"] == "EQUAL" for r in records), "differences": records}
 
@@ -50,25 +53,48 @@ def compare(old: Mapping[str, Formula], new: Mapping[str, Formula]) -> Record:
 def record_for(name: str, old: Formula | None, new: Formula | None) -> Record:
     if old is None or new is None:
         status = "ONLY-NEW" if old is None else "ONLY-OLD"
-        return {"name": name, "status": status, "worst": None, "difference": None, "why": "no counterpart"}
+        return said(name, status, "no counterpart")
     left, right = old.expression, in_terms_of(new.expression, old)
     box = common_box(old, new)
     verdict = decide(Equation(left, right, box))
     if verdict.status.holds:
-        return {"name": name, "status": "EQUAL", "worst": None, "difference": None, "why": verdict.method}
+        apart = different_ranges(old, new)
+        if apart:
+            return said(name, "OVERLAP", f"equal where both are stated; ranges differ: {', '.join(apart)}",
+                        verdict.assumptions)  # fmt: skip
+        return said(name, "EQUAL", verdict.method, verdict.assumptions)
     if verdict.status != REFUTED:
-        return {"name": name, "status": "OPEN", "worst": None, "difference": None, "why": verdict.evidence}
+        return said(name, "OPEN", verdict.evidence)
     point, difference = worst_point(left - right, box)
     if point is None or difference is None:
-        return {"name": name, "status": "DIFFERENT", "worst": dict(verdict.counterexample or {}),
-                "difference": list(verdict.difference or ()), "why": "counterexample"}  # fmt: skip
-    return {
-        "name": name,
-        "status": "DIFFERENT",
+        return said(name, "DIFFERENT", "counterexample") | {
+            "worst": dict(verdict.counterexample or {}), "difference": list(verdict.difference or ())
+        }  # fmt: skip
+    return said(name, "DIFFERENT", f"largest of {POINTS} points") | {
         "worst": {s.name: text_of(value) for s, value in point.items()},
         "difference": list(decimal_ends(difference)),
-        "why": f"largest of {POINTS} points",
     }
+
+
+def said(name: str, status: str, why: str, assumptions: Sequence[str] = ()) -> Record:
+    """A record without a point."""
+    return {"name": name, "status": status, "worst": None, "difference": None, "why": why,
+            "assumptions": list(assumptions)}  # fmt: skip
+
+
+def different_ranges(old: Formula, new: Formula) -> list[str]:
+    """Names of the symbols of either formula whose stated ranges are not the same."""
+    names = {s.name for s in (*old.expression.free_symbols, *new.expression.free_symbols)}
+    ends = [{s.name: ends for s, ends in f.box.items()} for f in (old, new)]
+    return sorted(n for n in names if not same_range(*(e.get(n, (None, None)) for e in ends)))
+
+
+def same_range(one: tuple[Any, Any], other: tuple[Any, Any]) -> bool:
+    """Ends that are equal, or missing on both sides."""
+    return all(
+        a is b or (a is not None and b is not None and enclose(sp.sympify(a - b, strict=True), {}).contains(0))
+        for a, b in zip(one, other, strict=True)
+    )
 
 
 def in_terms_of(expression: sp.Expr, other: Formula) -> sp.Expr:
@@ -163,8 +189,19 @@ def of_file(path: Path) -> dict[str, Formula]:
         from navsym.text.claimfile import claims_from
 
         claims = claims_from(document, str(path)).claims
-        return {c.id: Formula(c.id, c.left, c.box) for c in claims if not isinstance(c.left, sp.MatrixBase)}
+        return {name: found for c in claims for name, found in entries_of(c.id, c.left, c.box).items()}
     return of_model(path)
+
+
+def entries_of(name: str, side: Any, box: Mapping[sp.Symbol, tuple[Any, Any]]) -> dict[str, Formula]:
+    """A formula, or the entries of a matrix or list by their places."""
+    if isinstance(side, sp.MatrixBase):
+        found = {f"{name}[{i + 1},{j + 1}]": side[i, j] for i in range(side.rows) for j in range(side.cols)}
+    elif isinstance(side, (tuple, list)):
+        found = {f"{name}[{k + 1}]": e for k, e in enumerate(side)}
+    else:
+        found = {name: side}
+    return {label: Formula(label, e, box) for label, e in found.items()}
 
 
 def of_model(path: Path) -> dict[str, Formula]:

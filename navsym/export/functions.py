@@ -20,7 +20,7 @@ from navsym.export.inputs import arguments_of, inputs_of, with_whole_arrays
 from navsym.export.names import function_name
 from navsym.export.parts import ExportedFunction, Input, Layout, Material, Output, Piece, Source, inside
 from navsym.export.regimes import common_outputs, in_order, joined_box, limit_of
-from navsym.export.rounding import ARITHMETICS, Arithmetic
+from navsym.export.rounding import ARITHMETICS, Arithmetic, with_library
 from navsym.export.uniform import CELLS, uniform_bound
 from navsym.proof.wording import text_of
 
@@ -182,8 +182,18 @@ def piece_of(
     bound = uniform_bound(graph, box, arithmetic, literals, cells=cells_for(graph))
     named = tuple((name, formula, form) for (name, formula), (_, form) in zip(part.lets, lets, strict=True))
     return Piece(
-        limit, tuple(formulas), tuple(forms), graph, literals, bound, tie, part.source, named, tuple(equals)
+        limit, tuple(formulas), tuple(forms), graph, literals, bound, tie, part.source, named, tuple(equals), tuple(box)
     )
+
+
+def rebounded(function: ExportedFunction, library: int) -> ExportedFunction:
+    """The same code with the bounds for a library that is accurate to so many ulp."""
+    arithmetic = with_library(function.arithmetic, library)
+    pieces = tuple(
+        replace(p, bound=uniform_bound(p.graph, p.box, arithmetic, p.literals, cells=cells_for(p.graph)))
+        for p in function.pieces
+    )
+    return replace(function, arithmetic=arithmetic, pieces=pieces)
 
 
 def box_of(

@@ -16,6 +16,7 @@ from typing import Any
 from navsym import __version__
 from navsym.errors import DomainError, DuplicateError, NavsymError
 from navsym.export.folder import require_free, write_folder
+from navsym.export.functions import rebounded
 from navsym.export.parts import ExportedFunction, Piece
 from navsym.export.printing import bound_text
 from navsym.export.programs import state_record
@@ -48,13 +49,19 @@ def files_of(functions: Sequence[ExportedFunction], order: Order) -> dict[str, s
     notice = f"SPDX-License-Identifier: {license_id(order.license)}"
     found: dict[str, str] = {}
     for target in order.targets:
-        tests = vectors_for(functions, target, order.count)
-        made = target.files()(functions, tests, notice)
+        spoken = with_library_of(target, functions)
+        tests = vectors_for(spoken, target, order.count)
+        made = target.files()(spoken, tests, notice)
         found |= {f"{target.name}/{name}": text for name, text in made.items()}
     for function in functions:
         found |= certificates(function)
     found[MANIFEST] = json.dumps(manifest(functions, order, found), indent=2) + "\n"
     return found
+
+
+def with_library_of(target: Target, functions: Sequence[ExportedFunction]) -> list[ExportedFunction]:
+    """The functions with the bounds that hold for the accuracy of this target's library."""
+    return [f if target.library == f.arithmetic.library else rebounded(f, target.library) for f in functions]
 
 
 def license_id(text: str) -> str:

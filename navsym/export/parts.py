@@ -96,6 +96,7 @@ class Piece:
     forms    : the formulas as they were made safe, equal to them
     lets     : named values in order: symbol, formula, safe form
     equals   : (formula, exact meaning of its node) for every named value and result
+    box      : where the bound holds and vectors live
     literals : number in the code for each constant of the graph
     tie      : how the graph was tied to the formulas
     """
@@ -110,6 +111,7 @@ class Piece:
     source: Source
     lets: tuple[tuple[sp.Symbol, sp.Expr, sp.Expr], ...] = ()
     equals: tuple[tuple[sp.Expr, sp.Expr], ...] = ()
+    box: tuple[tuple[float, float], ...] = ()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
