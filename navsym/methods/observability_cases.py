@@ -123,9 +123,9 @@ def solved_variable(f: Poly, system: System) -> int | None:
         if sum(powers) != 1:
             continue
         place = list(map(int, powers)).index(1)
-        if f.degrees()[place] == 1 and sum(1 for p in f.to_dict() if p[place]) == 1:
-            if all(other is f or other.degrees()[place] == 0 for other in system):
-                return place
+        alone = f.degrees()[place] == 1 and sum(1 for p in f.to_dict() if p[place]) == 1
+        if alone and all(other is f or other.degrees()[place] == 0 for other in system):
+            return place
     return None
 
 
@@ -214,7 +214,9 @@ def affordable(rows: Matrix, pivot: Poly) -> None:
 
 def pivot_on(work: Matrix, step: int, free: Sequence[int], system: System) -> tuple[int, int] | None:
     """The sparsest entry that does not vanish on the system; entries that do are set aside."""
-    zero = 0 * work[0][0] if work else None
+    if not work:
+        return None
+    zero = 0 * work[0][0]
     shown = [list(row) for row in work]
     while True:
         place = sparsest(shown, step, free)

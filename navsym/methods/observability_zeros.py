@@ -141,4 +141,5 @@ def vanishes(value: Poly, system: System) -> bool:
     if any(divides(f, value) for f in system):
         return True
     generators: Any = fmpz_mpoly_vec(system, value.context())
-    return bool(value.reduction_primitive_part(generators) == 0)
+    reduced: Any = value
+    return bool(reduced.reduction_primitive_part(generators) == 0)

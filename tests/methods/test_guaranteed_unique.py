@@ -43,3 +43,12 @@ def test_an_end_value_is_not_said_to_have_several():
 def test_a_dual_with_more_contacts_than_needed_but_one_estimator_is_not_called_several():
     """The slope at -1, 1: T_2 has three contacts, two unknowns of one parity stay unused."""
     assert unique([[1, t, t**2, t**3]], [0, 0, 1, 0], (-1, 1)) is not False
+
+
+@pytest.mark.parametrize(
+    ("rows", "functional", "end"),
+    [([[1, sp.sin(t), sp.cos(t) - 1]], [1, 0, 0], 2 * sp.pi), ([[sp.cos(t)]], [1], 4 * sp.pi)],
+)
+def test_several_good_instants_cost_no_digits(rows, functional, end):
+    solution = solve(from_regressors(rows, functional, t, (0, end)), 30)
+    assert solution.status == "CERTIFIED" and solution.width < 1e-30 and solution.unique is False

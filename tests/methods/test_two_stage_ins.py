@@ -123,3 +123,16 @@ def test_position_errors_do_not_grow_faster_than_the_velocity_error_after_the_se
 def test_a_flight_that_does_not_move_is_refused():
     with pytest.raises(DomainError, match="positive"):
         great_circle(speed=0.0)
+
+
+def test_no_situation_of_the_last_paragraph_beats_the_kalman_filter_of_the_full_model():
+    from navsym.methods.two_stage_study import SITUATIONS, situations
+
+    rows = situations(great_circle(duration=6600.0, step=20.0))
+    pairs = list(zip(rows[::2], rows[1::2], strict=True))
+    assert [ours["situation"] for ours, _ in pairs] == [str(situation) for situation, _ in SITUATIONS]
+    for ours, bound in pairs:
+        assert bound["position_m"] <= ours["position_m"] * (1 + 1e-6)
+        assert bound["velocity_error_mps"] <= ours["velocity_error_mps"] * (1 + 1e-6)
+    by_name = {ours["situation"]: ours["position_m"] for ours, _ in pairs}
+    assert by_name["position"] < by_name["neither"]
