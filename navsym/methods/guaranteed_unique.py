@@ -70,7 +70,7 @@ def exact_places(problem: Problem, contacts: Contacts, x: Sequence[sp.Rational])
             places += [Place(k, fmpq(j, SAMPLES), sign) for j in range(SAMPLES + 1)]
             continue
         mine = [place for place in guessed(contacts, k, panel, f) if holds(panel, f, place)]
-        touches = [Touch(p.at, p.sign, True, end_of(p.at)) for p in mine]
+        touches = [Touch(p.at, p.sign, True, "no" if level(panel, f, p) else end_of(p.at)) for p in mine]
         with precision(BITS):
             balls = [enclose(c, bits=BITS) for c in x]
             if bounded(panel, balls, touches) is None:
@@ -100,12 +100,19 @@ def guessed(contacts: Contacts, k: int, panel: Panel, f: sp.Expr) -> list[Place]
 
 def holds(panel: Panel, f: sp.Expr, place: Place) -> bool:
     """The bound is reached there exactly, with a slope of zero inside the panel."""
-    share = sp.Rational(int(place.at.p), int(place.at.q))
-    at = panel.start + (panel.end - panel.start) * share
-    reached = [(f, place.sign * panel.sigma)]
-    if end_of(place.at) == "no":
-        reached.append((f.diff(panel.variable), sp.S.Zero))
-    return all(decide(Equation(g.subs(panel.variable, at), value)).status is PROVED for g, value in reached)
+    value = f.subs(panel.variable, time_of(panel, place))
+    reached = decide(Equation(value, place.sign * panel.sigma)).status is PROVED
+    return reached and (end_of(place.at) != "no" or level(panel, f, place))
+
+
+def level(panel: Panel, f: sp.Expr, place: Place) -> bool:
+    """The slope there is zero; it may also be at an end."""
+    slope = f.diff(panel.variable).subs(panel.variable, time_of(panel, place))
+    return decide(Equation(slope, sp.S.Zero)).status is PROVED
+
+
+def time_of(panel: Panel, place: Place) -> sp.Expr:
+    return panel.start + (panel.end - panel.start) * sp.Rational(int(place.at.p), int(place.at.q))
 
 
 def end_of(at: fmpq) -> str:
@@ -142,8 +149,8 @@ def exact_values(problem: Problem, places: Sequence[Place]) -> tuple[fmpq_mat, f
     """The regressors at the places as columns, and P, when all of them are rational numbers."""
     rows: list[sp.Expr] = []
     for place in places:
-        panel, share = problem.panels[place.panel], sp.Rational(int(place.at.p), int(place.at.q))
-        at = panel.start + (panel.end - panel.start) * share
+        panel = problem.panels[place.panel]
+        at = time_of(panel, place)
         rows += [sp.sympify(h, strict=True).subs(panel.variable, at) for h in panel.functions]
     values = [*rows, *(sp.sympify(p, strict=True) for p in problem.functional)]
     if not all(v.is_Rational for v in values):

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import product
+from typing import Any
 
 from flint import nmod_mat
 
@@ -85,7 +86,7 @@ def annihilates(theta: Sequence[Poly], vectors: Matrix, ring: Ring) -> bool:
 def monic_factors(coefficients: Sequence[Poly], degree: int, ring: Ring) -> list[list[Poly]]:
     """Monic divisors of the given degree of a monic polynomial in p, each as coefficients, the 1 first."""
     wider, p = with_variable(ring)
-    total = sum(
+    total: Poly = sum(
         (wider.from_dict({(*powers, place): int(c) for powers, c in coefficient.to_dict().items()})
          for place, coefficient in enumerate(reversed(coefficients))),
         wider.constant(0),
@@ -104,7 +105,7 @@ def monic_factors(coefficients: Sequence[Poly], degree: int, ring: Ring) -> list
     return found
 
 
-def with_variable(ring: Ring) -> tuple[object, int]:
+def with_variable(ring: Ring) -> tuple[Any, int]:
     """The ring with one generator more, and the place of that generator."""
     import sympy as sp
 

@@ -161,14 +161,14 @@ class Ring:
                     top, bottom = (part * self.context.gen(cosine) for part in (top, bottom))
             return self.expression(top) / self.expression(bottom)
         whole, power, names = self.whole_angles(value)
-        return sp.Add(*(monomial(names, powers, c, power) for powers, c in whole.to_dict().items()))
+        return sp.Add(*(monomial(names, powers, int(c), power) for powers, c in whole.to_dict().items()))
 
     def condition(self, value: Poly) -> sp.Expr:
         """An expression that vanishes where the polynomial does, without a common numerical factor."""
         whole, _, names = self.whole_angles(value)
         plain = whole.primitive()[1]
         plain = -plain if plain.leading_coefficient() < 0 else plain
-        return sp.Add(*(monomial(names, powers, c, 0) for powers, c in plain.to_dict().items()))
+        return sp.Add(*(monomial(names, powers, int(c), 0) for powers, c in plain.to_dict().items()))
 
     def whole_angles(self, value: Poly) -> tuple[Poly, int, list[sp.Basic]]:
         """(numerator, k, names): the value is numerator/2^k with the generators read as the names.

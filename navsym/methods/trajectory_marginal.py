@@ -62,8 +62,8 @@ def covariance_root(fit: Fit, noise: Noise, channel: int) -> Array:
     """
     x, y = (float(np.log10(value[channel])) for value in (noise.scale, noise.density))
     if fit.fixed_scale:
-        values = [fit.cost(x, y + d * STEP) for d in (-1, 0, 1)]
-        spread = deviation((values[0] - 2 * values[1] + values[2]) / (2 * STEP**2))
+        below, middle, above = (fit.cost(x, y + d * STEP) for d in (-1, 0, 1))
+        spread = deviation((below - 2 * middle + above) / (2 * STEP**2))
         return np.array([[0.0, 0.0], [spread, 0.0]])
     cost = {(i, j): fit.cost(x + i * STEP, y + j * STEP) for i in (-1, 0, 1) for j in (-1, 0, 1)}
     both = (cost[1, 1] - cost[1, -1] - cost[-1, 1] + cost[-1, -1]) / 4
