@@ -16,6 +16,7 @@ from docutils import nodes
 
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
+os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, (str(ROOT), os.environ.get("PYTHONPATH"))))   # of the kernels
 project = "navsym"
 author = "navsym contributors"
 html_title = "navsym"
