@@ -1,0 +1,92 @@
+"""The ball kinds again: at other precisions by the checker, and by mpmath's intervals, which share no code with it."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from itertools import product
+from typing import Any
+
+import mpmath
+import pytest
+
+from navsym import checker
+from tests.checker import second
+from tests.checker.examples import EDGE, GOOD, POSITIVITY
+from tests.checker.forgeries import verdict
+
+iv = mpmath.iv
+OPTIMA = [item for item in GOOD if item["kind"] in ("gap", "touch", "sliver")]
+RANGES = [item for item in GOOD if item["kind"] == "range"]
+CLOSE = 1e-5
+
+
+@pytest.mark.parametrize("bits", [150, 311, 1000])
+@pytest.mark.parametrize("item", [*OPTIMA, *RANGES, POSITIVITY], ids=lambda item: item["kind"])
+def test_a_certificate_holds_at_every_higher_precision(item, bits):
+    assert verdict(item | {"bits": bits}, checker) == ""
+
+
+def interval(node: Any, names: dict[str, Any]) -> Any:
+    """The tree of the second opinion in mpmath's intervals."""
+    if isinstance(node, Fraction):
+        return iv.mpf(node.numerator) / node.denominator
+    if isinstance(node, str):
+        return iv.pi if node == "pi" else names[node]
+    if len(node) == 2:
+        return getattr(iv, node[0])(interval(node[1], names))
+    x = interval(node[1], names)
+    if node[0] == "**":
+        return x ** int(second.constant(node[2]))
+    y = interval(node[2], names)
+    return x + y if node[0] == "+" else x - y if node[0] == "-" else x * y if node[0] == "*" else x / y
+
+
+def number(text: str) -> Any:
+    return interval(Fraction(text), {})
+
+
+def hull(low: Any, high: Any, k: int, n: int) -> Any:
+    """Part k of n of the interval between two."""
+    return low + (high - low) * iv.mpf([k, k + 1]) / n
+
+
+def regressors(panel: dict[str, Any], place: Any, names: dict[str, Any], t: str) -> list[Any]:
+    low, high, sigma = (interval(second.tree(panel[key]), names) for key in ("from", "to", "sigma"))
+    here = names | {t: low + (high - low) * place}
+    return [interval(second.tree(h), here) / sigma for h in panel["H"]]
+
+
+@pytest.mark.parametrize("item", OPTIMA, ids=lambda item: item["kind"])
+def test_the_dual_of_an_optimum_stays_below_one_in_other_intervals(item):
+    iv.dps, n = 40, 2000
+    names = {item["parameter"]: iv.mpf([item["from"], item["to"]])} if item["kind"] == "sliver" else {}
+    x = [number(c[0] if isinstance(c, list) else c) for c in item["dual"]]
+    for panel, k in product(item["panels"], range(n)):
+        q = regressors(panel, hull(iv.mpf(0), iv.mpf(1), k, n), names, item["variable"])
+        assert abs(sum(a * b for a, b in zip(x, q, strict=True))).b < 1 + 0.02  # naive intervals: one cell wide
+
+
+@pytest.mark.parametrize("item", [o for o in OPTIMA if o["kind"] == "touch"], ids=lambda item: item["kind"])
+def test_the_weights_of_a_touch_satisfy_the_constraints_and_cost_the_dual_value(item):
+    iv.dps = 40
+    total, cost = [iv.mpf(0)] * len(item["functional"]), iv.mpf(0)
+    for row in item["contacts"]:
+        place = number(row["at"][0]) if row["end"] == "no" else iv.mpf(row["end"] == "to")
+        w = number(row["weight"][0])
+        q = regressors(item["panels"][row["panel"]], place, {}, item["variable"])
+        total, cost = [a + w * b for a, b in zip(total, q, strict=True)], cost + abs(w)
+    P = [interval(second.tree(p), {}) for p in item["functional"]]
+    value = sum(number(c[0]) * p for c, p in zip(item["dual"], P, strict=True))
+    assert all(abs(a - p).b < CLOSE for a, p in zip(total, P, strict=True))
+    assert abs(cost - value).b < CLOSE
+    assert number(item["lower"]).a - CLOSE < value.a and value.b < number(item["upper"]).b + CLOSE
+
+
+@pytest.mark.parametrize("item", [POSITIVITY, EDGE], ids=["waves", "edge"])
+def test_a_positive_expression_is_positive_in_other_intervals(item):
+    iv.dps, n = 20, 60
+    tree, names = second.tree(item["expression"]), list(item["box"])
+    ends = [[interval(second.tree(e), {}) for e in item["box"][s]] for s in names]
+    for cell in product(range(n), repeat=len(names)):
+        here = {s: hull(*pair, k, n) for s, pair, k in zip(names, ends, cell, strict=True)}
+        assert interval(tree, here).a > 0
