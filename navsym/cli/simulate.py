@@ -51,8 +51,10 @@ def command(
     given = {"runs": runs, "steps": steps, "journal": journal}
     options: dict[str, Any] = {key: value for key, value in given.items() if value is not None}
     accepted = inspect.signature(getattr(module, experiment)).parameters
-    if journal is not None and "journal" not in accepted:
-        raise DomainError(f"--journal: expected an experiment that can go on; got {name}; leave it out")
+    for option in options:
+        if option not in accepted:
+            takes = ", ".join(f"--{key}" for key in ("seed", *given) if key in accepted)
+            raise DomainError(f"--{option}: expected an option that {name} has ({takes}); got {option}; leave it out")
     with Progress("runs", resume=resume(journal, "journal" in accepted)) as bar:
         if "progress" in accepted:
             options["progress"] = bar.told_by_job

@@ -27,3 +27,12 @@ def test_the_optimal_filter_is_never_worse_than_an_observer(capsys):
 def test_an_unknown_experiment_names_the_known_ones(capsys):
     assert run(["simulate", "nothing", "--json"]) == 2
     assert "joint_correction" in json.loads(capsys.readouterr().out)["error"]["message"]
+
+
+@pytest.mark.parametrize(
+    ("name", "option"), [("trajectory", "--steps"), ("joint_correction", "--runs"), ("joint_correction", "--steps")]
+)
+def test_an_option_that_an_experiment_does_not_have_is_bad_input(name, option, capsys):
+    assert run(["simulate", name, option, "2", "--json"]) == 2
+    error = json.loads(capsys.readouterr().out)["error"]
+    assert error["kind"] == "domain" and option in error["message"]
