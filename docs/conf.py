@@ -8,6 +8,7 @@ from __future__ import annotations
 import ast
 import html
 import os
+import re
 import sys
 from pathlib import Path
 from typing import Any
@@ -29,6 +30,7 @@ nb_execution_mode = "force" if os.environ.get("NAVSYM_DOCS_EXECUTE") else "off"
 nb_execution_timeout = 300
 nb_execution_raise_on_error = True
 nb_render_text_lexer = "text"
+nb_ipywidgets_js: dict[str, Any] = {}      # sliders live in the notebook itself; the page asks no network
 suppress_warnings: list[str] = []
 
 ROOMS = {
@@ -109,6 +111,13 @@ def displayed_formula(writer: Any, node: Any) -> None:
     raise nodes.SkipNode
 
 
+def shown_formulas(app: Any, pagename: str, templatename: str, context: dict[str, Any], doctree: Any) -> None:
+    """Formulas inside the HTML that notebooks show, which a notebook sets in type by a script."""
+    if pagename.startswith("notebooks/") and "body" in context:
+        found = re.compile(r"\$\\displaystyle (.+?)\$", re.S)
+        context["body"] = found.sub(lambda match: formula(html.unescape(match[1]), False), context["body"])
+
+
 def generate(app: Any) -> None:
     write_reference(Path(app.srcdir) / "reference")
     write_notebooks(Path(app.srcdir) / "notebooks")
@@ -118,3 +127,4 @@ def setup(app: Any) -> None:
     """Reference and notebooks are written before the sources are read; formulas are shown without a script."""
     app.add_html_math_renderer("mathml", (inline_formula, None), (displayed_formula, None))
     app.connect("builder-inited", generate)
+    app.connect("html-page-context", shown_formulas)

@@ -33,6 +33,7 @@ ACCENTS = {"dot": "˙", "hat": "^", "tilde": "~", "bar": "¯", "overline": "¯"}
 BRACKETS = "()[]|./"
 RELATIONS = frozenset(("=", "<", ">", "le", "ge", "ne", "ll", "gg", "approx"))
 BINARY = frozenset(("+", "-", "times", "cdot"))
+MATRICES = {"pmatrix": ("(", ")"), "bmatrix": ("[", "]"), "matrix": ("", "")}
 STRETCHED = frozenset(("sum",))
 
 
@@ -81,7 +82,8 @@ class Reader:
 
     def scripted(self) -> str:
         """An atom with what hangs below and above it."""
-        large = self.next is not None and self.next["word"] in STRETCHED
+        first = self.next["word"] if self.next is not None else None
+        large, gap = first in STRETCHED, '<mspace width="0.1em"></mspace>' if first in FUNCTIONS else ""
         hanging = self.next is not None and self.next["char"] in ("_", "^")     # m/s$^2$: nothing to hang on
         base, below, above = "<mrow></mrow>" if hanging else self.atom(), "", ""
         while (token := self.next) is not None and token["char"] in ("_", "^"):
@@ -92,11 +94,11 @@ class Reader:
                 above = self.atom()
         kind = ("munder", "mover", "munderover") if large else ("msub", "msup", "msubsup")
         if below and above:
-            return f"<{kind[2]}>{base}{below}{above}</{kind[2]}>"
+            return f"<{kind[2]}>{base}{below}{above}</{kind[2]}>{gap}"
         if below or above:
             name = kind[0] if below else kind[1]
-            return f"<{name}>{base}{below or above}</{name}>"
-        return base
+            return f"<{name}>{base}{below or above}</{name}>{gap}"
+        return base + gap
 
     def atom(self) -> str:
         token = self.take()
@@ -126,7 +128,9 @@ class Reader:
         if word in LETTERS:
             return f"<mi>{LETTERS[word]}</mi>"
         if word in FUNCTIONS:
-            return f'<mi mathvariant="normal">{word}</mi><mspace width="0.1em"></mspace>'
+            return f'<mi mathvariant="normal">{word}</mi>'
+        if word == "displaystyle":
+            return "<mrow></mrow>"
         if word in SPACES:
             return f'<mspace width="{SPACES[word]}"></mspace>'
         if word in SIGNS:
@@ -167,8 +171,9 @@ class Reader:
         return "" if sign == "." else f"<mo>{html.escape(sign)}</mo>"
 
     def matrix(self, kind: str) -> str:
-        if kind != "pmatrix":
+        if kind not in MATRICES:
             raise self.refuse(rf"\begin{{{kind}}}")
+        left, right = (f"<mo>{sign}</mo>" if sign else "" for sign in MATRICES[kind])
         rows, cells = [], []
         while True:
             cells.append(self.row(lambda t: t["close"] is not None or t["char"] == "&" or t["word"] == "\\"))
@@ -178,7 +183,7 @@ class Reader:
             rows.append("<mtr>" + "".join(f"<mtd>{cell}</mtd>" for cell in cells) + "</mtr>")
             cells = []
             if token["close"] is not None:
-                return f"<mrow><mo>(</mo><mtable>{''.join(rows)}</mtable><mo>)</mo></mrow>"
+                return f"<mrow>{left}<mtable>{''.join(rows)}</mtable>{right}</mrow>"
 
 
 def may_break(before: re.Match[str] | None, token: re.Match[str]) -> bool:

@@ -90,18 +90,27 @@ def test_wording_that_is_none_is_refused_with_its_place(text):
 # -- formulas --------------------------------------------------------------------------------
 
 
+CHILDREN = {
+    "msub": 2, "msup": 2, "mfrac": 2, "munder": 2, "mover": 2, "msubsup": 3, "munderover": 3, "msqrt": 1,
+}  # fmt: skip
+
+
 @pytest.mark.parametrize("module", MODULES)
-def test_formulas_of_the_sheets_are_wellformed_mathml(module):
+def test_formulas_of_the_sheets_are_mathml_with_the_right_number_of_parts(module):
     for worded in words_of(module).values():
         for text in (worded.where, worded.printed, worded.correct, worded.why):
             for formula in re.findall(r"<math.*?</math>", sentence_html(text), re.S):
-                minidom.parseString(formula)
+                for node in minidom.parseString(formula).getElementsByTagName("*"):
+                    assert len(node.childNodes) == CHILDREN.get(node.tagName, len(node.childNodes)), text
 
 
 @pytest.mark.parametrize(
     ("source", "part"),
     [
         (r"\frac{a}{b}", "<mfrac><mrow><mi>a</mi></mrow><mrow><mi>b</mi></mrow></mfrac>"),
+        (r"\sin^2 x", '<msup><mi mathvariant="normal">sin</mi><mn>2</mn></msup>'),
+        (r"\begin{bmatrix}1\end{bmatrix}", "<mo>[</mo><mtable>"),
+        (r"\displaystyle \text{on the way}", "<mtext>on the way</mtext>"),
         (r"x_1^2", "<msubsup><mi>x</mi><mn>1</mn><mn>2</mn></msubsup>"),
         (r"\sum_{j=1}^l", "<munderover><mo>∑</mo>"),
         (r"\dot y", '<mover accent="true"><mi>y</mi>'),
