@@ -54,3 +54,34 @@ def test_exports_are_compared_by_their_formulas(capsys, tmp_path: Path) -> None:
 def test_bad_input_is_bad_input(capsys, words: tuple[str, ...]) -> None:
     status, found = document(capsys, *words)
     assert status == 2 and "expected" in found["error"]["message"]
+
+
+def test_matrices_of_claim_files_are_compared_entry_by_entry(capsys, tmp_path: Path) -> None:
+    sides = 'left = [["a", "1"], ["0", "{}"]]\nright = [["a", "1"], ["0", "a"]]\n'
+    text = f'[symbols]\na = "real"\n[[claim]]\nid = "m"\n{sides}'
+    old, new = tmp_path / "old.toml", tmp_path / "new.toml"
+    old.write_text(text.format("a"))
+    new.write_text(text.format("2*a"))
+    status, found = document(capsys, str(old), str(new))
+    assert status == 1
+    assert [r["status"] for r in found["differences"]] == ["EQUAL", "EQUAL", "EQUAL", "DIFFERENT"]
+
+
+def test_one_formula_on_two_ranges_is_not_called_equal(capsys, tmp_path: Path) -> None:
+    text = '[symbols]\na = ["0", "{}"]\n[[claim]]\nid = "one"\nleft = "a + a"\nright = "2*a"\n'
+    old, new = tmp_path / "old.toml", tmp_path / "new.toml"
+    old.write_text(text.format("1"))
+    new.write_text(text.format("2"))
+    status, found = document(capsys, str(old), str(new))
+    assert status == 1 and not found["equal"]
+    assert found["differences"][0]["status"] == "OVERLAP" and "ranges differ: a" in found["differences"][0]["why"]
+
+
+def test_what_equality_takes_for_granted_is_said(capsys) -> None:
+    status, found = document(capsys, "1/(x - 1)", "(x + 1)/(x**2 - 1)")
+    assert status == 0 and any("x**2 - 1" in a for a in found["differences"][0]["assumptions"])
+
+
+def test_a_constant_difference_is_shown_with_its_size(capsys) -> None:
+    assert run(["diff", "log(x)", "log(x) + 1"]) == 1
+    assert "old - new = -1.0" in capsys.readouterr().out
