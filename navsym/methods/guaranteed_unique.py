@@ -44,7 +44,10 @@ def several_optimal(problem: Problem, contacts: Contacts, dual: Sequence[arb]) -
     exact = [c for c in x if c is not None]
     places = exact_places(problem, contacts, exact)
     m = len(exact)
-    if places is None:
+    if not places:
+        return False
+    places = [places[i] for i in largest_support(*numbers_at(problem, places))]
+    if not places:
         return False
     rational_values = exact_values(problem, places)
     if rational_values is not None:
@@ -121,15 +124,13 @@ def end_of(at: fmpq) -> str:
 
 def interior(problem: Problem, places: Sequence[Place], m: int) -> bool:
     """Weights of the right signs at all places: the last ones exact and free to move, the others from balls."""
+    N, P = numbers_at(problem, places)
     with precision(BITS):
         columns = [problem.panels[p.panel].rows(arb(p.at)) for p in places]
-        N = np.array([[p.sign * float(h) for h in c] for p, c in zip(places, columns, strict=True)]).T
-        scale = np.abs(N).max(axis=1) + 1e-300
-        P = np.array([float(p.mid()) for p in problem.target()])
-        weights = most_inside(N / scale[:, None], P / scale)
+        weights = most_inside(N, P)
         if weights is None:
             return False
-        order = independent_first(N / scale[:, None], m)
+        order = independent_first(N, m)
         if order is None:
             return False
         fixed = [fmpq(round(float(weights[i]) * 2**40), 2**40) for i in order[m:]]
@@ -143,6 +144,30 @@ def interior(problem: Problem, places: Sequence[Place], m: int) -> bool:
             return False
         signs = [places[i].sign for i in order[:m]]
         return all(w > 0 for w in fixed) and all(bool(s * solved[j, 0] > 0) for j, s in enumerate(signs))
+
+
+def numbers_at(problem: Problem, places: Sequence[Place]) -> tuple[np.ndarray, np.ndarray]:
+    """Signed regressors at the places as columns and P, in doubles, rows scaled."""
+    with precision(BITS):
+        columns = [problem.panels[p.panel].rows(arb(p.at)) for p in places]
+        N = np.array([[p.sign * float(h) for h in c] for p, c in zip(places, columns, strict=True)]).T
+        P = np.array([float(p.mid()) for p in problem.target()])
+    N[np.abs(N) < 1e-14 * np.abs(N).max()] = 0.0  # a cosine that vanishes is no row to be scaled up
+    scale = np.where(np.abs(N).max(axis=1) > 0, np.abs(N).max(axis=1), 1.0)
+    return N / scale[:, None], P / scale
+
+
+def largest_support(N: np.ndarray, P: np.ndarray) -> list[int]:
+    """Columns that some nonnegative solution of ``N w = P`` uses."""
+    from scipy.optimize import linprog
+
+    m, n = N.shape
+    room = np.eye(n)
+    answer = linprog(
+        np.r_[np.zeros(n), -np.ones(n)], A_ub=np.c_[-room, room], b_ub=np.zeros(n),
+        A_eq=np.c_[N, np.zeros((m, n))], b_eq=P, bounds=[(0, None)] * n + [(0, 1e-3)] * n,
+    )  # fmt: skip
+    return [i for i in range(n) if answer.success and answer.x[n + i] > 1e-7]
 
 
 def exact_values(problem: Problem, places: Sequence[Place]) -> tuple[fmpq_mat, fmpq_mat] | None:

@@ -8,14 +8,16 @@ exact solution of the optimality system; then both sides are equal and known to 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
 from flint import arb, arb_mat, fmpq
 
 from navsym.numeric.exchange import Contacts, find_contacts, nodes_for, rows_at
+from navsym.numeric.exchange_simple import simple_dual
 from navsym.proof.balls import precision
 from navsym.proof.decimals import decimal, exact, lower_end, upper_end
 from navsym.proof.enclosure import Panel, Problem, Touch, bounded, combination, rational, total
@@ -243,11 +245,9 @@ def gap(
         weights = balanced(problem, support)
         upper = upper_end(cost(problem, support, weights), digits + 6)
         touches = near_touches(problem, found, places)
-        for shrink in (digits + 3, 12, 9, 6, 4, 3, 2, 1):
-            if shrink > digits + 3:
-                continue
+        for base, shrink in attempts(basis, contacts, found, digits):
             scale = 1 - fmpq(1, 10) ** shrink
-            x = [exact(decimal(rational(c) * scale, places + 8)) for c in found.dual]
+            x = [exact(decimal(c * scale, places + 8)) for c in base]
             cells = covered(problem, [arb(c) for c in x], touches)
             if cells is not None:
                 break
@@ -267,6 +267,31 @@ def gap(
             row for row in rows if not bool(abs(row[2]) < arb(10) ** (-digits) * abs(arb(exact(upper))))
         )
         return Certified(exact(lower), exact(upper), shown, tuple(arb(c) for c in x), None, document)
+
+
+def attempts(
+    basis: Basis, contacts: Contacts, found: Polished, digits: int
+) -> Iterator[tuple[list[fmpq], int]]:
+    """Duals and by how many digits to shrink them: where the optimal dual is not unique, round numbers come first."""
+    base = [rational(c) for c in found.dual]
+    if not found.regular:
+        yield [round_number(c) for c in base], digits + 3
+        if lost_digits(basis) <= 6:
+            transform = np.array([[float(e.mid()) for e in row] for row in basis.transform.tolist()])
+            simple = simple_dual(basis.panels, transform, contacts.value)
+            if simple is not None:
+                yield [round_number(rational(arb(float(c))), 5) for c in simple], digits + 3
+    for k in (digits + 3, 12, 9, 6, 4, 3, 2, 1):
+        if k <= digits + 3:
+            yield base, k
+
+
+def round_number(x: fmpq, digits: int = 8) -> fmpq:
+    """The rational with a small denominator that agrees with x to some digits, or x itself: a guess to be proved."""
+    best = Fraction(int(x.p), int(x.q)).limit_denominator(720 if digits > 6 else 60)
+    near = fmpq(best.numerator, best.denominator)
+    room = max(fmpq(1), abs(x)) / 10**digits
+    return near if abs(near - x) < room else x
 
 
 def support_points(basis: Basis, contacts: Contacts, found: Polished, places: int) -> list[tuple[int, fmpq]]:
