@@ -182,6 +182,17 @@ def best_measurements(score: NDArray[np.float64], m: int) -> NDArray[np.int64]:
     return np.argsort(-score, kind="stable")[:m]
 
 
+def first_probes(
+    total: int, allowed: Callable[[NDArray[np.int64]], NDArray[np.bool_]]
+) -> NDArray[np.int64]:
+    """At most PROBES hypotheses on the map, evenly spread over the grid, without a list of all of them."""
+    if total <= 8 * PROBES:
+        return probes_among(np.flatnonzero(allowed(np.arange(total))))
+    spread = (np.arange(64 * PROBES) * 0.6180339887498949) % 1.0
+    index = (spread * total).astype(np.int64)
+    return index[allowed(index)][:PROBES]
+
+
 def probes_among(index: NDArray[np.int64]) -> NDArray[np.int64]:
     """At most PROBES of the survivors, evenly spread by the golden section."""
     if index.size <= PROBES:
@@ -210,10 +221,9 @@ def search_bounded(
     across, along = sides = borders(case, pair, counts, inside)
     allowed = functools.partial(admissible, sides, counts)
     everyone = bool(across.all() and along.all())
-    open_to = np.arange(total) if everyone else np.flatnonzero(allowed(np.arange(total)))
     parts, first = (parts_about_the_mean(n), CONTRASTS) if centred else (PLAIN, PLAIN)
     used = np.zeros(n, dtype=np.bool_)
-    score = scores(case, pair, counts, centred, probes_among(open_to), used)
+    score = scores(case, pair, counts, centred, first_probes(total, allowed), used)
     chosen = best_measurements(score, min(FIRST, n // TOGETHER * TOGETHER if centred else n))
     used[chosen] = True
     sums = first_sums(case, pair, counts, centred, chosen)
