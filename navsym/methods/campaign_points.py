@@ -68,7 +68,8 @@ def changes(statement: Assertion) -> Iterator[Change]:
 def with_parts(statement: Assertion, parts: Sequence[sp.Expr]) -> Assertion:
     """The statement with other printed formulas."""
     if isinstance(statement, Optimum):
-        fields, rest = {}, list(parts)
+        fields: dict[str, Any] = {}
+        rest = list(parts)
         for name in FIELDS:
             whole = getattr(statement, name)
             count = len(entries(whole))
@@ -120,10 +121,12 @@ def rows(statement: Assertion, count: int = POINTS) -> list[Row]:
 
 
 def derived_parts(statement: Assertion) -> list[sp.Expr]:
+    """What the printed formulas are compared with: the derived side, or the functional of an optimum."""
     return entries(statement.functional if isinstance(statement, Optimum) else statement.derived)
 
 
 def free_symbols(statement: Assertion) -> list[sp.Symbol]:
+    """The parameters of a statement, in order of their names."""
     found = set().union(*(part.free_symbols for part in (*printed_parts(statement), *derived_parts(statement))))
     if isinstance(statement, Optimum):
         inside = sp.Tuple(*statement.regressors, *statement.interval).free_symbols

@@ -1,0 +1,116 @@
+"""Random claim files: no verdict may be contradicted by the numbers of the text it was given.
+
+The text is evaluated by Python's reader and mpmath. Where both sides have a value, what was PROVED or CERTIFIED
+holds; at the counterexample of what was REFUTED both sides have a value and the statement fails.
+"""
+
+from __future__ import annotations
+
+import random
+
+import mpmath
+import pytest
+from plain_arithmetic import Undefined, value
+from random_claims import random_claim
+
+from navsym.claims import CERTIFIED, PROVED, REFUTED
+from navsym.errors import NavsymError
+from navsym.methods.prove import decide_claim
+from navsym.proof.sandbox import run_many
+from navsym.text.claimfile import claims_from
+
+DIGITS = 240  # 1 - cos(x) of an x of 1e-31 loses a quarter of them
+ZERO = mpmath.mpf(10) ** -70
+FAILS = {
+    "=": lambda d: abs(d) > ZERO, "!=": lambda d: abs(d) <= ZERO, "<": lambda d: d >= -ZERO, "<=": lambda d: d > ZERO,
+    ">": lambda d: d <= ZERO, ">=": lambda d: d < -ZERO,
+}  # fmt: skip
+#: At a random point nothing is to be told of what is exactly zero: only what fails by a margin denies a proof.
+DENIES = {**FAILS, "!=": lambda d: False, "<": lambda d: d > ZERO, ">": lambda d: d < -ZERO}
+
+
+def sides(document, point):
+    row = document["claim"][0]
+    with mpmath.workdps(DIGITS):
+        return value(row["left"], point, DIGITS) - value(row["right"], point, DIGITS)
+
+
+def ends(declared):
+    if isinstance(declared, list):
+        return tuple(value(end, {}, DIGITS) for end in declared)
+    return {"positive": (mpmath.mpf(0), None), "nonnegative": (mpmath.mpf(0), None)}.get(declared, (None, None))
+
+
+def random_point(document, source):
+    point = {}
+    for name, declared in document["symbols"].items():
+        low, high = ends(declared)
+        with mpmath.workdps(DIGITS):
+            share = mpmath.mpf(source.choice([1, 3, 7, 500, 997, source.randint(1, 999)])) / 1000
+            if high is not None:
+                point[name] = low + (high - low) * share
+            else:
+                wide = share / (1 - share)
+                point[name] = wide if low is not None or source.random() < 0.5 else -wide
+    return point
+
+
+def contradicted(document, record, source):
+    """Why the numbers deny the verdict, or None."""
+    relation = document["claim"][0]["relation"]
+    if record.status == REFUTED:
+        point = {**random_point(document, source), **record.counterexample}  # what cancelled may be anything
+        try:
+            d = sides(document, point)
+        except Undefined:
+            return f"no value at {dict(record.counterexample)}"
+        return None if FAILS[relation](d) else f"true at {dict(record.counterexample)}"
+    if record.status in (PROVED, CERTIFIED):
+        seen = 0
+        for _ in range(40):
+            point = random_point(document, source)
+            try:
+                d = sides(document, point)
+            except Undefined:
+                continue
+            seen += 1
+            if DENIES[relation](d):
+                return f"{record.status}, and the difference is {mpmath.nstr(d, 5)} at {point}"
+        if not seen and not record.assumptions:
+            return f"{record.status} without assumptions, and no value anywhere"
+    return None
+
+
+def judged(document):
+    try:
+        (claim,) = claims_from(document, "f").claims
+    except NavsymError:
+        return None
+    return decide_claim(claim)
+
+
+def attack(seed, count, seconds=5):
+    source = random.Random(seed)
+    documents = [random_claim(source) for _ in range(count)]
+    statuses, found = {}, []
+    for outcome in run_many(judged, documents, 2, seconds):
+        verdict = outcome.value
+        status = getattr(verdict, "status", "none")
+        statuses[status] = statuses.get(status, 0) + 1
+        why = contradicted(documents[outcome.place], verdict, source) if hasattr(verdict, "status") else None
+        if why:
+            found.append((documents[outcome.place], why))
+    return statuses, found
+
+
+def test_no_verdict_on_a_random_claim_is_contradicted():
+    statuses, found = attack(seed=1, count=150)
+    assert not found, found
+    assert statuses.get(PROVED, 0) > 10 and statuses.get(REFUTED, 0) > 10
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(2, 10))
+def test_no_verdict_on_many_random_claims_is_contradicted(seed):
+    _, found = attack(seed, 1000)
+    assert not found, found

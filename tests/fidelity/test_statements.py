@@ -1,0 +1,288 @@
+"""What is decided is what is printed: every claim's text read back, evaluated by other means, and its units.
+
+1. every formula of every claim goes through the printer and the parser and comes back the same;
+2. the texts of both sides, evaluated by Python's reader and mpmath, agree where the claim holds, and differ
+   at the counterexample where it is refuted; printed numerals agree within half a unit of their last digit;
+3. formulas whose symbols have units are homogeneous in metres, in seconds and in units of the measurement.
+"""
+
+from __future__ import annotations
+
+import importlib
+import json
+from functools import cache
+from pathlib import Path
+
+import mpmath
+import pytest
+import sympy as sp
+from plain_arithmetic import Undefined, value
+
+from navsym.claims import Bound, Equation, Optimum, Property, claims_of
+from navsym.cli.verify import names
+from navsym.methods.verification import sides
+from navsym.proof.equations import entries
+from navsym.proof.pointwise import values_at
+from navsym.proof.sampling import points
+from navsym.text.expression import parse, to_text
+from navsym.text.tokens import LENGTH
+
+ROOT = Path(__file__).resolve().parents[2]
+PAPERS = names()
+CLOSE = mpmath.mpf(10) ** -25
+SHORT = 1_000  # characters of a formula that is looked at in every run
+
+
+@cache
+def claims(paper):
+    return [(claim, claim.derive()) for claim in claims_of(importlib.import_module(f"derivations.{paper}"))]
+
+
+def assertions(paper):
+    """Claims with formulas on both sides."""
+    return [(claim, s) for claim, s in claims(paper) if not isinstance(s, Property)]
+
+
+@cache
+def ledger():
+    records = json.loads((ROOT / "derivations" / "verdicts.json").read_text())["claims"]
+    return {record["id"]: record for record in records}
+
+
+def formulas(statement):
+    """Every expression of a statement, the ends of its ranges included."""
+    fields = ("printed", "derived")
+    if isinstance(statement, Optimum):
+        fields = ("regressors", "functional", "interval", "dual", "support", "weights", "value")
+    found = [part for name in fields for part in entries(getattr(statement, name))]
+    ends = [end for pair in statement.box.values() for end in pair if end is not None]
+    return [*found, *(end for end in (sp.sympify(e, strict=True) for e in ends) if end.is_finite)]
+
+
+# -- 1. printer and parser -------------------------------------------------------------------------
+
+OUTSIDE = (sp.Max, sp.Min, sp.sign)  # not in the language of files
+
+
+@pytest.mark.parametrize("paper", PAPERS)
+def test_every_formula_comes_back_from_its_text(paper):
+    """Short ones in every run; primes and the like are named anew."""
+    not_back = lost_on_the_way(paper, SHORT)
+    assert not not_back, "\n".join(not_back[:20])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("paper", PAPERS)
+def test_every_long_formula_comes_back_from_its_text(paper):
+    """Up to the length that the language of files allows."""
+    not_back = lost_on_the_way(paper, LENGTH)
+    assert not not_back, "\n".join(not_back[:20])
+
+
+def lost_on_the_way(paper, longest):
+    failed = []
+    for claim, statement in assertions(paper):
+        assert len({s.name for s in symbols_in(statement)}) == len(symbols_in(statement)), claim.id
+    for formula in dict.fromkeys(f for _, s in assertions(paper) for f in formulas(s) if not f.has(*OUTSIDE)):
+        renamed, symbols = in_plain_names(formula)
+        text = to_text(renamed)
+        if len(text) <= longest:
+            back = parse(text, symbols)
+            if back != renamed and not same_number(back, renamed):
+                failed.append(f"{formula!s:.80} came back as {back!s:.80}")
+    return failed
+
+
+def symbols_in(statement):
+    return set().union(*(formula.free_symbols for formula in formulas(statement)))
+
+
+def in_plain_names(formula):
+    """The formula in symbols s0, s1, ... that are declared like its own."""
+    ordered = sorted(formula.free_symbols, key=str)
+    plain = [sp.Symbol(f"s{k}", **known.assumptions0) for k, known in enumerate(ordered)]
+    return formula.xreplace(dict(zip(ordered, plain, strict=True))), {s.name: s for s in plain}
+
+
+def same_number(left, right):
+    """Equal balls at points of a box of positive numbers: what differs is only the order of building."""
+    for point in points(sorted(left.free_symbols | right.free_symbols, key=str), {}, 5):
+        values = values_at(point)
+        if not (values.of(left) - values.of(right)).contains(0):
+            return False
+    return True
+
+
+@pytest.mark.parametrize("paper", PAPERS)
+def test_the_ledger_prints_what_is_decided(paper):
+    for claim, statement in claims(paper):
+        record = ledger().get(claim.id)
+        if record is not None:
+            assert (record["printed"], record["derived"]) == sides(statement), claim.id
+
+
+# -- 2. the texts, evaluated by other means -----------------------------------------------------------
+
+
+def texts(statement):
+    """Pairs of texts (printed, derived) of an equation or inequality, entry by entry."""
+    pairs = zip(entries(statement.printed), entries(statement.derived), strict=True)
+    return [(text(p), text(d)) for p, d in pairs if not (p.has(*OUTSIDE) or d.has(*OUTSIDE))]
+
+
+@cache
+def text(formula):
+    """Text of the language of files; names with primes and the like are spelled out."""
+    names = {s: sp.Symbol(plain(s.name), **s.assumptions0) for s in formula.free_symbols if plain(s.name) != s.name}
+    return to_text(formula.xreplace(names))
+
+
+def plain(name):
+    return name.replace("'", "_prime")
+
+
+def differences(statement, point, digits=50, longest=10**6):
+    """printed - derived of every entry that has a value at the point, from the texts alone."""
+    place = {plain(symbol.name): to_text(value) for symbol, value in point.items()}
+    found = []
+    for printed, derived in texts(statement):
+        if len(printed) + len(derived) > longest:
+            continue
+        try:
+            left, right = value(printed, place, digits), value(derived, place, digits)
+        except Undefined:
+            continue
+        with mpmath.workdps(digits):
+            found.append((left - right, max(abs(left), abs(right), 1)))
+    return found
+
+
+def symbols_of(statement):
+    parts = (*entries(statement.printed), *entries(statement.derived))
+    return sorted(set().union(*(part.free_symbols for part in parts)), key=str)
+
+
+DENIED = {
+    "=": lambda d, e: abs(d) > e, "!=": lambda d, e: False, "<": lambda d, e: d > e, "<=": lambda d, e: d > e,
+    ">": lambda d, e: d < -e, ">=": lambda d, e: d < -e,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("paper", PAPERS)
+def test_what_holds_is_not_denied_by_the_numbers_of_its_text(paper):
+    assert compared(paper, SHORT, 2) > 20
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("paper", PAPERS)
+def test_long_formulas_are_not_denied_by_their_numbers_either(paper):
+    assert compared(paper, 10**6, 4) > 20
+
+
+def compared(paper, longest, count):
+    """Number of entries that were compared at points; asserts that none is denied."""
+    seen = 0
+    for claim, statement in assertions(paper):
+        if isinstance(statement, Optimum) or not claim.expect.holds:
+            continue
+        relation = getattr(statement, "relation", "=")
+        room = mpmath.mpf(0)
+        if isinstance(statement, Equation) and statement.tolerance is not None:
+            room = value(to_text(sp.sympify(statement.tolerance, strict=True)), {})
+        for point in points(symbols_of(statement), statement.box, count, seed=5):
+            for difference, size in differences(statement, point, longest=longest):
+                seen += 1
+                assert not DENIED[relation](difference, room + CLOSE * size), (claim.id, point, difference)
+    return seen
+
+
+@pytest.mark.parametrize("paper", PAPERS)
+def test_what_is_refuted_is_denied_at_its_counterexample(paper):
+    for claim, statement in assertions(paper):
+        record = ledger().get(claim.id, {})
+        place = record.get("counterexample")
+        if isinstance(statement, Optimum) or record.get("status") != "REFUTED" or not record.get("difference"):
+            continue
+        symbols = {s.name: s for s in symbols_of(statement)}
+        point = {symbols[name]: parse(text, {}) for name, text in place.items() if name in symbols}
+        low, high = (mpmath.mpf(end) for end in record["difference"])
+        found = [difference for difference, _ in differences(complete(statement, point), point)]
+        assert any(low - CLOSE <= d <= high + CLOSE for d in found), (claim.id, found, record["difference"])
+
+
+def complete(statement, point):
+    """The statement without the entries that have symbols beyond the point."""
+    pairs = zip(entries(statement.printed), entries(statement.derived), strict=True)
+    kept = [(p, d) for p, d in pairs if (p - d).free_symbols | p.free_symbols | d.free_symbols <= set(point)]
+    return type("Kept", (), {"printed": [p for p, _ in kept], "derived": [d for _, d in kept]})
+
+
+# -- 3. units ---------------------------------------------------------------------------------------------
+
+#: Symbol -> powers of metre, second and the unit of the measurement.
+METRE, SECOND, SPEED, NONE, SIGNAL = (1, 0, 0), (0, 1, 0), (1, -1, 0), (0, 0, 0), (0, 0, 1)
+UNITS = {
+    "alpha_beta_filter": {
+        "T": SECOND, "sigma_v": METRE, "a": (1, -2, 0), "r": NONE, "alpha": NONE, "beta": NONE, "Lambda": NONE,
+        "z": NONE,
+    },
+    "guaranteed_velocity": {
+        "T": NONE, "tau": NONE, "v": NONE, "sigma": SIGNAL, "sigma1": SIGNAL, "sigma2": SIGNAL, "zT": SIGNAL,
+        "z0": SIGNAL, "zm": SIGNAL,
+    },
+    "trajectory": {
+        "tau": SECOND, "t": SECOND, "rho": (-1, 0, 0), "radius": METRE, "r": METRE, "a": METRE, "h": METRE,
+        "e": NONE, "latitude": NONE, "longitude": NONE, "phi": NONE, "phi_e": NONE, "lambda_e": NONE,
+        "latitude_rate": (0, -1, 0), "longitude_rate": (0, -1, 0), "radius_rate": SPEED,
+        "V1": SPEED, "V2": SPEED, "V3": SPEED,
+    },
+    "terrain_search": {
+        "t": SECOND, "t_G": SECOND, "t_0": SECOND, "t_k": SECOND, "t_n": SECOND, "Deltat": SECOND,
+        "x": METRE, "y": METRE, "deltax": METRE, "deltay": METRE, "Deltas": METRE, "v_x": SPEED, "v_y": SPEED,
+        "V": SPEED, "deltaV": SPEED, "DeltaVx": SPEED, "DeltaVy": SPEED, "deltaVx": SPEED, "deltaVy": SPEED,
+        "Vi": NONE, "Vj": NONE, "beta": NONE, "alpha": NONE,
+    },
+}  # fmt: skip
+
+
+def homogeneous(formula, units):
+    """True when scaling one base unit by 2 scales the formula by one and the same factor everywhere."""
+    text, symbols = to_text(formula), sorted(formula.free_symbols, key=str)
+    for base in range(3):
+        ratios = set()
+        for k in range(1, 5):
+            point = {s.name: mpmath.mpf(3 + 2 * i + k) / (7 + 3 * i + k * k) for i, s in enumerate(symbols)}
+            scaled = {name: x * mpmath.mpf(2) ** units[name][base] for name, x in point.items()}
+            try:
+                ratios.add(mpmath.nstr(value(text, scaled) / value(text, point), 12))
+            except (Undefined, ZeroDivisionError):
+                continue
+        if len(ratios) > 1:
+            return False
+    return True
+
+
+@pytest.mark.parametrize("paper", UNITS)
+def test_formulas_with_units_are_homogeneous(paper):
+    units, seen = UNITS[paper], 0
+    for claim, statement in assertions(paper):
+        if isinstance(statement, Optimum) or not claim.expect.holds:
+            continue
+        for formula in (*entries(statement.printed), *entries(statement.derived)):
+            if formula.free_symbols and {s.name for s in formula.free_symbols} <= set(units):
+                seen += 1
+                assert homogeneous(formula, units), (claim.id, formula)
+    assert seen >= 10
+
+
+def test_a_sum_of_metres_and_seconds_is_noticed():
+    tau, r = sp.symbols("tau r", positive=True)
+    assert not homogeneous(tau + r, UNITS["trajectory"])
+    assert not homogeneous(sp.sin(tau), UNITS["trajectory"])
+    assert homogeneous(tau * r + 2 * tau * r, UNITS["trajectory"])
+
+
+def test_inequalities_and_optima_are_among_what_is_read_back():
+    kinds = {type(statement) for paper in PAPERS for _, statement in claims(paper)}
+    assert kinds == {Equation, Bound, Optimum, Property}
+    assert sum(len(claims(paper)) for paper in PAPERS) >= 750
