@@ -58,9 +58,11 @@ def condition_number(rows: Rows, *, digits: int = 30, equilibrate: bool = False)
     rows        : (m, n) exact numbers, m >= n and full column rank
     equilibrate : scale the columns to unit length first (their norms may be irrational)
 
-    Raises NotEstimableError when the columns are dependent (the condition number is infinite).
+    Raises DomainError and TooLargeError (digits), and NotEstimableError when the columns are dependent (the condition number is infinite).
     """
-    if not 1 <= digits <= LARGEST_DIGITS:
+    if digits < 1:
+        raise DomainError(f"digits: expected 1 to {LARGEST_DIGITS}; got {digits}; ask for at least one")
+    if digits > LARGEST_DIGITS:
         raise TooLargeError(f"digits: expected 1 to {LARGEST_DIGITS}; got {digits}; ask for fewer")
     found = condition_by_signs(rows, digits=digits, equilibrate=equilibrate)
     return found or condition_by_polynomial(rows, digits=digits, equilibrate=equilibrate)
@@ -90,7 +92,9 @@ def condition_numbers(
 
 
 def check_request(n: int, rho: Fraction, tau: Fraction) -> None:
-    if not 1 <= n <= LARGEST_ORDER:
+    if n < 1:
+        raise DomainError(f"n: expected 1 to {LARGEST_ORDER}; got {n}; choose a positive order")
+    if n > LARGEST_ORDER:
         raise TooLargeError(f"n: expected 1 to {LARGEST_ORDER}; got {n}; choose a smaller order")
     if rho == 0 or tau == 0:
         name = "rho" if rho == 0 else "tau"

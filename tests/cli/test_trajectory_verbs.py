@@ -47,7 +47,9 @@ def test_condition_speaks_to_people(capsys):
 @pytest.mark.parametrize(
     "arguments, kind",
     [
-        (["--n", "0"], "too-large"),
+        (["--n", "0"], "domain"),
+        (["--n", "121"], "too-large"),
+        (["--n", "5", "--digits", "0"], "domain"),
         (["--n", "5", "--tau", "0"], "domain"),
         (["--n", "5", "--rho", "1/0"], "syntax"),
         (["--n", "5", "--tau", "__import__"], "syntax"),
