@@ -19,6 +19,7 @@ from navsym.methods.observability import observe
 from navsym.methods.phases import phases
 from navsym.methods.phases_family import family_of
 from navsym.models.derivation import linear_model
+from navsym.report.latex_math import mathml
 from navsym.text.modelfile import model_from
 
 T, t = sp.Symbol("T", positive=True), sp.Symbol("t", real=True)
@@ -46,6 +47,7 @@ def test_importing_the_nouns_loads_no_engine_and_no_report():
 def test_a_model_shows_its_equations_with_named_states(file):
     shown = linear_model(file)._repr_latex_()
     assert shown.startswith(r"$\displaystyle \frac{d}{d") and r"\text{speed}" in shown and shown.endswith("$")
+    assert r"\text{place} \\ \text{speed}" in shown and "<mtext>speed</mtext>" in mathml(shown.strip("$"))
     assert "0 & 1" in file._repr_latex_()
 
 

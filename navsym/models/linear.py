@@ -89,7 +89,7 @@ class LinearModel:
 
     def _repr_latex_(self) -> str:
         """The equations of the model with named states, for notebooks."""
-        states = r" \\\\ ".join(rf"\text{{{latex_words(name)}}}" for name in self.states)
+        states = r" \\ ".join(rf"\text{{{latex_words(name)}}}" for name in self.states)
         x = rf"\begin{{bmatrix}} {states} \end{{bmatrix}}"
         noise = rf" + {latex_of(self.G)} w" if self.G.cols else ""
         lines = [rf"\frac{{d}}{{d{latex_of(self.time)}}} x = {latex_of(self.F)} x{noise}"]

@@ -28,7 +28,7 @@ SIGNS = {
     "to": "→", "in": "∈", "ldots": "…", "colon": ":", "|": "‖", "circ": "∘", "sum": "∑", "int": "∫", "iint": "∬",
     "{": "{", "}": "}", "%": "%", "top": "⊤", "mid": "∣", "forall": "∀", "dots": "…", "cdots": "⋯",
 }  # fmt: skip
-SPACES = {",": "0.17em", ";": "0.28em", " ": "0.25em", "quad": "1em"}
+SPACES = {",": "0.17em", ";": "0.28em", " ": "0.25em", "quad": "1em", "qquad": "2em"}
 ACCENTS = {"dot": "˙", "hat": "^", "tilde": "~", "bar": "¯", "overline": "¯"}
 BRACKETS = "()[]|./"
 RELATIONS = frozenset(("=", "<", ">", "le", "ge", "ne", "ll", "gg", "approx"))
