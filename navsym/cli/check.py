@@ -13,6 +13,11 @@ from navsym.cli.output import emit, table
 from navsym.errors import EmptyError
 
 LARGEST = 50_000_000
+#: Every key that a certificate has: a file of nothing else is one, even if it lost its kind.
+KEYS = frozenset(
+    "kind left right symbols matrix solution variable rank point rows null expression box bits cells of panels "
+    "functional dual support lower upper contacts radius parameter from to pieces".split()
+)
 
 
 def command(
@@ -47,7 +52,8 @@ def check_folder_file(file: Path) -> list[dict[str, Any]]:
         document = json.loads(file.read_text("utf-8"))
     except (OSError, ValueError):
         return [check_file(file)]
-    return [check_file(file)] if isinstance(document, dict) and "kind" in document else []
+    certificate = isinstance(document, dict) and bool(document) and ("kind" in document or document.keys() <= KEYS)
+    return [check_file(file)] if certificate else []
 
 
 def check_file(path: Path) -> dict[str, Any]:
