@@ -259,6 +259,7 @@ def calls_table(functions: Sequence[ExportedFunction], python: bool = False) -> 
 
 
 def state_record(function: ExportedFunction) -> dict[str, Any] | None:
+    """The state as plain data: program, fields with the argument and the output of each, outputs of the step."""
     if function.state is None:
         return None
     places = {a.name: k for k, a in enumerate(function.called_with)}

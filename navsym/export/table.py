@@ -113,6 +113,7 @@ def as_markdown(document: Record, command: str) -> str:
 
 
 def cell(found: Record) -> str:
+    """What one language measured, in a word."""
     if found["status"] == "verified":
         return f"{found['worst']:.3g}"
     return {"left out": "-", "not executed": "-"}.get(found["status"], found["status"])

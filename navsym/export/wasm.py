@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import importlib.util
 import json
 import sys
 import tempfile
@@ -63,12 +64,8 @@ def page_files(
 
 def compiled(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str) -> bytes:
     """The module; raises MissingEngineError without ziglang."""
-    try:
-        import ziglang  # noqa: F401
-    except ModuleNotFoundError:
-        raise MissingEngineError(
-            "expected ziglang, which compiles to WebAssembly; got none; do: pip install ziglang"
-        ) from None
+    if importlib.util.find_spec("ziglang") is None:
+        raise MissingEngineError("expected ziglang, which compiles to WebAssembly; got none; do: pip install ziglang")
     with tempfile.TemporaryDirectory(prefix="navsym-wasm-") as folder:
         for name, text in c_files(functions, tests, license_).items():
             if not name.startswith("test_"):
