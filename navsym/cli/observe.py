@@ -137,7 +137,7 @@ def as_text(data: Mapping[str, Any]) -> str:
                 [
                     [
                         d["subspace"],
-                        d["condition"]
+                        " and ".join(f"{zero} = 0" for zero in d["zeros"])
                         + (" (excluded by declaration)" if d["excluded_by_declaration"] else ""),
                         "proved" if d["complete"] else "not proved",
                     ]

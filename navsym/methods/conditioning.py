@@ -74,7 +74,7 @@ def condition_numbers(
     """Condition numbers of N_p, N_pN, N_f, N_s (trajectory:table), certified and in double precision.
 
     n        : order of the polynomial motion model, 1 to 120
-    rho, tau : nonzero exact numbers (1/m and s), text is read as a fraction or a decimal
+    rho, tau : exact numbers, rho nonzero (1/m), tau positive (s), text is read as a fraction or a decimal
     """
     rho, tau = Fraction(rho), Fraction(tau)
     check_request(n, rho, tau)
@@ -96,6 +96,8 @@ def check_request(n: int, rho: Fraction, tau: Fraction) -> None:
         raise DomainError(f"n: expected 1 to {LARGEST_ORDER}; got {n}; choose a positive order")
     if n > LARGEST_ORDER:
         raise TooLargeError(f"n: expected 1 to {LARGEST_ORDER}; got {n}; choose a smaller order")
+    if tau < 0:
+        raise DomainError(f"tau: expected a positive step of time; got {tau}; give its length")
     if rho == 0 or tau == 0:
         name = "rho" if rho == 0 else "tau"
         raise DomainError(f"{name}: expected a nonzero number; got 0; the columns of N_p would vanish")

@@ -128,11 +128,15 @@ def measurement_data(measurement: MeasurementObservability) -> dict[str, Any]:
 
 
 def drop_data(drop: RankDrop) -> dict[str, Any]:
-    """One rank drop; the condition holds where all its equations do."""
-    condition = " and ".join(f"{to_text(zero)} = 0" for zero in drop.zeros)
+    """One rank drop. The condition is one polynomial: over real parameters the squares of several sum to zero
+    exactly where all of them vanish; ``zeros`` lists them one by one.
+    """
+    zeros = [to_text(zero) for zero in drop.zeros]
+    text = zeros[0] if len(zeros) == 1 else " + ".join(f"({zero})**2" for zero in zeros)
     return {
         "subspace": drop.subspace,
-        "condition": condition,
+        "condition": f"{text} = 0",
+        "zeros": zeros,
         "complete": drop.complete,
         "excluded_by_declaration": drop.allowed is False,
     }

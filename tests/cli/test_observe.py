@@ -159,3 +159,29 @@ def test_sines_and_cosines_of_a_latitude_are_answered_exactly(tmp_path, capsys):
     data = json.loads(capsys.readouterr().out)
     assert data["rank_drops_complete"] == {"velocity": True, "second": True, "joint": True}
     assert "sin(kappa)" in json.dumps(data["measurements"])
+
+
+def test_a_condition_of_two_equations_is_one_polynomial(tmp_path, capsys):
+    path = tmp_path / "both.toml"
+    path.write_text(
+        """
+[model]
+name   = "both"
+states = ["x", "y", "z"]
+F = [["0", "1", "0"], ["0", "0", "a"], ["0", "0", "0"]]
+[parameters]
+a = "real"
+b = "real"
+[[measurement]]
+name = "one"
+h    = ["1", "0", "0"]
+[[measurement]]
+name = "two"
+h    = ["0", "0", "b"]
+"""
+    )
+    assert run(["observe", str(path), "--json"]) == 0
+    joint = [d for d in json.loads(capsys.readouterr().out)["rank_drops"] if d["subspace"] == "joint"]
+    assert len(joint) == 1 and set(joint[0]["zeros"]) == {"a", "b"}
+    left, right = joint[0]["condition"].split("=")
+    assert sp.expand(sp.sympify(left) - sp.sympify("a**2 + b**2")) == 0 and right.strip() == "0"

@@ -48,6 +48,7 @@ def test_condition_speaks_to_people(capsys):
     "arguments, kind",
     [
         (["--n", "0"], "domain"),
+        (["--n", "5", "--tau", "-1"], "domain"),
         (["--n", "121"], "too-large"),
         (["--n", "5", "--digits", "0"], "domain"),
         (["--n", "5", "--tau", "0"], "domain"),

@@ -13,7 +13,7 @@ from numpy.testing import assert_allclose
 from navsym.errors import DomainError
 from navsym.methods.terrain_experiment import ALGORITHMS, experiment, grounds, read_journal, study
 from navsym.methods.terrain_flights import Setting, course, errors_over, fly, sample_terrain
-from navsym.methods.terrain_table import as_table, rms_interval
+from navsym.methods.terrain_table import as_table, judged, rms_interval
 
 SMALL = Setting(measurements=120, speed=60.0, drift=1.0)
 
@@ -99,6 +99,15 @@ def test_the_study_of_the_command_line_has_a_table_and_a_verdict_for_every_print
         assert verdict["status"] in ("CONFIRMED", "OPEN") and "95 % interval" in verdict["evidence"]
         assert "simulated altimeter" in verdict["scope"]
     json.dumps(document, allow_nan=False)
+
+
+def test_a_wide_interval_confirms_nothing_and_a_miss_refutes_nothing():
+    row = {"flights": 100, "ground": "one map", "measurements": 9, "speed": 1.0, "drift": 1.0, "accelerometers": False}
+    assert str(judged(92.7, 90.0, [80.0, 100.0], "m", row).status) == "CONFIRMED"
+    wide, off = judged(92.7, 90.0, [0.0, 150.0], "m", row), judged(92.7, 50.0, [40.0, 60.0], "m", row)
+    assert str(wide.status) == str(off.status) == "OPEN"
+    assert "too wide" in wide.evidence and "not published" in off.evidence
+    assert str(judged(92.7, 90.0, None, "m", row).status) == "OPEN"
 
 
 def test_with_the_tile_at_hand_the_study_flies_over_one_product_and_matches_the_other():
