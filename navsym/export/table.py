@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import platform
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +19,7 @@ from navsym.export.tools import Said, cortex_m4_sizes, ctest, misra
 Record = dict[str, Any]
 
 
-def closing_table(groups: dict[str, Sequence[ExportedFunction]], targets: Sequence[Target], count: int) -> Record:
+def closing_table(groups: Mapping[str, Sequence[ExportedFunction]], targets: Sequence[Target], count: int) -> Record:
     """Export every group, run every language, ask every tool; the document of ``navsym exports``.
 
     Keys: ``functions`` (name, group, status, claims, bound, languages, misra, cortex_m4_bytes), ``languages`` and
@@ -116,4 +116,4 @@ def cell(found: Record) -> str:
     """What one language measured, in a word."""
     if found["status"] == "verified":
         return f"{found['worst']:.3g}"
-    return {"left out": "-", "not executed": "-"}.get(found["status"], found["status"])
+    return "-" if found["status"] in ("left out", "not executed") else str(found["status"])
