@@ -23,6 +23,7 @@ from navsym.claims.display import card, displayed, latex_of, table
 from navsym.errors import DomainError
 from navsym.methods.guaranteed import solve
 from navsym.methods.phases_closed import Closed, candidates, number, prove
+from navsym.methods.phases_dependent import without_dependent
 from navsym.methods.phases_events import Boundary, boundary
 from navsym.methods.phases_family import Family
 from navsym.methods.phases_range import followed, fraction_of
@@ -74,11 +75,13 @@ class Phases:
     regimes: tuple[Regime, ...]
     boundaries: tuple[Boundary, ...]
     uncovered: tuple[tuple[str, str], ...] = field(default=())
+    ties: tuple[Mapping[str, Any], ...] = field(default=())
 
     def certificates(self) -> list[dict[str, Any]]:
         """Certificates of the regimes without a closed form and of slivers, for ``navsym check``."""
         ranges = [dict(c) for regime in self.regimes for c in regime.certificates]
-        return ranges + [dict(s.certificate) for regime in self.regimes for s in regime.slivers]
+        thin = [dict(s.certificate) for regime in self.regimes for s in regime.slivers]
+        return ranges + thin + [dict(tie) for tie in self.ties]
 
     def _repr_html_(self) -> str:
         """The regimes as a table, for notebooks."""
@@ -114,6 +117,8 @@ def phases(family: Family, lower: sp.Expr, upper: sp.Expr, *, certify: bool = Tr
     Raises DomainError for a range without length, and lengths of the interval below zero.
     """
     need_range(family, lower, upper)
+    between = inside_of(lower, upper)
+    family, ties = without_dependent(family, between)
     singular = singular_values(family, lower, upper)
     inner = [s for s in singular if bool(enclose(s.at - lower) > 0) and bool(enclose(upper - s.at) > 0)]
     cuts = [lower, *(s.at for s in inner), upper]
@@ -124,7 +129,13 @@ def phases(family: Family, lower: sp.Expr, upper: sp.Expr, *, certify: bool = Tr
     changes += [b for part in parts for b in part.boundaries]
     changes.sort(key=lambda b: sp.Rational(b.lower))
     uncovered = [pair for part in parts for pair in part.uncovered]
-    return Phases(family, lower, upper, tuple(regimes), tuple(changes), tuple(uncovered))
+    return Phases(family, lower, upper, tuple(regimes), tuple(changes), tuple(uncovered), ties)
+
+
+def inside_of(lower: sp.Expr, upper: sp.Expr) -> sp.Rational:
+    """A rational value between the ends that no symmetry singles out."""
+    ball = enclose(lower + (upper - lower) * sp.Rational(5, 13), bits=96)
+    return exact(fraction_of(rational(ball)).limit_denominator(10**6))
 
 
 def event(singular: Singular) -> Boundary:

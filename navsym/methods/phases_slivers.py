@@ -16,6 +16,7 @@ from flint import arb, fmpq
 from navsym.errors import NavsymError
 from navsym.methods.phases_family import Family
 from navsym.numeric.exchange import find_contacts
+from navsym.proof.decimals import decimal
 from navsym.proof.enclosure import Problem, interval
 from navsym.proof.optimality import gap
 from navsym.proof.optimality_basis import DependentError, make_basis
@@ -40,7 +41,7 @@ class Sliver:
     certificate: Mapping[str, Any]
 
     def row(self) -> tuple[str, str, str, str]:
-        return fraction(self.start), fraction(self.end), self.lower, self.upper
+        return decimal(self.start, 60), decimal(self.end, 60), self.lower, self.upper
 
 
 def slivers(family: Family, start: fmpq, end: fmpq, depth: int = DEPTH) -> list[Sliver] | None:

@@ -179,6 +179,7 @@ class Vanishing(Moving):
 
 
 def exact_functional(problem: Problem) -> list[fmpq]:
+    """P as rational numbers."""
     return [fmpq(int(sp.Rational(p).p), int(sp.Rational(p).q)) for p in problem.functional]
 
 

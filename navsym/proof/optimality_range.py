@@ -92,6 +92,7 @@ def range_document(problem: Problem, parameter: str, pieces: Sequence[Piece]) ->
 
 
 def fraction(x: fmpq) -> str:
+    """The number as text, a fraction when it is none of the integers."""
     return str(int(x.p)) if x.q == 1 else f"{int(x.p)}/{int(x.q)}"
 
 

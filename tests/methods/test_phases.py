@@ -8,7 +8,7 @@ import pytest
 import sympy as sp
 
 from navsym import checker
-from navsym.errors import DomainError
+from navsym.errors import DomainError, NotEstimableError
 from navsym.methods.phases import phases
 from navsym.methods.phases_family import family_of
 from navsym.text.modelfile import model_from
@@ -137,6 +137,18 @@ def test_a_range_with_a_singular_value_is_split_there():
     answer = phases(family_of(model_from(document), "c", "p"), sp.Integer(1), sp.Integer(3))
     (split,) = [b for b in answer.boundaries if b.at == 2]
     assert "dependent" in split.why
+
+
+def test_an_unknown_that_depends_on_the_others_is_left_out_with_a_certificate():
+    document = {
+        "basis": {"variable": "u", "H": ["1", "u", "1+2*u"], "interval": ["0", "T"]},
+        "parameters": {"T": ["0", "4"]}, "targets": {"seen": ["0", "1", "2"], "hidden": ["0", "1", "1"]},
+    }  # fmt: skip
+    answer = phases(family_of(model_from(document), "seen", "T"), sp.Integer(0), sp.Integer(4))
+    assert {regime.status for regime in answer.regimes} == {"PROVED"} and answer.uncovered == ()
+    assert accepted(answer) == ["identity", "identity"]
+    with pytest.raises(NotEstimableError):
+        phases(family_of(model_from(document), "hidden", "T"), sp.Integer(0), sp.Integer(4))
 
 
 def test_a_parameter_that_the_file_does_not_have_is_refused():
