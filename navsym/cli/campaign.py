@@ -23,10 +23,11 @@ NAMES = {
     "identities": "textbook identities and their near misses",
     "filters": "NEES and NIS over 10,000 runs; every linear case against least squares",
     "fidelity": "what is decided is what is printed: every claim",
+    "checker-mutants": "mutants of the checker itself",
 }
 TESTED = {
     "engines": "tests/engines", "identities": "tests/proof/test_textbook.py", "filters": "tests/honesty",
-    "fidelity": "tests/fidelity",
+    "fidelity": "tests/fidelity", "checker-mutants": "tests/checker/mutants.py",
 }
 INPUTS = {"kills": 200}  # otherwise ten thousand
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import ast
 import functools
+import re
 from fractions import Fraction
 
 import mpmath
@@ -64,6 +65,10 @@ FUNCTIONS = {
 }  # fmt: skip
 
 
+NAME = re.compile(r"(?<![0-9A-Za-z_.])[A-Za-z][A-Za-z0-9_]*")
+KNOWN = {*FUNCTIONS, "atan2", "pi"}
+
+
 def value(text, point, digits=DIGITS):
     """The number that the text means at a point (name -> text or number)."""
     with mpmath.workdps(digits):
@@ -74,7 +79,9 @@ def value(text, point, digits=DIGITS):
 
 @functools.cache
 def tree_of(text):
-    return ast.parse(text.strip(), mode="eval").body
+    """Python's tree of the text; names get a mark, since lambda is one of ours."""
+    marked = NAME.sub(lambda m: m[0] if m[0] in KNOWN else f"v_{m[0]}", text.strip())
+    return ast.parse(marked, mode="eval").body
 
 
 def evaluate(node, point):
@@ -82,7 +89,7 @@ def evaluate(node, point):
         fraction = Fraction(str(node.value))
         return mpmath.mpf(fraction.numerator) / fraction.denominator
     if isinstance(node, ast.Name):
-        return mpmath.pi + 0 if node.id == "pi" else point[node.id]
+        return mpmath.pi + 0 if node.id == "pi" else point[node.id.removeprefix("v_")]
     if isinstance(node, ast.UnaryOp):
         inner = evaluate(node.operand, point)
         return -inner if isinstance(node.op, ast.USub) else inner

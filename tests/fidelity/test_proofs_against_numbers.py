@@ -50,7 +50,7 @@ def random_point(document, source):
             if high is not None:
                 point[name] = low + (high - low) * share
             else:
-                wide = share / (1 - share)
+                wide = 6 * share  # larger ones lose all digits in cosh(u)**2 - sinh(u)**2
                 point[name] = wide if low is not None or source.random() < 0.5 else -wide
     return point
 
@@ -104,7 +104,7 @@ def attack(seed, count, seconds=5):
 
 
 def test_no_verdict_on_a_random_claim_is_contradicted():
-    statuses, found = attack(seed=1, count=150)
+    statuses, found = attack(seed=1, count=100)
     assert not found, found
     assert statuses.get(PROVED, 0) > 10 and statuses.get(REFUTED, 0) > 10
 

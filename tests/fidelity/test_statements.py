@@ -192,7 +192,8 @@ def compared(paper, longest, count):
         for point in points(symbols_of(statement), statement.box, count, seed=5):
             for difference, size in differences(statement, point, longest=longest):
                 seen += 1
-                assert not DENIED[relation](difference, room + CLOSE * size), (claim.id, point, difference)
+                with mpmath.workdps(50):
+                    assert not DENIED[relation](difference, room + CLOSE * size), (claim.id, point, difference)
     return seen
 
 
@@ -205,9 +206,10 @@ def test_what_is_refuted_is_denied_at_its_counterexample(paper):
             continue
         symbols = {s.name: s for s in symbols_of(statement)}
         point = {symbols[name]: parse(text, {}) for name, text in place.items() if name in symbols}
-        low, high = (mpmath.mpf(end) for end in record["difference"])
         found = [difference for difference, _ in differences(complete(statement, point), point)]
-        assert any(low - CLOSE <= d <= high + CLOSE for d in found), (claim.id, found, record["difference"])
+        with mpmath.workdps(50):
+            low, high = (mpmath.mpf(end) for end in record["difference"])
+            assert any(low - CLOSE <= d <= high + CLOSE for d in found), (claim.id, found, record["difference"])
 
 
 def complete(statement, point):
