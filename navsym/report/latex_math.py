@@ -94,11 +94,11 @@ class Reader:
                 above = self.atom()
         kind = ("munder", "mover", "munderover") if large else ("msub", "msup", "msubsup")
         if below and above:
-            return f"<{kind[2]}>{base}{below}{above}</{kind[2]}>{gap}"
+            return f"{gap}<{kind[2]}>{base}{below}{above}</{kind[2]}>{gap}"
         if below or above:
             name = kind[0] if below else kind[1]
-            return f"<{name}>{base}{below or above}</{name}>{gap}"
-        return base + gap
+            return f"{gap}<{name}>{base}{below or above}</{name}>{gap}"
+        return gap + base + gap
 
     def atom(self) -> str:
         token = self.take()
