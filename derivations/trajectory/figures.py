@@ -111,7 +111,7 @@ def sample_scatter(count: int) -> tuple[flint.arb, flint.arb]:
 @claim("experiment.sigma_v.straight.100.noise", expect=CERTIFIED)
 def straight_speed_error_is_not_noise_alone():
     """|V| = 100 m/s, straight course: 0.019 m/s is not within three standard deviations of what noise alone gives."""
-    steps = round((1000 - 168.8) / float(TAU))
+    steps = int((1000 - Fraction("168.8")) / TAU)
     variance, scatter = sample_scatter(steps)
     away = (ball(Fraction("0.019")) ** 2 - variance) / scatter
     return Property(
@@ -127,14 +127,14 @@ def straight_speed_error_is_not_noise_alone():
     )
 
 
-def error_after(state: int, start: float) -> float:
+def error_after(state: int, start: int) -> float:
     """RMS error of speed (2) or acceleration (3) from ``start`` to the end of the run, printed gain, SI units.
 
     The answer to the motion without noise, and the exact variance of the noise beside it.
     """
-    truth = course(100.0, "printed")
+    truth = course(100, "printed")
     states = with_printed_gain(truth, truth.position[1:])
-    late = truth.t[1:] >= start
+    late = truth.t[1:] > start
     exact = (truth.position, truth.speed, truth.acceleration)[state - 1]
     error = (states[:, state - 1] - exact[1:])[late]
     factor = Fraction(math.factorial(state - 1)) / TAU ** (state - 1)
@@ -142,9 +142,9 @@ def error_after(state: int, start: float) -> float:
     return math.sqrt(float((error**2).mean()) + float(noise))
 
 
-def between(state: int, printed: float) -> Finding:
+def between(state: int, printed: Fraction) -> Finding:
     """Whether counting the transient after yawing from some instant on gives the printed figure."""
-    early, late = error_after(state, 2080.2), error_after(state, 2400.0)
+    early, late = error_after(state, 2080), error_after(state, 2400)
     return Finding(
         bool(late < printed < early),
         "run of the printed gain along the course, in double precision",
@@ -158,13 +158,13 @@ def between(state: int, printed: float) -> Finding:
 @claim("experiment.sigma_v.straight.100", expect=CONFIRMED)
 def straight_speed_error():
     """|V| = 100 m/s, straight course: 0.019 m/s comes out when part of the transient after yawing is counted."""
-    return Property(printed=True, derived=between(2, 0.019))
+    return Property(printed=True, derived=between(2, Fraction("0.019")))
 
 
 @claim("experiment.sigma_a.straight.100", expect=CONFIRMED)
 def straight_acceleration_error():
     """|V| = 100 m/s, straight course: 0.003 m/s^2 comes out when part of the transient after yawing is counted."""
-    return Property(printed=True, derived=between(3, 0.003))
+    return Property(printed=True, derived=between(3, Fraction("0.003")))
 
 
 @claim("experiment.figures", expect=OPEN)

@@ -111,9 +111,9 @@ def test_rounding_to_scientific_notation_carries():
 
 
 def test_bad_requests_say_what_is_wrong():
-    with pytest.raises(DomainError, match="n: expected 1 to.*positive"):
+    with pytest.raises(DomainError, match=r"n: expected 1 to.*positive"):
         condition_numbers(0, "1", "1")
-    with pytest.raises(TooLargeError, match="n: expected 1 to.*smaller"):
+    with pytest.raises(TooLargeError, match=r"n: expected 1 to.*smaller"):
         condition_numbers(121, "1", "1")
     with pytest.raises(TooLargeError, match="digits"):
         condition_number(power_rows(3), digits=10**6)
