@@ -9,6 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
 
 import numpy as np
 from flint import arb, arb_mat, fmpq
@@ -113,9 +115,25 @@ def transform_of(values: arb_mat, bits: int) -> arb_mat:
 def make_basis(problem: Problem, bits: int = 192) -> Basis:
     """Orthonormal basis of a problem, with points and bits increased until both suffice.
 
+    The last ones are kept: the same exact expressions have the same basis.
+
     Raises DependentError when the functions look dependent at ``MOST_BITS``, TooLargeError when
     ``LARGEST`` points a panel do not resolve them.
     """
+    if any(panel.values or panel.mix is not None for panel in problem.panels):
+        return made_basis(problem, bits)
+    panels = tuple((p.measurement, p.functions, p.variable, p.start, p.end, p.sigma) for p in problem.panels)
+    return kept_basis(panels, problem.functional, bits)
+
+
+@lru_cache(maxsize=64)
+def kept_basis(panels: tuple[tuple[Any, ...], ...], functional: tuple[Any, ...], bits: int) -> Basis:
+    """:func:`made_basis` for exact expressions, which are compared as a whole."""
+    return made_basis(Problem(tuple(Panel(*fields) for fields in panels), functional), bits)
+
+
+def made_basis(problem: Problem, bits: int) -> Basis:
+    """The basis, computed."""
     panels = problem.panels
     count = FIRST
     while True:
