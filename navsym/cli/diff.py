@@ -7,7 +7,7 @@ from typing import Annotated, Any
 import typer
 
 from navsym.cli.output import emit, table
-from navsym.errors import ExpressionSyntaxError
+from navsym.errors import ExpressionSyntaxError, ShapeError
 
 
 def command(
@@ -28,10 +28,25 @@ def command(
     """
     from navsym.export.differences import compare, formulas_of
 
+    kinds = [kind_of(text) for text in (old, new)]
+    if kinds[0] != kinds[1] and "a model file" in kinds:
+        message = f"expected two things of one kind; got {kinds[0]} and {kinds[1]}; compare each with its own kind"
+        raise ShapeError(message, where=new)
     ranges = dict(read_range(text) for text in box or [])
     document = compare(formulas_of(old, ranges), formulas_of(new, ranges))
     emit(document, as_json=json_, text=lambda: as_text(document))
     return 0 if document["equal"] else 1
+
+
+def kind_of(text: str) -> str:
+    """What a word of the command line names; a file that is no TOML is refused."""
+    from pathlib import Path
+
+    from navsym.text.tomlfile import read_toml
+
+    if not text.endswith(".toml"):
+        return "a formula or a folder"
+    return "a claim file" if "claim" in read_toml(Path(text)) else "a model file"
 
 
 def read_range(text: str) -> tuple[str, tuple[Any, Any]]:
