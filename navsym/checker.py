@@ -217,6 +217,7 @@ class Exact:
 def exactly(symbols: Any, test: Callable[[Exact, dict[str, Any]], None]) -> None:
     """Run a test in an algebra; again in a finer or larger one when it asks for that."""
     names, unit, size = array(symbols, label), 1, 8
+    need(len(set(names)) == len(names), "a symbol named twice")
     while unit <= 5040 and size <= 1024:
         try:
             algebra = Exact(unit, size)
@@ -475,7 +476,7 @@ def range_of(item: Any) -> None:
 
 KINDS: dict[str, Callable[[Any], Any]] = {
     "identity": identity, "exponential": matrix_exponential, "rank": rank, "positivity": positivity, "gap": gap,
-    "sliver": gap, "touch": touch, "range": range_of, "all": lambda item: array(fields(item, "kind of")[1], check)}
+    "sliver": gap, "touch": touch, "range": range_of, "all": lambda item: array(fields(item, "kind of")[1] or None, check)}
 
 def check(item: Any) -> str:
     """The kind of a certificate that holds; raises Refused with the reason otherwise."""

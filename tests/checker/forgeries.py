@@ -108,6 +108,8 @@ FORGERIES = [
     (IDENTITY, ["left"], ..., "expected exactly the keys"),
     (ALL, ["of", 0, "right"], "sin(a)", "the sides differ"),
     (ALL, ["of", 1], 7, "expected a text"),
+    (ALL, ["of"], [], "entries"),
+    (IDENTITY, ["symbols"], ["a", "a"], "named twice"),
     (EXPONENTIAL, ["solution", 0, 1], "sin(w*t)", "X' differs"),
     (EXPONENTIAL, ["solution"], [["2*cos(w*t)", "2*sin(w*t)/w"], ["-2*w*sin(w*t)", "2*cos(w*t)"]], "X\\(0\\) differs"),
     (EXPONENTIAL, ["variable"], "w", "not a symbol"),
