@@ -226,6 +226,9 @@ def search_bounded(
     score = scores(case, pair, counts, centred, first_probes(total, allowed), used)
     chosen = best_measurements(score, min(FIRST, n // TOGETHER * TOGETHER if centred else n))
     used[chosen] = True
+    if centred:
+        # Four neighbours on the track err alike, and their mean would take it all: spread every four.
+        chosen = np.sort(chosen).reshape(TOGETHER, -1).T.ravel()
     sums = first_sums(case, pair, counts, centred, chosen)
     if not everyone:
         shut_out(sums, across, along)
