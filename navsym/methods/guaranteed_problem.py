@@ -10,7 +10,14 @@ import sympy as sp
 from flint import arb, fmpq
 
 from navsym.errors import DomainError, EmptyError, NotFiniteError, ShapeError
-from navsym.methods.guaranteed_varying import ERROR, error_bound, regressors_of, steps_of, varying
+from navsym.methods.guaranteed_varying import (
+    ERROR,
+    error_bound,
+    on_rational_interval,
+    regressors_of,
+    steps_of,
+    varying,
+)
 from navsym.models.linear import LinearModel, exact_entry
 from navsym.models.transition import regressors, transition_matrix
 from navsym.proof.balls import enclose
@@ -153,20 +160,31 @@ def from_file(found: ModelFile | BasisFile, target: str | None = None) -> Guaran
         return GuaranteedProblem((stretch,), functional, found.sigma, found.variable, target=name)
     if found.T is None:
         raise EmptyError("expected the length of the interval; got no [interval]; add T", where="interval.T")
-    stretches, error = varying_stretches(found) if varying(found) else (stretches_of(found), sp.S.Zero)
+    stretches, error = all_stretches(found)
     return GuaranteedProblem(
         stretches, functional, tuple(m.sigma for m in found.measurements), found.time,
         tuple(m.name for m in found.measurements), name, error,
     )  # fmt: skip
 
 
-def varying_stretches(found: ModelFile) -> tuple[tuple[Stretch, ...], sp.Rational]:
-    """Polynomial regressors where F depends on the time, and the bound of their error."""
+def all_stretches(found: ModelFile) -> tuple[tuple[Stretch, ...], sp.Rational]:
+    """Regressors and the bound of their error: exact where exp(F t) has a closed form."""
+    if not varying(found):
+        stretches = stretches_of(found)
+        if not any(h.has(sp.RootSum) for stretch in stretches for row in stretch.rows for h in row):
+            return stretches, sp.S.Zero
+    return polynomial_stretches(found)
+
+
+def polynomial_stretches(found: ModelFile) -> tuple[tuple[Stretch, ...], sp.Rational]:
+    """Polynomial regressors and the bound of their error."""
     if not found.measurements:
         raise EmptyError("expected a measurement; got none; add a [[measurement]]", where="measurement")
-    made = [(step, *regressors_of(found, step)) for step in steps_of(found)]
+    moved, shift = on_rational_interval(found)
+    made = [(step, *regressors_of(moved, step, shift)) for step in steps_of(moved)]
+    ends = [sp.S.Zero, *(sp.Rational(str(step.end)) + shift for step, _, _ in made)]
     stretches = tuple(
-        Stretch(sp.Rational(str(step.start)), sp.Rational(str(step.end)), rows) for step, rows, _ in made
+        Stretch(start, end, rows) for start, end, (_, rows, _) in zip(ends[:-1], ends[1:], made, strict=True)
     )
     return stretches, sp.Rational(str(error_bound([bound for _, _, bound in made])))
 

@@ -1,4 +1,7 @@
-"""Regressors of a model whose F depends on the time: polynomials with a proved error, by Taylor integration.
+"""Regressors without a closed form: polynomials with a proved error, by Taylor integration.
+
+They are needed where F depends on the time, and where its characteristic polynomial has a factor whose roots
+no formula of the language gives.
 
 ``Psi(tau) = Phi(tau, T)`` satisfies ``dPsi/dtau = F(tau) Psi`` with ``Psi(T) = I``. From the right end e of a
 step it is expanded in ``s = e - tau``: ``(k + 1) Psi_{k+1} = -sum_i F_i Psi_{k-i}``, with the coefficient of the
@@ -9,7 +12,7 @@ Moore, Interval Analysis, chapter 11.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import sympy as sp
 from flint import arb, arb_mat, arb_series, fmpq
@@ -45,6 +48,19 @@ class Step:
 def varying(found: ModelFile) -> bool:
     """True when F contains the time."""
     return any(found.time in piece.F.free_symbols for piece in found.pieces)
+
+
+def on_rational_interval(found: ModelFile) -> tuple[ModelFile, sp.Expr]:
+    """The model on [0, S], S rational, and T - S: what F without the time does depends on T - t alone.
+
+    Where T is rational, where F depends on the time or is given piece by piece, the model itself and zero.
+    """
+    assert found.T is not None
+    if found.T.is_Rational or varying(found) or len(found.pieces) > 1:
+        return found, sp.S.Zero
+    above = rational(enclose(found.T).upper())
+    S = sp.Rational(int(above.p), int(above.q))
+    return replace(found, T=S, pieces=(replace(found.pieces[0], end=None),)), found.T - S
 
 
 def steps_of(found: ModelFile) -> list[Step]:
@@ -144,14 +160,16 @@ def norm(A: Matrix) -> arb:
     return max((sum((abs(a).upper() for a in row), arb(0)).upper() for row in A), key=lambda e: float(e.mid()))
 
 
-def regressors_of(found: ModelFile, step: Step) -> tuple[tuple[tuple[sp.Expr, ...], ...], arb]:
-    """``h_j(t) Psi(t)`` on a step, with :data:`ERROR` added, and the bound of that error."""
+def regressors_of(
+    found: ModelFile, step: Step, shift: sp.Expr
+) -> tuple[tuple[tuple[sp.Expr, ...], ...], arb]:
+    """``h_j(t) Psi(t)`` on a step moved by ``shift``, with :data:`ERROR` added, and the bound of that error."""
     n = len(found.states)
-    local = sp.Rational(int(step.end.p), int(step.end.q)) - found.time
+    local = sp.Rational(int(step.end.p), int(step.end.q)) + shift - found.time
     Psi = [[horner(c, local) for c in row] for row in step.polynomials]
     rows, bound = [], arb(0)
     for measurement in found.measurements:
-        sizes = [enclose_on(h, found.time, step) for h in measurement.h]
+        sizes = [enclose_on(h, found.time, step, shift) for h in measurement.h]
         bound = max(bound, (sum(sizes, arb(0)) * step.error).upper(), key=lambda e: float(e.mid()))
         rows.append(
             # Unevaluated zeros are left out: sympy would study the signs of long polynomials for them.
@@ -167,9 +185,10 @@ def horner(c: list[fmpq], at: sp.Expr) -> sp.Expr:
     return value
 
 
-def enclose_on(h: sp.Expr, time: sp.Symbol, step: Step) -> arb:
-    """Largest modulus of h on a step."""
-    return abs(enclose(h, {time: interval(step.start, step.end)}, bits=BITS)).upper()
+def enclose_on(h: sp.Expr, time: sp.Symbol, step: Step, shift: sp.Expr) -> arb:
+    """Largest modulus of h on a step moved by ``shift``."""
+    place = interval(step.start, step.end) + enclose(shift, bits=BITS)
+    return abs(enclose(h, {time: place}, bits=BITS)).upper()
 
 
 def error_bound(bounds: list[arb]) -> fmpq:
