@@ -58,7 +58,8 @@ def condition_number(rows: Rows, *, digits: int = 30, equilibrate: bool = False)
     rows        : (m, n) exact numbers, m >= n and full column rank
     equilibrate : scale the columns to unit length first (their norms may be irrational)
 
-    Raises DomainError and TooLargeError (digits), and NotEstimableError when the columns are dependent (the condition number is infinite).
+    Raises DomainError and TooLargeError (digits), and NotEstimableError when the columns are dependent (the
+    condition number is infinite).
     """
     if digits < 1:
         raise DomainError(f"digits: expected 1 to {LARGEST_DIGITS}; got {digits}; ask for at least one")
