@@ -58,8 +58,8 @@ def worst(equation: str, equations: Sequence[str], records: Sequence[Mapping[str
 
 def phases() -> Figure:
     """Guaranteed deviation of the drift by the length of the interval, every regime proved."""
-    from navsym.methods.phases import phases as solved
-    from navsym.methods.phases_family import family_of
+    from navsym.methods.phases.continuation import phases as solved
+    from navsym.methods.phases.family import family_of
     from navsym.text.modelfile import model_from
 
     family = family_of(model_from(CHANNEL), "drift", "T")
@@ -113,8 +113,8 @@ def ladder() -> Figure:
 
 def modes() -> Figure:
     """Mode probabilities of the pulsating filter on a simulated switching signal."""
-    from navsym.methods import multimodel_study as study
-    from navsym.methods.multimodel import run
+    from navsym.methods.multimodel import study
+    from navsym.methods.multimodel.filters import run
     from navsym.models.modes import MODES
 
     models = study.schuler_bank()
@@ -125,9 +125,9 @@ def modes() -> Figure:
 
 def surface() -> Figure:
     """The criterion over positions on shaded relief, the track and the fix."""
-    from navsym.methods.terrain import criteria, prepare
-    from navsym.methods.terrain_experiment import GRID
-    from navsym.methods.terrain_flights import Setting, course, fly, sample_terrain
+    from navsym.methods.terrain.experiment import GRID
+    from navsym.methods.terrain.flights import Setting, course, fly, sample_terrain
+    from navsym.methods.terrain.search import criteria, prepare
 
     terrain = sample_terrain()
     setting = Setting(measurements=260, speed=60.0, drift=0.0)
@@ -142,8 +142,8 @@ def surface() -> Figure:
 
 def errors() -> Figure:
     """An error of the northern speed with the ribbon that the smoother claims."""
-    from navsym.methods.trajectory_estimate import Settings, estimate
-    from navsym.methods.trajectory_tracks import track_of
+    from navsym.methods.trajectory.estimate import Settings, estimate
+    from navsym.methods.trajectory.tracks import track_of
 
     t, radius = np.arange(0.0, 240.0, 1.0), 6_371_000.0
     random = np.random.default_rng(5)
@@ -161,7 +161,7 @@ def errors() -> Figure:
 def conditions() -> Figure:
     """Condition numbers of N_f: certified, as printed, and in double precision."""
     from derivations.trajectory import table
-    from navsym.methods.conditioning import condition_numbers
+    from navsym.methods.conditioning.numbers import condition_numbers
 
     orders = np.array([2, 3, 4, 5, 10, 15, 19, 20])
     found = [condition_numbers(int(n), "1/6371000", "1/5", digits=15)["N_f"] for n in orders]

@@ -27,11 +27,11 @@ import sympy as sp
 from ipywidgets import FloatSlider, interact
 
 from navsym.cli.main import run as navsym
-from navsym.methods.guaranteed import solve
-from navsym.methods.guaranteed_compare import compare, realise, search_correlations
-from navsym.methods.guaranteed_many import values_for_lengths
-from navsym.methods.phases import phases
-from navsym.methods.phases_family import family_of
+from navsym.methods.guaranteed.compare import compare, realise, search_correlations
+from navsym.methods.guaranteed.many import values_for_lengths
+from navsym.methods.guaranteed.solver import solve
+from navsym.methods.phases.continuation import phases
+from navsym.methods.phases.family import family_of
 from navsym.text.modelfile import model_from
 
 CHANNEL = {

@@ -33,12 +33,12 @@ from derivations.joint_correction import section2_groups as groups
 from derivations.joint_correction import section3_gains as analysis
 from navsym.claims import claims_of
 from navsym.cli.main import run as navsym
-from navsym.methods import two_stage_ins as experiment
-from navsym.methods import two_stage_real as aiding
-from navsym.methods.observability import observe
-from navsym.methods.observability_loci import rank_drops
-from navsym.methods.observability_split import splits
-from navsym.methods.two_stage_flight import EARTH_RADIUS, SCHULER_RATE, great_circle
+from navsym.methods.observability.chains import observe
+from navsym.methods.observability.loci import rank_drops
+from navsym.methods.observability.split import splits
+from navsym.methods.two_stage import ins as experiment
+from navsym.methods.two_stage import real as aiding
+from navsym.methods.two_stage.flight import EARTH_RADIUS, SCHULER_RATE, great_circle
 from navsym.models.inertial import full_model, joint_model, position_group, velocity_group
 from navsym.report.notebook import require, show
 

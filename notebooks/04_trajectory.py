@@ -30,9 +30,20 @@ from derivations import trajectory as paper
 from derivations.trajectory import algorithm, earth, experiment, gain, motion, remarks, scaling, table
 from navsym.claims import claims_of
 from navsym.cli.main import run as navsym
-from navsym.methods.conditioning import condition_numbers
-from navsym.methods.conditioning_scaling import best_scaling
-from navsym.methods.trajectory import (
+from navsym.methods.conditioning.numbers import condition_numbers
+from navsym.methods.conditioning.scaling import best_scaling
+from navsym.methods.trajectory.estimate import METHODS, Settings, estimate
+from navsym.methods.trajectory.experiment import (
+    ORDER,
+    TAU,
+    course,
+    measured,
+    with_printed_gain,
+)  # fmt: skip
+from navsym.methods.trajectory.experiment import (
+    experiment as rerun,
+)
+from navsym.methods.trajectory.inversion import (
     Start,
     Tuning,
     first_stage_model,
@@ -41,18 +52,7 @@ from navsym.methods.trajectory import (
     scaled_model,
     windowed_filter,
 )  # fmt: skip
-from navsym.methods.trajectory_estimate import METHODS, Settings, estimate
-from navsym.methods.trajectory_experiment import (
-    ORDER,
-    TAU,
-    course,
-    measured,
-    with_printed_gain,
-)  # fmt: skip
-from navsym.methods.trajectory_experiment import (
-    experiment as rerun,
-)
-from navsym.methods.trajectory_tracks import track_of
+from navsym.methods.trajectory.tracks import track_of
 from navsym.report.notebook import explore, require, show
 from navsym.text.readers_tracks import read_track
 

@@ -38,11 +38,10 @@ from derivations.multistructure import (
 )
 from navsym.claims import claims_of
 from navsym.cli.main import run as navsym
-from navsym.methods import multimodel_road as road
-from navsym.methods import multimodel_study as study
-from navsym.methods.multimodel import run
-from navsym.methods.multimodel_bank import bank
-from navsym.methods.multimodel_schemes import filters_at, scheme
+from navsym.methods.multimodel import road, study
+from navsym.methods.multimodel.bank import bank
+from navsym.methods.multimodel.filters import run
+from navsym.methods.multimodel.schemes import filters_at, scheme
 from navsym.models.modes import MODES
 from navsym.report.notebook import require, show
 

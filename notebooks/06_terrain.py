@@ -29,14 +29,14 @@ from derivations import terrain_search as paper
 from derivations.terrain_search import cost, crossing, directions, experiment, extremes, problem, solution
 from navsym.claims import claims_of
 from navsym.cli.main import run as navsym
-from navsym.methods.terrain import criteria, prepare, search_full, search_position
-from navsym.methods.terrain_accuracy import accuracy_map
-from navsym.methods.terrain_centre import information, slopes
-from navsym.methods.terrain_experiment import GRID
-from navsym.methods.terrain_experiment import experiment as rerun
-from navsym.methods.terrain_flights import Setting, course, fly, sample_terrain
-from navsym.methods.terrain_refine import refine
-from navsym.methods.terrain_sequential import search_sequential
+from navsym.methods.terrain.accuracy import accuracy_map
+from navsym.methods.terrain.centre import information, slopes
+from navsym.methods.terrain.experiment import GRID
+from navsym.methods.terrain.experiment import experiment as rerun
+from navsym.methods.terrain.flights import Setting, course, fly, sample_terrain
+from navsym.methods.terrain.refine import refine
+from navsym.methods.terrain.search import criteria, prepare, search_full, search_position
+from navsym.methods.terrain.sequential import search_sequential
 from navsym.models.terrain_track import Track
 from navsym.report.notebook import require, show
 

@@ -29,9 +29,9 @@ import sympy as sp
 
 from navsym.claims import Optimum
 from navsym.cli.main import run
-from navsym.methods.guaranteed import solve
-from navsym.methods.guaranteed_problem import from_file
-from navsym.methods.observability import observe
+from navsym.methods.guaranteed.problem import from_file
+from navsym.methods.guaranteed.solver import solve
+from navsym.methods.observability.chains import observe
 from navsym.models.derivation import linear_model
 from navsym.proof.ladder import decide
 from navsym.report.notebook import explore

@@ -13,11 +13,11 @@ import sympy as sp
 from derivations import alpha_beta_filter
 from navsym.claims import REFUTED, Bound, Equation, Finding, Optimum, Property, Verdict, claims_of
 from navsym.claims.display import latex_of
-from navsym.methods.guaranteed import solve
-from navsym.methods.guaranteed_problem import from_file
-from navsym.methods.observability import observe
-from navsym.methods.phases import phases
-from navsym.methods.phases_family import family_of
+from navsym.methods.guaranteed.problem import from_file
+from navsym.methods.guaranteed.solver import solve
+from navsym.methods.observability.chains import observe
+from navsym.methods.phases.continuation import phases
+from navsym.methods.phases.family import family_of
 from navsym.models.derivation import linear_model
 from navsym.report.latex_math import mathml
 from navsym.text.modelfile import model_from

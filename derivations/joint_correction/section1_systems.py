@@ -11,8 +11,8 @@ from functools import cache
 
 import sympy as sp
 
-from navsym.methods.observability import Observability, observe
-from navsym.methods.observability_split import inverse
+from navsym.methods.observability.chains import Observability, observe
+from navsym.methods.observability.split import inverse
 from navsym.models.linear import LinearModel
 
 p = sp.Symbol("p", real=True)

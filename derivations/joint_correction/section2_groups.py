@@ -13,8 +13,8 @@ from functools import cache
 import sympy as sp
 
 from navsym.claims import REFUTED, Claim, Equation, Finding, Property, claim
-from navsym.methods.observability import observe
-from navsym.methods.observability_loci import rank_drops
+from navsym.methods.observability.chains import observe
+from navsym.methods.observability.loci import rank_drops
 from navsym.models.inertial import (
     EARTH,
     FULL,

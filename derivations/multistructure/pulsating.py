@@ -221,8 +221,8 @@ def near_moments():
 
 def memory(cases):
     """Floats that the one-pass filter keeps beyond one Kalman filter, measured for (modes, states)."""
-    from navsym.methods.multimodel_bank import bank
-    from navsym.methods.multimodel_memory import floats_in_use
+    from navsym.methods.multimodel.bank import bank
+    from navsym.methods.multimodel.memory import floats_in_use
 
     extra = []
     for modes, n in cases:

@@ -8,7 +8,7 @@ from itertools import pairwise
 import sympy as sp
 
 from navsym.claims import CERTIFIED, REFUTED, Bound, Equation, Finding, Property, claim
-from navsym.methods.conditioning import condition_number
+from navsym.methods.conditioning.numbers import condition_number
 from navsym.models import earth_motion as motion
 
 rho, tau, t = sp.symbols("rho tau t", positive=True)

@@ -15,8 +15,8 @@ from derivations.trajectory.table import (
     true_value,
 )
 from navsym.claims import CERTIFIED, REFUTED, Equation, Finding, Property, claim
-from navsym.methods.conditioning import condition_number
-from navsym.methods.trajectory_experiment import scaling_changes_rounding
+from navsym.methods.conditioning.numbers import condition_number
+from navsym.methods.trajectory.experiment import scaling_changes_rounding
 from navsym.models.earth_motion import observability_rows
 
 RADIUS = Fraction(6371000)

@@ -10,7 +10,7 @@ from fractions import Fraction
 from functools import lru_cache
 
 from navsym.claims import CERTIFIED, REFUTED, Claim, Finding, Property
-from navsym.methods.conditioning import Enclosure, condition_number
+from navsym.methods.conditioning.numbers import Enclosure, condition_number
 from navsym.models.earth_motion import observability_rows, power_rows
 
 RHO = Fraction(1, 6371000)

@@ -70,7 +70,10 @@ def command(
 
 def chosen_batches(name: str, modules: list[str], share: float, inputs: int, seed: int) -> tuple[Any, Any]:
     """The batches of a campaign and their judge."""
-    from navsym.methods import campaign_certificates, campaign_mutants, campaign_parser, campaign_store
+    from navsym.methods.campaigns import certificates as campaign_certificates
+    from navsym.methods.campaigns import mutants as campaign_mutants
+    from navsym.methods.campaigns import parser as campaign_parser
+    from navsym.methods.campaigns import store as campaign_store
 
     if name == "mutants":
         claims = [claim for module in papers(modules) for claim in module.claims]
@@ -87,7 +90,7 @@ def chosen_batches(name: str, modules: list[str], share: float, inputs: int, see
 
 def in_batches(name: str, batches: Any, judge: Any, *, jobs: int, seconds: float, fresh: bool) -> dict[str, Any]:
     """Judge the batches, those first that are not kept from an earlier run."""
-    from navsym.methods.campaign import run_campaign
+    from navsym.methods.campaigns.registry import run_campaign
     from navsym.store import opened
 
     if fresh:

@@ -1,6 +1,6 @@
 """Certified condition numbers of a polynomial motion seen through its position.
 
-The work is done by :func:`navsym.methods.conditioning.document`; this file reads, calls and prints.
+The work is done by :func:`navsym.methods.conditioning.numbers.document`; this file reads, calls and prints.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ def command(
 
     Example: navsym condition --n 20 --tau 0.2 --rho 1/6371000
     """
-    from navsym.methods.conditioning import document
+    from navsym.methods.conditioning.numbers import document
 
     found = document(n, exact("--rho", rho), exact("--tau", tau), digits)
     for line in found["warnings"]:

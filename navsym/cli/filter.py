@@ -10,7 +10,7 @@ import typer
 from navsym.cli.output import emit, remark
 
 if TYPE_CHECKING:
-    from navsym.methods.multimodel import Estimate
+    from navsym.methods.multimodel.filters import Estimate
 
 
 def command(
@@ -36,7 +36,7 @@ def command(
     Example: navsym filter bank.json --method k-pulsating --depth 2
     """
     from navsym.errors import NavsymError
-    from navsym.methods.multimodel import read_bank, run
+    from navsym.methods.multimodel.filters import read_bank, run
     from navsym.text.jsonfile import read_json
 
     document = read_json(file)

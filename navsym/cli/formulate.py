@@ -31,8 +31,8 @@ def command(
 
     Example: navsym formulate examples/schuler-velocity.toml --target drift --set T=1 --to mps --out drift.mps
     """
-    from navsym.methods.guaranteed_formulate import formulate
-    from navsym.methods.guaranteed_problem import from_file
+    from navsym.methods.guaranteed.formulate import formulate
+    from navsym.methods.guaranteed.problem import from_file
     from navsym.text.modelfile import read_model
 
     found = read_model(file, values_of(set_))

@@ -1,6 +1,6 @@
 """Fix a position over a height map from a measured profile.
 
-The work is done by :func:`navsym.methods.terrain_locate.locate`; this file reads, calls and prints.
+The work is done by :func:`navsym.methods.terrain.locate.locate`; this file reads, calls and prints.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ def command(
     Example: navsym locate flight.json --method sequential
     """
     from navsym.errors import NavsymError
-    from navsym.methods.terrain_locate import locate
+    from navsym.methods.terrain.locate import locate
     from navsym.text.jsonfile import read_json
 
     document = read_json(config)

@@ -36,8 +36,8 @@ def command(
 
     Example: navsym observe examples/schuler-velocity.toml
     """
-    from navsym.methods.observability_document import document, examine
-    from navsym.methods.observability_pages import as_html, as_latex
+    from navsym.methods.observability.document import document, examine
+    from navsym.methods.observability.pages import as_html, as_latex
 
     model_file = read(file, set_ or [])
     request = read_split(split) if split is not None else None

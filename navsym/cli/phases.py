@@ -36,8 +36,8 @@ def command(
 
     Example: navsym phases examples/schuler-velocity.toml --target drift --range "0, 2*pi"
     """
-    from navsym.methods.phases import phases
-    from navsym.methods.phases_family import family_of
+    from navsym.methods.phases.continuation import phases
+    from navsym.methods.phases.family import family_of
     from navsym.text.modelfile import read_model
 
     found = read_model(file, values_of(set_))

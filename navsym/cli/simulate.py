@@ -15,10 +15,10 @@ from navsym.cli.output import emit, table
 #: Name -> "module:experiment:as_table". The experiment takes runs, seed, steps and returns plain data;
 #: as_table turns that into headings and rows. Modules are imported when their name is asked for.
 EXPERIMENTS = {
-    "joint_correction": "navsym.methods.two_stage_study:study:as_table",
-    "multistructure": "navsym.methods.multimodel_study:experiment:as_table",
-    "terrain_search": "navsym.methods.terrain_experiment:study:as_table",
-    "trajectory": "navsym.methods.trajectory_study:study:as_table",
+    "joint_correction": "navsym.methods.two_stage.study:study:as_table",
+    "multistructure": "navsym.methods.multimodel.study:experiment:as_table",
+    "terrain_search": "navsym.methods.terrain.experiment:study:as_table",
+    "trajectory": "navsym.methods.trajectory.study:study:as_table",
 }
 
 

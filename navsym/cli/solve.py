@@ -33,8 +33,8 @@ def command(
 
     Example: navsym solve examples/schuler-velocity.toml --target drift --set T=pi/2
     """
-    from navsym.methods.guaranteed import solve
-    from navsym.methods.guaranteed_problem import from_file
+    from navsym.methods.guaranteed.problem import from_file
+    from navsym.methods.guaranteed.solver import solve
     from navsym.text.modelfile import read_model
 
     found = read_model(file, values_of(set_))
@@ -44,7 +44,7 @@ def command(
         raise error.at(str(file)) from None
     document = solution.document()
     if compare:
-        from navsym.methods.guaranteed_compare import compare as beside
+        from navsym.methods.guaranteed.compare import compare as beside
 
         document["compare"] = beside(solution)
     if out is not None:

@@ -32,8 +32,8 @@ def command(
 
     Example: navsym sweep study.json --workers 2
     """
-    from navsym.methods.sweep import sweep_from
-    from navsym.methods.sweep_run import run_sweep
+    from navsym.methods.sweeps.plan import sweep_from
+    from navsym.methods.sweeps.run import run_sweep
     from navsym.text.jsonfile import read_json
 
     sweep = sweep_from(read_json(config))

@@ -1,6 +1,6 @@
 """Velocity and acceleration of a track of positions, with standard deviations.
 
-The work is done by :mod:`navsym.methods.trajectory_document`; this file reads, calls and prints.
+The work is done by :mod:`navsym.methods.trajectory.document`; this file reads, calls and prints.
 """
 
 from __future__ import annotations
@@ -43,9 +43,9 @@ def command(
     Example: navsym track drive.csv --order 3 --sigma 0.5
     """
     from navsym.errors import DomainError, NavsymError
-    from navsym.methods.trajectory_document import document
-    from navsym.methods.trajectory_estimate import Settings
-    from navsym.methods.trajectory_tracks import track_of
+    from navsym.methods.trajectory.document import document
+    from navsym.methods.trajectory.estimate import Settings
+    from navsym.methods.trajectory.tracks import track_of
     from navsym.text.readers_tracks import read_track
 
     # A window asks for the sliding window; every other choice has to be named.

@@ -6,7 +6,7 @@ The measurement is a scalar, so a candidate diagonal q = (q_1, ..., q_n) enters 
     K_j = (g_j + h_j q_j) / S           gain, with g = (Phi P Phi^T) h^T and s0 = h g + R,
 
 and no candidate needs a covariance of its own. Candidates that carry their own estimates are in
-``trajectory_bank``; plain twins of both in ``navsym.methods.trajectory_twins``.
+``trajectory_bank``; plain twins of both in ``navsym.methods.trajectory.twins``.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-#: Criteria by number: see ``navsym.methods.trajectory``.
+#: Criteria by number: see ``navsym.methods.trajectory.inversion``.
 PREDICTED, CORRECTED, LIKELIHOOD = 0, 1, 2
 
 

@@ -13,8 +13,8 @@ def main() -> None:
     import atheris
 
     with atheris.instrument_imports(include=["navsym"]):
-        from navsym.methods.campaign_parser import OUTCOMES, answer
-        from navsym.methods.campaign_readers import READERS
+        from navsym.methods.campaigns.parser import OUTCOMES, answer
+        from navsym.methods.campaigns.readers import READERS
 
     name = sys.argv.pop(1) if len(sys.argv) > 1 else "expression"
     read, _ = READERS[name]

@@ -16,9 +16,9 @@ import highspy
 import numpy as np
 import sympy as sp
 
-from navsym.methods.guaranteed_compare import panel_numbers
-from navsym.methods.guaranteed_many import values_for_lengths
-from navsym.methods.phases_family import Family, U
+from navsym.methods.guaranteed.compare import panel_numbers
+from navsym.methods.guaranteed.many import values_for_lengths
+from navsym.methods.phases.family import Family, U
 from navsym.numeric.exchange import find_contacts
 from navsym.proof.enclosure import Panel, Problem
 from navsym.proof.optimality import certify

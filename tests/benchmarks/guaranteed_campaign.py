@@ -26,9 +26,9 @@ from scipy.optimize import linprog
 
 from navsym import checker
 from navsym.errors import NavsymError
-from navsym.methods.guaranteed import solve
-from navsym.methods.guaranteed_compare import panel_numbers
-from navsym.methods.guaranteed_problem import from_regressors
+from navsym.methods.guaranteed.compare import panel_numbers
+from navsym.methods.guaranteed.problem import from_regressors
+from navsym.methods.guaranteed.solver import solve
 
 t = sp.Symbol("t", real=True)
 #: Certificates of the first problems are kept for alterations.

@@ -18,9 +18,9 @@ import time
 import sympy as sp
 from sympy.polys.matrices import DomainMatrix
 
-from navsym.methods.observability import numerators, observe, proved_rank
-from navsym.methods.observability_linear import reduce_rows
-from navsym.methods.observability_ring import Ring
+from navsym.methods.observability.chains import numerators, observe, proved_rank
+from navsym.methods.observability.linear import reduce_rows
+from navsym.methods.observability.ring import Ring
 from navsym.models.inertial import FULL, full_model
 from navsym.models.linear import LinearModel, observability_matrix
 

@@ -11,9 +11,9 @@ import tempfile
 import time
 from pathlib import Path
 
-from navsym.methods.sweep import Sweep, run_job
-from navsym.methods.sweep_run import computed, run_shard, run_sweep
-from navsym.methods.sweep_shards import cut
+from navsym.methods.sweeps.plan import Sweep, run_job
+from navsym.methods.sweeps.run import computed, run_shard, run_sweep
+from navsym.methods.sweeps.shards import cut
 
 
 def seconds_alone(sweep: Sweep, size: int) -> float:

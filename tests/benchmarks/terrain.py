@@ -16,8 +16,8 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 from numba import njit
 
-from navsym.methods.terrain import criteria, prepare, search_full, search_position
-from navsym.methods.terrain_sequential import search_sequential
+from navsym.methods.terrain.search import criteria, prepare, search_full, search_position
+from navsym.methods.terrain.sequential import search_sequential
 from navsym.models.terrain import TerrainMap
 from navsym.models.terrain_track import Hypotheses, Track
 

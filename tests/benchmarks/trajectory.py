@@ -17,8 +17,8 @@ from fractions import Fraction
 import mpmath
 import numpy as np
 
-from navsym.methods.conditioning import condition_number
-from navsym.methods.trajectory import (
+from navsym.methods.conditioning.numbers import condition_number
+from navsym.methods.trajectory.inversion import (
     Start,
     SteppedModel,
     Tuning,
@@ -28,7 +28,7 @@ from navsym.methods.trajectory import (
     scaled_model,
     windowed_filter,
 )
-from navsym.methods.trajectory_twins import adaptive_filter_slowly, candidates
+from navsym.methods.trajectory.twins import adaptive_filter_slowly, candidates
 from navsym.models.earth_motion import observability_rows, power_rows
 
 ROUNDS = 5

@@ -8,10 +8,12 @@ import sympy as sp
 
 from navsym.claims import Bound, Claim, Equation, Optimum
 from navsym.cli.main import run
-from navsym.methods import campaign_certificates, campaign_mutants, campaign_parser
-from navsym.methods.campaign import Batch, run_campaign
-from navsym.methods.campaign_mutants import differs
-from navsym.methods.campaign_points import changes
+from navsym.methods.campaigns import certificates as campaign_certificates
+from navsym.methods.campaigns import mutants as campaign_mutants
+from navsym.methods.campaigns import parser as campaign_parser
+from navsym.methods.campaigns.mutants import differs
+from navsym.methods.campaigns.points import changes
+from navsym.methods.campaigns.registry import Batch, run_campaign
 from navsym.proof.certificates import identity_certificate
 from navsym.proof.mutants import KINDS, edited, edits
 from navsym.proof.pointwise import values_at

@@ -13,8 +13,8 @@ from pathlib import Path
 
 import pytest
 
-from navsym.methods.sweep import Sweep
-from navsym.methods.sweep_run import run_sweep
+from navsym.methods.sweeps.plan import Sweep
+from navsym.methods.sweeps.run import run_sweep
 
 ROOT = Path(__file__).resolve().parents[2]
 STUDY = Sweep("filter", jobs=24, seed=3, runs=4, steps=6)

@@ -7,9 +7,9 @@ import json
 import pytest
 
 from navsym.cli.main import run
-from navsym.methods import campaign_store
-from navsym.methods.campaign import Batch, run_campaign
-from navsym.methods.campaign_store import TROUBLES, balance, judge_disk, judge_kills
+from navsym.methods.campaigns import store as campaign_store
+from navsym.methods.campaigns.registry import Batch, run_campaign
+from navsym.methods.campaigns.store import TROUBLES, balance, judge_disk, judge_kills
 from navsym.store import Store, StoreError
 
 

@@ -9,10 +9,10 @@ import pytest
 
 from navsym.cli.main import run
 from navsym.errors import DomainError
-from navsym.methods import sweep_shards
-from navsym.methods.sweep import Sweep, run_job, sweep_from
-from navsym.methods.sweep_run import run_sweep
-from navsym.methods.sweep_shards import cut
+from navsym.methods.sweeps import shards as sweep_shards
+from navsym.methods.sweeps.plan import Sweep, run_job, sweep_from
+from navsym.methods.sweeps.run import run_sweep
+from navsym.methods.sweeps.shards import cut
 
 
 @pytest.fixture(autouse=True)
@@ -50,7 +50,7 @@ def test_a_second_run_computes_what_is_missing_only(monkeypatch, tmp_path):
     files[1].unlink()
     files[2].write_bytes(files[2].read_bytes()[:-7])  # cut short
     seen = []
-    monkeypatch.setattr("navsym.methods.sweep_run.run_job", lambda sweep, k: seen.append(k) or run_job(sweep, k))
+    monkeypatch.setattr("navsym.methods.sweeps.run.run_job", lambda sweep, k: seen.append(k) or run_job(sweep, k))
     second = embedded(SMALL, folder=tmp_path / "s")
     assert seen == [2, 3, 4, 5] and second["resumed"] == 2 and second["rows"] == first["rows"]
 
@@ -95,7 +95,7 @@ def test_other_studies_run_too(kind):
 
 
 def test_a_scheduler_that_does_not_answer_is_said(tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr("navsym.methods.sweep_run.SECONDS_TO_CONNECT", 1)
+    monkeypatch.setattr("navsym.methods.sweeps.run.SECONDS_TO_CONNECT", 1)
     config = tmp_path / "c.json"
     config.write_text('{"kind": "filter", "jobs": 2}')
     assert run(["sweep", str(config), "--scheduler", "tcp://127.0.0.1:9", "--json"]) == 3

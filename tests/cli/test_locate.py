@@ -10,7 +10,7 @@ import pytest
 
 from navsym.cli.main import run
 from navsym.errors import NavsymError
-from navsym.methods.terrain_locate import METHODS, locate
+from navsym.methods.terrain.locate import METHODS, locate
 
 KEYS = {
     "method", "position_index", "velocity_index", "criterion", "second_best", "unique",

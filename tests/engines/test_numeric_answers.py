@@ -7,8 +7,8 @@ import pytest
 import sympy as sp
 
 from navsym.claims import PROVED, Bound, Equation
-from navsym.methods.guaranteed import solve
-from navsym.methods.guaranteed_problem import from_regressors
+from navsym.methods.guaranteed.problem import from_regressors
+from navsym.methods.guaranteed.solver import solve
 from navsym.numeric import convex
 from navsym.numeric.convex import LP_SOLVERS, GridProblem, guaranteed_lp, trust_table
 from navsym.proof.ladder import decide

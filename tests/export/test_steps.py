@@ -18,10 +18,10 @@ from navsym.export.algorithms import observer
 from navsym.export.c import files
 from navsym.export.chain import Chain, Link
 from navsym.export.functions import RefusedError
-from navsym.methods.multimodel import run
-from navsym.methods.multimodel_bank import bank
-from navsym.methods.terrain_centre import information
-from navsym.methods.two_stage_observer import held
+from navsym.methods.multimodel.bank import bank
+from navsym.methods.multimodel.filters import run
+from navsym.methods.terrain.centre import information
+from navsym.methods.two_stage.observer import held
 from navsym.models.inertial import joint_model
 from navsym.numeric.kalman import correct, predict
 

@@ -12,8 +12,8 @@ from linear_cases import CASES, STEPS, batch_least_squares, simulate
 from numpy.testing import assert_allclose
 from scipy.stats import binom, chi2
 
-from navsym.methods.multimodel import run
-from navsym.methods.multimodel_bank import bank
+from navsym.methods.multimodel.bank import bank
+from navsym.methods.multimodel.filters import run
 from navsym.numeric import kalman
 
 RUNS = 10_000

@@ -11,15 +11,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from navsym.errors import DomainError, NotEstimableError, ShapeError, TooLargeError
-from navsym.methods.conditioning import condition_number, condition_numbers, document
-from navsym.methods.conditioning_enclosure import Enclosure, scientific
-from navsym.methods.conditioning_exact import (
+from navsym.methods.conditioning.enclosure import Enclosure, scientific
+from navsym.methods.conditioning.exact import (
     condition_by_polynomial,
     roots_above,
     squared_singular_polynomial,
 )
-from navsym.methods.conditioning_perron import condition_by_signs
-from navsym.methods.conditioning_scaling import best_scaling
+from navsym.methods.conditioning.numbers import condition_number, condition_numbers, document
+from navsym.methods.conditioning.perron import condition_by_signs
+from navsym.methods.conditioning.scaling import best_scaling
 from navsym.models.earth_motion import observability_rows, power_rows
 
 fractions = st.fractions(min_value=-5, max_value=5, max_denominator=9)

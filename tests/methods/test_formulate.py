@@ -8,8 +8,8 @@ import pytest
 import sympy as sp
 
 from navsym.errors import DomainError
-from navsym.methods.guaranteed_formulate import FORMATS, KINDS, formulate, grid_of
-from navsym.methods.guaranteed_problem import from_regressors
+from navsym.methods.guaranteed.formulate import FORMATS, KINDS, formulate, grid_of
+from navsym.methods.guaranteed.problem import from_regressors
 
 t = sp.Symbol("t", real=True)
 

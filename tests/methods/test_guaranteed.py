@@ -10,14 +10,14 @@ import sympy as sp
 
 from navsym import checker
 from navsym.errors import DomainError, NavsymError, NotEstimableError, NotFiniteError, ShapeError
-from navsym.methods.guaranteed import solve
-from navsym.methods.guaranteed_compare import (
+from navsym.methods.guaranteed.compare import (
     compare,
     realise,
     search_correlations,
     worst_covariance,
 )
-from navsym.methods.guaranteed_problem import from_file, from_regressors
+from navsym.methods.guaranteed.problem import from_file, from_regressors
+from navsym.methods.guaranteed.solver import solve
 from navsym.text.modelfile import model_from
 
 t = sp.Symbol("t", real=True)

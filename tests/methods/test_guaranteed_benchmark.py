@@ -10,8 +10,8 @@ import pytest
 import sympy as sp
 
 from navsym.errors import DomainError
-from navsym.methods.guaranteed_many import values_for_lengths
-from navsym.methods.phases_family import Family, U
+from navsym.methods.guaranteed.many import values_for_lengths
+from navsym.methods.phases.family import Family, U
 
 FOLDER = Path(__file__).parent.parent / "benchmarks"
 

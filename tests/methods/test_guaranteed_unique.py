@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 import sympy as sp
 
-from navsym.methods.guaranteed import solve
-from navsym.methods.guaranteed_problem import from_regressors
+from navsym.methods.guaranteed.problem import from_regressors
+from navsym.methods.guaranteed.solver import solve
 
 t = sp.Symbol("t", real=True)
 

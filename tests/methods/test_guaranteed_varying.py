@@ -12,8 +12,8 @@ from scipy.optimize import linprog
 
 from navsym import checker
 from navsym.errors import DomainError, NavsymError
-from navsym.methods.guaranteed import solve
-from navsym.methods.guaranteed_problem import from_file
+from navsym.methods.guaranteed.problem import from_file
+from navsym.methods.guaranteed.solver import solve
 from navsym.text.modelfile import model_from
 
 

@@ -7,11 +7,11 @@ import pytest
 from numpy.testing import assert_allclose
 
 from navsym.errors import DomainError, EmptyError, NavsymError, NotFiniteError, ShapeError, TooLargeError
-from navsym.methods import multimodel_steps as steps_module
-from navsym.methods.multimodel import read_bank, run
-from navsym.methods.multimodel_bank import bank
-from navsym.methods.multimodel_exact import Leaf, Model, fractions_kit, run_exactly
-from navsym.methods.multimodel_schemes import SCHEMES, filters_at, scheme
+from navsym.methods.multimodel import steps as steps_module
+from navsym.methods.multimodel.bank import bank
+from navsym.methods.multimodel.exact import Leaf, Model, fractions_kit, run_exactly
+from navsym.methods.multimodel.filters import read_bank, run
+from navsym.methods.multimodel.schemes import SCHEMES, filters_at, scheme
 from navsym.numeric import kalman
 
 METHODS = tuple(SCHEMES)

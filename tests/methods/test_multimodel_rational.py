@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from navsym.methods.multimodel import run
-from navsym.methods.multimodel_bank import bank
-from navsym.methods.multimodel_batch import run_batch
-from navsym.methods.multimodel_exact import Leaf, Model, fractions_kit, run_exactly
-from navsym.methods.multimodel_schemes import SCHEMES, scheme
+from navsym.methods.multimodel.bank import bank
+from navsym.methods.multimodel.batch import run_batch
+from navsym.methods.multimodel.exact import Leaf, Model, fractions_kit, run_exactly
+from navsym.methods.multimodel.filters import run
+from navsym.methods.multimodel.schemes import SCHEMES, scheme
 from navsym.numeric.forms import FORMS
 
 STEPS = 3

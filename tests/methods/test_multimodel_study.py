@@ -8,10 +8,12 @@ import pytest
 from numpy.testing import assert_allclose
 
 from navsym.errors import DomainError, NoDataError, NotFiniteError, ShapeError, TooLargeError
-from navsym.methods import multimodel_memory, multimodel_road, multimodel_study
-from navsym.methods.multimodel import run
-from navsym.methods.multimodel_bank import bank
-from navsym.methods.multimodel_batch import imm_in_numpy, run_batch
+from navsym.methods.multimodel import memory as multimodel_memory
+from navsym.methods.multimodel import road as multimodel_road
+from navsym.methods.multimodel import study as multimodel_study
+from navsym.methods.multimodel.bank import bank
+from navsym.methods.multimodel.batch import imm_in_numpy, run_batch
+from navsym.methods.multimodel.filters import run
 
 
 @pytest.fixture(scope="module")

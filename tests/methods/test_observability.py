@@ -9,9 +9,9 @@ import pytest
 import sympy as sp
 
 from navsym.errors import DomainError, DuplicateError, EmptyError, TooLargeError, UnobservableError
-from navsym.methods.observability import direction_names, need_observable, observe, proved_rank
-from navsym.methods.observability_linear import determinant, determinant_slowly, maximal_minors
-from navsym.methods.observability_ring import Ring
+from navsym.methods.observability.chains import direction_names, need_observable, observe, proved_rank
+from navsym.methods.observability.linear import determinant, determinant_slowly, maximal_minors
+from navsym.methods.observability.ring import Ring
 from navsym.models.linear import LinearModel
 
 a = sp.Symbol("a")

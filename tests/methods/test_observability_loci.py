@@ -9,8 +9,8 @@ import pytest
 import sympy as sp
 
 from navsym.errors import DuplicateError
-from navsym.methods.observability import observe
-from navsym.methods.observability_loci import (
+from navsym.methods.observability.chains import observe
+from navsym.methods.observability.loci import (
     all_drops,
     compositions,
     drops_and_completeness,

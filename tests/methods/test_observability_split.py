@@ -6,8 +6,8 @@ import pytest
 import sympy as sp
 
 from navsym.errors import DomainError, ShapeError, UnobservableError
-from navsym.methods.observability import observe
-from navsym.methods.observability_split import (
+from navsym.methods.observability.chains import observe
+from navsym.methods.observability.split import (
     best_split,
     general_blocks,
     split,

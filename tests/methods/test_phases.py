@@ -9,8 +9,8 @@ import sympy as sp
 
 from navsym import checker
 from navsym.errors import DomainError, NotEstimableError
-from navsym.methods.phases import phases
-from navsym.methods.phases_family import family_of
+from navsym.methods.phases.continuation import phases
+from navsym.methods.phases.family import family_of
 from navsym.text.modelfile import model_from
 from tests.methods.test_guaranteed import VELOCITY
 

@@ -9,16 +9,16 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from navsym.errors import NoDataError, NotEstimableError, OutsideMapError
-from navsym.methods.terrain import (
+from navsym.methods.terrain.incremental import add_measurement, begin, fix
+from navsym.methods.terrain.refine import refine
+from navsym.methods.terrain.search import (
     criteria,
     exact_criterion,
     prepare,
     search_full,
     search_position,
 )
-from navsym.methods.terrain_incremental import add_measurement, begin, fix
-from navsym.methods.terrain_refine import refine
-from navsym.methods.terrain_sequential import search_sequential
+from navsym.methods.terrain.sequential import search_sequential
 from navsym.models.terrain import TerrainMap
 from navsym.models.terrain_track import Hypotheses, Track
 

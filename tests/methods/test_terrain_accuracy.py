@@ -9,8 +9,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 from navsym.errors import DomainError
-from navsym.methods.terrain import search_position
-from navsym.methods.terrain_accuracy import accuracy_map, false_fix_bound
+from navsym.methods.terrain.accuracy import accuracy_map, false_fix_bound
+from navsym.methods.terrain.search import search_position
 from navsym.models.terrain import TerrainMap
 from navsym.models.terrain_track import Hypotheses, Track
 

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 from navsym.errors import NotEstimableError
-from navsym.methods.terrain_centre import demand_estimable, information, quadratic_slowly, slopes
+from navsym.methods.terrain.centre import demand_estimable, information, quadratic_slowly, slopes
 from navsym.models.terrain import TerrainMap
 
 tracks = st.integers(3, 30).flatmap(

@@ -11,9 +11,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 from navsym.errors import DomainError
-from navsym.methods.terrain_experiment import ALGORITHMS, experiment, grounds, read_journal, study
-from navsym.methods.terrain_flights import Setting, course, errors_over, fly, sample_terrain
-from navsym.methods.terrain_table import as_table, judged, rms_interval
+from navsym.methods.terrain.experiment import ALGORITHMS, experiment, grounds, read_journal, study
+from navsym.methods.terrain.flights import Setting, course, errors_over, fly, sample_terrain
+from navsym.methods.terrain.table import as_table, judged, rms_interval
 
 SMALL = Setting(measurements=120, speed=60.0, drift=1.0)
 

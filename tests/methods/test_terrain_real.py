@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from navsym.methods.terrain import search_full
-from navsym.methods.terrain_experiment import GRID, experiment
-from navsym.methods.terrain_flights import Setting, course, fly, terrain_from
+from navsym.methods.terrain.experiment import GRID, experiment
+from navsym.methods.terrain.flights import Setting, course, fly, terrain_from
+from navsym.methods.terrain.search import search_full
 
 
 def product(name):

@@ -13,7 +13,14 @@ from numpy.testing import assert_allclose
 from scipy.linalg import solve_discrete_are, solve_discrete_lyapunov
 
 from navsym.errors import DomainError, NotFiniteError, ShapeError, TooLargeError
-from navsym.methods.trajectory import (
+from navsym.methods.trajectory.experiment import (
+    PRINTED_GAIN,
+    course,
+    experiment,
+    metric_model,
+    scaling_changes_rounding,
+)
+from navsym.methods.trajectory.inversion import (
     CRITERIA,
     Start,
     SteppedModel,
@@ -27,25 +34,18 @@ from navsym.methods.trajectory import (
     steady_gain,
     windowed_filter,
 )
-from navsym.methods.trajectory_experiment import (
-    PRINTED_GAIN,
-    course,
-    experiment,
-    metric_model,
-    scaling_changes_rounding,
-)
-from navsym.methods.trajectory_stability import (
+from navsym.methods.trajectory.stability import (
     gain_stability,
     harmonic_lag,
     stationary_covariance,
 )
-from navsym.methods.trajectory_stability import (
+from navsym.methods.trajectory.stability import (
     metric_scale as metric_balls,
 )
-from navsym.methods.trajectory_stability import (
+from navsym.methods.trajectory.stability import (
     normalised_scale as normalised_balls,
 )
-from navsym.methods.trajectory_twins import adaptive_filter_slowly, one_filter, windowed_filter_slowly
+from navsym.methods.trajectory.twins import adaptive_filter_slowly, one_filter, windowed_filter_slowly
 
 rng = np.random.default_rng(5)
 Z = np.cumsum(rng.normal(size=60)) + rng.normal(size=60)

@@ -12,9 +12,9 @@ from scipy.optimize import linprog
 from scipy.stats import chi2
 
 from navsym.errors import DomainError, EmptyError, ShapeError
-from navsym.methods.trajectory_certificate import minimum_sum_certificate
-from navsym.methods.trajectory_document import document
-from navsym.methods.trajectory_estimate import (
+from navsym.methods.trajectory.certificate import minimum_sum_certificate
+from navsym.methods.trajectory.document import document
+from navsym.methods.trajectory.estimate import (
     METHODS,
     Settings,
     by_method,
@@ -23,8 +23,8 @@ from navsym.methods.trajectory_estimate import (
     minimum_sum,
     minimum_sum_solution,
 )
-from navsym.methods.trajectory_marginal import covariance_root, noise_points
-from navsym.methods.trajectory_tracks import Fit, Noise, Track, isolated_outliers, noise_of, track_of
+from navsym.methods.trajectory.marginal import covariance_root, noise_points
+from navsym.methods.trajectory.tracks import Fit, Noise, Track, isolated_outliers, noise_of, track_of
 from navsym.models.earth_geodesy import cartesian, local_axes
 from navsym.numeric.trajectory_tracks import backward, forward, step_matrices
 

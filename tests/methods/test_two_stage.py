@@ -9,9 +9,9 @@ import pytest
 import sympy as sp
 
 from navsym.errors import DomainError, ShapeError
-from navsym.methods.observability import observe
-from navsym.methods.observability_split import companion, general_blocks, split, two_stage_blocks, unit_row
-from navsym.methods.two_stage import (
+from navsym.methods.observability.chains import observe
+from navsym.methods.observability.split import companion, general_blocks, split, two_stage_blocks, unit_row
+from navsym.methods.two_stage.gains import (
     POLE,
     companion_gains,
     error_dynamics,
@@ -22,7 +22,7 @@ from navsym.methods.two_stage import (
     steady_bias,
     steady_covariance,
 )
-from navsym.methods.two_stage_observer import (
+from navsym.methods.two_stage.observer import (
     casadi_observer,
     closed_loop,
     error_covariance,

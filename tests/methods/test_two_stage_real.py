@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from navsym.errors import EmptyError, UnknownSymbolError
-from navsym.methods.observability import observe
-from navsym.methods.observability_split import split
-from navsym.methods.two_stage_flight import EARTH_RADIUS
-from navsym.methods.two_stage_real import (
+from navsym.methods.observability.chains import observe
+from navsym.methods.observability.split import split
+from navsym.methods.two_stage.flight import EARTH_RADIUS
+from navsym.methods.two_stage.real import (
     FIELDS,
     aiding_model,
     aiding_observer,

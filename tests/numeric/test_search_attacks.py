@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from navsym.errors import NavsymError, NotEstimableError
-from navsym.methods.terrain import exact_criterion, prepare, search_full, search_position
+from navsym.methods.terrain.search import exact_criterion, prepare, search_full, search_position
 from navsym.models.terrain import TerrainMap
 from navsym.models.terrain_track import Hypotheses, Track
 

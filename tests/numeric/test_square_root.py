@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from navsym.errors import DomainError
-from navsym.methods.multimodel_exact import Kit, Leaf, Model, filtered
+from navsym.methods.multimodel.exact import Kit, Leaf, Model, filtered
 from navsym.numeric.forms import FORMS, form_of
 from navsym.numeric.square_root import bierman, potter, root_of, square, triangular, ud_of
 

@@ -1,0 +1,1 @@
+"""Attacks in batches: mutants of formulas, altered certificates, damaged files, killed writers."""

@@ -1,0 +1,1 @@
+"""Condition numbers known with certainty."""

@@ -1,0 +1,1 @@
+"""The worst-correlation estimator of a linear model, with a certificate."""

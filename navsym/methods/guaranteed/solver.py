@@ -1,0 +1,210 @@
+"""The guaranteed estimator of any linear model, with a certificate.
+
+Among the linear unbiased estimators of ``P^T q`` from ``z_j = H_j^T q + r_j``, where the noise has a
+standard deviation of at most sigma_j and any correlation, the best has the guaranteed standard
+deviation ``min sum_j sigma_j integral |Phi_j|`` (Lidov 1964; Martirosyan 2023, (2.7)).
+"""
+
+from __future__ import annotations
+
+import html
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import sympy as sp
+from flint import arb
+
+from navsym.claims import CERTIFIED, OPEN, PROVED, Equation, Status
+from navsym.claims.display import card, shortened, table, verdict_words
+from navsym.errors import NavsymError, NotEstimableError
+from navsym.methods.guaranteed.problem import GuaranteedProblem
+from navsym.methods.guaranteed.unique import several_optimal
+from navsym.methods.guaranteed.varying import ERROR
+from navsym.numeric.exchange import find_contacts
+from navsym.proof.balls import precision
+from navsym.proof.decimals import decimal
+from navsym.proof.enclosure import Problem, rational
+from navsym.proof.ladder import decide
+from navsym.proof.optimality import Certified, certify
+from navsym.proof.optimality_basis import Basis, DependentError, make_basis
+from navsym.text.expression import to_text
+
+MOST_DIGITS = 1000
+
+
+@dataclass(frozen=True, slots=True)
+class Support:
+    """One instant of the estimator: measurement, time and weight as decimal strings."""
+
+    measurement: str
+    at: str
+    weight: str
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class GuaranteedSolution:
+    """An estimator with its enclosed optimum.
+
+    support      : instants and weights
+    dual         : x, decimal strings; ``x . H_j(t)`` is the dual polynomial
+    lower, upper : decimal strings that enclose the guaranteed standard deviation
+    unique       : True or False only when the estimator is proved to be, or not to be, the only optimal one
+    certificate  : plain data for ``navsym check``
+    status       : CERTIFIED when the enclosure is as narrow as was asked for, else OPEN
+    """
+
+    problem: GuaranteedProblem
+    support: tuple[Support, ...]
+    dual: tuple[str, ...]
+    lower: str
+    upper: str
+    unique: bool | None
+    certificate: Mapping[str, Any]
+    status: Status
+    width: float
+
+    @property
+    def weights(self) -> tuple[str, ...]:
+        return tuple(row.weight for row in self.support)
+
+    @property
+    def value(self) -> float:
+        """Middle of the enclosure as a float, for plots."""
+        return (float(self.lower) + float(self.upper)) / 2
+
+    def _repr_html_(self) -> str:
+        """The estimator as a table, for notebooks."""
+        value = self.lower if self.lower == self.upper else f"{shortened(self.lower)} to {shortened(self.upper)}"
+        head = f"{html.escape(self.problem.target)}: {html.escape(value)} {verdict_words(str(self.status))}"
+        rows = [(row.measurement, shortened(row.at), shortened(row.weight)) for row in self.support]
+        return card([head, table(("measurement", "instant", "weight"), rows)], str(self.status))
+
+    def document(self) -> dict[str, Any]:
+        """The answer of ``navsym solve``."""
+        rows = [{"measurement": r.measurement, "at": r.at, "weight": r.weight} for r in self.support]
+        return {
+            "target": self.problem.target, "status": str(self.status),
+            "value": {"lower": self.lower, "upper": self.upper}, "support": rows, "dual": list(self.dual),
+            "unique": self.unique, "certificate": dict(self.certificate),
+        }  # fmt: skip
+
+
+def solve(problem: GuaranteedProblem, digits: int = 30) -> GuaranteedSolution:
+    """The guaranteed estimator and an enclosure of its standard deviation to ``digits`` digits.
+
+    Raises NotEstimableError with a null direction when the measurements do not determine the
+    functional, TooLargeError for functions that cannot be resolved, and a NavsymError of kind
+    ``"domain"`` for digits outside 1 … 1000.
+    """
+    if not 1 <= digits <= MOST_DIGITS:
+        message = f"digits: expected 1 to {MOST_DIGITS}; got {digits}; choose a number between"
+        raise NavsymError(message, kind="domain")
+    exact, kept, basis = independent(problem)
+    found = certify(exact, digits, basis)
+    unique = found.unique
+    if unique is None and not problem.error and several_optimal(exact, find_contacts(basis.panels), found.dual):
+        unique = False
+    status = CERTIFIED if found.width <= 10.0 ** -min(digits, 300) else OPEN
+    dual = ["0"] * len(problem.functional)
+    for k, x in zip(kept, found.dual, strict=True):
+        dual[k] = decimal(x, digits)
+    certificate = with_error(problem, found.certificate)
+    return GuaranteedSolution(
+        problem, support_rows(problem, exact, found, digits), tuple(dual), found.certificate["lower"],
+        found.certificate["upper"], unique, certificate, status, found.width,
+    )  # fmt: skip
+
+
+def with_error(problem: GuaranteedProblem, certificate: Mapping[str, Any]) -> Mapping[str, Any]:
+    """The certificate; where regressors have an error, it holds for every value of it up to its bound."""
+    if not problem.error:
+        return certificate
+    bound = to_text(problem.error)
+    return {**certificate, "kind": "sliver", "parameter": ERROR.name, "from": f"-{bound}", "to": bound}
+
+
+def support_rows(
+    problem: GuaranteedProblem, exact: Problem, found: Certified, digits: int
+) -> tuple[Support, ...]:
+    rows = []
+    with precision(int(3.4 * digits) + 128):
+        for k, v, w in found.support:
+            panel = exact.panels[k]
+            name = problem.measurements[panel.measurement]
+            start, end = panel.time(arb(0)), panel.time(arb(1))
+            rows.append(
+                (
+                    float(panel.time(v).mid()),
+                    Support(name, decimal(start + (end - start) * v, digits), decimal(w, digits)),
+                )
+            )
+    return tuple(row for _, row in sorted(rows, key=lambda pair: (pair[1].measurement, pair[0])))
+
+
+# -- unknowns that the measurements do not tell apart ----------------------------------------------
+
+
+def independent(problem: GuaranteedProblem) -> tuple[Problem, list[int], Basis]:
+    """The problem without unknowns whose regressors depend on the others, exactly.
+
+    Returns the reduced problem, the unknowns that are left and its basis. Raises NotEstimableError.
+    """
+    kept = list(range(len(problem.functional)))
+    while True:
+        exact = restricted(problem, kept)
+        try:
+            return exact, kept, make_basis(exact)
+        except DependentError as found:
+            relation = [recognised(c) for c in found.relation]
+            drop_dependent(problem, kept, found.index, relation)
+
+
+def restricted(problem: GuaranteedProblem, kept: list[int]) -> Problem:
+    """The problem with some of the unknowns only."""
+    panels = tuple(
+        replace(panel, functions=tuple(panel.functions[k] for k in kept)) for panel in problem.exact().panels
+    )
+    return Problem(panels, tuple(problem.functional[k] for k in kept))
+
+
+def recognised(x: arb) -> sp.Rational | None:
+    """The rational number with a small denominator next to x, or None."""
+    value = rational(x)
+    number = sp.Rational(int(value.p), int(value.q))
+    best = number.limit_denominator(10**9)
+    return best if abs(best - number) < sp.Rational(1, 10**40) else None
+
+
+def drop_dependent(
+    problem: GuaranteedProblem, kept: list[int], index: int, relation: list[sp.Rational | None]
+) -> None:
+    """Remove the unknown ``kept[index]``, whose regressor is the given combination of those before it."""
+    k = kept[index]
+    if any(c is None for c in relation) or not proved_relation(problem, k, kept, relation):
+        raise NavsymError(
+            "expected regressors whose dependence can be decided; got functions that agree to 1800 digits; "
+            "rewrite them so that equal ones are written alike",
+            kind="open",
+        )
+    pairs = [(j, c) for j, c in zip(kept, relation, strict=False) if c]
+    rest = problem.functional[k] - sum((c * problem.functional[j] for j, c in pairs), sp.S.Zero)
+    if decide(Equation(rest, sp.S.Zero)).status is not PROVED:
+        direction = {j: -c for j, c in pairs} | {k: sp.S.One}
+        words = ", ".join(to_text(sp.sympify(direction.get(j, 0), strict=True)) for j in range(len(problem.functional)))
+        raise NotEstimableError(
+            f"functional: expected one that the measurements determine; got one that changes along the null "
+            f"direction [{words}] which no measurement shows; estimate another combination"
+        )
+    kept.remove(k)
+
+
+def proved_relation(
+    problem: GuaranteedProblem, k: int, kept: list[int], relation: list[sp.Rational | None]
+) -> bool:
+    for stretch in problem.stretches:
+        for row in stretch.rows:
+            other = sum((c * row[j] for j, c in zip(kept, relation, strict=False) if c), sp.S.Zero)
+            if decide(Equation(row[k], other)).status is not PROVED:
+                return False
+    return True

@@ -1,0 +1,1 @@
+"""What each measurement observes, exactly and for symbols, and the splits that follow."""

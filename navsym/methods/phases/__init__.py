@@ -1,0 +1,1 @@
+"""The complete guaranteed solution as a parameter varies."""

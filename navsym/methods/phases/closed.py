@@ -1,0 +1,397 @@
+"""Closed forms of a regime: found from samples with many digits, proved as identities.
+
+Places are recognised as ``a T + b`` or as a share of the interval, the dual and the weights then
+solve linear systems with exact entries, and the pair goes to the ladder of proof as one
+:class:`~navsym.claims.Optimum`. Recognition only proposes.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+import numpy as np
+import sympy as sp
+from flint import arb
+
+from navsym.claims import OPEN, PROVED, Equation, Optimum, Verdict
+from navsym.methods.phases.family import Family, U
+from navsym.methods.phases.polynomial import is_monomial, monomial_weights, power_law_dual
+from navsym.methods.phases.scan import Pattern, Span, pattern_of, sample
+from navsym.proof.balls import enclose
+from navsym.proof.enclosure import rational
+from navsym.proof.equations import combine, decide_equation
+from navsym.proof.ladder import DEFAULT_MEGABYTES, decide_within
+from navsym.proof.optima import SHARE, constraints, equal_values, feasibility, instants
+from navsym.proof.optimality_polish import Polished, polish
+from navsym.proof.products import as_product
+from navsym.proof.sandbox import Exhausted, run_limited
+
+BITS = 320
+GOAL = 1e-60
+NEAR = sp.Rational(1, 10**40)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Closed:
+    """Places in u, weights, dual and value as expressions in T, and the verdict on the pair."""
+
+    panels: tuple[int, ...]
+    places: tuple[sp.Expr, ...]
+    weights: tuple[sp.Expr, ...]
+    dual: tuple[sp.Expr, ...]
+    value: sp.Expr
+    verdict: Verdict
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Sample:
+    """One member of the family with many digits."""
+
+    T: sp.Rational
+    places: tuple[sp.Rational, ...]
+    polished: Polished
+
+
+def samples_of(
+    family: Family, span: Span, shares: Sequence[str] = ("0.23", "0.41", "0.59", "0.83")
+) -> list[Sample]:
+    """Members of a span whose pattern is that of the span."""
+    found = []
+    for share in shares:
+        T = (span.lower + (span.upper - span.lower) * Fraction(share)).limit_denominator(10**6)
+        one = refined(family, T, span.pattern)
+        if one is not None:
+            found.append(one)
+    return found
+
+
+def refined(family: Family, T: Fraction, pattern: Pattern | None) -> Sample | None:
+    """The member of length T with about 90 digits, or None when its pattern is another one."""
+    basis, contacts = sample(family, T)
+    if pattern is not None and pattern_of(contacts) != pattern:
+        return None
+    value = sp.Rational(T.numerator, T.denominator)
+    done = polish(family.exact(value).panels, basis, contacts, BITS, GOAL)
+    start, end = (sp.Rational(str(sp.N(e, 95))) if not e.is_Rational else e for e in family.ends(value))
+    places = tuple(start + (end - start) * number(v) for v in done.v)
+    return Sample(value, places, done)
+
+
+def number(x: arb) -> sp.Rational:
+    """Midpoint of a ball as an exact rational."""
+    value = rational(x)
+    return sp.Rational(int(value.p), int(value.q))
+
+
+# -- recognition -----------------------------------------------------------------------------------
+
+
+def constant(x: sp.Rational) -> sp.Expr | None:
+    """A rational, a rational multiple of pi, or a cosine share ``(1 - cos(pi r))/2``, within 1e-40."""
+    pi = sp.Rational(str(sp.pi.evalf(90)))
+    for unit, base in ((sp.Integer(1), sp.Integer(1)), (pi, sp.pi)):
+        best = sp.Rational(x / unit).limit_denominator(720)
+        if abs(best * unit - x) < NEAR:
+            return best * base
+    if 0 < x < 1:
+        r = sp.acos(1 - 2 * sp.Float(str(sp.N(x, 90)), 90)) / sp.Float(pi, 90)
+        best = sp.Rational(str(r)).limit_denominator(120)
+        shown = (1 - sp.cos(sp.pi * best)) / 2
+        if abs(sp.Rational(str(shown.evalf(90))) - x) < NEAR:
+            return shown
+    for q in (2, 3, 5, 6):
+        root = sp.Rational(str(sp.sqrt(q).evalf(90)))
+        best = sp.Rational(x / root).limit_denominator(720)
+        if abs(best * root - x) < NEAR:
+            return best * sp.sqrt(q)
+    return None
+
+
+def place_of(values: Sequence[sp.Rational], lengths: Sequence[sp.Rational], T: sp.Symbol) -> sp.Expr | None:
+    """``a T + b`` through the first two samples, confirmed on all of them."""
+    slope = (values[1] - values[0]) / (lengths[1] - lengths[0])
+    start = values[0] - slope * lengths[0]
+    if any(abs(slope * t + start - v) > NEAR for v, t in zip(values, lengths, strict=True)):
+        return None
+    a, b = constant(slope), constant(start)
+    return None if a is None or b is None else a * T + b
+
+
+def place_from(values: Sequence[sp.Rational], parameters: Sequence[sp.Rational], p: sp.Symbol) -> sp.Expr | None:
+    """A place linear in the parameter or in its reciprocal."""
+    found = place_of(values, parameters, p)
+    if found is not None or any(v == 0 for v in parameters):
+        return found
+    scaled = place_of([v * q for v, q in zip(values, parameters, strict=True)], parameters, p)
+    return None if scaled is None else sp.expand(scaled / p)
+
+
+def place_or_share(
+    family: Family, values: Sequence[sp.Rational], parameters: Sequence[sp.Rational]
+) -> sp.Expr | None:
+    found = place_from(values, parameters, family.parameter)
+    return share_of(family, values, parameters) if found is None else found
+
+
+def share_of(family: Family, values: Sequence[sp.Rational], parameters: Sequence[sp.Rational]) -> sp.Expr | None:
+    """A fixed share of the interval, to nine digits: where the dual polynomial is flat, no place is better known."""
+    shares = []
+    for value, p in zip(values, parameters, strict=True):
+        start, end = (sp.Rational(str(sp.N(e, 40))) for e in family.ends(p))
+        share = (value - start) / (end - start)
+        best = share.limit_denominator(60)
+        if abs(best - share) > sp.Rational(1, 10**9):
+            return None
+        shares.append(best)
+    return family.start + (family.stop - family.start) * shares[0] if len(set(shares)) == 1 else None
+
+
+# -- exact linear algebra on the contacts ---------------------------------------------------------
+
+
+def candidates(family: Family, span: Span) -> list[Closed]:
+    """Closed forms of a span as guesses, not yet proved; the dual with most zeros first."""
+    found = samples_of(family, span)
+    if len(found) < 3:
+        return []
+    lengths = [s.T for s in found]
+    columns = [[s.places[i] for s in found] for i in range(len(span.pattern))]
+    places = [place_or_share(family, c, lengths) for c in columns]
+    if any(p is None for p in places):
+        return []
+    exact = tuple(p for p in places if p is not None)
+    if is_monomial(family) and family.growing:
+        quick = monomial_guess(family, span, exact, found)
+        if quick is not None:
+            return [quick]
+    weights = weights_of(family, span, exact, found[0])
+    if weights is None:
+        return []
+    panels, guesses = tuple(k for k, _, _ in span.pattern), []
+    for dual in itertools.islice(duals(family, span, exact, found[0]), 3):
+        value = tidy(sum((x * p for x, p in zip(dual, family.functional, strict=True)), sp.S.Zero))
+        guesses.append(Closed(panels, exact, weights, dual, value, Verdict(OPEN, "none")))
+    return guesses
+
+
+def monomial_guess(
+    family: Family, span: Span, places: tuple[sp.Expr, ...], found: Sequence[Sample]
+) -> Closed | None:
+    duals_ = [[number(x) for x in s.polished.dual] for s in found]
+    dual = power_law_dual(family, duals_, [s.T for s in found])
+    weights = monomial_weights(family, places)
+    if dual is None or weights is None:
+        return None
+    value = sum((x * p for x, p in zip(dual, family.functional, strict=True)), sp.S.Zero)
+    return Closed(tuple(k for k, _, _ in span.pattern), places, weights, dual, value, Verdict(OPEN, "none"))
+
+
+def prove(
+    family: Family, guesses: Sequence[Closed], lower: sp.Expr, upper: sp.Expr, seconds: float = 60.0
+) -> Closed | None:
+    """The first guess that the ladder proves or certifies on the whole of (lower, upper); else the first."""
+    best: Closed | None = None
+    for guess in guesses:
+        verdict = proved(family, guess, lower, upper, seconds)
+        done = replace(guess, verdict=verdict)
+        if verdict.status.holds:
+            return done
+        best = best or done
+    return best
+
+
+def duals(family: Family, span: Span, places: Sequence[sp.Expr], one: Sample):  # type: ignore[no-untyped-def]
+    """Solutions x of ``x . H(u_i) = s_i sigma`` and ``x . H'(u_i) = 0``; those with most zeros first."""
+    rows, right = [], []
+    for (k, kind, s), u in zip(span.pattern, places, strict=True):
+        rows.append([h.subs(U, u) for h in family.rows[k]])
+        right.append(sp.sympify(s * family.sigma[k], strict=True))
+        if kind == "no":
+            rows.append([h.diff(U).subs(U, u) for h in family.rows[k]])
+            right.append(sp.S.Zero)
+    A = sp.Matrix(rows)
+    m = A.cols
+    numeric = np.array(A.subs(family.parameter, one.T).evalf(30).tolist(), dtype=float)
+    b = np.array([float(family.at(r, one.T)) for r in right])
+    rank = int(np.linalg.matrix_rank(numeric, tol=1e-9))
+    for columns in itertools.combinations(range(m), rank):
+        picked = independent_rows(numeric[:, columns])
+        if len(picked) < rank:
+            continue
+        x = np.zeros(m)
+        x[list(columns)] = np.linalg.lstsq(numeric[:, columns], b, rcond=None)[0]
+        if np.abs(numeric @ x - b).max() > 1e-9 or not feasible(family, one, x):
+            continue
+        solved = exact_solution(A, right, picked, columns)
+        if solved is not None:
+            full = [sp.S.Zero] * m
+            for c, value in zip(columns, solved, strict=True):
+                full[c] = value
+            yield tuple(full)
+
+
+def feasible(family: Family, one: Sample, x: np.ndarray) -> bool:
+    """|x . H| <= sigma on a grid, up to rounding."""
+    from navsym.methods.guaranteed.compare import panel_numbers
+
+    for panel in family.exact(one.T).panels:
+        H, _, sigma = panel_numbers(panel, np.linspace(0.0, 1.0, 801))
+        if np.abs(x @ H).max() > sigma * (1 + 1e-9):
+            return False
+    return True
+
+
+def independent_rows(A: np.ndarray) -> list[int]:
+    """Indices of rows that span the row space, greedily."""
+    picked: list[int] = []
+    for i in range(A.shape[0]):
+        if np.linalg.matrix_rank(A[[*picked, i]], tol=1e-9) > len(picked):
+            picked.append(i)
+    return picked
+
+
+def exact_solution(
+    A: sp.Matrix, right: Sequence[sp.Expr], rows: Sequence[int], columns: Sequence[int]
+) -> list[sp.Expr] | None:
+    """Cramer's rule on the chosen rows and columns, every quotient brought to a product if it has one."""
+    block = A.extract(list(rows), list(columns))
+    b = sp.Matrix([right[i] for i in rows])
+    below = sp.expand(block.det(method="berkowitz"))
+    solved = []
+    for j in range(block.cols):
+        changed = block.copy()
+        changed[:, j] = b
+        above = sp.expand(changed.det(method="berkowitz"))
+        solved.append(tidy(above / below))
+    return solved
+
+
+def tidy(expression: sp.Expr) -> sp.Expr:
+    """A short form: the product of the normal form when there is one; nothing rests on it."""
+    if not expression.free_symbols:
+        return sp.nsimplify(expression) if expression.is_Rational else sp.radsimp(expression)
+    if not expression.has(sp.sin, sp.cos, sp.exp):
+        return sp.factor(expression)
+    product = as_product(expression)
+    choices = [expression] if product is None else [product]
+    simplified = sp.simplify(choices[0])
+    choices.append(simplified)
+    return min(choices, key=sp.count_ops)
+
+
+def weights_of(
+    family: Family, span: Span, places: Sequence[sp.Expr], one: Sample
+) -> tuple[sp.Expr, ...] | None:
+    """Exact weights from ``sum w_i H(u_i) = P`` on independent rows."""
+    N = sp.Matrix(
+        [[h.subs(U, u) for h in family.rows[k]] for (k, _, _), u in zip(span.pattern, places, strict=True)]
+    ).T
+    numeric = np.array(N.subs(family.parameter, one.T).evalf(30).tolist(), dtype=float)
+    rows = independent_rows(numeric)
+    if len(rows) < N.cols:
+        return None
+    solved = exact_solution(N, family.functional, rows[: N.cols], range(N.cols))
+    return None if solved is None else tuple(solved)
+
+
+def proved(family: Family, guess: Closed, lower: sp.Expr, upper: sp.Expr, seconds: float) -> Verdict:
+    """The ladder's verdict on the pair for all values between the ends."""
+    # At zero itself, the end of an open range, weights may be infinite: hence positive, not nonnegative.
+    T = sp.Symbol(family.parameter.name, positive=True) if bool(enclose(lower) >= 0) else family.parameter
+    put = lambda e: sp.sympify(e, strict=True).subs(family.parameter, T)  # noqa: E731
+    statements = [
+        Optimum(
+            regressors=tuple(put(h / sigma) for h in row), functional=tuple(map(put, family.functional)), variable=U,
+            interval=(put(family.start), put(family.stop)), dual=tuple(map(put, guess.dual)),
+            support=tuple(map(put, guess.places)),
+            weights=tuple(put(w * family.sigma[k]) for w, k in zip(guess.weights, guess.panels, strict=True)),
+            value=put(guess.value), box={T: (lower, upper)},
+        )
+        for row, sigma in zip(family.rows, family.sigma, strict=True)
+    ]
+    if len(statements) > 1:
+        outcome = run_limited(decide_jointly, (statements, guess.panels), seconds, DEFAULT_MEGABYTES)
+        return Verdict(OPEN, "none", evidence="stopped") if isinstance(outcome, Exhausted) else outcome
+    if family.growing and is_polynomial(statements[0]):
+        return decide_polynomial(statements[0])
+    return decide_within(statements[0], seconds)
+
+
+def decide_jointly(statements: Sequence[Optimum], panels: Sequence[int]) -> Verdict:
+    """The four conditions for several measurements, each statement with the regressors of one over its bound."""
+    first = statements[0]
+    sums = tuple(
+        sum(
+            (
+                w * statements[k].regressors[j].subs(first.variable, at)
+                for w, at, k in zip(first.weights, first.support, panels, strict=True)
+            ),
+            sp.S.Zero,
+        )
+        for j in range(len(first.functional))
+    )
+    balance = decide_equation(Equation(sums, tuple(first.functional), first.box))
+    feasible_ = [feasibility(statement) for statement in statements]
+    verdict = combine([balance, instants(first), *feasible_, equal_values(first)])
+    return replace(verdict, method=f"exact primal-dual pair ({verdict.method})")
+
+
+# -- polynomials, where the share of the interval is the only variable ----------------------------
+
+
+def is_polynomial(statement: Optimum) -> bool:
+    T = statement.interval[1]
+    f = sum((x * h for x, h in zip(statement.dual, statement.regressors, strict=True)), sp.S.Zero)
+    scaled = sp.expand(f.subs(statement.variable, T * SHARE))
+    return (
+        scaled.is_polynomial(SHARE)
+        and scaled.free_symbols <= {SHARE}
+        and all(c.is_Rational for c in sp.Poly(scaled, SHARE).coeffs())
+    )
+
+
+def decide_polynomial(statement: Optimum) -> Verdict:
+    """The four conditions, dual feasibility by Sturm's count on the square-free factors."""
+    T = statement.interval[1]
+    f = sum((x * h for x, h in zip(statement.dual, statement.regressors, strict=True)), sp.S.Zero)
+    scaled = sp.expand(f.subs(statement.variable, T * SHARE))
+    sides = [sp.Poly(1 - scaled, SHARE), sp.Poly(1 + scaled, SHARE)]
+    if not all(nonnegative_on_unit(side) for side in sides):
+        return Verdict(OPEN, "Sturm", evidence="the dual polynomial leaves its bound")
+    unit = {
+        T: sp.S.One
+    }  # weights and places scale with powers of T: prove them at T = 1 and as identities in T
+    return combine([
+        Verdict(PROVED, "Sturm's theorem on square-free factors"),
+        constraints(statement), instants_of(statement, unit), equal_values(statement),
+    ])  # fmt: skip
+
+
+def nonnegative_on_unit(polynomial: sp.Poly) -> bool:
+    """p >= 0 on [0, 1], exactly: factors of odd multiplicity have no root inside, and p > 0 somewhere."""
+    if polynomial.is_zero:
+        return True
+    _, factors = polynomial.sqf_list()
+    for factor, multiplicity in factors:
+        inner = factor
+        for end in (0, 1):
+            while inner.degree() > 0 and inner.eval(end) == 0:
+                inner = sp.quo(inner, sp.Poly(SHARE - end, SHARE))
+        if multiplicity % 2 and inner.degree() > 0 and inner.count_roots(0, 1):
+            return False
+    points = (sp.Rational(k, 997) for k in range(1, 997))
+    return bool(next(v for v in (polynomial.eval(p) for p in points) if v != 0) > 0)
+
+
+def instants_of(statement: Optimum, unit: Mapping[sp.Symbol, sp.Expr]) -> Verdict:
+    """Places c T with constants c between 0 and 1, by balls, ends exactly."""
+    for place in statement.support:
+        c = place.subs(unit)
+        linear = sp.expand(place - c * statement.interval[1]) == 0
+        inside = c in (0, 1) or (bool(enclose(c) > 0) and bool(enclose(1 - c) > 0))
+        if not linear or not inside:
+            return Verdict(OPEN, "balls", evidence=f"instant {place} is not shown to lie inside")
+    return Verdict(PROVED, "exact shares")

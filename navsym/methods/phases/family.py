@@ -1,0 +1,158 @@
+"""A family of guaranteed problems with one parameter: the length of the interval, or any other.
+
+For a constant model the regressors depend on ``u = T - t`` only, the time before the estimate; for
+regressors given directly they depend on t. A growing family has fixed regressors and ends at the
+parameter; otherwise the parameter may enter the regressors, the ends, the noise bounds and the functional.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import sympy as sp
+
+from navsym.errors import DomainError, EmptyError
+from navsym.methods.guaranteed.problem import GuaranteedProblem, Rows, Stretch, chosen_target, stretches_of
+from navsym.proof.enclosure import Panel, Problem
+from navsym.text.modeltypes import BasisFile, ModelFile
+
+#: Time before the estimate, or the variable of the basis.
+U = sp.Symbol("u", real=True)
+
+
+@dataclass(frozen=True, eq=False)
+class Family:
+    """Problems with one free parameter.
+
+    rows         : regressors in U, one row per measurement
+    functional   : P
+    sigma        : noise bounds
+    parameter    : the symbol that varies
+    backward     : True when U counts back from the end, ``t = end - u``
+    measurements : names
+    start, end   : ends of U; by default 0 and the parameter
+    """
+
+    rows: Rows
+    functional: tuple[sp.Expr, ...]
+    sigma: tuple[sp.Expr, ...]
+    parameter: sp.Symbol
+    backward: bool
+    measurements: tuple[str, ...]
+    target: str
+    start: sp.Expr = sp.S.Zero
+    end: sp.Expr | None = None
+
+    @property
+    def stop(self) -> sp.Expr:
+        """The end of U."""
+        return self.parameter if self.end is None else self.end
+
+    @cached_property
+    def growing(self) -> bool:
+        """True when only the interval [0, parameter] grows; the optimum then never increases."""
+        fixed = [*self.functional, *self.sigma, *(h for row in self.rows for h in row)]
+        free = {s for part in fixed for s in part.free_symbols}
+        return self.start == 0 and self.stop == self.parameter and self.parameter not in free
+
+    def at(self, expression: sp.Expr, value: Any) -> sp.Expr:
+        """An expression with a value for the parameter."""
+        return expression if self.parameter not in expression.free_symbols else expression.subs(self.parameter, value)
+
+    def ends(self, value: Any) -> tuple[sp.Expr, sp.Expr]:
+        return self.at(self.start, value), self.at(self.stop, value)
+
+    def problem(self, value: Any) -> GuaranteedProblem:
+        """The member with an exact value of the parameter."""
+        value = sp.sympify(value, strict=True)
+        rows = tuple(tuple(self.at(h, value) for h in row) for row in self.rows)
+        functional = tuple(self.at(p, value) for p in self.functional)
+        sigma = tuple(self.at(s, value) for s in self.sigma)
+        stretch = Stretch(*self.ends(value), rows)
+        return GuaranteedProblem((stretch,), functional, sigma, U, self.measurements, self.target)
+
+    def exact(self, value: Any) -> Problem:
+        return self.problem(value).exact()
+
+    @cached_property
+    def moving(self) -> Problem:
+        """The problem with the parameter left free."""
+        panels = [
+            Panel(j, row, U, self.start, self.stop, self.sigma[j]) for j, row in enumerate(self.rows)
+        ]
+        return Problem(tuple(panels), self.functional)
+
+    def time(self, u: sp.Expr) -> sp.Expr:
+        """The instant that the coordinate u means."""
+        return sp.expand(self.stop - u) if self.backward else u
+
+
+def family_of(found: ModelFile | BasisFile, target: str | None, parameter: str) -> Family:
+    """The family of a file with one parameter free.
+
+    Raises DomainError when nothing depends on the parameter, when F depends on the time or comes in
+    pieces, or when other parameters have no value.
+    """
+    name, functional = chosen_target(found, target)
+    symbol = declared(found, parameter)
+    if isinstance(found, BasisFile):
+        family = direct(found, name, functional, symbol)
+    else:
+        family = backward(found, name, functional, symbol)
+    refuse_others(family)
+    return family
+
+
+def declared(found: ModelFile | BasisFile, parameter: str) -> sp.Symbol:
+    """The symbol of a declared parameter that has no value."""
+    if parameter not in found.parameters:
+        names = ", ".join(found.parameters) or "none"
+        raise DomainError(
+            f"expected a parameter of the file without a value; got {parameter}; choose one of: {names}"
+        )
+    return found.parameters[parameter].symbol
+
+
+def refuse_others(family: Family) -> None:
+    parts = [*family.functional, *family.sigma, *(h for r in family.rows for h in r), family.start, family.stop]
+    free = {s for part in parts for s in part.free_symbols} - {U}
+    parameter = family.parameter.name
+    others = sorted({s.name for s in free} - {parameter})
+    if others:
+        raise DomainError(
+            f"expected one parameter, {parameter}; got also {', '.join(others)}; give --set {others[0]}=…"
+        )
+    if family.parameter not in free:
+        raise DomainError(
+            f"expected a problem that depends on {parameter}; got one that does not; choose another parameter"
+        )
+
+
+def direct(found: BasisFile, name: str, functional: tuple[sp.Expr, ...], symbol: sp.Symbol) -> Family:
+    start, end = found.interval
+    rows = tuple(tuple(h.subs(found.variable, U) for h in row) for row in found.H)
+    names = tuple(f"z{j + 1}" for j in range(len(rows)))
+    return Family(rows, functional, found.sigma, symbol, False, names, name, start, end)
+
+
+def backward(found: ModelFile, name: str, functional: tuple[sp.Expr, ...], symbol: sp.Symbol) -> Family:
+    if found.T is None:
+        raise EmptyError("expected the length of the interval; got no [interval]; add T", where="interval.T")
+    (stretch,) = stretches_of(found) if len(found.pieces) == 1 else (None,)
+    if stretch is None:
+        raise DomainError("F: expected one constant matrix; got pieces; solve for single values instead")
+    T = found.T
+    rows = tuple(tuple(sp.expand(h).subs(found.time, T - U) for h in row) for row in stretch.rows)
+    rows = tuple(tuple(settled(h, T, symbol) for h in row) for row in rows)
+    names = tuple(m.name for m in found.measurements)
+    sigma = tuple(m.sigma for m in found.measurements)
+    return Family(rows, functional, sigma, symbol, True, names, name, sp.S.Zero, T)
+
+
+def settled(h: sp.Expr, T: sp.Expr, symbol: sp.Symbol) -> sp.Expr:
+    """Arguments expanded, so that ``T - (T - u)`` is u."""
+    done = h.replace(lambda e: isinstance(e, sp.Function), lambda e: e.func(*(sp.expand(a) for a in e.args)))
+    done = done.replace(lambda e: e.is_Pow and e.base == sp.E, lambda e: sp.exp(sp.expand(e.exp)))
+    return sp.expand(done) if T.free_symbols or symbol in done.free_symbols else done

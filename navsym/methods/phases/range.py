@@ -1,0 +1,96 @@
+"""Regimes without a closed form: followed and certified for every value of the parameter."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import sympy as sp
+from flint import fmpq, fmpq_mat
+
+from navsym.methods.phases.closed import refined
+from navsym.methods.phases.family import Family
+from navsym.methods.phases.scan import Pattern
+from navsym.methods.phases.vanishing import Echelon, echelon, rescaled, scaled, scaled_certificate, tied
+from navsym.proof.decimals import decimal, exact
+from navsym.proof.enclosure import rational
+from navsym.proof.optimality_basis import make_basis
+from navsym.proof.optimality_march import follow, march, simple
+from navsym.proof.optimality_moving import Member, Moving
+from navsym.proof.optimality_range import Piece, Ranged, Track, piece, range_document
+
+
+def fraction_of(x: fmpq) -> Fraction:
+    """The same rational number for Python."""
+    return Fraction(int(x.p), int(x.q))
+
+
+def followed(family: Family, pattern: Pattern, lower: fmpq, upper: fmpq) -> Ranged:
+    """Certificate pieces for the pattern between two values, as far as the tests pass."""
+    form = echelon(family) if family.growing else None
+    if form is None:
+        found = follow(plain_track(family, pattern), max(lower, upper / 400) if family.growing else lower, upper)
+        documents = [range_document(family.moving, family.parameter.name, found)] if found else []
+        return Ranged(tuple(found), tuple(documents))
+    start, documents = [], []
+    if lower == 0:
+        start = from_zero(family, form, pattern, upper)
+        if not start:
+            return Ranged((), ())
+        lower = start[-1].upper
+        documents.append(scaled_certificate(family, form, start))
+    scaled_family = rescaled(family, form)
+    rest = follow(plain_track(scaled_family, pattern), lower, upper) if lower < upper else []
+    if rest:
+        document = range_document(scaled_family.moving, family.parameter.name, rest)
+        documents.append(tied(family, form, document))
+    return Ranged((*start, *rest), tuple(documents))
+
+
+def plain_track(family: Family, pattern: Pattern) -> Track:
+    """The problem in an orthonormal basis that is renewed now and then."""
+    bases: list[tuple[fmpq, fmpq, fmpq_mat]] = []
+
+    def moving(a: fmpq, b: fmpq) -> Moving:
+        middle, half = (a + b) / 2, (b - a) / 2
+        if not bases or abs(middle - bases[-1][0]) > 2 * bases[-1][1]:
+            bases.append((middle, half, conditioner(family, middle)))
+        return Moving(family.moving, family.parameter, bases[-1][2], middle, half)
+
+    return Track(family.moving, family.parameter, pattern, lambda p: member(family, pattern, p), moving)
+
+
+def from_zero(family: Family, form: Echelon, pattern: Pattern, upper: fmpq) -> list[Piece]:
+    """Pieces from the length zero on, scaled by powers of the length, as far as their series are sharp."""
+    track = Track(
+        family.moving, family.parameter, pattern, lambda p: member(family, pattern, p),
+        lambda a, b: scaled(family, form, a, b),
+    )  # fmt: skip
+    last = min(simple(upper * fmpq(7, 8), upper), simple(form.reach, form.reach))
+    end = last
+    for _ in range(12):
+        start = track.first(end / 2)
+        first = None if start is None else piece(track, start, fmpq(0), end)
+        if first is not None:
+            return [first, *march(track, first.ends[1], end, last, 3)]
+        end = simple(end / 2, end)
+    return []
+
+
+def member(family: Family, pattern: Pattern, p: fmpq) -> Member | None:
+    """The solution at a value whose pattern can be told in double precision."""
+    found = refined(family, fraction_of(p), pattern)
+    if found is None:
+        return None
+    done, problem = found.polished, family.exact(sp.Rational(int(p.p), int(p.q)))
+    weights = [w * problem.panels[k].bound() for w, k in zip(done.weights, done.panel, strict=True)]
+    return Member(tuple(map(rational, done.dual)), tuple(map(rational, done.v)), tuple(map(rational, weights)))
+
+
+def conditioner(family: Family, p: fmpq) -> fmpq_mat:
+    """The orthonormalising matrix at a value, rounded to twelve digits."""
+    basis = make_basis(family.exact(sp.Rational(int(p.p), int(p.q))))
+    m = basis.transform.nrows()
+    return fmpq_mat(m, m, [exact(decimal(basis.transform[i, j], 12)) for i in range(m) for j in range(m)])
+
+
+

@@ -1,0 +1,83 @@
+"""What lies between certified ranges: thin stretches of the parameter with a two-sided certificate each.
+
+At a change of pattern the exact contacts are singular. There the parameter is a ball, a dual and places are
+fixed, and weak duality bounds the optimum from both sides for every value in the ball.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import sympy as sp
+from flint import arb, fmpq
+
+from navsym.errors import NavsymError
+from navsym.methods.phases.family import Family
+from navsym.numeric.exchange import find_contacts
+from navsym.proof.decimals import decimal
+from navsym.proof.enclosure import Problem, interval
+from navsym.proof.optimality import gap
+from navsym.proof.optimality_basis import DependentError, make_basis
+from navsym.proof.optimality_polish import polish
+from navsym.proof.optimality_range import fraction
+
+DIGITS = 14
+BITS = 400
+#: Enclosures wider than this part of the value are not worth the name.
+WIDEST = 1e-2
+DEPTH = 4
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Sliver:
+    """Bounds of the optimum for every value between ``start`` and ``end``."""
+
+    start: fmpq
+    end: fmpq
+    lower: str
+    upper: str
+    certificate: Mapping[str, Any]
+
+    def row(self) -> tuple[str, str, str, str]:
+        return decimal(self.start, 60), decimal(self.end, 60), self.lower, self.upper
+
+
+def slivers(family: Family, start: fmpq, end: fmpq, depth: int = DEPTH) -> list[Sliver] | None:
+    """Slivers that cover a stretch, halved a few times; None when one of them stays too wide."""
+    one = sliver(family, start, end)
+    if one is not None:
+        return [one]
+    if depth == 0:
+        return None
+    middle = (start + end) / 2
+    left = slivers(family, start, middle, depth - 1)
+    right = None if left is None else slivers(family, middle, end, depth - 1)
+    return None if left is None or right is None else left + right
+
+
+def sliver(family: Family, start: fmpq, end: fmpq) -> Sliver | None:
+    """The two-sided certificate with the parameter as a ball, or None when it is too wide."""
+    middle = (start + end) / 2
+    at = sp.Rational(int(middle.p), int(middle.q))
+    try:
+        problem = family.exact(at)
+        basis = make_basis(problem)
+        contacts = find_contacts(basis.panels)
+        refined = polish(problem.panels, basis, contacts, BITS, 1e-40)
+        found = gap(ball_problem(family, interval(start, end)), basis, contacts, refined, DIGITS, BITS)
+    except (DependentError, NavsymError, ZeroDivisionError, ValueError):
+        return None
+    if not 0 < found.width < WIDEST or not bool(arb(found.lower) > 0):
+        return None
+    ends = {"parameter": family.parameter.name, "from": fraction(start), "to": fraction(end)}
+    document = {**found.certificate, "kind": "sliver", **ends}
+    return Sliver(start, end, document["lower"], document["upper"], document)
+
+
+def ball_problem(family: Family, ball: arb) -> Problem:
+    """The problem with a ball for the parameter."""
+    values = {family.parameter: ball}
+    panels = tuple(replace(panel, values=values) for panel in family.moving.panels)
+    return Problem(panels, family.moving.functional, values)

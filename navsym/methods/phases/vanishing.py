@@ -1,0 +1,226 @@
+"""Next to a vanishing interval: regressors on [0, T] scaled by powers of T, so that the limit is regular.
+
+With Taylor coefficients h_k of the regressors at u = 0, a rational matrix A brings them to echelon form:
+row i of ``A H(u)`` starts with u**k_i, k_1 < k_2 < …, and ``(A H)_i(T v) / T**k_i`` has a limit as T -> 0.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import sympy as sp
+from flint import arb, arb_mat, arb_series, fmpq, fmpq_mat
+
+from navsym.methods.phases.family import Family, U
+from navsym.proof.balls import enclose
+from navsym.proof.enclosure import interval
+from navsym.proof.optimality_moving import Vanishing, exact_functional, number_of, terms
+from navsym.proof.optimality_range import BITS, Piece
+from navsym.text.expression import to_text
+
+EXTRA = 12
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Echelon:
+    """Rational A, the first powers of its rows, the power for the functional, coefficients of A H by panel.
+
+    reach : the length up to which every argument stays within one, places twice as long as the interval included
+    """
+
+    basis: fmpq_mat
+    lows: tuple[int, ...]
+    shift: int
+    exact: tuple[fmpq_mat, ...]
+    reach: fmpq
+
+
+def echelon(family: Family) -> Echelon | None:
+    """The echelon form of the regressors at u = 0, or None when a coefficient is not rational."""
+    m, count = len(family.functional), len(family.functional) + EXTRA
+    rates = rates_of_row([h for row in family.rows for h in row])
+    if rates is None:
+        return None
+    tables = [taylor_table(row, count) for row in family.rows]
+    if any(t is None for t in tables) or not all(p.is_Rational for p in family.functional):
+        return None
+    wide = [[t[i][k] for k in range(count) for t in tables if t is not None] for i in range(m)]
+    reduced, A, pivots = eliminated(wide)
+    if len(pivots) < m:
+        return None
+    lows = tuple(k // len(tables) for k in pivots)
+    exact = tuple(A * fmpq_mat(m, count, [c for row in t for c in row]) for t in tables if t is not None)
+    image = A * fmpq_mat(m, 1, exact_functional(family.moving))
+    shift = max(low for i, low in enumerate(lows) if image[i, 0] != 0)
+    return Echelon(A, lows, shift, exact, fmpq(1, 2) / max(rates) if rates else fmpq(10**6))
+
+
+def rates_of_row(row: list[sp.Expr]) -> list[fmpq] | None:
+    """|c| of every ``sin(c u)``, ``cos(c u)``, ``exp(c u)``; None when there is another function."""
+    rates = []
+    for f in {f for h in row for f in h.atoms(sp.Function) | h.atoms(sp.exp)}:
+        c = sp.expand(f.args[0] / U)
+        if f.func not in (sp.sin, sp.cos, sp.exp) or not c.is_Rational:
+            return None
+        rates.append(abs(fmpq(int(c.p), int(c.q))))
+    return rates
+
+
+def taylor_table(row: tuple[sp.Expr, ...], count: int) -> list[list[fmpq]] | None:
+    """Taylor coefficients at u = 0 of every regressor, exactly; None when one is not rational."""
+    table = []
+    for h in row:
+        coefficients, derivative = [], h
+        for k in range(count):
+            value = sp.expand(derivative.subs(U, 0) / sp.factorial(k))
+            if not value.is_Rational:
+                return None
+            coefficients.append(fmpq(int(value.p), int(value.q)))
+            derivative = derivative.diff(U)
+        table.append(coefficients)
+    return table
+
+
+def eliminated(rows: list[list[fmpq]]) -> tuple[list[list[fmpq]], fmpq_mat, list[int]]:
+    """Gauss and Jordan with the matrix of the row operations; rows scaled to one at their pivots."""
+    m, n = len(rows), len(rows[0])
+    work = [[*row, *(fmpq(int(i == j)) for j in range(m))] for i, row in enumerate(rows)]
+    pivots: list[int] = []
+    for column in range(n):
+        done = len(pivots)
+        at = next((i for i in range(done, m) if work[i][column] != 0), None)
+        if at is None:
+            continue
+        work[done], work[at] = work[at], work[done]
+        below = work[done][column]
+        work[done] = [c / below for c in work[done]]
+        for i in range(m):
+            if i != done and work[i][column] != 0:
+                factor = work[i][column]
+                work[i] = [a - factor * b for a, b in zip(work[i], work[done], strict=True)]
+        pivots.append(column)
+    A = fmpq_mat(m, m, [c for row in work for c in row[n:]])
+    return [row[:n] for row in work], A, pivots
+
+
+def scaled(family: Family, form: Echelon, start: fmpq, end: fmpq) -> Vanishing:
+    """The scaled problem for lengths from start to end: exact coefficients, and the last one over [0, end]."""
+    m, count = form.basis.nrows(), form.exact[0].ncols()
+    mix = arb_mat(m, m, [arb(a) for a in form.basis.entries()])
+    local = []
+    for panel, exact in zip(family.moving.panels, form.exact, strict=True):
+        with terms(count + 1):
+            sigma = enclose(panel.sigma, bits=BITS)
+            whole = panel.program.run({panel.variable: arb_series([interval(fmpq(0), end), arb(1)])})
+            last = mix * arb_mat([[number_of(h, count)] for h in whole])
+        rows = [[arb(exact[i, k]) / sigma for k in range(count)] + [last[i, 0] / sigma] for i in range(m)]
+        local.append(tuple(tuple(row) for row in rows))
+    middle, half = (start + end) / 2, (end - start) / 2
+    return Vanishing(family.moving, family.parameter, form.basis, middle, half, form.lows, form.shift, tuple(local))
+
+
+# -- the certificate: regressors written with entire functions ---------------------------------------
+
+
+def scaled_certificate(family: Family, form: Echelon, pieces: Sequence[Piece]) -> dict[str, Any]:
+    """A range certificate of the scaled problem on [0, 1], and the identities that tie it to the original.
+
+    ``sin_k(x)`` is sin(x) less its Taylor polynomial of degree below k, divided by x**k, and so for the others.
+    """
+    m, T = len(family.functional), family.parameter
+    v = "v" if T.name != "v" else "place"
+    panels, ties = [], []
+    for k, row in enumerate(family.rows):
+        texts = [scaled_text(form, i, row, T.name, v) for i in range(m)]
+        sigma = to_text(family.sigma[k])
+        panels.append({"measurement": k, "from": "0", "to": "1", "sigma": sigma, "H": texts})
+        ties += [tie(form, i, row, text, T, v) for i, text in enumerate(texts)]
+    unit = [[str(int(i == j)) for j in range(m)] for i in range(m)]
+    found = {
+        "kind": "range", "variable": v, "panels": panels, "functional": scaled_functional(family, form),
+        "bits": BITS, "cells": sum(p.cells for p in pieces), "parameter": T.name, "from": "0",
+        "to": pieces[-1].row["to"], "pieces": [p.row | {"basis": unit} for p in pieces],
+    }  # fmt: skip
+    return {"kind": "all", "of": [found, *ties]}
+
+
+def rescaled(family: Family, form: Echelon) -> Family:
+    """The same problems with places as shares of the interval and rows scaled, for lengths above zero."""
+    T, m = family.parameter, len(family.functional)
+    rows = tuple(
+        tuple(
+            sum((rational_of(form.basis[i, j]) * h.subs(U, T * U) for j, h in enumerate(row)), sp.S.Zero)
+            / T ** form.lows[i]
+            for i in range(m)
+        )
+        for row in family.rows
+    )
+    image = form.basis * fmpq_mat(m, 1, exact_functional(family.moving))
+    functional = tuple(rational_of(image[i, 0]) * T ** (form.shift - low) for i, low in enumerate(form.lows))
+    return replace(family, rows=rows, functional=functional, start=sp.S.Zero, end=sp.S.One)
+
+
+def tied(family: Family, form: Echelon, document: dict[str, Any]) -> dict[str, Any]:
+    """A certificate of the rescaled problem with the identities that tie it to the original."""
+    T, v = family.parameter, document["variable"]
+    ties = [
+        tie(form, i, row, text, T, v)
+        for row, panel in zip(family.rows, document["panels"], strict=True) for i, text in enumerate(panel["H"])
+    ]  # fmt: skip
+    return {"kind": "all", "of": [document, *ties]}
+
+
+def scaled_text(form: Echelon, i: int, row: tuple[sp.Expr, ...], T: str, v: str) -> str:
+    """Row i of ``A H(T v) / T**k_i``, powers cancelled."""
+    parts: dict[sp.Symbol, str] = {}
+    K = max(form.lows) + 1
+    total = sum((rational_of(form.basis[i, j]) * opened(h, K, T, v, parts) for j, h in enumerate(row)), sp.S.Zero)
+    terms = []
+    for (power,), factor in sp.Poly(sp.expand(total), U).terms():
+        for monomial, c in sp.Poly(factor, *parts).terms() if parts else [((), factor)]:
+            texts = [f"({to_text(c)})", f"{T}**{power - form.lows[i]}", f"{v}**{power}"]
+            texts += [f"{name}**{n}" for name, n in zip(parts.values(), monomial, strict=True) if n]
+            terms.append("*".join(texts))
+    return " + ".join(terms)
+
+
+def opened(h: sp.Expr, K: int, T: str, v: str, parts: dict[sp.Symbol, str]) -> sp.Expr:
+    """h with every function written as its Taylor polynomial and ``(c u)**K`` times an entire function."""
+
+    def replaced(f: sp.Expr) -> sp.Expr:
+        c, name = sp.expand(f.args[0] / U), {sp.sin: "sin", sp.cos: "cos", sp.exp: "exp"}[f.func]
+        symbol = sp.Symbol(f"{name}[{c}]")
+        parts[symbol] = f"{name}_{K}(({to_text(c)})*{T}*{v})"
+        return polynomial_of(name, c, K) + (c * U) ** K * symbol
+
+    return sp.expand(h.replace(lambda e: isinstance(e, (sp.sin, sp.cos, sp.exp)), replaced))
+
+
+def polynomial_of(name: str, c: sp.Rational, K: int) -> sp.Expr:
+    signs = {"exp": lambda k: 1, "sin": lambda k: (0, 1, 0, -1)[k % 4], "cos": lambda k: (1, 0, -1, 0)[k % 4]}
+    return sum((signs[name](k) * (c * U) ** k / sp.factorial(k) for k in range(K)), sp.S.Zero)
+
+
+def tie(form: Echelon, i: int, row: tuple[sp.Expr, ...], text: str, T: sp.Symbol, v: str) -> dict[str, Any]:
+    """``H_i T**k_i = sum_j A_ij H_j(T v)``."""
+    place = sp.Symbol(v, real=True)
+    pairs = [(rational_of(form.basis[i, j]), h.subs(U, T * place)) for j, h in enumerate(row)]
+    right = " + ".join(f"({to_text(a)})*({to_text(h)})" for a, h in pairs if a != 0)
+    return {
+        "kind": "identity", "left": f"({text})*{T.name}**{form.lows[i]}", "right": right, "symbols": [T.name, v],
+    }  # fmt: skip
+
+
+def scaled_functional(family: Family, form: Echelon) -> list[str]:
+    image = form.basis * fmpq_mat(form.basis.nrows(), 1, exact_functional(family.moving))
+    T = family.parameter.name
+    return [
+        f"({to_text(rational_of(image[i, 0]))})*{T}**{form.shift - low}" if image[i, 0] != 0 else "0"
+        for i, low in enumerate(form.lows)
+    ]
+
+
+def rational_of(x: fmpq) -> sp.Rational:
+    return sp.Rational(int(x.p), int(x.q))

@@ -1,0 +1,113 @@
+"""Running a study: in this process, in processes of this machine, or on a dask cluster.
+
+A task is one shard of consecutive jobs. Its rows depend on the configuration and the indices only, so that
+neither the number of workers nor the death of one changes a bit; what is kept is not computed again.
+"""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+from navsym.errors import MissingEngineError, NavsymError
+from navsym.methods.dependencies import rooms_digest
+from navsym.methods.sweeps.plan import Sweep, fingerprint, run_job, summary
+from navsym.methods.sweeps.shards import Rows, Shards, cut, default_folder
+from navsym.store import key_of
+
+SECONDS_TO_CONNECT = 15
+DEATHS = 10  # of workers under one shard before it is given up
+
+
+def run_sweep(
+    sweep: Sweep,
+    *,
+    workers: int = 0,
+    scheduler: str | None = None,
+    folder: Path | None = None,
+    size: int | None = None,
+    fresh: bool = False,
+    progress: Callable[[int, int], None] = lambda done, of: None,
+) -> dict[str, Any]:
+    """Compute the shards that are not kept, keep each as it comes, and sum up.
+
+    workers   : processes of this machine; 0 computes in this one
+    scheduler : ``tcp://host:port`` of a running dask scheduler, instead of processes of this machine
+    folder    : where the shards are; by default in the cache
+    size      : jobs in a shard
+
+    The document of ``navsym sweep``: that of :func:`summary` with ``resumed`` (jobs that were kept),
+    ``folder`` and ``unsaved`` (shards that could not be kept). Raises MissingEngineError without dask,
+    pyarrow or an answer of the scheduler.
+    """
+    study = key_of("sweep", fingerprint(sweep), rooms_digest())
+    shards = Shards(folder or default_folder(study), study)
+    parts = cut(sweep.jobs, size)
+    known = {} if fresh else {part: rows for part in parts if (rows := shards.read(part)) is not None}
+    found, unsaved = dict(known), []
+    done = sum(len(part) for part in known)
+    missing = [part for part in parts if part not in known]
+    progress(done, sweep.jobs)
+    with computed(sweep, missing, workers, scheduler) as results:
+        for part, rows in results:
+            found[part] = rows
+            try:
+                shards.write(part, rows)
+            except OSError as error:
+                unsaved.append(f"{shards.path(part).name}: {error.strerror or error}")
+            done += len(part)
+            progress(done, sweep.jobs)
+    rows = [row for part in parts for row in found.get(part, [])]
+    resumed = sum(len(part) for part in known)
+    return {**summary(sweep, rows), "resumed": resumed, "folder": str(shards.folder), "unsaved": unsaved}
+
+
+def run_shard(sweep: Sweep, part: range) -> tuple[range, str, Rows]:
+    """The rows of a shard, with the digest of the code that made them."""
+    return part, rooms_digest(), [run_job(sweep, index) for index in part]
+
+
+@contextlib.contextmanager
+def computed(
+    sweep: Sweep, parts: Sequence[range], workers: int, scheduler: str | None
+) -> Iterator[Iterator[tuple[range, Rows]]]:
+    """Shards as they are ready."""
+    if not parts or (workers == 0 and scheduler is None):
+        yield ((part, run_shard(sweep, part)[2]) for part in parts)
+        return
+    with connected(workers, scheduler) as (client, as_completed):
+        # Not pure: a shard is computed again rather than taken from another session's cluster memory.
+        futures = [client.submit(run_shard, sweep, part, pure=False, retries=DEATHS) for part in parts]
+        yield (checked(future.result()) for future in as_completed(futures))
+
+
+def checked(result: tuple[range, str, Rows]) -> tuple[range, Rows]:
+    part, rooms, rows = result
+    if rooms != rooms_digest():
+        message = "expected workers with the code of this process; got another version; install the same one"
+        raise NavsymError(message, where="sweep")
+    return part, rows
+
+
+@contextlib.contextmanager
+def connected(workers: int, scheduler: str | None) -> Iterator[tuple[Any, Any]]:
+    """A client of the scheduler, or of processes that live as long as the block."""
+    try:
+        import dask
+        from dask.distributed import Client, LocalCluster, as_completed
+    except ModuleNotFoundError:
+        message = "expected the Python package dask.distributed; got none; install navsym[cluster], or --workers 0"
+        raise MissingEngineError(message) from None
+    with contextlib.ExitStack() as stack:
+        stack.enter_context(dask.config.set({"distributed.scheduler.allowed-failures": DEATHS}))
+        where = scheduler or stack.enter_context(
+            LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=None)
+        )
+        try:
+            client = stack.enter_context(Client(where, timeout=SECONDS_TO_CONNECT))
+        except (OSError, ValueError) as error:
+            message = f"expected a dask scheduler; got no answer ({error!s:.80}); start one: dask scheduler"
+            raise MissingEngineError(message, where=str(scheduler)) from None
+        yield client, as_completed

@@ -1,0 +1,1 @@
+"""Position and velocity from a height profile over a map."""

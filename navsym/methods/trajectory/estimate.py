@@ -1,0 +1,391 @@
+"""Five ways from a track to velocity and acceleration, each with standard deviations.
+
+differences : neighbours only           window     : least squares over a sliding window
+filter      : Kalman, past data only    smoother   : Rauch, Tung and Striebel, all data
+guaranteed  : least sum of absolute weights over the window, whose figure bounds the standard deviation
+              under every correlation of the errors
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from navsym.errors import DomainError
+from navsym.methods.trajectory.certificate import minimum_sum_certificate
+from navsym.methods.trajectory.marginal import noise_points
+from navsym.methods.trajectory.tracks import (
+    GAP,
+    PLAUSIBLE,
+    Mask,
+    Noise,
+    Rows,
+    Track,
+    TrackEstimate,
+    check_order,
+    first_spread,
+    isolated_outliers,
+    memory,
+    noise_of,
+)
+from navsym.numeric.arrays import Array
+from navsym.numeric.exchange_kernels import simplex, spread_rows
+from navsym.numeric.trajectory_tracks import DOUBTED, backward, forward
+
+Method = Literal["differences", "window", "filter", "smoother", "guaranteed"]
+METHODS = ("differences", "window", "filter", "smoother", "guaranteed")
+CHANNELS = ("east", "north", "up")
+#: How often the track is smoothed again without the worst positions.
+DEPARTURE_ROUNDS = 12
+#: So many different windows of the guaranteed method are certified.
+EXAMINED = 400
+
+#: Weights and deviation of a derivative at zero: times, standard deviations, order, which derivative.
+Weights = Callable[[Array, Array, int, int], tuple[Array, float]]
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """What to do with a track.
+
+    method : one of METHODS; order : states, 2 (constant speed) to 6
+    window : seconds, for the two window methods; None takes four times the memory of the filter
+    gate   : largest innovation in standard deviations; 0 switches the gate off
+    """
+
+    method: Method = "smoother"
+    order: int = 3
+    window: float | None = None
+    gate: float = 5.0
+    fixed_scale: bool = False
+
+    def __post_init__(self) -> None:
+        if self.method not in METHODS:
+            raise DomainError(f"method: expected one of {', '.join(METHODS)}; got {self.method!r}")
+        if self.window is not None and not (math.isfinite(self.window) and self.window > 0):
+            raise DomainError(f"window: expected a positive number of seconds; got {self.window}; omit it")
+        if not (math.isfinite(self.gate) and self.gate >= 0):
+            raise DomainError(f"gate: expected a number of standard deviations; got {self.gate}; 5 is usual")
+
+
+def estimate(track: Track, settings: Settings) -> tuple[TrackEstimate, Noise]:
+    """Velocity and acceleration of a track, and the noise that was found in it."""
+    check_order(track, settings.order)
+    use = np.ones(len(track.t), dtype=np.int64)
+    if settings.gate > 0:
+        use[isolated_outliers(track)] = 0
+    noise = noise_of(track, settings.order, use, gate=settings.gate, fixed_scale=settings.fixed_scale)
+    # The filter stands for what can be known at the time; the others may look at the whole track.
+    if settings.gate > 0 and settings.method != "filter":
+        for _ in range(DEPARTURE_ROUNDS):
+            found = departures(track, noise, settings, use)
+            if not found.any():
+                break
+            use[found] = 0
+        use[agreeing(track, noise, settings, use)] = 1
+    if settings.method in ("filter", "smoother"):
+        return marginal(track, noise, settings, use), noise
+    return by_method(track, noise, settings, use), noise
+
+
+def marginal(track: Track, noise: Noise, settings: Settings, use: Rows) -> TrackEstimate:
+    """Filter or smoother, averaged over what the noise may be; gains and flags are those of the likeliest."""
+    points = noise_points(
+        track, settings.order, use, noise, gate=settings.gate, fixed_scale=settings.fixed_scale
+    )
+    found = [by_method(track, point.noise, settings, use) for point in points]
+    weights = np.array([point.weight for point in points])
+    speed = mixture(weights, [f.velocity for f in found], [f.velocity_sd for f in found])
+    change = mixture(weights, [f.acceleration for f in found], [f.acceleration_sd for f in found])
+    return TrackEstimate(*speed, *change, found[0].flags, found[0].gains)
+
+
+def mixture(weights: Array, means: list[Array], deviations: list[Array]) -> tuple[Array, Array]:
+    """Mean and standard deviation of a mixture, element by element."""
+    values, spread = np.array(means), np.array(deviations)
+    mean = np.einsum("p,pkc->kc", weights, values)
+    return mean, np.sqrt(np.einsum("p,pkc->kc", weights, spread**2 + (values - mean) ** 2))
+
+
+def departures(track: Track, noise: Noise, settings: Settings, use: Rows) -> Mask:
+    """(N,) True where a position contradicts all others, further than its neighbours do.
+
+    Baarda's test on the linear smoother: the residual e has the variance r - P, and without its own vote the
+    position would be off by e r / (r - P). Both count: the test has to exceed the gate, and the offset what
+    a plausible acceleration does in a step, so that a manoeuvre passes. The worst of a neighbourhood goes
+    first, because it draws the track away from the others.
+    """
+    run = filtered(track, noise, replace(settings, gate=0.0), use)
+    smoothed(track, noise, run)
+    r, P = (track.variance * noise.scale).T, run.covariances[:, :, 0, 0]
+    share = np.maximum(1.0 - P / r, 1e-6)
+    residual = np.abs(track.position.T - run.states[:, :, 0])
+    test = residual / np.sqrt(r * share) / settings.gate
+    offset = residual / share / (PLAUSIBLE / 2 * np.median(np.diff(track.t)) ** 2)
+    score = np.where(use, np.minimum(test, offset), 0.0).max(axis=0)
+    highest = np.lib.stride_tricks.sliding_window_view(np.pad(score, 4), 9).max(axis=1)
+    away: Mask = (score > 1.0) & (score == highest)
+    return away
+
+
+def agreeing(track: Track, noise: Noise, settings: Settings, use: Rows) -> Mask:
+    """(N,) True for rows left out that agree with the track of the others: an outlier had blamed them."""
+    run = filtered(track, noise, replace(settings, gate=0.0), use)
+    smoothed(track, noise, run)
+    deviation = np.sqrt((track.variance * noise.scale).T + run.covariances[:, :, 0, 0])
+    test = np.abs(track.position.T - run.states[:, :, 0]) / deviation
+    fits: Mask = (use == 0) & (test < settings.gate).all(axis=0)
+    return fits
+
+
+def by_method(track: Track, noise: Noise, settings: Settings, use: Rows) -> TrackEstimate:
+    run = filtered(track, noise, settings, use)
+    words = tuple(word(use[k], run.flags[k]) for k in range(len(track.t)))
+    if settings.method in ("filter", "smoother"):
+        if settings.method == "smoother":
+            smoothed(track, noise, run)
+        return from_states(track, run, words)
+    if settings.method == "differences":
+        windows = difference_windows(track, use)
+        return from_weights(track, noise, windows, settings.order, least_squares, words)
+    span = settings.window or 4 * memory(noise, track.variance, settings.order)
+    windows = sliding_windows(track, use, span, settings.order)
+    weights = minimum_sum if settings.method == "guaranteed" else least_squares
+    return from_weights(track, noise, windows, settings.order, weights, words)
+
+
+def word(used: int, flags: Rows) -> str:
+    """What happened to a row: ``outlier`` (left out), ``doubtful`` (believed less) or ``used``."""
+    if not used:
+        return "outlier"
+    return "doubtful" if (flags == DOUBTED).any() else "used"
+
+
+# -- filter and smoother -----------------------------------------------------------------------------------
+
+
+@dataclass(slots=True, eq=False)
+class FilterRun:
+    """Arrays of a forward run, channel first: states (3, N, n), matrices (3, N, n, n), flags (N, 3), ..."""
+
+    ahead: Array
+    ahead_P: Array
+    states: Array
+    covariances: Array
+    gains: Array
+    innovations: Array
+    variances: Array
+    flags: Rows
+
+
+def filtered(track: Track, noise: Noise, settings: Settings, use: Rows) -> FilterRun:
+    """Forward run of the three channels; every matrix is kept for the smoother."""
+    N, n = len(track.t), settings.order
+    vectors = [np.empty((3, N, n)) for _ in range(3)]
+    matrices = [np.empty((3, N, n, n)) for _ in range(2)]
+    run = FilterRun(
+        vectors[0],
+        matrices[0],
+        vectors[1],
+        matrices[1],
+        vectors[2],
+        np.empty((3, N)),
+        np.empty((3, N)),
+        np.empty((N, 3), dtype=np.int64),
+    )
+    spread = first_spread(track, n)
+    for c in range(3):
+        flags = np.empty(N, dtype=np.int64)
+        forward(
+            track.t,
+            track.position[:, c].copy(),
+            track.variance[:, c] * noise.scale[c],
+            use,
+            noise.density[c],
+            spread,
+            settings.gate,
+            run.ahead[c],
+            run.ahead_P[c],
+            run.states[c],
+            run.covariances[c],
+            run.gains[c],
+            run.innovations[c],
+            run.variances[c],
+            flags,
+        )
+        run.flags[:, c] = flags
+    return run
+
+
+def smoothed(track: Track, noise: Noise, run: FilterRun) -> None:
+    """Replace the filtered states and matrices of a run by the smoothed ones."""
+    for c in range(3):
+        backward(
+            track.t,
+            run.ahead[c],
+            run.ahead_P[c],
+            run.states[c],
+            run.covariances[c],
+            noise.density[c],
+        )
+
+
+def from_states(track: Track, run: FilterRun, words: tuple[str, ...]) -> TrackEstimate:
+    last = int(np.flatnonzero((run.gains[0] != 0).any(axis=1))[-1])
+    gains = {name: run.gains[c, last].tolist() for c, name in enumerate(CHANNELS)}
+    n = run.states.shape[2]
+    derivatives = [(run.states[:, :, i], run.covariances[:, :, i, i]) for i in (1, 2) if i < n]
+    if n < 3:
+        zero = np.zeros(run.states.shape[:2])
+        derivatives.append((zero, zero))
+    return turned(track, derivatives, words, gains)
+
+
+def turned(
+    track: Track,
+    derivatives: list[tuple[Array, Array]],
+    words: tuple[str, ...],
+    gains: dict[str, list[float]],
+) -> TrackEstimate:
+    """East, North, Up of each row from channels: values (3, N) and variances (3, N), speed then acceleration."""
+    out = []
+    for values, variances in derivatives:
+        out.append(np.einsum("kij,jk->ki", track.turn, values))
+        out.append(np.sqrt(np.einsum("kij,jk->ki", track.turn**2, np.maximum(variances, 0.0))))
+    return TrackEstimate(out[0], out[1], out[2], out[3], words, gains)
+
+
+# -- windows -----------------------------------------------------------------------------------------------
+
+
+def difference_windows(track: Track, use: Rows) -> list[Rows]:
+    """The row before, the row and the row after, among rows in use."""
+    return nearest_windows(track, use, 3)
+
+
+def nearest_windows(track: Track, use: Rows, count: int) -> list[Rows]:
+    """For each row the ``count`` rows in use that surround it, as evenly as the ends allow."""
+    kept = np.flatnonzero(use)
+    count = min(count, len(kept))
+    first = np.clip(np.searchsorted(kept, np.arange(len(track.t))) - count // 2, 0, len(kept) - count)
+    return [kept[f : f + count] for f in first]
+
+
+def sliding_windows(track: Track, use: Rows, span: float, order: int) -> list[Rows]:
+    """Rows in use within half a span; where they are fewer than order + 2, the nearest ones."""
+    kept = np.flatnonzero(use)
+    times = track.t[kept]
+    first = np.searchsorted(times, track.t - span / 2, side="left")
+    last = np.searchsorted(times, track.t + span / 2, side="right")
+    near = nearest_windows(track, use, order + 2)
+    ends = zip(first, last, near, strict=True)
+    return [kept[a:b] if b - a >= order + 2 else nearest for a, b, nearest in ends]
+
+
+def from_weights(
+    track: Track, noise: Noise, windows: list[Rows], order: int, weights: Weights, words: tuple[str, ...]
+) -> TrackEstimate:
+    """Derivatives as weighted sums of positions; the weights depend on times and variances only."""
+    N = len(track.t)
+    values, variances = np.zeros((2, 3, N)), np.zeros((2, 3, N))
+    same = (track.variance == track.variance[:1, :1]).all()
+    cache: dict[tuple[bytes, int], tuple[Array, float]] = {}
+    for k, rows in enumerate(windows):
+        # Times repeat up to the clock's resolution; a microsecond moves no weight.
+        dt = np.round(track.t[rows] - track.t[k], 6)
+        for c in range(3):
+            sigma = np.sqrt(track.variance[rows, c])
+            for d in (1, 2):
+                if d >= min(order, len(rows)):
+                    continue
+                key = (dt.tobytes(), d)
+                if not same or key not in cache:
+                    cache[key] = weights(dt, sigma, min(order, len(rows)), d)
+                w, deviation = cache[key]
+                values[d - 1, c, k] = w @ track.position[rows, c]
+                variances[d - 1, c, k] = deviation**2 * noise.scale[c]
+        if not same:
+            cache.clear()
+    return turned(track, [(values[d], variances[d]) for d in (0, 1)], words, {})
+
+
+def design(dt: Array, order: int) -> tuple[Array, float]:
+    """Powers of time in a unit that keeps them near one, (m, order), and the unit in seconds."""
+    unit = float(np.abs(dt).max()) or 1.0
+    return np.vander(dt / unit, order, increasing=True), unit
+
+
+def least_squares(dt: Array, sigma: Array, order: int, derivative: int) -> tuple[Array, float]:
+    """Weights of the derivative at zero of the least-squares polynomial, and their standard deviation.
+
+    The deviation is sqrt(sum (w sigma)^2): independent errors.
+    """
+    V, unit = design(dt, order)
+    solved = np.linalg.pinv(V / sigma[:, None]) / sigma
+    w = solved[derivative] * math.factorial(derivative) / unit**derivative
+    return w, float(np.sqrt(((w * sigma) ** 2).sum()))
+
+
+def minimum_sum(dt: Array, sigma: Array, order: int, derivative: int) -> tuple[Array, float]:
+    """Weights of least sum |w| sigma that are exact for polynomials, and that sum.
+
+    The guaranteed estimator on the samples: the sum bounds the standard deviation whatever the correlation.
+    """
+    w, value, _, _ = minimum_sum_solution(dt, sigma, order, derivative)
+    return w, value
+
+
+def minimum_sum_solution(
+    dt: Array, sigma: Array, order: int, derivative: int
+) -> tuple[Array, float, list[int], Array]:
+    """(weights, sum, rows that carry them, dual polynomial in the time over the largest |dt|).
+
+    Without a solution in the allowed number of exchanges: the weights of least squares and no rows.
+    """
+    V, unit = design(dt, order)
+    # Orthonormal columns, so that the exchange meets no nearly dependent rows.
+    Q, R = np.linalg.qr(V)
+    target = np.zeros(order)
+    target[derivative] = math.factorial(derivative) / unit**derivative
+    functional = np.linalg.solve(R.T, target)
+    scale = float(np.abs(functional).max())
+    rows = np.ascontiguousarray(Q / sigma[:, None])
+    basis, found, dual, count = simplex(rows, functional / scale, spread_rows(rows), 50 * order)
+    if count < 0:
+        w, _ = least_squares(dt, sigma, order, derivative)
+        return w, float(np.abs(w * sigma).sum()), [], np.zeros(order)
+    w = np.zeros(len(dt))
+    w[basis] = found * scale / sigma[basis]
+    return w, float(np.abs(w * sigma).sum()), basis.tolist(), np.linalg.solve(R, dual)
+
+
+def largest_gap(track: Track, settings: Settings, use: Rows, span: float) -> dict[str, float | int]:
+    """Certificates of the weights in use: how many were examined, and the largest relative gap of their sums.
+
+    Windows of equal times and deviations share their weights and are examined once.
+    """
+    seen: dict[tuple[bytes, bytes, int], float] = {}
+    for k, rows in enumerate(sliding_windows(track, use, span, settings.order)):
+        dt = np.round(track.t[rows] - track.t[k], 6)
+        sigma = np.sqrt(track.variance[rows, 0])
+        for d in (1, 2):
+            key = (dt.tobytes(), sigma.tobytes(), d)
+            if d < min(settings.order, len(rows)) and key not in seen and len(seen) < EXAMINED:
+                seen[key] = certified_gap(dt, sigma, min(settings.order, len(rows)), d)
+    return {"examined": len(seen), "largest_gap": max(seen.values(), default=0.0)}
+
+
+def certified_gap(dt: Array, sigma: Array, order: int, derivative: int) -> float:
+    """Relative distance of exact bounds of the least sum; one when there is no solution to certify."""
+    _, _, nodes, dual = minimum_sum_solution(dt, sigma, order, derivative)
+    return minimum_sum_certificate(dt, sigma, order, derivative, nodes, dual.tolist()).gap if nodes else 1.0
+
+
+def gaps(track: Track) -> Rows:
+    """Rows after which the next one is late by more than GAP usual steps."""
+    steps = np.diff(track.t)
+    return np.flatnonzero(steps > GAP * np.median(steps))

@@ -1,0 +1,1 @@
+"""Estimators of two stages: gains, error dynamics, simulation, a recorded flight."""
