@@ -83,7 +83,7 @@ def number(item: Any) -> fmpq:
 def parse(text: Any) -> ast.expr:
     """Numbers and names become identifiers N_1_5, V_x of our own, so that Python's grammar sees nothing else."""
     mark = lambda found: f" {'N' if found[0][0].isdigit() else 'V'}_{found[0].replace('.', '_')} "  # noqa: E731
-    need(re.fullmatch(r"[A-Za-z0-9_+\-*/(). ]{1,30000}", label(text)), f"unexpected characters in {text[:60]!r}")
+    need(re.fullmatch(r"[A-Za-z0-9_+\-*/(). ]{1,100000}", label(text)), f"unexpected characters in {text[:60]!r}")
     try:
         return ast.parse(re.sub(r"[0-9]+(\.[0-9]+)?|[A-Za-z][A-Za-z0-9_]*", mark, text).strip(), mode="eval").body
     except (SyntaxError, MemoryError) as error:

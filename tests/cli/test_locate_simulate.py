@@ -17,7 +17,7 @@ def test_an_experiment_prints_one_document_and_goes_on_from_its_journal(tmp_path
     document = json.loads(first.out)
     assert set(document) == {"experiment", "rows", "printed", "verdicts", "flights", "remarks"}
     assert document["flights"] == 20
-    assert "of 20 runs" in first.err
+    assert first.err == "" or "of 20 runs" in first.err  # nothing is said within two seconds
     size = journal.stat().st_size
     assert run(words) == 0
     assert json.loads(capsys.readouterr().out) == document

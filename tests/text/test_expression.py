@@ -8,6 +8,7 @@ import pytest
 import sympy as sp
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from sympy.core.cache import clear_cache
 
 from navsym.errors import (
     DomainError,
@@ -344,6 +345,12 @@ def test_any_unicode_is_an_expression_or_a_placed_error(text):
     ],
 )
 def test_long_text_takes_less_than_a_second(text):
+    assert min(seconds_of_reading(text) for _ in range(2)) < 1.0
+
+
+def seconds_of_reading(text):
+    """Processor time of a first reading; a shared core makes single figures uncertain."""
+    clear_cache()
     started = time.process_time()
     read(text)
-    assert time.process_time() - started < 1.0
+    return time.process_time() - started

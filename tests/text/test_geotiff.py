@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import random
 import struct
+import sys
 import zlib
 
 import numpy as np
@@ -112,7 +113,9 @@ def test_files_of_another_program_are_read(tmp_path, mode, compression):
     {"extra": {259: (3, [5])}}, {"extra": {277: (3, [3])}}, {"extra": {317: (3, [2])}}, {"drop": (33550,)},
     {"extra": {34264: (12, [1.0] * 16)}}, {"extra": {258: (3, [1])}},
 ])
-def test_what_is_not_plain_is_left_to_rasterio(tmp_path, other):
+def test_what_is_not_plain_is_left_to_rasterio(tmp_path, other, monkeypatch):
+    """Without that library it is refused by name."""
+    monkeypatch.setitem(sys.modules, "rasterio", None)
     data = geotiff(relief(), **other)
     assert read_plain(data, 10**6) is None
     (tmp_path / "m.tif").write_bytes(data)
