@@ -10,6 +10,7 @@ answer is a hint in double precision: :mod:`navsym.proof.optimality` turns it in
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -18,13 +19,13 @@ from navsym.numeric.exchange_kernels import (
     Array,
     Ints,
     chebyshev_derivative,
-    chebyshev_sum,
     contact_system,
     grid_values,
     seek,
     simplex,
     spread_rows,
 )
+from navsym.numeric.exchange_maxima import local_maxima, settle
 
 NEAR = 1e-7  # |f| above 1 - NEAR counts as touching
 NEGLIGIBLE = 1e-7  # weights below this part of their sum are not contacts
@@ -83,8 +84,12 @@ def nodes_for(panels: Panels) -> Array:
     """Chebyshev-spaced search nodes, ends included, several for each oscillation."""
     K = panels.coefficients.shape[1]
     m = panels.functional.size
-    count = int(min(4000, max(6 * K, 16 * m, 64))) + 1
-    nodes = -np.cos(np.pi * np.arange(count) / (count - 1))
+    return chebyshev_nodes(int(min(4000, max(6 * K, 16 * m, 64))) + 1)
+
+
+@lru_cache(maxsize=32)
+def chebyshev_nodes(count: int) -> Array:
+    nodes: Array = -np.cos(np.pi * np.arange(count) / (count - 1))
     nodes[0], nodes[-1] = -1.0, 1.0
     return nodes
 
@@ -102,17 +107,14 @@ def find_contacts(panels: Panels) -> Contacts:
 
 def settled(panels: Panels, panel: Ints, u: Array, sign: Array, weights: Array) -> Contacts | None:
     """Weights and dual of a full alternance whose contacts are already placed."""
-    inner = ((u > -1.0) & (u < 1.0)).astype(np.int64)
-    B = rows_at(panels.coefficients, panel, u)
     try:
-        x = np.asarray(np.linalg.solve(B, sign), dtype=np.float64)
-        weights = np.asarray(np.linalg.solve(B.T, panels.functional), dtype=np.float64)
+        weights, x, height, where, v = settle(panels.coefficients, panels.functional, panel, u, sign, 1.0 - NEAR)
     except np.linalg.LinAlgError:
         return None
     if (weights * sign <= NEGLIGIBLE * np.abs(weights).sum()).any():
         return None
-    excess, touching = survey(panels, x, panel, u)
-    return Contacts(panel, u, inner, sign, weights, x, excess, touching)
+    inner = ((u > -1.0) & (u < 1.0)).astype(np.int64)
+    return Contacts(panel, u, inner, sign, weights, x, height - 1.0, apart(where, v, panel, u))
 
 
 def rows_at(coefficients: Array, panel: Ints, u: Array) -> Array:
@@ -261,66 +263,25 @@ def inner_flags(C1: Array, panel: Ints, u: Array, sign: Array, x: Array) -> Ints
     return flags
 
 
-def fine_nodes(panels: Panels) -> Array:
-    K = panels.coefficients.shape[1]
-    count = int(min(20000, max(24 * K, 256))) + 1
-    return -np.cos(np.pi * np.arange(count) / (count - 1))
-
-
 def peaks(panels: Panels, x: Array) -> list[tuple[int, float]]:
-    """Local maxima of |f| above one, by a parabola through three grid values."""
-    return [(k, v) for k, v, height in local_maxima(panels, x) if height > 1.0 + 1e-12]
+    """Local maxima of |f| above one."""
+    panel, u, height = local_maxima(panels.coefficients @ x)
+    return [(int(panel[i]), float(u[i])) for i in np.flatnonzero(height > 1.0 + 1e-12)]
 
 
 def survey(panels: Panels, x: Array, panel: Ints, u: Array) -> tuple[float, tuple[tuple[int, float], ...]]:
     """Largest ``|f| - 1``, and the near-touching maxima that are not among the given contacts."""
-    heights = local_maxima(panels, x)
-    excess = max((h for _, _, h in heights), default=1.0) - 1.0
+    where, v, height = local_maxima(panels.coefficients @ x)
+    near = height > 1.0 - NEAR
+    return float(height.max(initial=1.0)) - 1.0, apart(where[near], v[near], panel, u)
+
+
+def apart(where: Ints, v: Array, panel: Ints, u: Array) -> tuple[tuple[int, float], ...]:
+    """The near-touching places that are not among the given contacts."""
+    contacts = list(zip(panel.tolist(), u.tolist(), strict=True))
     rest = [
-        (k, v)
-        for k, v, h in heights
-        if h > 1.0 - NEAR and not any(j == k and abs(v - w) < 1e-5 for j, w in zip(panel, u, strict=True))
+        (k, place)
+        for k, place in zip(where.tolist(), v.tolist(), strict=True)
+        if not any(k == j and abs(place - w) < 1e-5 for j, w in contacts)
     ]
-    return float(excess), tuple(rest[:MOST_TOUCHES])
-
-
-def local_maxima(panels: Panels, x: Array) -> list[tuple[int, float, float]]:
-    """(panel, u, |f|) at the local maxima of |f|, ends included."""
-    nodes = fine_nodes(panels)
-    sums = panels.coefficients @ x
-    slopes = np.stack([chebyshev_derivative(c[:, None])[:, 0] for c in sums])
-    bends = np.stack([chebyshev_derivative(c[:, None])[:, 0] for c in slopes])
-    values = np.abs(grid_values(sums[:, :, None], nodes)).reshape(-1, nodes.size)
-    found: list[tuple[int, float, float]] = []
-    for k, f in enumerate(values):
-        padded = np.concatenate([[-1.0], f, [-1.0]])
-        tops = np.flatnonzero((padded[1:-1] >= padded[:-2]) & (padded[1:-1] > padded[2:]))
-        for i in tops:
-            top = newton_top(slopes[k], bends[k], parabola_top(nodes, f, int(i)))
-            found.append((k, top, abs(chebyshev_sum(sums[k], top))))
-    return found
-
-
-def newton_top(slope: Array, bend: Array, u: float) -> float:
-    """Two Newton steps on f' = 0 from inside a panel, as long as they stay near."""
-    at = u
-    for _ in range(2):
-        curvature = chebyshev_sum(bend, at)
-        if abs(u) >= 1.0 or curvature == 0.0:
-            return u
-        at -= chebyshev_sum(slope, at) / curvature
-    return at if abs(at) < 1.0 and abs(at - u) < 0.05 else u
-
-
-def parabola_top(nodes: Array, f: Array, i: int) -> float:
-    """Place of the top of the parabola through three neighbouring grid values (the node at an end)."""
-    if i in (0, nodes.size - 1):
-        return float(nodes[i])
-    left, right = nodes[i - 1] - nodes[i], nodes[i + 1] - nodes[i]
-    a = (f[i - 1] - f[i]) / left
-    b = (f[i + 1] - f[i]) / right
-    bend = (b - a) / (right - left)
-    if bend >= -1e-300:
-        return float(nodes[i])
-    shift = -(a - bend * left) / (2.0 * bend)
-    return float(nodes[i] + shift) if left <= shift <= right else float(nodes[i])
+    return tuple(rest[:MOST_TOUCHES])

@@ -123,13 +123,24 @@ class Panel:
     def ends(self) -> Program:
         return program([self.start, self.end, self.sigma])
 
+    @cached_property
+    def kept(self) -> dict[int, tuple[arb, arb, arb]]:
+        return {}
+
+    def edges(self) -> tuple[arb, arb, arb]:
+        """Start, end and noise bound as balls of the present precision, made once for each."""
+        if ctx.prec not in self.kept:
+            start, end, sigma = self.ends.run(self.values)
+            self.kept[ctx.prec] = (arb(start), arb(end), arb(sigma))
+        return self.kept[ctx.prec]
+
     def time(self, v: Any) -> arb:
         """Time at the fraction v of the panel."""
-        start, end, _ = self.ends.run(self.values)
-        return arb(start) + (arb(end) - start) * v
+        start, end, _ = self.edges()
+        return start + (end - start) * v
 
     def bound(self) -> arb:
-        return arb(self.ends.run(self.values)[2])
+        return self.edges()[2]
 
     def rows(self, v: Any) -> list[arb]:
         """H at the fraction v (a ball or an exact number)."""
@@ -142,8 +153,8 @@ class Panel:
 
         With a ball for v the coefficients hold for every centre in it (Lagrange remainders).
         """
-        start, end, _ = self.ends.run(self.values)
-        width = arb(end) - start
+        start, end, _ = self.edges()
+        width = end - start
         before = ctx.cap
         ctx.cap = order + 1
         try:
