@@ -32,14 +32,14 @@ def settle(
     B = np.empty((m, m))
     for i in range(m):
         B[i] = chebyshev_rows(C[panel[i]], u[i])
-    x = np.linalg.solve(B, sign)
-    weights = np.linalg.solve(np.ascontiguousarray(B.T), p)
+    x = np.linalg.solve(B, sign).astype(np.float64)
+    weights = np.linalg.solve(np.ascontiguousarray(B.T), p).astype(np.float64)
     sums = np.empty((C.shape[0], K))
     for k in range(C.shape[0]):
         sums[k] = C[k] @ x
     where, places, heights = local_maxima(sums)
     close = heights > near
-    return weights, x, max(1.0, heights.max()), where[close], places[close]
+    return weights, x, float(max(1.0, heights.max())), where[close], places[close]
 
 
 @njit(cache=True)
