@@ -84,16 +84,16 @@ def spread_formulas() -> tuple[tuple[sp.Expr, ...], sp.Expr, sp.Expr]:
 
 def extremes() -> tuple[Link, ...]:
     """Least, greatest and mean t_G: the roots of det(M - t G), and the mean over all directions."""
-    half, middle, root = sp.symbols("half middle root", real=True)
+    half, middle, spread = sp.symbols("half middle spread", real=True)
     sums, centre, distance = spread_formulas()
     trace = G[2] * M[0] - 2 * G[1] * M[1] + G[0] * M[2]
-    mean = (trace + root * (M[0] + M[2])) / (root * (G[0] + G[2] + 2 * root))
+    mean = (trace + spread * (M[0] + M[2])) / (spread * (G[0] + G[2] + 2 * spread))
     return (
         Link(("det", "A2", "A1"), "", sums, cites=("terrain_search:12.Ax2*", "terrain_search:12.Ax1")),
         Link(("middle",), "", (centre,), cites=("terrain_search:middle.trace",)),
         Link(("half",), "", (distance,), roots, cites=("terrain_search:roots.solvable",)),
         Link(("t_min", "t_max"), "", (middle - half, middle + half), cites=("terrain_search:roots.range",)),
-        Link(("root",), "", (sp.sqrt(DET),)),
+        Link(("spread",), "", (sp.sqrt(DET),)),
         Link(("t_mean",), "", (mean,), rotated, cites=("terrain_search:mean.rotated",)),
     )
 
