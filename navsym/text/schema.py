@@ -3,40 +3,18 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from navsym.errors import DuplicateError, EmptyError, ExpressionSyntaxError, ShapeError, TooLargeError
 from navsym.text.expression import Expr, Matrix, Parsed, parse_noting
-from navsym.text.names import NAME_LENGTH, nearest, shown
+from navsym.text.keys import Table, inside
+from navsym.text.keys import expect_keys as expect_keys
+from navsym.text.names import NAME_LENGTH, shown
 from navsym.text.tomlfile import Numeral
 
 LABEL = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.:*'+-]*")
 SIDE = 64  # rows of a matrix, entries of a vector
-
-Table = Mapping[str, Any]
-
-
-def inside(where: str, key: object) -> str:
-    """The place of a key: ``"file: model.F"``, ``"file: measurement[2].h"``."""
-    part = f"[{key}]" if isinstance(key, int) else shown(key)[1:-1]
-    if not where:
-        return part
-    if isinstance(key, int):
-        return f"{where}{part}"
-    return f"{where}.{part}" if ": " in where else f"{where}: {part}"
-
-
-def expect_keys(table: Table, known: Collection[str], where: str) -> None:
-    """Refuse a key that the format does not have, naming the one that was probably meant."""
-    for key in table:
-        if key not in known:
-            raise ExpressionSyntaxError(
-                f"expected one of the keys {', '.join(known)}; got {shown(key)}; "
-                f"do remove or correct it: {nearest(key, known)}",
-                where=inside(where, key),
-            )
-
 
 def required(table: Table, key: str, where: str) -> Any:
     """The value of a key that must be there."""

@@ -204,6 +204,42 @@ def test_bad_input_is_one_document_of_its_kind(tmp_path, capsys, kind, change):
     assert "config.json" in error["where"] and "expected" in error["message"] and "got" in error["message"]
 
 
+def put(*path, value=1):
+    def change(document):
+        for key in path[:-1]:
+            document = document[key]
+        document[path[-1]] = value
+
+    return change
+
+
+@pytest.mark.parametrize(
+    ("change", "where", "known"),
+    [
+        (put("velocty"), "velocty", "map, track, position, velocity, interpolation"),
+        (put("map", "x_0"), "map.x_0", "heights, x0, y0, dx, dy, nodata"),
+        (put("map", "file", value="x.npz"), "map.heights", "file, nodata, frame"),
+        (put("map", "frame", value="local"), "map.frame", "heights, x0"),
+        (put("track", "height"), "track.height", "t, x, y, h"),
+        (put("track", "file", value="track.csv"), "track.t", "the keys file"),
+        (put("position", "halfcount", value=[1, 1]), "position.halfcount", "step, half_count"),
+        (put("velocity", "steps"), "velocity.steps", "did you mean 'step'"),
+    ],
+)
+def test_a_key_that_would_be_ignored_is_refused_with_the_known_ones(tmp_path, capsys, change, where, known):
+    document = config()
+    change(document)
+    status, answer = call(tmp_path, capsys, document)
+    error = answer["error"]
+    assert (status, error["kind"]) == (2, "unknown-symbol")
+    assert error["where"] == f"{tmp_path}/config.json: {where}" and known in error["message"]
+
+
+def test_nodata_that_no_double_holds_is_refused():
+    with pytest.raises(NavsymError, match=r"nodata: expected a number; got int of 1329 bits"):
+        locate(config(map={**config()["map"], "nodata": 10**400}))
+
+
 def test_nan_in_the_file_and_a_wrong_method_are_refused(tmp_path, capsys):
     text = json.dumps(config()).replace('"y": [500.0', '"y": [NaN')
     status, answer = call(tmp_path, capsys, text)

@@ -13,11 +13,12 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from navsym.errors import DomainError, ShapeError, UnknownSymbolError
+from navsym.errors import DomainError, ShapeError
 from navsym.methods.multimodel.bank import Bank, bank, measurements_for, memoryless
 from navsym.methods.multimodel.engine import Estimate, run_in_numpy
 from navsym.methods.multimodel.schemes import require_room, scheme
 from navsym.numeric.forms import form_of
+from navsym.text.keys import only_keys
 
 Array = NDArray[np.floating[Any]]
 Engine = Literal["auto", "numpy", "compiled"]
@@ -99,7 +100,7 @@ def read_bank(document: Mapping[str, Any]) -> BankFile:
     if not isinstance(document, Mapping):
         raise ShapeError("expected an object with models, mode_transition, initial and measurements; got "
                          f"{type(document).__name__}; see the interfaces")
-    only_known(document, KEYS, "")
+    only_keys(document, KEYS)
     for key in KEYS[:4]:
         if key not in document:
             raise ShapeError(f"{key}: expected the keys models, mode_transition, initial and measurements; got "
@@ -110,24 +111,15 @@ def read_bank(document: Mapping[str, Any]) -> BankFile:
             raise ShapeError(f"initial.{key}: expected mean, covariance and probabilities; got no {key}; add it")
     if not isinstance(document["models"], list) or not isinstance(document["measurements"], list):
         raise ShapeError("models: expected lists of models and of measurements; got something else; use [ ]")
-    only_known(start, KEYS_OF_START, "initial.")
+    only_keys(start, KEYS_OF_START, "initial")
     for i, model in enumerate(document["models"]):
         if isinstance(model, Mapping):
-            only_known(model, KEYS_OF_MODEL, f"models[{i}].")
+            only_keys(model, KEYS_OF_MODEL, f"models[{i}]")
     for key in KEYS[:3]:
         no_truth_values(document[key], key)
     made = bank(document["models"], document["mode_transition"], start["mean"], start["covariance"],
                 start["probabilities"])
     return BankFile(made, document["measurements"], switch(document, "memoryless"), switch(document, "missing"))
-
-
-def only_known(table: Mapping[str, Any], known: tuple[str, ...], place: str) -> None:
-    """UnknownSymbolError for a key that the interface does not have: it may be a misspelt one that it has."""
-    for key in table:
-        if key not in known:
-            raise UnknownSymbolError(
-                f"{place}{key!s:.40}: expected the keys {', '.join(known)}; got {key!r:.40}; correct or remove it"
-            )
 
 
 def no_truth_values(value: Any, place: str) -> None:

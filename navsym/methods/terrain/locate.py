@@ -12,14 +12,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from navsym.errors import DomainError, EmptyError, NavsymError, ShapeError
+from navsym.errors import DomainError
 from navsym.methods.terrain.centre import demand_estimable, one_sided
+from navsym.methods.terrain.configuration import read_search
 from navsym.methods.terrain.refine import refine
 from navsym.methods.terrain.search import Search, criteria, prepare, search_full, search_position
 from navsym.methods.terrain.sequential import search_sequential
 from navsym.models.terrain import ON_MAP, TerrainMap
 from navsym.models.terrain_track import Hypotheses, Track
-from navsym.text.readers_maps import local_frame, read_map, read_track
 
 Array = NDArray[np.float64]
 
@@ -76,15 +76,7 @@ def locate(
     """
     if method not in METHODS:
         raise DomainError(f"--method: expected one of {', '.join(METHODS)}; got {method!r:.40}; choose one")
-    if not isinstance(config, Mapping):
-        raise ShapeError(f"expected a table of map, track, position; got {type(config).__name__}; write one")
-    if config.get("interpolation", "bilinear") != "bilinear":
-        raise DomainError(
-            f"interpolation: expected bilinear; got {config['interpolation']!r:.40}; leave it out"
-        )
-    terrain = map_of(block(config, "map"), Path(folder))
-    track = track_of(block(config, "track"), Path(folder))
-    grid = grid_of(config, method)
+    terrain, track, grid = read_search(config, Path(folder), velocity_needed=method != "position")
     answer = SEARCHES[method](terrain, track, grid, offset_free)
     document = written(method, track, grid, answer)
     if offset_free:
@@ -93,77 +85,6 @@ def locate(
         rows = criterion_map(terrain, track, grid, answer, offset_free)
         document["criterion_map"] = [[nullable(q) for q in row] for row in rows]
     return Located(document, remarks(terrain, track, grid, answer, offset_free))
-
-
-# The configuration
-
-
-def block(config: Mapping[str, Any], name: str) -> Mapping[str, Any]:
-    value = config.get(name)
-    if not isinstance(value, Mapping):
-        got = "nothing" if value is None else type(value).__name__
-        raise ShapeError(f"{name}: expected a table; got {got}; add it", where=name)
-    return value
-
-
-def entry(table: Mapping[str, Any], name: str, where: str) -> Any:
-    if name not in table:
-        raise EmptyError(f"{name}: expected a value; got none; add it", where=where)
-    return table[name]
-
-
-def map_of(table: Mapping[str, Any], folder: Path) -> TerrainMap:
-    """A map from a file or from numbers."""
-    try:
-        nodata = table.get("nodata")
-        if "file" not in table:
-            entries = {name: entry(table, name, "map") for name in ("heights", "x0", "y0", "dx", "dy")}
-            return TerrainMap(**entries, nodata=None if nodata is None else number(nodata, "nodata"))
-        raster = read_map(folder / file_name(table, "map"))
-        frame = table.get("frame", "geographic" if raster.geographic else "local")
-        if frame not in ("geographic", "local"):
-            raise DomainError(f"frame: expected geographic or local; got {frame!r:.40}; choose one")
-        raster = local_frame(raster) if frame == "local" else raster
-        void = raster.nodata if nodata is None else number(nodata, "nodata")
-        return TerrainMap(raster.heights, raster.x0, raster.y0, raster.dx, raster.dy, nodata=void)
-    except NavsymError as error:
-        raise error.at("map") if not error.where else error from None
-
-
-def number(value: Any, name: str) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        raise ShapeError(f"{name}: expected a number; got {value!r:.40}; mend it")
-    return float(value)
-
-
-def file_name(table: Mapping[str, Any], where: str) -> str:
-    name = table["file"]
-    if not isinstance(name, str) or not name or "\0" in name:
-        raise ShapeError(f"file: expected the name of a file; got {name!r:.60}; mend it", where=where)
-    return name
-
-
-def track_of(table: Mapping[str, Any], folder: Path) -> Track:
-    """A track from a CSV file or from four lists."""
-    try:
-        columns = read_track(folder / file_name(table, "track")) if "file" in table else table
-        t, x, y, h = (entry(columns, name, "track") for name in ("t", "x", "y", "h"))
-        return Track(t, x, y, h)
-    except NavsymError as error:
-        raise error.at("track") if not error.where else error from None
-
-
-def grid_of(config: Mapping[str, Any], method: str) -> Hypotheses:
-    position = block(config, "position")
-    places = [entry(position, name, "position") for name in ("step", "half_count")]
-    try:
-        if method == "position" and "velocity" not in config:
-            return Hypotheses(*places)
-        velocity = block(config, "velocity")
-        speeds = [entry(velocity, name, "velocity") for name in ("step", "half_count")]
-        return Hypotheses(*places, *speeds)
-    except NavsymError as error:
-        raise error.at("position, velocity") if not error.where else error from None
 
 
 # The methods
