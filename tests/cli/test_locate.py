@@ -236,7 +236,7 @@ def test_a_key_that_would_be_ignored_is_refused_with_the_known_ones(tmp_path, ca
 
 
 def test_nodata_that_no_double_holds_is_refused():
-    with pytest.raises(NavsymError, match=r"nodata: expected a number; got int of 1329 bits"):
+    with pytest.raises(NavsymError, match=r"nodata: expected a number; got 'int of 1329 bits'"):
         locate(config(map={**config()["map"], "nodata": 10**400}))
 
 
