@@ -53,10 +53,12 @@ def command(
     settings = Settings(chosen, order, window, gate, sigma is not None)  # type: ignore[arg-type]
     if sigma is not None and not 0 < sigma < float("inf"):
         raise DomainError(
-            f"--sigma: expected a positive number of metres; got {sigma}; leave it out if unknown"
+            f"expected a positive number of metres; got {sigma}; leave it out if unknown", where="--sigma"
         )
     if window is not None and chosen not in ("window", "guaranteed"):
-        raise DomainError(f"--window: expected method window or guaranteed with it; got {chosen}; drop one")
+        raise DomainError(
+            f"expected method window or guaranteed with it; got {chosen}; drop one", where="--window"
+        )
     read = read_track(file, policy)  # type: ignore[arg-type]
     try:
         given = read.sigma if sigma is None else sigma

@@ -56,7 +56,8 @@ def numbers(name: str, value: Any, why: str) -> Array:
         if raw.dtype.kind not in "biufO":
             raise TypeError(f"entries of type {raw.dtype}")
         return np.array(raw, dtype=np.float64)
-    except (TypeError, ValueError) as reason:
+    except (TypeError, ValueError) as error:
+        reason = "rows of different lengths" if "inhomogeneous" in str(error) else error
         raise ShapeError(
             f"{name}: expected numbers in rows of one length, {why}; got {reason}; give a full array"
         ) from None
@@ -142,7 +143,7 @@ def unit_rows(name: str, array: Array) -> Array:
     worst = int(np.abs(sums - 1.0).argmax())
     if abs(float(sums[worst, 0]) - 1.0) > SLACK:
         raise DomainError(
-            f"{name}: expected probabilities that sum to 1; row {worst} sums to {sums[worst, 0]:.12g}; "
+            f"{name}: expected probabilities that sum to 1; got others: row {worst} sums to {sums[worst, 0]:.12g}; "
             "divide it by its sum"
         )
     return array / sums

@@ -9,6 +9,10 @@ Forward filter with bounded influence; Rauch, Tung and Striebel's smoother backw
 An innovation beyond ``gate`` standard deviations is not cut off but believed less: its variance is raised until it
 is exactly at the gate. A wild measurement then does little harm, and a manoeuvre is followed after a few steps.
 
+Covariances are kept as upper triangular roots U, P = U^T U. The first spread of the speed may be 1e9 times the
+noise of a position; with P itself such a track loses all digits, variances of the smoother came out negative and
+speeds wrong by several of their deviations. The twin with P is in ``tests/numeric/test_trajectory_tracks.py``.
+
 Products and solutions are written as loops: matrices have at most six rows, and calls of the linear algebra
 library would take three times as long to compile at the first start.
 """
@@ -27,91 +31,147 @@ USED, LEFT_OUT, DOUBTED = 0, 1, 2
 
 
 @njit(cache=True)
-def step_matrices(dt: float, q: float, Phi: Array, Q: Array) -> None:
-    """Write the transition matrix and the noise matrix of a step, both (n, n)."""
+def transition(dt: float, Phi: Array) -> None:
+    """Write the transition matrix of a step, (n, n), upper triangular with ones."""
     n = Phi.shape[0]
     for i in range(n):
-        for j in range(n):
+        for j in range(i):
             Phi[i, j] = 0.0
         factor = 1.0
         for j in range(i, n):
             Phi[i, j] = factor
             factor *= dt / (j - i + 1)
-    for i in range(n):
-        for j in range(n):
-            power = 2 * n - 1 - i - j
-            value = q * dt**power / power
-            for k in range(2, n - i):
-                value /= k
-            for k in range(2, n - j):
-                value /= k
-            Q[i, j] = value
 
 
 @njit(cache=True)
-def predict(Phi: Array, Q: Array, y: Array, P: Array, work: Array) -> None:
-    """y <- Phi y and P <- Phi P Phi^T + Q in place, Phi upper triangular; work (n, n) is scratch."""
-    n = y.shape[0]
+def noise_shape(n: int) -> Array:
+    """Root (n, n) of the noise matrix of a unit step and density: row k holds moments of a Legendre polynomial.
+
+    With a = n-1-i the entry is sqrt(2k+1) a! / ((a-k)! (a+k+1)!), and zero for k > a.
+    """
+    shape = np.zeros((n, n))
+    for k in range(n):
+        for i in range(n - k):
+            value, a = np.sqrt(2.0 * k + 1.0), n - 1 - i
+            for m in range(a - k + 1, a + 1):
+                value *= m
+            for m in range(2, a + k + 2):
+                value /= m
+            shape[k, i] = value
+    return shape
+
+
+@njit(cache=True)
+def noise_root(dt: float, q: float, shape: Array, root: Array) -> None:
+    """Write a root (n, n) of the noise matrix of a step, root^T root = Q: columns of the shape by powers of dt."""
+    n = shape.shape[0]
+    power = np.sqrt(q * dt)
+    for i in range(n - 1, -1, -1):
+        for k in range(n):
+            root[k, i] = power * shape[k, i]
+        power *= dt
+
+
+@njit(cache=True)
+def triangularise(W: Array, columns: int) -> None:
+    """Turn the rows of W so that its first columns become upper triangular, in place (Householder).
+
+    All columns of W are turned; W^T W stays. Below the diagonal of the first columns nothing is to be read.
+    """
+    rows, width = W.shape
+    for j in range(columns):
+        total = 0.0
+        for i in range(j, rows):
+            total += W[i, j] * W[i, j]
+        if total == 0.0:
+            continue
+        length = np.sqrt(total)
+        if W[j, j] > 0.0:
+            length = -length
+        head = W[j, j] - length
+        for c in range(j + 1, width):
+            dot = head * W[j, c]
+            for i in range(j + 1, rows):
+                dot += W[i, j] * W[i, c]
+            dot /= length * head
+            W[j, c] += dot * head
+            for i in range(j + 1, rows):
+                W[i, c] += dot * W[i, j]
+        W[j, j] = length
+
+
+@njit(cache=True)
+def move(Phi: Array, x: Array, out: Array) -> None:
+    """out <- Phi x for upper triangular Phi; out may be x."""
+    n = x.shape[0]
     for i in range(n):
         total = 0.0
         for k in range(i, n):
-            total += Phi[i, k] * y[k]
-        y[i] = total
+            total += Phi[i, k] * x[k]
+        out[i] = total
+
+
+@njit(cache=True)
+def stack(U: Array, Phi: Array, root: Array, W: Array) -> None:
+    """Write U Phi^T above root into the first n columns of W (2n, ...): a root of Phi P Phi^T + Q."""
+    n = U.shape[0]
+    for i in range(n):
         for j in range(n):
             total = 0.0
-            for k in range(i, n):
-                total += Phi[i, k] * P[k, j]
-            work[i, j] = total
-    for i in range(n):
-        for j in range(i, n):
-            total = Q[i, j]
-            for k in range(j, n):
-                total += work[i, k] * Phi[j, k]
-            P[i, j] = total
-            P[j, i] = total
+            for k in range(max(i, j), n):
+                total += U[i, k] * Phi[j, k]
+            W[i, j] = total
+            W[n + i, j] = root[i, j]
 
 
 @njit(cache=True)
-def correct(y: Array, P: Array, gain: Array, innovation: float, noise: float, work: Array) -> None:
-    """y and P after a measurement of the first state with variance ``noise``, in place.
+def predict(dt: float, q: float, shape: Array, y: Array, U: Array, Phi: Array, root: Array, W: Array) -> None:
+    """y <- Phi y and the root of Phi P Phi^T + Q in place; shape as from noise_shape;
+    Phi, root (n, n) and W (2n, n) are scratch."""
+    n = y.shape[0]
+    transition(dt, Phi)
+    noise_root(dt, q, shape, root)
+    move(Phi, y, y)
+    stack(U, Phi, root, W)
+    triangularise(W, n)
+    for i in range(n):
+        for j in range(i, n):
+            U[i, j] = W[i, j]
 
-    Joseph's form: with a first variance far above that of the measurement the short one fails.
+
+@njit(cache=True)
+def correct(y: Array, U: Array, gain: Array, innovation: float, S: float, noise: float) -> None:
+    """y and U after a measurement of the first state with variance ``noise``, S = P_00 + noise, in place.
+
+    Only the first row of U sees the first state, so that the rotation with the row of the measurement shrinks
+    that row by sqrt(noise / S) and leaves the others; gain (n,) is filled.
     """
     n = y.shape[0]
+    share = U[0, 0] / S
+    shrink = np.sqrt(noise / S)
     for i in range(n):
+        gain[i] = share * U[0, i]
         y[i] += gain[i] * innovation
-        for j in range(n):
-            work[i, j] = (1.0 - gain[0]) * P[0, j] if i == 0 else P[i, j] - gain[i] * P[0, j]
-    for i in range(n):
-        for j in range(i, n):
-            kept = (1.0 - gain[0]) * work[i, 0] if j == 0 else work[i, j] - work[i, 0] * gain[j]
-            P[i, j] = kept + noise * gain[i] * gain[j]
-            P[j, i] = P[i, j]
+        U[0, i] *= shrink
 
 
 @njit(cache=True)
-def solve_rows(A: Array, B: Array) -> None:
-    """Overwrite B (n, n) by A^-1 B, A is destroyed; Gaussian elimination with row exchanges."""
-    n = A.shape[0]
-    for step in range(n):
-        best = step
-        for i in range(step + 1, n):
-            if abs(A[i, step]) > abs(A[best, step]):
-                best = i
-        for j in range(n):
-            A[step, j], A[best, j] = A[best, j], A[step, j]
-            B[step, j], B[best, j] = B[best, j], B[step, j]
-        for i in range(step + 1, n):
-            factor = A[i, step] / A[step, step]
-            for j in range(n):
-                A[i, j] -= factor * A[step, j]
-                B[i, j] -= factor * B[step, j]
-    for i in range(n - 1, -1, -1):
-        for j in range(n):
-            total = B[i, j]
-            for k in range(i + 1, n):
-                total -= A[i, k] * B[k, j]
-            B[i, j] = total / A[i, i]
+def begin(first: float, spread: Array, y: Array, U: Array) -> None:
+    """The state before the first measurement: at its position, at rest, with deviations ``spread``."""
+    for i in range(y.shape[0]):
+        y[i] = 0.0
+        for j in range(y.shape[0]):
+            U[i, j] = 0.0
+        U[i, i] = spread[i]
+    y[0] = first
+
+
+@njit(cache=True)
+def believed(innovation: float, S: float, gate: float) -> float:
+    """Variance of an innovation, raised until it is at the gate; 0 for no gate."""
+    if gate > 0.0 and innovation * innovation > gate * gate * S:
+        return innovation * innovation / (gate * gate)
+    return S
 
 
 @njit(cache=True)
@@ -123,10 +183,8 @@ def forward(
     q: float,
     spread: Array,
     gate: float,
-    ahead: Array,
-    ahead_P: Array,
     states: Array,
-    covariances: Array,
+    roots: Array,
     gains: Array,
     innovations: Array,
     variances: Array,
@@ -136,78 +194,71 @@ def forward(
 
     t, z, r (N,): times, measurements, variances; use (N,): zero leaves the measurement out
     spread (n,) : standard deviations of the first state; gate : largest |innovation| in sigmas, 0 for none
-    ahead, states, gains (N, n); ahead_P, covariances (N, n, n); innovations, variances, flags (N,) are filled
+    states, gains (N, n); roots (N, n, n) of the covariances; innovations, variances, flags (N,) are filled
     """
     N, n = states.shape
-    Phi, Q, work = np.empty((n, n)), np.empty((n, n)), np.empty((n, n))
-    y, P, gain = np.zeros(n), np.zeros((n, n)), np.empty(n)
-    y[0] = z[0]
-    for i in range(n):
-        P[i, i] = spread[i] * spread[i]
+    Phi, root, W = np.empty((n, n)), np.empty((n, n)), np.empty((2 * n, n))
+    y, U, gain = np.empty(n), np.empty((n, n)), np.empty(n)
+    shape = noise_shape(n)
+    begin(z[0], spread, y, U)
     for k in range(N):
         if k > 0:
-            step_matrices(t[k] - t[k - 1], q, Phi, Q)
-            predict(Phi, Q, y, P, work)
-        S = P[0, 0] + r[k]
+            predict(t[k] - t[k - 1], q, shape, y, U, Phi, root, W)
+        before = U[0, 0] * U[0, 0]
         innovation = z[k] - y[0]
-        innovations[k], variances[k] = innovation, S
-        flags[k] = USED if use[k] else LEFT_OUT
-        for i in range(n):
-            ahead[k, i], gains[k, i] = y[i], 0.0
-            for j in range(n):
-                ahead_P[k, i, j] = P[i, j]
+        innovations[k], variances[k], flags[k] = innovation, before + r[k], LEFT_OUT
+        gain[:] = 0.0
         if use[k]:
-            noise = r[k]
-            if gate > 0.0 and innovation * innovation > gate * gate * S:
-                flags[k] = DOUBTED
-                S = innovation * innovation / (gate * gate)
-                noise = S - P[0, 0]
-            for i in range(n):
-                gain[i] = P[i, 0] / S
-                gains[k, i] = gain[i]
-            correct(y, P, gain, innovation, noise, work)
-        for i in range(n):
-            states[k, i] = y[i]
-            for j in range(n):
-                covariances[k, i, j] = P[i, j]
+            S = believed(innovation, variances[k], gate)
+            flags[k] = DOUBTED if variances[k] < S else USED
+            correct(y, U, gain, innovation, S, r[k] if flags[k] == USED else S - before)
+        gains[k], states[k], roots[k] = gain, y, U
 
 
 @njit(cache=True)
-def backward(
-    t: Array, ahead: Array, ahead_P: Array, states: Array, covariances: Array, q: float
-) -> None:
-    """Smooth in place: states (N, n) and covariances (N, n, n) of the filter become those given all data."""
+def gain_and_rest(W: Array, back: Array) -> None:
+    """The smoother's gain, transposed, from the triangle A of the first n columns of W: A back = W[:n, n:]."""
+    n = back.shape[0]
+    for j in range(n):
+        for i in range(n - 1, -1, -1):
+            total = W[i, n + j]
+            for k in range(i + 1, n):
+                total -= W[i, k] * back[k, j]
+            back[i, j] = total / W[i, i]
+
+
+@njit(cache=True)
+def backward(t: Array, states: Array, roots: Array, q: float) -> None:
+    """Smooth in place: states (N, n) and roots (N, n, n) of the filter become those given all data.
+
+    Turning [[U Phi^T, U], [root of Q, 0]] into [[A, B], [0, D]] gives the gain C^T = A^-1 B, and D is a root of
+    what the next state leaves unknown; with the next root V the new one is the triangle of [D; V C^T].
+    """
     N, n = states.shape
-    Phi, Q = np.empty((n, n)), np.empty((n, n))
-    A, C, change = np.empty((n, n)), np.empty((n, n)), np.empty((n, n))
+    Phi, root, back = np.empty((n, n)), np.empty((n, n)), np.empty((n, n))
+    shape = noise_shape(n)
+    W, V, ahead = np.empty((2 * n, 2 * n)), np.empty((2 * n, n)), np.empty(n)
     for k in range(N - 2, -1, -1):
-        step_matrices(t[k + 1] - t[k], q, Phi, Q)
+        transition(t[k + 1] - t[k], Phi)
+        noise_root(t[k + 1] - t[k], q, shape, root)
+        stack(roots[k], Phi, root, W)
+        W[:n, n:] = roots[k]
+        W[n:, n:] = 0.0
+        triangularise(W, n)
+        gain_and_rest(W, back)
+        move(Phi, states[k], ahead)
         for i in range(n):
-            for j in range(n):
-                A[i, j] = ahead_P[k + 1, i, j]
-                change[i, j] = covariances[k + 1, i, j] - A[i, j]
-                total = 0.0
-                for m in range(i, n):
-                    total += Phi[i, m] * covariances[k, m, j]
-                C[i, j] = total
-        solve_rows(A, C)  # the transposed gain of the smoother
-        for i in range(n):
-            total = 0.0
             for m in range(n):
-                total += C[m, i] * (states[k + 1, m] - ahead[k + 1, m])
-            states[k, i] += total
-            for j in range(n):
+                states[k, i] += back[m, i] * (states[k + 1, m] - ahead[m])
+                V[m, i] = W[n + m, n + i]
                 total = 0.0
-                for m in range(n):
-                    total += C[m, i] * change[m, j]
-                A[i, j] = total
+                for j in range(m, n):
+                    total += roots[k + 1, m, j] * back[j, i]
+                V[n + m, i] = total
+        triangularise(V, n)
         for i in range(n):
-            for j in range(i, n):
-                total = 0.0
-                for m in range(n):
-                    total += A[i, m] * C[m, j]
-                covariances[k, i, j] += total
-                covariances[k, j, i] = covariances[k, i, j]
+            roots[k, i, :i] = 0.0
+            roots[k, i, i:] = V[i, i:]
 
 
 @njit(cache=True)
@@ -219,30 +270,23 @@ def misfit(
     With a gate the variance of a wild innovation is raised as in :func:`forward`.
     """
     n = order
-    Phi, Q, work = np.empty((n, n)), np.empty((n, n)), np.empty((n, n))
-    y, P, gain = np.zeros(n), np.zeros((n, n)), np.empty(n)
-    y[0] = z[0]
-    for i in range(n):
-        P[i, i] = spread[i] * spread[i]
+    Phi, root, W = np.empty((n, n)), np.empty((n, n)), np.empty((2 * n, n))
+    y, U, gain = np.empty(n), np.empty((n, n)), np.empty(n)
+    shape = noise_shape(n)
+    begin(z[0], spread, y, U)
     logs, squares, count, seen = 0.0, 0.0, 0, 0
     for k in range(t.shape[0]):
         if k > 0:
-            step_matrices(t[k] - t[k - 1], q, Phi, Q)
-            predict(Phi, Q, y, P, work)
+            predict(t[k] - t[k - 1], q, shape, y, U, Phi, root, W)
         if use[k] == 0:
             continue
-        S = P[0, 0] + r[k]
+        before = U[0, 0] * U[0, 0]
         innovation = z[k] - y[0]
-        noise = r[k]
-        if gate > 0.0 and innovation * innovation > gate * gate * S:
-            S = innovation * innovation / (gate * gate)
-            noise = S - P[0, 0]
+        S = believed(innovation, before + r[k], gate)
         if seen >= order:
             logs += np.log(S)
             squares += innovation * innovation / S
             count += 1
         seen += 1
-        for i in range(n):
-            gain[i] = P[i, 0] / S
-        correct(y, P, gain, innovation, noise, work)
+        correct(y, U, gain, innovation, S, r[k] if before + r[k] == S else S - before)
     return logs, squares, count

@@ -129,7 +129,7 @@ def read_track(path: str | os.PathLike[str], policy: Policy = "strict") -> Track
     number, a latitude beyond 90 degrees, a time that stands still or goes back.
     """
     if policy not in ("strict", "repair"):
-        raise DomainError(f"policy: expected strict or repair; got {policy!r}; choose one")
+        raise DomainError(f"expected strict or repair; got {policy!r:.40}; choose one", where="policy")
     log = Log(called(path), policy)
     text = text_of(read_bytes(path, LARGEST_FILE), log)
     rows = list(rtklib_rows(text, log) if looks_like_rtklib(text) else csv_rows(text, log))

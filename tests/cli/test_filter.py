@@ -148,6 +148,9 @@ INDEFINITE = {
     (start(mode=1), (), "unknown-symbol", "initial.mode"),
     (start(mean=[True]), (), "shape", "initial.mean"),
     (model(Q=[[False]]), (), "shape", "models[0].Q"),
+    (model(F=[[1e200]]), (), "not-finite", "step 1"),
+    (model(F=[[1e200]]), ("--method", "imm", "--form", "ud"), "not-finite", "step 1"),
+    (model(F=[[1.0], [1.0, 2.0]]), (), "shape", "got rows of different lengths"),
 ])
 def test_bad_input_is_a_document_with_status_two(tmp_path, capsys, changes, options, kind, words):
     path = bank_file(tmp_path, **changes)

@@ -98,6 +98,8 @@ def test_a_window_asks_for_the_sliding_window(capsys, tmp_path):
         ("t,lat,lon,height\n0,45,10,1\n1,45,10,1\n", [], "shape"),
         (TRACK + "39,45,10,100\n", [], "duplicate"),
         (TRACK + "40,nan,10,100\n", [], "not-finite"),
+        (TRACK + "1e300,45,10,100\n", [], "domain"),
+        ("t,lat,lon,h\n" + "".join(f"{i}e-300,45,10,100\n" for i in range(9)), [], "domain"),
         (TRACK + "40,99,10,100\n", [], "domain"),
         (TRACK, ["--order", "77"], "domain"),
         (TRACK, ["--method", "magic"], "domain"),
@@ -112,7 +114,8 @@ def test_track_refuses_bad_input(capsys, tmp_path, text, extra, kind):
     path.write_text(text)
     status, found = answer(capsys, "track", str(path), *extra)
     assert status == 2 and found["error"]["kind"] == kind
-    assert "expected" in found["error"]["message"]
+    assert "expected" in found["error"]["message"] and "got" in found["error"]["message"]
+    assert found["error"]["where"]
 
 
 def test_repairs_are_listed(capsys, tmp_path):

@@ -13,7 +13,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from navsym.errors import DomainError, ShapeError
+from navsym.errors import DomainError, NotFiniteError, ShapeError
 from navsym.methods.multimodel.bank import Bank, bank, measurements_for, memoryless
 from navsym.methods.multimodel.engine import Estimate, run_in_numpy
 from navsym.methods.multimodel.schemes import require_room, scheme
@@ -66,8 +66,22 @@ def run(
     if compiled_fits(count, engine, form):
         from navsym.methods.multimodel import fast as multimodel_fast
 
-        return multimodel_fast.run_compiled(rule, models, z, count)
-    return run_in_numpy(rule, models, z, count, kept)
+        return in_range(multimodel_fast.run_compiled(rule, models, z, count))
+    with np.errstate(over="ignore", invalid="ignore"):  # what leaves the range is refused, with its step
+        return in_range(run_in_numpy(rule, models, z, count, kept))
+
+
+def in_range(estimate: Estimate) -> Estimate:
+    """The same estimate; NotFiniteError with the first step at which a number left the range of a double."""
+    series = (estimate.mean, estimate.covariance, estimate.probabilities, estimate.log_likelihood)
+    lost = [~np.isfinite(values.reshape(len(values), -1)).all(axis=1) for values in series]
+    steps = np.flatnonzero(np.any(lost, axis=0))
+    if steps.size:
+        raise NotFiniteError(
+            f"models: expected estimates below 1.8e308; got larger ones at step {steps[0] + 1}; choose units in "
+            "which F, Q and the covariances are moderate"
+        )
+    return estimate
 
 
 def compiled_fits(count: int, engine: Engine, form: str) -> bool:

@@ -65,11 +65,15 @@ class Settings:
 
     def __post_init__(self) -> None:
         if self.method not in METHODS:
-            raise DomainError(f"method: expected one of {', '.join(METHODS)}; got {self.method!r}")
+            raise DomainError(
+                f"expected one of {', '.join(METHODS)}; got {self.method!r}; choose one", where="method"
+            )
         if self.window is not None and not (math.isfinite(self.window) and self.window > 0):
-            raise DomainError(f"window: expected a positive number of seconds; got {self.window}; omit it")
+            raise DomainError(f"expected a positive number of seconds; got {self.window}; omit it", where="window")
         if not (math.isfinite(self.gate) and self.gate >= 0):
-            raise DomainError(f"gate: expected a number of standard deviations; got {self.gate}; 5 is usual")
+            raise DomainError(
+                f"expected a number of standard deviations; got {self.gate}; 5 is usual", where="gate"
+            )
 
 
 def estimate(track: Track, settings: Settings) -> tuple[TrackEstimate, Noise]:
@@ -121,7 +125,7 @@ def departures(track: Track, noise: Noise, settings: Settings, use: Rows) -> Mas
     """
     run = filtered(track, noise, replace(settings, gate=0.0), use)
     smoothed(track, noise, run)
-    r, P = (track.variance * noise.scale).T, run.covariances[:, :, 0, 0]
+    r, P = (track.variance * noise.scale).T, variance(run, 0)
     share = np.maximum(1.0 - P / r, 1e-6)
     residual = np.abs(track.position.T - run.states[:, :, 0])
     test = residual / np.sqrt(r * share) / settings.gate
@@ -136,7 +140,7 @@ def agreeing(track: Track, noise: Noise, settings: Settings, use: Rows) -> Mask:
     """(N,) True for rows left out that agree with the track of the others: an outlier had blamed them."""
     run = filtered(track, noise, replace(settings, gate=0.0), use)
     smoothed(track, noise, run)
-    deviation = np.sqrt((track.variance * noise.scale).T + run.covariances[:, :, 0, 0])
+    deviation = np.sqrt((track.variance * noise.scale).T + variance(run, 0))
     test = np.abs(track.position.T - run.states[:, :, 0]) / deviation
     fits: Mask = (use == 0) & (test < settings.gate).all(axis=0)
     return fits
@@ -170,12 +174,10 @@ def word(used: int, flags: Rows) -> str:
 
 @dataclass(slots=True, eq=False)
 class FilterRun:
-    """Arrays of a forward run, channel first: states (3, N, n), matrices (3, N, n, n), flags (N, 3), ..."""
+    """Arrays of a run, channel first: states, gains (3, N, n), roots of covariances (3, N, n, n), flags (N, 3), ..."""
 
-    ahead: Array
-    ahead_P: Array
     states: Array
-    covariances: Array
+    roots: Array
     gains: Array
     innovations: Array
     variances: Array
@@ -183,62 +185,43 @@ class FilterRun:
 
 
 def filtered(track: Track, noise: Noise, settings: Settings, use: Rows) -> FilterRun:
-    """Forward run of the three channels; every matrix is kept for the smoother."""
+    """Forward run of the three channels; every root is kept for the smoother."""
     N, n = len(track.t), settings.order
-    vectors = [np.empty((3, N, n)) for _ in range(3)]
-    matrices = [np.empty((3, N, n, n)) for _ in range(2)]
     run = FilterRun(
-        vectors[0],
-        matrices[0],
-        vectors[1],
-        matrices[1],
-        vectors[2],
-        np.empty((3, N)),
-        np.empty((3, N)),
-        np.empty((N, 3), dtype=np.int64),
+        states=np.empty((3, N, n)),
+        roots=np.empty((3, N, n, n)),
+        gains=np.empty((3, N, n)),
+        innovations=np.empty((3, N)),
+        variances=np.empty((3, N)),
+        flags=np.empty((N, 3), dtype=np.int64),
     )
     spread = first_spread(track, n)
     for c in range(3):
+        z, r = track.position[:, c].copy(), track.variance[:, c] * noise.scale[c]
+        out = (run.states[c], run.roots[c], run.gains[c], run.innovations[c], run.variances[c])
         flags = np.empty(N, dtype=np.int64)
-        forward(
-            track.t,
-            track.position[:, c].copy(),
-            track.variance[:, c] * noise.scale[c],
-            use,
-            noise.density[c],
-            spread,
-            settings.gate,
-            run.ahead[c],
-            run.ahead_P[c],
-            run.states[c],
-            run.covariances[c],
-            run.gains[c],
-            run.innovations[c],
-            run.variances[c],
-            flags,
-        )
+        forward(track.t, z, r, use, noise.density[c], spread, settings.gate, *out, flags)
         run.flags[:, c] = flags
     return run
 
 
 def smoothed(track: Track, noise: Noise, run: FilterRun) -> None:
-    """Replace the filtered states and matrices of a run by the smoothed ones."""
+    """Replace the filtered states and roots of a run by the smoothed ones."""
     for c in range(3):
-        backward(
-            track.t,
-            run.ahead[c],
-            run.ahead_P[c],
-            run.states[c],
-            run.covariances[c],
-            noise.density[c],
-        )
+        backward(track.t, run.states[c], run.roots[c], noise.density[c])
+
+
+def variance(run: FilterRun, i: int) -> Array:
+    """Variance of the i-th derivative of the position, (3, N)."""
+    found: Array = (run.roots[:, :, :, i] ** 2).sum(axis=2)
+    return found
 
 
 def from_states(track: Track, run: FilterRun, words: tuple[str, ...]) -> TrackEstimate:
     last = int(np.flatnonzero((run.gains[0] != 0).any(axis=1))[-1])
     gains = {name: run.gains[c, last].tolist() for c, name in enumerate(CHANNELS)}
     n = run.states.shape[2]
-    derivatives = [(run.states[:, :, i], run.covariances[:, :, i, i]) for i in (1, 2) if i < n]
+    derivatives = [(run.states[:, :, i], variance(run, i)) for i in (1, 2) if i < n]
     if n < 3:
         zero = np.zeros(run.states.shape[:2])
         derivatives.append((zero, zero))
@@ -255,7 +238,7 @@ def turned(
     out = []
     for values, variances in derivatives:
         out.append(np.einsum("kij,jk->ki", track.turn, values))
-        out.append(np.sqrt(np.einsum("kij,jk->ki", track.turn**2, np.maximum(variances, 0.0))))
+        out.append(np.sqrt(np.einsum("kij,jk->ki", track.turn**2, variances)))
     return TrackEstimate(out[0], out[1], out[2], out[3], words, gains)
 
 
@@ -294,9 +277,9 @@ def from_weights(
     values, variances = np.zeros((2, 3, N)), np.zeros((2, 3, N))
     same = (track.variance == track.variance[:1, :1]).all()
     cache: dict[tuple[bytes, int], tuple[Array, float]] = {}
+    grain = grain_of(track)
     for k, rows in enumerate(windows):
-        # Times repeat up to the clock's resolution; a microsecond moves no weight.
-        dt = np.round(track.t[rows] - track.t[k], 6)
+        dt = distances(track, rows, k, grain)
         for c in range(3):
             sigma = np.sqrt(track.variance[rows, c])
             for d in (1, 2):
@@ -311,6 +294,17 @@ def from_weights(
         if not same:
             cache.clear()
     return turned(track, [(values[d], variances[d]) for d in (0, 1)], words, {})
+
+
+def grain_of(track: Track) -> float:
+    """Seconds that move no weight: a microsecond, or a millionth of a usual step where steps are short."""
+    return 1e-6 * min(1.0, float(np.median(np.diff(track.t))))
+
+
+def distances(track: Track, rows: Rows, k: int, grain: float) -> Array:
+    """Times of rows from row k in whole grains, so that they repeat where the clock does."""
+    rounded: Array = np.round((track.t[rows] - track.t[k]) / grain) * grain
+    return rounded
 
 
 def design(dt: Array, order: int) -> tuple[Array, float]:
@@ -369,8 +363,9 @@ def largest_gap(track: Track, settings: Settings, use: Rows, span: float) -> dic
     Windows of equal times and deviations share their weights and are examined once.
     """
     seen: dict[tuple[bytes, bytes, int], float] = {}
+    grain = grain_of(track)
     for k, rows in enumerate(sliding_windows(track, use, span, settings.order)):
-        dt = np.round(track.t[rows] - track.t[k], 6)
+        dt = distances(track, rows, k, grain)
         sigma = np.sqrt(track.variance[rows, 0])
         for d in (1, 2):
             key = (dt.tobytes(), sigma.tobytes(), d)

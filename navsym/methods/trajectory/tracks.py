@@ -32,6 +32,8 @@ PLAUSIBLE = 10.0
 #: Positions are never taken to be better than a thousandth of their given standard deviation, or a millimetre.
 SMALLEST_SCALE = 1e-6
 LARGEST_ORDER = 6
+#: Steps in seconds: beyond them powers of the step, up to the eleventh, leave the range of a double.
+SHORTEST, LONGEST = 1e-9, 1e9
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -63,6 +65,12 @@ class Track:
             raise DomainError(
                 f"t: expected increasing times; got row {late[0] + 1} not after row {late[0]}; "
                 "sort the rows and keep one of equal times"
+            )
+        steps = np.diff(self.t)
+        if steps.size and not (steps.min() >= SHORTEST and steps.max() <= LONGEST):
+            raise DomainError(
+                f"t: expected steps of {SHORTEST:g} to {LONGEST:g} s; got {steps.min():.3g} to {steps.max():.3g}; "
+                "check the unit of the times"
             )
 
 
