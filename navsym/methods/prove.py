@@ -9,8 +9,8 @@ from typing import Any
 import sympy as sp
 
 from navsym.claims import OPEN, REFUTED, Bound, Equation, Statement, Verdict
+from navsym.proof.assumptions import is_nonzero, is_positive
 from navsym.proof.bounds import Sign, prove_sign
-from navsym.proof.equations import is_nonzero, is_positive
 from navsym.proof.ladder import decide
 from navsym.proof.sandbox import Exhausted, Failed, run_many
 from navsym.proof.wording import text_of

@@ -9,7 +9,7 @@ from __future__ import annotations
 import sympy as sp
 
 from navsym.proof.balls import Tape, derivatives, exact_ball, hull, tape
-from navsym.proof.normal_form import vanishes_identically
+from navsym.proof.numbers import is_zero
 from navsym.proof.sampling import Range
 from navsym.proof.signs import UNKNOWN, Limits, Sign, SignProof
 from navsym.proof.subdivision import subdivide
@@ -42,7 +42,7 @@ def contact_order(expression: sp.Expr, symbol: sp.Symbol, end: sp.Expr) -> int |
         value = derivative.subs(symbol, end)
         if value.has(sp.nan, sp.zoo, sp.oo) or not exact_ball(value, 256).is_finite():
             return None
-        if not exact_ball(value, 256).contains(0) or not vanishes_identically(value):
+        if not exact_ball(value, 256).contains(0) or not is_zero(value):
             return order
         derivative = sp.diff(derivative, symbol)
     return None

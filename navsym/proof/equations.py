@@ -1,34 +1,28 @@
 """Equations: first try to break them, then to prove them.
 
-The rungs, in order: an exact point where a ball excludes equality; the normal form; absolute
-values and roots of squares resolved by proved signs; both sides squared when both are
-nonnegative; equal derivatives and one common point on an interval without singularities.
-What passes none of them but agrees at every sampled point is CONFIRMED, never more.
+An exact point where a ball excludes equality refutes; the ways of ``equalities`` prove. What passes
+none of them but agrees at every sampled point is CONFIRMED, never more.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import replace
 
 import sympy as sp
 from flint import arb
 
-from navsym.claims.statement import Box, Equation
+from navsym.claims.statement import Equation
 from navsym.claims.verdict import CERTIFIED, CONFIRMED, OPEN, PROVED, REFUTED, Verdict
-from navsym.proof.balls import UnsupportedError, enclose, tape
+from navsym.proof.assumptions import remaining_assumptions
+from navsym.proof.balls import UnsupportedError, enclose
 from navsym.proof.bounds import Sign, prove_sign
 from navsym.proof.certificates import identity_certificate
-from navsym.proof.normal_form import (
-    OutsideLanguageError,
-    Reduction,
-    UndefinedExpressionError,
-    reduce_to_zero,
-    vanishes_identically,
-)
-from navsym.proof.sampling import Point, Sample, points, search_counterexample
+from navsym.proof.equalities import WAYS, Proof, first_proof
+from navsym.proof.normal_form import OutsideLanguageError, UndefinedExpressionError, reduce_to_zero
+from navsym.proof.sampling import Point, Sample, search_counterexample
 from navsym.proof.second_look import BITS, Look, second_look
-from navsym.proof.wording import decimal_ends, point_text, scope_of, text_of
+from navsym.proof.wording import decimal_ends, point_text, scope_of
 
 ENOUGH_POINTS = 32
 
@@ -152,26 +146,12 @@ def decide_numeral(printed: sp.Expr, derived: sp.Expr, statement: Equation) -> V
 # -- exact equality ---------------------------------------
 
 
-@dataclass(frozen=True, slots=True)
-class Proof:
-    method: str
-    evidence: str
-    reduction: Reduction
-
-
 def prove_equal(printed: sp.Expr, derived: sp.Expr, statement: Equation, sample: Sample) -> Verdict:
-    rungs: tuple[Callable[[sp.Expr, sp.Expr, Box], Proof | None], ...] = (
-        by_normal_form,
-        by_resolved_signs,
-        by_squares,
-        by_derivative,
-    )
     if sample.points == 0:  # what exists nowhere is equal to everything
         return sampled(sample, scope_of(printed - derived, statement.box), "equality")
-    for rung in rungs:
-        proof = rung(printed, derived, statement.box)
-        if proof is not None:
-            return proved(proof, printed, derived, statement)
+    proof = first_proof(printed, derived, statement.box, WAYS)
+    if proof is not None:
+        return proved(proof, printed, derived, statement)
     return unproved(printed, derived, statement, sample)
 
 
@@ -213,7 +193,7 @@ def proved(proof: Proof, printed: sp.Expr, derived: sp.Expr, statement: Equation
         PROVED,
         method=proof.method,
         scope=scope_of(sp.Tuple(printed, derived), statement.box),
-        assumptions=remaining_assumptions(proof.reduction, statement),
+        assumptions=remaining_assumptions(proof.reduction, statement.box, statement.nonzero),
         evidence=proof.evidence,
         certificate=identity_certificate(printed, derived) if proof.method == "normal form" else None,
     )
@@ -227,149 +207,3 @@ def sampled(sample: Sample, scope: str, what: str) -> Verdict:
     evidence = f"{what} at {sample.points} exact points, largest residual {largest}; no proof was found"
     enough = sample.points >= ENOUGH_POINTS
     return Verdict(CONFIRMED if enough else OPEN, "sampling", scope, evidence=evidence)
-
-
-def by_normal_form(printed: sp.Expr, derived: sp.Expr, box: Box) -> Proof | None:
-    reduction = reduce_to_zero(printed - derived)
-    if not reduction.zero:
-        return None
-    reduction = with_sides(reduction, printed, derived)
-    return Proof("normal form", f"printed - derived reduces to 0 in {reduction.ring}", reduction)
-
-
-def with_sides(reduction: Reduction, *sides: sp.Expr) -> Reduction:
-    """Add the divisors and radicands of the sides, which subtraction may have cancelled."""
-    parts = [reduction, *(reduce_to_zero(side) for side in sides)]
-
-    def union(name: str) -> tuple[sp.Basic, ...]:
-        return tuple(dict.fromkeys(item for part in parts for item in getattr(part, name)))
-
-    return replace(
-        reduction, divisors=union("divisors"), radicands=union("radicands"), arguments=union("arguments")
-    )
-
-
-def by_resolved_signs(printed: sp.Expr, derived: sp.Expr, box: Box) -> Proof | None:
-    """Replace |u| and sqrt(u**2) by u or -u where the sign of u is proved, and reduce again."""
-    difference, notes = resolve_signs(printed - derived, box)
-    if not notes:
-        return None
-    reduction = reduce_to_zero(difference)
-    if not reduction.zero:
-        return None
-    reduction = with_sides(reduction, printed, derived)
-    return Proof("normal form after signs", f"{'; '.join(notes)}; then 0 in {reduction.ring}", reduction)
-
-
-def resolve_signs(expression: sp.Expr, box: Box) -> tuple[sp.Expr, list[str]]:
-    notes: list[str] = []
-    found = [node for node in expression.atoms(sp.Abs, sp.Pow) if signed_inside(node) is not None]
-    for node in sorted(found, key=sp.default_sort_key):
-        inside = signed_inside(node)
-        assert inside is not None
-        for value in (inside, -inside):
-            if prove_sign(value, box).at_least(Sign.NONNEGATIVE):
-                expression = expression.subs(node, value)
-                notes.append(f"{node} = {value} on the box")
-                break
-    return expression, notes
-
-
-def signed_inside(node: sp.Basic) -> sp.Expr | None:
-    """u for |u| and for sqrt(u**2); None for anything else."""
-    if isinstance(node, sp.Abs):
-        return node.args[0]
-    if isinstance(node, sp.Pow) and node.exp == sp.Rational(1, 2) and isinstance(node.base, sp.Pow):
-        inner = node.base
-        if isinstance(inner.exp, sp.Integer) and inner.exp % 2 == 0 and inner.exp > 0:
-            return inner.base ** (inner.exp / 2)
-    return None
-
-
-def by_squares(printed: sp.Expr, derived: sp.Expr, box: Box) -> Proof | None:
-    """Equal squares and both sides nonnegative: what roots of sums need."""
-    if not (printed - derived).atoms(sp.Pow, sp.Abs):
-        return None
-    reduction = reduce_to_zero(printed**2 - derived**2)
-    if not reduction.zero:
-        return None
-    for flip in (1, -1):
-        if all(prove_sign(flip * side, box).at_least(Sign.NONNEGATIVE) for side in (printed, derived)):
-            reduction = with_sides(reduction, printed, derived)
-            return Proof("squares", f"both sides of one sign, squares equal in {reduction.ring}", reduction)
-    return None
-
-
-def by_derivative(printed: sp.Expr, derived: sp.Expr, box: Box) -> Proof | None:
-    """One symbol: the derivative of the difference vanishes and so does one value.
-
-    Needs an interval on which nothing is divided by zero and no root or logarithm ends, so
-    that the difference is one smooth function there.
-    """
-    difference = printed - derived
-    if len(difference.free_symbols) != 1:
-        return None
-    (symbol,) = difference.free_symbols
-    if symbol.is_integer or difference.has(sp.Abs, sp.sign, sp.Max, sp.Min, sp.atan2):
-        return None
-    reduction = reduce_to_zero(sp.diff(difference, symbol))
-    if not reduction.zero or not smooth_on(difference, box):
-        return None
-    point = common_point(difference, symbol, box)
-    if point is None:
-        return None
-    reduction = with_sides(reduction, printed, derived)
-    return Proof("derivative", f"equal derivatives, and equal at {symbol} = {point}", reduction)
-
-
-def smooth_on(expression: sp.Expr, box: Box) -> bool:
-    """True when divisors, radicands, arguments of logarithms are proved to stay away from zero."""
-    conditions = reduce_to_zero(expression)
-    inner = [*conditions.radicands, *conditions.arguments]
-    inner += [a for node in expression.atoms(sp.asin, sp.acos) for a in (1 - node.args[0], 1 + node.args[0])]
-    inner += [p.base for p in expression.atoms(sp.Pow) if p.exp.is_Rational and not p.exp.is_Integer]
-    inner += [node.args[0] for node in expression.atoms(sp.log)]
-    divisors = [*conditions.divisors]
-    divisors += [sp.cos(node.args[0]) for node in expression.atoms(sp.tan, sp.sec)]
-    divisors += [sp.sin(node.args[0]) for node in expression.atoms(sp.cot, sp.csc)]
-    return all(is_positive(item, box) for item in inner) and all(is_nonzero(item, box) for item in divisors)
-
-
-def is_positive(expression: sp.Basic, box: Box) -> bool:
-    """True when the expression is proved to be positive on the box."""
-    return prove_sign(expression, box, Sign.POSITIVE).at_least(Sign.POSITIVE)
-
-
-def is_nonzero(expression: sp.Basic, box: Box) -> bool:
-    """True when the expression is proved to keep one sign on the box."""
-    return is_positive(expression, box) or is_positive(-expression, box)
-
-
-def common_point(difference: sp.Expr, symbol: sp.Symbol, box: Box) -> sp.Expr | None:
-    for point in points([symbol], box, 12):
-        value = difference.subs(point)
-        if (
-            not value.has(sp.nan, sp.zoo, sp.oo)
-            and enclose(tape(value)).contains(0)
-            and vanishes_identically(value)
-        ):
-            return point[symbol]
-    return None
-
-
-# -- assumptions ---------------------------------------
-
-
-def remaining_assumptions(reduction: Reduction, statement: Equation) -> tuple[str, ...]:
-    """What the proof took for granted and the box does not guarantee."""
-    box, found = statement.box, []
-    for divisor in (*reduction.divisors, *statement.nonzero):
-        if not is_nonzero(divisor, box):
-            found.append(f"{text_of(divisor)} != 0")
-    for radicand in reduction.radicands:
-        if not prove_sign(radicand, box).at_least(Sign.NONNEGATIVE):
-            found.append(f"{text_of(radicand)} >= 0")
-    for argument in reduction.arguments:
-        if not is_positive(argument, box):
-            found.append(f"{text_of(argument)} > 0")
-    return tuple(dict.fromkeys(found))

@@ -11,17 +11,12 @@ from flint import arb
 from navsym.claims.statement import Bound, Box, Equation
 from navsym.claims.verdict import CERTIFIED, OPEN, PROVED, Verdict
 from navsym.errors import DomainError
+from navsym.proof.assumptions import remaining_assumptions, with_sides
 from navsym.proof.balls import UnsupportedError, tape
 from navsym.proof.bounds import Sign, SignProof, prove_sign
-from navsym.proof.equations import (
-    after_look,
-    broken,
-    decide_equation,
-    remaining_assumptions,
-    sampled,
-    with_sides,
-)
-from navsym.proof.normal_form import OutsideLanguageError, reduce_to_zero, vanishes_identically
+from navsym.proof.equations import after_look, broken, decide_equation, sampled
+from navsym.proof.normal_form import OutsideLanguageError, reduce_to_zero
+from navsym.proof.numbers import is_zero
 from navsym.proof.sampling import Point, Sample, points, search_counterexample, value_at
 from navsym.proof.second_look import Look, second_look
 from navsym.proof.wording import point_text, scope_of
@@ -67,7 +62,7 @@ def decide_bound(statement: Bound) -> Verdict:
             return verdict
         # Subtraction and the algebra may have cancelled what is not defined everywhere.
         conditions = with_sides(reduce_to_zero(difference), *sides)
-        assumed = remaining_assumptions(conditions, Equation(sides[0], sides[1], statement.box))
+        assumed = remaining_assumptions(conditions, statement.box)
         return replace(verdict, assumptions=assumed)
     except (UnsupportedError, OutsideLanguageError) as error:
         return Verdict(OPEN, "none", scope, evidence=str(error))
@@ -144,7 +139,7 @@ def exact_zero_point(difference: sp.Expr, box: Box, sides: Sequence[sp.Expr] = (
             continue
         if not all(value_at(other, point).is_finite() for other in others):
             continue
-        if vanishes_identically(difference.subs(point)):
+        if is_zero(difference.subs(point)):
             return point
     return None
 

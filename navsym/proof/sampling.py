@@ -39,6 +39,13 @@ class Range:
     nonzero: bool = False
     integer: bool = False
 
+    @property
+    def parted(self) -> bool:
+        """True when the symbol is nonzero and the range may have both signs."""
+        above = self.lower is not None and exact_ball(self.lower) >= 0
+        below = self.upper is not None and exact_ball(self.upper) <= 0
+        return self.nonzero and not above and not below
+
     def contains(self, value: sp.Expr) -> bool:
         """Rigorous membership of an exact number."""
         if self.integer and not value.is_Integer:

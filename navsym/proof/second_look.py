@@ -22,7 +22,8 @@ from flint import arb
 from navsym.claims.statement import Box
 from navsym.proof.balls import UnsupportedError, enclose, tape
 from navsym.proof.descent import lowest
-from navsym.proof.normal_form import OutsideLanguageError, vanishes_identically
+from navsym.proof.normal_form import OutsideLanguageError
+from navsym.proof.numbers import is_zero
 from navsym.proof.sampling import AWKWARD, Point, Range, points, ranges, value_at
 
 BITS = 2048
@@ -103,7 +104,7 @@ def sharp_value(difference: sp.Expr, point: Point, sides: Sequence[sp.Expr]) -> 
 
 def is_zero_at(difference: sp.Expr, point: Point) -> bool:
     try:
-        return vanishes_identically(difference.subs(point))
+        return is_zero(difference.subs(point))
     except (UnsupportedError, OutsideLanguageError):
         return False
 

@@ -9,7 +9,7 @@ from enum import IntEnum
 import sympy as sp
 
 from navsym.proof.balls import exact_ball
-from navsym.proof.normal_form import vanishes_identically
+from navsym.proof.numbers import is_zero
 from navsym.proof.sampling import Range
 
 Limits = Mapping[sp.Symbol, Range]
@@ -47,7 +47,7 @@ def constant_sign(expression: sp.Expr) -> SignProof:
             return SignProof(Sign.POSITIVE, "a positive number", exact=True)
         if ball < 0:
             return UNKNOWN
-    if vanishes_identically(expression):
+    if is_zero(expression):
         return SignProof(Sign.NONNEGATIVE, "zero", exact=True)
     return UNKNOWN
 
