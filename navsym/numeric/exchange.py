@@ -10,22 +10,23 @@ answer is a hint in double precision: :mod:`navsym.proof.optimality` turns it in
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 
 from navsym.numeric.arrays import named
+from navsym.numeric.exchange_alternance import SAME, alternance
 from navsym.numeric.exchange_kernels import (
     Array,
     Ints,
     chebyshev_derivative,
     contact_system,
     grid_values,
-    seek,
     simplex,
     spread_rows,
 )
-from navsym.numeric.exchange_maxima import local_maxima, settle
+from navsym.numeric.exchange_maxima import fine_count, local_maxima
+from navsym.numeric.exchange_twofold import lagrangian
 
 NEAR = 1e-7  # |f| above 1 - NEAR counts as touching
 NEGLIGIBLE = 1e-7  # weights below this part of their sum are not contacts
@@ -36,21 +37,50 @@ MOST_TOUCHES = 600
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Search:
+    """What every search on the same functions needs, made once: places, values there, rows to start from."""
+
+    nodes: Array
+    grid: Array
+    start: Ints
+    fine: Array
+
+
+@dataclass(frozen=True, eq=False)
 class Panels:
     """Functions on panels and the functional.
 
     coefficients : (panels, K, m) Chebyshev coefficients in the local variable u in [-1, 1]
     functional   : (m,) p, in the same basis
+    coefficients_low, functional_low : what the doubles lack; zero when not given
     """
 
     coefficients: Array
     functional: Array
+    coefficients_low: Array | None = None
+    functional_low: Array | None = None
 
     def __post_init__(self) -> None:
         panels, K, m = np.shape(self.coefficients)
         shape = (panels, K, m)
-        object.__setattr__(self, "coefficients", named("coefficients", self.coefficients, shape, "panels"))
-        object.__setattr__(self, "functional", named("functional", self.functional, (m,), "unknowns"))
+        for name, wanted, why in (("coefficients", shape, "panels"), ("functional", (m,), "unknowns")):
+            low = f"{name}_low"
+            given = np.zeros(wanted) if getattr(self, low) is None else getattr(self, low)
+            object.__setattr__(self, name, named(name, getattr(self, name), wanted, why))
+            object.__setattr__(self, low, named(low, given, wanted, why))
+
+    @property
+    def low(self) -> tuple[Array, Array]:
+        """The low parts of coefficients and functional."""
+        assert self.coefficients_low is not None and self.functional_low is not None
+        return self.coefficients_low, self.functional_low
+
+    @cached_property
+    def search(self) -> Search:
+        nodes = nodes_for(self)
+        grid = grid_values(self.coefficients, nodes)
+        fine = chebyshev_nodes(fine_count(self.coefficients.shape[1]))
+        return Search(nodes, grid, spread_rows(grid), fine)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -64,6 +94,7 @@ class Contacts:
     dual     : (m,)
     excess   : largest ``|f| - 1`` seen on a fine grid
     touching : panel and u of every further place where ``|f|`` is near one, weight zero
+    value    : of the optimum, to the last bits where the functions are known beyond doubles
     """
 
     panel: Ints
@@ -74,10 +105,7 @@ class Contacts:
     dual: Array
     excess: float
     touching: tuple[tuple[int, float], ...] = ()
-
-    @property
-    def value(self) -> float:
-        return float(np.abs(self.weights).sum())
+    value: float = np.nan
 
 
 def nodes_for(panels: Panels) -> Array:
@@ -91,30 +119,28 @@ def nodes_for(panels: Panels) -> Array:
 def chebyshev_nodes(count: int) -> Array:
     nodes: Array = -np.cos(np.pi * np.arange(count) / (count - 1))
     nodes[0], nodes[-1] = -1.0, 1.0
+    nodes.flags.writeable = False
     return nodes
 
 
 def find_contacts(panels: Panels) -> Contacts:
     """Solve the problem to double precision; the fast road first, the careful one when it refuses."""
-    nodes = nodes_for(panels)
-    panel, u, weights, move = seek(panels.coefficients, panels.functional, nodes)
-    if move < 1e-6:
-        quick = settled(panels, panel, u, np.sign(weights), weights)
-        if quick is not None and quick.excess < 1e-9:
-            return quick
-    return careful(panels, nodes)
+    quick = regular_contacts(panels)
+    return careful(panels, panels.search.nodes) if quick is None else quick
 
 
-def settled(panels: Panels, panel: Ints, u: Array, sign: Array, weights: Array) -> Contacts | None:
-    """Weights and dual of a full alternance whose contacts are already placed."""
-    try:
-        weights, x, height, where, v = settle(panels.coefficients, panels.functional, panel, u, sign, 1.0 - NEAR)
-    except np.linalg.LinAlgError:
+def regular_contacts(panels: Panels) -> Contacts | None:
+    """Contacts of a full alternance, or None when there is none or the fast road does not find it."""
+    made, (C_low, p_low) = panels.search, panels.low
+    move, panel, u, weights, x, height, value, where, places = alternance(
+        panels.coefficients, C_low, panels.functional, p_low, made.nodes, made.grid, made.start, made.fine, 1.0 - NEAR
+    )
+    sizes = np.abs(weights)
+    if move == np.inf or height > 1.0 + 1e-9 or not sizes.min() > NEGLIGIBLE * sizes.sum():
         return None
-    if (weights * sign <= NEGLIGIBLE * np.abs(weights).sum()).any():
-        return None
-    inner = ((u > -1.0) & (u < 1.0)).astype(np.int64)
-    return Contacts(panel, u, inner, sign, weights, x, height - 1.0, apart(where, v, panel, u))
+    inner = (np.abs(u) < 1.0).astype(np.int64)
+    touching = tuple(zip(where.tolist(), places.tolist(), strict=True))[:MOST_TOUCHES]
+    return Contacts(panel, u, inner, np.sign(weights), weights, x, height - 1.0, touching, value)
 
 
 def rows_at(coefficients: Array, panel: Ints, u: Array) -> Array:
@@ -227,7 +253,9 @@ def polish(panels: Panels, start: tuple[Ints, Array, Array, Array], x: Array) ->
     excess, touching = survey(panels, x, panel, u)
     if (weights * sign <= 0).any():
         excess = max(excess, 1e-3)
-    return Contacts(panel, u, inner, sign, weights, x, excess, touching)
+    (C_low, p_low), p = panels.low, panels.functional
+    value = lagrangian(C, C_low, p, p_low, panel, u, sign, weights, x)
+    return Contacts(panel, u, inner, sign, weights, x, excess, touching, value)
 
 
 def independent(rows: Array, weights: Array) -> tuple[Ints, Array]:
@@ -265,13 +293,13 @@ def inner_flags(C1: Array, panel: Ints, u: Array, sign: Array, x: Array) -> Ints
 
 def peaks(panels: Panels, x: Array) -> list[tuple[int, float]]:
     """Local maxima of |f| above one."""
-    panel, u, height = local_maxima(panels.coefficients @ x)
+    panel, u, height = local_maxima(panels.coefficients @ x, panels.search.fine)
     return [(int(panel[i]), float(u[i])) for i in np.flatnonzero(height > 1.0 + 1e-12)]
 
 
 def survey(panels: Panels, x: Array, panel: Ints, u: Array) -> tuple[float, tuple[tuple[int, float], ...]]:
     """Largest ``|f| - 1``, and the near-touching maxima that are not among the given contacts."""
-    where, v, height = local_maxima(panels.coefficients @ x)
+    where, v, height = local_maxima(panels.coefficients @ x, panels.search.fine)
     near = height > 1.0 - NEAR
     return float(height.max(initial=1.0)) - 1.0, apart(where[near], v[near], panel, u)
 
@@ -282,6 +310,12 @@ def apart(where: Ints, v: Array, panel: Ints, u: Array) -> tuple[tuple[int, floa
     rest = [
         (k, place)
         for k, place in zip(where.tolist(), v.tolist(), strict=True)
-        if not any(k == j and abs(place - w) < 1e-5 for j, w in contacts)
+        if not any(k == j and abs(place - w) < SAME for j, w in contacts)
     ]
     return tuple(rest[:MOST_TOUCHES])
+
+
+def compile_loops() -> None:
+    """Compile the loops of the search now: for many problems, where waiting for the meter would cost more."""
+    for loop in (alternance, contact_system, grid_values, lagrangian, local_maxima, simplex, spread_rows):
+        loop.compiled()

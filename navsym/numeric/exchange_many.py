@@ -13,17 +13,19 @@ from navsym.numeric.exchange import Panels
 from navsym.numeric.exchange_kernels import (
     Array,
     Ints,
+    applied,
     chebyshev_derivative,
     chebyshev_rows,
     chebyshev_sum,
+    combined,
     inverted,
-    njit,
 )
+from navsym.numeric.tiers import kernel
 
 CHECKS = 24
 
 
-@njit(cache=True)
+@kernel
 def follow(
     C: Array, C1: Array, C2: Array, p: Array, ends: Array, u: Array, kind: Ints, sign: Array
 ) -> tuple[Array, Array, Array]:
@@ -55,9 +57,9 @@ def follow(
             inverse, regular = inverted(B)
             if not regular:
                 return values, places, loads
-            x = inverse @ sign
+            x = applied(inverse, sign)
             move = 0.0
-            slopes, bends = C1 @ x, C2 @ x
+            slopes, bends = applied(C1, x), applied(C2, x)
             for k in range(m):
                 if kind[k] == 1:
                     bend = chebyshev_sum(bends, u[k])
@@ -68,13 +70,13 @@ def follow(
                     move = max(move, abs(step))
             if move < 1e-8:
                 break
-        weights = p @ inverse
+        weights = combined(inverse, p)
         total = 0.0
         for k in range(m):
             if not (weights[k] * sign[k] > 0.0 and -1.0 <= u[k] <= ends[i]):
                 return values, places, loads
             total += abs(weights[k])
-        f = C @ x
+        f = applied(C, x)
         for j in range(CHECKS):
             if abs(chebyshev_sum(f, -1.0 + (ends[i] + 1.0) * j / (CHECKS - 1.0))) > 1.0 + 1e-7:
                 return values, places, loads

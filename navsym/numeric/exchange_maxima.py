@@ -7,58 +7,30 @@ from __future__ import annotations
 
 import numpy as np
 
-from navsym.numeric.exchange_kernels import (
-    Array,
-    Ints,
-    chebyshev_derivative,
-    chebyshev_rows,
-    chebyshev_sum,
-    njit,
-)
+from navsym.numeric.exchange_kernels import Array, Ints, chebyshev_derivative, chebyshev_sum
+from navsym.numeric.tiers import kernel, part
 
 #: Nodes of the fine grid for each coefficient, and their bounds.
-PER_COEFFICIENT, LEAST, MOST = 24, 256, 20_000
+PER_COEFFICIENT, LEAST, MOST = 12, 128, 20_000
 
 
-@njit(cache=True)
-def settle(
-    C: Array, p: Array, panel: Ints, u: Array, sign: Array, near: float
-) -> tuple[Array, Array, float, Ints, Array]:
-    """Weights and dual of a full alternance, the largest ``|f|``, and the places where it comes near one.
-
-    Raises LinAlgError where the contacts determine no weights.
-    """
-    m, K = p.shape[0], C.shape[1]
-    B = np.empty((m, m))
-    for i in range(m):
-        B[i] = chebyshev_rows(C[panel[i]], u[i])
-    x = np.linalg.solve(B, sign).astype(np.float64)
-    weights = np.linalg.solve(np.ascontiguousarray(B.T), p).astype(np.float64)
-    sums = np.empty((C.shape[0], K))
-    for k in range(C.shape[0]):
-        sums[k] = C[k] @ x
-    where, places, heights = local_maxima(sums)
-    close = heights > near
-    return weights, x, float(max(1.0, heights.max())), where[close], places[close]
+def fine_count(K: int) -> int:
+    """How many nodes find the maxima of a sum of K terms."""
+    return min(MOST, max(PER_COEFFICIENT * K, LEAST)) + 1
 
 
-@njit(cache=True)
-def local_maxima(sums: Array) -> tuple[Ints, Array, Array]:
+@kernel
+def local_maxima(sums: Array, nodes: Array) -> tuple[Ints, Array, Array]:
     """Panel, place and ``|f|`` of the local maxima of ``|f|``, ends included; f has the coefficients (panels, K)."""
-    panels = sums.shape[0]
-    count = min(MOST, max(PER_COEFFICIENT * sums.shape[1], LEAST)) + 1
-    nodes = -np.cos(np.pi * np.arange(count) / (count - 1))
-    nodes[0], nodes[-1] = -1.0, 1.0
+    panels, count = sums.shape[0], nodes.shape[0]
     slopes = chebyshev_derivative(np.ascontiguousarray(sums.T))
     bends = chebyshev_derivative(slopes)
     where = np.empty(panels * count, dtype=np.int64)
     places = np.empty(panels * count)
     heights = np.empty(panels * count)
-    f = np.empty(count)
     found = 0
     for k in range(panels):
-        for i in range(count):
-            f[i] = abs(chebyshev_sum(sums[k], nodes[i]))
+        f = np.abs(values_on(sums[k], nodes))
         slope = np.ascontiguousarray(slopes[:, k])
         bend = np.ascontiguousarray(bends[:, k])
         for i in range(count):
@@ -70,7 +42,17 @@ def local_maxima(sums: Array) -> tuple[Ints, Array, Array]:
     return where[:found], places[:found], heights[:found]
 
 
-@njit(cache=True)
+@part
+def values_on(c: Array, nodes: Array) -> Array:
+    """``sum c_k T_k`` on many nodes, by Clenshaw's recurrence."""
+    twice = 2.0 * nodes
+    b1, b2 = np.zeros(nodes.shape[0]), np.zeros(nodes.shape[0])
+    for k in range(c.shape[0] - 1, 0, -1):
+        b1, b2 = twice * b1 - b2 + c[k], b1
+    return nodes * b1 - b2 + c[0]
+
+
+@part
 def newton_top(slope: Array, bend: Array, u: float) -> float:
     """Two Newton steps on f' = 0 from inside a panel, as long as they stay near."""
     at = u
@@ -82,16 +64,16 @@ def newton_top(slope: Array, bend: Array, u: float) -> float:
     return at if abs(at) < 1.0 and abs(at - u) < 0.05 else u
 
 
-@njit(cache=True)
+@part
 def parabola_top(nodes: Array, f: Array, i: int) -> float:
     """Place of the top of the parabola through three neighbouring grid values (the node at an end)."""
-    if i == 0 or i == nodes.size - 1:
-        return float(nodes[i])
+    if i == 0 or i == nodes.shape[0] - 1:
+        return nodes[i]
     left, right = nodes[i - 1] - nodes[i], nodes[i + 1] - nodes[i]
     a = (f[i - 1] - f[i]) / left
     b = (f[i + 1] - f[i]) / right
     bend = (b - a) / (right - left)
     if bend >= -1e-300:
-        return float(nodes[i])
+        return nodes[i]
     shift = -(a - bend * left) / (2.0 * bend)
-    return float(nodes[i] + shift) if left <= shift <= right else float(nodes[i])
+    return nodes[i] + shift if left <= shift <= right else nodes[i]

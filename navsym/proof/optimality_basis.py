@@ -24,7 +24,11 @@ from navsym.proof.enclosure import Panel, Problem, rational
 FIRST = 24
 LARGEST = 3072
 MOST_BITS = 6000
-RESOLVED = 3e-13
+#: Trailing coefficients below this part of the largest: the functions are resolved. Up to ``SHARP`` points a panel
+#: the coefficients are computed in balls and resolved to the second number, beyond the digits of a double.
+RESOLVED, SHARP_RESOLVED = 3e-13, 1e-19
+SHARP = 96
+NODE_BITS = 128
 
 
 class DependentError(Exception):
@@ -52,15 +56,17 @@ class Basis:
     bits: int
 
 
-def chebyshev_fractions(count: int) -> tuple[NDArray[np.float64], list[fmpq]]:
-    """Chebyshev points of the first kind in u, and the same as exact dyadic fractions of [0, 1]."""
-    u = np.cos(np.pi * (np.arange(count) + 0.5) / count)
-    return u, [(1 + fmpq(round(float(x) * (1 << 60)), 1 << 60)) / 2 for x in u]
+@lru_cache(maxsize=16)
+def chebyshev_fractions(count: int) -> tuple[fmpq, ...]:
+    """Chebyshev points of the first kind as exact dyadic fractions of [0, 1]."""
+    with precision(NODE_BITS):
+        cosines = [arb.cos_pi(arb(2 * k + 1) / (2 * count)) for k in range(count)]
+        return tuple((1 + rational(c)) / 2 for c in cosines)
 
 
 def samples(panels: Sequence[Panel], count: int, bits: int) -> arb_mat:
     """H / sigma at the Chebyshev points of every panel, (panels * count, m)."""
-    _, fractions = chebyshev_fractions(count)
+    fractions = chebyshev_fractions(count)
     rows: list[list[arb]] = []
     with precision(bits):
         for panel in panels:
@@ -141,16 +147,16 @@ def made_basis(problem: Problem, bits: int) -> Basis:
             with precision(bits):
                 values = samples(panels, count, bits)
                 A = transform_of(values, bits)
-                q = double(values * A.transpose())
+                q = values * A.transpose()
                 P = A * arb_mat([[p] for p in problem.target()])
         except DependentError:
             if bits >= MOST_BITS:
                 raise
             bits *= 2
             continue
-        coefficients = chebyshev_coefficients(q, len(panels), count)
-        tail = np.abs(coefficients[:, -3:, :]).max()
-        if tail < RESOLVED * np.abs(coefficients).max():
+        high, low = chebyshev_coefficients(q, len(panels), count)
+        tail = np.abs(high[:, -3:, :]).max() / np.abs(high).max()
+        if tail < (SHARP_RESOLVED if 2 * count <= SHARP else RESOLVED):
             break
         if count >= LARGEST:
             raise TooLargeError(
@@ -160,27 +166,53 @@ def made_basis(problem: Problem, bits: int) -> Basis:
         count *= 2
     p = double(P)[:, 0]
     scale = float(np.linalg.norm(p))
-    used = trimmed(coefficients)
-    return Basis(A, P, scale, Panels(used, p / scale), bits)
+    used = resolved(high)
+    p_high, p_low = twofold(P * (1 / arb(scale)))
+    return Basis(A, P, scale, Panels(high[:, :used], p_high[:, 0], low[:, :used], p_low[:, 0]), bits)
 
 
 def double(matrix: arb_mat) -> NDArray[np.float64]:
     return np.array([[float(e.mid()) for e in row] for row in matrix.tolist()])
 
 
-def chebyshev_coefficients(q: NDArray[np.float64], panels: int, count: int) -> NDArray[np.float64]:
-    """Coefficients (panels, count, m) from values at the points of the first kind."""
-    k = np.arange(count)
-    cosines = np.cos(np.pi * np.outer(k, k + 0.5) / count) * (2.0 / count)
-    cosines[0] *= 0.5
-    return np.stack([cosines @ q[i * count : (i + 1) * count] for i in range(panels)])
+def twofold(matrix: arb_mat) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """The midpoints as doubles, and what these lack."""
+    rows = matrix.tolist()
+    high = np.array([[float(e.mid()) for e in row] for row in rows])
+    low = [[float((e - h).mid()) for e, h in zip(*pair, strict=True)] for pair in zip(rows, high.tolist(), strict=True)]
+    return high, np.array(low)
 
 
-def trimmed(coefficients: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Without the trailing coefficients that are rounding."""
-    size = np.abs(coefficients).max(axis=(0, 2))
-    last = int(np.flatnonzero(size > 1e-15 * size.max()).max())
-    return np.ascontiguousarray(coefficients[:, : max(last + 1, 3)])
+def chebyshev_coefficients(
+    q: arb_mat, panels: int, count: int
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Coefficients (panels, count, m) from values at the points of the first kind, and what the doubles lack."""
+    if count > SHARP:
+        k, values = np.arange(count), double(q)
+        cosines = np.cos(np.pi * np.outer(k, k + 0.5) / count) * (2.0 / count)
+        cosines[0] *= 0.5
+        high = np.stack([cosines @ values[i * count : (i + 1) * count] for i in range(panels)])
+        return high, np.zeros_like(high)
+    rows = q.tolist()
+    with precision(NODE_BITS):
+        parts = [twofold(ball_cosines(count) * arb_mat(rows[i * count : (i + 1) * count])) for i in range(panels)]
+    return np.stack([high for high, _ in parts]), np.stack([low for _, low in parts])
+
+
+@lru_cache(maxsize=8)
+def ball_cosines(count: int) -> arb_mat:
+    """``2/n cos(pi k (j + 1/2) / n)``, the first row halved: values at the points to coefficients."""
+    with precision(NODE_BITS):
+        cosines = [arb.cos_pi(arb(j) / (2 * count)) * 2 / count for j in range(4 * count)]
+        rows = [[cosines[k * (2 * j + 1) % (4 * count)] for j in range(count)] for k in range(count)]
+        return arb_mat([[c / 2 for c in rows[0]], *rows[1:]])
+
+
+def resolved(high: NDArray[np.float64]) -> int:
+    """How many coefficients are above their rounding."""
+    size = np.abs(high).max(axis=(0, 2))
+    least = SHARP_RESOLVED if high.shape[1] <= SHARP else 1e-15
+    return max(int(np.flatnonzero(size > least * size.max()).max()) + 1, 3)
 
 
 def as_fraction(u: float) -> fmpq:

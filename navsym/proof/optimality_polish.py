@@ -121,25 +121,3 @@ def residual(
             slopes.append(total(x, [q[j, 1] for j in range(m)]))
         balance = [b + w[i] * q[j, 0] for j, b in enumerate(balance)]
     return [a.mid() for a in [*values, *slopes, *balance]]
-
-
-def quick_value(
-    panels: Sequence[Panel], problem_target: Sequence[arb], contacts: Contacts, bits: int = 128
-) -> arb | None:
-    """``sum sigma |w|`` for a full alternance, weights solved at ``bits`` bits at the double contacts.
-
-    The value depends on the contacts only to second order, so that contacts to 1e-9 give it to 1e-18.
-    None when there are fewer contacts than unknowns.
-    """
-    if contacts.u.size != len(problem_target):
-        return None
-    with precision(bits):
-        columns = [
-            panels[k].rows(arb(as_fraction(float(u))))
-            for k, u in zip(contacts.panel, contacts.u, strict=True)
-        ]
-        weights = arb_mat(columns).transpose().solve(arb_mat([[p] for p in problem_target]))
-        value = arb(0)
-        for i, k in enumerate(contacts.panel):
-            value += panels[k].bound() * abs(weights[i, 0])
-        return value

@@ -8,12 +8,10 @@ from numpy.polynomial import chebyshev
 from scipy.optimize import linprog
 
 from navsym.numeric import exchange_kernels as kernels
-from navsym.numeric.exchange import Panels, find_contacts, independent, rows_at
-
-
-def plain(function):
-    """The same function without the compiler, where there is one."""
-    return getattr(function, "py_func", function)
+from navsym.numeric import tiers
+from navsym.numeric.exchange import Panels, chebyshev_nodes, find_contacts, independent, rows_at
+from navsym.numeric.exchange_maxima import local_maxima, values_on
+from navsym.numeric.tiers import compiled
 
 
 def power_panels(m, functional):
@@ -31,16 +29,42 @@ def test_the_leading_chebyshev_coefficient_is_bounded_by_the_alternance(m):
     assert found.excess < 1e-12
 
 
-def test_the_compiled_loops_and_their_plain_twins_agree():
+def test_the_compiled_loops_give_the_bits_of_the_interpreted_ones():
     rng = np.random.default_rng(0)
-    c = rng.standard_normal((9, 3))
-    assert np.allclose(kernels.chebyshev_rows(c, 0.3), plain(kernels.chebyshev_rows)(c, 0.3), rtol=1e-14)
+    G, p = rng.standard_normal((40, 3)), rng.standard_normal(3)
+    start = kernels.spread_rows.py_func(G)
+    pairs = [
+        (kernels.spread_rows, (G,)),
+        (kernels.simplex, (G, p, start, 500)),
+        (local_maxima, (rng.standard_normal((2, 9)), chebyshev_nodes(101))),
+    ]
+    for loop, arguments in pairs:
+        fast, slow = compiled(loop.py_func)(*arguments), loop.py_func(*arguments)
+        for a, b in zip(fast, slow, strict=True):
+            assert np.array_equal(a, b)
+
+
+def test_chebyshev_sums_agree_with_those_of_numpy():
+    c = np.random.default_rng(0).standard_normal((9, 3))
     assert np.allclose(kernels.chebyshev_rows(c, 0.3), chebyshev.chebval(0.3, c), rtol=1e-13)
     assert np.allclose(kernels.chebyshev_derivative(c)[:-1], chebyshev.chebder(c), rtol=1e-13)
-    G, p = rng.standard_normal((40, 3)), rng.standard_normal(3)
-    start = kernels.spread_rows(G)
-    fast, slow = kernels.simplex(G, p, start, 500), kernels.simplex.py_func(G, p, start, 500)
-    assert np.allclose(np.abs(fast[1]).sum(), np.abs(slow[1]).sum(), rtol=1e-12)
+    assert np.allclose(values_on(c[:, 0], np.array([0.3, -1.0])), chebyshev.chebval([0.3, -1.0], c[:, 0]), rtol=1e-13)
+
+
+def test_a_loop_is_interpreted_until_that_has_cost_as_much_as_compiling(monkeypatch):
+    monkeypatch.setattr(tiers, "compiled", lambda function: lambda *given: "compiled")
+    loop = tiers.kernel(lambda x: x)
+    monkeypatch.setattr(tiers.Meter, "spent", 0.0)
+    assert loop(1) == 1
+    monkeypatch.setattr(tiers.Meter, "spent", tiers.TO_COMPILE + 1.0)
+    assert loop(1) == "compiled"
+
+
+def test_inverses_of_small_matrices_are_those_of_numpy():
+    B = np.random.default_rng(3).standard_normal((7, 7))
+    X, regular = kernels.inverted(B)
+    assert regular and np.allclose(X, np.linalg.inv(B), rtol=1e-10)
+    assert not kernels.inverted(np.ones((3, 3)))[1]
 
 
 @pytest.mark.parametrize("seed", range(12))

@@ -44,7 +44,7 @@ def ordered(found: Contacts) -> Contacts:
     order = np.lexsort((found.u, found.panel))
     return Contacts(
         found.panel[order], found.u[order], found.inner[order], found.sign[order], found.weights[order],
-        found.dual, found.excess, found.touching,
+        found.dual, found.excess, found.touching, found.value,
     )  # fmt: skip
 
 
@@ -54,8 +54,13 @@ def pattern_of(found: Contacts) -> Pattern:
     return tuple((int(k), kind, int(s)) for k, kind, s in zip(found.panel, kinds, found.sign, strict=True))
 
 
-def scan(family: Family, lower: Fraction, upper: Fraction, count: int = COUNT) -> list[Span]:
-    """Spans of equal pattern between two positive lengths, from a scan and bisections."""
+def scan(
+    family: Family, lower: Fraction, upper: Fraction, count: int = COUNT, step: Callable[[], None] = lambda: None
+) -> list[Span]:
+    """Spans of equal pattern between two positive lengths, from a scan and bisections.
+
+    step : called after each of the ``count - 1`` stretches of the scan
+    """
     known: dict[Fraction, Pattern] = {}
 
     def at(T: Fraction) -> Pattern:
@@ -68,6 +73,7 @@ def scan(family: Family, lower: Fraction, upper: Fraction, count: int = COUNT) -
     cuts: list[tuple[Fraction, Fraction]] = []
     for a, b in pairwise(places):
         changes(at, a, b, cuts)
+        step()
     edges = [lower, *((a + b) / 2 for a, b in cuts), upper]
     spans = [Span(a, b, at((a + b) / 2)) for a, b in pairwise(edges)]
     return joined([s for s in spans if s.upper - s.lower > Fraction(1, 20000) * width])
