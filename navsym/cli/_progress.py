@@ -1,11 +1,13 @@
 """What a person sees while a verb works: one line with count, time left and what is being done.
 
-On a terminal the line is drawn again and again at the bottom and leaves no trace; elsewhere a remark
-comes every ten seconds. Nothing is shown for what takes less than two seconds.
+On a terminal the line is drawn again and again at the bottom and leaves no trace. Elsewhere nothing is said,
+unless NAVSYM_PROGRESS=1 asks for a remark every ten seconds (for logs); NAVSYM_PROGRESS=0 is silence everywhere.
+Nothing is shown for what takes less than two seconds.
 """
 
 from __future__ import annotations
 
+import os
 import shutil
 import sys
 import threading
@@ -24,13 +26,13 @@ class Line:
     def __init__(self) -> None:
         self.text = ""
         self.lock = threading.Lock()
+        self.job: Progress | None = None     # what counts at present, for the ticker
 
     @property
     def drawn(self) -> bool:
-        """True where a line can be drawn: standard error is a terminal that obeys control sequences."""
-        from navsym.cli.output import wants_colour
-
-        return wants_colour(sys.stderr)
+        """True where a line can be drawn and is wanted: standard error is a terminal that obeys control sequences."""
+        terminal = bool(getattr(sys.stderr, "isatty", lambda: False)())
+        return terminal and os.environ.get("TERM") != "dumb" and os.environ.get("NAVSYM_PROGRESS") != "0"
 
     def show(self, text: str) -> None:
         width = shutil.get_terminal_size().columns - 1
@@ -51,6 +53,11 @@ class Line:
 LINE = Line()
 
 
+def remarks_wanted() -> bool:
+    """True where somebody asked for progress without a terminal."""
+    return os.environ.get("NAVSYM_PROGRESS", "0") not in ("", "0")
+
+
 class Progress:
     """Counts the steps of a long job; as a context it says how to go on when it is interrupted.
 
@@ -61,7 +68,7 @@ class Progress:
 
     def __init__(self, what: str, total: int = 0, resume: str = "", clock: Callable[[], float] = time.monotonic):
         self.what, self.total, self.resume, self.clock = what, total, resume, clock
-        self.count, self.before, self.started = 0, 0, clock()
+        self.count, self.before, self.started, self.doing = 0, 0, clock(), ""
         self.told = self.started + PATIENCE - BETWEEN_REMARKS
 
     def step(self, doing: str = "") -> None:
@@ -69,20 +76,24 @@ class Progress:
         self.to(self.count + 1, doing)
 
     def told_by_job(self, done: int, of: int) -> None:
-        """For jobs that report both numbers; what an earlier run has left counts as done, not as fast."""
+        """For jobs that report both numbers; what an earlier run has left counts as done, not as fast.
+
+        The total may grow while a job finds out what it has to do.
+        """
         if not self.total:
-            self.total, self.before = of, max(done - 1, 0)
+            self.before = max(done - 1, 0)
+        self.total = of
         self.to(done)
 
     def to(self, count: int, doing: str = "") -> None:
         """``count`` of them are done."""
-        self.count = count
+        self.count, self.doing = count, doing
         now = self.clock()
         if now - self.started < PATIENCE or count >= self.total:
             return
         if LINE.drawn:
             LINE.show(self.words(now, doing))
-        elif now - self.told >= BETWEEN_REMARKS:
+        elif remarks_wanted() and now - self.told >= BETWEEN_REMARKS:
             self.told = now
             from navsym.cli.output import remark
 
@@ -94,21 +105,21 @@ class Progress:
         return f"{told}  {doing}" if doing else told
 
     def __enter__(self) -> Progress:
+        LINE.job = self
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
+        LINE.job = None
         LINE.clear()
-        if kind is KeyboardInterrupt and self.resume:
-            from navsym.cli.output import remark
-
+        if isinstance(error, KeyboardInterrupt) and self.resume:
             done = f"at {self.count} of {self.total} {self.what}" if self.count else f"before any of the {self.what}"
-            remark(f"stopped {done}; {self.resume}")
+            error.add_note(f"{done}; {self.resume}")
 
 
 class Ticker:
-    """For a verb that cannot count: after two seconds it says on a terminal for how long it has been working."""
+    """Keeps the line of a verb alive on a terminal: the count, also between two steps, or for how long it works."""
 
     def __init__(self, verb: str):
         self.verb, self.started, self.over = verb, time.monotonic(), threading.Event()
@@ -119,13 +130,15 @@ class Ticker:
         return self
 
     def run(self) -> None:
-        shown = ""
         while not self.over.wait(BETWEEN_TICKS):
             spent = time.monotonic() - self.started
-            if spent >= PATIENCE and LINE.text == shown:     # never over the line of a job that counts
-                shown = f"{self.verb}: working for {duration(spent)}, Ctrl-C stops it"
-                LINE.show(shown)
-                shown = LINE.text
+            if spent >= PATIENCE:
+                LINE.show(self.words(spent, LINE.job))
+
+    def words(self, spent: float, job: Progress | None) -> str:
+        if job is not None and job.count > job.before:
+            return job.words(job.clock(), job.doing)
+        return f"{self.verb}: working for {duration(spent)}, Ctrl-C stops it"
 
     def __exit__(self, *_: object) -> None:
         self.over.set()

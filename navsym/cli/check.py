@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import importlib
 import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
+from navsym.cli._progress import Progress
 from navsym.cli.output import emit, table
 from navsym.errors import EmptyError
 
@@ -28,7 +30,16 @@ def command(
 
     Example: navsym check report/certificates
     """
-    rows = [row for path in paths for row in check_path(path)]
+    rows: list[dict[str, Any]] = []
+    work = [part for path in paths for part in parts_of(path)]
+    try:
+        with Progress("parts", len(work), "those checked follow; name the other paths for the rest") as bar:
+            for check, path in work:
+                rows += check(path)
+                bar.step(path.name)
+    except KeyboardInterrupt:
+        emit({"checked": rows, "interrupted": True}, as_json=json_, text=lambda: as_text(rows))
+        raise
     if not rows:
         raise EmptyError(
             "expected certificates; got none; name JSON files or exported folders", where=str(paths[0])
@@ -38,12 +49,14 @@ def command(
         raise typer.Exit(1)
 
 
-def check_path(path: Path) -> list[dict[str, Any]]:
-    """Verdicts on a file, or on the certificates and exported code of a folder."""
+Part = tuple[Callable[[Path], list[dict[str, Any]]], Path]
+
+
+def parts_of(path: Path) -> list[Part]:
+    """What there is to check: a file, or the exported code and every JSON file of a folder."""
     if path.is_dir():
-        exported = check_exported(path)
-        return exported + [row for file in sorted(path.rglob("*.json")) for row in check_folder_file(file)]
-    return [check_file(path)]
+        return [(check_exported, path), *((check_folder_file, file) for file in sorted(path.rglob("*.json")))]
+    return [(lambda file: [check_file(file)], path)]
 
 
 def check_folder_file(file: Path) -> list[dict[str, Any]]:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from navsym.cli._progress import Progress
 from navsym.cli.output import emit, table
 from navsym.errors import DomainError, NavsymError
 
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
 
 SECONDS = 90.0
 MEGABYTES = 4096
+RESUME = "nothing was written: fewer languages in --to, fewer --vectors, or --no-run take less time"
 
 
 def command(
@@ -62,7 +64,6 @@ def command(
         raise DomainError(f"expected double or float; got {real[:20]!r}; do correct it", where="--real")
     targets = tuple(chosen(to.split(","), real))
     units = dict(read_unit(text) for text in unit or [])
-    functions = [f for claim in expanded(claims) for f in functions_for(claim, real, allow_confirmed, units)]
     words = [
         "navsym",
         "export",
@@ -79,7 +80,12 @@ def command(
     words += ["--allow-confirmed"] if allow_confirmed else []
     words += [word for text in unit or [] for word in ("--unit", text)]
     order = Order(targets, license_, vectors, tuple(words))
-    document = export(functions, order, out, force=force, execute=run)
+    wanted, functions = expanded(claims), []
+    with Progress("parts", len(wanted) + len(targets), RESUME) as bar:
+        for claim in wanted:
+            functions += functions_for(claim, real, allow_confirmed, units)
+            bar.step(claim)
+        document = export(functions, order, out, force=force, execute=run, progress=bar.step)
     emit(document, as_json=json_, text=lambda: as_text(document))
     return 0
 

@@ -4,13 +4,18 @@ from __future__ import annotations
 
 import shlex
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from navsym.cli._progress import Progress
 from navsym.cli.output import emit, table
 from navsym.errors import DomainError
 
+if TYPE_CHECKING:
+    from navsym.export.functions import ExportedFunction
+
+RESUME = "nothing is kept: name some of the exports, or fewer --vectors"
 EVERY = "c,cpp,python,batch,javascript,rust,fortran,casadi,wasm,julia,octave"
 
 
@@ -37,8 +42,13 @@ def command(
         raise DomainError(f"expected ready-made names among {', '.join(READY)}; got {unknown[0][:40]!r}; correct it")
     spoken = [n for n in to.split(",") if real in (TARGETS[n].reals if n in TARGETS else (real,))]
     targets = chosen(spoken, real)
-    groups = {n: [f for claim in READY[n] for f in functions_for(claim, real, False)] for n in wanted}
-    document = closing_table(groups, targets, vectors)
+    groups: dict[str, list[ExportedFunction]] = {name: [] for name in wanted}
+    parts = [(name, claim) for name in wanted for claim in READY[name]]
+    with Progress("parts", len(parts) + len(wanted) * len(targets), RESUME) as bar:
+        for name, claim in parts:
+            groups[name] += functions_for(claim, real, False)
+            bar.step(claim)
+        document = closing_table(groups, targets, vectors, bar.step)
     words = ["navsym", "exports", *(names or []), *(["--to", to] if to != EVERY else []),
              *(["--real", real] if real != "double" else []), "--vectors", str(vectors)]  # fmt: skip
     if write is not None:

@@ -170,7 +170,8 @@ def stopped(error: BaseException | None) -> int:
     if isinstance(error, BrokenPipeError):
         silence_stdout()
         return BROKEN_PIPE
-    complain("interrupted")
+    notes = getattr(error, "__notes__", ())
+    complain(" ".join(["interrupted", *(notes or ["and nothing is kept: the same command starts again"])]))
     return INTERRUPTED
 
 

@@ -7,9 +7,12 @@ from typing import Annotated, Any
 
 import typer
 
+from navsym.cli._progress import Progress
 from navsym.cli._settings import values_of
 from navsym.cli.output import dumps, emit, table, write_text
 from navsym.errors import DomainError, ExpressionSyntaxError, NavsymError
+
+RESUME = "nothing is kept: a shorter --range, or --quick, takes less time"
 
 
 def command(
@@ -43,7 +46,10 @@ def command(
     found = read_model(file, values_of(set_))
     try:
         lower, upper = ends_of(found, parameter, range_)
-        answer = phases(family_of(found, target, parameter), lower, upper, certify=not quick)
+        with Progress("steps", resume=RESUME) as bar:
+            answer = phases(
+                family_of(found, target, parameter), lower, upper, certify=not quick, progress=bar.told_by_job
+            )
     except NavsymError as error:
         raise error.at(str(file)) from None
     document = answer.document()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import inspect
+from collections.abc import Container
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -12,8 +13,8 @@ import typer
 from navsym.cli._progress import Progress
 from navsym.cli.output import emit, table
 
-#: Name -> "module:experiment:as_table". The experiment takes runs, seed, steps and returns plain data;
-#: as_table turns that into headings and rows. Modules are imported when their name is asked for.
+#: Name -> "module:experiment:as_table". The experiment takes seed, progress and perhaps runs, steps, journal, and
+#: returns plain data; as_table turns that into headings and rows. Modules are imported when their name is asked for.
 EXPERIMENTS = {
     "joint_correction": "navsym.methods.two_stage.study:study:as_table",
     "multistructure": "navsym.methods.multimodel.study:experiment:as_table",
@@ -55,17 +56,15 @@ def command(
         if option not in accepted:
             takes = ", ".join(f"--{key}" for key in ("seed", *given) if key in accepted)
             raise DomainError(f"--{option}: expected an option that {name} has ({takes}); got {option}; leave it out")
-    with Progress("runs", resume=resume(journal, "journal" in accepted)) as bar:
-        if "progress" in accepted:
-            options["progress"] = bar.told_by_job
-        document: dict[str, Any] = getattr(module, experiment)(seed=seed, **options)
+    with Progress("runs", resume=resume(journal, accepted)) as bar:
+        document: dict[str, Any] = getattr(module, experiment)(seed=seed, progress=bar.told_by_job, **options)
     emit(document, as_json=json_, text=lambda: table(*getattr(module, as_table)(document)))
 
 
-def resume(journal: Path | None, possible: bool) -> str:
+def resume(journal: Path | None, accepted: Container[str]) -> str:
     """How to go on after Ctrl-C."""
     if journal is not None:
         return f"finished runs are in {journal}: the same command goes on from there"
-    if possible:
+    if "journal" in accepted:
         return "nothing is kept: with --journal FILE finished runs are kept, and the same command goes on"
-    return "nothing is kept: fewer --runs take less time"
+    return "nothing is kept" + (": fewer --runs take less time" if "runs" in accepted else "")

@@ -7,6 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
+from navsym.cli._progress import Progress
 from navsym.cli._settings import values_of
 from navsym.cli.output import dumps, emit, table, write_text
 from navsym.errors import NavsymError
@@ -43,12 +44,14 @@ def command(
     except NavsymError as error:
         raise error.at(str(file)) from None
     document = solution.document()
-    if compare:
-        from navsym.methods.guaranteed.compare import compare as beside
-
-        document["compare"] = beside(solution)
     if out is not None:
         write_text(out, dumps(document["certificate"]) + "\n")
+    if compare:
+        from navsym.methods.guaranteed.compare import LP_SOLVERS
+        from navsym.methods.guaranteed.compare import compare as beside
+
+        with Progress("solvers", len(LP_SOLVERS), "without --compare the answer comes at once") as bar:
+            document["compare"] = beside(solution, progress=bar.step)
     emit(document, as_json=json_, text=lambda: as_text(document))
 
 

@@ -7,7 +7,7 @@ import json
 import platform
 import shlex
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from importlib.metadata import version
 from pathlib import Path
@@ -177,9 +177,11 @@ def export(
     *,
     force: bool = False,
     execute: bool = True,
+    progress: Callable[[str], None] = lambda language: None,
 ) -> dict[str, Any]:
     """Make an export, run it, and write it when it held; the document of ``navsym export``.
 
+    progress : called with the name of each language that was written and run.
     Keys: ``out``, ``functions`` (name, claims, bound), ``languages`` (status, why, vectors, worst),
     ``files``. Raises FailedError when a language's vectors fail, FolderError when nothing may be written.
     """
@@ -187,7 +189,10 @@ def export(
     require_free(out, files, force=force)
     with tempfile.TemporaryDirectory(prefix="navsym-export-") as trial:
         write_folder(Path(trial), files, force=True)
-        outcomes = [run_or_not(Path(trial), target, execute) for target in order.targets]
+        outcomes = []
+        for target in order.targets:
+            outcomes.append(run_or_not(Path(trial), target, execute))
+            progress(target.name)
     failed = [outcome for outcome in outcomes if outcome.status == "failed"]
     if failed:
         raise FailedError(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import platform
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -19,9 +19,13 @@ from navsym.export.tools import Said, cortex_m4_sizes, ctest, misra
 Record = dict[str, Any]
 
 
-def closing_table(groups: Mapping[str, Sequence[ExportedFunction]], targets: Sequence[Target], count: int) -> Record:
+def closing_table(
+    groups: Mapping[str, Sequence[ExportedFunction]], targets: Sequence[Target], count: int,
+    progress: Callable[[str], None] = lambda doing: None,
+) -> Record:  # fmt: skip
     """Export every group, run every language, ask every tool; the document of ``navsym exports``.
 
+    progress : called with "group language" when a language of a group was run.
     Keys: ``functions`` (name, group, status, claims, bound, languages, misra, cortex_m4_bytes), ``languages`` and
     ``tools`` (status, why), ``vectors``, ``machine``.
     """
@@ -31,7 +35,10 @@ def closing_table(groups: Mapping[str, Sequence[ExportedFunction]], targets: Seq
     for group, functions in groups.items():
         with tempfile.TemporaryDirectory(prefix="navsym-table-") as folder:
             write_folder(Path(folder), files_of(functions, Order(tuple(targets), count=count)), force=True)
-            outcomes = [run_target(Path(folder) / target.name, target) for target in targets]
+            outcomes = []
+            for target in targets:
+                outcomes.append(run_target(Path(folder) / target.name, target))
+                progress(f"{group} {target.name}")
             said = tools_on(Path(folder) / "c")
         for outcome in outcomes:
             worse(languages, outcome.language, outcome.status, outcome.why)
@@ -93,7 +100,7 @@ SHORT = {"javascript": "js", "fortran": "f90"}
 def as_markdown(document: Record, command: str) -> str:
     """The page that is committed; produced, never edited."""
     names = [n for n, record in document["languages"].items() if record["status"] != "not executed"]
-    lines = ["---", "orphan: true", "---", "", "# Ready-made exports", ""]
+    lines = ["# Ready-made exports", ""]
     lines += [f"Produced by `{command}`; do not edit. {document['machine']}.", ""]
     lines += [INTRODUCTION.format(document["vectors"]), ""]
     head = ["function", *(SHORT.get(n, n) for n in names), "vectors", "MISRA", "M4 bytes"]

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import multiprocessing
 import resource
+import signal
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
@@ -106,7 +107,8 @@ def start(place: int, function: Callable[[Any], Any], item: Any, megabytes: int)
 
 
 def work(sender: Connection, function: Callable[[Any], Any], item: Any, megabytes: int) -> None:
-    """Runs in the child."""
+    """Runs in the child. Ctrl-C reaches the whole group; here the parent answers it, and kills its children."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
     limit = megabytes * 2**20
     resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))

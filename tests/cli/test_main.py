@@ -201,7 +201,8 @@ def test_the_debug_switch_shows_the_traceback(
 def test_an_interruption_is_one_line_and_status_130(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert run(capsys, "count-things", "interrupt") == (130, "", "navsym: interrupted\n")
+    said = "navsym: interrupted and nothing is kept: the same command starts again\n"
+    assert run(capsys, "count-things", "interrupt") == (130, "", said)
 
 
 def test_a_broken_pipe_inside_a_verb_is_silent(

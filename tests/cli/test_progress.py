@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import os
 import pty
 import select
@@ -12,7 +13,8 @@ from pathlib import Path
 
 import pytest
 
-from navsym.cli._progress import LINE, Progress, duration
+from navsym.cli._progress import LINE, Progress, Ticker, duration
+from navsym.cli.main import stopped
 
 ROOT = Path(__file__).parents[2]
 
@@ -39,21 +41,77 @@ def test_the_time_left_is_that_of_the_steps_done_here_and_not_of_those_kept():
         assert bar.words(clock.now, "") == "92 of 100 jobs, about 40 s left"
 
 
-def test_nothing_is_said_within_two_seconds_and_a_remark_every_ten_without_a_terminal(capsys):
-    clock = Clock()
+def counted(clock):
     with Progress("claims", 1000, clock=clock) as bar:
         for _ in range(100):
             clock.now += 0.3
             bar.step("x")
+
+
+def test_without_a_terminal_nothing_is_said(capsys, monkeypatch):
+    monkeypatch.delenv("NAVSYM_PROGRESS", raising=False)
+    counted(Clock())
+    assert capsys.readouterr() == ("", "")
+
+
+def test_a_log_that_asks_for_it_gets_a_remark_every_ten_seconds(capsys, monkeypatch):
+    monkeypatch.setenv("NAVSYM_PROGRESS", "1")
+    counted(Clock())
     said = capsys.readouterr().err.splitlines()
     assert [line.split(",")[0] for line in said] == ["7 of 1000 claims", "41 of 1000 claims", "75 of 1000 claims"]
 
 
+def test_the_total_may_grow_while_a_job_finds_out_what_it_has_to_do():
+    clock = Clock()
+    with Progress("steps", clock=clock) as bar:
+        bar.told_by_job(1, 2)
+        clock.now = 12.0
+        bar.told_by_job(3, 7)
+        assert bar.words(clock.now, "") == "3 of 7 steps, about 16 s left"
+
+
+def told_by(study, **options):
+    """What a study tells while it runs: pairs (finished, all)."""
+    told = []
+    study(progress=lambda done, of: told.append((done, of)), **options)
+    return told
+
+
+@pytest.mark.parametrize(
+    ("module", "name", "options"),
+    [
+        ("navsym.methods.multimodel.study", "experiment", {"runs": 2, "steps": 2}),
+        ("navsym.methods.trajectory.study", "study", {"runs": 1}),
+        ("navsym.methods.two_stage.study", "study", {}),
+    ],
+)
+def test_an_experiment_counts_every_step_to_the_last(module, name, options):
+    told = told_by(getattr(importlib.import_module(module), name), **options)
+    assert len(told) >= 10 and told == [(k, len(told)) for k in range(1, len(told) + 1)]
+
+
+def test_between_two_steps_the_ticker_goes_on_with_the_count():
+    clock = Clock()
+    ticker = Ticker("phases")
+    with Progress("steps", 8, clock=clock) as bar:
+        assert ticker.words(3.0, LINE.job) == "phases: working for 3 s, Ctrl-C stops it"
+        bar.step("a regime")
+        clock.now = 6.0
+        assert ticker.words(9.0, LINE.job) == "1 of 8 steps, about 42 s left  a regime"
+    assert LINE.job is None
+
+
 def test_an_interrupted_job_says_what_is_left(capsys):
-    with pytest.raises(KeyboardInterrupt), Progress("claims", 5, "the rest is waiting") as bar:
+    with pytest.raises(KeyboardInterrupt) as caught, Progress("claims", 5, "the rest is waiting") as bar:
         bar.step()
         raise KeyboardInterrupt
-    assert capsys.readouterr().err == "stopped at 1 of 5 claims; the rest is waiting\n"
+    assert stopped(caught.value) == 130
+    assert capsys.readouterr().err == "navsym: interrupted at 1 of 5 claims; the rest is waiting\n"
+
+
+def test_a_verb_that_cannot_count_says_that_nothing_is_kept(capsys):
+    assert stopped(KeyboardInterrupt()) == 130
+    assert capsys.readouterr().err == "navsym: interrupted and nothing is kept: the same command starts again\n"
 
 
 def test_a_line_never_stays_behind_when_something_else_is_written(monkeypatch, capsys):

@@ -7,7 +7,7 @@ reached by the noise ``r_j(t) = sigma_j sgn(Phi_j(t)) xi`` with one standard nor
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -75,15 +75,24 @@ def guaranteed_deviation(samples: Sampled, density: Array) -> float:
     return float(np.sum(samples.bounds * np.abs(density) * samples.spacing))
 
 
-def compare(solution: GuaranteedSolution, solvers: Sequence[str] = LP_SOLVERS) -> dict[str, Any]:
-    """Guaranteed deviation of least squares and of the white-noise Kalman filter; every solver's answer."""
+def compare(
+    solution: GuaranteedSolution, solvers: Sequence[str] = LP_SOLVERS,
+    progress: Callable[[str], None] = lambda solver: None,
+) -> dict[str, Any]:  # fmt: skip
+    """Guaranteed deviation of least squares and of the white-noise Kalman filter; every solver's answer.
+
+    progress : called with the name of each solver that has answered
+    """
     problem = solution.problem
     samples = sampled(problem)
     P = np.array([float(p) for p in problem.functional])
     ones = np.ones_like(samples.bounds)
     least = guaranteed_deviation(samples, quadratic_estimator(samples, P, ones))
     kalman = guaranteed_deviation(samples, quadratic_estimator(samples, P, samples.bounds**-2.0))
-    rows = [solver_row(grid_problem(problem), name, solution.value) for name in solvers]
+    rows = []
+    for name in solvers:
+        rows.append(solver_row(grid_problem(problem), name, solution.value))
+        progress(name)
     return {"least_squares": least, "kalman_white_noise": kalman, "optimum": solution.value, "solvers": rows}
 
 

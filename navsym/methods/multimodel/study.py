@@ -6,8 +6,9 @@ the estimates against the truth: errors with confidence intervals, never a singl
 
 from __future__ import annotations
 
+import itertools
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -117,11 +118,16 @@ class Filtered:
     filters_per_step: float
 
 
-def filter_all(models: Bank, signals: Signals, method: str, depth: int | None = None) -> Filtered:
-    """One method on every series, and its time per step."""
+def filter_all(
+    models: Bank, signals: Signals, method: str, depth: int | None = None, step: Callable[[], None] = lambda: None
+) -> Filtered:
+    """One method on every series, and its time per step; ``step`` is called after each series."""
     run(models, signals.measurements[0], method, depth=depth, engine="compiled")  # load the loops before the clock
     began = time.perf_counter()
-    found = [run(models, z, method, depth=depth, engine="compiled") for z in signals.measurements]
+    found = []
+    for z in signals.measurements:
+        found.append(run(models, z, method, depth=depth, engine="compiled"))
+        step()
     elapsed = time.perf_counter() - began
     steps = signals.measurements.shape[1]
     if method != "exact":
@@ -170,14 +176,23 @@ def normalised(error: Array, covariance: Array) -> Array:
 
 
 def compare(
-    models: Bank, methods: Sequence[tuple[str, int | None]], runs: int, steps: int, seed: int, *, exact: bool
+    models: Bank, methods: Sequence[tuple[str, int | None]], runs: int, steps: int, seed: int, *, exact: bool,
+    progress: Callable[[int, int], None] = lambda done, of: None,
 ) -> list[Score]:
-    """Score methods on the same simulated signals; with ``exact`` the full tree comes first in the list."""
+    """Score methods on the same simulated signals; with ``exact`` the full tree comes first in the list.
+
+    progress : called with (finished, all) series of all methods
+    """
     signals = simulate(models, runs, steps, seed)
-    reference = filter_all(models, signals, "exact") if exact else None
+    done, of = itertools.count(1), runs * (len(methods) + exact)
+
+    def step() -> None:
+        progress(next(done), of)
+
+    reference = filter_all(models, signals, "exact", step=step) if exact else None
     scores = [score("exact", None, reference, signals, reference)] if reference is not None else []
     for method, depth in methods:
-        scores.append(score(method, depth, filter_all(models, signals, method, depth), signals, reference))
+        scores.append(score(method, depth, filter_all(models, signals, method, depth, step), signals, reference))
     return scores
 
 
@@ -212,16 +227,20 @@ def schuler_bank(channel: SchulerChannel | None = None) -> Bank:
                 start["probabilities"])
 
 
-def experiment(runs: int = 1000, seed: int = 1, steps: int = 7) -> dict[str, Any]:
+def experiment(
+    runs: int = 1000, seed: int = 1, steps: int = 7, *,
+    progress: Callable[[int, int], None] = lambda done, of: None,
+) -> dict[str, Any]:
     """`navsym simulate multistructure`: the Schuler channel, K = 1..4, GPB2, IMM, polygaussian against exact.
 
+    progress : called with (finished, all) series of all methods
     Raises DomainError for fewer than two runs, TooLargeError when the exact tree of ``steps`` does not fit.
     """
     if runs < 2 or steps < 1:
         raise DomainError(f"runs: expected at least 2 runs and 1 step; got {runs} and {steps}; give more")
     models = schuler_bank()
     require_room(scheme("exact"), models.modes, models.states, 1, steps)
-    scores = compare(models, METHODS, runs, steps, seed, exact=True)
+    scores = compare(models, METHODS, runs, steps, seed, exact=True, progress=progress)
     return {
         "experiment": "multistructure", "modes": list(MODES), "states": ["velocity", "tilt", "drift"],
         "units": ["m/s", "rad", "rad/s"], "runs": runs, "steps": steps, "seed": seed,

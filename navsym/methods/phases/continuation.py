@@ -9,7 +9,7 @@ two-sided certificates.
 from __future__ import annotations
 
 import html
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import pairwise
@@ -27,7 +27,7 @@ from navsym.methods.phases.dependent import without_dependent
 from navsym.methods.phases.events import Boundary, boundary
 from navsym.methods.phases.family import Family
 from navsym.methods.phases.range import followed, fraction_of
-from navsym.methods.phases.scan import Span, scan
+from navsym.methods.phases.scan import COUNT, Span, scan
 from navsym.methods.phases.singular import Singular, singular_values
 from navsym.methods.phases.slivers import Sliver, slivers
 from navsym.proof.balls import enclose
@@ -110,10 +110,14 @@ class Phases:
         }  # fmt: skip
 
 
-def phases(family: Family, lower: sp.Expr, upper: sp.Expr, *, certify: bool = True) -> Phases:
+def phases(
+    family: Family, lower: sp.Expr, upper: sp.Expr, *, certify: bool = True,
+    progress: Callable[[int, int], None] = lambda done, of: None,
+) -> Phases:  # fmt: skip
     """All regimes for values of the parameter between two exact numbers.
 
     The range is split at singular values. certify : follow regimes without a closed form rigorously.
+    progress : called with (finished, all) steps of the search: each stretch is scanned, each regime settled
     Raises DomainError for a range without length, and lengths of the interval below zero.
     """
     need_range(family, lower, upper)
@@ -123,13 +127,36 @@ def phases(family: Family, lower: sp.Expr, upper: sp.Expr, *, certify: bool = Tr
     inner = [s for s in singular if bool(enclose(s.at - lower) > 0) and bool(enclose(upper - s.at) > 0)]
     cuts = [lower, *(s.at for s in inner), upper]
     names = {s.at for s in singular}
-    parts = [stretch(family, a, b, names, certify) for a, b in pairwise(cuts)]
+    steps = Steps(progress, (len(cuts) - 1) * (COUNT - 1))
+    parts = [stretch(family, a, b, names, certify, steps) for a, b in pairwise(cuts)]
     regimes = [regime for part in parts for regime in part.regimes]
     changes = [event(s) for s in singular if not (s.at == lower == 0 and family.growing)]
     changes += [b for part in parts for b in part.boundaries]
     changes.sort(key=lambda b: sp.Rational(b.lower))
     uncovered = [pair for part in parts for pair in part.uncovered]
     return Phases(family, lower, upper, tuple(regimes), tuple(changes), tuple(uncovered), ties)
+
+
+class Steps:
+    """Counts the steps of a search that finds more of them on its way.
+
+    A closed form that is guessed and one that is settled are worth ten looks of a scan each.
+    """
+
+    LOOKS = 10
+
+    def __init__(self, progress: Callable[[int, int], None], of: int):
+        self.progress, self.done, self.of = progress, 0, of
+
+    def found(self, regimes: int) -> None:
+        """The scan of a stretch found so many regimes to settle."""
+        self.of += 2 * regimes * self.LOOKS
+        self.progress(self.done, self.of)
+
+    def did(self, steps: int = 1) -> None:
+        """So many steps are done."""
+        self.done += steps
+        self.progress(self.done, self.of)
 
 
 def inside_of(lower: sp.Expr, upper: sp.Expr) -> sp.Rational:
@@ -154,11 +181,17 @@ def need_range(family: Family, lower: sp.Expr, upper: sp.Expr) -> None:
         raise DomainError(f"range: expected lengths 0 <= from < to; got {lower} to {upper}; mend them")
 
 
-def stretch(family: Family, lower: sp.Expr, upper: sp.Expr, singular: set[sp.Expr], certify: bool) -> Phases:
+def stretch(
+    family: Family, lower: sp.Expr, upper: sp.Expr, singular: set[sp.Expr], certify: bool, steps: Steps
+) -> Phases:
     """All regimes between two values without a singular one inside."""
     low, high = inner_range(lower, upper, singular)
-    spans = scan(family, low, high)
-    guesses = [candidates(family, span) for span in spans]
+    spans = scan(family, low, high, step=steps.did)
+    steps.found(len(spans))
+    guesses = []
+    for span in spans:
+        guesses.append(candidates(family, span))
+        steps.did(Steps.LOOKS)
     firsts = [g[0] if g else None for g in guesses]
     pairs = zip(spans, spans[1:], firsts, firsts[1:], strict=False)
     changes = tuple(boundary(family, a, b, c, d) for a, b, c, d in pairs)
@@ -171,6 +204,7 @@ def stretch(family: Family, lower: sp.Expr, upper: sp.Expr, singular: set[sp.Exp
         regime, holes = regime_of(family, span, (cuts[k], cuts[k + 1]), limits[k], held, certify)
         regimes.append(regime)
         uncovered += holes
+        steps.did(Steps.LOOKS)
     return Phases(family, lower, upper, tuple(regimes), changes, tuple(uncovered))
 
 

@@ -7,6 +7,7 @@ error uniform on [-sqrt(3), sqrt(3)] m. Lengths in metres: an angle is s over th
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -30,6 +31,7 @@ from navsym.methods.trajectory.inversion import (
 from navsym.numeric.arrays import Array
 
 Heading = Literal["printed", "consistent"]
+HEADINGS: tuple[Heading, ...] = ("printed", "consistent")
 
 TAU, ORDER, PERIOD, END = 0.2, 5, 360.0, 3600.0
 YAWING = (1000.0, 2080.0)
@@ -163,27 +165,27 @@ ALGORITHMS = {
 }
 
 
-def experiment(runs: int = 10, seed: int = 1) -> list[dict[str, Any]]:
-    """One row for each speed, heading and algorithm: printed figures beside means over some runs."""
-    rows = []
-    for speed in PRINTED:
-        for programme in ("printed", "consistent"):
-            truth = course(speed, programme)  # type: ignore[arg-type]
-            for name, algorithm in ALGORITHMS.items():
-                found = [figures(truth, algorithm(truth, measured(truth, seed + k))) for k in range(runs)]
-                mean = {key: float(np.mean([f[key] for f in found])) for key in found[0]}
-                spread = {key: float(np.std([f[key] for f in found])) for key in found[0]}
-                rows.append(
-                    {
-                        "speed": speed,
-                        "heading": programme,
-                        "algorithm": name,
-                        "runs": runs,
-                        "printed": PRINTED[speed],
-                        "obtained": mean,
-                        "spread": spread,
-                    }
-                )
+def experiment(
+    runs: int = 10, seed: int = 1, progress: Callable[[int, int], None] = lambda done, of: None
+) -> list[dict[str, Any]]:
+    """One row for each speed, heading and algorithm: printed figures beside means over some runs.
+
+    progress : called with (finished, all) runs of all rows
+    """
+    cases = [(speed, programme, name) for speed in PRINTED for programme in HEADINGS for name in ALGORITHMS]
+    rows: list[dict[str, Any]] = []
+    for number, (speed, programme, name) in enumerate(cases):
+        truth = course(speed, programme)
+        found = []
+        for k in range(runs):
+            found.append(figures(truth, ALGORITHMS[name](truth, measured(truth, seed + k))))
+            progress(number * runs + k + 1, len(cases) * runs)
+        mean = {key: float(np.mean([f[key] for f in found])) for key in found[0]}
+        spread = {key: float(np.std([f[key] for f in found])) for key in found[0]}
+        rows.append({
+            "speed": speed, "heading": programme, "algorithm": name, "runs": runs,
+            "printed": PRINTED[speed], "obtained": mean, "spread": spread,
+        })
     return rows
 
 

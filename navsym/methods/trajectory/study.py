@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 from navsym.methods.trajectory.experiment import experiment
@@ -10,9 +11,15 @@ from navsym.methods.trajectory.experiment import experiment
 FIGURES = ("position", "speed_straight", "speed_yawing", "acceleration_straight", "acceleration_yawing")
 
 
-def study(runs: int = 2, seed: int = 1) -> dict[str, Any]:
-    """Mean figures over some runs, by speed, heading programme and algorithm; null where it diverges."""
-    rows = [{**row, **{key: finite(row[key]) for key in ("obtained", "spread")}} for row in experiment(runs, seed)]
+def study(
+    runs: int = 2, seed: int = 1, *, progress: Callable[[int, int], None] = lambda done, of: None
+) -> dict[str, Any]:
+    """Mean figures over some runs, by speed, heading programme and algorithm; null where it diverges.
+
+    progress : called with (finished, all) runs
+    """
+    found = experiment(runs, seed, progress)
+    rows = [{**row, **{key: finite(row[key]) for key in ("obtained", "spread")}} for row in found]
     return {"experiment": "trajectory", "runs": runs, "seed": seed, "units": "m, m/s, m/s^2", "rows": rows}
 
 

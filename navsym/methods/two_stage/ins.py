@@ -8,7 +8,7 @@ steps with drawn numbers. The Kalman filter of the full model is the bound that 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 from functools import cache
@@ -349,6 +349,8 @@ def kalman_deviations(flight: Flight, chosen: Plan, errors: Errors) -> Array:
     return np.array(found)
 
 
+#: How many estimators :func:`compare` compares.
+ESTIMATORS = 5
 #: Metres (or metres per second) for one unit of every variable of :data:`JOINT`.
 METRES = dict(zip(map(str, JOINT), [EARTH_RADIUS] * 10, strict=True))
 
@@ -369,27 +371,34 @@ def compare(
     lambda_c: float = 2.0,
     lambda_h: float = 3.0,
     minutes: Sequence[float] = (1.0, 5.0, 10.0, 20.0, 30.0),
+    step: Callable[[], None] = lambda: None,
 ) -> Comparison:
     """Velocity information for ``before`` minutes, then both for ``during`` minutes.
 
     Compared: the two-stage algorithm, the same with decoupled gains, both stages started together at t_1 (no
     pre-estimation), a single-stage observer of position alone, and the Kalman filter of the full model.
+    ``step`` is called after each of the :data:`ESTIMATORS`.
     """
-    step = float(flight.tau[1] - flight.tau[0]) / SCHULER_RATE
+    seconds = float(flight.tau[1] - flight.tau[0]) / SCHULER_RATE
     V, B, P, N = Situation.VELOCITY, Situation.BOTH, Situation.POSITION, Situation.NEITHER
     cases = {
         "two stages": ((V, before), (B, during)),
         "two stages, not pre-estimated": ((N, before), (B, during)),
         "single stage, position only": ((N, before), (P, during)),
     }
-    found = {name: plan(phases, step, lambda_c, lambda_h) for name, phases in cases.items()}
-    curves = {name: standard_deviations(steps_of(flight, p, errors), errors) for name, p in found.items()}
+    found = {name: plan(phases, seconds, lambda_c, lambda_h) for name, phases in cases.items()}
+    curves = {}
+    for name, p in found.items():
+        curves[name] = standard_deviations(steps_of(flight, p, errors), errors)
+        step()
     first = found["two stages"]
     curves["two stages, link removed"] = standard_deviations(
         steps_of(flight, first, errors, repaired=True), errors
     )
+    step()
     curves["Kalman filter, full model"] = kalman_deviations(flight, first, errors)
-    places = [round((before + m) * 60.0 / step) for m in minutes]
+    step()
+    places = [round((before + m) * 60.0 / seconds) for m in minutes]
     rows = {name: tuple(float(position_error(curve)[k]) for k in places) for name, curve in curves.items()}
     return Comparison(tuple(minutes), rows)
 

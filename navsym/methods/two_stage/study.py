@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
 from navsym.methods.two_stage.flight import EARTH_RADIUS, SCHULER_RATE, Flight, great_circle
 from navsym.methods.two_stage.ins import (
+    ESTIMATORS,
     Errors,
     Situation,
     compare,
@@ -31,15 +34,21 @@ SITUATIONS = (
 )
 
 
-def study(seed: int = 1) -> dict[str, Any]:
+def study(seed: int = 1, *, progress: Callable[[int, int], None] = lambda done, of: None) -> dict[str, Any]:
     """Velocity for 90 minutes, then both for 30, at 250 m/s from latitude 45 degrees; exact covariances.
 
     The covariances are propagated exactly, so that the seed changes nothing; it is kept in the document.
+    progress : called with (finished, all) covariance runs, the two over the situations included
     """
     flight = great_circle(duration=7200.0, step=10.0)
+    done, of = itertools.count(1), len(DECAYS) * ESTIMATORS + 2
+
+    def step() -> None:
+        progress(next(done), of)
+
     rows = []
     for lambda_c, lambda_h in DECAYS:
-        found = compare(flight, Errors(), lambda_c=lambda_c, lambda_h=lambda_h)
+        found = compare(flight, Errors(), lambda_c=lambda_c, lambda_h=lambda_h, step=step)
         for name, errors in found.rows.items():
             rows.append({"lambda_c": lambda_c, "lambda_h": lambda_h, "estimator": name, "position_m": list(errors)})
     return {
@@ -47,19 +56,19 @@ def study(seed: int = 1) -> dict[str, Any]:
         "seed": seed,
         "minutes": list(found.minutes),
         "rows": rows,
-        "situations": situations(flight),
+        "situations": situations(flight, step),
     }
 
 
-def situations(flight: Flight) -> list[dict[str, Any]]:
+def situations(flight: Flight, step: Callable[[], None] = lambda: None) -> list[dict[str, Any]]:
     """Errors at the end of every situation: algorithm and Kalman filter of the full model, exact covariances."""
-    step = float(flight.tau[1] - flight.tau[0]) / SCHULER_RATE
-    chosen = plan(SITUATIONS, step, *DECAYS[0])
-    curves = {
-        "two stages": standard_deviations(steps_of(flight, chosen, Errors()), Errors()),
-        "Kalman filter, full model": kalman_deviations(flight, chosen, Errors()),
-    }
-    ends = np.cumsum([round(minutes * 60.0 / step) for _, minutes in SITUATIONS])
+    seconds = float(flight.tau[1] - flight.tau[0]) / SCHULER_RATE
+    chosen = plan(SITUATIONS, seconds, *DECAYS[0])
+    curves = {"two stages": standard_deviations(steps_of(flight, chosen, Errors()), Errors())}
+    step()
+    curves["Kalman filter, full model"] = kalman_deviations(flight, chosen, Errors())
+    step()
+    ends = np.cumsum([round(minutes * 60.0 / seconds) for _, minutes in SITUATIONS])
     speed = EARTH_RADIUS * SCHULER_RATE
     return [
         {
