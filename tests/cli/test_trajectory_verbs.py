@@ -60,7 +60,7 @@ def test_condition_speaks_to_people(capsys):
 )
 def test_condition_refuses_bad_requests(capsys, arguments, kind):
     status, found = answer(capsys, "condition", *arguments)
-    assert status == 2 and found["error"]["kind"] == kind
+    assert status == 2 and found["error"]["kind"] == kind and found["error"]["where"]
 
 
 def test_track_answers_with_velocity_acceleration_and_deviations(capsys, tmp_path):

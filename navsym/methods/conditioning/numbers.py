@@ -62,9 +62,9 @@ def condition_number(rows: Rows, *, digits: int = 30, equilibrate: bool = False)
     condition number is infinite).
     """
     if digits < 1:
-        raise DomainError(f"digits: expected 1 to {LARGEST_DIGITS}; got {digits}; ask for at least one")
+        raise DomainError(f"expected 1 to {LARGEST_DIGITS}; got {digits}; ask for at least one", where="digits")
     if digits > LARGEST_DIGITS:
-        raise TooLargeError(f"digits: expected 1 to {LARGEST_DIGITS}; got {digits}; ask for fewer")
+        raise TooLargeError(f"expected 1 to {LARGEST_DIGITS}; got {digits}; ask for fewer", where="digits")
     found = condition_by_signs(rows, digits=digits, equilibrate=equilibrate)
     return found or condition_by_polynomial(rows, digits=digits, equilibrate=equilibrate)
 
@@ -94,14 +94,14 @@ def condition_numbers(
 
 def check_request(n: int, rho: Fraction, tau: Fraction) -> None:
     if n < 1:
-        raise DomainError(f"n: expected 1 to {LARGEST_ORDER}; got {n}; choose a positive order")
+        raise DomainError(f"expected 1 to {LARGEST_ORDER}; got {n}; choose a positive order", where="n")
     if n > LARGEST_ORDER:
-        raise TooLargeError(f"n: expected 1 to {LARGEST_ORDER}; got {n}; choose a smaller order")
+        raise TooLargeError(f"expected 1 to {LARGEST_ORDER}; got {n}; choose a smaller order", where="n")
     if tau < 0:
-        raise DomainError(f"tau: expected a positive step of time; got {tau}; give its length")
+        raise DomainError(f"expected a positive step of time; got {tau}; give its length", where="tau")
     if rho == 0 or tau == 0:
         name = "rho" if rho == 0 else "tau"
-        raise DomainError(f"{name}: expected a nonzero number; got 0; the columns of N_p would vanish")
+        raise DomainError("expected a nonzero number; got 0; the columns of N_p would vanish", where=name)
 
 
 # -- double precision beside it --------------------------------------------------------------------
