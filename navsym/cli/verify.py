@@ -17,6 +17,7 @@ from navsym.cli.output import emit, remark, table, write_text
 from navsym.errors import DomainError
 
 if TYPE_CHECKING:
+    from navsym.methods.deciding_code import Snapshot
     from navsym.methods.verification import PaperModule
 
 
@@ -47,8 +48,8 @@ def command(
     from navsym.methods.verification import unexpected
 
     started = time.monotonic()
-    chosen = load(modules or [])
-    document = decided(chosen, jobs, seconds, fresh)
+    before = sources()
+    document = decided(load(modules or []), jobs, seconds, fresh, before)
     if write or not ledger_file().exists():
         write_ledger(document)
     changed = differences(document)
@@ -82,12 +83,26 @@ def load(wanted: Sequence[str]) -> list[PaperModule]:
     return [paper_module(importlib.import_module(f"derivations.{name}")) for name in chosen]
 
 
-def decided(chosen: Sequence[PaperModule], jobs: int | None, seconds: float, fresh: bool) -> dict[str, Any]:
-    """The document of all verdicts: those that are kept and still valid, the others decided now and kept."""
+def sources() -> Snapshot:
+    """What the sources of the derivations and of the deciding rooms are now."""
+    from navsym.methods.deciding_code import snapshot
+
+    return snapshot(ledger_folder())
+
+
+def decided(
+    chosen: Sequence[PaperModule], jobs: int | None, seconds: float, fresh: bool, before: Snapshot | None = None
+) -> dict[str, Any]:
+    """The document of all verdicts: those that are kept and still valid, the others decided now and kept.
+
+    before : the sources before they were imported; by default what they are now
+    """
     from navsym.methods.verification import verify
 
-    kept = KeptVerdicts(chosen, fresh)
-    missing = sum(len(module.claims) for module in chosen) - len(kept.known)
+    kept = KeptVerdicts(chosen, fresh, before or sources())
+    missing = len(kept.keys) - len(kept.known)
+    if kept.known and missing:
+        remark(f"{len(kept.known)} of {len(kept.keys)} claims are as they were, {missing} are decided now")
     resume = "the verdicts so far are kept: the same command (without --fresh) goes on from there"
     try:
         with Progress("claims", missing, resume) as bar:
@@ -105,11 +120,14 @@ def decided(chosen: Sequence[PaperModule], jobs: int | None, seconds: float, fre
 class KeptVerdicts:
     """Verdicts of earlier runs whose claims and rooms have not changed; what could not be kept is in ``lost``."""
 
-    def __init__(self, chosen: Sequence[PaperModule], fresh: bool):
-        from navsym.methods.dependencies import fingerprint
+    def __init__(self, chosen: Sequence[PaperModule], fresh: bool, before: Snapshot):
+        from navsym.methods.deciding_code import not_yet_imported
+        from navsym.methods.dependencies import fingerprints
         from navsym.store import Store, StoreError
 
-        self.keys = {claim.id: fingerprint(claim) for module in chosen for claim in module.claims}
+        self.keys = fingerprints(claim for module in chosen for claim in module.claims)
+        self.mixed = sources() != before
+        self.later = not_yet_imported(sources())
         self.known: dict[str, dict[str, Any]] = {}
         self.store: Store | None = None
         self.lost: list[str] = []
@@ -128,6 +146,8 @@ class KeptVerdicts:
         if self.store is None or record["method"] == "none":
             return  # without a store all are named as lost already
         try:
+            if self.mixed or not set(self.later) <= set(sources()):
+                raise StoreError("expected sources that stay as they are; got changed ones; run it again")
             self.store.put(self.keys[record["id"]], record)
         except StoreError as error:
             if not self.lost:

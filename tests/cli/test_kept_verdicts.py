@@ -1,0 +1,51 @@
+"""Verdicts are kept for the code that gave them: of sources that change meanwhile nobody knows which version ran."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from navsym.cli import verify
+from navsym.cli.main import run
+
+
+@pytest.fixture(autouse=True)
+def own_store(monkeypatch, tmp_path):
+    monkeypatch.setenv("NAVSYM_CACHE", str(tmp_path))
+
+
+def claims(capsys, *options):
+    status = run(["verify", "alpha_beta_filter", "--json", "--jobs", "1", *options])
+    return status, json.loads(capsys.readouterr().out)
+
+
+def test_verdicts_of_sources_that_changed_while_they_were_imported_are_named_and_not_kept(monkeypatch, capsys):
+    seen = iter([(("ladder.py", 1, 1),)])
+    true = verify.sources
+    monkeypatch.setattr(verify, "sources", lambda: next(seen, None) or true())
+    status, document = claims(capsys)
+    assert status == 3 and len(document["unsaved"]) == len(document["claims"])
+
+
+def test_a_source_that_is_imported_later_must_stay_as_it_was(monkeypatch, capsys):
+    chosen = verify.load(["alpha_beta_filter"])
+    before = (*verify.sources(), ("not_imported_yet.py", 1, 1))
+    monkeypatch.setattr(verify, "sources", lambda: before)
+    kept = verify.KeptVerdicts(chosen, False, before)
+    record = {"id": chosen[0].claims[0].id, "method": "identity"}
+    kept.keep(record)
+    assert not kept.lost
+    monkeypatch.setattr(verify, "sources", lambda: (*before[:-1], ("not_imported_yet.py", 2, 1)))
+    kept.keep(record)
+    assert kept.lost == [record["id"]]
+    kept.close()
+    assert "stay as they are" in capsys.readouterr().err
+
+
+def test_a_second_run_takes_every_verdict_from_the_store(monkeypatch, capsys):
+    monkeypatch.setattr(verify, "sources", tuple)  # whoever works on the sources just now does not matter here
+    monkeypatch.setattr("navsym.methods.dependencies.rooms_digest", lambda: "the same")
+    first = claims(capsys)
+    monkeypatch.setattr("navsym.methods.verification.record_of", None)  # nothing is decided any more
+    assert claims(capsys) == first
