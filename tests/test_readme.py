@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import importlib
 import importlib.util
+import json
 import os
 import re
 import shlex
@@ -13,6 +15,8 @@ import time
 from pathlib import Path
 
 import pytest
+
+from navsym.claims import equation_of
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -96,6 +100,44 @@ def look(index: Path, folder: Path) -> None:
         assert not browser.trouble
     finally:
         browser.close()
+
+
+PAPERS = ("guaranteed_velocity", "joint_correction", "multistructure", "terrain_search", "trajectory")
+
+
+def slips(module: str) -> tuple[int, int, int]:
+    """Numbered equations of a paper: all, those refuted as the paper has them, those damaged only in the copy."""
+    equations = importlib.import_module(f"derivations.{module}").PAPER.equations
+    ledger = json.loads((ROOT / "derivations" / "verdicts.json").read_text(encoding="utf-8"))["claims"]
+    found: dict[str, set[str | None]] = {}
+    for record in ledger:
+        equation = equation_of(record["number"], equations)
+        if record["paper"] == module and record["status"] == "REFUTED" and equation:
+            found.setdefault(equation, set()).add(record["slip"])
+    printed = sum("paper" in kinds for kinds in found.values())
+    return len(equations), printed, sum(kinds == {"scan"} for kinds in found.values())
+
+
+def test_the_first_screen_counts_what_the_ledger_counts() -> None:
+    equations, printed, copied = map(sum, zip(*map(slips, PAPERS), strict=True))
+    text = " ".join((ROOT / "README.md").read_text(encoding="utf-8").split())
+    assert f"Of {equations} numbered equations of five published papers, {printed} need a correction" in text
+    assert f"{copied} more are damaged only in the copy that was read" in text
+
+
+#: What the table of the first screen says was found, as claims: id -> whose slip it is.
+SAID = {
+    "guaranteed_velocity:4.14.y2": "paper", "guaranteed_velocity:4.3.u2": "paper",
+    "joint_correction:2.8.x6": "paper", "joint_correction:1.10.gz": "paper", "joint_correction:3.3.y1": "scan",
+    "multistructure:11": "paper", "multistructure:12": "paper", "multistructure:13.index": "paper",
+    "multistructure:9": "paper", "multistructure:14.follows": "paper",
+}  # fmt: skip
+
+
+def test_every_slip_that_the_first_screen_names_is_refuted_in_the_ledger() -> None:
+    ledger = json.loads((ROOT / "derivations" / "verdicts.json").read_text(encoding="utf-8"))["claims"]
+    known = {record["id"]: (record["status"], record["slip"]) for record in ledger}
+    assert {name: known[name] for name in SAID} == {name: ("REFUTED", slip) for name, slip in SAID.items()}
 
 
 @pytest.mark.parametrize(

@@ -95,9 +95,8 @@ class Progress:
             LINE.show(self.words(now, doing))
         elif remarks_wanted() and now - self.told >= BETWEEN_REMARKS:
             self.told = now
-            from navsym.cli.output import remark
-
-            remark(self.words(now, ""))
+            sys.stderr.write(self.words(now, "") + "\n")
+            sys.stderr.flush()
 
     def words(self, now: float, doing: str) -> str:
         left = (now - self.started) / max(self.count - self.before, 1) * (self.total - self.count)

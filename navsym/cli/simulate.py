@@ -46,7 +46,9 @@ def command(
     from navsym.errors import DomainError
 
     if name not in EXPERIMENTS:
-        raise DomainError(f"name: expected one of {', '.join(EXPERIMENTS)}; got {name!r}; choose one")
+        raise DomainError(f"expected one of {', '.join(EXPERIMENTS)}; got {name[:60]!r}; choose one", where="name")
+    if seed < 0:
+        raise DomainError(f"expected a seed of at least 0; got {seed}; choose another", where="--seed")
     module_name, experiment, as_table = EXPERIMENTS[name].split(":")
     module = importlib.import_module(module_name)
     given = {"runs": runs, "steps": steps, "journal": journal}
@@ -55,7 +57,8 @@ def command(
     for option in options:
         if option not in accepted:
             takes = ", ".join(f"--{key}" for key in ("seed", *given) if key in accepted)
-            raise DomainError(f"--{option}: expected an option that {name} has ({takes}); got {option}; leave it out")
+            message = f"expected an option that {name} has ({takes}); got {option}; leave it out"
+            raise DomainError(message, where=f"--{option}")
     with Progress("runs", resume=resume(journal, accepted)) as bar:
         document: dict[str, Any] = getattr(module, experiment)(seed=seed, progress=bar.told_by_job, **options)
     emit(document, as_json=json_, text=lambda: table(*getattr(module, as_table)(document)))

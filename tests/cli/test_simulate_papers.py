@@ -35,4 +35,11 @@ def test_an_unknown_experiment_names_the_known_ones(capsys):
 def test_an_option_that_an_experiment_does_not_have_is_bad_input(name, option, capsys):
     assert run(["simulate", name, option, "2", "--json"]) == 2
     error = json.loads(capsys.readouterr().out)["error"]
-    assert error["kind"] == "domain" and option in error["message"]
+    assert error["kind"] == "domain" and error["where"] == option
+
+
+@pytest.mark.parametrize("options", [["--seed", "-1"], ["--runs", "0"], ["--runs", "-4"]])
+def test_numbers_that_no_experiment_can_use_are_bad_input(options, capsys):
+    assert run(["simulate", "trajectory", *options, "--json"]) == 2
+    error = json.loads(capsys.readouterr().out)["error"]
+    assert error["kind"] == "domain" and error["where"] == options[0] and options[1] in error["message"]

@@ -171,7 +171,10 @@ def experiment(
     """One row for each speed, heading and algorithm: printed figures beside means over some runs.
 
     progress : called with (finished, all) runs of all rows
+    Raises DomainError for less than one run.
     """
+    if runs < 1:
+        raise DomainError(f"expected at least one run; got {runs}; give more", where="--runs")
     cases = [(speed, programme, name) for speed in PRINTED for programme in HEADINGS for name in ALGORITHMS]
     rows: list[dict[str, Any]] = []
     for number, (speed, programme, name) in enumerate(cases):
