@@ -7,9 +7,10 @@ time, its ends and its noise bound. Time on a panel is ``t = start + (end - star
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
-from functools import cached_property, partial
+from functools import cached_property, lru_cache, partial
 from math import comb
 from typing import Any
 
@@ -30,9 +31,10 @@ class Program:
     outputs: tuple[int, ...]
 
     def run(self, values: Mapping[sp.Symbol, Any]) -> list[Any]:
-        done: list[Any] = []
-        for step in self.steps:
-            done.append(OPERATIONS[step.operation](step.constant, [done[i] for i in step.arguments], values))
+        fixed, moving = prepared(self, ctx.prec)
+        done = list(fixed)
+        for place, operation, arguments, constant in moving:
+            done[place] = operation(constant, [done[i] for i in arguments], values)
         return [done[i] for i in self.outputs]
 
     def numbers(self, values: Mapping[sp.Symbol, Any]) -> list[Any]:
@@ -42,6 +44,24 @@ class Program:
             arguments = [done[i] for i in step.arguments]
             done.append(FLOATS[step.operation](step.constant, arguments, values))
         return [done[i] for i in self.outputs]
+
+
+Moving = tuple[int, Callable[[Any, list[Any], Any], Any], tuple[int, ...], Any]
+
+
+@lru_cache(maxsize=256)
+def prepared(tape: Program, bits: int) -> tuple[list[Any], list[Moving]]:
+    """The steps without a symbol, done at a precision, and the others."""
+    done: list[Any] = []
+    moving: list[Moving] = []
+    for place, step in enumerate(tape.steps):
+        operation = OPERATIONS[step.operation]
+        if step.operation == "symbol" or any(done[i] is None for i in step.arguments):
+            moving.append((place, operation, step.arguments, step.constant))
+            done.append(None)
+        else:
+            done.append(operation(step.constant, [done[i] for i in step.arguments], {}))
+    return done, moving
 
 
 def program(expressions: Sequence[sp.Expr]) -> Program:
@@ -91,6 +111,17 @@ def product(factors: Sequence[Any]) -> Any:
     for factor in factors[1:]:
         value = value * factor
     return value
+
+
+@contextmanager
+def terms(count: int) -> Iterator[None]:
+    """Series of ``count`` terms; flint's cap is global, so it is put back."""
+    before = ctx.cap
+    ctx.cap = count
+    try:
+        yield
+    finally:
+        ctx.cap = before
 
 
 @dataclass(frozen=True)
@@ -153,18 +184,25 @@ class Panel:
 
         With a ball for v the coefficients hold for every centre in it (Lagrange remainders).
         """
+        with terms(order + 1):
+            rows = [coefficients(h, order) for h in self.expanded(v, scale)]
+        return rows if self.mix is None else (self.mix * arb_mat(rows)).tolist()
+
+    def dual_polynomial(self, x: Sequence[arb], v: Any, scale: Any, order: int) -> list[arb]:
+        """Taylor coefficients 0 … order of ``x . H``, see :meth:`series`."""
+        if self.mix is not None:
+            x = (self.mix.transpose() * arb_mat([[a] for a in x])).entries()
+        with terms(order + 1):
+            parts = zip(x, self.expanded(v, scale), strict=True)
+            return coefficients(sum((a * h for a, h in parts), arb(0)), order)
+
+    def expanded(self, v: Any, scale: Any) -> list[Any]:
+        """Every expression as a series in w, or as a number where it is constant."""
         start, end, _ = self.edges()
         width = end - start
-        before = ctx.cap
-        ctx.cap = order + 1
-        try:
-            inputs = dict(self.values)
-            inputs[self.variable] = arb_series([start + width * v, width * scale])
-            results = self.program.run(inputs)
-        finally:
-            ctx.cap = before
-        rows = [coefficients(h, order) for h in results]
-        return rows if self.mix is None else (self.mix * arb_mat(rows)).tolist()
+        inputs = dict(self.values)
+        inputs[self.variable] = arb_series([start + width * v, width * scale])
+        return self.program.run(inputs)
 
 
 def coefficients(value: Any, order: int) -> list[arb]:
@@ -348,9 +386,9 @@ def passes(expand: Expansion, cell: Cell, bound: arb, strict: bool) -> bool:
 def expansion(panel: Panel, x: Sequence[arb], cell: Cell, centre: fmpq, radius: fmpq) -> list[arb]:
     """Taylor coefficients of f in w, fraction ``centre + radius w``; the last one holds over the whole cell."""
     order = order_for(len(x))
-    point = combination(x, panel.series(arb(centre), radius, order - 1))
-    wide = panel.series(interval(cell.lower, cell.upper), radius, order)
-    return [*point, total(x, [h[order] for h in wide])]
+    point = panel.dual_polynomial(x, arb(centre), radius, order - 1)
+    wide = panel.dual_polynomial(x, interval(cell.lower, cell.upper), radius, order)
+    return [*point, wide[order]]
 
 
 def remainder(taylor: Sequence[arb], derivative: int) -> arb:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from flint import arb, arb_mat
+from flint import arb, arb_mat, ctx
+
+from navsym.proof.balls import precision
 
 
 def krawczyk(
@@ -20,15 +22,23 @@ def krawczyk(
     when K lies inside Z a zero exists and is the only one. Krawczyk 1969; Neumaier, Interval
     Methods for Systems of Equations, section 5.1.
     """
+    for bits in (ctx.prec // 2 + 32, ctx.prec):
+        image = image_of(centre, radius, value, jacobian, bits)
+        if image is not None and all(bool(abs(k - z) < r) for k, z, r in zip(image, centre, radius, strict=True)):
+            return image
+    return None
+
+
+def image_of(
+    centre: Sequence[arb], radius: Sequence[arb], value: Sequence[arb], jacobian: arb_mat, bits: int
+) -> list[arb] | None:
+    """The set K with a matrix Y of some bits; only ``I - Y F'(Z)`` is computed with so few."""
     n = len(centre)
-    middle = arb_mat([[e.mid() for e in row] for row in jacobian.tolist()])
-    try:
-        Y = arb_mat([[e.mid() for e in row] for row in middle.inv().tolist()])
-    except ZeroDivisionError:
-        return None
-    identity = arb_mat([[1 if i == j else 0 for j in range(n)] for i in range(n)])
-    shift = Y * arb_mat([[f] for f in value])
-    spread = (identity - Y * jacobian) * arb_mat([[r * arb(0, 1)] for r in radius])
-    image = [centre[i] - shift[i, 0] + spread[i, 0] for i in range(n)]
-    inside = all(bool(abs(k - z) < r) for k, z, r in zip(image, centre, radius, strict=True))
-    return image if inside else None
+    with precision(bits):
+        try:
+            Y = jacobian.mid().inv().mid()
+        except ZeroDivisionError:
+            return None
+        spread = (arb_mat(n, n, 1) - Y * jacobian) * arb_mat(n, 1, [r * arb(0, 1) for r in radius])
+    shift = Y * arb_mat(n, 1, list(value))
+    return [z - s + d for z, s, d in zip(centre, shift.entries(), spread.entries(), strict=True)]

@@ -7,8 +7,7 @@ where the regressors of a growing interval [0, p] become dependent, row i of q i
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -16,21 +15,10 @@ from typing import Any
 import sympy as sp
 from flint import arb, arb_mat, arb_series, ctx, fmpq, fmpq_mat
 
-from navsym.proof.enclosure import Panel, Problem
+from navsym.proof.enclosure import Panel, Problem, terms
 from navsym.proof.jets import Jet
 
 EVERY = arb(0, 1)
-
-
-@contextmanager
-def terms(count: int) -> Iterator[None]:
-    """Series of ``count`` terms; flint's cap is global, so it is put back."""
-    before = ctx.cap
-    ctx.cap = count
-    try:
-        yield
-    finally:
-        ctx.cap = before
 
 
 def series_at(coefficients: Sequence[Any], s: arb) -> arb_series:

@@ -21,6 +21,8 @@ from navsym.proof.enclosure import Panel, total
 from navsym.proof.optimality_basis import Basis, as_fraction
 
 STEPS = 60
+#: A correction that shrinks as before would miss the goal by this factor: not looked at any more.
+CERTAIN = 1e-4
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -30,7 +32,7 @@ class Polished:
     panel, v, inner, sign : place of each contact as a fraction of its panel, whether it may move, its sign
     weights : in the units of the problem (noise bound not divided out)
     dual    : x in the basis of the problem
-    residual : size of the last correction, relative
+    residual : size of the last correction, or what the next one would be, relative
     regular : True when the optimality system is square and far from singular
     """
 
@@ -62,12 +64,15 @@ def polish(panels: Sequence[Panel], basis: Basis, contacts: Contacts, bits: int,
             size = max(float(abs(f).mid()) for f in F)
             if size < goal or (size > 0.5 * last and size < 1e-12):
                 break
-            last = size
+            done = last < np.inf and size < 1e-6 * last and size**2 < last * goal * CERTAIN
+            last, size = size, size**2 / last
             step = correction(inverse, F)
             x = [(a + s).mid() for a, s in zip(x, step[:m], strict=True)]
             free = iter(step[m : len(step) - l])
             v = [(a + next(free) / 2).mid() if i else a for a, i in zip(v, inner, strict=True)]
             w = [(a + s).mid() for a, s in zip(w, step[len(step) - l :], strict=True)]
+            if done:  # the next correction would be smaller than the goal by the ratio of the last two
+                break
         dual = basis.transform.transpose() * arb_mat([[a] for a in x])
         weights = [a * basis.scale / panels[k].bound() for a, k in zip(w, contacts.panel, strict=True)]
         touching = tuple((k, as_fraction(u)) for k, u in contacts.touching)
@@ -107,17 +112,18 @@ def residual(
     w: Sequence[arb], p: Sequence[arb], signs: Sequence[int], inner: Sequence[bool],
 ) -> list[arb]:  # fmt: skip
     """The optimality system in high precision; slopes with respect to u = 2 v - 1."""
-    m = len(x)
+    dual = (basis.transform.transpose() * arb_mat([[a] for a in x])).entries()
     values: list[arb] = []
     slopes: list[arb] = []
-    balance = [-a for a in p]
+    sums = [arb(0)] * len(x)
     for i, k in enumerate(places):
-        series = panels[k].series(v[i], fmpq(1, 2), 1)
+        series = panels[k].series(v[i], fmpq(1, 2), int(inner[i]))
         sigma = panels[k].bound()
-        columns = arb_mat([[s[0] / sigma, s[1] / sigma] for s in series])
-        q = basis.transform * columns
-        values.append(total(x, [q[j, 0] for j in range(m)]) - signs[i])
+        heights = [s[0] for s in series]
+        values.append(total(dual, heights) / sigma - signs[i])
         if inner[i]:
-            slopes.append(total(x, [q[j, 1] for j in range(m)]))
-        balance = [b + w[i] * q[j, 0] for j, b in enumerate(balance)]
-    return [a.mid() for a in [*values, *slopes, *balance]]
+            slopes.append(total(dual, [s[1] for s in series]) / sigma)
+        share = w[i] / sigma
+        sums = [b + share * h for b, h in zip(sums, heights, strict=True)]
+    balance = (basis.transform * arb_mat([[b] for b in sums])).entries()
+    return [a.mid() for a in [*values, *slopes, *(b - a for a, b in zip(p, balance, strict=True))]]
