@@ -31,7 +31,7 @@ def inputs_of(
     taken = ["value", "weights", "instants", "dual", *outputs, *layout.arrays]
     for symbol in in_layout(symbols, layout):
         name = identifier(symbol.name, [*(i.name for i in made), *taken])
-        made.append(with_layout(input_of(symbol, name, box, real), layout))
+        made.append(with_layout(input_of(symbol, name, box, real), layout, real))
     return tuple(made)
 
 
@@ -51,12 +51,23 @@ def in_layout(symbols: Sequence[sp.Symbol], layout: Layout) -> list[sp.Symbol]:
     return sorted(symbols, key=lambda s: (place.get(s.name, len(place)), s.name.lower(), s.name))
 
 
-def with_layout(made: Input, layout: Layout) -> Input:
-    """The input with its unit, and with the narrower range of its vectors."""
+def with_layout(made: Input, layout: Layout, real: str = "double") -> Input:
+    """The input with its unit, and with the narrower range of its vectors, whose ends are numbers of the type."""
     array = next((a for a, entries in layout.arrays.items() if made.symbol.name in entries), "")
     unit = layout.units.get(made.symbol.name) or layout.units.get(array, "")
     low, high = layout.tests.get(made.symbol.name) or layout.tests.get(array, (made.test_low, made.test_high))
-    return replace(made, unit=unit, test_low=max(low, made.low), test_high=min(high, made.high))
+    low, high = inner(max(low, made.low), 1, real), inner(min(high, made.high), -1, real)
+    return replace(made, unit=unit, test_low=low, test_high=high)
+
+
+def inner(end: float, direction: int, real: str) -> float:
+    """The end itself, or the ``float`` next to it on its inner side (1: above, -1: below)."""
+    if real == "double":
+        return end
+    value = np.float32(end)
+    if direction * (float(value) - end) < 0:
+        value = np.nextafter(value, np.float32(direction * np.inf))
+    return float(value)
 
 
 def arguments_of(inputs: Sequence[Input], layout: Layout) -> tuple[Argument, ...]:
