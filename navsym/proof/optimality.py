@@ -103,13 +103,13 @@ def touch(problem: Problem, basis: Basis, found: Polished, digits: int, bits: in
             return None
         value = total(z[:m], problem.target())
         lower, upper = lower_end(value, digits + 4), upper_end(value, digits + 4)
-        document = header(problem, "touch", bits, cells) | {
+        solution = {
+            "from": "0", "to": "0", "basis": [[str(int(i == j)) for i in range(m)] for j in range(m)],
             "dual": [[decimal(c, places + loss + 8)] for c in centre[:m]],
             "contacts": contact_rows(found, costs(problem, found, centre), places + loss + 8),
             "radius": [decimal(r, 3, 1) for r in costs(problem, found, radius)],
-            "lower": lower,
-            "upper": upper,
-        }
+        }  # fmt: skip
+        document = header(problem, "touch", bits, cells, lower, upper) | {"pieces": [solution]}
         return Certified(exact(lower), exact(upper), support_of(found, z), tuple(z[:m]), True, document)
 
 
@@ -209,13 +209,14 @@ def contact_rows(found: Polished, centre: Sequence[fmpq], digits: int) -> list[d
     free = iter(centre[len(found.dual) : len(centre) - l])
     rows = []
     for i, k in enumerate(found.panel):
-        at = next(free) if found.inner[i] else rational(found.v[i])
-        rows.append({
-            "panel": k, "at": [decimal(at, digits)] if found.inner[i] else [], "end": end_name(found, i),
-            "sign": found.sign[i],
-            "weight": [decimal(centre[len(centre) - l + i], digits)],
-        })  # fmt: skip
+        at = decimal(next(free), digits) if found.inner[i] else place_of(end_name(found, i))
+        rows.append({"panel": k, "at": [at], "weight": [decimal(centre[len(centre) - l + i], digits)]})
     return rows
+
+
+def place_of(end: str) -> str:
+    """The end of a panel as a certificate names it."""
+    return {"from": "0", "to": "1"}[end]
 
 
 def end_name(found: Polished, i: int) -> str:
@@ -256,11 +257,9 @@ def gap(
         lower = lower_end(total([arb(c) for c in x], problem.target()), digits + 6)
         # The checker has no touches to guide it: it halves its way towards each of them.
         plain = cells + sum(map(len, touches)) * 2 * (digits + 12)
-        document = header(problem, "gap", bits, plain) | {
+        document = header(problem, "gap", bits, plain, lower, upper) | {
             "dual": [decimal(c, places + 8) for c in x],
             "support": [[k, decimal(v, places)] for k, v in support],
-            "lower": lower,
-            "upper": upper,
         }
         rows = tuple((k, arb(v), w) for (k, v), w in zip(support, weights, strict=True))
         shown = tuple(
@@ -366,15 +365,21 @@ def peak(panel: Panel, x: Sequence[arb], v: fmpq) -> fmpq:
     return rational(at) if bool(abs(at - arb(v)) < 1e-4) else v
 
 
-def header(problem: Problem, kind: str, bits: int, cells: int) -> dict[str, Any]:
-    """What both kinds say about the problem."""
+def header(problem: Problem, kind: str, bits: int, cells: int, lower: str, upper: str) -> dict[str, Any]:
+    """What every kind says about the problem; the parameter is one that occurs nowhere, unless it is replaced."""
+    variable = problem.panels[0].variable.name
     return {
         "kind": kind,
-        "variable": problem.panels[0].variable.name,
+        "variable": variable,
         "panels": [panel_row(panel) for panel in problem.panels],
         "functional": [to_text(p) for p in problem.functional],
         "bits": bits,
         "cells": cells,
+        "parameter": "p" if variable != "p" else "q",
+        "from": "0",
+        "to": "0",
+        "lower": lower,
+        "upper": upper,
     }
 
 

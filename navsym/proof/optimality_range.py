@@ -29,7 +29,7 @@ from navsym.proof.enclosure import (
     rational,
     total,
 )
-from navsym.proof.optimality import header
+from navsym.proof.optimality import header, place_of
 from navsym.proof.optimality_moving import EVERY, Member, Moving, number_of, series_at, terms
 
 BITS = 192
@@ -39,6 +39,8 @@ DEGREE = 5
 DIGITS = 32
 MOST_CELLS = 80
 HUGE = 10**9
+#: Bounds of the value are this part of it wider than what is proved here.
+ROOM = 10**6
 #: The bound is proved here for a box wider by this part, so that a checker with other cells has room.
 WIDER = arb(0.25)
 
@@ -62,12 +64,13 @@ class Track:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Piece:
-    """One verified piece: its certificate, the cells that it took, the solution at either end."""
+    """One verified piece: its certificate, the cells that it took, its optima, the solution at either end."""
 
     lower: fmpq
     upper: fmpq
     row: dict[str, Any]
     cells: int
+    value: arb
     ends: tuple[Member, Member]
 
 
@@ -86,9 +89,16 @@ class Ranged:
 
 def range_document(problem: Problem, parameter: str, pieces: Sequence[Piece]) -> dict[str, Any]:
     """The certificate of pieces that lie next to each other."""
-    head = header(problem, "range", BITS, sum(p.cells for p in pieces))
+    head = header(problem, "range", BITS, sum(p.cells for p in pieces), *value_bounds(pieces))
     ends = {"parameter": parameter, "from": fraction(pieces[0].lower), "to": fraction(pieces[-1].upper)}
     return head | ends | {"pieces": [p.row for p in pieces]}
+
+
+def value_bounds(pieces: Sequence[Piece]) -> tuple[str, str]:
+    """Decimals below and above the optimum of every piece, with room for a checker whose balls are wider."""
+    low, high = (min(rational(p.value.lower()) for p in pieces), max(rational(p.value.upper()) for p in pieces))
+    room = max(abs(low), abs(high)) / ROOM
+    return decimal(low - room, 9, -1), decimal(high + room, 9, 1)
 
 
 def fraction(x: fmpq) -> str:
@@ -221,8 +231,8 @@ def dot(x: Sequence[Any], y: Sequence[Any]) -> Any:
 
 def verified(
     track: Track, moving: Moving, curves: Sequence[Sequence[fmpq]]
-) -> tuple[dict[str, Any], int] | None:
-    """Krawczyk's test for all s, signs, places and the bound off the contacts."""
+) -> tuple[dict[str, Any], int, arb] | None:
+    """Krawczyk's test for all s, signs, places and the bound off the contacts; the row, cells, the value."""
     pattern, m = track.pattern, moving.size
     z = [list(map(arb, c)) for c in curves]
     free = free_places(pattern, m)
@@ -249,7 +259,16 @@ def verified(
         if used is None:
             return None
         cells += used
-    return row(track, moving, curves, radius), cells
+    return row(track, moving, curves, radius), cells, value_over(moving, z[:m], spread)
+
+
+def value_over(moving: Moving, y: Sequence[Sequence[arb]], spread: dict[int, arb]) -> arb:
+    """The optimum ``y . A P`` for all s."""
+
+    def product(s: arb) -> list[Any]:
+        return [dot([series_at(c, s) + spread[j] * EVERY for j, c in enumerate(y)], moving.target(s))]
+
+    return at_all(enclosed_series(product)[0])
 
 
 def size_of(c: Sequence[arb]) -> arb:
@@ -382,10 +401,10 @@ def row(
     text = lambda c: [decimal(a, 60) for a in c]  # noqa: E731
     contacts = [
         {
-            "panel": k, "at": text(curves[m + i]) if kind == "no" else [], "end": kind, "sign": s,
+            "panel": k, "at": text(curves[m + i]) if kind == "no" else [place_of(kind)],
             "weight": text(curves[m + l + i]),
         }
-        for i, (k, kind, s) in enumerate(track.pattern)
+        for i, (k, kind, _) in enumerate(track.pattern)
     ]  # fmt: skip
     return {
         "from": fraction(moving.middle - moving.half), "to": fraction(moving.middle + moving.half),

@@ -103,13 +103,13 @@ def altered(item, rng):
         if forged["kind"] == "gap":
             forged["dual"] = [scaled(x, 11) for x in forged["dual"]]
             return forged
-        row = rng.randrange(len(forged["dual"]))
-        entry = forged["dual"][row]
-        value = float(entry if isinstance(entry, str) else entry[0])
+        dual = forged["pieces"][0]["dual"]
+        row = rng.randrange(len(dual))
+        value = float(dual[row][0])
         text = repr(round(value * 1.5 + 1e-3 + abs(value), 12)) if abs(value) < 1e15 else "1"
         if "e" in text:
             text = "5"
-        forged["dual"][row] = text if isinstance(entry, str) else [text]
+        dual[row] = [text]
     elif key == "functional":
         forged["functional"] = [f"({p})*11/10" for p in forged["functional"]]
     elif key == "bound":
@@ -120,16 +120,16 @@ def altered(item, rng):
     elif key == "sigma":
         forged["panels"][0]["sigma"] = rng.choice(["9/10", "11/10", "-1", "0"])
     elif key == "point":
-        rows = forged["support"] if "support" in forged else forged["contacts"]
+        rows = forged["support"] if "support" in forged else forged["pieces"][0]["contacts"]
         row = rng.choice(rows)
         if isinstance(row, list):
             row[1] = rng.choice(["-0.1", "1.1", "2"])
         else:
             row["weight"] = [scaled(row["weight"][0], 12)]
     else:
-        if "contacts" in forged:
-            row = rng.choice(forged["contacts"])
-            row["sign"] = -row["sign"]
+        if "pieces" in forged:
+            row = rng.choice(forged["pieces"][0]["contacts"])
+            row["weight"] = [f"-{row['weight'][0]}".replace("--", "")]
         else:
             forged["support"] = forged["support"][:-1]
     return forged

@@ -3,31 +3,37 @@
 from __future__ import annotations
 
 VELOCITY = {"measurement": 0, "from": "0", "to": "2", "sigma": "1", "H": ["1", "t"]}
+# A problem without a parameter names one that occurs nowhere, and goes from zero to zero.
+NONE = {"parameter": "none", "from": "0", "to": "0"}
+
+
+def unit(m):
+    return [[str(int(i == j)) for i in range(m)] for j in range(m)]
+
+
+def alone(dual, contacts, radius):
+    """The pieces of a problem without a parameter."""
+    rows = [{"panel": k, "at": [at], "weight": [w]} for k, at, w in contacts]
+    solution = {"dual": [[x] for x in dual], "contacts": rows, "radius": radius}
+    return {"pieces": [{"from": "0", "to": "0", "basis": unit(len(dual)), **solution}]}
+
+
 # Slope of a line on [0, 2]: weights -1/2 and 1/2 at the ends, dual polynomial t - 1, optimum 1.
 GAP = {
     "kind": "gap", "variable": "t", "panels": [VELOCITY], "functional": ["0", "1"], "bits": 80, "cells": 40,
-    "dual": ["-0.999", "0.999"], "support": [[0, "0"], [0, "1"]], "lower": "0.9989", "upper": "1.0001",
+    "dual": ["-0.999", "0.999"], "support": [[0, "0"], [0, "1"]], "lower": "0.9989", "upper": "1.0001", **NONE,
 }  # fmt: skip
 TOUCH = {
     "kind": "touch", "variable": "t", "panels": [VELOCITY], "functional": ["0", "1"], "bits": 80, "cells": 10,
-    "dual": [["-1"], ["1"]],
-    "contacts": [
-        {"panel": 0, "at": [], "end": "from", "sign": -1, "weight": ["-0.5"]},
-        {"panel": 0, "at": [], "end": "to", "sign": 1, "weight": ["0.5"]},
-    ],
-    "radius": ["0.000001"] * 4, "lower": "0.9999999", "upper": "1.0000001",
+    **alone(["-1", "1"], [(0, "0", "-0.5"), (0, "1", "0.5")], ["0.000001"] * 4),
+    "lower": "0.9999999", "upper": "1.0000001", **NONE,
 }  # fmt: skip
 # Second coefficient on [0, 1]: contacts 0, 1/2, 1, optimum 8.
 PARABOLA = {
     "kind": "touch", "variable": "t", "functional": ["0", "0", "1"], "bits": 90, "cells": 20,
     "panels": [{"measurement": 0, "from": "0", "to": "1", "sigma": "1", "H": ["1", "t", "t**2"]}],
-    "dual": [["1"], ["-8"], ["8"]],
-    "contacts": [
-        {"panel": 0, "at": [], "end": "from", "sign": 1, "weight": ["2"]},
-        {"panel": 0, "at": ["0.5"], "end": "no", "sign": -1, "weight": ["-4"]},
-        {"panel": 0, "at": [], "end": "to", "sign": 1, "weight": ["2"]},
-    ],
-    "radius": ["0.0000001"] * 7, "lower": "7.99999", "upper": "8.00001",
+    **alone(["1", "-8", "8"], [(0, "0", "2"), (0, "0.5", "-4"), (0, "1", "2")], ["0.0000001"] * 7),
+    "lower": "7.99999", "upper": "8.00001", **NONE,
 }  # fmt: skip
 # The second coefficient for every T in [1, 1.02]: contacts 0, T/2, T, weights 2, -4, 2 over T**2.
 W1 = ["1.9605920988", "-0.038823605", "0.0005765882", "-0.000007611"]
@@ -35,18 +41,18 @@ W2 = ["-3.921184197", "0.0776472118", "-0.001153176", "0.0000152234"]
 RANGE = {
     "kind": "range", "variable": "t", "functional": ["0", "0", "1"], "bits": 90, "cells": 20,
     "panels": [{"measurement": 0, "from": "0", "to": "T", "sigma": "1", "H": ["1", "t", "t**2"]}],
-    "parameter": "T", "from": "1", "to": "1.02",
+    "parameter": "T", "from": "1", "to": "1.02", "lower": "7.6", "upper": "8.1",
     "pieces": [{
-        "from": "1", "to": "1.02", "basis": [["1", "0", "0"], ["0", "1", "0"], ["0", "0", "1"]],
+        "from": "1", "to": "1.02", "basis": unit(3),
         "dual": [
             ["1"],
             ["-7.920792079", "0.0784236839", "-0.000776472", "0.0000076878"],
             ["7.8423683952", "-0.155294423", "0.0023063528", "-0.000030446"],
         ],
         "contacts": [
-            {"panel": 0, "at": [], "end": "from", "sign": 1, "weight": W1},
-            {"panel": 0, "at": ["0.5"], "end": "no", "sign": -1, "weight": W2},
-            {"panel": 0, "at": [], "end": "to", "sign": 1, "weight": W1},
+            {"panel": 0, "at": ["0"], "weight": W1},
+            {"panel": 0, "at": ["0.5"], "weight": W2},
+            {"panel": 0, "at": ["1"], "weight": W1},
         ],
         "radius": ["0.003"] * 7,
     }],
@@ -55,8 +61,7 @@ RANGE = {
 CONSTANT = {
     "kind": "touch", "variable": "t", "functional": ["1"], "bits": 80, "cells": 10,
     "panels": [{"measurement": 0, "from": "0", "to": "1", "sigma": "2", "H": ["2 - t"]}],
-    "dual": [["1"]], "contacts": [{"panel": 0, "at": [], "end": "from", "sign": 1, "weight": ["1"]}],
-    "radius": ["0.000001"] * 2, "lower": "0.99999", "upper": "1.00001",
+    **alone(["1"], [(0, "0", "1")], ["0.000001"] * 2), "lower": "0.99999", "upper": "1.00001", **NONE,
 }  # fmt: skip
 SLIVER = {
     "kind": "sliver", "variable": "t", "functional": ["p"], "bits": 80, "cells": 10, "parameter": "p", "from": "1",
@@ -67,12 +72,12 @@ SLIVER = {
 MOVING = {
     "kind": "range", "variable": "t", "functional": ["p**2"], "bits": 90, "cells": 20,
     "panels": [{"measurement": 0, "from": "0", "to": "p", "sigma": "1 + p/10", "H": ["p + 1 - t*p"]}],
-    "parameter": "p", "from": "1", "to": "1.02",
+    "parameter": "p", "from": "1", "to": "1.02", "lower": "0.54", "upper": "0.58",
     "pieces": [{
         "from": "1", "to": "1.02", "basis": [["1"]],
         "dual": [["0.547761194029850", "-0.00222766763198", "0.000011082923542"]],
         "contacts": [{
-            "panel": 0, "at": [], "end": "from", "sign": 1,
+            "panel": 0, "at": ["0"],
             "weight": ["0.558771194029850", "0.008792332368010", "0.000021082923542"],
         }],
         "radius": ["0.000001"] * 2,
@@ -82,13 +87,13 @@ MOVING = {
 SLOPES = {
     "kind": "range", "variable": "t", "functional": ["0", "1"], "bits": 90, "cells": 20,
     "panels": [{"measurement": 0, "from": "0", "to": "T", "sigma": "1", "H": ["1", "t"]}],
-    "parameter": "T", "from": "1", "to": "51/50",
+    "parameter": "T", "from": "1", "to": "51/50", "lower": "1.9", "upper": "2.1",
     "pieces": [{
         "from": ends[0], "to": ends[1], "basis": [["1", "0"], ["1", "1"]],
         "dual": [["-2.98019801980198", rise, "-0.00019411802958"], ["1.98019801980198", fall, "0.000194118029585"]],
         "contacts": [
-            {"panel": 0, "at": [], "end": "from", "sign": -1, "weight": ["-0.99009900990099"]},
-            {"panel": 0, "at": [], "end": "to", "sign": 1, "weight": ["0.99009900990099"]},
+            {"panel": 0, "at": ["0"], "weight": ["-0.99009900990099"]},
+            {"panel": 0, "at": ["1"], "weight": ["0.99009900990099"]},
         ],
         "radius": ["0.05"] * 4,
     } for ends, rise, fall in (
@@ -99,8 +104,7 @@ SLOPES = {
 FLAT = {
     "kind": "touch", "variable": "t", "functional": ["1"], "bits": 400, "cells": 0,
     "panels": [{"measurement": 0, "from": "0", "to": "1", "sigma": "1", "H": ["1 + (t - 1)/10**45 - (t - 1)**2/2"]}],
-    "dual": [["1"]], "contacts": [{"panel": 0, "at": [], "end": "to", "sign": 1, "weight": ["1"]}],
-    "radius": ["0.000001"] * 2, "lower": "0.99999", "upper": "1.00001",
+    **alone(["1"], [(0, "1", "1")], ["0.000001"] * 2), "lower": "0.99999", "upper": "1.00001", **NONE,
 }  # fmt: skip
 # The same at the other end, of the other sign, beside a second panel that is not needed.
 FLAT_LEFT = FLAT | {
@@ -108,13 +112,14 @@ FLAT_LEFT = FLAT | {
         {"measurement": 1, "from": "0", "to": "1", "sigma": "1", "H": ["t/2 - 1/4"]},
         {"measurement": 0, "from": "0", "to": "1", "sigma": "1", "H": ["t/10**45 + t**2/2 - 1"]},
     ],
-    "contacts": [{"panel": 1, "at": [], "end": "from", "sign": -1, "weight": ["-1"]}],
+    **alone(["1"], [(1, "0", "-1")], ["0.000001"] * 2),
 }  # fmt: skip
 # Bounds that are met exactly: the optimum 2 from below, the cost 2 from above.
 EXACT = {
-    "kind": "gap", "variable": "t", "functional": ["1"], "bits": 53, "cells": 100000, "dual": ["0.5"],
+    "kind": "gap", "variable": "t", "functional": ["1"], "bits": 53, "cells": 20000, "dual": ["0.5"],
     "support": [[0, "1"]],
     "panels": [{"measurement": 0, "from": "0", "to": "1", "sigma": "1", "H": ["t"]}], "lower": "0.5", "upper": "1",
+    **NONE,
 }  # fmt: skip
 # Positive on this box and no larger one.
 EDGE = {
@@ -138,8 +143,7 @@ POSITIVITY = {
 }  # fmt: skip
 # One row; and a dual that is a little off inside its box, as the bounds are not.
 ROW = RANK | {"matrix": [["a", "b"]]}
-OFFSET = CONSTANT | {
-    "dual": [["1.0000003"]], "contacts": [CONSTANT["contacts"][0] | {"weight": ["1.0000002"]}],
+OFFSET = CONSTANT | alone(["1.0000003"], [(0, "0", "1.0000002")], ["0.000001"] * 2) | {
     "lower": "0.99999999", "upper": "1.00000001",
 }  # fmt: skip
 DIGITS = CELLS | {"bits": 20000, "cells": 50000}

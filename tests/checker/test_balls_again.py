@@ -60,7 +60,8 @@ def regressors(panel: dict[str, Any], place: Any, names: dict[str, Any], t: str)
 def test_the_dual_of_an_optimum_stays_below_one_in_other_intervals(item):
     iv.dps, n = 40, 2000
     names = {item["parameter"]: iv.mpf([item["from"], item["to"]])} if item["kind"] == "sliver" else {}
-    x = [number(c[0] if isinstance(c, list) else c) for c in item["dual"]]
+    dual = item["dual"] if "dual" in item else item["pieces"][0]["dual"]
+    x = [number(c[0] if isinstance(c, list) else c) for c in dual]
     for panel, k in product(item["panels"], range(n)):
         q = regressors(panel, hull(iv.mpf(0), iv.mpf(1), k, n), names, item["variable"])
         assert abs(sum(a * b for a, b in zip(x, q, strict=True))).b < 1 + 0.02  # naive intervals: one cell wide
@@ -70,13 +71,13 @@ def test_the_dual_of_an_optimum_stays_below_one_in_other_intervals(item):
 def test_the_weights_of_a_touch_satisfy_the_constraints_and_cost_the_dual_value(item):
     iv.dps = 40
     total, cost = [iv.mpf(0)] * len(item["functional"]), iv.mpf(0)
-    for row in item["contacts"]:
-        place = number(row["at"][0]) if row["end"] == "no" else iv.mpf(row["end"] == "to")
-        w = number(row["weight"][0])
+    (piece,) = item["pieces"]
+    for row in piece["contacts"]:
+        place, w = number(row["at"][0]), number(row["weight"][0])
         q = regressors(item["panels"][row["panel"]], place, {}, item["variable"])
         total, cost = [a + w * b for a, b in zip(total, q, strict=True)], cost + abs(w)
     P = [interval(second.tree(p), {}) for p in item["functional"]]
-    value = sum(number(c[0]) * p for c, p in zip(item["dual"], P, strict=True))
+    value = sum(number(c[0]) * p for c, p in zip(piece["dual"], P, strict=True))
     assert all(abs(a - p).b < CLOSE for a, p in zip(total, P, strict=True))
     assert abs(cost - value).b < CLOSE
     assert number(item["lower"]).a - CLOSE < value.a and value.b < number(item["upper"]).b + CLOSE

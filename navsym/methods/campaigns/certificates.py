@@ -26,7 +26,7 @@ from navsym.text.expression import parse, symbol, to_text
 
 BATCH = 100
 BOUNDS = ("lower", "upper")
-PROOF_FIELDS = ("dual", "support", "contacts", "radius", "cells", "bits", *BOUNDS)
+PROOF_FIELDS = ("dual", "support", "pieces", "cells", "bits", *BOUNDS)
 
 
 def batches(honest: list[dict[str, Any]], inputs: int, seed: int = 0) -> list[Batch]:

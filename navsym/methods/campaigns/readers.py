@@ -83,6 +83,7 @@ CERTIFICATE = json.dumps({
     "kind": "gap", "variable": "t", "functional": ["0", "1"], "bits": 80, "cells": 40,
     "panels": [{"measurement": 0, "from": "0", "to": "2", "sigma": "1", "H": ["1", "t"]}],
     "dual": ["-0.999", "0.999"], "support": [[0, "0"], [0, "1"]], "lower": "0.9989", "upper": "1.0001",
+    "parameter": "p", "from": "0", "to": "0",
 }).encode()  # fmt: skip
 TRACK = b"time,lat,lon,height\n" + b"".join(b"%d.5,%d.25,-72.%d,%d\n" % (k, 44, k, 100 + k) for k in range(8))
 FLAT = b"t,x,y,h\n" + b"".join(b"%d,%d.5,%d,%d\n" % (k, k, 2 * k, 100 + k) for k in range(8))

@@ -17,7 +17,7 @@ from navsym.methods.phases.family import Family, U
 from navsym.proof.balls import enclose
 from navsym.proof.enclosure import interval
 from navsym.proof.optimality_moving import Vanishing, exact_functional, number_of, terms
-from navsym.proof.optimality_range import BITS, Piece
+from navsym.proof.optimality_range import BITS, Piece, value_bounds
 from navsym.text.expression import to_text
 
 EXTRA = 12
@@ -138,10 +138,12 @@ def scaled_certificate(family: Family, form: Echelon, pieces: Sequence[Piece]) -
         panels.append({"measurement": k, "from": "0", "to": "1", "sigma": sigma, "H": texts})
         ties += [tie(form, i, row, text, T, v) for i, text in enumerate(texts)]
     unit = [[str(int(i == j)) for j in range(m)] for i in range(m)]
+    lower, upper = value_bounds(pieces)
     found = {
         "kind": "range", "variable": v, "panels": panels, "functional": scaled_functional(family, form),
         "bits": BITS, "cells": sum(p.cells for p in pieces), "parameter": T.name, "from": "0",
-        "to": pieces[-1].row["to"], "pieces": [p.row | {"basis": unit} for p in pieces],
+        "to": pieces[-1].row["to"], "lower": lower, "upper": upper,
+        "pieces": [p.row | {"basis": unit} for p in pieces],
     }  # fmt: skip
     return {"kind": "all", "of": [found, *ties]}
 
