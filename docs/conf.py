@@ -5,7 +5,6 @@ Notebooks are shown as they stand; ``NAVSYM_DOCS_EXECUTE=1`` runs them and shows
 
 from __future__ import annotations
 
-import ast
 import html
 import os
 import re
@@ -16,7 +15,7 @@ from typing import Any
 from docutils import nodes
 
 ROOT = Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(ROOT))
+sys.path[:0] = [str(ROOT), str(ROOT / "docs")]
 os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, (str(ROOT), os.environ.get("PYTHONPATH"))))   # of the kernels
 project = "navsym"
 author = "navsym contributors"
@@ -32,52 +31,6 @@ nb_execution_raise_on_error = True
 nb_render_text_lexer = "text"
 nb_ipywidgets_js: dict[str, Any] = {}      # sliders live in the notebook itself; the page asks no network
 suppress_warnings: list[str] = []
-
-ROOMS = {
-    "claims": "Statements, verdicts, claims and papers",
-    "text": "Everything that comes from outside",
-    "models": "Models, as symbols",
-    "numeric": "Arrays and compiled loops",
-    "proof": "What decides statements",
-    "methods": "What a user asks for",
-    "report": "Pages and errata",
-    "export": "Code with certificates",
-}
-
-
-def public_parts(path: Path) -> list[str]:
-    """Signature and docstring of every documented function and class of a file, as Markdown."""
-    tree = ast.parse(path.read_text(encoding="utf-8"))
-    dotted = ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
-    head = (ast.get_docstring(tree) or "").splitlines()
-    lines = [f"## {dotted}", "", head[0] if head else "", ""]
-    for node in tree.body:
-        if not isinstance(node, ast.FunctionDef | ast.ClassDef) or node.name.startswith("_"):
-            continue
-        if doc := ast.get_docstring(node):
-            lines += [f"### {node.name}", "", "````text", signature(node), "", *doc.splitlines(), "````", ""]
-    return lines
-
-
-def signature(node: ast.FunctionDef | ast.ClassDef) -> str:
-    if isinstance(node, ast.ClassDef):
-        return f"class {node.name}"
-    returns = f" -> {ast.unparse(node.returns)}" if node.returns else ""
-    return f"{node.name}({ast.unparse(node.args)}){returns}"
-
-
-def write_reference(folder: Path) -> None:
-    """One page for each room of the package."""
-    folder.mkdir(exist_ok=True)
-    for room, title in ROOMS.items():
-        lines = [f"# {room}: {title.lower()}", ""]
-        for path in sorted((ROOT / "navsym" / room).glob("*.py")):
-            lines += public_parts(path)
-        text = "\n".join(lines) + "\n"
-        target = folder / f"{room}.md"
-        if not target.exists() or target.read_text(encoding="utf-8") != text:
-            target.write_text(text, encoding="utf-8")
-
 
 def write_notebooks(folder: Path) -> None:
     """The notebooks of the project as pages; a page is only written when it has changed."""
@@ -119,6 +72,8 @@ def shown_formulas(app: Any, pagename: str, templatename: str, context: dict[str
 
 
 def generate(app: Any) -> None:
+    from reference_pages import write_reference
+
     write_reference(Path(app.srcdir) / "reference")
     write_notebooks(Path(app.srcdir) / "notebooks")
 

@@ -58,7 +58,8 @@ def assert_claim(
     sampled     : accept CONFIRMED as well, which is evidence and no proof
     seconds     : limit; above it the verdict is OPEN and the assertion fails
 
-    Returns the verdict: its scope and its assumptions belong to what was proved.
+    Returns the verdict: its scope and its assumptions belong to what was proved. Raises ClaimFailedError, an
+    AssertionError, with the counterexample or with what was tried.
     """
     if relation == "=":
         verdict = decide_within(Equation(left, right, box or {}, tolerance), seconds)

@@ -161,7 +161,11 @@ def random_in(s: sp.Symbol, box: Mapping[Any, Any], generator: random.Random) ->
 
 
 def formulas_of(text: str, ranges: Mapping[str, tuple[Any, Any]]) -> dict[str, Formula]:
-    """Formulas of an argument: an export's folder, a claim or model file, or the text of one formula."""
+    """Formulas of an argument: an export's folder, a claim or model file, or the text of one formula.
+
+    ranges : name -> (lower, upper), exact; symbols without a range are real
+    Raises DomainError for a folder that is no export, and the errors of the readers of files and expressions.
+    """
     path = Path(text)
     if path.is_dir():
         return of_export(path)

@@ -124,7 +124,12 @@ def function_of(
     name: str | None = None,
     layout: Layout = Layout(),  # noqa: B008 - frozen
 ) -> ExportedFunction:
-    """The function of one claim, or of several regimes that follow each other in one parameter."""
+    """The function of one claim, or of several regimes that follow each other in one parameter.
+
+    parts : decided claims (:func:`material`), in the order of the parameter
+    real  : ``double`` or ``float``
+    Raises RefusedError for code that is not proved equal to its formula, ShapeError for too many results.
+    """
     name = name or function_name("_then_".join(part.claim for part in parts))
     parts, switch_symbol = in_order(parts)
     needed = needed_symbols(parts) | ({switch_symbol} if switch_symbol is not None else set())

@@ -147,7 +147,10 @@ LIMIT = 2
 
 
 def velocity_group(equations: ErrorEquations | None = None) -> Group:
-    """(2.6) and (2.8) by machine."""
+    """Error equations of the velocity group, (2.6) and (2.8) of the joint-correction paper, by elimination.
+
+    Raises ArithmeticError when the given equations do not lead to six variables (a defect of the model).
+    """
     equations = equations or dimensionless()
     meaning = velocity_variables(equations)
     solve = solved_for(X, meaning, [ALPHA[0], PI[0], W_C0[0], ALPHA[1], PI[1], W_C0[1]])
@@ -155,7 +158,10 @@ def velocity_group(equations: ErrorEquations | None = None) -> Group:
 
 
 def position_group(equations: ErrorEquations | None = None) -> Group:
-    """(2.7) and (2.9) by machine; beta_1, beta_2 are expressed by y_1, y_5."""
+    """Error equations of the position group, (2.7) and (2.9), by elimination; beta_1, beta_2 by y_1, y_5.
+
+    Raises ArithmeticError when the given equations do not lead to the four variables (a defect of the model).
+    """
     equations = equations or dimensionless()
     meaning = position_variables(equations)
     eliminated = {1: BETA[0], 3: ALPHA[0], 4: PI[0], 5: BETA[1], 7: ALPHA[1], 8: PI[1]}
@@ -221,7 +227,10 @@ JOINT = (*X, Y[0], Y[1], Y[4], Y[5])
 
 
 def joint_model() -> LinearModel:
-    """Homogeneous parts of (2.8) and (2.9) together: ten variables, four measurements."""
+    """Homogeneous parts of (2.8) and (2.9) together: ten variables, four measurements, dimensionless.
+
+    Raises ArithmeticError as :func:`velocity_group`.
+    """
     same = {Y[2]: X[0], Y[3]: X[1], Y[6]: X[3], Y[7]: X[4]}  # joint_correction:3.1
     velocity, position = velocity_group(), position_group()
     rates = [*velocity.rates, *(position.rates[k].subs(same) for k in (0, 1, 4, 5))]

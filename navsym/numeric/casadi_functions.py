@@ -85,6 +85,7 @@ def on_grid(function: ca.Function, points: Any, *constants: float) -> Array:
     """Values of a function of a scalar (and further constant arguments) at n points.
 
     Returns (m, n) for a column of m outputs: one column per point, the shape of ``regressors``.
+    Raises ShapeError for no points at all.
     """
     row = np.asarray(points, dtype=float).reshape(1, -1)
     n = row.shape[1]

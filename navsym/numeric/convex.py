@@ -137,6 +137,7 @@ def least_squares_qp(problem: GridProblem, *, solver: str = QP_SOLVERS[0]) -> Co
 
     With Phi_i = Phi(t_i) spacing_i this is the minimum of the integral of Phi^2. Its value in the result
     is the guaranteed one, sum sigma_i |Phi_i|: what least squares yields under its own worst correlation.
+    Raises DomainError for an unknown solver, NotEstimableError when the measurements do not determine the functional.
     """
     need_estimable(problem)
     programme, engine = engine_of(solver, QP_SOLVERS)

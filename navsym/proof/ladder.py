@@ -18,7 +18,11 @@ DEFAULT_MEGABYTES = 4096
 
 
 def decide(statement: Statement) -> Verdict:
-    """Verdict of a statement, in this process and without limits."""
+    """Verdict of a statement, in this process and without limits.
+
+    The ladder: counterexamples at exact points, exact algebra, balls on a divided box, samples; the first that
+    decides is the method of the verdict. Raises TypeError for what is no statement.
+    """
     if isinstance(statement, Equation):
         return decide_equation(statement)
     if isinstance(statement, Bound):

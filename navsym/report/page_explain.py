@@ -47,7 +47,10 @@ class Arithmetic:
 
 
 def steps(record: Record) -> list[Step]:
-    """The whole story of one record, in the order in which a reader asks."""
+    """The whole story of one record of ``verify``, in the order in which a reader asks.
+
+    Raises ValueError for a record that is no document of a claim.
+    """
     found = [
         Step("What is printed", record["title"], record["printed"]),
         derived_step(record),

@@ -64,7 +64,7 @@ class ClaimFile:
 
 
 def read_claims(path: str | os.PathLike[str]) -> ClaimFile:
-    """The claims of a TOML file, or a NavsymError that names the file and the key."""
+    """The claims of a TOML file; raises a NavsymError that names the file and the key."""
     return claims_from(read_toml(path), called(path))
 
 

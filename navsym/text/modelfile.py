@@ -57,7 +57,7 @@ def read_model(
 def model_from(
     document: Table, where: str = "", values: Mapping[str, str] | None = None
 ) -> ModelFile | BasisFile:
-    """Like :func:`read_model` for a document in memory."""
+    """Like :func:`read_model` for a document in memory, with the same errors."""
     place = inside(where, "parameters")
     parameters = read_parameters(as_table(document.get("parameters", {}), place), place)
     known = dict(symbols_of(parameters)) | read_values(values or {}, parameters)

@@ -55,9 +55,17 @@ def read_parameter(name: str, value: Any, where: str) -> Parameter:
         got = shown(value) if isinstance(value, str) else kind_of(value)
         hint = f": {nearest(value, SIGNS)}" if isinstance(value, str) else ""
         expected = f'a range such as ["1/2", "2"] or one of {", ".join(SIGNS)}'
-        raise ExpressionSyntaxError(f"expected {expected}; got {got}; do correct it{hint}", where=where)
+        raise ExpressionSyntaxError(f"expected {expected}; got {got}; {advice(value, name)}{hint}", where=where)
     made = symbol(name, where=where, **SIGNS[value])
     return Parameter(name, made, None, None, value)  # type: ignore[arg-type]
+
+
+def advice(value: Any, name: str) -> str:
+    """What to do with a declaration that is none; a number is what people write for a constant."""
+    text = value if isinstance(value, str) else "a number" if isinstance(value, int | float) else ""
+    if text == "a number" or text[:1].isdigit() or text[:1] in "+-.":
+        return f"do declare a range and give the value by --set {name}=…, or write the number in place of {name}"
+    return "do correct it"
 
 
 def read_range(value: Any, where: str) -> tuple[Expr, Expr]:
@@ -66,6 +74,9 @@ def read_range(value: Any, where: str) -> tuple[Expr, Expr]:
     if len(ends) != 2:
         raise ShapeError(f"expected a range of two numbers; got {len(ends)}; do give both ends", where=where)
     lower, upper = (entry(end, {}, inside(where, i)) for i, end in enumerate(ends))
+    if sign(upper - lower) == 0:
+        message = f"expected two different numbers; got {brief(lower)} twice; do write a constant in place of the name"
+        raise DomainError(message, where=where)
     require_order(lower, upper, where)
     return lower, upper
 

@@ -80,7 +80,10 @@ def module_source(
     language: str,
     equations: Sequence[str],
 ) -> str:
-    """A derivation module that passes the generic tests: every equation is listed, one example is proved."""
+    """A derivation module that passes the generic tests: every equation is listed, one example is proved.
+
+    Raises ExpressionSyntaxError for a name that cannot be a module.
+    """
     for number in equations:
         check_number(number)
     lines = "".join(f'        "{number}": "not looked at yet",\n' for number in equations)
@@ -102,7 +105,10 @@ def several(texts: Sequence[str]) -> str:
 
 
 def equation_numbers(text: str) -> tuple[str, ...]:
-    """``"1-6"``, ``"1.1-1.9, 2.1"`` or a list with commas, as numbers in order."""
+    """``"1-6"``, ``"1.1-1.9, 2.1"`` or a list with commas, as numbers in order.
+
+    Raises ExpressionSyntaxError for text that is no list of numbers, DuplicateError for a number that stands twice.
+    """
     found: list[str] = []
     for part in (piece.strip() for piece in text.split(",")):
         first, dash, last = part.partition("-")
@@ -194,7 +200,7 @@ def function_name(number: str, known: set[str]) -> str:
 
 
 def read(text: str, where: str) -> sp.Expr:
-    """A side of a claim, every name declared real."""
+    """A side of a claim, every name declared real; raises ExpressionSyntaxError that names ``where``."""
     names = {name for name in NAMES_IN.findall(text)} - RESERVED
     bad = [name for name in names if keyword.iskeyword(name) or name == "sp"]
     if bad:

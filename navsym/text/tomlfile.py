@@ -71,7 +71,8 @@ def refused(message: str, where: str) -> NavsymError:
     if message.startswith(TWICE):
         got = f"one twice ({what})"
         return DuplicateError(f"expected every key and table once; got {got}; do remove one", where=place)
-    return ExpressionSyntaxError(f"expected TOML; got an error ({what}); do correct it there", where=place)
+    advice = "do correct it there (names and formulas stand in quotation marks)"
+    return ExpressionSyntaxError(f"expected TOML; got an error ({what}); {advice}", where=place)
 
 
 def bound_nesting(text: str, where: str) -> None:

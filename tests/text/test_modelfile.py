@@ -242,3 +242,19 @@ def test_a_mistake_in_a_basis_or_a_piece_is_named(text, old, new, kind):
 def test_a_wrong_key_is_answered_with_the_nearest_one():
     with pytest.raises(NavsymError, match="did you mean 'states'"):
         read(SCHULER.replace("states", "state"))
+
+
+@pytest.mark.parametrize(
+    ("declared", "advice"),
+    [
+        ("9.81", "give the value by --set g=…, or write the number in place of g"),
+        (9, "give the value by --set g=…, or write the number in place of g"),
+        (["6", "6"], "do write a constant in place of the name"),
+        ("positiv", "do correct it: did you mean 'positive'?"),
+    ],
+)
+def test_a_constant_among_the_parameters_is_refused_with_the_way_to_write_it(declared, advice):
+    document = {"model": {"states": ["x"], "F": [["g"]]}, "parameters": {"g": declared}, "measurement": [{"h": ["1"]}]}
+    with pytest.raises(NavsymError) as refused:
+        model_from(document)
+    assert advice in str(refused.value)

@@ -76,6 +76,7 @@ def condition_numbers(
 
     n        : order of the polynomial motion model, 1 to 120
     rho, tau : exact numbers, rho nonzero (1/m), tau positive (s), text is read as a fraction or a decimal
+    Raises DomainError and TooLargeError for numbers outside these ranges.
     """
     rho, tau = Fraction(rho), Fraction(tau)
     check_request(n, rho, tau)
@@ -149,7 +150,10 @@ def warnings_of(found: dict[str, Conditioning]) -> list[str]:
 
 
 def document(n: int, rho: Fraction | str, tau: Fraction | str, digits: int) -> dict[str, Any]:
-    """What ``navsym condition`` prints."""
+    """What ``navsym condition`` prints: enclosures, double-precision values and warnings for the four matrices.
+
+    Arguments as in :func:`condition_numbers`, which raises the same errors; ``digits`` significant digits in the enclosures.
+    """
     found = condition_numbers(n, rho, tau, digits=digits)
     parts: dict[str, Any] = {"n": n, "rho": str(Fraction(rho)), "tau": str(Fraction(tau)), "digits": digits}
     for name, c in found.items():

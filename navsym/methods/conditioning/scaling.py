@@ -43,7 +43,10 @@ class BestScaling:
 
 
 def best_scaling(n: int, *, digits: int = 20) -> BestScaling:
-    """Best scaling of the columns of N_f for order n, 2 to 12."""
+    """Best scaling of the columns of N_f: least 2-norm condition number over diagonal D of N_f D (trajectory:table).
+
+    n : order of the motion, 2 to 12; digits : of the enclosures. Raises TooLargeError for another order.
+    """
     if not 2 <= n <= LARGEST:
         raise TooLargeError(f"n: expected 2 to {LARGEST}; got {n}; the search works in double precision")
     rows = power_rows(n)

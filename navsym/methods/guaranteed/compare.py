@@ -132,7 +132,10 @@ def bound_of(solution: GuaranteedSolution, measurement: str) -> float:
 
 
 def realise(solution: GuaranteedSolution, runs: int, seed: int = 0) -> Array:
-    """Errors of the estimate in ``runs`` realisations of the worst noise."""
+    """Errors (runs,) of the estimate in realisations of the worst noise, in units of the target.
+
+    The noise is normal with the covariance of :func:`worst_covariance`; the same seed gives the same errors.
+    """
     random = np.random.default_rng(seed)
     weights = np.array([float(w) for w in solution.weights])
     signed = np.array(

@@ -26,7 +26,7 @@ REACH = 0.25
 
 
 def values_for_lengths(family: Family, lengths: Sequence[float]) -> NDArray[np.float64]:
-    """Guaranteed deviation for every length, in the order given.
+    """Guaranteed deviations (N,) for N lengths of the interval, in the order given, in double precision.
 
     Raises DomainError for a length that is not positive and finite.
     """

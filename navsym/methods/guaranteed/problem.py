@@ -153,7 +153,11 @@ def from_regressors(
 
 
 def from_file(found: ModelFile | BasisFile, target: str | None = None) -> GuaranteedProblem:
-    """The problem that a model file states for one of its targets."""
+    """The problem that a model file states for one of its targets: regressors H(t), functional, bounds sigma.
+
+    target : its name; not needed where the file has one
+    Raises DomainError for an unknown target or a parameter without a value, EmptyError without measurements.
+    """
     name, functional = chosen_target(found, target)
     if isinstance(found, BasisFile):
         stretch = Stretch(*found.interval, found.H)

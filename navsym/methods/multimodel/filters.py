@@ -110,7 +110,10 @@ class BankFile:
 
 
 def read_bank(document: Mapping[str, Any]) -> BankFile:
-    """Read the keys of a bank file; errors name the key."""
+    """Read the keys of a bank file: m models of n states, mode_transition (m, m) with rows = from, measurements (T, p).
+
+    Raises DomainError and ShapeError that name the key.
+    """
     if not isinstance(document, Mapping):
         raise ShapeError("expected an object with models, mode_transition, initial and measurements; got "
                          f"{type(document).__name__}; see the interfaces")

@@ -362,7 +362,7 @@ class Observability:
 def observe(model: LinearModel) -> Observability:
     """Chains, dimensions, companion coefficients and unobservable directions of a constant model.
 
-    Errors as for :func:`chains_of`.
+    Raises the same errors as :func:`chains_of`.
     """
     chains = chains_of(model)
     ring, n = chains.ring, chains.size

@@ -98,7 +98,7 @@ def length(text: Any) -> Fraction:
 
 
 def sweep_from(document: Mapping[str, Any]) -> Sweep:
-    """The study that a configuration file describes."""
+    """The study that a configuration file describes; raises DomainError that names the key."""
     if not isinstance(document, Mapping):
         raise DomainError("expected one JSON object; got something else; see the keys of a sweep")
     unknown = set(document) - set(Sweep.__dataclass_fields__)

@@ -61,6 +61,7 @@ def accuracy_map(
     rivals          : hypotheses that compete with the truth (default: 15 cells to each side)
     exclusion       : rivals nearer than this are the truth itself (default: three cells)
     places          : how many centres along x and y
+    Raises DomainError for a length or sigma that is not positive, and for fewer than three points.
     """
     if not (length > 0 and sigma > 0 and points >= 3 and min(places) >= 1):
         raise DomainError("length, sigma: expected positive numbers and 3 or more points; got others; mend them")

@@ -105,7 +105,7 @@ def experiment(
     journal  : a file to which every finished flight is appended; flights found there, with the same
                setting, seed and maps, are not flown again
     progress : called with (finished, all) flights
-    Same arguments, same answer, except for the times.
+    Same arguments, same answer, except for the times. Raises DomainError and EmptyError when nothing is to fly.
     """
     terrain = sample_terrain() if terrain is None else terrain
     ground = terrain if ground is None else ground

@@ -56,7 +56,7 @@ class Flight:
 
 
 def sample_terrain() -> TerrainMap:
-    """The elevation sample that comes with matplotlib, in local metres."""
+    """The elevation sample that comes with matplotlib, in local metres; raises MissingEngineError without it."""
     spec = importlib.util.find_spec("matplotlib")
     if spec is None or spec.origin is None:
         raise MissingEngineError("expected matplotlib for its elevation sample; got none; install navsym in full")
@@ -102,7 +102,10 @@ def fly(
 
 
 def course(ground: TerrainMap, setting: Setting, k: int, seed: int) -> tuple[Array, float]:
-    """Middle and heading of track k: random, with room for all hypotheses inside the map."""
+    """Middle (2,) in metres and heading in radians of track k: random, with room for all hypotheses inside the map.
+
+    Raises DomainError when the map is too small for that.
+    """
     generator = np.random.default_rng([seed, 3, k])
     left, right, bottom, top = ground.extent
     length = setting.speed * (setting.measurements - 1) / RATE

@@ -78,7 +78,10 @@ def heading(t: Array, programme: Heading) -> Array:
 
 
 def course(speed: float, programme: Heading, fine: int = 20) -> Course:
-    """The northern motion at |V| = speed; the integral by Simpson's rule on steps of tau / fine."""
+    """The northern motion at |V| = speed, m/s; the integral by Simpson's rule on steps of tau / fine.
+
+    Raises DomainError for a programme that is not one of :data:`HEADINGS`.
+    """
     N = round(END / TAU)
     t = np.linspace(0.0, END, N + 1)
     north = speed * np.cos(heading(t, programme))
@@ -93,7 +96,7 @@ def course(speed: float, programme: Heading, fine: int = 20) -> Course:
 
 
 def measured(truth: Course, seed: int) -> Array:
-    """Positions at steps 1..N with the uniform error of standard deviation 1 m."""
+    """Positions (N,) in metres at steps 1..N with the uniform error of standard deviation 1 m."""
     noise = np.random.default_rng(seed).uniform(-math.sqrt(3), math.sqrt(3), len(truth.t) - 1)
     return truth.position[1:] + noise
 

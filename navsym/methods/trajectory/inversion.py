@@ -214,6 +214,7 @@ def windowed_filter(
     """Tune Q by carrying all 3^n candidates through windows of steps and keeping the likeliest.
 
     z : (N,) measurements; window : steps; bounds : range of each element of Q
+    Raises DomainError and TooLargeError for windows below one step, starts of another size, and too many candidates.
     Twin: ``trajectory_twins.windowed_filter_slowly``.
     """
     z = checked(z, model, start)
