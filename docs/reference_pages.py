@@ -25,8 +25,8 @@ ROOMS = {
 }
 #: Single files of the package that stand in no room.
 ALONE = ("checker", "errors", "store", "testing")
-INTRODUCTION = """These functions and classes are what the verbs, the notebooks and the examples of these pages call. Every
-verb has one of the same meaning; the pages after this one have the rest, room by room."""
+INTRODUCTION = """These functions and classes are what the verbs, the notebooks and the examples of these pages call.
+Every verb has one of the same meaning; the pages after this one have the rest, room by room."""
 
 Definition = ast.FunctionDef | ast.ClassDef
 

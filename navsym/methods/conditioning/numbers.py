@@ -152,7 +152,7 @@ def warnings_of(found: dict[str, Conditioning]) -> list[str]:
 def document(n: int, rho: Fraction | str, tau: Fraction | str, digits: int) -> dict[str, Any]:
     """What ``navsym condition`` prints: enclosures, double-precision values and warnings for the four matrices.
 
-    Arguments as in :func:`condition_numbers`, which raises the same errors; ``digits`` significant digits in the enclosures.
+    Arguments as in :func:`condition_numbers`, and the same errors; ``digits`` significant digits in the enclosures.
     """
     found = condition_numbers(n, rho, tau, digits=digits)
     parts: dict[str, Any] = {"n": n, "rho": str(Fraction(rho)), "tau": str(Fraction(tau)), "digits": digits}
