@@ -123,6 +123,19 @@ def test_the_ratio_of_two_noise_bounds_is_a_parameter():
     assert set(accepted(answer)) <= {"range", "sliver"}
 
 
+def test_of_several_optimal_estimators_a_regime_keeps_one():
+    document = {
+        "model": {"name": "oscillator", "states": ["x", "v"], "F": [["0", "1"], ["-w**2", "0"]]},
+        "parameters": {"w": ["1/2", "3"]},
+        "measurement": [{"name": "position", "h": ["1", "0"], "sigma": "1"}],
+        "interval": {"T": "2"},
+    }  # fmt: skip
+    answer = phases(family_of(model_from(document), "v", "w"), sp.Rational(1, 2), sp.Integer(3))
+    first, second = answer.regimes
+    assert answer.uncovered == () and first.upper == sp.pi / 4
+    assert second.closed.value == answer.family.parameter and second.status.holds
+
+
 def test_the_length_may_have_any_name():
     found = model_from(SCHULER, values={"w": "1", "s": "5"})
     answer = phases(family_of(found, "v", "Tf"), sp.Integer(0), sp.Integer(1))

@@ -70,7 +70,7 @@ def samples_of(
 
 def refined(family: Family, T: Fraction, pattern: Pattern | None) -> Sample | None:
     """The member of length T with about 90 digits, or None when its pattern is another one."""
-    basis, contacts = sample(family, T)
+    basis, contacts = sample(family, T, pattern)
     if pattern is not None and pattern_of(contacts) != pattern:
         return None
     value = sp.Rational(T.numerator, T.denominator)

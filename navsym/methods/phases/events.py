@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -138,35 +138,40 @@ def anchor(family: Family, span: Span, edge: Fraction, side: int) -> tuple[Conta
     width = span.upper - span.lower
     for share in (Fraction(1, 500), Fraction(1, 100), Fraction(1, 20), Fraction(1, 5)):
         T = (edge + side * share * width).limit_denominator(10**7)
-        _, contacts = sample(family, T)
+        _, contacts = sample(family, T, span.pattern)
         if pattern_of(contacts) == span.pattern:
             return contacts, sp.Rational(T.numerator, T.denominator)
     return None
 
 
 Others = Sequence[tuple[int, float, int]]
+#: What closes: ("weight", contact), ("start" or "end", contact), ("bound", place among those of the regime beyond).
+Room = tuple[str, int]
 
 
-def rooms(found: Polished, problem: Problem, others: Others) -> list[tuple[str, arb]]:
+def rooms(found: Polished, problem: Problem, others: Others) -> dict[Room, arb]:
     """Quantities that are positive inside a regime: sizes of the weights, distances to the ends, rooms below the
-    bound near the contacts of the regime beyond (panel, u, sign)."""
-    sizes = [
-        (f"the weight of contact {i + 1} vanishes", s * w)
-        for i, (s, w) in enumerate(zip(found.sign, found.weights, strict=True))
-    ]
-    gaps = [
-        (f"contact {i + 1} reaches an end of the interval", gap)
-        for i, v in enumerate(found.v) if found.inner[i] for gap in (v, 1 - v)
-    ]  # fmt: skip
-    below = []
-    for k, u, s in others:
-        place = as_fraction(u)
+    bound near those contacts of the regime beyond (panel, u, sign) that are none of this one."""
+    done: dict[Room, arb] = {}
+    for i, (s, w, v) in enumerate(zip(found.sign, found.weights, found.v, strict=True)):
+        done["weight", i] = s * w
+        if found.inner[i]:
+            done["start", i], done["end", i] = v, 1 - v
+    for i, (k, u, s) in enumerate(others):
+        place, panel = as_fraction(u), problem.panels[k]
         if all(j != k or bool(abs(v - arb(place)) > 1e-3) for j, v in zip(found.panel, found.v, strict=True)):
-            panel = problem.panels[k]
             f = total(found.dual, panel.rows(arb(peak(panel, found.dual, place))))
-            why = f"the dual polynomial reaches its bound at another instant of measurement {k + 1}"
-            below.append((why, panel.bound() - s * f))
-    return sizes + gaps + below
+            done["bound", i] = panel.bound() - s * f
+    return {room: size for room, size in done.items() if size.is_finite()}
+
+
+def in_words(room: Room, others: Others) -> str:
+    kind, i = room
+    if kind == "weight":
+        return f"the weight of contact {i + 1} vanishes"
+    if kind == "bound":
+        return f"the dual polynomial reaches its bound at another instant of measurement {others[i][0] + 1}"
+    return f"contact {i + 1} reaches an end of the interval"
 
 
 def implicit(family: Family, left: Span, right: Span) -> Boundary:
@@ -189,44 +194,57 @@ def implicit(family: Family, left: Span, right: Span) -> Boundary:
 def closing(
     family: Family, pattern: Pattern, start: tuple[Contacts, sp.Rational], edge: Fraction, others: Others
 ) -> tuple[sp.Rational, str] | None:
-    """Secant steps on the room that closes next to the edge."""
+    """Where the room that closes next to the edge is zero, and what closes."""
     contacts, T0 = start
 
-    def rooms_at(T: sp.Rational) -> list[tuple[str, arb]]:
+    def rooms_at(T: sp.Rational) -> dict[Room, arb]:
         with precision(BITS):
             return rooms(forced(family, T, pattern, contacts, T0), family.exact(T), others)
 
     target = sp.Rational(edge.numerator, edge.denominator)
-    first, second = (rooms_at(T) for T in (T0, (T0 + target) / 2))
-    best: tuple[float, int] | None = None
-    for i, ((_, a), (_, b)) in enumerate(zip(first, second, strict=True)):
-        if not (a.is_finite() and b.is_finite()):
-            continue
-        drop = float((a - b).mid())
-        if drop != 0.0:
-            zero = float(T0) + float(a.mid()) / drop * float((target - T0) / 2)
-            miss = abs(zero - float(edge))
-            if best is None or miss < best[0]:
-                best = (miss, i)
-    if best is None:
+    middle = (T0 + target) / 2
+    first, second = rooms_at(T0), rooms_at(middle)
+    room = nearest_to_close(first, second, float(T0), float(target))
+    if room is None:
         return None
-    i = best[1]
-    p, q = T0, (T0 + target) / 2
-    fp, fq = number(first[i][1].mid()), number(second[i][1].mid())
+
+    def size(T: sp.Rational) -> sp.Rational | None:
+        found = rooms_at(T).get(room)
+        return None if found is None else number(found.mid())
+
+    ends = (T0, number(first[room].mid())), (middle, number(second[room].mid()))
+    root = secant(size, *ends, target, abs(T0 - target) * 3 + sp.Rational(1, 1000))
+    return None if root is None else (root, in_words(room, others))
+
+
+def nearest_to_close(first: dict[Room, arb], second: dict[Room, arb], start: float, edge: float) -> Room | None:
+    """The room that, extended from its sizes at the start and half-way to the edge, closes nearest to the edge."""
+    misses: dict[Room, float] = {}
+    for room in first.keys() & second.keys():
+        drop = float((first[room] - second[room]).mid())
+        if drop != 0.0:
+            misses[room] = abs(start + float(first[room].mid()) / drop * (edge - start) / 2 - edge)
+    return min(sorted(misses), key=lambda room: misses[room], default=None)
+
+
+Point = tuple[sp.Rational, sp.Rational]
+
+
+def secant(
+    size: Callable[[sp.Rational], sp.Rational | None], one: Point, two: Point, target: sp.Rational, reach: sp.Rational
+) -> sp.Rational | None:
+    """A root by secant steps, within reach of the target; None when they run away."""
+    (p, fp), (q, fq) = one, two
     for _ in range(14):
         if fq == fp or abs(fq) < sp.Rational(1, 10**45):
             break
         step = q - fq * (q - p) / (fq - fp)
-        step = sp.Rational(round(step * 10**60), 10**60)
-        p, fp = q, fq
-        q = step
-        if abs(q - target) > abs(T0 - target) * 3 + sp.Rational(1, 1000):
+        p, fp, q = q, fq, sp.Rational(round(step * 10**60), 10**60)
+        found = size(q) if abs(q - target) <= reach else None
+        if found is None:
             return None
-        room = rooms_at(q)[i][1]
-        if not room.is_finite():
-            return None
-        fq = number(room.mid())
-    return q, first[i][0]
+        fq = found
+    return q
 
 
 def enclosed(family: Family, left: Span, right: Span, root: sp.Rational, why: str) -> Boundary:

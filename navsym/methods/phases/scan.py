@@ -7,7 +7,7 @@ changes are bracketed by bisection. Hints only: what is found here is proved aft
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
@@ -15,11 +15,11 @@ from itertools import pairwise
 import numpy as np
 import sympy as sp
 
+from navsym.methods.phases.alike import Pattern, alike, pattern_of
 from navsym.methods.phases.family import Family
 from navsym.numeric.exchange import Contacts, find_contacts
 from navsym.proof.optimality_basis import Basis, make_basis
 
-Pattern = tuple[tuple[int, str, int], ...]
 COUNT = 72
 BRACKET = 1e-7
 
@@ -33,10 +33,20 @@ class Span:
     pattern: Pattern
 
 
-def sample(family: Family, T: Fraction) -> tuple[Basis, Contacts]:
-    """Basis and contacts for one length; the contacts in order."""
+def sample(family: Family, T: Fraction, *wanted: Pattern | None) -> tuple[Basis, Contacts]:
+    """Basis and contacts for one length; the contacts in order.
+
+    wanted : patterns to prefer where there are several optimal estimators, the first that is optimal wins
+    """
     basis = make_basis(family.exact(sp.Rational(T.numerator, T.denominator)))
-    return basis, ordered(find_contacts(basis.panels))
+    found = ordered(find_contacts(basis.panels))
+    for pattern in wanted:
+        if pattern is None or pattern_of(found) == pattern:
+            continue
+        other = alike(basis.panels, found, pattern)
+        if other is not None:
+            return basis, other
+    return basis, found
 
 
 def ordered(found: Contacts) -> Contacts:
@@ -48,12 +58,6 @@ def ordered(found: Contacts) -> Contacts:
     )  # fmt: skip
 
 
-def pattern_of(found: Contacts) -> Pattern:
-    """Panel, kind of place and sign of every contact."""
-    kinds = ["no" if i else ("to" if u > 0 else "from") for i, u in zip(found.inner, found.u, strict=True)]
-    return tuple((int(k), kind, int(s)) for k, kind, s in zip(found.panel, kinds, found.sign, strict=True))
-
-
 def scan(
     family: Family, lower: Fraction, upper: Fraction, count: int = COUNT, step: Callable[[], None] = lambda: None
 ) -> list[Span]:
@@ -61,36 +65,36 @@ def scan(
 
     step : called after each of the ``count - 1`` stretches of the scan
     """
-    known: dict[Fraction, Pattern] = {}
 
-    def at(T: Fraction) -> Pattern:
-        if T not in known:
-            known[T] = pattern_of(sample(family, T)[1])
-        return known[T]
+    def at(T: Fraction, *wanted: Pattern) -> Pattern:
+        return pattern_of(sample(family, T, *wanted)[1])
 
     width = upper - lower
     places = [lower + width * Fraction(2 * k + 1, 2 * count) for k in range(count)]
-    cuts: list[tuple[Fraction, Fraction]] = []
+    pattern = at(places[0])
+    spans, edge = [], lower
     for a, b in pairwise(places):
-        changes(at, a, b, cuts)
+        for cut, after in changes(at, a, b, pattern, at(b, pattern)):
+            spans.append(Span(edge, cut, pattern))
+            edge, pattern = cut, after
         step()
-    edges = [lower, *((a + b) / 2 for a, b in cuts), upper]
-    spans = [Span(a, b, at((a + b) / 2)) for a, b in pairwise(edges)]
+    spans.append(Span(edge, upper, pattern))
     return joined([s for s in spans if s.upper - s.lower > Fraction(1, 20000) * width])
 
 
 def changes(
-    at: Callable[[Fraction], Pattern], a: Fraction, b: Fraction, cuts: list[tuple[Fraction, Fraction]]
-) -> None:
-    """Brackets of all changes between a and b that bisection sees."""
-    if at(a) == at(b):
-        return
-    if b - a < Fraction(BRACKET):
-        cuts.append((a, b))
+    at: Callable[..., Pattern], a: Fraction, b: Fraction, before: Pattern, after: Pattern
+) -> Iterator[tuple[Fraction, Pattern]]:
+    """All changes between a and b that bisection sees, each with the pattern after it."""
+    if before == after:
         return
     middle = (a + b) / 2
-    changes(at, a, middle, cuts)
-    changes(at, middle, b, cuts)
+    if b - a < Fraction(BRACKET):
+        yield middle, after
+        return
+    between = at(middle, before, after)
+    yield from changes(at, a, middle, before, between)
+    yield from changes(at, middle, b, between, after)
 
 
 def joined(spans: list[Span]) -> list[Span]:
