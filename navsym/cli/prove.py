@@ -19,7 +19,7 @@ def command(
     ] = 20.0,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> int:
-    """Decide the formulas of a claim file. Status 1 when one of them is refuted or open.
+    """Decide the formulas of a claim file. Status 1 when one of them is refuted or open, 2 when one has no value.
 
     Example: navsym prove examples/formulas.toml
     """
@@ -29,7 +29,7 @@ def command(
 
     from navsym.text.claimfile import read_claims
 
-    claims = read_claims(file)
+    claims = read_claims(file, go_on=True)
 
     from navsym.methods.prove import prove
 
@@ -46,6 +46,8 @@ def command(
         emit({"claims": found, "interrupted": True}, as_json=json_, text=lambda: as_text({"claims": found}))
         raise
     emit(document, as_json=json_, text=lambda: as_text(document))
+    if claims.undefined:
+        return claims.undefined[0].error.status
     return 0 if all(record["status"] not in ("REFUTED", "OPEN") for record in document["claims"]) else 1
 
 
@@ -55,6 +57,8 @@ def as_text(document: dict[str, Any]) -> str:
 
 
 def remark_of(record: dict[str, Any]) -> str:
+    if "error" in record:
+        return f"{record['error']['where']}: {record['error']['message']}"
     if record["counterexample"] is not None:
         point = ", ".join(f"{k} = {v}" for k, v in record["counterexample"].items()) or "no symbols"
         difference = record["difference"]

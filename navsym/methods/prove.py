@@ -13,8 +13,8 @@ from navsym.proof.assumptions import is_nonzero, is_positive
 from navsym.proof.bounds import Sign, prove_sign
 from navsym.proof.ladder import decide
 from navsym.proof.sandbox import Exhausted, Failed, run_many
-from navsym.proof.wording import text_of
-from navsym.text.claimfile import ClaimFile, FileClaim
+from navsym.proof.wording import scope_of, text_of
+from navsym.text.claimfile import ClaimFile, FileClaim, UndefinedClaim
 
 SECONDS = 20.0
 
@@ -28,7 +28,8 @@ def prove(
 ) -> dict[str, Any]:
     """Decide every claim of a file; the document of ``navsym prove``.
 
-    A claim that needs more than ``seconds`` is OPEN. Order and verdicts do not depend on ``jobs``.
+    A claim that needs more than ``seconds`` is OPEN. Order and verdicts do not depend on ``jobs``. Where a side
+    has no value, the claim is OPEN with its ``error``, and so is the document with the first of them.
     """
     records: dict[int, dict[str, Any]] = {}
     for outcome in run_many(decide_claim, claims.claims, jobs, seconds):
@@ -38,7 +39,17 @@ def prove(
             verdict = Verdict(OPEN, "none", evidence=f"not decided: {why}")
         records[outcome.place] = record_of(claims.claims[outcome.place], verdict)
         progress(records[outcome.place])
-    return {"claims": [records[place] for place in sorted(records)]}
+    done = [records[place] for place in sorted(records)]
+    for claim in claims.undefined:
+        done.insert(claim.place, undefined_record(claim))
+    first = claims.undefined[0].error.as_json() if claims.undefined else {}
+    return {**first, "claims": done}
+
+
+def undefined_record(claim: UndefinedClaim) -> dict[str, Any]:
+    """What is said of a claim of which a side has no value."""
+    verdict = Verdict(OPEN, "none", evidence=claim.error.message)
+    return {"id": claim.id, **outcome(verdict), **claim.error.as_json()}
 
 
 def decide_claim(claim: FileClaim) -> Verdict:
@@ -47,7 +58,13 @@ def decide_claim(claim: FileClaim) -> Verdict:
     if verdict.status == REFUTED:
         return verdict
     assumptions = dict.fromkeys((*verdict.assumptions, *text_conditions(claim)))
-    return replace(verdict, assumptions=tuple(assumptions))
+    return replace(verdict, scope=scope_of_text(claim), assumptions=tuple(assumptions))
+
+
+def scope_of_text(claim: FileClaim) -> str:
+    """All symbols of the text, also those that the algebra has cancelled since, as in a/a = 1."""
+    sides = [tuple(side) if isinstance(side, sp.MatrixBase) else side for side in (claim.left, claim.right)]
+    return scope_of(sp.Tuple(*sides, *claim.divisors, *claim.radicands, *claim.arguments), claim.box)
 
 
 def text_conditions(claim: FileClaim) -> list[str]:
@@ -75,10 +92,14 @@ def statement_of(claim: FileClaim) -> Statement:
 
 
 def record_of(claim: FileClaim, verdict: Verdict) -> dict[str, Any]:
+    return {"id": claim.id, **outcome(verdict)}
+
+
+def outcome(verdict: Verdict) -> dict[str, Any]:
+    """A verdict as plain data."""
     refuted = verdict.status == REFUTED
     difference = verdict.difference
     return {
-        "id": claim.id,
         "status": str(verdict.status),
         "method": verdict.method,
         "scope": verdict.scope,

@@ -7,7 +7,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from navsym.errors import DomainError, EmptyError, ExpressionSyntaxError, ShapeError, TooLargeError
+from navsym.errors import (
+    DomainError,
+    EmptyError,
+    ExpressionSyntaxError,
+    NavsymError,
+    ShapeError,
+    TooLargeError,
+)
 from navsym.text.arithmetic import sign
 from navsym.text.expression import ZERO, Expr, Matrix, Parsed, Symbol
 from navsym.text.files import called
@@ -56,19 +63,32 @@ class FileClaim:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class UndefinedClaim:
+    """A claim with a side that has no value, such as ``log(0)``; ``place`` counts the claims of the file."""
+
+    id: str
+    place: int
+    error: NavsymError
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class ClaimFile:
-    """``[symbols]`` and ``[[claim]]``."""
+    """``[symbols]`` and ``[[claim]]``; ``undefined`` only where the reader was asked to go on."""
 
     symbols: Mapping[str, Parameter]
     claims: tuple[FileClaim, ...] = field(default=())
+    undefined: tuple[UndefinedClaim, ...] = field(default=())
 
 
-def read_claims(path: str | os.PathLike[str]) -> ClaimFile:
-    """The claims of a TOML file; raises a NavsymError that names the file and the key."""
-    return claims_from(read_toml(path), called(path))
+def read_claims(path: str | os.PathLike[str], *, go_on: bool = False) -> ClaimFile:
+    """The claims of a TOML file; raises a NavsymError that names the file and the key.
+
+    go_on : keep the claims of which both sides have values, as long as there is one, and note the others
+    """
+    return claims_from(read_toml(path), called(path), go_on=go_on)
 
 
-def claims_from(document: Table, where: str = "") -> ClaimFile:
+def claims_from(document: Table, where: str = "", *, go_on: bool = False) -> ClaimFile:
     """Like :func:`read_claims` for a document in memory."""
     expect_keys(document, ("symbols", "claim"), where)
     place = inside(where, "symbols")
@@ -82,9 +102,26 @@ def claims_from(document: Table, where: str = "") -> ClaimFile:
     if len(blocks) > CLAIMS:
         message = f"expected at most {CLAIMS} claims; got {len(blocks)}; do split the file"
         raise TooLargeError(message, where=place)
-    claims = tuple(read_claim(block, symbols, inside(place, i)) for i, block in enumerate(blocks))
-    distinct((claim.id for claim in claims), place)
-    return ClaimFile(symbols, claims)
+    found = [claim_or_error(block, symbols, place, i) for i, block in enumerate(blocks)]
+    distinct((claim.id for claim in found), place)
+    claims = tuple(claim for claim in found if isinstance(claim, FileClaim))
+    undefined = tuple(claim for claim in found if isinstance(claim, UndefinedClaim))
+    if undefined and not (go_on and claims):
+        raise undefined[0].error
+    return ClaimFile(symbols, claims, undefined)
+
+
+def claim_or_error(
+    block: Any, symbols: Mapping[str, Parameter], where: str, place: int
+) -> FileClaim | UndefinedClaim:
+    """The claim, or why a side of it has no value; everything else that is wrong with it is raised."""
+    try:
+        return read_claim(block, symbols, inside(where, place))
+    except DomainError as error:
+        sides = tuple(inside(inside(where, place), side) for side in ("left", "right"))
+        if not error.where.startswith(sides):
+            raise
+        return UndefinedClaim(as_label(block["id"], inside(inside(where, place), "id")), place, error)
 
 
 def read_claim(block: Any, symbols: Mapping[str, Parameter], where: str) -> FileClaim:
