@@ -10,8 +10,8 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
+from navsym.report.formula_reader import Node, read_formula, unwrapped
 from navsym.report.page_explain import entries_of
-from navsym.report.page_formula import Node, read_formula, unwrapped
 
 Curve = list[tuple[float, float]]
 POINTS = 160
