@@ -35,12 +35,17 @@ class EntryPoint:
 
 
 def entry_points() -> list[EntryPoint]:
-    """All entry points by module and place in it."""
+    """All entry points by module and place in it; errors come last."""
     wanted: dict[str, set[str]] = {}
     for source in sources():
         for module, name in imported(source):
             wanted.setdefault(module, set()).add(name)
-    return [EntryPoint(module, node) for module in sorted(wanted) for node in defined(module, wanted[module])]
+    return [EntryPoint(module, node) for module in sorted(wanted, key=late) for node in defined(module, wanted[module])]
+
+
+def late(module: str) -> tuple[bool, str]:
+    """Sorts the errors behind what raises them."""
+    return module == f"{PACKAGE}.errors", module
 
 
 def sources() -> Iterator[str]:

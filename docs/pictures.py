@@ -51,9 +51,14 @@ def verdicts() -> Figure:
 
 
 def worst(equation: str, equations: Sequence[str], records: Sequence[Mapping[str, str]]) -> str:
-    """The worst verdict on an equation; a definition where there is none."""
-    found = [r["status"] for r in records if equation_of(r["number"], equations) == equation]
-    return min(found, key=WORST_FIRST.index) if found else "definition"
+    """The worst verdict on an equation; a definition where there is none.
+
+    What is refuted for the damage of a copy alone is not counted against the paper.
+    """
+    found = [r for r in records if equation_of(r["number"], equations) == equation]
+    status = min((r["status"] for r in found), key=WORST_FIRST.index, default="definition")
+    slips = {r["slip"] for r in found if r["status"] == "REFUTED"}
+    return "only in the copy" if slips == {"scan"} else status
 
 
 def phases() -> Figure:

@@ -177,10 +177,10 @@ def observability_ladder(names: Sequence[str], ranks: Array, size: int) -> Figur
 def verdict_matrix(papers: Sequence[tuple[str, Sequence[tuple[str, str]]]], *, columns: int = 20) -> Figure:
     """Papers and their numbered equations, one square each, in the colour and with the mark of the worst verdict.
 
-    papers : (name, ((equation, status), ...)) with a status of ``MARKS``, or ``"definition"``
+    papers : (name, ((equation, status), ...)) with a key of :data:`SQUARES` as status
     """
     lines = [max(1, -(-len(equations) // columns)) for _, equations in papers]
-    height = sum(lines) + 0.75 * len(papers) + 1.1
+    height = sum(lines) + 0.75 * len(papers) + 1.4
     made = Figure(figsize=(9.2, 0.34 * height + 0.2), layout="constrained")
     axes = made.add_subplot()
     axes.set(xlim=(-0.1, columns), ylim=(height, -0.1), aspect="auto")
@@ -203,6 +203,7 @@ SQUARES = {
     "PROVED": ("#cfe8f6", "#00476e", "✓"),
     "CERTIFIED": ("#9fd3cb", "#003d33", "◎"),
     "REFUTED": ("#c8480b", "#ffffff", "✗"),
+    "only in the copy": ("#fbe0d0", "#8a2d00", "✗"),
     "OPEN": ("#f5e3a1", "#4d3b00", "?"),
     "definition": ("#efefef", "#595959", "·"),
 }
