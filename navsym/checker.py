@@ -98,8 +98,8 @@ def parse(text: Any) -> ast.expr:
 
 # -- values ------------------------------------------------------------------------------------------------------------
 class Jet:
-    """a + b s + c s s, s**3 = 0; a constant has the integers b = c = 0. Parts are balls, series of balls in a place,
-    matrices of balls, or Exact."""
+    """a + b s + c s s, s**3 = 0; a constant has the integers b = c = 0. Parts are balls, series of balls in a place
+    with coefficients [k], or Exact."""
     def __init__(self, a: Any, b: Any = 0, c: Any = 0):
         self.parts = a, b, c
     def __add__(self, o: Jet) -> Jet:
@@ -113,6 +113,8 @@ class Jet:
         return self + o * Jet(-1)
     def __truediv__(self, o: Jet) -> Jet:
         return self * power(o, fmpq(-1), arb)
+    def __getitem__(self, k: int) -> Jet:
+        return Jet(*(part[k] for part in self.parts if type(part) is not int))
     def through(self, f: Any, slopes: Callable[[], tuple[Any, Any]]) -> Jet:
         """A function of this, from its value and, where needed, its derivative and half the second one."""
         _, b, c = self.parts
@@ -322,13 +324,8 @@ def positivity(item: Any) -> None:
 # -- the optimum -------------------------------------------------------------------------------------------------------
 EVERY, HEAD = arb(0, 1), "kind variable panels functional bits cells parameter from to lower upper "
 
-def matrix(rows: Any) -> Jet:
-    """A jet of matrices from a matrix of jets; their sums and products follow the same rules."""
-    constant = all(type(e.parts[1]) is int for row in rows for e in row)
-    return Jet(*(arb_mat([[e.parts[i] for e in row] for row in rows]) for i in range(1 if constant else 3)))
-
-def each(x: Jet, part: Callable[[Any], Any]) -> Jet:
-    return Jet(*(part(a) for a in x.parts if type(a) is not int))
+def dot(x: list[Jet], y: list[Jet]) -> Jet:
+    return sum(map(operator.mul, x, y), Jet(0))
 
 class Problem:
     """Panels and functional; p = middle + half s is the value of the parameter, an int half when nothing follows it."""
@@ -339,36 +336,37 @@ class Problem:
         self.rest, (self.t, self.p), self.P = numbers[4:], distinct([t, p]), array(P, parse)
         rows = array(panels, lambda panel: fields(panel, "measurement from to sigma H"))
         self.panels = [array([*ends, *array(H, label, len(self.P))], parse) for _, *ends, H in rows]
-    def focus(self, middle: arb, half: Any, basis: list[list[Any]]) -> None:
-        self.middle, self.half, self.basis = middle, half, matrix([[Jet(arb(q)) for q in row] for row in basis])
+    def focus(self, middle: arb, half: Any) -> None:
+        self.middle, self.half = middle, half
         for panel in self.panels:
             low, high, sigma = (value(e, self.names(EVERY), arb).parts[0] for e in panel[:3])
             need(high > low and sigma > 0, "noise bound and length are positive")
     def names(self, s: arb) -> dict[str, Jet]:
         return {self.p: Jet(self.middle + s * self.half, self.half)}
-    def over(self, make: Callable[[arb], Jet]) -> Any:
-        """Enclosure for all |s| <= 1 by Taylor's formula."""
-        a, b, _ = make(arb(0)).parts
-        return a if type(b) is int else a + b * EVERY + make(EVERY).parts[2] * (EVERY * EVERY)
-    def target(self, s: arb) -> Jet:
-        return self.basis * matrix([[value(e, self.names(s), arb)] for e in self.P])
-    def rows(self, panel: int, place: Jet, s: arb, n: int) -> Jet:
-        """Row by row n Taylor coefficients of basis q about a place."""
+    def over(self, make: Callable[[arb], list[Jet]]) -> list[Any]:
+        """Enclosures for all |s| <= 1 by Taylor's formula."""
+        thin = [x.parts for x in make(arb(0))]
+        if type(self.half) is int:
+            return [a for a, _, _ in thin]
+        return [a + b * EVERY + x.parts[2] * (EVERY * EVERY) for (a, b, _), x in zip(thin, make(EVERY), strict=True)]
+    def target(self, s: arb) -> list[Jet]:
+        return [value(e, self.names(s), arb) for e in self.P]
+    def rows(self, panel: int, place: Jet, s: arb, n: int) -> list[Jet]:
+        """q as series of n terms about a place."""
         ctx.cap, names = n, self.names(s)
         low, high, sigma = (value(e, names, arb) for e in self.panels[panel][:3])
         names[self.t] = low + (high - low) * (place + Jet(arb_series([0, 1])))
-        q = [value(e, names, arb) / sigma * Jet(arb_series([1])) for e in self.panels[panel][3:]]
-        return self.basis * matrix([[each(h, lambda part, k=k: part[k]) for k in range(n)] for h in q])  # type: ignore
-    def feasible(self, x: Callable[[arb], Jet], contacts: list[tuple[int, arb, int, int]]) -> None:
+        return [value(e, names, arb) / sigma * Jet(arb_series([1])) for e in self.panels[panel][3:]]
+    def feasible(self, x: Callable[[arb], list[Jet]], contacts: list[tuple[int, arb, int, int]]) -> None:
         """|f| < 1 off the contacts (panel, place, sign, outward direction at an end)."""
         def passes(panel: int, low: arb, high: arb) -> bool:
             near = [c for c in contacts if c[0] == panel and abs(2 * c[1].mid() - low - high) < 2 * (high - low)]
             _, place, sign, end = near[0] if near else (panel, (low + high) / 2, 0, 0)
             centre, n = place.mid(), 16
             r = max(d.upper() for d in (centre - low, high - centre, place.rad()))
-            thin, wide = (self.over(lambda s: x(s) * self.rows(panel, Jet(at), s, n)).entries()  # noqa: B023
+            thin, wide = (self.over(lambda s: [dot(x(s), self.rows(panel, Jet(at), s, n))])[0]  # noqa: B023
                           for at in (centre, arb(centre, r)))
-            c = [*thin[:-1], wide[-1]]
+            c = [*(thin[k] for k in range(n - 1)), wide[n - 1]]
             rest = [sum((comb(k, d) * c[k].abs_upper() * r ** (k - d) for k in range(d + 1, n)), arb(0))
                     for d in range(3)]
             if not near:
@@ -382,17 +380,17 @@ class Problem:
 def gap(item: Any) -> None:
     problem = Problem(item, "dual support")
     (dual, support), m = problem.rest, len(problem.P)
-    problem.focus(arb(problem.low).union(arb(problem.high)), 0, [[int(i == j) for i in range(m)] for j in range(m)])
-    x, P = matrix([array(dual, lambda e: Jet(arb(number(e))), m)]), problem.target(arb(0))
+    problem.focus(arb(problem.low).union(arb(problem.high)), 0)
+    x, P = array(dual, lambda e: Jet(arb(number(e))), m), problem.target(arb(0))
     problem.feasible(lambda s: x, [])
-    need((x * P).parts[0][0, 0] >= arb(problem.lower), "the lower bound is above x.P")
+    need(dot(x, P).parts[0] >= arb(problem.lower), "the lower bound is above x.P")
     places = [(whole(k, 0, len(problem.panels) - 1), number(v)) for k, v in array(support, list, m)]
     need(all(0 <= v <= 1 for _, v in places), "a place outside its panel")
-    columns = [problem.rows(k, Jet(arb(v)), arb(0), 1).parts[0].entries() for k, v in places]
-    w = arb_mat(columns).transpose().solve(P.parts[0]).entries()
+    columns = [[h.parts[0][0] for h in problem.rows(k, Jet(arb(v)), arb(0), 1)] for k, v in places]
+    w = arb_mat(columns).transpose().solve(arb_mat([[p.parts[0]] for p in P])).entries()
     need(sum(map(abs, w), arb(0)) <= arb(problem.upper), "the weights cost more than the upper bound")
 
-def optimum(problem: Problem, dual: Any, contacts: Any, radii: Any) -> arb:
+def optimum(problem: Problem, A: list[list[Jet]], dual: Any, contacts: Any, radii: Any) -> arb:
     """Krawczyk's test, then |f| < 1 off the contacts; the value x.P."""
     rows = array(contacts, lambda c: fields(c, "panel at weight"))
     panels, places, weights = map(list, zip(*rows, strict=True))
@@ -402,40 +400,37 @@ def optimum(problem: Problem, dual: Any, contacts: Any, radii: Any) -> arb:
     ends = [-1 if at == ["0"] else int(at == ["1"]) for at in places]
     signs = [1 if c[0].parts[0] > 0 else -1 for c in curves[m + l:]]
     free = [k for k in range(m + 2 * l) if not (m <= k < m + l and ends[k - m])]
-    radius = array(radii, lambda e: arb(number(e)), len(free))
+    n, radius = len(free), array(radii, lambda e: arb(number(e)), len(free))
     need(all(r > 0 for r in radius), "a radius is not positive")
-
     def unknowns(s: arb, shift: list[arb]) -> list[Jet]:
         by, at = dict(zip(free, shift, strict=True)), Jet(s, 0 if type(problem.half) is int else arb(1))
         return [polynomial(c, at) + Jet(by.get(k, arb(0))) for k, c in enumerate(curves)]
-
-    def system(s: arb, shift: list[arb]) -> Jet:
+    def system(s: arb, shift: list[arb]) -> list[Jet]:
         """F, and behind it its derivatives."""
         z, P = unknowns(s, shift), problem.target(s)
-        F = [each(P, lambda part, j=j: -part[j, 0]) for j in range(m)] + [Jet(0)] * (2 * l)  # type: ignore[misc]
-        J = [[Jet(0)] * len(z) for _ in z]
+        F, J = [*(dot(row, P) * Jet(-1) for row in A), *[Jet(0)] * (2 * l)], [[Jet(0)] * len(z) for _ in z]
         for i, v, k in zip(range(l), range(m, m + l), range(m + l, m + 2 * l), strict=True):
-            q = problem.rows(panels[i], z[v], s, 3)
-            f, df, ddf = (each(matrix([z[:m]]) * q, lambda part, d=d: part[0, d]) for d in range(3))  # type: ignore
-            F[v], F[k] = z[k] * df, f - Jet(signs[i])
-            J[v][v], J[v][k], J[k][v] = Jet(2) * z[k] * ddf, df, df
+            plain = problem.rows(panels[i], z[v], s, 3)
+            q = [dot(row, plain) for row in A]
+            f = dot(z[:m], q)
+            F[v], F[k] = z[k] * f[1], f[0] - Jet(signs[i])
+            J[v][v], J[v][k], J[k][v] = Jet(2) * z[k] * f[2], f[1], f[1]
             for j in range(m):
-                qj, dq = (each(q, lambda part, j=j, d=d: part[j, d]) for d in range(2))  # type: ignore[misc]
-                F[j] += z[k] * qj
-                J[j][k], J[k][j], J[j][v], J[v][j] = qj, qj, z[k] * dq, z[k] * dq
-        return matrix([[F[i], *(J[i][k] for k in free)] for i in free])
-    n = len(free)
-    F = problem.over(lambda s: system(s, [arb(0)] * n)).tolist()
-    J = arb_mat([row[1:] for row in problem.over(lambda s: system(s, [EVERY * r for r in radius])).tolist()])
+                F[j] += z[k] * q[j][0]
+                J[j][k], J[k][j], J[j][v], J[v][j] = [q[j][0]] * 2 + [z[k] * q[j][1]] * 2
+        return [*(F[i] for i in free), *(J[i][k] for i in free for k in free)]
+    F = arb_mat(n, 1, problem.over(lambda s: system(s, [arb(0)] * n))[:n])
+    J = arb_mat(n, n, problem.over(lambda s: system(s, [EVERY * r for r in radius]))[n:])
     Y, unit = J.mid().inv().mid(), arb_mat(n, n, [int(i == k) for i in range(n) for k in range(n)])
-    move = ((unit - Y * J) * arb_mat([[EVERY * r] for r in radius]) - Y * arb_mat([row[:1] for row in F])).entries()
+    move = ((unit - Y * J) * arb_mat(n, 1, [EVERY * r for r in radius]) - Y * F).entries()
     need(all(abs(d) < r for d, r in zip(move, radius, strict=True)), "Krawczyk's test fails")
-    z = problem.over(lambda s: matrix([unknowns(s, move)])).entries()  # the image of the box is a better box
+    z = problem.over(lambda s: unknowns(s, move))  # the image of the box is a better box
     need(all(s * w > 0 for s, w in zip(signs, z[m + l:], strict=True)), "a weight of the wrong sign")
     need(all(end or (v > 0 and v < 1) for end, v in zip(ends, z[m:m + l], strict=True)), "a contact outside its panel")
-    x = lambda s: matrix([unknowns(s, move)[:m]])  # noqa: E731
+    def x(s: arb) -> list[Jet]:
+        return [dot(unknowns(s, move)[:m], column) for column in zip(*A, strict=True)]  # type: ignore[arg-type]
     problem.feasible(x, list(zip(panels, z[m:m + l], signs, ends, strict=True)))
-    return problem.over(lambda s: x(s) * problem.target(s))[0, 0]  # type: ignore[no-any-return]
+    return problem.over(lambda s: [dot(x(s), problem.target(s))])[0]  # type: ignore[no-any-return]
 
 def touch(item: Any) -> None:
     problem = Problem(item, "pieces")
@@ -444,8 +439,8 @@ def touch(item: Any) -> None:
         a, b, basis = number(low), number(high), array(rows, lambda row: array(row, number))
         need(a == edge <= b, "the pieces leave a hole")
         need(fmpq_mat(basis).det() != 0, "a singular basis")
-        problem.focus(arb((a + b) / 2), arb((b - a) / 2) if a < b else 0, basis)
-        total, edge = optimum(problem, *solution), b
+        problem.focus(arb((a + b) / 2), arb((b - a) / 2) if a < b else 0)
+        total, edge = optimum(problem, [[Jet(arb(q)) for q in row] for row in basis], *solution), b
         need(total >= arb(problem.lower) and total <= arb(problem.upper), "the optimum is not between the bounds")
     need(pieces and edge == problem.high, "the pieces do not reach the end")
 

@@ -124,7 +124,7 @@ EXACT = {
 # Positive on this box and no larger one.
 EDGE = {
     "kind": "positivity", "expression": "x*(1 - x)*(y + 2)*(3 - y)", "bits": 30, "cells": 50000,
-    "box": {"x": ["0.001", "0.999"], "y": ["-1.999", "2.999"]},
+    "box": {"x": ["0.01", "0.99"], "y": ["-1.99", "2.99"]},
 }  # fmt: skip
 # As many cells as 14 announced ones allow: 255.
 CELLS = {"kind": "positivity", "expression": "x - x + 1/65", "bits": 64, "cells": 14, "box": {"x": ["0", "1"]}}
