@@ -11,10 +11,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from flint import arb, arb_mat, fmpq
+from flint import arb, arb_mat, ctx, fmpq
 
 from navsym.numeric.exchange import Contacts, find_contacts, nodes_for, rows_at
 from navsym.numeric.exchange_simple import simple_dual
@@ -76,6 +77,7 @@ def certify(problem: Problem, digits: int = 30, basis: Basis | None = None) -> C
     return gap(problem, basis, contacts, refined, digits, bits)
 
 
+@lru_cache(maxsize=64)
 def lost_digits(basis: Basis) -> int:
     """Digits that cancel in ``x . H`` when x is written in the basis of the problem."""
     largest = max(float(abs(e).mid()) for row in basis.transform.tolist() for e in row)
@@ -98,7 +100,7 @@ def touch(problem: Problem, basis: Basis, found: Polished, digits: int, bits: in
         if z is None or not admissible(found, z):
             return None
         m = len(found.dual)
-        cells = covered(problem, z[:m], exact_touches(found, z))
+        cells = covered(problem, z[:m], exact_touches(found, z), loss)
         if cells is None:
             return None
         value = total(z[:m], problem.target())
@@ -186,7 +188,14 @@ def exact_touches(found: Polished, z: Sequence[arb]) -> list[list[Touch]]:
     return rows
 
 
-def covered(problem: Problem, x: Sequence[arb], touches: Sequence[Sequence[Touch]]) -> int | None:
+def covered(problem: Problem, x: Sequence[arb], touches: Sequence[Sequence[Touch]], loss: int) -> int | None:
+    """Cells that prove ``|x . H| < sigma`` off exact contacts; where few bits do not suffice, with all."""
+    with precision(min(ctx.prec, int(3.33 * loss) + 64)):
+        cells = every_cell(problem, x, touches)
+    return every_cell(problem, x, touches) if cells is None else cells
+
+
+def every_cell(problem: Problem, x: Sequence[arb], touches: Sequence[Sequence[Touch]]) -> int | None:
     """Cells that prove ``|x . H| <= sigma`` on every panel, or None."""
     cells = 0
     for k, panel in enumerate(problem.panels):
@@ -249,7 +258,7 @@ def gap(
         for base, shrink in attempts(basis, contacts, found, digits):
             scale = 1 - fmpq(1, 10) ** shrink
             x = [exact(decimal(c * scale, places + 8)) for c in base]
-            cells = covered(problem, [arb(c) for c in x], touches)
+            cells = every_cell(problem, [arb(c) for c in x], touches)
             if cells is not None:
                 break
         else:

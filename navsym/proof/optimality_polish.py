@@ -64,8 +64,8 @@ def polish(panels: Sequence[Panel], basis: Basis, contacts: Contacts, bits: int,
             size = max(float(abs(f).mid()) for f in F)
             if size < goal or (size > 0.5 * last and size < 1e-12):
                 break
-            done = last < np.inf and size < 1e-6 * last and size**2 < last * goal * CERTAIN
-            last, size = size, size**2 / last
+            done = last < np.inf and size < 1e-6 * last and size * (size / last) < goal * CERTAIN
+            last, size = size, size * (size / last)
             step = correction(inverse, F)
             x = [(a + s).mid() for a, s in zip(x, step[:m], strict=True)]
             free = iter(step[m : len(step) - l])

@@ -136,6 +136,22 @@ def test_of_several_optimal_estimators_a_regime_keeps_one():
     assert second.closed.value == answer.family.parameter and second.status.holds
 
 
+def test_a_measurement_of_the_target_itself_is_enough_while_it_is_the_better_one():
+    document = {
+        "model": {"name": "double integrator", "states": ["x", "v"], "F": [["0", "1"], ["0", "0"]]},
+        "parameters": {"q": ["1/10", "5"]},
+        "measurement": [
+            {"name": "position", "h": ["1", "0"], "sigma": "1"}, {"name": "velocity", "h": ["0", "1"], "sigma": "q"},
+        ],
+        "interval": {"T": "2"},
+    }  # fmt: skip
+    answer = phases(family_of(model_from(document), "v", "q"), sp.Rational(1, 10), sp.Integer(5))
+    first, second = answer.regimes
+    assert answer.uncovered == () and first.closed.value == answer.family.parameter and second.closed.value == 1
+    (edge,) = answer.boundaries
+    assert sp.Rational(edge.lower) < 1 < sp.Rational(edge.upper)
+
+
 def test_the_length_may_have_any_name():
     found = model_from(SCHULER, values={"w": "1", "s": "5"})
     answer = phases(family_of(found, "v", "Tf"), sp.Integer(0), sp.Integer(1))

@@ -1,6 +1,6 @@
 """Closed forms of a regime: found from samples with many digits, proved as identities.
 
-Places are recognised as ``a T + b`` or as a share of the interval, the dual and the weights then
+Places are recognised (:mod:`navsym.methods.phases.places`), the dual and the weights then
 solve linear systems with exact entries, and the pair goes to the ladder of proof as one
 :class:`~navsym.claims.Optimum`. Recognition only proposes.
 """
@@ -8,20 +8,19 @@ solve linear systems with exact entries, and the pair goes to the ladder of proo
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
 import numpy as np
 import sympy as sp
-from flint import arb
 
 from navsym.claims import OPEN, PROVED, Equation, Optimum, Verdict
 from navsym.methods.phases.family import Family, U
+from navsym.methods.phases.places import number, place_or_share
 from navsym.methods.phases.polynomial import is_monomial, monomial_weights, power_law_dual
 from navsym.methods.phases.scan import Pattern, Span, pattern_of, sample
 from navsym.proof.balls import enclose
-from navsym.proof.enclosure import rational
 from navsym.proof.equations import combine, decide_equation
 from navsym.proof.ladder import DEFAULT_MEGABYTES, decide_within
 from navsym.proof.optima import SHARE, constraints, equal_values, feasibility, instants
@@ -31,7 +30,6 @@ from navsym.proof.sandbox import Exhausted, run_limited
 
 BITS = 320
 GOAL = 1e-60
-NEAR = sp.Rational(1, 10**40)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -80,75 +78,6 @@ def refined(family: Family, T: Fraction, pattern: Pattern | None) -> Sample | No
     return Sample(value, places, done)
 
 
-def number(x: arb) -> sp.Rational:
-    """Midpoint of a ball as an exact rational."""
-    value = rational(x)
-    return sp.Rational(int(value.p), int(value.q))
-
-
-# -- recognition -----------------------------------------------------------------------------------
-
-
-def constant(x: sp.Rational) -> sp.Expr | None:
-    """A rational, a rational multiple of pi, or a cosine share ``(1 - cos(pi r))/2``, within 1e-40."""
-    pi = sp.Rational(str(sp.pi.evalf(90)))
-    for unit, base in ((sp.Integer(1), sp.Integer(1)), (pi, sp.pi)):
-        best = sp.Rational(x / unit).limit_denominator(720)
-        if abs(best * unit - x) < NEAR:
-            return best * base
-    if 0 < x < 1:
-        r = sp.acos(1 - 2 * sp.Float(str(sp.N(x, 90)), 90)) / sp.Float(pi, 90)
-        best = sp.Rational(str(r)).limit_denominator(120)
-        shown = (1 - sp.cos(sp.pi * best)) / 2
-        if abs(sp.Rational(str(shown.evalf(90))) - x) < NEAR:
-            return shown
-    for q in (2, 3, 5, 6):
-        root = sp.Rational(str(sp.sqrt(q).evalf(90)))
-        best = sp.Rational(x / root).limit_denominator(720)
-        if abs(best * root - x) < NEAR:
-            return best * sp.sqrt(q)
-    return None
-
-
-def place_of(values: Sequence[sp.Rational], lengths: Sequence[sp.Rational], T: sp.Symbol) -> sp.Expr | None:
-    """``a T + b`` through the first two samples, confirmed on all of them."""
-    slope = (values[1] - values[0]) / (lengths[1] - lengths[0])
-    start = values[0] - slope * lengths[0]
-    if any(abs(slope * t + start - v) > NEAR for v, t in zip(values, lengths, strict=True)):
-        return None
-    a, b = constant(slope), constant(start)
-    return None if a is None or b is None else a * T + b
-
-
-def place_from(values: Sequence[sp.Rational], parameters: Sequence[sp.Rational], p: sp.Symbol) -> sp.Expr | None:
-    """A place linear in the parameter or in its reciprocal."""
-    found = place_of(values, parameters, p)
-    if found is not None or any(v == 0 for v in parameters):
-        return found
-    scaled = place_of([v * q for v, q in zip(values, parameters, strict=True)], parameters, p)
-    return None if scaled is None else sp.expand(scaled / p)
-
-
-def place_or_share(
-    family: Family, values: Sequence[sp.Rational], parameters: Sequence[sp.Rational]
-) -> sp.Expr | None:
-    found = place_from(values, parameters, family.parameter)
-    return share_of(family, values, parameters) if found is None else found
-
-
-def share_of(family: Family, values: Sequence[sp.Rational], parameters: Sequence[sp.Rational]) -> sp.Expr | None:
-    """A fixed share of the interval, to nine digits: where the dual polynomial is flat, no place is better known."""
-    shares = []
-    for value, p in zip(values, parameters, strict=True):
-        start, end = (sp.Rational(str(sp.N(e, 40))) for e in family.ends(p))
-        share = (value - start) / (end - start)
-        best = share.limit_denominator(60)
-        if abs(best - share) > sp.Rational(1, 10**9):
-            return None
-        shares.append(best)
-    return family.start + (family.stop - family.start) * shares[0] if len(set(shares)) == 1 else None
-
-
 # -- exact linear algebra on the contacts ---------------------------------------------------------
 
 
@@ -171,7 +100,7 @@ def candidates(family: Family, span: Span) -> list[Closed]:
     if weights is None:
         return []
     panels, guesses = tuple(k for k, _, _ in span.pattern), []
-    for dual in itertools.islice(duals(family, span, exact, found[0]), 3):
+    for dual in itertools.islice(duals(family, span, exact, found), 3):
         value = tidy(sum((x * p for x, p in zip(dual, family.functional, strict=True)), sp.S.Zero))
         guesses.append(Closed(panels, exact, weights, dual, value, Verdict(OPEN, "none")))
     return guesses
@@ -203,8 +132,27 @@ def prove(
     return best
 
 
-def duals(family: Family, span: Span, places: Sequence[sp.Expr], one: Sample):  # type: ignore[no-untyped-def]
-    """Solutions x of ``x . H(u_i) = s_i sigma`` and ``x . H'(u_i) = 0``; those with most zeros first."""
+def duals(
+    family: Family, span: Span, places: Sequence[sp.Expr], found: Sequence[Sample]
+) -> Iterator[tuple[sp.Expr, ...]]:
+    """Solutions x of ``x . H(u_i) = s_i sigma`` and ``x . H'(u_i) = 0``; those with most zeros first.
+
+    Where these leave x free, further ones are balanced: ``x . H`` is opposite at the ends of a measurement.
+    """
+    rows, right = contact_equations(family, span, places)
+    rank = rank_at(family, rows, found[0].T)
+    for columns in itertools.combinations(range(len(rows[0])), rank):
+        yield from solved_dual(family, rows, right, columns, found)
+    free = len(rows[0]) - rank
+    ends = [[h.subs(U, family.start) + h.subs(U, family.stop) for h in row] for row in family.rows]
+    for more in itertools.combinations(ends, free) if free else ():
+        yield from solved_dual(family, [*rows, *more], [*right, *[sp.S.Zero] * free], range(len(rows[0])), found)
+
+
+def contact_equations(
+    family: Family, span: Span, places: Sequence[sp.Expr]
+) -> tuple[list[list[sp.Expr]], list[sp.Expr]]:
+    """Rows and right sides of what the dual satisfies at its contacts."""
     rows, right = [], []
     for (k, kind, s), u in zip(span.pattern, places, strict=True):
         rows.append([h.subs(U, u) for h in family.rows[k]])
@@ -212,25 +160,40 @@ def duals(family: Family, span: Span, places: Sequence[sp.Expr], one: Sample):  
         if kind == "no":
             rows.append([h.diff(U).subs(U, u) for h in family.rows[k]])
             right.append(sp.S.Zero)
-    A = sp.Matrix(rows)
-    m = A.cols
-    numeric = np.array(A.subs(family.parameter, one.T).evalf(30).tolist(), dtype=float)
-    b = np.array([float(family.at(r, one.T)) for r in right])
-    rank = int(np.linalg.matrix_rank(numeric, tol=1e-9))
-    for columns in itertools.combinations(range(m), rank):
-        picked = independent_rows(numeric[:, columns])
-        if len(picked) < rank:
-            continue
+    return rows, right
+
+
+def numbers_at(family: Family, rows: Sequence[Sequence[sp.Expr]], p: sp.Rational) -> np.ndarray:
+    """Double values of a matrix for one value of the parameter."""
+    return np.array([[float(family.at(e, p).evalf(30)) for e in row] for row in rows])
+
+
+def rank_at(family: Family, rows: Sequence[Sequence[sp.Expr]], p: sp.Rational) -> int:
+    return int(np.linalg.matrix_rank(numbers_at(family, rows, p), tol=1e-9))
+
+
+def solved_dual(
+    family: Family, rows: Sequence[Sequence[sp.Expr]], right: Sequence[sp.Expr], columns: Sequence[int],
+    found: Sequence[Sample],
+) -> Iterator[tuple[sp.Expr, ...]]:  # fmt: skip
+    """The exact solution with zeros outside the columns, if it is feasible at every sample."""
+    columns, m = list(columns), len(rows[0])
+    numeric = numbers_at(family, rows, found[0].T)[:, columns]
+    picked = independent_rows(numeric)
+    if len(picked) < len(columns):
+        return
+    for one in found:
+        A, b = numbers_at(family, rows, one.T)[:, columns], numbers_at(family, [right], one.T)[0]
         x = np.zeros(m)
-        x[list(columns)] = np.linalg.lstsq(numeric[:, columns], b, rcond=None)[0]
-        if np.abs(numeric @ x - b).max() > 1e-9 or not feasible(family, one, x):
-            continue
-        solved = exact_solution(A, right, picked, columns)
-        if solved is not None:
-            full = [sp.S.Zero] * m
-            for c, value in zip(columns, solved, strict=True):
-                full[c] = value
-            yield tuple(full)
+        x[columns] = np.linalg.lstsq(A, b, rcond=None)[0]
+        if np.abs(A @ x[columns] - b).max() > 1e-9 or not feasible(family, one, x):
+            return
+    solved = exact_solution(sp.Matrix(rows), right, picked, columns)
+    if solved is not None:
+        full = [sp.S.Zero] * m
+        for c, value in zip(columns, solved, strict=True):
+            full[c] = value
+        yield tuple(full)
 
 
 def feasible(family: Family, one: Sample, x: np.ndarray) -> bool:

@@ -22,7 +22,7 @@ from navsym.claims import CERTIFIED, OPEN, Status
 from navsym.claims.display import card, displayed, latex_of, table
 from navsym.errors import DomainError
 from navsym.methods.guaranteed.solver import solve
-from navsym.methods.phases.closed import Closed, candidates, number, prove
+from navsym.methods.phases.closed import Closed, candidates, prove
 from navsym.methods.phases.dependent import without_dependent
 from navsym.methods.phases.events import Boundary, boundary
 from navsym.methods.phases.family import Family
@@ -346,4 +346,4 @@ def pattern_rows(family: Family, span: Span) -> list[dict[str, Any]]:
     return rows[::-1] if family.backward else rows
 
 
-__all__ = ["Phases", "Regime", "number", "phases"]
+__all__ = ["Phases", "Regime", "phases"]

@@ -12,8 +12,9 @@ import sympy as sp
 from flint import arb, arb_mat, fmpq
 
 from navsym.claims import PROVED, Equation
-from navsym.methods.phases.closed import BITS, GOAL, Closed, constant, number
+from navsym.methods.phases.closed import BITS, GOAL, Closed
 from navsym.methods.phases.family import Family, U
+from navsym.methods.phases.places import constant, number
 from navsym.methods.phases.scan import Pattern, Span, pattern_of, sample
 from navsym.numeric.exchange import Contacts
 from navsym.proof.balls import enclose, precision

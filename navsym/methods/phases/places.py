@@ -1,0 +1,79 @@
+"""Places recognised from samples: ``a p + b``, the same over p, a share of the interval. Guesses, to be proved."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import sympy as sp
+from flint import arb
+
+from navsym.methods.phases.family import Family
+from navsym.proof.enclosure import rational
+
+NEAR = sp.Rational(1, 10**40)
+
+
+def number(x: arb) -> sp.Rational:
+    """Midpoint of a ball as an exact rational."""
+    value = rational(x)
+    return sp.Rational(int(value.p), int(value.q))
+
+
+def constant(x: sp.Rational) -> sp.Expr | None:
+    """A rational, a rational multiple of pi, or a cosine share ``(1 - cos(pi r))/2``, within 1e-40."""
+    pi = sp.Rational(str(sp.pi.evalf(90)))
+    for unit, base in ((sp.Integer(1), sp.Integer(1)), (pi, sp.pi)):
+        best = sp.Rational(x / unit).limit_denominator(720)
+        if abs(best * unit - x) < NEAR:
+            return best * base
+    if 0 < x < 1:
+        r = sp.acos(1 - 2 * sp.Float(str(sp.N(x, 90)), 90)) / sp.Float(pi, 90)
+        best = sp.Rational(str(r)).limit_denominator(120)
+        shown = (1 - sp.cos(sp.pi * best)) / 2
+        if abs(sp.Rational(str(shown.evalf(90))) - x) < NEAR:
+            return shown
+    for q in (2, 3, 5, 6):
+        root = sp.Rational(str(sp.sqrt(q).evalf(90)))
+        best = sp.Rational(x / root).limit_denominator(720)
+        if abs(best * root - x) < NEAR:
+            return best * sp.sqrt(q)
+    return None
+
+
+def place_of(values: Sequence[sp.Rational], lengths: Sequence[sp.Rational], T: sp.Symbol) -> sp.Expr | None:
+    """``a T + b`` through the first two samples, confirmed on all of them."""
+    slope = (values[1] - values[0]) / (lengths[1] - lengths[0])
+    start = values[0] - slope * lengths[0]
+    if any(abs(slope * t + start - v) > NEAR for v, t in zip(values, lengths, strict=True)):
+        return None
+    a, b = constant(slope), constant(start)
+    return None if a is None or b is None else a * T + b
+
+
+def place_from(values: Sequence[sp.Rational], parameters: Sequence[sp.Rational], p: sp.Symbol) -> sp.Expr | None:
+    """A place linear in the parameter or in its reciprocal."""
+    found = place_of(values, parameters, p)
+    if found is not None or any(v == 0 for v in parameters):
+        return found
+    scaled = place_of([v * q for v, q in zip(values, parameters, strict=True)], parameters, p)
+    return None if scaled is None else sp.expand(scaled / p)
+
+
+def place_or_share(
+    family: Family, values: Sequence[sp.Rational], parameters: Sequence[sp.Rational]
+) -> sp.Expr | None:
+    found = place_from(values, parameters, family.parameter)
+    return share_of(family, values, parameters) if found is None else found
+
+
+def share_of(family: Family, values: Sequence[sp.Rational], parameters: Sequence[sp.Rational]) -> sp.Expr | None:
+    """A fixed share of the interval, to nine digits: where the dual polynomial is flat, no place is better known."""
+    shares = []
+    for value, p in zip(values, parameters, strict=True):
+        start, end = (sp.Rational(str(sp.N(e, 40))) for e in family.ends(p))
+        share = (value - start) / (end - start)
+        best = share.limit_denominator(60)
+        if abs(best - share) > sp.Rational(1, 10**9):
+            return None
+        shares.append(best)
+    return family.start + (family.stop - family.start) * shares[0] if len(set(shares)) == 1 else None
