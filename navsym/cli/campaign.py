@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import sys
 import time
-from pathlib import Path
 from typing import Annotated, Any
 
 import typer
@@ -25,9 +24,11 @@ NAMES = {
     "fidelity": "what is decided is what is printed: every claim",
     "checker-mutants": "mutants of the checker itself",
 }
+#: Campaigns that are tables of cases: where they are, and how many are one batch.
 TESTED = {
-    "engines": "tests/engines", "identities": "tests/proof/test_textbook.py", "filters": "tests/honesty",
-    "fidelity": "tests/fidelity", "checker-mutants": "tests/checker/mutants.py",
+    "engines": ("tests/engines", 10), "identities": ("tests/proof/test_textbook.py", 40),
+    "filters": ("tests/honesty", 30), "fidelity": ("tests/fidelity", 4),
+    "checker-mutants": ("tests/checker/mutants.py", 24),
 }
 INPUTS = {"kills": 200}  # otherwise ten thousand
 
@@ -58,11 +59,8 @@ def command(
     if name not in NAMES:
         raise DomainError(f"expected one of {', '.join(NAMES)}; got {name}; correct the name", where="NAME")
     started = time.monotonic()
-    if name in TESTED:
-        document = by_tests(name)
-    else:
-        chosen = chosen_batches(name, modules or [], share, inputs or INPUTS.get(name, 10_000), seed)
-        document = in_batches(name, *chosen, jobs=jobs, seconds=seconds, fresh=fresh)
+    chosen = chosen_batches(name, modules or [], share, inputs or INPUTS.get(name, 10_000), seed)
+    document = in_batches(name, *chosen, jobs=jobs, seconds=seconds, fresh=fresh)
     spent = time.monotonic() - started
     emit(document, as_json=json_, text=lambda: row(document, spent) if markdown else as_text(document))
     return 1 if document["wrong"] or document["stopped"] or document["unsaved"] else 0
@@ -75,6 +73,8 @@ def chosen_batches(name: str, modules: list[str], share: float, inputs: int, see
     from navsym.methods.campaigns import parser as campaign_parser
     from navsym.methods.campaigns import store as campaign_store
 
+    if name in TESTED:
+        return tested(name)
     if name == "mutants":
         claims = [claim for module in papers(modules) for claim in module.claims]
         return campaign_mutants.batches(claims, share, seed), campaign_mutants.judge
@@ -86,6 +86,18 @@ def chosen_batches(name: str, modules: list[str], share: float, inputs: int, see
         return campaign_store.disk_batches(), campaign_store.judge_disk
     honest = campaign_certificates.honest_certificates()
     return campaign_certificates.batches(honest, inputs, seed), campaign_certificates.judge
+
+
+def tested(name: str) -> tuple[Any, Any]:
+    """The cases of a table under tests/, and pytest as their judge."""
+    from navsym.cli.verify import ledger_folder
+    from navsym.errors import NavsymError
+    from navsym.methods.campaigns import cases
+
+    root, (place, size) = ledger_folder().parent, TESTED[name]
+    if not (root / place).exists():
+        raise NavsymError(f"expected {place}; got an installation without tests; run it from a checkout")
+    return cases.batches(root, place, size), cases.judge
 
 
 def in_batches(name: str, batches: Any, judge: Any, *, jobs: int, seconds: float, fresh: bool) -> dict[str, Any]:
@@ -110,63 +122,6 @@ def papers(names: list[str]) -> list[Any]:
 
     chosen = names or verify.names()
     return [paper_module(importlib.import_module(f"derivations.{name}")) for name in chosen]
-
-
-def by_tests(name: str) -> dict[str, Any]:
-    """Campaigns that are tables of cases under tests/: one outcome for each case, from pytest's own record."""
-    import subprocess
-    import sys
-    import tempfile
-
-    from navsym.cli.verify import ledger_folder
-    from navsym.errors import NavsymError
-
-    path = ledger_folder().parent / TESTED[name]
-    if not path.exists():
-        raise NavsymError(
-            f"expected {TESTED[name]}; got an installation without tests; run it from a checkout"
-        )
-    with tempfile.TemporaryDirectory() as folder:
-        record = Path(folder) / "record.xml"
-        subprocess.run(
-            [
-                sys.executable,
-                "-m",
-                "pytest",
-                "-q",
-                "-p",
-                "no:cacheprovider",
-                f"--junitxml={record}",
-                str(path),
-            ],
-            stdout=sys.stderr,
-            check=False,
-        )
-        found = outcomes(record)
-    return {
-        "campaign": name,
-        "batches": sum(len(cases) for cases in found.values()),
-        "counts": {outcome: len(cases) for outcome, cases in found.items()},
-        "wrong": found["failed"],
-        "open": found["skipped"],
-        "stopped": [] if any(found.values()) else ["pytest left no record"],
-        "resumed": 0,
-        "unsaved": [],
-    }
-
-
-def outcomes(record: Path) -> dict[str, list[str]]:
-    """Names of the cases by outcome."""
-    from xml.etree import ElementTree
-
-    found: dict[str, list[str]] = {"passed": [], "failed": [], "skipped": []}
-    if not record.exists():
-        return found
-    for case in ElementTree.parse(record).iter("testcase"):
-        tags = {child.tag for child in case}
-        outcome = "failed" if tags & {"failure", "error"} else "skipped" if "skipped" in tags else "passed"
-        found[outcome].append(case.get("name", "?"))
-    return found
 
 
 def row(document: dict[str, Any], seconds: float) -> str:

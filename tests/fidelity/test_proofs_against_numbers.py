@@ -19,8 +19,8 @@ from navsym.methods.prove import decide_claim
 from navsym.proof.sandbox import run_many
 from navsym.text.claimfile import claims_from
 
-DIGITS = 240  # 1 - cos(x) of an x of 1e-31 loses a quarter of them
-ZERO = mpmath.mpf(10) ** -70
+DIGITS = 500  # 1 - cos(x**2) of an x of 1e-31 loses a quarter of them
+ZERO = mpmath.mpf(10) ** -150  # of the larger side: x**4 of an x of 1e-30 is not zero
 FAILS = {
     "=": lambda d: abs(d) > ZERO, "!=": lambda d: abs(d) <= ZERO, "<": lambda d: d >= -ZERO, "<=": lambda d: d > ZERO,
     ">": lambda d: d <= ZERO, ">=": lambda d: d < -ZERO,
@@ -30,9 +30,11 @@ DENIES = {**FAILS, "!=": lambda d: False, "<": lambda d: d > ZERO, ">": lambda d
 
 
 def sides(document, point):
+    """The difference of the sides as a part of the larger one."""
     row = document["claim"][0]
     with mpmath.workdps(DIGITS):
-        return value(row["left"], point, DIGITS) - value(row["right"], point, DIGITS)
+        left, right = (value(row[side], point, DIGITS) for side in ("left", "right"))
+        return (left - right) / (max(abs(left), abs(right)) or 1)
 
 
 def ends(declared):
