@@ -24,6 +24,9 @@ def command(
     to: Annotated[str, typer.Option("--to", help="languages")] = EVERY,
     real: Annotated[str, typer.Option("--real", help="double or float")] = "double",
     vectors: Annotated[int, typer.Option("--vectors", min=4, max=200_000, help="vectors for each function")] = 48,
+    points: Annotated[
+        int, typer.Option("--points", min=0, max=10_000_000, help="points at which C is held, too")
+    ] = 0,
     write: Annotated[Path | None, typer.Option("--write", help="write the table as a markdown page")] = None,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> int:
@@ -44,13 +47,14 @@ def command(
     targets = chosen(spoken, real)
     groups: dict[str, list[ExportedFunction]] = {name: [] for name in wanted}
     parts = [(name, claim) for name in wanted for claim in READY[name]]
-    with Progress("parts", len(parts) + len(wanted) * len(targets), RESUME) as bar:
+    with Progress("parts", len(parts) + len(wanted) * (len(targets) + 1), RESUME) as bar:
         for name, claim in parts:
             groups[name] += functions_for(claim, real, False)
             bar.step(claim)
-        document = closing_table(groups, targets, vectors, bar.step)
+        document = closing_table(groups, targets, vectors, bar.step, points)
     words = ["navsym", "exports", *(names or []), *(["--to", to] if to != EVERY else []),
-             *(["--real", real] if real != "double" else []), "--vectors", str(vectors)]  # fmt: skip
+             *(["--real", real] if real != "double" else []), "--vectors", str(vectors),
+             *(["--points", str(points)] if points else [])]  # fmt: skip
     if write is not None:
         write.write_text(as_markdown(document, shlex.join(words)), encoding="utf-8")
     emit(document, as_json=json_, text=lambda: as_text(document))
@@ -70,4 +74,11 @@ def as_text(document: dict[str, Any]) -> str:
     ]  # fmt: skip
     said = [(name, r["status"], r["why"]) for name, r in (*document["languages"].items(), *document["tools"].items())]
     head = ("function", *names, "MISRA", "M4 bytes")
-    return "\n".join([table(head, rows), table(("what", "status", "remark"), said)])
+    held = [
+        (f["name"], p["points"], p["by_balls"], p["undefined"], p["wrong"], f"{p['worst']:.3g}")
+        for f in document["functions"]
+        if (p := f["points"]) is not None
+    ]
+    names_of_points = ("function", "points", "by balls", "undefined", "outside", "worst ulp")
+    tables = [table(head, rows), *([table(names_of_points, held)] if held else [])]
+    return "\n".join([*tables, table(("what", "status", "remark"), said)])

@@ -20,6 +20,7 @@ from flint import arb
 from navsym.proof.balls import precision
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
+Flags = np.ndarray[Any, np.dtype[np.bool_]]
 UNIT = 2.0**-100
 UP = 1 + 2.0**-40  # more than the roundings of any bound below
 LEAST, MOST = 2.0**-900, 2.0**900  # between them no part of an operation underflows or overflows
@@ -121,7 +122,7 @@ def times_double(a: Band, q: Array) -> tuple[Array, Array]:
     return fast_two_sum(th, tl + cl)
 
 
-def within(high: Array, low: Array, error: Array, nothing: Array) -> Band:
+def within(high: Array, low: Array, error: Array, nothing: Flags) -> Band:
     """Where the result is an exact zero it is one; where a part may have underflowed nothing is known."""
     sure = (np.abs(high) > LEAST) & (np.abs(high) < MOST)
     error = np.where(nothing, 0.0, np.where(sure, error, np.inf))

@@ -1,8 +1,9 @@
 """Batches: C over many points at once, vectorised by the compiler, called from NumPy through ctypes.
 
-One loop for each call of the library and one for the arithmetic between them, over blocks that stay in the cache, so
-that the compiler finds vectors in all of them. The C library's vector forms of sin, cos, exp, log and pow are taken
-as accurate to 4 ulp; the bounds in the vectors allow for that.
+One loop for each call of the library, one for the arithmetic between them and one for each result, over blocks that
+stay in the cache, so that the compiler finds vectors in all of them. Large results go past the cache, which they would
+only push other numbers out of, and memory of a result that nobody holds any more is used again. The C library's vector
+forms of sin, cos, exp, log and pow are taken as accurate to 4 ulp; the bounds in the vectors allow for that.
 """
 
 from __future__ import annotations
@@ -11,11 +12,12 @@ from collections.abc import Sequence
 
 from navsym.export.c import helper_texts, source, spelling
 from navsym.export.parts import ExportedFunction
-from navsym.export.printing import loops_of, summary
+from navsym.export.printing import Spelling, loops_of, summary
 from navsym.export.python import vectors_json
 from navsym.export.vectors import Vector
 
 BLOCK = 512
+CACHE = 4e6  # bytes
 LIBRARY = frozenset(
     "sin cos exp log pow expm1 asin acos atan atan2 sinh cosh tanh sinc x_minus_sin".split()
 )
@@ -23,6 +25,7 @@ LIBRARY = frozenset(
 HEAD = """/* {license} */
 /* Many points at once. Inputs and results are rows of n numbers; all rows lie one behind the other. */
 #include <float.h>
+#include <stddef.h>
 /* glibc offers its vector functions only when asked in this way; nothing else of fast-math is wanted. */
 #if defined(__GNUC__) && !defined(__FAST_MATH__)
 #define __FAST_MATH__ 1
@@ -34,12 +37,43 @@ HEAD = """/* {license} */
 
 typedef enum {{ NAVSYM_OK = 0, NAVSYM_DOMAIN = 1, NAVSYM_NOT_FINITE = 2 }} navsym_status;
 enum {{ NAVSYM_BLOCK = {block} }};
+
+/* The widest store that goes past the cache; without one the numbers are copied. */
+#if defined(__AVX512F__)
+#include <immintrin.h>
+enum {{ NAVSYM_WIDE = 64 }};
+#define NAVSYM_STREAM(to, from) _mm512_stream_si512((__m512i *)(void *)(to), _mm512_loadu_si512((const void *)(from)))
+#elif defined(__AVX__)
+#include <immintrin.h>
+enum {{ NAVSYM_WIDE = 32 }};
+#define NAVSYM_STREAM(to, from) _mm256_stream_si256((__m256i *)(to), _mm256_loadu_si256((const __m256i *)(from)))
+#elif defined(__SSE2__)
+#include <emmintrin.h>
+enum {{ NAVSYM_WIDE = 16 }};
+#define NAVSYM_STREAM(to, from) _mm_stream_si128((__m128i *)(to), _mm_loadu_si128((const __m128i *)(from)))
+#endif
+
+/* Results of a block to their place, past the cache when there are more bytes in all than it holds. */
+static void navsym_put({real} *to, const {real} *from, long m, double bytes)
+{{
+    long k = 0;
+#if defined(NAVSYM_STREAM)
+    const long lanes = NAVSYM_WIDE / (long)sizeof({real});
+    if (bytes > {cache}) {{
+        for (; (k < m) && (((size_t)&to[k] % NAVSYM_WIDE) != 0); k++) {{ to[k] = from[k]; }}
+        for (; (k + lanes) <= m; k += lanes) {{ NAVSYM_STREAM(&to[k], &from[k]); }}
+        _mm_sfence();
+    }}
+#endif
+    for (; k < m; k++) {{ to[k] = from[k]; }}
+}}
 """
 
 MODULE = '''# {license}
 """Exported functions over batches: compiled once into a temporary folder, called without a copy.
 
-Every function takes an array (inputs, n) and returns (results, n); ``out`` may be given and is used again.
+Every function takes an array (inputs, n) and returns (results, n), in ``out`` when that is given. The memory of
+the last result is kept, for a later one, until nobody holds that result.
 Outside the proved domain it raises ValueError.
 """
 
@@ -48,6 +82,7 @@ import ctypes
 import pathlib
 import shutil
 import subprocess
+import sys
 import tempfile
 
 import numpy as np
@@ -74,6 +109,18 @@ def _library():
 
 
 _LIBRARY = _library()
+_SPARE = []
+
+
+def _room(results, n):
+    """An array (results, n). Its memory is that of an earlier result when nobody holds that one any more: pages
+    fresh from the system cost more than most computations."""
+    size = results * n
+    owner = _SPARE.pop() if _SPARE else None
+    if owner is None or not size <= owner.size <= 2 * size + 100000 or sys.getrefcount(owner) > 2:
+        owner = np.empty(size, dtype=REAL)
+    _SPARE.append(owner)
+    return owner[:size].reshape(results, n)
 
 
 def _call(name, inputs, results, points, out):
@@ -82,7 +129,7 @@ def _call(name, inputs, results, points, out):
         raise ValueError(f"{{name}}: expected an array ({{inputs}}, n); got {{points.shape}}")
     n = points.shape[1]
     if out is None:
-        out = np.empty((results, n), dtype=REAL)
+        out = _room(results, n)
     if out.shape != (results, n) or out.dtype != REAL or not out.flags.c_contiguous or np.shares_memory(out, points):
         raise ValueError(f"{{name}}: expected out as an array ({{results}}, {{n}}) of its own; got another")
     function = getattr(_LIBRARY, name)
@@ -160,7 +207,7 @@ def files(
     functions = [f for f in functions if f.inputs]
     real = functions[0].arithmetic.name if functions else "double"
     kind = "float32" if real == "float" else "float64"
-    head = HEAD.format(license=license_, block=BLOCK)
+    head = HEAD.format(license=license_, block=BLOCK, real=real, cache=CACHE)
     module = [MODULE.format(license=license_, real=kind), *(wrapper(f) for f in functions)]
     return {
         "navsym_batch.c": "\n".join([head, *helpers(functions), *(batch(f) for f in functions)]),
@@ -211,17 +258,24 @@ def vectorised(function: ExportedFunction) -> str:
         lines += [f"    for (k = 0; k < n; k++) {{ bad |= !({x} >= {low}) | !({x} <= {high}); }}"]
     lines += ["    if (bad) { return NAVSYM_DOMAIN; }", "    for (b = 0; b < n; b += NAVSYM_BLOCK) {",
               "        const long m = ((n - b) < NAVSYM_BLOCK) ? (n - b) : NAVSYM_BLOCK;"]  # fmt: skip
-    lines += [f"        {real} {name}[NAVSYM_BLOCK];" for name in arrays]
+    lines += [f"        {real} {name}[NAVSYM_BLOCK];" for name in (*arrays, "w")]
     for group in grouped(temporaries):
         lines += ["        for (k = 0; k < m; k++) {"]
         lines += [f"            {arrays[name]} = {in_arrays(text, arrays)};" for name, text, _ in group] + ["        }"]
-    lines += ["        for (k = 0; k < m; k++) {"]
-    lines += [f"            out[({j} * n) + b + k] = {in_arrays(text, arrays)};" for j, text in enumerate(results)]
-    lines += ["        }", "    }"]
+    for j, text in enumerate(results):
+        lines += stored(function, j, in_arrays(text, arrays), s)
+    return "\n".join([*lines, "    }", "    return bad ? NAVSYM_NOT_FINITE : NAVSYM_OK;", "}", ""])
+
+
+def stored(function: ExportedFunction, j: int, text: str, s: Spelling) -> list[str]:
+    """One result of a block: computed into the cache, tested there where it may overflow, and put in its place."""
+    real = function.arithmetic.name
+    lines = ["        for (k = 0; k < m; k++) {", f"            w[k] = {text};", "        }"]
     if not function.always_finite:
-        size = s.calls["abs"].format("out[k]")
-        lines += [f"    for (k = 0; k < ({function.size} * n); k++) {{ bad |= !({size} <= {largest}); }}"]
-    return "\n".join([*lines, "    return bad ? NAVSYM_NOT_FINITE : NAVSYM_OK;", "}", ""])
+        largest = "FLT_MAX" if real == "float" else "DBL_MAX"
+        lines += [f"        for (k = 0; k < m; k++) {{ bad |= !({s.calls['abs'].format('w[k]')} <= {largest}); }}"]
+    bytes_ = f"{float(function.size)} * (double)n * (double)sizeof({real})"
+    return [*lines, f"        navsym_put(&out[({j} * n) + b], w, m, {bytes_});"]
 
 
 def grouped(temporaries: Sequence[tuple[str, str, bool]]) -> list[list[tuple[str, str, bool]]]:

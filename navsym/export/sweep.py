@@ -15,12 +15,11 @@ import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from navsym.errors import MissingEngineError
-from navsym.export.bands import Array, Band
+from navsym.export.bands import Array, Band, Flags
 from navsym.export.c import files as c_files
 from navsym.export.c import output_places
 from navsym.export.parts import ExportedFunction
@@ -69,8 +68,10 @@ def sweep(function: ExportedFunction, call: Call, count: int, *, library: int = 
 
 
 def joined(a: Swept, b: Swept) -> Swept:
-    sums = (getattr(a, name) + getattr(b, name) for name in ("points", "by_balls", "undefined", "wrong"))
-    return Swept(*sums, max(a.worst, b.worst), a.example or b.example)
+    return Swept(
+        a.points + b.points, a.by_balls + b.by_balls, a.undefined + b.undefined, a.wrong + b.wrong,
+        max(a.worst, b.worst), a.example or b.example,
+    )  # fmt: skip
 
 
 def many_points(function: ExportedFunction, count: int) -> Iterator[tuple[float, ...]]:
@@ -114,7 +115,7 @@ def compare(function: ExportedFunction, block: Points, call: Call, arithmetic: A
 
 def accepted(
     function: ExportedFunction, results: Array, values: Sequence[Band], bounds: Sequence[Array], widen: int
-) -> tuple[np.ndarray[Any, np.dtype[np.bool_]], Array]:
+) -> tuple[Flags, Array]:
     """Points whose outputs are all inside beyond doubt, and the largest error of each in ulp.
 
     Inside is: nearer to the exact value than the bound less SLACK of itself, or nearer than the next double.

@@ -5,6 +5,7 @@ from __future__ import annotations
 import platform
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,7 @@ from navsym.export.package import Order, files_of
 from navsym.export.parts import ExportedFunction
 from navsym.export.printing import bound_text
 from navsym.export.roundtrip import Outcome, run_target
+from navsym.export.sweep import Swept, sweep_c
 from navsym.export.targets import Target
 from navsym.export.tools import Said, cortex_m4_sizes, ctest, misra
 
@@ -21,13 +23,14 @@ Record = dict[str, Any]
 
 def closing_table(
     groups: Mapping[str, Sequence[ExportedFunction]], targets: Sequence[Target], count: int,
-    progress: Callable[[str], None] = lambda doing: None,
+    progress: Callable[[str], None] = lambda doing: None, points: int = 0,
 ) -> Record:  # fmt: skip
     """Export every group, run every language, ask every tool; the document of ``navsym exports``.
 
-    progress : called with "group language" when a language of a group was run.
-    Keys: ``functions`` (name, group, status, claims, bound, languages, misra, cortex_m4_bytes), ``languages`` and
-    ``tools`` (status, why), ``vectors``, ``machine``.
+    progress : called with "group language" when a language of a group was run, with "group points" after the points.
+    points   : points at which the C of every function is held besides its vectors (:mod:`navsym.export.sweep`).
+    Keys: ``functions`` (name, group, status, claims, bound, languages, misra, cortex_m4_bytes, points), ``languages``
+    and ``tools`` (status, why), ``vectors``, ``points``, ``machine``.
     """
     records: list[Record] = []
     languages: dict[str, Record] = {}
@@ -40,12 +43,16 @@ def closing_table(
                 outcomes.append(run_target(Path(folder) / target.name, target))
                 progress(f"{group} {target.name}")
             said = tools_on(Path(folder) / "c")
+        swept = sweep_c(functions, points) if points else {}
+        progress(f"{group} points")
         for outcome in outcomes:
             worse(languages, outcome.language, outcome.status, outcome.why)
         for name, what in said.items():
             worse(tools, name, what.status, what.why)
-        records += [function_row(group, f, outcomes, said) for f in functions]
-    return {"functions": records, "languages": languages, "tools": tools, "vectors": count,
+        if swept:
+            worse(tools, "points", *points_said(swept))
+        records += [function_row(group, f, outcomes, said) | points_row(swept.get(f.name)) for f in functions]
+    return {"functions": records, "languages": languages, "tools": tools, "vectors": count, "points": points,
             "machine": f"{platform.machine()} {platform.system()}, Python {platform.python_version()}"}  # fmt: skip
 
 
@@ -54,6 +61,17 @@ def tools_on(folder: Path) -> dict[str, Said]:
     if not folder.is_dir():
         return {}
     return {"misra": misra(folder), "ctest": ctest(folder), "cortex_m4": cortex_m4_sizes(folder)}
+
+
+def points_said(swept: Mapping[str, Swept]) -> tuple[str, str]:
+    """Status and remark on the points of one group."""
+    wrong = [f"{name}: {found.wrong} of {found.points} points outside" for name, found in swept.items() if found.wrong]
+    return ("failed", "; ".join(wrong)) if wrong else ("passed", "")
+
+
+def points_row(found: Swept | None) -> Record:
+    """What came of one function's points; the example is an input that was wrong."""
+    return {"points": None if found is None else asdict(found)}
 
 
 def worse(table: dict[str, Record], name: str, status: str, why: str) -> None:
@@ -116,7 +134,33 @@ def as_markdown(document: Record, command: str) -> str:
     lines += ["", "## Languages and tools", "", "| what | status | remark |", "| --- | --- | --- |"]
     for name, record in (*document["languages"].items(), *document["tools"].items()):
         lines.append(f"| {name} | {record['status']} | {record['why'].replace('|', '/')} |")
-    return "\n".join([*lines, "", CLOSING, ""])
+    return "\n".join([*lines, "", CLOSING, *points_lines(document), ""])
+
+
+POINTS = """
+## Many points
+
+The C of every function at {} points: every edge of the domain, points near singularities, points with several
+arguments at an edge, random ones. Each result lay inside the ball enclosure of its formula, widened by the derived
+rounding bound. The enclosures were computed in two doubles with rigorous error bounds; what those did not decide was
+decided in balls (third column). Points without a finite enclosure are not counted (fourth column); a constant has one
+point. The last column is the worst error in ulp, where the bound is below a thousand ulp. What is believed: the C
+compiler and library, IEEE arithmetic of NumPy, the published error bounds of double-word arithmetic, flint's balls.
+
+| function | points | by balls | undefined | outside | worst ulp |
+| --- | ---: | ---: | ---: | ---: | ---: |"""
+
+
+def points_lines(document: Record) -> list[str]:
+    """The section on many points, where there were any."""
+    if not document["points"]:
+        return []
+    lines = [POINTS.format(document["points"])]
+    for record in document["functions"]:
+        p = record["points"]
+        cells = [p["points"], p["by_balls"], p["undefined"], p["wrong"], f"{p['worst']:.3g}"]
+        lines.append(f"| {' | '.join([record['name'], *map(str, cells)])} |")
+    return lines
 
 
 def cell(found: Record) -> str:

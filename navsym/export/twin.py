@@ -22,6 +22,7 @@ from navsym.export.bands import (
     UP,
     Array,
     Band,
+    Flags,
     added,
     ball_of,
     constant,
@@ -54,7 +55,7 @@ class Rounded:
     value: Band
     absolute: Array
     relative: Array
-    doubt: Array
+    doubt: Flags
 
 
 # -- exact values of the formulas ---------------------------------------
@@ -115,7 +116,7 @@ def folded(operation: Callable[[Band, Band], Band], args: list[Band]) -> Band:
 # -- rounding bounds of the graph ---------------------------------------
 
 
-def rounding_bounds(piece: Piece, columns: Sequence[Array], arithmetic: Arithmetic) -> tuple[list[Array], Array]:
+def rounding_bounds(piece: Piece, columns: Sequence[Array], arithmetic: Arithmetic) -> tuple[list[Array], Flags]:
     """Bounds of the error of every result, and the points where they are not settled."""
     done: list[Rounded] = []
     zero = np.zeros(1)
@@ -126,10 +127,10 @@ def rounding_bounds(piece: Piece, columns: Sequence[Array], arithmetic: Arithmet
             done.append(literal_error(node.value, literal))
         else:
             done.append(settled(node_bounds(node, [done[a] for a in node.args], arithmetic)))
-    needed = np.zeros(len(columns[0]) if columns else 1, dtype=bool)
-    for node in done:
-        needed = needed | node.doubt
-    return [done[root].absolute for root in piece.graph.roots], needed
+    doubt: Flags = np.zeros(len(columns[0]) if columns else 1, dtype=bool)
+    for known in done:
+        doubt = doubt | known.doubt
+    return [done[root].absolute for root in piece.graph.roots], doubt
 
 
 def literal_error(value: Any, literal: Any) -> Rounded:
@@ -156,7 +157,7 @@ def node_bounds(node: Node, args: list[Rounded], arithmetic: Arithmetic) -> Roun
 
 
 def with_own_rounding(
-    op: str, value: Band, absolute: Array, relative: Array, doubt: Array, arithmetic: Arithmetic
+    op: str, value: Band, absolute: Array, relative: Array, doubt: Flags, arithmetic: Arithmetic
 ) -> Rounded:
     """What the arguments bring and the operation's own rounding, each bound tightened by the other."""
     size, k = value.size(), factor(op, arithmetic) * 2.0**arithmetic.u
@@ -188,7 +189,7 @@ def sane(bound: Array) -> Array:
 
 # -- what the arguments bring ---------------------------------------
 
-Carried = tuple[Band, Array, Array, Array]
+Carried = tuple[Band, Array, Array, Flags]
 
 
 def carried_sum(a: Rounded, b: Rounded) -> Carried:
@@ -235,13 +236,9 @@ CARRIED: dict[str, Callable[..., Carried]] = {
 
 def by_the_balls(node: Node, args: list[Rounded], arithmetic: Arithmetic) -> Rounded:
     """Any other operation: the rule of the ball analysis itself, point by point."""
-    columns = [
-        part
-        for a in args
-        for part in (a.value.high, a.value.low, a.value.error, a.absolute, a.relative)
-    ]
+    columns = [x for a in args for x in (a.value.high, a.value.low, a.value.error, a.absolute, a.relative)]
     rows = zip(*(x.tolist() for x in np.broadcast_arrays(*columns, np.zeros(1))[:-1]), strict=True)
-    doubt = np.zeros(1, dtype=bool)
+    doubt: Flags = np.zeros(1, dtype=bool)
     for a in args:
         doubt = doubt | a.doubt
     with precision(BITS):

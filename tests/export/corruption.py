@@ -9,6 +9,7 @@ function (0: all of them).
 from __future__ import annotations
 
 import argparse
+import json
 import platform
 import random
 import re
@@ -26,7 +27,7 @@ SWAPS = {"sin(": "cos(", "cos(": "sin("}
 ASSIGNMENT = re.compile(
     r"^\s+(?:(?:const|let)\s+(?:double\s+|auto\s+)?)?(?:[\w.\[\]: ]+|out\[[^=]*\]|nv_r\(\d+\)) = .*|^\s{12,}.*,$"
 )
-RESULT = re.compile(r"^\s+(?:r\d+|result\.(?!status)[\w\[\]]+|nv_r\(\d+\)|out\[[^=]*\]) = ([^;\n]+)", re.M)
+RESULT = re.compile(r"^\s+(?:r\d+|result\.(?!status)[\w\[\]]+|nv_r\(\d+\)|out\[[^=]*\]|w\[k\]) = ([^;\n]+)", re.M)
 SOURCE_OF = {
     "c": "{name}.c", "cpp": "navsym_functions.hpp", "python": "navsym_functions.py", "wasm": "{name}.c",
     "javascript": "navsym_functions.mjs", "rust": "navsym_functions.rs", "fortran": "navsym_functions.f90",
@@ -161,17 +162,22 @@ def main() -> None:
     parser.add_argument("--languages", default=",".join(n for n in SOURCE_OF if TARGETS[n].executable()))
     parser.add_argument("--each", type=int, default=1)
     parser.add_argument("--write", type=Path, help="write the table as a markdown page")
+    parser.add_argument("--rows", type=Path, help="JSON of results that are kept and added to, language by language")
     options = parser.parse_args()
-    languages, rows = options.languages.split(","), {}
+    languages = options.languages.split(",")
+    rows = json.loads(options.rows.read_text()) if options.rows and options.rows.exists() else {}
     for name in options.names or READY:
         with tempfile.TemporaryDirectory() as folder:
             found = campaign([name], languages, options.each, Path(folder))
-        rows |= found["rows"]
+        for function, row in found["rows"].items():
+            rows[function] = rows.get(function, {}) | row
         said = f"{name:20} corrupted {found['tried']:4} unnoticed {len(found['left'])}"
         print("\n    ".join([said, *found["left"]]), flush=True)
+    if options.rows is not None:
+        options.rows.write_text(json.dumps(rows))
     if options.write is not None:
         command = " ".join(["python tests/export/corruption.py", *options.names, f"--each {options.each}"])
-        options.write.write_text(page(rows, languages, command), encoding="utf-8")
+        options.write.write_text(page(rows, [n for n in SOURCE_OF if any(n in row for row in rows.values())], command), encoding="utf-8")
 
 
 if __name__ == "__main__":

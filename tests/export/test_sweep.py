@@ -1,4 +1,4 @@
-"""Many points at once: bands against balls, the fast twin against the ball analysis, a wrong function that is caught."""
+"""Many points at once: bands against balls, the twin against the ball analysis, wrong results that are caught."""
 
 from __future__ import annotations
 
