@@ -428,7 +428,8 @@ def optimum(problem: Problem, A: list[list[Jet]], dual: Any, contacts: Any, radi
     need(all(s * w > 0 for s, w in zip(signs, z[m + l:], strict=True)), "a weight of the wrong sign")
     need(all(end or (v > 0 and v < 1) for end, v in zip(ends, z[m:m + l], strict=True)), "a contact outside its panel")
     def x(s: arb) -> list[Jet]:
-        return [dot(unknowns(s, move)[:m], column) for column in zip(*A, strict=True)]  # type: ignore[arg-type]
+        y = unknowns(s, move)[:m]
+        return [dot(y, column) for column in zip(*A, strict=True)]  # type: ignore[arg-type]
     problem.feasible(x, list(zip(panels, z[m:m + l], signs, ends, strict=True)))
     return problem.over(lambda s: [dot(x(s), problem.target(s))])[0]  # type: ignore[no-any-return]
 
