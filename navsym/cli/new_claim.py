@@ -35,7 +35,7 @@ def command(
         message = f"expected a module in one file; got {module}; make it with navsym new-paper"
         raise DomainError(message, where=str(path))
     verdict = decided(printed, derived)
-    sentence = title or f"Equation ({number.rstrip('*')}) as it stands in the paper."
+    sentence = title or f"Equation ({number.rstrip('*')}), {'corrected' if corrects else 'as it stands in the paper'}."
     why = reason or ("say here what is wrong" if verdict.status == "REFUTED" else "")
     source = path.read_text(encoding="utf-8")
     if slip not in ("paper", "scan"):

@@ -37,5 +37,12 @@ def command(
         raise DuplicateError(message, where=str(path))
     text = module_source(name, title, author or [], year, source, language, equation_numbers(equations))
     write_text(path, text)
-    advice = f"navsym verify {name}; then navsym new-claim {name} NUMBER --printed … --derived …"
-    emit({"path": str(path), "module": name}, as_json=json_, text=f"{path}\nnext: {advice}")
+    emit({"path": str(path), "module": name}, as_json=json_, text=f"{path}\nnext: {advice(name, folder)}")
+
+
+def advice(name: str, folder: Path | None) -> str:
+    """What to do with the new module; ``verify`` knows only the folder of derivations."""
+    claims = f"navsym new-claim {name} NUMBER --printed … --derived …"
+    if folder is None:
+        return f"{claims}; then navsym verify {name}"
+    return f"{claims} --folder {folder}; navsym verify {name} knows it once the file stands in derivations/"

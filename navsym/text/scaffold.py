@@ -16,10 +16,13 @@ import sympy as sp
 from navsym.errors import DomainError, DuplicateError, ExpressionSyntaxError
 from navsym.text.expression import parse, symbol
 from navsym.text.names import RESERVED, shown
+from navsym.text.python_source import side_source
 
 NAME = re.compile(r"[a-z][a-z0-9_]{1,40}")
 NUMBER = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,60}\*?")
 NAMES_IN = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
+
+NOT_YET = '"not looked at yet"'
 
 MODULE = '''"""{heading}: one sentence on the route from the model to the formulas."""
 
@@ -86,7 +89,7 @@ def module_source(
     """
     for number in equations:
         check_number(number)
-    lines = "".join(f'        "{number}": "not looked at yet",\n' for number in equations)
+    lines = "".join(f'        "{number}": {NOT_YET},\n' for number in equations)
     return MODULE.format(
         name=quoted(check_module_name(name)), heading=plain(title) or name, title=quoted(title or name),
         authors=several(authors), year=year, source=quoted(source), language=quoted(language),
@@ -151,20 +154,39 @@ def with_claim(
     check_number(number)
     tree = module_tree(source)
     if f'@claim("{number}"' in source:
-        raise DuplicateError(f"expected a new number; got {number}, claimed already; do choose another")
+        message = f"expected a new number; got {number}, claimed already; do choose another or edit the file"
+        raise DuplicateError(message)
     known = assigned(tree)
     sides = [read(text, where) for text, where in ((printed, "--printed"), (derived, "--derived"))]
     names = sorted({s.name for side in sides for s in side.free_symbols} - known)
-    symbols = "".join(f'{name} = sp.Symbol("{name}", real=True)\n' for name in names)
     arguments = [f'"{number}"', f"expect=Status.{expect}"]
     arguments += [f'corrects="{check_number(corrects)}"'] if corrects else []
     arguments += [f'slip="{slip}"'] if slip else []
     arguments += [f'reason="{plain(reason)}"'] if reason else []
     block = CLAIM.format(
         arguments=", ".join(arguments), function=function_name(number, known), title=plain(title),
-        printed=exact_source(sides[0]), derived=exact_source(sides[1]),
+        printed=side_source(sides[0]), derived=side_source(sides[1]),
     )  # fmt: skip
-    return source.rstrip("\n") + "\n" + (f"\n\n{symbols}" if symbols else "") + block
+    return looked_at(source, number).rstrip("\n") + "\n" + declared(names) + block
+
+
+def declared(names: Sequence[str]) -> str:
+    """Source that declares new symbols; nothing where there are none."""
+    if not names:
+        return ""
+    made = f'sp.Symbol("{names[0]}"' if len(names) == 1 else f'sp.symbols("{" ".join(names)}"'
+    return f"\n\n{', '.join(names)} = {made}, real=True)\n"
+
+
+def looked_at(source: str, number: str) -> str:
+    """The source without the line that lists the equation of a claim as not looked at."""
+    equation = number.rstrip("*")
+    while equation:
+        line = f'        "{equation}": {NOT_YET},\n'
+        if line in source:
+            return source.replace(line, "", 1)
+        equation = equation.rpartition(".")[0]
+    return source
 
 
 def module_tree(source: str) -> ast.Module:
@@ -206,24 +228,3 @@ def read(text: str, where: str) -> sp.Expr:
     if bad:
         raise ExpressionSyntaxError(f"expected names that Python takes; got {bad[0]}; do rename it", where=where)
     return parse(text, {name: symbol(name) for name in names}, where=where)
-
-
-def exact_source(expression: sp.Expr) -> str:
-    """Python source that builds the expression exactly, with ``sp.`` before every function."""
-    if isinstance(expression, sp.Integer):
-        return f"sp.Integer({int(expression)})"
-    if isinstance(expression, sp.Rational):
-        return f"sp.Rational({int(expression.p)}, {int(expression.q)})"
-    if isinstance(expression, sp.Symbol):
-        return str(expression.name)
-    if expression is sp.pi:
-        return "sp.pi"
-    if expression is sp.E:
-        return "sp.E"
-    if isinstance(expression, sp.Add):
-        return "(" + " + ".join(exact_source(arg) for arg in expression.args) + ")"
-    if isinstance(expression, sp.Mul):
-        return " * ".join(exact_source(arg) for arg in expression.args)
-    if isinstance(expression, sp.Pow):
-        return f"sp.Pow({', '.join(exact_source(arg) for arg in expression.args)})"
-    return f"sp.{expression.func.__name__}({', '.join(exact_source(arg) for arg in expression.args)})"

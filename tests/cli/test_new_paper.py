@@ -7,14 +7,17 @@ import json
 import math
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from navsym.claims import Equation
 from navsym.cli.main import run
+from navsym.errors import NavsymError
 from navsym.methods.verification import paper_module, verify
 from navsym.proof.ladder import decide
 from navsym.proof.mutants import spoiled
-from navsym.text.scaffold import equation_numbers, exact_source, read
+from navsym.text.python_source import exact_source, side_source
+from navsym.text.scaffold import equation_numbers, read
 
 
 def loaded(path):
@@ -51,7 +54,8 @@ def test_claims_are_added_with_the_verdict_that_was_found(folder, capsys):
     assert [(r["number"], r["status"], r["expect"]) for r in document["claims"]][1:] == [
         ("1", "PROVED", "PROVED"), ("2", "REFUTED", "REFUTED"), ("2*", "PROVED", "PROVED"),
     ]  # fmt: skip
-    assert document["papers"][0]["claimed"] == 2
+    paper = document["papers"][0]
+    assert (paper["claimed"], paper["definitions"], paper["missing"]) == (2, 1, [])
 
 
 @pytest.mark.parametrize(
@@ -85,6 +89,53 @@ def test_names_that_are_no_new_module_are_refused(folder, capsys, name):
 def test_lists_of_equation_numbers():
     assert equation_numbers("1-3, 4.a") == ("1", "2", "3", "4.a")
     assert equation_numbers("1.9-1.11,2.1") == ("1.9", "1.10", "1.11", "2.1")
+
+
+@pytest.mark.parametrize(
+    ("text", "source"),
+    [
+        ("P*h/(h**2*P + R)", "P*h/(P*h**2 + R)"),
+        ("-2*c*(a + b)/3", "-2*c*(a + b)/3"),
+        ("1/(2*a)", "1/(2*a)"),
+        ("sqrt(2)*sin(a/2)**2 - 1/3", "sp.sqrt(2)*sp.sin(a/2)**2 - sp.Rational(1, 3)"),
+    ],
+)
+def test_source_of_a_formula_is_written_as_a_person_would(text, source):
+    assert exact_source(read(text, "")) == source
+
+
+def test_a_bare_number_is_exact_and_a_long_sum_has_a_line_for_each_term():
+    assert side_source(read("2", "")) == "sp.Integer(2)" and side_source(read("1/2", "")) == "sp.Rational(1, 2)"
+    lines = side_source(read(" + ".join(f"a**{k}*sin({k}*b)" for k in range(2, 14)), "")).splitlines()
+    assert len(lines) == 14 and max(map(len, lines)) < 100
+
+
+FORMULAS = st.recursive(
+    st.sampled_from(["a", "b", "2", "3", "1/3", "pi", "0.5"]),
+    lambda inner: st.one_of(
+        st.builds("({} {} {})".format, inner, st.sampled_from("+-*/"), inner),
+        st.builds("({})**{}".format, inner, st.sampled_from(["2", "3", "(-1)", "(1/2)", "(-2)", "(-1/3)"])),
+        st.builds("{}({})".format, st.sampled_from(["sin", "cos", "exp"]), inner),
+    ),
+    max_leaves=7,
+)
+
+
+@settings(max_examples=300, deadline=None)
+@given(FORMULAS)
+def test_source_of_any_formula_builds_the_same_expression(text):
+    import sympy
+
+    try:
+        expression = read(text, "")
+    except NavsymError:
+        return
+    if not expression.is_finite and not expression.free_symbols:
+        return
+    names = {name: sympy.Symbol(name, real=True) for name in "ab"}
+    again = sympy.sympify(eval(side_source(expression), {"sp": sympy, **names}))
+    assert not again.atoms(sympy.Float)
+    assert again == expression or decide(Equation(again, expression)).status.holds
 
 
 @given(st.sampled_from(["a/3", "a**2/7 - 1/3", "sin(a/2)**(-2)", "exp(-a)*sqrt(a)", "2**(-3)*a", "abs(a) + pi"]))
