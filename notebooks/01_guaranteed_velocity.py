@@ -135,7 +135,7 @@ figure, axis = plt.subplots(figsize=(7, 3.5))
 for solver, marker in zip(LP_SOLVERS, "os^vD", strict=True):
     axis.loglog(lengths, errors[solver], marker=marker, label=solver)
 axis.set(xlabel="T, Schuler units", ylabel="relative error of the value", ylim=(1e-17, 10))
-axis.legend(fontsize=8)
+axis.legend(fontsize=8, loc="center left", bbox_to_anchor=(1.01, 0.5))
 plt.close(figure)
 figure
 

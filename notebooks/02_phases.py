@@ -78,6 +78,7 @@ def curve(answer, expression_of, T):
     return values
 
 
+NAMES = {"y1": "velocity $y_1$", "y2": "tilt $y_2$", "y3": "drift $y_3$"}
 T = np.linspace(0.25, 6.27, 700)
 figure, axes = plt.subplots(3, 3, figsize=(11, 8), sharex=True)
 for column, (state, answer) in zip(axes.T, ANSWER.items(), strict=True):
@@ -91,9 +92,9 @@ for column, (state, answer) in zip(axes.T, ANSWER.items(), strict=True):
     for axis in column:
         for k, regime in enumerate(answer.regimes):
             axis.axvspan(float(regime.lower), float(regime.upper), color="0.9" if k % 2 else "0.97", zorder=0)
-    column[0].set_title(state)
-    column[2].set_xlabel("T")
-for axis, name in zip(axes[:, 0], ("guaranteed deviation", "instants", "weights"), strict=True):
+    column[0].set_title(NAMES[state])
+    column[2].set_xlabel("T, Schuler units")
+for axis, name in zip(axes[:, 0], ("guaranteed error, $\\sigma$", "instants, Schuler units", "weights"), strict=True):
     axis.set_ylabel(name)
 figure.tight_layout()
 
@@ -127,9 +128,10 @@ def draw(length=1.5, state="y3"):
     plt.plot(length - u, x @ H)
     at = np.array([np.ones_like(places), np.sin(places), np.cos(places) - 1.0])
     plt.plot(length - np.array(places), x @ at, "o")
-    plt.xlabel("time")
+    plt.xlabel("time from the start, Schuler units")
+    plt.ylabel("dual polynomial")
     plt.title(
-        f"{state}, T = {length:.2f}: error {float(regime.closed.value.subs(family.parameter, length)):.4f}"
+        f"{NAMES[state]}, T = {length:.2f}: error {float(regime.closed.value.subs(family.parameter, length)):.4f}"
     )
     plt.show()
 
@@ -212,7 +214,7 @@ if noise is not None:
         plt.plot(np.abs(values), label=name)
     plt.yscale("log")
     plt.legend()
-    plt.xlabel("window")
+    plt.xlabel("number of the window, one every 15 s")
     plt.ylabel("|error of y2|, m/s")
     plt.show()
 

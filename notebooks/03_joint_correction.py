@@ -243,7 +243,7 @@ if os.environ.get("NAVSYM_DATA") and record.exists():
     figure, axis = plt.subplots(figsize=(7, 3))
     axis.plot(aided.t, two[0][:, 2], color=BLUE, label="two stages")
     axis.plot(aided.t, kalman[0][:, 2], color=GREEN, label="Kalman filter")
-    axis.set(xlabel="s", ylabel="northward force error, m/s²")
+    axis.set(xlabel="t, s", ylabel="northward force error, m/s²")
     axis.legend()
     plt.show()
 else:

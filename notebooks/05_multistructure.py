@@ -298,7 +298,7 @@ if folder.is_dir():
     flag, guess = run_of_nagoya.flag, judged.estimate.probabilities.argmax(axis=1)
     axis.plot(seconds, np.where(flag < 0, np.nan, flag), color="0.6", label="receiver's flag")
     axis.plot(seconds, guess + 0.08, color=RED, lw=0.8, label="most probable mode")
-    axis.set(yticks=(0, 1, 2), yticklabels=road.QUALITY, xlabel="s")
+    axis.set(yticks=(0, 1, 2), yticklabels=road.QUALITY, xlabel="t, s")
     axis.legend(fontsize=7)
     plt.show()
     assert judged.caught > 0 and judged.rms < judged.rms_raw
