@@ -7,16 +7,12 @@ from collections.abc import Sequence
 
 from navsym.export.parts import Argument, ExportedFunction, Output
 from navsym.export.printing import (
-    SINC_STEPS,
-    SINC_SWITCH,
-    X_MINUS_SIN_STEPS,
-    X_MINUS_SIN_SWITCH,
     Spelling,
     assignments,
     calls,
     code_names,
     helpers_used,
-    horner,
+    series,
     summary,
     unit_of,
 )
@@ -222,25 +218,26 @@ def stores(function: ExportedFunction) -> list[str]:
 
 
 def sinc_helper(real: str, s: Spelling) -> str:
-    return f"""/* sin(x)/x; below {SINC_SWITCH} its series, whose remainder is under x^10/11! < 2^-65. */
+    switch, nested = series("sinc", s)
+    return f"""/* sin(x)/x; below {switch.rstrip('f')} its series, whose remainder is under x^10/11! < 2^-65. */
 static {real} navsym_sinc({real} x)
 {{
     const {real} y = x * x;
-    if ({s.calls["abs"].format("x")} < {s.number(SINC_SWITCH)}) {{
-        return {horner(SINC_STEPS, s.number(1.0), s.number)};
+    if ({s.calls["abs"].format("x")} < {switch}) {{
+        return {nested};
     }}
     return {s.calls["sin"].format("x")} / x;
 }}"""
 
 
 def x_minus_sin_helper(real: str, s: Spelling) -> str:
-    series = horner(X_MINUS_SIN_STEPS, s.number(1.0), s.number)
-    return f"""/* x - sin(x); below {X_MINUS_SIN_SWITCH} its series, since the difference would cancel. */
+    switch, nested = series("x_minus_sin", s)
+    return f"""/* x - sin(x); below {switch.rstrip('f')} its series, since the difference would cancel. */
 static {real} navsym_x_minus_sin({real} x)
 {{
     const {real} y = x * x;
-    if ({s.calls["abs"].format("x")} < {s.number(X_MINUS_SIN_SWITCH)}) {{
-        return ((x * y) / {s.number(6.0)}) * {series};
+    if ({s.calls["abs"].format("x")} < {switch}) {{
+        return ((x * y) / {s.number(6.0)}) * {nested};
     }}
     return x - {s.calls["sin"].format("x")};
 }}"""

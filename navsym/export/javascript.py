@@ -6,16 +6,13 @@ from collections.abc import Sequence
 
 from navsym.export.parts import ExportedFunction
 from navsym.export.printing import (
-    SINC_STEPS,
-    SINC_SWITCH,
-    X_MINUS_SIN_STEPS,
-    X_MINUS_SIN_SWITCH,
     Spelling,
     assignments,
     calls,
     code_names,
     helpers_used,
-    horner,
+    result_fields,
+    series,
     summary,
 )
 from navsym.export.programs import calls_table, js_program
@@ -112,7 +109,7 @@ def source(function: ExportedFunction) -> str:
     finite = " && ".join(f"Number.isFinite(r{k})" for k in range(function.size))
     lines += [
         f"  if (!({finite})) {{ return {{ status: 2 }}; }}",
-        f"  return {{ status: 0, {fields(function)} }};",
+        f"  return {{ status: 0, {result_fields(function, 'r{}')} }};",
         "}",
     ]
     return "\n".join([*lines, ""])
@@ -124,28 +121,20 @@ def bound(x: float) -> str:
     return SPELLING.number(x)
 
 
-def fields(function: ExportedFunction) -> str:
-    parts, k = [], 0
-    for output in function.outputs:
-        entries = ", ".join(f"r{k + e}" for e in range(output.size))
-        parts.append(f"{output.name}: [{entries}]" if output.shape else f"{output.name}: {entries}")
-        k += output.size
-    return ", ".join(parts)
-
-
 def sinc_helper() -> str:
+    switch, nested = series("sinc", SPELLING)
     return f"""function navsym_sinc(x) {{
   const y = x * x;
-  return Math.abs(x) < {SINC_SWITCH} ? {horner(SINC_STEPS, "1.0", SPELLING.number)} : Math.sin(x) / x;
+  return Math.abs(x) < {switch} ? {nested} : Math.sin(x) / x;
 }}
 """
 
 
 def x_minus_sin_helper() -> str:
-    series = horner(X_MINUS_SIN_STEPS, "1.0", SPELLING.number)
+    switch, nested = series("x_minus_sin", SPELLING)
     return f"""function navsym_x_minus_sin(x) {{
   const y = x * x;
-  return Math.abs(x) < {X_MINUS_SIN_SWITCH} ? ((x * y) / 6.0) * {series} : x - Math.sin(x);
+  return Math.abs(x) < {switch} ? ((x * y) / 6.0) * {nested} : x - Math.sin(x);
 }}
 """
 

@@ -149,6 +149,22 @@ def horner(steps: tuple[int, ...], one: str, number: Any) -> str:
     return text
 
 
+def series(name: str, s: Spelling) -> tuple[str, str]:
+    """(switch, nested series) of a helper in this language; x - sin x is x^3/6 times its series."""
+    switch, steps = {"sinc": (SINC_SWITCH, SINC_STEPS), "x_minus_sin": (X_MINUS_SIN_SWITCH, X_MINUS_SIN_STEPS)}[name]
+    return s.number(switch), horner(steps, s.number(1.0), s.number)
+
+
+def result_fields(function: ExportedFunction, name: str) -> str:
+    """``output: value`` of every output, from results that are written as ``name`` with their place."""
+    parts, k = [], 0
+    for output in function.outputs:
+        entries = ", ".join(name.format(k + e) for e in range(output.size))
+        parts.append(f"{output.name}: [{entries}]" if output.shape else f"{output.name}: {entries}")
+        k += output.size
+    return ", ".join(parts)
+
+
 def summary(function: ExportedFunction) -> list[str]:
     """What every header says: formula, source, verdict, domain, cost, bound. One line each."""
     lines = []

@@ -6,18 +6,7 @@ import math
 from collections.abc import Sequence
 
 from navsym.export.parts import ExportedFunction
-from navsym.export.printing import (
-    SINC_STEPS,
-    SINC_SWITCH,
-    X_MINUS_SIN_STEPS,
-    X_MINUS_SIN_SWITCH,
-    Spelling,
-    assignments,
-    calls,
-    code_names,
-    horner,
-    summary,
-)
+from navsym.export.printing import Spelling, assignments, calls, code_names, series, summary
 from navsym.export.programs import calls_table, python_program
 from navsym.export.vectors import Vector
 
@@ -60,6 +49,14 @@ def navsym_x_minus_sin(x):
     return np.where(np.abs(x) < {difference_switch}, series, x - np.sin(x))
 '''
 
+#: How the test programs in Python end.
+ENDING = '''        print(f"{{name}} vectors {{len(rows)}} wrong {{wrong}} worst {{worst:.3g}}")
+        failed += wrong > 0
+    return failed
+
+
+sys.exit(main())
+'''
 TEST = '''# {license}
 """Runs every function on its vectors; the exit status is the number of functions that failed."""
 
@@ -122,12 +119,6 @@ def main():
                 size = abs(nearest) * {epsilon}
                 if size and high - nearest < 1000.0 * size:
                     worst = max(worst, abs(value - nearest) / size)
-        print(f"{{name}} vectors {{len(rows)}} wrong {{wrong}} worst {{worst:.3g}}")
-        failed += wrong > 0
-    return failed
-
-
-sys.exit(main())
 '''
 
 
@@ -136,20 +127,17 @@ def files(
 ) -> dict[str, str]:
     """The module, its vectors and the program that runs them."""
     real = "float32" if functions[0].arithmetic.name == "float" else "float64"
+    (sinc_switch, sinc), (difference_switch, difference) = (series(n, SPELLING) for n in ("sinc", "x_minus_sin"))
     head = HEAD.format(
-        license=license_,
-        real=real,
-        sinc=horner(SINC_STEPS, "1.0", SPELLING.number),
-        sinc_switch=SINC_SWITCH,
-        difference=horner(X_MINUS_SIN_STEPS, "1.0", SPELLING.number),
-        difference_switch=X_MINUS_SIN_SWITCH,
-    )
+        license=license_, real=real, sinc=sinc, sinc_switch=sinc_switch, difference=difference,
+        difference_switch=difference_switch,
+    )  # fmt: skip
     epsilon = "2.0**-52" if real == "float64" else "2.0**-23"
     return {
         "navsym_functions.py": "\n\n".join(
             [head, *(text for f in functions for text in (source(f), *python_program(f)))]
         ),
-        "test_vectors.py": TEST.format(
+        "test_vectors.py": (TEST + ENDING).format(
             license=license_, epsilon=epsilon, calls=calls_table(functions, python=True)
         ),
         "vectors.json": vectors_json(functions, tests),

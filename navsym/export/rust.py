@@ -7,16 +7,13 @@ from collections.abc import Sequence
 
 from navsym.export.parts import Argument, ExportedFunction, Output
 from navsym.export.printing import (
-    SINC_STEPS,
-    SINC_SWITCH,
-    X_MINUS_SIN_STEPS,
-    X_MINUS_SIN_SWITCH,
     Spelling,
     assignments,
     bare,
     code_names,
     helpers_used,
-    horner,
+    result_fields,
+    series,
     summary,
 )
 from navsym.export.programs import rust_program, rust_through_state, through_accessors
@@ -88,7 +85,7 @@ def source(function: ExportedFunction, s: Spelling, kind: str) -> str:
         lines += [f"        let {name}: {kind} = {text};" for name, text in temporaries]
         lines += ["        r = [", *(f"            {text}," for text in results), "        ];", "    }"]
     lines += ["    if !r.iter().all(|x| x.is_finite()) {", "        return Err(Status::NotFinite);", "    }"]
-    return "\n".join([*lines, f"    Ok({function.name}_result {{ {fields(function)} }})", "}", ""])
+    return "\n".join([*lines, f"    Ok({function.name}_result {{ {result_fields(function, 'r[{}]')} }})", "}", ""])
 
 
 def parameter(argument: Argument, kind: str) -> str:
@@ -99,15 +96,6 @@ def member(output: Output, kind: str) -> str:
     return f"[{kind}; {output.size}]" if output.shape else kind
 
 
-def fields(function: ExportedFunction) -> str:
-    parts, k = [], 0
-    for output in function.outputs:
-        entries = ", ".join(f"r[{k + e}]" for e in range(output.size))
-        parts.append(f"{output.name}: [{entries}]" if output.shape else f"{output.name}: {entries}")
-        k += output.size
-    return ", ".join(parts)
-
-
 def bound(x: float, s: Spelling, kind: str) -> str:
     if math.isinf(x):
         return f"{kind}::MAX" if x > 0 else f"{kind}::MIN"
@@ -115,10 +103,11 @@ def bound(x: float, s: Spelling, kind: str) -> str:
 
 
 def sinc_helper(kind: str, s: Spelling) -> str:
+    switch, nested = series("sinc", s)
     return f"""fn navsym_sinc(x: {kind}) -> {kind} {{
     let y = x * x;
-    if {kind}::abs(x) < {s.number(SINC_SWITCH)} {{
-        return {bare(horner(SINC_STEPS, s.number(1.0), s.number))};
+    if {kind}::abs(x) < {switch} {{
+        return {bare(nested)};
     }}
     {kind}::sin(x) / x
 }}
@@ -126,11 +115,11 @@ def sinc_helper(kind: str, s: Spelling) -> str:
 
 
 def x_minus_sin_helper(kind: str, s: Spelling) -> str:
-    series = horner(X_MINUS_SIN_STEPS, s.number(1.0), s.number)
+    switch, nested = series("x_minus_sin", s)
     return f"""fn navsym_x_minus_sin(x: {kind}) -> {kind} {{
     let y = x * x;
-    if {kind}::abs(x) < {s.number(X_MINUS_SIN_SWITCH)} {{
-        return ((x * y) / {s.number(6.0)}) * {series};
+    if {kind}::abs(x) < {switch} {{
+        return ((x * y) / {s.number(6.0)}) * {nested};
     }}
     x - {kind}::sin(x)
 }}

@@ -9,17 +9,7 @@ import math
 from collections.abc import Sequence
 
 from navsym.export.parts import ExportedFunction
-from navsym.export.printing import (
-    SINC_STEPS,
-    SINC_SWITCH,
-    X_MINUS_SIN_STEPS,
-    X_MINUS_SIN_SWITCH,
-    Spelling,
-    assignments,
-    calls,
-    horner,
-    summary,
-)
+from navsym.export.printing import Spelling, assignments, calls, series, summary
 from navsym.export.vectors import Vector
 
 JULIA = Spelling(calls(abs="abs({0})", atan2="atan({0}, {1})", pow="({0})^({1})", max="max({0}, {1})",
@@ -51,14 +41,13 @@ def julia_files(
     functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str
 ) -> dict[str, str]:
     """Module and test script."""
-    number = JULIA.number
+    (sinc_switch, sinc), (switch, nested) = (series(n, JULIA) for n in ("sinc", "x_minus_sin"))
     head = [f"# {license_}", "# Every function returns (status, results...); results are there when status == 0.",
             "module NavsymFunctions", "",
             "function navsym_sinc(x)", "    y = x * x",
-            f"    return abs(x) < {SINC_SWITCH} ? {horner(SINC_STEPS, '1.0', number)} : sin(x) / x", "end", "",
+            f"    return abs(x) < {sinc_switch} ? {sinc} : sin(x) / x", "end", "",
             "function navsym_x_minus_sin(x)", "    y = x * x",
-            f"    return abs(x) < {X_MINUS_SIN_SWITCH} ? ((x * y) / 6.0) * "
-            f"{horner(X_MINUS_SIN_STEPS, '1.0', number)} : x - sin(x)", "end", ""]  # fmt: skip
+            f"    return abs(x) < {switch} ? ((x * y) / 6.0) * {nested} : x - sin(x)", "end", ""]  # fmt: skip
     body = [line for f in functions for line in julia_source(f)]
     return {
         "NavsymFunctions.jl": "\n".join([*head, *body, "end", ""]),
@@ -146,16 +135,16 @@ def octave_files(
     functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str
 ) -> dict[str, str]:
     """One file for each function, the two helpers, and the test script."""
-    number = OCTAVE.number
+    (sinc_switch, sinc), (switch, nested) = (series(n, OCTAVE) for n in ("sinc", "x_minus_sin"))
     helper = (
         "function f = {name}(x)\n  y = x * x;\n  if abs(x) < {switch}\n    f = {series};\n"
         "  else\n    f = {direct};\n  end\nend\n"
     )
     found = {
-        "navsym_sinc.m": helper.format(name="navsym_sinc", switch=SINC_SWITCH,
-                                       series=horner(SINC_STEPS, "1.0", number), direct="sin(x) / x"),
-        "navsym_x_minus_sin.m": helper.format(name="navsym_x_minus_sin", switch=X_MINUS_SIN_SWITCH,
-                                              series=f"((x * y) / 6.0) * {horner(X_MINUS_SIN_STEPS, '1.0', number)}",
+        "navsym_sinc.m": helper.format(name="navsym_sinc", switch=sinc_switch, series=sinc,
+                                       direct="sin(x) / x"),
+        "navsym_x_minus_sin.m": helper.format(name="navsym_x_minus_sin", switch=switch,
+                                              series=f"((x * y) / 6.0) * {nested}",
                                               direct="x - sin(x)"),
     }  # fmt: skip
     found |= {f"{f.name}.m": octave_source(f, license_) for f in functions}
@@ -229,20 +218,7 @@ def fortran_files(
 ) -> dict[str, str]:
     """Module and test program; names up to 63 characters, lines continued at 120."""
     names = {f.name: f"nv{k}_{f.name}"[:63] if len(f.name) > 63 else f.name for k, f in enumerate(functions)}
-    number = FORTRAN.number
-    lines = [f"! {license_}", "module navsym_functions", "  use, intrinsic :: iso_fortran_env, only: real64",
-             "  use, intrinsic :: ieee_arithmetic, only: ieee_is_finite", "  implicit none", "contains",
-             "  pure elemental function navsym_sinc(x) result(f)", "    real(real64), intent(in) :: x",
-             "    real(real64) :: f, y", "    y = x * x", f"    if (abs(x) < {number(SINC_SWITCH)}) then",
-             f"      f = {horner(SINC_STEPS, '1.0d0', number)}", "    else", "      f = sin(x) / x", "    end if",
-             "  end function", "",
-             "  pure elemental function navsym_x_minus_sin(x) result(f)", "    real(real64), intent(in) :: x",
-             "    real(real64) :: f, y", "    y = x * x", f"    if (abs(x) < {number(X_MINUS_SIN_SWITCH)}) then",
-             f"      f = ((x * y) / 6.0d0) * {horner(X_MINUS_SIN_STEPS, '1.0d0', number)}", "    else",
-             "      f = x - sin(x)", "    end if", "  end function", "",
-             "  pure elemental function navsym_expm1(x) result(f)", "    real(real64), intent(in) :: x",
-             "    real(real64) :: f", "    f = 2.0d0 * sinh(x / 2.0d0) * exp(x / 2.0d0)",
-             "  end function", ""]  # fmt: skip
+    lines = fortran_head(license_)
     for function in functions:
         lines += fortran_source(function, names[function.name])
     lines += ["end module navsym_functions", ""]
@@ -251,6 +227,24 @@ def fortran_files(
         "test_vectors.f90": fortran_test(functions, names, license_),
         "vectors.txt": vectors_text(functions, tests),
     }
+
+
+def fortran_head(license_: str) -> list[str]:
+    """The head of the module, with the helpers."""
+    (sinc_switch, sinc), (switch, nested) = (series(n, FORTRAN) for n in ("sinc", "x_minus_sin"))
+    return [f"! {license_}", "module navsym_functions", "  use, intrinsic :: iso_fortran_env, only: real64",
+            "  use, intrinsic :: ieee_arithmetic, only: ieee_is_finite", "  implicit none", "contains",
+            "  pure elemental function navsym_sinc(x) result(f)", "    real(real64), intent(in) :: x",
+            "    real(real64) :: f, y", "    y = x * x", f"    if (abs(x) < {sinc_switch}) then",
+            f"      f = {sinc}", "    else", "      f = sin(x) / x", "    end if",
+            "  end function", "",
+            "  pure elemental function navsym_x_minus_sin(x) result(f)", "    real(real64), intent(in) :: x",
+            "    real(real64) :: f, y", "    y = x * x", f"    if (abs(x) < {switch}) then",
+            f"      f = ((x * y) / 6.0d0) * {nested}", "    else",
+            "      f = x - sin(x)", "    end if", "  end function", "",
+            "  pure elemental function navsym_expm1(x) result(f)", "    real(real64), intent(in) :: x",
+            "    real(real64) :: f", "    f = 2.0d0 * sinh(x / 2.0d0) * exp(x / 2.0d0)",
+            "  end function", ""]  # fmt: skip
 
 
 def continued(line: str) -> list[str]:
