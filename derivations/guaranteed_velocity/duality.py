@@ -52,17 +52,16 @@ def general_regressor_of_three_states():
 
 @claim("2.5")
 def estimate_from_impulses():
-    """Impulses make the integral of Phi z a weighted sum: limit of boxes of width e around tau_j.
+    """Impulses make the integral of Phi z the sum of Phi_j z(tau_j): boxes of width e, as e goes to 0 (3 instants).
 
-    A measurement c0 + c1 (tau - tau_j) + c2 (tau - tau_j)^2 averaged over a box of width e gives
-    c0 + c2 e^2/12, and at e = 0 its value at tau_j.
+    For measurements c0 + c1 tau + c2 tau^2; the integral of Phi_j/e over a box is (Z(tau_j + e/2) - Z(tau_j - e/2))
+    Phi_j/e with the antiderivative Z, and its limit is a derivative with respect to e.
     """
     c0, c1, c2, e, s = sp.symbols("c0 c1 c2 e s", real=True)
-    antiderivative = c0 * s + c1 * s**2 / 2 + c2 * s**3 / 3
-    # The average (F(e/2) - F(-e/2))/e, written without the division by what goes to zero.
-    average = sp.expand(antiderivative.subs(s, e / 2) - antiderivative.subs(s, -e / 2))
-    derivative_at_zero = sp.diff(average, e).subs(e, 0)
-    return Equation(printed=c0, derived=derivative_at_zero)
+    z, Z = c0 + c1 * s + c2 * s**2, c0 * s + c1 * s**2 / 2 + c2 * s**3 / 3
+    Phi, at = generic("Phi", 3), generic("tau", 3)
+    boxes = sum((Phi[j] * (Z.subs(s, at[j] + e / 2) - Z.subs(s, at[j] - e / 2)) for j in range(3)), sp.S.Zero)
+    return Equation(printed=sum(Phi[j] * z.subs(s, at[j]) for j in range(3)), derived=sp.diff(boxes, e).subs(e, 0))
 
 
 def error_without_noise(count: int) -> Equation:
@@ -237,6 +236,33 @@ def scaling_to_a_polynomial():
     printed = (h1 + u2 * h2 + u3 * h3) / L
     x = sp.Matrix([1 / L, u2 / L, u3 / L])
     return Equation(printed=printed, derived=(x.T * sp.Matrix([h1, h2, h3]))[0])
+
+
+@claim(
+    "3.3.min",
+    expect=REFUTED,
+    slip="scan",
+    reason="z_j stands below the minimum; the polynomial has the coefficients u_j, as (3.4) and (4.2) have them",
+)
+def variables_of_the_minimum():
+    """The minimum of (3.3) is taken over z_2, z_3, as printed."""
+    return Property(printed=("z2", "z3"), derived=coefficients_of_the_polynomial())
+
+
+@claim("3.3.min*", corrects="3.3.min")
+def variables_of_the_minimum_corrected():
+    """The minimum of (3.3) is taken over u_2, u_3."""
+    return Property(printed=("u2", "u3"), derived=coefficients_of_the_polynomial())
+
+
+def coefficients_of_the_polynomial() -> Finding:
+    """On which of z2, z3, u2, u3 the polynomial of (3.3) depends: a minimum over any other changes nothing."""
+    names = sp.symbols("z2 z3 u2 u3", real=True)
+    _, _, u2, u3 = names
+    h1, h2, h3 = H()[2], H()[0], H()[1]
+    polynomial = h1 + u2 * h2 + u3 * h3
+    free = tuple(v.name for v in names if not vanishes_identically(sp.diff(polynomial, v)))
+    return Finding(free, "normal form of the derivatives", PROVED, "the functional y3, every T")
 
 
 @claim("3.4")
