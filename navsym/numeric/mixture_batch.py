@@ -170,6 +170,82 @@ def slow_column(m, i, lane, top, p_mode, logs, mixing):  # type: ignore[no-untyp
     return best + math.log(total)
 
 
+@numba.njit(inline="always", **COMPILE)
+def begin_eight(m, n, log_prior, means, covariances, logs, x, P):  # type: ignore[no-untyped-def]
+    """The same first estimates, means (m, n), covariances (m, n, n), in every lane."""
+    for i in range(m):
+        for lane in range(8):
+            logs[i * 8 + lane] = log_prior[i]
+        for a in range(n):
+            store(x, (i * n + a) * 8, spread(means[i, a]))
+            for b in range(n):
+                store(P, ((i * n + a) * n + b) * 8, spread(covariances[i, a, b]))
+
+
+@numba.njit(inline="always", **COMPILE)
+def lay_eight(first, k, i, rotated, u, z, zl):  # type: ignore[no-untyped-def]
+    """Measurement k of eight runs, rotated into independent scalars of mode i where R is not diagonal."""
+    runs, _, p = z.shape
+    for c in range(p):
+        for lane in range(8):
+            run = min(first + lane, runs - 1)
+            value = z[run, k, c]
+            if rotated:
+                value = 0.0
+                for a in range(p):
+                    value += u[i, a, c] * z[run, k, a]
+            zl[c * 8 + lane] = value
+
+
+@numba.njit(inline="always", **COMPILE)
+def weigh_eight(m, totals, shares, volume, ll, logs, weights, total_log):  # type: ignore[no-untyped-def]
+    """Bayes' rule over the modes of every run; False when all modes of one are impossible."""
+    for lane in range(8):
+        top = -np.inf
+        for i in range(m):
+            share = shares[i * 8 + lane] / math.sqrt(volume[i * 8 + lane])
+            logs[i * 8 + lane] = totals[i * 8 + lane] + ll[i * 8 + lane] + math.log(share)
+            top = max(top, logs[i * 8 + lane])
+        if top == -np.inf:
+            return False
+        whole = 0.0
+        for i in range(m):
+            weights[i * 8 + lane] = math.exp(logs[i * 8 + lane] - top)
+            whole += weights[i * 8 + lane]
+        step_log = top + math.log(whole)
+        total_log[lane] += step_log
+        for i in range(m):
+            weights[i * 8 + lane] /= whole
+            logs[i * 8 + lane] -= step_log
+    return True
+
+
+@numba.njit(inline="always", **COMPILE)
+def keep_eight(  # type: ignore[no-untyped-def]
+    first, k, m, n, total_log, weights, now_mean, now, mean, covariance, probabilities, log_likelihood,
+):
+    """The answers of step k out of the lanes; lanes beyond the last run are left."""
+    for lane in range(min(8, mean.shape[0] - first)):
+        run = first + lane
+        log_likelihood[run, k] = total_log[lane]
+        for i in range(m):
+            probabilities[run, k, i] = weights[i * 8 + lane]
+        for a in range(n):
+            mean[run, k, a] = now_mean[a * 8 + lane]
+            for b in range(n):
+                covariance[run, k, a, b] = now[(a * n + b) * 8 + lane]
+
+
+@numba.njit(inline="always", **COMPILE)
+def restart_eight(m, n, now_mean, now, x, P):  # type: ignore[no-untyped-def]
+    """Every mode goes on from the merged estimate: the pulsating filter."""
+    for i in range(m):
+        for a in range(n):
+            store(x, (i * n + a) * 8, load(now_mean, a * 8))
+            for b in range(n):
+                store(P, ((i * n + a) * n + b) * 8, load(now, (a * n + b) * 8))
+
+
 @numba.njit(**COMPILE)
 def run_eight(  # type: ignore[no-untyped-def]
     first, branching, F, Q, H, r, U, rotated, p_mode, log_prior, means, covariances, z,
@@ -181,7 +257,7 @@ def run_eight(  # type: ignore[no-untyped-def]
     fills mean (runs, T, n), covariance (runs, T, n, n), probabilities (runs, T, m), log_likelihood (runs, T).
     Returns False when a variance is not positive.
     """
-    runs, T, p = z.shape
+    _, T, p = z.shape
     m, n = F.shape[1], F.shape[2]
     x, P, y, S = aligned(m * n * 8), aligned(m * n * n * 8), aligned(m * n * 8), aligned(m * n * n * 8)
     logs, totals, weights, mixing = aligned(m * 8), aligned(m * 8), aligned(m * 8), aligned(m * m * 8)
@@ -190,15 +266,8 @@ def run_eight(  # type: ignore[no-untyped-def]
     scratch = aligned((n * n + 2 * n + 2) * 8)
     now_mean, now = aligned(n * 8), aligned(n * n * 8)
     total_log = np.zeros(8)
-    for i in range(m):
-        for lane in range(8):
-            logs[i * 8 + lane] = log_prior[i]
-        for a in range(n):
-            store(x, (i * n + a) * 8, spread(means[i, a]))
-            for b in range(n):
-                store(P, ((i * n + a) * n + b) * 8, spread(covariances[i, a, b]))
+    begin_eight(m, n, log_prior, means, covariances, logs, x, P)
     for k in range(T):
-        pk = p_mode[min(k, p_mode.shape[0] - 1)]
         f, q = F[min(k, F.shape[0] - 1)], Q[min(k, Q.shape[0] - 1)]
         h, v, u = H[min(k, H.shape[0] - 1)], r[min(k, r.shape[0] - 1)], U[min(k, U.shape[0] - 1)]
         if branching == 2:
@@ -206,59 +275,26 @@ def run_eight(  # type: ignore[no-untyped-def]
                 totals[j] = logs[j]
                 shares[j] = 1.0
         else:
-            mode_weights(m, branching, pk, logs, totals, shares, mixing, weights)
+            mode_weights(m, branching, p_mode[min(k, p_mode.shape[0] - 1)], logs, totals, shares, mixing, weights)
         if branching == 1:
             for i in range(m):
                 merge_modes(m, n, mixing, i * m, x, P, i, y, S, off)
             x, y = y, x
             P, S = S, P
         for i in range(m):
-            for c in range(p):
-                for lane in range(8):
-                    run = min(first + lane, runs - 1)
-                    value = z[run, k, c]
-                    if rotated:
-                        value = 0.0
-                        for a in range(p):
-                            value += u[i, a, c] * z[run, k, a]
-                    zl[c * 8 + lane] = value
+            lay_eight(first, k, i, rotated, u, z, zl)
             store(ll, i * 8, spread(0.0))
             predict_mode(i, n, f[i], q[i], x, P, scratch)
             if not correct_mode(i, n, p, h[i], v[i], zl, x, P, scratch, ll, volume):
                 return False
-        for lane in range(8):
-            top = -np.inf
-            for i in range(m):
-                share = shares[i * 8 + lane] / math.sqrt(volume[i * 8 + lane])
-                logs[i * 8 + lane] = totals[i * 8 + lane] + ll[i * 8 + lane] + math.log(share)
-                top = max(top, logs[i * 8 + lane])
-            if top == -np.inf:
-                return False
-            whole = 0.0
-            for i in range(m):
-                weights[i * 8 + lane] = math.exp(logs[i * 8 + lane] - top)
-                whole += weights[i * 8 + lane]
-            step_log = top + math.log(whole)
-            total_log[lane] += step_log
-            for i in range(m):
-                weights[i * 8 + lane] /= whole
-                logs[i * 8 + lane] -= step_log
+        if not weigh_eight(m, totals, shares, volume, ll, logs, weights, total_log):
+            return False
         merge_modes(m, n, weights, 0, x, P, 0, now_mean, now, off)
-        for lane in range(min(8, runs - first)):
-            run = first + lane
-            log_likelihood[run, k] = total_log[lane]
-            for i in range(m):
-                probabilities[run, k, i] = weights[i * 8 + lane]
-            for a in range(n):
-                mean[run, k, a] = now_mean[a * 8 + lane]
-                for b in range(n):
-                    covariance[run, k, a, b] = now[(a * n + b) * 8 + lane]
+        keep_eight(
+            first, k, m, n, total_log, weights, now_mean, now, mean, covariance, probabilities, log_likelihood
+        )
         if branching == 0:
-            for i in range(m):
-                for a in range(n):
-                    store(x, (i * n + a) * 8, load(now_mean, a * 8))
-                    for b in range(n):
-                        store(P, ((i * n + a) * n + b) * 8, load(now, (a * n + b) * 8))
+            restart_eight(m, n, now_mean, now, x, P)
     return True
 
 

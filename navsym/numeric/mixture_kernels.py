@@ -12,145 +12,66 @@ import numba
 import numpy as np
 
 from navsym.numeric.mixture_filter import COMPILE, aligned, correct_group, mix_group, moments, predict_group
+from navsym.numeric.mixture_layout import copy_sources, lay_measurement, lay_models, lay_start
+from navsym.numeric.mixture_modes import log_sums_by_mode, mix_quickly, mixing_weights, predict_modes, weigh
 
 #: Branching and folding by number, because compiled code has no words.
 CROSS, MIXED, OWN = 0, 1, 2
 KEEP, ALL, BY_MODE = 0, 1, 2
 
 
-@numba.njit(**COMPILE)
-def lay_models(k, branches, modes, F, Q, H, r, U, z, lanes):  # type: ignore[no-untyped-def]
-    """Models of step k, branch b has mode b % modes, into the layout of lanes; idle lanes get a unit model.
-
-    F, Q (T or 1, m, n, n), H (T or 1, m, p, n), r (T or 1, m, p), lanes = (F, Q, H, r) flat.
-    """
-    n, p = F.shape[2], H.shape[2]
-    f, q = F[min(k, F.shape[0] - 1)], Q[min(k, Q.shape[0] - 1)]
-    h, v = H[min(k, H.shape[0] - 1)], r[min(k, r.shape[0] - 1)]
-    for b in range(((branches + 7) // 8) * 8):
-        g, lane, i = b // 8, b % 8, b % modes
-        used = b < branches
-        for a in range(n):
-            for c in range(n):
-                place = ((g * n + a) * n + c) * 8 + lane
-                lanes[0][place] = f[i, a, c] if used else 0.0
-                lanes[1][place] = q[i, a, c] if used else (1.0 if a == c else 0.0)
-        for a in range(p):
-            for c in range(n):
-                lanes[2][((g * p + a) * n + c) * 8 + lane] = h[i, a, c] if used else 0.0
-            lanes[3][(g * p + a) * 8 + lane] = v[i, a] if used else 1.0
+@numba.njit(inline="always", **COMPILE)
+def branch_modes(  # type: ignore[no-untyped-def]
+    branching, known, sources, m, k, logs, p_mode, log_p, totals, mixing, ahead, terms,
+):
+    """totals[b] <- log P[branch b] before its measurement; for IMM also the weights of the mixing."""
+    if branching == OWN:
+        for b in range(m):
+            totals[b] = logs[b]
+    elif branching == MIXED:
+        transition = p_mode[min(k, p_mode.shape[0] - 1)]
+        if not (known and mix_quickly(m, logs, transition, totals, mixing, terms)):
+            predict_modes(sources, known, m, logs, log_p[min(k, log_p.shape[0] - 1)], ahead, terms)
+            mixing_weights(sources, m, ahead, totals, mixing, terms)
+    else:
+        predict_modes(sources, known, m, logs, log_p[min(k, log_p.shape[0] - 1)], ahead, terms)
+        for b in range(sources * m):
+            totals[b] = ahead[b // m, b % m]
 
 
-@numba.njit(**COMPILE)
-def lay_measurement(k, branches, modes, rotated, U, z, came, out):  # type: ignore[no-untyped-def]
-    """Measurement k in every lane, rotated into independent scalars where R is not diagonal."""
-    p = z.shape[1]
-    u = U[min(k, U.shape[0] - 1)]
-    for c in range(p):
-        came[c] = not math.isnan(z[k, c])
-    for b in range(((branches + 7) // 8) * 8):
-        g, lane, i = b // 8, b % 8, b % modes
-        for c in range(p):
-            value = z[k, c] if came[c] else 0.0
-            if rotated:
-                value = 0.0
-                for a in range(p):
-                    value += u[i, a, c] * (z[k, a] if came[a] else 0.0)
-            out[(g * p + c) * 8 + lane] = value if b < branches else 0.0
-
-
-@numba.njit(**COMPILE)
-def log_sum(values, count):  # type: ignore[no-untyped-def]
-    """log of the sum of exp of the first entries; -inf when there is none."""
-    top = -np.inf
-    for s in range(count):
-        top = max(top, values[s])
-    if top == -np.inf:
-        return top
-    total = 0.0
-    for s in range(count):
-        total += math.exp(values[s] - top)
-    return top + math.log(total)
-
-
-@numba.njit(**COMPILE)
-def predict_modes(sources, known, modes, log_weights, log_p, out, terms):  # type: ignore[no-untyped-def]
-    """log P[source, next mode] (sources, m).
-
-    known : every source knows its last mode, source % m, and log_weights is (sources,);
-            otherwise there is one source and log_weights (m,) belongs to its last modes
-    """
-    for s in range(sources):
-        for i in range(modes):
-            if known:
-                out[s, i] = log_weights[s] + log_p[s % modes, i]
-            else:
-                for j in range(modes):
-                    terms[j] = log_weights[j] + log_p[j, i]
-                out[s, i] = log_sum(terms, modes)
-
-
-@numba.njit(**COMPILE)
-def mixing_weights(sources, modes, ahead, totals, weights, terms):  # type: ignore[no-untyped-def]
-    """P[source | next mode] in lanes and log P[next mode]; an impossible mode takes the weights of all.
-
-    One exponential per source serves all targets unless weights lie so far apart that it would underflow.
-    """
-    for b in range(((modes + 7) // 8) * 8):
-        i = min(b, modes - 1)
-        for s in range(sources):
-            terms[s] = ahead[s, i]
-        total = log_sum(terms, sources)
-        if b < modes:
-            totals[b] = total
-        if total == -np.inf:
-            for s in range(sources):
-                terms[s] = -np.inf
-                for j in range(modes):
-                    terms[s] = max(terms[s], ahead[s, j])
-            total = log_sum(terms, sources)
-        for s in range(sources):
-            weights[((b // 8) * sources + s) * 8 + b % 8] = math.exp(terms[s] - total)
-
-
-@numba.njit(**COMPILE)
-def mix_quickly(modes, logs, transition, totals, weights, terms):  # type: ignore[no-untyped-def]
-    """The same with one exponential per source, when every source knows its mode; False when it must not.
-
-    It must not when a weight would underflow beside the largest, or when a next mode is impossible.
-    """
-    top = logs[0]
-    for s in range(1, modes):
-        top = max(top, logs[s])
-    for s in range(modes):
-        if not logs[s] - top > -600.0:
+@numba.njit(inline="always", **COMPILE)
+def filter_branches(  # type: ignore[no-untyped-def]
+    branching, branches, sources, n, p, came, lanes, zl, mixing, x, P, nx, nP, ll, scratch, off,
+):
+    """Predict and correct all branches in nx, nP, eight at a time; False when a variance is not positive."""
+    for g in range((branches + 7) // 8):
+        for lane in range(8):
+            ll[g * 8 + lane] = 0.0
+        if branching == MIXED:
+            # Mixed, predicted and corrected group by group, while its numbers are near.
+            mix_group(g, n, sources, mixing, x, P, nx, nP, off)
+        predict_group(g, n, lanes[0], lanes[1], nx, nP, scratch)
+        if not correct_group(g, n, p, came, lanes[2], lanes[3], zl, nx, nP, scratch, ll):
             return False
-        terms[s] = math.exp(logs[s] - top)
-    for i in range(((modes + 7) // 8) * 8):
-        column = min(i, modes - 1)
-        total = 0.0
-        for s in range(modes):
-            total += terms[s] * transition[s, column]
-        if not total > 1e-250:
-            return False
-        inverse = 1.0 / total
-        for s in range(modes):
-            weights[((i // 8) * modes + s) * 8 + i % 8] = terms[s] * transition[s, column] * inverse
-        if i < modes:
-            totals[i] = top + math.log(total)
     return True
 
 
+@numba.njit(inline="always", **COMPILE)
+def keep(k, n, now_mean, now, mean, covariance):  # type: ignore[no-untyped-def]
+    """Estimate of step k into the answer; by entries, since assigning a row of a short array takes longer."""
+    for a in range(n):
+        mean[k, a] = now_mean[a]
+        for c in range(n):
+            covariance[k, a, c] = now[a, c]
+
+
 @numba.njit(**COMPILE)
-def copy_sources(branches, modes, n, x, P, mean, covariance):  # type: ignore[no-untyped-def]
-    """Branch b starts from source b // m."""
-    for b in range(branches):
-        g, lane, s = b // 8, b % 8, b // modes
-        for a in range(n):
-            mean[(g * n + a) * 8 + lane] = x[((s // 8) * n + a) * 8 + s % 8]
-            for c in range(n):
-                source = (((s // 8) * n + a) * n + c) * 8 + s % 8
-                covariance[((g * n + a) * n + c) * 8 + lane] = P[source]
+def fold_to_one(n, mean, covariance, x, P):  # type: ignore[no-untyped-def]
+    """The merged estimate (n,), (n, n) as the only source: GPB1."""
+    for a in range(n):
+        x[a * 8] = mean[a]
+        for c in range(n):
+            P[(a * n + c) * 8] = covariance[a, c]
 
 
 @numba.njit(**COMPILE)
@@ -181,6 +102,12 @@ def fold_by_mode(branches, modes, n, logs, totals, weights, x, P, mean, covarian
 
 
 @numba.njit(**COMPILE)
+def constant(F, Q, H, r):  # type: ignore[no-untyped-def]
+    """Whether no model changes with time."""
+    return F.shape[0] == 1 and Q.shape[0] == 1 and H.shape[0] == 1 and r.shape[0] == 1
+
+
+@numba.njit(**COMPILE)
 def run_bank(  # type: ignore[no-untyped-def]
     branching, folding, period, widest, F, Q, H, r, U, rotated, p_mode, log_p, log_prior, common, means, covariances, z,
     probabilities, mean, covariance, log_likelihood, best,
@@ -202,108 +129,49 @@ def run_bank(  # type: ignore[no-untyped-def]
     scratch = aligned((n * n + 3 * n + 3) * 8)
     ahead, totals = np.zeros((size, m)), aligned(groups * 8)
     weights, logs, ll = aligned(groups * 8), aligned(groups * 8), aligned(groups * 8)
-    mixing, terms = aligned(groups * size * 8 if branching == 1 else 8), aligned(size)
-    off = aligned(size * n * 8 if branching == 1 else 8)
+    mixing, terms = aligned(groups * size * 8 if branching == MIXED else 8), aligned(size)
+    off = aligned(size * n * 8 if branching == MIXED else 8)
     current_mean, current = np.zeros(n), np.zeros((n, n))
 
-    known = branching == 2 or not common
+    known = branching == OWN or not common
     sources = m if known else 1
-    for s in range(sources):
-        for a in range(n):
-            x[((s // 8) * n + a) * 8 + s % 8] = means[s, a]
-            for c in range(n):
-                P[(((s // 8) * n + a) * n + c) * 8 + s % 8] = covariances[s, a, c]
-    for i in range(m):
-        logs[i] = log_prior[i]
-    last_laid, total_log = 0, 0.0
-
+    lay_start(sources, n, means, covariances, x, P)
+    logs[:m] = log_prior
+    laid, total_log, unchanging = 0, 0.0, constant(F, Q, H, r)
     for k in range(T):
-        lp = log_p[min(k, log_p.shape[0] - 1)]
-        branches = m if branching != 0 else sources * m
-        if branching == 2:
-            for b in range(m):
-                totals[b] = logs[b]
+        branches = sources * m if branching == CROSS else m
+        branch_modes(branching, known, sources, m, k, logs, p_mode, log_p, totals, mixing, ahead, terms)
+        if branching == OWN:
             x, nx = nx, x
             P, nP = nP, P
-        elif branching == 1:
-            pk = p_mode[min(k, p_mode.shape[0] - 1)]
-            if not (known and mix_quickly(m, logs, pk, totals, mixing, terms)):
-                predict_modes(sources, known, m, logs, lp, ahead, terms)
-                mixing_weights(sources, m, ahead, totals, mixing, terms)
-        else:
-            predict_modes(sources, known, m, logs, lp, ahead, terms)
-            for b in range(branches):
-                totals[b] = ahead[b // m, b % m]
+        elif branching == CROSS:
             copy_sources(branches, m, n, x, P, nx, nP)
-        if last_laid != branches or F.shape[0] > 1 or H.shape[0] > 1 or Q.shape[0] > 1 or r.shape[0] > 1:
+        if laid != branches or not unchanging:
             lay_models(k, branches, m, F, Q, H, r, U, z, lanes)
-            last_laid = branches
+            laid = branches
         lay_measurement(k, branches, m, rotated, U, z, came, zl)
-        used = (branches + 7) // 8
-        for g in range(used):
-            for lane in range(8):
-                ll[g * 8 + lane] = 0.0
-            if branching == 1:
-                # Mixed, predicted and corrected group by group, while its numbers are near.
-                mix_group(g, n, sources, mixing, x, P, nx, nP, off)
-            predict_group(g, n, lanes[0], lanes[1], nx, nP, scratch)
-            if not correct_group(g, n, p, came, lanes[2], lanes[3], zl, nx, nP, scratch, ll):
-                return k + 1
-        top, finest = -np.inf, -np.inf
-        for b in range(branches):
-            finest = max(finest, ll[b])
-            logs[b] = totals[b] + ll[b]
-            top = max(top, logs[b])
-        if top == -np.inf:
+        if not filter_branches(
+            branching, branches, sources, n, p, came, lanes, zl, mixing, x, P, nx, nP, ll, scratch, off
+        ):
             return k + 1
-        whole = 0.0
-        for b in range(used * 8):
-            weights[b] = math.exp(logs[b] - top) if b < branches else 0.0
-            whole += weights[b]
-        for i in range(m):
-            probabilities[k, i] = 0.0
-        for b in range(branches):
-            weights[b] /= whole
-            probabilities[k, b % m] += weights[b]
-        step_log = top + math.log(whole)
-        total_log += step_log
-        log_likelihood[k], best[k] = total_log, finest
-        moments(used, n, weights, nx, nP, current_mean, current, scratch)
-        for a in range(n):
-            mean[k, a] = current_mean[a]
-            for c in range(n):
-                covariance[k, a, c] = current[a, c]
-        for b in range(branches):
-            logs[b] -= step_log
-        # Fold.
-        due = (k + 1) % period == 0
-        if folding == 1 and due:
-            for i in range(m):
-                count = 0
-                for b in range(i, branches, m):
-                    terms[count] = logs[b]
-                    count += 1
-                totals[i] = log_sum(terms, count)
-            for i in range(m):
-                logs[i] = totals[i]
-            for a in range(n):
-                x[a * 8] = current_mean[a]
-                for c in range(n):
-                    P[(a * n + c) * 8] = current[a, c]
-            sources, known = 1, False
-        elif folding == 2 and branches > m:
-            for i in range(m):
-                count = 0
-                for b in range(i, branches, m):
-                    terms[count] = logs[b]
-                    count += 1
-                totals[i] = log_sum(terms, count)
-            fold_by_mode(branches, m, n, logs, totals, weights, nx, nP, x, P)
-            for i in range(m):
-                logs[i] = totals[i]
-            sources, known = m, True
-        else:
+        evidence, best[k] = weigh(branches, m, totals, ll, logs, weights, k, probabilities)
+        if evidence == -np.inf:
+            return k + 1
+        total_log += evidence
+        log_likelihood[k] = total_log
+        moments((branches + 7) // 8, n, weights, nx, nP, current_mean, current, scratch)
+        keep(k, n, current_mean, current, mean, covariance)
+        if folding == KEEP or (folding == ALL and (k + 1) % period) or (folding == BY_MODE and branches <= m):
             x, nx = nx, x
             P, nP = nP, P
             sources, known = branches, True
+            continue
+        log_sums_by_mode(branches, m, logs, totals, terms)
+        if folding == ALL:
+            fold_to_one(n, current_mean, current, x, P)
+        else:
+            fold_by_mode(branches, m, n, logs, totals, weights, nx, nP, x, P)
+        for i in range(m):
+            logs[i] = totals[i]
+        sources, known = (1, False) if folding == ALL else (m, True)
     return 0
