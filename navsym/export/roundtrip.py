@@ -7,19 +7,18 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
 import re
 import shutil
-import subprocess
 import sys
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from navsym.export.processes import run
 from navsym.export.targets import SANITIZERS, TARGETS, Target
+from navsym.export.tools import misra
 
-SECONDS = 120
 LINE = re.compile(r"(\w+) vectors (\d+) wrong (\d+) worst ([-+.\w]+)")
 MANIFEST = "manifest.json"
 
@@ -78,26 +77,6 @@ def word_is_compiler(command: list[str], tool: str) -> bool:
     return command[0] == tool
 
 
-def run(command: list[str], folder: Path) -> tuple[int, str]:
-    """Exit status and output of one command without a shell, limited in time."""
-    quiet = {"PYTHONDONTWRITEBYTECODE": "1", "ASAN_OPTIONS": "detect_leaks=0"}
-    try:
-        done = subprocess.run(
-            command,
-            cwd=folder,
-            capture_output=True,
-            text=True,
-            timeout=SECONDS,
-            check=False,
-            env=os.environ | quiet,
-        )
-    except subprocess.TimeoutExpired:
-        return -1, f"stopped after {SECONDS} s"
-    except OSError as error:
-        return -1, error.strerror or "cannot be started"
-    return done.returncode, done.stdout + done.stderr
-
-
 def measured(text: str) -> dict[str, tuple[int, int, float]]:
     return {name: (int(n), int(wrong), float(worst)) for name, n, wrong, worst in LINE.findall(text)}
 
@@ -128,10 +107,9 @@ def check_export(folder: Path) -> list[dict[str, Any]]:
         manifest = json.loads((folder / MANIFEST).read_text("utf-8"))
         files = dict(manifest["files"])
         languages = [str(name) for name in manifest["languages"]]
-    except (OSError, ValueError, KeyError, TypeError):
-        return [
-            row(folder / MANIFEST, "manifest", "expected a manifest of navsym export; got something else")
-        ]
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        came = f"{type(error).__name__}: {error}"
+        return [row(folder / MANIFEST, "manifest", f"expected a manifest of navsym export; got {came}")]
     rows = [row(folder / MANIFEST, "manifest", hash_trouble(folder, files))]
     rows += [language_row(folder, name) for name in languages]
     return rows + ([misra_row(folder / "c")] if "c" in languages and (folder / "c").is_dir() else [])
@@ -160,8 +138,6 @@ def language_row(folder: Path, name: str) -> dict[str, Any]:
 
 def misra_row(folder: Path) -> dict[str, Any]:
     """Findings of the MISRA add-on; accepted when none lies outside the written deviations, or when it is not there."""
-    from navsym.export.tools import misra
-
     said = misra(folder)
     if said.status == "failed":
         return row(folder, "misra", said.why)

@@ -23,8 +23,8 @@ from navsym.export.bands import Array, Band, Flags
 from navsym.export.c import files as c_files
 from navsym.export.c import output_places
 from navsym.export.parts import ExportedFunction
+from navsym.export.processes import run
 from navsym.export.rounding import Arithmetic, with_library
-from navsym.export.roundtrip import run
 from navsym.export.targets import TARGETS, WARNINGS
 from navsym.export.twin import SLACK, formula_values, rounding_bounds
 from navsym.export.vectors import LARGEST, cast, edge_values, piece_at, points, sample, vector_at

@@ -16,7 +16,7 @@ from navsym.export.c import files as c_files
 from navsym.export.c import output_places
 from navsym.export.parts import ExportedFunction, Piece
 from navsym.export.printing import bound_text, unit_of
-from navsym.export.roundtrip import run
+from navsym.export.processes import run
 from navsym.export.vectors import Vector
 
 WASI = """# {license}
