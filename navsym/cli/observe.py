@@ -120,57 +120,59 @@ def read_poles(text: str, found: ModelFile) -> tuple[tuple[Any, ...], Any]:
 
 def as_text(data: Mapping[str, Any]) -> str:
     """Tables of the document."""
+    chosen = split_text(data["split"]) if data["split"] else ""
+    blocks = (overview(data), drops_text(data), splits_text(data), chosen, *gains_text(data["gains"]))
+    return "\n".join(block for block in blocks if block)
+
+
+def overview(data: Mapping[str, Any]) -> str:
+    """What each measurement observes, and what none of them does."""
     verdict = "observable" if data["observable"] else "NOT observable"
-    blocks = [f"{data['n']} states, joint dimension {data['joint_dimension']}: {verdict}\n"]
-    blocks.append(
+    hidden = data["unobservable_directions"]
+    return "\n".join([
+        f"{data['n']} states, joint dimension {data['joint_dimension']}: {verdict}\n",
         table(
             ["measurement", "dimension", "companion"],
             [[m["name"], str(m["dimension"]), ", ".join(m["companion"])] for m in data["measurements"]],
-        )
-    )
-    if data["unobservable_directions"]:
-        blocks.append("hidden: " + "; ".join(data["unobservable_directions"]) + "\n")
+        ),
+        *(["hidden: " + "; ".join(hidden) + "\n"] if hidden else []),
+    ])
+
+
+def drops_text(data: Mapping[str, Any]) -> str:
+    """Where a dimension drops, and for which subspaces the list of such places is proved complete."""
+    blocks = ["no rank drops found\n"]
     if data["rank_drops"]:
-        blocks.append(
-            table(
-                ["rank drops of", "where", "list complete"],
-                [
-                    [
-                        d["subspace"],
-                        " and ".join(f"{zero} = 0" for zero in d["zeros"])
-                        + (" (excluded by declaration)" if d["excluded_by_declaration"] else ""),
-                        "proved" if d["complete"] else "not proved",
-                    ]
-                    for d in data["rank_drops"]
-                ],
-            )
-        )
-    else:
-        blocks.append("no rank drops found\n")
+        blocks = [table(["rank drops of", "where", "list complete"], [drop_row(d) for d in data["rank_drops"]])]
     unsure = [name for name, complete in data["rank_drops_complete"].items() if not complete]
-    blocks.append(f"list of rank drops not proved complete for {', '.join(unsure)}\n" if unsure else "")
-    if data["splits"]:
-        best = data["best_split"]
-        blocks.append(
-            table(
-                ["i", "j", "det L", ""],
-                [
-                    [
-                        str(s["i"]),
-                        str(s["j"]),
-                        s["det_L"],
-                        "least max(i, j)" if [s["i"], s["j"]] == best else "",
-                    ]
-                    for s in data["splits"]
-                ],
-            )
-        )
-    if data["split"]:
-        blocks.append(split_text(data["split"]))
-    for name, values in data["gains"].items():
-        if name != "stable" and values:
-            blocks.append(f"{name} = ({', '.join(values)})\n")
-    return "\n".join(block for block in blocks if block)
+    if unsure:
+        blocks.append(f"list of rank drops not proved complete for {', '.join(unsure)}\n")
+    return "\n".join(blocks)
+
+
+def drop_row(drop: Mapping[str, Any]) -> list[str]:
+    """One rank drop as a row: subspace, conditions, completeness of its list."""
+    where = " and ".join(f"{zero} = 0" for zero in drop["zeros"])
+    excluded = " (excluded by declaration)" if drop["excluded_by_declaration"] else ""
+    return [drop["subspace"], where + excluded, "proved" if drop["complete"] else "not proved"]
+
+
+def splits_text(data: Mapping[str, Any]) -> str:
+    """The regular splits with their determinants; the best one is marked."""
+    if not data["splits"]:
+        return ""
+    return table(["i", "j", "det L", ""], [split_row(s, data["best_split"]) for s in data["splits"]])
+
+
+def split_row(split: Mapping[str, Any], best: list[int]) -> list[str]:
+    """One split as a row: sizes, determinant, a mark for the best."""
+    sizes = [split["i"], split["j"]]
+    return [*map(str, sizes), split["det_L"], "least max(i, j)" if sizes == best else ""]
+
+
+def gains_text(gains: Mapping[str, Any]) -> list[str]:
+    """One line for each vector of gains."""
+    return [f"{name} = ({', '.join(values)})\n" for name, values in gains.items() if name != "stable" and values]
 
 
 def split_text(chosen: Mapping[str, Any]) -> str:

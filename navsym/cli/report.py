@@ -39,6 +39,7 @@ def command(
     from navsym.methods.verification import unexpected
 
     chosen = load(modules or [])
+    make_folder(out)                    # before minutes are spent on what cannot be written
     document = read_document(source, modules or []) if source else decided(chosen, jobs, seconds, fresh)
 
     names = write_pages(out, document, {module.name: module.paper for module in chosen})
@@ -70,8 +71,10 @@ def read_document(path: Path, modules: list[str]) -> dict[str, Any]:
     document = read_json(path, limit=200_000_000)
     where = str(path)
     expected = "a document of navsym verify --json"
-    if not isinstance(document, dict) or not {"claims", "papers", "counts"} <= set(document):
-        raise ShapeError(f"expected {expected}; got other keys; make it with navsym verify --json", where=where)
+    needed = {"claims", "papers", "counts"}
+    if not isinstance(document, dict) or not needed <= set(document):
+        came = f"no {', '.join(sorted(needed - set(document)))}" if isinstance(document, dict) else "no object"
+        raise ShapeError(f"expected {expected}; got {came}; make it with navsym verify --json", where=where)
     for place, record in enumerate(document["claims"]):
         if not isinstance(record, dict) or (lacking := KEYS - set(record)):
             what = ", ".join(sorted(lacking)) if isinstance(record, dict) else "the record"
@@ -83,15 +86,19 @@ def read_document(path: Path, modules: list[str]) -> dict[str, Any]:
     return {"claims": claims, "papers": papers, "counts": {s: statuses.count(s) for s in document["counts"]}}
 
 
-def write_pages(out: Path, document: dict[str, Any], cards: dict[str, Any]) -> list[str]:
-    """Write the files of the report as they are made, each whole or not at all; their names."""
-    from navsym.report.page import pages
-
+def make_folder(out: Path) -> None:
+    """The folder of the pages and that of their certificates; raises OutputError where they cannot be made."""
     try:
         (out / "certificates").mkdir(parents=True, exist_ok=True)
     except OSError as error:
         message = f"expected a folder that can be made; got '{error.strerror}'; choose another --out"
         raise OutputError(message, where=str(out)) from error
+
+
+def write_pages(out: Path, document: dict[str, Any], cards: dict[str, Any]) -> list[str]:
+    """Write the files of the report as they are made, each whole or not at all; their names."""
+    from navsym.report.page import pages
+
     names, words = [], wordings()
     resume = f"finished pages are in {out}, the index is not; the same command makes them all in seconds"
     with Progress("claims set in type", len(document["claims"]), resume) as bar:

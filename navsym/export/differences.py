@@ -246,9 +246,10 @@ def of_export(folder: Path) -> dict[str, Formula]:
         return found
     except NavsymError:
         raise
-    except (ValueError, KeyError, TypeError, AttributeError):
+    except (ValueError, KeyError, TypeError, AttributeError) as error:
         raise DomainError(
-            "expected a manifest of navsym export; got something else; do export again", where=where
+            f"expected a manifest of navsym export; got one without its keys ({type(error).__name__}: {error}); "
+            "do export again", where=where
         ) from None
 
 

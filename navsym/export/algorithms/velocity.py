@@ -64,7 +64,9 @@ def require_order(instants: list[sp.Expr], symbol: sp.Symbol, ends: tuple[Any, A
         gap = sp.expand(late - early)
         linear = gap.is_polynomial(symbol) and sp.Poly(gap, symbol).degree() <= 1
         if not linear or any(enclose(gap.subs(symbol, end)) < 0 for end in ends):
-            raise DomainError("expected instants that keep their order in the regime; got others; do split it")
+            raise DomainError(
+                f"expected instants that keep their order in the regime; got {early} before {late}; do split it"
+            )
 
 
 def step_formulas() -> tuple[sp.Expr, ...]:

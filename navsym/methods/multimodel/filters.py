@@ -126,8 +126,9 @@ def read_bank(document: Mapping[str, Any]) -> BankFile:
     for key in ("mean", "covariance", "probabilities"):
         if not isinstance(start, Mapping) or key not in start:
             raise ShapeError(f"initial.{key}: expected mean, covariance and probabilities; got no {key}; add it")
-    if not isinstance(document["models"], list) or not isinstance(document["measurements"], list):
-        raise ShapeError("models: expected lists of models and of measurements; got something else; use [ ]")
+    for key in ("models", "measurements"):
+        if not isinstance(document[key], list):
+            raise ShapeError(f"{key}: expected a list; got {type(document[key]).__name__}; use [ ]")
     only_keys(start, KEYS_OF_START, "initial")
     for i, model in enumerate(document["models"]):
         if isinstance(model, Mapping):

@@ -100,7 +100,8 @@ def length(text: Any) -> Fraction:
 def sweep_from(document: Mapping[str, Any]) -> Sweep:
     """The study that a configuration file describes; raises DomainError that names the key."""
     if not isinstance(document, Mapping):
-        raise DomainError("expected one JSON object; got something else; see the keys of a sweep")
+        raise DomainError("expected one JSON object; got "
+                          f"{type(document).__name__}; see the keys of a sweep")
     unknown = set(document) - set(Sweep.__dataclass_fields__)
     missing = {"kind", "jobs"} - set(document)
     if unknown or missing:

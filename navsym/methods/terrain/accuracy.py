@@ -64,7 +64,10 @@ def accuracy_map(
     Raises DomainError for a length or sigma that is not positive, and for fewer than three points.
     """
     if not (length > 0 and sigma > 0 and points >= 3 and min(places) >= 1):
-        raise DomainError("length, sigma: expected positive numbers and 3 or more points; got others; mend them")
+        raise DomainError(
+            "expected a positive length and sigma, 3 or more points and places; got "
+            f"{length:g}, {sigma:g}, {points} and {places}; mend them"
+        )
     cell = max(terrain.dx, terrain.dy)
     rivals = Hypotheses((terrain.dx, terrain.dy), (15, 15)) if rivals is None else rivals.position_only
     near = too_near(rivals, 3 * cell if exclusion is None else exclusion)

@@ -59,7 +59,8 @@ class Track:
         put("variance", named("variance", self.variance, (N, 3), "rows by East, North, Up"))
         put("turn", named("turn", self.turn, (N, 3, 3), "one rotation per row"))
         if not (self.variance > 0).all():
-            raise DomainError("variance: expected positive numbers; got others; leave them out if unknown")
+            least = float(self.variance.min())
+            raise DomainError(f"variance: expected positive numbers; got {least:g}; leave them out if unknown")
         late = np.flatnonzero(np.diff(self.t) <= 0)
         if late.size:
             raise DomainError(
