@@ -77,44 +77,46 @@ def signature(function: ExportedFunction) -> str:
     return line if len(line) < 100 else line.replace("(", "(\n    ", 1).replace(", ", ",\n    ")
 
 
+HEADER = """/* {license} */
+#ifndef {guard}
+#define {guard}
+
+#include "navsym_status.h"
+
+#ifdef __cplusplus
+extern "C" {{
+#endif
+
+/**
+ * @brief {title}
+ *
+ * @verbatim
+{summary}
+ * @endverbatim
+ *
+{parameters}
+ * @return NAVSYM_OK; otherwise no result is written.
+ */
+{signature};
+
+#ifdef __cplusplus
+}}
+#endif
+
+#endif
+"""
+
+
 def header(function: ExportedFunction, license_: str) -> str:
     """Declaration with everything a reader must know before calling it."""
-    guard = f"NAVSYM_{function.name.upper()}_H"
-    lines = [f" * {line}" for line in summary(function)]
     params = [f" * @param[in]  {text}" for text in argument_texts(function)]
     params += [f" * @param[out] {o.name}  {shape_text(o)}; unit {unit_of(o.unit)}" for o in function.outputs]
-    return "\n".join(
-        [
-            f"/* {license_} */",
-            f"#ifndef {guard}",
-            f"#define {guard}",
-            "",
-            '#include "navsym_status.h"',
-            "",
-            "#ifdef __cplusplus",
-            'extern "C" {',
-            "#endif",
-            "",
-            "/**",
-            f" * @brief {safe_comment(function.sources[0].title or function.name)}",
-            " *",
-            " * @verbatim",
-            *map(safe_comment, lines),
-            " * @endverbatim",
-            " *",
-            *map(safe_comment, params),
-            " * @return NAVSYM_OK; otherwise no result is written.",
-            " */",
-            f"{signature(function)};",
-            "",
-            "#ifdef __cplusplus",
-            "}",
-            "#endif",
-            "",
-            "#endif",
-            "",
-        ]
-    )
+    return HEADER.format(
+        license=license_, guard=f"NAVSYM_{function.name.upper()}_H", signature=signature(function),
+        title=safe_comment(function.sources[0].title or function.name),
+        summary="\n".join(safe_comment(f" * {line}") for line in summary(function)),
+        parameters="\n".join(map(safe_comment, params)),
+    )  # fmt: skip
 
 
 def argument_texts(function: ExportedFunction) -> list[str]:

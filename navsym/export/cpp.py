@@ -67,47 +67,43 @@ def header(functions: Sequence[ExportedFunction], license_: str) -> str:
 def source(function: ExportedFunction, s: Spelling) -> str:
     """Result structure and function."""
     real, names = function.arithmetic.name, code_names(function)
+    targets = [f"result.{o.name}{f'[{e}]' if o.shape else ''}" for o in function.outputs for e in range(o.size)]
     lines = [f"struct {function.name}_result {{", "    Status status = Status::not_finite;"]
     lines += [f"    {member(o, real)};" for o in function.outputs] + ["};", ""]
     lines += ["/**", *(f" * {safe_comment(line)}" for line in summary(function)), " */"]
     arguments = ", ".join(parameter(a, real) for a in function.called_with)
-    lines.append(f"inline {function.name}_result {function.name}({arguments}) noexcept")
-    lines += ["{", f"    {function.name}_result result;"]
-    largest = f"std::numeric_limits<{real}>::max()"
-    tests = [f"({n} >= {bound(i.low, s, largest)}) && ({n} <= {bound(i.high, s, largest)})"
-             for i, n in zip(function.inputs, names, strict=True)]  # fmt: skip
-    if tests:
-        joined = "\n          && ".join(tests)
-        lines += [
-            f"    if (!({joined})) {{",
-            "        result.status = Status::domain;",
-            "        return result;",
-            "    }",
-        ]
-    targets = [
-        f"result.{o.name}[{e}]" if o.shape else f"result.{o.name}"
-        for o in function.outputs
-        for e in range(o.size)
+    lines += [f"inline {function.name}_result {function.name}({arguments}) noexcept"]
+    lines += ["{", f"    {function.name}_result result;", *domain_test(function, names, s)]
+    lines += regimes(function, names, targets, s)
+    finite = "\n        && ".join(f"std::isfinite({t})" for t in targets)
+    lines += [f"    if ({finite}) {{", "        result.status = Status::ok;", "    }", "    return result;", "}"]
+    return "\n".join([*lines, ""])
+
+
+def domain_test(function: ExportedFunction, names: list[str], s: Spelling) -> list[str]:
+    """Comparisons that NaN fails."""
+    largest = f"std::numeric_limits<{function.arithmetic.name}>::max()"
+    tests = [
+        f"({n} >= {bound(i.low, s, largest)}) && ({n} <= {bound(i.high, s, largest)})"
+        for i, n in zip(function.inputs, names, strict=True)
     ]
+    if not tests:
+        return []
+    joined = "\n          && ".join(tests)
+    return [f"    if (!({joined})) {{", "        result.status = Status::domain;", "        return result;", "    }"]
+
+
+def regimes(function: ExportedFunction, names: list[str], targets: list[str], s: Spelling) -> list[str]:
+    """The formulas of every regime."""
+    lines = []
     for place, piece in enumerate(function.pieces):
         temporaries, results = assignments(piece, names, s)
-        test = (
-            "" if piece.limit is None else f"if ({names[function.switch or 0]} <= {s.number(piece.limit)}) "
-        )
+        test = "" if piece.limit is None else f"if ({names[function.switch or 0]} <= {s.number(piece.limit)}) "
         lines.append(f"    {'else ' if place else ''}{test}{{  // {piece.source.claim}")
-        lines += [f"        const {real} {name} = {text};" for name, text in temporaries]
+        lines += [f"        const {function.arithmetic.name} {name} = {text};" for name, text in temporaries]
         lines += [f"        {target} = {text};" for target, text in zip(targets, results, strict=True)]
         lines.append("    }")
-    finite = "\n        && ".join(f"std::isfinite({t})" for t in targets)
-    lines += [
-        f"    if ({finite}) {{",
-        "        result.status = Status::ok;",
-        "    }",
-        "    return result;",
-        "}",
-        "",
-    ]
-    return "\n".join(lines)
+    return lines
 
 
 def parameter(argument: Argument, real: str) -> str:

@@ -293,43 +293,66 @@ def fortran_source(function: ExportedFunction, name: str) -> list[str]:
     return [*lines, "    status = 0", "  end subroutine", ""]
 
 
+FORTRAN_TEST = """! {license}
+program test_vectors
+  use, intrinsic :: iso_fortran_env, only: real64
+  use navsym_functions
+  implicit none
+  integer, parameter :: total = {total}
+  character(len=200) :: name
+  character(len={longest}) :: line
+  real(real64) :: v({widest}), r({most}), unit, worst(total)
+  integer :: expected, status, io, n, m, j, k, counts(total), wrong(total)
+  counts = 0
+  wrong = 0
+  worst = 0.0d0
+  open(10, file="vectors.txt", status="old")
+  do
+    read(10, "(a)", iostat=io) line
+    if (io /= 0) exit
+    read(line, *) name
+    select case (trim(name))
+{cases}
+    end select
+    counts(k) = counts(k) + 1
+    if (status /= expected) wrong(k) = wrong(k) + 1
+    if (status == 0 .and. expected == 0) then
+      do j = 1, m
+        if (.not. (r(j) >= v(n + j) .and. r(j) <= v(n + m + j))) wrong(k) = wrong(k) + 1
+        unit = abs(v(n + 2 * m + j)) * epsilon(1.0d0)
+        if (unit > 0.0d0 .and. v(n + m + j) - v(n + 2 * m + j) < 1000 * unit) then
+          worst(k) = max(worst(k), abs(r(j) - v(n + 2 * m + j)) / unit)
+        end if
+      end do
+    end if
+  end do
+{prints}
+  if (any(wrong > 0)) error stop 1
+end program
+"""
+
+
 def fortran_test(functions: Sequence[ExportedFunction], names: dict[str, str], license_: str) -> str:
+    """The program that reads the vectors, with a case for each function."""
     widest = max(len(f.inputs) + 3 * f.size for f in functions)
-    most = max(f.size for f in functions)
-    lines = [f"! {license_}", "program test_vectors", "  use, intrinsic :: iso_fortran_env, only: real64",
-             "  use navsym_functions", "  implicit none", f"  integer, parameter :: total = {len(functions)}",
-             "  character(len=200) :: name", "  character(len=20000) :: line",
-             f"  real(real64) :: v({widest}), r({most}), unit, worst(total)",
-             "  integer :: expected, status, io, n, m, j, k, counts(total), wrong(total)",
-             "  counts = 0", "  wrong = 0",
-             "  worst = 0.0d0", '  open(10, file="vectors.txt", status="old")', "  do",
-             '    read(10, "(a)", iostat=io) line', "    if (io /= 0) exit", "    read(line, *) name",
-             "    select case (trim(name))"]  # fmt: skip
-    for number, function in enumerate(functions, start=1):
-        n, k, outputs = len(function.inputs), 0, []
-        for output in function.outputs:
-            outputs.append(f"r({k + 1}:{k + output.size})" if output.shape else f"r({k + 1})")
-            k += output.size
-        arguments = ", ".join([*(f"v({j + 1})" for j in range(n)), *outputs, "status"])
-        lines += [f'    case ("{function.name}")', f"      n = {n}", f"      m = {function.size}",
-                  f"      k = {number}",
-                  "      read(line, *) name, expected, v(1:n + 3 * m)",
-                  f"      call {names[function.name]}({arguments})"]  # fmt: skip
-    lines += ["    end select", "    counts(k) = counts(k) + 1", "    if (status /= expected) wrong(k) = wrong(k) + 1",
-              "    if (status == 0 .and. expected == 0) then", "      do j = 1, m",
-              "        if (.not. (r(j) >= v(n + j) .and. r(j) <= v(n + m + j))) wrong(k) = wrong(k) + 1",
-              "        unit = abs(v(n + 2 * m + j)) * epsilon(1.0d0)",
-              "        if (unit > 0.0d0 .and. v(n + m + j) - v(n + 2 * m + j) < 1000 * unit) then",
-              "          worst(k) = max(worst(k), abs(r(j) - v(n + 2 * m + j)) / unit)", "        end if",
-              "      end do", "    end if", "  end do"]  # fmt: skip
-    for number, function in enumerate(functions, start=1):
-        lines.append(f'  print "(a,i0,a,i0,a,f0.3)", "{function.name} vectors ", counts({number}), " wrong ", '
-                     f'wrong({number}), " worst ", worst({number})')  # fmt: skip
-    return "\n".join(
-        [
-            *(p for line in lines for p in continued(line)),
-            "  if (any(wrong > 0)) error stop 1",
-            "end program",
-            "",
-        ]
-    )
+    cases = [line for k, f in enumerate(functions, start=1) for line in fortran_case(f, names[f.name], k)]
+    prints = [
+        f'  print "(a,i0,a,i0,a,f0.3)", "{f.name} vectors ", counts({k}), " wrong ", wrong({k}), " worst ", worst({k})'
+        for k, f in enumerate(functions, start=1)
+    ]
+    text = FORTRAN_TEST.format(
+        license=license_, total=len(functions), widest=widest, most=max(f.size for f in functions),
+        longest=max(20000, 26 * widest + 300), cases="\n".join(cases), prints="\n".join(prints),
+    )  # fmt: skip
+    return "\n".join(part for line in text.splitlines() for part in continued(line)) + "\n"
+
+
+def fortran_case(function: ExportedFunction, name: str, number: int) -> list[str]:
+    """Reading a line of vectors of one function, and its call."""
+    n, k, outputs = len(function.inputs), 0, []
+    for output in function.outputs:
+        outputs.append(f"r({k + 1}:{k + output.size})" if output.shape else f"r({k + 1})")
+        k += output.size
+    arguments = ", ".join([*(f"v({j + 1})" for j in range(n)), *outputs, "status"])
+    return [f'    case ("{function.name}")', f"      n = {n}", f"      m = {function.size}", f"      k = {number}",
+            "      read(line, *) name, expected, v(1:n + 3 * m)", f"      call {name}({arguments})"]  # fmt: skip
