@@ -201,3 +201,62 @@ def test_angles_agree_with_numbers_for_the_angle(seed):
     theta = [sp.N(value.subs(at), 40) for value in found.measurements[0].companion]
     combined = sum((t * r for t, r in zip(theta, rows, strict=False)), sp.zeros(1, 4))
     assert max(abs(x) for x in combined - rows[found.joint_dimension]) < 1e-25
+
+
+# -- dense systems, checked over a finite field --------------------------------------------------------
+
+
+def dense_system(seed, n=8, parameters=4):
+    """Random numbers in a third of the places and every parameter in one."""
+    source = random.Random(seed)
+    symbols = sp.symbols(f"a0:{parameters}", real=True)
+    F = sp.Matrix(n, n, lambda i, j: source.randint(-3, 3) if source.random() < 0.3 else 0)
+    for symbol in symbols:
+        F[source.randrange(n), source.randrange(n)] = symbol
+    H = sp.zeros(1, n)
+    for place in source.sample(range(n), 2):
+        H[0, place] = source.choice([1, -1, 2])
+    return LinearModel(sp.ImmutableMatrix(F), None, sp.ImmutableMatrix(H)), symbols
+
+
+def rank_modulo(rows, p):
+    """Rank over the field of p elements, by schoolbook elimination."""
+    rows, rank = [row[:] for row in rows], 0
+    for column in range(len(rows[0])):
+        pivot = next((k for k in range(rank, len(rows)) if rows[k][column] % p), None)
+        if pivot is None:
+            continue
+        rows[rank], rows[pivot] = rows[pivot], rows[rank]
+        inverse = pow(rows[rank][column], -1, p)
+        for k in range(rank + 1, len(rows)):
+            factor = rows[k][column] * inverse % p
+            rows[k] = [(x - factor * y) % p for x, y in zip(rows[k], rows[rank], strict=True)]
+        rank += 1
+    return rank
+
+
+def krylov_modulo(F, h, p):
+    rows = [h]
+    while len(rows) < len(F):
+        rows.append([sum(x * F[i][j] for i, x in enumerate(rows[-1])) % p for j in range(len(F))])
+    return rows
+
+
+@pytest.mark.parametrize("seed", [0, 8, 10])
+def test_a_dense_system_has_all_its_drops_also_over_a_finite_field(seed):
+    """One parameter runs through all p values: the rank is smaller exactly at the zeros of the conditions."""
+    p, (model, symbols) = 101, dense_system(seed)
+    found = observe(model)
+    drops, complete = drops_and_completeness(found)
+    assert complete["z1"] and found.measurements[0].dimension == 8
+    source = random.Random(seed)
+    others = {symbol: source.randrange(p) for symbol in symbols[1:]}
+    conditions = [
+        [sp.Poly(zero.subs(others), symbols[0], modulus=p) for zero in drop.zeros]
+        for drop in drops if drop.subspace == "z1"
+    ]
+    F = model.F.subs(others)
+    for value in range(p):
+        numbers = [[int(x.subs(symbols[0], value)) % p for x in F[i, :]] for i in range(8)]
+        smaller = rank_modulo(krylov_modulo(numbers, [int(x) % p for x in model.H], p), p) < 8
+        assert smaller == any(all(f.eval(value) % p == 0 for f in system) for system in conditions)

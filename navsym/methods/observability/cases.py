@@ -13,6 +13,8 @@ Components get smaller from case to case, so that this ends; what ends a case ea
 
 from __future__ import annotations
 
+import itertools
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
@@ -31,6 +33,9 @@ MINORS = 3
 SOLUTION = 12
 #: Products of terms for one entry on the way; beyond that a minor is not formed, and the list not called complete.
 PRODUCTS = 60_000
+#: The same when the locus is written down as the common zeros of all maximal minors; so many of them at most,
+#: and so many terms together, since nobody reads a longer condition.
+LAST_PRODUCTS, LAST_MINORS, LAST_TERMS = 16_000_000, 8, 40_000
 
 
 @dataclass(slots=True)
@@ -51,7 +56,38 @@ def drops_by_cases(rows: Matrix, rank: int, ring: Ring) -> tuple[list[System], b
     """
     search = Search(ring)
     visit(search, rows, rank, [])
+    if not search.complete:
+        listed = drops_by_all_minors(rows, rank, ring)
+        if listed is not None:
+            return listed, True
     return search.found, search.complete
+
+
+def drops_by_all_minors(rows: Matrix, rank: int, ring: Ring) -> list[System] | None:
+    """The drop locus by its definition, or None when it is too long to write down.
+
+    The rank is smaller exactly where all maximal minors of the remainder vanish; for a square one that is its
+    determinant, factored. Dense systems end here: cases on a pivot with thousands of terms do not end.
+    """
+    reduced = remainder(rows)
+    wanted = rank - reduced.regular
+    if wanted <= 0 or not reduced.rows:
+        return []
+    width = len(reduced.rows[0])
+    if math.comb(len(reduced.rows), wanted) * math.comb(width, wanted) > LAST_MINORS:
+        return None
+    minors = []
+    try:
+        for chosen in itertools.combinations(reduced.rows, wanted):
+            for columns in itertools.combinations(range(width), wanted):
+                minor, full, _ = minor_on(chosen, wanted, [], columns, ring, LAST_PRODUCTS)
+                if full:
+                    minors.append(minor)
+    except TooLargeError:
+        return None
+    if sum(map(len, minors)) > LAST_TERMS:
+        return None
+    return components(minors, ring)
 
 
 def visit(search: Search, rows: Matrix, rank: int, system: System) -> None:
@@ -183,7 +219,8 @@ def minors_on(rows: Matrix, wanted: int, system: System, ring: Ring) -> tuple[li
 
 
 def minor_on(
-    rows: Matrix, wanted: int, system: System, columns: Sequence[int], ring: Ring
+    rows: Sequence[list[Poly]], wanted: int, system: System, columns: Sequence[int], ring: Ring,
+    products: int = PRODUCTS,
 ) -> tuple[Poly, bool, int]:
     """(last pivot, whether it is a minor of the wanted size, its column) of an elimination on a system.
 
@@ -197,7 +234,7 @@ def minor_on(
         if place is None:
             return last, False, used
         i, used = place
-        affordable(work[step:], work[i][used])
+        affordable(work[step:], work[i][used], products)
         work[step], work[i] = work[i], work[step]
         eliminate(work, step, used, last)
         last = work[step][used]
@@ -205,11 +242,11 @@ def minor_on(
     return last, True, used
 
 
-def affordable(rows: Matrix, pivot: Poly) -> None:
+def affordable(rows: Matrix, pivot: Poly, products: int) -> None:
     """Refuse an elimination step whose products are too long."""
     longest = max(len(entry) for row in rows for entry in row)
-    if len(pivot) * longest > PRODUCTS:
-        raise TooLargeError(f"expected entries of at most {PRODUCTS} products; got more; fix some parameters")
+    if len(pivot) * longest > products:
+        raise TooLargeError(f"expected entries of at most {products} products; got more; fix some parameters")
 
 
 def pivot_on(work: Matrix, step: int, free: Sequence[int], system: System) -> tuple[int, int] | None:
