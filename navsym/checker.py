@@ -80,6 +80,7 @@ def label(item: Any) -> str:
 
 def distinct(item: Any) -> list[str]:
     names = array(item, label)
+    need(all(re.fullmatch("[A-Za-z][A-Za-z0-9_]*", name) for name in names), "expected names")
     need(len({"pi", *names}) == len(names) + 1, "a name given twice, or pi")
     return names
 
@@ -292,7 +293,7 @@ def rank(item: Any) -> None:
     need(isinstance(point, dict) and set(point) == set(names), "the point gives every symbol")
     here = {s: Jet(arb(number(q))) for s, q in point.items()}
     need(len(array(null, list)) == n - whole(r, 0, n), "expected n - r null vectors")
-    chosen = [M[whole(k, 0, len(M) - 1)] for k in array(rows, int, r)]
+    chosen = array(rows, lambda k: M[whole(k, 0, len(M) - 1)], r)
     det = arb_mat([[e[0] for e in row] for row in table(chosen + null, n, here, arb)]).det()
     need(not det.contains(0), "the rows and null vectors may be dependent at the point")
     for row, v in ((row, v) for row in table(M, n, names, exact) for v in table(null, n, names, exact)):

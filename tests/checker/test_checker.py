@@ -9,6 +9,7 @@ import re
 import pytest
 
 from navsym import checker
+from tests.checker.adversary import tricks
 from tests.checker.examples import EXPONENTIAL, GAP, GOOD, PARABOLA, RANGE, TOUCH
 from tests.checker.forgeries import (
     BROKEN,
@@ -21,6 +22,7 @@ from tests.checker.forgeries import (
     changed,
     enclosed,
     identity,
+    judged,
     readable,
     verdict,
 )
@@ -70,6 +72,12 @@ def test_an_answer_leaves_the_precision_of_the_caller_alone():
     before = checker.ctx.prec, checker.ctx.cap
     checker.check(PARABOLA)
     assert (checker.ctx.prec, checker.ctx.cap) == before
+
+
+def test_no_trick_is_accepted_and_none_is_an_error_of_another_kind():
+    found = list(tricks())
+    assert len(found) > 1500
+    assert [name for name, item in found if judged(item, checker) == ""] == []
 
 
 def alterations(item, rng):
