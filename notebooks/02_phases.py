@@ -94,7 +94,7 @@ for column, (state, answer) in zip(axes.T, ANSWER.items(), strict=True):
             axis.axvspan(float(regime.lower), float(regime.upper), color="0.9" if k % 2 else "0.97", zorder=0)
     column[0].set_title(NAMES[state])
     column[2].set_xlabel("T, Schuler units")
-for axis, name in zip(axes[:, 0], ("guaranteed error, $\\sigma$", "instants, Schuler units", "weights"), strict=True):
+for axis, name in zip(axes[:, 0], (r"guaranteed error, $\sigma$", "instants, Schuler units", "weights"), strict=True):
     axis.set_ylabel(name)
 figure.tight_layout()
 

@@ -12,7 +12,7 @@ import typer
 
 from navsym.cli._progress import Progress
 from navsym.cli.output import emit, table
-from navsym.errors import EmptyError
+from navsym.errors import EmptyError, NavsymError
 
 LARGEST = 50_000_000
 #: Every key that a certificate has: a file of nothing else is one, even if it lost its kind.
@@ -54,6 +54,9 @@ Part = tuple[Callable[[Path], list[dict[str, Any]]], Path]
 
 def parts_of(path: Path) -> list[Part]:
     """What there is to check: a file, or the exported code and every JSON file of a folder."""
+    if not path.exists():
+        message = "expected a file or folder that exists; got none of this name; do correct it"
+        raise NavsymError(message, where=str(path), kind="missing-file")
     if path.is_dir():
         return [(check_exported, path), *((check_folder_file, file) for file in sorted(path.rglob("*.json")))]
     return [(lambda file: [check_file(file)], path)]

@@ -22,7 +22,7 @@ from typing import Any, NoReturn
 
 from navsym import __version__
 from navsym.cli._progress import Ticker
-from navsym.cli.output import dumps, put, visible, wants_colour
+from navsym.cli.output import OutputError, dumps, put, visible, wants_colour
 from navsym.errors import ExpressionSyntaxError, MissingEngineError, NavsymError
 
 FOLDER = Path(__file__).parent
@@ -219,23 +219,29 @@ def internal(error: Exception) -> NavsymError:
 
 def report(error: NavsymError, as_json: bool) -> int:
     """Print the error where it belongs and return its exit status."""
+    line = ": ".join(part for part in (error.kind, error.where, error.message) if part)
     try:
         if as_json:
             put(dumps(error.as_json()) + "\n")
         else:
-            complain(": ".join(part for part in (error.kind, error.where, error.message) if part))
+            complain(line)
     except BrokenPipeError:
         silence_stdout()
+    except OutputError:                     # standard output is full or closed: the line goes where it can
+        silence_stdout()
+        complain(line)
     return error.status
 
 
 def complain(text: str) -> None:
-    """One line on standard error, the program's name in red on a terminal."""
+    """One line on standard error, the program's name in red on a terminal; nothing where there is no standard error."""
+    if sys.stderr is None:
+        return
     name = "\x1b[1;31mnavsym\x1b[0m" if wants_colour(sys.stderr) else "navsym"
     put(f"{name}: {visible(text)}\n", sys.stderr)
 
 
 def silence_stdout() -> None:
-    """After a broken pipe: let the interpreter's last flush go nowhere."""
-    with contextlib.suppress(OSError, ValueError):
+    """After a broken pipe or a full disk: let the interpreter's last flush go nowhere."""
+    with contextlib.suppress(OSError, ValueError, AttributeError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -67,11 +67,27 @@ def plain(value: Any) -> Any:
 
 
 def put(text: str, stream: IO[str] | None = None) -> None:
-    """Write text in UTF-8, whatever the locale says; lone surrogates of file names become '?'."""
+    """Write text in UTF-8, whatever the locale says; lone surrogates of file names become '?'.
+
+    Raises OutputError for an output that is closed or full; BrokenPipeError when its reader went away.
+    """
     stream = sys.stdout if stream is None else stream
     LINE.clear()
+    if stream is None:                         # Python's word for an output that was closed before the start
+        raise OutputError("expected an output that is open; got a closed one; do open it", where="standard output")
+    try:
+        write_whole(stream, text.encode("utf-8", "replace"))
+    except BrokenPipeError:
+        raise
+    except OSError as error:
+        reason = error.strerror or type(error).__name__
+        message = f"expected an output that can be written; got '{reason}'; do redirect it elsewhere"
+        raise OutputError(message, where="standard output") from error
+
+
+def write_whole(stream: IO[str], data: bytes) -> None:
+    """Bytes to a text stream, behind what it holds already."""
     stream.flush()
-    data = text.encode("utf-8", "replace")
     raw = getattr(stream, "buffer", None)
     if raw is None:
         stream.write(data.decode("utf-8"))

@@ -39,8 +39,9 @@ def command(
     from navsym.methods.verification import unexpected
 
     chosen = load(modules or [])
+    given = read_document(source, modules or []) if source else None
     make_folder(out)                    # before minutes are spent on what cannot be written
-    document = read_document(source, modules or []) if source else decided(chosen, jobs, seconds, fresh)
+    document = given or decided(chosen, jobs, seconds, fresh)
 
     names = write_pages(out, document, {module.name: module.paper for module in chosen})
     pages = [name for name in names if name.endswith(".html")]

@@ -88,3 +88,8 @@ def test_a_range_that_is_none_is_bad_input(model, capsys):
 def test_formulate_writes_mps(model, capsys):
     status, data = document(capsys, "formulate", model, "--target", "y3", "--set", "T=1", "--to", "mps", "--grid", "5")
     assert status == 0 and data["text"].startswith("NAME") and data["text"].endswith("ENDATA\n")
+
+
+def test_a_certificate_that_is_not_there_is_bad_input_and_no_rejection(tmp_path, capsys):
+    status, data = document(capsys, "check", str(tmp_path / "nothing.json"))
+    assert status == 2 and data["error"]["kind"] == "missing-file" and "nothing.json" in data["error"]["where"]

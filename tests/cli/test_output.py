@@ -5,7 +5,10 @@ from __future__ import annotations
 import io
 import json
 import os
+import shlex
 import stat
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +16,8 @@ import pytest
 
 from navsym.cli import output
 from navsym.cli.output import OutputError, dumps, emit, plain_table, put, table, visible, write_text
+
+ROOT = Path(__file__).resolve().parents[2]
 
 # Documents
 
@@ -160,3 +165,16 @@ def test_a_link_is_followed_and_a_device_is_written_to(tmp_path: Path) -> None:
     write_text(tmp_path / "link", "new")
     write_text(os.devnull, "gone")
     assert (tmp_path / "link").is_symlink() and (tmp_path / "target").read_text() == "new"
+
+
+SHOW = [sys.executable, "-m", "navsym", "cite", "guaranteed_velocity:4.3.u2"]
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
+@pytest.mark.parametrize("options", [[], ["--json"]], ids=["text", "json"])
+@pytest.mark.parametrize("redirection", [">/dev/full", ">&-"])
+def test_an_output_that_is_full_or_closed_is_one_line_on_standard_error(options, redirection):
+    line = shlex.join([*SHOW, *options]) + " " + redirection
+    done = subprocess.run(["sh", "-c", line], cwd=ROOT, capture_output=True, text=True, timeout=120, check=False)
+    assert done.returncode == 2
+    assert len(done.stderr.splitlines()) == 1 and done.stderr.startswith("navsym: output: standard output: expected")

@@ -55,3 +55,9 @@ def test_a_folder_that_cannot_be_made_is_named(folder, tmp_path, capsys):
     words = ["report", "--from", str(folder / "verdicts.json"), "--out", str(tmp_path / "file" / "x"), "--json"]
     assert run(words) == 2
     assert json.loads(capsys.readouterr().out)["error"]["kind"] == "output"
+
+
+def test_a_folder_that_cannot_be_made_is_found_before_anything_is_decided(capsys, monkeypatch):
+    monkeypatch.setattr("navsym.cli.verify.decided", lambda *_: pytest.fail("decided first"))
+    assert run(["report", "alpha_beta_filter", "--out", "/dev/null", "--json"]) == 2
+    assert json.loads(capsys.readouterr().out)["error"]["kind"] == "output"
