@@ -34,8 +34,12 @@ def default_path() -> Path:
     folder = os.environ.get("NAVSYM_CACHE")
     if folder:
         return Path(folder) / "results.sqlite"
-    base = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
-    return Path(base) / "navsym" / "results.sqlite"
+    try:
+        base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+    except RuntimeError:
+        message = "expected a home folder; got none; set NAVSYM_CACHE to a folder"
+        raise StoreError(message, where="HOME") from None
+    return base / "navsym" / "results.sqlite"
 
 
 def key_of(*parts: str) -> str:

@@ -74,3 +74,34 @@ def test_nothing_acknowledged_is_lost_when_writers_are_killed(tmp_path):
     found = Store(path).get(keys)
     assert set(found) == set(keys)
     assert all(found[key] == {"count": int(key.split("-")[1])} for key in keys)
+
+
+def test_a_machine_without_a_home_is_told_to_set_the_folder(monkeypatch):
+    monkeypatch.delenv("NAVSYM_CACHE", raising=False)
+    monkeypatch.delenv("XDG_CACHE_HOME", raising=False)
+
+    def none(self):
+        raise RuntimeError("Could not determine home directory.")
+
+    monkeypatch.setattr("pathlib.PosixPath.expanduser", none)
+    with pytest.raises(StoreError, match="set NAVSYM_CACHE"):
+        Store()
+
+
+def test_a_cache_that_is_a_file_is_said(monkeypatch, tmp_path):
+    (tmp_path / "file").write_text("x")
+    monkeypatch.setenv("NAVSYM_CACHE", str(tmp_path / "file"))
+    with pytest.raises(StoreError, match="NAVSYM_CACHE"):
+        Store()
+
+
+def test_a_store_of_another_layout_is_said_and_left_alone(tmp_path):
+    with sqlite3.connect(tmp_path / "s.sqlite") as raw:
+        raw.execute("CREATE TABLE results (key TEXT PRIMARY KEY, value TEXT)")
+        raw.execute("INSERT INTO results VALUES ('k', 'old')")
+    store = Store(tmp_path / "s.sqlite")
+    with pytest.raises(StoreError, match="read"):
+        store.get(["k"])
+    with pytest.raises(StoreError, match="written"):
+        store.put("k", {"new": 1})
+    assert raw.execute("SELECT value FROM results").fetchall() == [("old",)]

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 
+from navsym.errors import MissingEngineError
 from navsym.methods.sweeps.plan import Sweep
 from navsym.methods.sweeps.run import run_sweep
 
@@ -85,6 +86,22 @@ def test_a_worker_killed_midway_changes_nothing(scheduler, tmp_path):
     found = run_sweep(STUDY, scheduler=address, folder=tmp_path / "s", size=1, progress=progress)
     assert victim.poll() is not None and found["done"] == STUDY.jobs and seen[-1] == STUDY.jobs
     assert json.dumps(found["rows"]) == json.dumps(run_sweep(STUDY, folder=tmp_path / "alone")["rows"])
+
+
+@pytest.mark.slow
+def test_a_scheduler_killed_midway_is_said_and_its_finished_shards_are_kept(scheduler, tmp_path):
+    address, processes = scheduler
+    processes += workers(address, 1, tmp_path)
+
+    def progress(done, of):
+        if done >= 3 and processes[0].poll() is None:
+            os.killpg(processes[0].pid, signal.SIGKILL)
+            processes[0].wait()
+
+    with pytest.raises(MissingEngineError, match="the same command goes on"):
+        run_sweep(STUDY, scheduler=address, folder=tmp_path / "s", size=1, progress=progress)
+    found = run_sweep(STUDY, folder=tmp_path / "s", size=1)
+    assert 3 <= found["resumed"] < STUDY.jobs and found["done"] == STUDY.jobs
 
 
 @pytest.mark.slow

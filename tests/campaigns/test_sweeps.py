@@ -94,11 +94,12 @@ def test_other_studies_run_too(kind):
     assert document["done"] == 2 and document["rows"][0] != document["rows"][1]
 
 
-def test_a_scheduler_that_does_not_answer_is_said(tmp_path, capsys, monkeypatch):
+@pytest.mark.parametrize("address", ["tcp://127.0.0.1:9", "tcp://nowhere.invalid:8786", "", "file", "http://127.0.0.1:80"])
+def test_a_scheduler_that_does_not_answer_is_said(tmp_path, capsys, monkeypatch, address):
     monkeypatch.setattr("navsym.methods.sweeps.run.SECONDS_TO_CONNECT", 1)
     config = tmp_path / "c.json"
     config.write_text('{"kind": "filter", "jobs": 2}')
-    assert run(["sweep", str(config), "--scheduler", "tcp://127.0.0.1:9", "--json"]) == 3
+    assert run(["sweep", str(config), "--scheduler", address, "--json"]) == 3
     assert json.loads(capsys.readouterr().out)["error"]["kind"] == "missing"
 
 

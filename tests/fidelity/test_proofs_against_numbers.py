@@ -20,7 +20,8 @@ from navsym.proof.sandbox import run_many
 from navsym.text.claimfile import claims_from
 
 DIGITS = 500  # 1 - cos(x**2) of an x of 1e-31 loses a quarter of them
-ZERO = mpmath.mpf(10) ** -150  # of the larger side: x**4 of an x of 1e-30 is not zero
+ZERO = mpmath.mpf(10) ** -150  # of the larger side: x**4 of an x of 1e-30 is not zero,
+LEAST = mpmath.mpf(10) ** -200  # and sin(pi) is
 FAILS = {
     "=": lambda d: abs(d) > ZERO, "!=": lambda d: abs(d) <= ZERO, "<": lambda d: d >= -ZERO, "<=": lambda d: d > ZERO,
     ">": lambda d: d <= ZERO, ">=": lambda d: d < -ZERO,
@@ -34,7 +35,7 @@ def sides(document, point):
     row = document["claim"][0]
     with mpmath.workdps(DIGITS):
         left, right = (value(row[side], point, DIGITS) for side in ("left", "right"))
-        return (left - right) / (max(abs(left), abs(right)) or 1)
+        return (left - right) / max(abs(left), abs(right), LEAST)
 
 
 def ends(declared):

@@ -7,6 +7,7 @@ neither the number of workers nor the death of one changes a bit; what is kept i
 from __future__ import annotations
 
 import contextlib
+import logging
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -80,7 +81,24 @@ def computed(
     with connected(workers, scheduler) as (client, as_completed):
         # Not pure: a shard is computed again rather than taken from another session's cluster memory.
         futures = [client.submit(run_shard, sweep, part, pure=False, retries=DEATHS) for part in parts]
-        yield (checked(future.result()) for future in as_completed(futures))
+        yield (checked(answer(future)) for future in as_completed(futures))
+
+
+def answer(future: Any) -> tuple[range, str, Rows]:
+    """What a worker sent; an error in words when the scheduler is gone or a shard ended too many workers."""
+    from concurrent.futures import CancelledError
+
+    from dask.distributed import KilledWorker
+
+    try:
+        found: tuple[range, str, Rows] = future.result()
+    except CancelledError:
+        message = "expected the scheduler to stay; got a lost connection; start it, and the same command goes on"
+        raise MissingEngineError(message, where="sweep") from None
+    except KilledWorker:
+        message = f"expected workers that live; got {DEATHS} that died over one shard; give them more memory"
+        raise NavsymError(message, where="sweep") from None
+    return found
 
 
 def checked(result: tuple[range, str, Rows]) -> tuple[range, Rows]:
@@ -89,6 +107,18 @@ def checked(result: tuple[range, str, Rows]) -> tuple[range, Rows]:
         message = "expected workers with the code of this process; got another version; install the same one"
         raise NavsymError(message, where="sweep")
     return part, rows
+
+
+@contextlib.contextmanager
+def hushed(name: str) -> Iterator[None]:
+    """No tracebacks in the log of a library whose errors are said here."""
+    logger = logging.getLogger(name)
+    before = logger.level
+    logger.setLevel(logging.CRITICAL + 1)
+    try:
+        yield
+    finally:
+        logger.setLevel(before)
 
 
 @contextlib.contextmanager
@@ -101,10 +131,13 @@ def connected(workers: int, scheduler: str | None) -> Iterator[tuple[Any, Any]]:
         message = "expected the Python package dask.distributed; got none; install navsym[cluster], or --workers 0"
         raise MissingEngineError(message) from None
     with contextlib.ExitStack() as stack:
+        stack.enter_context(hushed("distributed"))
         stack.enter_context(dask.config.set({"distributed.scheduler.allowed-failures": DEATHS}))
-        where = scheduler or stack.enter_context(
-            LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=None)
-        )
+        where = scheduler
+        if where is None:
+            where = stack.enter_context(
+                LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=None)
+            )
         try:
             client = stack.enter_context(Client(where, timeout=SECONDS_TO_CONNECT))
         except (OSError, ValueError) as error:
