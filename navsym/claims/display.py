@@ -49,7 +49,7 @@ def card(lines: Iterable[str], status: str = "") -> str:
     """Lines of HTML in a card, with the colour of a verdict at its edge."""
     colour = COLOURS.get(status, "#57606a")
     body = "<br>".join(lines)
-    return f'<div style="border-left:4px solid {colour};padding-left:10px;margin:4px 0">{body}</div>'
+    return f'<div style="border-left:4px solid {colour};padding-left:10px;margin:4px 0;overflow-x:auto">{body}</div>'
 
 
 def verdict_words(status: str) -> str:
