@@ -19,18 +19,23 @@ import sympy as sp
 from flint import arb, fmpq
 
 from navsym.claims.statement import Box
+from navsym.proof.algebraic_signs import algebraic_sign
 from navsym.proof.balls import DEFAULT_BITS, UnsupportedError, enclose, exact_ball, precision, tape
-from navsym.proof.contacts import contact_order, end_contact, guessed_points
+from navsym.proof.contacts import end_contact
 from navsym.proof.exact_signs import angle_sign, bounded_terms, is_entire, multilinear_sign
-from navsym.proof.normal_form import (
-    OutsideLanguageError,
-    divisors_inside,
-    logarithms_inside,
-    radicands_inside,
-)
+from navsym.proof.normal_form import OutsideLanguageError
 from navsym.proof.products import as_product
 from navsym.proof.sampling import Range, ranges
 from navsym.proof.signs import UNKNOWN, Limits, Sign, SignProof, constant_sign, symbol_sign
+from navsym.proof.slopes import (
+    between_contacts,
+    by_monotony,
+    by_quotient,
+    by_squares,
+    by_taylor,
+    by_values,
+    is_defined,
+)
 from navsym.proof.subdivision import subdivide
 
 __all__ = ["Limits", "Sign", "SignProof", "prove_sign"]
@@ -38,8 +43,11 @@ __all__ = ["Limits", "Sign", "SignProof", "prove_sign"]
 
 MAX_DEPTH = 4
 
-#: Functions with jumps, whose derivative says nothing about the jump.
-JUMPING = (sp.atan2, sp.sign, sp.Max, sp.Min)
+#: Effort of the polynomials at the top of a search, one level below, and further down.
+ALGEBRA = (4000, 800, 200)
+
+#: Balls for one derivative of a Taylor proof.
+FEW = 64
 
 
 def prove_sign(
@@ -60,28 +68,80 @@ def attempt(expression: sp.Expr, limits: Limits, wanted: Sign, budget: int, dept
         return constant_sign(expression)
     if negative_somewhere(expression, limits):
         return UNKNOWN
+
+    def prove(simpler: sp.Expr, on: Limits, sign: Sign) -> SignProof:
+        return attempt(simpler, on, sign, budget // 4, depth + 1)
+
+    endless = any(limit.lower is None or limit.upper is None for limit in limits.values())
+    # Balls settle most of what a bounded box holds; without an end they only settle what is simple.
+    for first in (by_forms, by_polynomials, by_balls) if endless else (by_forms, by_balls, by_polynomials):
+        proof = first(expression, limits, wanted, budget, depth)
+        if proof.at_least(wanted):
+            return proof
+    if depth >= MAX_DEPTH:
+        return UNKNOWN
+    for way in (by_values, by_squares):
+        proof = way(expression, limits, wanted, prove)
+        if proof.at_least(wanted):
+            return proof
+    for near_an_end in (end_contact, by_simple_taylor):
+        proof = near_an_end(expression, limits, wanted, budget, depth)
+        if proof.at_least(wanted):
+            return proof
+    for slower in (by_quotient, by_monotony, between_contacts):
+        proof = slower(expression, limits, wanted, prove)
+        if proof.at_least(wanted):
+            return proof
+    return UNKNOWN
+
+
+def by_balls(expression: sp.Expr, limits: Limits, wanted: Sign, budget: int, depth: int) -> SignProof:
+    return subdivide(expression, limits, wanted, budget)
+
+
+def by_forms(expression: sp.Expr, limits: Limits, wanted: Sign, budget: int, depth: int) -> SignProof:
+    """Products, ranges of angles, least values, corners: exact, and no box is divided."""
     product = as_product(expression) if depth == 0 else None
     if product is not None:
         by_product = product_sign(product, limits, budget, depth)
-        if by_product.at_least(wanted) and is_defined(expression, limits, budget, depth):
+        if by_product.at_least(wanted) and exists(expression, limits, budget, depth):
             return replace(by_product, reason=f"product form {product}")
     by_factors = product_sign(expression, limits, budget, depth)
     if by_factors.at_least(wanted):
         return by_factors
-    for exact_way in (angle_sign, bounded_terms, multilinear_sign):
-        by_range = exact_way(expression, limits)
+    for way in (angle_sign, bounded_terms, multilinear_sign):
+        by_range = way(expression, limits)
         if by_range.at_least(wanted):
             return by_range
-    by_balls = subdivide(expression, limits, wanted, budget)
-    if by_balls.at_least(wanted):
-        return by_balls
-    if depth >= MAX_DEPTH:
-        return UNKNOWN
-    for way in (end_contact, monotone, inner_contact):
-        proof = way(expression, limits, wanted, budget, depth)
-        if proof.at_least(wanted):
-            return proof
     return UNKNOWN
+
+
+def by_polynomials(expression: sp.Expr, limits: Limits, wanted: Sign, budget: int, depth: int) -> SignProof:
+    """Exact as well, by the polynomials behind the expression."""
+    proof = algebraic_sign(expression, limits, ALGEBRA[min(depth, 2)])
+    return proof if proof.at_least(wanted) and exists(expression, limits, budget, depth) else UNKNOWN
+
+
+def exists(expression: sp.Expr, limits: Limits, budget: int, depth: int) -> bool:
+    """True when the expression is proved to be defined and continuous on the box."""
+    return is_defined(expression, limits, lambda inside, on, sign: attempt(inside, on, sign, budget // 4, depth + 1))
+
+
+def by_simple_taylor(
+    expression: sp.Expr, limits: Limits, wanted: Sign, budget: int, depth: int
+) -> SignProof:
+    """Derivatives at an end; their signs by exact ways and a few balls only."""
+
+    def simple(simpler: sp.Expr, on: Limits, sign: Sign) -> SignProof:
+        if not simpler.free_symbols:
+            return constant_sign(simpler)
+        if negative_somewhere(simpler, on):
+            return UNKNOWN
+        ways = (by_forms, by_polynomials, by_balls)
+        proofs = (way(simpler, on, sign, FEW, MAX_DEPTH) for way in ways)
+        return next((proof for proof in proofs if proof.at_least(sign)), UNKNOWN)
+
+    return by_taylor(expression, limits, wanted, simple)
 
 
 def negative_somewhere(expression: sp.Expr, limits: Limits) -> bool:
@@ -179,73 +239,3 @@ def power_sign(expression: sp.Pow, limits: Limits, budget: int, depth: int) -> S
             Sign.POSITIVE if strict else Sign.NONNEGATIVE, "even power", proof.boxes, proof.exact
         )
     return UNKNOWN if flipped else SignProof(proof.sign, "power of a signed base", proof.boxes, proof.exact)
-
-
-def inner_contact(expression: sp.Expr, limits: Limits, wanted: Sign, budget: int, depth: int) -> SignProof:
-    """One symbol: a zero inside the range at a guessed exact point; both sides are proved apart."""
-    if len(limits) != 1 or wanted > Sign.NONNEGATIVE:
-        return UNKNOWN
-    ((symbol, limit),) = limits.items()
-    for point in guessed_points(limit):
-        if contact_order(expression, symbol, point) in (None, 0):
-            continue
-        parts = [Range(limit.lower, point, limit.open_lower), Range(point, limit.upper)]
-        proofs = [attempt(expression, {symbol: part}, wanted, budget, depth + 1) for part in parts]
-        if all(proof.at_least(wanted) for proof in proofs):
-            boxes = sum(proof.boxes for proof in proofs)
-            return SignProof(Sign.NONNEGATIVE, f"zero at {symbol} = {point}, both sides apart", boxes)
-    return UNKNOWN
-
-
-def monotone(expression: sp.Expr, limits: Limits, wanted: Sign, budget: int, depth: int) -> SignProof:
-    """Reduce to the end of one range at which the expression is smallest."""
-    if expression.has(*JUMPING) or not is_defined(expression, limits, budget, depth):
-        return UNKNOWN
-    for symbol, limit in limits.items():
-        if limit.integer:
-            continue  # sympy simplifies derivatives by it, cos(2 pi n) = 1 say
-        slope = sp.diff(expression, symbol)
-        for direction, end in ((1, limit.lower), (-1, limit.upper)):
-            if end is None:
-                continue
-            at_end = expression.subs(symbol, end)
-            if at_end.has(sp.nan, sp.zoo, sp.oo):
-                continue
-            rest = {s: limits[s] for s in at_end.free_symbols}
-            floor = attempt(at_end, rest, Sign.NONNEGATIVE, budget // 4, depth + 1)
-            if floor.sign == Sign.UNKNOWN:
-                continue
-            rising = attempt(direction * slope, limits, Sign.NONNEGATIVE, budget // 4, depth + 1)
-            if rising.sign == Sign.UNKNOWN:
-                continue
-            sign = monotone_sign(floor, rising, limit, direction)
-            if sign >= wanted:
-                exact = floor.exact and rising.exact
-                return SignProof(sign, f"monotone in {symbol}", floor.boxes + rising.boxes, exact)
-    return UNKNOWN
-
-
-def is_defined(expression: sp.Expr, limits: Limits, budget: int, depth: int) -> bool:
-    """No divisor, radicand or argument of a logarithm leaves its range: the expression is continuous.
-
-    Factoring may cancel a pole, and so may a derivative: that of atan(tan(x)) is 1.
-    """
-
-    def reaches(inside: sp.Basic, wanted: Sign) -> bool:
-        own = {s: limits[s] for s in inside.free_symbols}
-        return attempt(inside, own, wanted, budget // 4, depth + 1).at_least(wanted)
-
-    divisors = dict.fromkeys(divisors_inside(expression))
-    return (
-        all(reaches(d, Sign.POSITIVE) or reaches(-d, Sign.POSITIVE) for d in divisors)
-        and all(reaches(r, Sign.NONNEGATIVE) for r in dict.fromkeys(radicands_inside(expression)))
-        and all(reaches(a, Sign.POSITIVE) for a in dict.fromkeys(logarithms_inside(expression)))
-    )
-
-
-def monotone_sign(floor: SignProof, rising: SignProof, limit: Range, direction: int) -> Sign:
-    """Positive when the end value is, or when the end is left out and the slope is positive."""
-    if floor.sign == Sign.POSITIVE:
-        return Sign.POSITIVE
-    left_out = direction == 1 and (limit.open_lower or (limit.nonzero and limit.lower == 0))
-    return Sign.POSITIVE if left_out and rising.sign == Sign.POSITIVE else Sign.NONNEGATIVE

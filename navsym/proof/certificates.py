@@ -6,9 +6,20 @@ from collections.abc import Mapping
 from typing import Any
 
 import sympy as sp
+from flint import arb, fmpq
 
 from navsym.errors import NavsymError
+from navsym.proof.balls import Tape, enclose, exact_ball, precision, tape
+from navsym.proof.signs import Limits
 from navsym.text.expression import to_text
+
+BITS = 96
+MOST_CELLS = 1000
+
+#: What the checker knows at exact numbers only.
+BENT = (sp.Abs, sp.asin, sp.acos, sp.atan2)
+
+Cell = dict[sp.Symbol, tuple[fmpq, fmpq]]
 
 
 def identity_certificate(left: sp.Expr, right: sp.Expr) -> Mapping[str, Any] | None:
@@ -18,3 +29,46 @@ def identity_certificate(left: sp.Expr, right: sp.Expr) -> Mapping[str, Any] | N
         return {"kind": "identity", "left": to_text(left), "right": to_text(right), "symbols": symbols}
     except NavsymError:
         return None
+
+
+def positivity_certificate(expression: sp.Expr, limits: Limits) -> Mapping[str, Any] | None:
+    """``expression > 0`` on a closed bounded box, by halving alone; None where that does not show it."""
+    ends = {s: (limits[s].lower, limits[s].upper) for s in sorted(expression.free_symbols, key=str)}
+    if any(end is None for pair in ends.values() for end in pair) or expression.has(*BENT):
+        return None
+    try:
+        cells = cells_needed(expression, ends)
+        box = {s.name: [to_text(lower), to_text(upper)] for s, (lower, upper) in ends.items()}
+        text = to_text(expression)
+    except NavsymError:
+        return None
+    if cells is None:
+        return None
+    return {"kind": "positivity", "expression": text, "box": box, "bits": BITS, "cells": cells}
+
+
+def cells_needed(expression: sp.Expr, ends: Mapping[sp.Symbol, tuple[Any, Any]]) -> int | None:
+    """How many cells a halving of the unit cube looks at; None when they are too many."""
+    powers = sorted(expression.atoms(sp.Pow), key=sp.default_sort_key)
+    inside = [power.base for power in powers if not power.exp.is_Integer]  # a root of zero has no derivative
+    programs, used = [tape(part) for part in (expression, *inside)], 0
+    with precision(BITS):
+        sides = {s: (exact_ball(lower, BITS), exact_ball(upper, BITS)) for s, (lower, upper) in ends.items()}
+    pending: list[Cell] = [dict.fromkeys(ends, (fmpq(0), fmpq(1)))]
+    while pending:
+        cell, used = pending.pop(), used + 1
+        if all(is_positive_on(program, cell, sides) for program in programs):
+            continue
+        if used > MOST_CELLS or not cell:
+            return None
+        widest = max(cell, key=lambda s: cell[s][1] - cell[s][0])
+        low, high = cell[widest]
+        middle = (low + high) / 2
+        pending += [{**cell, widest: (low, middle)}, {**cell, widest: (middle, high)}]
+    return used
+
+
+def is_positive_on(program: Tape, cell: Cell, sides: Mapping[sp.Symbol, tuple[arb, arb]]) -> bool:
+    with precision(BITS):
+        values = {s: a + (b - a) * arb(cell[s][0]).union(arb(cell[s][1])) for s, (a, b) in sides.items()}
+    return bool(enclose(program, values, BITS) > 0)

@@ -15,6 +15,7 @@ from navsym.proof.signs import UNKNOWN, Limits, Sign, SignProof
 from navsym.proof.subdivision import subdivide
 
 MAX_CONTACT_ORDER = 8
+MOST_OPERATIONS = 500
 
 
 def end_contact(expression: sp.Expr, limits: Limits, wanted: Sign, budget: int, depth: int) -> SignProof:
@@ -39,6 +40,8 @@ def contact_order(expression: sp.Expr, symbol: sp.Symbol, end: sp.Expr) -> int |
     """Number of derivatives, from the zeroth, that vanish exactly at the end."""
     derivative = expression
     for order in range(MAX_CONTACT_ORDER):
+        if derivative.count_ops() > MOST_OPERATIONS:
+            return None
         value = derivative.subs(symbol, end)
         if value.has(sp.nan, sp.zoo, sp.oo) or not exact_ball(value, 256).is_finite():
             return None
@@ -88,6 +91,8 @@ def guessed_points(limit: Range) -> list[sp.Expr]:
         sp.Integer(0),
         sp.Integer(1),
         sp.Integer(-1),
+        sp.E,
+        1 / sp.E,
         *(sp.pi * sp.Rational(k, 4) for k in range(-8, 9)),
     ]
     if limit.lower is not None and limit.upper is not None:

@@ -32,28 +32,41 @@ def is_polynomial(expression: sp.Expr) -> bool:
 
 
 def bounded_terms(expression: sp.Expr, limits: Limits) -> SignProof:
-    """A sum whose terms have exact least values: c sin(u) >= -|c|, c u**2 >= 0, c >= c."""
-    least = [least_value(term) for term in sp.Add.make_args(expression)]
-    if any(value is None for value in least):
+    """A sum whose terms have exact least values: c sin(u) >= -|c|, c u**2 >= 0, c atan(u) > -|c| pi/2, c >= c."""
+    found = [least_value(term) for term in sp.Add.make_args(expression)]
+    least = [pair for pair in found if pair is not None]
+    if len(least) < len(found):
         return UNKNOWN
-    proof = constant_sign(sp.Add(*least))
-    return SignProof(proof.sign, "least values of the terms", exact=True)
+    proof = constant_sign(sp.Add(*(value for value, _ in least)))
+    above = proof.sign == Sign.NONNEGATIVE and any(left_out for _, left_out in least)
+    return SignProof(Sign.POSITIVE if above else proof.sign, "least values of the terms", exact=True)
 
 
-def least_value(term: sp.Expr) -> sp.Expr | None:
-    """An exact lower bound of one term for all real values of its symbols, or None."""
+#: Functions with a range that is symmetric about zero: half of it, and whether its ends are left out.
+SYMMETRIC = {
+    sp.sin: (sp.Integer(1), False),
+    sp.cos: (sp.Integer(1), False),
+    sp.tanh: (sp.Integer(1), True),
+    sp.atan: (sp.pi / 2, True),
+}
+
+
+def least_value(term: sp.Expr) -> tuple[sp.Expr, bool] | None:
+    """An exact lower bound of one term for all real values of its symbols, and whether it is left out; or None."""
     coefficient, rest = term.as_independent(*term.free_symbols, as_Add=False)
     if not term.free_symbols:
-        return term
+        return term, False
     if not is_entire(rest):
         return None
-    if isinstance(rest, (sp.sin, sp.cos)):
-        return -sp.Abs(coefficient)
+    if rest.func in SYMMETRIC:
+        half, left_out = SYMMETRIC[rest.func]
+        return -sp.Abs(coefficient) * half, left_out
     if isinstance(rest, sp.Pow) and rest.exp % 2 == 0:
-        bounded = isinstance(rest.base, (sp.sin, sp.cos))
         if constant_sign(coefficient).sign != Sign.UNKNOWN:
-            return sp.Integer(0)
-        return coefficient if bounded and constant_sign(-coefficient).sign != Sign.UNKNOWN else None
+            return sp.Integer(0), False
+        if rest.base.func in SYMMETRIC and constant_sign(-coefficient).sign != Sign.UNKNOWN:
+            half, left_out = SYMMETRIC[rest.base.func]
+            return coefficient * half**rest.exp, left_out
     return None
 
 
