@@ -66,8 +66,19 @@ def displayed_formula(writer: Any, node: Any) -> None:
     raise nodes.SkipNode
 
 
-def shown_formulas(app: Any, pagename: str, templatename: str, context: dict[str, Any], doctree: Any) -> None:
-    """Formulas inside the HTML that notebooks show, which a notebook sets in type by a script."""
+#: What the theme writes -> the same for the keyboard and for screen readers: levels of captions, scrolling parts.
+ACCESSIBLE = {
+    'role="heading">': 'role="heading" aria-level="2">',
+    "<pre": '<pre tabindex="0"',
+    '<div class="table-wrapper': '<div tabindex="0" class="table-wrapper',
+}
+
+
+def finished(app: Any, pagename: str, templatename: str, context: dict[str, Any], doctree: Any) -> None:
+    """The page as it leaves: for the keyboard too, and with the formulas that a notebook sets in type by a script."""
+    for part in {"body", "furo_navigation_tree"} & set(context):
+        for written, better in ACCESSIBLE.items():
+            context[part] = context[part].replace(written, better)
     if pagename.startswith("notebooks/") and "body" in context:
         found = re.compile(r"\$\\displaystyle (.+?)\$", re.S)
         context["body"] = found.sub(lambda match: formula(html.unescape(match[1]), False), context["body"])
@@ -84,4 +95,4 @@ def setup(app: Any) -> None:
     """Reference and notebooks are written before the sources are read; formulas are shown without a script."""
     app.add_html_math_renderer("mathml", (inline_formula, None), (displayed_formula, None))
     app.connect("builder-inited", generate)
-    app.connect("html-page-context", shown_formulas)
+    app.connect("html-page-context", finished, priority=900)      # behind the theme, which makes the navigation
