@@ -87,12 +87,13 @@ def printed_percentages():
     "cost.seconds",
     expect=REFUTED,
     slip="paper",
-    reason="1…4 per cent spans a factor 4 and 2…4 s a factor 2: no duration fits both (200 s at one end,"
-    " 100 s at the other)",
+    reason="1…4 per cent spans a factor 4 and 2…4 s a factor 2: no duration fits both; 2 s, half a second less for "
+    "rounding, are at least 150 s at one end, and 4 s, half a second more, at most 112.5 s at the other",
 )
 def seconds_as_printed():
-    """1…4 per cent are 2…4 seconds of one duration: both ends give the same duration."""
-    return Equation(printed=2 / growth(10), derived=4 / growth(5))
+    """1…4 per cent are 2…4 seconds of one duration, each end with half a second for its rounding."""
+    half = sp.Rational(1, 2)
+    return Bound(printed=(2 - half) / growth(10), relation="<=", derived=(4 + half) / growth(5))
 
 
 @claim("cost.seconds*", corrects="cost.seconds")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sympy as sp
 
-from navsym.claims import CERTIFIED, REFUTED, Bound, Equation, claim
+from navsym.claims import CERTIFIED, REFUTED, Bound, Equation, Finding, Property, claim
 
 POSITION, FULL, SEQUENTIAL = sp.Rational("152.2"), sp.Rational("92.7"), sp.Rational("97.0")
 FULL_SPEED, SEQUENTIAL_SPEED = sp.Rational("0.48"), sp.Rational("0.55")
@@ -31,9 +31,13 @@ def ranges_of_the_experiment():
 def noise_as_printed():
     """The standard deviation of the height error is 0.015 (h_abs - h_rv)."""
     absolute, above = sp.symbols("h_abs h_rv", positive=True)
-    return Equation(
-        printed=sp.Rational("0.015") * (absolute - above), derived=noise_deviation(absolute, above)
+    deviation = noise_deviation(absolute, above)
+    found = Finding(
+        str(deviation / sp.Rational("0.015")),
+        "a radio altimeter errs in proportion to the height above ground; derivative of this model",
+        scope="h_abs - h_rv (1 + 0.015 e), e normal of variance one; not a statement that the paper derives",
     )
+    return Property(printed=str(absolute - above), derived=found)
 
 
 @claim("noise*", corrects="noise")

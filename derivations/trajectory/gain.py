@@ -112,7 +112,8 @@ def position_noise():
     "experiment.sigma_v.yaw.100",
     expect=REFUTED,
     slip="paper",
-    reason="the printed gain lags 18 % behind a motion of period 360 s: 0.8 m/s of the 6.2 m/s swing of V_2",
+    reason="the printed gain lags 18 % behind a motion of period 360 s: 0.8 m/s of the 4.4 m/s of V_2, both root mean "
+    "squares (the amplitude of V_2 is 6.2 m/s)",
 )
 def yawing_speed_error_printed():
     """|V| = 100 m/s: error of V_2 while yawing with the printed constant gain."""

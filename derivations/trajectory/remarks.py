@@ -142,13 +142,16 @@ def normalisation_improves_small_orders_much():
     "in physical variables was not their conditioning but Q, P or the criterion, which did not go with them",
 )
 def variables_change_the_filter():
-    """In double precision the filter computes something else in normalised than in physical variables."""
+    """Condition numbers explain the failure of the trials in physical variables: lower ones change what is computed.
+
+    The paper's explanation by what it implies; that its trials failed is not disputed and not judged here.
+    """
     return Property(printed=True, derived=same_bits())
 
 
 @claim("experiment.physical*", corrects="experiment.physical")
 def variables_do_not_change_the_filter():
-    """With P, Q, R carried over, scaling by powers of two next to D changes no bit of the estimates."""
+    """With P, Q, R carried over, lower condition numbers by powers of two next to D change no bit of the estimates."""
     return Property(printed=False, derived=same_bits())
 
 
