@@ -16,6 +16,7 @@ from navsym.proof.sampling import range_of
 from navsym.proof.wording import text_of
 
 SMALLEST = {"double": 2.0**-60, "float": 2.0**-20}  # stands for an open end at zero
+LONGEST = 58  # signs of a name: with a number behind it, what Fortran and C tell apart
 LARGE = 1000.0  # of a symbol without a range, for vectors and bounds
 
 
@@ -30,7 +31,7 @@ def inputs_of(
     made: list[Input] = []
     taken = ["value", "weights", "instants", "dual", *outputs, *layout.arrays]
     for symbol in in_layout(symbols, layout):
-        name = identifier(symbol.name, [*(i.name for i in made), *taken])
+        name = identifier(symbol.name[:LONGEST], [*(i.name for i in made), *taken])
         made.append(with_layout(input_of(symbol, name, box, real), layout, real))
     return tuple(made)
 

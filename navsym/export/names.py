@@ -6,7 +6,7 @@ import re
 import unicodedata
 from collections.abc import Iterable
 
-#: Keywords, and functions of the C library, that no target may see as a variable.
+#: Keywords, functions of the C library, and words of our own, that no target may see as a variable.
 TAKEN = frozenset(
     """
     abs acos and as asin asm assert async atan atan2 auto await begin bool break call case catch cbrt ceil
@@ -19,8 +19,11 @@ TAKEN = frozenset(
     return round self short signed sin sinh sizeof sqrt static status struct subroutine super switch tan tanh
     template tgamma this throw trait true try type typedef typeof union unless unsigned use using var virtual
     void volatile where while with y0 y1 yield yn
+    eof err errno every here huge infinity left linux np number ok shape some std stderr stdin stdout unix
     """.split()
 )
+#: Numbers that the headers of C define, such as M_PI and DBL_MAX.
+MACRO = re.compile(r"(?:M|DBL|FLT|LDBL|FP|MATH|HUGE|DECIMAL|INT|LONG|SIZE|CHAR|UINT)_[A-Z0-9_]+")
 #: A name of our own would hide the temporaries t0, t1, … of a function body.
 TEMPORARY = re.compile(r"(?:[tr]\d+|navsym_\w*|nv_\w*)")
 
@@ -33,7 +36,7 @@ def identifier(text: str, taken: Iterable[str] = ()) -> str:
     name = re.sub(r"[^A-Za-z0-9]+", "_", "".join(spelled(c) for c in text)).strip("_") or "x"
     if not name[0].isalpha():
         name = f"x_{name}"
-    if name.lower() in TAKEN or TEMPORARY.fullmatch(name.lower()):
+    if name.lower() in TAKEN or TEMPORARY.fullmatch(name.lower()) or MACRO.fullmatch(name):
         name = f"{name}_"
     known = {other.lower() for other in taken}
     candidate, number = name, 1

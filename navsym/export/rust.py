@@ -77,15 +77,15 @@ def source(function: ExportedFunction, s: Spelling, kind: str) -> str:
     ]
     if tests:
         lines += [f"    if !({' && '.join(tests)}) {{", "        return Err(Status::Domain);", "    }"]
-    lines.append(f"    let r: [{kind}; {function.size}];")
+    lines.append(f"    let nv_r: [{kind}; {function.size}];")
     for place, piece in enumerate(function.pieces):
         temporaries, results = assignments(piece, names, s)
         test = "" if piece.limit is None else f"if {names[function.switch or 0]} <= {s.number(piece.limit)} "
         lines.append(f"    {'else ' if place else ''}{test}{{ // {piece.source.claim}")
         lines += [f"        let {name}: {kind} = {text};" for name, text in temporaries]
-        lines += ["        r = [", *(f"            {text}," for text in results), "        ];", "    }"]
-    lines += ["    if !r.iter().all(|x| x.is_finite()) {", "        return Err(Status::NotFinite);", "    }"]
-    return "\n".join([*lines, f"    Ok({function.name}_result {{ {result_fields(function, 'r[{}]')} }})", "}", ""])
+        lines += ["        nv_r = [", *(f"            {text}," for text in results), "        ];", "    }"]
+    lines += ["    if !nv_r.iter().all(|x| x.is_finite()) {", "        return Err(Status::NotFinite);", "    }"]
+    return "\n".join([*lines, f"    Ok({function.name}_result {{ {result_fields(function, 'nv_r[{}]')} }})", "}", ""])
 
 
 def parameter(argument: Argument, kind: str) -> str:

@@ -56,7 +56,7 @@ def shifted(text: str, start: int, end: int) -> Iterator[tuple[str, str]]:
         if found := RESULT.match(line):
             at = place + found.end(1)
             yield f"{line.strip()} + 1.0", text[:at] + " + 1.0" + text[at:]
-        elif re.match(r"^\s{12,}[^:]*,$", line) and "r = [" in text:
+        elif re.match(r"^\s{12,}[^:]*,$", line) and "nv_r = [" in text:
             at = place + len(line.rstrip()) - 1
             yield f"{line.strip()} + 1.0", text[:at] + " + 1.0" + text[at:]
         place += len(line)
@@ -100,7 +100,7 @@ def body_of(text: str, name: str) -> tuple[int, int]:
     for start in defined:
         after = text[start:]
         stop = re.search(r"^(?:\}|end\b|  end subroutine|    return _finite)", after, re.M)
-        if stop and (RESULT.search(after, 0, stop.start()) or re.search(r"\br = \[", after[: stop.start()])):
+        if stop and (RESULT.search(after, 0, stop.start()) or re.search(r"\bnv_r = \[", after[: stop.start()])):
             return start, start + stop.start()
     raise AssertionError(f"no body of {name}")
 
@@ -177,7 +177,8 @@ def main() -> None:
         options.rows.write_text(json.dumps(rows))
     if options.write is not None:
         command = " ".join(["python tests/export/corruption.py", *options.names, f"--each {options.each}"])
-        options.write.write_text(page(rows, [n for n in SOURCE_OF if any(n in row for row in rows.values())], command), encoding="utf-8")
+        known = [name for name in SOURCE_OF if any(name in row for row in rows.values())]
+        options.write.write_text(page(rows, known, command), encoding="utf-8")
 
 
 if __name__ == "__main__":

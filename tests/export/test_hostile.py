@@ -12,8 +12,10 @@ import numpy as np
 import pytest
 
 from navsym.cli.main import run
+from navsym.export.targets import TARGETS
 
 LANGUAGES = [n for n, tool in (("c", "gcc"), ("python", ""), ("javascript", "node")) if not tool or shutil.which(tool)]
+EVERY = [n for n in TARGETS if TARGETS[n].executable() and n != "html"]
 
 
 def exported(folder: Path, symbols: str, left: str, right: str, *words: str) -> tuple[int, Path]:
@@ -32,7 +34,9 @@ def exported(folder: Path, symbols: str, left: str, right: str, *words: str) -> 
         ("double", "int"), ("lambda", "E"), ("T", "t"),
         *(pytest.param(pair, marks=pytest.mark.slow) for pair in (
             ("I", "def"), ("x_", "x"), ("status", "r0"), ("t0", "nv_k"), ("value", "NaN"), ("self", "this"),
-            ("function", "numbers"), ("navsym_sinc", "Math"), ("n" * 64, "n" * 63 + "m"),
+            ("function", "numbers"), ("navsym_sinc", "Math"), ("M_PI", "DBL_MAX"),
+            ("np", "shape"), ("left", "every"), ("here", "Number"), ("errno", "r"), ("Ok", "w"),
+            ("bad", "in"), ("n" * 64, "n" * 63 + "m"),
         )),
     ],
 )  # fmt: skip
@@ -42,6 +46,18 @@ def test_any_names_become_arguments(names: tuple[str, str], tmp_path: Path, caps
     document = json.loads(capsys.readouterr().out)
     assert status == 0, document
     assert [row["status"] for row in document["languages"]] == ["verified"] * len(LANGUAGES)
+
+
+@pytest.mark.slow
+def test_names_of_every_language_become_arguments_in_every_language(tmp_path: Path, capsys) -> None:
+    names = ["M_PI", "DBL_MAX", "np", "shape", "left", "every", "here", "Number", "errno", "r", "Ok", "w", "bad",
+             "main", "printf", "if", "n" * 64, "n" * 63 + "m"]  # fmt: skip
+    symbols = "\n".join(f'"{name}" = ["0", "2"]' for name in names)
+    left, right = " + ".join(f"2*{n}" for n in names), f"2*({' + '.join(names)})"
+    status, _ = exported(tmp_path, symbols, left, right, "--to", ",".join(EVERY))
+    document = json.loads(capsys.readouterr().out)
+    assert status == 0, document
+    assert {row["status"] for row in document["languages"]} == {"verified"}
 
 
 @pytest.mark.parametrize("name", ["__x", "q" * 200, "x y", "é", "1a", "a;b", "a\\nb", "pi", "sin"])
