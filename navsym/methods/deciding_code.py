@@ -24,7 +24,7 @@ ROOT = Path(__file__).parent.parent
 ROOMS = ("claims", "text", "models", "numeric", "proof", "methods")
 DECIDING = ("sympy", "mpmath", "flint")
 PROPOSING = ("numpy", "scipy", "numba", "casadi", "cvxpy", "highspy", "clarabel", "osqp")
-SWITCHES = ("SYMPY_", "MPMATH_", "NUMBA_")
+SWITCHES = ("SYMPY_", "MPMATH_")
 
 #: What source files were when they were looked at: path, time of change in nanoseconds, size.
 Snapshot = tuple[tuple[str, int, int], ...]

@@ -1,19 +1,26 @@
 """Efficiency of a sweep on several processes against one: the same study, alternately, with the shards thrown away.
 
+Every process has one thread. The same shards in processes that share nothing show what the cores of this machine
+give: two that are halves of one core are not twice as fast, whoever hands out the work.
+
     python tests/benchmarks/sweeps.py [jobs] [workers]
 """
 
 from __future__ import annotations
 
+import multiprocessing
 import os
 import sys
 import tempfile
 import time
 from pathlib import Path
+from typing import Any
 
 from navsym.methods.sweeps.plan import Sweep, run_job
-from navsym.methods.sweeps.run import computed, run_shard, run_sweep
+from navsym.methods.sweeps.run import ALONE, computed, run_shard, run_sweep
 from navsym.methods.sweeps.shards import cut
+
+os.environ.update({name: str(count) for name, count in ALONE.items()})  # before numba is loaded
 
 
 def seconds_alone(sweep: Sweep, size: int) -> float:
@@ -21,6 +28,32 @@ def seconds_alone(sweep: Sweep, size: int) -> float:
     for part in cut(sweep.jobs, size):
         run_shard(sweep, part)
     return time.perf_counter() - started
+
+
+def seconds_apart(sweep: Sweep, size: int, workers: int) -> float:
+    """Every process has its own part of the shards, and nobody hands anything out."""
+    context, parts = multiprocessing.get_context("spawn"), cut(sweep.jobs, size)
+    barrier = context.Barrier(workers + 1)
+    own = [(sweep, parts[k::workers], barrier) for k in range(workers)]
+    processes = [context.Process(target=run_parts, args=arguments) for arguments in own]
+    for process in processes:
+        process.start()
+    barrier.wait()
+    started = time.perf_counter()
+    barrier.wait()
+    spent = time.perf_counter() - started
+    for process in processes:
+        process.join()
+    return spent
+
+
+def run_parts(sweep: Sweep, parts: list[range], barrier: Any) -> None:
+    """All begin together, with their engines loaded, and the last one ends it."""
+    run_job(sweep, 0)
+    barrier.wait()
+    for part in parts:
+        run_shard(sweep, part)
+    barrier.wait()
 
 
 def seconds_together(sweep: Sweep, size: int, workers: int) -> float:
@@ -44,10 +77,11 @@ def main(jobs: int = 48, workers: int = os.cpu_count() or 1) -> None:
     sweep, size = Sweep("filter", jobs=jobs, runs=64, steps=200), max(1, jobs // (8 * workers))
     run_job(sweep, 0)
     for repeat in range(2):
-        alone, together = seconds_alone(sweep, size), seconds_together(sweep, size, workers)
-        efficiency = alone / together / workers
+        alone, apart = seconds_alone(sweep, size), seconds_apart(sweep, size, workers)
+        together = seconds_together(sweep, size, workers)
         print(f"{jobs} jobs, round {repeat + 1}: alone {alone:.2f} s, {workers} workers {together:.2f} s, "
-              f"efficiency {efficiency:.2f}")  # fmt: skip
+              f"efficiency {alone / together / workers:.2f}; {workers} processes that share nothing {apart:.2f} s, "
+              f"efficiency {alone / apart / workers:.2f}")  # fmt: skip
     with tempfile.TemporaryDirectory() as folder:
         started = time.perf_counter()
         run_sweep(sweep, workers=workers, folder=Path(folder), size=size)

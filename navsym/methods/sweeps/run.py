@@ -20,6 +20,8 @@ from navsym.store import key_of
 
 SECONDS_TO_CONNECT = 15
 DEATHS = 10  # of workers under one shard before it is given up
+#: One worker is one thread: a shard whose loops take all cores is in the way of the others.
+ALONE = {f"{name}_NUM_THREADS": 1 for name in ("NUMBA", "OMP", "OPENBLAS", "MKL")}
 
 
 def run_sweep(
@@ -132,7 +134,10 @@ def connected(workers: int, scheduler: str | None) -> Iterator[tuple[Any, Any]]:
         raise MissingEngineError(message) from None
     with contextlib.ExitStack() as stack:
         stack.enter_context(hushed("distributed"))
-        stack.enter_context(dask.config.set({"distributed.scheduler.allowed-failures": DEATHS}))
+        stack.enter_context(dask.config.set({
+            "distributed.scheduler.allowed-failures": DEATHS,
+            "distributed.nanny.pre-spawn-environ": dask.config.get("distributed.nanny.pre-spawn-environ") | ALONE,
+        }))  # fmt: skip
         where = scheduler
         if where is None:
             where = stack.enter_context(
