@@ -23,6 +23,7 @@ html_title = "navsym"
 extensions = ["myst_nb"]
 myst_enable_extensions = ["dollarmath", "deflist"]
 html_theme = "furo"
+html_theme_options = {"top_of_page_buttons": []}
 html_static_path = ["_static"]
 html_css_files = ["site.css"]
 html_math_renderer = "mathml"            # pages ask no network for anything

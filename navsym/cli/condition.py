@@ -10,6 +10,7 @@ from typing import Annotated, Any
 
 import typer
 
+from navsym.cli._progress import Progress
 from navsym.cli.output import emit, remark, table
 
 MATRICES = ("N_p", "N_pN", "N_f", "N_s")
@@ -32,7 +33,8 @@ def command(
     """
     from navsym.methods.conditioning.numbers import document
 
-    found = document(n, exact("--rho", rho), exact("--tau", tau), digits)
+    with Progress("matrices", len(MATRICES), "nothing is kept: a smaller --n or fewer --digits take less time") as bar:
+        found = document(n, exact("--rho", rho), exact("--tau", tau), digits, bar.step)
     for line in found["warnings"]:
         remark(f"warning: {line}")
     emit(found, as_json=json_, text=lambda: shown(found))

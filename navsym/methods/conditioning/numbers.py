@@ -7,6 +7,7 @@ roots (any rational matrix) and Perron bounds for chessboard signs (the matrices
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
@@ -70,12 +71,14 @@ def condition_number(rows: Rows, *, digits: int = 30, equilibrate: bool = False)
 
 
 def condition_numbers(
-    n: int, rho: Fraction | int | str, tau: Fraction | int | str, *, digits: int = 30
-) -> dict[str, Conditioning]:
+    n: int, rho: Fraction | int | str, tau: Fraction | int | str, *, digits: int = 30,
+    progress: Callable[[str], None] = lambda matrix: None,
+) -> dict[str, Conditioning]:  # fmt: skip
     """Condition numbers of N_p, N_pN, N_f, N_s (trajectory:table), certified and in double precision.
 
     n        : order of the polynomial motion model, 1 to 120
     rho, tau : exact numbers, rho nonzero (1/m), tau positive (s), text is read as a fraction or a decimal
+    progress : called with the name of each matrix that is done
     Raises DomainError and TooLargeError for numbers outside these ranges.
     """
     rho, tau = Fraction(rho), Fraction(tau)
@@ -83,12 +86,12 @@ def condition_numbers(
     measured, powers = observability_rows(n, rho, tau), power_rows(n)
     # Signs of columns do not change a norm, so N_pN and N_s agree for every nonzero rho and tau;
     # both are computed from their own definitions all the same.
-    exact = {
-        "N_p": condition_number(measured, digits=digits),
-        "N_pN": condition_number(measured, digits=digits, equilibrate=True),
-        "N_f": condition_number(powers, digits=digits),
-        "N_s": condition_number(powers, digits=digits, equilibrate=True),
-    }
+    exact = {}
+    for name, rows, equilibrate in (
+        ("N_p", measured, False), ("N_pN", measured, True), ("N_f", powers, False), ("N_s", powers, True),
+    ):  # fmt: skip
+        exact[name] = condition_number(rows, digits=digits, equilibrate=equilibrate)
+        progress(name)
     doubles = double_values(measured, powers)
     return {name: Conditioning(name, exact[name], doubles[name]) for name in exact}
 
@@ -149,12 +152,14 @@ def warnings_of(found: dict[str, Conditioning]) -> list[str]:
     ]
 
 
-def document(n: int, rho: Fraction | str, tau: Fraction | str, digits: int) -> dict[str, Any]:
+def document(
+    n: int, rho: Fraction | str, tau: Fraction | str, digits: int, progress: Callable[[str], None] = lambda matrix: None
+) -> dict[str, Any]:
     """What ``navsym condition`` prints: enclosures, double-precision values and warnings for the four matrices.
 
     Arguments as in :func:`condition_numbers`, and the same errors; ``digits`` significant digits in the enclosures.
     """
-    found = condition_numbers(n, rho, tau, digits=digits)
+    found = condition_numbers(n, rho, tau, digits=digits, progress=progress)
     parts: dict[str, Any] = {"n": n, "rho": str(Fraction(rho)), "tau": str(Fraction(tau)), "digits": digits}
     for name, c in found.items():
         lower, upper = c.enclosure.decimal(digits)
