@@ -80,3 +80,12 @@ def test_bad_input_has_a_kind_and_a_place(
     error = json.loads(capsys.readouterr().out)["error"]
     assert error["where"]
     assert (error["kind"] == kind) or (kind == "syntax" and error["kind"] == "unknown-symbol")
+
+
+def test_the_transition_matrix_and_the_observed_rank_come_with_proofs_that_check_accepts(file, tmp_path, capsys):
+    proofs = tmp_path / "proofs.json"
+    assert main.run(["derive", str(file), "--certificate", str(proofs)]) == 0
+    assert main.run(["check", str(proofs)]) == 0
+    kinds = [part["kind"] for part in json.loads(proofs.read_text())["of"]]
+    assert kinds == ["exponential", "rank"]
+    capsys.readouterr()

@@ -1,0 +1,39 @@
+"""Certificates of linear systems are accepted by the checker, and refused when they are spoiled."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+import sympy as sp
+
+from navsym import checker
+from navsym.proof.certificates_systems import exponential_certificate, rank_certificate
+
+t, w, a, b = sp.symbols("t w a b", real=True)
+OSCILLATOR = sp.Matrix([[0, 1], [-(w**2), 0]])
+TURNING = sp.Matrix([[sp.cos(w * t), sp.sin(w * t) / w], [-w * sp.sin(w * t), sp.cos(w * t)]])
+
+
+def judged(item) -> str:
+    return checker.check(checker.load(json.dumps(item)))
+
+
+def test_the_transition_matrix_of_an_oscillator_is_accepted():
+    assert judged(exponential_certificate(OSCILLATOR, TURNING, t)) == "exponential"
+
+
+def test_the_transition_matrix_of_another_oscillator_is_refused():
+    with pytest.raises(checker.Refused, match="differs"):
+        judged(exponential_certificate(OSCILLATOR, TURNING.T, t))
+
+
+@pytest.mark.parametrize("matrix", [
+    sp.Matrix([[a, b], [2 * a, 2 * b]]), sp.Matrix([[1, 0], [0, 1]]), sp.Matrix([[a, b, a + b], [b, a, a + b]]),
+    sp.Matrix([[0, 0]]), sp.Matrix([[1 / a, 1], [1, a], [b, a * b]]),
+])  # fmt: skip
+def test_the_rank_of_a_matrix_with_parameters_is_accepted_and_another_rank_is_not(matrix):
+    item = rank_certificate(matrix)
+    assert judged(item) == "rank" and item["rank"] == matrix.rank()
+    with pytest.raises(checker.Refused):
+        judged(item | {"rank": item["rank"] + 1})
