@@ -201,6 +201,65 @@ def probes_among(index: NDArray[np.int64]) -> NDArray[np.int64]:
     return index[(spread * index.size).astype(np.int64)]
 
 
+@dataclass(slots=True)
+class Survivors:
+    """Hypotheses that are left, with what is known of them.
+
+    index, low : flat indices, ascending, and lower bounds of their criteria
+    second     : second smallest criterion known ; slack : bound above which a hypothesis is dropped
+    used       : (n,) measurements that are in the bounds
+    tried      : hypotheses evaluated over all measurements ; samples : squares evaluated so far
+    """
+
+    index: NDArray[np.int64]
+    low: NDArray[np.float64]
+    second: float
+    slack: float
+    used: NDArray[np.bool_]
+    tried: int
+    samples: int
+
+
+def first_look(
+    case: Case, pair: NDArray[np.float64], counts: Counts, bound: float, centred: bool, inside: bool
+) -> Survivors:
+    """All hypotheses over the measurements that tell them apart best, in single precision."""
+    n, total = case[3].shape[0], math.prod(counts)
+    across, along = sides = borders(case, pair, counts, inside)
+    allowed = functools.partial(admissible, sides, counts)
+    parts, first = (parts_about_the_mean(n), CONTRASTS) if centred else (PLAIN, PLAIN)
+    used = np.zeros(n, dtype=np.bool_)
+    score = scores(case, pair, counts, centred, first_probes(total, allowed), used)
+    chosen = best_measurements(score, min(FIRST, n // TOGETHER * TOGETHER if centred else n))
+    used[chosen] = True
+    if centred:
+        # Four neighbours on the track err alike, and their mean would take it all: spread every four.
+        chosen = np.sort(chosen).reshape(TOGETHER, -1).T.ravel()
+    sums = first_sums(case, pair, counts, centred, chosen)
+    if not (across.all() and along.all()):
+        shut_out(sums, across, along)
+    found, value = lowest_per_velocity(sums, counts[0], counts[1])
+    _, second, tried = descend(case, pair, counts, centred, found[np.argsort(value)[:8]], allowed)
+    ceiling = ceiling_of(second, n, bound, parts)
+    index, partial = np.empty(total, np.int64), np.empty(total, np.float32)
+    count = keep(sums, counts[0], counts[1], single_limit(ceiling, chosen.size, bound, first), index, partial)
+    low = floor_of(partial[:count], chosen.size, bound, first)
+    slack = double_limit(ceiling, n, bound, parts)
+    return Survivors(index[:count], low, second, slack, used, tried, total * chosen.size + tried * n)
+
+
+def second_look(
+    case: Case, pair: NDArray[np.float64], counts: Counts, centred: bool, left: Survivors, most: int
+) -> None:
+    """The survivors over at most ``most`` more measurements, in double precision; drops those above the slack."""
+    score = scores(case, pair, counts, centred, probes_among(left.index), left.used)
+    chosen = best_measurements(score, min(most, len(left.used) - int(left.used.sum())))
+    left.used[chosen] = True
+    left.samples += add_more(part_of(case, chosen), pair, counts, centred, left.index, left.low, left.slack)
+    fits = left.low <= left.slack
+    left.index, left.low = left.index[fits], left.low[fits]
+
+
 def search_bounded(
     case: Case, steps: tuple[float, float], counts: Counts, bound: float, *, centred: bool = False,
     inside: bool = False,
@@ -218,39 +277,14 @@ def search_bounded(
     """
     pair = np.array(steps, dtype=np.float64)
     n, total = case[3].shape[0], math.prod(counts)
-    across, along = sides = borders(case, pair, counts, inside)
-    allowed = functools.partial(admissible, sides, counts)
-    everyone = bool(across.all() and along.all())
-    parts, first = (parts_about_the_mean(n), CONTRASTS) if centred else (PLAIN, PLAIN)
-    used = np.zeros(n, dtype=np.bool_)
-    score = scores(case, pair, counts, centred, first_probes(total, allowed), used)
-    chosen = best_measurements(score, min(FIRST, n // TOGETHER * TOGETHER if centred else n))
-    used[chosen] = True
-    if centred:
-        # Four neighbours on the track err alike, and their mean would take it all: spread every four.
-        chosen = np.sort(chosen).reshape(TOGETHER, -1).T.ravel()
-    sums = first_sums(case, pair, counts, centred, chosen)
-    if not everyone:
-        shut_out(sums, across, along)
-    found, value = lowest_per_velocity(sums, counts[0], counts[1])
-    _, second, tried = descend(case, pair, counts, centred, found[np.argsort(value)[:8]], allowed)
-    ceiling = ceiling_of(second, n, bound, parts)
-    index, partial = np.empty(total, np.int64), np.empty(total, np.float32)
-    count = keep(sums, counts[0], counts[1], single_limit(ceiling, chosen.size, bound, first), index, partial)
-    slack = double_limit(ceiling, n, bound, parts)
-    index, low = index[:count], floor_of(partial[:count], chosen.size, bound, first)
-    samples = total * chosen.size + tried * n
-    survivors = [count]
-    for size in (*STAGES, n):
-        score = scores(case, pair, counts, centred, probes_among(index), used)
-        chosen = best_measurements(score, min(size, n - int(used.sum())))
-        used[chosen] = True
-        samples += add_more(part_of(case, chosen), pair, counts, centred, index, low, slack)
-        index, low = index[low <= slack], low[low <= slack]
-        survivors.append(index.size)
-    best, criterion, runner_up, second = settle(case, pair, counts, centred, index, second)
-    samples += index.size * n
-    completed = min(index.size + tried, total)
+    left = first_look(case, pair, counts, bound, centred, inside)
+    survivors = [left.index.size]
+    for most in (*STAGES, n):
+        second_look(case, pair, counts, centred, left, most)
+        survivors.append(left.index.size)
+    best, criterion, runner_up, second = settle(case, pair, counts, centred, left.index, left.second)
+    samples = left.samples + left.index.size * n
+    completed = min(left.index.size + left.tried, total)
     return BoundedResult(best, criterion, runner_up, second, completed, samples, tuple(survivors))
 
 
