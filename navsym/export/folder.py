@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import re
 import tempfile
@@ -20,17 +21,40 @@ class FolderError(NavsymError):
 
 
 def write_folder(out: Path, files: Mapping[str, str], *, force: bool = False) -> list[Path]:
-    """Write files below a folder, each whole or not at all; raises FolderError before the first write.
+    """Write files below a folder, all or none of them; raises FolderError before the first one is in its place.
 
     files : relative name -> text
     force : replace files that are there (links are refused all the same)
     """
     targets = require_free(out, files, force=force)
     root = Path(os.path.realpath(out))
-    for name, target in targets.items():
-        make_parents(root, target)
-        replace(target, files[name])
+    staged: list[tuple[Path, Path]] = []
+    try:
+        for name, target in targets.items():
+            target.parent.mkdir(parents=True, exist_ok=True)
+            stage(target, files[name], staged)
+        for written, target in staged:
+            os.replace(written, target)
+    except OSError as error:
+        undo(root, staged)
+        got = error.strerror or type(error).__name__
+        message = f"expected a folder with room that can be written; got '{got}'; nothing was written; choose another"
+        raise FolderError(message, where=str(out)) from None
+    except BaseException:
+        undo(root, staged)
+        raise
     return list(targets.values())
+
+
+def undo(root: Path, staged: list[tuple[Path, Path]]) -> None:
+    """Take away what was staged, and the folders that are empty without it."""
+    for written, target in staged:
+        written.unlink(missing_ok=True)
+        for folder in (target.parent, *target.parent.parents):
+            with contextlib.suppress(OSError):
+                folder.rmdir()  # only an empty one goes
+            if folder == root:
+                break
 
 
 def require_free(out: Path, files: Mapping[str, str], *, force: bool = False) -> dict[str, Path]:
@@ -79,23 +103,14 @@ def target_for(root: Path, name: str) -> Path:
     raise FolderError(f"expected a name inside the folder; got {name!r}; do report this", where=str(root))
 
 
-def make_parents(root: Path, target: Path) -> None:
-    if target.parent != root:
-        target.parent.mkdir(parents=True, exist_ok=True)
-
-
-def replace(target: Path, text: str) -> None:
-    """Temporary file beside the target, then rename."""
+def stage(target: Path, text: str, staged: list[tuple[Path, Path]]) -> None:
+    """A temporary file beside the target, to be renamed when all are written."""
     if target.is_dir():
         raise FolderError(
             f"expected a file; got the folder {target.name}; do remove it", where=str(target.parent)
         )
     handle, name = tempfile.mkstemp(prefix=".export.", dir=target.parent)
-    try:
-        with os.fdopen(handle, "w", encoding="utf-8", newline="\n") as file:
-            file.write(text)
-        os.chmod(name, 0o644)
-        os.replace(name, target)
-    except BaseException:
-        Path(name).unlink(missing_ok=True)
-        raise
+    staged.append((Path(name), target))
+    with os.fdopen(handle, "w", encoding="utf-8", newline="\n") as file:
+        file.write(text)
+    os.chmod(name, 0o644)

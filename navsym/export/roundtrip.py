@@ -102,17 +102,26 @@ def check_export(folder: Path) -> list[dict[str, Any]]:
     """
     folder = Path(folder)
     if not (folder / MANIFEST).is_file():
-        return []
+        lost = "expected the manifest of the code that is here; got none; do export again"
+        return [row(folder / MANIFEST, "manifest", lost)] if any(has_code(folder / name) for name in TARGETS) else []
     try:
-        manifest = json.loads((folder / MANIFEST).read_text("utf-8"))
+        text = (folder / MANIFEST).read_text("utf-8")
+        manifest = json.loads(text)
         files = dict(manifest["files"])
         languages = [str(name) for name in manifest["languages"]]
     except (OSError, ValueError, KeyError, TypeError) as error:
         came = f"{type(error).__name__}: {error}"
         return [row(folder / MANIFEST, "manifest", f"expected a manifest of navsym export; got {came}")]
-    rows = [row(folder / MANIFEST, "manifest", hash_trouble(folder, files))]
+    same = text == json.dumps(manifest, indent=2) + "\n"
+    trouble = hash_trouble(folder, files) if same else f"{MANIFEST}: not as exported (its layout differs)"
+    rows = [row(folder / MANIFEST, "manifest", trouble)]
     rows += [language_row(folder, name) for name in languages]
     return rows + ([misra_row(folder / "c")] if "c" in languages and (folder / "c").is_dir() else [])
+
+
+def has_code(folder: Path) -> bool:
+    """True for the folder of a language: it has the program or the page that runs its vectors."""
+    return folder.is_dir() and any(p.name.startswith("test_") or p.name == "index.html" for p in folder.iterdir())
 
 
 def check_folder(folder: Path) -> list[dict[str, Any]]:

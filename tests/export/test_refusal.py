@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from pathlib import Path
 
 import pytest
@@ -15,6 +16,7 @@ from navsym.export.folder import FolderError, write_folder
 from navsym.export.functions import RefusedError, function_of, material
 from navsym.export.names import function_name, identifier
 from navsym.export.package import Order, files_of
+from navsym.export.roundtrip import check_export
 from navsym.export.targets import chosen
 from navsym.proof.ladder import decide
 
@@ -146,6 +148,47 @@ def test_a_changed_file_is_noticed(capsys, tmp_path: Path) -> None:
     assert run(["check", str(out), "--json"]) == 1
     rows = json.loads(capsys.readouterr().out)["checked"]
     assert any(row["kind"] == "manifest" and "hash" in row["why"] for row in rows)
+
+
+@pytest.mark.parametrize("change", ["removed", "a line more"])
+def test_code_without_its_manifest_as_written_is_rejected(change: str, samples, tmp_path: Path) -> None:
+    files = files_of([samples.by_name("versine")], Order(tuple(chosen(["python"], "double")), count=4))
+    write_folder(tmp_path, files)
+    manifest = tmp_path / "manifest.json"
+    assert [row["status"] for row in check_export(tmp_path)] == ["ACCEPTED"] * 2
+    if change == "removed":
+        manifest.unlink()
+    else:
+        manifest.write_text(manifest.read_text() + "\n")
+    assert "REJECTED" in [row["status"] for row in check_export(tmp_path)]
+
+
+def test_a_folder_of_certificates_needs_no_manifest(tmp_path: Path) -> None:
+    (tmp_path / "c").mkdir()
+    (tmp_path / "c" / "claim.json").write_text("{}")
+    assert check_export(tmp_path) == []
+
+
+def test_a_full_disk_leaves_nothing_behind(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    calls = []
+
+    def full(path: str, mode: int) -> None:
+        calls.append(path)
+        if len(calls) == 3:
+            raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("navsym.export.folder.os.chmod", full)
+    with pytest.raises(FolderError, match="No space left") as error:
+        write_folder(tmp_path / "e", {"c/a.c": "x", "c/b.c": "x", "certificates/d.json": "x"})
+    assert error.value.kind == "output" and not (tmp_path / "e").exists()
+
+
+def test_what_is_replaced_stays_when_the_disk_is_full(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    write_folder(tmp_path, {"a": "old", "b": "old"})
+    monkeypatch.setattr("navsym.export.folder.os.chmod", lambda path, mode: os.close(-1))
+    with pytest.raises(FolderError):
+        write_folder(tmp_path, {"a": "new", "b": "new"}, force=True)
+    assert sorted((p.name, p.read_text()) for p in tmp_path.iterdir()) == [("a", "old"), ("b", "old")]
 
 
 def test_a_comment_cannot_be_closed_by_a_title(samples) -> None:
