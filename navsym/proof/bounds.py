@@ -23,6 +23,7 @@ from navsym.proof.algebraic_signs import algebraic_sign
 from navsym.proof.balls import DEFAULT_BITS, UnsupportedError, enclose, exact_ball, precision, tape
 from navsym.proof.contacts import end_contact
 from navsym.proof.exact_signs import angle_sign, bounded_terms, is_entire, multilinear_sign
+from navsym.proof.inverses import KINDS, principal_least
 from navsym.proof.normal_form import OutsideLanguageError
 from navsym.proof.products import as_product
 from navsym.proof.sampling import Range, ranges
@@ -113,7 +114,17 @@ def by_forms(expression: sp.Expr, limits: Limits, wanted: Sign, budget: int, dep
         by_range = way(expression, limits)
         if by_range.at_least(wanted):
             return by_range
-    return UNKNOWN
+    principal = principal_sign(expression)
+    return principal if principal.at_least(wanted) and exists(expression, limits, budget, depth) else UNKNOWN
+
+
+def principal_sign(expression: sp.Expr) -> SignProof:
+    """Sign of a sum of inverse functions and multiples of pi by their principal values, wherever it exists."""
+    least, left_out = principal_least(expression) if expression.has(*KINDS) else (sp.Integer(-1), False)
+    if least < 0:
+        return UNKNOWN
+    sign = Sign.POSITIVE if least > 0 or left_out else Sign.NONNEGATIVE
+    return SignProof(sign, "principal values of the inverse functions", exact=True)
 
 
 def by_polynomials(expression: sp.Expr, limits: Limits, wanted: Sign, budget: int, depth: int) -> SignProof:

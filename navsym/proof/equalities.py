@@ -18,7 +18,12 @@ from navsym.proof.balls import enclose, tape
 from navsym.proof.cases import vanishes_in_all_cases
 from navsym.proof.inverses import KINDS, Solved, principal_least, solved_for_inverses
 from navsym.proof.logarithms import expand_logarithms
-from navsym.proof.normal_form import Reduction, reduce_to_zero, vanishes_identically
+from navsym.proof.normal_form import (
+    OutsideLanguageError,
+    Reduction,
+    reduce_to_zero,
+    vanishes_identically,
+)
 from navsym.proof.numbers import is_zero
 from navsym.proof.sampling import Point, points, ranges
 
@@ -36,8 +41,15 @@ Way = Callable[[sp.Expr, sp.Expr, Box], Proof | None]
 
 
 def first_proof(printed: sp.Expr, derived: sp.Expr, box: Box, ways: Iterable[Way]) -> Proof | None:
-    """The first way that succeeds."""
-    return next((proof for way in ways if (proof := way(printed, derived, box)) is not None), None)
+    """The first way that succeeds; one that meets something outside its language does not."""
+    for way in ways:
+        try:
+            proof = way(printed, derived, box)
+        except OutsideLanguageError:
+            continue
+        if proof is not None:
+            return proof
+    return None
 
 
 def by_normal_form(printed: sp.Expr, derived: sp.Expr, box: Box) -> Proof | None:

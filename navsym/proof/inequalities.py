@@ -12,13 +12,11 @@ from flint import arb
 from navsym.claims.statement import Bound, Box, Equation
 from navsym.claims.verdict import CERTIFIED, OPEN, PROVED, Verdict
 from navsym.errors import DomainError
-from navsym.proof.algebraic_signs import algebraic_sign
 from navsym.proof.assumptions import remaining_assumptions, with_sides
 from navsym.proof.balls import UnsupportedError, tape
 from navsym.proof.bounds import Sign, SignProof, prove_sign
 from navsym.proof.certificates import positivity_certificate
 from navsym.proof.equations import after_look, broken, decide_equation, sampled
-from navsym.proof.inverses import KINDS, principal_least
 from navsym.proof.normal_form import OutsideLanguageError, reduce_to_zero
 from navsym.proof.numbers import is_zero
 from navsym.proof.sampling import Point, Sample, points, ranges, search_counterexample, value_at
@@ -158,18 +156,7 @@ def prove_relation(difference: sp.Expr, relation: str, box: Box) -> SignProof:
     proof = prove_sign(difference, box, wanted)
     if relation == "!=" and not proof.at_least(wanted):
         proof = prove_sign(-difference, box, wanted)
-    if not proof.at_least(wanted):
-        proof = wherever_it_exists(difference, box)
     return proof if proof.at_least(wanted) else SignProof(Sign.UNKNOWN)
-
-
-def wherever_it_exists(difference: sp.Expr, box: Box) -> SignProof:
-    """Sign by polynomials or principal values; that the difference exists is among the assumptions of a verdict."""
-    least, left_out = principal_least(difference)
-    if difference.has(*KINDS) and least >= 0:
-        sign = Sign.POSITIVE if least > 0 or left_out else Sign.NONNEGATIVE
-        return SignProof(sign, "principal values of the inverse functions", exact=True)
-    return algebraic_sign(difference, ranges(sorted(difference.free_symbols, key=str), box))
 
 
 def certificate_of(difference: sp.Expr, relation: str, box: Box) -> Mapping[str, Any] | None:

@@ -28,6 +28,9 @@ INVERSE = (sp.asin, sp.acos, sp.atan, sp.atan2)
 
 ROOT_OF_UNITY_FOR_PRIME = {2: 8, 3: 12, 5: 20}
 
+#: Order of the root of unity beyond which its cyclotomic polynomial is not made.
+MOST_UNITY = 20_000
+
 
 @dataclass(slots=True)
 class Ingredients:
@@ -101,6 +104,10 @@ def gather_angle(angle: sp.Basic, found: Ingredients) -> None:
     for monomial, coefficient in linear_terms(angle).items():
         if monomial == PI:
             found.unity = lcm(found.unity, 2 * coefficient.denominator)
+            if found.unity > MOST_UNITY:
+                raise OutsideLanguageError(
+                    f"expected turns with a common denominator below {MOST_UNITY}; got {angle}; round it"
+                )
             continue
         found.angles[monomial] = lcm(found.angles.get(monomial, 1), coefficient.denominator)
         inverse = single(monomial, INVERSE)

@@ -14,6 +14,7 @@ import sympy as sp
 
 from navsym.proof.monomials import PI, linear_terms, single
 
+MOST_POWERS = 400
 KINDS = (sp.log, sp.asin, sp.acos, sp.atan, sp.atan2)
 
 
@@ -39,7 +40,16 @@ def solved_for_inverses(difference: sp.Expr) -> Iterator[Solved]:
             if atom is not None:
                 coefficient = terms[monomial]
                 share = sp.Rational(coefficient.numerator, coefficient.denominator)
-                yield definition(atom, sp.expand_mul(atom - factor / share))
+                value = sp.expand_mul(atom - factor / share)
+                if not isinstance(atom, sp.log) or size_of(value) <= MOST_POWERS:
+                    yield definition(atom, value)
+
+
+def size_of(value: sp.Expr) -> int:
+    """The largest whole power that a sum of logarithms turns into."""
+    shares = list(linear_terms(value).values())
+    n = lcm(*(share.denominator for share in shares), 1)
+    return max([n, *(abs(int(share * n)) for share in shares)])
 
 
 def definition(atom: sp.Expr, value: sp.Expr) -> Solved:

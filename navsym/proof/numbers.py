@@ -9,7 +9,7 @@ from navsym.proof.algebraic import is_algebraic_zero
 from navsym.proof.balls import enclose, exact_ball, tape
 from navsym.proof.inverses import KINDS, solved_for_inverses
 from navsym.proof.logarithms import expand_logarithms
-from navsym.proof.normal_form import vanishes_identically
+from navsym.proof.normal_form import OutsideLanguageError, vanishes_identically
 
 DEPTH = 2
 
@@ -19,7 +19,7 @@ def is_zero(number: sp.Expr, depth: int = DEPTH) -> bool:
     ball = exact_ball(number, 128)
     if not ball.is_finite() or not ball.contains(0):
         return False
-    if vanishes_identically(number):
+    if is_formally_zero(number):
         return True
     algebraic = is_algebraic_zero(number)
     if algebraic is not None:
@@ -27,7 +27,15 @@ def is_zero(number: sp.Expr, depth: int = DEPTH) -> bool:
     if not number.has(*KINDS):
         return False
     spread = expand_logarithms(number, is_positive_number)
-    return vanishes_identically(spread) or (depth > 0 and by_inverses(number, depth))
+    return is_formally_zero(spread) or (depth > 0 and by_inverses(number, depth))
+
+
+def is_formally_zero(number: sp.Expr) -> bool:
+    """Zero by the normal form; false where the number lies outside its language."""
+    try:
+        return vanishes_identically(number)
+    except OutsideLanguageError:
+        return False
 
 
 def by_inverses(number: sp.Expr, depth: int) -> bool:
