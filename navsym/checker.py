@@ -26,7 +26,7 @@ touch, range pieces [{from, to, basis, dual, contacts [{panel, at, weight}], rad
              - s_i) - x.P in the box of this radius around (x; v_i that are no ends; W_i). There s_i W_i > 0, places are
              inside, and |f| < 1 elsewhere: the optimum is x.P, and no other estimator reaches it.
 Bounds of f on a cell: Taylor's formula; near a contact f is concave or monotone up to the end of the panel. Other cells
-are halved, 4 cells + 200 in all. For all |s| <= 1: f(0) + s f'(0) + s s f''(of any s)/2.
+are halved, 4 cells + 200 in all (cells bits <= 4 * 10**7). For all |s| <= 1: f(0) + s f'(0) + s s f''(of any s)/2.
 """
 
 from __future__ import annotations
@@ -320,7 +320,7 @@ def positivity(item: Any) -> None:
         here = {s: a + (b - a) * Jet(arb(cell[s][0]).union(arb(cell[s][1]))) for s, (a, b) in ends.items()}
         return value(tree, here, arb).parts[0] > 0
     whole_box = dict.fromkeys(ends, (fmpq(0), fmpq(1)))
-    cover(whole_box, 4 * whole(cells, 0, 50000) + 200, passes, "not shown to be positive")
+    cover(whole_box, 4 * whole(cells, 0, min(50000, 4 * 10**7 // bits)) + 200, passes, "not shown to be positive")
 
 # -- the optimum -------------------------------------------------------------------------------------------------------
 EVERY, HEAD = arb(0, 1), "kind variable panels functional bits cells parameter from to lower upper "
@@ -332,7 +332,7 @@ class Problem:
     """Panels and functional; p = middle + half s is the value of the parameter, an int half when nothing follows it."""
     def __init__(self, item: Any, more: str):
         _, t, panels, P, bits, cells, p, *numbers = fields(item, HEAD + more)
-        ctx.prec, self.limit = whole(bits, 53, 20000), 4 * whole(cells, 0, 20000) + 200
+        ctx.prec, self.limit = whole(bits, 53, 20000), 4 * whole(cells, 0, min(20000, 4 * 10**7 // bits)) + 200
         self.low, self.high, self.lower, self.upper = map(number, numbers[:4])
         self.rest, (self.t, self.p), self.P = numbers[4:], distinct([t, p]), array(P, parse)
         rows = array(panels, lambda panel: fields(panel, "measurement from to sigma H"))
