@@ -246,12 +246,20 @@ def support_of(found: Polished, z: Sequence[arb]) -> tuple[tuple[int, arb, arb],
 
 
 def gap(
-    problem: Problem, basis: Basis, contacts: Contacts, found: Polished, digits: int, bits: int
-) -> Certified:
-    """The two-sided certificate; the dual is shrunk until nothing above the bound is left."""
+    problem: Problem, basis: Basis, contacts: Contacts, found: Polished, digits: int, bits: int,
+    carriers: Contacts | None = None,
+) -> Certified:  # fmt: skip
+    """The two-sided certificate; the dual is shrunk until nothing above the bound is left.
+
+    carriers : what carries the weights; by default the contacts
+    """
     places = digits + lost_digits(basis) + 12
     with precision(bits):
-        support = support_points(basis, contacts, found, places)
+        if carriers is None:
+            at = [exact(decimal(v, places)) for v in found.v]
+            support = support_points(basis, contacts, at)
+        else:
+            support = support_points(basis, carriers, [as_fraction(float(u)) for u in carriers.u])
         weights = balanced(problem, support)
         upper = upper_end(cost(problem, support, weights), digits + 6)
         touches = near_touches(problem, found, places)
@@ -302,8 +310,11 @@ def round_number(x: fmpq, digits: int = 8) -> fmpq:
     return near if abs(near - x) < room else x
 
 
-def support_points(basis: Basis, contacts: Contacts, found: Polished, places: int) -> list[tuple[int, fmpq]]:
-    """As many places as unknowns, regressors far from dependent: the contacts, filled up from the grid."""
+def support_points(basis: Basis, contacts: Contacts, at: Sequence[fmpq]) -> list[tuple[int, fmpq]]:
+    """As many places as unknowns, regressors far from dependent: the contacts, filled up from the grid.
+
+    at : the exact fraction of each contact
+    """
     C = basis.panels.coefficients
     m = C.shape[2]
     nodes = nodes_for(basis.panels)
@@ -315,7 +326,7 @@ def support_points(basis: Basis, contacts: Contacts, found: Polished, places: in
     for i in order:
         row = rows_at(C, contacts.panel[i : i + 1], contacts.u[i : i + 1])[0] @ rest
         if np.linalg.norm(row) > 1e-7 and len(chosen) < m:
-            chosen.append((int(contacts.panel[i]), exact(decimal(found.v[i], places))))
+            chosen.append((int(contacts.panel[i]), at[i]))
             rest = without(rest, row)
     rows = rows_at(C, np.array([k for k, _ in grid]), np.array([u for _, u in grid]))
     while len(chosen) < m:

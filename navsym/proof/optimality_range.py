@@ -42,7 +42,7 @@ HUGE = 10**9
 #: Bounds of the value are this part of it wider than what is proved here.
 ROOM = 10**6
 #: The bound is proved here for a box wider by this part, so that a checker with other cells has room.
-WIDER = arb(0.25)
+WIDER = arb(1)
 
 Pattern = tuple[tuple[int, str, int], ...]
 
@@ -200,7 +200,7 @@ def free_places(pattern: Pattern, m: int) -> list[int]:
 def optimality_system(
     moving: Moving, pattern: Pattern, z: Sequence[Sequence[Any]], radius: dict[int, arb], s: arb
 ) -> tuple[list[Any], list[dict[int, Any]]]:
-    """F and its derivatives as series about s: ``f(v_i) - s_i``, ``f'(v_i)``, ``sum w_i q(v_i) - A P``."""
+    """F and its derivatives as series about s: ``f(v_i) - s_i``, ``w_i f'(v_i)``, ``sum w_i q(v_i) - A P``."""
     m, l = moving.size, len(pattern)
     here = [series_at(c, s) + radius.get(k, arb(0)) * EVERY for k, c in enumerate(z)]
     y, w = here[:m], here[m + l :]
@@ -214,8 +214,9 @@ def optimality_system(
         f = [dot(y, [row[d] for row in q]) for d in range(3)]
         F.append(f[0] - sign)
         J.append({j: q[j][0] for j in range(m)} | {m + i: f[1]})
-        if kind == "no":
-            slopes.append((f[1], {j: q[j][1] for j in range(m)} | {m + i: 2 * f[2]}))
+        if kind == "no":  # times the weight, as the checker has it: the gradient of sum w_i (f(v_i) - s_i)
+            row_ = {j: w[i] * q[j][1] for j in range(m)} | {m + i: 2 * w[i] * f[2], m + l + i: f[1]}
+            slopes.append((w[i] * f[1], row_))
         for j in range(m):
             balance[j] = balance[j] + w[i] * q[j][0]
             rows[j] |= {m + i: w[i] * q[j][1], m + l + i: q[j][0]}

@@ -1,6 +1,7 @@
 """Guaranteed estimation against cvxpy with HiGHS and highspy on grids: ``python tests/benchmarks/guaranteed.py``.
 
-Peers and navsym run alternately in one process; medians of a few rounds, in seconds of processor time. (a) the optimum alone, (b) with its
+Peers and navsym run alternately in one process; medians of a few rounds, in seconds of processor time. (a) the
+optimum alone, (b) with its
 certificate of relative width 1e-14, (c) a thousand lengths of the interval.
 """
 

@@ -175,6 +175,8 @@ def test_an_unknown_that_depends_on_the_others_is_left_out_with_a_certificate():
     }  # fmt: skip
     answer = phases(family_of(model_from(document), "seen", "T"), sp.Integer(0), sp.Integer(4))
     assert {regime.status for regime in answer.regimes} == {"PROVED"} and answer.uncovered == ()
+    (row,) = answer.document()["regimes"]
+    assert len(row["dual"]) == 3 and row["dual"][2] == "0"
     assert accepted(answer) == ["identity", "identity"]
     with pytest.raises(NotEstimableError):
         phases(family_of(model_from(document), "hidden", "T"), sp.Integer(0), sp.Integer(4))

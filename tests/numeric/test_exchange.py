@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+
 import numpy as np
 import pytest
+import sympy as sp
 from numpy.polynomial import chebyshev
 from scipy.optimize import linprog
 
@@ -11,7 +14,10 @@ from navsym.numeric import exchange_kernels as kernels
 from navsym.numeric import tiers
 from navsym.numeric.exchange import Panels, chebyshev_nodes, find_contacts, independent, rows_at
 from navsym.numeric.exchange_maxima import local_maxima, values_on
+from navsym.numeric.exchange_twofold import two_product, two_sum
 from navsym.numeric.tiers import compiled
+from navsym.proof.enclosure import Panel, Problem
+from navsym.proof.optimality_basis import make_basis
 
 
 def power_panels(m, functional):
@@ -95,3 +101,21 @@ def test_a_functional_with_fewer_contacts_than_unknowns_is_solved():
     found = find_contacts(power_panels(m, ends))
     assert found.value == pytest.approx(1.0, rel=1e-10)
     assert found.u.size == 1 and found.u[0] == 1.0
+
+
+@pytest.mark.parametrize("k", [0, 3, 7])
+def test_the_value_in_twofold_precision_is_that_of_the_chebyshev_polynomial_to_the_last_bits(k):
+    t = sp.Symbol("t", real=True)
+    panel = Panel(0, tuple(t**j for j in range(8)), t, sp.Integer(0), sp.Integer(1), sp.Integer(1))
+    basis = make_basis(Problem((panel,), tuple(sp.Integer(int(j == k)) for j in range(8))))
+    shifted = sp.Poly(sp.chebyshevt(7, 2 * t - 1), t).coeff_monomial(t**k)
+    assert find_contacts(basis.panels).value * basis.scale == pytest.approx(abs(int(shifted)), rel=1e-15)
+
+
+def test_products_and_sums_of_two_doubles_lose_nothing():
+    rng = np.random.default_rng(4)
+    for a, b in rng.standard_normal((50, 2)) * 10.0 ** rng.integers(-8, 8, (50, 2)):
+        product, rest = two_product(a, b)
+        assert Fraction(product) + Fraction(rest) == Fraction(a) * Fraction(b)
+        total, rest = two_sum(a, b)
+        assert Fraction(total) + Fraction(rest) == Fraction(a) + Fraction(b)

@@ -311,7 +311,8 @@ def regime_row(family: Family, regime: Regime) -> dict[str, Any]:
             {"measurement": family.measurements[closed.panels[i]], "at": to_text(family.time(closed.places[i])),
              "weight": to_text(closed.weights[i])} for i in order
         ]  # fmt: skip
-        row["dual"] = [to_text(x) for x in closed.dual]
+        dual = dict(zip(family.unknowns, closed.dual, strict=True))
+        row["dual"] = [to_text(dual.get(k, sp.S.Zero)) for k in range(len(dual) + len(family.left_out))]
         row["method"] = closed.verdict.method
     else:
         row |= {

@@ -55,4 +55,5 @@ def dropped(
         ties.append({"kind": "identity", "left": left, "right": right, "symbols": symbols})
     rows = tuple(tuple(h for j, h in enumerate(row) if j != k) for row in family.rows)
     functional = tuple(p for j, p in enumerate(family.functional) if j != k)
-    return replace(family, rows=rows, functional=functional)
+    left_out = (*family.left_out, family.unknowns[k])
+    return replace(family, rows=rows, functional=functional, left_out=left_out)

@@ -33,6 +33,7 @@ class Family:
     backward     : True when U counts back from the end, ``t = end - u``
     measurements : names
     start, end   : ends of U; by default 0 and the parameter
+    left_out     : places of unknowns that depend on the others and are not among the columns of rows
     """
 
     rows: Rows
@@ -44,6 +45,13 @@ class Family:
     target: str
     start: sp.Expr = sp.S.Zero
     end: sp.Expr | None = None
+    left_out: tuple[int, ...] = ()
+
+    @property
+    def unknowns(self) -> tuple[int, ...]:
+        """Places of the unknowns of the rows among all of them."""
+        every = range(len(self.functional) + len(self.left_out))
+        return tuple(k for k in every if k not in self.left_out)
 
     @property
     def stop(self) -> sp.Expr:

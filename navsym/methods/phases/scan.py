@@ -22,6 +22,8 @@ from navsym.proof.optimality_basis import Basis, make_basis
 
 COUNT = 72
 BRACKET = 1e-7
+#: A span below this part of the range is taken for an accident of contacts that merge.
+SHORTEST = Fraction(1, 5000)
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,7 +81,7 @@ def scan(
             edge, pattern = cut, after
         step()
     spans.append(Span(edge, upper, pattern))
-    return joined([s for s in spans if s.upper - s.lower > Fraction(1, 20000) * width])
+    return joined([s for s in spans if s.upper - s.lower > SHORTEST * width])
 
 
 def changes(
