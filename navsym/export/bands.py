@@ -84,6 +84,7 @@ def halves(a: Array) -> tuple[Array, Array]:
 
 
 def added(a: Band, b: Band) -> Band:
+    """a + b within 64 units of 2^-106, and the errors of both."""
     sh, sl = two_sum(a.high, b.high)
     th, tl = two_sum(a.low, b.low)
     vh, vl = fast_two_sum(sh, sl + th)
@@ -92,10 +93,12 @@ def added(a: Band, b: Band) -> Band:
 
 
 def negated(a: Band) -> Band:
+    """-a, exactly."""
     return Band(-a.high, -a.low, a.error)
 
 
 def multiplied(a: Band, b: Band) -> Band:
+    """a b within 64 units of 2^-106, and the errors of each times the other."""
     ch, cl = two_product(a.high, b.high)
     high, low = fast_two_sum(ch, cl + (a.high * b.low + a.low * b.high))
     carried = a.size() * b.error + b.size() * a.error + a.error * b.error
