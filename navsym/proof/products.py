@@ -132,6 +132,7 @@ def angle_of(converter: Converter, place: int, power: Fraction) -> sp.Expr:
 
 
 def monomial_expression(monomial: Monomial) -> sp.Expr:
+    """The monomial as a product of powers."""
     factors = [sp.Pow(base, sp.Rational(e.numerator, e.denominator)) for base, e in monomial]
     return sp.Mul(*factors)
 
