@@ -45,7 +45,8 @@ def test_what_is_wrong_in_any_other_way_refuses_the_file():
 
 def test_the_verb_answers_with_verdicts_an_error_and_status_two(tmp_path, capsys):
     path = tmp_path / "formulas.toml"
-    blocks = "".join(f'[[claim]]\nid = "{c["id"]}"\nleft = "{c["left"]}"\nright = "{c["right"]}"\n' for c in (POLE, GOOD))
+    lines = ([f'{key} = "{value}"' for key, value in claim.items()] for claim in (POLE, GOOD))
+    blocks = "".join("\n".join(["[[claim]]", *claim, ""]) for claim in lines)
     path.write_text(f'[symbols]\na = "real"\n{blocks}')
     assert run(["prove", str(path), "--json"]) == 2
     answer = json.loads(capsys.readouterr().out)
