@@ -17,7 +17,10 @@ from collections.abc import Callable
 from functools import cache, update_wrapper
 from pathlib import Path
 from types import FunctionType
-from typing import Any
+from typing import Any, Generic, ParamSpec, TypeVar, cast
+
+P = ParamSpec("P")
+R = TypeVar("R")
 
 #: Seconds of interpreting after which a loop is compiled: where it was never compiled, and where it was.
 TO_COMPILE, TO_LOAD = 20.0, 0.6
@@ -29,42 +32,42 @@ class Meter:
     spent = 0.0
 
 
-class Kernel:
+class Kernel(Generic[P, R]):
     """A function on plain numbers and arrays that is interpreted or compiled; both give the same bits.
 
     py_func : the function as it is written
     """
 
-    def __init__(self, function: FunctionType):
+    def __init__(self, function: Callable[P, R]):
         self.py_func = function
-        self.fast: Callable[..., Any] | None = None
+        self.fast: Callable[P, R] | None = None
         update_wrapper(self, function)
 
-    def __call__(self, *arguments: Any) -> Any:
+    def __call__(self, *given: P.args, **named: P.kwargs) -> R:
         if self.fast is not None:
-            return self.fast(*arguments)
+            return self.fast(*given, **named)
         if self.price() < Meter.spent:
-            return self.compiled()(*arguments)
+            return self.compiled()(*given, **named)
         start = time.perf_counter()
-        answer = self.py_func(*arguments)
+        answer = self.py_func(*given, **named)
         Meter.spent += time.perf_counter() - start
         return answer
 
-    def compiled(self) -> Callable[..., Any]:
+    def compiled(self) -> Callable[P, R]:
         """The compiled function; the written one where there is no compiler."""
-        self.fast = compiled(self.py_func)
+        self.fast = cast("Callable[P, R]", compiled(cast(FunctionType, self.py_func)))
         return self.fast
 
     def price(self) -> float:
-        return TO_LOAD if was_compiled(self.py_func) else TO_COMPILE
+        return TO_LOAD if was_compiled(cast(FunctionType, self.py_func)) else TO_COMPILE
 
 
-def kernel(function: FunctionType) -> Kernel:
+def kernel(function: Callable[P, R]) -> Kernel[P, R]:
     """Decorator of a loop that Python calls."""
     return Kernel(function)
 
 
-def part(function: FunctionType) -> FunctionType:
+def part(function: Callable[P, R]) -> Callable[P, R]:
     """Decorator of a loop that only other loops call, or Python for an instant: compiled with them."""
     function.__dict__["part"] = True
     return function
@@ -89,7 +92,7 @@ def is_loop(thing: Any) -> bool:
 
 
 def written(thing: Any) -> FunctionType:
-    return thing.py_func if isinstance(thing, Kernel) else thing
+    return cast(FunctionType, thing.py_func if isinstance(thing, Kernel) else thing)
 
 
 @cache

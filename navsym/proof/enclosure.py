@@ -420,6 +420,8 @@ def exact_touch(cell: Cell, taylor: Sequence[arb], spread: arb, bound: arb) -> b
     monotone up to a contact at an end of the panel, or concave with an outward slope there."""
     assert cell.touch is not None
     s, place = cell.touch.sign, arb(cell.touch.at)
+    if cell.touch.end != "no" and place.rad() > 0:  # the slope below is that at one place
+        return False
     inside = (cell.touch.end == "from" or bool(place >= arb(cell.lower))) and (
         cell.touch.end == "to" or bool(place <= arb(cell.upper))
     )

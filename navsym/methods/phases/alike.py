@@ -60,7 +60,7 @@ def every_place(found: Contacts) -> tuple[Ints, Array]:
 
 def balanced(rows: Array, functional: Array) -> Array | None:
     """The weights that carry the functional on the rows, or None."""
-    weights = np.linalg.lstsq(rows.T, functional, rcond=1e-11)[0]
+    weights: Array = np.linalg.lstsq(rows.T, functional, rcond=1e-11)[0].astype(np.float64)
     rest = np.abs(weights @ rows - functional).max()
     return weights if rest <= BALANCED * np.abs(functional).max() else None
 
