@@ -87,16 +87,30 @@ class Moving:
 
     def rows(self, k: int, v: Any, r: Any, s: arb, order: int) -> list[list[Any]]:
         """Coefficients 0 … order in w of every q on panel k, at the fraction ``v + r w``."""
+        return self.mixed(self.mix, *self.functions(k, v, r, s, order), order)
+
+    def rows_of_problem(self, k: int, v: Any, r: Any, s: arb, order: int) -> list[list[Any]]:
+        """The same of ``H / sigma``."""
+        m = self.size
+        return self.mixed(arb_mat(m, m, 1), *self.functions(k, v, r, s, order), order)
+
+    def dual_of_problem(self, y: Sequence[Any]) -> list[Any]:
+        """``A^T y``: what multiplies ``H / sigma`` where y multiplies q."""
+        columns = self.mix.transpose().tolist()
+        return [sum((a * c for a, c in zip(y, column, strict=True)), arb(0)) for column in columns]
+
+    def functions(self, k: int, v: Any, r: Any, s: arb, order: int) -> tuple[list[list[Any]], Any]:
+        """Coefficients of every H, and ``1 / sigma``."""
         panel, p = self.problem.panels[k], self.value(s)
         start, end, sigma = panel.ends.run({self.parameter: p})
         t = Jet([start + (end - start) * v, (end - start) * r], order)
         H = panel.program.run({panel.variable: t, self.parameter: Jet([p], order)})
-        return self.mixed([padded(h, order) for h in H], 1 / sigma, order)
+        return [padded(h, order) for h in H], 1 / sigma
 
-    def mixed(self, H: Sequence[Sequence[Any]], scale: Any, order: int) -> list[list[Any]]:
+    def mixed(self, matrix: arb_mat, H: Sequence[Sequence[Any]], scale: Any, order: int) -> list[list[Any]]:
         n = ctx.cap
         flat = arb_mat([[number_of(part, j) for part in h for j in range(n)] for h in H])
-        q = (self.mix * flat).tolist()
+        q = (matrix * flat).tolist()
         return [
             [arb_series(row[n * k : n * (k + 1)]) * scale for k in range(order + 1)] for row in q
         ]
@@ -104,7 +118,7 @@ class Moving:
     def target(self, s: arb) -> list[Any]:
         """``A P`` about s."""
         P = self.problem.functional_program.run({self.parameter: self.value(s)})
-        return [row[0] for row in self.mixed([[p] for p in P], arb(1), 0)]
+        return [row[0] for row in self.mixed(self.mix, [[p] for p in P], arb(1), 0)]
 
 
 def padded(h: Any, order: int) -> list[Any]:
@@ -153,6 +167,13 @@ class Vanishing(Moving):
                 value = value * place
             done.append(padded(value, order))
         return done
+
+    def rows_of_problem(self, k: int, v: Any, r: Any, s: arb, order: int) -> list[list[Any]]:
+        return self.rows(k, v, r, s, order)
+
+    def dual_of_problem(self, y: Sequence[Any]) -> list[Any]:
+        """The certificate is one of the scaled rows themselves."""
+        return list(y)
 
     def target(self, s: arb) -> list[Any]:
         p, P = self.value(s), exact_functional(self.problem)

@@ -42,7 +42,7 @@ HUGE = 10**9
 #: Bounds of the value are this part of it wider than what is proved here.
 ROOM = 10**6
 #: The bound is proved here for a box wider by this part, so that a checker with other cells has room.
-WIDER = arb(1)
+WIDER = arb(0.25)
 
 Pattern = tuple[tuple[int, str, int], ...]
 
@@ -378,18 +378,21 @@ def touches_of(track: Track, here: Sequence[arb], m: int) -> list[list[Touch]] |
 def expansion(
     moving: Moving, y: Sequence[Sequence[arb]], spread: dict[int, arb], k: int, cell: Cell, centre: fmpq, radius: fmpq
 ) -> list[arb]:
-    """Taylor coefficients of f in w, place ``centre + radius w``, for all |s| <= 1; the last over the whole cell."""
+    """Taylor coefficients of f in w, place ``centre + radius w``, for all |s| <= 1; the last over the whole cell.
+
+    In the basis of the problem, where cancellation costs width, because a checker has it so.
+    """
     order = order_for(moving.size)
 
     def values(s: arb) -> list[Any]:
-        x = [series_at(c, s) + spread[j] * EVERY for j, c in enumerate(y)]
-        q = moving.rows(k, arb(centre), arb(radius), s, order - 1)
-        return [dot(x, [row_[d] for row_ in q]) for d in range(order)]
+        x = moving.dual_of_problem([series_at(c, s) + spread[j] * EVERY for j, c in enumerate(y)])
+        h = moving.rows_of_problem(k, arb(centre), arb(radius), s, order - 1)
+        return [dot(x, [row_[d] for row_ in h]) for d in range(order)]
 
     point = [at_all(c) for c in enclosed_series(values)]
     with terms(1):
-        x = [at_all(c) + spread[j] * EVERY for j, c in enumerate(y)]
-        wide = moving.rows(k, interval(cell.lower, cell.upper), arb(radius), EVERY, order)
+        x = moving.dual_of_problem([at_all(c) + spread[j] * EVERY for j, c in enumerate(y)])
+        wide = moving.rows_of_problem(k, interval(cell.lower, cell.upper), arb(radius), EVERY, order)
         last = total(x, [number_of(row_[order], 0) for row_ in wide])
     return [*point, last]
 
