@@ -9,7 +9,6 @@ statement that is proved stronger than the one that is asked.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from functools import lru_cache
 
 import sympy as sp
@@ -17,6 +16,7 @@ from flint import arb, fmpq, fmpq_mpoly
 
 from navsym.errors import NavsymError
 from navsym.proof.balls import enclose, exact_ball, hull, tape
+from navsym.proof.cases import half_range
 from navsym.proof.cones import Effort
 from navsym.proof.converter import Converter
 from navsym.proof.exact_signs import monomial_sign
@@ -55,25 +55,11 @@ def sign_by_cases(expression: sp.Expr, limits: Mapping[sp.Symbol, Range], effort
         return Sign.UNKNOWN
     inside, worst = inner.args[0], Sign.POSITIVE
     for sign in (1, -1):
-        narrowed = half_range(limits, inside, sign) if isinstance(inside, sp.Symbol) else limits
+        narrowed = half_range(limits, inside, sign)
         if narrowed is not None:
             case = expression.xreplace({inner: sign * inside})
             worst = min(worst, sign_by_cases(case, narrowed, effort, left - 1))
     return worst
-
-
-def half_range(limits: Mapping[sp.Symbol, Range], symbol: sp.Symbol, sign: int) -> dict[sp.Symbol, Range] | None:
-    """The part of the box where the symbol has this sign (or is zero); None when there is none."""
-    limit, zero = limits[symbol], sp.Integer(0)
-    if sign > 0:
-        if limit.upper is not None and exact_ball(limit.upper) < 0:
-            return None
-        keep = limit.lower is not None and exact_ball(limit.lower) >= 0
-        return {**limits, symbol: limit if keep else replace(limit, lower=zero, open_lower=False)}
-    if limit.lower is not None and exact_ball(limit.lower) > 0:
-        return None
-    keep = limit.upper is not None and exact_ball(limit.upper) <= 0
-    return {**limits, symbol: limit if keep else replace(limit, upper=zero)}
 
 
 def plain_sign(expression: sp.Expr, limits: Mapping[sp.Symbol, Range], effort: Effort) -> Sign:

@@ -5,11 +5,16 @@ Roots of perfect squares are absolute values in disguise and are treated as such
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import replace
+
 import sympy as sp
 
 from navsym.errors import NavsymError
+from navsym.proof.balls import exact_ball
 from navsym.proof.logarithms import factored
 from navsym.proof.normal_form import vanishes_identically
+from navsym.proof.sampling import Range
 
 MOST_VALUES = 6
 
@@ -66,3 +71,21 @@ def one_value(factor: sp.Expr) -> sp.Expr:
         base, exponent = factor, sp.Integer(1)
     value = sp.Abs(-base) if base.could_extract_minus_sign() else sp.Abs(base)
     return value**exponent
+
+
+def half_range(
+    limits: Mapping[sp.Symbol, Range], inside: sp.Expr, sign: int
+) -> Mapping[sp.Symbol, Range] | None:
+    """The part of the box where a symbol has this sign (or is zero), None when there is none; the box for the rest."""
+    if not isinstance(inside, sp.Symbol):
+        return limits
+    limit, zero = limits[inside], sp.Integer(0)
+    if sign > 0:
+        if limit.upper is not None and exact_ball(limit.upper) < 0:
+            return None
+        keep = limit.lower is not None and exact_ball(limit.lower) >= 0
+        return {**limits, inside: limit if keep else replace(limit, lower=zero, open_lower=False)}
+    if limit.lower is not None and exact_ball(limit.lower) > 0:
+        return None
+    keep = limit.upper is not None and exact_ball(limit.upper) <= 0
+    return {**limits, inside: limit if keep else replace(limit, upper=zero)}

@@ -6,13 +6,14 @@ left to show; it returns unknown when that fails.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import replace
 from itertools import pairwise
 
 import sympy as sp
 
 from navsym.proof.balls import exact_ball
+from navsym.proof.cases import half_range
 from navsym.proof.contacts import guessed_points
 from navsym.proof.logarithms import factored
 from navsym.proof.normal_form import (
@@ -231,22 +232,6 @@ def signs_of(inside: sp.Expr, limits: Limits, prove: Prove) -> tuple[int, ...]:
         return (1, -1)
     proved = [s for s in (1, -1) if prove(s * inside, own(limits, inside), Sign.NONNEGATIVE).sign != Sign.UNKNOWN]
     return (proved[0],) if proved else (1, -1)
-
-
-def half_range(limits: Limits, inside: sp.Expr, sign: int) -> Mapping[sp.Symbol, Range] | None:
-    """The part of the box where a symbol has this sign (or is zero), None when there is none; the box for the rest."""
-    if not isinstance(inside, sp.Symbol):
-        return limits
-    limit, zero = limits[inside], sp.Integer(0)
-    if sign > 0:
-        if limit.upper is not None and exact_ball(limit.upper) < 0:
-            return None
-        keep = limit.lower is not None and exact_ball(limit.lower) >= 0
-        return {**limits, inside: limit if keep else replace(limit, lower=zero, open_lower=False)}
-    if limit.lower is not None and exact_ball(limit.lower) > 0:
-        return None
-    keep = limit.upper is not None and exact_ball(limit.upper) <= 0
-    return {**limits, inside: limit if keep else replace(limit, upper=zero)}
 
 
 def by_quotient(expression: sp.Expr, limits: Limits, wanted: Sign, prove: Prove) -> SignProof:
