@@ -337,8 +337,8 @@ class Problem:
         self.rest, (self.t, self.p), self.P = numbers[4:], distinct([t, p]), array(P, parse)
         rows = array(panels, lambda panel: fields(panel, "measurement from to sigma H"))
         self.panels = [array([*ends, *array(H, label, len(self.P))], parse) for _, *ends, H in rows]
-    def focus(self, middle: arb, half: Any) -> None:
-        self.middle, self.half = middle, half
+    def focus(self, middle: arb, half: Any, basis: list[list[fmpq]] | None = None) -> None:
+        self.middle, self.half, self.basis = middle, half, [[Jet(arb(q)) for q in row] for row in basis or []]
         for panel in self.panels:
             low, high, sigma = (value(e, self.names(EVERY), arb).parts[0] for e in panel[:3])
             need(high > low and sigma > 0, "noise bound and length are positive")
@@ -350,14 +350,16 @@ class Problem:
         if type(self.half) is int:
             return [a for a, _, _ in thin]
         return [a + b * EVERY + x.parts[2] * (EVERY * EVERY) for (a, b, _), x in zip(thin, make(EVERY), strict=True)]
+    def mixed(self, q: list[Jet]) -> list[Jet]:
+        return [dot(row, q) for row in self.basis] or q
     def target(self, s: arb) -> list[Jet]:
-        return [value(e, self.names(s), arb) for e in self.P]
+        return self.mixed([value(e, self.names(s), arb) for e in self.P])
     def rows(self, panel: int, place: Jet, s: arb, n: int) -> list[Jet]:
-        """q as series of n terms about a place."""
+        """basis q as series of n terms about a place."""
         ctx.cap, names = n, self.names(s)
         low, high, sigma = (value(e, names, arb) for e in self.panels[panel][:3])
         names[self.t] = low + (high - low) * (place + Jet(arb_series([0, 1])))
-        return [value(e, names, arb) / sigma * Jet(arb_series([1])) for e in self.panels[panel][3:]]
+        return self.mixed([value(e, names, arb) / sigma * Jet(arb_series([1])) for e in self.panels[panel][3:]])
     def feasible(self, x: Callable[[arb], list[Jet]], contacts: list[tuple[int, arb, int, int]]) -> None:
         """|f| < 1 off the contacts (panel, place, sign, outward direction at an end)."""
         def passes(panel: int, low: arb, high: arb) -> bool:
@@ -391,7 +393,7 @@ def gap(item: Any) -> None:
     w = arb_mat(columns).transpose().solve(arb_mat([[p.parts[0]] for p in P])).entries()
     need(sum(map(abs, w), arb(0)) <= arb(problem.upper), "the weights cost more than the upper bound")
 
-def optimum(problem: Problem, A: list[list[Jet]], dual: Any, contacts: Any, radii: Any) -> arb:
+def optimum(problem: Problem, dual: Any, contacts: Any, radii: Any) -> arb:
     """Krawczyk's test, then |f| < 1 off the contacts; the value x.P."""
     rows = array(contacts, lambda c: fields(c, "panel at weight"))
     panels, places, weights = map(list, zip(*rows, strict=True))
@@ -409,10 +411,9 @@ def optimum(problem: Problem, A: list[list[Jet]], dual: Any, contacts: Any, radi
     def system(s: arb, shift: list[arb]) -> list[Jet]:
         """F, and behind it its derivatives."""
         z, P = unknowns(s, shift), problem.target(s)
-        F, J = [*(dot(row, P) * Jet(-1) for row in A), *[Jet(0)] * (2 * l)], [[Jet(0)] * len(z) for _ in z]
+        F, J = [*(p * Jet(-1) for p in P), *[Jet(0)] * (2 * l)], [[Jet(0)] * len(z) for _ in z]
         for i, v, k in zip(range(l), range(m, m + l), range(m + l, m + 2 * l), strict=True):
-            plain = problem.rows(panels[i], z[v], s, 3)
-            q = [dot(row, plain) for row in A]
+            q = problem.rows(panels[i], z[v], s, 3)
             f = dot(z[:m], q)
             F[v], F[k] = z[k] * f[1], f[0] - Jet(signs[i])
             J[v][v], J[v][k], J[k][v] = Jet(2) * z[k] * f[2], f[1], f[1]
@@ -429,8 +430,7 @@ def optimum(problem: Problem, A: list[list[Jet]], dual: Any, contacts: Any, radi
     need(all(s * w > 0 for s, w in zip(signs, z[m + l:], strict=True)), "a weight of the wrong sign")
     need(all(end or (v > 0 and v < 1) for end, v in zip(ends, z[m:m + l], strict=True)), "a contact outside its panel")
     def x(s: arb) -> list[Jet]:
-        y = unknowns(s, move)[:m]
-        return [dot(y, column) for column in zip(*A, strict=True)]  # type: ignore[arg-type]
+        return unknowns(s, move)[:m]
     problem.feasible(x, list(zip(panels, z[m:m + l], signs, ends, strict=True)))
     return problem.over(lambda s: [dot(x(s), problem.target(s))])[0]  # type: ignore[no-any-return]
 
@@ -441,8 +441,8 @@ def touch(item: Any) -> None:
         a, b, basis = number(low), number(high), array(rows, lambda row: array(row, number))
         need(a == edge <= b, "the pieces leave a hole")
         need(fmpq_mat(basis).det() != 0, "a singular basis")
-        problem.focus(arb((a + b) / 2), arb((b - a) / 2) if a < b else 0)
-        total, edge = optimum(problem, [[Jet(arb(q)) for q in row] for row in basis], *solution), b
+        problem.focus(arb((a + b) / 2), arb((b - a) / 2) if a < b else 0, basis)
+        total, edge = optimum(problem, *solution), b
         need(total >= arb(problem.lower) and total <= arb(problem.upper), "the optimum is not between the bounds")
     need(pieces and edge == problem.high, "the pieces do not reach the end")
 
