@@ -9,6 +9,7 @@ import sympy as sp
 
 from navsym import checker
 from navsym.errors import DomainError, NotEstimableError
+from navsym.methods.phases import events
 from navsym.methods.phases.continuation import phases
 from navsym.methods.phases.family import family_of
 from navsym.text.modelfile import model_from
@@ -189,3 +190,26 @@ def test_a_parameter_that_the_file_does_not_have_is_refused():
         phases(family(VELOCITY, "y1"), sp.Integer(2), sp.Integer(1))
     with pytest.raises(DomainError, match="lengths"):
         phases(family(VELOCITY, "y1"), sp.Integer(-1), sp.Integer(1))
+
+
+def test_a_change_at_zero_is_found_and_the_mirrored_regime_has_its_closed_form():
+    document = {
+        "model": {"name": "triple", "states": ["x", "v", "a"], "F": [["0", "1", "0"], ["0", "0", "1"], ["0"] * 3]},
+        "parameters": {"k": ["-3", "3"]},
+        "measurement": [{"name": "position", "h": ["1", "0", "0"], "sigma": "1"}],
+        "interval": {"T": "1"}, "targets": {"c": ["1", "k", "0"]},
+    }  # fmt: skip
+    answer = phases(family_of(model_from(document), "c", "k"), sp.Integer(-3), sp.Integer(3))
+    k = answer.family.parameter
+    assert [b.at for b in answer.boundaries] == [sp.Rational(-1, 3), 0] and answer.uncovered == ()
+    assert sp.expand(answer.regimes[0].closed.value) == -8 * k - 1 and answer.regimes[1].status == "CERTIFIED"
+    assert sp.expand(answer.regimes[2].closed.value) == 8 * k + 1 and answer.regimes[2].status == "PROVED"
+
+
+def test_a_boundary_that_is_not_located_is_enclosed_by_what_is_proved_on_both_sides(monkeypatch):
+    monkeypatch.setattr(events, "exact_root", lambda *_: None)
+    monkeypatch.setattr(events, "proves", lambda *_: False)
+    answer = phases(family_of(model_from(VELOCITY), "y3", "T"), sp.Rational(1), sp.Rational(3))
+    (edge,) = answer.boundaries
+    assert not edge.proved and "not enclosed" in edge.why
+    assert sp.Rational(edge.lower) <= 2 * sp.pi / 3 <= sp.Rational(edge.upper)

@@ -10,13 +10,13 @@ from __future__ import annotations
 
 import html
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from itertools import pairwise
 from typing import Any
 
 import sympy as sp
-from flint import fmpq
+from flint import arb, fmpq
 
 from navsym.claims import CERTIFIED, OPEN, Status
 from navsym.claims.display import card, displayed, latex_of, table
@@ -53,6 +53,7 @@ class Regime:
     table        : enclosures at some lengths, for regimes without a closed form
     certificates : of kind "range" and what belongs to it
     slivers      : two-sided certificates of what the range certificate leaves
+    held         : values between which the pattern itself is proved, without its slivers
     """
 
     span: Span
@@ -63,6 +64,7 @@ class Regime:
     table: tuple[dict[str, str], ...] = ()
     certificates: tuple[Mapping[str, Any], ...] = ()
     slivers: tuple[Sliver, ...] = ()
+    held: tuple[fmpq, fmpq] | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -205,7 +207,22 @@ def stretch(
         regimes.append(regime)
         uncovered += holes
         steps.did(Steps.LOOKS)
-    return Phases(family, lower, upper, tuple(regimes), changes, tuple(uncovered))
+    honest = tuple(b if b.proved else between(b, *pair) for b, pair in zip(changes, pairwise(regimes), strict=True))
+    return Phases(family, lower, upper, tuple(regimes), honest, tuple(uncovered))
+
+
+def between(guess: Boundary, before: Regime, after: Regime) -> Boundary:
+    """A change that was not located lies between the last value of one proved pattern and the first of the other.
+
+    Where a pattern is proved nowhere, the bracket is that of the search, and the regime is uncovered.
+    """
+    last = before.held[1] if before.held else exact_fraction(before.span.lower)
+    first = after.held[0] if after.held else exact_fraction(after.span.upper)
+    return replace(guess, lower=lower_end(arb(last), DIGITS), upper=upper_end(arb(first), DIGITS))
+
+
+def exact_fraction(x: Fraction) -> fmpq:
+    return fmpq(x.numerator, x.denominator)
 
 
 def inner_range(lower: sp.Expr, upper: sp.Expr, singular: set[sp.Expr]) -> tuple[Fraction, Fraction]:
@@ -260,7 +277,7 @@ def regime_of(
     """One regime: its proved closed form, or contacts followed for every value, slivers and holes."""
     a, b = ends
     if closed is not None:
-        return Regime(span, a, b, closed, closed.verdict.status), []
+        return Regime(span, a, b, closed, closed.verdict.status, held=(limits[1], limits[2])), []
     if not certify:
         return Regime(span, a, b, None, OPEN, table_of(family, span)), [(end_text(a), end_text(b))]
     done = followed(family, span.pattern, limits[1], limits[2])
@@ -272,7 +289,7 @@ def regime_of(
         else:
             thin += made
     status = CERTIFIED if done.ends is not None else OPEN
-    return Regime(span, a, b, None, status, table_of(family, span), done.documents, tuple(thin)), holes
+    return Regime(span, a, b, None, status, table_of(family, span), done.documents, tuple(thin), done.ends), holes
 
 
 def rests(done: Ranged, limits: Limits) -> list[tuple[fmpq, fmpq]]:

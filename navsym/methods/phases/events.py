@@ -49,9 +49,9 @@ def boundary(
     family: Family, left: Span, right: Span, before: Closed | None, after: Closed | None
 ) -> Boundary:
     """The change from one span to the next, as exactly as it can be had."""
-    guess = float(left.upper)
+    guess, reach = float(left.upper), 2e-3 * max(abs(float(left.upper)), float(right.upper - left.lower))
     for expression, why in events(family, left, before, right, after):
-        found = exact_root(expression, family.parameter, guess)
+        found = exact_root(expression, family.parameter, guess, reach)
         if found is not None:
             with precision(200):
                 ball = enclose(found, bits=200)
@@ -98,8 +98,8 @@ def rooms_below(
         yield room, f"the dual polynomial reaches its bound at {family.time(u)}"
 
 
-def exact_root(expression: sp.Expr, T: sp.Symbol, guess: float) -> sp.Expr | None:
-    """A recognised root near the guess, proved to be one."""
+def exact_root(expression: sp.Expr, T: sp.Symbol, guess: float, reach: float) -> sp.Expr | None:
+    """A recognised root within reach of the guess, proved to be one."""
     if T not in expression.free_symbols:
         return None
 
@@ -109,7 +109,7 @@ def exact_root(expression: sp.Expr, T: sp.Symbol, guess: float) -> sp.Expr | Non
     with mpmath.workdps(60):
         try:
             root = mpmath.findroot(function, mpmath.mpf(guess), tol=1e-50)
-            near = abs(root - guess) < 2e-3 * abs(guess)
+            near = abs(root - guess) < reach
         except (ValueError, ZeroDivisionError):
             return None
         found = constant(sp.Rational(mpmath.nstr(root, 55))) if near else None

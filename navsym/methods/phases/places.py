@@ -62,6 +62,7 @@ def place_from(values: Sequence[sp.Rational], parameters: Sequence[sp.Rational],
 def place_or_share(
     family: Family, values: Sequence[sp.Rational], parameters: Sequence[sp.Rational]
 ) -> sp.Expr | None:
+    """A place linear in the parameter or its reciprocal, else a fixed share of the interval."""
     found = place_from(values, parameters, family.parameter)
     return share_of(family, values, parameters) if found is None else found
 
