@@ -9,6 +9,7 @@ answer is a hint in double precision: :mod:`navsym.proof.optimality` turns it in
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
@@ -125,8 +126,15 @@ def chebyshev_nodes(count: int) -> Array:
 
 def find_contacts(panels: Panels) -> Contacts:
     """Solve the problem to double precision; the fast road first, the careful one when it refuses."""
+    return next(roads(panels))
+
+
+def roads(panels: Panels) -> Iterator[Contacts]:
+    """The answer of the fast road, where it has one, then that of the careful one."""
     quick = regular_contacts(panels)
-    return careful(panels, panels.search.nodes) if quick is None else quick
+    if quick is not None:
+        yield quick
+    yield careful(panels, panels.search.nodes)
 
 
 def regular_contacts(panels: Panels) -> Contacts | None:

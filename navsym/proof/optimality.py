@@ -9,7 +9,7 @@ exact solution of the optimality system; then both sides are equal and known to 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import lru_cache
 from typing import Any
@@ -17,14 +17,15 @@ from typing import Any
 import numpy as np
 from flint import arb, arb_mat, ctx, fmpq
 
-from navsym.numeric.exchange import Contacts, find_contacts, nodes_for, rows_at
+from navsym.numeric.exchange import Contacts, nodes_for, roads, rows_at
+from navsym.numeric.exchange_interior import interior_dual, pinned_rows
 from navsym.numeric.exchange_simple import simple_dual
 from navsym.proof.balls import precision
 from navsym.proof.decimals import decimal, exact, lower_end, upper_end
 from navsym.proof.enclosure import Panel, Problem, Touch, bounded, combination, rational, total
 from navsym.proof.existence import krawczyk
 from navsym.proof.optimality_basis import Basis, as_fraction, make_basis
-from navsym.proof.optimality_polish import Polished, polish
+from navsym.proof.optimality_polish import Polished, pinned, polish
 from navsym.text.expression import to_text
 
 LIMIT = 20000
@@ -62,7 +63,18 @@ def certify(problem: Problem, digits: int = 30, basis: Basis | None = None) -> C
     far it came.
     """
     basis = make_basis(problem) if basis is None else basis
-    contacts = find_contacts(basis.panels)
+    best: Certified | None = None
+    for contacts in roads(basis.panels):
+        found = from_contacts(problem, basis, contacts, digits)
+        best = found if best is None or found.width < best.width else best
+        if best.width <= 10.0 ** -min(digits, 300):
+            break
+    assert best is not None
+    return best
+
+
+def from_contacts(problem: Problem, basis: Basis, contacts: Contacts, digits: int) -> Certified:
+    """The exact-contact certificate where the contacts are regular, else the two-sided one."""
     loss = lost_digits(basis)
     bits = int(3.33 * (digits + 2 * loss + 25)) + 64
     refined = polish(problem.panels, basis, contacts, bits, 10.0 ** -min(digits + loss + 14, 300))
@@ -262,15 +274,7 @@ def gap(
             support = support_points(basis, carriers, [as_fraction(float(u)) for u in carriers.u])
         weights = balanced(problem, support)
         upper = upper_end(cost(problem, support, weights), digits + 6)
-        touches = near_touches(problem, found, places)
-        for base, shrink in attempts(basis, contacts, found, digits):
-            scale = 1 - fmpq(1, 10) ** shrink
-            x = [exact(decimal(c * scale, places + 8)) for c in base]
-            cells = every_cell(problem, [arb(c) for c in x], touches)
-            if cells is not None:
-                break
-        else:
-            x, cells = [fmpq(0)] * len(found.dual), 0
+        x, cells, touches = best_dual(problem, basis, contacts, found, digits, exact(upper))
         lower = lower_end(total([arb(c) for c in x], problem.target()), digits + 6)
         # The checker has no touches to guide it: it halves its way towards each of them.
         plain = cells + sum(map(len, touches)) * 2 * (digits + 12)
@@ -285,21 +289,51 @@ def gap(
         return Certified(exact(lower), exact(upper), shown, tuple(arb(c) for c in x), None, document)
 
 
+def best_dual(
+    problem: Problem, basis: Basis, contacts: Contacts, found: Polished, digits: int, upper: fmpq
+) -> tuple[list[fmpq], int, list[list[Touch]]]:
+    """The attempt that keeps the bound and reaches highest, the cells of its proof, its touches; zero when none holds.
+
+    The first attempt within the digits of the upper bound is taken: those after it are no better.
+    """
+    places, target = digits + lost_digits(basis) + 12, problem.target()
+    best: tuple[list[fmpq], int, list[list[Touch]]] = [fmpq(0)] * len(found.dual), 0, []
+    highest = fmpq(0)
+    for base, shrink, seen in attempts(problem, basis, contacts, found, digits):
+        scale, touches = 1 - fmpq(1, 10) ** shrink, near_touches(problem, seen, places)
+        x = [exact(decimal(c * scale, places + 8)) for c in base]
+        reached = rational(total([arb(c) for c in x], target))
+        cells = every_cell(problem, [arb(c) for c in x], touches) if reached > highest else None
+        if cells is not None:
+            best, highest = (x, cells, touches), reached
+            if (upper - reached) * 10**digits <= upper:
+                break
+    return best
+
+
 def attempts(
-    basis: Basis, contacts: Contacts, found: Polished, digits: int
-) -> Iterator[tuple[list[fmpq], int]]:
-    """Duals and by how many digits to shrink them: where the optimal dual is not unique, round numbers come first."""
+    problem: Problem, basis: Basis, contacts: Contacts, found: Polished, digits: int
+) -> Iterator[tuple[list[fmpq], int, Polished]]:
+    """Duals, by how many digits to shrink them, and where they touch.
+
+    Where the optimal dual is not unique, round numbers come first, then one with room to spare.
+    """
     base = [rational(c) for c in found.dual]
     if not found.regular:
-        yield [round_number(c) for c in base], digits + 3
+        yield [round_number(c) for c in base], digits + 3, found
+        inside = interior_dual(basis.panels, contacts)
+        if inside is not None:
+            rows = pinned_rows(basis.panels, contacts)[0]
+            dual = pinned(problem, basis, found, rows, inside, 10.0 ** -min(digits + lost_digits(basis) + 14, 300))
+            yield [rational(c) for c in dual], digits + 3, replace(found, touching=())
         if lost_digits(basis) <= 6:
             transform = np.array([[float(e.mid()) for e in row] for row in basis.transform.tolist()])
             simple = simple_dual(basis.panels, transform, contacts.value)
             if simple is not None:
-                yield [round_number(rational(arb(float(c))), 5) for c in simple], digits + 3
+                yield [round_number(rational(arb(float(c))), 5) for c in simple], digits + 3, found
     for k in (digits + 3, 12, 9, 6, 4, 3, 2, 1):
         if k <= digits + 3:
-            yield base, k
+            yield base, k, found
 
 
 def round_number(x: fmpq, digits: int = 8) -> fmpq:

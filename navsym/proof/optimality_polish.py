@@ -17,10 +17,12 @@ from flint import arb, arb_mat, fmpq
 from navsym.numeric.exchange import Contacts
 from navsym.numeric.exchange_kernels import chebyshev_derivative, contact_system
 from navsym.proof.balls import precision
-from navsym.proof.enclosure import Panel, total
+from navsym.proof.enclosure import Panel, Problem, total
 from navsym.proof.optimality_basis import Basis, as_fraction
 
 STEPS = 60
+#: A residual so many times the smallest one, or no number at all, says that Newton's method has run away.
+AWAY = 1e6
 #: A correction that shrinks as before would miss the goal by this factor: not looked at any more.
 CERTAIN = 1e-4
 
@@ -48,7 +50,10 @@ class Polished:
 
 
 def polish(panels: Sequence[Panel], basis: Basis, contacts: Contacts, bits: int, goal: float) -> Polished:
-    """Newton with a fixed Jacobian until the correction is below ``goal`` or stops shrinking."""
+    """Newton with a fixed Jacobian until the correction is below ``goal`` or stops shrinking.
+
+    Steps that run away lead back to where they began; the answer is then called irregular.
+    """
     inverse, regular = pseudo_inverse(basis, contacts)
     m, l = contacts.dual.size, contacts.u.size
     with precision(bits):
@@ -58,10 +63,14 @@ def polish(panels: Sequence[Panel], basis: Basis, contacts: Contacts, bits: int,
         p = [basis.functional[i, 0] / basis.scale for i in range(m)]
         signs = [int(s) for s in contacts.sign]
         inner = [bool(i) for i in contacts.inner]
-        last = np.inf
+        begun, away, last = (x, v, w), np.inf, np.inf
         for _ in range(STEPS):
             F = residual(panels, basis, contacts.panel.tolist(), x, v, w, p, signs, inner)
             size = max(float(abs(f).mid()) for f in F)
+            if not size <= away:
+                (x, v, w), regular, size = begun, False, away / AWAY
+                break
+            away = min(away, AWAY * max(size, 1e-12))
             if size < goal or (size > 0.5 * last and size < 1e-12):
                 break
             done = last < np.inf and size < 1e-6 * last and size * (size / last) < goal * CERTAIN
@@ -80,6 +89,22 @@ def polish(panels: Sequence[Panel], basis: Basis, contacts: Contacts, bits: int,
             tuple(int(k) for k in contacts.panel), tuple(v), tuple(inner), tuple(signs),
             tuple(a.mid() for a in weights), tuple(dual[i, 0].mid() for i in range(m)), size, regular, touching,
         )  # fmt: skip
+
+
+def pinned(problem: Problem, basis: Basis, found: Polished, rows: np.ndarray, x: np.ndarray, goal: float) -> list[arb]:
+    """The dual next to x, in the basis of the problem, that meets its bound at the contacts and is flat at inner ones.
+
+    rows : these conditions on x in double precision, fewer than unknowns
+    """
+    inverse, p = np.linalg.pinv(rows), [arb(0)] * x.size
+    y = [arb(float(c)) for c in x]
+    for _ in range(STEPS):
+        F = residual(problem.panels, basis, found.panel, y, found.v, found.weights, p, found.sign, found.inner)
+        F = F[: rows.shape[0]]
+        if max(float(abs(f).mid()) for f in F) < goal:
+            break
+        y = [(a + s).mid() for a, s in zip(y, correction(inverse, F), strict=True)]
+    return [a.mid() for a in (basis.transform.transpose() * arb_mat([[a] for a in y])).entries()]
 
 
 def pseudo_inverse(basis: Basis, contacts: Contacts) -> tuple[np.ndarray, bool]:

@@ -128,3 +128,28 @@ def test_the_constant_is_best_estimated_by_least_squares_with_error_one():
     """For one constant unknown every nonnegative weighting is optimal: least squares loses nothing."""
     solution = solve(from_regressors([[1]], [1], t, (0, 1)), 15)
     assert compare(solution, solvers=())["least_squares"] == pytest.approx(1.0, rel=1e-12)
+
+
+R, e, sin, cos = sp.Rational, sp.exp, sp.sin, sp.cos
+HARD = {
+    "the functional is a value of the regressors inside": ([1, t, t + t**3 / 10**6], sp.pi, R(1, 3)),
+    "the functional is a value of the regressors at the end": (
+        [e(-t / 2) * cos(2 * t), t * sin(3 * t), t * sin(6 * t), cos(t / 4) - 1, cos(t), t * e(-t / 4)],
+        R(9, 10), R(9, 10),
+    ),
+    "several estimators are optimal and the first contacts lead astray": (
+        [t * e(t / 4), sin(4 * t), t * sin(11 * t / 2), cos(11 * t / 2), e(-3 * t / 2) * cos(9 * t / 2),
+         sin(3 * t / 4)],
+        R(32, 5), [0, 0, 0, 1, 0, 0],
+    ),
+    "regressors vanish together at the start": ([t * sin(5 * t), t**5, cos(t) - 1], R(83, 10), R(83, 20)),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", HARD)
+def test_degenerate_problems_have_their_certificate(case):
+    functions, end, wanted = HARD[case]
+    functional = wanted if isinstance(wanted, list) else [sp.sympify(h).subs(t, wanted) for h in functions]
+    found = solve(from_regressors([functions], functional, t, (0, end), (1,)), 20)
+    assert found.status == "CERTIFIED" and found.width <= 1e-20
+    checker.check(checker.load(json.dumps(found.document()["certificate"])))
