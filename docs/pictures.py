@@ -94,7 +94,7 @@ def dual() -> Figure:
 
 def ladder() -> Figure:
     """Rank of the rows h, hF, hF^2, ... for the velocity and the position of the full error model."""
-    from navsym.models.inertial import full_model
+    from navsym.models.inertial.errors import full_model
 
     model = full_model()
     values = {s: sp.Rational(k + 3, 7) for k, s in enumerate(sorted(model.F.free_symbols, key=str))}

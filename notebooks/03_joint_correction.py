@@ -39,7 +39,7 @@ from navsym.methods.observability.split import splits
 from navsym.methods.two_stage import ins as experiment
 from navsym.methods.two_stage import real as aiding
 from navsym.methods.two_stage.flight import EARTH_RADIUS, SCHULER_RATE, great_circle
-from navsym.models.inertial import full_model, joint_model, position_group, velocity_group
+from navsym.models.inertial.errors import full_model, joint_model, position_group, velocity_group
 from navsym.report.notebook import require, show
 
 BLUE, ORANGE, GREEN, RED = "#0072b2", "#e69f00", "#009e73", "#d55e00"

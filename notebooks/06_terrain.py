@@ -37,7 +37,7 @@ from navsym.methods.terrain.flights import Setting, course, fly, sample_terrain
 from navsym.methods.terrain.refine import refine
 from navsym.methods.terrain.search import criteria, prepare, search_full, search_position
 from navsym.methods.terrain.sequential import search_sequential
-from navsym.models.terrain_track import Track
+from navsym.models.terrain.track import Track
 from navsym.report.notebook import require, show
 
 BLUE, ORANGE, GREEN, RED = "#0072b2", "#e69f00", "#009e73", "#d55e00"

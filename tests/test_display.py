@@ -19,7 +19,7 @@ from navsym.methods.observability.chains import observe
 from navsym.methods.phases.continuation import phases
 from navsym.methods.phases.family import family_of
 from navsym.models.derivation import linear_model
-from navsym.report.latex_math import mathml
+from navsym.report.formula.latex import mathml
 from navsym.text.modelfile import model_from
 
 T, t = sp.Symbol("T", positive=True), sp.Symbol("t", real=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sympy as sp
 
 from navsym.models.linear import LinearModel
-from navsym.models.transition import regressors
+from navsym.models.transition.exponential import regressors
 
 T = sp.Symbol("T", positive=True)  # length of the correction interval, Schuler units
 tau = sp.Symbol("tau", real=True)  # dimensionless time, omega_0 t

@@ -2,7 +2,7 @@
 
 The derived sides are found by machine: the velocity information is split into its Schuler part
 and its constant part at mu = 0, the position information is differentiated, and what has the
-order mu^2 rho is dropped term by term (``navsym.models.inertial``).
+order mu^2 rho is dropped term by term (``navsym.models.inertial.errors``).
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import sympy as sp
 from navsym.claims import REFUTED, Claim, Equation, Finding, Property, claim
 from navsym.methods.observability.chains import observe
 from navsym.methods.observability.loci import rank_drops
-from navsym.models.inertial import (
+from navsym.models.inertial.errors import (
     EARTH,
     FULL,
     MU,
@@ -33,8 +33,8 @@ from navsym.models.inertial import (
     position_group,
     velocity_group,
 )
-from navsym.models.inertial_kinematics import ALPHA, BETA, EPSILON
-from navsym.models.inertial_orders import lowest_order, truncate
+from navsym.models.inertial.kinematics import ALPHA, BETA, EPSILON
+from navsym.models.inertial.orders import lowest_order, truncate
 
 mu = MU
 a1, a2 = ALPHA[:2]

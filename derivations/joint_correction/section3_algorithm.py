@@ -18,7 +18,7 @@ from derivations.joint_correction.section2_groups import (
 )
 from navsym.claims import REFUTED, Equation, Finding, Property, claim
 from navsym.methods.observability.chains import observe
-from navsym.models.inertial import FULL, X, Y, joint_model
+from navsym.models.inertial.errors import FULL, X, Y, joint_model
 from navsym.models.linear import LinearModel
 
 

@@ -17,7 +17,7 @@ from derivations.joint_correction.section2_groups import mu, position, velocity,
 from derivations.joint_correction.section3_algorithm import joint_error_matrix
 from navsym.claims import CERTIFIED, Equation, Finding, Property, claim
 from navsym.methods.observability.split import inverse, lowest_terms
-from navsym.models.inertial import EARTH, MU
+from navsym.models.inertial.errors import EARTH, MU
 
 lam, lam_h = sp.symbols("lambda_c lambda_h", positive=True)
 kappa, omega = sp.symbols("kappa omega", real=True)

@@ -12,7 +12,7 @@ from itertools import product
 import sympy as sp
 
 from navsym.claims import REFUTED, Equation, Finding, Property, claim
-from navsym.models.earth_motion import pascal_rows
+from navsym.models.earth.motion import pascal_rows
 
 N = 3
 R = sp.Symbol("R", positive=True)

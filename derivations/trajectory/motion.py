@@ -9,7 +9,7 @@ import sympy as sp
 
 from navsym.claims import CERTIFIED, REFUTED, Bound, Equation, Finding, Property, claim
 from navsym.methods.conditioning.numbers import condition_number
-from navsym.models import earth_motion as motion
+from navsym.models.earth import motion
 
 rho, tau, t = sp.symbols("rho tau t", positive=True)
 

@@ -17,7 +17,7 @@ from derivations.trajectory.table import (
 from navsym.claims import CERTIFIED, REFUTED, Equation, Finding, Property, claim
 from navsym.methods.conditioning.numbers import condition_number
 from navsym.methods.trajectory.experiment import scaling_changes_rounding
-from navsym.models.earth_motion import observability_rows
+from navsym.models.earth.motion import observability_rows
 
 RADIUS = Fraction(6371000)
 

@@ -8,7 +8,7 @@ from math import comb
 import sympy as sp
 
 from navsym.claims import REFUTED, Equation, Finding, Property, claim
-from navsym.models import earth_motion as motion
+from navsym.models.earth import motion
 
 rho, tau = sp.symbols("rho tau", positive=True)
 

@@ -33,7 +33,7 @@ def find(wanted: str) -> tuple[Paper, Claim]:
 
 def decide(wanted: str, seconds: float = SECONDS) -> tuple[Paper, dict[str, Any]]:
     """Paper card and record of one claim, decided now in a limited child process."""
-    from navsym.methods.verification import PaperModule, verify
+    from navsym.methods.verification.verify import PaperModule, verify
 
     paper, claim = find(wanted)
     document = verify([PaperModule(paper.module, paper, (claim,))], jobs=1, seconds=seconds)

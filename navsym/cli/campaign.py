@@ -118,7 +118,7 @@ def papers(names: list[str]) -> list[Any]:
     import importlib
 
     from navsym.cli import verify
-    from navsym.methods.verification import paper_module
+    from navsym.methods.verification.verify import paper_module
 
     chosen = names or verify.names()
     return [paper_module(importlib.import_module(f"derivations.{name}")) for name in chosen]

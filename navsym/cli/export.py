@@ -57,8 +57,8 @@ def command(
 
     Example: navsym export guaranteed_velocity:4.13.y3 --to c,python --out build/drift
     """
+    from navsym.export.languages.targets import chosen
     from navsym.export.package import Order, export
-    from navsym.export.targets import chosen
 
     if real not in ("double", "float"):
         raise DomainError(f"expected double or float; got {real[:20]!r}; do correct it", where="--real")
@@ -110,7 +110,7 @@ def functions_for(
 ) -> list[ExportedFunction]:
     """The functions of one argument; ``name=A+B`` gives a name; a ready-made program has two."""
     from navsym.export.functions import function_of
-    from navsym.export.names import identifier
+    from navsym.export.languages.names import identifier
     from navsym.export.parts import Layout
     from navsym.export.ready import ALGORITHMS, UNITS, algorithm
 

@@ -35,9 +35,9 @@ def command(
     Example: navsym exports --write docs/exports.md
     """
     from navsym.cli.export import functions_for
+    from navsym.export.languages.targets import TARGETS, chosen
     from navsym.export.ready import READY
     from navsym.export.table import as_markdown, closing_table
-    from navsym.export.targets import TARGETS, chosen
 
     wanted = names or list(READY)
     unknown = [name for name in wanted if name not in READY]

@@ -36,7 +36,7 @@ def command(
     Example: navsym report guaranteed_velocity --out site
     """
     from navsym.cli.verify import decided, load
-    from navsym.methods.verification import unexpected
+    from navsym.methods.verification.verify import unexpected
 
     chosen = load(modules or [])
     given = read_document(source, modules or []) if source else None

@@ -17,8 +17,8 @@ from navsym.cli.output import emit, remark, table, write_text
 from navsym.errors import DomainError
 
 if TYPE_CHECKING:
-    from navsym.methods.deciding_code import Snapshot
-    from navsym.methods.verification import PaperModule
+    from navsym.methods.verification.deciding_code import Snapshot
+    from navsym.methods.verification.verify import PaperModule
 
 
 def command(
@@ -45,7 +45,7 @@ def command(
 
     Example: navsym verify guaranteed_velocity
     """
-    from navsym.methods.verification import unexpected
+    from navsym.methods.verification.verify import unexpected
 
     started = time.monotonic()
     before = sources()
@@ -69,7 +69,7 @@ def names() -> list[str]:
 
 def load(wanted: Sequence[str]) -> list[PaperModule]:
     """Import the modules asked for, or all of them."""
-    from navsym.methods.verification import paper_module
+    from navsym.methods.verification.verify import paper_module
 
     known = names()
     for name in wanted:
@@ -85,7 +85,7 @@ def load(wanted: Sequence[str]) -> list[PaperModule]:
 
 def sources() -> Snapshot:
     """What the sources of the derivations and of the deciding rooms are now."""
-    from navsym.methods.deciding_code import snapshot
+    from navsym.methods.verification.deciding_code import snapshot
 
     return snapshot(ledger_folder())
 
@@ -97,7 +97,7 @@ def decided(
 
     before : the sources before they were imported; by default what they are now
     """
-    from navsym.methods.verification import verify
+    from navsym.methods.verification.verify import verify
 
     kept = KeptVerdicts(chosen, fresh, before or sources())
     missing = len(kept.keys) - len(kept.known)
@@ -121,8 +121,8 @@ class KeptVerdicts:
     """Verdicts of earlier runs whose claims and rooms have not changed; what could not be kept is in ``lost``."""
 
     def __init__(self, chosen: Sequence[PaperModule], fresh: bool, before: Snapshot):
-        from navsym.methods.deciding_code import not_yet_imported
-        from navsym.methods.dependencies import fingerprints
+        from navsym.methods.verification.deciding_code import not_yet_imported
+        from navsym.methods.verification.dependencies import fingerprints
         from navsym.store import Store, StoreError
 
         self.keys = fingerprints(claim for module in chosen for claim in module.claims)

@@ -12,11 +12,11 @@ import sympy as sp
 from flint import arb
 
 from navsym.errors import NavsymError
+from navsym.export.accuracy.rounding import BITS, LIBRARY, Arithmetic, analyse
 from navsym.export.expression_graph import Graph, build
 from navsym.export.forms import factored, safe
-from navsym.export.rounding import BITS, LIBRARY, Arithmetic, analyse
 from navsym.proof.balls import precision
-from navsym.proof.normal_form import OutsideLanguageError, reduce_to_zero
+from navsym.proof.identities.normal_form import OutsideLanguageError, reduce_to_zero
 
 SAMPLES = 12
 

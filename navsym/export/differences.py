@@ -16,7 +16,7 @@ from navsym.claims import REFUTED, Equation
 from navsym.errors import DomainError, EmptyError, NavsymError
 from navsym.proof.balls import enclose, hull
 from navsym.proof.ladder import decide
-from navsym.proof.sampling import range_of
+from navsym.proof.sampling.points import range_of
 from navsym.proof.wording import decimal_ends, text_of
 from navsym.text.expression import parse, symbol
 from navsym.text.files import read_text

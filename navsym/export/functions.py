@@ -13,15 +13,15 @@ import sympy as sp
 
 from navsym.claims import CONFIRMED, REFUTED, Bound, Equation, Optimum, Statement, Verdict
 from navsym.errors import NavsymError, ShapeError
+from navsym.export.accuracy.rounding import ARITHMETICS, Arithmetic, with_library
+from navsym.export.accuracy.uniform import CELLS, uniform_bound
 from navsym.export.choice import best_form, best_graph, literals_of, tie_to_formula
 from navsym.export.expression_graph import Graph
 from navsym.export.forms import safe
 from navsym.export.inputs import arguments_of, inputs_of, with_whole_arrays
-from navsym.export.names import function_name
+from navsym.export.languages.names import function_name
 from navsym.export.parts import ExportedFunction, Input, Layout, Material, Output, Piece, Source, inside
 from navsym.export.regimes import common_outputs, in_order, joined_box, limit_of
-from navsym.export.rounding import ARITHMETICS, Arithmetic, with_library
-from navsym.export.uniform import CELLS, uniform_bound
 from navsym.proof.wording import text_of
 
 MOST_OUTPUTS = 400

@@ -10,9 +10,9 @@ import numpy as np
 import sympy as sp
 
 from navsym.errors import ShapeError
-from navsym.export.names import identifier
+from navsym.export.languages.names import identifier
 from navsym.export.parts import Argument, Input, Layout, inside
-from navsym.proof.sampling import range_of
+from navsym.proof.sampling.points import range_of
 from navsym.proof.wording import text_of
 
 SMALLEST = {"double": 2.0**-60, "float": 2.0**-20}  # stands for an open end at zero

@@ -15,14 +15,14 @@ from typing import Any
 
 from navsym import __version__
 from navsym.errors import DomainError, DuplicateError, NavsymError
+from navsym.export.accuracy.vectors import Vector, vectors
 from navsym.export.folder import require_free, write_folder
 from navsym.export.functions import rebounded
+from navsym.export.languages.printing import bound_text
+from navsym.export.languages.programs import state_record
+from navsym.export.languages.targets import Target
 from navsym.export.parts import ExportedFunction, Piece
-from navsym.export.printing import bound_text
-from navsym.export.programs import state_record
 from navsym.export.roundtrip import MANIFEST, Outcome, run_target
-from navsym.export.targets import Target
-from navsym.export.vectors import Vector, vectors
 from navsym.proof.certificates import identity_certificate
 
 COUNT = 48

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
+from navsym.export.accuracy.rounding import Arithmetic
+from navsym.export.accuracy.uniform import Uniform
 from navsym.export.expression_graph import Graph
-from navsym.export.rounding import Arithmetic
-from navsym.export.uniform import Uniform
 from navsym.proof.balls import enclose
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from navsym.export.algorithms import earth, kalman, observer, pulsating, terrain, trajectory, velocity
 from navsym.export.chain import Chain, Decided, Program
-from navsym.export.names import identifier
+from navsym.export.languages.names import identifier
 from navsym.export.parts import ExportedFunction
 
 _GV = "guaranteed_velocity"

@@ -11,7 +11,7 @@ import sympy as sp
 
 from navsym.errors import DomainError, ShapeError
 from navsym.export.parts import Material, Output, inside
-from navsym.proof.normal_form import vanishes_identically
+from navsym.proof.identities.normal_form import vanishes_identically
 
 
 def in_order(parts: Sequence[Material]) -> tuple[list[Material], sp.Symbol | None]:

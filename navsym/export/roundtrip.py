@@ -15,8 +15,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from navsym.export.languages.targets import SANITIZERS, TARGETS, Target
 from navsym.export.processes import run
-from navsym.export.targets import SANITIZERS, TARGETS, Target
 from navsym.export.tools import misra
 
 LINE = re.compile(r"(\w+) vectors (\d+) wrong (\d+) worst ([-+.\w]+)")

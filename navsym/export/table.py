@@ -9,13 +9,13 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from navsym.export.accuracy.sweep import Swept, sweep_c
 from navsym.export.folder import write_folder
+from navsym.export.languages.printing import bound_text
+from navsym.export.languages.targets import Target
 from navsym.export.package import Order, files_of
 from navsym.export.parts import ExportedFunction
-from navsym.export.printing import bound_text
 from navsym.export.roundtrip import Outcome, run_target
-from navsym.export.sweep import Swept, sweep_c
-from navsym.export.targets import Target
 from navsym.export.tools import Said, cortex_m4_sizes, ctest, misra
 
 Record = dict[str, Any]
@@ -28,7 +28,8 @@ def closing_table(
     """Export every group, run every language, ask every tool; the document of ``navsym exports``.
 
     progress : called with "group language" when a language of a group was run, with "group points" after the points.
-    points   : points at which the C of every function is held besides its vectors (:mod:`navsym.export.sweep`).
+    points   : points at which the C of every function is held besides its vectors
+        (:mod:`navsym.export.accuracy.sweep`).
     Keys: ``functions`` (name, group, status, claims, bound, languages, misra, cortex_m4_bytes, points), ``languages``
     and ``tools`` (status, why), ``vectors``, ``points``, ``machine``.
     """

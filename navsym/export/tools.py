@@ -15,8 +15,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from navsym.export.languages.targets import answering
 from navsym.export.processes import run
-from navsym.export.targets import answering
 
 #: Rules of MISRA C:2012 that exported code does not keep, each with its reason.
 DEVIATIONS = {

@@ -10,9 +10,9 @@ import sympy as sp
 
 from navsym.claims import OPEN, REFUTED, Bound, Equation, Statement, Verdict
 from navsym.proof.assumptions import is_nonzero, is_positive
-from navsym.proof.bounds import Sign, prove_sign
 from navsym.proof.ladder import decide
 from navsym.proof.sandbox import Exhausted, Failed, run_many
+from navsym.proof.signs.bounds import Sign, prove_sign
 from navsym.proof.wording import scope_of, text_of
 from navsym.text.claimfile import ClaimFile, FileClaim, UndefinedClaim
 

@@ -20,7 +20,7 @@ import sympy as sp
 
 from navsym.errors import DomainError
 from navsym.models.linear import LinearModel, observability_matrix
-from navsym.models.transition import (
+from navsym.models.transition.exponential import (
     TransitionMatrix,
     collected,
     need_constant,

@@ -8,8 +8,8 @@ from dataclasses import replace
 import sympy as sp
 
 from navsym.claims.statement import Box
-from navsym.proof.bounds import Sign, prove_sign
-from navsym.proof.normal_form import Reduction, reduce_to_zero
+from navsym.proof.identities.normal_form import Reduction, reduce_to_zero
+from navsym.proof.signs.bounds import Sign, prove_sign
 from navsym.proof.wording import text_of
 
 

@@ -10,7 +10,7 @@ from flint import arb, fmpq
 
 from navsym.errors import NavsymError
 from navsym.proof.balls import Tape, enclose, exact_ball, precision, tape
-from navsym.proof.signs import Limits
+from navsym.proof.signs.known import Limits
 from navsym.text.expression import to_text
 
 BITS = 96

@@ -6,7 +6,7 @@ from typing import Any
 
 from flint import arb, fmpq, fmpz
 
-from navsym.proof.enclosure import rational
+from navsym.proof.optimality.enclosure import rational
 
 
 def decimal(x: Any, digits: int, direction: int = 0) -> str:

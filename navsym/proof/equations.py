@@ -16,12 +16,12 @@ from navsym.claims.statement import Equation
 from navsym.claims.verdict import CERTIFIED, CONFIRMED, OPEN, PROVED, REFUTED, Verdict
 from navsym.proof.assumptions import remaining_assumptions
 from navsym.proof.balls import UnsupportedError, enclose
-from navsym.proof.bounds import Sign, prove_sign
 from navsym.proof.certificates import identity_certificate
-from navsym.proof.equalities import WAYS, Proof, first_proof
-from navsym.proof.normal_form import OutsideLanguageError, UndefinedExpressionError, reduce_to_zero
-from navsym.proof.sampling import Point, Sample, search_counterexample
-from navsym.proof.second_look import BITS, Look, second_look
+from navsym.proof.identities.equalities import WAYS, Proof, first_proof
+from navsym.proof.identities.normal_form import OutsideLanguageError, UndefinedExpressionError, reduce_to_zero
+from navsym.proof.sampling.points import Point, Sample, search_counterexample
+from navsym.proof.sampling.second_look import BITS, Look, second_look
+from navsym.proof.signs.bounds import Sign, prove_sign
 from navsym.proof.wording import decimal_ends, point_text, scope_of
 
 ENOUGH_POINTS = 32

@@ -14,13 +14,13 @@ from navsym.claims.verdict import CERTIFIED, OPEN, PROVED, Verdict
 from navsym.errors import DomainError
 from navsym.proof.assumptions import remaining_assumptions, with_sides
 from navsym.proof.balls import UnsupportedError, tape
-from navsym.proof.bounds import Sign, SignProof, prove_sign
 from navsym.proof.certificates import positivity_certificate
 from navsym.proof.equations import after_look, broken, decide_equation, sampled
-from navsym.proof.normal_form import OutsideLanguageError, reduce_to_zero
-from navsym.proof.numbers import is_zero
-from navsym.proof.sampling import Point, Sample, points, ranges, search_counterexample, value_at
-from navsym.proof.second_look import Look, second_look
+from navsym.proof.identities.normal_form import OutsideLanguageError, reduce_to_zero
+from navsym.proof.identities.numbers import is_zero
+from navsym.proof.sampling.points import Point, Sample, points, ranges, search_counterexample, value_at
+from navsym.proof.sampling.second_look import Look, second_look
+from navsym.proof.signs.bounds import Sign, SignProof, prove_sign
 from navsym.proof.wording import point_text, scope_of
 
 #: relation -> when a finite ball of printed - derived contradicts it.

@@ -10,7 +10,7 @@ from navsym.claims.statement import Bound, Equation, Finding, Optimum, Property,
 from navsym.claims.verdict import OPEN, PROVED, REFUTED, Verdict
 from navsym.proof.equations import decide_equation
 from navsym.proof.inequalities import decide_bound
-from navsym.proof.optima import decide_optimum
+from navsym.proof.optimality.pairs import decide_optimum
 from navsym.proof.sandbox import Exhausted, run_limited
 
 DEFAULT_SECONDS = 20.0

@@ -14,7 +14,7 @@ from typing import Any
 import sympy as sp
 
 from navsym.claims.statement import Bound, Box, Equation, Optimum, Property, Statement
-from navsym.proof.sampling import range_of
+from navsym.proof.sampling.points import range_of
 
 OPPOSITE = {"<": ">=", "<=": ">", ">": "<=", ">=": "<", "=": "!=", "!=": "="}
 

@@ -10,7 +10,7 @@ from flint import arb
 from navsym.claims.statement import Box
 from navsym.errors import NavsymError
 from navsym.proof.balls import precision
-from navsym.proof.sampling import Point, Range, range_of
+from navsym.proof.sampling.points import Point, Range, range_of
 from navsym.text.expression import to_text
 
 

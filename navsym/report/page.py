@@ -2,7 +2,7 @@
 
 ``site`` turns the document of ``navsym verify`` into texts by file name; writing them is the
 business of the command line. Every word that comes from data is escaped by the templates; the
-only markup that data can cause is made by :mod:`navsym.report.page_formula` and
+only markup that data can cause is made by :mod:`navsym.report.formula.sides` and
 :mod:`navsym.report.page_plot`, which escape what they take.
 """
 
@@ -22,10 +22,10 @@ from markupsafe import Markup
 
 from navsym.claims import Paper, equation_of
 from navsym.report.erratum import Erratum, erratum_of
-from navsym.report.latex_math import sentence_html, sentence_latex
+from navsym.report.formula.latex import sentence_html, sentence_latex
+from navsym.report.formula.sides import Formula, formula
 from navsym.report.page_code import Snippet, snippets
 from navsym.report.page_explain import Step, ball_words, steps
-from navsym.report.page_formula import Formula, formula
 from navsym.report.page_names import latex_escape
 from navsym.report.page_plot import refutation_plot
 from navsym.report.wording import Words

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from navsym.report.formula_reader import Node, read_formula, unwrapped
+from navsym.report.formula.reader import Node, read_formula, unwrapped
 
 Record = Mapping[str, Any]
 OPERATIONS = {"sum": "+", "difference": "-", "product": "*", "quotient": "/"}

@@ -10,7 +10,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from navsym.report.formula_reader import Node, read_formula, unwrapped
+from navsym.report.formula.reader import Node, read_formula, unwrapped
 from navsym.report.page_explain import entries_of
 
 Curve = list[tuple[float, float]]

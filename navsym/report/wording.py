@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from fnmatch import fnmatchcase
 
 from navsym.errors import ExpressionSyntaxError, NavsymError, UnknownSymbolError
-from navsym.report.latex_math import sentence_html
+from navsym.report.formula.latex import sentence_html
 
 KEYS = ("where", "printed", "correct", "why")
 

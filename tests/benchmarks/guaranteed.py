@@ -20,11 +20,11 @@ import sympy as sp
 from navsym.methods.guaranteed.compare import panel_numbers
 from navsym.methods.guaranteed.many import values_for_lengths
 from navsym.methods.phases.family import Family, U
-from navsym.numeric.exchange import compile_loops, find_contacts
-from navsym.numeric.exchange_many import follow
-from navsym.proof.enclosure import Panel, Problem
-from navsym.proof.optimality import certify
-from navsym.proof.optimality_basis import kept_basis, make_basis
+from navsym.numeric.exchange.many import follow
+from navsym.numeric.exchange.search import compile_loops, find_contacts
+from navsym.proof.optimality.basis import kept_basis, make_basis
+from navsym.proof.optimality.enclosure import Panel, Problem
+from navsym.proof.optimality.fixed import certify
 
 t = sp.Symbol("t", real=True)
 

@@ -21,7 +21,7 @@ from sympy.polys.matrices import DomainMatrix
 from navsym.methods.observability.chains import numerators, observe, proved_rank
 from navsym.methods.observability.linear import reduce_rows
 from navsym.methods.observability.ring import Ring
-from navsym.models.inertial import FULL, full_model
+from navsym.models.inertial.errors import FULL, full_model
 from navsym.models.linear import LinearModel, observability_matrix
 
 a, b, c, d, e, f = sp.symbols("a b c d e f", real=True)

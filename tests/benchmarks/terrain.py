@@ -18,8 +18,8 @@ from numba import njit
 
 from navsym.methods.terrain.search import criteria, prepare, search_full, search_position
 from navsym.methods.terrain.sequential import search_sequential
-from navsym.models.terrain import TerrainMap
-from navsym.models.terrain_track import Hypotheses, Track
+from navsym.models.terrain.heights import TerrainMap
+from navsym.models.terrain.track import Hypotheses, Track
 
 CELL = 50.0
 

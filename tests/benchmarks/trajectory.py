@@ -29,7 +29,7 @@ from navsym.methods.trajectory.inversion import (
     windowed_filter,
 )
 from navsym.methods.trajectory.twins import adaptive_filter_slowly, candidates
-from navsym.models.earth_motion import observability_rows, power_rows
+from navsym.models.earth.motion import observability_rows, power_rows
 
 ROUNDS = 5
 

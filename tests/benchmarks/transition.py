@@ -42,7 +42,7 @@ SYSTEMS = {
 
 
 def ours(system: list[list[sp.Expr]]) -> object:
-    from navsym.models.transition import transition_matrix
+    from navsym.models.transition.exponential import transition_matrix
 
     return transition_matrix(system, t).matrix
 

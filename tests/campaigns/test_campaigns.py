@@ -16,7 +16,7 @@ from navsym.methods.campaigns.points import changes
 from navsym.methods.campaigns.registry import Batch, run_campaign
 from navsym.proof.certificates import identity_certificate
 from navsym.proof.mutants import KINDS, edited, edits
-from navsym.proof.pointwise import values_at
+from navsym.proof.sampling.pointwise import values_at
 from navsym.store import opened
 
 x, y = sp.symbols("x y", real=True)

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from navsym.claims import Equation
 from navsym.cli.main import run
 from navsym.errors import NavsymError
-from navsym.methods.verification import paper_module, verify
+from navsym.methods.verification.verify import paper_module, verify
 from navsym.proof.ladder import decide
 from navsym.proof.mutants import spoiled
 from navsym.text.python_source import exact_source, side_source

@@ -10,7 +10,7 @@ import pytest
 import sympy as sp
 
 from navsym.claims import PROVED, REFUTED, Bound, Equation
-from navsym.models.transition import transition_matrix
+from navsym.models.transition.exponential import transition_matrix
 from navsym.proof.balls import exact_ball
 from navsym.proof.ladder import decide
 

@@ -18,9 +18,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from navsym.export.languages.targets import TARGETS
 from navsym.export.package import Order, files_of
 from navsym.export.roundtrip import run_target
-from navsym.export.targets import TARGETS
 
 OTHER = {"+": "-", "-": "+", "*": "/", "/": "*"}
 SWAPS = {"sin(": "cos(", "cos(": "sin("}

@@ -9,8 +9,8 @@ from pathlib import Path
 from types import ModuleType
 
 from navsym.cli.export import material_for
+from navsym.export.languages.python import files
 from navsym.export.parts import ExportedFunction
-from navsym.export.python import files
 from navsym.export.ready import algorithm
 
 LICENSE = "SPDX-License-Identifier: Apache-2.0"

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
+from navsym.export.languages.targets import TARGETS
 from navsym.export.package import Order, files_of
 from navsym.export.ready import READY
-from navsym.export.targets import TARGETS
 
 GOLDEN = Path(__file__).resolve().parents[1] / "golden" / "export"
 READY_GOLDEN = GOLDEN.with_name("export-ready")

@@ -10,7 +10,7 @@ from navsym.errors import UnknownSymbolError
 from navsym.export.expression_graph import build
 from navsym.export.forms import factored, plain, safe
 from navsym.proof.balls import enclose
-from navsym.proof.normal_form import reduce_to_zero
+from navsym.proof.identities.normal_form import reduce_to_zero
 
 x, y = sp.symbols("x y", real=True)
 T = sp.Symbol("T", positive=True)

@@ -14,9 +14,9 @@ import pytest
 import sympy as sp
 from flint import arb, arb_series, ctx
 
+from navsym.export.accuracy.rounding import DOUBLE, FLOAT, LIBRARY, analyse
 from navsym.export.expression_graph import build
-from navsym.export.printing import SINC_STEPS, SINC_SWITCH, X_MINUS_SIN_STEPS, X_MINUS_SIN_SWITCH
-from navsym.export.rounding import DOUBLE, FLOAT, LIBRARY, analyse
+from navsym.export.languages.printing import SINC_STEPS, SINC_SWITCH, X_MINUS_SIN_STEPS, X_MINUS_SIN_SWITCH
 from navsym.proof.balls import precision
 
 x = sp.Symbol("x", real=True)

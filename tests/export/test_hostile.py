@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from navsym.cli.main import run
-from navsym.export.targets import TARGETS
+from navsym.export.languages.targets import TARGETS
 
 LANGUAGES = [n for n, tool in (("c", "gcc"), ("python", ""), ("javascript", "node")) if not tool or shutil.which(tool)]
 EVERY = [n for n in TARGETS if TARGETS[n].executable() and n != "html"]
@@ -116,7 +116,7 @@ def test_a_pole_comes_back_as_a_status_and_not_as_a_number(tmp_path: Path, capsy
 
 @pytest.mark.skipif(shutil.which("gcc") is None, reason="needs a C compiler")
 def test_single_precision_never_becomes_double(programs, tmp_path: Path) -> None:
-    from navsym.export.c import files
+    from navsym.export.languages.c import files
 
     functions = [*programs.functions("pulsating-filter", "float"), *programs.functions("earth-geocentric", "float")]
     for name, text in files(functions, {f.name: [] for f in functions}, programs.LICENSE).items():

@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
+from navsym.export.languages.targets import TARGETS, answering
 from navsym.export.package import Order, files_of
 from navsym.export.ready import READY
 from navsym.export.roundtrip import run_target
-from navsym.export.targets import TARGETS, answering
 
 HERE = [name for name, target in TARGETS.items() if target.executable() is not None]
 QUICK = [name for name in HERE if name in ("c", "python", "javascript")]

@@ -14,10 +14,10 @@ from navsym.cli.main import run
 from navsym.errors import DomainError, NavsymError
 from navsym.export.folder import FolderError, write_folder
 from navsym.export.functions import RefusedError, function_of, material
-from navsym.export.names import function_name, identifier
+from navsym.export.languages.names import function_name, identifier
+from navsym.export.languages.targets import chosen
 from navsym.export.package import Order, files_of
 from navsym.export.roundtrip import check_export
-from navsym.export.targets import chosen
 from navsym.proof.ladder import decide
 
 a = sp.Symbol("a", real=True)

@@ -10,11 +10,11 @@ import pytest
 import sympy as sp
 from flint import arb
 
+from navsym.export.accuracy.rounding import DOUBLE, FLOAT, analyse
+from navsym.export.accuracy.uniform import uniform_bound
+from navsym.export.accuracy.vectors import vectors
 from navsym.export.expression_graph import build
 from navsym.export.forms import safe
-from navsym.export.rounding import DOUBLE, FLOAT, analyse
-from navsym.export.uniform import uniform_bound
-from navsym.export.vectors import vectors
 from navsym.proof.balls import enclose
 
 x, y = sp.symbols("x y", real=True)

@@ -15,15 +15,15 @@ from numpy.testing import assert_allclose
 from derivations.guaranteed_velocity.model import H, T, tau
 from navsym.errors import DomainError
 from navsym.export.algorithms import observer
-from navsym.export.c import files
 from navsym.export.chain import Chain, Link
 from navsym.export.functions import RefusedError
+from navsym.export.languages.c import files
 from navsym.methods.multimodel.bank import bank
 from navsym.methods.multimodel.filters import run
 from navsym.methods.terrain.centre import information
 from navsym.methods.two_stage.observer import held
-from navsym.models.inertial import joint_model
-from navsym.numeric.kalman import correct, predict
+from navsym.models.inertial.errors import joint_model
+from navsym.numeric.kalman.steps import correct, predict
 
 PROGRAM = """#include "trajectory_filter.h"
 #include <math.h>

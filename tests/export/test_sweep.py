@@ -11,11 +11,11 @@ from flint import arb
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from navsym.export import bands, sweep, twin
+from navsym.export.accuracy import bands, sweep, twin
+from navsym.export.accuracy.rounding import BITS
+from navsym.export.accuracy.vectors import exact_values, piece_at, roots
+from navsym.export.languages.targets import TARGETS
 from navsym.export.ready import READY
-from navsym.export.rounding import BITS
-from navsym.export.targets import TARGETS
-from navsym.export.vectors import exact_values, piece_at, roots
 from navsym.proof.balls import precision
 
 COMPILER = pytest.mark.skipif(TARGETS["c"].executable() is None, reason="needs a C compiler")

@@ -15,11 +15,11 @@ from navsym.claims import Equation
 from navsym.cli.main import run
 from navsym.export import tools
 from navsym.export.functions import function_of, material
+from navsym.export.languages.targets import TARGETS
 from navsym.export.package import Order, files_of
 from navsym.export.parts import Layout
 from navsym.export.roundtrip import run_target
 from navsym.export.table import as_markdown, closing_table
-from navsym.export.targets import TARGETS
 from navsym.proof.ladder import decide
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "report"))
@@ -106,7 +106,7 @@ def test_the_page_computes_shows_and_stays_offline(samples, tmp_path: Path) -> N
 
 
 def test_text_of_a_claim_cannot_leave_the_script_of_the_page() -> None:
-    from navsym.export import wasm
+    from navsym.export.languages import wasm
 
     a = sp.Symbol("a", real=True)
     statement = Equation(sp.sin(a) + 1, 1 + sp.sin(a))
@@ -125,7 +125,7 @@ def test_text_of_a_claim_cannot_leave_the_script_of_the_page() -> None:
 
 def test_the_table_says_what_ran_and_what_did_not(samples, tmp_path: Path, monkeypatch) -> None:
     targets = [TARGETS[n] for n in ("python", "julia")]
-    monkeypatch.setattr("navsym.export.targets.answers", lambda path: False)
+    monkeypatch.setattr("navsym.export.languages.targets.answers", lambda path: False)
     document = closing_table({"g": [samples.by_name("Phi33")]}, targets, 6)
     (record,) = document["functions"]
     assert record["languages"]["python"]["status"] == "verified" and record["languages"]["julia"]["worst"] is None

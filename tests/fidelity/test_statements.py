@@ -20,10 +20,10 @@ from plain_arithmetic import Undefined, value
 
 from navsym.claims import Bound, Equation, Optimum, Property, claims_of
 from navsym.cli.verify import names
-from navsym.methods.verification import sides
+from navsym.methods.verification.verify import sides
 from navsym.proof.equations import entries
-from navsym.proof.pointwise import values_at
-from navsym.proof.sampling import points
+from navsym.proof.sampling.points import points
+from navsym.proof.sampling.pointwise import values_at
 from navsym.text.expression import parse, to_text
 from navsym.text.tokens import LENGTH
 

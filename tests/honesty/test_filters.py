@@ -14,7 +14,7 @@ from scipy.stats import binom, chi2
 
 from navsym.methods.multimodel.bank import bank
 from navsym.methods.multimodel.filters import run
-from navsym.numeric import kalman
+from navsym.numeric.kalman import steps as kalman
 
 RUNS = 10_000
 METHODS = ("exact", "pulsating", "k-pulsating", "gpb2", "imm", "polygaussian")

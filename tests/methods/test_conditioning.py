@@ -20,7 +20,7 @@ from navsym.methods.conditioning.exact import (
 from navsym.methods.conditioning.numbers import condition_number, condition_numbers, document
 from navsym.methods.conditioning.perron import condition_by_signs
 from navsym.methods.conditioning.scaling import best_scaling
-from navsym.models.earth_motion import observability_rows, power_rows
+from navsym.models.earth.motion import observability_rows, power_rows
 
 fractions = st.fractions(min_value=-5, max_value=5, max_denominator=9)
 

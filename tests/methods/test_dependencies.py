@@ -12,9 +12,8 @@ from pathlib import Path
 import pytest
 
 from navsym.claims import claims_of
-from navsym.methods import deciding_code
-from navsym.methods import derivation_sources as sources
-from navsym.methods.dependencies import fingerprint, fingerprints
+from navsym.methods.verification import deciding_code, sources
+from navsym.methods.verification.dependencies import fingerprint, fingerprints
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -194,7 +193,7 @@ def test_the_rooms_the_checker_and_the_switches_count(monkeypatch, tmp_path):
     digest = deciding_code.rooms_digest.__wrapped__
     before = digest()
     names = {path.relative_to(deciding_code.ROOT).as_posix() for path in deciding_code.room_files()}
-    assert {"checker.py", "store.py", "errors.py", "proof/ladder.py", "methods/verification.py"} <= names
+    assert {"checker.py", "store.py", "errors.py", "proof/ladder.py", "methods/verification/verify.py"} <= names
     monkeypatch.setenv("SYMPY_GROUND_TYPES", "python")
     assert digest() != before
     monkeypatch.delenv("SYMPY_GROUND_TYPES")
@@ -206,7 +205,7 @@ def test_another_copy_of_an_engine_on_the_path_counts(monkeypatch, tmp_path):
     before = deciding_code.package_digest("mpmath")
     (tmp_path / "mpmath").mkdir()
     (tmp_path / "mpmath" / "__init__.py").write_text("from decimal import Decimal as mpf")
-    script = "from navsym.methods.deciding_code import package_digest; print(package_digest('mpmath'))"
+    script = "from navsym.methods.verification.deciding_code import package_digest; print(package_digest('mpmath'))"
     told = {
         path: subprocess.run(
             [sys.executable, "-c", script], cwd=ROOT, env={"PYTHONPATH": path}, capture_output=True, text=True
@@ -219,7 +218,7 @@ def test_another_copy_of_an_engine_on_the_path_counts(monkeypatch, tmp_path):
 def test_what_a_claim_reaches_is_told_alike_by_every_process():
     script = (
         "import importlib, json; from navsym.claims import claims_of; "
-        "from navsym.methods.dependencies import reached; "
+        "from navsym.methods.verification.dependencies import reached; "
         "claims = claims_of(importlib.import_module('derivations.joint_correction')); "
         "print(json.dumps([reached(claim.derive) for claim in claims]))"
     )

@@ -12,7 +12,7 @@ from navsym.methods.multimodel.bank import bank
 from navsym.methods.multimodel.exact import Leaf, Model, fractions_kit, run_exactly
 from navsym.methods.multimodel.filters import read_bank, run
 from navsym.methods.multimodel.schemes import SCHEMES, filters_at, scheme
-from navsym.numeric import kalman
+from navsym.numeric.kalman import steps as kalman
 
 METHODS = tuple(SCHEMES)
 FIELDS = ("probabilities", "mean", "covariance", "log_likelihood")

@@ -15,7 +15,7 @@ from navsym.methods.multimodel.batch import run_batch
 from navsym.methods.multimodel.exact import Leaf, Model, fractions_kit, run_exactly
 from navsym.methods.multimodel.filters import run
 from navsym.methods.multimodel.schemes import SCHEMES, scheme
-from navsym.numeric.forms import FORMS
+from navsym.numeric.kalman.forms import FORMS
 
 STEPS = 3
 

@@ -15,7 +15,7 @@ from navsym.methods.observability.split import (
     three_blocks,
     two_stage_blocks,
 )
-from navsym.models.inertial import joint_model, position_group, velocity_group
+from navsym.models.inertial.errors import joint_model, position_group, velocity_group
 from navsym.models.linear import LinearModel
 
 a, b, c, d, w = sp.symbols("a b c d w", real=True)

@@ -19,8 +19,8 @@ from navsym.methods.terrain.search import (
     search_position,
 )
 from navsym.methods.terrain.sequential import search_sequential
-from navsym.models.terrain import TerrainMap
-from navsym.models.terrain_track import Hypotheses, Track
+from navsym.models.terrain.heights import TerrainMap
+from navsym.models.terrain.track import Hypotheses, Track
 
 GRID = Hypotheses((30, 30), (4, 4), (1, 1), (3, 3))
 

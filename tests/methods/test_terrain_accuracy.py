@@ -11,8 +11,8 @@ from numpy.testing import assert_allclose
 from navsym.errors import DomainError
 from navsym.methods.terrain.accuracy import accuracy_map, false_fix_bound
 from navsym.methods.terrain.search import search_position
-from navsym.models.terrain import TerrainMap
-from navsym.models.terrain_track import Hypotheses, Track
+from navsym.models.terrain.heights import TerrainMap
+from navsym.models.terrain.track import Hypotheses, Track
 
 
 def relief(rough=3.0):

@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 
 from navsym.errors import NotEstimableError
 from navsym.methods.terrain.centre import demand_estimable, information, quadratic_slowly, slopes
-from navsym.models.terrain import TerrainMap
+from navsym.models.terrain.heights import TerrainMap
 
 tracks = st.integers(3, 30).flatmap(
     lambda n: st.tuples(

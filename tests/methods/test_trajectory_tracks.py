@@ -25,8 +25,8 @@ from navsym.methods.trajectory.estimate import (
 )
 from navsym.methods.trajectory.marginal import covariance_root, noise_points
 from navsym.methods.trajectory.tracks import Fit, Noise, Track, isolated_outliers, noise_of, track_of
-from navsym.models.earth_geodesy import cartesian, local_axes
-from navsym.numeric.trajectory_tracks import noise_root, noise_shape, transition
+from navsym.models.earth.geodesy import cartesian, local_axes
+from navsym.numeric.trajectory.tracks import noise_root, noise_shape, transition
 
 
 def flat_track(t, position):

@@ -14,8 +14,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
-from navsym.models import earth
-from navsym.models.earth_geodesy import (
+from navsym.models.earth import ellipsoid as earth
+from navsym.models.earth.geodesy import (
     cartesian,
     geocentric,
     local_axes,
@@ -83,7 +83,7 @@ def test_chords_of_the_geodesic_test_set_are_shorter_than_its_geodesics():
 
 @given(st.floats(-1.5, 1.5), heights)
 def test_geocentric_coordinates_agree_with_the_corrected_formulas_of_the_paper(latitude, height):
-    from navsym.models.earth_geodesy import ECCENTRICITY_SQUARED, SEMI_MAJOR
+    from navsym.models.earth.geodesy import ECCENTRICITY_SQUARED, SEMI_MAJOR
 
     root = np.sqrt(1 - ECCENTRICITY_SQUARED * np.sin(latitude) ** 2)
     factor = 1 - SEMI_MAJOR * ECCENTRICITY_SQUARED / (SEMI_MAJOR + height * root)

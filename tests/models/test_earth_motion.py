@@ -11,7 +11,7 @@ import pytest
 import sympy as sp
 
 from navsym.errors import DomainError
-from navsym.models import earth_motion as motion
+from navsym.models.earth import motion
 
 rho, tau = sp.symbols("rho tau", positive=True)
 

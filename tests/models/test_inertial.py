@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from navsym.models import inertial_kinematics as kin
-from navsym.models.inertial import (
+from navsym.models.inertial import kinematics as kin
+from navsym.models.inertial.errors import (
     FULL,
     MU,
     ORDERS,
@@ -18,7 +18,7 @@ from navsym.models.inertial import (
     position_group,
     velocity_group,
 )
-from navsym.models.inertial_orders import exactly, lowest_order, order_of, truncate
+from navsym.models.inertial.orders import exactly, lowest_order, order_of, truncate
 
 
 def rotation(vector: np.ndarray) -> np.ndarray:

@@ -18,8 +18,8 @@ from navsym.errors import (
     ShapeError,
     TooLargeError,
 )
-from navsym.models.terrain import NO_DATA, OFF_MAP, ON_MAP, TerrainMap
-from navsym.models.terrain_track import Hypotheses, Track
+from navsym.models.terrain.heights import NO_DATA, OFF_MAP, ON_MAP, TerrainMap
+from navsym.models.terrain.track import Hypotheses, Track
 
 PLANE = TerrainMap([[0, 2, 4], [10, 12, 14], [20, 22, 24]], 100.0, 200.0, 5.0, 4.0)
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from navsym.claims import PROVED, Equation
 from navsym.errors import DomainError, NotFiniteError, ShapeError, TooLargeError
 from navsym.models.linear import LinearModel
-from navsym.models.transition import discrete_transition, regressors, transition_matrix
+from navsym.models.transition.exponential import discrete_transition, regressors, transition_matrix
 from navsym.proof.ladder import decide
 
 t, T, tau = sp.symbols("t T tau", positive=True)

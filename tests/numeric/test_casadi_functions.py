@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 
 from navsym.errors import DomainError, NotFiniteError, ShapeError, UnknownSymbolError
 from navsym.models.linear import LinearModel
-from navsym.models.transition import regressors
+from navsym.models.transition.exponential import regressors
 from navsym.numeric.casadi_functions import casadi_function, jacobian_function, on_grid
 
 x, y, T, tau, w = sp.symbols("x y T tau w", positive=True)

@@ -12,7 +12,7 @@ from numpy.testing import assert_allclose
 
 from navsym.errors import DomainError, NotEstimableError, NotFiniteError, ShapeError
 from navsym.models.linear import LinearModel
-from navsym.models.transition import regressors
+from navsym.models.transition.exponential import regressors
 from navsym.numeric.casadi_functions import casadi_function
 from navsym.numeric.convex import (
     LP_SOLVERS,

@@ -10,14 +10,14 @@ import sympy as sp
 from numpy.polynomial import chebyshev
 from scipy.optimize import linprog
 
-from navsym.numeric import exchange_kernels as kernels
 from navsym.numeric import tiers
-from navsym.numeric.exchange import Panels, chebyshev_nodes, find_contacts, independent, rows_at
-from navsym.numeric.exchange_maxima import local_maxima, values_on
-from navsym.numeric.exchange_twofold import two_product, two_sum
+from navsym.numeric.exchange import kernels
+from navsym.numeric.exchange.maxima import local_maxima, values_on
+from navsym.numeric.exchange.search import Panels, chebyshev_nodes, find_contacts, independent, rows_at
+from navsym.numeric.exchange.twofold import two_product, two_sum
 from navsym.numeric.tiers import compiled
-from navsym.proof.enclosure import Panel, Problem
-from navsym.proof.optimality_basis import make_basis
+from navsym.proof.optimality.basis import make_basis
+from navsym.proof.optimality.enclosure import Panel, Problem
 
 
 def power_panels(m, functional):

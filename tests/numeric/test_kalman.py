@@ -5,7 +5,7 @@ import pytest
 from numpy.linalg import inv
 from numpy.testing import assert_allclose
 
-from navsym.numeric import kalman
+from navsym.numeric.kalman import steps as kalman
 
 
 def random_spd(rng, n):

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
-from navsym.numeric import mixture
+from navsym.numeric.mixture import moments as mixture
 
 
 @st.composite

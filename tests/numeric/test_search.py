@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
 
-from navsym.numeric.search import TOGETHER, dense_slowly, padded, patch_rows, slab
-from navsym.numeric.search_bounded import BoundedResult, search_bounded, search_one_velocity
-from navsym.numeric.search_lattice import fits, lattice, rounded
-from navsym.numeric.search_margins import (
+from navsym.numeric.search.bounded import BoundedResult, search_bounded, search_one_velocity
+from navsym.numeric.search.criteria import TOGETHER, dense_slowly, padded, patch_rows, slab
+from navsym.numeric.search.lattice import fits, lattice, rounded
+from navsym.numeric.search.margins import (
     CONTRASTS,
     ceiling_of,
     double_limit,
@@ -21,9 +21,9 @@ from navsym.numeric.search_margins import (
     parts_about_the_mean,
     single_limit,
 )
-from navsym.numeric.search_masked import dense_masked
-from navsym.numeric.search_sample import criterion_one, height_at
-from navsym.numeric.search_stages import scores
+from navsym.numeric.search.masked import dense_masked
+from navsym.numeric.search.sample import criterion_one, height_at
+from navsym.numeric.search.stages import scores
 
 
 def random_case(generator, *, ties=False):

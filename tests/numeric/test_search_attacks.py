@@ -12,8 +12,8 @@ import pytest
 
 from navsym.errors import NavsymError, NotEstimableError
 from navsym.methods.terrain.search import exact_criterion, prepare, search_full, search_position
-from navsym.models.terrain import TerrainMap
-from navsym.models.terrain_track import Hypotheses, Track
+from navsym.models.terrain.heights import TerrainMap
+from navsym.models.terrain.track import Hypotheses, Track
 
 GRID = Hypotheses((30, 30), (3, 3), (1, 1), (2, 2))
 

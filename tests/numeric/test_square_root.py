@@ -8,8 +8,8 @@ from numpy.testing import assert_allclose
 
 from navsym.errors import DomainError
 from navsym.methods.multimodel.exact import Kit, Leaf, Model, filtered
-from navsym.numeric.forms import FORMS, form_of
-from navsym.numeric.square_root import bierman, potter, root_of, square, triangular, ud_of
+from navsym.numeric.kalman.forms import FORMS, form_of
+from navsym.numeric.kalman.square_root import bierman, potter, root_of, square, triangular, ud_of
 
 FACTORED = [name for name in FORMS if name != "joseph"]
 

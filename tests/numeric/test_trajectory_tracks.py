@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from navsym.numeric.trajectory_tracks import backward, forward, noise_root, noise_shape, transition
+from navsym.numeric.trajectory.tracks import backward, forward, noise_root, noise_shape, transition
 
 
 def step_of(dt, q, n):

@@ -10,8 +10,8 @@ import sympy as sp
 
 from navsym import checker
 from navsym.proof.decimals import decimal, exact
-from navsym.proof.enclosure import Panel, Problem
-from navsym.proof.optimality import certify
+from navsym.proof.optimality.enclosure import Panel, Problem
+from navsym.proof.optimality.fixed import certify
 
 t = sp.Symbol("t", real=True)
 

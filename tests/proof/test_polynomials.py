@@ -7,12 +7,12 @@ import random
 import pytest
 import sympy as sp
 
-from navsym.proof.algebraic import is_algebraic_zero, separation_bits
-from navsym.proof.algebraic_signs import algebraic_sign
-from navsym.proof.bounds import Sign, prove_sign
-from navsym.proof.cases import vanishes_in_all_cases
-from navsym.proof.numbers import is_zero
-from navsym.proof.sampling import ranges
+from navsym.proof.identities.algebraic import is_algebraic_zero, separation_bits
+from navsym.proof.identities.cases import vanishes_in_all_cases
+from navsym.proof.identities.numbers import is_zero
+from navsym.proof.sampling.points import ranges
+from navsym.proof.signs.algebraic import algebraic_sign
+from navsym.proof.signs.bounds import Sign, prove_sign
 
 x, y, z = sp.symbols("x y z", real=True)
 T = sp.Symbol("T", positive=True)

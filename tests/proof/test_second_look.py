@@ -10,7 +10,7 @@ from navsym.claims import CONFIRMED, OPEN, REFUTED
 from navsym.claims.statement import Bound, Equation
 from navsym.proof.balls import ball_power, tape
 from navsym.proof.ladder import decide
-from navsym.proof.sampling import value_at
+from navsym.proof.sampling.points import value_at
 
 a, b, x, y = sp.symbols("a b x y", real=True)
 p, q, r = sp.symbols("p q r", positive=True)

@@ -16,8 +16,8 @@ from navsym.claims import CERTIFIED, OPEN, PROVED, REFUTED, Bound, Equation, Fin
 from navsym.errors import DomainError
 from navsym.methods.prove import prove
 from navsym.proof.balls import UnsupportedError
-from navsym.proof.bounds import Sign, prove_sign
 from navsym.proof.ladder import decide
+from navsym.proof.signs.bounds import Sign, prove_sign
 from navsym.text.claimfile import claims_from
 
 x = sp.Symbol("x", real=True)

@@ -16,8 +16,8 @@ import pytest
 from navsym.claims import Paper, claims_of
 from navsym.errors import NavsymError
 from navsym.report.erratum import erratum_of
-from navsym.report.formula_reader import read_formula
-from navsym.report.latex_math import mathml, sentence_html, sentence_latex
+from navsym.report.formula.latex import mathml, sentence_html, sentence_latex
+from navsym.report.formula.reader import read_formula
 from navsym.report.page import environment, site
 from navsym.report.page_code import snippets
 from navsym.report.page_plot import value

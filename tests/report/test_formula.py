@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from navsym.report.formula_reader import read_formula
-from navsym.report.page_formula import latex, mathml
+from navsym.report.formula.reader import read_formula
+from navsym.report.formula.sides import latex, mathml
 from navsym.report.page_names import latex_escape, split_name
 from navsym.report.page_plot import value
 

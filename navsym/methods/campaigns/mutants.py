@@ -30,10 +30,10 @@ from navsym.methods.campaigns.points import (
     spoilt,
 )
 from navsym.methods.campaigns.registry import Batch, Result, result
-from navsym.methods.dependencies import fingerprint
+from navsym.methods.verification.dependencies import fingerprint
 from navsym.proof.ladder import decide
 from navsym.proof.mutants import is_formula
-from navsym.proof.sampling import points
+from navsym.proof.sampling.points import points
 from navsym.proof.wording import point_text, text_of
 
 #: For one mutant that no point has refuted. A mutant of an inequality is often a weaker one that holds with

@@ -18,8 +18,8 @@ from navsym.proof.balls import UnsupportedError
 from navsym.proof.equations import entries
 from navsym.proof.inequalities import contradicts
 from navsym.proof.mutants import Edit, edited, edits, rearranged, widened
-from navsym.proof.pointwise import Values, values_at
-from navsym.proof.sampling import Point, points
+from navsym.proof.sampling.points import Point, points
+from navsym.proof.sampling.pointwise import Values, values_at
 
 POINTS = 32
 GRID = 16

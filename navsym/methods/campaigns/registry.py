@@ -12,7 +12,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from navsym.methods.dependencies import rooms_digest
+from navsym.methods.verification.dependencies import rooms_digest
 from navsym.proof.sandbox import Exhausted, Failed, run_many
 from navsym.store import Store, StoreError, key_of
 

@@ -18,7 +18,7 @@ from navsym.errors import DomainError, TooLargeError
 from navsym.methods.conditioning.enclosure import Enclosure
 from navsym.methods.conditioning.exact import Rows, condition_by_polynomial
 from navsym.methods.conditioning.perron import condition_by_signs
-from navsym.models.earth_motion import observability_rows, power_rows
+from navsym.models.earth.motion import observability_rows, power_rows
 
 #: Beyond this size the printed digits of the entries alone fill megabytes.
 LARGEST_ORDER = 120

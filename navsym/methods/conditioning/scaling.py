@@ -18,7 +18,7 @@ import numpy as np
 from navsym.errors import TooLargeError
 from navsym.methods.conditioning.enclosure import Enclosure
 from navsym.methods.conditioning.numbers import condition_number
-from navsym.models.earth_motion import power_rows
+from navsym.models.earth.motion import power_rows
 from navsym.numeric.arrays import Array
 
 #: Beyond this order the smallest singular vector drowns in rounding.

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from navsym.methods.guaranteed.problem import GuaranteedProblem
 from navsym.methods.guaranteed.solver import GuaranteedSolution
 from navsym.numeric.convex import LP_SOLVERS, GridProblem, guaranteed_lp
-from navsym.proof.enclosure import Panel
+from navsym.proof.optimality.enclosure import Panel
 
 Array = NDArray[np.float64]
 GRID = 201

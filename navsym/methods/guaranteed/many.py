@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 from navsym.errors import DomainError
 from navsym.methods.phases.family import Family
 from navsym.methods.phases.scan import ordered
-from navsym.numeric.exchange import Contacts, find_contacts
-from navsym.numeric.exchange_many import follow_lengths
-from navsym.proof.optimality_basis import Basis, make_basis
+from navsym.numeric.exchange.many import follow_lengths
+from navsym.numeric.exchange.search import Contacts, find_contacts
+from navsym.proof.optimality.basis import Basis, make_basis
 
 #: The search basis of a length serves lengths down to this part of it.
 REACH = 0.25

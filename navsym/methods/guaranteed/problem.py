@@ -19,9 +19,9 @@ from navsym.methods.guaranteed.varying import (
     varying,
 )
 from navsym.models.linear import LinearModel, exact_entry
-from navsym.models.transition import regressors, transition_matrix
+from navsym.models.transition.exponential import regressors, transition_matrix
 from navsym.proof.balls import enclose
-from navsym.proof.enclosure import Panel, Problem
+from navsym.proof.optimality.enclosure import Panel, Problem
 from navsym.text.modeltypes import BasisFile, ModelFile
 
 Rows = tuple[tuple[sp.Expr, ...], ...]

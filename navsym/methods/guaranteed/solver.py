@@ -21,13 +21,13 @@ from navsym.errors import NavsymError, NotEstimableError
 from navsym.methods.guaranteed.problem import GuaranteedProblem
 from navsym.methods.guaranteed.unique import several_optimal
 from navsym.methods.guaranteed.varying import ERROR
-from navsym.numeric.exchange import find_contacts
+from navsym.numeric.exchange.search import find_contacts
 from navsym.proof.balls import precision
 from navsym.proof.decimals import decimal
-from navsym.proof.enclosure import Problem, rational
 from navsym.proof.ladder import decide
-from navsym.proof.optimality import Certified, certify
-from navsym.proof.optimality_basis import Basis, DependentError, make_basis
+from navsym.proof.optimality.basis import Basis, DependentError, make_basis
+from navsym.proof.optimality.enclosure import Problem, rational
+from navsym.proof.optimality.fixed import Certified, certify
 from navsym.text.expression import to_text
 
 MOST_DIGITS = 1000

@@ -16,11 +16,11 @@ import sympy as sp
 from flint import arb, arb_mat, fmpq, fmpq_mat
 
 from navsym.claims import PROVED, Equation
-from navsym.numeric.exchange import Contacts
+from navsym.numeric.exchange.search import Contacts
 from navsym.proof.balls import enclose, precision
-from navsym.proof.enclosure import Panel, Problem, Touch, bounded, rational
 from navsym.proof.ladder import decide
-from navsym.proof.optimality_basis import as_fraction
+from navsym.proof.optimality.basis import as_fraction
+from navsym.proof.optimality.enclosure import Panel, Problem, Touch, bounded, rational
 
 BITS = 256
 NEAR = 1e-8

@@ -15,8 +15,9 @@ from navsym.methods.multimodel import filters as multimodel
 from navsym.methods.multimodel.bank import Bank
 from navsym.methods.multimodel.fast import independent_scalars
 from navsym.methods.multimodel.schemes import require_room, scheme
-from navsym.numeric import kalman, mixture
+from navsym.numeric.kalman import steps as kalman
 from navsym.numeric.linalg import symmetrise
+from navsym.numeric.mixture import moments as mixture
 
 Array = NDArray[np.floating[Any]]
 #: mean (runs, T, n), covariance (runs, T, n, n), probabilities (runs, T, m), cumulative log-likelihood (runs, T)
@@ -58,7 +59,7 @@ def empty(z: Array, models: Bank) -> Batch:
 
 def in_lanes(models: Bank, z: Array, branching: int, out: Batch) -> bool:
     """Fill ``out`` by the compiled loops; False when a run had to stop."""
-    from navsym.numeric.mixture_batch import run_all
+    from navsym.numeric.mixture.batch import run_all
 
     H, r, U, rotated = independent_scalars(models)
     with np.errstate(all="ignore"):

@@ -12,7 +12,7 @@ from navsym.methods.multimodel import steps
 from navsym.methods.multimodel.bank import Bank
 from navsym.methods.multimodel.schemes import Scheme
 from navsym.numeric import arrays
-from navsym.numeric.forms import FORMS, Form
+from navsym.numeric.kalman.forms import FORMS, Form
 
 Array = NDArray[np.floating[Any]]
 

@@ -10,8 +10,10 @@ from numpy.typing import NDArray
 from navsym.methods.multimodel.bank import Bank
 from navsym.methods.multimodel.engine import UNDERFLOW, Estimate, run_in_numpy
 from navsym.methods.multimodel.schemes import Scheme, filters_at
-from navsym.numeric import arrays, kalman, mixture
-from navsym.numeric.mixture_kernels import ALL, BY_MODE, CROSS, KEEP, MIXED, OWN, run_bank
+from navsym.numeric import arrays
+from navsym.numeric.kalman import steps as kalman
+from navsym.numeric.mixture import moments as mixture
+from navsym.numeric.mixture.kernels import ALL, BY_MODE, CROSS, KEEP, MIXED, OWN, run_bank
 
 Array = NDArray[np.floating[Any]]
 

@@ -17,7 +17,7 @@ from navsym.errors import DomainError, NotFiniteError, ShapeError
 from navsym.methods.multimodel.bank import Bank, bank, measurements_for, memoryless
 from navsym.methods.multimodel.engine import Estimate, run_in_numpy
 from navsym.methods.multimodel.schemes import require_room, scheme
-from navsym.numeric.forms import form_of
+from navsym.numeric.kalman.forms import form_of
 from navsym.text.keys import only_keys
 
 Array = NDArray[np.floating[Any]]

@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navsym.methods.multimodel.bank import Bank
-from navsym.numeric import kalman, mixture
+from navsym.numeric.kalman import steps as kalman
+from navsym.numeric.mixture import moments as mixture
 
 Array = NDArray[np.floating[Any]]
 

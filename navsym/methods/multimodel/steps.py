@@ -2,7 +2,7 @@
 
 This is the readable twin of the compiled loops, and the engine for banks that change their measurements,
 for trees and for anything small. Weights are logarithms throughout. Covariances are kept in a form of
-:mod:`navsym.numeric.forms`; only :class:`Step` shows them as they are.
+:mod:`navsym.numeric.kalman.forms`; only :class:`Step` shows them as they are.
 """
 
 from __future__ import annotations
@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 
 from navsym.methods.multimodel.bank import Bank
 from navsym.methods.multimodel.schemes import Scheme
-from navsym.numeric import mixture
-from navsym.numeric.forms import FORMS, Form
+from navsym.numeric.kalman.forms import FORMS, Form
+from navsym.numeric.mixture import moments as mixture
 
 Array = NDArray[np.floating[Any]]
 

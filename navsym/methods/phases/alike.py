@@ -11,8 +11,8 @@ from itertools import combinations, islice
 
 import numpy as np
 
-from navsym.numeric.exchange import NEGLIGIBLE, Contacts, Panels, rows_at
-from navsym.numeric.exchange_kernels import Array, Ints
+from navsym.numeric.exchange.kernels import Array, Ints
+from navsym.numeric.exchange.search import NEGLIGIBLE, Contacts, Panels, rows_at
 
 Pattern = tuple[tuple[int, str, int], ...]
 MOST_CHOICES = 3000

@@ -23,10 +23,10 @@ from navsym.methods.phases.scan import Pattern, Span, pattern_of, sample
 from navsym.proof.balls import enclose
 from navsym.proof.equations import combine, decide_equation
 from navsym.proof.ladder import DEFAULT_MEGABYTES, decide_within
-from navsym.proof.optima import SHARE, constraints, equal_values, feasibility, instants
-from navsym.proof.optimality_polish import Polished, polish
-from navsym.proof.products import as_product
+from navsym.proof.optimality.pairs import SHARE, constraints, equal_values, feasibility, instants
+from navsym.proof.optimality.polish import Polished, polish
 from navsym.proof.sandbox import Exhausted, run_limited
+from navsym.proof.signs.products import as_product
 
 BITS = 320
 GOAL = 1e-60

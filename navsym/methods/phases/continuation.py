@@ -33,8 +33,8 @@ from navsym.methods.phases.slivers import Sliver, slivers
 from navsym.proof.balls import enclose
 from navsym.proof.decimals import decimal, lower_end, upper_end
 from navsym.proof.decimals import exact as exact_decimal
-from navsym.proof.enclosure import rational
-from navsym.proof.optimality_range import Ranged
+from navsym.proof.optimality.enclosure import rational
+from navsym.proof.optimality.range import Ranged
 from navsym.text.expression import to_text
 
 POINTS = 5

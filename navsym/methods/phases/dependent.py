@@ -12,7 +12,7 @@ from navsym.errors import NotEstimableError
 from navsym.methods.guaranteed.solver import recognised
 from navsym.methods.phases.family import Family, U
 from navsym.proof.ladder import decide
-from navsym.proof.optimality_basis import DependentError, make_basis
+from navsym.proof.optimality.basis import DependentError, make_basis
 from navsym.text.expression import to_text
 
 

@@ -16,14 +16,14 @@ from navsym.methods.phases.closed import BITS, GOAL, Closed
 from navsym.methods.phases.family import Family, U
 from navsym.methods.phases.places import constant, number
 from navsym.methods.phases.scan import Pattern, Span, pattern_of, sample
-from navsym.numeric.exchange import Contacts
+from navsym.numeric.exchange.search import Contacts
 from navsym.proof.balls import enclose, precision
 from navsym.proof.decimals import decimal, lower_end, upper_end
-from navsym.proof.enclosure import Problem, rational, total
 from navsym.proof.ladder import decide
-from navsym.proof.optimality import peak, touch
-from navsym.proof.optimality_basis import as_fraction, make_basis
-from navsym.proof.optimality_polish import Polished, polish
+from navsym.proof.optimality.basis import as_fraction, make_basis
+from navsym.proof.optimality.enclosure import Problem, rational, total
+from navsym.proof.optimality.fixed import peak, touch
+from navsym.proof.optimality.polish import Polished, polish
 
 DIGITS = 34
 

@@ -15,7 +15,7 @@ import sympy as sp
 
 from navsym.errors import DomainError, EmptyError
 from navsym.methods.guaranteed.problem import GuaranteedProblem, Rows, Stretch, chosen_target, stretches_of
-from navsym.proof.enclosure import Panel, Problem
+from navsym.proof.optimality.enclosure import Panel, Problem
 from navsym.text.modeltypes import BasisFile, ModelFile
 
 #: Time before the estimate, or the variable of the basis.

@@ -8,7 +8,7 @@ import sympy as sp
 from flint import arb
 
 from navsym.methods.phases.family import Family
-from navsym.proof.enclosure import rational
+from navsym.proof.optimality.enclosure import rational
 
 NEAR = sp.Rational(1, 10**40)
 

@@ -12,11 +12,11 @@ from navsym.methods.phases.family import Family
 from navsym.methods.phases.scan import Pattern
 from navsym.methods.phases.vanishing import Echelon, echelon, rescaled, scaled, scaled_certificate, tied
 from navsym.proof.decimals import decimal, exact
-from navsym.proof.enclosure import rational
-from navsym.proof.optimality_basis import make_basis
-from navsym.proof.optimality_march import follow, march, simple
-from navsym.proof.optimality_moving import Member, Moving
-from navsym.proof.optimality_range import Piece, Ranged, Track, piece, range_document
+from navsym.proof.optimality.basis import make_basis
+from navsym.proof.optimality.enclosure import rational
+from navsym.proof.optimality.march import follow, march, simple
+from navsym.proof.optimality.moving import Member, Moving
+from navsym.proof.optimality.range import Piece, Ranged, Track, piece, range_document
 
 
 def fraction_of(x: fmpq) -> Fraction:

@@ -17,8 +17,8 @@ import sympy as sp
 
 from navsym.methods.phases.alike import Pattern, alike, pattern_of
 from navsym.methods.phases.family import Family
-from navsym.numeric.exchange import Contacts, find_contacts
-from navsym.proof.optimality_basis import Basis, make_basis
+from navsym.numeric.exchange.search import Contacts, find_contacts
+from navsym.proof.optimality.basis import Basis, make_basis
 
 COUNT = 72
 BRACKET = 1e-7

@@ -17,7 +17,7 @@ from navsym.errors import NavsymError
 from navsym.methods.phases.family import Family, U
 from navsym.proof.balls import enclose
 from navsym.proof.ladder import decide
-from navsym.proof.optimality_basis import DependentError, make_basis
+from navsym.proof.optimality.basis import DependentError, make_basis
 
 MOST = 40
 

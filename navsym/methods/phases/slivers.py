@@ -17,13 +17,13 @@ from flint import arb, fmpq
 from navsym.errors import NavsymError
 from navsym.methods.phases.family import Family
 from navsym.methods.phases.scan import ordered
-from navsym.numeric.exchange import Contacts, find_contacts
+from navsym.numeric.exchange.search import Contacts, find_contacts
 from navsym.proof.decimals import decimal
-from navsym.proof.enclosure import Problem, interval
-from navsym.proof.optimality import gap
-from navsym.proof.optimality_basis import DependentError, make_basis
-from navsym.proof.optimality_polish import polish
-from navsym.proof.optimality_range import fraction
+from navsym.proof.optimality.basis import DependentError, make_basis
+from navsym.proof.optimality.enclosure import Problem, interval
+from navsym.proof.optimality.fixed import gap
+from navsym.proof.optimality.polish import polish
+from navsym.proof.optimality.range import fraction
 
 DIGITS = 14
 BITS = 400

@@ -15,9 +15,9 @@ from flint import arb, arb_mat, arb_series, fmpq, fmpq_mat
 
 from navsym.methods.phases.family import Family, U
 from navsym.proof.balls import enclose
-from navsym.proof.enclosure import interval
-from navsym.proof.optimality_moving import Vanishing, exact_functional, number_of, terms
-from navsym.proof.optimality_range import BITS, Piece, value_bounds
+from navsym.proof.optimality.enclosure import interval
+from navsym.proof.optimality.moving import Vanishing, exact_functional, number_of, terms
+from navsym.proof.optimality.range import BITS, Piece, value_bounds
 from navsym.text.expression import to_text
 
 EXTRA = 12

@@ -13,9 +13,9 @@ from pathlib import Path
 from typing import Any
 
 from navsym.errors import MissingEngineError, NavsymError
-from navsym.methods.dependencies import rooms_digest
 from navsym.methods.sweeps.plan import Sweep, fingerprint, run_job, summary
 from navsym.methods.sweeps.shards import Rows, Shards, cut, default_folder
+from navsym.methods.verification.dependencies import rooms_digest
 from navsym.store import key_of
 
 SECONDS_TO_CONNECT = 15

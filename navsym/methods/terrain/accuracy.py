@@ -19,8 +19,8 @@ from numpy.typing import NDArray
 from navsym.errors import DomainError
 from navsym.methods.terrain.centre import information, slopes
 from navsym.methods.terrain.search import criteria, prepare
-from navsym.models.terrain import ON_MAP, TerrainMap
-from navsym.models.terrain_track import Hypotheses, Track
+from navsym.models.terrain.heights import ON_MAP, TerrainMap
+from navsym.models.terrain.track import Hypotheses, Track
 
 Array = NDArray[np.float64]
 

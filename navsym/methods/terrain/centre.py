@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navsym.errors import NotEstimableError
-from navsym.models.terrain import TerrainMap, blend
+from navsym.models.terrain.heights import TerrainMap, blend
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]

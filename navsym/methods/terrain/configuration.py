@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import Any
 
 from navsym.errors import DomainError, EmptyError, NavsymError, ShapeError
-from navsym.models.terrain import TerrainMap
-from navsym.models.terrain_track import Hypotheses, Track
+from navsym.models.terrain.heights import TerrainMap
+from navsym.models.terrain.track import Hypotheses, Track
 from navsym.text.keys import only_keys
 from navsym.text.names import shown
 from navsym.text.readers_maps import local_frame, read_map, read_track

@@ -27,8 +27,8 @@ from navsym.methods.terrain.search import search_full, search_position
 from navsym.methods.terrain.sequential import search_sequential
 from navsym.methods.terrain.table import PRINTED, Record, table, verdicts
 from navsym.methods.terrain.table import as_table as as_table  # what `simulate` shows beside the document
-from navsym.models.terrain import TerrainMap
-from navsym.models.terrain_track import Hypotheses, Track
+from navsym.models.terrain.heights import TerrainMap
+from navsym.models.terrain.track import Hypotheses, Track
 from navsym.text.datasets import dataset, local_copy
 
 Array = NDArray[np.float64]

@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navsym.errors import DomainError, MissingEngineError
-from navsym.models.terrain import ON_MAP, TerrainMap
-from navsym.models.terrain_track import Track
+from navsym.models.terrain.heights import ON_MAP, TerrainMap
+from navsym.models.terrain.track import Track
 from navsym.text.readers_maps import local_frame, read_map
 
 Array = NDArray[np.float64]

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from navsym.errors import EmptyError
 from navsym.methods.terrain.search import Prepared, Search, criteria, lowest, prepare
-from navsym.models.terrain import TerrainMap
-from navsym.models.terrain_track import Hypotheses, Track
+from navsym.models.terrain.heights import TerrainMap
+from navsym.models.terrain.track import Hypotheses, Track
 
 Array = NDArray[np.float64]
 

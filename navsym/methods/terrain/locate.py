@@ -18,8 +18,8 @@ from navsym.methods.terrain.configuration import read_search
 from navsym.methods.terrain.refine import refine
 from navsym.methods.terrain.search import Search, criteria, prepare, search_full, search_position
 from navsym.methods.terrain.sequential import search_sequential
-from navsym.models.terrain import ON_MAP, TerrainMap
-from navsym.models.terrain_track import Hypotheses, Track
+from navsym.models.terrain.heights import ON_MAP, TerrainMap
+from navsym.models.terrain.track import Hypotheses, Track
 
 Array = NDArray[np.float64]
 

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from navsym.errors import NotEstimableError
 from navsym.methods.terrain.search import need
-from navsym.models.terrain import ON_MAP, TerrainMap, demand_heights
-from navsym.models.terrain_track import Track
+from navsym.models.terrain.heights import ON_MAP, TerrainMap, demand_heights
+from navsym.models.terrain.track import Track
 
 Array = NDArray[np.float64]
 

@@ -18,13 +18,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navsym.errors import NotEstimableError, TooLargeError
-from navsym.models.terrain import TerrainMap, demand_heights
-from navsym.models.terrain_track import MOST_HYPOTHESES, Hypotheses, Track
-from navsym.numeric.search import TOGETHER, padded, patch_rows, slab
-from navsym.numeric.search_bounded import BoundedResult, search_bounded, search_one_velocity
-from navsym.numeric.search_lattice import fits, lattice, rounded
-from navsym.numeric.search_margins import DOUBLE, PLAIN, parts_about_the_mean
-from navsym.numeric.search_masked import dense_masked, profile
+from navsym.models.terrain.heights import TerrainMap, demand_heights
+from navsym.models.terrain.track import MOST_HYPOTHESES, Hypotheses, Track
+from navsym.numeric.search.bounded import BoundedResult, search_bounded, search_one_velocity
+from navsym.numeric.search.criteria import TOGETHER, padded, patch_rows, slab
+from navsym.numeric.search.lattice import fits, lattice, rounded
+from navsym.numeric.search.margins import DOUBLE, PLAIN, parts_about_the_mean
+from navsym.numeric.search.masked import dense_masked, profile
 
 Array = NDArray[np.float64]
 Index = tuple[int, int, int, int]
@@ -54,12 +54,12 @@ class Prepared:
 
     @property
     def case(self) -> tuple[Array, Array, Array, Array, Array, Array]:
-        """What the compiled loops take: see :mod:`navsym.numeric.search_sample`."""
+        """What the compiled loops take: see :mod:`navsym.numeric.search.sample`."""
         return self.H, self.bx, self.by, self.z, self.wx, self.wy
 
     @property
     def on_lattice(self) -> bool:
-        """Whether :mod:`navsym.numeric.search_lattice` applies: positions only, the step is the cell."""
+        """Whether :mod:`navsym.numeric.search.lattice` applies: positions only, the step is the cell."""
         alike = self.counts[2:] == (1, 1) and self.steps == (1.0, 1.0) and self.plain
         return alike and fits(self.H, self.bx, self.by, self.counts[:2], padded(self.counts[0]))
 

@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 
 from navsym.methods.terrain.centre import Information, demand_estimable, information, slopes
 from navsym.methods.terrain.search import Search, criteria, lowest, need, prepare
-from navsym.models.terrain import TerrainMap
-from navsym.models.terrain_track import Hypotheses, Track
-from navsym.numeric.search_masked import velocity_criteria
+from navsym.models.terrain.heights import TerrainMap
+from navsym.models.terrain.track import Hypotheses, Track
+from navsym.numeric.search.masked import velocity_criteria
 
 Array = NDArray[np.float64]
 

@@ -33,8 +33,8 @@ from navsym.methods.trajectory.tracks import (
     noise_of,
 )
 from navsym.numeric.arrays import Array
-from navsym.numeric.exchange_kernels import simplex, spread_rows
-from navsym.numeric.trajectory_tracks import DOUBTED, backward, forward
+from navsym.numeric.exchange.kernels import simplex, spread_rows
+from navsym.numeric.trajectory.tracks import DOUBTED, backward, forward
 
 Method = Literal["differences", "window", "filter", "smoother", "guaranteed"]
 METHODS = ("differences", "window", "filter", "smoother", "guaranteed")

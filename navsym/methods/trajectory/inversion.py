@@ -19,10 +19,10 @@ from typing import Literal
 import numpy as np
 
 from navsym.errors import DomainError, TooLargeError
-from navsym.models.earth_motion import check_order, pascal_rows, power_rows
+from navsym.models.earth.motion import check_order, pascal_rows, power_rows
 from navsym.numeric.arrays import Array, named
-from navsym.numeric.trajectory_bank import tune_by_windows
-from navsym.numeric.trajectory_kernels import (
+from navsym.numeric.trajectory.bank import tune_by_windows
+from navsym.numeric.trajectory.kernels import (
     CORRECTED,
     LIKELIHOOD,
     PREDICTED,

@@ -16,7 +16,7 @@ from fractions import Fraction
 import flint
 
 from navsym.errors import DomainError, TooLargeError
-from navsym.models.earth_motion import pascal_rows
+from navsym.models.earth.motion import pascal_rows
 
 BITS = 160
 LARGEST_BOXES = 20000

@@ -16,9 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navsym.errors import DomainError, EmptyError, ShapeError
-from navsym.models.earth_geodesy import cartesian, local_axes
+from navsym.models.earth.geodesy import cartesian, local_axes
 from navsym.numeric.arrays import Array, frozen, named
-from navsym.numeric.trajectory_tracks import misfit
+from navsym.numeric.trajectory.tracks import misfit
 
 Rows = NDArray[np.int64]
 Mask = NDArray[np.bool_]

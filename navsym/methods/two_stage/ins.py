@@ -17,7 +17,7 @@ import numpy as np
 import sympy as sp
 
 from navsym.methods.two_stage.flight import EARTH_RADIUS, SCHULER_RATE, Flight
-from navsym.models.inertial import (
+from navsym.models.inertial.errors import (
     EARTH,
     FULL,
     JOINT,

@@ -1,0 +1,194 @@
+"""Test vectors: points of the domain with rigorous enclosures, widened by the derived rounding error.
+
+Points are edges, places near zero, logarithmic and random ones, the same for the same function name.
+Every enclosure is a ball around the exact formula of the claim (not of the graph), so that a wrong
+graph, a wrong printer and a wrong compiler all fall outside.
+"""
+
+from __future__ import annotations
+
+import math
+import random
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from flint import arb
+
+from navsym.export.accuracy.rounding import BITS, Arithmetic, analyse, with_library
+from navsym.export.parts import ExportedFunction, Input, Piece
+from navsym.proof.balls import Tape, enclose, precision, tape
+
+OK, DOMAIN, NOT_FINITE = 0, 1, 2
+LARGEST = {"double": 2.0**1000, "float": 2.0**120}
+
+
+@dataclass(frozen=True, slots=True)
+class Vector:
+    """One call: arguments, expected status, and for status 0 the bounds of every result.
+
+    nearest : the double nearest to the exact value
+    """
+
+    inputs: tuple[float, ...]
+    status: int
+    lower: tuple[float, ...] = ()
+    upper: tuple[float, ...] = ()
+    nearest: tuple[float, ...] = ()
+
+
+def vectors(function: ExportedFunction, count: int = 48, *, library: int = 1, widen: int = 1) -> list[Vector]:
+    """About ``count`` vectors inside the domain, and those that must be refused.
+
+    library : accuracy of the target's sin, cos, exp, … in ulps
+    widen   : factor on the rounding error, for code whose order of operations is not ours
+    """
+    arithmetic = with_library(function.arithmetic, library)
+    found: list[Vector] = []
+    for point in points(function, 3 * count):
+        vector = vector_at(function, point, arithmetic, widen)
+        if vector is not None:
+            found.append(vector)
+        if len(found) >= count:
+            break
+    return [*found, *refused(function)]
+
+
+def vector_at(
+    function: ExportedFunction, point: Sequence[float], arithmetic: Arithmetic, widen: int = 1
+) -> Vector | None:
+    """Enclosures at one point; None where the formula is undefined, overflows or has no error bound."""
+    piece = piece_at(function, point)
+    with precision(BITS):
+        balls = [arb(x) for x in point]
+        errors = [r for r in roots(piece, balls, arithmetic)]
+        exact = exact_values(piece, balls)
+        ends = [ends_of(value, error * widen) for value, error in zip(exact, errors, strict=True)]
+    if any(end is None for end in ends):
+        return None
+    lower, upper, nearest = zip(*(end for end in ends if end is not None), strict=True)
+    if max(map(abs, (*lower, *upper))) > LARGEST[function.arithmetic.name]:
+        return None
+    return Vector(tuple(point), OK, lower, upper, nearest)
+
+
+def exact_values(piece: Piece, balls: Sequence[arb]) -> list[arb]:
+    """The formulas of the claim at a point, named values first."""
+    named = dict(zip(piece.graph.inputs, balls, strict=True))
+    lets, formulas = tapes(piece)
+    for (name, _, _), flattened in zip(piece.lets, lets, strict=True):
+        named[name] = enclose(flattened, named, BITS)
+    return [enclose(t, named, BITS) for t in formulas]
+
+
+_TAPES: dict[int, tuple[Piece, list[Tape], list[Tape]]] = {}
+
+
+def tapes(piece: Piece) -> tuple[list[Tape], list[Tape]]:
+    """Flattened named values and formulas of a piece, made once."""
+    known = _TAPES.get(id(piece))
+    if known is None or known[0] is not piece:
+        lets, formulas = [tape(f) for _, f, _ in piece.lets], [tape(f) for f in piece.formulas]
+        known = _TAPES[id(piece)] = (piece, lets, formulas)
+    return known[1], known[2]
+
+
+def roots(piece: Piece, balls: Sequence[arb], arithmetic: Arithmetic) -> list[arb]:
+    done = analyse(piece.graph, balls, arithmetic, piece.literals)
+    return [done[root].absolute for root in piece.graph.roots]
+
+
+def ends_of(value: arb, error: arb) -> tuple[float, float, float] | None:
+    """(lower, upper, nearest) as doubles, rounded outwards."""
+    if not (value.is_finite() and error.is_finite()):
+        return None
+    wide = value + arb(0, error)
+    return below(wide.lower()), -below((-wide).lower()), float(value.mid())
+
+
+def below(x: arb) -> float:
+    """A double not above an exact ball."""
+    y = float(x)
+    return y if arb(y) <= x else math.nextafter(y, -math.inf)
+
+
+def piece_at(function: ExportedFunction, point: Sequence[float]) -> Piece:
+    """The piece that the code takes at a point."""
+    if function.switch is not None:
+        for piece in function.pieces:
+            if piece.limit is None or point[function.switch] <= piece.limit:
+                return piece
+    return function.pieces[-1]
+
+
+# -- points ---------------------------------------
+
+
+def points(function: ExportedFunction, count: int) -> Iterator[tuple[float, ...]]:
+    """Points of the domain: every edge first, then near-singular and random ones."""
+    generator = random.Random(function.name)
+    if not function.inputs:
+        yield ()
+        return
+    edges = [edge_values(function, k) for k in range(len(function.inputs))]
+    middle = [(i.test_low + i.test_high) / 2 for i in function.inputs]
+    for k, values in enumerate(edges):
+        for value in values[: max(4, count // (4 * len(edges)))]:
+            others = (
+                [sample(i, generator) for i in function.inputs] if generator.random() < 0.7 else list(middle)
+            )
+            others[k] = value
+            yield cast(function, others)
+    for _ in range(count):
+        yield cast(function, [sample(i, generator) for i in function.inputs])
+
+
+def edge_values(function: ExportedFunction, k: int) -> list[float]:
+    """Ends of the range, the limits of the regimes and their neighbours, and numbers near zero."""
+    i = function.inputs[k]
+    step = next_float(function)
+    values = [i.test_low, i.test_high]
+    if function.switch == k:
+        limits = [piece.limit for piece in function.pieces if piece.limit is not None]
+        values += [x for limit in limits for x in (limit, step(limit, math.inf), step(limit, -math.inf))]
+    values += [1e-7, 1e-3, 1e-9, 0.0, -1e-5, 1.0, -1.0]
+    return [x for x in values if i.test_low <= x <= i.test_high]
+
+
+def next_float(function: ExportedFunction):  # type: ignore[no-untyped-def]
+    if function.arithmetic.name == "double":
+        return math.nextafter
+    return lambda x, to: float(np.nextafter(np.float32(x), np.float32(to)))
+
+
+def sample(i: Input, generator: random.Random) -> float:
+    """Uniform, or logarithmic towards the end that is nearest to zero."""
+    if i.test_low > 0 and generator.random() < 0.4:
+        return math.exp(generator.uniform(math.log(max(i.test_low, 1e-6)), math.log(i.test_high)))
+    if i.test_low < 0 < i.test_high and generator.random() < 0.3:
+        sign = generator.choice((-1, 1))
+        return sign * min(-i.test_low, i.test_high) * 10 ** generator.uniform(-6, 0)
+    return generator.uniform(i.test_low, i.test_high)
+
+
+def cast(function: ExportedFunction, point: Sequence[float]) -> tuple[float, ...]:
+    """Numbers of the type, inside the accepted range."""
+    if function.arithmetic.name == "float":
+        point = [float(np.float32(x)) for x in point]
+    return tuple(min(max(x, i.test_low), i.test_high) for x, i in zip(point, function.inputs, strict=True))
+
+
+def refused(function: ExportedFunction) -> list[Vector]:
+    """Calls that must come back with a status: NaN, infinities, and just outside the domain."""
+    found = []
+    middle = [(i.test_low + i.test_high) / 2 for i in function.inputs]
+    step = next_float(function)
+    for k, i in enumerate(function.inputs):
+        outside = [math.nan, math.inf, -math.inf]
+        outside += [step(i.low, -math.inf)] if math.isfinite(i.low) else []
+        outside += [step(i.high, math.inf)] if math.isfinite(i.high) else []
+        for value in outside:
+            point = list(cast(function, middle))
+            point[k] = value
+            found.append(Vector(tuple(point), DOMAIN))
+    return found

@@ -1,0 +1,1 @@
+"""One file for each language, and what the languages share."""

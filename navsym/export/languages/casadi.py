@@ -1,0 +1,94 @@
+"""casadi: the independent second source. Its own translator and its own C generator, no printer of ours.
+
+The order of its operations is not ours, so the rounding error in its vectors is multiplied by a stated factor
+(``targets.py``); a formula that needs a helper of ours against cancellation has no casadi form and is left out,
+as is a constant.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import sympy as sp
+
+from navsym.export.accuracy.vectors import Vector
+from navsym.export.forms import plain
+from navsym.export.languages.printing import helpers_used
+from navsym.export.languages.python import ENDING, vectors_json
+from navsym.export.parts import ExportedFunction
+from navsym.numeric.casadi_functions import casadi_function
+
+TEST = '''# {license}
+"""Evaluates every casadi function on its vectors; the exit status is the number that failed."""
+
+import json
+import pathlib
+import sys
+
+import casadi
+
+
+def main():
+    folder = pathlib.Path(__file__).parent
+    tests = json.loads((folder / "vectors.json").read_text(encoding="utf-8"))
+    failed = 0
+    for name, rows in tests.items():
+        limits = json.loads((folder / "pieces.json").read_text(encoding="utf-8"))[name]
+        functions = [casadi.Function.deserialize((folder / p["file"]).read_text()) for p in limits["pieces"]]
+        wrong, worst = 0, 0.0
+        for row in rows:
+            if row["status"]:
+                continue
+            place = 0
+            for k, piece in enumerate(limits["pieces"]):
+                place = k
+                if piece["limit"] is None or row["in"][limits["switch"]] <= piece["limit"]:
+                    break
+            values = [float(x) for x in functions[place](*row["in"]).elements()]
+            for value, low, high, nearest in zip(values, row["lower"], row["upper"], row["nearest"], strict=True):
+                wrong += not low <= value <= high
+                size = abs(nearest) * 2.0**-52
+                if size and high - nearest < 1000.0 * size:
+                    worst = max(worst, abs(value - nearest) / size)
+'''
+
+
+def files(
+    functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str
+) -> dict[str, str]:
+    """Serialised functions, their generated C, vectors and test."""
+    found: dict[str, str] = {}
+    index = {}
+    functions = [f for f in functions if f.inputs and not helpers_used(f)]
+    tests = {f.name: [v for v in tests[f.name] if v.status == 0] for f in functions}
+    for function in functions:
+        pieces = []
+        for place, piece in enumerate(function.pieces):
+            name = f"f{place}_{function.name.strip('_')}"[:60].replace("__", "_").rstrip("_")
+            made = casadi_function(
+                name,
+                [i.symbol for i in function.inputs],
+                sp.Matrix([plain(form) for form in piece.forms]),
+                [(symbol, plain(form)) for symbol, _, form in piece.lets],
+            )
+            found[f"{name}.casadi"] = made.serialize()
+            found[f"{name}.c"] = generated(made, name)
+            pieces.append({"file": f"{name}.casadi", "limit": piece.limit})
+        index[function.name] = {"switch": function.switch, "pieces": pieces}
+    return found | {
+        "pieces.json": json.dumps(index, indent=2) + "\n",
+        "vectors.json": vectors_json(functions, tests),
+        "test_vectors.py": (TEST + ENDING).format(license=license_),
+    }
+
+
+def generated(function: Any, name: str) -> str:
+    """The C that casadi generates; it writes into the working directory and nowhere else."""
+    with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
+        function.generate(f"{name}.c")
+        return Path(f"{name}.c").read_text(encoding="utf-8")

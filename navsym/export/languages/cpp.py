@@ -1,0 +1,225 @@
+"""C++17: one header-only file; results come back in a structure with their status."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from navsym.export.accuracy.vectors import Vector
+from navsym.export.languages.c import HELPERS, safe_comment
+from navsym.export.languages.printing import Spelling, assignments, calls, code_names, helpers_used, summary
+from navsym.export.languages.programs import cpp_program, cpp_through_state, through_accessors
+from navsym.export.parts import Argument, ExportedFunction, Output
+
+
+def spelling(real: str) -> Spelling:
+    """std:: functions are overloaded for float; literals carry the suffix."""
+    table = calls(prefix="std::") | {"abs": "std::fabs({0})"}
+    nan, inf = (f"static_cast<{real}>({word})" for word in ("NAN", "INFINITY"))
+    return Spelling(table, nan, inf, "f" if real == "float" else "")
+
+
+def files(
+    functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str
+) -> dict[str, str]:
+    """The header, the test program with its vectors, and the build file."""
+    return {
+        "navsym_functions.hpp": header(functions, license_),
+        "test_main.cpp": program(functions, tests, license_),
+        "CMakeLists.txt": CMAKE.format(license=license_),
+    }
+
+
+def header(functions: Sequence[ExportedFunction], license_: str) -> str:
+    real = functions[0].arithmetic.name
+    s = spelling(real)
+    used = {name for function in functions for name in helpers_used(function)}
+    helpers = [
+        HELPERS[name](real, s).replace("static", "inline", 1)
+        for name in ("sinc", "x_minus_sin")
+        if name in used
+    ]
+    return "\n".join(
+        [
+            f"// {license_}",
+            "#ifndef NAVSYM_FUNCTIONS_HPP",
+            "#define NAVSYM_FUNCTIONS_HPP",
+            "",
+            "#include <array>",
+            "#include <cmath>",
+            "#include <limits>",
+            "",
+            "namespace navsym {",
+            "",
+            "enum class Status { ok = 0, domain = 1, not_finite = 2 };",
+            "",
+            *helpers,
+            "",
+            *(text for f in functions for text in (source(f, s), *cpp_program(f))),
+            "}  // namespace navsym",
+            "",
+            "#endif",
+            "",
+        ]
+    )
+
+
+def source(function: ExportedFunction, s: Spelling) -> str:
+    """Result structure and function."""
+    real, names = function.arithmetic.name, code_names(function)
+    targets = [f"result.{o.name}{f'[{e}]' if o.shape else ''}" for o in function.outputs for e in range(o.size)]
+    lines = [f"struct {function.name}_result {{", "    Status status = Status::not_finite;"]
+    lines += [f"    {member(o, real)};" for o in function.outputs] + ["};", ""]
+    lines += ["/**", *(f" * {safe_comment(line)}" for line in summary(function)), " */"]
+    arguments = ", ".join(parameter(a, real) for a in function.called_with)
+    lines += [f"inline {function.name}_result {function.name}({arguments}) noexcept"]
+    lines += ["{", f"    {function.name}_result result;", *domain_test(function, names, s)]
+    lines += regimes(function, names, targets, s)
+    finite = "\n        && ".join(f"std::isfinite({t})" for t in targets)
+    lines += [f"    if ({finite}) {{", "        result.status = Status::ok;", "    }", "    return result;", "}"]
+    return "\n".join([*lines, ""])
+
+
+def domain_test(function: ExportedFunction, names: list[str], s: Spelling) -> list[str]:
+    """Comparisons that NaN fails."""
+    largest = f"std::numeric_limits<{function.arithmetic.name}>::max()"
+    tests = [
+        f"({n} >= {bound(i.low, s, largest)}) && ({n} <= {bound(i.high, s, largest)})"
+        for i, n in zip(function.inputs, names, strict=True)
+    ]
+    if not tests:
+        return []
+    joined = "\n          && ".join(tests)
+    return [f"    if (!({joined})) {{", "        result.status = Status::domain;", "        return result;", "    }"]
+
+
+def regimes(function: ExportedFunction, names: list[str], targets: list[str], s: Spelling) -> list[str]:
+    """The formulas of every regime."""
+    lines = []
+    for place, piece in enumerate(function.pieces):
+        temporaries, results = assignments(piece, names, s)
+        test = "" if piece.limit is None else f"if ({names[function.switch or 0]} <= {s.number(piece.limit)}) "
+        lines.append(f"    {'else ' if place else ''}{test}{{  // {piece.source.claim}")
+        lines += [f"        const {function.arithmetic.name} {name} = {text};" for name, text in temporaries]
+        lines += [f"        {target} = {text};" for target, text in zip(targets, results, strict=True)]
+        lines.append("    }")
+    return lines
+
+
+def parameter(argument: Argument, real: str) -> str:
+    kind = f"const std::array<{real}, {argument.size}>& " if argument.size else f"{real} "
+    return f"{kind}{argument.name}"
+
+
+def member(output: Output, real: str) -> str:
+    return (
+        f"std::array<{real}, {output.size}> {output.name}{{}}"
+        if output.shape
+        else f"{real} {output.name} = 0"
+    )
+
+
+def bound(x: float, s: Spelling, largest: str) -> str:
+    if math.isinf(x):
+        return largest if x > 0 else f"-{largest}"
+    return s.number(x)
+
+
+TEST = """static int test_{name}()
+{{
+    static const {real} in[] = {{{inputs}}};
+    static const int status[] = {{{status}}};
+    static const double lower[] = {{{lower}}};
+    static const double upper[] = {{{upper}}};
+    static const double nearest[] = {{{nearest}}};
+    int wrong = 0;
+    double worst = 0.0;
+    for (int k = 0; k < {count}; k++) {{
+{call}
+        wrong += (static_cast<int>(result.status) != status[k]) ? 1 : 0;
+        if (result.status != navsym::Status::ok || status[k] != 0) {{
+            continue;
+        }}
+        const double values[] = {{{values}}};
+        for (int j = 0; j < {size}; j++) {{
+            const int at = (k * {size}) + j;
+            wrong += (values[j] >= lower[at] && values[j] <= upper[at]) ? 0 : 1;
+            const double size = std::fabs(nearest[at]) * {epsilon};
+            if (size > 0.0 && upper[at] - nearest[at] < 1000.0 * size) {{
+                worst = std::fmax(worst, std::fabs(values[j] - nearest[at]) / size);
+            }}
+        }}
+    }}
+    std::printf("{name} vectors %d wrong %d worst %.3g\\n", {count}, wrong, worst);
+    return wrong > 0 ? 1 : 0;
+}}
+"""
+
+
+def program(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str) -> str:
+    """The program that ctest runs."""
+    lines = [
+        f"// {license_}",
+        '#include "navsym_functions.hpp"',
+        "",
+        "#include <cmath>",
+        "#include <cstdio>",
+        "",
+    ]
+    lines += [test_function(f, tests[f.name]) for f in functions]
+    lines += ["int main()", "{", "    int failed = 0;"]
+    lines += [f"    failed += test_{f.name}();" for f in functions]
+    return "\n".join([*lines, "    return failed;", "}", ""])
+
+
+def test_function(function: ExportedFunction, found: list[Vector]) -> str:
+    s, n, real = spelling(function.arithmetic.name), len(function.inputs), function.arithmetic.name
+    d = spelling("double")
+
+    def wide(part: str) -> str:
+        return rows([d.number(x) for v in found for x in (getattr(v, part) or (0.0,) * function.size)])
+
+    accessors = through_accessors(function)
+    cast = "static_cast<double>({})" if real == "float" else "{}"
+    template = TEST if n else TEST.replace("    static const {real} in[] = {{{inputs}}};\n", "")
+    return template.format(
+        name=function.name, real=real, size=function.size, count=len(found),
+        inputs=rows([s.number(x) for v in found for x in v.inputs] or [s.number(0.0)]),
+        status=", ".join(str(v.status) for v in found),
+        lower=wide("lower"), upper=wide("upper"), nearest=wide("nearest"),
+        call=cpp_through_state(function, real) if function.state else cpp_call(function, real),
+        values=", ".join(cast.format(a) for a in accessors),
+        epsilon="2.220446049250313e-16" if real == "double" else "1.1920928955078125e-07",
+    )  # fmt: skip
+
+
+def cpp_call(function: ExportedFunction, real: str) -> str:
+    """The call of one vector; arrays are filled from the row."""
+    n = len(function.inputs)
+    words = []
+    for a in function.called_with:
+        entries = [f"in[(k * {n}) + {a.first + e}]" for e in range(a.size or 1)]
+        words.append(f"std::array<{real}, {a.size}>{{{', '.join(entries)}}}" if a.size else entries[0])
+    return f"        const auto result = navsym::{function.name}({', '.join(words)});"
+
+
+def rows(numbers: list[str]) -> str:
+    return ",\n        ".join(", ".join(numbers[k : k + 4]) for k in range(0, len(numbers), 4))
+
+
+CMAKE = """# {license}
+cmake_minimum_required(VERSION 3.10)
+project(navsym_export_cpp CXX)
+
+set(CMAKE_CXX_STANDARD 17)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+
+enable_testing()
+add_executable(test_main test_main.cpp)
+if(CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
+    target_compile_options(test_main PRIVATE
+        -Wall -Wextra -Wconversion -Wdouble-promotion -pedantic -Werror)
+endif()
+add_test(NAME vectors COMMAND test_main)
+"""

@@ -1,0 +1,142 @@
+"""JavaScript (ECMAScript module): every function returns ``{status, …results}``."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from navsym.export.accuracy.vectors import Vector
+from navsym.export.languages.printing import (
+    Spelling,
+    assignments,
+    calls,
+    code_names,
+    helpers_used,
+    result_fields,
+    series,
+    summary,
+)
+from navsym.export.languages.programs import calls_table, js_program
+from navsym.export.languages.python import vectors_json
+from navsym.export.parts import ExportedFunction
+
+SPECIAL = {"abs": "Math.abs({0})", "max": "Math.max({0}, {1})", "min": "Math.min({0}, {1})"}
+SPELLING = Spelling(calls(prefix="Math.", **SPECIAL), "NaN", "Infinity")
+
+TEST = """// {license}
+// Runs every function on its vectors; the exit status is the number of functions that failed.
+import {{ readFileSync }} from "node:fs";
+import * as functions from "./navsym_functions.mjs";
+
+const tests = JSON.parse(readFileSync(new URL("./vectors.json", import.meta.url), "utf8"));
+const number = (x) => (x === "inf" ? Infinity : x === "-inf" ? -Infinity : x === "nan" ? NaN : x);
+const calls = {calls};
+
+// Numbers of a row as arguments; a step runs through its state, which must follow its results.
+function call(name, row) {{
+  const given = calls[name].arguments.map(([first, size]) => (size ? row.slice(first, first + size) : row[first]));
+  const state = calls[name].state;
+  if (!state) {{ return functions[name](...given); }}
+  const program = new functions[state.program]();
+  const others = given.filter((_, k) => !state.fields.some((f) => f.argument === k));
+  for (const f of state.fields) {{ program[f.name] = f.argument < 0 ? 0 : given[f.argument]; }}
+  const before = JSON.stringify(program);
+  const {{ status, ...results }} = program.step(...others);
+  if (status !== 0 && JSON.stringify(program) !== before) {{ return {{ status: -1 }}; }}
+  for (const f of state.fields) {{ if (status === 0 && f.output) {{ results[f.output] = program[f.name]; }} }}
+  return {{ status, ...results }};
+}}
+
+let failed = 0;
+for (const [name, rows] of Object.entries(tests)) {{
+  let wrong = 0;
+  let worst = 0;
+  for (const row of rows) {{
+    const {{ status, ...results }} = call(name, row.in.map(number));
+    if (status !== row.status) {{ wrong += 1; }}
+    if (status !== 0 || row.status !== 0) {{ continue; }}
+    Object.values(results).flat().forEach((value, k) => {{
+      if (!(value >= row.lower[k] && value <= row.upper[k])) {{ wrong += 1; }}
+      const size = Math.abs(row.nearest[k]) * Number.EPSILON;
+      if (size > 0 && row.upper[k] - row.nearest[k] < 1000 * size) {{
+        worst = Math.max(worst, Math.abs(value - row.nearest[k]) / size);
+      }}
+    }});
+  }}
+  console.log(`${{name}} vectors ${{rows.length}} wrong ${{wrong}} worst ${{worst.toPrecision(3)}}`);
+  failed += wrong > 0 ? 1 : 0;
+}}
+process.exit(failed);
+"""
+
+
+def files(
+    functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str
+) -> dict[str, str]:
+    """The module, its vectors and the program that runs them."""
+    head = [
+        f"// {license_}",
+        "// Status: 0 results are valid, 1 argument outside the proved domain, 2 not finite.",
+        "",
+    ]
+    used = {name for function in functions for name in helpers_used(function)}
+    helpers = [HELPERS[name]() for name in ("sinc", "x_minus_sin") if name in used]
+    return {
+        "navsym_functions.mjs": "\n".join(
+            [*head, *helpers, *(text for f in functions for text in (source(f), *js_program(f)))]
+        ),
+        "test_vectors.mjs": TEST.format(license=license_, calls=calls_table(functions)),
+        "vectors.json": vectors_json(functions, tests),
+    }
+
+
+def source(function: ExportedFunction) -> str:
+    """One exported function with its comment."""
+    names = code_names(function)
+    lines = ["/**", *(f" * {line.replace('*/', '* /')}" for line in summary(function)), " */"]
+    arguments = ", ".join(a.name for a in function.called_with)
+    lines.append(f"export function {function.name}({arguments}) {{")
+    tests = [f"{n} >= {bound(i.low)} && {n} <= {bound(i.high)}" for i, n in zip(function.inputs, names, strict=True)]
+    if tests:
+        lines.append(f"  if (!({' && '.join(tests)})) {{ return {{ status: 1 }}; }}")
+    lines.append(f"  let {', '.join(f'r{k}' for k in range(function.size))};")
+    for place, piece in enumerate(function.pieces):
+        temporaries, results = assignments(piece, names, SPELLING)
+        test = "" if piece.limit is None else f"if ({names[function.switch or 0]} <= {piece.limit!r}) "
+        lines.append(f"  {'else ' if place else ''}{test}{{ // {piece.source.claim}")
+        lines += [f"    const {name} = {text};" for name, text in temporaries]
+        lines += [f"    r{k} = {text};" for k, text in enumerate(results)]
+        lines.append("  }")
+    finite = " && ".join(f"Number.isFinite(r{k})" for k in range(function.size))
+    lines += [
+        f"  if (!({finite})) {{ return {{ status: 2 }}; }}",
+        f"  return {{ status: 0, {result_fields(function, 'r{}')} }};",
+        "}",
+    ]
+    return "\n".join([*lines, ""])
+
+
+def bound(x: float) -> str:
+    if x in (float("inf"), float("-inf")):
+        return "Number.MAX_VALUE" if x > 0 else "-Number.MAX_VALUE"
+    return SPELLING.number(x)
+
+
+def sinc_helper() -> str:
+    switch, nested = series("sinc", SPELLING)
+    return f"""function navsym_sinc(x) {{
+  const y = x * x;
+  return Math.abs(x) < {switch} ? {nested} : Math.sin(x) / x;
+}}
+"""
+
+
+def x_minus_sin_helper() -> str:
+    switch, nested = series("x_minus_sin", SPELLING)
+    return f"""function navsym_x_minus_sin(x) {{
+  const y = x * x;
+  return Math.abs(x) < {switch} ? ((x * y) / 6.0) * {nested} : x - Math.sin(x);
+}}
+"""
+
+
+HELPERS = {"sinc": sinc_helper, "x_minus_sin": x_minus_sin_helper}

@@ -1,0 +1,232 @@
+"""Python with NumPy: one module, each function over arrays of one shape (numbers are arrays of none)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from navsym.export.accuracy.vectors import Vector
+from navsym.export.languages.printing import Spelling, assignments, calls, code_names, series, summary
+from navsym.export.languages.programs import calls_table, python_program
+from navsym.export.parts import ExportedFunction
+
+SPECIAL = {"abs": "np.abs({0})", "max": "np.maximum({0}, {1})", "min": "np.minimum({0}, {1})"}
+SPECIAL |= {"atan2": "np.arctan2({0}, {1})", "pow": "np.power({0}, {1})"}
+SPECIAL |= {name: f"np.arc{name[1:]}({{0}})" for name in ("asin", "acos", "atan")}
+SPELLING = Spelling(calls(prefix="np.", **SPECIAL), "np.nan", "np.inf")
+
+HEAD = '''# {license}
+"""Functions exported by navsym, over NumPy arrays. Outside the proved domain they raise ValueError."""
+
+import numpy as np
+
+
+def _checked(name, values, low, high, size=None):
+    values = np.asarray(values, dtype=np.{real})
+    if size is not None and values.shape[-1:] != (size,):
+        raise ValueError(f"{{name}}: expected {{size}} entries in the last axis; got shape {{values.shape}}")
+    if not np.all((values >= low) & (values <= high)):
+        raise ValueError(f"{{name}}: expected numbers from {{low!r}} to {{high!r}}; got others")
+    return values
+
+
+def _finite(values):
+    if not all(np.all(np.isfinite(v)) for v in values):
+        raise ArithmeticError("a result would overflow or is undefined here")
+    return values
+
+
+def navsym_sinc(x):
+    y = x * x
+    series = {sinc}
+    safe = np.where(np.abs(x) < {sinc_switch}, 1.0, x)
+    return np.where(np.abs(x) < {sinc_switch}, series, np.sin(x) / safe)
+
+
+def navsym_x_minus_sin(x):
+    y = x * x
+    series = ((x * y) / 6.0) * {difference}
+    return np.where(np.abs(x) < {difference_switch}, series, x - np.sin(x))
+'''
+
+#: How the test programs in Python end.
+ENDING = '''        print(f"{{name}} vectors {{len(rows)}} wrong {{wrong}} worst {{worst:.3g}}")
+        failed += wrong > 0
+    return failed
+
+
+sys.exit(main())
+'''
+TEST = '''# {license}
+"""Runs every function on its vectors; the exit status is the number of functions that failed."""
+
+import json
+import pathlib
+import sys
+
+import numpy as np
+
+import navsym_functions as module
+
+
+def numbers(values):
+    return [float(v) for v in values]
+
+
+CALLS = {calls}
+
+
+def call(name, row):
+    given = [row[first:first + size] if size else row[first] for first, size in CALLS[name]["arguments"]]
+    try:
+        with np.errstate(all="ignore"):
+            results = stepped(name, given) if CALLS[name]["state"] else getattr(module, name)(*given)
+    except ValueError:
+        return 1, []
+    except ArithmeticError:
+        return 2, []
+    results = results if isinstance(results, tuple) else (results,)
+    return 0, [float(x) for r in results for x in np.ravel(r)]
+
+
+def stepped(name, given):
+    """The step through its state, which must follow its results."""
+    state = CALLS[name]["state"]
+    program = object.__new__(getattr(module, state["program"]))
+    for f in state["fields"]:
+        setattr(program, f["name"], 0.0 if f["argument"] < 0 else given[f["argument"]])
+    taken = {{f["argument"] for f in state["fields"]}}
+    results = program.step(*(x for k, x in enumerate(given) if k not in taken))
+    fields = {{f["output"]: getattr(program, f["name"]) for f in state["fields"] if f["output"]}}
+    results = results if isinstance(results, tuple) else (results,)
+    return tuple(fields.get(name, value) for name, value in zip(state["outputs"], results, strict=True))
+
+
+def main():
+    folder = pathlib.Path(__file__).parent
+    tests = json.loads((folder / "vectors.json").read_text(encoding="utf-8"))
+    failed = 0
+    for name, rows in tests.items():
+        wrong, worst = 0, 0.0
+        for row in rows:
+            status, results = call(name, numbers(row["in"]))
+            wrong += status != row["status"]
+            if status or row["status"]:
+                continue
+            ends = zip(results, row["lower"], row["upper"], row["nearest"], strict=True)
+            for value, low, high, nearest in ends:
+                wrong += not low <= value <= high
+                size = abs(nearest) * {epsilon}
+                if size and high - nearest < 1000.0 * size:
+                    worst = max(worst, abs(value - nearest) / size)
+'''
+
+
+def files(
+    functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str
+) -> dict[str, str]:
+    """The module, its vectors and the program that runs them."""
+    real = "float32" if functions[0].arithmetic.name == "float" else "float64"
+    (sinc_switch, sinc), (difference_switch, difference) = (series(n, SPELLING) for n in ("sinc", "x_minus_sin"))
+    head = HEAD.format(
+        license=license_, real=real, sinc=sinc, sinc_switch=sinc_switch, difference=difference,
+        difference_switch=difference_switch,
+    )  # fmt: skip
+    epsilon = "2.0**-52" if real == "float64" else "2.0**-23"
+    return {
+        "navsym_functions.py": "\n\n".join(
+            [head, *(text for f in functions for text in (source(f), *python_program(f)))]
+        ),
+        "test_vectors.py": (TEST + ENDING).format(
+            license=license_, epsilon=epsilon, calls=calls_table(functions, python=True)
+        ),
+        "vectors.json": vectors_json(functions, tests),
+    }
+
+
+def vectors_json(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]]) -> str:
+    """All vectors as JSON; numbers that JSON does not have are strings."""
+    blocks = []
+    for function in functions:
+        rows = ",\n".join(f"    {row_text(v)}" for v in tests[function.name])
+        blocks.append(f'  "{function.name}": [\n{rows}\n  ]')
+    return "{\n" + ",\n".join(blocks) + "\n}\n"
+
+
+def row_text(v: Vector) -> str:
+    def plain(values: Sequence[float]) -> str:
+        shown = (repr(x) if math.isfinite(x) else f'"{x}"' for x in values)
+        return f"[{', '.join(shown)}]"
+
+    parts = ", ".join(f'"{k}": {plain(getattr(v, k))}' for k in ("lower", "upper", "nearest"))
+    return f'{{"in": {plain(v.inputs)}, "status": {v.status}, {parts}}}'
+
+
+def source(function: ExportedFunction) -> str:
+    """One function: arrays in, arrays out, one mask for each regime."""
+    names, arguments = code_names(function, "{0}[..., {1}]"), function.called_with
+    signature = ", ".join(a.name for a in arguments)
+    lines = [f"def {function.name}({signature}):", *docstring(function), *checks(function)]
+    shapes = ", ".join(f"{a.name}.shape{'[:-1]' if a.size else ''}" for a in arguments)
+    shape = f"np.broadcast_shapes({shapes})" if names else "()"
+    kind = "np.float32" if function.arithmetic.name == "float" else "np.float64"
+    lines.append(f"    shape = {shape}")
+    if len(function.pieces) == 1:
+        temporaries, results = assignments(function.pieces[0], names, SPELLING)
+        lines += [f"    {name} = {text}" for name, text in temporaries]
+        lines += [f"    r{k} = {text}" for k, text in enumerate(results)]
+    else:
+        lines += regimes(function, names, kind)
+    return "\n".join([*lines, *returned(function, kind), ""])
+
+
+def docstring(function: ExportedFunction) -> list[str]:
+    text = [line.replace("\\", "/").replace('"""', "'''") for line in summary(function)]
+    title = function.sources[0].title or function.name
+    return [f'    """{title.replace(chr(34) * 3, "")}', "", *(f"    {line}" for line in text), '    """']
+
+
+def checks(function: ExportedFunction) -> list[str]:
+    largest = (
+        "np.finfo(np.float32).max" if function.arithmetic.name == "float" else "np.finfo(np.float64).max"
+    )
+    lines = []
+    for a in function.called_with:
+        entries = function.inputs[a.first : a.first + (a.size or 1)]
+        lows = [repr(i.low) if math.isfinite(i.low) else f"-{largest}" for i in entries]
+        highs = [repr(i.high) if math.isfinite(i.high) else largest for i in entries]
+        low, high = (ends[0] if len(set(ends)) == 1 else f"np.array([{', '.join(ends)}])" for ends in (lows, highs))
+        size = f", {a.size}" if a.size else ""
+        lines.append(f'    {a.name} = _checked("{a.name}", {a.name}, {low}, {high}{size})')
+    return lines
+
+
+def regimes(function: ExportedFunction, names: list[str], kind: str) -> list[str]:
+    """Every regime on the points that belong to it."""
+    assert function.switch is not None, "several pieces need the input that switches"
+    lines = [f"    {n} = np.broadcast_to({n}, shape)" for n in names]
+    lines += [f"    r{k} = np.empty(shape, dtype={kind})" for k in range(function.size)]
+    lines += [f"    every = ({', '.join(names)},)", "    left = np.ones(shape, dtype=bool)"]
+    for piece in function.pieces:
+        temporaries, results = assignments(piece, names, SPELLING)
+        test = "" if piece.limit is None else f" & (every[{function.switch}] <= {piece.limit!r})"
+        lines.append(f"    here = left{test}  # {piece.source.claim}")
+        lines.append(f"    {', '.join(names)}, = (x[here] for x in every)")
+        lines += [f"    {name} = {text}" for name, text in temporaries]
+        lines += [f"    r{k}[here] = {text}" for k, text in enumerate(results)]
+        lines.append("    left = left & ~here")
+    return lines
+
+
+def returned(function: ExportedFunction, kind: str) -> list[str]:
+    parts, k = [], 0
+    for output in function.outputs:
+        entries = [f"np.broadcast_to(np.asarray(r{k + e}, dtype={kind}), shape)" for e in range(output.size)]
+        if output.shape:
+            stacked = f"np.stack([{', '.join(entries)}], axis=-1)"
+            parts.append(stacked if len(output.shape) == 1 else f"{stacked}.reshape(*shape, *{output.shape})")
+        else:
+            parts.append(f"{entries[0]}[()]")
+        k += output.size
+    joined = ", ".join(parts)
+    return [f"    return _finite(({joined},))" + ("[0]" if len(parts) == 1 else "")]

@@ -1,0 +1,140 @@
+"""WebAssembly: the C folder with a runner, and a page that calls the functions in a browser."""
+
+from __future__ import annotations
+
+import base64
+import importlib.util
+import json
+import sys
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from navsym.errors import MissingEngineError
+from navsym.export.accuracy.vectors import Vector
+from navsym.export.languages.c import files as c_files
+from navsym.export.languages.c import output_places
+from navsym.export.languages.printing import bound_text, unit_of
+from navsym.export.parts import ExportedFunction, Piece
+from navsym.export.processes import run
+
+WASI = """# {license}
+\"\"\"Runs the test program that was compiled to WebAssembly (needs wasmtime); its exit status is ours.\"\"\"
+
+import sys
+
+import wasmtime
+
+engine = wasmtime.Engine()
+linker = wasmtime.Linker(engine)
+linker.define_wasi()
+store = wasmtime.Store(engine)
+config = wasmtime.WasiConfig()
+config.argv = ["run"]
+config.inherit_stdout()
+store.set_wasi(config)
+instance = linker.instantiate(store, wasmtime.Module.from_file(engine, sys.argv[1]))
+try:
+    instance.exports(store)["_start"](store)
+except wasmtime.ExitTrap as ended:
+    sys.exit(ended.code)
+"""
+
+FLAGS = ("-target", "wasm32-wasi", "-mexec-model=reactor", "-O2", "-s", "-std=c99", "-ffp-contract=off")
+
+
+def wasm_files(
+    functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str
+) -> dict[str, str]:
+    """The C folder with a runner for its WebAssembly."""
+    return c_files(functions, tests, license_) | {"run_wasi.py": WASI.format(license=license_)}
+
+
+def page_files(
+    functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str
+) -> dict[str, str]:
+    """One self-contained page: the compiled functions, their vectors, bounds and verdicts; no network."""
+    module = base64.b64encode(compiled(functions, tests, license_)).decode("ascii")
+    data = json.dumps([record(f, tests[f.name]) for f in functions], allow_nan=False)
+    text = (Path(__file__).with_name("page.html")).read_text(encoding="utf-8")
+    safe = data.replace("&", "\\u0026").replace("<", "\\u003c").replace(">", "\\u003e")
+    return {"index.html": text.replace("@LICENSE@", license_).replace("@DATA@", safe).replace("@WASM@", module)}
+
+
+def compiled(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str) -> bytes:
+    """The module; raises MissingEngineError without ziglang."""
+    if importlib.util.find_spec("ziglang") is None:
+        raise MissingEngineError("expected ziglang, which compiles to WebAssembly; got none; do: pip install ziglang")
+    with tempfile.TemporaryDirectory(prefix="navsym-wasm-") as folder:
+        for name, text in c_files(functions, tests, license_).items():
+            if not name.startswith("test_"):
+                (Path(folder) / name).write_text(text, encoding="utf-8")
+        (Path(folder) / "calls.c").write_text(calls(functions), encoding="utf-8")
+        sources = ["calls.c", *(f"{f.name}.c" for f in functions)]
+        exports = ["demo_numbers", *(f"demo_{f.name}" for f in functions)]
+        words = [*FLAGS, *sources, *(f"-Wl,--export={name}" for name in exports), "-o", "module.wasm", "-lm"]
+        status, said = run([sys.executable, "-m", "ziglang", "cc", *words], Path(folder))
+        if status != 0:
+            raise MissingEngineError(f"expected a working ziglang; got {said.strip()[-160:]!r}; do install it again")
+        return (Path(folder) / "module.wasm").read_bytes()
+
+
+def calls(functions: Sequence[ExportedFunction]) -> str:
+    """Calls without arguments over one array of numbers: inputs first, results behind them."""
+    real = functions[0].arithmetic.name
+    widest = max(len(f.inputs) + f.size for f in functions)
+    lines = [f'#include "{f.name}.h"' for f in functions]
+    lines += [f"static {real} numbers[{widest}];", f"{real} *demo_numbers(void);", f"{real} *demo_numbers(void)",
+              "{", "    return numbers;", "}"]  # fmt: skip
+    for f in functions:
+        words = [f"{'&' if a.size else ''}numbers[{a.first}]" for a in f.called_with]
+        words += [f"&numbers[{len(f.inputs) + place}]" for place in output_places(f)]
+        lines += [f"int demo_{f.name}(void);", f"int demo_{f.name}(void)", "{",
+                  f"    return (int){f.name}({', '.join(words)});", "}"]  # fmt: skip
+    return "\n".join([*lines, ""])
+
+
+# -- what the page knows ---------------------------------------
+
+
+def record(function: ExportedFunction, tests: Sequence[Vector]) -> dict[str, Any]:
+    """One function as data of the page."""
+    u = 2.0**function.arithmetic.u
+    return {
+        "name": function.name,
+        "real": function.arithmetic.name,
+        "inputs": [
+            {"name": i.symbol.name, "text": i.text, "unit": unit_of(i.unit), "low": i.test_low, "high": i.test_high}
+            for i in function.inputs
+        ],
+        "results": [
+            {"name": f"{o.name}[{k}]" if o.shape else o.name, "unit": unit_of(o.unit)}
+            for o in function.outputs
+            for k in range(o.size)
+        ],
+        "switch": function.switch,
+        "pieces": [piece_record(function, piece, u) for piece in function.pieces],
+        "vectors": [
+            {"in": v.inputs, "lower": v.lower, "upper": v.upper, "nearest": v.nearest} for v in tests if v.status == 0
+        ],
+    }
+
+
+def piece_record(function: ExportedFunction, piece: Piece, u: float) -> dict[str, Any]:
+    """Verdict, formula and bounds of one regime; null where a bound is not finite."""
+
+    def finite(values: Sequence[float], scale: float) -> list[float | None]:
+        return [x * scale * (1 + 2.0**-40) if x < 1e9 else None for x in values]
+
+    return {
+        "limit": piece.limit,
+        "claim": piece.source.claim,
+        "status": piece.source.status,
+        "method": piece.source.method,
+        "where": ", ".join(word for word in (piece.source.paper, piece.source.equation) if word),
+        "formula": list(piece.source.formula),
+        "rounding": bound_text(function, piece),
+        "relative": finite(piece.bound.relative, u),
+        "absolute": finite(piece.bound.absolute, 1.0),
+    }

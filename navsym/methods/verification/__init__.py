@@ -1,0 +1,1 @@
+"""Verdicts on the claims of papers, and when a kept one may be used again."""

@@ -1,0 +1,1 @@
+"""The Earth as an ellipsoid, positions on it, and motion over it."""

@@ -1,0 +1,1 @@
+"""Error equations of an inertial navigation system."""

@@ -1,0 +1,1 @@
+"""Height maps, tracks over them, and what may enter."""

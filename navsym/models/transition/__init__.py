@@ -1,0 +1,1 @@
+"""Transition matrices in closed form."""

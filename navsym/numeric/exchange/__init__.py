@@ -1,0 +1,1 @@
+"""Exchange searches for the guaranteed estimator, in double and in twofold precision."""

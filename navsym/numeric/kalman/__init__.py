@@ -1,0 +1,1 @@
+"""Kalman's two steps, plain and on factors of the covariance."""

@@ -1,0 +1,1 @@
+"""Gaussian mixtures and banks of filters in compiled loops."""

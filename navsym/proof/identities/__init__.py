@@ -1,0 +1,1 @@
+"""Is it equal? Normal form, radicals, logarithms, inverse functions, cases."""

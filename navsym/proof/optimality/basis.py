@@ -1,0 +1,222 @@
+"""A well-conditioned basis for the optimum: sampled in balls, orthonormalised, made double.
+
+The functions of a problem may be as close to dependent as monomials of degree 19 or sines on a
+short interval. Their Gram matrix on Chebyshev points is factorised in balls with as many bits as
+that needs; the orthonormal functions are then safe in double precision.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from flint import arb, arb_mat, fmpq
+from numpy.typing import NDArray
+
+from navsym.errors import NotFiniteError, TooLargeError
+from navsym.numeric.exchange.search import Panels
+from navsym.proof.balls import precision
+from navsym.proof.optimality.enclosure import Panel, Problem, rational
+
+FIRST = 24
+LARGEST = 3072
+MOST_BITS = 6000
+#: Trailing coefficients below this part of the largest: the functions are resolved. Up to ``SHARP`` points a panel
+#: the coefficients are computed in balls and resolved to the second number, beyond the digits of a double.
+RESOLVED, SHARP_RESOLVED = 3e-13, 1e-19
+SHARP = 96
+NODE_BITS = 128
+
+
+class DependentError(Exception):
+    """The functions are dependent as far as ``bits`` can tell: row ``index`` on the rows before it."""
+
+    def __init__(self, index: int, relation: list[arb], bits: int):
+        super().__init__(index)
+        self.index, self.relation, self.bits = index, relation, bits
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Basis:
+    """Orthonormal functions ``q = A H`` with an exact matrix A, and what the search needs.
+
+    transform  : A (m, m), exact entries; A^-1 exists
+    functional : A P as balls
+    scale      : the double number by which ``A P`` was divided for the search
+    panels     : Chebyshev coefficients of q / sigma in double precision
+    """
+
+    transform: arb_mat
+    functional: arb_mat
+    scale: float
+    panels: Panels
+    bits: int
+
+
+@lru_cache(maxsize=16)
+def chebyshev_fractions(count: int) -> tuple[fmpq, ...]:
+    """Chebyshev points of the first kind as exact dyadic fractions of [0, 1]."""
+    with precision(NODE_BITS):
+        cosines = [arb.cos_pi(arb(2 * k + 1) / (2 * count)) for k in range(count)]
+        return tuple((1 + rational(c)) / 2 for c in cosines)
+
+
+def samples(panels: Sequence[Panel], count: int, bits: int) -> arb_mat:
+    """H / sigma at the Chebyshev points of every panel, (panels * count, m)."""
+    fractions = chebyshev_fractions(count)
+    rows: list[list[arb]] = []
+    with precision(bits):
+        for panel in panels:
+            sigma = panel.bound()
+            rows += [[h / sigma for h in panel.rows(arb(v))] for v in fractions]
+            if not all(h.is_finite() for row in rows[-count:] for h in row):
+                raise NotFiniteError(
+                    f"regressors: expected functions that are finite on the interval; got {panel.functions} between "
+                    f"{panel.start} and {panel.end}; change the interval"
+                )
+        return arb_mat(rows)
+
+
+def cholesky(gram: arb_mat, bits: int) -> list[list[arb]]:
+    """Lower factor of the Gram matrix, midpoints only; raises DependentError at a vanishing pivot."""
+    m = gram.nrows()
+    L = [[arb(0)] * m for _ in range(m)]
+    for i in range(m):
+        for j in range(i + 1):
+            rest = gram[i, j]
+            for k in range(j):
+                rest = rest - L[i][k] * L[j][k]
+            if i == j:
+                size = abs(gram[i, i]).mid()
+                if size == 0 or not bool(rest > size * arb(2) ** (-bits // 2)):
+                    raise DependentError(i, relation_of(gram, i), bits)
+                L[i][i] = rest.sqrt().mid()
+            else:
+                L[i][j] = (rest / L[j][j]).mid()
+    return L
+
+
+def relation_of(gram: arb_mat, index: int) -> list[arb]:
+    """Coefficients c with ``H_index = sum c_k H_k`` over the rows before, from the normal equations."""
+    if index == 0:
+        return []
+    block = arb_mat([[gram[i, j].mid() for j in range(index)] for i in range(index)])
+    right = arb_mat([[gram[i, index].mid()] for i in range(index)])
+    solved = block.solve(right)
+    return [solved[i, 0].mid() for i in range(index)]
+
+
+def transform_of(values: arb_mat, bits: int) -> arb_mat:
+    """A = L^-1 for the Gram matrix ``L L^T`` of the rows, as exact midpoints."""
+    gram = values.transpose() * values
+    count = values.nrows()
+    L = cholesky(gram * (arb(1) / count), bits)
+    m = len(L)
+    return arb_mat([[e.mid() for e in row] for row in arb_mat(L).inv().tolist()]) if m else arb_mat(0, 0)
+
+
+def make_basis(problem: Problem, bits: int = 192) -> Basis:
+    """Orthonormal basis of a problem, with points and bits increased until both suffice.
+
+    The last ones are kept: the same exact expressions have the same basis.
+
+    Raises DependentError when the functions look dependent at ``MOST_BITS``, TooLargeError when
+    ``LARGEST`` points a panel do not resolve them.
+    """
+    if any(panel.values or panel.mix is not None for panel in problem.panels):
+        return made_basis(problem, bits)
+    panels = tuple((p.measurement, p.functions, p.variable, p.start, p.end, p.sigma) for p in problem.panels)
+    return kept_basis(panels, problem.functional, bits)
+
+
+@lru_cache(maxsize=64)
+def kept_basis(panels: tuple[tuple[Any, ...], ...], functional: tuple[Any, ...], bits: int) -> Basis:
+    """:func:`made_basis` for exact expressions, which are compared as a whole."""
+    return made_basis(Problem(tuple(Panel(*fields) for fields in panels), functional), bits)
+
+
+def made_basis(problem: Problem, bits: int) -> Basis:
+    """The basis, computed."""
+    panels = problem.panels
+    count = FIRST
+    while True:
+        try:
+            with precision(bits):
+                values = samples(panels, count, bits)
+                A = transform_of(values, bits)
+                q = values * A.transpose()
+                P = A * arb_mat([[p] for p in problem.target()])
+        except DependentError:
+            if bits >= MOST_BITS:
+                raise
+            bits *= 2
+            continue
+        high, low = chebyshev_coefficients(q, len(panels), count)
+        tail = np.abs(high[:, -3:, :]).max() / np.abs(high).max()
+        if tail < (SHARP_RESOLVED if 2 * count <= SHARP else RESOLVED):
+            break
+        if count >= LARGEST:
+            raise TooLargeError(
+                f"expected functions that {LARGEST} points a piece resolve; got a tail of {tail:.1e}; "
+                "shorten the interval or split it into pieces"
+            )
+        count *= 2
+    p = double(P)[:, 0]
+    scale = float(np.linalg.norm(p))
+    used = resolved(high)
+    p_high, p_low = twofold(P * (1 / arb(scale)))
+    return Basis(A, P, scale, Panels(high[:, :used], p_high[:, 0], low[:, :used], p_low[:, 0]), bits)
+
+
+def double(matrix: arb_mat) -> NDArray[np.float64]:
+    return np.array([[float(e.mid()) for e in row] for row in matrix.tolist()])
+
+
+def twofold(matrix: arb_mat) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """The midpoints as doubles, and what these lack."""
+    rows = matrix.tolist()
+    high = np.array([[float(e.mid()) for e in row] for row in rows])
+    low = [[float((e - h).mid()) for e, h in zip(*pair, strict=True)] for pair in zip(rows, high.tolist(), strict=True)]
+    return high, np.array(low)
+
+
+def chebyshev_coefficients(
+    q: arb_mat, panels: int, count: int
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Coefficients (panels, count, m) from values at the points of the first kind, and what the doubles lack."""
+    if count > SHARP:
+        k, values = np.arange(count), double(q)
+        cosines = np.cos(np.pi * np.outer(k, k + 0.5) / count) * (2.0 / count)
+        cosines[0] *= 0.5
+        high = np.stack([cosines @ values[i * count : (i + 1) * count] for i in range(panels)])
+        return high, np.zeros_like(high)
+    rows = q.tolist()
+    with precision(NODE_BITS):
+        parts = [twofold(ball_cosines(count) * arb_mat(rows[i * count : (i + 1) * count])) for i in range(panels)]
+    return np.stack([high for high, _ in parts]), np.stack([low for _, low in parts])
+
+
+@lru_cache(maxsize=8)
+def ball_cosines(count: int) -> arb_mat:
+    """``2/n cos(pi k (j + 1/2) / n)``, the first row halved: values at the points to coefficients."""
+    with precision(NODE_BITS):
+        cosines = [arb.cos_pi(arb(j) / (2 * count)) * 2 / count for j in range(4 * count)]
+        rows = [[cosines[k * (2 * j + 1) % (4 * count)] for j in range(count)] for k in range(count)]
+        return arb_mat([[c / 2 for c in rows[0]], *rows[1:]])
+
+
+def resolved(high: NDArray[np.float64]) -> int:
+    """How many coefficients are above their rounding."""
+    size = np.abs(high).max(axis=(0, 2))
+    least = SHARP_RESOLVED if high.shape[1] <= SHARP else 1e-15
+    return max(int(np.flatnonzero(size > least * size.max()).max()) + 1, 3)
+
+
+def as_fraction(u: float) -> fmpq:
+    """The fraction in [0, 1] of a local coordinate in [-1, 1], exactly."""
+    if u <= -1.0:
+        return fmpq(0)
+    return fmpq(1) if u >= 1.0 else (1 + rational(arb(u))) / 2

@@ -1,0 +1,444 @@
+"""Certificates of the guaranteed optimum: ``touch`` (exact contacts) and ``gap`` (two-sided).
+
+Weak duality: if ``|x . H| <= sigma`` everywhere and ``sum w_i H(t_i) = P`` then
+``x . P <= optimum <= sum sigma |w_i|``. A gap certificate names x and the places t_i, both exact,
+and nothing has to touch. A touch certificate names a small box in which Krawczyk's test finds an
+exact solution of the optimality system; then both sides are equal and known to any digits.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from flint import arb, arb_mat, ctx, fmpq
+
+from navsym.numeric.exchange.interior import interior_dual, pinned_rows
+from navsym.numeric.exchange.search import Contacts, nodes_for, roads, rows_at
+from navsym.numeric.exchange.simple import simple_dual
+from navsym.proof.balls import precision
+from navsym.proof.decimals import decimal, exact, lower_end, upper_end
+from navsym.proof.optimality.basis import Basis, as_fraction, make_basis
+from navsym.proof.optimality.enclosure import Panel, Problem, Touch, bounded, combination, rational, total
+from navsym.proof.optimality.existence import krawczyk
+from navsym.proof.optimality.polish import Polished, pinned, polish
+from navsym.text.expression import to_text
+
+LIMIT = 20000
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Certified:
+    """An optimum between two bounds, with the data that prove it.
+
+    lower, upper : exact rationals
+    support      : (panel, fraction, weight) with balls for fraction and weight
+    dual         : x, exact for a gap, balls for exact contacts
+    unique       : True when the estimator is proved to be the only optimal one, else None
+    certificate  : plain data for ``navsym check``
+    """
+
+    lower: fmpq
+    upper: fmpq
+    support: tuple[tuple[int, arb, arb], ...]
+    dual: tuple[arb, ...]
+    unique: bool | None
+    certificate: Mapping[str, Any]
+
+    @property
+    def width(self) -> float:
+        """Relative width of the enclosure."""
+        size = abs(self.upper)
+        return 0.0 if size == 0 else float(arb((self.upper - self.lower) / size))
+
+
+def certify(problem: Problem, digits: int = 30, basis: Basis | None = None) -> Certified:
+    """Solve and enclose to a relative width of ``10**-digits`` if the problem lets us.
+
+    Raises DependentError when the regressors look dependent; the width of the answer tells how
+    far it came.
+    """
+    basis = make_basis(problem) if basis is None else basis
+    best: Certified | None = None
+    for contacts in roads(basis.panels):
+        found = from_contacts(problem, basis, contacts, digits)
+        best = found if best is None or found.width < best.width else best
+        if best.width <= 10.0 ** -min(digits, 300):
+            break
+    assert best is not None
+    return best
+
+
+def from_contacts(problem: Problem, basis: Basis, contacts: Contacts, digits: int) -> Certified:
+    """The exact-contact certificate where the contacts are regular, else the two-sided one."""
+    loss = lost_digits(basis)
+    bits = int(3.33 * (digits + 2 * loss + 25)) + 64
+    refined = polish(problem.panels, basis, contacts, bits, 10.0 ** -min(digits + loss + 14, 300))
+    if digits + loss + 14 > 300:
+        refined = polish(problem.panels, basis, contacts, bits, 0.0)
+    # A ball in the regressors is an error that may differ from instant to instant: only two sides are rigorous then.
+    exact_data = not any(panel.values for panel in problem.panels)
+    if exact_data and refined.regular and contacts.excess < 1e-7 and not refined.touching:
+        proved = touch(problem, basis, refined, digits, bits)
+        if proved is not None:
+            return proved
+    return gap(problem, basis, contacts, refined, digits, bits)
+
+
+@lru_cache(maxsize=64)
+def lost_digits(basis: Basis) -> int:
+    """Digits that cancel in ``x . H`` when x is written in the basis of the problem."""
+    largest = max(float(abs(e).mid()) for row in basis.transform.tolist() for e in row)
+    inverse = max(float(abs(e).mid()) for row in basis.transform.inv().tolist() for e in row)
+    return max(0, int(np.log10(largest) + np.log10(inverse)) + 1)
+
+
+# -- exact contacts ---------------------------------------
+
+
+def touch(problem: Problem, basis: Basis, found: Polished, digits: int, bits: int) -> Certified | None:
+    """The exact-contact certificate, or None when one of its tests fails."""
+    loss = lost_digits(basis)
+    places = digits + 10
+    with precision(bits):
+        spread = spreads(problem, basis, found, places)
+        centre = [exact(decimal(c, places + loss + 8)) for c in unknowns(found)]
+        radius = [exact(decimal(r, 3, 1)) for r in spread]
+        z = solution_box(problem, found, [arb(c) for c in centre], [arb(r) for r in radius])
+        if z is None or not admissible(found, z):
+            return None
+        m = len(found.dual)
+        cells = covered(problem, z[:m], exact_touches(found, z), loss)
+        if cells is None:
+            return None
+        value = total(z[:m], problem.target())
+        lower, upper = lower_end(value, digits + 4), upper_end(value, digits + 4)
+        solution = {
+            "from": "0", "to": "0", "basis": [[str(int(i == j)) for i in range(m)] for j in range(m)],
+            "dual": [[decimal(c, places + loss + 8)] for c in centre[:m]],
+            "contacts": contact_rows(found, costs(problem, found, centre), places + loss + 8),
+            "radius": [decimal(r, 3, 1) for r in costs(problem, found, radius)],
+        }  # fmt: skip
+        document = header(problem, "touch", bits, cells, lower, upper) | {"pieces": [solution]}
+        return Certified(exact(lower), exact(upper), support_of(found, z), tuple(z[:m]), True, document)
+
+
+def unknowns(found: Polished) -> list[arb]:
+    """(x, inner contacts, weights) in one list."""
+    free = [v for v, i in zip(found.v, found.inner, strict=True) if i]
+    return [*found.dual, *free, *found.weights]
+
+
+def spreads(problem: Problem, basis: Basis, found: Polished, places: int) -> list[arb]:
+    """Radii of the box: equal in the orthonormal basis, hence scaled by its columns in that of the problem."""
+    unit = arb(10) ** (-places)
+    m = len(found.dual)
+    columns = [sum((abs(basis.transform[k, j]) for k in range(m)), arb(0)) for j in range(m)]
+    weights = sum((abs(w) for w in found.weights), arb(0))
+    free = sum(found.inner)
+    return [unit * c.mid() for c in columns] + [unit] * free + [unit * weights.mid()] * len(found.weights)
+
+
+def solution_box(
+    problem: Problem, found: Polished, centre: Sequence[arb], radius: Sequence[arb]
+) -> list[arb] | None:
+    """Balls around the exact solution of the optimality system, by Krawczyk's test."""
+    box = [c + r * arb(0, 1) for c, r in zip(centre, radius, strict=True)]
+    value, _ = optimality_system(problem, found, centre)
+    _, jacobian = optimality_system(problem, found, box)
+    return krawczyk(centre, radius, value, jacobian)
+
+
+def optimality_system(problem: Problem, found: Polished, z: Sequence[arb]) -> tuple[list[arb], arb_mat]:
+    """F and F' of the optimality system over balls: ``f(v_i) - s_i sigma``, ``f'(v_i)``, ``sum w_i H - P``."""
+    m, l = len(found.dual), len(found.v)
+    x, w = z[:m], z[len(z) - l :]
+    free = iter(range(m, len(z) - l))
+    size = len(z)
+    J = [[arb(0)] * size for _ in range(size)]
+    F = [arb(0)] * (size - m) + [-p for p in problem.target()]
+    row = l
+    for i, k in enumerate(found.panel):
+        panel = problem.panels[k]
+        column = next(free) if found.inner[i] else None
+        at = found.v[i] if column is None else z[column]
+        H = panel.series(at, arb(1), 2)
+        f = combination(x, H)
+        F[i] = f[0] - found.sign[i] * panel.bound()
+        J[i][:m] = [h[0] for h in H]
+        for j, h in enumerate(H):
+            F[size - m + j] += w[i] * h[0]
+            J[size - m + j][size - l + i] = h[0]
+        if column is not None:
+            F[row] = f[1]
+            J[i][column] = f[1]
+            J[row][:m] = [h[1] for h in H]
+            J[row][column] = 2 * f[2]
+            for j, h in enumerate(H):
+                J[size - m + j][column] = w[i] * h[1]
+            row += 1
+    return F, arb_mat(J)
+
+
+def admissible(found: Polished, z: Sequence[arb]) -> bool:
+    """Inner contacts strictly inside their panels, weights of the signs of f."""
+    m, l = len(found.dual), len(found.v)
+    inside = all(bool(v > 0) and bool(v < 1) for v in z[m : len(z) - l])
+    return inside and all(bool(s * w > 0) for s, w in zip(found.sign, z[len(z) - l :], strict=True))
+
+
+def exact_touches(found: Polished, z: Sequence[arb]) -> list[list[Touch]]:
+    """Touches by panel, with balls for the inner ones."""
+    free = iter(z[len(found.dual) :])
+    rows: list[list[Touch]] = [[] for _ in range(max(found.panel) + 1)]
+    for i, (k, v, s, inner) in enumerate(zip(found.panel, found.v, found.sign, found.inner, strict=True)):
+        rows[k].append(Touch(next(free) if inner else rational(v), s, True, end_name(found, i)))
+    return rows
+
+
+def covered(problem: Problem, x: Sequence[arb], touches: Sequence[Sequence[Touch]], loss: int) -> int | None:
+    """Cells that prove ``|x . H| < sigma`` off exact contacts; where few bits do not suffice, with all."""
+    with precision(min(ctx.prec, int(3.33 * loss) + 64)):
+        cells = every_cell(problem, x, touches)
+    return every_cell(problem, x, touches) if cells is None else cells
+
+
+def every_cell(problem: Problem, x: Sequence[arb], touches: Sequence[Sequence[Touch]]) -> int | None:
+    """Cells that prove ``|x . H| <= sigma`` on every panel, or None."""
+    cells = 0
+    for k, panel in enumerate(problem.panels):
+        used = bounded(panel, x, touches[k] if k < len(touches) else [], LIMIT)
+        if used is None:
+            return None
+        cells += used
+    return cells
+
+
+def costs(problem: Problem, found: Polished, values: Sequence[fmpq]) -> list[fmpq]:
+    """The weights at the end of the unknowns times their sigma: what a certificate holds."""
+    head = len(values) - len(found.panel)
+    bounds = [problem.panels[k].bound() for k in found.panel]
+    return [*values[:head], *(rational(s * arb(w)) for s, w in zip(bounds, values[head:], strict=True))]
+
+
+def contact_rows(found: Polished, centre: Sequence[fmpq], digits: int) -> list[dict[str, Any]]:
+    l = len(found.v)
+    free = iter(centre[len(found.dual) : len(centre) - l])
+    rows = []
+    for i, k in enumerate(found.panel):
+        at = decimal(next(free), digits) if found.inner[i] else place_of(end_name(found, i))
+        rows.append({"panel": k, "at": [at], "weight": [decimal(centre[len(centre) - l + i], digits)]})
+    return rows
+
+
+def place_of(end: str) -> str:
+    """The end of a panel as a certificate names it."""
+    return {"from": "0", "to": "1"}[end]
+
+
+def end_name(found: Polished, i: int) -> str:
+    """Which end of its panel a contact sits on: "from", "to", or "no"."""
+    if found.inner[i]:
+        return "no"
+    return "to" if rational(found.v[i]) == 1 else "from"
+
+
+def support_of(found: Polished, z: Sequence[arb]) -> tuple[tuple[int, arb, arb], ...]:
+    m, l = len(found.dual), len(found.v)
+    free = iter(z[m : len(z) - l])
+    at = [next(free) if inner else v for v, inner in zip(found.v, found.inner, strict=True)]
+    return tuple(zip(found.panel, at, z[len(z) - l :], strict=True))
+
+
+# -- two-sided ---------------------------------------
+
+
+def gap(
+    problem: Problem, basis: Basis, contacts: Contacts, found: Polished, digits: int, bits: int,
+    carriers: Contacts | None = None,
+) -> Certified:  # fmt: skip
+    """The two-sided certificate; the dual is shrunk until nothing above the bound is left.
+
+    carriers : what carries the weights; by default the contacts
+    """
+    places = digits + lost_digits(basis) + 12
+    with precision(bits):
+        if carriers is None:
+            at = [exact(decimal(v, places)) for v in found.v]
+            support = support_points(basis, contacts, at)
+        else:
+            support = support_points(basis, carriers, [as_fraction(float(u)) for u in carriers.u])
+        weights = balanced(problem, support)
+        upper = upper_end(cost(problem, support, weights), digits + 6)
+        x, cells, touches = best_dual(problem, basis, contacts, found, digits, exact(upper))
+        lower = lower_end(total([arb(c) for c in x], problem.target()), digits + 6)
+        # The checker has no touches to guide it: it halves its way towards each of them.
+        plain = cells + sum(map(len, touches)) * 2 * (digits + 12)
+        document = header(problem, "gap", bits, plain, lower, upper) | {
+            "dual": [decimal(c, places + 8) for c in x],
+            "support": [[k, decimal(v, places)] for k, v in support],
+        }
+        rows = tuple((k, arb(v), w) for (k, v), w in zip(support, weights, strict=True))
+        shown = tuple(
+            row for row in rows if not bool(abs(row[2]) < arb(10) ** (-digits) * abs(arb(exact(upper))))
+        )
+        return Certified(exact(lower), exact(upper), shown, tuple(arb(c) for c in x), None, document)
+
+
+def best_dual(
+    problem: Problem, basis: Basis, contacts: Contacts, found: Polished, digits: int, upper: fmpq
+) -> tuple[list[fmpq], int, list[list[Touch]]]:
+    """The attempt that keeps the bound and reaches highest, the cells of its proof, its touches; zero when none holds.
+
+    The first attempt within the digits of the upper bound is taken: those after it are no better.
+    """
+    places, target = digits + lost_digits(basis) + 12, problem.target()
+    best: tuple[list[fmpq], int, list[list[Touch]]] = [fmpq(0)] * len(found.dual), 0, []
+    highest = fmpq(0)
+    for base, shrink, seen in attempts(problem, basis, contacts, found, digits):
+        scale, touches = 1 - fmpq(1, 10) ** shrink, near_touches(problem, seen, places)
+        x = [exact(decimal(c * scale, places + 8)) for c in base]
+        reached = rational(total([arb(c) for c in x], target))
+        cells = every_cell(problem, [arb(c) for c in x], touches) if reached > highest else None
+        if cells is not None:
+            best, highest = (x, cells, touches), reached
+            if (upper - reached) * 10**digits <= upper:
+                break
+    return best
+
+
+def attempts(
+    problem: Problem, basis: Basis, contacts: Contacts, found: Polished, digits: int
+) -> Iterator[tuple[list[fmpq], int, Polished]]:
+    """Duals, by how many digits to shrink them, and where they touch.
+
+    Where the optimal dual is not unique, round numbers come first, then one with room to spare.
+    """
+    base = [rational(c) for c in found.dual]
+    if not found.regular:
+        yield [round_number(c) for c in base], digits + 3, found
+        inside = interior_dual(basis.panels, contacts)
+        if inside is not None:
+            rows = pinned_rows(basis.panels, contacts)[0]
+            dual = pinned(problem, basis, found, rows, inside, 10.0 ** -min(digits + lost_digits(basis) + 14, 300))
+            yield [rational(c) for c in dual], digits + 3, replace(found, touching=())
+        if lost_digits(basis) <= 6:
+            transform = np.array([[float(e.mid()) for e in row] for row in basis.transform.tolist()])
+            simple = simple_dual(basis.panels, transform, contacts.value)
+            if simple is not None:
+                yield [round_number(rational(arb(float(c))), 5) for c in simple], digits + 3, found
+    for k in (digits + 3, 12, 9, 6, 4, 3, 2, 1):
+        if k <= digits + 3:
+            yield base, k, found
+
+
+def round_number(x: fmpq, digits: int = 8) -> fmpq:
+    """The rational with a small denominator that agrees with x to some digits, or x itself: a guess to be proved."""
+    best = Fraction(int(x.p), int(x.q)).limit_denominator(720 if digits > 6 else 60)
+    near = fmpq(best.numerator, best.denominator)
+    room = max(fmpq(1), abs(x)) / 10**digits
+    return near if abs(near - x) < room else x
+
+
+def support_points(basis: Basis, contacts: Contacts, at: Sequence[fmpq]) -> list[tuple[int, fmpq]]:
+    """As many places as unknowns, regressors far from dependent: the contacts, filled up from the grid.
+
+    at : the exact fraction of each contact
+    """
+    C = basis.panels.coefficients
+    m = C.shape[2]
+    nodes = nodes_for(basis.panels)
+    grid = [(k, float(u)) for k in range(C.shape[0]) for u in nodes[:: max(1, nodes.size // (12 * m))]]
+    grid += [(k, 1.0) for k in range(C.shape[0])]
+    order = np.argsort(-np.abs(contacts.weights))
+    chosen: list[tuple[int, fmpq]] = []
+    rest = np.eye(m)
+    for i in order:
+        row = rows_at(C, contacts.panel[i : i + 1], contacts.u[i : i + 1])[0] @ rest
+        if np.linalg.norm(row) > 1e-7 and len(chosen) < m:
+            chosen.append((int(contacts.panel[i]), at[i]))
+            rest = without(rest, row)
+    rows = rows_at(C, np.array([k for k, _ in grid]), np.array([u for _, u in grid]))
+    while len(chosen) < m:
+        along = rows @ rest
+        best = int(np.argmax(np.linalg.norm(along, axis=1)))
+        chosen.append((grid[best][0], as_fraction(grid[best][1])))
+        rest = without(rest, along[best])
+    return chosen
+
+
+def without(rest: np.ndarray, row: np.ndarray) -> np.ndarray:
+    """The projection ``rest`` with one more direction taken out."""
+    unit = row / np.linalg.norm(row)
+    projected: np.ndarray = rest - np.outer(rest @ unit, unit)
+    return projected
+
+
+def balanced(problem: Problem, support: Sequence[tuple[int, fmpq]]) -> list[arb]:
+    """Weights with ``sum w_i H(t_i) = P`` exactly, as balls."""
+    columns = [problem.panels[k].rows(arb(v)) for k, v in support]
+    N = arb_mat(columns).transpose()
+    solved = N.solve(arb_mat([[p] for p in problem.target()]))
+    return [solved[i, 0] for i in range(len(support))]
+
+
+def cost(problem: Problem, support: Sequence[tuple[int, fmpq]], weights: Sequence[arb]) -> arb:
+    value = arb(0)
+    for (k, _), w in zip(support, weights, strict=True):
+        value += problem.panels[k].bound() * abs(w)
+    return value
+
+
+def near_touches(problem: Problem, found: Polished, places: int) -> list[list[Touch]]:
+    """Where the dual polynomial is expected at its bound: contacts and further near maxima."""
+    rows: list[list[Touch]] = [[] for _ in problem.panels]
+    for k, at_ball, s in zip(found.panel, found.v, found.sign, strict=True):
+        rows[k].append(Touch(exact(decimal(at_ball, places)), s))
+    for k, v in found.touching:
+        f = total(found.dual, problem.panels[k].rows(arb(v)))
+        at = exact(decimal(peak(problem.panels[k], found.dual, v), places))
+        if all(abs(at - t.at) > fmpq(1, 10**6) for t in rows[k]):
+            rows[k].append(Touch(at, 1 if bool(f > 0) else -1))
+    return rows
+
+
+def peak(panel: Panel, x: Sequence[arb], v: fmpq) -> fmpq:
+    """A stationary point of f near the fraction v, by Newton's method; v itself when it runs away."""
+    if v in (0, 1):
+        return v
+    at = arb(v)
+    for _ in range(8):
+        f = combination(x, panel.series(at, arb(1), 2))
+        if f[2].contains(0):
+            return v
+        at = (at - f[1] / (2 * f[2])).mid()
+    return rational(at) if bool(abs(at - arb(v)) < 1e-4) else v
+
+
+def header(problem: Problem, kind: str, bits: int, cells: int, lower: str, upper: str) -> dict[str, Any]:
+    """What every kind says about the problem; the parameter is one that occurs nowhere, unless it is replaced."""
+    variable = problem.panels[0].variable.name
+    return {
+        "kind": kind,
+        "variable": variable,
+        "panels": [panel_row(panel) for panel in problem.panels],
+        "functional": [to_text(p) for p in problem.functional],
+        "bits": bits,
+        "cells": cells,
+        "parameter": "p" if variable != "p" else "q",
+        "from": "0",
+        "to": "0",
+        "lower": lower,
+        "upper": upper,
+    }
+
+
+def panel_row(panel: Panel) -> dict[str, Any]:
+    return {
+        "measurement": panel.measurement, "from": to_text(panel.start), "to": to_text(panel.end),
+        "sigma": to_text(panel.sigma), "H": [to_text(h) for h in panel.functions],
+    }  # fmt: skip

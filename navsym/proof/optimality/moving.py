@@ -1,0 +1,195 @@
+"""Regressors of a problem whose parameter moves: series in s, jets in the place.
+
+In a piece of a range ``p = middle + half s`` with |s| <= 1. A place is a fraction v of its panel,
+``t = start(p) + (end(p) - start(p)) v``, and ``q = A H / sigma`` with a rational matrix A. Near p = 0,
+where the regressors of a growing interval [0, p] become dependent, row i of q is divided by p**k_i.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import sympy as sp
+from flint import arb, arb_mat, arb_series, ctx, fmpq, fmpq_mat
+
+from navsym.proof.optimality.enclosure import Panel, Problem, terms
+from navsym.proof.optimality.jets import Jet
+
+EVERY = arb(0, 1)
+
+
+def series_at(coefficients: Sequence[Any], s: arb) -> arb_series:
+    """The polynomial expanded about s."""
+    at = arb_series([s, arb(1)])
+    value = arb_series([arb(0)])
+    for c in reversed(coefficients):
+        value = value * at + c
+    return value
+
+
+def number_of(value: Any, k: int) -> arb:
+    """Coefficient k of a series or of a constant; NaN when the series lost it."""
+    if isinstance(value, arb_series):
+        return value[k] if value.prec > k else arb("nan")
+    return arb(value) if k == 0 else arb(0)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Member:
+    """Solution for one value of the parameter, with many digits.
+
+    dual    : x, in the basis of the problem
+    places  : fractions of the contacts
+    weights : sigma times the weights
+    """
+
+    dual: tuple[fmpq, ...]
+    places: tuple[fmpq, ...]
+    weights: tuple[fmpq, ...]
+
+
+@dataclass(frozen=True)
+class Moving:
+    """The problem on one piece: rows of regressors and the functional as series in s."""
+
+    problem: Problem
+    parameter: sp.Symbol
+    basis: fmpq_mat
+    middle: fmpq
+    half: fmpq
+
+    @property
+    def size(self) -> int:
+        return int(self.basis.nrows())
+
+    @cached_property
+    def mix(self) -> arb_mat:
+        m = self.size
+        return arb_mat(m, m, [arb(a) for a in self.basis.entries()])
+
+    def local_member(self, member: Member) -> list[fmpq]:
+        """(y, places, weights) in the basis of the piece: ``A^T y = x``."""
+        m = self.size
+        y = self.basis.transpose().inv() * fmpq_mat(m, 1, list(member.dual))
+        return [*(y[i, 0] for i in range(m)), *member.places, *member.weights]
+
+    def global_member(self, y: Sequence[fmpq], places: Sequence[fmpq], weights: Sequence[fmpq]) -> Member:
+        """The same in the basis of the problem: ``x = A^T y``."""
+        x = self.basis.transpose() * fmpq_mat(self.size, 1, list(y))
+        return Member(tuple(x[i, 0] for i in range(self.size)), tuple(places), tuple(weights))
+
+    def value(self, s: arb) -> arb_series:
+        """The parameter about s."""
+        return arb_series([arb(self.middle) + arb(self.half) * s, arb(self.half)])
+
+    def rows(self, k: int, v: Any, r: Any, s: arb, order: int) -> list[list[Any]]:
+        """Coefficients 0 … order in w of every q on panel k, at the fraction ``v + r w``."""
+        return self.mixed(self.mix, *self.functions(k, v, r, s, order), order)
+
+    def rows_of_problem(self, k: int, v: Any, r: Any, s: arb, order: int) -> list[list[Any]]:
+        """The same of ``H / sigma``."""
+        m = self.size
+        return self.mixed(arb_mat(m, m, 1), *self.functions(k, v, r, s, order), order)
+
+    def dual_of_problem(self, y: Sequence[Any]) -> list[Any]:
+        """``A^T y``: what multiplies ``H / sigma`` where y multiplies q."""
+        columns = self.mix.transpose().tolist()
+        return [sum((a * c for a, c in zip(y, column, strict=True)), arb(0)) for column in columns]
+
+    def functions(self, k: int, v: Any, r: Any, s: arb, order: int) -> tuple[list[list[Any]], Any]:
+        """Coefficients of every H, and ``1 / sigma``."""
+        panel, p = self.problem.panels[k], self.value(s)
+        start, end, sigma = panel.ends.run({self.parameter: p})
+        t = Jet([start + (end - start) * v, (end - start) * r], order)
+        H = panel.program.run({panel.variable: t, self.parameter: Jet([p], order)})
+        return [padded(h, order) for h in H], 1 / sigma
+
+    def mixed(self, matrix: arb_mat, H: Sequence[Sequence[Any]], scale: Any, order: int) -> list[list[Any]]:
+        n = ctx.cap
+        flat = arb_mat([[number_of(part, j) for part in h for j in range(n)] for h in H])
+        q = (matrix * flat).tolist()
+        return [
+            [arb_series(row[n * k : n * (k + 1)]) * scale for k in range(order + 1)] for row in q
+        ]
+
+    def target(self, s: arb) -> list[Any]:
+        """``A P`` about s."""
+        P = self.problem.functional_program.run({self.parameter: self.value(s)})
+        return [row[0] for row in self.mixed(self.mix, [[p] for p in P], arb(1), 0)]
+
+
+def padded(h: Any, order: int) -> list[Any]:
+    parts = list(h.parts) if isinstance(h, Jet) else [h]
+    return parts + [arb(0)] * (order + 1 - len(parts))
+
+
+# -- next to a vanishing interval -------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Vanishing(Moving):
+    """The same on [0, p] with p near 0: row i of ``A H`` starts with u**k_i and is divided by p**k_i.
+
+    lows  : k_i, different from each other
+    shift : the functional is multiplied by p**shift, so that all of it stays finite
+    local : Taylor coefficients of the rows at u = 0, the last over the whole interval; see :func:`expanded`
+    """
+
+    lows: tuple[int, ...] = ()
+    shift: int = 0
+    local: tuple[tuple[tuple[arb, ...], ...], ...] = ()
+
+    def local_member(self, member: Member) -> list[fmpq]:
+        """Scaled for the middle of the piece: ``y_i = p**k_i (A^-T x)_i``, weights times p**shift."""
+        plain, m, p = super().local_member(member), self.size, self.middle
+        y = [c * p**low for c, low in zip(plain[:m], self.lows, strict=True)]
+        l = len(member.places)
+        return [*y, *plain[m : m + l], *(w * p**self.shift for w in plain[m + l :])]
+
+    def global_member(self, y: Sequence[fmpq], places: Sequence[fmpq], weights: Sequence[fmpq]) -> Member:
+        """At the upper end of the piece; the lower one may be p = 0, where the unscaled solution is not finite."""
+        p = self.middle + self.half
+        plain = [c / p**low for c, low in zip(y, self.lows, strict=True)]
+        return super().global_member(plain, places, [w / p**self.shift for w in weights])
+
+    def rows(self, k: int, v: Any, r: Any, s: arb, order: int) -> list[list[Any]]:
+        p = self.value(s)
+        place = Jet([v, arb_series([r])], order)
+        u, done = place * p, []
+        for low, c in zip(self.lows, self.local[k], strict=True):
+            value: Any = Jet([arb_series([c[-1]])], order)
+            for a in reversed(c[low:-1]):
+                value = value * u + a
+            for _ in range(low):
+                value = value * place
+            done.append(padded(value, order))
+        return done
+
+    def rows_of_problem(self, k: int, v: Any, r: Any, s: arb, order: int) -> list[list[Any]]:
+        return self.rows(k, v, r, s, order)
+
+    def dual_of_problem(self, y: Sequence[Any]) -> list[Any]:
+        """The certificate is one of the scaled rows themselves."""
+        return list(y)
+
+    def target(self, s: arb) -> list[Any]:
+        p, P = self.value(s), exact_functional(self.problem)
+        image = self.basis * fmpq_mat(len(P), 1, P)
+        done = []
+        for i, low in enumerate(self.lows):
+            value: Any = arb_series([arb(image[i, 0])])
+            for _ in range(self.shift - low):
+                value = value * p
+            done.append(value)
+        return done
+
+
+def exact_functional(problem: Problem) -> list[fmpq]:
+    """P as rational numbers."""
+    return [fmpq(int(sp.Rational(p).p), int(sp.Rational(p).q)) for p in problem.functional]
+
+
+__all__ = ["EVERY", "Member", "Moving", "Panel", "Vanishing", "number_of", "series_at", "terms"]

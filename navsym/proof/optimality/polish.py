@@ -1,0 +1,154 @@
+"""From contacts in double precision to contacts with any number of digits.
+
+The optimality system in (x, inner contacts, weights) is solved by Newton's method with the
+Jacobian of the double solution (its pseudo-inverse when the problem is degenerate), residuals in
+high precision. In the orthonormal basis that Jacobian is well scaled, so each step gains about as
+many digits as the double solution had; nothing here is rigorous.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from flint import arb, arb_mat, fmpq
+
+from navsym.numeric.exchange.kernels import chebyshev_derivative, contact_system
+from navsym.numeric.exchange.search import Contacts
+from navsym.proof.balls import precision
+from navsym.proof.optimality.basis import Basis, as_fraction
+from navsym.proof.optimality.enclosure import Panel, Problem, total
+
+STEPS = 60
+#: A residual so many times the smallest one, or no number at all, says that Newton's method has run away.
+AWAY = 1e6
+#: A correction that shrinks as before would miss the goal by this factor: not looked at any more.
+CERTAIN = 1e-4
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Polished:
+    """Contacts to high precision, all midpoints exact.
+
+    panel, v, inner, sign : place of each contact as a fraction of its panel, whether it may move, its sign
+    weights : in the units of the problem (noise bound not divided out)
+    dual    : x in the basis of the problem
+    residual : size of the last correction, or what the next one would be, relative
+    regular : True when the optimality system is square and far from singular
+    """
+
+    panel: tuple[int, ...]
+    v: tuple[arb, ...]
+    inner: tuple[bool, ...]
+    sign: tuple[int, ...]
+    weights: tuple[arb, ...]
+    dual: tuple[arb, ...]
+    residual: float
+    regular: bool
+    touching: tuple[tuple[int, fmpq], ...] = ()
+
+
+def polish(panels: Sequence[Panel], basis: Basis, contacts: Contacts, bits: int, goal: float) -> Polished:
+    """Newton with a fixed Jacobian until the correction is below ``goal`` or stops shrinking.
+
+    Steps that run away lead back to where they began; the answer is then called irregular.
+    """
+    inverse, regular = pseudo_inverse(basis, contacts)
+    m, l = contacts.dual.size, contacts.u.size
+    with precision(bits):
+        x = [arb(float(c)) for c in contacts.dual]
+        v = [arb(as_fraction(float(u))) for u in contacts.u]
+        w = [arb(float(c)) for c in contacts.weights]
+        p = [basis.functional[i, 0] / basis.scale for i in range(m)]
+        signs = [int(s) for s in contacts.sign]
+        inner = [bool(i) for i in contacts.inner]
+        begun, away, last = (x, v, w), np.inf, np.inf
+        for _ in range(STEPS):
+            F = residual(panels, basis, contacts.panel.tolist(), x, v, w, p, signs, inner)
+            size = max(float(abs(f).mid()) for f in F)
+            if not size <= away:
+                (x, v, w), regular, size = begun, False, away / AWAY
+                break
+            away = min(away, AWAY * max(size, 1e-12))
+            if size < goal or (size > 0.5 * last and size < 1e-12):
+                break
+            done = last < np.inf and size < 1e-6 * last and size * (size / last) < goal * CERTAIN
+            last, size = size, size * (size / last)
+            step = correction(inverse, F)
+            x = [(a + s).mid() for a, s in zip(x, step[:m], strict=True)]
+            free = iter(step[m : len(step) - l])
+            v = [(a + next(free) / 2).mid() if i else a for a, i in zip(v, inner, strict=True)]
+            w = [(a + s).mid() for a, s in zip(w, step[len(step) - l :], strict=True)]
+            if done:  # the next correction would be smaller than the goal by the ratio of the last two
+                break
+        dual = basis.transform.transpose() * arb_mat([[a] for a in x])
+        weights = [a * basis.scale / panels[k].bound() for a, k in zip(w, contacts.panel, strict=True)]
+        touching = tuple((k, as_fraction(u)) for k, u in contacts.touching)
+        return Polished(
+            tuple(int(k) for k in contacts.panel), tuple(v), tuple(inner), tuple(signs),
+            tuple(a.mid() for a in weights), tuple(dual[i, 0].mid() for i in range(m)), size, regular, touching,
+        )  # fmt: skip
+
+
+def pinned(problem: Problem, basis: Basis, found: Polished, rows: np.ndarray, x: np.ndarray, goal: float) -> list[arb]:
+    """The dual next to x, in the basis of the problem, that meets its bound at the contacts and is flat at inner ones.
+
+    rows : these conditions on x in double precision, fewer than unknowns
+    """
+    inverse, p = np.linalg.pinv(rows), [arb(0)] * x.size
+    y = [arb(float(c)) for c in x]
+    for _ in range(STEPS):
+        F = residual(problem.panels, basis, found.panel, y, found.v, found.weights, p, found.sign, found.inner)
+        F = F[: rows.shape[0]]
+        if max(float(abs(f).mid()) for f in F) < goal:
+            break
+        y = [(a + s).mid() for a, s in zip(y, correction(inverse, F), strict=True)]
+    return [a.mid() for a in (basis.transform.transpose() * arb_mat([[a] for a in y])).entries()]
+
+
+def pseudo_inverse(basis: Basis, contacts: Contacts) -> tuple[np.ndarray, bool]:
+    C = basis.panels.coefficients
+    C1 = np.stack([chebyshev_derivative(c) for c in C])
+    C2 = np.stack([chebyshev_derivative(c) for c in C1])
+    _, J = contact_system(
+        C, C1, C2, basis.panels.functional, contacts.panel, contacts.u, contacts.inner,
+        contacts.sign, contacts.dual, contacts.weights,
+    )  # fmt: skip
+    U, s, Vt = np.linalg.svd(J)
+    keep = s > 1e-9 * s.max()
+    regular = J.shape[0] == J.shape[1] and bool(keep.all())
+    r = int(keep.sum())
+    return (Vt[:r].T / s[:r]) @ U[:, :r].T, regular
+
+
+def correction(inverse: np.ndarray, F: Sequence[arb]) -> list[arb]:
+    """``-inverse F`` where F is split into a double and its power of two, so that tiny residuals keep their digits."""
+    largest = max(float(abs(f).mid()) for f in F)
+    if largest == 0.0:
+        return [arb(0)] * inverse.shape[0]
+    scale = arb(largest)
+    small = np.array([float((f / scale).mid()) for f in F])
+    return [-arb(float(s)) * scale for s in inverse @ small]
+
+
+def residual(
+    panels: Sequence[Panel], basis: Basis, places: Sequence[int], x: Sequence[arb], v: Sequence[arb],
+    w: Sequence[arb], p: Sequence[arb], signs: Sequence[int], inner: Sequence[bool],
+) -> list[arb]:  # fmt: skip
+    """The optimality system in high precision; slopes with respect to u = 2 v - 1."""
+    dual = (basis.transform.transpose() * arb_mat([[a] for a in x])).entries()
+    values: list[arb] = []
+    slopes: list[arb] = []
+    sums = [arb(0)] * len(x)
+    for i, k in enumerate(places):
+        series = panels[k].series(v[i], fmpq(1, 2), int(inner[i]))
+        sigma = panels[k].bound()
+        heights = [s[0] for s in series]
+        values.append(total(dual, heights) / sigma - signs[i])
+        if inner[i]:
+            slopes.append(total(dual, [s[1] for s in series]) / sigma)
+        share = w[i] / sigma
+        sums = [b + share * h for b, h in zip(sums, heights, strict=True)]
+    balance = (basis.transform * arb_mat([[b] for b in sums])).entries()
+    return [a.mid() for a in [*values, *slopes, *(b - a for a, b in zip(p, balance, strict=True))]]

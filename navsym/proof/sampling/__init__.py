@@ -1,0 +1,1 @@
+"""Looking for a counterexample: points, a second look, a descent."""

@@ -1,0 +1,199 @@
+"""A second look before CONFIRMED: the places where a statement that passed the first points is still false.
+
+The first points are ordinary and their balls have 128 bits. Here the same points are tried with 2,048
+bits, then ends and corners of the box, diagonals (symbols that are equal), points far out or near a
+finite end, and the place to which a descent of the difference leads, with its coordinates snapped to
+simple rational numbers and multiples of pi. A REFUTED that comes out rests on one exact point, as
+ever: a ball that excludes the relation, or a difference that is exactly zero where it must not be.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import partial
+
+import sympy as sp
+from flint import arb
+
+from navsym.claims.statement import Box
+from navsym.proof.balls import UnsupportedError, enclose, tape
+from navsym.proof.identities.normal_form import OutsideLanguageError
+from navsym.proof.identities.numbers import is_zero
+from navsym.proof.sampling.descent import lowest
+from navsym.proof.sampling.points import AWKWARD, Point, Range, points, ranges, value_at
+
+BITS = 2048
+ORDINARY = 24
+SHARP = 1e-100
+FAR = tuple(sp.Integer(10) ** k for k in (3, 12, 31))
+NEAR = tuple(1 / value for value in FAR)
+DENOMINATORS = (1, 2, 3, 4, 6, 12, 100, 10**12, 10**150)
+TOUCHING = 1e-60
+
+
+@dataclass(frozen=True, slots=True)
+class Look:
+    """What the second look found: a counterexample, or two points between which the sign changes."""
+
+    counterexample: Point | None = None
+    difference: arb | None = None
+    exact: bool = False  # the difference is exactly zero there
+    positive: Point | None = None
+    negative: Point | None = None
+    touching: Point | None = (
+        None  # the difference is almost zero there, and equality would break the relation
+    )
+
+
+def second_look(
+    difference: sp.Expr,
+    excludes: Callable[[arb], bool],
+    box: Box,
+    sides: Sequence[sp.Expr] = (),
+    zero_breaks: bool = False,
+    goals: Sequence[sp.Expr] = (),
+) -> Look:
+    """Look again for a point that breaks ``difference relation 0``.
+
+    excludes    : true for a finite ball that contradicts the relation
+    sides       : expressions that have to be finite at the point
+    zero_breaks : an exactly vanishing difference contradicts the relation, as for < and !=
+    goals       : expressions whose lowest place is worth a try
+    """
+    symbols = sorted(difference.free_symbols | set().union(*(s.free_symbols for s in sides)), key=str)
+    limits = ranges(symbols, box)
+    places = itertools.chain(
+        points(symbols, box, ORDINARY), special_points(limits), *(descents(goal, limits) for goal in goals)
+    )
+    positive = negative = touching = None
+    for point in places:
+        ball = sharp_value(difference, point, sides)
+        if ball is None:
+            continue
+        if excludes(ball):
+            return Look(point, ball)
+        if zero_breaks and ball.contains(0) and is_zero_at(difference, point):
+            return Look(point, arb(0), exact=True)
+        touching = point if zero_breaks and abs(ball) < TOUCHING else touching
+        positive = point if positive is None and ball > 0 else positive
+        negative = point if negative is None and ball < 0 else negative
+    return Look(positive=positive, negative=negative, touching=touching)
+
+
+def sharp_value(difference: sp.Expr, point: Point, sides: Sequence[sp.Expr]) -> arb | None:
+    """Ball of the difference with many bits; None where a side has no value.
+
+    A ball across a jump, such as that of ``atan2(sin(T), cos(T))`` at pi, says nothing; there the exact
+    values of the functions are put in first.
+    """
+    try:
+        if not all(value_at(tape(side), point, BITS).is_finite() for side in sides):
+            return None
+        ball = value_at(tape(difference), point, BITS)
+        if ball.is_finite() and (not ball.contains(0) or ball.rad() < SHARP):
+            return ball
+        ball = enclose(tape(difference.subs(point)), {}, BITS)
+    except (UnsupportedError, OutsideLanguageError):
+        return None
+    return ball if ball.is_finite() else None
+
+
+def is_zero_at(difference: sp.Expr, point: Point) -> bool:
+    try:
+        return is_zero(difference.subs(point))
+    except (UnsupportedError, OutsideLanguageError):
+        return False
+
+
+# -- special points ---------------------------------------
+
+
+def special_points(limits: dict[sp.Symbol, Range]) -> Iterator[Point]:
+    """Corners, diagonals, and points far out or near an end: one symbol at a time, and all at once."""
+    if not limits:
+        return
+    ends = {symbol: edge_values(limit) for symbol, limit in limits.items()}
+    yield from diagonals(limits)
+    yield from corners(ends)
+    home = {symbol: home_value(limit) for symbol, limit in limits.items()}
+    for symbol, values in ends.items():
+        yield from ({**home, symbol: value} for value in values)
+    for step in range(max(map(len, ends.values()))):
+        yield {symbol: values[min(step, len(values) - 1)] for symbol, values in ends.items()}
+
+
+def edge_values(limit: Range) -> list[sp.Expr]:
+    """Ends of a range, and values near a finite end and far towards an infinite one."""
+    found: list[sp.Expr] = []
+    for end, inwards in ((limit.lower, 1), (limit.upper, -1)):
+        if end is None:
+            found += [-inwards * value for value in (*FAR, *NEAR)]
+        else:
+            found += [end, *(end + inwards * value for value in NEAR)]
+    return [value for value in found if limit.contains(value)] or [home_value(limit)]
+
+
+def home_value(limit: Range) -> sp.Expr:
+    """An ordinary value of the range."""
+    if limit.lower is not None and limit.upper is not None:
+        middle = (limit.lower + limit.upper) / 2
+        return middle if limit.contains(middle) else limit.lower
+    if limit.lower is not None:
+        return limit.lower + 1
+    return limit.upper - 1 if limit.upper is not None else sp.Integer(1)
+
+
+def corners(ends: dict[sp.Symbol, list[sp.Expr]]) -> Iterator[Point]:
+    """Both outermost values of every symbol, up to 64 combinations."""
+    pairs = [(values[0], values[-1]) for values in ends.values()]
+    for corner in itertools.islice(itertools.product(*pairs), 64):
+        yield dict(zip(ends, corner, strict=True))
+
+
+def diagonals(limits: dict[sp.Symbol, Range]) -> Iterator[Point]:
+    """All symbols equal, opposite, and every pair equal."""
+    symbols = list(limits)
+    home = {symbol: home_value(limit) for symbol, limit in limits.items()}
+    groups = [tuple(symbols), *(itertools.combinations(symbols, 2) if len(symbols) > 2 else ())]
+    for group, value in itertools.product(groups[:16], AWKWARD):
+        for signs in ((1,) * len(group), (1,) + (-1,) * (len(group) - 1)):
+            point = {**home, **{s: sign * value for s, sign in zip(group, signs, strict=True)}}
+            if all(limits[symbol].contains(point[symbol]) for symbol in group):
+                yield point
+
+
+# -- where the difference is lowest ---------------------------------------
+
+
+def descents(goal: sp.Expr, limits: dict[sp.Symbol, Range]) -> Iterator[Point]:
+    """The lowest places that a descent finds, with every coordinate snapped in the same way."""
+    if not limits or any(limit.integer for limit in limits.values()):
+        return
+    for place in lowest(goal, limits):
+        for snap in snappings():
+            point = {symbol: snap(place[symbol]) for symbol in limits}
+            if all(limits[symbol].contains(value) for symbol, value in point.items()):
+                yield point
+
+
+def snappings() -> Iterator[Callable[[Fraction], sp.Expr]]:
+    """Ways to round a coordinate to a simple exact number."""
+    yield from (partial(to_rational, denominator) for denominator in DENOMINATORS)
+    yield from (partial(to_turns, denominator) for denominator in (6, 24))
+
+
+def to_rational(denominator: int, value: Fraction) -> sp.Expr:
+    return rational(value.limit_denominator(denominator))
+
+
+def to_turns(denominator: int, value: Fraction) -> sp.Expr:
+    """The nearest simple multiple of pi."""
+    return sp.pi * rational((value / Fraction(math.pi)).limit_denominator(denominator))
+
+
+def rational(value: Fraction) -> sp.Rational:
+    return sp.Rational(value.numerator, value.denominator)

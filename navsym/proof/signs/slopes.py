@@ -1,0 +1,248 @@
+"""Signs by derivatives, squares, cases and quotients: each way asks the same question about something simpler.
+
+A way is a function of the expression, the ranges, the wanted sign and ``prove``, which it calls for what is
+left to show; it returns unknown when that fails.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from itertools import pairwise
+
+import sympy as sp
+
+from navsym.proof.balls import exact_ball
+from navsym.proof.identities.cases import half_range
+from navsym.proof.identities.logarithms import factored
+from navsym.proof.identities.normal_form import (
+    divisors_inside,
+    logarithms_inside,
+    radicands_inside,
+    vanishes_identically,
+)
+from navsym.proof.identities.numbers import is_zero
+from navsym.proof.sampling.points import Range
+from navsym.proof.signs.contacts import guessed_points
+from navsym.proof.signs.known import UNKNOWN, Limits, Sign, SignProof
+
+Prove = Callable[[sp.Expr, Limits, Sign], SignProof]
+
+#: Functions with jumps, whose derivative says nothing about the jump.
+JUMPING = (sp.atan2, sp.sign, sp.Max, sp.Min)
+BENT = (*JUMPING, sp.Abs)
+MOST_DERIVATIVES = 7
+
+
+def own(limits: Limits, expression: sp.Expr) -> dict[sp.Symbol, Range]:
+    """The ranges of the symbols that occur."""
+    return {s: limits[s] for s in expression.free_symbols}
+
+
+def is_defined(expression: sp.Expr, limits: Limits, prove: Prove) -> bool:
+    """No divisor, radicand or argument of a logarithm leaves its range: the expression is continuous.
+
+    Factoring may cancel a pole, and so may a derivative: that of atan(tan(x)) is 1.
+    """
+
+    def reaches(inside: sp.Basic, wanted: Sign) -> bool:
+        return prove(inside, own(limits, inside), wanted).at_least(wanted)
+
+    positive, zero = Sign.POSITIVE, Sign.NONNEGATIVE
+    return (
+        all(reaches(d, positive) or reaches(-d, positive) for d in dict.fromkeys(divisors_inside(expression)))
+        and all(reaches(r, zero) for r in dict.fromkeys(radicands_inside(expression)))
+        and all(reaches(a, positive) for a in dict.fromkeys(logarithms_inside(expression)))
+    )
+
+
+def left_out(limit: Range) -> bool:
+    """True when the lower end does not belong to the range."""
+    return limit.open_lower or (limit.nonzero and limit.lower == 0)
+
+
+def by_monotony(expression: sp.Expr, limits: Limits, wanted: Sign, prove: Prove) -> SignProof:
+    """Reduce to the end of one range at which the expression is smallest."""
+    if expression.has(*JUMPING) or not is_defined(expression, limits, prove):
+        return UNKNOWN
+    for symbol, limit in own(limits, expression).items():
+        if limit.integer:
+            continue  # sympy simplifies derivatives by it, cos(2 pi n) = 1 say
+        slope = sp.diff(expression, symbol)
+        for direction, end in ((1, limit.lower), (-1, limit.upper)):
+            at_end = sp.nan if end is None else expression.subs(symbol, end)
+            if at_end.has(sp.nan, sp.zoo, sp.oo):
+                continue
+            floor = prove(at_end, own(limits, at_end), Sign.NONNEGATIVE)
+            if floor.sign == Sign.UNKNOWN:
+                continue
+            rising = prove(direction * slope, limits, Sign.NONNEGATIVE)
+            if rising.sign == Sign.UNKNOWN:
+                continue
+            lifted = direction == 1 and left_out(limit) and rising.sign == Sign.POSITIVE
+            sign = Sign.POSITIVE if floor.sign == Sign.POSITIVE or lifted else Sign.NONNEGATIVE
+            if sign >= wanted:
+                exact = floor.exact and rising.exact
+                return SignProof(sign, f"monotone in {symbol}", floor.boxes + rising.boxes, exact)
+    return UNKNOWN
+
+
+def by_taylor(expression: sp.Expr, limits: Limits, wanted: Sign, simple: Prove) -> SignProof:
+    """f and its derivatives up to k - 1 nonnegative at an end of one range, and the k-th one on the whole range.
+
+    At an upper end the derivatives of odd order count with the other sign. Every derivative has to exist on
+    the whole range: a kink would be invisible in the higher ones.
+    """
+    if expression.has(*BENT) or not is_defined(expression, limits, simple):
+        return UNKNOWN
+    for symbol, limit in own(limits, expression).items():
+        if limit.integer:
+            continue  # sympy simplifies derivatives by it, cos(2 pi n) = 1 say
+        for direction, end in ((1, limit.lower), (-1, limit.upper)):
+            if end is None:
+                continue
+            proof = taylor_at(expression, symbol, (end, direction), limits, simple)
+            if proof.at_least(wanted):
+                return proof
+    return UNKNOWN
+
+
+def taylor_at(
+    expression: sp.Expr, symbol: sp.Symbol, end: tuple[sp.Expr, int], limits: Limits, simple: Prove
+) -> SignProof:
+    """One symbol and one end of its range."""
+    place, direction = end
+    derivative, floor, exact, strict = expression, Sign.POSITIVE, True, False
+    for order in range(1, MOST_DERIVATIVES):
+        value = derivative.subs(symbol, place)
+        if value.has(sp.nan, sp.zoo, sp.oo):
+            return UNKNOWN
+        at_end = simple(value, own(limits, value), Sign.NONNEGATIVE)
+        if at_end.sign == Sign.UNKNOWN:
+            return UNKNOWN
+        floor = at_end.sign if order == 1 else floor
+        strict = strict or at_end.sign == Sign.POSITIVE
+        slope = direction * sp.diff(derivative, symbol)
+        if not is_defined(slope, limits, simple):
+            return UNKNOWN
+        derivative = factored(slope)
+        rest = simple(derivative, limits, Sign.NONNEGATIVE)
+        exact = exact and at_end.exact and rest.exact
+        if rest.sign != Sign.UNKNOWN:
+            rising = strict or rest.sign == Sign.POSITIVE
+            inside = direction == 1 and left_out(limits[symbol]) and rising
+            sign = Sign.POSITIVE if floor == Sign.POSITIVE or inside else Sign.NONNEGATIVE
+            words = f"derivatives at {symbol} = {place} not negative, nor that of order {order} anywhere"
+            return SignProof(sign, words, at_end.boxes + rest.boxes, exact)
+    return UNKNOWN
+
+
+def between_contacts(expression: sp.Expr, limits: Limits, wanted: Sign, prove: Prove) -> SignProof:
+    """Zeros of even order inside one range, at guessed exact points; the parts between them are proved apart."""
+    if wanted > Sign.NONNEGATIVE or expression.has(*JUMPING):
+        return UNKNOWN
+    for symbol, limit in own(limits, expression).items():
+        if limit.integer:
+            continue
+        contacts = contacts_of(expression, symbol, limit)
+        if not contacts:
+            continue
+        ends = [limit.lower, *contacts, limit.upper]
+        parts = [Range(a, b) for a, b in pairwise(ends)]
+        parts[0] = replace(parts[0], open_lower=limit.open_lower)
+        proofs = []
+        for part in parts:
+            proofs.append(prove(expression, {**limits, symbol: part}, wanted))
+            if not proofs[-1].at_least(wanted):
+                break
+        else:
+            places = ", ".join(map(str, contacts))
+            boxes, exact = sum(proof.boxes for proof in proofs), all(proof.exact for proof in proofs)
+            return SignProof(Sign.NONNEGATIVE, f"zero at {symbol} = {places}, proved between", boxes, exact)
+    return UNKNOWN
+
+
+def contacts_of(expression: sp.Expr, symbol: sp.Symbol, limit: Range) -> list[sp.Expr]:
+    """Inner points, in order, at which the expression vanishes whatever the other symbols are."""
+    guesses = guessed_points(limit)
+    several = len(expression.free_symbols) > 1
+    found = [p for p in (guesses[:4] if several else guesses) if vanishes_at(expression, symbol, p)]
+    return sorted(found, key=lambda point: float(exact_ball(point).mid()))
+
+
+def vanishes_at(expression: sp.Expr, symbol: sp.Symbol, point: sp.Expr) -> bool:
+    value = expression.subs(symbol, point)
+    if value.has(sp.nan, sp.zoo, sp.oo):
+        return False
+    return vanishes_identically(value) if value.free_symbols else is_zero(value)
+
+
+def by_squares(expression: sp.Expr, limits: Limits, wanted: Sign, prove: Prove) -> SignProof:
+    """L - R is not negative when L is not and L**2 - R**2 is not: what roots need."""
+    if not isinstance(expression, sp.Add) or not has_root(expression) or not is_defined(expression, limits, prove):
+        return UNKNOWN
+    for left, right in sides_of(expression):
+        squares = sp.expand(left**2 - right**2)
+        if squares.count_ops() > 4 * expression.count_ops() + 40:
+            continue
+        proof = prove(squares, own(limits, squares), wanted)
+        if not proof.at_least(wanted):
+            continue
+        side = prove(left, own(limits, left), Sign.NONNEGATIVE)
+        if side.sign != Sign.UNKNOWN:
+            reason = f"squares of {left} and {right}; {proof.reason}"
+            return replace(proof, reason=reason, exact=proof.exact and side.exact)
+    return UNKNOWN
+
+
+def has_root(expression: sp.Expr) -> bool:
+    return any(p.exp.is_Rational and not p.exp.is_Integer for p in expression.atoms(sp.Pow))
+
+
+def sides_of(expression: sp.Add) -> list[tuple[sp.Expr, sp.Expr]]:
+    """The expression as L - R: by the signs of the terms, and with the roots on one side."""
+    minus = sp.Add(*(term for term in expression.args if term.could_extract_minus_sign()))
+    rooted = sp.Add(*(term for term in expression.args if has_root(term)))
+    rest = expression - rooted
+    candidates = [(expression - minus, -minus), (rooted, -rest), (rest, -rooted)]
+    return [pair for pair in dict.fromkeys(candidates) if pair[0] != 0 and pair[1] != 0]
+
+
+def by_values(expression: sp.Expr, limits: Limits, wanted: Sign, prove: Prove) -> SignProof:
+    """An absolute value by cases: the parts of the range for |x|, both signs everywhere for |u|."""
+    values = sorted(expression.atoms(sp.Abs), key=sp.default_sort_key)
+    inner = next((value for value in values if not value.args[0].has(sp.Abs)), None)
+    if inner is None:
+        return UNKNOWN
+    proofs = []
+    for sign in signs_of(inner.args[0], limits, prove):
+        narrowed = half_range(limits, inner.args[0], sign)
+        if narrowed is not None:
+            case = expression.xreplace({inner: sign * inner.args[0]})
+            proofs.append(prove(case, own(narrowed, case), wanted))
+            if not proofs[-1].at_least(wanted):
+                return UNKNOWN
+    worst = min(proofs, key=lambda proof: proof.sign)
+    return replace(worst, reason=f"both signs of {inner}; {worst.reason}", exact=all(p.exact for p in proofs))
+
+
+def signs_of(inside: sp.Expr, limits: Limits, prove: Prove) -> tuple[int, ...]:
+    """The signs that the inside of an absolute value may have on the box."""
+    if isinstance(inside, sp.Symbol):
+        return (1, -1)
+    proved = [s for s in (1, -1) if prove(s * inside, own(limits, inside), Sign.NONNEGATIVE).sign != Sign.UNKNOWN]
+    return (proved[0],) if proved else (1, -1)
+
+
+def by_quotient(expression: sp.Expr, limits: Limits, wanted: Sign, prove: Prove) -> SignProof:
+    """A sum of fractions as one: the signs of its numerator and of its denominator."""
+    top, bottom = sp.fraction(sp.together(expression))
+    if not bottom.free_symbols or top == expression or not vanishes_identically(expression - top / bottom):
+        return UNKNOWN
+    below = prove(bottom, own(limits, bottom), Sign.POSITIVE)
+    if below.sign != Sign.POSITIVE or not is_defined(expression, limits, prove):
+        return UNKNOWN
+    above = prove(sp.expand(top), own(limits, top), wanted)
+    if not above.at_least(wanted):
+        return UNKNOWN
+    return replace(above, reason=f"over {bottom}: {above.reason}", exact=above.exact and below.exact)

@@ -1,0 +1,1 @@
+"""Formulas for reading: from text to MathML and LaTeX."""

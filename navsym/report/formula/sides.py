@@ -1,0 +1,57 @@
+"""Formulas of records for reading: both sides of a claim, set in type as they stand.
+
+Records hold the sides as text in the language of files. What is not a formula comes back without MathML and LaTeX, and
+its owner shows the plain text.
+"""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass
+
+from markupsafe import Markup
+
+from navsym.report.formula.notation import LATEX, MATHML
+from navsym.report.formula.reader import read_formula
+from navsym.report.formula.writer import write
+
+FOLDED = 700
+
+
+@dataclass(frozen=True, slots=True)
+class Formula:
+    """A side of a claim: its text, and its MathML and LaTeX where it is a formula."""
+
+    text: str
+    mathml: Markup | None
+    latex: str | None
+
+    @property
+    def long(self) -> bool:
+        """True for what is folded away until a reader asks for it."""
+        return len(self.text) > FOLDED
+
+
+@functools.lru_cache(maxsize=4096)
+def formula(text: str) -> Formula:
+    """A side of a claim, set in type where it can be."""
+    written = mathml(text) if text not in ("", "True", "False") else None
+    return Formula(text, None, None) if written is None else Formula(text, Markup(written), latex(text))
+
+
+def mathml(text: str) -> str | None:
+    """MathML of a formula, one element for each part between semicolons; None for what is not a formula."""
+    node = read_formula(text)
+    if node is None:
+        return None
+    several = node.kind == "list" and node.text == ";"
+    bodies = [write(part, MATHML) for part in (node.parts if several else (node,))]
+    return "".join(
+        f'<math xmlns="http://www.w3.org/1998/Math/MathML" display="block">{body}</math>' for body in bodies
+    )
+
+
+def latex(text: str) -> str | None:
+    """LaTeX of a formula, for a display of its own; or None."""
+    node = read_formula(text)
+    return None if node is None else write(node, LATEX)
