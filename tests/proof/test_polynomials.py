@@ -146,3 +146,11 @@ def test_absolute_values_are_taken_in_both_cases():
     assert not vanishes_in_all_cases(sp.Abs(x) - x)
     assert not vanishes_in_all_cases(sp.Abs(x + y) - sp.Abs(x) - sp.Abs(y))
     assert not vanishes_in_all_cases(sp.sqrt(x**2 - 2 * x + 1) - (x - 1))
+
+
+def test_a_bound_that_is_monotone_in_one_symbol_may_come_within_a_hair_of_zero_in_the_other():
+    s, u, cos, sin = sp.Symbol("s", positive=True), sp.Symbol("u", real=True), sp.cos, sp.sin
+    top = sp.Rational("3.6609754434249038385")
+    f = -s * sin(2 * u) + (1 - cos(2 * u)) * (-s * sin(2) - 1 + cos(2)) / (cos(2) - 1) + cos(2 * u) + 1
+    assert prove_sign(f, {s: (sp.Rational(1, 10), top), u: (0, 1)}).sign >= Sign.NONNEGATIVE
+    assert prove_sign(f, {s: (sp.Rational(1, 10), top + sp.Rational(1, 10**9)), u: (0, 1)}).sign == Sign.UNKNOWN

@@ -103,7 +103,7 @@ def lost_digits(basis: Basis) -> int:
 def touch(problem: Problem, basis: Basis, found: Polished, digits: int, bits: int) -> Certified | None:
     """The exact-contact certificate, or None when one of its tests fails."""
     loss = lost_digits(basis)
-    places = digits + 10
+    places = digits + 10 + loss // 2  # the digits that cancel in x . H widen what a checker sees of a box
     with precision(bits):
         spread = spreads(problem, basis, found, places)
         centre = [exact(decimal(c, places + loss + 8)) for c in unknowns(found)]

@@ -102,7 +102,7 @@ def by_balls(expression: sp.Expr, limits: Limits, wanted: Sign, budget: int, dep
 
 def by_forms(expression: sp.Expr, limits: Limits, wanted: Sign, budget: int, depth: int) -> SignProof:
     """Products, ranges of angles, least values, corners: exact, and no box is divided."""
-    product = as_product(expression) if depth == 0 else None
+    product = as_product(expression) if depth <= 1 else None
     if product is not None:
         by_product = product_sign(product, limits, budget, depth)
         if by_product.at_least(wanted) and exists(expression, limits, budget, depth):
