@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
@@ -10,6 +11,7 @@ from typing import Literal
 from navsym.claims.display import card, verdict_words
 from navsym.claims.statement import Statement
 from navsym.claims.verdict import PROVED, Status
+from navsym.errors import MissingEngineError
 
 Slip = Literal["paper", "scan"]
 
@@ -90,6 +92,8 @@ def module_of(derive: Callable[[], Statement]) -> str:
 
 def first_line(derive: Callable[[], Statement]) -> str:
     text = (derive.__doc__ or "").strip()
+    if not text and sys.flags.optimize > 1:
+        raise MissingEngineError("expected Python with docstrings, which hold titles; got -OO; run it without -OO")
     if not text:
         raise ValueError(f"{derive.__name__}: a claim needs a docstring, its first line is the title")
     return text.splitlines()[0].strip()

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import subprocess
+import sys
 
 import pytest
 
@@ -64,3 +66,10 @@ def test_cite_gives_bibtex_of_paper_and_verdict(capsys):
 def test_an_id_that_is_none_gets_advice(capsys, verb, wanted, hint):
     status, answer = document(capsys, verb, wanted)
     assert status == 2 and answer["error"]["kind"] == "domain" and hint in answer["error"]["message"]
+
+
+def test_python_without_docstrings_is_refused_in_one_line():
+    words = [sys.executable, "-OO", "-m", "navsym", "show", REMARK]
+    done = subprocess.run(words, capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 3 and done.stderr.startswith("navsym: missing: expected Python with docstrings")
+    assert len(done.stderr.splitlines()) == 1
