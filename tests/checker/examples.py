@@ -147,9 +147,22 @@ OFFSET = CONSTANT | alone(["1.0000003"], [(0, "0", "1.0000002")], ["0.000001"] *
     "lower": "0.99999999", "upper": "1.00000001",
 }  # fmt: skip
 DIGITS = CELLS | {"bits": 20000, "cells": 2000}
+# Announced work: none, and as much as a precision of a thousand bits allows.
+AT_ONCE = CELLS | {"expression": "x + 1", "cells": 0}
+NO_CELLS, MANY_CELLS = GAP | {"cells": 0}, GAP | {"bits": 1000, "cells": 15000}
+# A wave that comes near its bound so often that one announced cell less is too few.
+TIGHT = EXACT | {
+    "bits": 64, "cells": 210, "dual": ["99/100"], "support": [[0, "1/97"]], "upper": "1000",
+    "panels": [{"measurement": 0, "from": "0", "to": "10", "sigma": "1", "H": ["sin(20*t)"]}],
+}  # fmt: skip
+KERNEL = AT_ONCE | {"expression": "exp_2(1) + x"}
+NOTHING = {
+    "kind": "rank", "matrix": [["a - a", "0"]], "symbols": ["a"], "rank": 0, "point": {"a": "1"}, "rows": [],
+    "null": [["1", "0"], ["0", "1"]],
+}  # fmt: skip
 ALL = {"kind": "all", "of": [IDENTITY, RANK]}
 GOOD = [
     IDENTITY, ROW, OFFSET, DIGITS, EXPONENTIAL, RANK, POSITIVITY, EDGE, CELLS, ALL,
-    GAP, EXACT, SLIVER, TOUCH, PARABOLA, CONSTANT, FLAT,
+    TIGHT, KERNEL, NOTHING, AT_ONCE, NO_CELLS, MANY_CELLS, GAP, EXACT, SLIVER, TOUCH, PARABOLA, CONSTANT, FLAT,
     FLAT_LEFT, RANGE, MOVING, SLOPES,
 ]  # fmt: skip

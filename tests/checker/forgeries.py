@@ -16,6 +16,7 @@ from flint import arb, arb_series, ctx
 
 from tests.checker.examples import (
     ALL,
+    AT_ONCE,
     CELLS,
     CONSTANT,
     DIGITS,
@@ -35,6 +36,7 @@ from tests.checker.examples import (
     RANK,
     SLIVER,
     SLOPES,
+    TIGHT,
     TOUCH,
     alone,
 )
@@ -89,8 +91,23 @@ TWICE = {
 }  # fmt: skip
 # The box of the first weight reaches from one sign to the other.
 SIGNED = TWICE | alone(["0", "1"], [(0, "0", "0.1"), (1, "0", "2")], ["5"] * 4)
+# A wave that touches the bound in the middle, bends down there, and rises above it towards both ends.
+WAVE = STATIONARY | {
+    "panels": [{"measurement": 0, "from": "0", "to": "1", "sigma": "1", "H": ["1 - (t - 1/2)**2/10 + (t - 1/2)**4"]}],
+    **alone(["1"], [(0, "1/2", "1")], ["0.0001"] * 3),
+}  # fmt: skip
+# The same, bent down so far that it falls through the other bound.
+DIP = changed(WAVE, ["panels", 0, "H"], ["1 - 10*(t - 1/2)**2"])
+# A kernel beyond the ball on which its series is summed, reached with a panel of length one.
+BEYOND = EXACT | {"panels": [{"measurement": 0, "from": "1", "to": "2", "sigma": "1", "H": ["exp_2(t)"]}]}
 ONE = ["pieces", 0]
 FORGERIES = [
+    (WAVE, ["kind"], "touch", "is not shown"),
+    (DIP, ["kind"], "touch", "is not shown"),
+    (BEYOND, ["kind"], "gap", "beyond 1"),
+    (AT_ONCE, ["expression"], "exp_2(3/2) + x", "beyond 1"),
+    (CELLS, ["bits"], 20001, "integer from"),
+    (TIGHT, ["cells"], 209, "is not shown"),
     (STATIONARY, ["kind"], "touch", "outside its panel"),
     (LEFT, [*LINE, "at"], ["-1"], "outside its panel"),
     (TWICE, ["kind"], "touch", "Krawczyk"),
@@ -322,8 +339,11 @@ EQUAL = [
     (f"0*x**999 + 0*sqrt({2**100 - 1})", "0"),
     ("1/(1 + 1/(1 + 1/x))", "(x + 1)/(2*x + 1)"),
     ("cos(x/5040)**2", "1 - sin(x/5040)**2"),
+    ("cos(pi/5040) + cos(pi/5040 + 2*pi/3) + cos(pi/5040 + 4*pi/3)", "0"),
+    ("(T + x + y + lambda + a_1 + 1 + pi + exp(T))**2", "(a_1 + lambda + y + x + T + exp(T) + pi + 1)**2"),
 ]  # fmt: skip
 UNEQUAL = [
+    ("2**(1/3)", "1"),
     ("sqrt(x**2)", "x"),
     ("sqrt(x)*sqrt(y)", "sqrt(x*y)"),
     ("abs(x)", "x"),
