@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import factorial
+
 VELOCITY = {"measurement": 0, "from": "0", "to": "2", "sigma": "1", "H": ["1", "t"]}
 # A problem without a parameter names one that occurs nowhere, and goes from zero to zero.
 NONE = {"parameter": "none", "from": "0", "to": "0"}
@@ -155,6 +157,17 @@ TIGHT = EXACT | {
     "bits": 64, "cells": 210, "dual": ["99/100"], "support": [[0, "1/97"]], "upper": "1000",
     "panels": [{"measurement": 0, "from": "0", "to": "10", "sigma": "1", "H": ["sin(20*t)"]}],
 }  # fmt: skip
+# With three panels more the cells are 4 cells + 200 to the last, which is one too many.
+MORE = [{"measurement": k, "from": "0", "to": "1", "sigma": "1", "H": ["t/9"]} for k in (1, 2, 3)]
+EVEN = TIGHT | {"panels": [*TIGHT["panels"], *MORE]}
+
+
+def remainder(tenths):
+    """exp_0(-1) - exp(-1) and so many tenths of 1/60!: the series of the kernel is cut at that size."""
+    return f"0*x + exp_0(0 - 1) - exp(0 - 1) + {tenths}/{10 * factorial(60)}"
+
+
+REMAINDER = {"kind": "positivity", "expression": remainder(43), "bits": 400, "cells": 0, "box": {"x": ["0", "1"]}}
 KERNEL = AT_ONCE | {"expression": "exp_2(1) + x"}
 NOTHING = {
     "kind": "rank", "matrix": [["a - a", "0"]], "symbols": ["a"], "rank": 0, "point": {"a": "1"}, "rows": [],
@@ -163,6 +176,7 @@ NOTHING = {
 ALL = {"kind": "all", "of": [IDENTITY, RANK]}
 GOOD = [
     IDENTITY, ROW, OFFSET, DIGITS, EXPONENTIAL, RANK, POSITIVITY, EDGE, CELLS, ALL,
-    TIGHT, KERNEL, NOTHING, AT_ONCE, NO_CELLS, MANY_CELLS, GAP, EXACT, SLIVER, TOUCH, PARABOLA, CONSTANT, FLAT,
+    TIGHT, REMAINDER, KERNEL, NOTHING, AT_ONCE, NO_CELLS, MANY_CELLS,
+    GAP, EXACT, SLIVER, TOUCH, PARABOLA, CONSTANT, FLAT,
     FLAT_LEFT, RANGE, MOVING, SLOPES,
 ]  # fmt: skip

@@ -21,6 +21,7 @@ from tests.checker.examples import (
     CONSTANT,
     DIGITS,
     EDGE,
+    EVEN,
     EXACT,
     EXPONENTIAL,
     FLAT,
@@ -34,11 +35,13 @@ from tests.checker.examples import (
     POSITIVITY,
     RANGE,
     RANK,
+    REMAINDER,
     SLIVER,
     SLOPES,
     TIGHT,
     TOUCH,
     alone,
+    remainder,
 )
 
 
@@ -98,11 +101,26 @@ WAVE = STATIONARY | {
 }  # fmt: skip
 # The same, bent down so far that it falls through the other bound.
 DIP = changed(WAVE, ["panels", 0, "H"], ["1 - 10*(t - 1/2)**2"])
+# Bent up a little more slowly than the wave; and a line at the start of the panel that turns and climbs over the bound.
+SWELL = changed(WAVE, ["panels", 0, "H"], ["1 - (t - 1/2)**2/10 + 21/50*(t - 1/2)**4"])
+CLIMB = WAVE | {
+    "panels": [{"measurement": 0, "from": "0", "to": "1", "sigma": "1", "H": ["1 - t/10 + t**2/5"]}],
+    **alone(["1"], [(0, "0", "1")], ["0.0001"] * 2),
+}  # fmt: skip
+# The contact stands a little farther from the stationary point than its radius.
+SHIFTED = changed(WAVE, ["panels", 0, "H"], ["1 - (t - 1/2)**2"]) | alone(
+    ["1"], [(0, "0.50025", "1")], ["0.0002"] * 3
+)
 # A kernel beyond the ball on which its series is summed, reached with a panel of length one.
 BEYOND = EXACT | {"panels": [{"measurement": 0, "from": "1", "to": "2", "sigma": "1", "H": ["exp_2(t)"]}]}
 ONE = ["pieces", 0]
 FORGERIES = [
     (WAVE, ["kind"], "touch", "is not shown"),
+    (SWELL, ["kind"], "touch", "is not shown"),
+    (CLIMB, ["kind"], "touch", "is not shown"),
+    (SHIFTED, ["kind"], "touch", "Krawczyk"),
+    (REMAINDER, ["expression"], remainder(37), "not shown to be positive"),
+    (EVEN, ["kind"], "gap", "is not shown"),
     (DIP, ["kind"], "touch", "is not shown"),
     (BEYOND, ["kind"], "gap", "beyond 1"),
     (AT_ONCE, ["expression"], "exp_2(3/2) + x", "beyond 1"),
