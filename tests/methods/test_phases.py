@@ -213,3 +213,20 @@ def test_a_boundary_that_is_not_located_is_enclosed_by_what_is_proved_on_both_si
     (edge,) = answer.boundaries
     assert not edge.proved and "not enclosed" in edge.why
     assert sp.Rational(edge.lower) <= 2 * sp.pi / 3 <= sp.Rational(edge.upper)
+
+
+@pytest.mark.slow
+def test_the_position_measured_model_is_complete_with_four_boundaries_of_thirty_digits():
+    document = {
+        "model": {
+            "name": "position", "states": ["y1", "y2", "y3", "x"],
+            "F": [["0", "-1", "0", "0"], ["0", "0", "1", "0"], ["0", "-1", "0", "0"], ["1", "0", "0", "0"]],
+        },
+        "parameters": {"T": ["0", "2*pi"]}, "interval": {"T": "T"},
+        "measurement": [{"name": "position", "h": ["0", "0", "0", "1"], "sigma": "1"}],
+    }  # fmt: skip
+    answer = phases(family_of(model_from(document), "y3", "T"), sp.Integer(0), 2 * sp.pi)
+    assert answer.uncovered == () and len(answer.boundaries) == 4
+    widths = [sp.Rational(b.upper) - sp.Rational(b.lower) for b in answer.boundaries]
+    assert all(b.proved for b in answer.boundaries) and max(widths) < sp.Rational(1, 10**29)
+    assert set(accepted(answer)) <= {"all", "sliver", "range"}

@@ -40,6 +40,8 @@ from navsym.text.expression import to_text
 POINTS = 5
 #: Next to a singular value this part of the range is left, and named in ``uncovered``.
 MARGIN = Fraction(1, 100_000)
+#: A span below this part of the range is given up when its neighbours are proved to meet.
+SHORT = Fraction(1, 500)
 DIGITS = 34
 
 
@@ -188,7 +190,7 @@ def stretch(
 ) -> Phases:
     """All regimes between two values without a singular one inside."""
     low, high = inner_range(lower, upper, singular)
-    spans = scan(family, low, high, step=steps.did)
+    spans = without_accidents(family, scan(family, low, high, step=steps.did))
     steps.found(len(spans))
     guesses = []
     for span in spans:
@@ -209,6 +211,23 @@ def stretch(
         steps.did(Steps.LOOKS)
     honest = tuple(b if b.proved else between(b, *pair) for b, pair in zip(changes, pairwise(regimes), strict=True))
     return Phases(family, lower, upper, tuple(regimes), honest, tuple(uncovered))
+
+
+def without_accidents(family: Family, spans: list[Span]) -> list[Span]:
+    """Spans without short ones between neighbours that are proved to follow each other: there contacts merge, and
+    the search in double precision takes one pattern for another."""
+    short = SHORT * (spans[-1].upper - spans[0].lower)
+    kept, rest = spans[:1], spans[1:]
+    while rest:
+        span = rest.pop(0)
+        if rest and span.upper - span.lower < short:
+            change = boundary(family, kept[-1], rest[0], None, None)
+            if change.proved:
+                cut = fraction_of(rational(enclose(middle_of(change), bits=200)))
+                kept[-1], rest[0] = replace(kept[-1], upper=cut), replace(rest[0], lower=cut)
+                continue
+        kept.append(span)
+    return kept
 
 
 def between(guess: Boundary, before: Regime, after: Regime) -> Boundary:

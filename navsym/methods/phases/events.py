@@ -134,15 +134,14 @@ def forced(family: Family, T: sp.Rational, pattern: Pattern, near: Contacts, nea
     return polish(family.exact(T).panels, new, start, BITS, GOAL)
 
 
-def anchor(family: Family, span: Span, edge: Fraction, side: int) -> tuple[Contacts, sp.Rational] | None:
-    """Contacts of the span's pattern a little inside it, next to the edge."""
+def anchors(family: Family, span: Span, edge: Fraction, side: int) -> Iterator[tuple[Contacts, sp.Rational]]:
+    """Contacts of the span's pattern inside it, farther and farther from the edge."""
     width = span.upper - span.lower
     for share in (Fraction(1, 500), Fraction(1, 100), Fraction(1, 20), Fraction(1, 5)):
         T = (edge + side * share * width).limit_denominator(10**7)
         _, contacts = sample(family, T, span.pattern)
         if pattern_of(contacts) == span.pattern:
-            return contacts, sp.Rational(T.numerator, T.denominator)
-    return None
+            yield contacts, sp.Rational(T.numerator, T.denominator)
 
 
 Others = Sequence[tuple[int, float, int]]
@@ -178,7 +177,7 @@ def in_words(room: Room, others: Others) -> str:
 def implicit(family: Family, left: Span, right: Span) -> Boundary:
     """The length at which a room of one of the two patterns closes; enclosed by two exact-contact proofs."""
     edge = left.upper
-    starts = [anchor(family, span, edge, side) for span, side in ((left, -1), (right, 1))]
+    starts = [next(anchors(family, span, edge, side), None) for span, side in ((left, -1), (right, 1))]
     for span, start, beyond in ((left, starts[0], starts[1]), (right, starts[1], starts[0])):
         if start is None:
             continue
@@ -269,13 +268,13 @@ def exact_decimal(x: sp.Rational) -> str:
 def proves(family: Family, span: Span, T: sp.Rational, side: int) -> bool:
     """True when exact contacts of the span's pattern are proved optimal at T."""
     edge = span.upper if side < 0 else span.lower
-    start = anchor(family, span, edge, side)
-    if start is None:
-        return False
-    found = forced(family, T, span.pattern, *start)
     problem = family.exact(T)
     basis = make_basis(problem)
-    return found.residual < 1e-45 and touch(problem, basis, found, 50, BITS) is not None
+    for start in anchors(family, span, edge, side):
+        found = forced(family, T, span.pattern, *start)
+        if found.residual < 1e-45 and touch(problem, basis, found, 50, BITS) is not None:
+            return True
+    return False
 
 
 __all__ = ["Boundary", "boundary", "rational"]
