@@ -96,7 +96,7 @@ def on_grid(problem, count=400):
     P = np.linalg.solve(R.T, np.array([float(p) for p in problem.functional]) / scale)
     size = np.abs(P).max()
     answer = linprog(np.ones(2 * count), A_eq=np.hstack([Q.T, -Q.T]), b_eq=P / size, method="highs")
-    return answer.fun * size if answer.success else None
+    return float(answer.fun * size) if answer.success else None
 
 
 def altered(item, rng):
