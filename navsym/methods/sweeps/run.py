@@ -145,7 +145,7 @@ def connected(workers: int, scheduler: str | None) -> Iterator[tuple[Any, Any]]:
             )
         try:
             client = stack.enter_context(Client(where, timeout=SECONDS_TO_CONNECT))
-        except (OSError, ValueError) as error:
+        except (OSError, ValueError, AssertionError) as error:  # dask asserts what an address may be
             message = f"expected a dask scheduler; got no answer ({error!s:.80}); start one: dask scheduler"
             raise MissingEngineError(message, where=str(scheduler)) from None
         yield client, as_completed
