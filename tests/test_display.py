@@ -40,7 +40,8 @@ def file():
 def test_importing_the_nouns_loads_no_engine_and_no_report():
     code = "import sys, navsym.claims; print([m for m in ('sympy', 'navsym.report.page', 'numpy') if m in sys.modules])"
     root = Path(__file__).parents[1]
-    done = subprocess.run([sys.executable, "-c", code], cwd=root, capture_output=True, text=True, check=True)
+    command = [sys.executable, "-c", code]
+    done = subprocess.run(command, cwd=root, capture_output=True, text=True, check=True, timeout=120)
     assert done.stdout.strip() == "[]"
 
 

@@ -52,7 +52,7 @@ def test_asking_does_not_load_typer():
     code = "import sys; from navsym.cli.main import run; run(['completion', 'words', 'navsym ver']); "
     done = subprocess.run(
         [sys.executable, "-c", code + "print('typer' in sys.modules)"],
-        cwd=ROOT, capture_output=True, text=True, check=True,
+        cwd=ROOT, capture_output=True, text=True, check=True, timeout=120,
     )  # fmt: skip
     assert done.stdout.split() == ["verify", "False"]
 
@@ -75,7 +75,8 @@ def test_the_shell_itself_completes_an_id_with_a_colon(shell, tmp_path):
     program.chmod(0o755)
     env = {**os.environ, "PATH": f"{tmp_path}:{os.environ['PATH']}", "PYTHONPATH": str(ROOT), "HOME": str(tmp_path)}
     env["LINE"] = "navsym explain guaranteed_velocity:4.3.u2"
-    done = subprocess.run([shell, "-c", ASK[shell]], env=env, capture_output=True, text=True, check=True)
+    ends = {"stdin": subprocess.DEVNULL, "capture_output": True, "text": True, "timeout": 120}
+    done = subprocess.run([shell, "-c", ASK[shell]], env=env, check=True, **ends)
     found = [word.removeprefix("guaranteed_velocity:") for word in done.stdout.split()]
     assert found == ["4.3.u2", "4.3.u2*"]
 

@@ -217,7 +217,8 @@ def test_a_broken_pipe_inside_a_verb_is_silent(
 
 def navsym(*words: str, **options: object) -> subprocess.CompletedProcess[bytes]:
     """The program as a process."""
-    return subprocess.run([sys.executable, "-m", "navsym", *words], capture_output=True, **options)  # type: ignore[call-overload, no-any-return]
+    command = [sys.executable, "-m", "navsym", *words]
+    return subprocess.run(command, capture_output=True, timeout=120, **options)  # type: ignore[call-overload, no-any-return]
 
 
 def test_the_module_and_the_console_script_are_the_same_program() -> None:
@@ -246,7 +247,7 @@ def test_a_reader_that_goes_away_causes_no_noise() -> None:
     os.close(read)
     try:
         done = subprocess.run(
-            [sys.executable, "-m", "navsym", "--help"], stdout=write, stderr=subprocess.PIPE, check=False
+            [sys.executable, "-m", "navsym", "--help"], stdout=write, stderr=subprocess.PIPE, check=False, timeout=120
         )
     finally:
         os.close(write)

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 NAMES = ("chromium", "chromium-browser", "google-chrome")
+PATIENCE = 60.0          # seconds for one command, whatever else the browser has to tell
 
 
 def found() -> str | None:
@@ -32,7 +33,8 @@ class Browser:
         ]  # fmt: skip
         self.process = subprocess.Popen(
             ["bash", "-c", f'exec "$@" 3<&{child_in} 4>&{child_out}', "bash", *command],
-            pass_fds=(child_in, child_out), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+            pass_fds=(child_in, child_out), stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
         )  # fmt: skip
         os.close(child_in)
         os.close(child_out)
@@ -51,20 +53,24 @@ class Browser:
         if session:
             message["sessionId"] = session
         os.write(self.write_end, json.dumps(message).encode() + b"\0")
+        end = time.monotonic() + PATIENCE
         while True:
-            answer = self.message()
+            answer = self.message(end)
             if answer.get("id") == self.count:
                 assert "error" not in answer, answer
                 return answer["result"]
             self.note(answer)
 
-    def message(self, seconds: float = 30.0) -> dict[str, Any]:
-        end = time.monotonic() + seconds
+    def message(self, end: float) -> dict[str, Any]:
+        """The next answer or event; a browser that is silent, or gone, is an error and never a wait."""
         while b"\0" not in self.buffer:
             ready, _, _ = select.select([self.read_end], [], [], max(0.0, end - time.monotonic()))
-            if not ready:
+            if not ready or time.monotonic() > end:
                 raise TimeoutError("the browser does not answer")
-            self.buffer += os.read(self.read_end, 1 << 20)
+            part = os.read(self.read_end, 1 << 20)
+            if not part:                             # a closed pipe is always ready, and always empty
+                raise BrokenPipeError("the browser has gone")
+            self.buffer += part
         text, _, self.buffer = self.buffer.partition(b"\0")
         return json.loads(text)
 
@@ -98,8 +104,9 @@ class Browser:
     def close(self) -> None:
         try:
             self.call("Browser.close", session=None)
-        except (OSError, TimeoutError, AssertionError):
+            self.process.wait(timeout=20)
+        except (OSError, AssertionError, subprocess.TimeoutExpired):
             self.process.kill()
-        self.process.wait(timeout=20)
+            self.process.wait(timeout=20)
         os.close(self.read_end)
         os.close(self.write_end)

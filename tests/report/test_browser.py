@@ -214,3 +214,15 @@ def test_the_sheet_of_a_real_paper_shows_place_wrong_and_right_formulas(real, br
     assert browser.value("document.querySelectorAll('.change .wrong').length") == entries
     assert browser.value("document.querySelectorAll('.change .right math').length") >= 15
     assert browser.value("document.querySelectorAll('table.figures tbody tr').length") == 16
+
+
+def test_a_browser_that_dies_is_an_error_and_not_a_wait(tmp_path):
+    if devtools.found() is None:
+        pytest.skip("no Chromium on this machine: install the package chromium to run the browser tests")
+    lost = devtools.Browser(tmp_path / "profile")
+    lost.process.kill()
+    lost.process.wait(timeout=20)
+    with pytest.raises(OSError, match=r"gone|Broken pipe"):
+        for _ in range(100):
+            lost.value("1 + 1")
+    lost.close()
