@@ -31,6 +31,10 @@ ASTRAY = (
     "IGNORE_INSTALLED", "NO_BINARY", "NO_DEPS", "REPORT", "QUIET", "VERBOSE",
 )
 
+# The whole suite runs on two cores, whole files apart: what a file prepares is prepared once. A worker that dies
+# is replaced once, not for ever: the file that killed it is run again.
+WHOLE = ["-n", "2", "--dist", "loadfile", "--max-worker-restart", "1"]
+
 USAGE = """usage: python3 bootstrap.py VERB [arguments]
 
   test [pytest arguments]   run the tests
@@ -259,8 +263,7 @@ def update(venv: str, stamp: "dict[str, str]") -> None:
 def command_for(python: str, arguments: "list[str]") -> "list[str]":
     """The command line of a verb: pytest for ``test``, navsym for everything else."""
     if arguments[0] == "test":
-        # The whole suite runs on two cores, whole files apart: what a file prepares is prepared once.
-        given = arguments[1:] or (["-n", "2", "--dist", "loadfile"] if (os.cpu_count() or 1) > 1 else [])
+        given = arguments[1:] or (WHOLE if (os.cpu_count() or 1) > 1 else [])
         return [python, "-m", "pytest", *given]
     return [python, "-P", "-m", "navsym", *arguments]      # -P: no module is taken from the user's folder
 

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import gc
 import json
+import socket
 from fractions import Fraction
+from threading import Thread
 
 import pytest
+from dask.distributed import Client
 
 from navsym.cli.main import run
-from navsym.errors import DomainError
+from navsym.errors import DomainError, MissingEngineError
 from navsym.methods.sweeps import shards as sweep_shards
 from navsym.methods.sweeps.plan import Sweep, run_job, sweep_from
-from navsym.methods.sweeps.run import run_sweep
+from navsym.methods.sweeps.run import greet, run_sweep
 from navsym.methods.sweeps.shards import cut
 
 
@@ -101,6 +105,29 @@ def test_a_scheduler_that_does_not_answer_is_said(tmp_path, capsys, monkeypatch,
     config.write_text('{"kind": "filter", "jobs": 2}')
     assert run(["sweep", str(config), "--scheduler", address, "--json"]) == 3
     assert json.loads(capsys.readouterr().out)["error"]["kind"] == "missing"
+    clients = [thing for thing in gc.get_objects() if isinstance(thing, Client) and thing.status != "closed"]
+    assert clients == []  # the garbage collector would close one while another starts, and both would wait for ever
+
+
+def answer(server, word):
+    """Say one word to whoever comes, and listen until he goes."""
+    guest, _ = server.accept()
+    with guest:
+        guest.sendall(word)
+        while guest.recv(4096):
+            pass
+
+
+WORDS = {"nothing": b"", "http": b"HTTP/1.1 400 Bad Request\r\n\r\n", "zeros": bytes(64)}
+
+
+@pytest.mark.parametrize("word", WORDS.values(), ids=WORDS)
+def test_who_answers_without_being_a_scheduler_is_not_waited_for(monkeypatch, word):
+    monkeypatch.setattr("navsym.methods.sweeps.run.SECONDS_TO_CONNECT", 1)
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        Thread(target=answer, args=(server, word), daemon=True).start()
+        with pytest.raises(MissingEngineError, match="scheduler"):
+            greet(f"tcp://127.0.0.1:{server.getsockname()[1]}")
 
 
 @pytest.mark.parametrize(

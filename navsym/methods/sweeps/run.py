@@ -6,9 +6,11 @@ neither the number of workers nor the death of one changes a bit; what is kept i
 
 from __future__ import annotations
 
+import asyncio
 import contextlib
 import logging
 from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -143,9 +145,32 @@ def connected(workers: int, scheduler: str | None) -> Iterator[tuple[Any, Any]]:
             where = stack.enter_context(
                 LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=None)
             )
-        try:
-            client = stack.enter_context(Client(where, timeout=SECONDS_TO_CONNECT))
-        except (OSError, ValueError, AssertionError) as error:  # dask asserts what an address may be
-            message = f"expected a dask scheduler; got no answer ({error!s:.80}); start one: dask scheduler"
-            raise MissingEngineError(message, where=str(scheduler)) from None
-        yield client, as_completed
+        else:
+            greet(where)
+        yield stack.enter_context(Client(where, timeout=SECONDS_TO_CONNECT)), as_completed
+
+
+def greet(address: str) -> None:
+    """Make sure that a scheduler answers, in a thread of its own (a notebook has a loop running in this one).
+
+    Raises MissingEngineError when none does.
+
+    A client that fails to connect is left to the garbage collector, which closes it at any later moment. When
+    that is the start of another client, each waits for the other's lock, for ever: clients are made for
+    schedulers that have answered.
+    """
+    from distributed.core import rpc
+
+    async def identity() -> dict[str, Any]:
+        async with rpc(address, timeout=SECONDS_TO_CONNECT) as scheduler:
+            return await asyncio.wait_for(scheduler.identity(), SECONDS_TO_CONNECT)
+
+    try:
+        with ThreadPoolExecutor(1) as thread:
+            kind = thread.submit(lambda: asyncio.run(identity())).result().get("type")
+        got = f"an answer of a {kind}"
+    except Exception as error:  # dask asserts what an address may be, and what a stranger sends can raise anything
+        kind, got = None, f"no answer ({type(error).__name__}: {error!s:.80})"
+    if kind != "Scheduler":
+        message = f"expected a dask scheduler; got {got}; start one: dask scheduler"
+        raise MissingEngineError(message, where=address)
