@@ -8,6 +8,7 @@ forms of sin, cos, exp, log and pow are taken as accurate to 4 ulp; the bounds i
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
 from navsym.export.accuracy.vectors import Vector
@@ -62,10 +63,17 @@ static void navsym_put({real} *to, const {real} *from, long m, double bytes)
     if (bytes > {cache}) {{
         for (; (k < m) && (((size_t)&to[k] % NAVSYM_WIDE) != 0); k++) {{ to[k] = from[k]; }}
         for (; (k + lanes) <= m; k += lanes) {{ NAVSYM_STREAM(&to[k], &from[k]); }}
-        _mm_sfence();
     }}
 #endif
     for (; k < m; k++) {{ to[k] = from[k]; }}
+}}
+
+/* Stores past the cache are seen by every reader from here on: once for all blocks, since each fence drains them. */
+static void navsym_done(void)
+{{
+#if defined(NAVSYM_STREAM)
+    _mm_sfence();
+#endif
 }}
 """
 
@@ -73,7 +81,7 @@ MODULE = '''# {license}
 """Exported functions over batches: compiled once into a temporary folder, called without a copy.
 
 Every function takes an array (inputs, n) and returns (results, n), in ``out`` when that is given. The memory of
-the last result is kept, for a later one, until nobody holds that result.
+the last two results is kept, and used again for a later one when nobody holds them any more.
 Outside the proved domain it raises ValueError.
 """
 
@@ -84,6 +92,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import threading
 
 import numpy as np
 
@@ -109,18 +118,22 @@ def _library():
 
 
 _LIBRARY = _library()
-_SPARE = []
+_LOCK = threading.Lock()
+_KEPT = [np.empty(0, dtype=REAL)]
+_FREE = sys.getrefcount(_KEPT[0])  # of memory that only the list holds
 
 
 def _room(results, n):
     """An array (results, n). Its memory is that of an earlier result when nobody holds that one any more: pages
-    fresh from the system cost more than most computations."""
+    fresh from the system cost more than most computations. Two are kept: one for ``r = f(points)`` while the old
+    r is still held."""
     size = results * n
-    owner = _SPARE.pop() if _SPARE else None
-    if owner is None or not size <= owner.size <= 2 * size + 100000 or sys.getrefcount(owner) > 2:
-        owner = np.empty(size, dtype=REAL)
-    _SPARE.append(owner)
-    return owner[:size].reshape(results, n)
+    with _LOCK:
+        for k in range(len(_KEPT)):
+            if size <= _KEPT[k].size <= 2 * size + 100000 and sys.getrefcount(_KEPT[k]) == _FREE:
+                return _KEPT[k][:size].reshape(results, n)
+        _KEPT[:] = [np.empty(size, dtype=REAL), *_KEPT[:1]]
+        return _KEPT[0][:size].reshape(results, n)
 
 
 def _call(name, inputs, results, points, out):
@@ -258,18 +271,21 @@ def vectorised(function: ExportedFunction) -> str:
         lines += [f"            {arrays[name]} = {in_arrays(text, arrays)};" for name, text, _ in group] + ["        }"]
     for j, text in enumerate(results):
         lines += stored(function, j, in_arrays(text, arrays), s)
-    return "\n".join([*lines, "    }", "    return bad ? NAVSYM_NOT_FINITE : NAVSYM_OK;", "}", ""])
+    lines += ["    }", "    navsym_done();", "    return bad ? NAVSYM_NOT_FINITE : NAVSYM_OK;", "}", ""]
+    return "\n".join(lines)
 
 
 def stored(function: ExportedFunction, j: int, text: str, s: Spelling) -> list[str]:
     """One result of a block: computed into the cache, tested there where it may overflow, and put in its place."""
     real = function.arithmetic.name
-    lines = ["        for (k = 0; k < m; k++) {", f"            w[k] = {text};", "        }"]
+    ready = re.fullmatch(r"(\w+)\[k\]", text)  # a temporary, which is there already
+    row = ready[1] if ready else "w"
+    lines = [] if ready else ["        for (k = 0; k < m; k++) {", f"            w[k] = {text};", "        }"]
     if not function.always_finite:
         largest = "FLT_MAX" if real == "float" else "DBL_MAX"
-        lines += [f"        for (k = 0; k < m; k++) {{ bad |= !({s.calls['abs'].format('w[k]')} <= {largest}); }}"]
+        lines += [f"        for (k = 0; k < m; k++) {{ bad |= !({s.calls['abs'].format(f'{row}[k]')} <= {largest}); }}"]
     bytes_ = f"{float(function.size)} * (double)n * (double)sizeof({real})"
-    return [*lines, f"        navsym_put(&out[({j} * n) + b], w, m, {bytes_});"]
+    return [*lines, f"        navsym_put(&out[({j} * n) + b], {row}, m, {bytes_});"]
 
 
 def grouped(temporaries: Sequence[tuple[str, str, bool]]) -> list[list[tuple[str, str, bool]]]:
