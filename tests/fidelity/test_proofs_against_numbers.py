@@ -93,6 +93,7 @@ def judged(document):
 
 
 def attack(seed, count, seconds=5):
+    """Statuses, and what the numbers deny. A claim that takes longer than its seconds has no verdict."""
     source = random.Random(seed)
     documents = [random_claim(source) for _ in range(count)]
     statuses, found = {}, []
@@ -113,7 +114,8 @@ def test_no_verdict_on_a_random_claim_is_contradicted():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(2, 10))
+@pytest.mark.parametrize("seed", range(2, 42))
 def test_no_verdict_on_many_random_claims_is_contradicted(seed):
-    _, found = attack(seed, 1000)
+    """Eight thousand in all, in pieces of less than a minute, so that a stopped campaign loses little."""
+    _, found = attack(seed, 200)
     assert not found, found
