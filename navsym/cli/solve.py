@@ -27,10 +27,11 @@ def command(
     ] = False,
     out: Annotated[Path | None, typer.Option(help="write the certificate to this file")] = None,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
-) -> None:
+) -> int:
     """Minimise the guaranteed standard deviation; the value is enclosed, the certificate replayable.
 
     The value is in units of sigma per unit of the target; instants are measured from the start of the interval.
+    Status 1 when fewer digits are certified than were asked for (OPEN).
 
     Example: navsym solve examples/schuler-velocity.toml --target drift --set T=pi/2
     """
@@ -53,6 +54,7 @@ def command(
         with Progress("solvers", len(LP_SOLVERS), "without --compare the answer comes at once") as bar:
             document["compare"] = beside(solution, progress=bar.step)
     emit(document, as_json=json_, text=lambda: as_text(document))
+    return 0 if document["status"] == "CERTIFIED" else 1
 
 
 def as_text(document: dict[str, Any]) -> str:
@@ -66,6 +68,8 @@ def as_text(document: dict[str, Any]) -> str:
     lines.append(table(("measurement", "at", "weight"), rows))
     words = {True: "the only optimal estimator", None: "other optimal estimators are not excluded"}
     lines.append(words.get(document["unique"], "other optimal estimators exist"))
+    if "missing" in document:
+        lines.append(document["missing"])
     if "compare" in document:
         lines.append(comparison(document["compare"]))
     return "\n".join(lines)

@@ -39,6 +39,21 @@ def model(tmp_path):
     return str(path)
 
 
+GROWING = """
+[model]
+states = ["a", "b"]
+F = [["0", "t"], ["0", "0"]]
+[[measurement]]
+name = "position"
+h = ["1", "0"]
+sigma = "1"
+[interval]
+T = "1"
+[targets]
+b = ["0", "1"]
+"""
+
+
 def document(capsys, *arguments):
     status = run([*arguments, "--json"])
     return status, json.loads(capsys.readouterr().out)
@@ -93,3 +108,14 @@ def test_formulate_writes_mps(model, capsys):
 def test_a_certificate_that_is_not_there_is_bad_input_and_no_rejection(tmp_path, capsys):
     status, data = document(capsys, "check", str(tmp_path / "nothing.json"))
     assert status == 2 and data["error"]["kind"] == "missing-file" and "nothing.json" in data["error"]["where"]
+
+
+def test_fewer_digits_than_asked_for_are_open_with_status_one_and_say_what_is_missing(tmp_path, capsys):
+    path = tmp_path / "growing.toml"
+    path.write_text(GROWING)
+    status, data = document(capsys, "solve", str(path), "--digits", "20")
+    assert status == 0 and data["status"] == "CERTIFIED" and "missing" not in data
+    status, data = document(capsys, "solve", str(path), "--digits", "80")
+    assert status == 1 and data["status"] == "OPEN" and "of the 80 digits" in data["missing"]
+    assert run(["solve", str(path), "--digits", "80"]) == 1
+    assert data["missing"] in capsys.readouterr().out

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import ast
+import runpy
+
 import highspy
 import numpy as np
 import pytest
@@ -47,6 +50,21 @@ def test_every_format_and_kind_is_written(to, kind):
     assert text.endswith("\n")
     if to != "mps":
         compile(text, "formulated", "exec")
+
+
+@pytest.mark.parametrize("to", ["casadi", "cvxpy"])
+@pytest.mark.parametrize(("kind", "value"), [("lp", 8.0), ("qp", None)])
+def test_a_written_program_runs_and_prints_the_value_and_the_weights_as_plain_numbers(to, kind, value, tmp_path, capfd):
+    path = tmp_path / "program.py"
+    path.write_text(formulate(parabola(), to, kind=kind, count=21))
+    runpy.run_path(str(path), run_name="__main__")
+    number, _, rows = capfd.readouterr().out.strip().splitlines()[-1].partition(" ")
+    if value is None:
+        grid = grid_of(parabola(), 21)
+        value = np.linalg.inv((grid.regressors * grid.spacing) @ grid.regressors.T)[2, 2] / 2
+    assert float(number) == pytest.approx(value, rel=1e-6)
+    weights = ast.literal_eval(rows)
+    assert sum(t**2 * w for t, w in weights) == pytest.approx(1.0, rel=1e-4)
 
 
 def test_unknown_formats_and_empty_grids_are_refused():

@@ -142,6 +142,7 @@ HARD = {
          sin(3 * t / 4)],
         R(32, 5), [0, 0, 0, 1, 0, 0],
     ),
+    "the dual is unique, its other contacts carry no weight": ([cos(6 * t / 5), t**4, e(t / 8)], R(27, 5), 0),
     "regressors vanish together at the start": ([t * sin(5 * t), t**5, cos(t) - 1], R(83, 10), R(83, 20)),
 }  # fmt: skip
 

@@ -119,7 +119,8 @@ problem = cp.Problem(cp.Minimize(cost), [H @ (a - b) == P])
 
 if __name__ == "__main__":
     value = problem.solve(solver=cp.CLARABEL if quadratic.any() else cp.HIGHS)
-    print(value, [(t, w) for t, w in zip(times, a.value - b.value) if abs(w) > 1e-6])
+    found = zip(times.tolist(), (a.value - b.value).tolist())
+    print(float(value), [(t, w) for t, w in found if abs(w) > 1e-6])
 """
 
 CASADI = """import casadi as ca
@@ -128,12 +129,13 @@ n = len(times)
 Q = ca.diag(ca.DM(quadratic))
 h = ca.sparsify(ca.blockcat([[Q, -Q], [-Q, Q]]))
 A = ca.DM(np.hstack([H, -H]))
-solver = ca.conic("grid", "highs", {"h": h.sparsity(), "a": A.sparsity()})
+solver = ca.conic("grid", "highs", {"h": h.sparsity(), "a": A.sparsity()}, {"highs": {"output_flag": False}})
 
 if __name__ == "__main__":
     answer = solver(h=h, g=np.r_[linear, linear], a=A, lba=P, uba=P, lbx=0)
     x = np.array(answer["x"]).ravel()
-    print(float(answer["cost"]), [(t, w) for t, w in zip(times, x[:n] - x[n:]) if abs(w) > 1e-6])
+    found = zip(times.tolist(), (x[:n] - x[n:]).tolist())
+    print(float(answer["cost"]), [(t, w) for t, w in found if abs(w) > 1e-6])
 """
 
 

@@ -8,6 +8,7 @@ deviation ``min sum_j sigma_j integral |Phi_j|`` (Lidov 1964; Martirosyan 2023, 
 from __future__ import annotations
 
 import html
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
@@ -52,6 +53,7 @@ class GuaranteedSolution:
     unique       : True or False only when the estimator is proved to be, or not to be, the only optimal one
     certificate  : plain data for ``navsym check``
     status       : CERTIFIED when the enclosure is as narrow as was asked for, else OPEN
+    digits       : how many were asked for
     """
 
     problem: GuaranteedProblem
@@ -63,6 +65,12 @@ class GuaranteedSolution:
     certificate: Mapping[str, Any]
     status: Status
     width: float
+    digits: int = 30
+
+    @property
+    def reached(self) -> int:
+        """Digits of the enclosure: the largest n with a relative width of at most ``10**-n``."""
+        return 0 if self.width >= 1.0 else self.digits if self.width == 0.0 else int(-math.log10(self.width))
 
     @property
     def weights(self) -> tuple[str, ...]:
@@ -87,7 +95,18 @@ class GuaranteedSolution:
             "target": self.problem.target, "status": str(self.status),
             "value": {"lower": self.lower, "upper": self.upper}, "support": rows, "dual": list(self.dual),
             "unique": self.unique, "certificate": dict(self.certificate),
-        }  # fmt: skip
+        } | ({"missing": self.missing()} if self.status is OPEN else {})  # fmt: skip
+
+    def missing(self) -> str:
+        """What an OPEN answer lacks, in a sentence; empty when nothing does."""
+        if self.status is not OPEN:
+            return ""
+        if self.problem.error:
+            why = f"the regressors are integrated, with an error of about {float(self.problem.error):.0e}"
+        else:
+            why = "no exact contacts were proved to exist, and no dual closer to its bound was proved to keep it"
+        digits = f"{self.reached} of the {self.digits} digits asked for"
+        return f"the optimum lies between lower and upper for certain, but these agree to {digits} only: {why}"
 
 
 def solve(problem: GuaranteedProblem, digits: int = 30) -> GuaranteedSolution:
@@ -105,14 +124,14 @@ def solve(problem: GuaranteedProblem, digits: int = 30) -> GuaranteedSolution:
     unique = found.unique
     if unique is None and not problem.error and several_optimal(exact, find_contacts(basis.panels), found.dual):
         unique = False
-    status = CERTIFIED if found.width <= 10.0 ** -min(digits, 300) else OPEN
+    status = CERTIFIED if found.reaches(digits) else OPEN
     dual = ["0"] * len(problem.functional)
     for k, x in zip(kept, found.dual, strict=True):
         dual[k] = decimal(x, digits)
     certificate = with_error(problem, found.certificate)
     return GuaranteedSolution(
         problem, support_rows(problem, exact, found, digits), tuple(dual), found.certificate["lower"],
-        found.certificate["upper"], unique, certificate, status, found.width,
+        found.certificate["upper"], unique, certificate, status, found.width, digits,
     )  # fmt: skip
 
 

@@ -169,15 +169,16 @@ def careful(panels: Panels, nodes: Array) -> Contacts:
         panel = np.concatenate([np.repeat(np.arange(C.shape[0]), nodes.size), extra_panel])
         u = np.concatenate([np.tile(nodes, C.shape[0]), extra_u])
         G = np.concatenate([grid_values(C, nodes), rows_at(C, extra_panel, extra_u)])
-        basis, x = dual_face(G, p)
-        for reach in {1.0, 3.0**-k}:  # two contacts may be nearer than nodes: later rounds keep them apart
-            found = polish(panels, merged(panels, G, p, basis, panel, u, nodes, reach), x)
-            if best is None or found.excess < best.excess:
-                best = found
-        assert best is not None
-        if best.excess < 1e-9:
-            break
-        more = peaks(panels, x) + peaks(panels, found.dual)
+        basis, vertices = dual_face(G, p)
+        tried = []
+        # A point inside the face; where the face is a point in truth, only the first vertex comes near it.
+        for x in (vertices.mean(axis=0), vertices[0]):
+            for reach in {1.0, 3.0**-k}:  # contacts may be nearer than nodes: later rounds keep them apart
+                tried.append(polish(panels, merged(panels, G, p, basis, panel, u, nodes, reach), x))
+            best = min(tried if best is None else [best, *tried], key=lambda c: c.excess)
+            if best.excess < 1e-9:
+                return best
+        more = [place for dual in (*vertices, tried[-1].dual) for place in peaks(panels, dual)]
         extra_panel = np.concatenate([extra_panel, np.array([k for k, _ in more], dtype=np.int64)])
         extra_u = np.concatenate([extra_u, np.array([v for _, v in more])])
     assert best is not None
@@ -185,21 +186,19 @@ def careful(panels: Panels, nodes: Array) -> Contacts:
 
 
 def dual_face(G: Array, p: Array) -> tuple[Ints, Array]:
-    """An optimal basis and a point inside the face of optimal duals.
+    """An optimal basis and vertices (n, m) of the face of optimal duals.
 
-    Small changes of p lead to the vertices of the face; their mean touches the bound only where
-    every optimal dual does.
+    Small changes of p lead to the vertices; their mean touches the bound only where every optimal dual does.
     """
     random = np.random.default_rng(7)
     size = 1e-9 * np.abs(p).max()
     limit = 80 * p.size + 400
     basis, _, x, _ = simplex(G, p + size * random.standard_normal(p.size), spread_rows(G), limit)
-    first = basis
-    total = x.copy()
+    first, vertices = basis, [x]
     for _ in range(VERTICES):
         basis, _, x, _ = simplex(G, p + 100 * size * random.standard_normal(p.size), basis, limit)
-        total += x
-    return first, total / (VERTICES + 1)
+        vertices.append(x)
+    return first, np.array(vertices)
 
 
 def merged(

@@ -55,6 +55,10 @@ class Certified:
         size = abs(self.upper)
         return 0.0 if size == 0 else float(arb((self.upper - self.lower) / size))
 
+    def reaches(self, digits: int) -> bool:
+        """The relative width is at most ``10**-digits``, decided in rational numbers."""
+        return bool((self.upper - self.lower) * fmpq(10) ** digits <= abs(self.upper))
+
 
 def certify(problem: Problem, digits: int = 30, basis: Basis | None = None) -> Certified:
     """Solve and enclose to a relative width of ``10**-digits`` if the problem lets us.
@@ -67,7 +71,7 @@ def certify(problem: Problem, digits: int = 30, basis: Basis | None = None) -> C
     for contacts in roads(basis.panels):
         found = from_contacts(problem, basis, contacts, digits)
         best = found if best is None or found.width < best.width else best
-        if best.width <= 10.0 ** -min(digits, 300):
+        if best.reaches(digits):
             break
     assert best is not None
     return best
@@ -331,9 +335,9 @@ def attempts(
             simple = simple_dual(basis.panels, transform, contacts.value)
             if simple is not None:
                 yield [round_number(rational(arb(float(c))), 5) for c in simple], digits + 3, found
-    for k in (digits + 3, 12, 9, 6, 4, 3, 2, 1):
-        if k <= digits + 3:
-            yield base, k, found
+    fewer = {3 * digits // 4, digits // 2, 12, 9, 6, 4, 3, 2, 1}
+    for k in (digits + 3, *sorted((k for k in fewer if 0 < k < digits + 3), reverse=True)):
+        yield base, k, found
 
 
 def round_number(x: fmpq, digits: int = 8) -> fmpq:
