@@ -13,11 +13,12 @@ from dataclasses import dataclass
 from typing import Any
 
 from navsym.claims import Paper, equation_of
-from navsym.report.formula.sides import Formula, formula
+from navsym.report.formula.sides import Formula, coordinates, formula
 from navsym.report.page_explain import arithmetic, ball_words, ended
 from navsym.report.wording import Wording, Words, pattern_of
 
 Record = Mapping[str, Any]
+MOST_COORDINATES = 6     # more than that nobody inserts by hand
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,6 +28,19 @@ class Row:
     what: str
     wrong: str
     right: str
+
+
+@dataclass(frozen=True, slots=True)
+class Check:
+    """Arithmetic that a reader can repeat: both sides at a point (the whole line where there is none).
+
+    entry : which entry of a matrix or a list is meant, from 1; 0 where the sides are single
+    """
+
+    at: tuple[Formula, ...]
+    entry: int
+    printed: str
+    derived: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +54,7 @@ class Entry:
     wrong, right : as printed, and as it should read, made from the claims (None without a proved correction)
     rows   : figures, for a correction of several
     reason : what is wrong
-    check  : how to convince oneself, sentences
+    check  : how to convince oneself, where numbers can
     status : verdict on the corrected statement
     """
 
@@ -54,7 +68,7 @@ class Entry:
     right_words: str
     rows: tuple[Row, ...]
     reason: str
-    check: tuple[str, ...]
+    check: Check | None
     status: str
 
 
@@ -119,7 +133,7 @@ def entry(paper: Paper, group: Sequence[Record], corrections: Mapping[str, Recor
         right_words=correction["title"] if holds and correction is not None else "",
         rows=tuple(row(*pair) for pair in zip(group, fixed, strict=True)) if len(group) > 1 else (),
         reason=ended(capital(words.why if words and words.why else record["reason"])),
-        check=tuple(check_words(record)) if len(group) == 1 else (),
+        check=check_of(record) if len(group) == 1 else None,
         status=correction["status"] if correction is not None else "",
     )
 
@@ -150,14 +164,10 @@ def place_of(paper: Paper, number: str) -> str:
     return f"equation ({equation})" + (f", {part}" if part else "")
 
 
-def check_words(record: Record) -> list[str]:
-    """Arithmetic that a reader can repeat, where the sides are numbers at the counterexample."""
+def check_of(record: Record) -> Check | None:
+    """The first entry that differs at the counterexample, where the sides are numbers there."""
     point = record["counterexample"] or {}
     line = next((line for line in arithmetic(record) if line.differs), None)
-    if line is None or len(point) > 6 or (not point and line.entry):
-        return []
-    where = "With " + ", ".join(f"{name} = {value}" for name, value in point.items()) if point else "As it stands"
-    entry_words = f" (entry {line.entry})" if line.entry else ""
-    printed, derived = ball_words(line.printed), ball_words(line.derived)
-    sentence = f"{where} the printed side{entry_words} is {printed}; what follows from the model is {derived}"
-    return [ended(sentence)]
+    if line is None or len(point) > MOST_COORDINATES or (not point and line.entry):
+        return None
+    return Check(coordinates(point), line.entry, ball_words(line.printed), ball_words(line.derived))

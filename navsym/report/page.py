@@ -21,11 +21,11 @@ import jinja2
 from markupsafe import Markup
 
 from navsym.claims import Paper, equation_of
-from navsym.report.erratum import Erratum, erratum_of
+from navsym.report.erratum import Erratum, erratum_of, printed_side
 from navsym.report.formula.latex import sentence_html, sentence_latex
-from navsym.report.formula.sides import Formula, formula
+from navsym.report.formula.sides import Formula, coordinates, formula
 from navsym.report.page_code import Snippet, snippets
-from navsym.report.page_explain import Step, ball_words, steps
+from navsym.report.page_explain import Step, ball_words, ended, steps
 from navsym.report.page_names import latex_escape
 from navsym.report.page_plot import refutation_plot
 from navsym.report.wording import Words
@@ -58,6 +58,7 @@ class ClaimView:
     story: tuple[tuple[Step, Formula | None], ...]
     plot: Markup
     code: tuple[Snippet, ...]
+    point: tuple[Formula, ...]
     correction: ClaimLink | None
     corrects: ClaimLink | None
     certificates: tuple[str, ...]
@@ -65,10 +66,12 @@ class ClaimView:
 
 @dataclass(frozen=True, slots=True)
 class ClaimLink:
-    """Number and anchor of another claim of the same page."""
+    """Another claim of the same page: where it stands, what it says and what that is worth."""
 
     number: str
     anchor: str
+    printed: Formula
+    status: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,6 +151,7 @@ def environment() -> jinja2.Environment:
         lstrip_blocks=True,
     )
     env.filters |= {"tex": latex_escape, "slug": slug, "sentence": sentence_html, "sentence_tex": sentence_latex}
+    env.filters["ended"] = ended
     env.filters["ends"] = lambda difference: ball_words(tuple(difference))
     script = (TEMPLATES / "filter.js").read_text(encoding="utf-8").strip()
     env.globals["style"] = Markup((TEMPLATES / "style.css").read_text(encoding="utf-8"))
@@ -268,6 +272,7 @@ def claim_view(record: Record, correction: Record | None, corrected: Record | No
         story=story,
         plot=Markup(refutation_plot(record) if record["status"] == "REFUTED" else ""),
         code=snippets(record),
+        point=coordinates(record["counterexample"]),
         correction=link(correction),
         corrects=link(corrected),
         certificates=tuple(name for name, _ in certificates(record)),
@@ -280,4 +285,6 @@ def side(text: str) -> Formula:
 
 
 def link(record: Record | None) -> ClaimLink | None:
-    return None if record is None else ClaimLink(record["number"], anchor_of(record))
+    if record is None:
+        return None
+    return ClaimLink(record["number"], anchor_of(record), printed_side(record), record["status"])

@@ -85,7 +85,7 @@ def test_nothing_is_fetched_from_outside(files, hostile_files):
 
 def test_the_page_of_a_paper_names_verdict_scope_counterexample_and_correction(files):
     text = Reading(files["sample.html"]).text
-    for words in ("REFUTED", "all real T", "T = pi/6", "Corrected by 2*", "Slip of the paper", "0.500 s", "identity"):
+    for words in ("REFUTED", "all real T", "T = pi/6", "should read (2*, PROVED)", "Slip of the paper", "0.500 s", "identity"):
         assert words in " ".join(text.split()), words
 
 

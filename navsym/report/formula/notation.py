@@ -35,6 +35,19 @@ def operator(text: str) -> str:
     return f"<mo>{html.escape(text)}</mo>"
 
 
+def mathml_sign(text: str) -> str:
+    if text == BESIDE_A_FUNCTION:
+        return '<mo lspace="0.17em">⁢</mo>'
+    return operator(MATHML_SIGNS.get(text, text))
+
+
+def mathml_fenced(left: str, inner: str, right: str) -> str:
+    """Brackets that grow with what is tall; around one line a growing bracket would stand in a gap."""
+    still = "" if "<mfrac" in inner or "<mtable" in inner else ' stretchy="false"'
+    first, last = (f"<mo{still}>{html.escape(sign)}</mo>" for sign in (left, right))
+    return rowed([first, inner, last])
+
+
 def rowed(parts: list[str]) -> str:
     return parts[0] if len(parts) == 1 else "<mrow>" + "".join(parts) + "</mrow>"
 
@@ -44,11 +57,12 @@ def mathml_matrix(rows: list[list[str]]) -> str:
     return rowed([operator("["), f"<mtable>{body}</mtable>", operator("]")])
 
 
+BESIDE_A_FUNCTION = "thin *"     # a product in which the name of a function would touch its neighbour
 MATHML_SIGNS = {
     "-": "−", "*": "⁢", "<=": "≤", ">=": "≥", "!=": "≠", "+-": "±",
 }  # fmt: skip
 LATEX_SIGNS = {
-    "*": r"\,", "<=": r" \le ", ">=": r" \ge ", "!=": r" \ne ", "+-": r" \pm ", "·": r" \cdot ", ";": r";\quad ",
+    "*": r"\,", BESIDE_A_FUNCTION: r"\,", "<=": r" \le ", ">=": r" \ge ", "!=": r" \ne ", "+-": r" \pm ", "·": r" \cdot ", ";": r";\quad ",
 }  # fmt: skip
 
 POWER_OF_TEN = "<mrow><mn>{}</mn><mo>·</mo><msup><mn>10</mn><mn>{}</mn></msup></mrow>"
@@ -56,12 +70,12 @@ MATHML = Style(
     number=lambda text: scientific(text, "<mn>{}</mn>", POWER_OF_TEN),
     name=mathml_name,
     function=lambda text: mathml_name(text, function=True),
-    sign=lambda text: operator(MATHML_SIGNS.get(text, text)),
+    sign=mathml_sign,
     row=rowed,
     fraction=lambda top, bottom: f"<mfrac>{top}{bottom}</mfrac>",
     power=lambda base, exponent: f"<msup>{base}{exponent}</msup>",
     root=lambda inner: f"<msqrt>{inner}</msqrt>",
-    fenced=lambda left, inner, right: rowed([operator(left), inner, operator(right)]),
+    fenced=mathml_fenced,
     matrix=mathml_matrix,
 )
 LATEX = Style(

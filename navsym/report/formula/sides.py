@@ -7,6 +7,7 @@ its owner shows the plain text.
 from __future__ import annotations
 
 import functools
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from markupsafe import Markup
@@ -37,6 +38,11 @@ def formula(text: str) -> Formula:
     """A side of a claim, set in type where it can be."""
     written = mathml(text) if text not in ("", "True", "False") else None
     return Formula(text, None, None) if written is None else Formula(text, Markup(written), latex(text))
+
+
+def coordinates(point: Mapping[str, str] | None) -> tuple[Formula, ...]:
+    """A point in type, one equation for each coordinate, so that a narrow page can break between them."""
+    return tuple(formula(f"{name} = {value}") for name, value in (point or {}).items())
 
 
 def mathml(text: str) -> str | None:

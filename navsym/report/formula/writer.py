@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from navsym.report.formula.notation import Style
+from navsym.report.formula.notation import BESIDE_A_FUNCTION, Style
 from navsym.report.formula.reader import Node, unwrapped
 from navsym.report.page_names import letter_of, split_name
 
 ATOM, POWER, PRODUCT, SUM, RELATION, LIST = 6, 5, 4, 3, 2, 1
+UNNAMED = frozenset(("sqrt", "abs", "Abs", "exp"))     # functions with a sign of their own
 LEVELS = {
     "list": LIST, "relation": RELATION, "sum": SUM, "difference": SUM, "minus": SUM,
     "product": PRODUCT, "quotient": PRODUCT, "power": POWER,
@@ -33,22 +34,33 @@ def write_two(sign: str, left: int, right: int) -> Callable[[Node, Style], str]:
 def write_product(node: Node, style: Style) -> str:
     first, second = node.parts
     dotted = unwrapped(second).kind == "number" or any(is_word(part) for part in node.parts)
-    sign = "·" if dotted else "*"
+    sign = "·" if dotted else BESIDE_A_FUNCTION if any(is_function(part) for part in node.parts) else "*"
     return style.row([write(first, style, PRODUCT), style.sign(sign), write(second, style, PRODUCT)])
 
 
 def is_word(node: Node) -> bool:
     """A name of several letters, or a product that ends in one: a dot keeps it from running into the next."""
-    node = unwrapped(node)
-    if node.kind == "product":
-        node = unwrapped(node.parts[1])
+    node = last_factor(node)
     return node.kind == "name" and len(letter_of(split_name(node.text)[0])) > 1
+
+
+def is_function(node: Node) -> bool:
+    """A function that is written by its name, itself or raised to a power, or a product that ends in one."""
+    node = last_factor(node)
+    if node.kind == "power":
+        node = unwrapped(node.parts[0])
+    return node.kind == "call" and node.text not in UNNAMED
+
+
+def last_factor(node: Node) -> Node:
+    node = unwrapped(node)
+    return unwrapped(node.parts[1]) if node.kind == "product" else node
 
 
 def write_power(node: Node, style: Style) -> str:
     base, exponent = (unwrapped(part) for part in node.parts)
     raised = write(exponent, style)
-    if base.kind == "call" and base.text not in ("sqrt", "abs", "exp"):
+    if base.kind == "call" and base.text not in UNNAMED:
         head = style.power(style.function(base.text), raised)
         return style.row([head, arguments(base, style)])
     return style.power(write(base, style, ATOM), raised)
