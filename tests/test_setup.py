@@ -39,7 +39,7 @@ def cpu_seconds(*words: str) -> float:
 def cpu_seconds_once(*words: str) -> float:
     """User and system time of one child process that must succeed."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    subprocess.run([sys.executable, *words], cwd=ROOT, stdout=subprocess.DEVNULL, check=True)
+    subprocess.run([sys.executable, *words], cwd=ROOT, stdout=subprocess.DEVNULL, check=True, timeout=60)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     return after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime
 
@@ -47,7 +47,8 @@ def cpu_seconds_once(*words: str) -> float:
 def loaded_by(code: str) -> set[str]:
     """Heavy modules that are in memory after some code has run in a fresh interpreter."""
     ask = f"import sys\n{code}\nprint('\\n' + ' '.join(m for m in {HEAVY!r} if m in sys.modules))"
-    done = subprocess.run([sys.executable, "-c", ask], cwd=ROOT, capture_output=True, text=True, check=True)
+    words = [sys.executable, "-c", ask]
+    done = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, check=True, timeout=60)
     return set(done.stdout.splitlines()[-1].split())
 
 

@@ -23,7 +23,7 @@ LONG_FILES: dict[str, str] = {
 def tracked(*suffixes: str) -> list[Path]:
     """Files under version control that exist, by ending; without version control, all files."""
     done = subprocess.run(
-        ["git", "ls-files", "-z"], cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=False
+        ["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, check=False, timeout=60
     )
     if done.returncode == 0:
         paths = [ROOT / name for name in done.stdout.decode().split("\0") if name]

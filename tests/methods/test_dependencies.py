@@ -208,7 +208,8 @@ def test_another_copy_of_an_engine_on_the_path_counts(monkeypatch, tmp_path):
     script = "from navsym.methods.verification.deciding_code import package_digest; print(package_digest('mpmath'))"
     told = {
         path: subprocess.run(
-            [sys.executable, "-c", script], cwd=ROOT, env={"PYTHONPATH": path}, capture_output=True, text=True
+            [sys.executable, "-c", script],
+            cwd=ROOT, env={"PYTHONPATH": path}, capture_output=True, text=True, timeout=60,
         ).stdout.strip()
         for path in (str(ROOT), f"{tmp_path}:{ROOT}")
     }
@@ -225,7 +226,8 @@ def test_what_a_claim_reaches_is_told_alike_by_every_process():
     told = [
         json.loads(
             subprocess.run(
-                [sys.executable, "-c", script], cwd=ROOT, env={"PYTHONHASHSEED": seed}, capture_output=True, check=True
+                [sys.executable, "-c", script],
+                cwd=ROOT, env={"PYTHONHASHSEED": seed}, capture_output=True, check=True, timeout=300,
             ).stdout
         )
         for seed in ("1", "2")
