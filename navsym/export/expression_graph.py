@@ -20,12 +20,12 @@ from typing import Any
 import sympy as sp
 
 from navsym.errors import DomainError, UnknownSymbolError
-from navsym.export.forms import MEANING, common_step, expm1, plain, sinc, x_minus_sin
+from navsym.export.forms import MEANING, common_step, plain
 
 UNARY: dict[type, str] = {
     sp.sin: "sin", sp.cos: "cos", sp.exp: "exp", sp.log: "log", sp.Abs: "abs",
     sp.asin: "asin", sp.acos: "acos", sp.atan: "atan", sp.sinh: "sinh", sp.cosh: "cosh", sp.tanh: "tanh",
-    sinc: "sinc", expm1: "expm1", x_minus_sin: "x_minus_sin",
+    **{kind: kind.__name__ for kind in MEANING},
 }  # fmt: skip
 BINARY: dict[type, str] = {sp.atan2: "atan2", sp.Max: "max", sp.Min: "min"}
 MULTIPLES = 16  # above it an angle is computed by itself

@@ -4,7 +4,11 @@ Each rewriting is exact, and the graph that comes out of them is proved equal to
 normal form (:func:`navsym.export.functions.tie_to_formula`); nothing here is trusted.
 
     k - k cos x  =  2 k sin(x/2)^2        k exp x - k  =  k expm1(x)        x - sin x  =  x_minus_sin(x)
-    sin(q x)/x   =  q sinc(q x)           where the range of x contains zero
+
+and, where the range of x contains zero, with functions that have their limit there:
+
+    sin(q x)/x = q sinc(q x)              (q x - sin(q x))/x^3 = q^3 sinc_defect(q x)
+    expm1(q x)/x = q exprel(q x)          sinh(q x)/x = q sinhc(q x)
 """
 
 from __future__ import annotations
@@ -30,11 +34,30 @@ class x_minus_sin(sp.Function):
     """x - sin(x)."""
 
 
+class sinc_defect(sp.Function):
+    """(x - sin(x))/x^3, and 1/6 at zero."""
+
+
+class exprel(sp.Function):
+    """(exp(x) - 1)/x, and 1 at zero."""
+
+
+class sinhc(sp.Function):
+    """sinh(x)/x, and 1 at zero."""
+
+
 MEANING: dict[type, Callable[[sp.Expr], sp.Expr]] = {
     sinc: lambda x: sp.sin(x) / x,
     expm1: lambda x: sp.exp(x) - 1,
     x_minus_sin: lambda x: x - sp.sin(x),
+    sinc_defect: lambda x: (x - sp.sin(x)) / x**3,
+    exprel: lambda x: (sp.exp(x) - 1) / x,
+    sinhc: lambda x: sp.sinh(x) / x,
 }
+#: f -> (n, g) with f(x) = x^n g(x), and g defined at zero.
+VANISHING: dict[type, tuple[int, type]] = {
+    sp.sin: (1, sinc), x_minus_sin: (3, sinc_defect), expm1: (1, exprel), sp.sinh: (1, sinhc),
+}  # fmt: skip
 QUOTIENTS: dict[type, Callable[[sp.Expr], sp.Expr]] = {
     sp.tan: lambda x: sp.sin(x) / sp.cos(x),
     sp.cot: lambda x: sp.cos(x) / sp.sin(x),
@@ -93,19 +116,20 @@ def partners(term: sp.Expr) -> list[tuple[sp.Expr, sp.Expr]]:
 
 
 def safe_product(factors: list[sp.Expr], ranges: Ranges) -> sp.Expr:
-    """A product with sin(q x)/x written as q sinc(q x) where x may be zero."""
+    """A product with f(q x)/x^n written as q^n g(q x), of VANISHING, where x may be zero."""
     powers = dict(factor.as_base_exp() for factor in sp.Mul.make_args(sp.Mul(*factors)))
-    for base in [b for b in powers if isinstance(b, sp.sin) and is_count(powers[b])]:
+    for base in [b for b in powers if type(b) in VANISHING and is_count(powers[b])]:
+        order, limit = VANISHING[type(base)]
         for symbol in sorted(base.args[0].free_symbols, key=str):
             below = -powers.get(symbol, sp.S.Zero)
             quotient = sp.cancel(base.args[0] / symbol)
             if not (is_count(below) and may_vanish(symbol, ranges)) or not quotient.is_polynomial():
                 continue
-            count = min(powers[base], below)
+            count = min(powers[base], sp.ceiling(below / order))
             powers[base] -= count
-            powers[symbol] += count
-            for extra in (sinc(base.args[0]), quotient):
-                powers[extra] = powers.get(extra, sp.S.Zero) + count
+            powers[symbol] += order * count
+            for extra, times in ((limit(base.args[0]), count), (quotient, order * count)):
+                powers[extra] = powers.get(extra, sp.S.Zero) + times
     return sp.Mul(*(base**exponent for base, exponent in powers.items()))
 
 

@@ -33,6 +33,15 @@ def lag() -> Equation:
     return Equation(w - sp.sin(w), w - 2 * sp.sin(w / 2) * sp.cos(w / 2), {w: (-3, 3)})
 
 
+def holes() -> Equation:
+    """The coefficients of a rotation vector and of a Markov process: every one has a hole at zero that is none."""
+    other = [2 * sp.sin(w / 2) * sp.cos(w / 2) / w, 2 * sp.sin(w / 2) ** 2 / w**2,
+             (w - 2 * sp.sin(w / 2) * sp.cos(w / 2)) / w**3, (1 - sp.exp(-w / 2) ** 2) / w,
+             (sp.exp(w) - sp.exp(-w)) / (2 * w)]  # fmt: skip
+    printed = [sp.sin(w) / w, (1 - sp.cos(w)) / w**2, (w - sp.sin(w)) / w**3, (1 - sp.exp(-w)) / w, sp.sinh(w) / w]
+    return Equation(sp.Matrix(printed), sp.Matrix(other), {w: (-3, 3)})
+
+
 def rotation() -> Equation:
     c, s = sp.cos(lam), sp.sin(lam)
     printed = sp.Matrix([[c, s / beta], [-beta * s, c]])
@@ -57,6 +66,7 @@ def functions(real: str = "double") -> tuple[ExportedFunction, ...]:
         function_of([of_statement("versine", versine())], real=real),
         function_of([of_statement("lag", lag())], real=real),
         function_of([of_statement("rotation", rotation())], real=real),
+        function_of([of_statement("holes", holes())], real=real),
     )
 
 

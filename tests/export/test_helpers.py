@@ -1,6 +1,6 @@
 """The helpers against cancellation keep their bounds: proved by balls over the whole of their switch intervals.
 
-sinc and x - sin x use a series below a switch and the plain form above it. Two things are proved for every x: the
+Each helper uses a series below a switch and the plain form above it. Two things are proved for every x: the
 series differs from the function by less than the share of the bound that is left to it, and the rounding of the
 nested product, by the same analysis as for any exported graph, together with it stays below the bound in use.
 """
@@ -14,13 +14,17 @@ import pytest
 import sympy as sp
 from flint import arb, arb_series, ctx
 
-from navsym.export.accuracy.rounding import DOUBLE, FLOAT, LIBRARY, analyse
-from navsym.export.expression_graph import build
-from navsym.export.languages.printing import SINC_STEPS, SINC_SWITCH, X_MINUS_SIN_STEPS, X_MINUS_SIN_SWITCH
+from navsym.export.accuracy.rounding import ARITHMETIC_VALUES, DOUBLE, FLOAT, LIBRARY, SLOPES, analyse, up
+from navsym.export.accuracy.vectors import vectors
+from navsym.export.expression_graph import FUNCTION_OF, build
+from navsym.export.forms import MEANING, plain
+from navsym.export.languages.printing import HELPERS, SINC_STEPS, X_MINUS_SIN_STEPS
 from navsym.proof.balls import precision
 
 x = sp.Symbol("x", real=True)
 ARITHMETICS = [DOUBLE, FLOAT]
+SWITCH = HELPERS["x_minus_sin"].switch
+assert HELPERS["sinc_defect"].switch == SWITCH
 
 
 def coefficients(steps: tuple[int, ...]) -> list[Fraction]:
@@ -32,10 +36,8 @@ def coefficients(steps: tuple[int, ...]) -> list[Fraction]:
     return found
 
 
-@pytest.mark.parametrize(
-    ("steps", "first", "switch"), [(SINC_STEPS, 1, SINC_SWITCH), (X_MINUS_SIN_STEPS, 3, X_MINUS_SIN_SWITCH)]
-)
-def test_the_series_are_those_of_sine(steps: tuple[int, ...], first: int, switch: float) -> None:
+@pytest.mark.parametrize(("steps", "first"), [(SINC_STEPS, 1), (X_MINUS_SIN_STEPS, 3)])
+def test_the_series_are_those_of_sine(steps: tuple[int, ...], first: int) -> None:
     """sin x / x and 6 (x - sin x)/x^3 have exactly these coefficients, so that the rest is the first one left out."""
     scale = Fraction(1 if first == 1 else 6)
     for k, coefficient in enumerate(coefficients(steps)):
@@ -45,13 +47,11 @@ def test_the_series_are_those_of_sine(steps: tuple[int, ...], first: int, switch
 
 
 @pytest.mark.parametrize("arithmetic", ARITHMETICS, ids=lambda a: a.name)
-@pytest.mark.parametrize(
-    ("steps", "first", "switch", "name"),
-    [(SINC_STEPS, 1, SINC_SWITCH, "sinc"), (X_MINUS_SIN_STEPS, 3, X_MINUS_SIN_SWITCH, "x_minus_sin")],
-)
-def test_series_and_rounding_stay_below_the_bound_in_use(arithmetic, steps, first, switch, name) -> None:
+@pytest.mark.parametrize(("name", "first"), [("sinc", 1), ("x_minus_sin", 3), ("sinc_defect", 3)])
+def test_series_and_rounding_stay_below_the_bound_in_use(arithmetic, name, first) -> None:
     """On every cell of [0, switch]: truncation (alternating series) + rounding <= the bound, relative to the value."""
-    nodes = nested_graph(steps, cubed=name == "x_minus_sin")
+    steps, switch = HELPERS[name].steps, HELPERS[name].switch
+    nodes = nested_graph(name)
     literals = [float(node.value) if node.op == "const" else None for node in nodes.nodes]
     scale, quotient = (1, 6) if first == 1 else (6, 20)
     for low, high in halving_cells(switch, 300 if arithmetic is DOUBLE else 30):
@@ -70,21 +70,22 @@ def halving_cells(switch: float, halvings: int) -> list[tuple[arb, arb]]:
     return [(arb(b.lower()), arb(a.upper())) for a, b in itertools.pairwise(ends)]
 
 
-def nested_graph(steps: tuple[int, ...], cubed: bool):
+def nested_graph(name: str):
     """The graph of the helper's code below the switch, operation by operation."""
     from navsym.export.expression_graph import Builder, Graph
 
-    builder = Builder((x,))
+    builder, steps = Builder((x,)), HELPERS[name].steps
     at = builder.put("input", value=0)
     y = builder.put("mul", at, at)
-    one = builder.put("const", value=sp.S.One)
+    one, six = (builder.put("const", value=sp.Integer(k)) for k in (1, 6))
     text = builder.put("sub", one, builder.put("div", y, builder.put("const", value=sp.Integer(steps[-1]))))
     for step in reversed(steps[:-1]):
         share = builder.put("div", y, builder.put("const", value=sp.Integer(step)))
         text = builder.put("sub", one, builder.put("mul", share, text))
-    if cubed:
-        sixth = builder.put("div", builder.put("mul", at, y), builder.put("const", value=sp.Integer(6)))
-        text = builder.put("mul", sixth, text)
+    if name == "x_minus_sin":
+        text = builder.put("mul", builder.put("div", builder.put("mul", at, y), six), text)
+    if name == "sinc_defect":
+        text = builder.put("div", text, six)
     return Graph((x,), tuple(builder.nodes), (text,))
 
 
@@ -93,19 +94,19 @@ def test_above_the_switch_the_plain_forms_keep_the_bound(arithmetic) -> None:
     """sin(x)/x is one library call and one division; x - sin x loses less than the bound from the switch on.
 
     The error is 2 u |sin x| of the call and u |x - sin x| of the difference: cells up to 8, and beyond them
-    |sin x| <= 1 and x - sin x >= x - 1.
+    |sin x| <= 1 and x - sin x >= x - 1. The three quotients of sinc_defect add 3 u.
     """
     assert LIBRARY["sinc"] >= 2 + 1
     before = ctx.prec
     ctx.prec = 160
     try:
-        cells = [(arb(X_MINUS_SIN_SWITCH) + arb(7) * k / 512).union(arb(X_MINUS_SIN_SWITCH) + arb(7) * (k + 1) / 512)
+        cells = [(arb(SWITCH) + arb(7) * k / 512).union(arb(SWITCH) + arb(7) * (k + 1) / 512)
                  for k in range(512)]  # fmt: skip
         for ball in cells:
             sine = ball.sin()
-            share = 1 + 2 * abs(sine) / (ball - sine)  # one rounding, and 2 u of the sine over the difference
-            assert share * (1 + arithmetic.unit() * 4) < LIBRARY["x_minus_sin"], str(ball)
-        assert 1 + 2 / (arb(8) - 1) < LIBRARY["x_minus_sin"]
+            share = 3 + 1 + 2 * abs(sine) / (ball - sine)  # one rounding, and 2 u of the sine over the difference
+            assert share * (1 + arithmetic.unit() * 8) < min(LIBRARY["x_minus_sin"], LIBRARY["sinc_defect"]), str(ball)
+        assert 3 + 1 + 2 / (arb(8) - 1) < LIBRARY["x_minus_sin"]
     finally:
         ctx.prec = before
 
@@ -128,3 +129,41 @@ def test_one_minus_cosine_is_a_square_without_a_switch(angle: float) -> None:
         ball = arb(angle).union(arb(angle) * arb("1.001")) if angle else (arb(2) ** -60).union(arb(2) ** -50)
         done = analyse(graph, [ball], DOUBLE, literals)[graph.roots[0]]
     assert done.relative / DOUBLE.unit() < 12
+
+
+@pytest.mark.parametrize(("name", "called"), [("exprel", 2), ("sinhc", 4)])
+def test_a_helper_that_is_one_at_zero_keeps_its_bound_on_both_sides(name: str, called: int) -> None:
+    """Below the switch |f - 1| is less than u/16 of either type; above it, one call of the library and one quotient."""
+    with precision(160):
+        switch = arb(HELPERS[name].switch)
+        for x_ in (switch, -switch):
+            assert abs(ARITHMETIC_VALUES[name](x_) - 1) < DOUBLE.unit() / 16  # f grows with |x|, or with x
+    assert called + 1 < LIBRARY[name]
+
+
+@pytest.mark.parametrize("name", ["sinc", "sinc_defect", "exprel", "sinhc"])
+def test_slopes_and_values_of_the_helpers_are_those_of_their_meaning(name: str) -> None:
+    """By automatic differentiation in balls at many points; at zero the value is the limit."""
+    form = {
+        "sinc": lambda t: t.sin() / t, "sinc_defect": lambda t: (t - t.sin()) / (t * t * t),
+        "exprel": lambda t: (t.exp() - 1) / t, "sinhc": lambda t: ((t.exp() - (-t).exp()) / 2) / t,
+    }[name]  # fmt: skip
+    kind = FUNCTION_OF[name]
+    assert sp.limit(plain(kind(x)), x, 0) == sp.Rational(1, 6 if name == "sinc_defect" else 1)
+    with precision(400):
+        zero = ARITHMETIC_VALUES[name](arb(0))
+        assert zero.contains(arb(1) / (6 if name == "sinc_defect" else 1)) and zero.rad() < arb("1e-40")
+        for at in ("-9.5", "-2", "-0.75", "-1e-9", "1e-20", "0.01", "0.9", "1.1", "3", "7.25"):
+            series = form(arb_series([arb(at), arb(1)], 2))
+            assert ARITHMETIC_VALUES[name](arb(at)).overlaps(series[0])
+            assert abs(series[1]) <= up(SLOPES[name](arb(at))), at
+            assert kind in MEANING
+
+
+def test_a_hole_that_is_none_has_vectors_at_zero_and_in_its_neighbourhood(samples) -> None:
+    for real, tiny in (("double", 1e-30), ("float", None)):
+        found = {v.inputs[0]: v for v in vectors(samples.by_name("holes", real), 60) if v.status == 0}
+        for at in (0.0, *([tiny] if tiny else [])):
+            limits = [1, 0.5, 1 / 6, 1, 1]
+            assert all(abs(n - y) < 1e-15 for n, y in zip(found[at].nearest, limits, strict=True))
+            assert all(low < y < high for low, y, high in zip(found[at].lower, limits, found[at].upper, strict=True))

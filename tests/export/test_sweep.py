@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from navsym.export.accuracy import bands, sweep, twin
 from navsym.export.accuracy.rounding import BITS
-from navsym.export.accuracy.vectors import exact_values, piece_at, roots
+from navsym.export.accuracy.vectors import analysed, exact_values, piece_at
 from navsym.export.languages.targets import TARGETS
 from navsym.export.ready import READY
 from navsym.proof.balls import precision
@@ -110,7 +110,7 @@ def at(band: bands.Band, k: int, n: int) -> tuple[float, ...]:
 def agreed(piece, point, arithmetic, values, bounds) -> int:
     with precision(BITS):
         balls = [arb(x) for x in point]
-        exact, errors = exact_values(piece, balls), roots(piece, balls, arithmetic)
+        exact, errors = exact_values(piece, balls), [r.absolute for r in analysed(piece, balls, arithmetic)]
         for value, bound, theirs, error in zip(values, bounds, exact, errors, strict=True):
             if np.isfinite(value[2]) and theirs.is_finite():
                 assert bands.ball_of(*value).overlaps(theirs)

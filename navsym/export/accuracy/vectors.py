@@ -15,11 +15,13 @@ from dataclasses import dataclass
 import numpy as np
 from flint import arb
 
-from navsym.export.accuracy.rounding import BITS, Arithmetic, analyse, with_library
+from navsym.export.accuracy.rounding import BITS, Arithmetic, Bounded, analyse, with_library
 from navsym.export.parts import ExportedFunction, Input, Piece
 from navsym.proof.balls import Tape, enclose, precision, tape
 
 OK, DOMAIN, NOT_FINITE = 0, 1, 2
+MORE_BITS = (512, 2048)
+SHARP = 2.0**-10  # radius of an enclosure, as a part of the error bound that it is widened by
 LARGEST = {"double": 2.0**1000, "float": 2.0**120}
 
 
@@ -61,8 +63,9 @@ def vector_at(
     piece = piece_at(function, point)
     with precision(BITS):
         balls = [arb(x) for x in point]
-        errors = [r for r in roots(piece, balls, arithmetic)]
-        exact = exact_values(piece, balls)
+        found = analysed(piece, balls, arithmetic)
+        errors = [result.absolute for result in found]
+        exact = continued(piece, sharp_values(piece, balls, errors), found)
         ends = [ends_of(value, error * widen) for value, error in zip(exact, errors, strict=True)]
     if any(end is None for end in ends):
         return None
@@ -72,13 +75,31 @@ def vector_at(
     return Vector(tuple(point), OK, lower, upper, nearest)
 
 
-def exact_values(piece: Piece, balls: Sequence[arb]) -> list[arb]:
+def sharp_values(piece: Piece, balls: Sequence[arb], errors: Sequence[arb]) -> list[arb]:
+    """The formulas at a point with as many bits as it takes: where one cancels, a wide ball would accept anything."""
+    exact = exact_values(piece, balls)
+    for bits in MORE_BITS:
+        pairs = zip(exact, errors, strict=True)
+        if all(x.is_finite() and x.rad() <= SHARP * (abs(x) * 2.0**-53 + error).upper() for x, error in pairs):
+            break
+        with precision(bits):
+            exact = exact_values(piece, balls, bits)
+    return exact
+
+
+def exact_values(piece: Piece, balls: Sequence[arb], bits: int = BITS) -> list[arb]:
     """The formulas of the claim at a point, named values first."""
     named = dict(zip(piece.graph.inputs, balls, strict=True))
     lets, formulas = tapes(piece)
     for (name, _, _), flattened in zip(piece.lets, lets, strict=True):
-        named[name] = enclose(flattened, named, BITS)
-    return [enclose(t, named, BITS) for t in formulas]
+        named[name] = enclose(flattened, named, bits)
+    return [enclose(t, named, bits) for t in formulas]
+
+
+def continued(piece: Piece, exact: Sequence[arb], found: Sequence[Bounded]) -> list[arb]:
+    """The formulas, and in a hole of one of them the graph's value, which is proved to be the formula around it."""
+    proved = piece.tie != "enclosures"
+    return [r.value if proved and not x.is_finite() else x for x, r in zip(exact, found, strict=True)]
 
 
 _TAPES: dict[int, tuple[Piece, list[Tape], list[Tape]]] = {}
@@ -93,9 +114,10 @@ def tapes(piece: Piece) -> tuple[list[Tape], list[Tape]]:
     return known[1], known[2]
 
 
-def roots(piece: Piece, balls: Sequence[arb], arithmetic: Arithmetic) -> list[arb]:
+def analysed(piece: Piece, balls: Sequence[arb], arithmetic: Arithmetic) -> list[Bounded]:
+    """Exact values and error bounds of the graph's results."""
     done = analyse(piece.graph, balls, arithmetic, piece.literals)
-    return [done[root].absolute for root in piece.graph.roots]
+    return [done[root] for root in piece.graph.roots]
 
 
 def ends_of(value: arb, error: arb) -> tuple[float, float, float] | None:
@@ -151,7 +173,7 @@ def edge_values(function: ExportedFunction, k: int) -> list[float]:
     if function.switch == k:
         limits = [piece.limit for piece in function.pieces if piece.limit is not None]
         values += [x for limit in limits for x in (limit, step(limit, math.inf), step(limit, -math.inf))]
-    values += [1e-7, 1e-3, 1e-9, 0.0, -1e-5, 1.0, -1.0]
+    values += [1e-7, 1e-3, 1e-9, 0.0, -1e-5, 1.0, -1.0, 1e-30, -1e-160]
     return [x for x in values if i.test_low <= x <= i.test_high]
 
 

@@ -13,15 +13,13 @@ from collections.abc import Sequence
 
 from navsym.export.accuracy.vectors import Vector
 from navsym.export.languages.c import helper_texts, source, spelling
-from navsym.export.languages.printing import Spelling, loops_of, summary
+from navsym.export.languages.printing import HELPERS, Spelling, loops_of, summary
 from navsym.export.languages.python import ENDING, vectors_json
 from navsym.export.parts import ExportedFunction
 
 BLOCK = 512
 CACHE = 4e6  # bytes
-LIBRARY = frozenset(
-    "sin cos exp log pow expm1 asin acos atan atan2 sinh cosh tanh sinc x_minus_sin".split()
-)
+LIBRARY = frozenset([*"sin cos exp log pow expm1 asin acos atan atan2 sinh cosh tanh".split(), *HELPERS])
 
 HEAD = """/* {license} */
 /* Many points at once. Inputs and results are rows of n numbers; all rows lie one behind the other. */
@@ -217,16 +215,11 @@ def files(
     head = HEAD.format(license=license_, block=BLOCK, real=real, cache=CACHE)
     module = [MODULE.format(license=license_, real=kind), *(wrapper(f) for f in functions)]
     return {
-        "navsym_batch.c": "\n".join([head, *helpers(functions), *(batch(f) for f in functions)]),
+        "navsym_batch.c": "\n".join([head, *helper_texts(*functions), *(batch(f) for f in functions)]),
         "navsym_batch.py": "\n".join(module),
         "vectors.json": vectors_json(functions, tests),
         "test_vectors.py": (TEST + ENDING).format(license=license_, many=3 * BLOCK - 7),
     }
-
-
-def helpers(functions: Sequence[ExportedFunction]) -> list[str]:
-    """Each helper once."""
-    return list(dict.fromkeys(text for f in functions for text in helper_texts(f)))
 
 
 def wrapper(function: ExportedFunction) -> str:

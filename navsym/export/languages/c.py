@@ -11,8 +11,10 @@ from navsym.export.languages.printing import (
     assignments,
     calls,
     code_names,
+    helper_about,
+    helper_parts,
     helpers_used,
-    series,
+    squares_if_needed,
     summary,
     unit_of,
 )
@@ -158,10 +160,10 @@ def source(function: ExportedFunction, license_: str) -> str:
     return "\n".join(lines)
 
 
-def helper_texts(function: ExportedFunction) -> list[str]:
+def helper_texts(*functions: ExportedFunction) -> list[str]:
     """The helper functions that the code needs."""
-    s = spelling(function.arithmetic.name)
-    return [HELPERS[name](function.arithmetic.name, s) for name in helpers_used(function)]
+    real = functions[0].arithmetic.name if functions else "double"
+    return [helper_text(name, real, spelling(real)) for name in helpers_used(*functions)]
 
 
 def body(function: ExportedFunction, s: Spelling) -> list[str]:
@@ -216,36 +218,20 @@ def stores(function: ExportedFunction) -> list[str]:
     return lines
 
 
-# -- helpers ---------------------------------------
-
-
-def sinc_helper(real: str, s: Spelling) -> str:
-    switch, nested = series("sinc", s)
-    return f"""/* sin(x)/x; below {switch.rstrip('f')} its series, whose remainder is under x^10/11! < 2^-65. */
-static {real} navsym_sinc({real} x)
-{{
-    const {real} y = x * x;
-    if ({s.calls["abs"].format("x")} < {switch}) {{
-        return {nested};
-    }}
-    return {s.calls["sin"].format("x")} / x;
-}}"""
-
-
-def x_minus_sin_helper(real: str, s: Spelling) -> str:
-    switch, nested = series("x_minus_sin", s)
-    return f"""/* x - sin(x); below {switch.rstrip('f')} its series, since the difference would cancel. */
-static {real} navsym_x_minus_sin({real} x)
-{{
-    const {real} y = x * x;
-    if ({s.calls["abs"].format("x")} < {switch}) {{
-        return ((x * y) / {s.number(6.0)}) * {nested};
-    }}
-    return x - {s.calls["sin"].format("x")};
-}}"""
-
-
-HELPERS = {"sinc": sinc_helper, "x_minus_sin": x_minus_sin_helper}
+def helper_text(name: str, real: str, s: Spelling, kind: str = "static") -> str:
+    """One helper; ``kind`` is ``inline`` in a header of C++."""
+    switch, below, above = helper_parts(name, s)
+    return "\n".join([
+        f"/* {helper_about(name, s)} */",
+        f"{kind} {real} navsym_{name}({real} x)",
+        "{",
+        *squares_if_needed(name, f"    const {real} y = x * x;"),
+        f"    if ({s.calls['abs'].format('x')} < {switch}) {{",
+        f"        return {below};",
+        "    }",
+        f"    return {above};",
+        "}",
+    ])  # fmt: skip
 
 
 # -- vectors, test program, build ---------------------------------------

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 
 from navsym.export.accuracy.vectors import Vector
-from navsym.export.languages.c import HELPERS, safe_comment
+from navsym.export.languages.c import helper_text, safe_comment
 from navsym.export.languages.printing import Spelling, assignments, calls, code_names, helpers_used, summary
 from navsym.export.languages.programs import cpp_program, cpp_through_state, through_accessors
 from navsym.export.parts import Argument, ExportedFunction, Output
@@ -33,12 +33,7 @@ def files(
 def header(functions: Sequence[ExportedFunction], license_: str) -> str:
     real = functions[0].arithmetic.name
     s = spelling(real)
-    used = {name for function in functions for name in helpers_used(function)}
-    helpers = [
-        HELPERS[name](real, s).replace("static", "inline", 1)
-        for name in ("sinc", "x_minus_sin")
-        if name in used
-    ]
+    helpers = [helper_text(name, real, s, "inline") for name in helpers_used(*functions)]
     return "\n".join(
         [
             f"// {license_}",

@@ -10,9 +10,10 @@ from navsym.export.languages.printing import (
     assignments,
     calls,
     code_names,
+    helper_parts,
     helpers_used,
     result_fields,
-    series,
+    squares_if_needed,
     summary,
 )
 from navsym.export.languages.programs import calls_table, js_program
@@ -78,8 +79,7 @@ def files(
         "// Status: 0 results are valid, 1 argument outside the proved domain, 2 not finite.",
         "",
     ]
-    used = {name for function in functions for name in helpers_used(function)}
-    helpers = [HELPERS[name]() for name in ("sinc", "x_minus_sin") if name in used]
+    helpers = [helper_text(name) for name in helpers_used(*functions)]
     return {
         "navsym_functions.mjs": "\n".join(
             [*head, *helpers, *(text for f in functions for text in (source(f), *js_program(f)))]
@@ -121,22 +121,13 @@ def bound(x: float) -> str:
     return SPELLING.number(x)
 
 
-def sinc_helper() -> str:
-    switch, nested = series("sinc", SPELLING)
-    return f"""function navsym_sinc(x) {{
-  const y = x * x;
-  return Math.abs(x) < {switch} ? {nested} : Math.sin(x) / x;
-}}
-"""
-
-
-def x_minus_sin_helper() -> str:
-    switch, nested = series("x_minus_sin", SPELLING)
-    return f"""function navsym_x_minus_sin(x) {{
-  const y = x * x;
-  return Math.abs(x) < {switch} ? ((x * y) / 6.0) * {nested} : x - Math.sin(x);
-}}
-"""
-
-
-HELPERS = {"sinc": sinc_helper, "x_minus_sin": x_minus_sin_helper}
+def helper_text(name: str) -> str:
+    """One function against cancellation."""
+    switch, below, above = helper_parts(name, SPELLING)
+    return "\n".join([
+        f"function navsym_{name}(x) {{",
+        *squares_if_needed(name, "  const y = x * x;"),
+        f"  return Math.abs(x) < {switch} ? {below} : {above};",
+        "}",
+        "",
+    ])  # fmt: skip

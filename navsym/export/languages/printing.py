@@ -55,8 +55,7 @@ def calls(prefix: str = "", suffix: str = "", **special: str) -> dict[str, str]:
     table |= {"abs": f"{prefix}fabs{suffix}({{0}})", "atan2": f"{prefix}atan2{suffix}({{0}}, {{1}})"}
     table |= {"pow": f"{prefix}pow{suffix}({{0}}, {{1}})", "max": f"{prefix}fmax{suffix}({{0}}, {{1}})"}
     table |= {"min": f"{prefix}fmin{suffix}({{0}}, {{1}})"}
-    table |= {"sinc": "navsym_sinc({0})", "x_minus_sin": "navsym_x_minus_sin({0})"}
-    return table | special
+    return table | {name: f"navsym_{name}({{0}})" for name in HELPERS} | special
 
 
 def assignments(
@@ -127,18 +126,51 @@ def code_names(function: ExportedFunction, entry: str = "{0}[{1}]") -> list[str]
     ]
 
 
-def helpers_used(function: ExportedFunction) -> list[str]:
-    """Names of the helper functions that the code needs."""
-    used = {node.op for piece in function.pieces for node in piece.graph.nodes}
-    return [name for name in ("sinc", "x_minus_sin") if name in used]
-
-
 #: 1/6, 1/20, 1/42, …: sin(x)/x = 1 - y/6 (1 - y/20 (1 - y/42 …)) with y = x^2.
 SINC_STEPS = (6, 20, 42, 72)
 #: (x - sin x) = x^3/6 (1 - y/20 (1 - y/42 (…))).
 X_MINUS_SIN_STEPS = (20, 42, 72, 110, 156, 210, 272, 342, 420)
-SINC_SWITCH = 0.0625
-X_MINUS_SIN_SWITCH = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class Helper:
+    """A function without cancellation and without a hole at zero: a series below the switch, the formula above it.
+
+    about  : what it is, and why the series will do; {switch} in it
+    steps  : divisors of the nested series {series} in y = x^2; none for one that is constant
+    series : the series with what stands before and behind it; {one} and {six} are numbers
+    formula : the plain form; {x} is the argument, {sin}, {sinh}, {expm1} are functions of it
+    """
+
+    about: str
+    switch: float
+    steps: tuple[int, ...]
+    series: str
+    formula: str
+
+
+HELPERS = {
+    "sinc": Helper(
+        "sin(x)/x; below {switch} its series, whose remainder is under x^10/11! < 2^-65.",
+        0.0625, SINC_STEPS, "{series}", "{sin} / {x}",
+    ),
+    "x_minus_sin": Helper(
+        "x - sin(x); below {switch} its series, since the difference would cancel.",
+        1.0, X_MINUS_SIN_STEPS, "((x * y) / {six}) * {series}", "{x} - {sin}",
+    ),
+    "sinc_defect": Helper(
+        "(x - sin(x))/x^3; below {switch} its series, since the difference would cancel; 1/6 at zero.",
+        1.0, X_MINUS_SIN_STEPS, "{series} / {six}", "((({x} - {sin}) / {x}) / {x}) / {x}",
+    ),
+    "exprel": Helper("(exp(x) - 1)/x; below {switch} it is 1 within 2^-61.", 2.0**-60, (), "{one}", "{expm1} / {x}"),
+    "sinhc": Helper("sinh(x)/x; below {switch} it is 1 within 2^-62.", 2.0**-30, (), "{one}", "{sinh} / {x}"),
+}  # fmt: skip
+
+
+def helpers_used(*functions: ExportedFunction) -> list[str]:
+    """Names of the helper functions that the code needs."""
+    used = {node.op for function in functions for piece in function.pieces for node in piece.graph.nodes}
+    return [name for name in HELPERS if name in used]
 
 
 def horner(steps: tuple[int, ...], one: str, number: Any) -> str:
@@ -149,10 +181,23 @@ def horner(steps: tuple[int, ...], one: str, number: Any) -> str:
     return text
 
 
-def series(name: str, s: Spelling) -> tuple[str, str]:
-    """(switch, nested series) of a helper in this language; x - sin x is x^3/6 times its series."""
-    switch, steps = {"sinc": (SINC_SWITCH, SINC_STEPS), "x_minus_sin": (X_MINUS_SIN_SWITCH, X_MINUS_SIN_STEPS)}[name]
-    return s.number(switch), horner(steps, s.number(1.0), s.number)
+def helper_parts(name: str, s: Spelling, x: str = "x") -> tuple[str, str, str]:
+    """(switch, series below it, formula above it) of a helper in this language; ``x`` is the formula's argument."""
+    helper, one = HELPERS[name], s.number(1.0)
+    series = horner(helper.steps, one, s.number) if helper.steps else ""
+    functions = {f: s.calls[f].format(x) for f in ("sin", "sinh", "expm1")}
+    below = helper.series.format(series=series, one=one, six=s.number(6.0))
+    return s.number(helper.switch), below, helper.formula.format(x=x, **functions)
+
+
+def helper_about(name: str, s: Spelling) -> str:
+    """The comment of a helper."""
+    return HELPERS[name].about.format(switch=s.number(HELPERS[name].switch).removesuffix(s.suffix))
+
+
+def squares_if_needed(name: str, line: str) -> list[str]:
+    """The line that makes y, for a helper whose series has it."""
+    return [line] if HELPERS[name].steps else []
 
 
 def result_fields(function: ExportedFunction, name: str) -> str:

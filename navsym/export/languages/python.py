@@ -6,7 +6,16 @@ import math
 from collections.abc import Sequence
 
 from navsym.export.accuracy.vectors import Vector
-from navsym.export.languages.printing import Spelling, assignments, calls, code_names, series, summary
+from navsym.export.languages.printing import (
+    Spelling,
+    assignments,
+    calls,
+    code_names,
+    helper_parts,
+    helpers_used,
+    squares_if_needed,
+    summary,
+)
 from navsym.export.languages.programs import calls_table, python_program
 from navsym.export.parts import ExportedFunction
 
@@ -35,18 +44,6 @@ def _finite(values):
         raise ArithmeticError("a result would overflow or is undefined here")
     return values
 
-
-def navsym_sinc(x):
-    y = x * x
-    series = {sinc}
-    safe = np.where(np.abs(x) < {sinc_switch}, 1.0, x)
-    return np.where(np.abs(x) < {sinc_switch}, series, np.sin(x) / safe)
-
-
-def navsym_x_minus_sin(x):
-    y = x * x
-    series = ((x * y) / 6.0) * {difference}
-    return np.where(np.abs(x) < {difference_switch}, series, x - np.sin(x))
 '''
 
 #: How the test programs in Python end.
@@ -127,21 +124,29 @@ def files(
 ) -> dict[str, str]:
     """The module, its vectors and the program that runs them."""
     real = "float32" if functions[0].arithmetic.name == "float" else "float64"
-    (sinc_switch, sinc), (difference_switch, difference) = (series(n, SPELLING) for n in ("sinc", "x_minus_sin"))
-    head = HEAD.format(
-        license=license_, real=real, sinc=sinc, sinc_switch=sinc_switch, difference=difference,
-        difference_switch=difference_switch,
-    )  # fmt: skip
+    texts = [HEAD.format(license=license_, real=real), *map(helper_text, helpers_used(*functions))]
+    texts += [text for f in functions for text in (source(f), *python_program(f))]
     epsilon = "2.0**-52" if real == "float64" else "2.0**-23"
     return {
-        "navsym_functions.py": "\n\n".join(
-            [head, *(text for f in functions for text in (source(f), *python_program(f)))]
-        ),
+        "navsym_functions.py": "\n\n".join(texts),
         "test_vectors.py": (TEST + ENDING).format(
             license=license_, epsilon=epsilon, calls=calls_table(functions, python=True)
         ),
         "vectors.json": vectors_json(functions, tests),
     }
+
+
+def helper_text(name: str) -> str:
+    """One function against cancellation, over arrays: both forms, each where it holds."""
+    switch, below, above = helper_parts(name, SPELLING, "far")
+    return "\n".join([
+        f"def navsym_{name}(x):",
+        *squares_if_needed(name, "    y = x * x"),
+        f"    near = np.abs(x) < {switch}",
+        "    far = np.where(near, 1.0, x)",
+        f"    return np.where(near, {below}, {above})",
+        "",
+    ])  # fmt: skip
 
 
 def vectors_json(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]]) -> str:

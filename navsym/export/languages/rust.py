@@ -7,13 +7,15 @@ from collections.abc import Sequence
 
 from navsym.export.accuracy.vectors import Vector
 from navsym.export.languages.printing import (
+    HELPERS,
     Spelling,
     assignments,
     bare,
     code_names,
+    helper_parts,
     helpers_used,
     result_fields,
-    series,
+    squares_if_needed,
     summary,
 )
 from navsym.export.languages.programs import rust_program, rust_through_state, through_accessors
@@ -29,7 +31,7 @@ def spelling(real: str) -> Spelling:
     table |= {
         name: f"{kind}::{special.get(name, name)}({{0}}, {{1}})" for name in ("atan2", "pow", "max", "min")
     }
-    table |= {"sinc": "navsym_sinc({0})", "x_minus_sin": "navsym_x_minus_sin({0})"}
+    table |= {name: f"navsym_{name}({{0}})" for name in HELPERS}
     return Spelling(table, f"{kind}::NAN", f"{kind}::INFINITY", f"_{kind}")
 
 
@@ -50,7 +52,6 @@ def files(
 def module(functions: Sequence[ExportedFunction], license_: str) -> str:
     real = functions[0].arithmetic.name
     s, kind = spelling(real), rust_type(real)
-    used = {name for function in functions for name in helpers_used(function)}
     lines = [
         f"// {license_}",
         "//! Functions exported by navsym.",
@@ -59,7 +60,7 @@ def module(functions: Sequence[ExportedFunction], license_: str) -> str:
     ]
     lines += ["/// Why there is no result.", "#[derive(Clone, Copy, Debug, PartialEq, Eq)]"]
     lines += ["pub enum Status {", "    Domain = 1,", "    NotFinite = 2,", "}", ""]
-    lines += [HELPERS[name](kind, s) for name in ("sinc", "x_minus_sin") if name in used]
+    lines += [helper_text(name, kind, s) for name in helpers_used(*functions)]
     return "\n".join([*lines, *(text for f in functions for text in (source(f, s, kind), *rust_program(f, kind)))])
 
 
@@ -102,31 +103,20 @@ def bound(x: float, s: Spelling, kind: str) -> str:
     return s.number(x)
 
 
-def sinc_helper(kind: str, s: Spelling) -> str:
-    switch, nested = series("sinc", s)
-    return f"""fn navsym_sinc(x: {kind}) -> {kind} {{
-    let y = x * x;
-    if {kind}::abs(x) < {switch} {{
-        return {bare(nested)};
-    }}
-    {kind}::sin(x) / x
-}}
-"""
+def helper_text(name: str, kind: str, s: Spelling) -> str:
+    """One function against cancellation."""
+    switch, below, above = helper_parts(name, s)
+    return "\n".join([
+        f"fn navsym_{name}(x: {kind}) -> {kind} {{",
+        *squares_if_needed(name, "    let y = x * x;"),
+        f"    if {kind}::abs(x) < {switch} {{",
+        f"        return {bare(below)};",
+        "    }",
+        f"    {above}",
+        "}",
+        "",
+    ])  # fmt: skip
 
-
-def x_minus_sin_helper(kind: str, s: Spelling) -> str:
-    switch, nested = series("x_minus_sin", s)
-    return f"""fn navsym_x_minus_sin(x: {kind}) -> {kind} {{
-    let y = x * x;
-    if {kind}::abs(x) < {switch} {{
-        return ((x * y) / {s.number(6.0)}) * {nested};
-    }}
-    x - {kind}::sin(x)
-}}
-"""
-
-
-HELPERS = {"sinc": sinc_helper, "x_minus_sin": x_minus_sin_helper}
 
 TEST = """fn test_{name}() -> i32 {{
     let input: [{kind}; {inputs_size}] = [{inputs}];

@@ -9,7 +9,15 @@ import math
 from collections.abc import Sequence
 
 from navsym.export.accuracy.vectors import Vector
-from navsym.export.languages.printing import Spelling, assignments, calls, series, summary
+from navsym.export.languages.printing import (
+    Spelling,
+    assignments,
+    calls,
+    helper_parts,
+    helpers_used,
+    squares_if_needed,
+    summary,
+)
 from navsym.export.parts import ExportedFunction
 
 JULIA = Spelling(calls(abs="abs({0})", atan2="atan({0}, {1})", pow="({0})^({1})", max="max({0}, {1})",
@@ -41,19 +49,22 @@ def julia_files(
     functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str
 ) -> dict[str, str]:
     """Module and test script."""
-    (sinc_switch, sinc), (switch, nested) = (series(n, JULIA) for n in ("sinc", "x_minus_sin"))
     head = [f"# {license_}", "# Every function returns (status, results...); results are there when status == 0.",
-            "module NavsymFunctions", "",
-            "function navsym_sinc(x)", "    y = x * x",
-            f"    return abs(x) < {sinc_switch} ? {sinc} : sin(x) / x", "end", "",
-            "function navsym_x_minus_sin(x)", "    y = x * x",
-            f"    return abs(x) < {switch} ? ((x * y) / 6.0) * {nested} : x - sin(x)", "end", ""]  # fmt: skip
+            "module NavsymFunctions", ""]  # fmt: skip
+    head += [line for name in helpers_used(*functions) for line in julia_helper(name)]
     body = [line for f in functions for line in julia_source(f)]
     return {
         "NavsymFunctions.jl": "\n".join([*head, *body, "end", ""]),
         "test_vectors.jl": JULIA_TEST.format(license=license_),
         "vectors.txt": vectors_text(functions, tests),
     }
+
+
+def julia_helper(name: str) -> list[str]:
+    """One function against cancellation."""
+    switch, below, above = helper_parts(name, JULIA)
+    return [f"function navsym_{name}(x)", *squares_if_needed(name, "    y = x * x"),
+            f"    return abs(x) < {switch} ? {below} : {above}", "end", ""]  # fmt: skip
 
 
 def julia_source(function: ExportedFunction) -> list[str]:
@@ -134,25 +145,23 @@ main()
 def octave_files(
     functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str
 ) -> dict[str, str]:
-    """One file for each function, the two helpers, and the test script."""
-    (sinc_switch, sinc), (switch, nested) = (series(n, OCTAVE) for n in ("sinc", "x_minus_sin"))
-    helper = (
-        "function f = {name}(x)\n  y = x * x;\n  if abs(x) < {switch}\n    f = {series};\n"
-        "  else\n    f = {direct};\n  end\nend\n"
-    )
-    found = {
-        "navsym_sinc.m": helper.format(name="navsym_sinc", switch=sinc_switch, series=sinc,
-                                       direct="sin(x) / x"),
-        "navsym_x_minus_sin.m": helper.format(name="navsym_x_minus_sin", switch=switch,
-                                              series=f"((x * y) / 6.0) * {nested}",
-                                              direct="x - sin(x)"),
-    }  # fmt: skip
+    """One file for each function, for each helper, and the test script."""
+    found = {f"navsym_{name}.m": octave_helper(name) for name in helpers_used(*functions)}
     found |= {f"{f.name}.m": octave_source(f, license_) for f in functions}
     sizes = "\n".join(f"  s.{f.name} = [{len(f.inputs)}, {f.size}];" for f in functions)
     return found | {
         "test_vectors.m": OCTAVE_TEST.format(license=license_, sizes=sizes),
         "vectors.txt": vectors_text(functions, tests),
     }
+
+
+def octave_helper(name: str) -> str:
+    """One function against cancellation."""
+    switch, below, above = helper_parts(name, OCTAVE)
+    return "\n".join([
+        f"function f = navsym_{name}(x)", *squares_if_needed(name, "  y = x * x;"), f"  if abs(x) < {switch}",
+        f"    f = {below};", "  else", f"    f = {above};", "  end", "end", "",
+    ])  # fmt: skip
 
 
 def octave_source(function: ExportedFunction, license_: str) -> str:
@@ -218,7 +227,7 @@ def fortran_files(
 ) -> dict[str, str]:
     """Module and test program; names up to 63 characters, lines continued at 120."""
     names = {f.name: f"nv{k}_{f.name}"[:63] if len(f.name) > 63 else f.name for k, f in enumerate(functions)}
-    lines = fortran_head(license_)
+    lines = fortran_head(functions, license_)
     for function in functions:
         lines += fortran_source(function, names[function.name])
     lines += ["end module navsym_functions", ""]
@@ -229,21 +238,28 @@ def fortran_files(
     }
 
 
-def fortran_head(license_: str) -> list[str]:
+def fortran_head(functions: Sequence[ExportedFunction], license_: str) -> list[str]:
     """The head of the module, with the helpers."""
-    (sinc_switch, sinc), (switch, nested) = (series(n, FORTRAN) for n in ("sinc", "x_minus_sin"))
-    return [f"! {license_}", "module navsym_functions", "  use, intrinsic :: iso_fortran_env, only: real64",
-            "  use, intrinsic :: ieee_arithmetic, only: ieee_is_finite", "  implicit none", "contains",
-            "  pure elemental function navsym_sinc(x) result(f)", "    real(real64), intent(in) :: x",
-            "    real(real64) :: f, y", "    y = x * x", f"    if (abs(x) < {sinc_switch}) then",
-            f"      f = {sinc}", "    else", "      f = sin(x) / x", "    end if",
-            "  end function", "",
-            "  pure elemental function navsym_x_minus_sin(x) result(f)", "    real(real64), intent(in) :: x",
-            "    real(real64) :: f, y", "    y = x * x", f"    if (abs(x) < {switch}) then",
-            f"      f = ((x * y) / 6.0d0) * {nested}", "    else",
-            "      f = x - sin(x)", "    end if", "  end function", "",
-            "  pure elemental function navsym_expm1(x) result(f)", "    real(real64), intent(in) :: x",
-            "    real(real64) :: f", "    f = 2.0d0 * sinh(x / 2.0d0) * exp(x / 2.0d0)",
+    lines = [f"! {license_}", "module navsym_functions", "  use, intrinsic :: iso_fortran_env, only: real64",
+             "  use, intrinsic :: ieee_arithmetic, only: ieee_is_finite", "  implicit none", "contains"]  # fmt: skip
+    lines += [line for name in helpers_used(*functions) for line in fortran_helper(name)]
+    operations = {op for f in functions for piece in f.pieces for op in piece.graph.operations()}
+    return [*lines, *FORTRAN_EXPM1] if operations & {"expm1", "exprel"} else lines
+
+
+FORTRAN_EXPM1 = [
+    "  pure elemental function navsym_expm1(x) result(f)", "    real(real64), intent(in) :: x",
+    "    real(real64) :: f", "    f = 2.0d0 * sinh(x / 2.0d0) * exp(x / 2.0d0)", "  end function", "",
+]  # fmt: skip
+
+
+def fortran_helper(name: str) -> list[str]:
+    """One function against cancellation."""
+    switch, below, above = helper_parts(name, FORTRAN)
+    y = squares_if_needed(name, ", y")
+    return [f"  pure elemental function navsym_{name}(x) result(f)", "    real(real64), intent(in) :: x",
+            f"    real(real64) :: f{''.join(y)}", *squares_if_needed(name, "    y = x * x"),
+            f"    if (abs(x) < {switch}) then", f"      f = {below}", "    else", f"      f = {above}", "    end if",
             "  end function", ""]  # fmt: skip
 
 
