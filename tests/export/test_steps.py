@@ -57,9 +57,9 @@ def test_the_exported_filter_follows_the_textbook(programs, tmp_path: Path) -> N
     (tmp_path / "main.c").write_text(PROGRAM)
     flags = ["-std=c99", "-Wall", "-Wextra", "-Wconversion", "-pedantic", "-Werror"]
     sources = [*(f"{f.name}.c" for f in functions), "main.c"]
-    subprocess.run(["gcc", *flags, *sources, "-o", "run", "-lm"], cwd=tmp_path, check=True)
+    subprocess.run(["gcc", *flags, *sources, "-o", "run", "-lm"], cwd=tmp_path, check=True, timeout=120)
     text = " ".join(map(repr, map(float, MEASUREMENTS)))
-    done = subprocess.run([str(tmp_path / "run")], input=text, capture_output=True, text=True, check=True)
+    done = subprocess.run([str(tmp_path / "run")], input=text, capture_output=True, text=True, check=True, timeout=60)
     rows = [[float(x) for x in line.split()] for line in done.stdout.splitlines()]
     assert_allclose(rows, textbook(), rtol=1e-12, atol=1e-13)
 

@@ -107,7 +107,8 @@ def _library():
     source = pathlib.Path(__file__).with_name("navsym_batch.c")
     flags = FLAGS
     while True:
-        done = subprocess.run(["gcc", *flags, str(source), "-o", str(made), "-lm"], capture_output=True, text=True)
+        command = ["gcc", *flags, str(source), "-o", str(made), "-lm"]
+        done = subprocess.run(command, capture_output=True, text=True, timeout=300)
         if done.returncode == 0:
             return ctypes.CDLL(str(made))
         if "-march=native" not in flags:
