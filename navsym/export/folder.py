@@ -85,9 +85,14 @@ def folder_for(out: Path) -> Path:
     return Path(os.path.realpath(out))
 
 
+def is_plain(name: str) -> bool:
+    """True for a relative name that cannot leave its folder."""
+    return PLAIN.fullmatch(name) is not None and ".." not in name
+
+
 def target_for(root: Path, name: str) -> Path:
     """The path of one file; names that could leave the folder or pass a link are refused."""
-    if not PLAIN.fullmatch(name) or ".." in name:
+    if not is_plain(name):
         raise FolderError(f"expected a plain relative name; got {name!r}; do report this", where=str(root))
     target = root / name
     for part in (target, *target.parents):

@@ -22,7 +22,7 @@ from navsym.export.languages.printing import bound_text
 from navsym.export.languages.programs import state_record
 from navsym.export.languages.targets import Target
 from navsym.export.parts import ExportedFunction, Piece
-from navsym.export.roundtrip import MANIFEST, Outcome, run_target
+from navsym.export.roundtrip import MANIFEST, Outcome, run_target, sealed
 from navsym.proof.certificates import identity_certificate
 
 COUNT = 48
@@ -55,7 +55,7 @@ def files_of(functions: Sequence[ExportedFunction], order: Order) -> dict[str, s
         found |= {f"{target.name}/{name}": text for name, text in made.items()}
     for function in functions:
         found |= certificates(function)
-    found[MANIFEST] = json.dumps(manifest(functions, order, found), indent=2) + "\n"
+    found[MANIFEST] = sealed(manifest(functions, order, found))
     return found
 
 

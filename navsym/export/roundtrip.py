@@ -11,10 +11,12 @@ import re
 import shutil
 import sys
 import tempfile
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from navsym.export.folder import is_plain
 from navsym.export.languages.targets import SANITIZERS, TARGETS, Target
 from navsym.export.processes import run
 from navsym.export.tools import misra
@@ -97,26 +99,48 @@ def words(text: str) -> str:
 def check_export(folder: Path) -> list[dict[str, Any]]:
     """Rows ``{"path", "kind", "status", "why"}`` for the code of an exported folder.
 
-    The manifest's hashes are compared first; then every language runs its vectors. A language whose
-    toolchain is missing is accepted for its hashes only, and the row says so.
+    The manifest's seal and hashes are compared first; then every language runs its vectors, from a copy of what the
+    manifest lists. A language whose toolchain is missing is accepted for its hashes only, and the row says so.
     """
     folder = Path(folder)
     if not (folder / MANIFEST).is_file():
         lost = "expected the manifest of the code that is here; got none; do export again"
         return [row(folder / MANIFEST, "manifest", lost)] if any(has_code(folder / name) for name in TARGETS) else []
     try:
-        text = (folder / MANIFEST).read_text("utf-8")
-        manifest = json.loads(text)
-        files = dict(manifest["files"])
-        languages = [str(name) for name in manifest["languages"]]
-    except (OSError, ValueError, KeyError, TypeError) as error:
+        manifest, trouble = unsealed((folder / MANIFEST).read_bytes())
+        files, languages = dict(manifest["files"]), [str(name) for name in manifest["languages"]]
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
         came = f"{type(error).__name__}: {error}"
         return [row(folder / MANIFEST, "manifest", f"expected a manifest of navsym export; got {came}")]
-    same = text == json.dumps(manifest, indent=2) + "\n"
-    trouble = hash_trouble(folder, files) if same else f"{MANIFEST}: not as exported (its layout differs)"
-    rows = [row(folder / MANIFEST, "manifest", trouble)]
-    rows += [language_row(folder, name) for name in languages]
+    rows = [row(folder / MANIFEST, "manifest", trouble or hash_trouble(folder, files))]
+    rows += [language_row(folder, name, list(files)) for name in languages]
     return rows + ([misra_row(folder / "c")] if "c" in languages and (folder / "c").is_dir() else [])
+
+
+# -- the manifest ---------------------------------------
+
+
+def sealed(manifest: Mapping[str, Any]) -> str:
+    """The manifest as text, with the hash of all the rest as its last entry."""
+    return as_json({**manifest, "seal": seal_of(manifest)})
+
+
+def unsealed(data: bytes) -> tuple[dict[str, Any], str]:
+    """The manifest of a file, and what is not as it was written; ValueError when there is none in it."""
+    text = data.decode("utf-8")
+    manifest = json.loads(text)
+    if as_json(manifest) != text:
+        return manifest, f"{MANIFEST}: not as exported (its layout differs)"
+    rest = {key: value for key, value in manifest.items() if key != "seal"}
+    return manifest, "" if manifest.get("seal") == seal_of(rest) else f"{MANIFEST}: not as exported (its seal differs)"
+
+
+def seal_of(manifest: Mapping[str, Any]) -> str:
+    return hashlib.sha256(as_json(manifest).encode()).hexdigest()
+
+
+def as_json(manifest: Any) -> str:
+    return json.dumps(manifest, indent=2) + "\n"
 
 
 def has_code(folder: Path) -> bool:
@@ -129,13 +153,17 @@ def check_folder(folder: Path) -> list[dict[str, Any]]:
     return check_export(folder)
 
 
-def language_row(folder: Path, name: str) -> dict[str, Any]:
+def language_row(folder: Path, name: str, files: Sequence[str]) -> dict[str, Any]:
+    """One language: its vectors, run on a copy of its files that the manifest lists, and on nothing else."""
     target = TARGETS.get(name)
     if target is None or not (folder / name).is_dir():
         return row(folder / name, "code", "expected a folder of a known language; got none")
     with tempfile.TemporaryDirectory(prefix="navsym-check-") as copy:
-        place = Path(shutil.copytree(folder / name, Path(copy) / name, symlinks=True))
-        outcome = run_target(place, target)
+        for file in files:
+            if is_plain(file) and file.startswith(f"{name}/") and (folder / file).is_file():
+                (Path(copy) / file).parent.mkdir(parents=True, exist_ok=True)
+                shutil.copyfile(folder / file, Path(copy) / file)
+        outcome = run_target(Path(copy) / name, target)
     if outcome.status == "failed":
         return row(folder / name, "code", outcome.why)
     why = f"not executed: {outcome.why}" if outcome.status == "not executed" else ""
@@ -159,7 +187,7 @@ def hash_trouble(folder: Path, files: dict[str, Any]) -> str:
     """What differs from the manifest, in words; empty when nothing does."""
     for name, digest in files.items():
         path = folder / str(name)
-        if ".." in Path(name).parts or Path(name).is_absolute() or path.is_symlink() or not path.is_file():
+        if not is_plain(name) or path.is_symlink() or not path.is_file():
             return f"{name}: expected a plain file of the export; got none"
         if hashlib.sha256(path.read_bytes()).hexdigest() != digest:
             return f"{name}: not as exported (its hash differs)"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import random
 from pathlib import Path
 
 import pytest
@@ -15,9 +16,9 @@ from navsym.errors import DomainError, NavsymError
 from navsym.export.folder import FolderError, write_folder
 from navsym.export.functions import RefusedError, function_of, material
 from navsym.export.languages.names import function_name, identifier
-from navsym.export.languages.targets import chosen
+from navsym.export.languages.targets import TARGETS, chosen
 from navsym.export.package import Order, files_of
-from navsym.export.roundtrip import check_export
+from navsym.export.roundtrip import check_export, hash_trouble, sealed, unsealed
 from navsym.proof.ladder import decide
 
 a = sp.Symbol("a", real=True)
@@ -161,6 +162,53 @@ def test_code_without_its_manifest_as_written_is_rejected(change: str, samples, 
     else:
         manifest.write_text(manifest.read_text() + "\n")
     assert "REJECTED" in [row["status"] for row in check_export(tmp_path)]
+
+
+def test_a_byte_altered_anywhere_is_noticed(samples, tmp_path: Path) -> None:
+    """In every file of every language, and at every place of the manifest: by hash or seal, before anything runs."""
+    targets = tuple(TARGETS[name] for name in TARGETS if name != "html")
+    files = files_of([samples.by_name("Phi33")], Order(targets, count=4))
+    write_folder(tmp_path, files)
+    hashes = json.loads(files["manifest.json"])["files"]
+    assert not hash_trouble(tmp_path, hashes) and set(hashes) == set(files) - {"manifest.json"}
+    generator = random.Random(1)
+    for name in hashes:
+        whole = (tmp_path / name).read_bytes()
+        place = generator.randrange(len(whole))
+        (tmp_path / name).write_bytes(altered(whole, place))
+        assert name in hash_trouble(tmp_path, hashes)
+        (tmp_path / name).write_bytes(whole)
+    whole = files["manifest.json"].encode()
+    assert not unsealed(whole)[1]
+    for place in range(len(whole)):
+        try:
+            assert unsealed(altered(whole, place))[1], whole[max(0, place - 20) : place + 20]
+        except ValueError:
+            continue
+
+
+def altered(whole: bytes, place: int) -> bytes:
+    return whole[:place] + bytes([whole[place] ^ 1]) + whole[place + 1 :]
+
+
+def test_only_what_the_manifest_lists_is_run(samples, tmp_path: Path) -> None:
+    write_folder(tmp_path, files_of([samples.by_name("versine")], Order(tuple(chosen(["c"], "double")), count=4)))
+    (tmp_path / "c" / "planted.c").write_text("int main(void) { return 7; }\n")
+    assert all(row["status"] == "ACCEPTED" for row in check_export(tmp_path))
+
+
+def test_a_manifest_cannot_make_the_check_read_elsewhere(samples, tmp_path: Path) -> None:
+    files = files_of([samples.by_name("versine")], Order(tuple(chosen(["python"], "double")), count=4))
+    write_folder(tmp_path / "e", files)
+    (tmp_path / "outside").write_text("secret")
+    manifest = json.loads(files["manifest.json"])
+    del manifest["seal"]
+    for name in ("python/../../outside", str(tmp_path / "outside"), "python//navsym_functions.py"):
+        manifest["files"][name] = "0" * 64
+        (tmp_path / "e" / "manifest.json").write_text(sealed(manifest))
+        first, *_ = check_export(tmp_path / "e")
+        assert first["status"] == "REJECTED" and "plain file" in first["why"]
+        del manifest["files"][name]
 
 
 def test_a_folder_of_certificates_needs_no_manifest(tmp_path: Path) -> None:
