@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 import sympy as sp
 from matplotlib.figure import Figure
+from sympy.polys.matrices import DomainMatrix
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
@@ -72,48 +73,54 @@ def phases() -> Figure:
     for regime in solved(family, sp.Integer(0), 2 * sp.pi).regimes:
         at = np.linspace(max(float(regime.lower), 0.6), float(regime.upper) - 1e-6, 200)
         value = sp.lambdify(family.parameter, regime.closed.value, "numpy")(at) + 0 * at
-        label = f"{len(regime.closed.places)} instants: {regime.closed.value}"
-        regimes.append({"at": at, "value": value, "label": label})
+        places = [sp.lambdify(family.parameter, place, "numpy")(at) + 0 * at for place in regime.closed.places]
+        latex = sp.latex(regime.closed.value, fold_short_frac=True)
+        for wide, plain in ((r"\frac", r"\dfrac"), (r"\left(", "("), (r" \right)", ")")):
+            latex = latex.replace(wide, plain)
+        label = f"{len(places)} instants: ${latex}$"
+        regimes.append({"at": at, "value": value, "label": label, "instants": places})
     return plots.phase_diagram(
         regimes, parameter="length of the interval T", unit="Schuler units",
-        quantity="guaranteed deviation of the drift, σ", logarithmic=True,
+        quantity="guaranteed deviation\nof the drift, σ", logarithmic=True,
     )
 
 
 def dual() -> Figure:
-    """The dual polynomial of the drift between its bounds, T = pi/2."""
-    from derivations.guaranteed_velocity import model, polynomial
+    """The dual polynomial of the drift in its band at T = pi/2, and what the printed sign of u2 makes of it."""
+    from derivations.guaranteed_velocity import model, polynomial, weights
 
-    T = np.pi / 2
-    at = np.linspace(0, T, 300)
-    whole = polynomial.polynomial(*polynomial.coefficients()).subs(model.T, sp.pi / 2)
-    S = sp.lambdify(model.tau, whole, "numpy")(at)
-    deviation = float(polynomial.deviation().subs(model.T, sp.pi / 2))
-    return plots.dual_polynomial(at, S / deviation, np.array([0, T / 2, T]), unit="Schuler units")
+    end = {model.T: sp.pi / 2}
+    at = np.linspace(0, np.pi / 2, 300)
+    deviation = polynomial.deviation().subs(end)
+    u2, u3 = polynomial.coefficients()
+    curves = [polynomial.polynomial(first, u3).subs(end) / deviation for first in (u2, polynomial.U2_PRINTED)]
+    derived, printed = (sp.lambdify(model.tau, curve, "numpy")(at) for curve in curves)
+    optimum = weights.OPTIMAL_ERRORS[2].derive()
+    support, found = (np.array([float(x.subs(end)) for x in part]) for part in (optimum.support, optimum.weights))
+    return plots.dual_polynomial(at, derived, support, found, printed=printed, unit="Schuler units")
 
 
 def ladder() -> Figure:
-    """Rank of the rows h, hF, hF^2, ... for the velocity and the position of the full error model."""
+    """Rank of the rows h, hF, hF^2, ... for each measurement of the full error model, and for all four."""
     from navsym.models.inertial.errors import full_model
 
     model = full_model()
     values = {s: sp.Rational(k + 3, 7) for k, s in enumerate(sorted(model.F.free_symbols, key=str))}
     F, H = model.F.subs(values), model.H.subs(values)
-    names = model.measurements
-    ranks = []
-    for k in range(H.rows):
-        rows, row, reached = [], H[k, :], []
-        for _ in range(model.size):
-            rows.append(row)
-            reached.append(sp.Matrix.vstack(*rows).rank())
-            row = row * F
-        ranks.append(reached)
-    together, row, reached = [], H, []
-    for _ in range(model.size):
-        together.append(row)
-        reached.append(sp.Matrix.vstack(*together).rank())
-        row = row * F
-    return plots.observability_ladder((*names, "all four"), np.array([*ranks, reached])[:, :10], model.size)
+    names = [name.replace("sigma_", "σ ") for name in model.measurements]
+    ranks = [ranks_of(H[k, :], F, 10) for k in range(H.rows)] + [ranks_of(H, F, 10)]
+    return plots.observability_ladder((*names, "all four"), np.array(ranks), model.size)
+
+
+def ranks_of(rows: sp.Matrix, F: sp.Matrix, count: int) -> list[int]:
+    """Rank of the rows h, of h and hF, and so on."""
+    whole, reached = DomainMatrix.from_Matrix(rows).to_field(), []
+    power, system = whole, DomainMatrix.from_Matrix(F).to_field()
+    for _ in range(count):
+        reached.append(whole.rank())
+        power = power * system
+        whole = whole.vstack(power)
+    return reached
 
 
 def modes() -> Figure:

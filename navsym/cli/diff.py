@@ -7,7 +7,7 @@ from typing import Annotated, Any
 import typer
 
 from navsym.cli.output import emit, table
-from navsym.errors import ExpressionSyntaxError, ShapeError
+from navsym.errors import DomainError, ExpressionSyntaxError, ShapeError
 
 
 def command(
@@ -29,7 +29,7 @@ def command(
     from navsym.export.differences import compare, formulas_of
 
     kinds = [kind_of(text) for text in (old, new)]
-    if kinds[0] != kinds[1] and "a model file" in kinds:
+    if kinds[0] != kinds[1]:
         message = f"expected two things of one kind; got {kinds[0]} and {kinds[1]}; compare each with its own kind"
         raise ShapeError(message, where=new)
     ranges = dict(read_range(text) for text in box or [])
@@ -39,14 +39,19 @@ def command(
 
 
 def kind_of(text: str) -> str:
-    """What a word of the command line names; a file that is no TOML is refused."""
+    """What a word of the command line names; a file of another kind is refused."""
     from pathlib import Path
 
     from navsym.text.tomlfile import read_toml
 
-    if not text.endswith(".toml"):
-        return "a formula or a folder"
-    return "a claim file" if "claim" in read_toml(Path(text)) else "a model file"
+    if text.endswith(".toml"):
+        return "a claim file" if "claim" in read_toml(Path(text)) else "a model file"
+    if Path(text).is_dir():
+        return "a folder"
+    if Path(text).exists():
+        message = "expected a formula, a file named *.toml or an exported folder; got another file; name one of these"
+        raise DomainError(message, where=text)
+    return "a formula"
 
 
 def read_range(text: str) -> tuple[str, tuple[Any, Any]]:

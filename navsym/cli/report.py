@@ -35,7 +35,7 @@ def command(
 
     Example: navsym report guaranteed_velocity --out site
     """
-    from navsym.cli.verify import decided, load
+    from navsym.cli.verify import decided, load, not_as_declared
     from navsym.methods.verification.verify import unexpected
 
     chosen = load(modules or [])
@@ -46,8 +46,10 @@ def command(
     names = write_pages(out, document, {module.name: module.paper for module in chosen})
     pages = [name for name in names if name.endswith(".html")]
     result = {"out": str(out), "files": len(names), "pages": pages, "counts": document["counts"]}
-    emit(result, as_json=json_, text=f"{len(names)} files; open {out / 'index.html'}")
-    return 1 if unexpected(document["claims"]) else 0
+    wrong = unexpected(document["claims"])
+    told = "\n".join([f"{len(names)} files; open {out / 'index.html'}", *not_as_declared(wrong)])
+    emit(result, as_json=json_, text=told)
+    return 1 if wrong else 0
 
 
 def wordings() -> dict[str, Any]:

@@ -209,9 +209,15 @@ def as_text(document: dict[str, Any], wrong: list[dict[str, Any]], changed: list
         blocks.append(f"the ledger differs in {len(changed)} claims, {changed[0]} first; --write updates it")
     else:
         blocks.append(f"the ledger {ledger_file().name} agrees")
-    for record in wrong:
-        blocks.append(f"not as declared: {record['id']} is {record['status']}, declared {record['expect']}")
-    return "\n".join(blocks)
+    return "\n".join(blocks + not_as_declared(wrong))
+
+
+def not_as_declared(wrong: Sequence[dict[str, Any]]) -> list[str]:
+    """A line for each verdict that is another one, with what helps where only time was short."""
+    lines = [f"not as declared: {r['id']} is {r['status']}, declared {r['expect']}: {r['evidence']}" for r in wrong]
+    if any(record["method"] == "none" for record in wrong):
+        lines.append("give an OPEN claim more time with --seconds, or less company with --jobs 1; the others are kept")
+    return lines
 
 
 def remark_of(record: dict[str, Any]) -> str:

@@ -42,36 +42,77 @@ def svg(picture: Figure) -> str:
     return buffer.getvalue()
 
 
-def dual_polynomial(times: Array, values: Array, support: Array, *, sigma: float = 1.0, unit: str = "s") -> Figure:
-    """The dual polynomial between its bounds, with the instants at which it touches them.
+def panels(ratios: Sequence[float], height: float) -> tuple[Figure, list[Axes]]:
+    """Axes one above the other over one abscissa, in the style of :func:`figure`."""
+    made = Figure(figsize=(7.0, height), layout="constrained")
+    found = list(made.subplots(len(ratios), 1, sharex=True, squeeze=False, height_ratios=ratios)[:, 0])
+    for axes in found:
+        axes.spines[["top", "right"]].set_visible(False)
+        axes.grid(True, color="0.9", linewidth=0.6)
+        axes.set_axisbelow(True)
+    return made, found
 
-    times, values : (n,) the curve x.H(t)
-    support       : (k,) instants of the best estimator
+
+def dual_polynomial(
+    times: Array,
+    values: Array,
+    support: Array,
+    weights: Array,
+    *,
+    printed: Array | None = None,
+    sigma: float = 1.0,
+    unit: str = "s",
+) -> Figure:
+    """The dual polynomial in its band; below it the weights of the measurements at which it touches.
+
+    times, values    : (n,) the curve x.H(t)
+    support, weights : (k,) instants of the best estimator and what they are multiplied by
+    printed          : (n,) the curve of a printed formula that leaves the band, or None
     """
-    made, axes = figure()
-    axes.plot(times, values, color=COLOURS[0])
+    made, (above, below) = panels((2, 1), 4.4)
+    above.axhspan(-sigma, sigma, color="0.93", zorder=0)
     for bound in (-sigma, sigma):
-        axes.axhline(bound, color="0.4", linewidth=1, linestyle="--")
-    axes.plot(support, np.interp(support, times, values), "o", color=COLOURS[1], label="instants of measurement")
-    axes.set(xlabel=f"time, {unit}", ylabel="dual polynomial, 1", ylim=(-1.15 * sigma, 1.15 * sigma))
-    axes.legend(loc="lower center", frameon=False)
+        above.axhline(bound, color="0.4", linewidth=1)
+    above.plot(times, values, color=COLOURS[0], label="derived: touches its bounds")
+    if printed is not None:
+        above.plot(times, printed, STYLES[1], color=COLOURS[1], label="as printed: leaves them")
+    above.plot(support, np.interp(support, times, values), "o", color=COLOURS[0])
+    above.set(ylabel="dual polynomial, 1")
+    above.legend(loc="lower center", frameon=False)
+    below.axhline(0, color="0.4", linewidth=1)
+    below.vlines(support, 0, weights, color=COLOURS[0], linewidth=3)
+    below.plot(support, weights, "o", color=COLOURS[0])
+    for at, weight in zip(support, weights, strict=True):
+        place = {"xytext": (7, 0), "textcoords": "offset points", "va": "center", "fontsize": 9}
+        below.annotate(f"{weight:+.3f}", (at, weight / 2), **place)
+    below.set(xlabel=f"time, {unit}", ylabel="weight, 1")
+    below.margins(0.07, 0.15)
+    above.set_xlabel(below.get_xlabel()).set_visible(False)
     return made
 
 
 def phase_diagram(
     regimes: Rows, *, parameter: str, unit: str, quantity: str, logarithmic: bool = False
 ) -> Figure:
-    """The optimum over a parameter, one colour and line style for each regime, boundaries as lines.
+    """The optimum over a parameter, and below it the instants that reach it; boundaries of regimes as lines.
 
-    regimes : each with ``at`` (n,) values of the parameter, ``value`` (n,) and ``label``
+    regimes : each with ``at`` (n,) values of the parameter, ``value`` (n,), ``label`` and perhaps
+              ``instants`` (k, n), where the measurements stand
     """
-    made, axes = figure()
+    placed = any("instants" in regime for regime in regimes)
+    made, drawn = panels((3, 2), 5.2) if placed else panels((1,), 3.5)
     for place, regime in enumerate(regimes):
-        axes.plot(regime["at"], regime["value"], STYLES[place % 4], color=COLOURS[place % 7], label=regime["label"])
-        if place:
+        style = {"linestyle": STYLES[place % 4], "color": COLOURS[place % 7]}
+        drawn[0].plot(regime["at"], regime["value"], label=regime["label"], **style)
+        for instant in regime.get("instants", ()):
+            drawn[1].plot(regime["at"], instant, **style)
+        for axes in drawn if place else ():
             axes.axvline(regime["at"][0], color="0.6", linewidth=0.8)
-    axes.set(xlabel=f"{parameter}, {unit}", ylabel=quantity, yscale="log" if logarithmic else "linear")
-    axes.legend(loc="best", frameon=False)
+    drawn[0].set(xlabel=f"{parameter}, {unit}", ylabel=quantity, yscale="log" if logarithmic else "linear")
+    drawn[0].legend(loc="best", frameon=False, labelspacing=0.9)
+    if placed:
+        drawn[0].xaxis.label.set_visible(False)
+        drawn[1].set(xlabel=f"{parameter}, {unit}", ylabel=f"where to measure,\n{unit}")
     return made
 
 
@@ -158,19 +199,24 @@ def condition_numbers(sizes: Array, printed: Array, certified: Array, double: Ar
 
 
 def observability_ladder(names: Sequence[str], ranks: Array, size: int) -> Figure:
-    """Rank reached by h, hF, hF^2, ... for each measurement: a stair that stops where nothing new is seen.
+    """Rank reached by h, hF, hF^2, ... for each measurement: one line of squares, dark while something new is seen.
 
-    ranks : (measurements, size), the rank after each power of F
+    ranks : (measurements, rows), the rank after each row
     """
-    made, axes = figure(height=3.0)
-    powers = np.arange(1, ranks.shape[1] + 1)
-    for place, (name, row) in enumerate(zip(names, ranks, strict=True)):
-        shift = 0.13 * (place - len(names) / 2)              # equal stairs would hide each other
-        axes.step(powers, row + shift, STYLES[place % 4], where="mid", color=COLOURS[place % 7], label=name)
-    axes.axhline(size, color="0.4", linewidth=1, linestyle="--", label=f"all {size} states")
-    axes.set(xlabel="rows used of h, hF, hF², …, number", ylabel="rank, number of states", ylim=(0, size + 0.8))
-    axes.set(xticks=powers, yticks=range(0, size + 1, 1 if size < 8 else 2))
-    axes.legend(loc="center left", bbox_to_anchor=(1, 0.5), frameon=False)
+    made, axes = figure(7.0, 0.5 * len(names) + 0.9)
+    grown = np.diff(ranks, axis=1, prepend=0) > 0
+    for line, (row, new) in enumerate(zip(ranks, grown, strict=True)):
+        for place, rank in enumerate(row):
+            ground, ink = (COLOURS[0], "white") if new[place] else ("0.93", "0.35")
+            axes.add_patch(Rectangle((place + 0.54, line - 0.42), 0.92, 0.84, facecolor=ground))
+            axes.text(place + 1, line, str(rank), color=ink, ha="center", va="center", fontsize=9)
+        axes.text(len(row) + 0.7, line, f"{row[-1]} of {size}", va="center", fontsize=9, fontweight="bold")
+    axes.grid(False)
+    axes.spines[["left", "bottom"]].set_visible(False)
+    axes.tick_params(length=0)
+    axes.set(xlim=(0.5, ranks.shape[1] + 1.8), ylim=(len(names) - 0.5, -0.5))
+    axes.set(xticks=np.arange(1, ranks.shape[1] + 1), yticks=range(len(names)), yticklabels=names)
+    axes.set(xlabel="rows used of h, hF, hF², …, number", ylabel="measurement, rank")
     return made
 
 

@@ -13,7 +13,7 @@ t = np.linspace(0.0, 1.0, 50)
 P = np.column_stack([t, 1 - t])
 BUMPS = np.sin(8 * t)[:, None] + np.cos(6 * t)[None, :]
 PICTURES = {
-    "dual": lambda: plots.dual_polynomial(t, 8 * t**2 - 8 * t + 1, np.array([0, 0.5, 1])),
+    "dual": lambda: plots.dual_polynomial(t, 8 * t**2 - 8 * t + 1, np.array([0, 0.5, 1]), np.array([1, -4, 3])),
     "phases": lambda: plots.phase_diagram(
         [{"at": t + 0.1, "value": 1 / (t + 0.1), "label": "1/T"}, {"at": t + 1.1, "value": 1 + 0 * t, "label": "1"}],
         parameter="T", unit="s", quantity="deviation, m/s",
