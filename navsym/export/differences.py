@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import random
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,7 +14,7 @@ import sympy as sp
 from flint import arb
 
 from navsym.claims import REFUTED, Equation
-from navsym.errors import DomainError, EmptyError, NavsymError
+from navsym.errors import DomainError, EmptyError, ExpressionSyntaxError, NavsymError
 from navsym.proof.balls import enclose, hull
 from navsym.proof.ladder import decide
 from navsym.proof.sampling.points import range_of
@@ -29,11 +30,15 @@ Record = dict[str, Any]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Formula:
-    """A named formula with the ranges of its symbols."""
+    """A named formula with the ranges of its symbols.
+
+    outside : its text when the language of files cannot say it; it is then compared as text only
+    """
 
     name: str
     expression: sp.Expr
     box: Mapping[sp.Symbol, tuple[Any, Any]]
+    outside: str = ""
 
 
 def compare(old: Mapping[str, Formula], new: Mapping[str, Formula]) -> Record:
@@ -54,6 +59,9 @@ def record_for(name: str, old: Formula | None, new: Formula | None) -> Record:
     if old is None or new is None:
         status = "ONLY-NEW" if old is None else "ONLY-OLD"
         return said(name, status, "no counterpart")
+    if old.outside or new.outside:
+        same = old.outside == new.outside and not different_ranges(old, new)
+        return said(name, "EQUAL" if same else "OPEN", "the same text" if same else "outside the language of files")
     left, right = old.expression, in_terms_of(new.expression, old)
     box = common_box(old, new)
     verdict = decide(Equation(left, right, box))
@@ -242,7 +250,7 @@ def of_export(folder: Path) -> dict[str, Formula]:
                 for line in piece["source"]["formula"]:
                     result, _, text = str(line).partition(" = ")
                     label = f"{name}.{result}" + (f" (regime {place + 1})" if len(pieces) > 1 else "")
-                    found[label] = of_text(text, ranges, where)
+                    found[label] = of_line(text, ranges, where)
         return found
     except NavsymError:
         raise
@@ -251,6 +259,16 @@ def of_export(folder: Path) -> dict[str, Formula]:
             f"expected a manifest of navsym export; got one without its keys ({type(error).__name__}: {error}); "
             "do export again", where=where
         ) from None
+
+
+def of_line(text: str, ranges: Mapping[str, tuple[Any, Any]], where: str) -> Formula:
+    """A formula of a manifest; one that was written in other words than those of files keeps its text."""
+    try:
+        return of_text(text, ranges, where)
+    except ExpressionSyntaxError:
+        present = set(re.findall(r"\w+", text))
+        box = {sp.Symbol(name, real=True): ends for name, ends in ranges.items() if name in present}
+        return Formula("formula", sp.Add(*box), box, outside=text)
 
 
 def exact_ends(record: Mapping[str, Any]) -> tuple[Any, Any]:

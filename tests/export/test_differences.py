@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 from pathlib import Path
 
@@ -85,3 +86,28 @@ def test_what_equality_takes_for_granted_is_said(capsys) -> None:
 def test_a_constant_difference_is_shown_with_its_size(capsys) -> None:
     assert run(["diff", "log(x)", "log(x) + 1"]) == 1
     assert "old - new = -1.0" in capsys.readouterr().out
+
+
+def test_two_kinds_of_things_are_not_compared(capsys, tmp_path: Path) -> None:
+    claims, model, other = tmp_path / "c.toml", tmp_path / "m.toml", tmp_path / "notes.txt"
+    claims.write_text('[symbols]\na = "real"\n[[claim]]\nid = "one"\nleft = "a"\nright = "a"\n')
+    model.write_text("[symbols]\n")
+    other.write_text("x")
+    for old, new in itertools.permutations([str(claims), str(model), str(tmp_path), "x"], 2):
+        status, found = document(capsys, old, new)
+        assert status == 2 and "of one kind" in found["error"]["message"], (old, new)
+    status, found = document(capsys, str(other), "x")
+    assert status == 2 and "another file" in found["error"]["message"]
+
+
+def test_a_formula_outside_the_language_of_files_is_compared_as_text(capsys, tmp_path: Path) -> None:
+    assert run(["export", "pulsating-filter", "--no-run", "--out", str(tmp_path / "a"), "--vectors", "4"]) == 0
+    capsys.readouterr()
+    status, found = document(capsys, str(tmp_path / "a"), str(tmp_path / "a"))
+    assert status == 0 and "the same text" in {r["why"] for r in found["differences"]}
+    other = tmp_path / "b"
+    other.mkdir()
+    text = (tmp_path / "a" / "manifest.json").read_text()
+    (other / "manifest.json").write_text(text.replace("Min(e_1, e_2)", "Max(e_1, e_2)"))
+    status, found = document(capsys, str(tmp_path / "a"), str(other))
+    assert status == 1 and [r["status"] for r in found["differences"]].count("OPEN") == 1
