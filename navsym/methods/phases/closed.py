@@ -73,9 +73,11 @@ def refined(family: Family, T: Fraction, pattern: Pattern | None) -> Sample | No
         return None
     value = sp.Rational(T.numerator, T.denominator)
     done = polish(family.exact(value).panels, basis, contacts, BITS, GOAL)
-    start, end = (sp.Rational(str(sp.N(e, 95))) if not e.is_Rational else e for e in family.ends(value))
-    places = tuple(start + (end - start) * number(v) for v in done.v)
-    return Sample(value, places, done)
+    places = []
+    for k, v in zip(done.panel, done.v, strict=True):
+        start, end = (sp.Rational(str(sp.N(e, 95))) if not e.is_Rational else e for e in family.ends(value, k))
+        places.append(start + (end - start) * number(v))
+    return Sample(value, tuple(places), done)
 
 
 # -- exact linear algebra on the contacts ---------------------------------------------------------
@@ -88,7 +90,7 @@ def candidates(family: Family, span: Span) -> list[Closed]:
         return []
     lengths = [s.T for s in found]
     columns = [[s.places[i] for s in found] for i in range(len(span.pattern))]
-    places = [place_or_share(family, c, lengths) for c in columns]
+    places = [place_or_share(family, k, c, lengths) for (k, _, _), c in zip(span.pattern, columns, strict=True)]
     if any(p is None for p in places):
         return []
     exact = tuple(p for p in places if p is not None)
@@ -144,7 +146,7 @@ def duals(
     for columns in itertools.combinations(range(len(rows[0])), rank):
         yield from solved_dual(family, rows, right, columns, found)
     free = len(rows[0]) - rank
-    ends = [[h.subs(U, family.start) + h.subs(U, family.stop) for h in row] for row in family.rows]
+    ends = [[h.subs(U, a) + h.subs(U, b) for h in row] for row, (a, b) in zip(family.rows, family.panels, strict=True)]
     for more in itertools.combinations(ends, free) if free else ():
         yield from solved_dual(family, [*rows, *more], [*right, *[sp.S.Zero] * free], range(len(rows[0])), found)
 
@@ -268,12 +270,12 @@ def proved(family: Family, guess: Closed, lower: sp.Expr, upper: sp.Expr, second
     statements = [
         Optimum(
             regressors=tuple(put(h / sigma) for h in row), functional=tuple(map(put, family.functional)), variable=U,
-            interval=(put(family.start), put(family.stop)), dual=tuple(map(put, guess.dual)),
+            interval=tuple(map(put, ends)), dual=tuple(map(put, guess.dual)),
             support=tuple(map(put, guess.places)),
             weights=tuple(put(w * family.sigma[k]) for w, k in zip(guess.weights, guess.panels, strict=True)),
             value=put(guess.value), box={T: (lower, upper)},
         )
-        for row, sigma in zip(family.rows, family.sigma, strict=True)
+        for row, sigma, ends in zip(family.rows, family.sigma, family.panels, strict=True)
     ]
     if len(statements) > 1:
         outcome = run_limited(decide_jointly, (statements, guess.panels), seconds, DEFAULT_MEGABYTES)
@@ -298,8 +300,14 @@ def decide_jointly(statements: Sequence[Optimum], panels: Sequence[int]) -> Verd
     )
     balance = decide_equation(Equation(sums, tuple(first.functional), first.box))
     feasible_ = [feasibility(statement) for statement in statements]
-    verdict = combine([balance, instants(first), *feasible_, equal_values(first)])
+    inside = [instants(replace(s, support=own(first.support, panels, k))) for k, s in enumerate(statements)]
+    verdict = combine([balance, *inside, *feasible_, equal_values(first)])
     return replace(verdict, method=f"exact primal-dual pair ({verdict.method})")
+
+
+def own(places: Sequence[sp.Expr], panels: Sequence[int], k: int) -> tuple[sp.Expr, ...]:
+    """Those of the places that lie on panel k."""
+    return tuple(at for at, panel in zip(places, panels, strict=True) if panel == k)
 
 
 # -- polynomials, where the share of the interval is the only variable ----------------------------

@@ -8,20 +8,19 @@ two-sided certificates.
 
 from __future__ import annotations
 
-import html
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
 from typing import Any
 
 import sympy as sp
-from flint import arb, fmpq
+from flint import fmpq
 
-from navsym.claims import CERTIFIED, OPEN, Status
-from navsym.claims.display import card, displayed, latex_of, table
+from navsym.claims import CERTIFIED, OPEN
 from navsym.errors import DomainError
 from navsym.methods.guaranteed.solver import solve
+from navsym.methods.phases.answer import Phases, Regime, end_text, number_of
 from navsym.methods.phases.closed import Closed, candidates, prove
 from navsym.methods.phases.dependent import without_dependent
 from navsym.methods.phases.events import Boundary, boundary
@@ -29,13 +28,12 @@ from navsym.methods.phases.family import Family
 from navsym.methods.phases.range import followed, fraction_of
 from navsym.methods.phases.scan import COUNT, Span, scan
 from navsym.methods.phases.singular import Singular, singular_values
-from navsym.methods.phases.slivers import Sliver, slivers
+from navsym.methods.phases.slivers import slivers
 from navsym.proof.balls import enclose
 from navsym.proof.decimals import decimal, lower_end, upper_end
 from navsym.proof.decimals import exact as exact_decimal
 from navsym.proof.optimality.enclosure import rational
 from navsym.proof.optimality.range import Ranged
-from navsym.text.expression import to_text
 
 POINTS = 5
 #: Next to a singular value this part of the range is left, and named in ``uncovered``.
@@ -43,75 +41,6 @@ MARGIN = Fraction(1, 100_000)
 #: A span below this part of the range is given up when its neighbours are proved to meet.
 SHORT = Fraction(1, 500)
 DIGITS = 34
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Regime:
-    """One pattern of instants between two lengths.
-
-    lower, upper : ends, exact or the enclosure's middle
-    closed       : closed form, or None
-    status       : PROVED, CERTIFIED or OPEN for every length in the regime
-    table        : enclosures at some lengths, for regimes without a closed form
-    certificates : of kind "range" and what belongs to it
-    slivers      : two-sided certificates of what the range certificate leaves
-    held         : values between which the pattern itself is proved, without its slivers
-    """
-
-    span: Span
-    lower: sp.Expr
-    upper: sp.Expr
-    closed: Closed | None
-    status: Status
-    table: tuple[dict[str, str], ...] = ()
-    certificates: tuple[Mapping[str, Any], ...] = ()
-    slivers: tuple[Sliver, ...] = ()
-    held: tuple[fmpq, fmpq] | None = None
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Phases:
-    """Regimes in order, the boundaries between them, and what is left uncovered."""
-
-    family: Family
-    lower: sp.Expr
-    upper: sp.Expr
-    regimes: tuple[Regime, ...]
-    boundaries: tuple[Boundary, ...]
-    uncovered: tuple[tuple[str, str], ...] = field(default=())
-    ties: tuple[Mapping[str, Any], ...] = field(default=())
-
-    def certificates(self) -> list[dict[str, Any]]:
-        """Certificates of the regimes without a closed form and of slivers, for ``navsym check``."""
-        ranges = [dict(c) for regime in self.regimes for c in regime.certificates]
-        thin = [dict(s.certificate) for regime in self.regimes for s in regime.slivers]
-        return ranges + thin + [dict(tie) for tie in self.ties]
-
-    def _repr_html_(self) -> str:
-        """The regimes as a table, for notebooks."""
-        name, heads = self.family.parameter.name, ("from", "to", "value", "instants", "verdict")
-        rows = [
-            (
-                displayed(latex_of(r.lower)), displayed(latex_of(r.upper)),
-                displayed(latex_of(r.closed.value)) if r.closed else "a table of enclosures",
-                displayed(latex_of(r.closed.places)) if r.closed else "", str(r.status),
-            )
-            for r in self.regimes
-        ]  # fmt: skip
-        return card([html.escape(f"{self.family.target} by {name}"), table(heads, rows)])
-
-    def document(self) -> dict[str, Any]:
-        """The answer of ``navsym phases``."""
-        return {
-            "target": self.family.target, "parameter": self.family.parameter.name,
-            "range": [to_text(self.lower), to_text(self.upper)],
-            "regimes": [regime_row(self.family, regime) for regime in self.regimes],
-            "boundaries": [
-                {"at": None if b.at is None else to_text(b.at), "lower": b.lower, "upper": b.upper, "why": b.why}
-                for b in self.boundaries
-            ],
-            "uncovered": [list(pair) for pair in self.uncovered],
-        }  # fmt: skip
 
 
 def phases(
@@ -125,20 +54,61 @@ def phases(
     Raises DomainError for a range without length, and lengths of the interval below zero.
     """
     need_range(family, lower, upper)
-    between = inside_of(lower, upper)
-    family, ties = without_dependent(family, between)
-    singular = singular_values(family, lower, upper)
-    inner = [s for s in singular if bool(enclose(s.at - lower) > 0) and bool(enclose(upper - s.at) > 0)]
-    cuts = [lower, *(s.at for s in inner), upper]
-    names = {s.at for s in singular}
-    steps = Steps(progress, (len(cuts) - 1) * (COUNT - 1))
-    parts = [stretch(family, a, b, names, certify, steps) for a, b in pairwise(cuts)]
-    regimes = [regime for part in parts for regime in part.regimes]
-    changes = [event(s) for s in singular if not (s.at == lower == 0 and family.growing)]
+    plan = [section for part in sections(family, lower, upper) for section in split(*part)]
+    steps = Steps(progress, len(plan) * (COUNT - 1))
+    parts = [stretch(section, certify, steps) for section in plan]
+    singular = {s.at: s for section in plan for s in section.singular}
+    changes = [event(s) for s in singular.values() if not (s.at == lower == 0 and plan[0].family.growing)]
     changes += [b for part in parts for b in part.boundaries]
     changes.sort(key=lambda b: sp.Rational(b.lower))
+    regimes = [regime for part in parts for regime in part.regimes]
     uncovered = [pair for part in parts for pair in part.uncovered]
-    return Phases(family, lower, upper, tuple(regimes), tuple(changes), tuple(uncovered), ties)
+    ties = {id(tie): tie for section in plan for tie in section.ties}
+    return Phases(
+        plan[-1].family, lower, upper, tuple(regimes), tuple(changes), tuple(uncovered), tuple(ties.values())
+    )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Section:
+    """A part of the range without a singular value inside; singular ones at its ends are named."""
+
+    family: Family
+    lower: sp.Expr
+    upper: sp.Expr
+    singular: tuple[Singular, ...]
+    ties: tuple[dict[str, Any], ...]
+
+    @property
+    def names(self) -> set[sp.Expr]:
+        """The singular values."""
+        return {s.at for s in self.singular}
+
+
+def sections(family: Family, lower: sp.Expr, upper: sp.Expr) -> list[tuple[Family, sp.Expr, sp.Expr]]:
+    """The range cut where one family of a chain follows another."""
+    chain = family.chain
+    first = [lower, *(one.least for one in chain[1:])]
+    last = [*(one.least for one in chain[1:]), upper]
+    done = []
+    for one, a, b in zip(chain, first, last, strict=True):
+        start, end = (lower if above(lower, a) else a), (upper if above(b, upper) else b)
+        if above(end, start):
+            done.append((one, start, end))
+    return done
+
+
+def above(x: sp.Expr, y: sp.Expr) -> bool:
+    """x > y, by balls."""
+    return x != y and bool(enclose(x - y) > 0)
+
+
+def split(family: Family, lower: sp.Expr, upper: sp.Expr) -> list[Section]:
+    """The range cut at its singular values, and unknowns that depend on others left out."""
+    family, ties = without_dependent(family, inside_of(lower, upper))
+    singular = singular_values(family, lower, upper)
+    inner = [s.at for s in singular if above(s.at, lower) and above(upper, s.at)]
+    return [Section(family, a, b, singular, ties) for a, b in pairwise([lower, *inner, upper])]
 
 
 class Steps:
@@ -185,10 +155,9 @@ def need_range(family: Family, lower: sp.Expr, upper: sp.Expr) -> None:
         raise DomainError(f"range: expected lengths 0 <= from < to; got {lower} to {upper}; mend them")
 
 
-def stretch(
-    family: Family, lower: sp.Expr, upper: sp.Expr, singular: set[sp.Expr], certify: bool, steps: Steps
-) -> Phases:
+def stretch(section: Section, certify: bool, steps: Steps) -> Phases:
     """All regimes between two values without a singular one inside."""
+    family, lower, upper, singular = section.family, section.lower, section.upper, section.names
     low, high = inner_range(lower, upper, singular)
     spans = without_accidents(family, scan(family, low, high, step=steps.did))
     steps.found(len(spans))
@@ -237,7 +206,7 @@ def between(guess: Boundary, before: Regime, after: Regime) -> Boundary:
     """
     last = before.held[1] if before.held else exact_fraction(before.span.lower)
     first = after.held[0] if after.held else exact_fraction(after.span.upper)
-    return replace(guess, lower=lower_end(arb(last), DIGITS), upper=upper_end(arb(first), DIGITS))
+    return replace(guess, lower=decimal(last, DIGITS, -1), upper=decimal(first, DIGITS, 1))
 
 
 def exact_fraction(x: Fraction) -> fmpq:
@@ -264,8 +233,7 @@ def limits_of(
     changes: Sequence[Boundary], singular: set[sp.Expr],
 ) -> list[Limits]:  # fmt: skip
     """For every regime: where it must be covered (outer) and where exact contacts are followed (inner)."""
-    part = MARGIN * (high - low)
-    margin = fmpq(part.numerator, part.denominator)
+    margin = exact_fraction(MARGIN * (high - low))
     marks = [end_marks(family, lower, -1, singular, margin)]
     marks += [(exact_decimal(b.lower), exact_decimal(b.upper)) for b in changes]
     marks.append(end_marks(family, upper, 1, singular, margin))
@@ -296,19 +264,18 @@ def regime_of(
     """One regime: its proved closed form, or contacts followed for every value, slivers and holes."""
     a, b = ends
     if closed is not None:
-        return Regime(span, a, b, closed, closed.verdict.status, held=(limits[1], limits[2])), []
+        return Regime(family, span, a, b, closed, closed.verdict.status, held=(limits[1], limits[2])), []
     if not certify:
-        return Regime(span, a, b, None, OPEN, table_of(family, span)), [(end_text(a), end_text(b))]
+        return Regime(family, span, a, b, None, OPEN, table_of(family, span)), [(end_text(a), end_text(b))]
     done = followed(family, span.pattern, limits[1], limits[2])
     holes, thin = [], []
     for left, right in rests(done, limits):
-        made = slivers(family, left, right)
-        if made is None:
-            holes.append((end_text(number_of(left)), end_text(number_of(right))))
-        else:
-            thin += made
+        made, left_over = slivers(family, left, right)
+        thin += made
+        holes += [(end_text(number_of(p), -1), end_text(number_of(q), 1)) for p, q in left_over]
     status = CERTIFIED if done.ends is not None else OPEN
-    return Regime(span, a, b, None, status, table_of(family, span), done.documents, tuple(thin), done.ends), holes
+    shown = table_of(family, span)
+    return Regime(family, span, a, b, None, status, shown, done.documents, tuple(thin), done.ends), holes
 
 
 def rests(done: Ranged, limits: Limits) -> list[tuple[fmpq, fmpq]]:
@@ -317,10 +284,6 @@ def rests(done: Ranged, limits: Limits) -> list[tuple[fmpq, fmpq]]:
         return [(limits[0], limits[3])]
     first, last = done.ends
     return [(a, b) for a, b in ((limits[0], first), (last, limits[3])) if a < b]
-
-
-def number_of(x: fmpq) -> sp.Rational:
-    return sp.Rational(int(x.p), int(x.q))
 
 
 def exact(x: Fraction) -> sp.Rational:
@@ -335,52 +298,6 @@ def table_of(family: Family, span: Span) -> tuple[dict[str, str], ...]:
         found = solve(family.problem(exact(T)), 20)
         rows.append({family.parameter.name: str(T), "lower": found.lower, "upper": found.upper})
     return tuple(rows)
-
-
-def regime_row(family: Family, regime: Regime) -> dict[str, Any]:
-    row: dict[str, Any] = {"from": end_text(regime.lower), "to": end_text(regime.upper)}
-    if regime.closed is not None:
-        closed = regime.closed
-        order = range(len(closed.places) - 1, -1, -1) if family.backward else range(len(closed.places))
-        row["value"] = to_text(closed.value)
-        row["support"] = [
-            {"measurement": family.measurements[closed.panels[i]], "at": to_text(family.time(closed.places[i])),
-             "weight": to_text(closed.weights[i])} for i in order
-        ]  # fmt: skip
-        dual = dict(zip(family.unknowns, closed.dual, strict=True))
-        row["dual"] = [to_text(dual.get(k, sp.S.Zero)) for k in range(len(dual) + len(family.left_out))]
-        row["method"] = closed.verdict.method
-    else:
-        row |= {
-            "value": None,
-            "support": pattern_rows(family, regime.span),
-            "dual": None,
-            "table": list(regime.table),
-        }
-    row["status"] = str(regime.status)
-    if regime.slivers:
-        row["slivers"] = [
-            dict(zip(("from", "to", "lower", "upper"), s.row(), strict=True)) for s in regime.slivers
-        ]
-    return row
-
-
-def end_text(end: sp.Expr) -> str:
-    """An end in the language of files; the middle of an enclosure as a decimal of 34 digits."""
-    if end.is_Rational and end.q > 10**9:
-        return decimal(fmpq(int(end.p), int(end.q)), 34)
-    return to_text(end)
-
-
-def pattern_rows(family: Family, span: Span) -> list[dict[str, Any]]:
-    """The instants of an implicit regime: which ends, how many inside, with which signs."""
-    ends = (to_text(family.time(family.start)), to_text(family.time(family.stop)))
-    names = dict(zip(("from", "to"), ends, strict=True))
-    rows = [
-        {"measurement": family.measurements[k], "at": names.get(kind), "sign": s}
-        for k, kind, s in span.pattern
-    ]
-    return rows[::-1] if family.backward else rows
 
 
 __all__ = ["Phases", "Regime", "phases"]

@@ -12,10 +12,12 @@ import sympy as sp
 from flint import arb, arb_mat, fmpq
 
 from navsym.claims import PROVED, Equation
+from navsym.methods.phases import walk
 from navsym.methods.phases.closed import BITS, GOAL, Closed
 from navsym.methods.phases.family import Family, U
 from navsym.methods.phases.places import constant, number
 from navsym.methods.phases.scan import Pattern, Span, pattern_of, sample
+from navsym.methods.phases.walk import walked
 from navsym.numeric.exchange.search import Contacts
 from navsym.proof.balls import enclose, precision
 from navsym.proof.decimals import decimal, lower_end, upper_end
@@ -26,6 +28,8 @@ from navsym.proof.optimality.fixed import peak, touch
 from navsym.proof.optimality.polish import Polished, polish
 
 DIGITS = 34
+#: A root belongs to a change that the scan saw this near, relative.
+REACH = 2e-3
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +53,9 @@ def boundary(
     family: Family, left: Span, right: Span, before: Closed | None, after: Closed | None
 ) -> Boundary:
     """The change from one span to the next, as exactly as it can be had."""
-    guess, reach = float(left.upper), 2e-3 * max(abs(float(left.upper)), float(right.upper - left.lower))
+    guess = float(left.upper)
+    # A guess near zero has no size of its own, and patterns next to each other are told apart only so far.
+    reach = REACH * max(abs(guess), float(right.upper - left.lower))
     for expression, why in events(family, left, before, right, after):
         found = exact_root(expression, family.parameter, guess, reach)
         if found is not None:
@@ -74,16 +80,12 @@ def events(
                     sp.fraction(sp.together(w))[0],
                     f"the weight at {family.time(closed.places[i])} vanishes",
                 )
-        for i, (_, kind, _) in enumerate(span.pattern):
+        for place, (k, kind, _) in zip(closed.places, span.pattern, strict=True):
             if kind == "no":
-                yield (
-                    family.stop - closed.places[i],
-                    f"the instant {family.time(closed.places[i])} reaches an end of the interval",
-                )
-                yield (
-                    closed.places[i] - family.start,
-                    f"the instant {family.time(closed.places[i])} reaches an end of the interval",
-                )
+                start, stop = family.panels[k]
+                why = f"the instant {family.time(place)} reaches an end of {family.stretch_name}"
+                yield stop - place, why
+                yield place - start, why
 
 
 def rooms_below(
@@ -165,13 +167,14 @@ def rooms(found: Polished, problem: Problem, others: Others) -> dict[Room, arb]:
     return {room: size for room, size in done.items() if size.is_finite()}
 
 
-def in_words(room: Room, others: Others) -> str:
+def in_words(family: Family, room: Room, others: Others) -> str:
     kind, i = room
     if kind == "weight":
         return f"the weight of contact {i + 1} vanishes"
     if kind == "bound":
-        return f"the dual polynomial reaches its bound at another instant of measurement {others[i][0] + 1}"
-    return f"contact {i + 1} reaches an end of the interval"
+        measurement = others[i][0] % family.many + 1
+        return f"the dual polynomial reaches its bound at another instant of measurement {measurement}"
+    return f"contact {i + 1} reaches an end of {family.stretch_name}"
 
 
 def implicit(family: Family, left: Span, right: Span) -> Boundary:
@@ -214,7 +217,7 @@ def closing(
 
     ends = (T0, number(first[room].mid())), (middle, number(second[room].mid()))
     root = secant(size, *ends, target, abs(T0 - target) * 3 + sp.Rational(1, 1000))
-    return None if root is None else (root, in_words(room, others))
+    return None if root is None else (root, in_words(family, room, others))
 
 
 def nearest_to_close(first: dict[Room, arb], second: dict[Room, arb], start: float, edge: float) -> Room | None:
@@ -249,14 +252,15 @@ def secant(
 
 def enclosed(family: Family, left: Span, right: Span, root: sp.Rational, why: str) -> Boundary:
     """Exact contacts of the left pattern just below and of the right pattern just above the root."""
-    for places in (32, 24, 16, 10, 6):
-        delta = sp.Rational(1, 10**places) * root
-        below, above = (
-            sp.Rational(round(v * 10 ** (places + 4)), 10 ** (places + 4))
-            for v in (root - delta, root + delta)
-        )
-        if proves(family, left, below, -1) and proves(family, right, above, 1):
-            return Boundary(None, exact_decimal(below), exact_decimal(above), why, True)
+    for proof, sizes in ((proves, (32, 24, 16, 10, 6)), (proves_walking, (32, 16))):
+        for places in sizes:
+            delta = abs(root or sp.Integer(1)) / sp.Integer(10) ** places
+            below, above = (
+                sp.Rational(round(v * 10 ** (places + 4)), 10 ** (places + 4))
+                for v in (root - delta, root + delta)
+            )
+            if proof(family, left, below, -1, root) and proof(family, right, above, 1, root):
+                return Boundary(None, exact_decimal(below), exact_decimal(above), why, True)
     text = decimal(fmpq(int(root.p), int(root.q)), 20)
     return Boundary(None, text, text, why + "; not enclosed by proofs", False)
 
@@ -265,7 +269,7 @@ def exact_decimal(x: sp.Rational) -> str:
     return decimal(fmpq(int(x.p), int(x.q)), 60)
 
 
-def proves(family: Family, span: Span, T: sp.Rational, side: int) -> bool:
+def proves(family: Family, span: Span, T: sp.Rational, side: int, root: sp.Rational) -> bool:
     """True when exact contacts of the span's pattern are proved optimal at T."""
     edge = span.upper if side < 0 else span.lower
     problem = family.exact(T)
@@ -274,6 +278,19 @@ def proves(family: Family, span: Span, T: sp.Rational, side: int) -> bool:
         found = forced(family, T, span.pattern, *start)
         if found.residual < 1e-45 and touch(problem, basis, found, 50, BITS) is not None:
             return True
+    return False
+
+
+def proves_walking(family: Family, span: Span, T: sp.Rational, side: int, root: sp.Rational) -> bool:
+    """The same where the pattern is singular at the root itself: it is followed there with many digits."""
+    if proves(family, span, T, side, root):
+        return True
+    edge = span.upper if side < 0 else span.lower
+    for contacts, begin in anchors(family, span, edge, side):
+        found = walked(family, forced(family, begin, span.pattern, contacts, begin), begin, root, T)
+        if found is not None:
+            problem = family.exact(T)
+            return touch(problem, make_basis(problem), found, walk.DIGITS, walk.BITS) is not None
     return False
 
 

@@ -3,18 +3,23 @@
 For a constant model the regressors depend on ``u = T - t`` only, the time before the estimate; for
 regressors given directly they depend on t. A growing family has fixed regressors and ends at the
 parameter; otherwise the parameter may enter the regressors, the ends, the noise bounds and the functional.
+
+Where F is given in pieces U is the time and the rows change at the cuts; lengths that end in an earlier piece
+are a family of their own.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
 from typing import Any
 
 import sympy as sp
 
 from navsym.errors import DomainError, EmptyError
 from navsym.methods.guaranteed.problem import GuaranteedProblem, Rows, Stretch, chosen_target, stretches_of
+from navsym.methods.guaranteed.varying import varying
 from navsym.proof.optimality.enclosure import Panel, Problem
 from navsym.text.modeltypes import BasisFile, ModelFile
 
@@ -26,14 +31,16 @@ U = sp.Symbol("u", real=True)
 class Family:
     """Problems with one free parameter.
 
-    rows         : regressors in U, one row per measurement
+    rows         : regressors in U, one row per panel: the measurements on the first stretch, on the next, …
     functional   : P
-    sigma        : noise bounds
+    sigma        : noise bounds, one per panel
     parameter    : the symbol that varies
     backward     : True when U counts back from the end, ``t = end - u``
-    measurements : names
+    measurements : names, one per panel
     start, end   : ends of U; by default 0 and the parameter
     left_out     : places of unknowns that depend on the others and are not among the columns of rows
+    cuts         : places in U where one stretch ends and the next begins, in order
+    shorter      : the family of lengths up to ``least``, below which this one does not hold, or None
     """
 
     rows: Rows
@@ -46,6 +53,24 @@ class Family:
     start: sp.Expr = sp.S.Zero
     end: sp.Expr | None = None
     left_out: tuple[int, ...] = ()
+    cuts: tuple[sp.Expr, ...] = ()
+    shorter: Family | None = None
+    least: sp.Expr = sp.S.Zero
+
+    @property
+    def chain(self) -> tuple[Family, ...]:
+        """The families of all lengths, that of the shortest first."""
+        return (self,) if self.shorter is None else (*self.shorter.chain, self)
+
+    @property
+    def many(self) -> int:
+        """How many measurements there are."""
+        return len(self.rows) // (len(self.cuts) + 1)
+
+    @cached_property
+    def panels(self) -> tuple[tuple[sp.Expr, sp.Expr], ...]:
+        """The ends in U of every panel."""
+        return tuple(pair for pair in pairwise((self.start, *self.cuts, self.stop)) for _ in range(self.many))
 
     @property
     def unknowns(self) -> tuple[int, ...]:
@@ -58,28 +83,36 @@ class Family:
         """The end of U."""
         return self.parameter if self.end is None else self.end
 
+    @property
+    def stretch_name(self) -> str:
+        """What a panel is called."""
+        return "a piece of the interval" if self.cuts else "the interval"
+
     @cached_property
     def growing(self) -> bool:
         """True when only the interval [0, parameter] grows; the optimum then never increases."""
         fixed = [*self.functional, *self.sigma, *(h for row in self.rows for h in row)]
         free = {s for part in fixed for s in part.free_symbols}
-        return self.start == 0 and self.stop == self.parameter and self.parameter not in free
+        return self.start == 0 and self.stop == self.parameter and self.parameter not in free and not self.cuts
 
     def at(self, expression: sp.Expr, value: Any) -> sp.Expr:
         """An expression with a value for the parameter."""
         return expression if self.parameter not in expression.free_symbols else expression.subs(self.parameter, value)
 
-    def ends(self, value: Any) -> tuple[sp.Expr, sp.Expr]:
-        return self.at(self.start, value), self.at(self.stop, value)
+    def ends(self, value: Any, panel: int = 0) -> tuple[sp.Expr, sp.Expr]:
+        """The ends in U of a panel for one value."""
+        start, stop = self.panels[panel]
+        return self.at(start, value), self.at(stop, value)
 
     def problem(self, value: Any) -> GuaranteedProblem:
         """The member with an exact value of the parameter."""
         value = sp.sympify(value, strict=True)
-        rows = tuple(tuple(self.at(h, value) for h in row) for row in self.rows)
+        n = self.many
+        rows = [tuple(self.at(h, value) for h in row) for row in self.rows]
         functional = tuple(self.at(p, value) for p in self.functional)
-        sigma = tuple(self.at(s, value) for s in self.sigma)
-        stretch = Stretch(*self.ends(value), rows)
-        return GuaranteedProblem((stretch,), functional, sigma, U, self.measurements, self.target)
+        sigma = tuple(self.at(s, value) for s in self.sigma[:n])
+        stretches = tuple(Stretch(*self.ends(value, k), tuple(rows[k : k + n])) for k in range(0, len(rows), n))
+        return GuaranteedProblem(stretches, functional, sigma, U, self.measurements[:n], self.target)
 
     def exact(self, value: Any) -> Problem:
         return self.problem(value).exact()
@@ -88,7 +121,7 @@ class Family:
     def moving(self) -> Problem:
         """The problem with the parameter left free."""
         panels = [
-            Panel(j, row, U, self.start, self.stop, self.sigma[j]) for j, row in enumerate(self.rows)
+            Panel(j % self.many, row, U, *self.panels[j], self.sigma[j]) for j, row in enumerate(self.rows)
         ]
         return Problem(tuple(panels), self.functional)
 
@@ -100,15 +133,15 @@ class Family:
 def family_of(found: ModelFile | BasisFile, target: str | None, parameter: str) -> Family:
     """The family of a file with one parameter free.
 
-    Raises DomainError when nothing depends on the parameter, when F depends on the time or comes in
-    pieces, or when other parameters have no value.
+    Raises DomainError when nothing depends on the parameter, when F depends on the time, or when other
+    parameters have no value.
     """
     name, functional = chosen_target(found, target)
     symbol = declared(found, parameter)
     if isinstance(found, BasisFile):
         family = direct(found, name, functional, symbol)
     else:
-        family = backward(found, name, functional, symbol)
+        family = of_model(found, name, functional, symbol)
     refuse_others(family)
     return family
 
@@ -124,7 +157,8 @@ def declared(found: ModelFile | BasisFile, parameter: str) -> sp.Symbol:
 
 
 def refuse_others(family: Family) -> None:
-    parts = [*family.functional, *family.sigma, *(h for r in family.rows for h in r), family.start, family.stop]
+    parts = [*family.functional, *family.sigma, *(h for r in family.rows for h in r)]
+    parts += [family.start, *family.cuts, family.stop]
     free = {s for part in parts for s in part.free_symbols} - {U}
     parameter = family.parameter.name
     others = sorted({s.name for s in free} - {parameter})
@@ -145,18 +179,57 @@ def direct(found: BasisFile, name: str, functional: tuple[sp.Expr, ...], symbol:
     return Family(rows, functional, found.sigma, symbol, False, names, name, start, end)
 
 
-def backward(found: ModelFile, name: str, functional: tuple[sp.Expr, ...], symbol: sp.Symbol) -> Family:
+def of_model(found: ModelFile, name: str, functional: tuple[sp.Expr, ...], symbol: sp.Symbol) -> Family:
     if found.T is None:
         raise EmptyError("expected the length of the interval; got no [interval]; add T", where="interval.T")
-    (stretch,) = stretches_of(found) if len(found.pieces) == 1 else (None,)
-    if stretch is None:
-        raise DomainError("F: expected one constant matrix; got pieces; solve for single values instead")
-    T = found.T
+    if varying(found):
+        raise DomainError(
+            "F: expected matrices without the time; got F(t), whose regressors are polynomials with an error of which "
+            "only a bound is known, so that no contact is exact; solve for single values instead"
+        )
+    return backward(found, name, functional, symbol) if len(found.pieces) == 1 else (
+        forward(found, name, functional, symbol)
+    )
+
+
+def backward(found: ModelFile, name: str, functional: tuple[sp.Expr, ...], symbol: sp.Symbol) -> Family:
+    """One F: the regressors depend on the time before the end."""
+    (stretch,), T = stretches_of(found), end_of(found)
     rows = tuple(tuple(sp.expand(h).subs(found.time, T - U) for h in row) for row in stretch.rows)
     rows = tuple(tuple(settled(h, T, symbol) for h in row) for row in rows)
     names = tuple(m.name for m in found.measurements)
     sigma = tuple(m.sigma for m in found.measurements)
     return Family(rows, functional, sigma, symbol, True, names, name, sp.S.Zero, T)
+
+
+def end_of(found: ModelFile) -> sp.Expr:
+    """The length of the interval, which the file has."""
+    assert found.T is not None
+    return found.T
+
+
+def forward(found: ModelFile, name: str, functional: tuple[sp.Expr, ...], symbol: sp.Symbol) -> Family:
+    """F in pieces: regressors in time, stretch by stretch, and families of their own for shorter lengths.
+
+    Raises DomainError when the pieces end at a length that depends on the parameter otherwise than by being it.
+    """
+    T, last, n = end_of(found), found.pieces[-1], len(found.pieces)
+    stretches = stretches_of(found)
+    rows = tuple(tuple(settled(h.subs(found.time, U), T, symbol) for h in row) for s in stretches for row in s.rows)
+    names, sigma = tuple(m.name for m in found.measurements) * n, tuple(m.sigma for m in found.measurements) * n
+    cuts = tuple(piece.start for piece in found.pieces[1:])
+    moved = symbol in T.free_symbols and not any(symbol in cut.free_symbols for cut in cuts)
+    if moved and symbol != T:
+        raise DomainError(f"interval: expected the length {symbol} itself where F comes in pieces; got {T}; rename it")
+    shorter = of_model(without_last(found), name, functional, symbol) if moved else None
+    least = last.start if moved else sp.S.Zero
+    return Family(rows, functional, sigma, symbol, False, names, name, sp.S.Zero, T, (), cuts, shorter, least)
+
+
+def without_last(found: ModelFile) -> ModelFile:
+    """The model whose last piece is the one before."""
+    *before, end = found.pieces[:-1]
+    return replace(found, pieces=(*before, replace(end, end=found.T)))
 
 
 def settled(h: sp.Expr, T: sp.Expr, symbol: sp.Symbol) -> sp.Expr:

@@ -60,21 +60,24 @@ def place_from(values: Sequence[sp.Rational], parameters: Sequence[sp.Rational],
 
 
 def place_or_share(
-    family: Family, values: Sequence[sp.Rational], parameters: Sequence[sp.Rational]
+    family: Family, panel: int, values: Sequence[sp.Rational], parameters: Sequence[sp.Rational]
 ) -> sp.Expr | None:
-    """A place linear in the parameter or its reciprocal, else a fixed share of the interval."""
+    """A place linear in the parameter or its reciprocal, else a fixed share of its panel."""
     found = place_from(values, parameters, family.parameter)
-    return share_of(family, values, parameters) if found is None else found
+    return share_of(family, panel, values, parameters) if found is None else found
 
 
-def share_of(family: Family, values: Sequence[sp.Rational], parameters: Sequence[sp.Rational]) -> sp.Expr | None:
-    """A fixed share of the interval, to nine digits: where the dual polynomial is flat, no place is better known."""
+def share_of(
+    family: Family, panel: int, values: Sequence[sp.Rational], parameters: Sequence[sp.Rational]
+) -> sp.Expr | None:
+    """A fixed share of the panel, to nine digits: where the dual polynomial is flat, no place is better known."""
     shares = []
     for value, p in zip(values, parameters, strict=True):
-        start, end = (sp.Rational(str(sp.N(e, 40))) for e in family.ends(p))
+        start, end = (sp.Rational(str(sp.N(e, 40))) for e in family.ends(p, panel))
         share = (value - start) / (end - start)
         best = share.limit_denominator(60)
         if abs(best - share) > sp.Rational(1, 10**9):
             return None
         shares.append(best)
-    return family.start + (family.stop - family.start) * shares[0] if len(set(shares)) == 1 else None
+    start, stop = family.panels[panel]
+    return start + (stop - start) * shares[0] if len(set(shares)) == 1 else None

@@ -48,7 +48,8 @@ def suspects(family: Family) -> Iterator[sp.Expr]:
     """Expressions in the parameter whose roots may be singular."""
     p = family.parameter
     parts = [*family.functional, *family.sigma, *(h for row in family.rows for h in row)]
-    yield from (e for e in (family.stop - family.start, *family.sigma) if p in e.free_symbols)
+    lengths = dict.fromkeys(stop - start for start, stop in family.panels)
+    yield from (e for e in (*lengths, *family.sigma) if p in e.free_symbols)
     for part in parts:
         for power in part.atoms(sp.Pow):
             if power.exp.is_negative and p in power.base.free_symbols and U not in power.base.free_symbols:
@@ -82,9 +83,9 @@ def real_roots(expression: sp.Expr, p: sp.Symbol) -> list[sp.Expr]:
 def reason(family: Family, value: sp.Expr) -> str | None:
     """Why the problem is singular there, or None when it is not."""
     name = f"{family.parameter.name} = {value}"
-    start, end = family.ends(value)
-    if decide(Equation(end - start, sp.S.Zero)).status is PROVED:
-        return f"the interval has no length at {name}"
+    lengths = dict.fromkeys(family.at(stop - start, value) for start, stop in family.panels)
+    if any(decide(Equation(length, sp.S.Zero)).status is PROVED for length in lengths):
+        return f"{family.stretch_name} has no length at {name}"
     try:
         make_basis(family.exact(value))
     except DependentError:

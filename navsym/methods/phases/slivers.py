@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from itertools import pairwise
+from math import inf
 from typing import Any
 
 import numpy as np
@@ -31,7 +33,12 @@ BITS = 400
 WIDEST = 1e-2
 #: Contacts of one sign that come so near to each other, u in [-1, 1], carry their weights together if need be.
 NEAR = 0.2
-DEPTH = 6
+#: Attempts for one stretch, the shortest sliver as part of it, and into how many a failed one is cut at most.
+MOST_TRIES = 150
+SHORTEST = fmpq(1, 1 << 40)
+MOST_PARTS = 8
+#: Bounds are this part of their distance wider than what is proved here: a checker's balls are not the same.
+ROOM = 50
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -48,26 +55,52 @@ class Sliver:
         return decimal(self.start, 60), decimal(self.end, 60), self.lower, self.upper
 
 
-def slivers(family: Family, start: fmpq, end: fmpq, depth: int = DEPTH) -> list[Sliver] | None:
-    """Slivers that cover a stretch, halved a few times; None when one of them stays too wide."""
-    one = sliver(family, start, end)
-    if one is not None:
-        return [one]
-    if depth == 0:
-        return None
-    middle = (start + end) / 2
-    left = slivers(family, start, middle, depth - 1)
-    right = None if left is None else slivers(family, middle, end, depth - 1)
-    return None if left is None or right is None else left + right
+def slivers(family: Family, start: fmpq, end: fmpq) -> tuple[list[Sliver], list[tuple[fmpq, fmpq]]]:
+    """Slivers on a stretch, each as long as it stays narrow, and what they leave when the attempts are used up."""
+    made: list[Sliver] = []
+    left: list[tuple[fmpq, fmpq]] = []
+    stack, tries, shortest = [(start, end)], 0, (end - start) * SHORTEST
+    while stack:
+        a, b = stack.pop()
+        if tries == MOST_TRIES or b - a < shortest:
+            left.append((a, b))
+            continue
+        tries += 1
+        one, width = sliver(family, a, b)
+        if one is not None:
+            made.append(one)
+            continue
+        stack += reversed(cut(a, b, width))
+    return made, joined(left)
 
 
-def sliver(family: Family, start: fmpq, end: fmpq) -> Sliver | None:
-    """The two-sided certificate with the parameter as a ball, or None when it is too wide."""
-    made = sliver_on(family, start, end, False)
-    return sliver_on(family, start, end, True) if made is None else made
+def cut(a: fmpq, b: fmpq, width: float) -> list[tuple[fmpq, fmpq]]:
+    """Equal parts of a stretch on which an enclosure had this width: as many as make it narrow enough."""
+    parts = 2 if width == inf else max(2, min(MOST_PARTS, int(1.2 * width / WIDEST) + 1))
+    marks = [a + (b - a) * fmpq(k, parts) for k in range(parts + 1)]
+    return list(pairwise(marks))
 
 
-def sliver_on(family: Family, start: fmpq, end: fmpq, together: bool) -> Sliver | None:
+def joined(stretches: list[tuple[fmpq, fmpq]]) -> list[tuple[fmpq, fmpq]]:
+    """Neighbours made one."""
+    done: list[tuple[fmpq, fmpq]] = []
+    for a, b in stretches:
+        if done and done[-1][1] == a:
+            a = done.pop()[0]
+        done.append((a, b))
+    return done
+
+
+def sliver(family: Family, start: fmpq, end: fmpq) -> tuple[Sliver | None, float]:
+    """The two-sided certificate with the parameter as a ball, None when it is too wide, and how wide it is."""
+    made, width = sliver_on(family, start, end, False)
+    if made is not None:
+        return made, width
+    made, other = sliver_on(family, start, end, True)
+    return made, min(width, other)
+
+
+def sliver_on(family: Family, start: fmpq, end: fmpq, together: bool) -> tuple[Sliver | None, float]:
     """The sliver with weights at the contacts of the middle, or at the middles of those that are about to merge."""
     middle = (start + end) / 2
     at = sp.Rational(int(middle.p), int(middle.q))
@@ -79,12 +112,14 @@ def sliver_on(family: Family, start: fmpq, end: fmpq, together: bool) -> Sliver 
         carriers = merged(contacts) if together else None
         found = gap(ball_problem(family, interval(start, end)), basis, contacts, refined, DIGITS, BITS, carriers)
     except (DependentError, NavsymError, ZeroDivisionError, ValueError):
-        return None
+        return None, inf
     if not 0 < found.width < WIDEST or not bool(arb(found.lower) > 0):
-        return None
+        return None, found.width if found.width > 0 else inf
+    room = (found.upper - found.lower) / ROOM
+    lower, upper = decimal(found.lower - room, DIGITS + 6, -1), decimal(found.upper + room, DIGITS + 6, 1)
     ends = {"parameter": family.parameter.name, "from": fraction(start), "to": fraction(end)}
-    document = {**found.certificate, "kind": "sliver", **ends}
-    return Sliver(start, end, document["lower"], document["upper"], document)
+    document = {**found.certificate, "kind": "sliver", **ends, "lower": lower, "upper": upper}
+    return Sliver(start, end, lower, upper, document), found.width
 
 
 def merged(contacts: Contacts) -> Contacts:
