@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import inspect
 import textwrap
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from navsym.cli._claims import decide, find
 from navsym.cli.output import emit
+
+if TYPE_CHECKING:
+    from navsym.claims import Claim
 
 WIDTH = 100
 FORMULA = " " * 6
@@ -29,10 +32,11 @@ def command(
     paper, found = find(claim)
     _, record = decide(claim, seconds)
     told = [{"heading": s.heading, "words": s.words, "formula": s.formula} for s in steps(record)]
-    corrected_by = correction_of(claim)
+    correction = correction_of(claim)
     document = {
         "id": record["id"], "status": record["status"], "paper": paper.title, "source": place_of(found.derive),
-        "corrected_by": corrected_by, "steps": told,
+        "corrected_by": correction and correction.id, "steps": told,
+        "correction": correction and {"title": correction.title, "formula": formula_of(correction)},
     }  # fmt: skip
     emit(document, as_json=json_, text=lambda: as_text(document))
     return 0 if record["status"] == record["expect"] else 1
@@ -45,12 +49,25 @@ def place_of(derive: Any) -> str:
     return f"{file[file.rfind('derivations/') :]}:{code.co_firstlineno}"
 
 
-def correction_of(wanted: str) -> str | None:
-    """Id of the claim that corrects this one."""
+def correction_of(wanted: str) -> Claim | None:
+    """The claim that corrects this one."""
     from navsym.cli.verify import load
 
     (paper,) = load([wanted.partition(":")[0]])
-    return next((claim.id for claim in paper.claims if claim.corrects_id == wanted), None)
+    return next((claim for claim in paper.claims if claim.corrects_id == wanted), None)
+
+
+def formula_of(claim: Claim) -> str | None:
+    """The formula that a claim prints; None where all is said in its title."""
+    from navsym.methods.verification.verify import sides
+    from navsym.report.formula.sides import only_truth
+
+    printed, _ = sides(claim.derive())
+    return None if only_truth(printed) else printed
+
+
+def indented(formula: str) -> str:
+    return textwrap.fill(formula, WIDTH, initial_indent=FORMULA, subsequent_indent=FORMULA)
 
 
 def as_text(document: dict[str, Any]) -> str:
@@ -61,8 +78,10 @@ def as_text(document: dict[str, Any]) -> str:
         head = f"{number}. {step['heading']}. " if step["heading"] else "   "
         lines.append(textwrap.fill(head + step["words"], WIDTH, subsequent_indent="   ", break_long_words=False))
         if step["formula"]:
-            lines += ["", textwrap.fill(step["formula"], WIDTH, initial_indent=FORMULA, subsequent_indent=FORMULA), ""]
+            lines += ["", indented(step["formula"]), ""]
     lines += ["", f"Derivation: {document['source']}"]
     if document["corrected_by"]:
-        lines.append(f"Corrected by {document['corrected_by']}; see navsym explain {document['corrected_by']!r}")
+        should = document["correction"]
+        lines += ["", f"It should read ({document['corrected_by']}): {should['title']}"]
+        lines += ["", indented(should["formula"])] if should["formula"] else []
     return "\n".join(lines)

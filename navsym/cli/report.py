@@ -35,7 +35,7 @@ def command(
 
     Example: navsym report guaranteed_velocity --out site
     """
-    from navsym.cli.verify import decided, load, not_as_declared
+    from navsym.cli.verify import cards_of, decided, load, not_as_declared
     from navsym.methods.verification.verify import unexpected
 
     chosen = load(modules or [])
@@ -43,7 +43,7 @@ def command(
     make_folder(out)                    # before minutes are spent on what cannot be written
     document = given or decided(chosen, jobs, seconds, fresh)
 
-    names = write_pages(out, document, {module.name: module.paper for module in chosen})
+    names = write_pages(out, document, cards_of(chosen))
     pages = [name for name in names if name.endswith(".html")]
     result = {"out": str(out), "files": len(names), "pages": pages, "counts": document["counts"]}
     wrong = unexpected(document["claims"])

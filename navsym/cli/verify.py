@@ -5,8 +5,9 @@ from __future__ import annotations
 import difflib
 import importlib
 import pkgutil
+import textwrap
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -17,8 +18,11 @@ from navsym.cli.output import emit, remark, table, write_text
 from navsym.errors import DomainError
 
 if TYPE_CHECKING:
+    from navsym.claims import Paper
     from navsym.methods.verification.deciding_code import Snapshot
     from navsym.methods.verification.verify import PaperModule
+
+WIDTH = 100
 
 
 def command(
@@ -49,14 +53,21 @@ def command(
 
     started = time.monotonic()
     before = sources()
-    document = decided(load(modules or []), jobs, seconds, fresh, before)
+    chosen = load(modules or [])
+    document = decided(chosen, jobs, seconds, fresh, before)
     if write or not ledger_file().exists():
         write_ledger(document)
     changed = differences(document)
     wrong = unexpected(document["claims"])
     missing = [number for paper in document["papers"] for number in paper["missing"]]
-    emit(document, as_json=json_, text=lambda: as_text(document, wrong, changed, time.monotonic() - started))
+    spent = time.monotonic() - started
+    emit(document, as_json=json_, text=lambda: as_text(document, cards_of(chosen), wrong, changed, spent))
     return 1 if wrong or missing else 3 if document.get("unsaved") else 0
+
+
+def cards_of(chosen: Sequence[PaperModule]) -> dict[str, Paper]:
+    """The cards of papers by module."""
+    return {module.name: module.paper for module in chosen}
 
 
 def names() -> list[str]:
@@ -188,21 +199,28 @@ def write_ledger(document: dict[str, Any]) -> None:
     old = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {"claims": [], "papers": []}
     whole = merged(document, {record["id"]: record for record in old["claims"]}, old["papers"])
     write_text(path, ledger_text(whole))
-    write_text(ledger_folder() / "README.md", people_text(whole))
+    write_text(ledger_folder() / "README.md", people_text(whole, cards_of(load([]))))
 
 
-def as_text(document: dict[str, Any], wrong: list[dict[str, Any]], changed: list[str], seconds: float) -> str:
-    """A table that a reviewer can read, the refuted lines with their reasons, and the counts."""
-    rows = [
-        (record["number"], record["status"], record["title"], remark_of(record))
-        for record in document["claims"]
-    ]
+def as_text(
+    document: dict[str, Any],
+    cards: Mapping[str, Paper],
+    wrong: list[dict[str, Any]],
+    changed: list[str],
+    seconds: float,
+) -> str:
+    """A table in the order of the papers, and below it what is refuted and the counts: the end is what one sees."""
+    from navsym.report.ledger import papers_in_order
+
+    papers = papers_in_order(document, cards)
+    rows = [(r["number"], r["status"], r["title"], remark_of(r)) for _, records in papers for r in records]
     blocks = [table(("claim", "verdict", "what it says", "remark"), rows)]
-    for paper in document["papers"]:
+    for paper, records in papers:
         blocks.append(
             f"{paper['module']}: {paper['equations']} numbered equations, {paper['claimed']} claimed, "
             f"{paper['definitions']} definitions, missing: {', '.join(paper['missing']) or 'none'}"
         )
+        blocks += refuted_lines(records)
     counted = ", ".join(f"{count} {status}" for status, count in document["counts"].items() if count)
     blocks.append(f"{len(document['claims'])} claims in {seconds:.1f} s: {counted}")
     if changed:
@@ -210,6 +228,16 @@ def as_text(document: dict[str, Any], wrong: list[dict[str, Any]], changed: list
     else:
         blocks.append(f"the ledger {ledger_file().name} agrees")
     return "\n".join(blocks + not_as_declared(wrong))
+
+
+def refuted_lines(records: Sequence[Mapping[str, Any]]) -> list[str]:
+    """The numbers of what is refuted, and how to ask why."""
+    refuted = [record for record in records if record["status"] == "REFUTED"]
+    if not refuted:
+        return []
+    listed = f"  refuted: {', '.join(record['number'] for record in refuted)}"
+    told = textwrap.wrap(listed, WIDTH, subsequent_indent=" " * 11, break_on_hyphens=False)
+    return [*told, f"  why: navsym explain {refuted[0]['id']}"]
 
 
 def not_as_declared(wrong: Sequence[dict[str, Any]]) -> list[str]:
@@ -220,7 +248,7 @@ def not_as_declared(wrong: Sequence[dict[str, Any]]) -> list[str]:
     return lines
 
 
-def remark_of(record: dict[str, Any]) -> str:
+def remark_of(record: Mapping[str, Any]) -> str:
     if record["status"] == "REFUTED":
         point = ", ".join(f"{k} = {v}" for k, v in (record["counterexample"] or {}).items())
         where = f" (at {point})" if point else ""

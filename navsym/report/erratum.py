@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from navsym.claims import Paper, equation_of
-from navsym.report.formula.sides import Formula, coordinates, formula
+from navsym.report.formula.sides import Formula, coordinates, formula, only_truth
 from navsym.report.page_explain import arithmetic, ball_words, ended
 from navsym.report.wording import Wording, Words, pattern_of
 
@@ -149,8 +149,8 @@ def capital(sentence: str) -> str:
 
 def printed_side(record: Record) -> Formula:
     """The printed formula; a statement in words, which is only said to hold or not, is its title."""
-    if record["printed"] in ("True", "False"):
-        ending = "" if record["printed"] == "True" else " (does not hold)"
+    if only_truth(record["printed"]):
+        ending = " (does not hold)" if record["printed"] == "False" else ""
         return Formula(record["title"] + ending, None, None)
     return formula(record["printed"])
 

@@ -24,6 +24,7 @@ from navsym.claims import Paper, equation_of
 from navsym.report.erratum import Erratum, erratum_of, printed_side
 from navsym.report.formula.latex import sentence_html, sentence_latex
 from navsym.report.formula.sides import Formula, coordinates, formula
+from navsym.report.ledger import in_order
 from navsym.report.page_code import Snippet, snippets
 from navsym.report.page_explain import Step, ball_words, ended, steps
 from navsym.report.page_names import latex_escape
@@ -223,17 +224,6 @@ def paper_view(
         erratum=erratum_of(card, mine, words),
         unexpected=tuple(record["id"] for record in mine if record["status"] != record["expect"]),
     )
-
-
-def in_order(card: Paper, records: Sequence[Record]) -> list[Record]:
-    """Records in the order of the paper's equations; statements without a number come last."""
-    place = {equation: i for i, equation in enumerate(card.equations)}
-
-    def rank(record: Record) -> int:
-        equation = equation_of(record["number"], card.equations)
-        return len(place) if equation is None else place[equation]
-
-    return sorted(records, key=rank)
 
 
 def cell(card: Paper, equation: str, records: Sequence[Record]) -> Cell:

@@ -33,6 +33,7 @@ def test_show_prints_lines_for_people(capsys):
 def test_explain_works_the_counterexample_out_and_names_the_correction(capsys):
     status, told = document(capsys, "explain", REMARK)
     assert status == 0 and told["corrected_by"] == f"{REMARK}*"
+    assert told["correction"]["title"].startswith("The discriminant is -(1 - r)^2")
     assert told["source"].startswith("derivations/alpha_beta_filter.py:")
     words = " ".join(step["words"] for step in told["steps"])
     assert "At r = 1/2" in words and "The printed side is 0, the derived side is -0.4375" in words

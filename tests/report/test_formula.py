@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from navsym.report.formula.reader import read_formula
-from navsym.report.formula.sides import latex, mathml
+from navsym.report.formula.sides import coordinates, latex, mathml, only_truth
 from navsym.report.page_names import latex_escape, split_name
 from navsym.report.page_plot import value
 
@@ -68,3 +68,21 @@ def test_names_are_split_into_stem_and_indices():
 
 def test_words_cannot_command_latex():
     assert latex_escape(r"\input{x} $y$ 50%") == r"\textbackslash{}input\{x\} \$y\$ 50\%"
+
+
+def test_brackets_grow_around_fractions_only_and_functions_keep_their_distance():
+    assert mathml("cos(T)").count('stretchy="false"') == 2
+    assert "stretchy" not in mathml("cos(T/2)")
+    assert '<mo lspace="0.17em">' in mathml("2*cos(T)") and "lspace" not in mathml("2*T")
+
+
+def test_a_point_is_one_equation_for_each_coordinate():
+    assert [part.latex for part in coordinates({"Deltat": "1", "V": "sqrt(2)"})] == [r"\Delta t = 1", r"V = \sqrt{2}"]
+    assert coordinates(None) == ()
+
+
+@pytest.mark.parametrize(("text", "expected"), [
+    ("True", True), ("(False, True, True)", True), ("[True, False]", True), ("Truth", False), ("T", False), ("", False),
+])  # fmt: skip
+def test_what_only_says_yes_or_no_is_told_from_a_formula(text, expected):
+    assert only_truth(text) is expected

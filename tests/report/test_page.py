@@ -8,6 +8,7 @@ from xml.dom import minidom
 
 import pytest
 
+from navsym.report.ledger import papers_in_order
 from navsym.report.page import site, slug, visible
 
 
@@ -85,7 +86,8 @@ def test_nothing_is_fetched_from_outside(files, hostile_files):
 
 def test_the_page_of_a_paper_names_verdict_scope_counterexample_and_correction(files):
     text = Reading(files["sample.html"]).text
-    for words in ("REFUTED", "all real T", "T = pi/6", "should read (2*, PROVED)", "Slip of the paper", "0.500 s", "identity"):
+    wanted = ("REFUTED", "all real T", "T = pi/6", "should read (2*, PROVED)", "Slip of the paper", "0.500 s")
+    for words in (*wanted, "identity"):
         assert words in " ".join(text.split()), words
 
 
@@ -166,3 +168,15 @@ def test_the_ledger_is_enough_for_the_pages(records, card):
     found = site(document, {"sample": card})
     assert found["sample.html"].count("<article") == len(records)
     assert not [name for name in found if name.startswith("certificates/")]
+
+
+def test_a_refuted_card_shows_what_should_stand_there_and_what_that_is_worth(files):
+    card = re.search(r'<article class="claim refuted".*?</article>', files["sample.html"], re.S)
+    assert card is not None and "should read" in card[0] and "PROVED" in card[0]
+    assert card[0].count("derived from the model") == 0         # the correction is what was derived
+
+
+def test_claims_of_the_ledger_for_people_stand_in_the_order_of_the_paper(records, card):
+    shuffled = {"papers": [{"module": "sample"}], "claims": records[::-1]}
+    ((_, ordered),) = papers_in_order(shuffled, {"sample": card})
+    assert [r["number"] for r in ordered] == ["1", "2*", "2", "3", "4", "short-name"]

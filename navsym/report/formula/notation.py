@@ -62,7 +62,8 @@ MATHML_SIGNS = {
     "-": "−", "*": "⁢", "<=": "≤", ">=": "≥", "!=": "≠", "+-": "±",
 }  # fmt: skip
 LATEX_SIGNS = {
-    "*": r"\,", BESIDE_A_FUNCTION: r"\,", "<=": r" \le ", ">=": r" \ge ", "!=": r" \ne ", "+-": r" \pm ", "·": r" \cdot ", ";": r";\quad ",
+    "*": r"\,", BESIDE_A_FUNCTION: r"\,",
+    "<=": r" \le ", ">=": r" \ge ", "!=": r" \ne ", "+-": r" \pm ", "·": r" \cdot ", ";": r";\quad ",
 }  # fmt: skip
 
 POWER_OF_TEN = "<mrow><mn>{}</mn><mo>·</mo><msup><mn>10</mn><mn>{}</mn></msup></mrow>"

@@ -7,6 +7,7 @@ its owner shows the plain text.
 from __future__ import annotations
 
 import functools
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -38,6 +39,11 @@ def formula(text: str) -> Formula:
     """A side of a claim, set in type where it can be."""
     written = mathml(text) if text not in ("", "True", "False") else None
     return Formula(text, None, None) if written is None else Formula(text, Markup(written), latex(text))
+
+
+def only_truth(text: str) -> bool:
+    """True for a side that only says yes or no, once or for each of several: its title tells more."""
+    return re.fullmatch(r"[\[(]?(True|False)(, (True|False))*[])]?", text) is not None
 
 
 def coordinates(point: Mapping[str, str] | None) -> tuple[Formula, ...]:
