@@ -86,20 +86,28 @@ class Chain:
         """The sources of all links as one; the weakest status counts."""
         order = ("PROVED", "CERTIFIED", "CONFIRMED")
         sources = [part.source for part in parts]
+        said = [s for s in sources if s.method != "definition"] or sources  # a mere name for a value says nothing
         certificates = [dict(s.certificate) for s in sources if s.certificate]
         papers = [s.paper for s in sources if s.paper]
         return Source(
-            claim=" then ".join(dict.fromkeys(s.claim for s in sources)),
+            claim=" then ".join(dict.fromkeys(s.claim for s in said)),
             title=self.title,
             paper=self.paper or "; ".join(dict.fromkeys(papers)),
-            equation="; ".join(dict.fromkeys(s.equation for s in sources if s.equation)),
+            equation="; ".join(dict.fromkeys(s.equation for s in said if s.equation)),
             status=max((s.status for s in sources), key=order.index),
             method=", ".join(dict.fromkeys(s.method for s in sources)),
             scope="; ".join(dict.fromkeys(s.scope for s in sources if s.scope)),
             assumptions=tuple(dict.fromkeys(a for s in sources for a in s.assumptions)),
-            formula=tuple(f"{name.name} = {text_of(formula)}" for name, formula in lets),
+            formula=(*(f"{name.name} = {text_of(formula)}" for name, formula in lets), *self.results()),
             certificate={"kind": "all", "of": certificates} if certificates else None,
         )
+
+
+    def results(self) -> list[str]:
+        """Which value is which result."""
+        numbers = [f"{o} = {entry}" for o, entry in self.outputs.items() if isinstance(entry, str) and entry != o]
+        arrays = [(o, entries) for o, entries in self.outputs.items() if not isinstance(entries, str)]
+        return [*numbers, *(f"{o}[{k}] = {entry}" for o, entries in arrays for k, entry in enumerate(entries))]
 
 
 class Names:
@@ -208,7 +216,9 @@ class Program:
     def functions(self, name: str, decided: Decided, real: str) -> list[ExportedFunction]:
         """``NAME_start`` and ``NAME_next``, the second with its state."""
         start = self.init.function(f"{name}_start", decided, real)
-        made = self.step.function(f"{name}_next", decided, real)
+        kept_units = {self.fields[o.name]: o.unit for o in start.outputs if self.fields.get(o.name)}
+        step = replace(self.step, layout=replace(self.step.layout, units=kept_units | dict(self.step.layout.units)))
+        made = step.function(f"{name}_next", decided, real)
         missing = set(self.fields) - {o.name for o in start.outputs}
         if missing:
             raise DomainError(f"expected fields among the outputs of init; got {sorted(missing)}; do correct it")

@@ -12,8 +12,8 @@ so that every link is proved by itself and no formula is ever written out in ful
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import reduce
 from typing import Any
 
@@ -42,11 +42,15 @@ class Node:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Graph:
-    """Inputs, operations in order, and the nodes that are the results."""
+    """Inputs, operations in order, and the nodes that are the results.
+
+    names : node -> what its value is called in the formulas, for those that read the code
+    """
 
     inputs: tuple[sp.Symbol, ...]
     nodes: tuple[Node, ...]
     roots: tuple[int, ...]
+    names: Mapping[int, str] = field(default_factory=dict)
 
     def uses(self) -> list[int]:
         """How often each node is used, as an argument or as a result."""
@@ -77,13 +81,16 @@ class Graph:
         return done
 
     def without_names(self) -> Graph:
-        """The same operations without the names; what they made different and is equal becomes one node."""
+        """The same operations with names for reading only; what they made different and is equal becomes one node."""
         builder = Builder(self.inputs)
         new: list[int] = []
+        names: dict[int, str] = {}
         for node in self.nodes:
             args = [new[a] for a in node.args]
             new.append(args[0] if node.op == "let" else builder.put(node.op, *args, value=node.value))
-        return pruned(Graph(self.inputs, tuple(builder.nodes), tuple(new[root] for root in self.roots)))
+            if node.op == "let":
+                names.setdefault(args[0], node.value.name)
+        return pruned(Graph(self.inputs, tuple(builder.nodes), tuple(new[root] for root in self.roots), names))
 
 
 FUNCTION_OF = {name: kind for kind, name in (*UNARY.items(), *BINARY.items())}
@@ -143,7 +150,8 @@ def pruned(graph: Graph) -> Graph:
         if needed[place]:
             new[place] = len(nodes)
             nodes.append(Node(node.op, tuple(new[a] for a in node.args), node.value))
-    return Graph(graph.inputs, tuple(nodes), tuple(new[root] for root in graph.roots))
+    names = {new[place]: name for place, name in graph.names.items() if place in new}
+    return Graph(graph.inputs, tuple(nodes), tuple(new[root] for root in graph.roots), names)
 
 
 class Builder:

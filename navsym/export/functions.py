@@ -19,7 +19,7 @@ from navsym.export.choice import best_form, best_graph, literals_of, tie_to_form
 from navsym.export.expression_graph import Graph
 from navsym.export.forms import safe
 from navsym.export.inputs import arguments_of, inputs_of, with_whole_arrays
-from navsym.export.languages.names import function_name
+from navsym.export.languages.names import function_name, local_names
 from navsym.export.parts import ExportedFunction, Input, Layout, Material, Output, Piece, Source, inside
 from navsym.export.regimes import common_outputs, in_order, joined_box, limit_of
 from navsym.proof.wording import text_of
@@ -147,6 +147,7 @@ def function_of(
             arithmetic,
             limit_of(part, switch_symbol, k == len(parts) - 1, real),
             switch_symbol,
+            [*(o.name for o in outputs), *layout.arrays],
         )
         for k, (part, formulas) in enumerate(zip(parts, padded, strict=True))
     )
@@ -171,8 +172,12 @@ def piece_of(
     arithmetic: Arithmetic,
     limit: float | None,
     switch: sp.Symbol | None,
+    taken: Sequence[str] = (),
 ) -> Piece:
-    """The graph of one regime: the form of each formula that keeps most digits, tied to the formula."""
+    """The graph of one regime: the form of each formula that keeps most digits, tied to the formula.
+
+    taken : names in code besides those of the inputs
+    """
     symbols = [i.symbol for i in inputs]
     box = box_of(part, inputs, switch, arithmetic)
     ranges = {i.symbol: (i.low, i.high) for i in inputs}
@@ -183,6 +188,7 @@ def piece_of(
     equals, tie = tie_to_formula(tied, formulas, dict(part.lets))
     if tie is None:
         raise RefusedError(f"expected code equal to {part.claim}; got a graph that differs; do report this")
+    graph = replace(graph, names=local_names(graph.names, [*(i.name for i in inputs), *taken]))
     literals = literals_of(graph, arithmetic)
     bound = uniform_bound(graph, box, arithmetic, literals, cells=cells_for(graph))
     named = tuple((name, formula, form) for (name, formula), (_, form) in zip(part.lets, lets, strict=True))

@@ -10,13 +10,12 @@ import numpy as np
 import sympy as sp
 
 from navsym.errors import ShapeError
-from navsym.export.languages.names import identifier
+from navsym.export.languages.names import LONGEST, identifier
 from navsym.export.parts import Argument, Input, Layout, inside
-from navsym.proof.sampling.points import range_of
+from navsym.proof.sampling.points import Range, range_of
 from navsym.proof.wording import text_of
 
 SMALLEST = {"double": 2.0**-60, "float": 2.0**-20}  # stands for an open end at zero
-LONGEST = 58  # signs of a name: with a number behind it, what Fortran and C tell apart
 LARGE = 1000.0  # of a symbol without a range, for vectors and bounds
 
 
@@ -95,6 +94,13 @@ def input_of(symbol: sp.Symbol, name: str, box: Mapping[Any, Any], real: str) ->
     if opened and low == 0.0:
         test_low = low = SMALLEST[real]
         opened = False
-    text = f"{'-oo' if limits.lower is None else text_of(limits.lower)} {'<' if limits.open_lower else '<='} "
-    text += f"{symbol.name} <= {'oo' if limits.upper is None else text_of(limits.upper)}"
-    return Input(symbol, name, float(low), float(high), opened, float(test_low), float(test_high), text)
+    return Input(
+        symbol, name, float(low), float(high), opened, float(test_low), float(test_high), around(limits)
+    )  # fmt: skip
+
+
+def around(limits: Range) -> str:
+    """A range in words, with {} for the name."""
+    lower = "" if limits.lower is None else f"{text_of(limits.lower)} {'<' if limits.open_lower else '<='} "
+    upper = "" if limits.upper is None else f" <= {text_of(limits.upper)}"
+    return f"{lower}{{}}{upper}" if lower or upper else "{} real"

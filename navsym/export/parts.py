@@ -37,6 +37,7 @@ class Input:
 
     low, high   : accepted range as doubles, inside the proved one; infinite where it has no end
     test_low, test_high : the range of vectors and of the rounding bound
+    around      : the proved range in words, with {} for the name
     """
 
     symbol: sp.Symbol
@@ -46,8 +47,13 @@ class Input:
     open_low: bool
     test_low: float
     test_high: float
-    text: str
+    around: str
     unit: str = ""
+
+    @property
+    def text(self) -> str:
+        """The proved range in words."""
+        return self.around.format(self.symbol.name)
 
 
 @dataclass(frozen=True, slots=True)

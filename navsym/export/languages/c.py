@@ -98,6 +98,7 @@ extern "C" {{
  *
 {parameters}
  * @return NAVSYM_OK; otherwise no result is written.
+ * @note   Every argument is read before the first result is written: results may take the place of arguments.
  */
 {signature};
 
@@ -112,7 +113,7 @@ extern "C" {{
 def header(function: ExportedFunction, license_: str) -> str:
     """Declaration with everything a reader must know before calling it."""
     params = [f" * @param[in]  {text}" for text in argument_texts(function)]
-    params += [f" * @param[out] {o.name}  {shape_text(o)}; unit {unit_of(o.unit)}" for o in function.outputs]
+    params += [f" * @param[out] {o.name}  {shape_text(o)} [{unit_of(o.unit)}]" for o in function.outputs]
     return HEADER.format(
         license=license_, guard=f"NAVSYM_{function.name.upper()}_H", signature=signature(function),
         title=safe_comment(function.sources[0].title or function.name),
@@ -127,7 +128,7 @@ def argument_texts(function: ExportedFunction) -> list[str]:
     for a in function.called_with:
         entries = function.inputs[a.first : a.first + (a.size or 1)]
         text = ", ".join(i.symbol.name for i in entries) if a.size else entries[0].text
-        found.append(f"{a.name}  {text}; unit {unit_of(entries[0].unit)}")
+        found.append(f"{a.name}  {text} [{unit_of(entries[0].unit)}]")
     return found
 
 

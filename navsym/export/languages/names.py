@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 #: Keywords, functions of the C library, and words of our own, that no target may see as a variable.
 TAKEN = frozenset(
@@ -28,6 +28,11 @@ MACRO = re.compile(r"(?:M|DBL|FLT|LDBL|FP|MATH|HUGE|DECIMAL|INT|LONG|SIZE|CHAR|U
 TEMPORARY = re.compile(r"(?:[tr]\d+|navsym_\w*|nv_\w*)")
 
 
+#: Variables of the writers' own, around the formulas.
+LOCAL = tuple("b i j k m n r w x y bad data far name near program result results state status steps values".split())
+LONGEST = 58  # signs of a name: with a number behind it, what Fortran and C tell apart
+
+
 def identifier(text: str, taken: Iterable[str] = ()) -> str:
     """A name that every target accepts, made of the given one.
 
@@ -44,6 +49,16 @@ def identifier(text: str, taken: Iterable[str] = ()) -> str:
         number += 1
         candidate = f"{name.rstrip('_')}_{number}"
     return candidate
+
+
+def local_names(names: Mapping[int, str], taken: Iterable[str]) -> dict[int, str]:
+    """Names of values as names of local variables, different from each other and from the names that are taken."""
+    found: dict[int, str] = {}
+    used = [*taken, *LOCAL]
+    for place, name in names.items():
+        found[place] = identifier(name[:LONGEST], used)
+        used.append(found[place])
+    return found
 
 
 def spelled(char: str) -> str:

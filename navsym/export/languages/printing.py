@@ -63,7 +63,8 @@ def assignments(
 ) -> tuple[list[tuple[str, str]], list[str]]:
     """([(temporary, expression), …], [expression of each result]).
 
-    Shared nodes and long expressions get a temporary; everything else stands where it is used.
+    What the formulas name keeps its name; shared nodes and long expressions get a temporary; everything else stands
+    where it is used.
     """
     lines, results = loops_of(piece, names, spelling, frozenset())
     return [(name, text) for name, text, _ in lines], results
@@ -81,8 +82,9 @@ def loops_of(
         simple = node.op in ("input", "const") or (
             node.op == "neg" and graph.nodes[node.args[0]].op == "const"
         )
-        if not simple and (counts[place] > 1 or len(written) > LONGEST or node.op in apart):
-            name = f"t{len(lines)}"
+        named = graph.names.get(place)
+        if not simple and (named or counts[place] > 1 or len(written) > LONGEST or node.op in apart):
+            name = named or f"t{len(lines)}"
             lines.append((name, bare(written), node.op in apart))
             written = name
         text.append(written)
@@ -225,16 +227,36 @@ def summary(function: ExportedFunction) -> list[str]:
         lines += [f"Formula  {formula}" for formula in source.formula]
         lines += [f"Cost     {cost(piece)}", f"Rounding {bound_text(function, piece)}"]
         lines += [f"Tie      code graph equals the formula: {TIES[piece.tie]}"]
-    for i in function.inputs:
-        low = "any" if math.isinf(i.low) else repr(i.low)
-        high = "any" if math.isinf(i.high) else repr(i.high)
-        lines.append(f"Domain   {i.name}: {i.text}; accepted from {low} to {high}; unit {unit_of(i.unit)}")
-    return lines + [f"Result   {o.name}: unit {unit_of(o.unit)}" for o in function.outputs]
+    lines += [f"Domain   {line}" for line in domain_lines(function)]
+    return lines + [f"Result   {o.name} [{unit_of(o.unit)}]" for o in function.outputs]
+
+
+def domain_lines(function: ExportedFunction) -> list[str]:
+    """Proved range, accepted range and unit of every argument; one line for an array whose entries are alike."""
+    lines = []
+    for a in function.called_with:
+        entries = function.inputs[a.first : a.first + (a.size or 1)]
+        alike = len({(i.around, i.low, i.high, i.unit) for i in entries}) == 1
+        name = f"{a.name}[{a.size}]" if a.size else a.name
+        shown = [(name, entries[0])] if alike else [(f"{a.name}[{k}]", i) for k, i in enumerate(entries)]
+        for word, i in shown:
+            text = i.around.format("each" if a.size and alike else i.symbol.name)
+            lines.append(f"{word}: {text}; accepted {accepted(i.low, i.high)} [{unit_of(i.unit)}]")
+    return lines
+
+
+def accepted(low: float, high: float) -> str:
+    """The accepted range in words."""
+    if math.isinf(low) and math.isinf(high):
+        return "when finite"
+    if math.isinf(high):
+        return f"from {low!r} on"
+    return f"up to {high!r}" if math.isinf(low) else f"from {low!r} to {high!r}"
 
 
 def unit_of(text: str) -> str:
     """The unit in words."""
-    return text or "not stated"
+    return text or "unit not stated"
 
 
 TIES = {
@@ -257,13 +279,28 @@ def bound_text(function: ExportedFunction, piece: Piece) -> str:
         place += output.size
         name = f"{output.name}: " if len(function.outputs) > 1 else ""
         parts.append(name + entry_bound(piece, entries))
-    limits = [f"|{i.name}| <= {max(abs(i.test_low), abs(i.test_high)):g}" for i in function.inputs
-              if math.isinf(i.low) or math.isinf(i.high)]  # fmt: skip
+    limits = sizes(function)
     where = f" with {', '.join(limits)}" if limits else ""
     library = (
         f"u = 2^{arithmetic.u}, library functions within {arithmetic.library} or {2 * arithmetic.library} ulp"
     )
     return f"{'; '.join(dict.fromkeys(parts))}{where} ({library})"
+
+
+def sizes(function: ExportedFunction) -> list[str]:
+    """Where a bound of unlimited arguments holds: ``|x| <= 10``, an array for all of its entries if they agree."""
+    found: dict[float, list[str]] = {}
+    for a in function.called_with:
+        entries = function.inputs[a.first : a.first + (a.size or 1)]
+        tops = [max(abs(i.test_low), abs(i.test_high)) for i in entries]
+        free = [math.isinf(i.low) or math.isinf(i.high) for i in entries]
+        if a.size and all(free) and len(set(tops)) == 1:
+            found.setdefault(tops[0], []).append(a.name)
+            continue
+        for i, top, unbounded in zip(entries, tops, free, strict=True):
+            if unbounded:
+                found.setdefault(top, []).append(i.name)
+    return [f"{', '.join(f'|{name}|' for name in names)} <= {top:g}" for top, names in found.items()]
 
 
 def entry_bound(piece: Piece, entries: slice) -> str:

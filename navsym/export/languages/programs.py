@@ -24,6 +24,14 @@ def field_outputs(function: ExportedFunction) -> list[Output]:
     return [known[name] for name, _ in state_of(function).fields]
 
 
+def field_text(function: ExportedFunction, field: Output) -> str:
+    """The entries of a field as the formulas name them, and its unit."""
+    given = next((a for a in function.called_with if a.name == field.name), None)
+    entries = function.inputs[given.first : given.first + (given.size or 1)] if given else ()
+    names = ", ".join(i.symbol.name for i in entries) or "stays as it was made"
+    return f"{names} [{field.unit or 'unit not stated'}]".replace("*/", "* /")
+
+
 def others(function: ExportedFunction) -> list[Argument]:
     """Arguments of the step that are no fields."""
     kept = {name for name, _ in state_of(function).fields}
@@ -54,8 +62,10 @@ def c_header(function: ExportedFunction, license_: str) -> str:
     name, start = state.program, state.init
     guard = f"NAVSYM_{name.upper()}_PROGRAM_H"
     lines = [f"/* {license_} */", f"#ifndef {guard}", f"#define {guard}", ""]
-    lines += [f'#include "{start.name}.h"', f'#include "{function.name}.h"', "", "typedef struct {"]
-    lines += [f"    {real} {o.name}{f'[{o.size}]' if o.shape else ''};" for o in field_outputs(function)]
+    lines += [f'#include "{start.name}.h"', f'#include "{function.name}.h"', ""]
+    lines += [f"/* {function.sources[0].title}: what is kept between two steps. */", "typedef struct {"]
+    lines += [f"    {real} {o.name}{f'[{o.size}]' if o.shape else ''}; /* {field_text(function, o)} */"
+              for o in field_outputs(function)]  # fmt: skip
     lines += [f"}} {name}_state;", "", "/* Makes the first state; when refused, the state stays as it was. */"]
     given = "".join(f",\n    {c_parameter(a, real)}" for a in start.called_with)
     lines += [f"static inline navsym_status {name}_init(", f"    {name}_state *state{given})", "{"]

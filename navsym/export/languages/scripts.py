@@ -288,7 +288,7 @@ def fortran_source(function: ExportedFunction, name: str) -> list[str]:
         for o in function.outputs
     ]
     lines += ["    integer, intent(out) :: status", f"    real(real64) :: nv_r({function.size})"]
-    lines += [f"    real(real64) :: t{k}" for k in range(max(len(t) for t, _ in pieces))]
+    lines += [f"    real(real64) :: {local}" for local in dict.fromkeys(t for lets, _ in pieces for t, _ in lets)]
     lines += [f"    {o.name} = 0.0d0" for o in function.outputs]
     test = domain(function, "huge(1.0d0)", FORTRAN, " .and. ", ".true.")
     lines += ["    status = 1", f"    if (.not. ({test})) return"]
