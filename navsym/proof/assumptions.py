@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import sympy as sp
 
 from navsym.claims.statement import Box
-from navsym.proof.identities.normal_form import Reduction, reduce_to_zero
+from navsym.proof.identities.normal_form import (
+    Reduction,
+    divisors_inside,
+    logarithms_inside,
+    radicands_inside,
+    reduce_to_zero,
+)
 from navsym.proof.signs.bounds import Sign, prove_sign
 from navsym.proof.wording import text_of
 
@@ -23,6 +29,17 @@ def with_sides(reduction: Reduction, *sides: sp.Expr) -> Reduction:
     return replace(
         reduction, divisors=union("divisors"), radicands=union("radicands"), arguments=union("arguments")
     )
+
+
+def written_conditions(*sides: sp.Expr) -> Reduction:
+    """Divisors, radicands and arguments of logarithms as they stand in the sides; nothing is reduced."""
+    whole = sp.Tuple(*sides)
+
+    def found(walk: Callable[[sp.Expr], list[sp.Basic]]) -> tuple[sp.Basic, ...]:
+        return tuple(dict.fromkeys(walk(whole)))
+
+    parts = (found(divisors_inside), found(radicands_inside), found(logarithms_inside))
+    return Reduction(False, *parts, ring="", complete=False)
 
 
 def is_positive(expression: sp.Basic, box: Box) -> bool:

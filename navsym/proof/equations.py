@@ -14,7 +14,7 @@ from flint import arb
 
 from navsym.claims.statement import Equation
 from navsym.claims.verdict import CERTIFIED, CONFIRMED, OPEN, PROVED, REFUTED, Verdict
-from navsym.proof.assumptions import remaining_assumptions
+from navsym.proof.assumptions import remaining_assumptions, written_conditions
 from navsym.proof.balls import UnsupportedError, enclose
 from navsym.proof.certificates import identity_certificate
 from navsym.proof.identities.equalities import WAYS, Proof, first_proof
@@ -125,6 +125,8 @@ def decide_numeral(printed: sp.Expr, derived: sp.Expr, statement: Equation) -> V
     )
     if sample.counterexample is not None:
         return refuted(sample)
+    if sample.points == 0:  # what exists nowhere is near to everything
+        return sampled(sample, scope_of(difference, box), f"within {tolerance}")
     for side in (tolerance - difference, tolerance + difference):
         if not prove_sign(side, box).at_least(Sign.NONNEGATIVE):
             look = second_look(
@@ -138,9 +140,15 @@ def decide_numeral(printed: sp.Expr, derived: sp.Expr, statement: Equation) -> V
     return Verdict(
         CERTIFIED,
         method="ball arithmetic",
-        scope=scope_of(difference, box),
+        scope=scope_of(sp.Tuple(printed, derived), box),
+        assumptions=assumptions_of(printed, derived, statement),
         evidence=f"|printed - derived| <= {tolerance} everywhere on the box",
     )
+
+
+def assumptions_of(printed: sp.Expr, derived: sp.Expr, statement: Equation) -> tuple[str, ...]:
+    """What the two sides need to exist; subtraction may have cancelled it."""
+    return remaining_assumptions(written_conditions(printed, derived), statement.box, statement.nonzero)
 
 
 # -- exact equality ---------------------------------------
@@ -164,6 +172,8 @@ def unproved(printed: sp.Expr, derived: sp.Expr, statement: Equation, sample: Sa
     if verdict.status == CONFIRMED and not difference.has(*BENT) and reduce_to_zero(difference).complete:
         evidence = f"{verdict.evidence}, and the normal form of printed - derived is not zero"
         return replace(verdict, status=OPEN, method="normal form", evidence=evidence)
+    if verdict.status == CONFIRMED:
+        return replace(verdict, assumptions=assumptions_of(printed, derived, statement))
     return verdict
 
 

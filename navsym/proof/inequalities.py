@@ -10,7 +10,7 @@ import sympy as sp
 from flint import arb
 
 from navsym.claims.statement import Bound, Box, Equation
-from navsym.claims.verdict import CERTIFIED, OPEN, PROVED, Verdict
+from navsym.claims.verdict import CERTIFIED, CONFIRMED, OPEN, PROVED, Verdict
 from navsym.errors import DomainError
 from navsym.proof.assumptions import remaining_assumptions, with_sides
 from navsym.proof.balls import UnsupportedError, tape
@@ -60,7 +60,7 @@ def decide_bound(statement: Bound) -> Verdict:
         sides = [sp.sympify(side, strict=True) for side in (statement.printed, statement.derived)]
         existing = (*sides, *statement.exists)
         verdict = decide_difference(difference, statement.relation, statement.box, scope, existing)
-        if not verdict.status.holds:
+        if not verdict.status.holds and verdict.status != CONFIRMED:
             return verdict
         # Subtraction and the algebra may have cancelled what is not defined everywhere.
         conditions = with_sides(reduce_to_zero(difference), *sides)

@@ -6,7 +6,10 @@ travels back. A child that exceeds its limits is killed; the parent never waits 
 
 from __future__ import annotations
 
+import contextlib
+import ctypes
 import multiprocessing
+import os
 import resource
 import signal
 import time
@@ -42,6 +45,24 @@ class Outcome:
     place: int
     value: Any
     seconds: float
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """What a child may use; the time is watched by the parent, the process whose number stands here."""
+
+    seconds: float
+    megabytes: int
+    parent: int
+
+    def apply(self) -> None:
+        """Bound memory and, should nobody watch any more, processor time; no core files."""
+        size, cpu = self.megabytes * 2**20, int(self.seconds + 1) * (os.cpu_count() or 1) + 10
+        resource.setrlimit(resource.RLIMIT_AS, (size, size))
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+        _, most = resource.getrlimit(resource.RLIMIT_CPU)
+        if most == resource.RLIM_INFINITY or cpu < most:
+            resource.setrlimit(resource.RLIMIT_CPU, (cpu, most))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -88,7 +109,7 @@ def run_many(
         while waiting or running:
             while waiting and len(running) < max(1, jobs):
                 place, item = waiting.pop()
-                running.append(start(place, function, item, megabytes))
+                running.append(start(place, function, item, Limits(seconds, megabytes, os.getpid())))
             for child in ready(running, seconds):
                 running.remove(child)
                 yield finish(child, seconds)
@@ -97,27 +118,37 @@ def run_many(
             stop(child)
 
 
-def start(place: int, function: Callable[[Any], Any], item: Any, megabytes: int) -> Child:
+def start(place: int, function: Callable[[Any], Any], item: Any, limits: Limits) -> Child:
     context = multiprocessing.get_context("fork")
     receiver, sender = context.Pipe(duplex=False)
-    process = context.Process(target=work, args=(sender, function, item, megabytes), daemon=True)
+    process = context.Process(target=work, args=(sender, function, item, limits), daemon=True)
     process.start()
     sender.close()
     return Child(place, process, receiver, time.monotonic())
 
 
-def work(sender: Connection, function: Callable[[Any], Any], item: Any, megabytes: int) -> None:
+def die_with_parent(parent: int) -> None:
+    """Ask the kernel to end this process when its parent ends, however that ends; Linux only.
+
+    parent : number of the process that made this one, which may be gone already
+    """
+    with contextlib.suppress(OSError, AttributeError):
+        ctypes.CDLL(None).prctl(1, signal.SIGKILL)  # PR_SET_PDEATHSIG
+    if os.getppid() != parent:
+        os._exit(1)
+
+
+def work(sender: Connection, function: Callable[[Any], Any], item: Any, limits: Limits) -> None:
     """Runs in the child. Ctrl-C reaches the whole group; here the parent answers it, and kills its children."""
+    die_with_parent(limits.parent)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    limit = megabytes * 2**20
-    resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
-    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    limits.apply()
     try:
         sender.send(("result", function(item)))
     except NavsymError as error:
         sender.send(("error", error))
     except MemoryError:
-        sender.send(("stopped", f"memory above {megabytes} MB"))
+        sender.send(("stopped", f"memory above {limits.megabytes} MB"))
     except RecursionError:
         sender.send(("stopped", "an expression nested too deeply"))
     except Exception as error:

@@ -82,6 +82,8 @@ def power(base: sp.Expr, exponent: sp.Expr) -> sp.Expr:
     bound_exponent(base, exponent)
     if exponent.is_extended_negative and sign(base) == 0:
         raise Refusal(DomainError, "a nonzero base", "zero to a negative power", "correct the denominator")
+    if exponent.free_symbols and sign(base) == -1:
+        raise undefined("a negative number to a symbolic power")
     return real(sp.Pow(base, exponent))
 
 
@@ -91,9 +93,18 @@ def call(name: str, arguments: list[sp.Expr]) -> sp.Expr:
         return power(arguments[0], sp.Rational(1, 2))
     for argument in arguments:
         bound_constant(name, argument)
+    check_domain(name, arguments[0])
     if name == "exp":
         bound_logarithms(arguments[0])
     return real(BUILDERS[name](*arguments))
+
+
+def check_domain(name: str, argument: sp.Expr) -> None:
+    """Refuse a constant outside the domain before the algebra turns ``sin(asin(2))`` into 2."""
+    if name in ("asin", "acos") and sign(1 - argument**2) == -1:
+        raise undefined("the inverse of a sine or cosine above one")
+    if name == "log" and sign(argument) == -1:
+        raise undefined("the logarithm of a negative number")
 
 
 def sign(value: sp.Expr) -> int | None:
@@ -179,6 +190,4 @@ def real(value: sp.Expr) -> sp.Expr:
                 raise undefined("a value that is not real")
             if factor.is_Rational and number_bits(factor) > BITS:
                 raise too_large(f"numbers of at most {BITS} bits", "a larger number")
-    if isinstance(value, (sp.asin, sp.acos)) and value.args[0].is_Rational and abs(value.args[0]) > 1:
-        raise undefined("the inverse of a sine or cosine above one")
     return value

@@ -106,3 +106,19 @@ def test_the_power_of_a_ball_around_zero_is_the_hull_of_its_values():
 def test_a_point_at_a_double_root_of_a_square_is_evaluated_not_skipped():
     at_a_third = value_at(tape((x - sp.Rational(1, 3)) ** 2 - TINY), {x: sp.Rational(1, 3)}, 512)
     assert at_a_third < 0
+
+
+@pytest.mark.parametrize(
+    "square",
+    [3 * (a + b + sp.Rational(61, 20)) ** 2, (a**2 + b**2 - 3) ** 4 * (1 + sp.exp(a)), (a * b - 1) ** 2],
+    ids=str,
+)
+def test_a_square_that_vanishes_on_a_line_is_not_positive(square):
+    verdict = decide(Bound(sp.expand(square), ">", sp.Integer(0), {b: (-3, sp.Rational(-4, 5))}))
+    assert verdict.status == REFUTED
+
+
+def test_what_is_only_confirmed_says_what_it_takes_to_exist():
+    n = sp.Symbol("n", integer=True)
+    verdict = decide(Bound(sp.log(n**2) * sp.tanh(a), ">=", 2 * sp.log(n) * sp.tanh(a), {a: (2, 4)}))
+    assert "n > 0" in verdict.assumptions

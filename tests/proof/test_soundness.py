@@ -17,6 +17,8 @@ from navsym.errors import DomainError
 from navsym.methods.prove import prove
 from navsym.proof.balls import UnsupportedError
 from navsym.proof.ladder import decide
+from navsym.proof.sampling.points import ranges
+from navsym.proof.signs.algebraic import algebraic_sign
 from navsym.proof.signs.bounds import Sign, prove_sign
 from navsym.text.claimfile import claims_from
 
@@ -277,3 +279,54 @@ def test_a_text_that_has_a_value_nowhere_is_not_proved(nowhere):
 def test_what_a_claim_takes_to_be_nonzero_is_no_counterexample():
     n = sp.Symbol("n", real=True)
     assert decide(Equation(sp.sign(n) ** 2, sp.Integer(1), nonzero=(n,))).status != REFUTED
+
+
+@pytest.mark.parametrize(
+    "text", ["sin(asin(-5/2))", "cos(acos(sqrt(3)))", "exp(log(1 - sqrt(2)))", "(-2)**x*(-2)**(-x)"]
+)
+def test_a_constant_outside_a_domain_is_refused_before_it_cancels(text):
+    with pytest.raises(DomainError):
+        proved(text, "<=", "5")
+
+
+# -- ranges in which nothing lies, and ends that are left out -------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("declared", "ends"),
+    [
+        ({"negative": True}, (0, 1)),
+        ({"integer": True, "nonzero": True}, (sp.Rational(-1, 2), sp.Rational(1, 2))),
+        ({"integer": True}, (sp.Rational(1, 3), sp.Rational(1, 2))),
+    ],
+)
+def test_a_range_without_a_point_ends_the_search_and_proves_nothing(declared, ends):
+    n = sp.Symbol("n", **declared)
+    assert decide(Equation(n**2, n**2 + n - n, {n: ends})).status == OPEN
+
+
+def test_a_numeral_near_to_what_exists_nowhere_is_not_certified():
+    a = sp.Symbol("a", real=True)
+    nowhere = sp.log(-1 - a**2)
+    assert decide(Equation(nowhere, nowhere + sp.Rational(1, 4), tolerance=1)).status == OPEN
+
+
+def test_a_numeral_lists_what_subtraction_cancels():
+    a = sp.Symbol("a", real=True)
+    verdict = decide(Equation(1 / a, 1 / a + sp.Rational(1, 3), {a: (-1, 1)}, tolerance=sp.Rational(1, 2)))
+    assert verdict.assumptions == ("a != 0",)
+
+
+def test_a_value_at_an_end_that_is_left_out_is_not_taken_for_the_limit():
+    # x**(1/log(x)) is e for 0 < x < 1, and the algebra puts 0**0 = 1 at zero
+    tiny, p = sp.Rational(1, 10**400), sp.Symbol("p", positive=True)
+    verdict = decide(Bound(p + tiny * sp.Rational(3, 2) - tiny * p ** (1 / sp.log(p)), ">=", 0, {p: (0, sp.S.Half)}))
+    assert not verdict.status.holds
+
+
+def test_a_root_of_a_quotient_with_a_negative_constant_below_keeps_its_sign():
+    x = sp.Symbol("x", real=True)
+    radicand = 5 + x * (x - 1) / (1 - x)  # 5 - x, reduced to (x - 5)/(-1)
+    expression = (1 + sp.sqrt(radicand)) ** 2
+    assert algebraic_sign(expression, ranges([x], {x: (2, 4)})).sign >= Sign.NONNEGATIVE
+    assert algebraic_sign(-expression, ranges([x], {x: (2, 4)})).sign == Sign.UNKNOWN

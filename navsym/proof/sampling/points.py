@@ -28,6 +28,9 @@ AWKWARD = tuple(
     )
 )  # fmt: skip
 
+#: Candidates outside the range in a row, after which no more are tried.
+PATIENCE = 500
+
 
 @dataclass(frozen=True, slots=True)
 class Range:
@@ -120,8 +123,15 @@ def candidates(limits: Range, generator: random.Random) -> Iterator[sp.Expr]:
 
 
 def allowed(limits: Range, generator: random.Random) -> Iterator[sp.Expr]:
-    """The candidates that lie in the range."""
-    return (value for value in candidates(limits, generator) if limits.contains(value))
+    """The candidates that lie in the range; it ends where many in a row do not, as in an empty one."""
+    patience = PATIENCE
+    for value in candidates(limits, generator):
+        inside = limits.contains(value)
+        patience = PATIENCE if inside else patience - 1
+        if patience == 0:
+            return
+        if inside:
+            yield value
 
 
 def random_value(limits: Range, generator: random.Random) -> sp.Expr:

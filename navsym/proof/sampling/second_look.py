@@ -25,6 +25,7 @@ from navsym.proof.identities.normal_form import OutsideLanguageError
 from navsym.proof.identities.numbers import is_zero
 from navsym.proof.sampling.descent import lowest
 from navsym.proof.sampling.points import AWKWARD, Point, Range, points, ranges, value_at
+from navsym.proof.sampling.zeros import zeros_of_factors
 
 BITS = 2048
 ORDINARY = 24
@@ -67,7 +68,10 @@ def second_look(
     symbols = sorted(difference.free_symbols | set().union(*(s.free_symbols for s in sides)), key=str)
     limits = ranges(symbols, box)
     places = itertools.chain(
-        points(symbols, box, ORDINARY), special_points(limits), *(descents(goal, limits) for goal in goals)
+        points(symbols, box, ORDINARY),
+        special_points(limits),
+        zeros_of_factors(difference, limits) if zero_breaks else (),
+        *(descents(goal, limits) for goal in goals),
     )
     positive = negative = touching = None
     for point in places:

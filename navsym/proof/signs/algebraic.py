@@ -89,9 +89,9 @@ def quotient_sign(top: fmpq_mpoly, bottom: fmpq_mpoly, spans: list[Span], effort
 
 
 def without_roots(converter: Converter, polynomial: fmpq_mpoly) -> fmpq_mpoly:
-    """Powers g**q replaced by the radicand, where that is a polynomial."""
+    """Powers g**q replaced by the radicand, where that is a polynomial over one, so that no sign changes."""
     for index in reversed(range(len(converter.roots))):
-        if converter.convert(converter.roots[index][0]).denominator.is_constant():
+        if converter.convert(converter.roots[index][0]).denominator.is_one():
             polynomial = converter.reduce_root(polynomial, index)
     return polynomial
 

@@ -61,6 +61,23 @@ def left_out(limit: Range) -> bool:
     return limit.open_lower or (limit.nonzero and limit.lower == 0)
 
 
+def reaches_end(expression: sp.Expr, symbol: sp.Symbol, end: sp.Expr, limits: Limits, prove: Prove) -> bool:
+    """True when the expression is continuous up to an end that is left out.
+
+    There a value may exist that is no limit: x**(1/log(x)) is e for x > 0, and 0**0 = 1 at zero.
+    """
+    limit = limits[symbol]
+    if end != limit.lower or not left_out(limit):
+        return True
+    inside = [node.args[0] for node in expression.atoms(sp.log)]
+    inside += [power.base for power in expression.atoms(sp.Pow) if not power.exp.is_Rational]
+    inside += [divisor**2 for divisor in divisors_inside(expression)]
+    at_end = [part.subs(symbol, end) for part in inside if part.has(symbol)]
+    return not any(part.has(sp.nan, sp.zoo, sp.oo) for part in at_end) and all(
+        prove(part, own(limits, part), Sign.POSITIVE).at_least(Sign.POSITIVE) for part in at_end
+    )
+
+
 def by_monotony(expression: sp.Expr, limits: Limits, wanted: Sign, prove: Prove) -> SignProof:
     """Reduce to the end of one range at which the expression is smallest."""
     if expression.has(*JUMPING) or not is_defined(expression, limits, prove):
@@ -71,7 +88,7 @@ def by_monotony(expression: sp.Expr, limits: Limits, wanted: Sign, prove: Prove)
         slope = sp.diff(expression, symbol)
         for direction, end in ((1, limit.lower), (-1, limit.upper)):
             at_end = sp.nan if end is None else expression.subs(symbol, end)
-            if at_end.has(sp.nan, sp.zoo, sp.oo):
+            if at_end.has(sp.nan, sp.zoo, sp.oo) or not reaches_end(expression, symbol, end, limits, prove):
                 continue
             floor = prove(at_end, own(limits, at_end), Sign.NONNEGATIVE)
             if floor.sign == Sign.UNKNOWN:
@@ -115,7 +132,7 @@ def taylor_at(
     derivative, floor, exact, strict = expression, Sign.POSITIVE, True, False
     for order in range(1, MOST_DERIVATIVES):
         value = derivative.subs(symbol, place)
-        if value.has(sp.nan, sp.zoo, sp.oo):
+        if value.has(sp.nan, sp.zoo, sp.oo) or not reaches_end(derivative, symbol, place, limits, simple):
             return UNKNOWN
         at_end = simple(value, own(limits, value), Sign.NONNEGATIVE)
         if at_end.sign == Sign.UNKNOWN:
