@@ -17,21 +17,21 @@ def decimal(x: Any, digits: int, direction: int = 0) -> str:
     value = rational(x)
     if value == 0:
         return "0"
-    exponent = magnitude(value) - digits
-    scaled = value * fmpq(10) ** (-exponent)
-    whole = (
-        scaled.floor() if direction < 0 else scaled.ceil() if direction > 0 else (scaled + fmpq(1, 2)).floor()
-    )
-    return placed(int(whole), exponent)
+    top, bottom = int(value.p), int(value.q)
+    exponent = magnitude(top, bottom) - digits
+    top, bottom = top * 10 ** max(-exponent, 0), bottom * 10 ** max(exponent, 0)
+    if direction == 0:
+        return placed((2 * top + bottom) // (2 * bottom), exponent)
+    return placed(top // bottom if direction < 0 else -(-top // bottom), exponent)
 
 
-def magnitude(value: fmpq) -> int:
-    """Smallest e with ``|value| < 10**e``."""
-    size = abs(value)
-    e = len(str(int(size.p))) - len(str(int(size.q)))
-    while size >= fmpq(10) ** e:
+def magnitude(top: int, bottom: int) -> int:
+    """Smallest e with ``|top / bottom| < 10**e``, for a positive bottom."""
+    size = abs(top)
+    e = int((size.bit_length() - bottom.bit_length()) * 0.30103)
+    while size * 10 ** max(-e, 0) >= bottom * 10 ** max(e, 0):
         e += 1
-    while size < fmpq(10) ** (e - 1):
+    while size * 10 ** max(1 - e, 0) < bottom * 10 ** max(e - 1, 0):
         e -= 1
     return e
 

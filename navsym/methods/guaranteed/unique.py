@@ -20,7 +20,8 @@ from navsym.numeric.exchange.search import Contacts
 from navsym.proof.balls import enclose, precision
 from navsym.proof.ladder import decide
 from navsym.proof.optimality.basis import as_fraction
-from navsym.proof.optimality.enclosure import Panel, Problem, Touch, bounded, rational
+from navsym.proof.optimality.enclosure import Panel, Problem, Touch, rational
+from navsym.proof.optimality.whole import bounded
 
 BITS = 256
 NEAR = 1e-8

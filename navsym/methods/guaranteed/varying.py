@@ -20,8 +20,9 @@ from flint import arb, arb_mat, arb_series, fmpq
 from navsym.errors import DomainError, TooLargeError
 from navsym.proof.balls import enclose, precision
 from navsym.proof.decimals import decimal, exact
-from navsym.proof.optimality.enclosure import interval, program, rational
+from navsym.proof.optimality.enclosure import interval, rational
 from navsym.proof.optimality.moving import number_of, terms
+from navsym.proof.optimality.tapes import program
 from navsym.text.modeltypes import ModelFile, Piece
 
 #: The error of a regressor; everything about it is its bound.

@@ -10,107 +10,17 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from functools import cached_property, lru_cache, partial
+from functools import cached_property, lru_cache
 from math import comb
+from operator import mul
 from typing import Any
 
-import numpy as np
 import sympy as sp
 from flint import arb, arb_mat, arb_series, ctx, fmpq
 
-from navsym.proof.balls import OPERATIONS, Step, instruction
+from navsym.proof.optimality.tapes import Program, program
 
 ORDER = 10
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Program:
-    """Several expressions flattened into one tape, shared parts once; ``outputs`` are their places."""
-
-    steps: tuple[Step, ...]
-    outputs: tuple[int, ...]
-
-    def run(self, values: Mapping[sp.Symbol, Any]) -> list[Any]:
-        fixed, moving = prepared(self, ctx.prec)
-        done = list(fixed)
-        for place, operation, arguments, constant in moving:
-            done[place] = operation(constant, [done[i] for i in arguments], values)
-        return [done[i] for i in self.outputs]
-
-    def numbers(self, values: Mapping[sp.Symbol, Any]) -> list[Any]:
-        """The same in double precision, over numpy arrays: a hint, never a bound."""
-        done: list[Any] = []
-        for step in self.steps:
-            arguments = [done[i] for i in step.arguments]
-            done.append(FLOATS[step.operation](step.constant, arguments, values))
-        return [done[i] for i in self.outputs]
-
-
-Moving = tuple[int, Callable[[Any, list[Any], Any], Any], tuple[int, ...], Any]
-
-
-@lru_cache(maxsize=256)
-def prepared(tape: Program, bits: int) -> tuple[list[Any], list[Moving]]:
-    """The steps without a symbol, done at a precision, and the others."""
-    done: list[Any] = []
-    moving: list[Moving] = []
-    for place, step in enumerate(tape.steps):
-        operation = OPERATIONS[step.operation]
-        if step.operation == "symbol" or any(done[i] is None for i in step.arguments):
-            moving.append((place, operation, step.arguments, step.constant))
-            done.append(None)
-        else:
-            done.append(operation(step.constant, [done[i] for i in step.arguments], {}))
-    return done, moving
-
-
-def program(expressions: Sequence[sp.Expr]) -> Program:
-    """Flatten expressions; raises :class:`~navsym.proof.balls.UnsupportedError` outside the language."""
-    steps: list[Step] = []
-    place: dict[sp.Basic, int] = {}
-
-    def visit(node: sp.Basic) -> int:
-        if node not in place:
-            operation, arguments, constant = instruction(node)
-            steps.append(Step(operation, tuple(visit(a) for a in arguments), constant))
-            place[node] = len(steps) - 1
-        return place[node]
-
-    outputs = tuple(visit(sp.sympify(e, strict=True)) for e in expressions)
-    return Program(tuple(steps), outputs)
-
-
-FLOATS: dict[str, Any] = {
-    "number": lambda c, a, v: float(int(c.p)) / float(int(c.q)),
-    "pi": lambda c, a, v: np.pi,
-    "e": lambda c, a, v: np.e,
-    "symbol": lambda c, a, v: v[c],
-    "add": lambda c, a, v: sum(a[1:], a[0]),
-    "mul": lambda c, a, v: np.prod(a, axis=0) if all(np.ndim(x) == 0 for x in a) else product(a),
-    "power": lambda c, a, v: a[0] ** c if c >= 0 else 1.0 / a[0] ** (-c),
-    "root": lambda c, a, v: a[0] ** (c[0] / c[1]),
-    "general_power": lambda c, a, v: a[0] ** a[1],
-    "tan": lambda c, a, v: np.tan(a[0]),
-    "cot": lambda c, a, v: 1.0 / np.tan(a[0]),
-    "sec": lambda c, a, v: 1.0 / np.cos(a[0]),
-    "csc": lambda c, a, v: 1.0 / np.sin(a[0]),
-    "asin": lambda c, a, v: np.arcsin(a[0]),
-    "acos": lambda c, a, v: np.arccos(a[0]),
-    "atan": lambda c, a, v: np.arctan(a[0]),
-    "atan2": lambda c, a, v: np.arctan2(a[0], a[1]),
-    "max": lambda c, a, v: np.maximum.reduce(a),
-    "min": lambda c, a, v: np.minimum.reduce(a),
-} | {
-    name: (lambda f: lambda c, a, v: f(a[0]))(getattr(np, name))
-    for name in ("sin", "cos", "exp", "log", "abs", "sign", "sinh", "cosh", "tanh")
-}  # fmt: skip
-
-
-def product(factors: Sequence[Any]) -> Any:
-    value = factors[0]
-    for factor in factors[1:]:
-        value = value * factor
-    return value
 
 
 @contextmanager
@@ -278,11 +188,6 @@ class Cell:
 Expansion = Callable[[Cell, fmpq, fmpq], list[arb]]
 
 
-def bounded(panel: Panel, x: Sequence[arb], touches: Sequence[Touch], limit: int = 4000) -> int | None:
-    """Number of cells that prove ``|x . H| <= sigma`` on the whole panel, or None."""
-    return covered(panel.bound(), touches, limit, partial(expansion, panel, x))
-
-
 def covered(bound: arb, touches: Sequence[Touch], limit: int, expand: Expansion) -> int | None:
     """Number of cells that prove ``|f| <= bound`` for the function with these expansions, or None.
 
@@ -383,20 +288,16 @@ def passes(expand: Expansion, cell: Cell, bound: arb, strict: bool) -> bool:
     return cell.touch is not None and near_touch(cell, taylor, spread, bound)
 
 
-def expansion(panel: Panel, x: Sequence[arb], cell: Cell, centre: fmpq, radius: fmpq) -> list[arb]:
-    """Taylor coefficients of f in w, fraction ``centre + radius w``; the last one holds over the whole cell."""
-    order = order_for(len(x))
-    point = panel.dual_polynomial(x, arb(centre), radius, order - 1)
-    wide = panel.dual_polynomial(x, interval(cell.lower, cell.upper), radius, order)
-    return [*point, wide[order]]
-
-
 def remainder(taylor: Sequence[arb], derivative: int) -> arb:
     """Bound of ``f^(d)/d!`` minus its value at the centre, over ``|w| <= 1``."""
-    value = arb(0)
-    for k in range(derivative + 1, len(taylor)):
-        value += comb(k, derivative) * taylor[k].abs_upper()
-    return value
+    sizes = map(arb.abs_upper, taylor[derivative + 1 :])
+    return sum(sizes if derivative == 0 else map(mul, counts(derivative, len(taylor)), sizes), arb(0))
+
+
+@lru_cache(maxsize=256)
+def counts(derivative: int, size: int) -> tuple[int, ...]:
+    """``binom(k, derivative)`` for all k from above the derivative to below the size."""
+    return tuple(comb(k, derivative) for k in range(derivative + 1, size))
 
 
 def near_touch(cell: Cell, taylor: Sequence[arb], spread: arb, bound: arb) -> bool:

@@ -24,9 +24,14 @@ def krawczyk(
     """
     for bits in (ctx.prec // 2 + 32, ctx.prec):
         image = image_of(centre, radius, value, jacobian, bits)
-        if image is not None and all(bool(abs(k - z) < r) for k, z, r in zip(image, centre, radius, strict=True)):
+        if image is not None and inside(image, centre, radius) is not None:
             return image
     return None
+
+
+def inside(image: list[arb], centre: Sequence[arb], radius: Sequence[arb]) -> list[arb] | None:
+    """The image when it lies in the interior of the box, else None; a ball that is not finite lies nowhere."""
+    return image if all(bool(abs(k - z) < r) for k, z, r in zip(image, centre, radius, strict=True)) else None
 
 
 def image_of(

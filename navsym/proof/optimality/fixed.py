@@ -18,14 +18,17 @@ import numpy as np
 from flint import arb, arb_mat, ctx, fmpq
 
 from navsym.numeric.exchange.interior import interior_dual, pinned_rows
-from navsym.numeric.exchange.search import Contacts, nodes_for, roads, rows_at
+from navsym.numeric.exchange.search import Contacts, roads
 from navsym.numeric.exchange.simple import simple_dual
 from navsym.proof.balls import precision
 from navsym.proof.decimals import decimal, exact, lower_end, upper_end
 from navsym.proof.optimality.basis import Basis, as_fraction, make_basis
-from navsym.proof.optimality.enclosure import Panel, Problem, Touch, bounded, combination, rational, total
+from navsym.proof.optimality.blocks import alternance_image
+from navsym.proof.optimality.enclosure import Panel, Problem, Touch, combination, rational, total
 from navsym.proof.optimality.existence import krawczyk
 from navsym.proof.optimality.polish import Polished, pinned, polish
+from navsym.proof.optimality.supports import balanced, cost, support_points
+from navsym.proof.optimality.whole import bounded
 from navsym.text.expression import to_text
 
 LIMIT = 20000
@@ -109,10 +112,9 @@ def touch(problem: Problem, basis: Basis, found: Polished, digits: int, bits: in
     loss = lost_digits(basis)
     places = digits + 10 + loss // 2  # the digits that cancel in x . H widen what a checker sees of a box
     with precision(bits):
-        spread = spreads(problem, basis, found, places)
-        centre = [exact(decimal(c, places + loss + 8)) for c in unknowns(found)]
-        radius = [exact(decimal(r, 3, 1)) for r in spread]
-        z = solution_box(problem, found, [arb(c) for c in centre], [arb(r) for r in radius])
+        middles = [decimal(c, places + loss + 8) for c in unknowns(found)]
+        spread = [decimal(r, 3, 1) for r in spreads(problem, basis, found, places)]
+        z = solution_box(problem, found, [arb(exact(c)) for c in middles], [arb(exact(r)) for r in spread])
         if z is None or not admissible(found, z):
             return None
         m = len(found.dual)
@@ -123,9 +125,9 @@ def touch(problem: Problem, basis: Basis, found: Polished, digits: int, bits: in
         lower, upper = lower_end(value, digits + 4), upper_end(value, digits + 4)
         solution = {
             "from": "0", "to": "0", "basis": [[str(int(i == j)) for i in range(m)] for j in range(m)],
-            "dual": [[decimal(c, places + loss + 8)] for c in centre[:m]],
-            "contacts": contact_rows(found, costs(problem, found, centre), places + loss + 8),
-            "radius": [decimal(r, 3, 1) for r in costs(problem, found, radius)],
+            "dual": [[c] for c in middles[:m]],
+            "contacts": contact_rows(found, costs(problem, found, middles, places + loss + 8)),
+            "radius": costs(problem, found, spread, 3, 1),
         }  # fmt: skip
         document = header(problem, "touch", bits, cells, lower, upper) | {"pieces": [solution]}
         return Certified(exact(lower), exact(upper), support_of(found, z), tuple(z[:m]), True, document)
@@ -151,6 +153,8 @@ def solution_box(
     problem: Problem, found: Polished, centre: Sequence[arb], radius: Sequence[arb]
 ) -> list[arb] | None:
     """Balls around the exact solution of the optimality system, by Krawczyk's test."""
+    if len(found.v) == len(found.dual):
+        return alternance_image(problem, found, centre, radius)
     box = [c + r * arb(0, 1) for c, r in zip(centre, radius, strict=True)]
     value, _ = optimality_system(problem, found, centre)
     _, jacobian = optimality_system(problem, found, box)
@@ -222,20 +226,23 @@ def every_cell(problem: Problem, x: Sequence[arb], touches: Sequence[Sequence[To
     return cells
 
 
-def costs(problem: Problem, found: Polished, values: Sequence[fmpq]) -> list[fmpq]:
+def costs(problem: Problem, found: Polished, values: Sequence[str], digits: int, direction: int = 0) -> list[str]:
     """The weights at the end of the unknowns times their sigma: what a certificate holds."""
     head = len(values) - len(found.panel)
-    bounds = [problem.panels[k].bound() for k in found.panel]
-    return [*values[:head], *(rational(s * arb(w)) for s, w in zip(bounds, values[head:], strict=True))]
+    panels = [problem.panels[k] for k in found.panel]
+    return [*values[:head], *(
+        w if panel.sigma == 1 else decimal(rational(panel.bound() * arb(exact(w))), digits, direction)
+        for panel, w in zip(panels, values[head:], strict=True)
+    )]  # fmt: skip
 
 
-def contact_rows(found: Polished, centre: Sequence[fmpq], digits: int) -> list[dict[str, Any]]:
+def contact_rows(found: Polished, middles: Sequence[str]) -> list[dict[str, Any]]:
     l = len(found.v)
-    free = iter(centre[len(found.dual) : len(centre) - l])
+    free = iter(middles[len(found.dual) : len(middles) - l])
     rows = []
     for i, k in enumerate(found.panel):
-        at = decimal(next(free), digits) if found.inner[i] else place_of(end_name(found, i))
-        rows.append({"panel": k, "at": [at], "weight": [decimal(centre[len(centre) - l + i], digits)]})
+        at = next(free) if found.inner[i] else place_of(end_name(found, i))
+        rows.append({"panel": k, "at": [at], "weight": [middles[len(middles) - l + i]]})
     return rows
 
 
@@ -346,55 +353,6 @@ def round_number(x: fmpq, digits: int = 8) -> fmpq:
     near = fmpq(best.numerator, best.denominator)
     room = max(fmpq(1), abs(x)) / 10**digits
     return near if abs(near - x) < room else x
-
-
-def support_points(basis: Basis, contacts: Contacts, at: Sequence[fmpq]) -> list[tuple[int, fmpq]]:
-    """As many places as unknowns, regressors far from dependent: the contacts, filled up from the grid.
-
-    at : the exact fraction of each contact
-    """
-    C = basis.panels.coefficients
-    m = C.shape[2]
-    nodes = nodes_for(basis.panels)
-    grid = [(k, float(u)) for k in range(C.shape[0]) for u in nodes[:: max(1, nodes.size // (12 * m))]]
-    grid += [(k, 1.0) for k in range(C.shape[0])]
-    order = np.argsort(-np.abs(contacts.weights))
-    chosen: list[tuple[int, fmpq]] = []
-    rest = np.eye(m)
-    for i in order:
-        row = rows_at(C, contacts.panel[i : i + 1], contacts.u[i : i + 1])[0] @ rest
-        if np.linalg.norm(row) > 1e-7 and len(chosen) < m:
-            chosen.append((int(contacts.panel[i]), at[i]))
-            rest = without(rest, row)
-    rows = rows_at(C, np.array([k for k, _ in grid]), np.array([u for _, u in grid]))
-    while len(chosen) < m:
-        along = rows @ rest
-        best = int(np.argmax(np.linalg.norm(along, axis=1)))
-        chosen.append((grid[best][0], as_fraction(grid[best][1])))
-        rest = without(rest, along[best])
-    return chosen
-
-
-def without(rest: np.ndarray, row: np.ndarray) -> np.ndarray:
-    """The projection ``rest`` with one more direction taken out."""
-    unit = row / np.linalg.norm(row)
-    projected: np.ndarray = rest - np.outer(rest @ unit, unit)
-    return projected
-
-
-def balanced(problem: Problem, support: Sequence[tuple[int, fmpq]]) -> list[arb]:
-    """Weights with ``sum w_i H(t_i) = P`` exactly, as balls."""
-    columns = [problem.panels[k].rows(arb(v)) for k, v in support]
-    N = arb_mat(columns).transpose()
-    solved = N.solve(arb_mat([[p] for p in problem.target()]))
-    return [solved[i, 0] for i in range(len(support))]
-
-
-def cost(problem: Problem, support: Sequence[tuple[int, fmpq]], weights: Sequence[arb]) -> arb:
-    value = arb(0)
-    for (k, _), w in zip(support, weights, strict=True):
-        value += problem.panels[k].bound() * abs(w)
-    return value
 
 
 def near_touches(problem: Problem, found: Polished, places: int) -> list[list[Touch]]:

@@ -18,13 +18,11 @@ from navsym.numeric.exchange.kernels import chebyshev_derivative, contact_system
 from navsym.numeric.exchange.search import Contacts
 from navsym.proof.balls import precision
 from navsym.proof.optimality.basis import Basis, as_fraction
-from navsym.proof.optimality.enclosure import Panel, Problem, total
+from navsym.proof.optimality.enclosure import Panel, Problem
 
 STEPS = 60
 #: A residual so many times the smallest one, or no number at all, says that Newton's method has run away.
 AWAY = 1e6
-#: A correction that shrinks as before would miss the goal by this factor: not looked at any more.
-CERTAIN = 1e-4
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -73,14 +71,14 @@ def polish(panels: Sequence[Panel], basis: Basis, contacts: Contacts, bits: int,
             away = min(away, AWAY * max(size, 1e-12))
             if size < goal or (size > 0.5 * last and size < 1e-12):
                 break
-            done = last < np.inf and size < 1e-6 * last and size * (size / last) < goal * CERTAIN
+            done = last < np.inf and size < 1e-6 * last and size * (size / last) < goal
             last, size = size, size * (size / last)
             step = correction(inverse, F)
             x = [(a + s).mid() for a, s in zip(x, step[:m], strict=True)]
             free = iter(step[m : len(step) - l])
             v = [(a + next(free) / 2).mid() if i else a for a, i in zip(v, inner, strict=True)]
             w = [(a + s).mid() for a, s in zip(w, step[len(step) - l :], strict=True)]
-            if done:  # the next correction would be smaller than the goal by the ratio of the last two
+            if done:  # with the ratio of the last two the next correction would be below the goal
                 break
         dual = basis.transform.transpose() * arb_mat([[a] for a in x])
         weights = [a * basis.scale / panels[k].bound() for a, k in zip(w, contacts.panel, strict=True)]
@@ -115,11 +113,22 @@ def pseudo_inverse(basis: Basis, contacts: Contacts) -> tuple[np.ndarray, bool]:
         C, C1, C2, basis.panels.functional, contacts.panel, contacts.u, contacts.inner,
         contacts.sign, contacts.dual, contacts.weights,
     )  # fmt: skip
+    if J.shape[0] == J.shape[1] and (inverse := well_conditioned(J)) is not None:
+        return inverse, True
     U, s, Vt = np.linalg.svd(J)
     keep = s > 1e-9 * s.max()
     regular = J.shape[0] == J.shape[1] and bool(keep.all())
     r = int(keep.sum())
     return (Vt[:r].T / s[:r]) @ U[:, :r].T, regular
+
+
+def well_conditioned(J: np.ndarray) -> np.ndarray | None:
+    """The inverse, where Frobenius' norms say that no singular value is below 1e-9 of the largest."""
+    try:
+        inverse: np.ndarray = np.linalg.inv(J)
+    except np.linalg.LinAlgError:
+        return None
+    return inverse if np.linalg.norm(J) * np.linalg.norm(inverse) < 1e9 else None
 
 
 def correction(inverse: np.ndarray, F: Sequence[arb]) -> list[arb]:
@@ -137,18 +146,13 @@ def residual(
     w: Sequence[arb], p: Sequence[arb], signs: Sequence[int], inner: Sequence[bool],
 ) -> list[arb]:  # fmt: skip
     """The optimality system in high precision; slopes with respect to u = 2 v - 1."""
-    dual = (basis.transform.transpose() * arb_mat([[a] for a in x])).entries()
-    values: list[arb] = []
-    slopes: list[arb] = []
-    sums = [arb(0)] * len(x)
-    for i, k in enumerate(places):
-        series = panels[k].series(v[i], fmpq(1, 2), int(inner[i]))
-        sigma = panels[k].bound()
-        heights = [s[0] for s in series]
-        values.append(total(dual, heights) / sigma - signs[i])
-        if inner[i]:
-            slopes.append(total(dual, [s[1] for s in series]) / sigma)
-        share = w[i] / sigma
-        sums = [b + share * h for b, h in zip(sums, heights, strict=True)]
-    balance = (basis.transform * arb_mat([[b] for b in sums])).entries()
-    return [a.mid() for a in [*values, *slopes, *(b - a for a, b in zip(p, balance, strict=True))]]
+    dual = basis.transform.transpose() * arb_mat([[a] for a in x])
+    series = [panels[k].series(v[i], fmpq(1, 2), int(inner[i])) for i, k in enumerate(places)]
+    bounds = [panels[k].bound() for k in places]
+    values = arb_mat([[h[0] for h in row] for row in series])
+    slopes = [(b, [h[1] for h in row]) for b, row, i in zip(bounds, series, inner, strict=True) if i]
+    balance = basis.transform * (values.transpose() * arb_mat([[a / b] for a, b in zip(w, bounds, strict=True)]))
+    heights = [f / b - s for f, b, s in zip((values * dual).entries(), bounds, signs, strict=True)]
+    flat = (arb_mat([row for _, row in slopes]) * dual).entries() if slopes else []
+    flat = [f / b for f, (b, _) in zip(flat, slopes, strict=True)]
+    return [a.mid() for a in [*heights, *flat, *(b - a for a, b in zip(p, balance.entries(), strict=True))]]
