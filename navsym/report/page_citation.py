@@ -25,15 +25,22 @@ def bibtex(paper: Paper, record: Record, version: str) -> str:
         "author": " and ".join(latex_escape(author) for author in paper.authors),
         "title": "{" + latex_escape(paper.title) + "}",
         "year": "" if paper.year is None else str(paper.year),
-        "note": latex_escape(f"{paper.source}. In {paper.language}." if paper.language else paper.source),
+        "note": latex_escape(source_words(paper)),
         "doi": paper.doi,
     }
     return block("misc", key, words) + "\n" + block("misc", f"{key}-{plain(record['number'])}", verdict)
 
 
+def source_words(paper: Paper) -> str:
+    """Where it appeared and in which language; either may be unknown."""
+    language = f"In {paper.language}" if paper.language else ""
+    return " ".join(f"{part.rstrip('.')}." for part in (paper.source, language) if part)
+
+
 def verdict_words(record: Record) -> str:
-    scope = record["scope"] or "numbers"
-    words = f"{record['title']} Decided by {record['method']} for {scope}."
+    """What is claimed, how it was decided and for what; where it fails, an exact point."""
+    scope = "" if record["status"] == "REFUTED" else f", for {record['scope'] or 'the numbers as they stand'}"
+    words = f"{record['title']} Decided by {record['method']}{scope}."
     if record["assumptions"]:
         words += f" Assuming {'; '.join(record['assumptions'])}."
     if record["counterexample"]:

@@ -9,11 +9,12 @@ from __future__ import annotations
 import ast
 import keyword
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import sympy as sp
 
-from navsym.errors import DomainError, DuplicateError, ExpressionSyntaxError
+from navsym.errors import DomainError, DuplicateError, ExpressionSyntaxError, UnknownSymbolError
 from navsym.text.expression import parse, symbol
 from navsym.text.names import RESERVED, shown
 from navsym.text.python_source import side_source
@@ -43,7 +44,9 @@ PAPER = Paper(
     definitions={{
 {definitions}    }},
 )
+{example}'''
 
+EXAMPLE = '''
 x = sp.Symbol("x", real=True)
 
 
@@ -61,7 +64,7 @@ def {function}() -> Equation:
     return Equation(
         printed={printed},
         derived={derived},
-    )
+{tolerance}    )
 '''
 
 
@@ -93,7 +96,7 @@ def module_source(
     return MODULE.format(
         name=quoted(check_module_name(name)), heading=plain(title) or name, title=quoted(title or name),
         authors=several(authors), year=year, source=quoted(source), language=quoted(language),
-        equations=several(equations), definitions=lines,
+        equations=several(equations), definitions=lines, example=EXAMPLE,
     )  # fmt: skip
 
 
@@ -142,40 +145,122 @@ def plain(text: str) -> str:
 # -- claims ----------------------------------------------------------------------------------
 
 
-def with_claim(
-    source: str, number: str, title: str, printed: str, derived: str, expect: str, corrects: str, reason: str,
-    slip: str = "",
-) -> str:  # fmt: skip
-    """The source of a module with one more claim at its end.
+@dataclass(frozen=True, slots=True)
+class NewClaim:
+    """One more claim as words: what ``navsym new-claim`` is told, and the verdict that it found.
+
+    positive  : names that this claim declares positive; other new names are declared real
+    tolerance : of a printed numeral, or None
+    """
+
+    number: str
+    title: str
+    printed: str
+    derived: str
+    expect: str
+    corrects: str = ""
+    reason: str = ""
+    slip: str = ""
+    positive: frozenset[str] = frozenset()
+    tolerance: str | None = None
+
+    @property
+    def arguments(self) -> str:
+        """What stands in the brackets of the decorator."""
+        found = [f'"{self.number}"', f"expect=Status.{self.expect}"]
+        found += [f'corrects="{check_number(self.corrects)}"'] if self.corrects else []
+        found += [f'slip="{self.slip}"'] if self.slip else []
+        found += [f'reason="{plain(self.reason)}"'] if self.reason else []
+        return ", ".join(found)
+
+
+def with_claim(source: str, new: NewClaim) -> str:
+    """The source of a module with one more claim at its end, which takes the place of the example.
 
     Raises DuplicateError when the number is claimed already, DomainError when the file is not a
-    derivation module in one file, and what the reader of expressions raises.
+    derivation module in one file, UnknownSymbolError for a positive name that no side has, and what
+    the reader of expressions raises.
     """
-    check_number(number)
-    tree = module_tree(source)
-    if f'@claim("{number}"' in source:
-        message = f"expected a new number; got {number}, claimed already; do choose another or edit the file"
+    check_number(new.number)
+    if f'@claim("{new.number}"' in source:
+        message = f"expected a new number; got {new.number}, claimed already; do choose another or edit the file"
         raise DuplicateError(message)
-    known = assigned(tree)
-    sides = [read(text, where) for text, where in ((printed, "--printed"), (derived, "--derived"))]
-    names = sorted({s.name for side in sides for s in side.free_symbols} - known)
-    arguments = [f'"{number}"', f"expect=Status.{expect}"]
-    arguments += [f'corrects="{check_number(corrects)}"'] if corrects else []
-    arguments += [f'slip="{slip}"'] if slip else []
-    arguments += [f'reason="{plain(reason)}"'] if reason else []
+    source = source.replace(EXAMPLE, "", 1)
+    tree = module_tree(source)
+    given = declarations(tree, new.positive)
+    sides = [read(text, where, given) for text, where in ((new.printed, "--printed"), (new.derived, "--derived"))]
+    used = {s.name for side in sides for s in side.free_symbols}
+    if idle := sorted(new.positive - used):
+        raise UnknownSymbolError(f"expected names of the two sides; got {idle[0]}; do leave it out", where="--positive")
     block = CLAIM.format(
-        arguments=", ".join(arguments), function=function_name(number, known), title=plain(title),
-        printed=side_source(sides[0]), derived=side_source(sides[1]),
+        arguments=new.arguments, function=function_name(new.number, assigned(tree)), title=plain(new.title),
+        printed=side_source(sides[0]), derived=side_source(sides[1]), tolerance=tolerance_source(new.tolerance),
     )  # fmt: skip
-    return looked_at(source, number).rstrip("\n") + "\n" + declared(names) + block
+    names = used - assigned(tree)
+    declared = declared_as("real", names - new.positive) + declared_as("positive", names & new.positive)
+    return looked_at(source, new.number).rstrip("\n") + "\n" + declared + block
 
 
-def declared(names: Sequence[str]) -> str:
+def declared_as(kind: str, names: set[str]) -> str:
     """Source that declares new symbols; nothing where there are none."""
     if not names:
         return ""
-    made = f'sp.Symbol("{names[0]}"' if len(names) == 1 else f'sp.symbols("{" ".join(names)}"'
-    return f"\n\n{', '.join(names)} = {made}, real=True)\n"
+    ordered = sorted(names)
+    made = f'sp.Symbol("{ordered[0]}"' if len(ordered) == 1 else f'sp.symbols("{" ".join(ordered)}"'
+    return f"\n\n{', '.join(ordered)} = {made}, {kind}=True)\n"
+
+
+def tolerance_source(text: str | None) -> str:
+    return "" if text is None else f"        tolerance={side_source(read_tolerance(text))},\n"
+
+
+def read_tolerance(text: str) -> sp.Rational:
+    """Half a unit of the last digit, or another positive number, exactly; raises DomainError for anything else."""
+    value = read(text, "--tolerance")
+    if isinstance(value, sp.Rational) and value.is_positive:
+        return value
+    raise DomainError(f"expected a positive number such as 0.05; got {shown(text)}; do write one", where="--tolerance")
+
+
+def declarations(tree: ast.Module, positive: frozenset[str] = frozenset()) -> dict[str, sp.Symbol]:
+    """Symbols as the file declares them at its top, and ``positive`` ones that it does not declare yet.
+
+    Raises DuplicateError for a positive name that the file declares otherwise.
+    """
+    found: dict[str, sp.Symbol] = {}
+    for node in tree.body:
+        if isinstance(node, ast.Assign) and isinstance(node.value, ast.Call):
+            found |= symbols_of(node.value)
+    for name in sorted(positive):
+        if name in found and not found[name].is_positive:
+            message = f"expected a new name; got {name}, which the file declares already; do change its line there"
+            raise DuplicateError(message, where="--positive")
+        found[name] = symbol(name, positive=True)
+    return found
+
+
+KINDS = ("real", "positive", "nonnegative", "nonzero")
+
+
+def symbols_of(call: ast.Call) -> dict[str, sp.Symbol]:
+    """What ``sp.Symbol("x", real=True)`` or ``sp.symbols("x y", positive=True)`` declares; nothing for another call."""
+    named = isinstance(call.func, ast.Attribute) and call.func.attr in ("Symbol", "symbols")
+    text = call.args[0].value if named and call.args and isinstance(call.args[0], ast.Constant) else ""
+    if not isinstance(text, str):
+        return {}
+    real, positive, nonnegative, nonzero = (any(key.arg == kind for key in call.keywords) for kind in KINDS)
+    names = [name for name in text.replace(",", " ").split() if NAMES_IN.fullmatch(name) and name not in RESERVED]
+    return {
+        name: symbol(name, real=real, positive=positive, nonnegative=nonnegative, nonzero=nonzero) for name in names
+    }
+
+
+def equations_of(source: str) -> tuple[str, ...]:
+    """The numbers that the card of a module lists; empty where they are not written out."""
+    for node in ast.walk(module_tree(source)):
+        if isinstance(node, ast.keyword) and node.arg == "equations" and isinstance(node.value, ast.Tuple):
+            return tuple(str(part.value) for part in node.value.elts if isinstance(part, ast.Constant))
+    return ()
 
 
 def looked_at(source: str, number: str) -> str:
@@ -221,10 +306,14 @@ def function_name(number: str, known: set[str]) -> str:
     return next(name for name in (base, *(f"{base}_{k}" for k in range(2, 1000))) if name not in known)
 
 
-def read(text: str, where: str) -> sp.Expr:
-    """A side of a claim, every name declared real; raises ExpressionSyntaxError that names ``where``."""
+def read(text: str, where: str, given: Mapping[str, sp.Symbol] | None = None) -> sp.Expr:
+    """A side of a claim; names are those ``given``, or declared real.
+
+    Raises ExpressionSyntaxError that names ``where``.
+    """
     names = {name for name in NAMES_IN.findall(text)} - RESERVED
     bad = [name for name in names if keyword.iskeyword(name) or name == "sp"]
     if bad:
         raise ExpressionSyntaxError(f"expected names that Python takes; got {bad[0]}; do rename it", where=where)
-    return parse(text, {name: symbol(name) for name in names}, where=where)
+    known = given or {}
+    return parse(text, {name: known.get(name) or symbol(name) for name in names}, where=where)

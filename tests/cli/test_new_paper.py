@@ -51,11 +51,40 @@ def test_claims_are_added_with_the_verdict_that_was_found(folder, capsys):
     assert add(folder, "2", "--printed", "a/3", "--derived", "a/4", "--reason", "a quarter is meant") == 0
     assert add(folder, "2*", "--printed", "a/4", "--derived", "a*(1/4)", "--corrects", "2") == 0
     document = verify([loaded(folder / "sample_paper.py")], jobs=1)
-    assert [(r["number"], r["status"], r["expect"]) for r in document["claims"]][1:] == [
+    assert [(r["number"], r["status"], r["expect"]) for r in document["claims"]] == [
         ("1", "PROVED", "PROVED"), ("2", "REFUTED", "REFUTED"), ("2*", "PROVED", "PROVED"),
     ]  # fmt: skip
     paper = document["papers"][0]
     assert (paper["claimed"], paper["definitions"], paper["missing"]) == (2, 1, [])
+
+
+def test_names_that_must_be_positive_are_asked_for_and_declared(folder, capsys):
+    sides = ("--printed", "2*pi*sqrt(R/g)", "--derived", "2*pi/sqrt(g/R)")
+    before = (folder / "sample_paper.py").read_text()
+    assert add(folder, "1", *sides) == 2
+    assert "add --positive R,g if they are" in capsys.readouterr().err
+    assert (folder / "sample_paper.py").read_text() == before
+    assert add(folder, "1", *sides, "--positive", "R,g") == 0
+    assert add(folder, "2", "--printed", "sqrt(R**2)", "--derived", "R") == 0     # as the file declares it now
+    document = verify([loaded(folder / "sample_paper.py")], jobs=1)
+    assert [r["status"] for r in document["claims"]] == ["PROVED", "PROVED"]
+    assert add(folder, "3", "--printed", "R", "--derived", "R", "--positive", "R,q") == 2
+    assert "got q" in capsys.readouterr().err
+
+
+def test_a_printed_numeral_has_a_tolerance(folder, capsys):
+    derived = ("--derived", "2*pi*sqrt(6371000/9.81)")
+    assert add(folder, "1", "--printed", "5064", *derived) == 0
+    assert "--tolerance" in capsys.readouterr().out
+    assert add(folder, "2", "--printed", "5063.5", *derived, "--tolerance", "0.05") == 0
+    document = verify([loaded(folder / "sample_paper.py")], jobs=1)
+    assert [r["status"] for r in document["claims"]] == ["REFUTED", "CERTIFIED"]
+    assert add(folder, "3", "--printed", "1", "--derived", "1", "--tolerance", "0") == 2
+
+
+def test_a_number_that_the_paper_does_not_have_is_told_apart(folder, capsys):
+    assert add(folder, "9", "--printed", "1", "--derived", "1") == 0
+    assert "9 is none of the numbered equations" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(
