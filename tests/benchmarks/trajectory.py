@@ -3,7 +3,9 @@
     python tests/benchmarks/trajectory.py
 
 * adaptive filter, all 3^n candidates of a step: against batched numpy and against a numpy loop, when only the
-  innovation variance differs (criterion of one step) and when every candidate carries its own estimate;
+  innovation variance differs (criterion of one step), once with the coordinate measured, where many candidates
+  are equal and are not visited, and once with a combination of all states measured, where none are;
+  and against batched numpy when every candidate carries its own estimate;
 * certified condition numbers: against mpmath's singular values at the precision that gives 30 digits.
 """
 
@@ -118,9 +120,14 @@ def mpmath_condition(rows: list[list[Fraction]], equilibrate: bool, digits: int)
 # -- comparisons --------------------------------------------------------------------------------------
 
 
-def compare_filters(n: int, steps: int, loop_steps: int) -> None:
-    model = scaled_model(first_stage_model(n), normalised_scale(n))
-    start, tuning = start_of(n), Tuning(R=1.0)
+def combined(model: SteppedModel) -> SteppedModel:
+    """The same motion, measured as a combination of all states: every candidate has a variance of its own."""
+    row = 1.0 / 2.0 ** np.arange(model.order)
+    return SteppedModel(model.Phi, row @ model.Phi, row)
+
+
+def compare_one_step(model: SteppedModel, distinct: int, steps: int, loop_steps: int) -> None:
+    start, tuning = start_of(model.order), Tuning(R=1.0)
     z = measurements(steps)
     np.testing.assert_allclose(
         adaptive_filter(z[:30], model, start, tuning).states[-1],
@@ -134,9 +141,15 @@ def compare_filters(n: int, steps: int, loop_steps: int) -> None:
         rounds=7,
     )
     ours, batched, loop = ours / steps, batched / steps, loop / loop_steps
-    print(f"one-step criterion, n = {n}, {3**n} candidates: {1e6 * ours:.2f} us a step; batched numpy "
-          f"{batched / ours:.0f} x, numpy loop {loop / ours:.0f} x slower")
-    window = 25
+    print(f"one-step criterion, n = {model.order}, {3**model.order} candidates, {distinct} different variances: "
+          f"{1e6 * ours:.2f} us a step; batched numpy {batched / ours:.0f} x, numpy loop {loop / ours:.0f} x slower")
+
+
+def compare_filters(n: int, steps: int, loop_steps: int) -> None:
+    model = scaled_model(first_stage_model(n), normalised_scale(n))
+    compare_one_step(model, 3, steps, loop_steps)
+    compare_one_step(combined(model), 3**n, steps, loop_steps)
+    start, tuning, z, window = start_of(n), Tuning(R=1.0), measurements(steps), 25
     ours, batched = alternately(
         lambda: windowed_filter(z, model, start, tuning, window=window),
         lambda: batched_windows(z, model, start, tuning, window),

@@ -11,7 +11,7 @@ import math
 import numba
 import numpy as np
 
-from navsym.numeric.mixture.filter import COMPILE, LOG_TWO_PI, aligned
+from navsym.numeric.mixture.filter import COMPILE, account, aligned
 from navsym.numeric.mixture.lanes import load, spread, store
 
 
@@ -61,16 +61,8 @@ def correct_mode(i, n, p, H, r, z, x, P, scratch, log_likelihood, volume):  # ty
         weight = innovation * inverse
         store(scratch, 2 * n * 8, variance)
         store(scratch, 2 * n * 8 + 8, innovation * weight)
-        for lane in range(8):
-            s, distance = scratch[2 * n * 8 + lane], scratch[2 * n * 8 + 8 + lane]
-            if not (s > 0.0 and distance < np.inf):
-                return False
-            log_likelihood[i * 8 + lane] -= 0.5 * (distance + LOG_TWO_PI)
-            product = volume[i * 8 + lane] * s
-            if not 1e-200 < product < 1e200:
-                log_likelihood[i * 8 + lane] -= 0.5 * (math.log(volume[i * 8 + lane]) + math.log(s))
-                product = 1.0
-            volume[i * 8 + lane] = product
+        if not account(scratch, 2 * n * 8, log_likelihood, i * 8, volume, i * 8):
+            return False
         for a in range(n):
             v = load(scratch, a * 8)
             store(x, start + a * 8, load(x, start + a * 8) + v * weight)

@@ -102,6 +102,26 @@ def store_twice(P, square, n, a, b, value):  # type: ignore[no-untyped-def]
     store(P, square + (b * n + a) * 8, value)
 
 
+@numba.njit(inline="always", **COMPILE)
+def account(found, at, log_likelihood, here, volume, there):  # type: ignore[no-untyped-def]
+    """One scalar's part of the log-likelihood of eight filters; False when a variance is not positive.
+
+    found : variances at ``at``, squares over variances eight doubles later. The product of the variances goes into
+    volume, for one logarithm instead of several, as long as it is a number.
+    """
+    for lane in range(8):
+        s, distance = found[at + lane], found[at + 8 + lane]
+        if not (s > 0.0 and distance < np.inf):
+            return False
+        log_likelihood[here + lane] -= 0.5 * (distance + LOG_TWO_PI)
+        product = volume[there + lane] * s
+        if not 1e-200 < product < 1e200:
+            log_likelihood[here + lane] -= 0.5 * (math.log(volume[there + lane]) + math.log(s))
+            product = 1.0
+        volume[there + lane] = product
+    return True
+
+
 @numba.njit(**COMPILE)
 def correct_group(g, n, p, came, H, r, z, x, P, scratch, log_likelihood):  # type: ignore[no-untyped-def]
     """Correct the eight filters of group g by the scalars that came; False when a variance is not positive.
@@ -128,17 +148,8 @@ def correct_group(g, n, p, came, H, r, z, x, P, scratch, log_likelihood):  # typ
         weight = innovation * inverse
         store(scratch, 2 * n * 8, variance)
         store(scratch, 2 * n * 8 + 8, innovation * weight)
-        for lane in range(8):
-            s, distance = scratch[2 * n * 8 + lane], scratch[2 * n * 8 + 8 + lane]
-            if not (s > 0.0 and distance < np.inf):
-                return False
-            log_likelihood[g * 8 + lane] -= 0.5 * (distance + LOG_TWO_PI)
-            # One logarithm for the product of several variances, as long as the product is a number.
-            volume = scratch[2 * n * 8 + 16 + lane] * s
-            if not 1e-200 < volume < 1e200:
-                log_likelihood[g * 8 + lane] -= 0.5 * (math.log(scratch[2 * n * 8 + 16 + lane]) + math.log(s))
-                volume = 1.0
-            scratch[2 * n * 8 + 16 + lane] = volume
+        if not account(scratch, 2 * n * 8, log_likelihood, g * 8, scratch, 2 * n * 8 + 16):
+            return False
         for a in range(n):
             v = load(scratch, a * 8)
             store(x, start + a * 8, load(x, start + a * 8) + v * weight)

@@ -45,7 +45,7 @@ def lay_models(k, branches, modes, F, Q, H, r, U, z, lanes):  # type: ignore[no-
             lanes[3][(g * p + a) * 8 + lane] = v[i, a] if used else 1.0
 
 
-@numba.njit(**COMPILE)
+@numba.njit(inline="always", **COMPILE)
 def lay_measurement(k, branches, modes, rotated, U, z, came, out):  # type: ignore[no-untyped-def]
     """Measurement k in every lane, rotated into independent scalars where R is not diagonal."""
     p = z.shape[1]

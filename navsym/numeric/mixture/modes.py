@@ -64,7 +64,7 @@ def mixing_weights(sources, modes, ahead, totals, weights, terms):  # type: igno
             weights[((b // 8) * sources + s) * 8 + b % 8] = math.exp(terms[s] - total)
 
 
-@numba.njit(**COMPILE)
+@numba.njit(inline="always", **COMPILE)
 def mix_quickly(modes, logs, transition, totals, weights, terms):  # type: ignore[no-untyped-def]
     """The same with one exponential per source, when every source knows its mode; False when it must not.
 

@@ -151,13 +151,15 @@ def tune_by_windows(
     Ps = np.empty((n, n, W))
     scratch = (np.empty(W), np.empty(W), np.empty((n, W)), np.empty((n, n, W)), np.empty((n, n, W)))
     trace = np.empty((window, 2 * n + 1))
+    # Carried through a window, every element of Q makes a difference.
+    seen = np.ones(n, dtype=np.bool_)
     diagonal, best_y, best_q, best_P = np.empty(n), np.empty(n), np.empty(n), np.empty((n, n))
     for first in range(0, z.shape[0], window):
         part = z[first : min(first + window, z.shape[0])]
         lowest = np.inf
         for block in range(0, C, W):
             for c in range(W):
-                candidate(q, step, min(block + c, C - 1), diagonal)
+                candidate(q, seen, step, min(block + c, C - 1), diagonal)
                 for i in range(n):
                     qs[i, c] = min(max(diagonal[i], floor[i]), ceiling[i])
             run_block(Phi, h0, R, part, y, P, qs, ys, Ps, cost, scratch, trace)
