@@ -145,7 +145,7 @@ def drawing(
     low, high = heights(curves, marks)
     at_x = scale(ends, (LEFT, WIDTH - RIGHT))
     at_y = scale((low, high), (HEIGHT - BOTTOM, TOP))
-    others = ", ".join(f"{other} = {number:.4g}" for other, number in held.items() if other != along)
+    others = others_words({other: number for other, number in held.items() if other != along})
     words = f"Printed side (dashed) and derived side (solid) along {along}" + (f" with {others}" if others else "")
     words += f"; at {along} = {held[along]:.4g} they are {marks[0]:.6g} and {marks[1]:.6g}."
     parts = [*axes(along, ends, (low, high), at_x, at_y)]
@@ -159,6 +159,13 @@ def drawing(
         + "".join(parts)
         + f"</svg><figcaption>{html.escape(words)}</figcaption></figure>"
     )
+
+
+def others_words(held: Mapping[str, float]) -> str:
+    """What the other coordinates are, where a reader can take them in."""
+    if len(held) > 4:
+        return "the others as in the counterexample"
+    return ", ".join(f"{name} = {number:.4g}" for name, number in held.items())
 
 
 def scale(source: tuple[float, float], target: tuple[float, float]) -> Callable[[float], float]:

@@ -17,7 +17,7 @@ from navsym.report.formula.notation import LATEX, MATHML
 from navsym.report.formula.reader import read_formula
 from navsym.report.formula.writer import write
 
-FOLDED = 700
+FOLDED = 400
 
 
 @dataclass(frozen=True, slots=True)
