@@ -11,7 +11,7 @@ from typing import Any
 
 from navsym.export.accuracy.sweep import Swept, sweep_c
 from navsym.export.folder import write_folder
-from navsym.export.languages.printing import bound_text
+from navsym.export.languages.summary import bound_text
 from navsym.export.languages.targets import Target
 from navsym.export.package import Order, files_of
 from navsym.export.parts import ExportedFunction

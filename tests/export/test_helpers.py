@@ -18,7 +18,7 @@ from navsym.export.accuracy.rounding import ARITHMETIC_VALUES, DOUBLE, FLOAT, LI
 from navsym.export.accuracy.vectors import vectors
 from navsym.export.expression_graph import FUNCTION_OF, build
 from navsym.export.forms import MEANING, plain
-from navsym.export.languages.printing import HELPERS, SINC_STEPS, X_MINUS_SIN_STEPS
+from navsym.export.languages.helpers import HELPERS, SINC_STEPS, X_MINUS_SIN_STEPS
 from navsym.proof.balls import precision
 
 x = sp.Symbol("x", real=True)

@@ -13,8 +13,10 @@ from collections.abc import Sequence
 
 from navsym.export.accuracy.vectors import Vector
 from navsym.export.languages.c import helper_texts, source, spelling
-from navsym.export.languages.printing import HELPERS, Spelling, loops_of, summary
+from navsym.export.languages.helpers import HELPERS
+from navsym.export.languages.printing import Spelling, loops_of
 from navsym.export.languages.python import ENDING, vectors_json
+from navsym.export.languages.summary import summary
 from navsym.export.parts import ExportedFunction
 
 BLOCK = 512

@@ -6,19 +6,10 @@ import math
 from collections.abc import Sequence
 
 from navsym.export.accuracy.vectors import Vector
-from navsym.export.languages.printing import (
-    Spelling,
-    assignments,
-    calls,
-    code_names,
-    helper_about,
-    helper_parts,
-    helpers_used,
-    squares_if_needed,
-    summary,
-    unit_of,
-)
+from navsym.export.languages.helpers import helper_about, helper_parts, helpers_used, squares_if_needed
+from navsym.export.languages.printing import Spelling, assignments, calls, code_names
 from navsym.export.languages.programs import c_header, c_through_state, output_places
+from navsym.export.languages.summary import summary, unit_of
 from navsym.export.parts import Argument, ExportedFunction, Output
 from navsym.export.tools import deviations_page
 

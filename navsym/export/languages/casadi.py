@@ -18,7 +18,7 @@ import sympy as sp
 
 from navsym.export.accuracy.vectors import Vector
 from navsym.export.forms import plain
-from navsym.export.languages.printing import helpers_used
+from navsym.export.languages.helpers import helpers_used
 from navsym.export.languages.python import ENDING, vectors_json
 from navsym.export.parts import ExportedFunction
 from navsym.numeric.casadi_functions import casadi_function

@@ -7,8 +7,10 @@ from collections.abc import Sequence
 
 from navsym.export.accuracy.vectors import Vector
 from navsym.export.languages.c import helper_text, safe_comment
-from navsym.export.languages.printing import Spelling, assignments, calls, code_names, helpers_used, summary
+from navsym.export.languages.helpers import helpers_used
+from navsym.export.languages.printing import Spelling, assignments, calls, code_names
 from navsym.export.languages.programs import cpp_program, cpp_through_state, through_accessors
+from navsym.export.languages.summary import summary
 from navsym.export.parts import Argument, ExportedFunction, Output
 
 

@@ -5,19 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from navsym.export.accuracy.vectors import Vector
-from navsym.export.languages.printing import (
-    Spelling,
-    assignments,
-    calls,
-    code_names,
-    helper_parts,
-    helpers_used,
-    result_fields,
-    squares_if_needed,
-    summary,
-)
+from navsym.export.languages.helpers import helper_parts, helpers_used, squares_if_needed
+from navsym.export.languages.printing import Spelling, assignments, calls, code_names, result_fields
 from navsym.export.languages.programs import calls_table, js_program
 from navsym.export.languages.python import vectors_json
+from navsym.export.languages.summary import summary
 from navsym.export.parts import ExportedFunction
 
 SPECIAL = {"abs": "Math.abs({0})", "max": "Math.max({0}, {1})", "min": "Math.min({0}, {1})"}

@@ -6,17 +6,10 @@ import math
 from collections.abc import Sequence
 
 from navsym.export.accuracy.vectors import Vector
-from navsym.export.languages.printing import (
-    Spelling,
-    assignments,
-    calls,
-    code_names,
-    helper_parts,
-    helpers_used,
-    squares_if_needed,
-    summary,
-)
+from navsym.export.languages.helpers import helper_parts, helpers_used, squares_if_needed
+from navsym.export.languages.printing import Spelling, assignments, calls, code_names
 from navsym.export.languages.programs import calls_table, python_program
+from navsym.export.languages.summary import summary
 from navsym.export.parts import ExportedFunction
 
 SPECIAL = {"abs": "np.abs({0})", "max": "np.maximum({0}, {1})", "min": "np.minimum({0}, {1})"}

@@ -6,19 +6,10 @@ import math
 from collections.abc import Sequence
 
 from navsym.export.accuracy.vectors import Vector
-from navsym.export.languages.printing import (
-    HELPERS,
-    Spelling,
-    assignments,
-    bare,
-    code_names,
-    helper_parts,
-    helpers_used,
-    result_fields,
-    squares_if_needed,
-    summary,
-)
+from navsym.export.languages.helpers import HELPERS, helper_parts, helpers_used, squares_if_needed
+from navsym.export.languages.printing import Spelling, assignments, bare, code_names, result_fields
 from navsym.export.languages.programs import rust_program, rust_through_state, through_accessors
+from navsym.export.languages.summary import summary
 from navsym.export.parts import Argument, ExportedFunction, Output
 
 

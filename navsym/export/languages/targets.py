@@ -96,10 +96,10 @@ TARGETS = {
                widen=64, modules=("casadi",)),
         Target("batch", "navsym.export.languages.batch:files", "gcc", (("{python}", "-B", "test_vectors.py"),),
                library=4, reals=BOTH),
-        Target("fortran", "navsym.export.languages.scripts:fortran_files", "gfortran",
+        Target("fortran", "navsym.export.languages.fortran:files", "gfortran",
                (("{tool}", "-std=f2008", "-Wall", "-J", "{build}", "navsym_functions.f90", "test_vectors.f90",
                  "-o", "{build}/run"), ("{build}/run",)), library=2),
-        Target("julia", "navsym.export.languages.scripts:julia_files", "julia",
+        Target("julia", "navsym.export.languages.julia:files", "julia",
                (("{tool}", "--startup-file=no", "test_vectors.jl"),)),
         Target("wasm", "navsym.export.languages.wasm:wasm_files", "",
                (("{python}", "-m", "ziglang", "cc", "-target", "wasm32-wasi", "-O2", "-std=c99", "-ffp-contract=off",
@@ -107,7 +107,7 @@ TARGETS = {
                 ("{python}", "-B", "run_wasi.py", "{build}/run.wasm")), modules=("ziglang", "wasmtime"), reals=BOTH),
         Target("html", "navsym.export.languages.wasm:page_files", "chromium",
                (("{tool}", *HEADLESS, "--user-data-dir={build}/profile", "--dump-dom", "index.html"),), reals=BOTH),
-        Target("octave", "navsym.export.languages.scripts:octave_files", "octave",
+        Target("octave", "navsym.export.languages.octave:files", "octave",
                (("{tool}", "--no-gui", "--quiet", "--eval", "test_vectors"),), library=2),
     )
 }  # fmt: skip

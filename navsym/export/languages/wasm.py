@@ -15,7 +15,7 @@ from navsym.errors import MissingEngineError
 from navsym.export.accuracy.vectors import Vector
 from navsym.export.languages.c import files as c_files
 from navsym.export.languages.c import output_places
-from navsym.export.languages.printing import bound_text, unit_of
+from navsym.export.languages.summary import bound_text, unit_of
 from navsym.export.parts import ExportedFunction, Piece
 from navsym.export.processes import run
 

@@ -1,0 +1,169 @@
+"""Fortran 2008: one module of pure subroutines; names up to 63 characters, lines continued at 120."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from navsym.export.accuracy.vectors import Vector
+from navsym.export.languages.helpers import helper_parts, helpers_used, squares_if_needed
+from navsym.export.languages.printing import Spelling, assignments, calls
+from navsym.export.languages.scripts import branch, domain, vectors_text
+from navsym.export.languages.summary import summary
+from navsym.export.parts import ExportedFunction
+
+SPELLING = Spelling(
+    calls(abs="abs({0})", pow="(({0})**({1}))", max="max({0}, {1})", min="min({0}, {1})", expm1="navsym_expm1({0})"),
+    "nan", "inf", exponent="d",
+)  # fmt: skip
+
+
+def files(
+    functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str
+) -> dict[str, str]:
+    """Module and test program."""
+    names = {f.name: f"nv{k}_{f.name}"[:63] if len(f.name) > 63 else f.name for k, f in enumerate(functions)}
+    lines = head(functions, license_)
+    for function in functions:
+        lines += source(function, names[function.name])
+    lines += ["end module navsym_functions", ""]
+    return {
+        "navsym_functions.f90": "\n".join(piece for line in lines for piece in continued(line)),
+        "test_vectors.f90": test(functions, names, license_),
+        "vectors.txt": vectors_text(functions, tests),
+    }
+
+
+def head(functions: Sequence[ExportedFunction], license_: str) -> list[str]:
+    """The head of the module, with the helpers."""
+    lines = [f"! {license_}", "module navsym_functions", "  use, intrinsic :: iso_fortran_env, only: real64",
+             "  use, intrinsic :: ieee_arithmetic, only: ieee_is_finite", "  implicit none", "contains"]  # fmt: skip
+    lines += [line for name in helpers_used(*functions) for line in helper(name)]
+    operations = {op for f in functions for piece in f.pieces for op in piece.graph.operations()}
+    return [*lines, *EXPM1] if operations & {"expm1", "exprel"} else lines
+
+
+EXPM1 = [
+    "  pure elemental function navsym_expm1(x) result(f)", "    real(real64), intent(in) :: x",
+    "    real(real64) :: f", "    f = 2.0d0 * sinh(x / 2.0d0) * exp(x / 2.0d0)", "  end function", "",
+]  # fmt: skip
+
+
+def helper(name: str) -> list[str]:
+    """One function against cancellation."""
+    switch, below, above = helper_parts(name, SPELLING)
+    y = squares_if_needed(name, ", y")
+    return [f"  pure elemental function navsym_{name}(x) result(f)", "    real(real64), intent(in) :: x",
+            f"    real(real64) :: f{''.join(y)}", *squares_if_needed(name, "    y = x * x"),
+            f"    if (abs(x) < {switch}) then", f"      f = {below}", "    else", f"      f = {above}", "    end if",
+            "  end function", ""]  # fmt: skip
+
+
+def continued(line: str) -> list[str]:
+    """A long statement over several lines; comments are cut."""
+    if line.lstrip().startswith("!"):
+        return [line[:130]]
+    parts = []
+    while len(line) > 110:
+        cut = line.rfind(" ", 40, 110)
+        if cut < 0:
+            break
+        parts.append(line[:cut] + " &")
+        line = "      " + line[cut:]
+    return [*parts, line]
+
+
+def source(function: ExportedFunction, name: str) -> list[str]:
+    names = [i.name for i in function.inputs]
+    pieces = [assignments(piece, names, SPELLING) for piece in function.pieces]
+    arguments = ", ".join([*names, *(o.name for o in function.outputs), "status"])
+    lines = [*(f"  ! {line}" for line in summary(function)), f"  pure subroutine {name}({arguments})"]
+    lines += [f"    real(real64), intent(in) :: {n}" for n in names]
+    lines += [
+        f"    real(real64), intent(out) :: {o.name}{f'({o.size})' if o.shape else ''}"
+        for o in function.outputs
+    ]
+    lines += ["    integer, intent(out) :: status", f"    real(real64) :: nv_r({function.size})"]
+    lines += [f"    real(real64) :: {local}" for local in dict.fromkeys(t for lets, _ in pieces for t, _ in lets)]
+    lines += [f"    {o.name} = 0.0d0" for o in function.outputs]
+    test = domain(function, "huge(1.0d0)", SPELLING, " .and. ", ".true.")
+    lines += ["    status = 1", f"    if (.not. ({test})) return"]
+    for place, (temporaries, results) in enumerate(pieces):
+        word = branch(function, place, "if", "else if", "else")
+        then = " then" if word != "else" else ""
+        limit = function.pieces[place].limit
+        word = word.replace(repr(limit), SPELLING.number(limit)) if limit is not None else word
+        lines += [f"    {word}{then}"] if len(pieces) > 1 else []
+        lines += [f"      {t} = {text}" for t, text in temporaries]
+        lines += [f"      nv_r({k + 1}) = {text}" for k, text in enumerate(results)]
+    lines += ["    end if"] if len(pieces) > 1 else []
+    lines += ["    status = 2", "    if (.not. all(ieee_is_finite(nv_r))) return"]
+    k = 0
+    for output in function.outputs:
+        lines.append(f"    {output.name} = nv_r({k + 1}{f':{k + output.size}' if output.shape else ''})")
+        k += output.size
+    return [*lines, "    status = 0", "  end subroutine", ""]
+
+
+TEST = """! {license}
+program test_vectors
+  use, intrinsic :: iso_fortran_env, only: real64
+  use navsym_functions
+  implicit none
+  integer, parameter :: total = {total}
+  character(len=200) :: name
+  character(len={longest}) :: line
+  real(real64) :: v({widest}), r({most}), unit, worst(total)
+  integer :: expected, status, io, n, m, j, k, counts(total), wrong(total)
+  counts = 0
+  wrong = 0
+  worst = 0.0d0
+  open(10, file="vectors.txt", status="old")
+  do
+    read(10, "(a)", iostat=io) line
+    if (io /= 0) exit
+    read(line, *) name
+    select case (trim(name))
+{cases}
+    end select
+    counts(k) = counts(k) + 1
+    if (status /= expected) wrong(k) = wrong(k) + 1
+    if (status == 0 .and. expected == 0) then
+      do j = 1, m
+        if (.not. (r(j) >= v(n + j) .and. r(j) <= v(n + m + j))) wrong(k) = wrong(k) + 1
+        unit = abs(v(n + 2 * m + j)) * epsilon(1.0d0)
+        if (unit > 0.0d0 .and. v(n + m + j) - v(n + 2 * m + j) < 1000 * unit) then
+          worst(k) = max(worst(k), abs(r(j) - v(n + 2 * m + j)) / unit)
+        end if
+      end do
+    end if
+  end do
+{prints}
+  if (any(wrong > 0)) error stop 1
+end program
+"""
+
+
+def test(functions: Sequence[ExportedFunction], names: dict[str, str], license_: str) -> str:
+    """The program that reads the vectors, with a case for each function."""
+    widest = max(len(f.inputs) + 3 * f.size for f in functions)
+    cases = [line for k, f in enumerate(functions, start=1) for line in case(f, names[f.name], k)]
+    prints = [
+        f'  print "(a,i0,a,i0,a,f0.3)", "{f.name} vectors ", counts({k}), " wrong ", wrong({k}), " worst ", worst({k})'
+        for k, f in enumerate(functions, start=1)
+    ]
+    text = TEST.format(
+        license=license_, total=len(functions), widest=widest, most=max(f.size for f in functions),
+        longest=max(20000, 26 * widest + 300), cases="\n".join(cases), prints="\n".join(prints),
+    )  # fmt: skip
+    return "\n".join(part for line in text.splitlines() for part in continued(line)) + "\n"
+
+
+def case(function: ExportedFunction, name: str, number: int) -> list[str]:
+    """Reading a line of vectors of one function, and its call."""
+    n, k, outputs = len(function.inputs), 0, []
+    for output in function.outputs:
+        outputs.append(f"r({k + 1}:{k + output.size})" if output.shape else f"r({k + 1})")
+        k += output.size
+    arguments = ", ".join([*(f"v({j + 1})" for j in range(n)), *outputs, "status"])
+    return [f'    case ("{function.name}")', f"      n = {n}", f"      m = {function.size}", f"      k = {number}",
+            "      read(line, *) name, expected, v(1:n + 3 * m)", f"      call {name}({arguments})"]  # fmt: skip

@@ -1,0 +1,90 @@
+"""Julia: one module; every function returns its status and the results."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from navsym.export.accuracy.vectors import Vector
+from navsym.export.languages.helpers import helper_parts, helpers_used, squares_if_needed
+from navsym.export.languages.printing import Spelling, assignments, calls
+from navsym.export.languages.scripts import branch, domain, vectors_text
+from navsym.export.languages.summary import summary
+from navsym.export.parts import ExportedFunction
+
+SPELLING = Spelling(calls(abs="abs({0})", atan2="atan({0}, {1})", pow="({0})^({1})", max="max({0}, {1})",
+                       min="min({0}, {1})"), "NaN", "Inf")  # fmt: skip
+
+
+def files(
+    functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str
+) -> dict[str, str]:
+    """Module and test script."""
+    head = [f"# {license_}", "# Every function returns (status, results...); results are there when status == 0.",
+            "module NavsymFunctions", ""]  # fmt: skip
+    head += [line for name in helpers_used(*functions) for line in helper(name)]
+    body = [line for f in functions for line in source(f)]
+    return {
+        "NavsymFunctions.jl": "\n".join([*head, *body, "end", ""]),
+        "test_vectors.jl": TEST.format(license=license_),
+        "vectors.txt": vectors_text(functions, tests),
+    }
+
+
+def helper(name: str) -> list[str]:
+    """One function against cancellation."""
+    switch, below, above = helper_parts(name, SPELLING)
+    return [f"function navsym_{name}(x)", *squares_if_needed(name, "    y = x * x"),
+            f"    return abs(x) < {switch} ? {below} : {above}", "end", ""]  # fmt: skip
+
+
+def source(function: ExportedFunction) -> list[str]:
+    names = [i.name for i in function.inputs]
+    lines = [*(f"# {line}" for line in summary(function)), f"function {function.name}({', '.join(names)})"]
+    lines += [f"    if !({domain(function, 'floatmax(Float64)', SPELLING)})", "        return (1,)", "    end"]
+    for place, piece in enumerate(function.pieces):
+        temporaries, results = assignments(piece, names, SPELLING)
+        word = branch(function, place, "if", "elseif", "else")
+        lines += [f"    {word}"] if len(function.pieces) > 1 else []
+        lines += [f"        {name} = {text}" for name, text in temporaries]
+        lines += [f"        r{k} = {text}" for k, text in enumerate(results)]
+    lines += ["    end"] if len(function.pieces) > 1 else []
+    entries = ", ".join(f"r{k}" for k in range(function.size))
+    lines += [f"    if !all(isfinite, ({entries},))", "        return (2,)", "    end"]
+    return [*lines, f"    return (0, {entries})", "end", ""]
+
+
+TEST = """# {license}
+include("NavsymFunctions.jl")
+
+function main()
+    count, wrong, worst = Dict{{String,Int}}(), Dict{{String,Int}}(), Dict{{String,Float64}}()
+    for line in eachline(joinpath(@__DIR__, "vectors.txt"))
+        words = split(line)
+        name, status = String(words[1]), parse(Int, words[2])
+        numbers = parse.(Float64, words[3:end])
+        f = getfield(NavsymFunctions, Symbol(name))
+        inputs = first(methods(f)).nargs - 1
+        size = div(length(numbers) - inputs, 3)
+        found = f(numbers[1:inputs]...)
+        count[name] = get(count, name, 0) + 1
+        bad = found[1] != status ? 1 : 0
+        if found[1] == 0 && status == 0
+            for j in 1:size
+                low, high, near = numbers[inputs + j], numbers[inputs + size + j], numbers[inputs + 2size + j]
+                bad += low <= found[1 + j] <= high ? 0 : 1
+                unit = abs(near) * eps(Float64)
+                if unit > 0 && high - near < 1000 * unit
+                    worst[name] = max(get(worst, name, 0.0), abs(found[1 + j] - near) / unit)
+                end
+            end
+        end
+        wrong[name] = get(wrong, name, 0) + bad
+    end
+    for name in keys(count)
+        println("$name vectors $(count[name]) wrong $(wrong[name]) worst $(get(worst, name, 0.0))")
+    end
+    exit(Base.count(>(0), values(wrong)))
+end
+
+main()
+"""

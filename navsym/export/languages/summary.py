@@ -1,0 +1,113 @@
+"""What every header says of a function: claim, source, formulas, cost, bound, domain, units."""
+
+from __future__ import annotations
+
+import math
+
+from navsym.export.parts import ExportedFunction, Piece
+
+
+def summary(function: ExportedFunction) -> list[str]:
+    """What every header says: formula, source, verdict, domain, cost, bound. One line each."""
+    lines = []
+    for piece in function.pieces:
+        source = piece.source
+        where = "" if function.switch is None else f" up to {function.inputs[function.switch].name}"
+        where += "" if piece.limit is None or not where else f" = {piece.limit!r}"
+        lines += [f"Claim    {source.claim}: {source.status} ({source.method}){where if piece.limit else ''}"]
+        lines += [f"         {source.title}"] if source.title else []
+        lines += [f"Source   {source.paper}, {source.equation}"] if source.paper else []
+        lines += [f"Scope    {source.scope}"] if source.scope else []
+        lines += [f"Assumes  {'; '.join(source.assumptions)}"] if source.assumptions else []
+        lines += [f"Formula  {formula}" for formula in source.formula]
+        lines += [f"Cost     {cost(piece)}", f"Rounding {bound_text(function, piece)}"]
+        lines += [f"Tie      code graph equals the formula: {TIES[piece.tie]}"]
+    lines += [f"Domain   {line}" for line in domain_lines(function)]
+    return lines + [f"Result   {o.name} [{unit_of(o.unit)}]" for o in function.outputs]
+
+
+def domain_lines(function: ExportedFunction) -> list[str]:
+    """Proved range, accepted range and unit of every argument; one line for an array whose entries are alike."""
+    lines = []
+    for a in function.called_with:
+        entries = function.inputs[a.first : a.first + (a.size or 1)]
+        alike = len({(i.around, i.low, i.high, i.unit) for i in entries}) == 1
+        name = f"{a.name}[{a.size}]" if a.size else a.name
+        shown = [(name, entries[0])] if alike else [(f"{a.name}[{k}]", i) for k, i in enumerate(entries)]
+        for word, i in shown:
+            text = i.around.format("each" if a.size and alike else i.symbol.name)
+            lines.append(f"{word}: {text}; accepted {accepted(i.low, i.high)} [{unit_of(i.unit)}]")
+    return lines
+
+
+def accepted(low: float, high: float) -> str:
+    """The accepted range in words."""
+    if math.isinf(low) and math.isinf(high):
+        return "when finite"
+    if math.isinf(high):
+        return f"from {low!r} on"
+    return f"up to {high!r}" if math.isinf(low) else f"from {low!r} to {high!r}"
+
+
+def unit_of(text: str) -> str:
+    """The unit in words."""
+    return text or "unit not stated"
+
+
+TIES = {
+    "identical": "proved, same expression",
+    "normal form": "proved by the normal form",
+    "enclosures": "held by enclosures at the test vectors only",
+}
+
+
+def cost(piece: Piece) -> str:
+    counted = sorted(piece.graph.operations().items())
+    return ", ".join(f"{count} {op}" for op, count in counted) or "no operation"
+
+
+def bound_text(function: ExportedFunction, piece: Piece) -> str:
+    """The derived rounding bounds in words, one for each output."""
+    arithmetic, place, parts = function.arithmetic, 0, []
+    for output in function.outputs:
+        entries = slice(place, place + output.size)
+        place += output.size
+        name = f"{output.name}: " if len(function.outputs) > 1 else ""
+        parts.append(name + entry_bound(piece, entries))
+    limits = sizes(function)
+    where = f" with {', '.join(limits)}" if limits else ""
+    library = (
+        f"u = 2^{arithmetic.u}, library functions within {arithmetic.library} or {2 * arithmetic.library} ulp"
+    )
+    return f"{'; '.join(dict.fromkeys(parts))}{where} ({library})"
+
+
+def sizes(function: ExportedFunction) -> list[str]:
+    """Where a bound of unlimited arguments holds: ``|x| <= 10``, an array for all of its entries if they agree."""
+    found: dict[float, list[str]] = {}
+    for a in function.called_with:
+        entries = function.inputs[a.first : a.first + (a.size or 1)]
+        tops = [max(abs(i.test_low), abs(i.test_high)) for i in entries]
+        free = [math.isinf(i.low) or math.isinf(i.high) for i in entries]
+        if a.size and all(free) and len(set(tops)) == 1:
+            found.setdefault(tops[0], []).append(a.name)
+            continue
+        for i, top, unbounded in zip(entries, tops, free, strict=True):
+            if unbounded:
+                found.setdefault(top, []).append(i.name)
+    return [f"{', '.join(f'|{name}|' for name in names)} <= {top:g}" for top, names in found.items()]
+
+
+def entry_bound(piece: Piece, entries: slice) -> str:
+    """The strongest kind of bound that all entries of one output have."""
+    bound = piece.bound
+    relative, scaled, absolute = (max(b[entries]) for b in (bound.relative, bound.scaled, bound.absolute))
+    if relative == 0:
+        return "exact"
+    if relative < 1e4:
+        return f"relative error at most {relative:.3g} u, within {math.ceil(relative - 1e-6)} ulp"
+    if scaled < 1e4:
+        return f"error at most {scaled:.3g} u times the sum of the magnitudes of its terms"
+    if math.isfinite(absolute):
+        return f"absolute error at most {absolute:.3g}"
+    return "no uniform bound; each test vector carries its own"
