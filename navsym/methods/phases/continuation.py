@@ -59,7 +59,7 @@ def phases(
     parts = [stretch(section, certify, steps) for section in plan]
     singular = {s.at: s for section in plan for s in section.singular}
     changes = [event(s) for s in singular.values() if not (s.at == lower == 0 and plan[0].family.growing)]
-    changes += [b for part in parts for b in part.boundaries]
+    changes += [b for part in parts for b in part.boundaries] + [not_looked_at(s) for s in plan if s.unknown]
     changes.sort(key=lambda b: sp.Rational(b.lower))
     regimes = [regime for part in parts for regime in part.regimes]
     uncovered = [pair for part in parts for pair in part.uncovered]
@@ -71,12 +71,18 @@ def phases(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Section:
-    """A part of the range without a singular value inside; singular ones at its ends are named."""
+    """A part of the range without a singular value inside, as far as they are known.
+
+    singular : those of the range
+    unknown  : expressions that may have roots in the range at which it is singular
+    ties     : certificates of unknowns left out
+    """
 
     family: Family
     lower: sp.Expr
     upper: sp.Expr
     singular: tuple[Singular, ...]
+    unknown: tuple[sp.Expr, ...]
     ties: tuple[dict[str, Any], ...]
 
     @property
@@ -106,9 +112,9 @@ def above(x: sp.Expr, y: sp.Expr) -> bool:
 def split(family: Family, lower: sp.Expr, upper: sp.Expr) -> list[Section]:
     """The range cut at its singular values, and unknowns that depend on others left out."""
     family, ties = without_dependent(family, inside_of(lower, upper))
-    singular = singular_values(family, lower, upper)
+    singular, unknown = singular_values(family, lower, upper)
     inner = [s.at for s in singular if above(s.at, lower) and above(upper, s.at)]
-    return [Section(family, a, b, singular, ties) for a, b in pairwise([lower, *inner, upper])]
+    return [Section(family, a, b, singular, unknown, ties) for a, b in pairwise([lower, *inner, upper])]
 
 
 class Steps:
@@ -143,6 +149,13 @@ def event(singular: Singular) -> Boundary:
     """A singular value as a boundary."""
     ball = enclose(singular.at, bits=200)
     return Boundary(singular.at, lower_end(ball, DIGITS), upper_end(ball, DIGITS), singular.why, True)
+
+
+def not_looked_at(section: Section) -> Boundary:
+    """What may split a section further, as a boundary somewhere in it that was not located."""
+    ends = lower_end(enclose(section.lower, bits=200), DIGITS), upper_end(enclose(section.upper, bits=200), DIGITS)
+    shown = ", ".join(map(str, section.unknown[:5])) + (", …" if len(section.unknown) > 5 else "")
+    return Boundary(None, *ends, f"singular values may lie where these vanish, which were not solved: {shown}", False)
 
 
 def need_range(family: Family, lower: sp.Expr, upper: sp.Expr) -> None:

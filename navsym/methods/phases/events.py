@@ -276,8 +276,22 @@ def proves(family: Family, span: Span, T: sp.Rational, side: int, root: sp.Ratio
     basis = make_basis(problem)
     for start in anchors(family, span, edge, side):
         found = forced(family, T, span.pattern, *start)
-        if found.residual < 1e-45 and touch(problem, basis, found, 50, BITS) is not None:
+        regular = found.residual < 1e-45 and not doubled(problem, found)
+        if regular and touch(problem, basis, found, 50, BITS) is not None:
             return True
+    return False
+
+
+def doubled(problem: Problem, found: Polished) -> bool:
+    """True when a contact sits where two stretches meet: the end of the other touches as well, and no strict bound
+    holds there."""
+    with precision(BITS):
+        for k, panel in enumerate(problem.panels):
+            for v in (0, 1):
+                if not any(j == k and rational(at) == v for j, at in zip(found.panel, found.v, strict=True)):
+                    room = panel.bound() - abs(total(found.dual, panel.rows(arb(v))))
+                    if bool(abs(room) < arb(10) ** -40 * panel.bound()):
+                        return True
     return False
 
 
@@ -288,8 +302,8 @@ def proves_walking(family: Family, span: Span, T: sp.Rational, side: int, root: 
     edge = span.upper if side < 0 else span.lower
     for contacts, begin in anchors(family, span, edge, side):
         found = walked(family, forced(family, begin, span.pattern, contacts, begin), begin, root, T)
-        if found is not None:
-            problem = family.exact(T)
+        problem = family.exact(T)
+        if found is not None and not doubled(problem, found):
             return touch(problem, make_basis(problem), found, walk.DIGITS, walk.BITS) is not None
     return False
 

@@ -8,9 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import reduce
 from itertools import combinations
 
 import sympy as sp
+from flint import arb
 
 from navsym.claims import PROVED, Equation
 from navsym.errors import NavsymError
@@ -19,7 +21,9 @@ from navsym.proof.balls import enclose
 from navsym.proof.ladder import decide
 from navsym.proof.optimality.basis import DependentError, make_basis
 
-MOST = 40
+#: Expressions whose roots are looked for, and cells on which one is shown to have none.
+MOST = 400
+CELLS = 64
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,18 +34,23 @@ class Singular:
     why: str
 
 
-def singular_values(family: Family, lower: sp.Expr, upper: sp.Expr) -> tuple[Singular, ...]:
-    """Singular values in [lower, upper], in order."""
+def singular_values(family: Family, lower: sp.Expr, upper: sp.Expr) -> tuple[tuple[Singular, ...], tuple[sp.Expr, ...]]:
+    """Singular values in [lower, upper], in order, and the expressions whose roots in it are not known."""
     found: dict[sp.Expr, str] = {}
-    for expression in list(dict.fromkeys(suspects(family)))[:MOST]:
-        for root in real_roots(expression, family.parameter):
+    unknown: list[sp.Expr] = []
+    for k, expression in enumerate(dict.fromkeys(suspects(family))):
+        roots = real_roots(expression, family.parameter) if k < MOST else None
+        if roots is None:
+            unknown += [] if rootless(expression, family.parameter, lower, upper) else [expression]
+            continue
+        for root in roots:
             below, above = enclose(root - lower, bits=200), enclose(upper - root, bits=200)
             if root not in found and not bool(below < 0) and not bool(above < 0):
                 why = reason(family, root)
                 if why is not None:
                     found[root] = why
     ordered = sorted(found, key=lambda e: float(enclose(e).mid()))
-    return tuple(Singular(at, found[at]) for at in ordered)
+    return tuple(Singular(at, found[at]) for at in ordered), tuple(unknown)
 
 
 def suspects(family: Family) -> Iterator[sp.Expr]:
@@ -50,6 +59,8 @@ def suspects(family: Family) -> Iterator[sp.Expr]:
     parts = [*family.functional, *family.sigma, *(h for row in family.rows for h in row)]
     lengths = dict.fromkeys(stop - start for start, stop in family.panels)
     yield from (e for e in (*lengths, *family.sigma) if p in e.free_symbols)
+    if all(e.is_polynomial(p) for e in family.functional):
+        yield from (e for e in (reduce(sp.gcd, family.functional),) if p in e.free_symbols)
     for part in parts:
         for power in part.atoms(sp.Pow):
             if power.exp.is_negative and p in power.base.free_symbols and U not in power.base.free_symbols:
@@ -69,15 +80,24 @@ def rates_of(part: sp.Expr) -> Iterator[sp.Expr]:
                 yield rate
 
 
-def real_roots(expression: sp.Expr, p: sp.Symbol) -> list[sp.Expr]:
-    """Real roots of a polynomial in p, exactly; none of anything else."""
+def real_roots(expression: sp.Expr, p: sp.Symbol) -> list[sp.Expr] | None:
+    """Real roots of a polynomial in p, exactly; None for anything else."""
     top = sp.fraction(sp.together(expression))[0]
-    if not top.is_polynomial(p) or top.free_symbols != {p}:
+    if not top.free_symbols:
         return []
+    if not top.is_polynomial(p) or top.free_symbols != {p}:
+        return None
     try:
         return list(dict.fromkeys(sp.Poly(top, p).real_roots()))
     except (NotImplementedError, sp.PolynomialError):
-        return []
+        return None
+
+
+def rootless(expression: sp.Expr, p: sp.Symbol, lower: sp.Expr, upper: sp.Expr) -> bool:
+    """True when balls over cells of the range show that the expression has no root there."""
+    a, width = enclose(lower), enclose(upper - lower)
+    cells = [a + width * (arb(2 * k + 1) + arb(0, 1)) / (2 * CELLS) for k in range(CELLS)]
+    return all(bool(size > 0) or bool(size < 0) for size in (enclose(expression, {p: cell}) for cell in cells))
 
 
 def reason(family: Family, value: sp.Expr) -> str | None:
@@ -86,10 +106,17 @@ def reason(family: Family, value: sp.Expr) -> str | None:
     lengths = dict.fromkeys(family.at(stop - start, value) for start, stop in family.panels)
     if any(decide(Equation(length, sp.S.Zero)).status is PROVED for length in lengths):
         return f"{family.stretch_name} has no length at {name}"
+    parts = {"a regressor": [h for row in family.rows for h in row], "the functional": family.functional,
+             "a noise bound": family.sigma}  # fmt: skip
+    for what, expressions in parts.items():
+        if any(family.at(e, value).has(sp.zoo, sp.nan, sp.oo, -sp.oo) for e in expressions):
+            return f"{what} has a pole at {name}, where the problem is solved apart"
+    if not all(bool(enclose(family.at(s, value)) > 0) for s in family.sigma):
+        return f"a noise bound is not positive at {name}"
     try:
         make_basis(family.exact(value))
     except DependentError:
         return f"the regressors become dependent at {name}"
-    except (NavsymError, ZeroDivisionError, ValueError):
-        return f"the regressors have a pole at {name}, where the problem is solved apart"
+    except NavsymError as error:
+        return f"the problem is refused at {name}: {error}"
     return None

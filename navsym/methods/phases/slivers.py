@@ -6,7 +6,7 @@ fixed, and weak duality bounds the optimum from both sides for every value in th
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import inf
@@ -20,21 +20,34 @@ from navsym.errors import NavsymError
 from navsym.methods.phases.family import Family
 from navsym.methods.phases.scan import ordered
 from navsym.numeric.exchange.search import Contacts, find_contacts
-from navsym.proof.decimals import decimal
-from navsym.proof.optimality.basis import DependentError, make_basis
-from navsym.proof.optimality.enclosure import Problem, interval
-from navsym.proof.optimality.fixed import gap
-from navsym.proof.optimality.polish import polish
+from navsym.proof.balls import precision
+from navsym.proof.decimals import decimal, exact
+from navsym.proof.optimality.basis import Basis, DependentError, as_fraction, make_basis
+from navsym.proof.optimality.enclosure import Problem, Touch, interval, rational, total
+from navsym.proof.optimality.fixed import (
+    attempts,
+    balanced,
+    cost,
+    every_cell,
+    header,
+    near_touches,
+    support_points,
+)
+from navsym.proof.optimality.polish import Polished, polish
 from navsym.proof.optimality.range import fraction
 
 DIGITS = 14
 BITS = 400
+PLACES = 60
+#: Points on which the size of a dual polynomial is looked at, and the room it is given beyond what is seen.
+GRID = 200
+TINY = arb(10) ** -9
 #: Enclosures wider than this part of the value are not worth the name.
 WIDEST = 1e-2
 #: Contacts of one sign that come so near to each other, u in [-1, 1], carry their weights together if need be.
 NEAR = 0.2
 #: Attempts for one stretch, the shortest sliver as part of it, and into how many a failed one is cut at most.
-MOST_TRIES = 150
+MOST_TRIES = 1000
 SHORTEST = fmpq(1, 1 << 40)
 MOST_PARTS = 8
 #: Bounds are this part of their distance wider than what is proved here: a checker's balls are not the same.
@@ -93,33 +106,88 @@ def joined(stretches: list[tuple[fmpq, fmpq]]) -> list[tuple[fmpq, fmpq]]:
 
 def sliver(family: Family, start: fmpq, end: fmpq) -> tuple[Sliver | None, float]:
     """The two-sided certificate with the parameter as a ball, None when it is too wide, and how wide it is."""
-    made, width = sliver_on(family, start, end, False)
-    if made is not None:
-        return made, width
-    made, other = sliver_on(family, start, end, True)
-    return made, min(width, other)
-
-
-def sliver_on(family: Family, start: fmpq, end: fmpq, together: bool) -> tuple[Sliver | None, float]:
-    """The sliver with weights at the contacts of the middle, or at the middles of those that are about to merge."""
     middle = (start + end) / 2
-    at = sp.Rational(int(middle.p), int(middle.q))
+    ball = ball_problem(family, interval(start, end))
     try:
-        problem = family.exact(at)
+        problem = family.exact(sp.Rational(int(middle.p), int(middle.q)))
         basis = make_basis(problem)
         contacts = find_contacts(basis.panels)
         refined = polish(problem.panels, basis, contacts, BITS, 1e-40)
-        carriers = merged(contacts) if together else None
-        found = gap(ball_problem(family, interval(start, end)), basis, contacts, refined, DIGITS, BITS, carriers)
-    except (DependentError, NavsymError, ZeroDivisionError, ValueError):
+        with precision(BITS):
+            support, most = cheapest(ball, basis, contacts, refined)
+            x, cells = within(ball, basis, contacts, refined)
+            least = rational(total([arb(c) for c in x], ball.target()).lower())
+    except (DependentError, NavsymError, ArithmeticError, ValueError):
         return None, inf
-    if not 0 < found.width < WIDEST or not bool(arb(found.lower) > 0):
-        return None, found.width if found.width > 0 else inf
-    room = (found.upper - found.lower) / ROOM
-    lower, upper = decimal(found.lower - room, DIGITS + 6, -1), decimal(found.upper + room, DIGITS + 6, 1)
-    ends = {"parameter": family.parameter.name, "from": fraction(start), "to": fraction(end)}
-    document = {**found.certificate, "kind": "sliver", **ends, "lower": lower, "upper": upper}
-    return Sliver(start, end, lower, upper, document), found.width
+    width = float(arb((most - least) / most))
+    if not 0 < width < WIDEST or not least > 0:
+        return None, width if width > 0 else inf
+    room = (most - least) / ROOM
+    lower, upper = decimal(least - room, DIGITS + 6, -1), decimal(most + room, DIGITS + 6, 1)
+    document = header(ball, "sliver", BITS, cells, lower, upper) | {
+        "parameter": family.parameter.name, "from": fraction(start), "to": fraction(end),
+        "dual": [decimal(c, PLACES) for c in x], "support": [[k, decimal(v, PLACES)] for k, v in support],
+    }  # fmt: skip
+    return Sliver(start, end, lower, upper, document), width
+
+
+Support = list[tuple[int, fmpq]]
+
+
+def cheapest(ball: Problem, basis: Basis, contacts: Contacts, refined: Polished) -> tuple[Support, fmpq]:
+    """Places and an upper bound: the contacts of the middle, or the middles of those that are about to merge.
+
+    Raises ValueError when balls as wide as these carry the functional on neither.
+    """
+    together = merged(contacts)
+    places = [exact(decimal(v, PLACES)) for v in refined.v], [as_fraction(float(u)) for u in together.u]
+    found = []
+    for carriers, at in zip((contacts, together), places, strict=True):
+        support = support_points(basis, carriers, at)
+        try:
+            found.append((rational(cost(ball, support, balanced(ball, support)).upper()), support))
+        except (ZeroDivisionError, ValueError):
+            continue
+    if not found:
+        raise ValueError("no weights in balls as wide as these")
+    most, support = min(found, key=lambda pair: pair[0])
+    return support, most
+
+
+def within(ball: Problem, basis: Basis, contacts: Contacts, refined: Polished) -> tuple[list[fmpq], int]:
+    """A dual within the bound for every value in the ball, and the cells of the proof.
+
+    Raises ValueError when none is found.
+    """
+    best: tuple[fmpq, list[fmpq], int] | None = None
+    tried: list[list[fmpq]] = []
+    for base, _, seen in attempts(ball, basis, contacts, refined, DIGITS):
+        if base in tried:
+            continue
+        tried.append(base)
+        over = excess(ball, base, near_touches(ball, seen, PLACES))
+        for more in (arb(1.05), arb(1.5), arb(4)):
+            scale = rational((1 / (1 + over * more + TINY)).mid())
+            x = [exact(decimal(c * scale, PLACES)) for c in base]
+            reached = rational(total([arb(c) for c in x], ball.target()).lower())
+            if best is not None and reached <= best[0]:
+                break
+            cells = every_cell(ball, [arb(c) for c in x], [[] for _ in ball.panels])
+            if cells is not None:
+                best = reached, [exact(decimal(c * (1 - fmpq(1, 10**9)), PLACES)) for c in x], cells
+                break
+    if best is None:
+        raise ValueError("no dual within the bound")
+    return best[1], best[2]
+
+
+def excess(ball: Problem, x: Sequence[fmpq], touches: Sequence[Sequence[Touch]]) -> arb:
+    """By how much the dual polynomial may leave its bound, at its touches and on a grid: a guess to be proved."""
+    dual, worst = [arb(c) for c in x], arb(0)
+    for panel, near in zip(ball.panels, touches, strict=True):
+        for v in (*(rational(t.at) for t in near), *(fmpq(k, GRID) for k in range(GRID + 1))):
+            worst = max(worst, (abs(total(dual, panel.rows(arb(v)))) / panel.bound()).upper() - 1)
+    return worst
 
 
 def merged(contacts: Contacts) -> Contacts:

@@ -32,13 +32,17 @@ def bounded(panel: Panel, x: Sequence[arb], touches: Sequence[Touch], limit: int
 
 
 def polynomial(panel: Panel, x: Sequence[arb]) -> arb_poly | None:
-    """The coefficients ``c_0 … c_(n-1), R`` of f in u, or None where no R is small."""
+    """The coefficients ``c_0 … c_(n-1), R`` of f in u, or None where no R is small, or where balls in the data make
+    the coefficients wide: each of them is wide on its own then, and f is not."""
     wide = panel.dual_polynomial(x, interval(fmpq(0), fmpq(1)), HALF, LARGEST)
     small = SMALL * panel.bound()
     order = next((k for k in range(3, LARGEST + 1) if bool(abs(wide[k]) < small)), None)
     if order is None:
         return None
-    return arb_poly([*panel.dual_polynomial(x, arb(HALF), HALF, order - 1), wide[order]])
+    thin = panel.dual_polynomial(x, arb(HALF), HALF, order - 1)
+    if not bool(sum((c.rad() for c in thin), arb(0)) < small):
+        return None
+    return arb_poly([*thin, wide[order]])
 
 
 def shifted(model: arb_poly, anew: Expansion, cell: Cell, centre: fmpq, radius: fmpq) -> list[arb]:
