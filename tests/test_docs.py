@@ -6,6 +6,7 @@ import ast
 import json
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 import textwrap
@@ -31,6 +32,7 @@ RUNNING = [path for path in PAGES if any(kind in ("python", "sh", "toml") for ki
 @pytest.mark.parametrize("path", RUNNING, ids=lambda path: path.stem)
 def test_every_block_runs_in_order(path, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
+    shutil.copytree(DOCS.parent / "examples", tmp_path / "examples")
     script = []
     for kind, body in blocks(path):
         if kind == "toml":

@@ -33,7 +33,7 @@ def command(
 ) -> None:
     """Mode probabilities, mean, covariance and log-likelihood after every measurement.
 
-    Example: navsym filter bank.json --method k-pulsating --depth 2
+    Example: navsym filter examples/switching.json --method k-pulsating --depth 2
     """
     from navsym.errors import NavsymError
     from navsym.methods.multimodel.filters import read_bank, run

@@ -26,7 +26,7 @@ def command(
 
     Positions are in metres of the map, velocities in m/s, the criterion in square metres.
 
-    Example: navsym locate flight.json --method sequential
+    Example: navsym locate examples/flight.json --method sequential
     """
     from navsym.errors import NavsymError
     from navsym.methods.terrain.locate import locate

@@ -40,7 +40,7 @@ def command(
 ) -> None:
     """Velocity (m/s) and acceleration (m/s^2) from measured positions, with standard deviations.
 
-    Example: navsym track drive.csv --order 3 --sigma 0.5
+    Example: navsym track examples/drive.csv --order 3 --sigma 0.5
     """
     from navsym.errors import DomainError, NavsymError
     from navsym.methods.trajectory.document import document
