@@ -27,14 +27,14 @@ GAP = {
 }  # fmt: skip
 TOUCH = {
     "kind": "touch", "variable": "t", "panels": [VELOCITY], "functional": ["0", "1"], "bits": 80, "cells": 10,
-    **alone(["-1", "1"], [(0, "0", "-0.5"), (0, "1", "0.5")], ["0.000001"] * 4),
+    **alone(["-1", "1"], [(0, "0", "-0.5"), (0, "1", "0.5")], ["0.000001"] * 6),
     "lower": "0.9999999", "upper": "1.0000001", **NONE,
 }  # fmt: skip
 # Second coefficient on [0, 1]: contacts 0, 1/2, 1, optimum 8.
 PARABOLA = {
     "kind": "touch", "variable": "t", "functional": ["0", "0", "1"], "bits": 90, "cells": 20,
     "panels": [{"measurement": 0, "from": "0", "to": "1", "sigma": "1", "H": ["1", "t", "t**2"]}],
-    **alone(["1", "-8", "8"], [(0, "0", "2"), (0, "0.5", "-4"), (0, "1", "2")], ["0.0000001"] * 7),
+    **alone(["1", "-8", "8"], [(0, "0", "2"), (0, "0.5", "-4"), (0, "1", "2")], ["0.0000001"] * 9),
     "lower": "7.99999", "upper": "8.00001", **NONE,
 }  # fmt: skip
 # The second coefficient for every T in [1, 1.02]: contacts 0, T/2, T, weights 2, -4, 2 over T**2.
@@ -56,14 +56,14 @@ RANGE = {
             {"panel": 0, "at": ["0.5"], "weight": W2},
             {"panel": 0, "at": ["1"], "weight": W1},
         ],
-        "radius": ["0.003"] * 7,
+        "radius": ["0.003"] * 9,
     }],
 }  # fmt: skip
 # One number seen with noise bound 2 on [0, 1], and the number times p for p in [1, 1.1].
 CONSTANT = {
     "kind": "touch", "variable": "t", "functional": ["1"], "bits": 80, "cells": 10,
     "panels": [{"measurement": 0, "from": "0", "to": "1", "sigma": "2", "H": ["2 - t"]}],
-    **alone(["1"], [(0, "0", "1")], ["0.000001"] * 2), "lower": "0.99999", "upper": "1.00001", **NONE,
+    **alone(["1"], [(0, "0", "1")], ["0.000001"] * 3), "lower": "0.99999", "upper": "1.00001", **NONE,
 }  # fmt: skip
 SLIVER = {
     "kind": "sliver", "variable": "t", "functional": ["p"], "bits": 80, "cells": 10, "parameter": "p", "from": "1",
@@ -82,7 +82,7 @@ MOVING = {
             "panel": 0, "at": ["0"],
             "weight": ["0.558771194029850", "0.008792332368010", "0.000021082923542"],
         }],
-        "radius": ["0.000001"] * 2,
+        "radius": ["0.000001"] * 3,
     }],
 }  # fmt: skip
 # The slope for every T in [1, 1.02] in two pieces, seen as (1, 1 + t).
@@ -97,7 +97,7 @@ SLOPES = {
             {"panel": 0, "at": ["0"], "weight": ["-0.99009900990099"]},
             {"panel": 0, "at": ["1"], "weight": ["0.99009900990099"]},
         ],
-        "radius": ["0.05"] * 4,
+        "radius": ["0.05"] * 6,
     } for ends, rise, fall in (
         (("1", "1.01"), "0.01", "-0.01"), (("1.01", "51/50"), "0.01", "-0.01"),
     )],
@@ -106,7 +106,7 @@ SLOPES = {
 FLAT = {
     "kind": "touch", "variable": "t", "functional": ["1"], "bits": 400, "cells": 0,
     "panels": [{"measurement": 0, "from": "0", "to": "1", "sigma": "1", "H": ["1 + (t - 1)/10**45 - (t - 1)**2/2"]}],
-    **alone(["1"], [(0, "1", "1")], ["0.000001"] * 2), "lower": "0.99999", "upper": "1.00001", **NONE,
+    **alone(["1"], [(0, "1", "1")], ["0.000001"] * 3), "lower": "0.99999", "upper": "1.00001", **NONE,
 }  # fmt: skip
 # The same at the other end, of the other sign, beside a second panel that is not needed.
 FLAT_LEFT = FLAT | {
@@ -114,7 +114,7 @@ FLAT_LEFT = FLAT | {
         {"measurement": 1, "from": "0", "to": "1", "sigma": "1", "H": ["t/2 - 1/4"]},
         {"measurement": 0, "from": "0", "to": "1", "sigma": "1", "H": ["t/10**45 + t**2/2 - 1"]},
     ],
-    **alone(["1"], [(1, "0", "-1")], ["0.000001"] * 2),
+    **alone(["1"], [(1, "0", "-1")], ["0.000001"] * 3),
 }  # fmt: skip
 # Bounds that are met exactly: the optimum 2 from below, the cost 2 from above.
 EXACT = {
@@ -125,7 +125,7 @@ EXACT = {
 }  # fmt: skip
 # Positive on this box and no larger one.
 EDGE = {
-    "kind": "positivity", "expression": "x*(1 - x)*(y + 2)*(3 - y)", "bits": 30, "cells": 50000,
+    "kind": "positivity", "expression": "x*(1 - x)*(y + 2)*(3 - y)", "bits": 53, "cells": 20000,
     "box": {"x": ["0.01", "0.99"], "y": ["-1.99", "2.99"]},
 }  # fmt: skip
 # As many cells as 14 announced ones allow: 255.
@@ -145,7 +145,7 @@ POSITIVITY = {
 }  # fmt: skip
 # One row; and a dual that is a little off inside its box, as the bounds are not.
 ROW = RANK | {"matrix": [["a", "b"]]}
-OFFSET = CONSTANT | alone(["1.0000003"], [(0, "0", "1.0000002")], ["0.000001"] * 2) | {
+OFFSET = CONSTANT | alone(["1.0000003"], [(0, "0", "1.0000002")], ["0.000001"] * 3) | {
     "lower": "0.99999999", "upper": "1.00000001",
 }  # fmt: skip
 DIGITS = CELLS | {"bits": 20000, "cells": 2000}

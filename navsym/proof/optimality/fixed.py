@@ -127,7 +127,7 @@ def touch(problem: Problem, basis: Basis, found: Polished, digits: int, bits: in
             "from": "0", "to": "0", "basis": [[str(int(i == j)) for i in range(m)] for j in range(m)],
             "dual": [[c] for c in middles[:m]],
             "contacts": contact_rows(found, costs(problem, found, middles, places + loss + 8)),
-            "radius": costs(problem, found, spread, 3, 1),
+            "radius": with_ends(found, costs(problem, found, spread, 3, 1)),
         }  # fmt: skip
         document = header(problem, "touch", bits, cells, lower, upper) | {"pieces": [solution]}
         return Certified(exact(lower), exact(upper), support_of(found, z), tuple(z[:m]), True, document)
@@ -244,6 +244,13 @@ def contact_rows(found: Polished, middles: Sequence[str]) -> list[dict[str, Any]
         at = next(free) if found.inner[i] else place_of(end_name(found, i))
         rows.append({"panel": k, "at": [at], "weight": [middles[len(middles) - l + i]]})
     return rows
+
+
+def with_ends(found: Polished, radius: Sequence[str]) -> list[str]:
+    """Radii of all unknowns: a place at an end is one for the checker, too, with an equation of its own."""
+    m, l = len(found.dual), len(found.v)
+    free, smallest = iter(radius[m : len(radius) - l]), min(radius, key=exact)
+    return [*radius[:m], *(next(free) if i else smallest for i in found.inner), *radius[len(radius) - l :]]
 
 
 def place_of(end: str) -> str:

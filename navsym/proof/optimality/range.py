@@ -400,8 +400,8 @@ def expansion(
 def row(
     track: Track, moving: Moving, curves: Sequence[Sequence[fmpq]], radius: dict[int, arb]
 ) -> dict[str, Any]:
-    """The piece as plain data."""
-    m, l = moving.size, len(track.pattern)
+    """The piece as plain data. A place at an end is an unknown for the checker, too, with an equation of its own."""
+    m, l, smallest = moving.size, len(track.pattern), min(radius.values(), key=rational)
     text = lambda c: [decimal(a, 60) for a in c]  # noqa: E731
     contacts = [
         {
@@ -414,5 +414,5 @@ def row(
         "from": fraction(moving.middle - moving.half), "to": fraction(moving.middle + moving.half),
         "basis": [[fraction(moving.basis[i, j]) for j in range(m)] for i in range(m)],
         "dual": [text(c) for c in curves[:m]], "contacts": contacts,
-        "radius": [decimal(rational(radius[k]), 12, 1) for k in sorted(radius)],
+        "radius": [decimal(rational(radius.get(k, smallest)), 12, 1) for k in range(m + 2 * l)],
     }  # fmt: skip
