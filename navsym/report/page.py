@@ -11,7 +11,6 @@ from __future__ import annotations
 import base64
 import hashlib
 import json
-import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -25,8 +24,10 @@ from navsym.report.erratum import Erratum, erratum_of, printed_side
 from navsym.report.formula.latex import sentence_html, sentence_latex
 from navsym.report.formula.sides import Formula, coordinates, formula
 from navsym.report.ledger import in_order
+from navsym.report.page_arithmetic import ball_words, ended
 from navsym.report.page_code import Snippet, snippets
-from navsym.report.page_explain import Step, ball_words, ended, steps
+from navsym.report.page_explain import Step, steps
+from navsym.report.page_files import certificate_files, certificates, slug
 from navsym.report.page_names import latex_escape
 from navsym.report.page_plot import refutation_plot
 from navsym.report.wording import Words
@@ -175,33 +176,6 @@ def bare_card(module: str, document: Mapping[str, Any]) -> Paper:
 
 def total(papers: Sequence[PaperView]) -> dict[str, int]:
     return {status: sum(paper.counts[status] for paper in papers) for status in MARKS}
-
-
-def certificate_files(records: Sequence[Record]) -> dict[str, str]:
-    """Certificates as ``navsym check`` reads them."""
-    return {
-        name: json.dumps(part, ensure_ascii=False, indent=1) + "\n"
-        for record in records
-        for name, part in certificates(record)
-    }
-
-
-def certificates(record: Record) -> list[tuple[str, Any]]:
-    """File names and certificates of a record: one for each entry where a claim has several."""
-    whole = record.get("certificate")
-    if not whole:
-        return []
-    parts = whole["of"] if whole.get("kind") == "all" and isinstance(whole.get("of"), list) else [whole]
-    name = f"certificates/{slug(record['id'])}"
-    if len(parts) == 1:
-        return [(f"{name}.json", parts[0])]
-    return [(f"{name}.{place}.json", part) for place, part in enumerate(parts, start=1)]
-
-
-def slug(name: str) -> str:
-    """A name that is safe in a file name and in an address; different names stay different."""
-    plain = re.sub(r"[^A-Za-z0-9.-]", "_", name)[:80].strip(".")
-    return plain if plain == name else f"{plain}-{hashlib.sha256(name.encode('utf-8', 'replace')).hexdigest()[:6]}"
 
 
 # -- one paper -------------------------------------------------------------------------------

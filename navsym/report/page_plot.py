@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from navsym.report.formula.reader import Node, read_formula, unwrapped
-from navsym.report.page_explain import entries_of
+from navsym.report.page_arithmetic import entries_of
 
 Curve = list[tuple[float, float]]
 POINTS = 160

@@ -275,6 +275,7 @@ def looked_at(source: str, number: str) -> str:
 
 
 def module_tree(source: str) -> ast.Module:
+    """The syntax tree of a derivation module; raises DomainError for a file that was not begun by new-paper."""
     try:
         tree = ast.parse(source)
     except SyntaxError as error:

@@ -9,7 +9,8 @@ from xml.dom import minidom
 import pytest
 
 from navsym.report.ledger import papers_in_order
-from navsym.report.page import site, slug, visible
+from navsym.report.page import site, visible
+from navsym.report.page_files import slug
 
 
 class Reading(HTMLParser):
