@@ -256,7 +256,10 @@ def symbols_of(call: ast.Call) -> dict[str, sp.Symbol]:
 
 
 def equations_of(source: str) -> tuple[str, ...]:
-    """The numbers that the card of a module lists; empty where they are not written out."""
+    """The numbers that the card of a module lists; empty where they are not written out.
+
+    Raises DomainError for a file that was not begun by new-paper.
+    """
     for node in ast.walk(module_tree(source)):
         if isinstance(node, ast.keyword) and node.arg == "equations" and isinstance(node.value, ast.Tuple):
             return tuple(str(part.value) for part in node.value.elts if isinstance(part, ast.Constant))
