@@ -22,6 +22,16 @@ TEXTBOOK_SYMBOLS: dict[str, Any] = {
     "p": ["0", "1"],
 }
 TEXTBOOK: tuple[Row, ...] = (
+    ("abs(x)*abs(y + z)", "<=", "abs(x*y) + abs(x*z)"),
+    ("abs(sin(2*x))", "<=", "2*abs(sin(x))"),
+    ("abs(sin(3*x))", "<=", "3*abs(sin(x))"),
+    ("log((a + b)/2)", ">=", "(log(a) + log(b))/2"),
+    ("log(1 + a) + log(1 + b)", ">=", "log(1 + a + b)"),
+    ("log(1 + x**2)", "<=", "2*log(1 + abs(x))"),
+    ("log(cosh(x))", "<=", "abs(x)"),
+    ("log(cosh(x))", ">=", "abs(x) - log(2)"),
+    ("log(1 + exp(x))", "<=", "log(2) + (abs(x) + x)/2"),
+    ("a**2*exp(-a)", "<=", "4*exp(-2)"),
     ("x**2 + y**2", ">=", "2*x*y"),
     ("x**2 + y**2 + z**2", ">=", "x*y + y*z + z*x"),
     ("(x**2 + y**2 + z**2)*(u**2 + v**2 + w**2)", ">=", "(x*u + y*v + z*w)**2"),

@@ -20,12 +20,14 @@ from flint import arb, fmpq
 
 from navsym.claims.statement import Box
 from navsym.proof.balls import DEFAULT_BITS, UnsupportedError, enclose, exact_ball, precision, tape
+from navsym.proof.identities.cases import split_values
 from navsym.proof.identities.inverses import KINDS, principal_least
 from navsym.proof.identities.normal_form import OutsideLanguageError
 from navsym.proof.sampling.points import Range, ranges
 from navsym.proof.signs.algebraic import algebraic_sign
 from navsym.proof.signs.contacts import end_contact
 from navsym.proof.signs.exact import angle_sign, bounded_terms, is_entire, multilinear_sign
+from navsym.proof.signs.exponentials import by_exponential
 from navsym.proof.signs.known import UNKNOWN, Limits, Sign, SignProof, constant_sign, symbol_sign
 from navsym.proof.signs.products import as_product
 from navsym.proof.signs.slopes import (
@@ -58,7 +60,11 @@ def prove_sign(
     expression = sp.sympify(expression, strict=True)
     limits = ranges(sorted(expression.free_symbols, key=str), box)
     try:
-        return attempt(expression, limits, wanted, budget, 0)
+        proof = attempt(expression, limits, wanted, budget, 0)
+        if proof.at_least(wanted) or not expression.has(sp.Abs):
+            return proof
+        spread = split_values(expression)
+        return attempt(spread, limits, wanted, budget, 0) if spread != expression else proof
     except (UnsupportedError, OutsideLanguageError):
         return UNKNOWN
 
@@ -89,7 +95,7 @@ def attempt(expression: sp.Expr, limits: Limits, wanted: Sign, budget: int, dept
         proof = near_an_end(expression, limits, wanted, budget, depth)
         if proof.at_least(wanted):
             return proof
-    for slower in (by_quotient, by_monotony, between_contacts):
+    for slower in (by_quotient, by_exponential, by_monotony, between_contacts):
         proof = slower(expression, limits, wanted, prove)
         if proof.at_least(wanted):
             return proof

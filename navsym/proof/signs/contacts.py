@@ -93,6 +93,10 @@ def guessed_points(limit: Range) -> list[sp.Expr]:
         sp.Integer(-1),
         sp.E,
         1 / sp.E,
+        sp.Integer(2),
+        sp.Integer(-2),
+        sp.Rational(1, 2),
+        sp.Integer(3),
         *(sp.pi * sp.Rational(k, 4) for k in range(-8, 9)),
     ]
     if limit.lower is not None and limit.upper is not None:

@@ -195,7 +195,7 @@ def vanishes_at(expression: sp.Expr, symbol: sp.Symbol, point: sp.Expr) -> bool:
 
 
 def by_squares(expression: sp.Expr, limits: Limits, wanted: Sign, prove: Prove) -> SignProof:
-    """L - R is not negative when L is not and L**2 - R**2 is not: what roots need."""
+    """L - R is not negative when L is not and L**2 - R**2 is not: what roots and absolute values need."""
     if not isinstance(expression, sp.Add) or not has_root(expression) or not is_defined(expression, limits, prove):
         return UNKNOWN
     for left, right in sides_of(expression):
@@ -213,7 +213,7 @@ def by_squares(expression: sp.Expr, limits: Limits, wanted: Sign, prove: Prove) 
 
 
 def has_root(expression: sp.Expr) -> bool:
-    return any(p.exp.is_Rational and not p.exp.is_Integer for p in expression.atoms(sp.Pow))
+    return expression.has(sp.Abs) or any(p.exp.is_Rational and not p.exp.is_Integer for p in expression.atoms(sp.Pow))
 
 
 def sides_of(expression: sp.Add) -> list[tuple[sp.Expr, sp.Expr]]:
