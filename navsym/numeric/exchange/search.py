@@ -9,8 +9,8 @@ answer is a hint in double precision: :mod:`navsym.proof.optimality.fixed` turns
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 
 import numpy as np
@@ -176,6 +176,7 @@ def careful(panels: Panels, nodes: Array) -> Contacts:
             for reach in {1.0, 3.0**-k}:  # contacts may be nearer than nodes: later rounds keep them apart
                 tried.append(polish(panels, merged(panels, G, p, basis, panel, u, nodes, reach), x))
             best = min(tried if best is None else [best, *tried], key=lambda c: c.excess)
+            best = best if best.excess < 1e-9 else completed(panels, best)
             if best.excess < 1e-9:
                 return best
         more = [place for dual in (*vertices, tried[-1].dual) for place in peaks(panels, dual)]
@@ -183,6 +184,43 @@ def careful(panels: Panels, nodes: Array) -> Contacts:
         extra_u = np.concatenate([extra_u, np.array([v for _, v in more])])
     assert best is not None
     return best
+
+
+def completed(panels: Panels, found: Contacts) -> Contacts:
+    """The same with a dual that also touches where it nearly does, by Newton's method; if it is optimal.
+
+    Where the dual is unique and contacts without weight belong to it, the contacts with weight do not fix it.
+    """
+    C1 = np.stack([chebyshev_derivative(c) for c in panels.coefficients])
+    C2 = np.stack([chebyshev_derivative(c) for c in C1])
+    where, places, heights = local_maxima(panels.coefficients @ found.dual, panels.search.fine)
+    near = heights > 1.0 - max(NEAR, 30.0 * found.excess)
+    all_ = with_places(panels, found, apart(where[near], places[near], found.panel, found.u))
+    panel, u, inner, sign, x, weights = all_.panel, all_.u, all_.inner, all_.sign, all_.dual, all_.weights
+    free, m = int(inner.sum()), x.size
+    for _ in range(8):
+        F, J = contact_system(panels.coefficients, C1, C2, panels.functional, panel, u, inner, sign, x, weights)
+        rows = u.size + free  # what the weights must satisfy is left out
+        step = np.linalg.lstsq(J[:rows, : m + free], -F[:rows], rcond=1e-11)[0]
+        x, u = x + step[:m], u.copy()
+        u[inner == 1] = np.clip(u[inner == 1] + step[m:], -1.0, 1.0)
+    excess, touching = survey(panels, x, found.panel, found.u)
+    cost = float(np.abs(found.weights).sum())
+    if excess >= found.excess or abs(float(panels.functional @ x) - cost) > 1e-9 * cost:
+        return found  # where the two sides differ, contacts are missing that have a weight
+    return replace(found, dual=x, excess=excess, touching=touching)
+
+
+def with_places(panels: Panels, found: Contacts, more: Sequence[tuple[int, float]]) -> Contacts:
+    """The contacts and further places without weight."""
+    extra = np.array([v for _, v in more])
+    panel = np.concatenate([found.panel, np.array([k for k, _ in more], dtype=np.int64)])
+    u = np.concatenate([found.u, extra])
+    return Contacts(
+        panel, u, np.concatenate([found.inner, (np.abs(extra) < 1.0).astype(np.int64)]),
+        np.sign(rows_at(panels.coefficients, panel, u) @ found.dual),
+        np.concatenate([found.weights, np.zeros(extra.size)]), found.dual, found.excess, (), found.value,
+    )  # fmt: skip
 
 
 def dual_face(G: Array, p: Array) -> tuple[Ints, Array]:

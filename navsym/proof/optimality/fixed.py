@@ -18,8 +18,7 @@ import numpy as np
 from flint import arb, arb_mat, ctx, fmpq
 
 from navsym.numeric.exchange.interior import interior_dual, pinned_rows
-from navsym.numeric.exchange.search import Contacts, roads
-from navsym.numeric.exchange.simple import simple_dual
+from navsym.numeric.exchange.search import Contacts, roads, with_places
 from navsym.proof.balls import precision
 from navsym.proof.decimals import decimal, exact, lower_end, upper_end
 from navsym.proof.optimality.basis import Basis, as_fraction, make_basis
@@ -84,9 +83,7 @@ def from_contacts(problem: Problem, basis: Basis, contacts: Contacts, digits: in
     """The exact-contact certificate where the contacts are regular, else the two-sided one."""
     loss = lost_digits(basis)
     bits = int(3.33 * (digits + 2 * loss + 25)) + 64
-    refined = polish(problem.panels, basis, contacts, bits, 10.0 ** -min(digits + loss + 14, 300))
-    if digits + loss + 14 > 300:
-        refined = polish(problem.panels, basis, contacts, bits, 0.0)
+    refined = polish(problem.panels, basis, contacts, bits, goal_of(digits + loss))
     # A ball in the regressors is an error that may differ from instant to instant: only two sides are rigorous then.
     exact_data = not any(panel.values for panel in problem.panels)
     if exact_data and refined.regular and contacts.excess < 1e-7 and not refined.touching:
@@ -94,6 +91,11 @@ def from_contacts(problem: Problem, basis: Basis, contacts: Contacts, digits: in
         if proved is not None:
             return proved
     return gap(problem, basis, contacts, refined, digits, bits)
+
+
+def goal_of(digits: int) -> float:
+    """How small corrections must become for so many digits; beyond doubles, until they shrink no more."""
+    return 10.0 ** -(digits + 14) if digits + 14 <= 300 else 0.0
 
 
 @lru_cache(maxsize=64)
@@ -334,31 +336,31 @@ def attempts(
 ) -> Iterator[tuple[list[fmpq], int, Polished]]:
     """Duals, by how many digits to shrink them, and where they touch.
 
-    Where the optimal dual is not unique, round numbers come first, then one with room to spare.
+    Where the contacts do not fix the dual, round numbers come first, then one that touches at all places where it
+    nearly does, then one with room to spare.
     """
-    base = [rational(c) for c in found.dual]
+    base, goal = [rational(c) for c in found.dual], goal_of(digits + lost_digits(basis))
     if not found.regular:
         yield [round_number(c) for c in base], digits + 3, found
+        if 0 < len(contacts.touching) <= len(base):
+            full = with_places(basis.panels, contacts, contacts.touching)
+            whole = polish(problem.panels, basis, full, ctx.prec, goal)
+            yield [rational(c) for c in whole.dual], digits + 3, whole
         inside = interior_dual(basis.panels, contacts)
         if inside is not None:
             rows = pinned_rows(basis.panels, contacts)[0]
-            dual = pinned(problem, basis, found, rows, inside, 10.0 ** -min(digits + lost_digits(basis) + 14, 300))
+            dual = pinned(problem, basis, found, rows, inside, goal)
             yield [rational(c) for c in dual], digits + 3, replace(found, touching=())
-        if lost_digits(basis) <= 6:
-            transform = np.array([[float(e.mid()) for e in row] for row in basis.transform.tolist()])
-            simple = simple_dual(basis.panels, transform, contacts.value)
-            if simple is not None:
-                yield [round_number(rational(arb(float(c))), 5) for c in simple], digits + 3, found
     fewer = {3 * digits // 4, digits // 2, 12, 9, 6, 4, 3, 2, 1}
     for k in (digits + 3, *sorted((k for k in fewer if 0 < k < digits + 3), reverse=True)):
         yield base, k, found
 
 
-def round_number(x: fmpq, digits: int = 8) -> fmpq:
-    """The rational with a small denominator that agrees with x to some digits, or x itself: a guess to be proved."""
-    best = Fraction(int(x.p), int(x.q)).limit_denominator(720 if digits > 6 else 60)
+def round_number(x: fmpq) -> fmpq:
+    """The rational with a small denominator that agrees with x to eight digits, or x itself: a guess to be proved."""
+    best = Fraction(int(x.p), int(x.q)).limit_denominator(720)
     near = fmpq(best.numerator, best.denominator)
-    room = max(fmpq(1), abs(x)) / 10**digits
+    room = max(fmpq(1), abs(x)) / 10**8
     return near if abs(near - x) < room else x
 
 
