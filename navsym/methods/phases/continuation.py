@@ -39,7 +39,7 @@ POINTS = 5
 #: Next to a singular value this part of the range is left, and named in ``uncovered``.
 MARGIN = Fraction(1, 100_000)
 #: A span below this part of the range is given up when its neighbours are proved to meet.
-SHORT = Fraction(1, 500)
+SHORT = Fraction(1, 50)
 DIGITS = 34
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from fractions import Fraction
 
 import sympy as sp
@@ -18,6 +19,8 @@ from navsym.proof.optimality.march import follow, march, simple
 from navsym.proof.optimality.moving import Member, Moving
 from navsym.proof.optimality.range import Piece, Ranged, Track, piece, range_document
 
+MOST_CELLS = 10_000
+
 
 def fraction_of(x: fmpq) -> Fraction:
     """The same rational number for Python."""
@@ -29,7 +32,7 @@ def followed(family: Family, pattern: Pattern, lower: fmpq, upper: fmpq) -> Rang
     form = echelon(family) if family.growing else None
     if form is None:
         found = follow(plain_track(family, pattern), max(lower, upper / 400) if family.growing else lower, upper)
-        documents = [range_document(family.moving, family.parameter.name, found)] if found else []
+        documents = [range_document(family.moving, family.parameter.name, part) for part in parts(found)]
         return Ranged(tuple(found), tuple(documents))
     start, documents = [], []
     if lower == 0:
@@ -37,13 +40,26 @@ def followed(family: Family, pattern: Pattern, lower: fmpq, upper: fmpq) -> Rang
         if not start:
             return Ranged((), ())
         lower = start[-1].upper
-        documents.append(scaled_certificate(family, form, start))
+        documents += [scaled_certificate(family, form, part) for part in parts(start)]
     scaled_family = rescaled(family, form)
     rest = follow(plain_track(scaled_family, pattern), lower, upper) if lower < upper else []
-    if rest:
-        document = range_document(scaled_family.moving, family.parameter.name, rest)
+    for part in parts(rest):
+        document = range_document(scaled_family.moving, family.parameter.name, part)
         documents.append(tied(family, form, document))
     return Ranged((*start, *rest), tuple(documents))
+
+
+def parts(pieces: Sequence[Piece]) -> list[list[Piece]]:
+    """Neighbours in groups that take no more cells together than a checker allows one certificate."""
+    done: list[list[Piece]] = []
+    used = MOST_CELLS
+    for one in pieces:
+        if used + one.cells > MOST_CELLS:
+            done.append([])
+            used = 0
+        done[-1].append(one)
+        used += one.cells
+    return done
 
 
 def plain_track(family: Family, pattern: Pattern) -> Track:

@@ -47,7 +47,7 @@ WIDEST = 1e-2
 #: Contacts of one sign that come so near to each other, u in [-1, 1], carry their weights together if need be.
 NEAR = 0.2
 #: Attempts for one stretch, the shortest sliver as part of it, and into how many a failed one is cut at most.
-MOST_TRIES = 1000
+MOST_TRIES = 400
 SHORTEST = fmpq(1, 1 << 40)
 MOST_PARTS = 8
 #: Bounds are this part of their distance wider than what is proved here: a checker's balls are not the same.
@@ -108,6 +108,8 @@ def sliver(family: Family, start: fmpq, end: fmpq) -> tuple[Sliver | None, float
     """The two-sided certificate with the parameter as a ball, None when it is too wide, and how wide it is."""
     middle = (start + end) / 2
     ball = ball_problem(family, interval(start, end))
+    if not all(bool(b > a) and bool(sigma > 0) for a, b, sigma in (panel.edges() for panel in ball.panels)):
+        return None, inf
     try:
         problem = family.exact(sp.Rational(int(middle.p), int(middle.q)))
         basis = make_basis(problem)

@@ -141,7 +141,7 @@ def scaled_certificate(family: Family, form: Echelon, pieces: Sequence[Piece]) -
     lower, upper = value_bounds(pieces)
     found = {
         "kind": "range", "variable": v, "panels": panels, "functional": scaled_functional(family, form),
-        "bits": BITS, "cells": sum(p.cells for p in pieces), "parameter": T.name, "from": "0",
+        "bits": BITS, "cells": sum(p.cells for p in pieces), "parameter": T.name, "from": pieces[0].row["from"],
         "to": pieces[-1].row["to"], "lower": lower, "upper": upper,
         "pieces": [p.row | {"basis": unit} for p in pieces],
     }  # fmt: skip
