@@ -122,7 +122,7 @@ def build(folder: Path, function: ExportedFunction) -> Path:
     (folder / "peer.c").write_text(generated(casadi_function("peer", [t], regressors()), "peer"))
     (folder / "driver.c").write_text(DRIVER.format(name=function.name, size=function.size, rounds=ROUNDS))
     sources = [f"{function.name}.c", "hand.c", "peer.c", "driver.c"]
-    subprocess.run(["gcc", "-O2", *sources, "-o", "run", "-lm"], cwd=folder, check=True)
+    subprocess.run(["gcc", "-O2", *sources, "-o", "run", "-lm"], cwd=folder, check=True, timeout=120)
     return folder / "run"
 
 
@@ -164,7 +164,7 @@ def measure(points: int) -> dict[str, float]:
     """Ratios of times: below one the exported code is faster."""
     with tempfile.TemporaryDirectory() as folder:
         program = build(Path(folder), exported())
-        text = subprocess.run([str(program), str(points)], capture_output=True, text=True, check=True).stdout
+        text = subprocess.run([str(program), str(points)], capture_output=True, text=True, check=True, timeout=600).stdout
     ours, hand, casadi, *sums = (float(word) for word in text.split())
     assert np.allclose(sums, sums[0], rtol=1e-9), "the three programs must agree"
     return {"hand-written C": ours / hand, "casadi C": ours / casadi} | in_batches(points)
@@ -301,9 +301,9 @@ def measure_update(updates: int) -> dict[str, float]:
         (Path(folder) / "peer.c").write_text(casadi_update())
         (Path(folder) / "driver.c").write_text(KALMAN_DRIVER.format(rounds=ROUNDS))
         sources = [f"{function.name}.c", "hand.c", "peer.c", "driver.c"]
-        subprocess.run(["gcc", "-O2", *sources, "-o", "run", "-lm"], cwd=folder, check=True)
+        subprocess.run(["gcc", "-O2", *sources, "-o", "run", "-lm"], cwd=folder, check=True, timeout=120)
         words = [str(Path(folder) / "run"), str(updates)]
-        text = subprocess.run(words, capture_output=True, text=True, check=True).stdout
+        text = subprocess.run(words, capture_output=True, text=True, check=True, timeout=600).stdout
     ours, hand, casadi, *sums = (float(word) for word in text.split())
     assert np.allclose(sums, sums[0], rtol=1e-9), f"the three programs must agree: {sums}"
     return {"Kalman update, hand-written C": ours / hand, "Kalman update, casadi C": ours / casadi}
