@@ -23,8 +23,10 @@ def command(
     from navsym.report.page_citation import bibtex
 
     paper, found = find(claim)
-    record = None if fresh else stored_records().get(found.id)
+    stored = stored_records()
+    record = None if fresh else stored.get(found.id)
     if record is None:
         paper, record = decide(claim)
-    text = bibtex(paper, record, __version__)
+    correction = next((other for other in stored.values() if other["corrects"] == found.id), None)
+    text = bibtex(paper, record, __version__, correction)
     emit({"id": found.id, "status": record["status"], "bibtex": text}, as_json=json_, text=text)

@@ -21,16 +21,21 @@ def command(
     words: Annotated[str | None, typer.Option(help="text that the id or the title contains")] = None,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> None:
-    """List claims without deciding them; a verdict that no ledger holds is the declared one.
+    """List claims in the order of the paper, without deciding them; a verdict that no ledger holds is declared.
 
     Example: navsym list --status REFUTED --slip paper
     """
     from navsym.cli.verify import load
+    from navsym.report.ledger import in_order
 
     wanted = {one_of(s.upper(), STATUSES, "--status") for s in status or ()}
     kind = one_of(slip, SLIPS, "--slip") if slip else None
     stored = stored_records()
-    rows = [row(claim, stored) for module in load(paper or []) for claim in module.claims]
+    rows = [
+        found
+        for module in load(paper or [])
+        for found in in_order(module.paper, [row(claim, stored) for claim in module.claims])
+    ]
     chosen = [r for r in rows if fits(r, wanted, kind, (words or "").lower())]
     emit({"claims": chosen, "count": len(chosen)}, as_json=json_, text=lambda: as_text(chosen))
 

@@ -7,19 +7,24 @@ from collections.abc import Mapping
 from typing import Any
 
 from navsym.claims import Paper
+from navsym.report.formula.sides import only_truth
 from navsym.report.page_names import latex_escape
 
 Record = Mapping[str, Any]
+SHORT = 120     # characters of a formula that a note may hold
 
 
-def bibtex(paper: Paper, record: Record, version: str) -> str:
-    """Two entries: the paper, and the verdict with its scope and the version that decided it."""
+def bibtex(paper: Paper, record: Record, version: str, correction: Record | None = None) -> str:
+    """Two entries: the paper, and the verdict with its scope and the version that decided it.
+
+    correction : record of the claim that corrects this one, to be named with it
+    """
     key = paper_key(paper)
     verdict = {
         "title": f"Verdict on {record['id']}: {record['status']}",
         "author": "{navsym contributors}",
         "howpublished": f"navsym {version}, claim {latex_escape(record['id'])}",
-        "note": latex_escape(verdict_words(record)),
+        "note": latex_escape(" ".join([verdict_words(record), *correction_words(correction)])),
     }
     words = {
         "author": " and ".join(latex_escape(author) for author in paper.authors),
@@ -46,6 +51,15 @@ def verdict_words(record: Record) -> str:
     if record["counterexample"]:
         words += " Counterexample: " + ", ".join(f"{k} = {v}" for k, v in record["counterexample"].items()) + "."
     return words
+
+
+def correction_words(correction: Record | None) -> list[str]:
+    """Which claim stands in its place, and its formula where it is short."""
+    if correction is None:
+        return []
+    printed = correction["printed"]
+    says = f": {printed}" if len(printed) <= SHORT and not only_truth(printed) else ""
+    return [f"Corrected by {correction['id']}, {correction['status']}{says}."]
 
 
 def block(kind: str, key: str, fields: Mapping[str, str]) -> str:

@@ -74,3 +74,8 @@ def test_python_without_docstrings_is_refused_in_one_line():
     done = subprocess.run(words, capture_output=True, text=True, timeout=60, check=False)
     assert done.returncode == 3 and done.stderr.startswith("navsym: missing: expected Python with docstrings")
     assert len(done.stderr.splitlines()) == 1
+
+
+def test_a_cited_refutation_names_what_stands_in_its_place(capsys):
+    cited = document(capsys, "cite", "guaranteed_velocity:4.3.u2")[1]["bibtex"]
+    assert "Corrected by guaranteed\\_velocity:4.3.u2*, PROVED: -sin(T/4)**2/cos(T/2)." in cited
