@@ -160,12 +160,18 @@ def in_batches(points: int) -> dict[str, float]:
     }
 
 
+def numbers_of(program: Path, count: int) -> list[float]:
+    """What a program of the benchmark prints: best times of the three versions, and their sums."""
+    words = [str(program), str(count)]
+    text = subprocess.run(words, capture_output=True, text=True, check=True, timeout=600).stdout
+    return [float(word) for word in text.split()]
+
+
 def measure(points: int) -> dict[str, float]:
     """Ratios of times: below one the exported code is faster."""
     with tempfile.TemporaryDirectory() as folder:
         program = build(Path(folder), exported())
-        text = subprocess.run([str(program), str(points)], capture_output=True, text=True, check=True, timeout=600).stdout
-    ours, hand, casadi, *sums = (float(word) for word in text.split())
+        ours, hand, casadi, *sums = numbers_of(program, points)
     assert np.allclose(sums, sums[0], rtol=1e-9), "the three programs must agree"
     return {"hand-written C": ours / hand, "casadi C": ours / casadi} | in_batches(points)
 
@@ -302,9 +308,7 @@ def measure_update(updates: int) -> dict[str, float]:
         (Path(folder) / "driver.c").write_text(KALMAN_DRIVER.format(rounds=ROUNDS))
         sources = [f"{function.name}.c", "hand.c", "peer.c", "driver.c"]
         subprocess.run(["gcc", "-O2", *sources, "-o", "run", "-lm"], cwd=folder, check=True, timeout=120)
-        words = [str(Path(folder) / "run"), str(updates)]
-        text = subprocess.run(words, capture_output=True, text=True, check=True, timeout=600).stdout
-    ours, hand, casadi, *sums = (float(word) for word in text.split())
+        ours, hand, casadi, *sums = numbers_of(Path(folder) / "run", updates)
     assert np.allclose(sums, sums[0], rtol=1e-9), f"the three programs must agree: {sums}"
     return {"Kalman update, hand-written C": ours / hand, "Kalman update, casadi C": ours / casadi}
 
