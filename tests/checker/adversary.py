@@ -33,6 +33,10 @@ NO_NUMBERS: list[Any] = [
     0.5, True, None, [], {},
     ["1"],
 ]  # fmt: skip
+#: Ends of a panel in a spelling that is not the agreed one, and what is no place.
+ENDS: list[Any] = [
+    ["0.0"], ["00"], ["0/1"], ["1.0"], ["2/2"], ["-0"], "0", "1", 0, 1, [0], [1], [], None, ["0", "0"],
+]  # fmt: skip
 #: False identities: branches, ranges of functions, 0/0, misprints far behind the point.
 FALSE = [
     ("sqrt(x**2)", "x"), ("sqrt(x**4)", "-x**2"), ("(x**3)**(1/3)", "x"), ("(x**2)**(3/2)", "x**3"), ("abs(x)", "-x"),
@@ -110,6 +114,7 @@ def tricks() -> Iterator[tuple[str, Any]]:
         for bad in NO_NUMBERS:
             yield f"{item['kind']} {path} {str(bad)[:12]!r}", changed(item, path, bad)
     yield from optima()
+    yield from boxes()
     yield from pieces()
     yield from algebra()
     yield from shapes()
@@ -185,6 +190,35 @@ def optima() -> Iterator[tuple[str, Any]]:
         "panels": [{"measurement": 0, "from": "0", "to": "1", "sigma": "1", "H": ["4*(t - 1/2)**2"]}],
         **alone(["1"], [(0, "0", "1")], ["0.001"] * 3),
     }  # fmt: skip
+
+
+def boxes() -> Iterator[tuple[str, Any]]:
+    """Boxes, bases and ends of a piece that are of another shape, or of none."""
+    one = ["pieces", 0]
+    for item in (TOUCH, PARABOLA, CONSTANT):
+        (piece,), m = item["pieces"], len(item["functional"])
+        radius, unit = piece["radius"], piece["basis"]
+        for k in range(len(radius)):
+            for bad in ("0", "-0.000001", "1/0", "nan", 1, None):
+                yield f"radius {k} {bad}", changed(item, [*one, "radius", k], bad)
+        for n in (0, m, len(radius) - 1, len(radius) + 1, 2 * len(radius)):
+            yield f"{n} radii", changed(item, [*one, "radius"], [radius[0]] * n)
+        for name, basis in (
+            ("a row less", unit[1:]), ("a row more", [*unit, unit[0]]), ("a column less", [row[1:] for row in unit]),
+            ("a column more", [[*row, "1"] for row in unit]), ("a row of zeros", [["0"] * m, *unit[1:]]),
+            ("negative", [["-" + e for e in row] for row in unit]), ("no list", None), ("of numbers", [[1] * m] * m),
+        ):  # fmt: skip
+            yield f"basis {name}", changed(item, [*one, "basis"], basis)
+        for k, row in enumerate(piece["contacts"]):
+            for at in ENDS:
+                if at != row["at"]:
+                    yield f"contact {k} at {at}", changed(item, [*one, "contacts", k, "at"], at)
+    for key in ("matrix", "solution"):
+        rows = EXPONENTIAL[key]
+        for name, other in (("more", [*rows, rows[0]]), ("less", rows[:1]), ("flat", rows[0]), ("none", [])):
+            yield f"{key} {name}", changed(EXPONENTIAL, [key], other)
+    more = {"matrix": [*EXPONENTIAL["matrix"], ["0", "0"]], "solution": [*EXPONENTIAL["solution"], ["0", "0"]]}
+    yield "both with a row more", EXPONENTIAL | more
 
 
 def pieces() -> Iterator[tuple[str, Any]]:

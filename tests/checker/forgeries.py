@@ -114,8 +114,19 @@ SHIFTED = changed(WAVE, ["panels", 0, "H"], ["1 - (t - 1/2)**2"]) | alone(
 )
 # A kernel beyond the ball on which its series is summed, reached with a panel of length one.
 BEYOND = EXACT | {"panels": [{"measurement": 0, "from": "1", "to": "2", "sigma": "1", "H": ["exp_2(t)"]}]}
+# Powers about the middle of the panel: the last coefficients of Taylor's formula alone rise above the bound.
+POWERS = [
+    EXACT | {"cells": 5, "dual": ["1"], "panels": [{
+        "measurement": 0, "from": "0", "to": "1", "sigma": "1", "H": [f"3/2*(2*t - 1)**{n}"],
+    }]} for n in (13, 14, 15, 16)
+]  # fmt: skip
+# Three cells each: together they are more than the certificate announces.
+REPEATED = TOUCH | {"cells": 0, "pieces": TOUCH["pieces"] * 67}
 ONE = ["pieces", 0]
 FORGERIES = [
+    *((power, ["kind"], "gap", "not shown") for power in POWERS),
+    (REPEATED, ["kind"], "touch", "not shown"),
+    (EXPONENTIAL, ["solution"], [*EXPONENTIAL["solution"], ["0", "0"]], "square"),
     (WAVE, ["kind"], "touch", "not shown"),
     (SWELL, ["kind"], "touch", "not shown"),
     (CLIMB, ["kind"], "touch", "not shown"),

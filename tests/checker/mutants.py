@@ -148,20 +148,27 @@ def test_a_mutant_is_noticed_or_explained(name, place, number):
     pytest.skip("survives, see survivors.txt")
 
 
+def chosen_of(every: list[tuple[str, int, int]], words: list[str]) -> list[tuple[str, int, int]]:
+    """All mutants; every OF-th from PART; or those that a file names, line by line."""
+    if len(words) == 2:
+        return every[int(words[0]) :: int(words[1])]
+    names = set(Path(words[0]).read_text(encoding="utf-8").splitlines()) if words else set()
+    return [mutant for mutant in every if not words or mutant[0] in names]
+
+
 def main() -> None:
-    """``python tests/checker/mutants.py [PART OF]``: the score of all mutants, or of every OF-th from PART."""
+    """``python tests/checker/mutants.py [PART OF | FILE]``: the score of all mutants, of a part, of those in a file."""
     sys.path.insert(0, str(ROOT))
     import tests.checker.forgeries  # noqa: F401  once, before the children
 
     source = SOURCE.read_text(encoding="utf-8")
-    every = list(mutants(source))
-    chosen = every[int(sys.argv[1]) :: int(sys.argv[2])] if len(sys.argv) > 2 else every
-    alive = []
+    chosen, alive = chosen_of(list(mutants(source)), sys.argv[1:]), 0
     for name, place, number in chosen:
         if not noticed(source, place, number):
-            alive.append(name)
+            alive += 1
             print(name, flush=True)
-    print(f"{len(chosen) - len(alive)} of {len(chosen)} noticed: {100 * (1 - len(alive) / len(chosen)):.1f} %")
+    share = 100 * (1 - alive / max(1, len(chosen)))
+    print(f"{len(chosen) - alive} of {len(chosen)} noticed: {share:.1f} %")
 
 
 if __name__ == "__main__":

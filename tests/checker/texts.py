@@ -46,6 +46,8 @@ EQUAL = [
     ("x**0", "1"),
     ("1/(1/x + 1/y)", "x*y/(x + y)"),
     ("1/(2*x + 4)", "1/2/(x + 2)"),
+    # a sum inside a sum: the outer one has to be multiplied out first
+    ("sqrt(x + 1)", "(x + 1 + sqrt(x + 1))/(1 + sqrt(x + 1))"),
     ("(2*x + 4)**(-2)*(x**2 - 4)", "(x - 2)/(4*x + 8)"),
     ("sqrt(4*x + 12)/2", "sqrt(x + 3)"),
     ("sqrt((x + 3)/(y**2 + 1))**2", "(x + 3)/(y**2 + 1)"),
