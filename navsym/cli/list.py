@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from typing import Annotated, Any
 
 import typer
@@ -62,7 +63,7 @@ def row(claim: Any, stored: dict[str, dict[str, Any]]) -> dict[str, Any]:
     }
 
 
-def fits(row: dict[str, Any], statuses: set[str], slip: str | None, words: str) -> bool:
+def fits(row: Mapping[str, Any], statuses: set[str], slip: str | None, words: str) -> bool:
     if statuses and row["status"] not in statuses:
         return False
     if slip and not (row["slip"] if slip == "any" else row["slip"] == slip):
@@ -70,7 +71,7 @@ def fits(row: dict[str, Any], statuses: set[str], slip: str | None, words: str) 
     return words in row["id"].lower() or words in row["title"].lower()
 
 
-def as_text(rows: list[dict[str, Any]]) -> str:
+def as_text(rows: Sequence[Mapping[str, Any]]) -> str:
     cells = [
         (r["id"], r["status"] + ("" if r["decided"] else " (declared)"), r["title"], r["slip"] or "") for r in rows
     ]

@@ -116,7 +116,8 @@ def test_formulas_of_the_sheets_are_mathml_with_the_right_number_of_parts(module
         (r"\dot y", '<mover accent="true"><mi>y</mi>'),
         (r"\begin{pmatrix}1&0\\0&1\end{pmatrix}", "<mtable><mtr><mtd>"),
         (r"^2", "<msup><mrow></mrow><mn>2</mn></msup>"),
-        (r"\left(x\right)^2", "<mo>(</mo>"),
+        (r"\left(x\right)^2", '<mo stretchy="false">(</mo>'),
+        (r"\left(\frac{x}{2}\right)^2", "<mo>(</mo>"),
     ],
 )
 def test_the_small_part_of_latex_is_read(source, part):

@@ -14,6 +14,7 @@ from collections.abc import Callable
 from markupsafe import Markup
 
 from navsym.errors import ExpressionSyntaxError
+from navsym.report.formula.notation import is_tall
 from navsym.report.page_names import GREEK, latex_escape
 
 TOKEN = re.compile(
@@ -161,14 +162,17 @@ class Reader:
         left = self.bracket()
         inner = self.row(lambda token: token["word"] == "right")
         self.take()
-        return f"<mrow>{left}{inner}{self.bracket()}</mrow>"
+        still = "" if is_tall(inner) else ' stretchy="false"'
+        first, last = (f"<mo{still}>{sign}</mo>" if sign else "" for sign in (left, self.bracket()))
+        return f"<mrow>{first}{inner}{last}</mrow>"
 
     def bracket(self) -> str:
+        """The sign after ``\\left`` or ``\\right``; nothing for a dot."""
         token = self.take()
         sign = token["char"] or {"{": "{", "}": "}", "|": "‖"}.get(token["word"] or "", "")
         if not sign:
             raise self.refuse(token.group())
-        return "" if sign == "." else f"<mo>{html.escape(sign)}</mo>"
+        return "" if sign == "." else html.escape(sign)
 
     def matrix(self, kind: str) -> str:
         if kind not in MATRICES:

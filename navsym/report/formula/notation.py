@@ -41,9 +41,14 @@ def mathml_sign(text: str) -> str:
     return operator(MATHML_SIGNS.get(text, text))
 
 
+def is_tall(inner: str) -> bool:
+    """True for MathML that is higher than a line, so that brackets around it have to grow."""
+    return any(tag in inner for tag in ("<mfrac", "<mtable", "<munder"))
+
+
 def mathml_fenced(left: str, inner: str, right: str) -> str:
     """Brackets that grow with what is tall; around one line a growing bracket would stand in a gap."""
-    still = "" if "<mfrac" in inner or "<mtable" in inner else ' stretchy="false"'
+    still = "" if is_tall(inner) else ' stretchy="false"'
     first, last = (f"<mo{still}>{html.escape(sign)}</mo>" for sign in (left, right))
     return rowed([first, inner, last])
 
