@@ -16,8 +16,9 @@ import time
 from pathlib import Path
 from typing import Any
 
+from navsym.methods.sweeps.cluster import ALONE
 from navsym.methods.sweeps.plan import Sweep, run_job
-from navsym.methods.sweeps.run import ALONE, computed, run_shard, run_sweep
+from navsym.methods.sweeps.run import computed, run_shard, run_sweep
 from navsym.methods.sweeps.shards import cut
 
 os.environ.update({name: str(count) for name, count in ALONE.items()})  # before numba is loaded

@@ -14,6 +14,7 @@ from pathlib import Path
 import pytest
 
 from navsym.errors import MissingEngineError
+from navsym.methods.sweeps import cluster
 from navsym.methods.sweeps.plan import Sweep
 from navsym.methods.sweeps.run import run_sweep
 
@@ -88,20 +89,69 @@ def test_a_worker_killed_midway_changes_nothing(scheduler, tmp_path):
     assert json.dumps(found["rows"]) == json.dumps(run_sweep(STUDY, folder=tmp_path / "alone")["rows"])
 
 
-@pytest.mark.slow
-def test_a_scheduler_killed_midway_is_said_and_its_finished_shards_are_kept(scheduler, tmp_path):
-    address, processes = scheduler
-    processes += workers(address, 1, tmp_path)
+# -- what never comes is not waited for ------------------------------------------------------------
+
+
+@pytest.fixture
+def hasty(monkeypatch):
+    monkeypatch.setattr(cluster, "SECONDS_TO_ANSWER", 3.0)
+    monkeypatch.setattr(cluster, "SECONDS_BETWEEN_LOOKS", 0.5)
+
+
+def stricken(process, sent):
+    """A progress that sends a signal to the group of a process when three jobs are done."""
 
     def progress(done, of):
-        if done >= 3 and processes[0].poll() is None:
-            os.killpg(processes[0].pid, signal.SIGKILL)
-            processes[0].wait()
+        if done >= 3 and process.poll() is None:
+            os.killpg(process.pid, sent)
 
+    return progress
+
+
+def test_a_scheduler_without_workers_is_given_up_in_words(scheduler, tmp_path, hasty):
+    address, _ = scheduler
+    with pytest.raises(MissingEngineError, match=f"none for 2 s; start some .dask worker {address}"):
+        run_sweep(STUDY, scheduler=address, folder=tmp_path / "s", patience=2)
+
+
+@pytest.mark.slow
+def test_workers_that_all_die_midway_are_not_waited_for(scheduler, tmp_path, hasty):
+    address, processes = scheduler
+    processes += workers(address, 1, tmp_path)
+    dying = stricken(processes[-1], signal.SIGKILL)
+    with pytest.raises(MissingEngineError, match="expected workers; got none for 10 s"):
+        run_sweep(STUDY, scheduler=address, folder=tmp_path / "s", size=1, progress=dying, patience=10)
+    assert 3 <= run_sweep(STUDY, folder=tmp_path / "s", size=1)["resumed"] < STUDY.jobs
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("sent", [signal.SIGKILL, signal.SIGSTOP], ids=["dead", "silent"])
+def test_a_scheduler_lost_midway_is_said_and_its_finished_shards_are_kept(scheduler, tmp_path, hasty, sent):
+    address, processes = scheduler
+    processes += workers(address, 1, tmp_path)
+    losing = stricken(processes[0], sent)
     with pytest.raises(MissingEngineError, match="the same command goes on"):
-        run_sweep(STUDY, scheduler=address, folder=tmp_path / "s", size=1, progress=progress)
+        run_sweep(STUDY, scheduler=address, folder=tmp_path / "s", size=1, progress=losing)
     found = run_sweep(STUDY, folder=tmp_path / "s", size=1)
     assert 3 <= found["resumed"] < STUDY.jobs and found["done"] == STUDY.jobs
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("sent", [signal.SIGKILL, signal.SIGSTOP], ids=["dead", "silent"])
+def test_a_scheduler_lost_between_its_greeting_and_its_work_is_said(scheduler, tmp_path, hasty, sent, monkeypatch):
+    address, processes = scheduler
+    greet = cluster.greet
+
+    def last_words(where):
+        told = greet(where)
+        os.killpg(processes[0].pid, sent)
+        return told
+
+    monkeypatch.setattr(cluster, "greet", last_words)
+    with pytest.raises(MissingEngineError, match="no answer to a client"):
+        run_sweep(STUDY, scheduler=address, folder=tmp_path / "s")
+    monkeypatch.setattr(cluster, "greet", greet)
+    assert run_sweep(STUDY, workers=1, folder=tmp_path / "s")["done"] == STUDY.jobs  # the next client lives
 
 
 @pytest.mark.slow

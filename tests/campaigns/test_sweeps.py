@@ -14,8 +14,9 @@ from dask.distributed import Client
 from navsym.cli.main import run
 from navsym.errors import DomainError, MissingEngineError
 from navsym.methods.sweeps import shards as sweep_shards
+from navsym.methods.sweeps.cluster import greet
 from navsym.methods.sweeps.plan import Sweep, run_job, sweep_from
-from navsym.methods.sweeps.run import greet, run_sweep
+from navsym.methods.sweeps.run import run_sweep
 from navsym.methods.sweeps.shards import cut
 
 
@@ -100,7 +101,7 @@ def test_other_studies_run_too(kind):
 
 @pytest.mark.parametrize("address", ["tcp://127.0.0.1:9", "tcp://nowhere.invalid:8786", "", "file", "http://127.0.0.1:80"])
 def test_a_scheduler_that_does_not_answer_is_said(tmp_path, capsys, monkeypatch, address):
-    monkeypatch.setattr("navsym.methods.sweeps.run.SECONDS_TO_CONNECT", 1)
+    monkeypatch.setattr("navsym.methods.sweeps.cluster.SECONDS_TO_ANSWER", 1)
     config = tmp_path / "c.json"
     config.write_text('{"kind": "filter", "jobs": 2}')
     assert run(["sweep", str(config), "--scheduler", address, "--json"]) == 3
@@ -123,7 +124,7 @@ WORDS = {"nothing": b"", "http": b"HTTP/1.1 400 Bad Request\r\n\r\n", "zeros": b
 
 @pytest.mark.parametrize("word", WORDS.values(), ids=WORDS)
 def test_who_answers_without_being_a_scheduler_is_not_waited_for(monkeypatch, word):
-    monkeypatch.setattr("navsym.methods.sweeps.run.SECONDS_TO_CONNECT", 1)
+    monkeypatch.setattr("navsym.methods.sweeps.cluster.SECONDS_TO_ANSWER", 1)
     with socket.create_server(("127.0.0.1", 0)) as server:
         Thread(target=answer, args=(server, word), daemon=True).start()
         with pytest.raises(MissingEngineError, match="scheduler"):
