@@ -18,7 +18,6 @@
 # V. I. Kalenova, V. M. Morozov, N. A. Parusnikov, A. G. Shakot'ko, 1979.
 
 # %%
-import os
 import tempfile
 from itertools import pairwise
 from pathlib import Path
@@ -31,16 +30,19 @@ from derivations import joint_correction as paper
 from derivations.joint_correction import section2_error_equations as errors_of_section_2
 from derivations.joint_correction import section2_groups as groups
 from derivations.joint_correction import section3_gains as analysis
+from derivations.joint_correction import sensors
 from navsym.claims import claims_of
 from navsym.cli.main import run as navsym
 from navsym.methods.observability.chains import observe
 from navsym.methods.observability.loci import rank_drops
+from navsym.methods.observability.sensors import restore
 from navsym.methods.observability.split import splits
 from navsym.methods.two_stage import ins as experiment
 from navsym.methods.two_stage import real as aiding
 from navsym.methods.two_stage.flight import EARTH_RADIUS, SCHULER_RATE, great_circle
 from navsym.models.inertial.errors import full_model, joint_model, position_group, velocity_group
 from navsym.report.notebook import require, show
+from navsym.text.datasets import dataset, local_copy
 
 BLUE, ORANGE, GREEN, RED = "#0072b2", "#e69f00", "#009e73", "#d55e00"
 
@@ -224,13 +226,27 @@ axes[1].set_xlabel("minutes")
 plt.show()
 
 # %% [markdown]
+# ## How few measurements are enough
+# The paper joins both velocities with both coordinates. One coordinate less would do, and nothing less: with the
+# velocities alone four variables are hidden, and either coordinate shows all four of them at once. With position alone
+# it takes exactly $x_3$ and $x_6$. With all constant errors kept, five measurements are missing, whatever they are.
+
+# %%
+for found in claims_of(sensors):
+    require(found)
+    print(f"{found.number:24s} {found.title}")
+velocities = restore(sensors.measured_by(("sigma_c1", "sigma_c2")))
+print("hidden by the velocities:", velocities.hidden, "- a measurement of one of these is enough:", velocities.sets)
+assert velocities.proved and velocities.fewest == 1
+
+# %% [markdown]
 # ## A real flight
 # A small aircraft with MEMS sensors: the reckoned velocity and position minus GPS. The general method finds
 # the split with m = 2, n = 3; the judge is GPS itself, some seconds ahead.
 
 # %%
-record = Path(os.environ.get("NAVSYM_DATA", "")) / "gnss_ins" / "umn_thor_flight75.mat"
-if os.environ.get("NAVSYM_DATA") and record.exists():
+record = local_copy(dataset("thor-flight75"))
+if record:
     from scipy.io import loadmat
 
     columns = loadmat(record)["flight_data"][0, 0]
@@ -247,7 +263,7 @@ if os.environ.get("NAVSYM_DATA") and record.exists():
     axis.legend()
     plt.show()
 else:
-    print("The recorded flight is not here: set NAVSYM_DATA to a folder with gnss_ins/umn_thor_flight75.mat.")
+    print("The recorded flight is not here: navsym data get thor-flight75, or set NAVSYM_DATA.")
 
 # %% [markdown]
 # ## The whole paper

@@ -17,7 +17,6 @@
 # D. Obidin, D. Makarchuk, O. Kostenko, N. Mishukova, 2018.
 
 # %%
-import os
 import tempfile
 from pathlib import Path
 
@@ -44,6 +43,7 @@ from navsym.methods.multimodel.filters import run
 from navsym.methods.multimodel.schemes import filters_at, scheme
 from navsym.models.modes import MODES
 from navsym.report.notebook import require, show
+from navsym.text.datasets import dataset, local_copy
 
 BLUE, ORANGE, GREEN, RED = "#0072b2", "#e69f00", "#009e73", "#d55e00"
 
@@ -283,9 +283,9 @@ show(polygaussian.start_printed)
 # of the reference system are integrated; the filter sees no flags.
 
 # %%
-folder = Path(os.environ.get("NAVSYM_DATA", "../shared/data")) / "gnss_ins"
-if folder.is_dir():
-    run_of_nagoya = road.read_road(folder)
+files = [local_copy(dataset(name)) for name in ("nagoya-reference", "nagoya-rtk")]
+if all(files):
+    run_of_nagoya = road.read_road(files[0].parent)
     for method in ("pulsating", "imm", "gpb2"):
         judged = road.judge(run_of_nagoya, method)
         print(f"{method:10s} horizontal rms {judged.rms_raw:.1f} m -> {judged.rms:.2f} m; wrong fixes noticed "
@@ -303,7 +303,7 @@ if folder.is_dir():
     plt.show()
     assert judged.caught > 0 and judged.rms < judged.rms_raw
 else:
-    print("the Nagoya files are not here; `navsym data get` fetches them")
+    print("The recorded run is not here: navsym data get nagoya-reference, and nagoya-rtk, or set NAVSYM_DATA.")
 
 # %% [markdown]
 # ## All claims

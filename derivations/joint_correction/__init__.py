@@ -2,7 +2,8 @@
 
 ``section1_*`` splits a linear system by its two measurements and builds two-stage estimators,
 ``section2_*`` derives the error equations and the two groups of observable variables from the
-kinematics of small rotations, ``section3_*`` examines the algorithm, its gains and its stability.
+kinematics of small rotations, ``section3_*`` examines the algorithm, its gains and its stability;
+``sensors`` goes beyond the paper: how few measurements are enough.
 """
 
 from __future__ import annotations

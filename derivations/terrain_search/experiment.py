@@ -153,7 +153,7 @@ def count():
     "square s2 over n - 1 average n s2/(n - 1)",
 )
 def divisor_as_printed():
-    """The divisor n - 1 makes the mean square of n runs about the known truth unbiased."""
+    """Read as an estimate of the mean square: the divisor n - 1 makes n runs about the known truth unbiased."""
     n, s2 = sp.Integer(100), sp.Symbol("s2", positive=True)
     return Equation(printed=s2, derived=n * s2 / (n - 1))
 
@@ -246,6 +246,12 @@ def velocity_error_of_the_accelerometers():
     # acceleration: a constant one leaves half of what it adds to the velocity (claim "acceleration").
     after = sp.Rational("0.001") * 1000 / 2
     return Bound(printed=FULL_SPEED, relation="<", derived=sp.sqrt(2) * after)
+
+
+@claim("table.acceleration.sigma")
+def deviation_of_the_accelerometers():
+    """Read as a constant of the run, an accelerometer error of one sigma leaves the searched +-5 m/s within 71 s."""
+    return Bound(printed=sp.Integer(5), relation="<", derived=sp.sqrt(sp.Rational("0.005")) * 71)
 
 
 @claim("table.real_time")

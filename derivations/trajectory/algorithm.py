@@ -49,19 +49,34 @@ def regression_gain() -> sp.Matrix:
 
 @claim("algorithm.C")
 def estimator_form():
-    """y_(k+1) = C y_k + K z_(k+1) with C = Phi^- - K H^- is prediction and correction; n = 3."""
+    """y_(k+1) = C y_k + K z_(k+1) with C = Phi^- - K H^- (in the scan H^0) is prediction and correction; n = 3."""
     predicted = PHI * F
     derived = predicted + K * (z - (row_after_step() * predicted)[0])
     printed = (PHI - K * H_STEP) * F + K * z
     return Equation(printed=list(printed), derived=list(derived))
 
 
-@claim("algorithm.estimate")
+SCALE = sp.symbols(f"d1:{N + 1}", positive=True)
+NORMALISED = sp.Matrix(sp.symbols(f"y1:{N + 1}", real=True))
+
+
+@claim(
+    "algorithm.estimate",
+    expect=REFUTED,
+    slip="scan",
+    reason="one line names y_k the estimate of x^q and then x^q = D^-1 p y_k that of x: the second superscript has to "
+    "be the star that J uses, and the p belongs to no factor",
+)
+def estimate_printed():
+    """The estimate of x^q, which is y, is D^-1 y, as it came out of the scan; n = 3."""
+    return Equation(printed=list(sp.diag(*SCALE).inv() * NORMALISED), derived=list(NORMALISED))
+
+
+@claim("algorithm.estimate*", corrects="algorithm.estimate")
 def estimate_in_physical_variables():
-    """D^-1 y estimates x; n = 3."""
-    D = sp.diag(*sp.symbols(f"d1:{N + 1}", positive=True))
-    x = sp.Matrix(sp.symbols(f"x1:{N + 1}", real=True))
-    return Equation(printed=list(D.inv() * (D * x)), derived=list(x))
+    """The estimate of x, the solution of D x = y, is x^* = D^-1 y; n = 3."""
+    solved = [own / scale for own, scale in zip(NORMALISED, SCALE, strict=True)]
+    return Equation(printed=list(sp.diag(*SCALE).inv() * NORMALISED), derived=solved)
 
 
 @claim(

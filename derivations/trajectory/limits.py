@@ -234,7 +234,7 @@ MOTIONS = tuple(
 
 @claim("limit.yawing", expect=CERTIFIED)
 def yawing_of_the_experiment():
-    """At 100 m/s, as yawing begins, nothing guarantees V_2 better than 0.86 m/s if errors may be any within sqrt(3) m."""
+    """At 100 m/s, as yawing begins, nothing guarantees V_2 better than 0.86 m/s if errors are any within sqrt(3) m."""
     yaw_rate = 5 * sp.pi / 180 * 2 * sp.pi / 360
     acceleration = 100 * sp.sin(sp.pi / 4) * yaw_rate
     least = QUESTIONS[0].best.subs({sigma: sp.sqrt(3), M: acceleration})

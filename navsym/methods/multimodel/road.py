@@ -71,7 +71,8 @@ def read_road(folder: Path) -> Road:
     """Read the two files of the run; NoDataError when one is not there."""
     for name in FILES:
         if not (folder / name).is_file():
-            raise NoDataError(f"{name}: expected the file in {folder}; got none; run `navsym data get nagoya`")
+            fetch = "run `navsym data get` with nagoya-reference and nagoya-rtk"
+            raise NoDataError(f"{name}: expected the file in {folder}; got none; {fetch}")
     reference = np.loadtxt(folder / FILES[0], delimiter=",", skiprows=1, usecols=(0, 2, 3, 11, 12))
     rover = np.loadtxt(folder / FILES[1], comments="%", usecols=(1, 2, 3, 5))
     return align(reference, rover)

@@ -59,6 +59,20 @@ def residue_rank(rows: list[list[int]]) -> int:
     return nmod_mat(len(rows), len(rows[0]), [x for row in rows for x in row], PRIME).rank() if rows else 0
 
 
+def residue_kernel(rows: list[list[int]]) -> tuple[nmod_mat, int]:
+    """Directions that the rows do not see, as the first columns of a matrix, and how many they are."""
+    n = len(rows[0])
+    kernel, count = nmod_mat(len(rows), n, [x for row in rows for x in row], PRIME).nullspace()
+    return kernel, int(count)
+
+
+def residues_on(rows: list[list[int]], kernel: nmod_mat, count: int) -> list[list[int]]:
+    """Independent vectors (k, count) that the rows make of the first columns of a kernel."""
+    seen = nmod_mat(len(rows), len(rows[0]), [x for row in rows for x in row], PRIME) * kernel
+    parts = [[int(x) for x in vector[:count]] for vector in seen.tolist()]
+    return [parts[k] for k in independent_rows(parts)]
+
+
 def independent_rows(rows: list[list[int]]) -> list[int]:
     """Places of the rows that are not combinations of earlier ones, modulo the prime."""
     chosen: list[int] = []

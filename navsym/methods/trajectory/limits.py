@@ -62,7 +62,7 @@ def least_error(noise: float, bound: float, derivative: int = 1, order: int = 2)
 def best_ages(noise: float, bound: float, order: int = 2) -> Array:
     """Ages (order,) of the positions that reach the least error; the last one is the longest memory that helps.
 
-    Order 2: 0 and 2 sqrt(noise/bound). Order 3: 0, a third of, and (81 noise/bound)^(1/3). The same for each derivative.
+    Order 2: 0 and 2 sqrt(noise/bound). Order 3: 0, a third of, and (81 noise/bound)^(1/3). For each derivative alike.
     """
     check(noise, bound, 1, order)
     if order == 2:
@@ -113,7 +113,8 @@ def check(noise: float, bound: float, derivative: int, order: int) -> None:
     """Refuse what has no closed form, and bounds that are not positive numbers."""
     if (derivative, order) not in CONSTANTS:
         raise DomainError(
-            f"derivative, order: expected one of {sorted(CONSTANTS)}; got {(derivative, order)}; bound a derivative above"
+            f"derivative, order: expected one of {sorted(CONSTANTS)}; got {(derivative, order)}; "
+            "bound a derivative above the one that is asked for"
         )
     for name, value in (("noise", noise), ("bound", bound)):
         if not (math.isfinite(value) and value > 0):

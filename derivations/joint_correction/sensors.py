@@ -1,0 +1,89 @@
+"""What the paper does not ask: how few measurements are enough, and what is missing when some fail."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cache
+from itertools import combinations
+
+import sympy as sp
+
+from navsym.claims import Finding, Property, claim
+from navsym.methods.observability.chains import proved_rank
+from navsym.methods.observability.sensors import Restoration, restore
+from navsym.models.inertial.errors import full_model, joint_model
+from navsym.models.linear import LinearModel
+
+GENERIC = "all values of mu, omega and u but those of a proper algebraic set"
+METHOD = "hidden directions that are exhibited, and minors that are not zero"
+
+
+@cache
+def joint() -> LinearModel:
+    """Both groups, (2.6)-(2.9), with all four measurements."""
+    return joint_model()
+
+
+def measured_by(names: Sequence[str]) -> LinearModel:
+    """The same model with some of its measurements."""
+    model = joint()
+    kept = [model.measurements.index(name) for name in names]
+    return LinearModel(model.F, None, model.H.extract(kept, list(range(model.size))), model.states,
+                       measurements=tuple(names))
+
+
+def hidden(names: Sequence[str]) -> int:
+    """How many dimensions some of the measurements never show."""
+    return joint().size - proved_rank(measured_by(names)).rank
+
+
+def others(names: Sequence[str]) -> dict[str, list[sp.Expr]]:
+    """The measurements of the model that are not among the names."""
+    model = joint()
+    rows = zip(model.measurements, model.H.tolist(), strict=True)
+    return {name: row for name, row in rows if name not in names}
+
+
+def found(answer: Restoration, value: object) -> Finding:
+    """A value read off an answer whose minimality is proved."""
+    assert answer.proved, "a smaller set was not excluded"
+    return Finding(value, METHOD, scope=GENERIC)
+
+
+@claim("sensors.one_coordinate")
+def one_coordinate_is_enough():
+    """With velocity alone four variables are hidden; either coordinate of the position shows all four of them."""
+    velocity = ("sigma_c1", "sigma_c2")
+    answer = restore(measured_by(velocity), others(velocity))
+    return Property(printed=(4, (("sigma_M1",), ("sigma_M2",))), derived=found(answer, (answer.hidden, answer.sets)))
+
+
+@claim("sensors.triples")
+def three_of_four_with_both_velocities():
+    """Both velocities and one coordinate observe all ten variables; no other three of the four measurements do."""
+    names = joint().measurements
+    complete = tuple(triple for triple in combinations(names, 3) if not hidden(triple))
+    finding = Finding(complete, METHOD, scope=GENERIC)
+    velocities = ("sigma_c1", "sigma_c2")
+    return Property(printed=((*velocities, "sigma_M1"), (*velocities, "sigma_M2")), derived=finding)
+
+
+@claim("sensors.pairs")
+def no_two_are_enough():
+    """No two of the four measurements observe all ten variables: the pairs hide from one to four."""
+    counts = tuple(hidden(pair) for pair in combinations(joint().measurements, 2))
+    return Property(printed=(4, 1, 1, 1, 1, 2), derived=Finding(counts, METHOD, scope=GENERIC))
+
+
+@claim("sensors.position")
+def position_needs_exactly_two_variables():
+    """With position alone two measurements are missing, and x_3 and x_6 are the only two variables that will do."""
+    answer = restore(measured_by(("sigma_M1", "sigma_M2")))
+    return Property(printed=(2, (("x_3", "x_6"),)), derived=found(answer, (answer.needed, answer.sets)))
+
+
+@claim("sensors.full")
+def complete_model_needs_five():
+    """With all constant errors kept, five further measurements are needed, whatever they are, and five states will do."""
+    answer = restore(full_model())
+    return Property(printed=(5, 5), derived=found(answer, (answer.needed, answer.fewest)))
