@@ -33,14 +33,18 @@ RUNNING = [path for path in PAGES if any(kind in ("python", "sh", "toml") for ki
 def test_every_block_runs_in_order(path, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     shutil.copytree(DOCS.parent / "examples", tmp_path / "examples")
-    script = []
+    script, said = [], ""
     for kind, body in blocks(path):
-        if kind == "toml":
+        if kind == "text":                      # what the commands above it print, a line or its beginning
+            assert [line for line in body.splitlines() if spaced(line) not in said] == [], said
+        elif kind == "toml":
             (tmp_path / body.splitlines()[0].removeprefix("# file: ")).write_text(body, encoding="utf-8")
         elif kind == "sh":
+            capsys.readouterr()
             for line in body.splitlines():
                 program, *words = shlex.split(line)
                 assert program == "navsym" and run(words) == 0, (line, capsys.readouterr())
+            said = spaced(capsys.readouterr().out)
         elif kind == "python":
             script.append(body)
     if script:
@@ -49,6 +53,11 @@ def test_every_block_runs_in_order(path, tmp_path, monkeypatch, capsys):
             [sys.executable, "page.py"], cwd=tmp_path, capture_output=True, text=True, check=False, timeout=120
         )
         assert done.returncode == 0, done.stderr
+
+
+def spaced(text):
+    """Text with single spaces: a table may be wider or narrower."""
+    return " ".join(text.split())
 
 
 def test_the_blocks_are_found():

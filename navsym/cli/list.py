@@ -75,4 +75,5 @@ def as_text(rows: Sequence[Mapping[str, Any]]) -> str:
     cells = [
         (r["id"], r["status"] + ("" if r["decided"] else " (declared)"), r["title"], r["slip"] or "") for r in rows
     ]
-    return table(("claim", "verdict", "what it says", "slip"), cells) + f"\n{len(rows)} claims"
+    counted = f"{len(rows)} claim" + "s" * (len(rows) != 1)
+    return table(("claim", "verdict", "what it says", "slip"), cells) + f"\n{counted}"
