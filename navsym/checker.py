@@ -214,7 +214,7 @@ class Exact:
         """Powers of a sum that differ by integers are multiplied out; then sums of roots of unity are left."""
         key = max((k for m in self.terms for k, _ in m if k[1] == "sum"), key=lambda k: k[0], default=TURN)
         powers = [fmpq(dict(m).get(key, 0)) for m in self.terms]
-        n, lowest, parts = int(fmpq_poly(powers).denom()), min(powers, default=fmpq(0)).floor(), dict[Any, Any]()
+        n, lowest, parts = int(fmpq_poly(powers).denom()), min(powers, default=fmpq()).floor(), dict[Any, Any]()
         need(n <= 5040, "roots of a high order")
         for q, (m, c) in zip(powers, self.terms.items(), strict=True):
             rest, up = m - {(key, q)}, q.floor()
@@ -226,7 +226,7 @@ class Exact:
         turn = fmpq_poly(fmpz_poly.cyclotomic(2 * n)) if key == TURN else None
         return all(part % turn == 0 if turn else part.vanishes() for part in parts.values())
 
-PI = Exact(1).key("pi")
+PI = Exact({}).key("pi")
 (((TURN, _),),) = PI.key("cis").terms
 SURDS = {(p, fmpq(1, 2)): value(parse(text), {}, Exact).parts[0] for p, text in
          ((2, "2*cos(pi/4)"), (3, "2*cos(pi/6)"), (5, "4*cos(pi/5) - 1"))}
@@ -237,7 +237,7 @@ def surd(p: int, q: fmpq) -> Exact:
     return SURDS.get((p, part), Exact(p).key("sum", part)) * fmpq(p) ** int(q.floor())
 
 def generic(symbols: list[Any]) -> dict[str, Jet]:
-    return {s: Jet(Exact(1).key(f"symbol {s}")) for s in distinct(symbols)}
+    return {s: Jet(Exact({}).key(f"symbol {s}")) for s in distinct(symbols)}
 def table(item: Any, columns: int, names: dict[str, Jet], field: Any) -> list[list[Jet]]:
     return array(item, lambda row: array(row, lambda e: value(parse(e), names, field), columns))
 def dot(x: list[Jet], y: list[Jet]) -> Jet:
@@ -249,11 +249,11 @@ def identity(left: Any, right: Any, symbols: Any) -> None:
 
 def exponential(A: Any, X: Any, t: Any, symbols: Any) -> None:
     names, n = generic([*array(symbols, str), t]), len(A)
-    moving, start = {t: names.pop(t) + Jet(0, 1)}, {t: Jet(Exact(0))}
+    moving, start = {t: Jet(names.pop(t).parts[0], 1)}, {t: Jet(Exact(0))}
     F, Y, Z = (table(M, n, names | at, Exact) for M, at in ((A, {}), (X, moving), (X, start)))
     need(len(F) == len(Y) == n, "expected square matrices")
     for i, j in product(range(n), repeat=2):
-        rise = (Y[i][j] + Jet(0, 0)).parts[1]
+        rise = [*Y[i][j].parts, 0][1]
         need((dot(F[i], [row[j] for row in Y]) - Jet(rise)).parts[0].vanishes(), "X' differs from A X")
         need((Z[i][j].parts[0] + -int(i == j)).vanishes(), "X(0) differs from I")
 
@@ -307,13 +307,13 @@ class Problem:
     def focus(self, middle: arb, half: fmpq, basis: list[list[Jet]]) -> None:
         self.middle, self.half, self.basis = Jet(middle), half, basis
     def moving(self, s: arb) -> Jet:
-        return Jet(s, 1, 0) if self.half > 0 else Jet(s)
+        return Jet(s, 1, 0) if self.half else Jet(s)
     def names(self, s: arb) -> dict[str, Jet]:
         return {self.p: self.middle + self.moving(s) * Jet(arb(self.half))}
     def over(self, make: Callable[[arb], list[Jet]]) -> list[Any]:
         """Enclosures for all |s| <= 1 by Taylor's formula."""
         thin = make(arb(0))
-        parts = [x.parts[:2] + y.parts[2:] for x, y in zip(thin, make(EVERY) if self.half > 0 else thin, strict=True)]
+        parts = [x.parts[:2] + y.parts[2:] for x, y in zip(thin, make(EVERY) if self.half else thin, strict=True)]
         return [polynomial(part, EVERY) for part in parts]
     def mixed(self, q: list[Jet]) -> list[Jet]:
         return [dot(row, q) for row in self.basis] or q
@@ -370,8 +370,8 @@ def optimum(problem: Problem, dual: Any, contacts: Any, radii: Any) -> arb:
         return [polynomial(c, problem.moving(s)) + Jet(d) for c, d in zip(curves, shift, strict=True)]
     def system(s: arb, shift: list[arb]) -> list[Jet]:
         """-F, and behind it all derivatives of F."""
-        z, F = unknowns(s, shift), [*problem.target(s), *[Jet(0)] * (2 * l)]
-        J = [[Jet(0)] * len(z) for _ in z]
+        z = unknowns(s, shift)
+        F, J = [*problem.target(s), *z[m:]], [[Jet(0)] * len(z) for _ in z]
         for i, v, w in zip(range(l), range(m, m + l), range(m + l, m + 2 * l), strict=True):
             q = problem.rows(panels[i], z[v], s, 3)
             f = dot(z, q)

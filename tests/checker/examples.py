@@ -173,10 +173,16 @@ NOTHING = {
     "kind": "rank", "matrix": [["a - a", "0"]], "symbols": ["a"], "rank": 0, "point": {"a": "1"}, "rows": [],
     "null": [["1", "0"], ["0", "1"]],
 }  # fmt: skip
+# A chain of integrators: entries of the solution that do not move.
+CHAIN = EXPONENTIAL | {"matrix": [["0", "1"], ["0", "0"]], "symbols": [], "solution": [["1", "t"], ["0", "1"]]}
+# As many panels as cells are allowed, and each is seen to be good at once.
+FULL = EXACT | {"cells": 0, "dual": ["0.999"], "lower": "0.9", "upper": "1.1", "panels": [{
+    "measurement": 0, "from": "0", "to": "1", "sigma": "1", "H": ["(2*t - 1)**14"],
+}] * 199}  # fmt: skip
 ALL = {"kind": "all", "of": [IDENTITY, RANK]}
 GOOD = [
     IDENTITY, ROW, OFFSET, DIGITS, EXPONENTIAL, RANK, POSITIVITY, EDGE, CELLS, ALL,
-    TIGHT, REMAINDER, KERNEL, NOTHING, AT_ONCE, NO_CELLS, MANY_CELLS,
+    CHAIN, FULL, TIGHT, REMAINDER, KERNEL, NOTHING, AT_ONCE, NO_CELLS, MANY_CELLS,
     GAP, EXACT, SLIVER, TOUCH, PARABOLA, CONSTANT, FLAT,
     FLAT_LEFT, RANGE, MOVING, SLOPES,
 ]  # fmt: skip

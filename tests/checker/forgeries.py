@@ -149,6 +149,7 @@ FORGERIES = [
     (IDENTITY, ["right"], "sin(2*a) + 0/(a - a)", "division by zero"),
     (IDENTITY, ["right"], "sin(2*a) + 0*sqrt(a - a)", "division by zero"),
     (IDENTITY, ["right"], "sin(2*a) + 0*sqrt(%s)" % (2**101), "root of a large number"),
+    (IDENTITY, ["right"], f"sin(2*a) + 0*sqrt({2**60}/{3**40})", "root of a large number"),
     (IDENTITY, ["right"], "sin(2*a) + 0*a**1000000", "a large exponent"),
     (IDENTITY, ["right"], "sin(2*a) + 0*gamma(a)", "function gamma"),
     (IDENTITY, ["right"], "sin(2*a) + 0*sin_x(a)", "function sin_x"),

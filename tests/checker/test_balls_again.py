@@ -15,7 +15,8 @@ from tests.checker.examples import EDGE, GOOD, POSITIVITY
 from tests.checker.forgeries import verdict
 
 iv = mpmath.iv
-OPTIMA = [item for item in GOOD if item["kind"] in ("gap", "touch", "sliver")]
+# One with two hundred panels alike is left to the checker.
+OPTIMA = [o for o in GOOD if o["kind"] in ("gap", "touch", "sliver") and len(o["panels"]) < 9]
 RANGES = [item for item in GOOD if item["kind"] == "range"]
 CLOSE = 1e-5
 
