@@ -17,7 +17,6 @@
 # linear programme wrong, and by how much?
 
 # %%
-import os
 import tempfile
 from pathlib import Path
 
@@ -32,6 +31,7 @@ from navsym.methods.guaranteed.many import values_for_lengths
 from navsym.methods.guaranteed.solver import solve
 from navsym.methods.phases.continuation import phases
 from navsym.methods.phases.family import family_of
+from navsym.text.datasets import dataset, local_copy
 from navsym.text.modelfile import model_from
 
 CHANNEL = {
@@ -174,16 +174,16 @@ assert abs(reached / solution.value - 1) < 0.02
 # therefore known. Each estimator is applied to many windows.
 
 # %%
-FOLDER = Path(os.environ.get("NAVSYM_DATA", "../shared/data")) / "gnss_ins"
-if not (FOLDER / "nagoya_rover_1Hz_spp.pos").exists():
-    print("The recorded run is not here: set NAVSYM_DATA to a folder that holds gnss_ins/nagoya_*.")
+run, judge = (local_copy(dataset(name)) for name in ("nagoya-spp", "nagoya-reference"))
+if run is None or judge is None:
+    print("The recorded run is not here: navsym data get nagoya-spp and nagoya-reference, or set NAVSYM_DATA.")
     noise = None
 else:
-    lines = (FOLDER / "nagoya_rover_1Hz_spp.pos").read_text("utf-8").splitlines()
+    lines = run.read_text("utf-8").splitlines()
     rows = [line.split() for line in lines if line and not line.startswith("%")]
     clock = np.array([np.dot([3600.0, 60.0, 1.0], [float(p) for p in row[1].split(":")]) for row in rows])
     east = np.array([float(row[16]) for row in rows])
-    reference = np.genfromtxt(FOLDER / "nagoya_reference.csv", delimiter=",", skip_header=1, usecols=(0, 11))
+    reference = np.genfromtxt(judge, delimiter=",", skip_header=1, usecols=(0, 11))
     day = 86400.0 * (reference[0, 0] // 86400.0)
     at = np.interp(clock, reference[:, 0] - day, reference[:, 1])
     noise = east - at

@@ -143,6 +143,12 @@ HARD = {
         R(32, 5), [0, 0, 0, 1, 0, 0],
     ),
     "the dual is unique, its other contacts carry no weight": ([cos(6 * t / 5), t**4, e(t / 8)], R(27, 5), 0),
+    "contacts without weight lie where no grid point is": ([sin(t / 5), cos(7 * t / 4) - 1, cos(t)], 7, 0),
+    "the same with a dual of no round numbers": (
+        [cos(6 * t / 5) + sp.sqrt(2) * t**4 / 100, sp.pi * cos(6 * t / 5) / 7 + t**4 / 50,
+         sp.sqrt(3) * t**4 / 200 + e(t / 8)],
+        R(27, 5), 0,
+    ),
     "regressors vanish together at the start": ([t * sin(5 * t), t**5, cos(t) - 1], R(83, 10), R(83, 20)),
 }  # fmt: skip
 

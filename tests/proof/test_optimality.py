@@ -116,3 +116,9 @@ def test_decimals_are_rounded_outwards():
     third = exact("1") / 3
     assert exact(decimal(third, 5, -1)) < third < exact(decimal(third, 5, 1))
     assert np.isclose(float(exact(decimal(third, 5))), 1 / 3, atol=1e-5)
+
+
+@pytest.mark.parametrize("digits", [14, 30])
+def test_twenty_monomials_have_exact_contacts_at_few_digits_too(digits):
+    found = certify(problem([t**k for k in range(20)], [int(k == 11) for k in range(20)], 1), digits)
+    assert found.certificate["kind"] == "touch" and found.reaches(digits) and found.unique is True

@@ -67,14 +67,27 @@ def alternance_image(
     The unknowns are x, the inner places and the weights, in this order; the contacts are as many as the x.
     """
     F = residual(problem, found, centre)
-    with precision(ctx.prec // 2 + 32):  # Y and I - Y J need only be good for contraction
-        J = blocks(problem, found, [c + r * arb(0, 1) for c, r in zip(centre, radius, strict=True)])
-        Y = inverse(J)
-        if Y is None:
-            return None
-        shift = gathered(found, Y.applied(*F))
-        spread = gathered(found, Y.defect(J, *parted(found, [r * arb(0, 1) for r in radius])))
-    return inside([c - s + d for c, s, d in zip(centre, shift, spread, strict=True)], centre, radius)
+    for bits in (ctx.prec // 2 + 32, ctx.prec):  # Y and I - Y J need only be good for contraction
+        with precision(bits):
+            step = newton_step(problem, found, F, centre, radius)
+        image = None if step is None else inside([c + d for c, d in zip(centre, step, strict=True)], centre, radius)
+        if image is not None:
+            return image
+    return None
+
+
+def newton_step(
+    problem: Problem, found: Polished, F: tuple[arb_mat, arb_mat, arb_mat], centre: Sequence[arb],
+    radius: Sequence[arb],
+) -> list[arb] | None:  # fmt: skip
+    """``-Y F + (I - Y J)(Z - z)`` over the box Z around z; None where Y cannot be made."""
+    around = [r * arb(0, 1) for r in radius]
+    J = blocks(problem, found, [c + r for c, r in zip(centre, around, strict=True)])
+    Y = inverse(J)
+    if Y is None:
+        return None
+    shift, spread = gathered(found, Y.applied(*F)), gathered(found, Y.defect(J, *parted(found, around)))
+    return [d - s for s, d in zip(shift, spread, strict=True)]
 
 
 def parted(found: Polished, z: Sequence[arb]) -> tuple[arb_mat, arb_mat, arb_mat]:

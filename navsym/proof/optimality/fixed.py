@@ -31,6 +31,8 @@ from navsym.proof.optimality.whole import bounded
 from navsym.text.expression import to_text
 
 LIMIT = 20000
+#: With so many lost digits a second box is tried.
+CLOSE = 8
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -80,17 +82,31 @@ def certify(problem: Problem, digits: int = 30, basis: Basis | None = None) -> C
 
 
 def from_contacts(problem: Problem, basis: Basis, contacts: Contacts, digits: int) -> Certified:
-    """The exact-contact certificate where the contacts are regular, else the two-sided one."""
+    """The exact-contact certificate where the contacts are regular, else the two-sided one.
+
+    Functions that are close to dependent need a smaller box than the digits ask for: it is tried second.
+    """
     loss = lost_digits(basis)
-    bits = int(3.33 * (digits + 2 * loss + 25)) + 64
-    refined = polish(problem.panels, basis, contacts, bits, goal_of(digits + loss))
     # A ball in the regressors is an error that may differ from instant to instant: only two sides are rigorous then.
     exact_data = not any(panel.values for panel in problem.panels)
-    if exact_data and refined.regular and contacts.excess < 1e-7 and not refined.touching:
-        proved = touch(problem, basis, refined, digits, bits)
+    first = refined, bits = refined_to(problem, basis, contacts, digits)
+    for more in (0, loss) if loss >= CLOSE else (0,):
+        if more:
+            refined, bits = refined_to(problem, basis, contacts, digits + more)
+        if not exact_data or not refined.regular or contacts.excess >= 1e-7 or refined.touching:
+            break
+        proved = touch(problem, basis, refined, digits + more, bits)
         if proved is not None:
             return proved
+    refined, bits = first
     return gap(problem, basis, contacts, refined, digits, bits)
+
+
+def refined_to(problem: Problem, basis: Basis, contacts: Contacts, digits: int) -> tuple[Polished, int]:
+    """Contacts good for so many digits of the value, and the bits to compute them with."""
+    loss = lost_digits(basis)
+    bits = int(3.33 * (digits + 2 * loss + 25)) + 64
+    return polish(problem.panels, basis, contacts, bits, goal_of(digits + loss)), bits
 
 
 def goal_of(digits: int) -> float:
