@@ -118,6 +118,13 @@ def test_a_square_that_vanishes_on_a_line_is_not_positive(square):
     assert verdict.status == REFUTED
 
 
+def test_a_form_that_vanishes_on_a_line_is_not_positive():
+    c = sp.Symbol("c", real=True)
+    u, v, w = a + sp.Rational(6, 5), b + 2, c + sp.Rational(1, 2)
+    form = sp.expand(19 * u**2 - 10 * u * v - 16 * u * w + 3 * v**2 + 6 * w**2)
+    assert decide(Bound(form, ">", sp.Integer(0))).status == REFUTED
+
+
 def test_what_is_only_confirmed_says_what_it_takes_to_exist():
     n = sp.Symbol("n", integer=True)
     verdict = decide(Bound(sp.log(n**2) * sp.tanh(a), ">=", 2 * sp.log(n) * sp.tanh(a), {a: (2, 4)}))

@@ -174,14 +174,26 @@ def diagonals(limits: dict[sp.Symbol, Range]) -> Iterator[Point]:
 
 
 def descents(goal: sp.Expr, limits: dict[sp.Symbol, Range]) -> Iterator[Point]:
-    """The lowest places that a descent finds, with every coordinate snapped in the same way."""
+    """The lowest places that a descent finds, with every coordinate snapped in the same way.
+
+    Then one coordinate after the other is held at a simple number and the rest descends again: what is
+    lowest along a whole line has points there that cannot be rounded at once.
+    """
     if not limits or any(limit.integer for limit in limits.values()):
         return
-    for place in lowest(goal, limits):
-        for snap in snappings():
-            point = {symbol: snap(place[symbol]) for symbol in limits}
+    held: Point = {}
+    while len(held) < len(limits):
+        rest = {symbol: limit for symbol, limit in limits.items() if symbol not in held}
+        places = list(lowest(goal.subs(held), rest))
+        for place, snap in itertools.product(places, snappings()):
+            point = {**held, **{symbol: snap(place[symbol]) for symbol in rest}}
             if all(limits[symbol].contains(value) for symbol, value in point.items()):
                 yield point
+        symbol = next(iter(rest))
+        value = to_rational(DENOMINATORS[5], places[0][symbol]) if places else None
+        if value is None or not limits[symbol].contains(value):
+            return
+        held[symbol] = value
 
 
 def snappings() -> Iterator[Callable[[Fraction], sp.Expr]]:
