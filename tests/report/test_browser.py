@@ -203,6 +203,7 @@ def test_on_paper_wide_formulas_are_set_smaller_and_controls_are_left_out(real, 
     browser.value("window.dispatchEvent(new Event('afterprint'))")
     assert browser.value(f"Math.max(...{widths})") == before
     browser.call("Emulation.setEmulatedMedia", media="print")
+    assert browser.value("[...document.querySelectorAll('.sides details')].every(d => d.offsetHeight > 0)")
     assert browser.value("getComputedStyle(document.querySelector('.filters')).display") == "none"
     browser.call("Emulation.setEmulatedMedia", media="")
 
