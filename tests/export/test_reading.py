@@ -68,3 +68,10 @@ def test_a_name_that_is_part_of_an_end_is_not_taken_for_the_argument() -> None:
     statement = Equation(p + 1, 1 + p, {p: (-sp.pi, sp.pi)})
     function = function_of([material("m:1", statement, decide(statement))])
     assert function.inputs[0].text == "-pi <= p <= pi"
+
+
+def test_the_header_lists_what_the_code_calls(samples, programs) -> None:
+    assert "Calls    expm1, fabs, sin, sinh of math.h;" in header(samples.by_name("holes"), LICENSE)
+    assert "Calls    expm1f, fabsf, sinf, sinhf of math.h;" in header(samples.by_name("holes", "float"), LICENSE)
+    extremes = programs.functions("terrain-t-G-extremes")[0]
+    assert "Calls    fabs, sqrt of math.h; no allocation, no state" in header(extremes, LICENSE)

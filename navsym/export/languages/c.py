@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Sequence
 
 from navsym.export.accuracy.vectors import Vector
@@ -108,9 +109,17 @@ def header(function: ExportedFunction, license_: str) -> str:
     return HEADER.format(
         license=license_, guard=f"NAVSYM_{function.name.upper()}_H", signature=signature(function),
         title=safe_comment(function.sources[0].title or function.name),
-        summary="\n".join(safe_comment(f" * {line}") for line in summary(function)),
+        summary="\n".join(safe_comment(f" * {line}") for line in (*summary(function), called(function))),
         parameters="\n".join(map(safe_comment, params)),
     )  # fmt: skip
+
+
+def called(function: ExportedFunction) -> str:
+    """Which functions of the C library the code calls; it needs nothing else of it."""
+    known = {text.partition("(")[0] for text in spelling(function.arithmetic.name).calls.values()}
+    code = re.sub(r"/\*.*?\*/", "", source(function, ""), flags=re.S)
+    found = sorted(set(re.findall(r"\b(\w+)\(", code)) & {n for n in known if "navsym" not in n})
+    return f"Calls    {', '.join(found) or 'nothing'}{' of math.h' if found else ''}; no allocation, no state"
 
 
 def argument_texts(function: ExportedFunction) -> list[str]:
