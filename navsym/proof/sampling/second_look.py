@@ -31,7 +31,7 @@ BITS = 2048
 ORDINARY = 24
 SHARP = 1e-100
 FAR = tuple(sp.Integer(10) ** k for k in (3, 12, 31))
-NEAR = tuple(1 / value for value in FAR)
+NEAR = tuple(sp.Rational(1, 10**k) for k in (3, 12, 31, 75, 150, 300))
 DENOMINATORS = (1, 2, 3, 4, 6, 12, 100, 10**12, 10**150)
 TOUCHING = 1e-60
 
