@@ -11,6 +11,7 @@ from typing import Annotated, Any
 import typer
 
 from navsym.cli.output import emit, remark, table
+from navsym.errors import DomainError, NavsymError
 
 SHOWN = 12
 
@@ -42,37 +43,42 @@ def command(
 
     Example: navsym track examples/drive.csv --order 3 --sigma 0.5
     """
-    from navsym.errors import DomainError, NavsymError
-    from navsym.methods.trajectory.document import document
-    from navsym.methods.trajectory.estimate import Settings
-    from navsym.methods.trajectory.tracks import track_of
-    from navsym.text.readers_tracks import read_track
-
-    # A window asks for the sliding window; every other choice has to be named.
-    chosen = method or ("window" if window is not None else "smoother")
-    settings = Settings(chosen, order, window, gate, sigma is not None)  # type: ignore[arg-type]
+    chosen = method_of(method, window)
     if sigma is not None and not 0 < sigma < float("inf"):
-        raise DomainError(
-            f"expected a positive number of metres; got {sigma}; leave it out if unknown", where="--sigma"
-        )
-    if window is not None and chosen not in ("window", "guaranteed"):
-        raise DomainError(
-            f"expected method window or guaranteed with it; got {chosen}; drop one", where="--window"
-        )
-    read = read_track(file, policy)  # type: ignore[arg-type]
-    try:
-        given = read.sigma if sigma is None else sigma
-        track = track_of(read.t - read.t[0], read.latitude, read.longitude, read.height, given)
-        found = document(
-            read.t, track, settings, lines=read.lines, warnings=read.warnings, repairs=read.repairs
-        )
-    except NavsymError as error:
-        raise error.at(str(file)) from None
+        message = f"expected a positive number of metres; got {sigma}; leave it out if unknown"
+        raise DomainError(message, where="--sigma")
+    found = answer(file, policy, sigma, {"method": chosen, "order": order, "window": window, "gate": gate})
     for line in found["warnings"]:
         remark(f"warning: {line}")
     for line in found["repairs"]:
         remark(f"repaired: {line}")
     emit(found, as_json=json_, text=lambda: shown(found))
+
+
+def method_of(named: str | None, window: float | None) -> str:
+    """The method: a window asks for the sliding window, every other choice has to be named."""
+    chosen = named or ("window" if window is not None else "smoother")
+    if window is not None and chosen not in ("window", "guaranteed"):
+        message = f"expected method window or guaranteed with it; got {chosen}; drop one"
+        raise DomainError(message, where="--window")
+    return chosen
+
+
+def answer(file: Path, policy: str, sigma: float | None, chosen: dict[str, Any]) -> dict[str, Any]:
+    """The document of the estimate; ``chosen`` goes to ``Settings``, which checks it."""
+    from navsym.methods.trajectory.document import document
+    from navsym.methods.trajectory.estimate import Settings
+    from navsym.methods.trajectory.tracks import track_of
+    from navsym.text.readers_tracks import read_track
+
+    settings = Settings(**chosen, fixed_scale=sigma is not None)
+    read = read_track(file, policy)  # type: ignore[arg-type]
+    try:
+        given = read.sigma if sigma is None else sigma
+        track = track_of(read.t - read.t[0], read.latitude, read.longitude, read.height, given)
+        return document(read.t, track, settings, lines=read.lines, warnings=read.warnings, repairs=read.repairs)
+    except NavsymError as error:
+        raise error.at(str(file)) from None
 
 
 def shown(found: dict[str, Any]) -> str:
