@@ -7,6 +7,7 @@ import json
 import numpy as np
 import pytest
 import sympy as sp
+from flint import arb
 from scipy.linalg import expm
 from scipy.optimize import linprog
 
@@ -14,6 +15,7 @@ from navsym import checker
 from navsym.errors import DomainError, NavsymError
 from navsym.methods.guaranteed.problem import from_file
 from navsym.methods.guaranteed.solver import solve
+from navsym.methods.guaranteed.varying import largest
 from navsym.text.modelfile import model_from
 
 
@@ -72,3 +74,23 @@ def test_ends_that_are_not_rational_and_singularities_are_refused():
         model([["-2*t"]], ["1"], "pi", ["1"])
     with pytest.raises(NavsymError, match="steps of order"):
         model([["1/(t-1/2)"]], ["1"], "1", ["1"])
+
+
+@pytest.mark.parametrize("h", ["sqrt(t*(1 - t) + 1/10)", "1/(t*(1 - t) + 1/10)"])
+def test_a_regressor_that_one_ball_cannot_enclose_still_has_the_error_of_the_motion(h):
+    F = [["0", "exp(t)"], ["0", "0"]]
+    assert model(F, [h, "0"], "1", ["0", "1"]).error >= model(F, ["1", "0"], "1", ["0", "1"]).error / 10
+
+
+@pytest.mark.parametrize("h", [["1/(3*t - 1)", "0"], ["1", "log(t - 1/3)"], ["0", "1/t"]])
+def test_a_regressor_that_is_singular_on_the_interval_is_refused(h):
+    with pytest.raises(NavsymError, match="expected functions that are finite"):
+        model([["0", "t"], ["0", "0"]], h, "1", ["0", "1"])
+
+
+def test_the_largest_of_balls_is_no_number_when_one_of_them_is_none():
+    assert 4 <= largest([arb(1), arb(3, 1), arb(2)]) < 4.001
+    for at in range(3):
+        values = [arb(1), arb(2), arb(3)]
+        values[at] = arb("nan")
+        assert not largest(values).is_finite()

@@ -12,6 +12,7 @@ Moore, Interval Analysis, chapter 11.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import sympy as sp
@@ -128,7 +129,7 @@ def taylor_step(
         for j in range(n):
             terms_ = enumerate(zip(parts, polynomials[i][j], strict=True))
             away = sum((abs(part[i][j] - arb(c)) * h**k for k, (part, c) in terms_), arb(0))
-            error = max(error, (away + rest).upper(), key=lambda e: float(e.mid()))
+            error = largest([error, away + rest])
             value = sum((part[i][j] * h**k for k, part in enumerate(parts)), arb(0))
             after[i][j] = value + arb(0, rest.upper())
     return Step(at - size, at, polynomials, error), after
@@ -158,7 +159,15 @@ def expanded(F: list[list[list[arb]]], Psi: Matrix) -> list[Matrix]:
 
 def norm(A: Matrix) -> arb:
     """Largest sum of moduli of a row."""
-    return max((sum((abs(a).upper() for a in row), arb(0)).upper() for row in A), key=lambda e: float(e.mid()))
+    return largest([sum((abs(a).upper() for a in row), arb(0)) for row in A])
+
+
+def largest(values: Sequence[arb]) -> arb:
+    """An exact number not below any of the balls; no number at all where one of them is none."""
+    top = values[0].upper()
+    for value in values[1:]:
+        top = top.max(value.upper()).upper()
+    return top
 
 
 def regressors_of(
@@ -170,8 +179,8 @@ def regressors_of(
     Psi = [[horner(c, local) for c in row] for row in step.polynomials]
     rows, bound = [], arb(0)
     for measurement in found.measurements:
-        sizes = [enclose_on(h, found.time, step, shift) for h in measurement.h]
-        bound = max(bound, (sum(sizes, arb(0)) * step.error).upper(), key=lambda e: float(e.mid()))
+        sizes = [enclose_on(h, found.time, shift, step.start, step.end) for h in measurement.h]
+        bound = largest([bound, sum(sizes, arb(0)) * step.error])
         rows.append(
             # Unevaluated zeros are left out: sympy would study the signs of long polynomials for them.
             tuple(sp.Add(ERROR, *(h * Psi[i][j] for i, h in enumerate(measurement.h) if h != 0)) for j in range(n))
@@ -186,13 +195,19 @@ def horner(c: list[fmpq], at: sp.Expr) -> sp.Expr:
     return value
 
 
-def enclose_on(h: sp.Expr, time: sp.Symbol, step: Step, shift: sp.Expr) -> arb:
-    """Largest modulus of h on a step moved by ``shift``."""
-    place = interval(step.start, step.end) + enclose(shift, bits=BITS)
-    return abs(enclose(h, {time: place}, bits=BITS)).upper()
+def enclose_on(h: sp.Expr, time: sp.Symbol, shift: sp.Expr, start: fmpq, end: fmpq, halvings: int = 8) -> arb:
+    """Largest modulus of h on a step moved by ``shift``; parts of it where one ball is too coarse to be a number."""
+    place = interval(start, end) + enclose(shift, bits=BITS)
+    size = abs(enclose(h, {time: place}, bits=BITS)).upper()
+    if size.is_finite() or halvings == 0:
+        return size
+    middle = (start + end) / 2
+    return largest([enclose_on(h, time, shift, *part, halvings - 1) for part in ((start, middle), (middle, end))])
 
 
 def error_bound(bounds: list[arb]) -> fmpq:
-    """A short rational above all bounds, never zero."""
-    largest = rational(max(bounds, key=lambda e: float(e.mid())))
-    return max(exact(decimal(largest, 3, 1)), fmpq(1, 10**DIGITS))
+    """A short rational above all bounds, never zero. Raises DomainError where one is no number."""
+    top = largest(bounds)
+    if not top.is_finite():
+        raise DomainError("h: expected functions that are finite on the interval; got a singular one; change it")
+    return max(exact(decimal(top, 3, 1)), fmpq(1, 10**DIGITS))
