@@ -114,6 +114,7 @@ def test_formulas_of_the_sheets_are_mathml_with_the_right_number_of_parts(module
         (r"x_1^2", "<msubsup><mi>x</mi><mn>1</mn><mn>2</mn></msubsup>"),
         (r"\sum_{j=1}^l", "<munderover><mo>∑</mo>"),
         (r"\dot y", '<mover accent="true"><mi>y</mi>'),
+        (r"|\ddot x| \le M", '<mover accent="true"><mi>x</mi><mo stretchy="false">¨</mo></mover>'),
         (r"\begin{pmatrix}1&0\\0&1\end{pmatrix}", "<mtable><mtr><mtd>"),
         (r"^2", "<msup><mrow></mrow><mn>2</mn></msup>"),
         (r"\left(x\right)^2", '<mo stretchy="false">(</mo>'),

@@ -30,7 +30,7 @@ SIGNS = {
     "{": "{", "}": "}", "%": "%", "top": "⊤", "mid": "∣", "forall": "∀", "dots": "…", "cdots": "⋯",
 }  # fmt: skip
 SPACES = {",": "0.17em", ";": "0.28em", " ": "0.25em", "quad": "1em", "qquad": "2em"}
-ACCENTS = {"dot": "˙", "hat": "^", "tilde": "~", "bar": "¯", "overline": "¯"}
+ACCENTS = {"dot": "˙", "ddot": "¨", "hat": "^", "tilde": "~", "bar": "¯", "overline": "¯"}
 BRACKETS = "()[]|./"
 RELATIONS = frozenset(("=", "<", ">", "le", "ge", "ne", "ll", "gg", "approx"))
 BINARY = frozenset(("+", "-", "times", "cdot"))
