@@ -209,6 +209,7 @@ def test_a_change_at_zero_is_found_and_the_mirrored_regime_has_its_closed_form()
 def test_a_boundary_that_is_not_located_is_enclosed_by_what_is_proved_on_both_sides(monkeypatch):
     monkeypatch.setattr(events, "exact_root", lambda *_: None)
     monkeypatch.setattr(events, "proves", lambda *_: False)
+    monkeypatch.setattr(events, "proves_walking", lambda *_: False)
     answer = phases(family_of(model_from(VELOCITY), "y3", "T"), sp.Rational(1), sp.Rational(3))
     (edge,) = answer.boundaries
     assert not edge.proved and "not enclosed" in edge.why

@@ -197,18 +197,17 @@ def stretch(section: Section, certify: bool, steps: Steps) -> Phases:
 
 def without_accidents(family: Family, spans: list[Span]) -> list[Span]:
     """Spans without short ones between neighbours that are proved to follow each other: there contacts merge, and
-    the search in double precision takes one pattern for another."""
+    the search in double precision takes one pattern for another, or for several."""
     short = SHORT * (spans[-1].upper - spans[0].lower)
     kept, rest = spans[:1], spans[1:]
     while rest:
-        span = rest.pop(0)
-        if rest and span.upper - span.lower < short:
-            change = boundary(family, kept[-1], rest[0], None, None)
-            if change.proved:
-                cut = fraction_of(rational(enclose(middle_of(change), bits=200)))
-                kept[-1], rest[0] = replace(kept[-1], upper=cut), replace(rest[0], lower=cut)
-                continue
-        kept.append(span)
+        beyond = next((k for k, span in enumerate(rest) if span.upper - span.lower >= short), 0)
+        change = boundary(family, kept[-1], rest[beyond], None, None) if beyond else None
+        if change is not None and change.proved:
+            cut = fraction_of(rational(enclose(middle_of(change), bits=200)))
+            kept[-1], rest = replace(kept[-1], upper=cut), rest[beyond:]
+            rest[0] = replace(rest[0], lower=cut)
+        kept.append(rest.pop(0))
     return kept
 
 
