@@ -252,7 +252,7 @@ show(experiment.position_error_printed)
 # positions that are wrong by anything up to $\sigma$, when of the motion only $|\ddot x| \le M$ is known? Exactly
 # $2\sqrt{\sigma M}$, and the difference of **two positions**, $2\sqrt{\sigma/M}$ apart, reaches it. Older positions,
 # and all that lie between, add nothing to the guarantee: there is a motion that never leaves the noise, may be
-# measured as rest for ever, and moves at this speed now. With a bounded jerk three positions do it, of the ages 0 : 1 : 3.
+# measured as rest for ever, and moves at this speed now. With a bounded jerk three do it, ages 0 : 1 : 3.
 
 # %%
 for found in (*limits.RULES, *limits.MOTIONS, limits.yawing_of_the_experiment):
