@@ -28,7 +28,7 @@ ASSIGNMENT = re.compile(
     r"^\s+(?:(?:const|let)\s+(?:double\s+|auto\s+)?)?(?:[\w.\[\]: ]+|out\[[^=]*\]|nv_r\(\d+\)) = .*|^\s{12,}.*,$"
 )
 RESULT = re.compile(
-    r"^\s+(?:r\d+|result\.(?!status)[\w\[\]]+|nv_r\(\d+\)|out\[[^=]*\]|(?:w|t\d+)\[k\]) = ([^;\n]+)", re.M
+    r"^\s+(?:r\d+|result\.(?!status)[\w\[\]]+|nv_r\(\d+\)|out\[[^=]*\]|\w+\[k\]) = ([^;\n]+)", re.M
 )
 SOURCE_OF = {
     "c": "{name}.c", "cpp": "navsym_functions.hpp", "python": "navsym_functions.py", "wasm": "{name}.c",
