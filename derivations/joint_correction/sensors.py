@@ -84,6 +84,6 @@ def position_needs_exactly_two_variables():
 
 @claim("sensors.full")
 def complete_model_needs_five():
-    """With all constant errors kept, five further measurements are needed, whatever they are, and five states will do."""
+    """With all constant errors kept, five more measurements are needed, whatever they are, and five states will do."""
     answer = restore(full_model())
     return Property(printed=(5, 5), derived=found(answer, (answer.needed, answer.fewest)))
