@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import time
+from pathlib import Path
+
 import pytest
 
 from navsym.errors import NavsymError
@@ -51,3 +54,24 @@ def test_a_folder_without_cases_is_said(table):
     (table / "empty").mkdir()
     with pytest.raises(NavsymError, match="expected cases in empty"):
         cases.batches(table, "empty", 3)
+
+
+ENDLESS = """
+import os, time
+def test_endless(request):
+    (request.config.rootpath / "running").write_text(str(os.getpid()))
+    time.sleep(600)
+"""
+
+
+@pytest.mark.slow
+def test_a_batch_that_is_given_up_leaves_nothing_running(table):
+    (table / "test_table.py").write_text(ENDLESS)
+    found = run_campaign("c", cases.batches(table, "test_table.py", 3), cases.judge, seconds=30)
+    assert "more than 30 s" in found["stopped"][0]
+    number = int((table / "running").read_text())
+    for _ in range(50):  # until the kernel has ended it
+        if not Path(f"/proc/{number}").exists():
+            return
+        time.sleep(0.1)
+    pytest.fail(f"pytest is still running as {number}")

@@ -5,6 +5,8 @@ What is kept depends on the sources of the cases too, so that an attack that was
 
 from __future__ import annotations
 
+import functools
+import os
 import subprocess
 import sys
 import tempfile
@@ -15,9 +17,11 @@ from xml.etree import ElementTree
 
 from navsym.errors import NavsymError
 from navsym.methods.campaigns.registry import Batch, Result, result
+from navsym.proof.sandbox import die_with_parent
 from navsym.store import key_of
 
 EVERY = ("-m", "slow or not slow")
+SECONDS_TO_COLLECT = 300
 
 
 def batches(root: Path, folder: str, size: int) -> list[Batch]:
@@ -37,7 +41,9 @@ def sources_of(place: Path) -> list[Path]:
 def case_names(root: Path, folder: str) -> list[str]:
     """Names of all cases, as pytest collects them, the slow ones included."""
     command = pytest_of(root, "--collect-only", "-q", *EVERY, folder)
-    told = subprocess.run(command, cwd=root, capture_output=True, text=True, check=False)
+    told = subprocess.run(
+        command, cwd=root, capture_output=True, text=True, check=False, timeout=SECONDS_TO_COLLECT
+    )
     names = [line for line in told.stdout.splitlines() if "::" in line]
     if told.returncode != 0 or not names:
         raise NavsymError(f"expected cases in {folder}; got {told.stdout[-300:]} {told.stderr[-300:]}; install pytest")
@@ -49,13 +55,19 @@ def pytest_of(root: Path, *words: str) -> list[str]:
 
 
 def judge(task: tuple[str, Sequence[str]]) -> Result:
-    """Counts of the cases by outcome; wrong: those that failed; open: those that were skipped."""
+    """Counts of the cases by outcome; wrong: those that failed; open: those that were skipped.
+
+    pytest has no limit of time of its own here: the campaign ends this process, and pytest ends with it.
+    """
     root, names = Path(task[0]), task[1]
     with tempfile.TemporaryDirectory() as folder:
         listed, record = Path(folder) / "cases", Path(folder) / "record.xml"
         listed.write_text("\n".join(names), encoding="utf-8")
         command = pytest_of(root, "-q", *EVERY, f"--junitxml={record}", f"@{listed}")
-        told = subprocess.run(command, cwd=root, capture_output=True, text=True, check=False)
+        mortal = functools.partial(die_with_parent, os.getpid())
+        told = subprocess.run(
+            command, cwd=root, capture_output=True, text=True, check=False, timeout=None, preexec_fn=mortal
+        )
         found = outcomes(record)
     if found.total() != len(names):
         raise NavsymError(f"expected {len(names)} outcomes; got {found.total()}: {told.stdout[-300:]}")

@@ -27,11 +27,14 @@ from pathlib import Path
 from typing import Any
 
 from navsym.methods.campaigns.registry import Batch, Result, result
+from navsym.methods.sweeps.plan import Sweep
+from navsym.methods.sweeps.run import run_sweep
 from navsym.store import Store, StoreError, key_of
 
 WRITERS = 4
 ROUNDS_PER_BATCH = 10  # each kills all four writers
 LONGEST = 0.25  # seconds until a round is killed
+SECONDS_TO_MOUNT, SECONDS_TO_VERIFY, SECONDS_TO_DIE = 30, 600, 30  # longer than any machine needs
 
 
 # -- kills -----------------------------------------------------------------------------------
@@ -70,7 +73,7 @@ def one_round(folder: Path, place: int, seconds: float) -> int:
     for child in children:
         deaths += child.poll() is None
         child.send_signal(signal.SIGKILL)
-        child.wait()
+        child.wait(SECONDS_TO_DIE)
         assert child.stdout is not None
         child.stdout.close()
     return deaths
@@ -174,7 +177,8 @@ def full_disk(folder: Path) -> list[str]:
     small = folder / "small"
     small.mkdir()
     mounted = subprocess.run(
-        ["mount", "-t", "tmpfs", "-o", "size=1m", "tmpfs", str(small)], capture_output=True, check=False
+        ["mount", "-t", "tmpfs", "-o", "size=1m", "tmpfs", str(small)],
+        capture_output=True, check=False, timeout=SECONDS_TO_MOUNT,
     )
     if mounted.returncode != 0:
         return full_by_limit(folder)
@@ -184,7 +188,7 @@ def full_disk(folder: Path) -> list[str]:
         found = complaints(small / "s.sqlite", old, said, "full")
         return found + verb_on_full_disk(small)
     finally:
-        subprocess.run(["umount", "-l", str(small)], check=False)
+        subprocess.run(["umount", "-l", str(small)], check=False, timeout=SECONDS_TO_MOUNT)
 
 
 def full_by_limit(folder: Path) -> list[str]:
@@ -213,10 +217,28 @@ def verb_on_full_disk(folder: Path) -> list[str]:
                 raise
     command = [sys.executable, "-m", "navsym", "verify", "alpha_beta_filter", "--json"]
     environment = {**os.environ, "NAVSYM_CACHE": str(folder)}
-    ended = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+    ended = subprocess.run(
+        command, env=environment, capture_output=True, text=True, check=False, timeout=SECONDS_TO_VERIFY
+    )
     unsaved = json.loads(ended.stdout).get("unsaved", [])
     fine = ended.returncode == 3 and len(unsaved) > 10 and unsaved[0] in ended.stderr
     return [] if fine and "Traceback" not in ended.stderr else [f"{ended.returncode}: {ended.stderr[-300:]}"]
+
+
+def no_room_for_shards(folder: Path) -> list[str]:
+    """A sweep whose shards find no room: every one is named, all rows are there, and nothing is half written."""
+    study = Sweep("filter", jobs=4, runs=4, steps=6)
+    handler = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (2**9, before[1]))  # a shard is larger
+    try:
+        document = run_sweep(study, folder=folder / "shards", size=1)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+        signal.signal(signal.SIGXFSZ, handler)
+    rows = run_sweep(study, folder=folder / "again", size=1)["rows"]
+    fine = len(document["unsaved"]) == 4 and document["rows"] == rows and not any((folder / "shards").iterdir())
+    return [] if fine else [f"{document['unsaved']}, {[path.name for path in (folder / 'shards').iterdir()]}"]
 
 
 def read_only_folder(folder: Path) -> list[str]:
@@ -234,13 +256,14 @@ def read_only_folder(folder: Path) -> list[str]:
             os.chmod(place / "s.sqlite", 0o600)
         return complaints(place / "s.sqlite", old, said, "permissions")
     bind = ["mount", "--bind", str(place), str(place)]
-    if subprocess.run(bind, capture_output=True, check=False).returncode != 0:
+    if subprocess.run(bind, capture_output=True, check=False, timeout=SECONDS_TO_MOUNT).returncode != 0:
         raise NotPermittedError("root writes everywhere, and nothing may be mounted here")
     try:
-        subprocess.run(["mount", "-o", "remount,ro,bind", str(place)], check=True, capture_output=True)
+        remount = ["mount", "-o", "remount,ro,bind", str(place)]
+        subprocess.run(remount, check=True, capture_output=True, timeout=SECONDS_TO_MOUNT)
         said = refused_writes(place / "s.sqlite")
     finally:
-        subprocess.run(["umount", "-l", str(place)], check=False)
+        subprocess.run(["umount", "-l", str(place)], check=False, timeout=SECONDS_TO_MOUNT)
     return complaints(place / "s.sqlite", old, said, "permissions")
 
 
@@ -253,7 +276,7 @@ def stale_lock(folder: Path) -> list[str]:
     holder.stdout.readline()
     found = complaints(path, old, refused_writes(path, 1), "locked")
     holder.kill()
-    holder.communicate()
+    holder.communicate(timeout=SECONDS_TO_DIE)
     return found + (["a dead writer's lock is still held"] if refused_writes(path, 1) else [])
 
 
@@ -291,6 +314,7 @@ def nothing_of_ours(folder: Path) -> list[str]:
 TROUBLES: dict[str, Callable[[Path], list[str]]] = {
     "full disk": full_disk,
     "file size limit": full_by_limit,
+    "file size limit under a sweep": no_room_for_shards,
     "read-only folder": read_only_folder,
     "stale lock": stale_lock,
     "clock set back": clock_set_back,
