@@ -28,6 +28,7 @@ NEAR_MISSES = (
 )
 
 FALSE_BOUNDS = (
+    Bound(sp.sqrt(x - 1 - sp.Rational(1, 10**120)), ">", sp.Integer(0), {x: (1 + sp.Rational(1, 10**120), 2)}),
     Bound(sp.tan(x) * (1 - sp.Rational(1, 10**120)), ">=", x, {x: (0, sp.Rational(3, 2))}),
     Bound(sp.sin(a) ** 2 + sp.cos(a) ** 2, "<=", 1 - TINY),
     Bound(sp.pi, "<", sp.Rational(31415926535897932384626433832795028841971, 10**40)),

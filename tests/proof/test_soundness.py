@@ -330,3 +330,8 @@ def test_a_root_of_a_quotient_with_a_negative_constant_below_keeps_its_sign():
     expression = (1 + sp.sqrt(radicand)) ** 2
     assert algebraic_sign(expression, ranges([x], {x: (2, 4)})).sign >= Sign.NONNEGATIVE
     assert algebraic_sign(-expression, ranges([x], {x: (2, 4)})).sign == Sign.UNKNOWN
+
+
+def test_a_point_where_an_inner_part_is_infinite_refutes_nothing():
+    x = sp.Symbol("x", real=True)
+    assert decide(Bound(1 / sp.log(x), "<", sp.Integer(0), {x: (0, sp.S.Half)})).status != REFUTED

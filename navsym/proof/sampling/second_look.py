@@ -95,7 +95,7 @@ def sharp_value(difference: sp.Expr, point: Point, sides: Sequence[sp.Expr]) -> 
     values of the functions are put in first.
     """
     try:
-        if not all(value_at(tape(side), point, BITS).is_finite() for side in sides):
+        if not all(exists_at(side, point) for side in sides):
             return None
         ball = value_at(tape(difference), point, BITS)
         if ball.is_finite() and (not ball.contains(0) or ball.rad() < SHARP):
@@ -104,6 +104,17 @@ def sharp_value(difference: sp.Expr, point: Point, sides: Sequence[sp.Expr]) -> 
     except (UnsupportedError, OutsideLanguageError):
         return None
     return ball if ball.is_finite() else None
+
+
+def exists_at(side: sp.Expr, point: Point) -> bool:
+    """A value by balls, or, as for a root of zero at an end of the range, with the exact numbers put in."""
+    if value_at(tape(side), point, BITS).is_finite():
+        return True
+    # every part has to exist: 1/log(0) would come out as 1/zoo = 0
+    parts = [node.subs(point) for node in sp.preorder_traversal(side) if not node.is_Atom]
+    if any(part.has(sp.nan, sp.zoo, sp.oo, -sp.oo, sp.I) for part in parts):
+        return False
+    return all(enclose(tape(part), {}, BITS).is_finite() for part in parts)
 
 
 def is_zero_at(difference: sp.Expr, point: Point) -> bool:
