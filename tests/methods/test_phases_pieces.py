@@ -134,6 +134,25 @@ def test_a_contact_at_a_switch_touches_twice_and_is_not_tried():
     assert doubled(family.exact(T), forced(family, T, span.pattern, contacts, T))
 
 
+# -- fewer contacts than unknowns ------------------------------------------------------------------
+
+
+def test_one_contact_that_leaves_the_dual_free_has_a_closed_form_with_three_measurements():
+    """The speed is measured: two units for every length. x = (1, 2, 1) keeps all three bounds up to T = 4."""
+    document = {
+        "model": {"name": "inertial", "states": ["x", "v", "a"], "F": [["0", "1", "0"], ["0", "0", "1"], ["0"] * 3]},
+        "parameters": {"T": ["0", "4"]}, "interval": {"T": "T"},
+        "measurement": [
+            {"name": "position", "h": ["1", "0", "0"], "sigma": "1"},
+            {"name": "velocity", "h": ["0", "1", "0"], "sigma": "2"},
+            {"name": "acceleration", "h": ["0", "0", "1"], "sigma": "3"},
+        ],
+    }  # fmt: skip
+    answer = phases(family_of(model_from(document), "v", "T"), sp.Integer(0), sp.Integer(4))
+    (regime,) = answer.regimes
+    assert regime.status == "PROVED" and regime.closed.value == 2 and answer.uncovered == ()
+
+
 # -- singular values -------------------------------------------------------------------------------
 
 

@@ -140,4 +140,5 @@ def pattern_rows(family: Family, span: Span) -> list[dict[str, Any]]:
 
 
 def number_of(x: fmpq) -> sp.Rational:
+    """The same rational number for sympy."""
     return sp.Rational(int(x.p), int(x.q))

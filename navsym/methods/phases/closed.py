@@ -23,6 +23,7 @@ from navsym.methods.phases.scan import Pattern, Span, pattern_of, sample
 from navsym.proof.balls import enclose
 from navsym.proof.equations import combine, decide_equation
 from navsym.proof.ladder import DEFAULT_MEGABYTES, decide_within
+from navsym.proof.optimality.fixed import attempts
 from navsym.proof.optimality.pairs import SHARE, constraints, equal_values, feasibility, instants
 from navsym.proof.optimality.polish import Polished, polish
 from navsym.proof.sandbox import Exhausted, run_limited
@@ -102,7 +103,8 @@ def candidates(family: Family, span: Span) -> list[Closed]:
     if weights is None:
         return []
     panels, guesses = tuple(k for k, _, _ in span.pattern), []
-    for dual in itertools.islice(duals(family, span, exact, found), 3):
+    moving = itertools.islice(duals(family, span, exact, found), 3)
+    for dual in (*moving, *fixed_duals(family, span, found)):
         value = tidy(sum((x * p for x, p in zip(dual, family.functional, strict=True)), sp.S.Zero))
         guesses.append(Closed(panels, exact, weights, dual, value, Verdict(OPEN, "none")))
     return guesses
@@ -149,6 +151,30 @@ def duals(
     ends = [[h.subs(U, a) + h.subs(U, b) for h in row] for row, (a, b) in zip(family.rows, family.panels, strict=True)]
     for more in itertools.combinations(ends, free) if free else ():
         yield from solved_dual(family, [*rows, *more], [*right, *[sp.S.Zero] * free], range(len(rows[0])), found)
+
+
+def fixed_duals(family: Family, span: Span, found: Sequence[Sample]) -> list[tuple[sp.Expr, ...]]:
+    """Duals with rational entries that do not move, where contacts are too few to determine one.
+
+    Of a growing interval what stays within the bound on the longest does so on the others: that one comes first.
+    """
+    if sum(1 if kind != "no" else 2 for _, kind, _ in span.pattern) >= len(family.functional):
+        return []
+    done: list[tuple[sp.Expr, ...]] = []
+    for T in (span.upper, span.lower, exact_fraction(found[-1].T)):
+        basis, contacts = sample(family, T, span.pattern)
+        problem = family.exact(sp.Rational(T.numerator, T.denominator))
+        refined_ = polish(problem.panels, basis, contacts, BITS, GOAL)
+        for base, _, _ in attempts(problem, basis, contacts, refined_, 14):
+            x = tuple(sp.Rational(int(c.p), int(c.q)) for c in base)
+            short = all(c.q <= 720 for c in x)
+            if short and x not in done and all(feasible(family, one, np.array(x, dtype=float)) for one in found):
+                done.append(x)
+    return done
+
+
+def exact_fraction(x: sp.Rational) -> Fraction:
+    return Fraction(int(x.p), int(x.q))
 
 
 def contact_equations(
