@@ -55,6 +55,7 @@ def balanced(problem: Problem, support: Sequence[tuple[int, fmpq]]) -> list[arb]
 
 
 def cost(problem: Problem, support: Sequence[tuple[int, fmpq]], weights: Sequence[arb]) -> arb:
+    """``sum sigma |w|``, which no optimum exceeds when the weights satisfy the constraints."""
     value = arb(0)
     for (k, _), w in zip(support, weights, strict=True):
         value += problem.panels[k].bound() * abs(w)
