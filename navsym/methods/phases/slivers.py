@@ -24,17 +24,10 @@ from navsym.proof.balls import precision
 from navsym.proof.decimals import decimal, exact
 from navsym.proof.optimality.basis import Basis, DependentError, as_fraction, make_basis
 from navsym.proof.optimality.enclosure import Problem, Touch, interval, rational, total
-from navsym.proof.optimality.fixed import (
-    attempts,
-    balanced,
-    cost,
-    every_cell,
-    header,
-    near_touches,
-    support_points,
-)
+from navsym.proof.optimality.fixed import attempts, every_cell, header, near_touches
 from navsym.proof.optimality.polish import Polished, polish
 from navsym.proof.optimality.range import fraction
+from navsym.proof.optimality.supports import balanced, cost, support_points
 
 DIGITS = 14
 BITS = 400
