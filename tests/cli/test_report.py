@@ -38,6 +38,17 @@ def test_a_document_of_verify_gives_the_same_page(folder, tmp_path, capsys):
     assert (out / name).read_text() == (folder / name).read_text()
 
 
+def test_a_status_of_one_names_the_claim_and_what_helps(folder, tmp_path, capsys):
+    document = json.loads((folder / "verdicts.json").read_text(encoding="utf-8"))
+    document["claims"][3] |= {"status": "OPEN", "method": "none", "evidence": "not decided: more than 90 s"}
+    (tmp_path / "late.json").write_text(json.dumps(document), encoding="utf-8")
+    assert run(["report", "--from", str(tmp_path / "late.json"), "--out", str(tmp_path / "out")]) == 1
+    told = capsys.readouterr().out
+    name = document["claims"][3]["id"]
+    assert f"not as declared: {name} is OPEN, declared PROVED: not decided: more than 90 s" in told
+    assert "--seconds" in told and "--jobs 1" in told
+
+
 @pytest.mark.parametrize(
     ("content", "kind"),
     [("{}", "shape"), ("[", "syntax"), ('{"claims": [1], "papers": [], "counts": {}}', "shape"), ("NaN", "not-finite")],
