@@ -18,6 +18,9 @@ def command(
         int, typer.Option(min=0, help="local processes, 0 computes in this one; default: all cores"),
     ] = os.cpu_count() or 1,
     scheduler: Annotated[str | None, typer.Option(help="tcp://host:port of a running dask scheduler")] = None,
+    patience: Annotated[
+        float, typer.Option(min=1.0, help="seconds without any worker until a scheduler is given up"),
+    ] = 120.0,
     out: Annotated[
         Path | None, typer.Option(help="folder of the shards in Parquet; default: one in the cache"),
     ] = None,
@@ -40,8 +43,9 @@ def command(
     resume = "finished shards are kept: the same command (without --fresh) goes on from there"
     with Progress("jobs", resume=resume) as bar:
         document = run_sweep(
-            sweep, workers=workers, scheduler=scheduler, folder=out, fresh=fresh, progress=bar.told_by_job
-        )
+            sweep, workers=workers, scheduler=scheduler, folder=out, fresh=fresh, patience=patience,
+            progress=bar.told_by_job,
+        )  # fmt: skip
     emit(document, as_json=json_, text=lambda: as_text(document))
     return 1 if document["done"] < sweep.jobs else 3 if document["unsaved"] else 0
 
