@@ -15,7 +15,8 @@ def command(
     file: Annotated[Path, typer.Argument(help="claim file (TOML) with [symbols] and [[claim]] blocks")],
     jobs: Annotated[int, typer.Option(min=1, help="claims decided at the same time")] = 1,
     seconds: Annotated[
-        float, typer.Option(min=0.1, help="limit for one claim, seconds; above it the verdict is OPEN"),
+        float,
+        typer.Option(min=0.1, help="limit for one claim, seconds of processor time; above it the verdict is OPEN"),
     ] = 20.0,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> int:

@@ -34,7 +34,7 @@ def command(
         int | None, typer.Option(help="claims decided at the same time; default: one per core"),
     ] = None,
     seconds: Annotated[
-        float, typer.Option(help="limit for one claim, seconds; above it the verdict is OPEN"),
+        float, typer.Option(help="limit for one claim, seconds of processor time; above it the verdict is OPEN"),
     ] = 90.0,
     fresh: Annotated[
         bool, typer.Option("--fresh", help="decide everything again, ignoring what is kept")

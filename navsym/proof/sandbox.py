@@ -1,7 +1,8 @@
 """Child processes with limits on time and memory, for work that might not end.
 
 A child is forked, so that it has the parent's loaded engines and objects and only its result
-travels back. A child that exceeds its limits is killed; the parent never waits for it longer.
+travels back. A child that exceeds its limits is killed; the parent never waits for it longer. Time is
+processor time, so that what is decided does not depend on what else the machine does.
 """
 
 from __future__ import annotations
@@ -22,6 +23,9 @@ from navsym.errors import NavsymError
 
 DEFAULT_SECONDS = 60.0
 DEFAULT_MEGABYTES = 6144
+
+#: A child has this many times its seconds of processor time by the clock: a machine may be busy with other things.
+PATIENCE = 10
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +53,7 @@ class Outcome:
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """What a child may use; the time is watched by the parent, the process whose number stands here."""
+    """What a child may use; the processor time is watched by the parent, the process whose number stands here."""
 
     seconds: float
     megabytes: int
@@ -159,10 +163,21 @@ def work(sender: Connection, function: Callable[[Any], Any], item: Any, limits: 
 
 def ready(running: Sequence[Child], seconds: float) -> list[Child]:
     """Children with a result or out of time; waits until there is one."""
-    deadline = min(child.started for child in running) + seconds
-    answered = wait([child.receiver for child in running], max(0.0, deadline - time.monotonic()))
-    now = time.monotonic()
-    return [child for child in running if child.receiver in answered or now - child.started >= seconds]
+    while True:
+        late = [child for child in running if left(child, seconds) <= 0]
+        answered = wait([child.receiver for child in running], 0 if late else min(left(c, seconds) for c in running))
+        if late or answered:
+            return [child for child in running if child in late or child.receiver in answered]
+
+
+def left(child: Child, seconds: float) -> float:
+    """Seconds that a child may still go on, at the least: of processor time, and of the clock, of which it has more."""
+    gone = time.monotonic() - child.started
+    try:
+        used = time.clock_gettime((~child.process.pid << 3) | 2)  # Linux: the clock of another process
+    except OSError:
+        used = gone
+    return min(seconds - used, PATIENCE * seconds - gone)
 
 
 def finish(child: Child, seconds: float) -> Outcome:

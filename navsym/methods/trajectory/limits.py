@@ -63,6 +63,7 @@ def best_ages(noise: float, bound: float, order: int = 2) -> Array:
     """Ages (order,) of the positions that reach the least error; the last one is the longest memory that helps.
 
     Order 2: 0 and 2 sqrt(noise/bound). Order 3: 0, a third of, and (81 noise/bound)^(1/3). For each derivative alike.
+    Raises DomainError.
     """
     check(noise, bound, 1, order)
     if order == 2:
@@ -75,11 +76,12 @@ def rule(ages: Array, noise: float, bound: float, derivative: int = 1) -> Rule:
 
     ages : (2,) or (3,), rising from 0; their number is the order of the bounded derivative. Peano's kernel is a
     divided difference's, hence positive, and its integral an elementary symmetric function of the ages.
+    Raises DomainError when the ages do not rise from 0.
     """
     ages = named("ages", ages, (None,), "one for each position")
     check(noise, bound, derivative, len(ages))
     if ages[0] != 0 or not (np.diff(ages) > 0).all():
-        raise DomainError("ages: expected ages that rise from 0; got others; give the newest position first")
+        raise DomainError(f"ages: expected ages that rise from 0; got {ages.tolist()}; give the newest position first")
     found = np.array([cardinal(ages, i, derivative) for i in range(len(ages))])
     older = ages[1:]
     integral = older.sum() / 3 if derivative == 2 else older.prod() / math.factorial(len(ages))
@@ -97,6 +99,7 @@ def best_rule(available: Array, noise: float, bound: float, derivative: int = 1,
     """The best rule among positions that exist: ages (n,) rising from 0, at least ``order`` of them.
 
     Samples next to the optimal ages, and the oldest, are tried in all combinations; the answer says what it guarantees.
+    Raises DomainError.
     """
     available = named("available", available, (None,), "one for each position")
     if len(available) < order:

@@ -1,0 +1,55 @@
+"""Children with limits: what does not end is ended, what only waits for the processor is not."""
+
+from __future__ import annotations
+
+import multiprocessing
+import time
+
+import pytest
+
+from navsym.errors import DomainError
+from navsym.proof import sandbox
+from navsym.proof.sandbox import Exhausted, Failed, run_limited, run_many
+
+
+def spin(seconds):
+    """Use the processor for so many seconds of its own clock."""
+    end = time.process_time() + seconds
+    while time.process_time() < end:
+        pass
+    return seconds
+
+
+def refuse(_):
+    raise DomainError("expected something else")
+
+
+def test_every_item_has_its_outcome_whatever_became_of_the_others():
+    found = {outcome.place: outcome.value for outcome in run_many(spin, [0.01, 60, 0.02], 2, seconds=1)}
+    assert found[0] == 0.01 and found[2] == 0.02
+    assert found[1] == Exhausted("more than 1 s")
+
+
+def test_what_sleeps_is_ended_by_the_clock(monkeypatch):
+    monkeypatch.setattr(sandbox, "PATIENCE", 2)
+    began = time.monotonic()
+    assert run_limited(time.sleep, (60,), seconds=0.5) == Exhausted("more than 0.5 s")
+    assert 1 <= time.monotonic() - began < 20
+
+
+def test_a_busy_machine_does_not_use_up_the_time_of_a_child():
+    """Eight children at once on few cores: by the clock each takes longer than its limit, by its own time none does."""
+    outcomes = list(run_many(spin, [0.5] * 8, 8, seconds=0.9))
+    assert [outcome.value for outcome in outcomes] == [0.5] * 8
+
+
+def test_an_error_of_the_user_comes_back_as_itself():
+    (outcome,) = run_many(refuse, [0], 1)
+    assert isinstance(outcome.value, Failed)
+    with pytest.raises(DomainError):
+        run_limited(refuse, (0,))
+
+
+def test_no_child_is_left():
+    list(run_many(spin, [0.01, 60], 2, seconds=0.2))
+    assert multiprocessing.active_children() == []
