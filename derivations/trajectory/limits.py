@@ -107,13 +107,13 @@ def remainder(question: Question) -> Claim:
 
 
 def positive_kernel(question: Question, i: int) -> Claim:
-    """K >= 0 on piece i, written in the share r of the piece."""
+    """K >= 0 on piece i, written in the share of the piece."""
 
     def derive() -> Bound:
         start, end, K = kernel(question)[i]
-        r = sp.Symbol("r", nonnegative=True)
-        shared = sp.expand(K.subs(s, start + r * (end - start)).subs(T, 1))
-        return Bound(printed=sp.Integer(0), relation="<=", derived=shared, box={r: (sp.Integer(0), sp.Integer(1))})
+        share = sp.Symbol("share", nonnegative=True)
+        shared = sp.expand(K.subs(s, start + share * (end - start)).subs(T, 1))
+        return Bound(printed=sp.Integer(0), relation="<=", derived=shared, box={share: (sp.Integer(0), sp.Integer(1))})
 
     title = f"The kernel of the rule for the {question.words} is not negative on its piece {i + 1} (T = 1)."
     certified = question.derivative == 2 and i == 0       # a constant less a square: settled by balls

@@ -8,6 +8,7 @@ import pytest
 import sympy as sp
 
 from navsym import checker
+from navsym.proof.certificates import identity_certificate
 from navsym.proof.certificates_systems import exponential_certificate, rank_certificate
 
 t, w, a, b = sp.symbols("t w a b", real=True)
@@ -37,3 +38,10 @@ def test_the_rank_of_a_matrix_with_parameters_is_accepted_and_another_rank_is_no
     assert judged(item) == "rank" and item["rank"] == matrix.rank()
     with pytest.raises(checker.Refused):
         judged(item | {"rank": item["rank"] + 1})
+
+
+def test_what_the_checker_could_not_multiply_out_has_no_certificate():
+    """Of eleven sums that something is divided by, each of eleven terms, 11**11 terms would come."""
+    sums = [sum(sp.symbols(f"x{k}_:11")) for k in range(11)]
+    assert identity_certificate(sums[0] / sums[1], sums[0] / sums[1]) is not None
+    assert identity_certificate(sum(1 / s for s in sums), sum(1 / s for s in sums)) is None
