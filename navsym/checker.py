@@ -327,13 +327,13 @@ class Problem:
         need((end - start).parts[0] > 0 and bound.parts[0] > 0, "noise bound and length are positive")
         names[self.t] = start + (end - start) * (place + Jet(arb_series([0, 1])))
         return self.mixed([value(e, names, arb) / bound * Jet(arb_series([1])) for e in H])
-    def feasible(self, x: Callable[[arb], list[Jet]], contacts: list[tuple[int, arb, int, int]]) -> None:
+    def feasible(self, x: Callable[[arb], list[Jet]], contacts: list[Any]) -> None:
         """|f| < 1 off the contacts (panel, place, sign, outward direction at an end)."""
         def passes(cell: dict[int, tuple[fmpq, fmpq]]) -> bool:
             ((panel, ends),) = cell.items()
             part, length = hull(ends), ends[1] - ends[0]
             near = [c for c in contacts if c[0] == panel and abs(c[1].mid() - part.mid()) < length]
-            _, place, sign, end = near[0] if near else (panel, part, 0, 0)
+            _, place, sign, end = [*near, (panel, part, *UNIT)][0]
             centre = place.mid()
             r = abs(part.union(place) - centre).upper()
             thin, wide = (self.over(lambda s: [dot(x(s), self.rows(panel, Jet(at), s, ORDER))])[0]  # noqa: B023

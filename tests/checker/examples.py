@@ -37,6 +37,14 @@ PARABOLA = {
     **alone(["1", "-8", "8"], [(0, "0", "2"), (0, "0.5", "-4"), (0, "1", "2")], ["0.0000001"] * 9),
     "lower": "7.99999", "upper": "8.00001", **NONE,
 }  # fmt: skip
+# The same from far away: Newton's step has something to do, in the direction of the contact.
+COARSE = PARABOLA | {
+    **alone(
+        ["1", "-8", "8"], [(0, "0", "2"), (0, "0.501", "-4"), (0, "1", "2")],
+        ["0.0005", "0.0005", "0.0005", "0.001", "0.002", "0.001", "0.05", "0.05", "0.05"],
+    ),
+    "lower": "7.99", "upper": "8.01",
+}  # fmt: skip
 # The second coefficient for every T in [1, 1.02]: contacts 0, T/2, T, weights 2, -4, 2 over T**2.
 W1 = ["1.9605920988", "-0.038823605", "0.0005765882", "-0.000007611"]
 W2 = ["-3.921184197", "0.0776472118", "-0.001153176", "0.0000152234"]
@@ -183,6 +191,6 @@ ALL = {"kind": "all", "of": [IDENTITY, RANK]}
 GOOD = [
     IDENTITY, ROW, OFFSET, DIGITS, EXPONENTIAL, RANK, POSITIVITY, EDGE, CELLS, ALL,
     CHAIN, FULL, TIGHT, REMAINDER, KERNEL, NOTHING, AT_ONCE, NO_CELLS, MANY_CELLS,
-    GAP, EXACT, SLIVER, TOUCH, PARABOLA, CONSTANT, FLAT,
+    GAP, EXACT, SLIVER, TOUCH, PARABOLA, COARSE, CONSTANT, FLAT,
     FLAT_LEFT, RANGE, MOVING, SLOPES,
 ]  # fmt: skip
