@@ -77,12 +77,8 @@ def test_the_boxes_of_a_touch_satisfy_the_constraints_and_cost_the_dual_value(it
     iv.dps = 40
     (piece,) = item["pieces"]
     m, rows = len(piece["dual"]), piece["contacts"]
-    boxes = [
-        around(c[0], r)
-        for c, r in zip(
-            [*piece["dual"], *(row["at"] for row in rows), *(row["weight"] for row in rows)], piece["radius"], strict=True
-        )
-    ]
+    centres = [c[0] for c in (*piece["dual"], *(row["at"] for row in rows), *(row["weight"] for row in rows))]
+    boxes = [around(c, r) for c, r in zip(centres, piece["radius"], strict=True)]
     total, cost = [iv.mpf(0)] * m, iv.mpf(0)
     for row, place, w in zip(rows, boxes[m : m + len(rows)], boxes[m + len(rows) :], strict=True):
         q = regressors(item["panels"][row["panel"]], place, {}, item["variable"])
