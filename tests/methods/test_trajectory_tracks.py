@@ -19,13 +19,14 @@ from navsym.methods.trajectory.estimate import (
     Settings,
     by_method,
     estimate,
+    gaps,
     least_squares,
     minimum_sum,
     minimum_sum_solution,
 )
 from navsym.methods.trajectory.marginal import covariance_root, noise_points
 from navsym.methods.trajectory.tracks import Fit, Noise, Track, isolated_outliers, noise_of, track_of
-from navsym.models.earth.geodesy import cartesian, local_axes
+from navsym.models.earth.geodesy import cartesian, local_axes, meridian_radius, prime_vertical_radius
 from navsym.numeric.trajectory.tracks import noise_root, noise_shape, transition
 
 
@@ -277,6 +278,41 @@ def test_longitudes_may_be_written_from_zero_to_a_full_turn():
 
 
 # -- bad input -----------------------------------------------------------------------------------------
+
+
+def straight_drive(seed, rows=60):
+    """Three metres east and two north a second near 45 degrees, to a metre: t, latitude, longitude, height."""
+    rng, t = np.random.default_rng(seed), np.arange(float(rows))
+    parallel = prime_vertical_radius(np.pi / 4) * np.cos(np.pi / 4)
+    north, east, up = 2 * t + rng.normal(size=rows), 3 * t + rng.normal(size=rows), rng.normal(size=rows)
+    return t, np.pi / 4 + north / meridian_radius(np.pi / 4), 0.2 + east / parallel, 100 + up
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("lost", [(30,), (29, 30, 31)])
+def test_the_velocity_of_a_lost_fix_at_zero_zero_is_that_of_its_neighbours(method, lost):
+    """A receiver without a fix writes zeros; their row once had a good velocity in the axes of the Gulf of Guinea."""
+    t, *where = straight_drive(5)
+    for column in where:
+        column[list(lost)] = 0.0
+    found, _ = estimate(track_of(t, *where), Settings(method, order=2))
+    assert all(found.flags[k] != "used" for k in lost)
+    error = (found.velocity - [3.0, 2.0, 0.0]) / found.velocity_sd
+    assert np.abs(error[list(lost)]).max() < 4
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_two_receivers_merged_in_one_track_are_one_track(method):
+    """Pairs of rows a nanosecond apart once made every other step a gap, and the noise was looked for in vain."""
+    t, *where = straight_drive(6)
+    t = np.repeat(t, 2) + np.tile([0.0, 2e-9], len(t))
+    rng = np.random.default_rng(7)
+    twice = [np.repeat(column, 2) + scale * rng.normal(size=2 * len(column))
+             for column, scale in zip(where, (1e-7, 1e-7, 1.0), strict=True)]
+    found, _ = estimate(track_of(t, *twice), Settings(method, order=2))
+    assert list(gaps(track_of(t, *twice))) == []
+    error = (found.velocity - [3.0, 2.0, 0.0]) / found.velocity_sd
+    assert np.isfinite(found.velocity_sd).all() and np.abs(error[20:-20]).max() < 5
 
 
 def test_bad_tracks_say_what_is_wrong():

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from navsym.methods.trajectory.estimate import Settings, estimate, filtered, gaps, largest_gap
-from navsym.methods.trajectory.tracks import Noise, Rows, Track, TrackEstimate, memory
+from navsym.methods.trajectory.tracks import Noise, Rows, Track, TrackEstimate, memory, usual_step
 from navsym.numeric.arrays import Array
 
 #: Mean squared normalised innovation outside this range makes the standard deviations doubtful.
@@ -83,7 +83,7 @@ def remarks(track: Track, found: TrackEstimate, noise: Noise, settings: Settings
             listed = ", ".join(map(str, where[:20])) + (", ..." if len(where) > 20 else "")
             out.append(f"{len(where)} rows were {text} ({name}): lines {listed}")
     steps = np.diff(track.t)
-    usual = float(np.median(steps))
+    usual = usual_step(track.t)
     uneven = int(((np.abs(steps - usual) > JITTER * usual) & (steps < 5 * usual)).sum())
     if uneven:
         out.append(f"{uneven} steps differ from the usual {usual:.3g} s by more than half of it")

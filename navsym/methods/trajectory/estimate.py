@@ -31,6 +31,7 @@ from navsym.methods.trajectory.tracks import (
     isolated_outliers,
     memory,
     noise_of,
+    usual_step,
 )
 from navsym.numeric.arrays import Array
 from navsym.numeric.exchange.kernels import simplex, spread_rows
@@ -129,7 +130,7 @@ def departures(track: Track, noise: Noise, settings: Settings, use: Rows) -> Mas
     share = np.maximum(1.0 - P / r, 1e-6)
     residual = np.abs(track.position.T - run.states[:, :, 0])
     test = residual / np.sqrt(r * share) / settings.gate
-    offset = residual / share / (PLAUSIBLE / 2 * np.median(np.diff(track.t)) ** 2)
+    offset = residual / share / (PLAUSIBLE / 2 * usual_step(track.t) ** 2)
     score = np.where(use, np.minimum(test, offset), 0.0).max(axis=0)
     highest = np.lib.stride_tricks.sliding_window_view(np.pad(score, 4), 9).max(axis=1)
     away: Mask = (score > 1.0) & (score == highest)
@@ -235,11 +236,26 @@ def turned(
     gains: dict[str, list[float]],
 ) -> TrackEstimate:
     """East, North, Up of each row from channels: values (3, N) and variances (3, N), speed then acceleration."""
-    out = []
+    out, turn = [], axes_of(track, words)
     for values, variances in derivatives:
-        out.append(np.einsum("kij,jk->ki", track.turn, values))
-        out.append(np.sqrt(np.einsum("kij,jk->ki", track.turn**2, variances)))
+        out.append(np.einsum("kij,jk->ki", turn, values))
+        out.append(np.sqrt(np.einsum("kij,jk->ki", turn**2, variances)))
     return TrackEstimate(out[0], out[1], out[2], out[3], words, gains)
+
+
+def axes_of(track: Track, words: tuple[str, ...]) -> Array:
+    """East, North, Up of each row (N, 3, 3); where a position is not believed, those of the nearest one that is.
+
+    A lost fix at latitude and longitude zero would otherwise turn a good velocity into the axes of that place.
+    """
+    believed = np.flatnonzero([word == "used" for word in words])
+    if not believed.size:
+        return track.turn
+    after = np.clip(np.searchsorted(believed, np.arange(len(words))), 0, len(believed) - 1)
+    before = np.maximum(after - 1, 0)
+    waits = [np.abs(track.t[believed[near]] - track.t) for near in (before, after)]
+    axes: Array = track.turn[believed[np.where(waits[0] < waits[1], before, after)]]
+    return axes
 
 
 # -- windows -----------------------------------------------------------------------------------------------
@@ -298,7 +314,7 @@ def from_weights(
 
 def grain_of(track: Track) -> float:
     """Seconds that move no weight: a microsecond, or a millionth of a usual step where steps are short."""
-    return 1e-6 * min(1.0, float(np.median(np.diff(track.t))))
+    return 1e-6 * min(1.0, usual_step(track.t))
 
 
 def distances(track: Track, rows: Rows, k: int, grain: float) -> Array:
@@ -382,5 +398,4 @@ def certified_gap(dt: Array, sigma: Array, order: int, derivative: int) -> float
 
 def gaps(track: Track) -> Rows:
     """Rows after which the next one is late by more than GAP usual steps."""
-    steps = np.diff(track.t)
-    return np.flatnonzero(steps > GAP * np.median(steps))
+    return np.flatnonzero(np.diff(track.t) > GAP * usual_step(track.t))

@@ -1,7 +1,7 @@
 """From positions to velocity and acceleration: tracks with gaps, jitter and outliers.
 
-A track is differentiated in Cartesian axes fixed to the Earth and parallel to East, North, Up at one of its
-own points; velocity and acceleration are then turned to East, North, Up at each row. Poles and the 180th
+A track is differentiated in Cartesian axes fixed to the Earth and parallel to East, North, Up at the most central
+of its points; velocity and acceleration are then turned to East, North, Up at each row. Poles and the 180th
 meridian are ordinary points there. The noise of the positions and of the motion is found from the track
 itself by maximum likelihood, East and North together, Up for itself.
 """
@@ -41,7 +41,7 @@ class Track:
     """Positions in metres and how to turn vectors back.
 
     t        : (N,) seconds, strictly increasing
-    position : (N, 3) East, North, Up axes of the middle row, metres
+    position : (N, 3) East, North, Up axes of the most central row, metres
     variance : (N, 3) variances of the positions up to a common factor, m^2
     turn     : (N, 3, 3) from those axes to East, North, Up of each row
     """
@@ -123,14 +123,25 @@ def track_of(
     if (np.abs(lat) > np.pi / 2 + 1e-12).any() or (np.abs(lon) > 2 * np.pi + 1e-12).any():
         raise DomainError("latitude, longitude: expected radians on the Earth; got larger; convert degrees")
     axes = local_axes(lat, lon)
-    middle = N // 2
     point = cartesian(lat, lon, h)
+    middle = central(point)
     return Track(
         t=np.asarray(t, dtype=float),
         position=(point - point[middle]) @ axes[middle].T,
         variance=np.ones((N, 3)) if sigma is None else np.broadcast_to(np.asarray(sigma, float) ** 2, (N, 3)),
         turn=axes @ axes[middle].T,
     )
+
+
+def central(point: Array) -> int:
+    """The row (N, 3) nearest to the median position: a lost fix at latitude and longitude zero is never it."""
+    return int(np.argmin(((point - np.median(point, axis=0)) ** 2).sum(axis=1)))
+
+
+def usual_step(t: Array) -> float:
+    """Seconds from row to row; pairs and triples of almost equal times, as of merged receivers, do not shrink it."""
+    reach = 4 if len(t) > 8 else 1
+    return float(np.median(t[reach:] - t[:-reach])) / reach
 
 
 def check_order(track: Track, order: int) -> None:
@@ -158,8 +169,10 @@ def isolated_outliers(track: Track) -> Mask:
     if N < 9:
         return wild
     residual = np.abs(interpolation_residuals(track))
+    if np.isnan(residual).all():
+        return wild
     scale = np.maximum(running_median(residual, 41), np.nanmedian(residual, axis=0)) * 1.4826
-    floor = PLAUSIBLE / 2 * np.median(np.diff(track.t)) ** 2 / ISOLATED
+    floor = PLAUSIBLE / 2 * usual_step(track.t) ** 2 / ISOLATED
     ratio = np.nan_to_num(residual / np.maximum(scale, floor)).max(axis=1)
     for k in np.flatnonzero(ratio > ISOLATED):
         wild[k] = ratio[k] == ratio[max(0, k - 2) : k + 3].max()
@@ -179,7 +192,7 @@ def interpolation_residuals(track: Track) -> Array:
                 weights[:, i] *= (t[inner] - t[nodes[:, j]]) / (t[nodes[:, i]] - t[nodes[:, j]])
     residual[inner] = x[inner] - np.einsum("ki,kic->kc", weights, x[nodes])
     spans = t[inner + 2] - t[inner - 2]
-    residual[inner[spans > 4 * GAP * np.median(np.diff(t))]] = np.nan
+    residual[inner[spans > 4 * GAP * usual_step(t)]] = np.nan
     return residual
 
 
@@ -198,7 +211,8 @@ def running_median(values: Array, width: int) -> Array:
 
 def first_spread(track: Track, order: int) -> Array:
     """Standard deviations of the state before the first measurement: wide, in the scale of the track."""
-    speed = np.abs(np.diff(track.position, axis=0) / np.diff(track.t)[:, None]).max()
+    steps = np.maximum(np.diff(track.t), usual_step(track.t))
+    speed = np.abs(np.diff(track.position, axis=0) / steps[:, None]).max()
     return np.array([np.sqrt(track.variance.max()) * 10 + 1.0, 10 * speed + 1.0, *([50.0] * (order - 2))])
 
 
@@ -245,7 +259,7 @@ class Fit:
 
     def best(self) -> tuple[float, float]:
         """Coarse grid over the ratio, golden section, then turns of both logarithms under the gate."""
-        step = float(np.median(np.diff(self.track.t)))
+        step = usual_step(self.track.t)
         unit = float(np.log10(np.median(self.track.variance[:, self.channels[0]])))
         unit -= (2 * self.order - 1) * np.log10(step)
         grid = unit + np.arange(-14.0, 9.0)
