@@ -12,7 +12,7 @@ from itertools import product
 import sympy as sp
 
 from navsym.claims import REFUTED, Equation, Finding, Property, claim
-from navsym.models.earth.motion import pascal_rows
+from navsym.models.earth.motion import dynamics, first_state, pascal_rows, transition
 
 N = 3
 R = sp.Symbol("R", positive=True)
@@ -166,7 +166,12 @@ def field(n: int) -> list[tuple[Fraction, ...]]:
 
 
 def criteria(n: int, row: list[int], residual_after: bool) -> set[Fraction]:
-    """Distinct values of J over the field, one step, in exact arithmetic.
+    """Distinct values of J over the field, one step, in exact arithmetic; arguments as for :func:`terms`."""
+    return {first + rest for first, rest in terms(n, row, residual_after)}
+
+
+def terms(n: int, row: list[int], residual_after: bool) -> list[tuple[Fraction, Fraction]]:
+    """First term of J and the sum of the others for every candidate of the field.
 
     row            : row used in the gain
     residual_after : first term from the corrected state instead of the predicted one
@@ -174,13 +179,13 @@ def criteria(n: int, row: list[int], residual_after: bool) -> set[Fraction]:
     """
     Phi = pascal_rows(n)
     ahead = [[sum(Phi[i][k] * Phi[j][k] for k in range(n)) for j in range(n)] for i in range(n)]
-    values = set()
+    values = []
     for q in field(n):
         g = [sum(ahead[i][j] * row[j] for j in range(n)) + q[i] * row[i] for i in range(n)]
         S = sum(a * b for a, b in zip(row, g, strict=True)) + 1
         gains = [x / Fraction(S) for x in g]
         residual = 1 - gains[0] if residual_after else Fraction(1)
-        values.add(residual**2 + gains[1] ** 2 / 5 + gains[2] ** 2 / 25)
+        values.append((residual**2, gains[1] ** 2 / 5 + gains[2] ** 2 / 25))
     return values
 
 
@@ -189,6 +194,37 @@ def field_values():
     """As printed (row of ones in the gain), the 3^5 candidates give as many different values of J."""
     found = len(criteria(5, [1] * 5, residual_after=False))
     return Property(printed=3**5, derived=Finding(found, "exact enumeration", scope="one start, n = 5"))
+
+
+@claim("algorithm.J.first")
+def first_term_of_the_criterion():
+    """With x*_k, as printed, the first term of J is one number for all 3^5 candidates; with x*_(k+1) it takes 216.
+
+    The candidates differ in K_(k+1), and so in x*_(k+1); what was estimated before cannot show which of them fits.
+    """
+    found = tuple(len({first for first, _ in terms(5, [1] * 5, after)}) for after in (False, True))
+    return Property(
+        printed=(1, 216), derived=Finding(found, "exact enumeration", scope="n = 5, one start, row of ones as printed")
+    )
+
+
+@claim("algorithm.J.still")
+def criterion_prefers_standing_still():
+    """At constant estimated speed J as printed is nu^2 (1 + K_2^2 tau + K_3^2 tau^2), least for the smallest gains.
+
+    nu is the innovation, the same for all candidates. The minimum over a field of Q thus falls on the candidate that
+    corrects speed and acceleration least, step after step, however well or badly it fits.
+    """
+    rho, tau = sp.symbols("rho tau", positive=True)
+    x1, x2, nu = sp.symbols("x1 x2 nu", real=True)
+    K2, K3 = sp.symbols("K2 K3", real=True)
+    gain = sp.Matrix([sp.Symbol("K1", real=True), K2, K3, *sp.symbols("K4 K5", real=True)])
+    Phi, estimate = transition(dynamics(5, rho), tau), sp.Matrix([x1, x2, 0, 0, 0])
+    ahead = Phi * estimate
+    measured = ahead[0] + nu
+    change = ahead + gain * (measured - ahead[0]) - estimate
+    derived = (measured - (first_state(5) * Phi * estimate)[0]) ** 2 + change[1] ** 2 * tau + change[2] ** 2 * tau**2
+    return Equation(printed=nu**2 * (1 + K2**2 * tau + K3**2 * tau**2), derived=sp.expand(derived))
 
 
 def values_with_corrected_gain() -> int:
