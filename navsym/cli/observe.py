@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from navsym.cli._candidates import read_candidates, restoration, restored_text
 from navsym.cli._settings import values_of
 from navsym.cli.output import emit, table, write_text
 from navsym.errors import DomainError, DuplicateError, ExpressionSyntaxError, NavsymError
@@ -28,13 +29,21 @@ def command(
     set_: Annotated[
         list[str] | None, typer.Option("--set", help="value of a parameter, such as w=1/2; may be repeated"),
     ] = None,
+    restoring: Annotated[
+        bool, typer.Option("--restore", help="the fewest further measurements that would show every state"),
+    ] = False,
+    candidate: Annotated[
+        list[str] | None,
+        typer.Option(help='what could be measured, such as "gps = x + a*v"; may be repeated; default: each state'),
+    ] = None,
     html: Annotated[Path | None, typer.Option(help="write the decomposition to this HTML file")] = None,
     latex: Annotated[Path | None, typer.Option(help="write the decomposition to this LaTeX file")] = None,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> None:
     """Exact observability of a model: dimensions, rank drops, splits, gains by poles.
 
-    Example: navsym observe examples/schuler-velocity.toml
+    Examples: navsym observe examples/schuler-velocity.toml
+    navsym observe model.toml --restore --candidate "gps = x" --candidate "log = v + b"
     """
     from navsym.methods.observability.document import document, examine
     from navsym.methods.observability.pages import as_html, as_latex
@@ -42,16 +51,19 @@ def command(
     model_file = read(file, set_ or [])
     request = read_split(split) if split is not None else None
     polynomials, variable = read_poles(poles, model_file) if poles is not None else ((), None)
+    rows = read_candidates(candidate or [], model_file) if restoring or candidate else {}
     options = {"variable": variable} if variable is not None else {}
+    model = linear_model(model_file)
     try:
-        examination = examine(linear_model(model_file), request, polynomials, **options)
+        examination = examine(model, request, polynomials, **options)
+        further = {"restore": restoration(model, rows)} if restoring or candidate else {}
     except NavsymError as error:
         raise error.at(str(file)) from None
     if html is not None:
         write_text(html, as_html(examination, model_file.name))
     if latex is not None:
         write_text(latex, as_latex(examination))
-    data = document(examination)
+    data = document(examination) | further
     emit(data, as_json=json_, text=lambda: as_text(data))
 
 
@@ -121,7 +133,8 @@ def read_poles(text: str, found: ModelFile) -> tuple[tuple[Any, ...], Any]:
 def as_text(data: Mapping[str, Any]) -> str:
     """Tables of the document."""
     chosen = split_text(data["split"]) if data["split"] else ""
-    blocks = (overview(data), drops_text(data), splits_text(data), chosen, *gains_text(data["gains"]))
+    restored = restored_text(data["restore"]) if "restore" in data else ""
+    blocks = (overview(data), restored, drops_text(data), splits_text(data), chosen, *gains_text(data["gains"]))
     return "\n".join(block for block in blocks if block)
 
 

@@ -185,3 +185,69 @@ h    = ["0", "0", "b"]
     assert len(joint) == 1 and set(joint[0]["zeros"]) == {"a", "b"}
     left, right = joint[0]["condition"].split("=")
     assert sp.expand(sp.sympify(left) - sp.sympify("a**2 + b**2")) == 0 and right.strip() == "0"
+
+
+# Further measurements
+
+UNSEEN = """
+[model]
+name   = "drifts"
+states = ["x", "v", "b", "c"]
+F      = [["0","1","0","0"], ["0","0","g","0"], ["0","0","0","0"], ["0","0","0","0"]]
+[parameters]
+g = "positive"
+[[measurement]]
+name = "log"
+h = ["0", "1", "0", "1"]
+sigma = "1"
+"""
+
+
+def test_the_position_alone_restores_what_a_biased_log_hides(observe):
+    status, out, _ = observe(UNSEEN, "--restore", "--json")
+    found = json.loads(out)["restore"]
+    assert status == 0 and found["hidden"] == 2 and found["needed"] == found["fewest"] == 1
+    assert found["sets"] == [["x"]] and found["proved"]
+
+
+def test_candidates_are_formulas_of_the_states(observe):
+    options = ("--candidate", "gps = x + g*c", "--candidate", "second = 2*(v + c)")
+    _, out, _ = observe(UNSEEN, "--restore", *options, "--json")
+    found = json.loads(out)["restore"]
+    assert found["candidates"] == ["gps", "second"] and found["sets"] == [["gps"]]
+    _, out, _ = observe(UNSEEN, *options[2:])                 # the option alone asks the question as well
+    assert "not enough, all together: second (proved)" in out
+
+
+def test_an_observable_model_needs_nothing_more(observe):
+    _, out, _ = observe(GOOD, "--restore")
+    assert "no further measurement is needed" in out
+
+
+def test_without_the_question_the_document_has_its_old_keys(observe):
+    _, out, _ = observe(UNSEEN, "--json")
+    assert "restore" not in json.loads(out)
+
+
+@pytest.mark.parametrize(
+    "candidate, kind",
+    [
+        ("x", "syntax"),
+        ("= x", "syntax"),
+        ("a =", "empty"),
+        ("a = x + 1", "domain"),
+        ("a = x*v", "domain"),
+        ("a = x - x", "domain"),
+        ("a = abs(x)", "domain"),
+        ("a = x + q", "unknown-symbol"),
+        ("a = __import__('os')", "syntax"),
+    ],
+)
+def test_a_candidate_that_is_no_sum_of_states_is_refused(observe, candidate, kind):
+    status, out, _ = observe(UNSEEN, "--candidate", candidate, "--json")
+    assert status == 2 and json.loads(out)["error"]["kind"] == kind
+
+
+def test_a_candidate_named_twice_is_refused(observe):
+    status, out, _ = observe(UNSEEN, "--candidate", "a = x", "--candidate", "a = v", "--json")
+    assert status == 2 and json.loads(out)["error"]["kind"] == "duplicate"
