@@ -21,6 +21,10 @@ from navsym.errors import NavsymError
 SCHEMA = (
     "CREATE TABLE IF NOT EXISTS results (key TEXT PRIMARY KEY, value TEXT NOT NULL, digest TEXT NOT NULL)"
 )
+#: As bytes, so that an entry whose text is none any more is one damaged entry and not the end of reading.
+READ = "SELECT CAST(value AS BLOB), CAST(digest AS BLOB) FROM results WHERE key = ?"
+#: What comes of a file that cannot be used; SQLite may name a damaged table in bytes that are no text.
+TROUBLE = (sqlite3.Error, ValueError)
 
 
 class StoreError(NavsymError):
@@ -51,6 +55,11 @@ def key_of(*parts: str) -> str:
     return digest.hexdigest()
 
 
+def intact(key: str, value: bytes | None, digest: bytes | None) -> bool:
+    """True when the checksum fits the entry."""
+    return value is not None and key_of(key, value.decode("utf-8", "replace")).encode() == digest
+
+
 class Store:
     """Key -> plain JSON data.
 
@@ -67,7 +76,7 @@ class Store:
             self.connection.execute("PRAGMA journal_mode=WAL")
             self.connection.execute("PRAGMA synchronous=FULL")
             self.connection.execute(SCHEMA)
-        except (OSError, sqlite3.Error) as error:
+        except (OSError, *TROUBLE) as error:
             raise self.trouble("opened", error) from error
 
     def get(self, keys: Iterable[str]) -> dict[str, Any]:
@@ -75,23 +84,21 @@ class Store:
         found: dict[str, Any] = {}
         try:
             for key in keys:
-                row = self.connection.execute(
-                    "SELECT value, digest FROM results WHERE key = ?", (key,)
-                ).fetchone()
-                if row is not None and key_of(key, row[0]) == row[1]:
+                row = self.connection.execute(READ, (key,)).fetchone()
+                if row is not None and intact(key, *row):
                     found[key] = json.loads(row[0])
-        except (sqlite3.Error, ValueError) as error:
+        except TROUBLE as error:
             raise self.trouble("read", error) from error
         return found
 
     def put(self, key: str, value: Mapping[str, Any]) -> None:
         """Keep a result; when this returns, a kill or a power cut does not lose it."""
-        text = json.dumps(value, ensure_ascii=False, allow_nan=False)
+        text = json.dumps(value, allow_nan=False)
         try:
             self.connection.execute(
                 "INSERT OR REPLACE INTO results VALUES (?, ?, ?)", (key, text, key_of(key, text))
             )
-        except sqlite3.Error as error:
+        except TROUBLE as error:
             raise self.trouble("written", error) from error
 
     def close(self) -> None:
@@ -100,7 +107,7 @@ class Store:
     def trouble(self, what: str, error: Exception) -> StoreError:
         message = (
             f"expected a store that can be {what}; got {error}; "
-            "free space, mend the permissions, or set NAVSYM_CACHE to another folder"
+            "free space, mend the permissions, move a damaged file away, or set NAVSYM_CACHE to another folder"
         )
         return StoreError(message, where=str(self.path))
 

@@ -68,24 +68,21 @@ def command(
 
 def chosen_batches(name: str, modules: list[str], share: float, inputs: int, seed: int) -> tuple[Any, Any]:
     """The batches of a campaign and their judge."""
-    from navsym.methods.campaigns import certificates as campaign_certificates
-    from navsym.methods.campaigns import mutants as campaign_mutants
-    from navsym.methods.campaigns import parser as campaign_parser
-    from navsym.methods.campaigns import store as campaign_store
+    from navsym.methods.campaigns import certificates, disks, kills, mutants, parser
 
     if name in TESTED:
         return tested(name)
     if name == "mutants":
         claims = [claim for module in papers(modules) for claim in module.claims]
-        return campaign_mutants.batches(claims, share, seed), campaign_mutants.judge
+        return mutants.batches(claims, share, seed), mutants.judge
     if name == "parser":
-        return campaign_parser.batches(inputs, seed), campaign_parser.judge
+        return parser.batches(inputs, seed), parser.judge
     if name == "kills":
-        return campaign_store.kill_batches(inputs, seed), campaign_store.judge_kills
+        return kills.batches(inputs, seed), kills.judge
     if name == "disk":
-        return campaign_store.disk_batches(), campaign_store.judge_disk
-    honest = campaign_certificates.honest_certificates()
-    return campaign_certificates.batches(honest, inputs, seed), campaign_certificates.judge
+        return disks.batches(), disks.judge
+    honest = certificates.honest_certificates()
+    return certificates.batches(honest, inputs, seed), certificates.judge
 
 
 def tested(name: str) -> tuple[Any, Any]:

@@ -7,26 +7,25 @@ import json
 import pytest
 
 from navsym.cli.main import run
-from navsym.methods.campaigns import store as campaign_store
+from navsym.methods.campaigns import disks, kills
 from navsym.methods.campaigns.registry import Batch, run_campaign
-from navsym.methods.campaigns.store import TROUBLES, balance, judge_disk, judge_kills
 from navsym.store import Store, StoreError
 
 
 def test_four_writers_killed_lose_nothing_that_was_acknowledged():
-    found = judge_kills((3, 5))
+    found = kills.judge((3, 5))
     assert not found["wrong"]
     assert found["counts"]["kills"] == 12 and found["counts"]["acknowledged"] > 20
 
 
-@pytest.mark.parametrize("trouble", [name for name in TROUBLES if name != "full disk"])
+@pytest.mark.parametrize("trouble", [name for name in disks.TROUBLES if name != "full disk"])
 def test_trouble_is_said_and_old_results_are_intact(trouble):
-    assert not judge_disk(trouble)["wrong"]
+    assert not disks.judge(trouble)["wrong"]
 
 
 @pytest.mark.slow
 def test_a_full_disk_is_said_and_every_lost_verdict_named():
-    assert not judge_disk("full disk")["wrong"]
+    assert not disks.judge("full disk")["wrong"]
 
 
 def test_a_lost_result_is_noticed(tmp_path):
@@ -34,7 +33,7 @@ def test_a_lost_result_is_noticed(tmp_path):
     store.put("0-1", {"item": 1})
     (tmp_path / "acknowledged-0").write_text("0-1\n0-2\n")
     (tmp_path / "done-0").write_text("0-1\n0-1\n0-1\n0-2\n")
-    _, wrong = balance(tmp_path, 1, 1)
+    _, wrong = kills.balance(tmp_path, 1, 1)
     assert len(wrong) == 2 and wrong[0] == "lost: 0-2" and "2 repeated" in wrong[1]
 
 
@@ -63,4 +62,4 @@ def test_the_campaign_prints_its_row(monkeypatch, tmp_path, capsys):
     assert run(["campaign", "kills", "--inputs", "4", "--markdown"]) == 0
     row = capsys.readouterr().out
     assert row.startswith("| writers of the store") and "`navsym campaign kills --inputs 4`" in row
-    assert campaign_store.WRITERS == 4 and "0 wrong" in row
+    assert kills.WRITERS == 4 and "0 wrong" in row

@@ -12,12 +12,14 @@ import pytest
 from dask.distributed import Client
 
 from navsym.cli.main import run
-from navsym.errors import DomainError, MissingEngineError
+from navsym.errors import DomainError, MissingEngineError, NavsymError
 from navsym.methods.sweeps import shards as sweep_shards
 from navsym.methods.sweeps.cluster import greet
-from navsym.methods.sweeps.plan import Sweep, run_job, sweep_from
+from navsym.methods.sweeps.plan import Sweep, fingerprint, run_job, sweep_from
 from navsym.methods.sweeps.run import run_sweep
 from navsym.methods.sweeps.shards import cut
+from navsym.methods.verification.dependencies import rooms_digest
+from navsym.store import key_of
 
 
 @pytest.fixture(autouse=True)
@@ -45,7 +47,11 @@ def test_the_cut_into_shards_does_not_change_a_bit(tmp_path):
 
 def test_shards_cover_every_job_once():
     assert [list(part) for part in cut(5, 2)] == [[0, 1], [2, 3], [4]]
-    assert len(cut(10**6)) <= 256 and sum(map(len, cut(10**6))) == 10**6
+    assert len(cut(25_600)) == 256 and sum(map(len, cut(10**6))) == 10**6
+
+
+def test_of_a_million_jobs_few_are_lost_with_their_process():
+    assert max(map(len, cut(10**6))) <= 100
 
 
 def test_a_second_run_computes_what_is_missing_only(monkeypatch, tmp_path):
@@ -58,6 +64,36 @@ def test_a_second_run_computes_what_is_missing_only(monkeypatch, tmp_path):
     monkeypatch.setattr("navsym.methods.sweeps.run.run_job", lambda sweep, k: seen.append(k) or run_job(sweep, k))
     second = embedded(SMALL, folder=tmp_path / "s")
     assert seen == [2, 3, 4, 5] and second["resumed"] == 2 and second["rows"] == first["rows"]
+
+
+def test_a_shard_with_any_byte_changed_is_right_or_not_read(tmp_path):
+    rows = run_sweep(SMALL, folder=tmp_path / "s", size=6)["rows"]
+    (file,) = (tmp_path / "s").iterdir()
+    honest = file.read_bytes()
+    study = key_of("sweep", fingerprint(SMALL), rooms_digest())
+    for place in range(len(honest)):
+        file.write_bytes(honest[:place] + bytes([honest[place] ^ 16]) + honest[place + 1 :])
+        assert sweep_shards.Shards(tmp_path / "s", study).read(range(6)) in (None, rows)
+
+
+def test_a_folder_in_the_place_of_a_shard_is_named_and_the_rows_are_there(tmp_path):
+    (tmp_path / "s" / "jobs-0000002-0000004.parquet").mkdir(parents=True)
+    document = embedded(SMALL, folder=tmp_path / "s")
+    assert document["done"] == 6 and len(document["unsaved"]) == 1 and "0000002" in document["unsaved"][0]
+
+
+@pytest.mark.parametrize("kind", ["two-stage", "phases"])
+def test_a_job_without_a_finite_answer_is_named(kind, tmp_path):
+    far = "99999999999999999999999999999"
+    study = Sweep(kind, jobs=2, columns=2, start=far, end=far)
+    with pytest.raises(NavsymError, match="job 0: expected"):
+        embedded(study, folder=tmp_path / "s")
+
+
+@pytest.mark.parametrize("patience", [0.0, -1.0, float("nan")])
+def test_a_patience_that_never_ends_anything_is_refused(patience, tmp_path):
+    with pytest.raises(DomainError, match="patience"):
+        embedded(SMALL, folder=tmp_path / "s", patience=patience)
 
 
 def test_shards_of_another_study_are_not_mixed_in(tmp_path):

@@ -16,6 +16,7 @@ A study over two parameters has ``columns`` values of the second one for each va
 from __future__ import annotations
 
 import functools
+import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import asdict, dataclass
 from fractions import Fraction
@@ -23,7 +24,7 @@ from typing import Any
 
 import numpy as np
 
-from navsym.errors import DomainError
+from navsym.errors import DomainError, NavsymError, NotFiniteError
 from navsym.store import key_of
 
 KINDS = ("filter", "terrain", "guaranteed", "phases", "two-stage")
@@ -56,18 +57,18 @@ class Sweep:
 
     def __post_init__(self) -> None:
         if self.kind not in KINDS:
-            raise DomainError(f"kind: expected one of {', '.join(KINDS)}; got {self.kind!r}; correct it")
+            raise DomainError(f"kind: expected one of {', '.join(KINDS)}; got {self.kind!r:.80}; correct it")
         if self.method not in METHODS:
             raise DomainError(
-                f"method: expected one of {', '.join(METHODS)}; got {self.method!r}; correct it"
+                f"method: expected one of {', '.join(METHODS)}; got {self.method!r:.80}; correct it"
             )
         limits = {"jobs": 10**6, "runs": 10**5, "steps": 10**5, "degree": 12, "columns": 10**6}
         for name, limit in limits.items():
             value = getattr(self, name)
             if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= limit:
-                raise DomainError(f"{name}: expected an integer from 1 to {limit}; got {value!r}; correct it")
+                raise DomainError(f"{name}: expected an integer from 1 to {limit}; got {value!r:.80}; correct it")
         if isinstance(self.seed, bool) or not isinstance(self.seed, int) or self.seed < 0:
-            raise DomainError(f"seed: expected a nonnegative integer; got {self.seed!r}; correct it")
+            raise DomainError(f"seed: expected a nonnegative integer; got {self.seed!r:.80}; correct it")
         if self.jobs % self.columns:
             raise DomainError(f"columns: expected a divisor of {self.jobs} jobs; got {self.columns}; correct it")
         for low, high in ((self.start, self.end), (self.second_start, self.second_end)):
@@ -94,7 +95,7 @@ def length(text: Any) -> Fraction:
             raise ValueError("not a short text")
         return Fraction(text)
     except (ValueError, ZeroDivisionError):
-        raise DomainError(f'length: expected a number such as "3/2"; got {text!r}; correct it') from None
+        raise DomainError(f'length: expected a number such as "3/2"; got {text!r:.80}; correct it') from None
 
 
 def sweep_from(document: Mapping[str, Any]) -> Sweep:
@@ -117,8 +118,20 @@ def fingerprint(sweep: Sweep) -> str:
 
 
 def run_job(sweep: Sweep, index: int) -> dict[str, Any]:
-    """One job: a row of plain numbers that depends on the sweep and the index only."""
-    return JOBS[sweep.kind](sweep, index)
+    """One job: a row of plain numbers that depends on the sweep and the index only.
+
+    Raises NavsymError that names the job, also where a number of the row is not finite.
+    """
+    try:
+        with np.errstate(all="ignore"):  # what overflows is seen in the row
+            row = JOBS[sweep.kind](sweep, index)
+    except NavsymError as error:
+        raise error.at(f"job {index}") from None
+    for name, value in row.items():
+        if isinstance(value, float) and not math.isfinite(value):
+            message = f"expected a finite {name}; got {value}; take another range of parameters"
+            raise NotFiniteError(message, where=f"job {index}")
+    return row
 
 
 def filter_job(sweep: Sweep, index: int) -> dict[str, Any]:

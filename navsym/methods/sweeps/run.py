@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from navsym.errors import NavsymError
+from navsym.errors import DomainError, NavsymError
 from navsym.methods.sweeps.cluster import PATIENCE, answers, cluster
 from navsym.methods.sweeps.plan import Sweep, fingerprint, run_job, summary
 from navsym.methods.sweeps.shards import Rows, Shards, cut, default_folder
@@ -42,6 +42,8 @@ def run_sweep(
     ``folder`` and ``unsaved`` (shards that could not be kept). Raises MissingEngineError without dask,
     pyarrow, an answer of the scheduler, or workers.
     """
+    if not patience > 0:
+        raise DomainError(f"patience: expected seconds above 0; got {patience}; correct it")
     study = key_of("sweep", fingerprint(sweep), rooms_digest())
     shards = Shards(folder or default_folder(study), study)
     parts = cut(sweep.jobs, size)
