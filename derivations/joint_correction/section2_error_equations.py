@@ -100,6 +100,15 @@ def climb_is_negligible():
     )
 
 
+@claim("2.condition2.height", expect=CERTIFIED)
+def height_is_negligible():
+    """A height of at most e^2 a changes omega_0^2, as 1/r^3, by less than 0.02: of the order mu^2 where mu is 0.1."""
+    flattening = sp.Rational(10, 2983)
+    eccentricity = 2 * flattening - flattening**2
+    x = sp.Symbol("x", real=True)  # height over a
+    return Bound(1 - (1 + x) ** -3, "<", sp.Rational(1, 50), {x: (0, eccentricity)})
+
+
 @claim("2.2.beta1")
 def drift_1():
     """beta_1' = -omega_x2 beta_3 + nu_x1."""

@@ -419,3 +419,17 @@ def velocity_after_a_joint_session():
     A = A.subs(EARTH[2], kappa / MU).applyfunc(sp.expand)
     first = (p + lam) ** 6 + kappa**2 * link_polynomial(p) ** 2
     return Equation(first * p**2 * (p**2 + mu**2 * (w1**2 + w2**2)), polynomial_of(A))
+
+
+@claim("3.situations.velocity_after_position")
+def velocity_after_a_position_session():
+    """Only velocity after position alone: x_1 and x_2 are known, and the unknown d of x_3 disturbs them at first.
+
+    Their rates start with -K_1 d and -K_2 d; all three errors then decay as exp(-lambda_c t) times a polynomial.
+    """
+    t, d = sp.Symbol("t", positive=True), sp.Symbol("d", real=True)
+    A, start = velocity_block(VELOCITY_GAINS), sp.Matrix([0, 0, d])
+    shifted = A + lam * sp.eye(3)
+    solution = sp.exp(-lam * t) * (sp.eye(3) + t * shifted + t**2 * shifted**2 / 2) * start
+    first = [-VELOCITY_GAINS[0] * d, -VELOCITY_GAINS[1] * d]
+    return Equation([*solution.diff(t), *start, *first], [*(A * solution), *solution.subs(t, 0), *(A * start)[:2]])
