@@ -19,10 +19,9 @@ from sympy.polys.matrices import DomainMatrix
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
-from navsym.claims import equation_of  # noqa: E402
 from navsym.report import plots  # noqa: E402
+from navsym.report.ledger import about, only_in_the_copy  # noqa: E402
 
-WORST_FIRST = ("REFUTED", "OPEN", "CONFIRMED", "CERTIFIED", "PROVED")
 CHANNEL = {
     "model": {
         "name": "velocity channel",
@@ -56,10 +55,10 @@ def worst(equation: str, equations: Sequence[str], records: Sequence[Mapping[str
 
     What is refuted for the damage of a copy alone is not counted against the paper.
     """
-    found = [r for r in records if equation_of(r["number"], equations) == equation]
-    status = min((r["status"] for r in found), key=WORST_FIRST.index, default="definition")
-    slips = {r["slip"] for r in found if r["status"] == "REFUTED"}
-    return "only in the copy" if slips == {"scan"} else status
+    found = about(equation, equations, records)
+    if not found:
+        return "definition"
+    return "only in the copy" if only_in_the_copy(found[0]) else str(found[0]["status"])
 
 
 def phases() -> Figure:

@@ -168,36 +168,39 @@ def drawn_table(columns: Sequence[str], cells: list[list[str]], title: str, righ
 # Files
 
 
-def write_text(path: str | os.PathLike[str], text: str) -> None:
+def write_text(path: str | os.PathLike[str], text: str, *, durable: bool = True) -> None:
     """Write a file whole or not at all: temporary file beside it, fsync, rename.
+
+    durable : whether to wait until the disk has it; not for thousands of files that are made again in seconds
 
     Raises OutputError when the folder is missing or cannot be written.
     """
-    write_bytes(path, text.encode("utf-8"))
+    write_bytes(path, text.encode("utf-8"), durable=durable)
 
 
-def write_bytes(path: str | os.PathLike[str], data: bytes) -> None:
+def write_bytes(path: str | os.PathLike[str], data: bytes, *, durable: bool = True) -> None:
     """Like :func:`write_text`, for bytes."""
     target = Path(os.path.realpath(path))
     try:
         if target.exists() and not target.is_file():     # a pipe or /dev/stdout cannot be renamed over
             target.write_bytes(data)
         else:
-            replace_file(target, data)
+            replace_file(target, data, durable)
     except OSError as error:
         reason = error.strerror or type(error).__name__
         message = f"expected a file that can be written; got '{reason}'; choose another --out"
         raise OutputError(message, where=str(path)) from error
 
 
-def replace_file(target: Path, data: bytes) -> None:
+def replace_file(target: Path, data: bytes, durable: bool) -> None:
     """The temporary file has the mode of a new file, or that of the one it replaces."""
     handle, name = tempfile.mkstemp(prefix=f".{target.name[:50]}.", dir=target.parent)
     try:
         with os.fdopen(handle, "wb") as file:
             file.write(data)
             file.flush()
-            os.fsync(file.fileno())
+            if durable:
+                os.fsync(file.fileno())
         os.chmod(name, mode_for(target))
         os.replace(name, target)
     except BaseException:

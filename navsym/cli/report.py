@@ -106,6 +106,6 @@ def write_pages(out: Path, document: dict[str, Any], cards: dict[str, Any]) -> l
     resume = f"finished pages are in {out}, the index is not; the same command makes them all in seconds"
     with Progress("claims set in type", len(document["claims"]), resume) as bar:
         for name, text in pages(document, cards, words, progress=bar.step):
-            write_text(out / name, text)
+            write_text(out / name, text, durable=False)
             names.append(name)
     return names

@@ -7,7 +7,7 @@ It holds nothing that varies from run to run: no times, no certificates.
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +19,7 @@ KEPT = (
     "corrects", "slip", "reason", "evidence", "counterexample", "difference",
 )  # fmt: skip
 MARKS = {"PROVED": "✓", "CERTIFIED": "✓", "CONFIRMED": "~", "REFUTED": "✗", "OPEN": "?"}
+WORST_FIRST = ("REFUTED", "OPEN", "CONFIRMED", "CERTIFIED", "PROVED")
 
 
 def ledger_text(document: Mapping[str, Any]) -> str:
@@ -55,6 +56,17 @@ def in_order(card: Paper | None, records: Iterable[Record]) -> list[Record]:
     equations = card.equations if card is not None else ()
     place: dict[str | None, int] = {equation: i for i, equation in enumerate(equations)}
     return sorted(records, key=lambda record: place.get(equation_of(record["number"], equations), len(place)))
+
+
+def about(equation: str, equations: Sequence[str], records: Iterable[Record]) -> list[Record]:
+    """Records on a numbered equation, the worst verdict first; what a paper slips in before the damage of a copy."""
+    found = [record for record in records if equation_of(record["number"], equations) == equation]
+    return sorted(found, key=lambda record: (WORST_FIRST.index(record["status"]), record["slip"] == "scan"))
+
+
+def only_in_the_copy(record: Record) -> bool:
+    """Whether a record, the first of :func:`about`, is refuted for the damage of the copy that was read alone."""
+    return bool(record["status"] == "REFUTED" and record["slip"] == "scan")
 
 
 def papers_in_order(document: Mapping[str, Any], cards: Mapping[str, Paper]) -> list[tuple[Record, list[Record]]]:

@@ -22,20 +22,20 @@ from markupsafe import Markup
 from navsym.claims import Paper, equation_of
 from navsym.report.erratum import Erratum, erratum_of, printed_side
 from navsym.report.formula.latex import sentence_html, sentence_latex
-from navsym.report.formula.sides import Formula, coordinates, formula
-from navsym.report.ledger import in_order
+from navsym.report.formula.sides import Formula, coordinates, formula, only_truth
+from navsym.report.ledger import about, in_order, only_in_the_copy
 from navsym.report.page_arithmetic import ball_words, ended
 from navsym.report.page_code import Snippet, snippets
 from navsym.report.page_explain import Step, steps
 from navsym.report.page_files import certificate_files, certificates, slug
 from navsym.report.page_names import latex_escape
 from navsym.report.page_plot import refutation_plot
+from navsym.report.page_words import scope_words, truth_words
 from navsym.report.wording import Words
 
 Record = Mapping[str, Any]
 TEMPLATES = Path(__file__).parent / "templates"
 MARKS = {"PROVED": "✓", "CERTIFIED": "◎", "CONFIRMED": "≈", "REFUTED": "✗", "OPEN": "?"}
-WORST_FIRST = ("REFUTED", "OPEN", "CONFIRMED", "CERTIFIED", "PROVED")
 MEANINGS = {
     "PROVED": "exact algebra decides it on the whole stated scope",
     "CERTIFIED": "ball or rational arithmetic excludes failure on the whole stated box",
@@ -43,9 +43,7 @@ MEANINGS = {
     "REFUTED": "an exact point at which what is printed fails; the correction stands beside it",
     "OPEN": "undecided; the evidence says what was tried",
 }
-
-
-IN_WORDS = {"True": "it holds", "False": "it does not hold"}
+COPY_MARK = "copy"      # a word: no sign says it
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,13 +87,14 @@ class Cell:
 
 @dataclass(frozen=True, slots=True)
 class PaperView:
-    """A paper with its matrix row, its claims and its erratum sheet."""
+    """A paper with its matrix row, its claims and its erratum sheet; ``damaged`` is refuted only in the copy."""
 
     card: Paper
     file: str
     cells: tuple[Cell, ...]
     claims: tuple[ClaimView, ...]
     counts: Mapping[str, int]
+    damaged: int
     unnumbered: int
     erratum: Erratum
     unexpected: tuple[str, ...]
@@ -129,7 +128,7 @@ def pages(
     ``.tex``, ``index.html``.
     """
     words, env, papers = words or {}, environment(), []
-    shared = {"marks": MARKS, "meanings": MEANINGS}
+    shared = {"marks": MARKS, "meanings": MEANINGS, "copy_mark": COPY_MARK}
     yield from certificate_files(document["claims"]).items()
     yield "verdicts.json", json.dumps(document, ensure_ascii=False, allow_nan=False, indent=1) + "\n"
     for module in (paper["module"] for paper in document["papers"]):
@@ -153,7 +152,7 @@ def environment() -> jinja2.Environment:
         lstrip_blocks=True,
     )
     env.filters |= {"tex": latex_escape, "slug": slug, "sentence": sentence_html, "sentence_tex": sentence_latex}
-    env.filters["ended"] = ended
+    env.filters |= {"ended": ended, "in_words": scope_words}
     env.filters["ends"] = lambda difference: ball_words(tuple(difference))
     script = (TEMPLATES / "filter.js").read_text(encoding="utf-8").strip()
     env.globals["style"] = Markup((TEMPLATES / "style.css").read_text(encoding="utf-8"))
@@ -194,6 +193,7 @@ def paper_view(
         cells=tuple(cell(card, equation, mine) for equation in card.equations),
         claims=tuple(claim_views(mine, progress)),
         counts={status: statuses.count(status) for status in MARKS},
+        damaged=sum(only_in_the_copy(record) for record in mine),
         unnumbered=numbered.count(None),
         erratum=erratum_of(card, mine, words),
         unexpected=tuple(record["id"] for record in mine if record["status"] != record["expect"]),
@@ -201,15 +201,17 @@ def paper_view(
 
 
 def cell(card: Paper, equation: str, records: Sequence[Record]) -> Cell:
-    """The worst verdict on an equation; ``definition`` or ``missing`` where there is none."""
-    about = [r for r in records if equation_of(r["number"], card.equations) == equation]
-    if not about:
+    """The worst verdict on an equation; ``copy`` for damage of the copy, ``definition`` or ``missing`` without any."""
+    found = about(equation, card.equations, records)
+    if not found:
         kind = "definition" if equation in card.definitions else "missing"
         words = card.definitions.get(equation, "neither claimed nor listed as a definition")
         return Cell(equation, kind, "·" if kind == "definition" else "!", f"{kind}: {words}", "")
-    worst = min(about, key=lambda record: WORST_FIRST.index(record["status"]))
-    many = f"{len(about)} claims, the worst " if len(about) > 1 else ""
+    worst = found[0]
+    many = f"{len(found)} claims, the worst " if len(found) > 1 else ""
     words = f"{many}{worst['status']}: {worst['title']}"
+    if only_in_the_copy(worst):
+        return Cell(equation, "copy", COPY_MARK, f"only in the copy that was read: {words}", anchor_of(worst))
     return Cell(equation, worst["status"].lower(), MARKS[worst["status"]], words, anchor_of(worst))
 
 
@@ -245,7 +247,7 @@ def claim_view(record: Record, correction: Record | None, corrected: Record | No
 
 def side(text: str) -> Formula:
     """A side set in type; what is only said to hold or not comes in words."""
-    return Formula(IN_WORDS[text], None, None) if text in IN_WORDS else formula(text)
+    return Formula(truth_words(text), None, None) if only_truth(text) else formula(text)
 
 
 def link(record: Record | None) -> ClaimLink | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import html
 import re
 
@@ -17,6 +18,7 @@ LATEX_FUNCTIONS = frozenset("sin cos tan cot sec csc exp log sinh cosh tanh det"
 STEM = re.compile(r"(?P<stem>[A-Za-z]+?)(?P<index>\d*)$")
 
 
+@functools.lru_cache(maxsize=4096)
 def split_name(name: str) -> tuple[str, str]:
     """Stem and index: ``theta2_11`` -> theta, 2,11; ``y1`` -> y, 1; ``zT`` -> z, T."""
     if name.endswith("_"):                       # pi_ is a symbol and must not look like the number pi
@@ -31,8 +33,16 @@ def split_name(name: str) -> tuple[str, str]:
     return stem, ",".join(part for part in (index, *rest) if part)
 
 
+def varied(stem: str) -> bool:
+    """True for the error of a Greek symbol, ``dphi``; ``deta`` is rather the determinant of a."""
+    return stem[:1] == "d" and stem[1:] in GREEK and stem != "deta"
+
+
+@functools.lru_cache(maxsize=4096)
 def letter_of(stem: str) -> str:
-    """The stem with a Greek name at its beginning as a letter: ``DeltaV`` -> ΔV, ``tau`` -> τ."""
+    """The stem with a Greek name at its beginning as a letter: ``DeltaV`` -> ΔV, ``tau`` -> τ, ``dphi`` -> dφ."""
+    if varied(stem):
+        return "d" + GREEK[stem[1:]]
     greek = max((name for name in GREEK if stem.startswith(name)), key=len, default="")
     rest = stem[len(greek) :]
     return GREEK[greek] + rest if greek and len(rest) < 2 else stem
@@ -63,7 +73,9 @@ def latex_name(name: str, function: bool = False) -> str:
     name, primes = name.rstrip("'"), "'" * name.count("'")
     stem, index = split_name(name)
     greek = max((known for known in GREEK if stem.startswith(known)), key=len, default="")
-    if greek and len(stem) <= len(greek) + 1:
+    if varied(stem):
+        letter = rf"\mathrm{{d}}\{LATEX_SPELLING.get(stem[1:], stem[1:])}"
+    elif greek and len(stem) <= len(greek) + 1:
         letter = "\\" + LATEX_SPELLING.get(greek, greek) + " " + latex_escape(stem[len(greek) :])
     else:
         letter = stem if len(stem) == 1 else rf"\mathrm{{{latex_escape(stem)}}}"

@@ -12,11 +12,12 @@ from typing import Any
 
 from navsym.report.formula.reader import Node, read_formula, unwrapped
 from navsym.report.page_arithmetic import entries_of
+from navsym.report.page_names import letter_of, split_name
 
 Curve = list[tuple[float, float]]
 POINTS = 160
 WIDTH, HEIGHT = 460, 220
-LEFT, RIGHT, TOP, BOTTOM = 62, 12, 14, 34
+LEFT, RIGHT, TOP, BOTTOM = 62, 12, 26, 34
 
 FUNCTIONS: dict[str, Callable[..., float]] = {
     "sin": math.sin, "cos": math.cos, "tan": math.tan, "exp": math.exp, "log": math.log, "sqrt": math.sqrt,
@@ -148,7 +149,7 @@ def drawing(
     others = others_words({other: number for other, number in held.items() if other != along})
     words = f"Printed side (dashed) and derived side (solid) along {along}" + (f" with {others}" if others else "")
     words += f"; at {along} = {held[along]:.4g} they are {marks[0]:.6g} and {marks[1]:.6g}."
-    parts = [*axes(along, ends, (low, high), at_x, at_y)]
+    parts = [*axes(along, ends, (low, high), at_x, at_y), *KEY]
     for kind, points in zip(("printed", "derived"), curves, strict=True):
         parts.append(f'<path class="line {kind}" d="{path(points, at_x, at_y, low, high)}"/>')
     for kind, mark in zip(("printed", "derived"), marks, strict=True):
@@ -159,6 +160,21 @@ def drawing(
         + "".join(parts)
         + f"</svg><figcaption>{html.escape(words)}</figcaption></figure>"
     )
+
+
+def key(x: int, kind: str) -> str:
+    """A line of its kind with its name, above the frame."""
+    return f'<path class="line {kind}" d="M{x} 12h24"/><text class="tick" x="{x + 29}" y="16">{kind}</text>'
+
+
+KEY = (key(LEFT + 8, "printed"), key(LEFT + 110, "derived"))
+
+
+def written(name: str) -> str:
+    """A symbol as an axis names it: a letter with its index below."""
+    stem, index = split_name(name)
+    below = f'<tspan dy="3" font-size="8">{html.escape(index)}</tspan>' if index else ""
+    return html.escape(letter_of(stem)) + below
 
 
 def others_words(held: Mapping[str, float]) -> str:
@@ -186,7 +202,7 @@ def axes(
         parts.append(f'<path class="grid" d="M{LEFT} {at_y(y):.1f}H{WIDTH - RIGHT}"/>')
     middle = (LEFT + WIDTH - RIGHT) / 2
     parts.append(
-        f'<text class="tick" x="{middle}" y="{HEIGHT - 4}" text-anchor="middle">{html.escape(along)}</text>'
+        f'<text class="tick" x="{middle}" y="{HEIGHT - 4}" text-anchor="middle">{written(along)}</text>'
     )
     return parts
 
