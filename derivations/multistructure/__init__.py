@@ -7,9 +7,10 @@ analogues with free symbols for every probability (:mod:`derivations.multistruct
 are sums, for any number of modes by induction (:mod:`derivations.multistructure.any_number`), and again for Gaussian
 families. Words are decided by counting, by one exact example, or by an integral in balls.
 
+``conditions`` has what stands in words between the equations.
+
 Slips without a claim of their own, since nothing can be computed from them: the text below (11) says "in the form (1)"
-for the form (11), and "the j-th step" above (12) for the k-th, and "P(k+1)" below (18)
-for P(k).
+for the form (11), and "the j-th step" above (12) for the k-th.
 """
 
 from __future__ import annotations

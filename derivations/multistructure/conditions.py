@@ -1,0 +1,113 @@
+"""Conditions and words between the equations: why estimates are weighed, what is known when, which noise is meant."""
+
+from __future__ import annotations
+
+import sympy as sp
+
+from derivations.multistructure import examples
+from derivations.multistructure.moments import mixture
+from navsym.claims import REFUTED, Equation, claim
+from navsym.methods.multimodel.exact import Kit, run_exactly
+from navsym.methods.multimodel.schemes import scheme
+
+#: Equal models have equal densities, and nothing else is needed of (18): any function of the residual will do.
+ANY_DENSITY = Kit(density=lambda distance, determinant, p: 1 / (determinant * (1 + distance)), tidy=sp.cancel)
+SERIES = ([[3], [1]], [[3], [5]])
+MODELS, SWITCHING = [[examples.CALM, examples.JUMP]], [examples.STICKY]
+
+
+@claim("12.optimal")
+def weighing_is_needed():
+    """Below (13): the optimal estimate has to weigh: any other kappa adds (kappa - X)^2 [1 to 6 components]."""
+    kappa = sp.Symbol("kappa", real=True)
+    printed, derived = [], []
+    for size in range(1, 7):
+        g, a, _, c = mixture(size)
+        mean = sum(w * x for w, x in zip(g, a, strict=True))
+
+        def mean_square(estimate: sp.Expr, g=g, a=a, c=c) -> sp.Expr:
+            return sum(w * (v + (x - estimate) ** 2) for w, x, v in zip(g, a, c, strict=True))
+
+        printed.append((kappa - mean) ** 2)
+        derived.append(mean_square(kappa) - mean_square(mean))
+    return Equation(printed, derived)
+
+
+@claim("12.selection")
+def what_selection_costs():
+    """Taking the estimate of the likelier of two models instead adds (1 - g)^2 (X^1 - X^2)^2 to the mean square."""
+    g, a, _, c = mixture(2)
+    mean = g[0] * a[0] + g[1] * a[1]
+    selected, weighed = (
+        sum(w * (v + (x - estimate) ** 2) for w, x, v in zip(g, a, c, strict=True)) for estimate in (a[0], mean)
+    )
+    return Equation((1 - g[0]) ** 2 * (a[0] - a[1]) ** 2, selected - weighed)
+
+
+def covariance_at(step: int, series: list[list[int]], kit: Kit = examples.EXPRESSIONS) -> sp.Expr:
+    """P of a step of the pulsating filter, one model of two modes."""
+    count, start = len(series), examples.common_start(0, 1)
+    steps = run_exactly(scheme("pulsating", None), MODELS * count, SWITCHING * count, start, series, kit)
+    return steps[step - 1].covariance[0][0]
+
+
+@claim(
+    "18.next",
+    expect=REFUTED,
+    slip="paper",
+    reason="(12) and (13) at step k give P(k); P(k+1) of a switching signal depends on the measurement Y(k+1), through "
+    "the weights, unlike in a single Kalman filter",
+)
+def next_covariance_printed():
+    """Below (18): (12) and (13) at step k give P(k+1), which does not depend on Y(k+1) (3 or 1, k = 0)."""
+    return Equation(covariance_at(1, [[3]]), covariance_at(1, [[1]]))
+
+
+@claim("18.next*", corrects="18.next")
+def covariance_of_the_step():
+    """Below (18): (12) and (13) at step k give P(k): it does not depend on Y(k+1) (1 or 5 after 3, any density)."""
+    first, second = (covariance_at(1, series, ANY_DENSITY) for series in SERIES)
+    return Equation(first, second)
+
+
+@claim("17.same")
+def equal_models_are_one():
+    """If all models are the same the pulsating filter is the Kalman filter, whatever p^ij is (two steps, two modes)."""
+    leave, back = sp.symbols("p21 p12", positive=True)
+    chain = [[1 - leave, leave], [back, 1 - back]]
+    one = examples.scalar(1, 2, 1, 3)
+    variance, mean, printed = sp.Integer(1), sp.Integer(0), []
+    for (measured,) in SERIES[0]:
+        ahead = variance + 2
+        gain = ahead / (ahead + 3)
+        mean, variance = mean + gain * (measured - mean), (1 - gain) * ahead
+        printed += [mean, variance]
+    steps = run_exactly(
+        scheme("pulsating", None), [[one, one]] * 2, [chain] * 2, examples.common_start(0, 1), SERIES[0], ANY_DENSITY
+    )
+    return Equation(printed, [x for step in steps for x in (step.mean[0], step.covariance[0][0])])
+
+
+def fourth_moment(generating: sp.Expr, variable: sp.Symbol) -> sp.Expr:
+    """E V^4 from the moment generating function."""
+    return sp.diff(generating, variable, 4).subs(variable, 0)
+
+
+@claim(
+    "6.gaussian",
+    expect=REFUTED,
+    slip="paper",
+    reason="a white noise with a covariance, which is all that (4) and (6) ask for, may take two values; that the "
+    "noises are normal has to be said, or neither the densities nor (18) are Gaussian",
+)
+def white_noise_is_not_enough():
+    """Before (14), read literally: (4) and (6) with white noise of covariance R make f^i[Y(k)/x(k)] Gaussian."""
+    w, R = sp.symbols("w R", positive=True)
+    return Equation(3 * R**2, fourth_moment(sp.cosh(w * sp.sqrt(R)), w))
+
+
+@claim("6.gaussian*", corrects="6.gaussian")
+def normal_noise_is_enough():
+    """With normal noise f^i[Y(k)/x(k)] has the fourth central moment 3 R^2 of a Gaussian, for every x(k)."""
+    w, R = sp.symbols("w R", positive=True)
+    return Equation(3 * R**2, fourth_moment(sp.exp(R * w**2 / 2), w))
