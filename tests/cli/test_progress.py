@@ -120,8 +120,10 @@ def test_a_line_never_stays_behind_when_something_else_is_written(monkeypatch, c
     assert capsys.readouterr().err.endswith("\r\x1b[2K") and not LINE.text
 
 
+# A test that runs in the background inherits an ignored interrupt.
 PROGRAM = """
-import time
+import signal, time
+signal.signal(signal.SIGINT, signal.default_int_handler)
 from navsym.cli import main
 from navsym.cli._progress import Progress
 def command():
