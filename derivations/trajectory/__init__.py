@@ -1,8 +1,8 @@
 """Devyatisilny and Shurygin 2018: derivatives of a measured position, conditioning, adaptive filter.
 
 Split along the paper: ``earth`` (basic model notions), ``motion`` (equations 1 to 4), ``scaling`` (equations
-5 and 6), ``table`` (condition numbers), ``stages`` (what each stage does by itself), ``algorithm`` (dynamic inversion), ``experiment``, ``gain``, ``figures``
-and ``speeds`` (three runs that differ in speed alone);
+5 and 6), ``table`` (condition numbers), ``stages`` (what each stage does by itself), ``algorithm`` (dynamic
+inversion), ``experiment``, ``gain``, ``figures`` and ``speeds`` (three runs that differ in speed alone);
 ``limits`` goes beyond it: what no algorithm can undercut.
 """
 

@@ -75,7 +75,7 @@ def the_second_stage_always_helps():
     )
 
 
-@claim("table.first_stage.worse", expect=CERTIFIED)
+@claim("6.first_stage.worse", expect=CERTIFIED)
 def the_first_stage_alone_can_worsen():
     """The first stage alone raises the condition number for n = 10 at 1 s, and for n = 19 and 20 at both steps."""
     worse = tuple(
@@ -95,7 +95,7 @@ def first_stage_at_twenty() -> Finding:
 
 
 @claim(
-    "table.first_stage",
+    "6.first_stage",
     expect=REFUTED,
     slip="paper",
     reason="both printed numbers are rounding noise; with the digits of the table one would keep a first stage that "
@@ -106,7 +106,7 @@ def the_table_lets_the_first_stage_look_useful():
     return Property(printed=printed_lowered(20, "tau0.2"), derived=first_stage_at_twenty())
 
 
-@claim("table.first_stage*", expect=CERTIFIED, corrects="table.first_stage")
+@claim("6.first_stage*", expect=CERTIFIED, corrects="6.first_stage")
 def the_first_stage_worsens_at_twenty():
     """For n = 20, tau = 0.2 s the first stage alone raises the condition number."""
     return Property(printed=False, derived=first_stage_at_twenty())
