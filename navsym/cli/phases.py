@@ -30,6 +30,9 @@ def command(
     quick: Annotated[
         bool, typer.Option("--quick", help="leave regimes without a closed form uncertified")
     ] = False,
+    unique: Annotated[
+        bool, typer.Option("--unique", help="prove of closed forms, too, that no other estimator is optimal (slower)")
+    ] = False,
     out: Annotated[
         Path | None, typer.Option(help="write the certificates to files of this name, numbered")
     ] = None,
@@ -48,8 +51,9 @@ def command(
         lower, upper = ends_of(found, parameter, range_)
         with Progress("steps", resume=RESUME) as bar:
             answer = phases(
-                family_of(found, target, parameter), lower, upper, certify=not quick, progress=bar.told_by_job
-            )
+                family_of(found, target, parameter), lower, upper,
+                certify=not quick, alone=unique, progress=bar.told_by_job,
+            )  # fmt: skip
     except NavsymError as error:
         raise error.at(str(file)) from None
     document = answer.document()
@@ -77,19 +81,81 @@ def ends_of(found: Any, parameter: str, text: str | None) -> tuple[Any, Any]:
 
 
 def as_text(document: dict[str, Any]) -> str:
-    rows = [
-        (
-            row["from"],
-            row["to"],
-            row["value"] or "implicit",
-            "; ".join(str(s["at"] or "inside") for s in row["support"]),
-            row["status"],
-        )
-        for row in document["regimes"]
+    """Regimes with instants and weights, what happens between them, values of implicit ones, what is left out."""
+    name, (lower, upper) = document["parameter"], document["range"]
+    title = f"{document['target']}, {name} from {lower} to {upper}"
+    heads = ("regime", name, "value", "instant", "weight", "measurement", "only one", "verdict")
+    rows = [row for k, regime in enumerate(document["regimes"], 1) for row in regime_rows(k, regime, name)]
+    parts = [table(heads, rows, title=title)]
+    if document["boundaries"]:
+        changes = [(b["at"] or "no closed form", located(b), b["why"]) for b in document["boundaries"]]
+        parts.append(table((name, "decimal", "what happens there"), changes, title="Boundaries"))
+    for k, regime in enumerate(document["regimes"], 1):
+        if "table" in regime:
+            rows = [row for one in regime["table"] for row in value_rows(one, name)]
+            title = f"Regime {k}: values at some {name}"
+            parts.append(table((name, "value", "instant", "weight", "measurement"), rows, title=title))
+    return "\n\n".join([*parts, "\n".join(remarks(document))])
+
+
+def regime_rows(k: int, regime: dict[str, Any], name: str) -> list[tuple[str, ...]]:
+    """One line for every instant; what holds for all of them stands on the first."""
+    only = {True: "yes", None: "not decided"}[regime["unique"]]
+    known = f"{short(regime['from'])} < {name} < {short(regime['to'])}", regime["value"] or "see below"
+    first, rest = (str(k), *known), ("", "", "")
+    last = (only, regime["status"])
+    return [
+        (*(rest if i else first), row["at"] or "inside", weight(row), row["measurement"], *(("", "") if i else last))
+        for i, row in enumerate(regime["support"])
     ]
-    lines = [table(("from", "to", "value", "instants", "status"), rows, title=document["target"])]
-    for b in document["boundaries"]:
-        lines.append(f"{b['at'] or b['lower']}: {b['why']}")
+
+
+def weight(row: dict[str, Any]) -> str:
+    """The weight's closed form, or its sign."""
+    return str(row["weight"]) if "weight" in row else "negative" if row["sign"] < 0 else "positive"
+
+
+def value_rows(one: dict[str, Any], name: str) -> list[tuple[str, ...]]:
+    """The enclosed value at one value of the parameter, with instants and weights to seven digits."""
+    first = one[name], between(one["lower"], one["upper"])
+    return [
+        (*(("", "") if i else first), f"{float(row['at']):.7g}", f"{float(row['weight']):.7g}", row["measurement"])
+        for i, row in enumerate(one["support"])
+    ]
+
+
+def short(end: str) -> str:
+    """A long decimal cut after twelve digits, and shown to be."""
+    whole, point, digits = end.partition(".")
+    return f"{whole}.{digits[:12]}…" if point and digits.isdigit() and len(digits) > 12 else end
+
+
+def located(boundary: dict[str, Any]) -> str:
+    """A boundary as a decimal: sixteen digits of what is known exactly, else the digits that its ends share."""
+    lower, upper = boundary["lower"], boundary["upper"]
+    return between(lower, upper) if boundary["at"] is None else f"{(float(lower) + float(upper)) / 2:.16g}"
+
+
+def between(lower: str, upper: str) -> str:
+    """The digits that two decimals share, or both where they share few."""
+    same = next((k for k, (a, b) in enumerate(zip(lower, upper, strict=False)) if a != b), len(lower))
+    shared = lower[:same]
+    if lower == upper:
+        return lower
+    return f"{shared[:24]}…" if "." in shared[:-4] else f"{lower[:16]} to {upper[:16]}"
+
+
+def remarks(document: dict[str, Any]) -> list[str]:
+    """What the verdicts mean, and whether anything is left out."""
+    name, (lower, upper) = document["parameter"], document["range"]
+    said = {regime["status"] for regime in document["regimes"]}
+    words = {
+        "PROVED": f"PROVED: the closed form is optimal for every {name} of the regime, by exact identities and signs.",
+        "CERTIFIED": f"CERTIFIED: the same by rigorous enclosures, for every {name} of the regime.",
+        "OPEN": "OPEN: not shown for the whole regime.",
+    }
+    lines = [text for status, text in words.items() if status in said]
     if document["uncovered"]:
-        lines.append("uncovered: " + ", ".join(f"{a} to {b}" for a, b in document["uncovered"]))
-    return "\n".join(lines)
+        parts = ", ".join(f"{short(a)} to {short(b)}" for a, b in document["uncovered"])
+        return [*lines, f"Not covered: {name} from {parts}."]
+    return [*lines, f"Complete: no {name} between {lower} and {upper} is left out."]

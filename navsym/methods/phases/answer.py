@@ -20,6 +20,8 @@ from navsym.methods.phases.slivers import Sliver
 from navsym.proof.decimals import decimal
 from navsym.text.expression import to_text
 
+DIGITS = 34
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Regime:
@@ -33,6 +35,7 @@ class Regime:
     certificates : of kind "range" and what belongs to it
     slivers      : two-sided certificates of what the range certificate leaves
     held         : values between which the pattern itself is proved, without its slivers
+    alone        : values between which no other estimator is proved to be optimal, or None
     """
 
     family: Family
@@ -41,10 +44,11 @@ class Regime:
     upper: sp.Expr
     closed: Closed | None
     status: Status
-    table: tuple[dict[str, str], ...] = ()
+    table: tuple[dict[str, Any], ...] = ()
     certificates: tuple[Mapping[str, Any], ...] = ()
     slivers: tuple[Sliver, ...] = ()
     held: tuple[fmpq, fmpq] | None = None
+    alone: tuple[fmpq, fmpq] | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -115,6 +119,9 @@ def regime_row(regime: Regime) -> dict[str, Any]:
             "table": list(regime.table),
         }
     row["status"] = str(regime.status)
+    row["unique"] = True if regime.alone else None
+    if regime.alone:
+        row["unique_between"] = [decimal(end, DIGITS, side) for end, side in zip(regime.alone, (1, -1), strict=True)]
     if regime.slivers:
         row["slivers"] = [
             dict(zip(("from", "to", "lower", "upper"), s.row(), strict=True)) for s in regime.slivers
@@ -125,7 +132,7 @@ def regime_row(regime: Regime) -> dict[str, Any]:
 def end_text(end: sp.Expr, side: int = 0) -> str:
     """An end in the language of files; the middle of an enclosure as a decimal of 34 digits, rounded to a side."""
     if end.is_Rational and end.q > 10**9:
-        return decimal(fmpq(int(end.p), int(end.q)), 34, side)
+        return decimal(fmpq(int(end.p), int(end.q)), DIGITS, side)
     return to_text(end)
 
 

@@ -290,16 +290,15 @@ def weights_of(
 
 def proved(family: Family, guess: Closed, lower: sp.Expr, upper: sp.Expr, seconds: float) -> Verdict:
     """The ladder's verdict on the pair for all values between the ends."""
-    # At zero itself, the end of an open range, weights may be infinite: hence positive, not nonnegative.
-    T = sp.Symbol(family.parameter.name, positive=True) if bool(enclose(lower) >= 0) else family.parameter
-    put = lambda e: sp.sympify(e, strict=True).subs(family.parameter, T)  # noqa: E731
+    T, value, (start, end) = signed(family.parameter, lower, upper)
+    put = lambda e: sp.sympify(e, strict=True).subs(family.parameter, value)  # noqa: E731
     statements = [
         Optimum(
             regressors=tuple(put(h / sigma) for h in row), functional=tuple(map(put, family.functional)), variable=U,
             interval=tuple(map(put, ends)), dual=tuple(map(put, guess.dual)),
             support=tuple(map(put, guess.places)),
             weights=tuple(put(w * family.sigma[k]) for w, k in zip(guess.weights, guess.panels, strict=True)),
-            value=put(guess.value), box={T: (lower, upper)},
+            value=put(guess.value), box={T: (start, end)},
         )
         for row, sigma, ends in zip(family.rows, family.sigma, family.panels, strict=True)
     ]
@@ -309,6 +308,19 @@ def proved(family: Family, guess: Closed, lower: sp.Expr, upper: sp.Expr, second
     if family.growing and is_polynomial(statements[0]):
         return decide_polynomial(statements[0])
     return decide_within(statements[0], seconds)
+
+
+def signed(p: sp.Symbol, lower: sp.Expr, upper: sp.Expr) -> tuple[sp.Symbol, sp.Expr, tuple[sp.Expr, sp.Expr]]:
+    """A symbol for the parameter, positive where the range lets it, the parameter's value in it, and its range.
+
+    At zero itself, the end of an open range, weights may be infinite: hence positive, not nonnegative. A range below
+    zero is mirrored.
+    """
+    positive = sp.Symbol(p.name, positive=True)
+    if bool(enclose(lower) >= 0):
+        return positive, positive, (lower, upper)
+    mirrored = sp.Symbol(f"minus_{p.name}", positive=True)
+    return (mirrored, -mirrored, (-upper, -lower)) if bool(enclose(upper) <= 0) else (p, p, (lower, upper))
 
 
 def decide_jointly(statements: Sequence[Optimum], panels: Sequence[int]) -> Verdict:

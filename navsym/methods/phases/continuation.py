@@ -44,19 +44,21 @@ DIGITS = 34
 
 
 def phases(
-    family: Family, lower: sp.Expr, upper: sp.Expr, *, certify: bool = True,
+    family: Family, lower: sp.Expr, upper: sp.Expr, *, certify: bool = True, alone: bool = False,
     progress: Callable[[int, int], None] = lambda done, of: None,
 ) -> Phases:  # fmt: skip
     """All regimes for values of the parameter between two exact numbers.
 
     The range is split at singular values. certify : follow regimes without a closed form rigorously.
+    alone : follow the others as well, which proves that no other estimator is optimal and gives them certificates.
     progress : called with (finished, all) steps of the search: each stretch is scanned, each regime settled
     Raises DomainError for a range without length, and lengths of the interval below zero.
     """
     need_range(family, lower, upper)
     plan = [section for part in sections(family, lower, upper) for section in split(*part)]
     steps = Steps(progress, len(plan) * (COUNT - 1))
-    parts = [stretch(section, certify, steps) for section in plan]
+    follow = Follow(certify, alone)
+    parts = [stretch(section, follow, steps) for section in plan]
     singular = {s.at: s for section in plan for s in section.singular}
     changes = [event(s) for s in singular.values() if not (s.at == lower == 0 and plan[0].family.growing)]
     changes += [b for part in parts for b in part.boundaries] + [not_looked_at(s) for s in plan if s.unknown]
@@ -91,6 +93,14 @@ class Section:
         return {s.at for s in self.singular}
 
 
+@dataclass(frozen=True, slots=True)
+class Follow:
+    """Which regimes are followed rigorously: those without a closed form, those with one."""
+
+    implicit: bool
+    closed: bool
+
+
 def sections(family: Family, lower: sp.Expr, upper: sp.Expr) -> list[tuple[Family, sp.Expr, sp.Expr]]:
     """The range cut where one family of a chain follows another."""
     chain = family.chain
@@ -111,10 +121,14 @@ def above(x: sp.Expr, y: sp.Expr) -> bool:
 
 def split(family: Family, lower: sp.Expr, upper: sp.Expr) -> list[Section]:
     """The range cut at its singular values, and unknowns that depend on others left out."""
-    family, ties = without_dependent(family, inside_of(lower, upper))
+    inside = inside_of(lower, upper)
+    family, ties = without_dependent(family.real_near(inside), inside)
     singular, unknown = singular_values(family, lower, upper)
     inner = [s.at for s in singular if above(s.at, lower) and above(upper, s.at)]
-    return [Section(family, a, b, singular, unknown, ties) for a, b in pairwise([lower, *inner, upper])]
+    return [
+        Section(family.real_near(inside_of(a, b)), a, b, singular, unknown, ties)
+        for a, b in pairwise([lower, *inner, upper])
+    ]
 
 
 class Steps:
@@ -168,7 +182,7 @@ def need_range(family: Family, lower: sp.Expr, upper: sp.Expr) -> None:
         raise DomainError(f"range: expected lengths 0 <= from < to; got {lower} to {upper}; mend them")
 
 
-def stretch(section: Section, certify: bool, steps: Steps) -> Phases:
+def stretch(section: Section, follow: Follow, steps: Steps) -> Phases:
     """All regimes between two values without a singular one inside."""
     family, lower, upper, singular = section.family, section.lower, section.upper, section.names
     low, high = inner_range(lower, upper, singular)
@@ -187,7 +201,7 @@ def stretch(section: Section, certify: bool, steps: Steps) -> Phases:
     for k, span in enumerate(spans):
         closed = prove(family, guesses[k], cuts[k], cuts[k + 1]) if guesses[k] else None
         held = closed if closed is not None and closed.verdict.status.holds else None
-        regime, holes = regime_of(family, span, (cuts[k], cuts[k + 1]), limits[k], held, certify)
+        regime, holes = regime_of(family, span, (cuts[k], cuts[k + 1]), limits[k], held, follow)
         regimes.append(regime)
         uncovered += holes
         steps.did(Steps.LOOKS)
@@ -271,13 +285,13 @@ def end_marks(
 
 
 def regime_of(
-    family: Family, span: Span, ends: tuple[sp.Expr, sp.Expr], limits: Limits, closed: Closed | None, certify: bool
+    family: Family, span: Span, ends: tuple[sp.Expr, sp.Expr], limits: Limits, closed: Closed | None, follow: Follow
 ) -> tuple[Regime, list[tuple[str, str]]]:
     """One regime: its proved closed form, or contacts followed for every value, slivers and holes."""
     a, b = ends
     if closed is not None:
-        return Regime(family, span, a, b, closed, closed.verdict.status, held=(limits[1], limits[2])), []
-    if not certify:
+        return with_closed_form(family, span, ends, limits, closed, follow), []
+    if not follow.implicit:
         return Regime(family, span, a, b, None, OPEN, table_of(family, span)), [(end_text(a), end_text(b))]
     done = followed(family, span.pattern, limits[1], limits[2])
     holes, thin = [], []
@@ -287,7 +301,19 @@ def regime_of(
         holes += [(end_text(number_of(p), -1), end_text(number_of(q), 1)) for p, q in left_over]
     status = CERTIFIED if done.ends is not None else OPEN
     shown = table_of(family, span)
-    return Regime(family, span, a, b, None, status, shown, done.documents, tuple(thin), done.ends), holes
+    return Regime(
+        family, span, a, b, None, status, shown, done.documents, tuple(thin), done.ends, done.ends
+    ), holes
+
+
+def with_closed_form(
+    family: Family, span: Span, ends: tuple[sp.Expr, sp.Expr], limits: Limits, closed: Closed, follow: Follow
+) -> Regime:
+    """A regime whose closed form is proved, and where it is the only optimum when this is asked for."""
+    done = followed(family, span.pattern, limits[1], limits[2]) if follow.closed else Ranged((), ())
+    return Regime(
+        family, span, *ends, closed, closed.verdict.status, (), done.documents, (), (limits[1], limits[2]), done.ends
+    )
 
 
 def rests(done: Ranged, limits: Limits) -> list[tuple[fmpq, fmpq]]:
@@ -302,14 +328,24 @@ def exact(x: Fraction) -> sp.Rational:
     return sp.Rational(x.numerator, x.denominator)
 
 
-def table_of(family: Family, span: Span) -> tuple[dict[str, str], ...]:
-    """Enclosures of the value at a few lengths."""
+def table_of(family: Family, span: Span) -> tuple[dict[str, Any], ...]:
+    """Enclosures of the value, instants and weights at a few values of the parameter."""
     rows = []
     for k in range(POINTS):
         T = (span.lower + (span.upper - span.lower) * Fraction(2 * k + 1, 2 * POINTS)).limit_denominator(1000)
         found = solve(family.problem(exact(T)), 20)
-        rows.append({family.parameter.name: str(T), "lower": found.lower, "upper": found.upper})
+        places = [
+            {"measurement": s.measurement, "at": instant(family, T, s.at), "weight": s.weight} for s in found.support
+        ]
+        places.sort(key=lambda place: sp.Rational(place["at"]))
+        rows.append({family.parameter.name: str(T), "lower": found.lower, "upper": found.upper, "support": places})
     return tuple(rows)
+
+
+def instant(family: Family, T: Fraction, u: str) -> str:
+    """The instant that a coordinate means at a value of the parameter, to twenty digits."""
+    end = family.at(family.stop, exact(T))
+    return decimal(rational(enclose(end - sp.Rational(u), bits=200)), 20) if family.backward else u
 
 
 __all__ = ["Phases", "Regime", "phases"]

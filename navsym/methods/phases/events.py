@@ -91,10 +91,16 @@ def events(
 def rooms_below(
     family: Family, closed: Closed | None, other: Closed | None, span: Span
 ) -> Iterator[tuple[sp.Expr, str]]:
-    """What one dual polynomial leaves below the bound at the instants of the other regime."""
-    if closed is None or other is None:
+    """What one dual polynomial leaves below the bound at the instants of the other regime, as far as those are known
+    exactly: ends of the interval are without a closed form of the other."""
+    if closed is None:
         return
-    for (k, _, sign), u in zip(span.pattern, other.places, strict=True):
+    for i, (k, kind, sign) in enumerate(span.pattern):
+        if other is None and kind == "no":
+            continue
+        u = other.places[i] if other is not None else family.panels[k][("from", "to").index(kind)]
+        if any(j == k and v == u for j, v in zip(closed.panels, closed.places, strict=True)):
+            continue
         f = sum((x * h.subs(U, u) for x, h in zip(closed.dual, family.rows[k], strict=True)), sp.S.Zero)
         room = sp.fraction(sp.together(family.sigma[k] - sign * f))[0]
         yield room, f"the dual polynomial reaches its bound at {family.time(u)}"

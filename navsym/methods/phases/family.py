@@ -20,6 +20,7 @@ import sympy as sp
 from navsym.errors import DomainError, EmptyError
 from navsym.methods.guaranteed.problem import GuaranteedProblem, Rows, Stretch, chosen_target, stretches_of
 from navsym.methods.guaranteed.varying import varying
+from navsym.proof.balls import enclose
 from navsym.proof.optimality.enclosure import Panel, Problem
 from navsym.text.modeltypes import BasisFile, ModelFile
 
@@ -124,6 +125,20 @@ class Family:
             Panel(j % self.many, row, U, *self.panels[j], self.sigma[j]) for j, row in enumerate(self.rows)
         ]
         return Problem(tuple(panels), self.functional)
+
+    def real_near(self, value: Any) -> Family:
+        """The same with square roots of what is positive at a value: ``sqrt(c) = i sqrt(-c)``, sines of ``i x`` as
+        hyperbolic sines. To be used where no radicand changes its sign."""
+        parts = [*self.functional, *(h for row in self.rows for h in row)]
+        roots = {e for part in parts for e in part.atoms(sp.Pow) if e.exp.is_Rational and e.exp.q == 2}
+        turned = {
+            e: (sp.I * sp.sqrt(-e.base)) ** e.exp.p
+            for e in roots if U not in e.free_symbols and bool(enclose(self.at(e.base, value)) < 0)
+        }  # fmt: skip
+        if not turned:
+            return self
+        rows = tuple(tuple(sp.expand(h.xreplace(turned)) for h in row) for row in self.rows)
+        return replace(self, rows=rows, functional=tuple(sp.expand(x.xreplace(turned)) for x in self.functional))
 
     def time(self, u: sp.Expr) -> sp.Expr:
         """The instant that the coordinate u means."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import mpmath
 import sympy as sp
 from flint import arb
 
@@ -11,6 +12,8 @@ from navsym.methods.phases.family import Family
 from navsym.proof.optimality.enclosure import rational
 
 NEAR = sp.Rational(1, 10**40)
+#: Integers up to this size are looked for in relations.
+SHORT = 1000
 
 
 def number(x: arb) -> sp.Rational:
@@ -20,7 +23,8 @@ def number(x: arb) -> sp.Rational:
 
 
 def constant(x: sp.Rational) -> sp.Expr | None:
-    """A rational, a rational multiple of pi, or a cosine share ``(1 - cos(pi r))/2``, within 1e-40."""
+    """A rational, a rational multiple of pi, a cosine share ``(1 - cos(pi r))/2``, a rational multiple of a root, or
+    what :func:`related` knows, within 1e-40."""
     pi = sp.Rational(str(sp.pi.evalf(90)))
     for unit, base in ((sp.Integer(1), sp.Integer(1)), (pi, sp.pi)):
         best = sp.Rational(x / unit).limit_denominator(720)
@@ -37,7 +41,35 @@ def constant(x: sp.Rational) -> sp.Expr | None:
         best = sp.Rational(x / root).limit_denominator(720)
         if abs(best * root - x) < NEAR:
             return best * sp.sqrt(q)
-    return None
+    return related(x)
+
+
+def related(x: sp.Rational) -> sp.Expr | None:
+    """``a + b pi``, a root of a quadratic polynomial, or a logarithm of either with short coefficients."""
+    with mpmath.workdps(50):
+        at = mpmath.mpf(int(x.p)) / int(x.q)
+        line = relation([at, mpmath.mpf(1), mpmath.pi])
+        if line is not None and line[0]:
+            return -(line[1] + line[2] * sp.pi) / sp.Integer(line[0])
+        found = quadratic(at)
+        if found is None and abs(at) < 20:
+            inner = quadratic(mpmath.exp(at))
+            found = None if inner is None else sp.log(inner)
+        return found
+
+
+def quadratic(at: mpmath.mpf) -> sp.Expr | None:
+    """The rational number or the root of a quadratic polynomial next to a number."""
+    c = relation([at * at, at, mpmath.mpf(1)])
+    if c is None:
+        return None
+    roots = sp.roots(sp.Poly(c, sp.Symbol("x"))).keys()
+    return min(roots, key=lambda root: abs(mpmath.mpmathify(sp.N(root, 40)) - at))
+
+
+def relation(values: Sequence[mpmath.mpf]) -> list[int] | None:
+    """Short integers c with ``sum c_i values_i`` next to zero."""
+    return mpmath.pslq(values, tol=mpmath.mpf(10) ** -40, maxcoeff=SHORT, maxsteps=2000)
 
 
 def place_of(values: Sequence[sp.Rational], lengths: Sequence[sp.Rational], T: sp.Symbol) -> sp.Expr | None:

@@ -15,13 +15,16 @@ from itertools import pairwise
 import numpy as np
 import sympy as sp
 
+from navsym.errors import DomainError
 from navsym.methods.phases.alike import Pattern, alike, pattern_of
 from navsym.methods.phases.family import Family
 from navsym.numeric.exchange.search import Contacts, find_contacts
-from navsym.proof.optimality.basis import Basis, make_basis
+from navsym.proof.optimality.basis import Basis, DependentError, make_basis
 
 COUNT = 72
 BRACKET = 1e-7
+#: A weight below this part of their sum is the rounding of zero.
+ROUNDING = 1e-13
 #: A span below this part of the range is taken for an accident of contacts that merge.
 SHORTEST = Fraction(1, 5000)
 
@@ -40,7 +43,13 @@ def sample(family: Family, T: Fraction, *wanted: Pattern | None) -> tuple[Basis,
 
     wanted : patterns to prefer where there are several optimal estimators, the first that is optimal wins
     """
-    basis = make_basis(family.exact(sp.Rational(T.numerator, T.denominator)))
+    try:
+        basis = make_basis(family.exact(sp.Rational(T.numerator, T.denominator)))
+    except DependentError:
+        raise DomainError(
+            f"{family.parameter.name}: expected a range inside which the regressors are independent; got dependent "
+            f"ones at or next to {float(T):.9g}, which was not foreseen; give a range that ends there"
+        ) from None
     found = ordered(find_contacts(basis.panels))
     for pattern in wanted:
         if pattern is None or pattern_of(found) == pattern:
@@ -52,11 +61,15 @@ def sample(family: Family, T: Fraction, *wanted: Pattern | None) -> tuple[Basis,
 
 
 def ordered(found: Contacts) -> Contacts:
-    """The same contacts by panel and place."""
+    """The same contacts by panel and place; those whose weight is rounding are touches only."""
+    sizes = np.abs(found.weights)
+    rounding = sizes <= ROUNDING * sizes.sum()
+    touches = zip(found.panel[rounding].tolist(), found.u[rounding].tolist(), strict=True)
     order = np.lexsort((found.u, found.panel))
+    order = order[~rounding[order]]
     return Contacts(
         found.panel[order], found.u[order], found.inner[order], found.sign[order], found.weights[order],
-        found.dual, found.excess, found.touching, found.value,
+        found.dual, found.excess, (*found.touching, *touches), found.value,
     )  # fmt: skip
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import reduce
-from itertools import combinations
+from itertools import combinations, islice
 
 import sympy as sp
 from flint import arb
@@ -21,8 +21,9 @@ from navsym.proof.balls import enclose
 from navsym.proof.ladder import decide
 from navsym.proof.optimality.basis import DependentError, make_basis
 
-#: Expressions whose roots are looked for, and cells on which one is shown to have none.
+#: Expressions whose roots are looked for, minors of coefficients, and cells on which one is shown to have none.
 MOST = 400
+MOST_MINORS = 200
 CELLS = 64
 
 
@@ -65,10 +66,33 @@ def suspects(family: Family) -> Iterator[sp.Expr]:
         for power in part.atoms(sp.Pow):
             if power.exp.is_negative and p in power.base.free_symbols and U not in power.base.free_symbols:
                 yield power.base
+    yield from lost_ranks(family)
     rates = list(dict.fromkeys(r for part in parts for r in rates_of(part)))
     yield from (r for r in rates if p in r.free_symbols)
     for a, b in combinations(rates, 2):
         yield from (e for e in (a - b, a + b) if p in e.free_symbols)
+
+
+def lost_ranks(family: Family) -> Iterator[sp.Expr]:
+    """Expressions that vanish where the regressors, as combinations of functions of U, lose rank: the common divisor
+    of minors of the matrix of their coefficients."""
+    p, m = family.parameter, len(family.functional)
+    columns: dict[tuple[int, sp.Expr], list[sp.Expr]] = {}
+    for k, row in enumerate(family.rows):
+        for i, h in enumerate(row):
+            for term in sp.Add.make_args(sp.expand(h)):
+                factor, function = term.as_independent(U, as_Add=False)
+                columns.setdefault((k, function), [sp.S.Zero] * m)[i] += factor
+    vectors = list(columns.values())
+    if not all(c.is_rational_function(p) for v in vectors for c in v) or not any(c.has(p) for v in vectors for c in v):
+        return
+    common = sp.S.Zero
+    for chosen in islice(combinations(vectors, m), MOST_MINORS):
+        common = sp.gcd(common, sp.fraction(sp.together(sp.Matrix(chosen).det(method="berkowitz")))[0])
+        if common != 0 and p not in common.free_symbols:
+            return
+    if common != 0:
+        yield common
 
 
 def rates_of(part: sp.Expr) -> Iterator[sp.Expr]:
@@ -81,10 +105,26 @@ def rates_of(part: sp.Expr) -> Iterator[sp.Expr]:
 
 
 def real_roots(expression: sp.Expr, p: sp.Symbol) -> list[sp.Expr] | None:
-    """Real roots of a polynomial in p, exactly; None for anything else."""
+    """Real roots of a polynomial in p, or in p and one square root of such, exactly; None for anything else."""
     top = sp.fraction(sp.together(expression))[0]
     if not top.free_symbols:
         return []
+    roots = [e for e in top.atoms(sp.Pow) if e.exp == sp.Rational(1, 2) and p in e.free_symbols]
+    if len(roots) == 1:
+        s = sp.Dummy()
+        squared = sp.resultant(top.subs(roots[0], s), s**2 - roots[0].base, s)
+        found = polynomial_roots(squared, p)
+        return None if found is None else [root for root in found if vanishes(top.subs(p, root))]
+    return polynomial_roots(top, p)
+
+
+def vanishes(x: sp.Expr) -> bool:
+    """False only when a ball shows that a number is not zero."""
+    return not bool(abs(enclose(x)) > 0)
+
+
+def polynomial_roots(top: sp.Expr, p: sp.Symbol) -> list[sp.Expr] | None:
+    """Real roots of a polynomial in p; None for anything else."""
     if not top.is_polynomial(p) or top.free_symbols != {p}:
         return None
     try:

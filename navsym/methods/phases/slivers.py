@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 import sympy as sp
-from flint import arb, fmpq
+from flint import arb, arb_mat, fmpq
 
 from navsym.errors import NavsymError
 from navsym.methods.phases.family import Family
@@ -27,7 +27,7 @@ from navsym.proof.optimality.enclosure import Problem, Touch, interval, rational
 from navsym.proof.optimality.fixed import attempts, every_cell, header, near_touches
 from navsym.proof.optimality.polish import Polished, polish
 from navsym.proof.optimality.range import fraction
-from navsym.proof.optimality.supports import balanced, cost, support_points
+from navsym.proof.optimality.supports import support_points
 
 DIGITS = 14
 BITS = 400
@@ -140,13 +140,22 @@ def cheapest(ball: Problem, basis: Basis, contacts: Contacts, refined: Polished)
     for carriers, at in zip((contacts, together), places, strict=True):
         support = support_points(basis, carriers, at)
         try:
-            found.append((rational(cost(ball, support, balanced(ball, support)).upper()), support))
+            found.append((rational(most_of(ball, support).upper()), support))
         except (ZeroDivisionError, ValueError):
             continue
     if not found:
         raise ValueError("no weights in balls as wide as these")
     most, support = min(found, key=lambda pair: pair[0])
     return support, most
+
+
+def most_of(ball: Problem, support: Support) -> arb:
+    """``sum |W|`` of the weights over their noise bounds, ``sum W H/sigma = P``: in the order of the checker, whose
+    balls are as wide as these where sigma moves."""
+    panels = [ball.panels[k] for k, _ in support]
+    columns = [[h / panel.bound() for h in panel.rows(arb(v))] for panel, (_, v) in zip(panels, support, strict=True)]
+    weights = arb_mat(columns).transpose().solve(arb_mat([[p] for p in ball.target()])).entries()
+    return sum(map(abs, weights), arb(0))
 
 
 def within(ball: Problem, basis: Basis, contacts: Contacts, refined: Polished) -> tuple[list[fmpq], int]:
