@@ -7,11 +7,11 @@ import random
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-import numpy as np
 import sympy as sp
 from flint import arb
 
 from navsym.errors import NavsymError
+from navsym.export.accuracy.literals import literals_of
 from navsym.export.accuracy.rounding import BITS, LIBRARY, Arithmetic, analyse
 from navsym.export.expression_graph import Graph, build
 from navsym.export.forms import factored, safe
@@ -66,11 +66,6 @@ def spread(generator: random.Random, low: float, high: float) -> float:
     return generator.uniform(low, high)
 
 
-def literals_of(graph: Graph, arithmetic: Arithmetic) -> tuple[float | None, ...]:
-    """The number in the code for each constant node."""
-    return tuple(literal(n.value, arithmetic) if n.op == "const" else None for n in graph.nodes)
-
-
 def tie_to_formula(
     graph: Graph, formulas: Sequence[sp.Expr], lets: Mapping[sp.Symbol, sp.Expr] | None = None
 ) -> tuple[list[tuple[sp.Expr, sp.Expr]], str | None]:
@@ -101,12 +96,6 @@ def tie_of(meaning: sp.Expr, formula: sp.Expr) -> str | None:
     if reduction.zero:
         return "normal form"
     return None if reduction.complete else "enclosures"
-
-
-def literal(value: sp.Expr, arithmetic: Arithmetic) -> float:
-    """The number that stands in the code for an exact constant: the nearest of the type."""
-    nearest = int(value.p) / int(value.q) if value.is_Rational else float(sp.N(value, 40))
-    return float(np.float32(nearest)) if arithmetic.name == "float" else nearest
 
 
 def best_graph(

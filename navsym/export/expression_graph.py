@@ -20,12 +20,13 @@ from typing import Any
 import sympy as sp
 
 from navsym.errors import DomainError, UnknownSymbolError
-from navsym.export.forms import MEANING, common_step, plain
+from navsym.export.forms import common_step, expm1, plain
+from navsym.export.holes import filled, part_of
 
 UNARY: dict[type, str] = {
     sp.sin: "sin", sp.cos: "cos", sp.exp: "exp", sp.log: "log", sp.Abs: "abs",
     sp.asin: "asin", sp.acos: "acos", sp.atan: "atan", sp.sinh: "sinh", sp.cosh: "cosh", sp.tanh: "tanh",
-    **{kind: kind.__name__ for kind in MEANING},
+    expm1: "expm1",
 }  # fmt: skip
 BINARY: dict[type, str] = {sp.atan2: "atan2", sp.Max: "max", sp.Min: "min"}
 MULTIPLES = 16  # above it an angle is computed by itself
@@ -33,7 +34,7 @@ MULTIPLES = 16  # above it an angle is computed by itself
 
 @dataclass(frozen=True, slots=True)
 class Node:
-    """One operation; ``value`` is the exact number of a constant or the place of an input."""
+    """One operation; ``value`` is the exact number of a constant, the place of an input or the part that is filled."""
 
     op: str
     args: tuple[int, ...] = ()
@@ -102,6 +103,9 @@ def value_of(node: Node, args: list[sp.Expr], inputs: Sequence[sp.Symbol]) -> sp
         return inputs[node.value]
     if node.op in ("const", "let"):
         return node.value
+    if node.op == "filled":
+        filled_: sp.Expr = node.value.at(args[0])
+        return filled_
     if node.op in FUNCTION_OF:
         return FUNCTION_OF[node.op](*args)
     arithmetic = {
@@ -193,6 +197,8 @@ class Builder:
             return self.power(e.base, e.exp)
         if isinstance(e, (sp.sin, sp.cos)):
             return self.circular(e)
+        if isinstance(e, filled):
+            return self.put("filled", self.visit(e.args[2]), value=part_of(e))
         if type(e) in UNARY:
             return self.put(UNARY[type(e)], self.visit(e.args[0]))
         if type(e) in BINARY:
@@ -326,4 +332,4 @@ def is_dyadic(number: sp.Expr) -> bool:
     return bool(number.is_Rational and number.q & (number.q - 1) == 0)
 
 
-__all__ = ["MEANING", "Graph", "Node", "build"]
+__all__ = ["Graph", "Node", "build"]

@@ -3,12 +3,9 @@
 Each rewriting is exact, and the graph that comes out of them is proved equal to the formula by the
 normal form (:func:`navsym.export.functions.tie_to_formula`); nothing here is trusted.
 
-    k - k cos x  =  2 k sin(x/2)^2        k exp x - k  =  k expm1(x)        x - sin x  =  x_minus_sin(x)
+    k - k cos x  =  2 k sin(x/2)^2        k exp x - k  =  k expm1(x)
 
-and, where the range of x contains zero, with functions that have their limit there:
-
-    sin(q x)/x = q sinc(q x)              (q x - sin(q x))/x^3 = q^3 sinc_defect(q x)
-    expm1(q x)/x = q exprel(q x)          sinh(q x)/x = q sinhc(q x)
+and what still has a hole or cancels at zero is :func:`navsym.export.holes.filled` there.
 """
 
 from __future__ import annotations
@@ -19,45 +16,16 @@ from typing import Any
 
 import sympy as sp
 
+from navsym.export import holes
+
 Ranges = Mapping[sp.Symbol, tuple[Any, Any]]
-
-
-class sinc(sp.Function):
-    """sin(x)/x, and 1 at zero."""
 
 
 class expm1(sp.Function):
     """exp(x) - 1."""
 
 
-class x_minus_sin(sp.Function):
-    """x - sin(x)."""
-
-
-class sinc_defect(sp.Function):
-    """(x - sin(x))/x^3, and 1/6 at zero."""
-
-
-class exprel(sp.Function):
-    """(exp(x) - 1)/x, and 1 at zero."""
-
-
-class sinhc(sp.Function):
-    """sinh(x)/x, and 1 at zero."""
-
-
-MEANING: dict[type, Callable[[sp.Expr], sp.Expr]] = {
-    sinc: lambda x: sp.sin(x) / x,
-    expm1: lambda x: sp.exp(x) - 1,
-    x_minus_sin: lambda x: x - sp.sin(x),
-    sinc_defect: lambda x: (x - sp.sin(x)) / x**3,
-    exprel: lambda x: (sp.exp(x) - 1) / x,
-    sinhc: lambda x: sp.sinh(x) / x,
-}
-#: f -> (n, g) with f(x) = x^n g(x), and g defined at zero.
-VANISHING: dict[type, tuple[int, type]] = {
-    sp.sin: (1, sinc), x_minus_sin: (3, sinc_defect), expm1: (1, exprel), sp.sinh: (1, sinhc),
-}  # fmt: skip
+MEANING: dict[type, Callable[..., sp.Expr]] = {expm1: lambda x: sp.exp(x) - 1, holes.filled: holes.meaning}
 QUOTIENTS: dict[type, Callable[[sp.Expr], sp.Expr]] = {
     sp.tan: lambda x: sp.sin(x) / sp.cos(x),
     sp.cot: lambda x: sp.cos(x) / sp.sin(x),
@@ -77,9 +45,9 @@ def safe(expression: sp.Expr, ranges: Ranges) -> sp.Expr:
     if type(expression) in QUOTIENTS:
         return QUOTIENTS[type(expression)](parts[0])
     if isinstance(expression, sp.Add):
-        return safe_sum(parts)
+        return holes.total(safe_sum(parts), ranges)
     if isinstance(expression, sp.Mul):
-        return safe_product(parts, ranges)
+        return holes.product(sp.Mul(*parts), ranges)
     return expression.func(*parts)
 
 
@@ -110,39 +78,7 @@ def partners(term: sp.Expr) -> list[tuple[sp.Expr, sp.Expr]]:
             found.append((-rest, 2 * rest * sp.sinh(function.args[0] / 2) ** 2))
         if isinstance(function, sp.exp):
             found.append((-rest, rest * expm1(function.args[0])))
-        if isinstance(function, sp.sin):
-            found.append((-rest * function.args[0], -rest * x_minus_sin(function.args[0])))
     return found
-
-
-def safe_product(factors: list[sp.Expr], ranges: Ranges) -> sp.Expr:
-    """A product with f(q x)/x^n written as q^n g(q x), of VANISHING, where x may be zero."""
-    powers = dict(factor.as_base_exp() for factor in sp.Mul.make_args(sp.Mul(*factors)))
-    for base in [b for b in powers if type(b) in VANISHING and is_count(powers[b])]:
-        order, limit = VANISHING[type(base)]
-        for symbol in sorted(base.args[0].free_symbols, key=str):
-            below = -powers.get(symbol, sp.S.Zero)
-            quotient = sp.cancel(base.args[0] / symbol)
-            if not (is_count(below) and may_vanish(symbol, ranges)) or not quotient.is_polynomial():
-                continue
-            count = min(powers[base], sp.ceiling(below / order))
-            powers[base] -= count
-            powers[symbol] += order * count
-            for extra, times in ((limit(base.args[0]), count), (quotient, order * count)):
-                powers[extra] = powers.get(extra, sp.S.Zero) + times
-    return sp.Mul(*(base**exponent for base, exponent in powers.items()))
-
-
-def is_count(exponent: Any) -> bool:
-    return bool(exponent.is_Integer and exponent > 0)
-
-
-def may_vanish(symbol: sp.Symbol, ranges: Ranges) -> bool:
-    """True when zero lies in the range of the symbol."""
-    if symbol.is_positive or symbol.is_negative or symbol.is_nonzero:
-        return False
-    lower, upper = ranges.get(symbol, (None, None))
-    return (lower is None or lower <= 0) and (upper is None or upper >= 0)
 
 
 def plain(expression: sp.Expr) -> sp.Expr:

@@ -13,9 +13,10 @@ import sympy as sp
 
 from navsym.claims import CONFIRMED, REFUTED, Bound, Equation, Optimum, Statement, Verdict
 from navsym.errors import NavsymError, ShapeError
+from navsym.export.accuracy.literals import literals_of
 from navsym.export.accuracy.rounding import ARITHMETICS, Arithmetic, with_library
 from navsym.export.accuracy.uniform import CELLS, uniform_bound
-from navsym.export.choice import best_form, best_graph, literals_of, tie_to_formula
+from navsym.export.choice import best_form, best_graph, tie_to_formula
 from navsym.export.expression_graph import Graph
 from navsym.export.forms import safe
 from navsym.export.inputs import arguments_of, inputs_of, with_whole_arrays

@@ -8,7 +8,7 @@ import platform
 import shlex
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -48,20 +48,15 @@ def files_of(functions: Sequence[ExportedFunction], order: Order) -> dict[str, s
         )
     notice = f"SPDX-License-Identifier: {license_id(order.license)}"
     found: dict[str, str] = {}
+    spoken, tests = Spoken(functions), Tests(order.count)
     for target in order.targets:
-        spoken = with_library_of(target, functions)
-        tests = vectors_for(spoken, target, order.count)
-        made = target.files()(spoken, tests, notice)
+        known = spoken.for_library(target.library)
+        made = target.files()(known, tests.of(known, target), notice)
         found |= {f"{target.name}/{name}": text for name, text in made.items()}
     for function in functions:
         found |= certificates(function)
     found[MANIFEST] = sealed(manifest(functions, order, found))
     return found
-
-
-def with_library_of(target: Target, functions: Sequence[ExportedFunction]) -> list[ExportedFunction]:
-    """The functions with the bounds that hold for the accuracy of this target's library."""
-    return [f if target.library == f.arithmetic.library else rebounded(f, target.library) for f in functions]
 
 
 def license_id(text: str) -> str:
@@ -72,9 +67,35 @@ def license_id(text: str) -> str:
     return text
 
 
-def vectors_for(functions: Sequence[ExportedFunction], target: Target, count: int) -> dict[str, list[Vector]]:
-    """Vectors of every function for the library of one target."""
-    return {f.name: vectors(f, count, library=target.library, widen=target.widen) for f in functions}
+@dataclass(frozen=True, slots=True)
+class Spoken:
+    """The functions with the bounds that hold for the accuracy of a library, made once for each accuracy."""
+
+    functions: Sequence[ExportedFunction]
+    made: dict[int, list[ExportedFunction]] = field(default_factory=dict)
+
+    def for_library(self, library: int) -> list[ExportedFunction]:
+        if library not in self.made:
+            self.made[library] = [
+                f if library == f.arithmetic.library else rebounded(f, library) for f in self.functions
+            ]
+        return self.made[library]
+
+
+@dataclass(frozen=True, slots=True)
+class Tests:
+    """Vectors of every function, made once for the languages that share them."""
+
+    count: int
+    made: dict[tuple[int, int], dict[str, list[Vector]]] = field(default_factory=dict)
+
+    def of(self, functions: Sequence[ExportedFunction], target: Target) -> dict[str, list[Vector]]:
+        key = (target.library, target.widen)
+        if key not in self.made:
+            self.made[key] = {
+                f.name: vectors(f, self.count, library=target.library, widen=target.widen) for f in functions
+            }
+        return self.made[key]
 
 
 # -- certificates ---------------------------------------

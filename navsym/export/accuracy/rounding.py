@@ -47,11 +47,10 @@ DOUBLE = Arithmetic("double", -53, -1075, 1023)
 FLOAT = Arithmetic("float", -24, -150, 127)
 ARITHMETICS = {"double": DOUBLE, "float": FLOAT}
 
-#: Accuracy in units of u; of library functions per ulp of the stated accuracy; helpers include their series.
+#: Accuracy in units of u; of library functions per ulp of the stated accuracy.
 EXACT = frozenset({"input", "neg", "abs", "max", "min"})
 ROUNDED = frozenset({"add", "sub", "mul", "div", "sqrt"})
-LIBRARY = {"sin": 2, "cos": 2, "exp": 2, "log": 2, "expm1": 2, "pow": 2, "sinc": 4, "x_minus_sin": 20}
-LIBRARY |= {"sinc_defect": 20, "exprel": 4, "sinhc": 6}
+LIBRARY = {"sin": 2, "cos": 2, "exp": 2, "log": 2, "expm1": 2, "pow": 2}
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,7 +103,20 @@ def analyse(
 
 
 def rounded(node: Node, args: list[Bounded], arithmetic: Arithmetic) -> Bounded:
-    """One operation: errors of the arguments carried through, and its own rounding."""
+    """One operation: errors of the arguments carried through, and its own rounding; none is known if it overflows."""
+    found = filled_in(node, args, arithmetic) if node.op == "filled" else rounded_plainly(node, args, arithmetic)
+    if up(found.value) + found.absolute < arb(2) ** arithmetic.top:
+        return found
+    return Bounded(found.value, INFINITE, INFINITE, INFINITE)
+
+
+def filled_in(node: Node, args: list[Bounded], arithmetic: Arithmetic) -> Bounded:
+    from navsym.export.accuracy.filled import filled_bounds  # which needs this file for the branches
+
+    return filled_bounds(node.value, args[0], arithmetic)
+
+
+def rounded_plainly(node: Node, args: list[Bounded], arithmetic: Arithmetic) -> Bounded:
     value = exact_value(node, args)
     absolute, relative = propagated(node, args, value)
     absolute, relative = sane(absolute), sane(relative)
@@ -186,11 +198,6 @@ ARITHMETIC_VALUES: dict[str, Callable[..., arb]] = {
     "min": lambda x, y: x.min(y),
     "atan2": lambda y, x: arb.atan2(y, x) if not (x.contains(0) and y.contains(0)) else arb("nan"),
     "expm1": lambda x: x.expm1(),
-    "sinc": lambda x: x.sinc(),
-    "x_minus_sin": lambda x: x_minus_sin_ball(x),
-    "sinc_defect": lambda x: sinc_defect_ball(x),
-    "exprel": lambda x: exprel_ball(x),
-    "sinhc": lambda x: sinhc_ball(x),
     "log": lambda x: x.log() if x > 0 else arb("nan"),
     "asin": lambda x: x.asin() if -1 <= x <= 1 else arb("nan"),
     "acos": lambda x: x.acos() if -1 <= x <= 1 else arb("nan"),
@@ -222,37 +229,6 @@ def exact_value(node: Node, args: list[Bounded]) -> arb:
     if node.op in ARITHMETIC_VALUES:
         return arb(ARITHMETIC_VALUES[node.op](*balls))
     return arb(getattr(balls[0], node.op)())
-
-
-def x_minus_sin_ball(x: arb) -> arb:
-    """x - sin x: the series with its remainder for small arguments, monotone ends otherwise."""
-    if abs(x) < arb(2):
-        return x * x * x * sinc_defect_ball(x)
-    lower, upper = arb(x.lower()), arb(x.upper())
-    return (lower - lower.sin()).union(upper - upper.sin())
-
-
-def sinc_defect_ball(x: arb) -> arb:
-    """(x - sin x)/x^3: the series with its remainder for small arguments, the quotient otherwise."""
-    if not abs(x) < arb(2):
-        return x_minus_sin_ball(x) / (x * x * x)
-    y, total, term = x * x, arb(0), arb(1) / 6
-    for k in range(1, 20):
-        total, term = total + term, -term * y / ((2 * k + 2) * (2 * k + 3))
-    return total + arb(0, up(term))
-
-
-def exprel_ball(x: arb) -> arb:
-    """(exp x - 1)/x from the ends: it grows."""
-    ends = (arb(x.lower()), arb(x.upper()))
-    low, high = (end.expm1() / end if end != 0 else arb(1) for end in ends)
-    return low.union(high)
-
-
-def sinhc_ball(x: arb) -> arb:
-    """sinh(x)/x from the least and the greatest magnitude: it grows with them."""
-    low, high = (end.sinh() / end if end != 0 else arb(1) for end in (down(x), up(x)))
-    return low.union(high)
 
 
 # -- errors of the arguments carried through ---------------------------------------
@@ -341,21 +317,14 @@ SLOPES: dict[str, Callable[[arb], arb]] = {
     "sinh": lambda w: w.cosh(),
     "cosh": lambda w: w.sinh(),
     "tanh": lambda w: arb(1),
-    "sinc": lambda w: arb("0.45"),
-    "x_minus_sin": lambda w: 1 - w.cos(),
-    # means of cos, exp and cosh over the unit interval: (1 - s)^2 cos(w s)/2, exp(w s), cosh(w s), derived inside
-    "sinc_defect": lambda w: arb(1) / 24,
-    "exprel": lambda w: w.exp().max(arb(1)) / 2,
-    "sinhc": lambda w: w.sinh() / 2,
 }
 
 
 def relative_through(op: str, a: Bounded, wide: arb) -> arb:
     """Relative error of f(x (1 + d)) from that of x, where ``|x f'(x) / f(x)|`` is known.
 
-    x cot x is at most 1 for |x| <= 2, and moving the cosine by d costs another 4.4 d; the same
-    argument gives 3 for x - sin x. x f'/f is below 0.12 for sinc_defect, 0.6 for exprel, 0.32 for sinhc up to one.
-    sqrt halves a small relative error.
+    x cot x is at most 1 for |x| <= 2, and moving the cosine by d costs another 4.4 d. sqrt halves a small
+    relative error.
     """
     r = a.relative
     if op in ("neg", "abs"):
@@ -364,11 +333,9 @@ def relative_through(op: str, a: Bounded, wide: arb) -> arb:
         return INFINITE
     if op == "sqrt":
         return r / 2 * (1 + r)
-    if op in ("sin", "atan", "tanh", "asin", "sinc") and abs(wide) < (2 if op == "sin" else arb("0.5")):
+    if op in ("sin", "atan", "tanh", "asin") and abs(wide) < (2 if op == "sin" else arb("0.5")):
         return r * (1 + 5 * r) if op != "asin" else r * arb("1.2")
-    if op in ("sinc_defect", "exprel", "sinhc") and abs(wide) < 1:
-        return r * (1 + 5 * r)
-    if op in ("x_minus_sin", "sinh", "expm1") and abs(wide) < 1:
+    if op in ("sinh", "expm1") and abs(wide) < 1:
         return 3 * r * (1 + 10 * r)
     if op == "exp" and a.absolute.is_finite():
         return arb(a.absolute.expm1())

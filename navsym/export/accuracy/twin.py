@@ -165,6 +165,8 @@ def with_own_rounding(
     absolute, relative = tightened(size, absolute, relative)
     if k == 0:
         return Rounded(value, absolute, relative, doubt)
+    absolute = np.where(size + absolute < 0.99 * 2.0**arithmetic.top, absolute, np.inf)  # it may overflow
+    relative = np.where(np.isfinite(absolute), relative, np.inf)
     eta = 0.0 if op in ("add", "sub") else 2.0 ** max(arithmetic.eta, -1074)
     own = (absolute + k * (size + absolute) + eta) * UP
     relative = (relative + k * (1 + relative) + ratio(np.full(1, eta), size)) * UP

@@ -13,7 +13,6 @@ from collections.abc import Sequence
 
 from navsym.export.accuracy.vectors import Vector
 from navsym.export.languages.c import helper_texts, source, spelling
-from navsym.export.languages.helpers import HELPERS
 from navsym.export.languages.printing import Spelling, loops_of
 from navsym.export.languages.python import ENDING, vectors_json
 from navsym.export.languages.summary import summary
@@ -21,7 +20,7 @@ from navsym.export.parts import ExportedFunction
 
 BLOCK = 512
 CACHE = 4e6  # bytes
-LIBRARY = frozenset([*"sin cos exp log pow expm1 asin acos atan atan2 sinh cosh tanh".split(), *HELPERS])
+LIBRARY = frozenset([*"sin cos exp log pow expm1 asin acos atan atan2 sinh cosh tanh filled".split()])
 
 HEAD = """/* {license} */
 /* Many points at once. Inputs and results are rows of n numbers; all rows lie one behind the other. */

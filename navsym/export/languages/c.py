@@ -7,7 +7,13 @@ import re
 from collections.abc import Sequence
 
 from navsym.export.accuracy.vectors import Vector
-from navsym.export.languages.helpers import helper_about, helper_parts, helpers_used, squares_if_needed
+from navsym.export.languages.helpers import (
+    Helper,
+    helper_about,
+    helper_parts,
+    helpers_used,
+    squares_if_needed,
+)
 from navsym.export.languages.printing import Spelling, assignments, calls, code_names
 from navsym.export.languages.programs import c_header, c_through_state, output_places
 from navsym.export.languages.summary import summary, unit_of
@@ -164,7 +170,7 @@ def source(function: ExportedFunction, license_: str) -> str:
 def helper_texts(*functions: ExportedFunction) -> list[str]:
     """The helper functions that the code needs."""
     real = functions[0].arithmetic.name if functions else "double"
-    return [helper_text(name, real, spelling(real)) for name in helpers_used(*functions)]
+    return [helper_text(helper, real, spelling(real)) for helper in helpers_used(*functions)]
 
 
 def body(function: ExportedFunction, s: Spelling) -> list[str]:
@@ -219,14 +225,14 @@ def stores(function: ExportedFunction) -> list[str]:
     return lines
 
 
-def helper_text(name: str, real: str, s: Spelling, kind: str = "static") -> str:
+def helper_text(helper: Helper, real: str, s: Spelling, kind: str = "static") -> str:
     """One helper; ``kind`` is ``inline`` in a header of C++."""
-    switch, below, above = helper_parts(name, s)
+    switch, below, above = helper_parts(helper, s)
     return "\n".join([
-        f"/* {helper_about(name, s)} */",
-        f"{kind} {real} navsym_{name}({real} x)",
+        f"/* {helper_about(helper, s)} */",
+        f"{kind} {real} navsym_{helper.name}({real} x)",
         "{",
-        *squares_if_needed(name, f"    const {real} y = x * x;"),
+        *squares_if_needed(helper, f"    const {real} y = x * x;"),
         f"    if ({s.calls['abs'].format('x')} < {switch}) {{",
         f"        return {below};",
         "    }",

@@ -35,7 +35,7 @@ def files(
 def header(functions: Sequence[ExportedFunction], license_: str) -> str:
     real = functions[0].arithmetic.name
     s = spelling(real)
-    helpers = [helper_text(name, real, s, "inline") for name in helpers_used(*functions)]
+    helpers = [helper_text(helper, real, s, "inline") for helper in helpers_used(*functions)]
     return "\n".join(
         [
             f"// {license_}",

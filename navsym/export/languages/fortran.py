@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from navsym.export.accuracy.vectors import Vector
-from navsym.export.languages.helpers import helper_parts, helpers_used, squares_if_needed
+from navsym.export.languages.helpers import Helper, helper_parts, helpers_used, squares_if_needed
 from navsym.export.languages.printing import Spelling, assignments, calls
 from navsym.export.languages.scripts import branch, domain, vectors_text
 from navsym.export.languages.summary import summary
@@ -37,9 +37,10 @@ def head(functions: Sequence[ExportedFunction], license_: str) -> list[str]:
     """The head of the module, with the helpers."""
     lines = [f"! {license_}", "module navsym_functions", "  use, intrinsic :: iso_fortran_env, only: real64",
              "  use, intrinsic :: ieee_arithmetic, only: ieee_is_finite", "  implicit none", "contains"]  # fmt: skip
-    lines += [line for name in helpers_used(*functions) for line in helper(name)]
+    lines += [line for h in helpers_used(*functions) for line in helper_text(h)]
     operations = {op for f in functions for piece in f.pieces for op in piece.graph.operations()}
-    return [*lines, *EXPM1] if operations & {"expm1", "exprel"} else lines
+    operations |= {op for h in helpers_used(*functions) for op in h.operations}
+    return [*lines, *EXPM1] if "expm1" in operations else lines
 
 
 EXPM1 = [
@@ -48,12 +49,12 @@ EXPM1 = [
 ]  # fmt: skip
 
 
-def helper(name: str) -> list[str]:
+def helper_text(helper: Helper) -> list[str]:
     """One function against cancellation."""
-    switch, below, above = helper_parts(name, SPELLING)
-    y = squares_if_needed(name, ", y")
-    return [f"  pure elemental function navsym_{name}(x) result(f)", "    real(real64), intent(in) :: x",
-            f"    real(real64) :: f{''.join(y)}", *squares_if_needed(name, "    y = x * x"),
+    switch, below, above = helper_parts(helper, SPELLING)
+    y = squares_if_needed(helper, ", y")
+    return [f"  pure elemental function navsym_{helper.name}(x) result(f)", "    real(real64), intent(in) :: x",
+            f"    real(real64) :: f{''.join(y)}", *squares_if_needed(helper, "    y = x * x"),
             f"    if (abs(x) < {switch}) then", f"      f = {below}", "    else", f"      f = {above}", "    end if",
             "  end function", ""]  # fmt: skip
 

@@ -1,87 +1,120 @@
-"""Functions of our own in exported code: against cancellation, and defined where only the formula has a hole.
+"""Parts with a hole at zero as functions of their own in code (:mod:`navsym.export.accuracy.continuation`).
 
-Every language writes them from the same parts (:func:`helper_parts`); their bounds are proved in the tests.
+Every language writes them from the same two branches (:func:`helper_parts`): the operations whose bounds were proved.
 """
 
 from __future__ import annotations
 
+import hashlib
+import re
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
+import sympy as sp
+
+from navsym.export.accuracy.continuation import Continuation, continuation
+from navsym.export.accuracy.literals import literals_of
+from navsym.export.accuracy.rounding import ARITHMETICS
+from navsym.export.expression_graph import Graph
+from navsym.export.forms import expm1
+from navsym.export.holes import Part, T
 from navsym.export.parts import ExportedFunction
+from navsym.proof.wording import text_of
 
 if TYPE_CHECKING:
     from navsym.export.languages.printing import Spelling
 
-#: 1/6, 1/20, 1/42, …: sin(x)/x = 1 - y/6 (1 - y/20 (1 - y/42 …)) with y = x^2.
-SINC_STEPS = (6, 20, 42, 72)
-#: (x - sin x) = x^3/6 (1 - y/20 (1 - y/42 (…))).
-X_MINUS_SIN_STEPS = (20, 42, 72, 110, 156, 210, 272, 342, 420)
+LONGEST_NAME = 24
+#: What people call some of them.
+NAMES = {
+    Part(sp.sin(T), 1): "sinc", Part(expm1(T), 1): "exprel", Part(sp.sinh(T), 1): "sinhc",
+    Part(T - sp.sin(T), 0): "x_minus_sin", Part(T - sp.sin(T), 3): "sinc_defect",
+}  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
 class Helper:
-    """A function without cancellation and without a hole at zero: a series below the switch, the formula above it.
+    """A part and the type it is computed in."""
 
-    about  : what it is, and why the series will do; {switch} in it
-    steps  : divisors of the nested series {series} in y = x^2; none for one that is constant
-    series : the series with what stands before and behind it; {one} and {six} are numbers
-    formula : the plain form; {x} is the argument, {sin}, {sinh}, {expm1} are functions of it
-    """
+    part: Part
+    real: str
 
-    about: str
-    switch: float
-    steps: tuple[int, ...]
-    series: str
-    formula: str
+    @property
+    def name(self) -> str:
+        """What code calls it, behind ``navsym_``."""
+        return name_of(self.part)
 
+    @property
+    def known(self) -> Continuation:
+        return continuation(self.part, self.real)
 
-HELPERS = {
-    "sinc": Helper(
-        "sin(x)/x; below {switch} its series, whose remainder is under x^10/11! < 2^-65.",
-        0.0625, SINC_STEPS, "{series}", "{sin} / {x}",
-    ),
-    "x_minus_sin": Helper(
-        "x - sin(x); below {switch} its series, since the difference would cancel.",
-        1.0, X_MINUS_SIN_STEPS, "((x * y) / {six}) * {series}", "{x} - {sin}",
-    ),
-    "sinc_defect": Helper(
-        "(x - sin(x))/x^3; below {switch} its series, since the difference would cancel; 1/6 at zero.",
-        1.0, X_MINUS_SIN_STEPS, "{series} / {six}", "((({x} - {sin}) / {x}) / {x}) / {x}",
-    ),
-    "exprel": Helper("(exp(x) - 1)/x; below {switch} it is 1 within 2^-61.", 2.0**-60, (), "{one}", "{expm1} / {x}"),
-    "sinhc": Helper("sinh(x)/x; below {switch} it is 1 within 2^-62.", 2.0**-30, (), "{one}", "{sinh} / {x}"),
-}  # fmt: skip
+    @property
+    def formula(self) -> str:
+        """What it is, in x."""
+        numerator = text_of(self.part.plain.xreplace({T: sp.Symbol("x", real=True)}))
+        power = {0: "", 1: "/x"}.get(self.part.divided, f"/x^{self.part.divided}")
+        return f"({numerator}){power}" if power else numerator
+
+    @property
+    def operations(self) -> set[str]:
+        """What both branches call."""
+        return {*self.known.below.operations(), *self.known.above.operations()}
 
 
-def helpers_used(*functions: ExportedFunction) -> list[str]:
-    """Names of the helper functions that the code needs."""
-    used = {node.op for function in functions for piece in function.pieces for node in piece.graph.nodes}
-    return [name for name in HELPERS if name in used]
+def name_of(part: Part) -> str:
+    """A name from people, or one from the formula with a few digits that tell equal ones apart."""
+    if part in NAMES:
+        return NAMES[part]
+    text = f"{text_of(part.plain)}{'_over_t' * bool(part.divided)}"
+    for sign, word in (("**", ""), ("+", "_plus_"), ("-", "_minus_"), ("/", "_over_")):
+        text = text.replace(sign, word)
+    plain = re.sub(r"_+", "_", re.sub(r"\W", "_", text)).strip("_")[:LONGEST_NAME].rstrip("_")
+    digest = hashlib.sha256(f"{part.formula} {part.divided}".encode()).hexdigest()[:4]
+    return f"{plain}_{digest}"
 
 
-def horner(steps: tuple[int, ...], one: str, number: Any) -> str:
-    """The nested product 1 - y/s1 (1 - y/s2 (…))."""
-    text = f"({one} - (y / {number(float(steps[-1]))}))"
-    for step in reversed(steps[:-1]):
-        text = f"({one} - ((y / {number(float(step))}) * {text}))"
-    return text
+def helpers_used(*functions: ExportedFunction) -> list[Helper]:
+    """The parts that the code needs, by name."""
+    used = {Helper(node.value, function.arithmetic.name) for function in functions for piece in function.pieces
+            for node in piece.graph.nodes if node.op == "filled"}  # fmt: skip
+    return sorted(used, key=lambda helper: helper.name)
 
 
-def helper_parts(name: str, s: Spelling, x: str = "x") -> tuple[str, str, str]:
-    """(switch, series below it, formula above it) of a helper in this language; ``x`` is the formula's argument."""
-    helper, one = HELPERS[name], s.number(1.0)
-    series = horner(helper.steps, one, s.number) if helper.steps else ""
-    functions = {f: s.calls[f].format(x) for f in ("sin", "sinh", "expm1")}
-    below = helper.series.format(series=series, one=one, six=s.number(6.0))
-    return s.number(helper.switch), below, helper.formula.format(x=x, **functions)
+def helper_parts(helper: Helper, s: Spelling, x: str = "x") -> tuple[str, str, str]:
+    """(switch, polynomial below it, formula above it) in this language; ``x`` is the formula's argument."""
+    from navsym.export.languages.printing import bare
+
+    known = helper.known
+    below = nested(known.below, helper, s, "x", "y" if squared_node(helper) is not None else "")
+    return s.number(known.switch), bare(below), bare(nested(known.above, helper, s, x))
 
 
-def helper_about(name: str, s: Spelling) -> str:
+def nested(graph: Graph, helper: Helper, s: Spelling, x: str, y: str = "") -> str:
+    """A graph of one argument as one expression."""
+    from navsym.export.languages.printing import node_text  # which needs the names of this file
+
+    literals, square = literals_of(graph, ARITHMETICS[helper.real]), squared_node(helper) if y else None
+    text: list[str] = []
+    for place in range(len(graph.nodes)):
+        text.append(y if place == square else node_text(graph, place, text, [x], literals, s))
+    return text[graph.roots[0]]
+
+
+def squared_node(helper: Helper) -> int | None:
+    """The node of the polynomial that is the square of the argument, None where there is none."""
+    graph = helper.known.below
+    t = next((k for k, node in enumerate(graph.nodes) if node.op == "input"), None)
+    return next((k for k, node in enumerate(graph.nodes) if node.op == "mul" and node.args == (t, t)), None)
+
+
+def helper_about(helper: Helper, s: Spelling) -> str:
     """The comment of a helper."""
-    return HELPERS[name].about.format(switch=s.number(HELPERS[name].switch).removesuffix(s.suffix))
+    known = helper.known
+    lost = int(sp.ceiling(sp.log(sp.Float(float(known.remainder / known.least)), 2)))
+    switch = s.number(known.switch).removesuffix(s.suffix)
+    return f"{helper.formula}; below {switch} its Taylor polynomial, proved within 2^{lost} of it; defined at zero."
 
 
-def squares_if_needed(name: str, line: str) -> list[str]:
-    """The line that makes y, for a helper whose series has it."""
-    return [line] if HELPERS[name].steps else []
+def squares_if_needed(helper: Helper, line: str) -> list[str]:
+    """The line that makes y, the square of x, for a polynomial that has it."""
+    return [] if squared_node(helper) is None else [line]

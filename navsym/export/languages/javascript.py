@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from navsym.export.accuracy.vectors import Vector
-from navsym.export.languages.helpers import helper_parts, helpers_used, squares_if_needed
+from navsym.export.languages.helpers import Helper, helper_parts, helpers_used, squares_if_needed
 from navsym.export.languages.printing import Spelling, assignments, calls, code_names, result_fields
 from navsym.export.languages.programs import calls_table, js_program
 from navsym.export.languages.python import vectors_json
@@ -71,7 +71,7 @@ def files(
         "// Status: 0 results are valid, 1 argument outside the proved domain, 2 not finite.",
         "",
     ]
-    helpers = [helper_text(name) for name in helpers_used(*functions)]
+    helpers = [helper_text(helper) for helper in helpers_used(*functions)]
     return {
         "navsym_functions.mjs": "\n".join(
             [*head, *helpers, *(text for f in functions for text in (source(f), *js_program(f)))]
@@ -113,12 +113,12 @@ def bound(x: float) -> str:
     return SPELLING.number(x)
 
 
-def helper_text(name: str) -> str:
+def helper_text(helper: Helper) -> str:
     """One function against cancellation."""
-    switch, below, above = helper_parts(name, SPELLING)
+    switch, below, above = helper_parts(helper, SPELLING)
     return "\n".join([
-        f"function navsym_{name}(x) {{",
-        *squares_if_needed(name, "  const y = x * x;"),
+        f"function navsym_{helper.name}(x) {{",
+        *squares_if_needed(helper, "  const y = x * x;"),
         f"  return Math.abs(x) < {switch} ? {below} : {above};",
         "}",
         "",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from navsym.export.accuracy.vectors import Vector
-from navsym.export.languages.helpers import helper_parts, helpers_used, squares_if_needed
+from navsym.export.languages.helpers import Helper, helper_parts, helpers_used, squares_if_needed
 from navsym.export.languages.printing import Spelling, assignments, calls
 from navsym.export.languages.scripts import branch, domain, vectors_text
 from navsym.export.languages.summary import summary
@@ -21,7 +21,7 @@ def files(
     """Module and test script."""
     head = [f"# {license_}", "# Every function returns (status, results...); results are there when status == 0.",
             "module NavsymFunctions", ""]  # fmt: skip
-    head += [line for name in helpers_used(*functions) for line in helper(name)]
+    head += [line for h in helpers_used(*functions) for line in helper_text(h)]
     body = [line for f in functions for line in source(f)]
     return {
         "NavsymFunctions.jl": "\n".join([*head, *body, "end", ""]),
@@ -30,10 +30,10 @@ def files(
     }
 
 
-def helper(name: str) -> list[str]:
+def helper_text(helper: Helper) -> list[str]:
     """One function against cancellation."""
-    switch, below, above = helper_parts(name, SPELLING)
-    return [f"function navsym_{name}(x)", *squares_if_needed(name, "    y = x * x"),
+    switch, below, above = helper_parts(helper, SPELLING)
+    return [f"function navsym_{helper.name}(x)", *squares_if_needed(helper, "    y = x * x"),
             f"    return abs(x) < {switch} ? {below} : {above}", "end", ""]  # fmt: skip
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from navsym.export.accuracy.vectors import Vector
-from navsym.export.languages.helpers import helper_parts, helpers_used, squares_if_needed
+from navsym.export.languages.helpers import Helper, helper_parts, helpers_used, squares_if_needed
 from navsym.export.languages.printing import Spelling, assignments, calls
 from navsym.export.languages.scripts import branch, domain, vectors_text
 from navsym.export.languages.summary import summary
@@ -20,7 +20,7 @@ def files(
     functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str
 ) -> dict[str, str]:
     """One file for each function, for each helper, and the test script."""
-    found = {f"navsym_{name}.m": helper(name) for name in helpers_used(*functions)}
+    found = {f"navsym_{h.name}.m": helper_text(h) for h in helpers_used(*functions)}
     found |= {f"{f.name}.m": source(f, license_) for f in functions}
     sizes = "\n".join(f"  s.{f.name} = [{len(f.inputs)}, {f.size}];" for f in functions)
     return found | {
@@ -29,11 +29,11 @@ def files(
     }
 
 
-def helper(name: str) -> str:
+def helper_text(helper: Helper) -> str:
     """One function against cancellation."""
-    switch, below, above = helper_parts(name, SPELLING)
+    switch, below, above = helper_parts(helper, SPELLING)
     return "\n".join([
-        f"function f = navsym_{name}(x)", *squares_if_needed(name, "  y = x * x;"), f"  if abs(x) < {switch}",
+        f"function f = navsym_{helper.name}(x)", *squares_if_needed(helper, "  y = x * x;"), f"  if abs(x) < {switch}",
         f"    f = {below};", "  else", f"    f = {above};", "  end", "end", "",
     ])  # fmt: skip
 

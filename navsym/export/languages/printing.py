@@ -7,12 +7,12 @@ and a blank on either side of an operator, so that tests can find and corrupt it
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from navsym.export.expression_graph import Graph
-from navsym.export.languages.helpers import HELPERS
+from navsym.export.languages.helpers import name_of
 from navsym.export.parts import ExportedFunction, Piece
 
 SIGNS = {"add": "+", "sub": "-", "mul": "*", "div": "/"}
@@ -56,7 +56,7 @@ def calls(prefix: str = "", suffix: str = "", **special: str) -> dict[str, str]:
     table |= {"abs": f"{prefix}fabs{suffix}({{0}})", "atan2": f"{prefix}atan2{suffix}({{0}}, {{1}})"}
     table |= {"pow": f"{prefix}pow{suffix}({{0}}, {{1}})", "max": f"{prefix}fmax{suffix}({{0}}, {{1}})"}
     table |= {"min": f"{prefix}fmin{suffix}({{0}}, {{1}})"}
-    return table | {name: f"navsym_{name}({{0}})" for name in HELPERS} | special
+    return table | special
 
 
 def assignments(
@@ -79,7 +79,7 @@ def loops_of(
     text: list[str] = []
     lines: list[tuple[str, str, bool]] = []
     for place, node in enumerate(graph.nodes):
-        written = node_text(graph, place, text, names, piece, spelling)
+        written = node_text(graph, place, text, names, piece.literals, spelling)
         simple = node.op in ("input", "const") or (
             node.op == "neg" and graph.nodes[node.args[0]].op == "const"
         )
@@ -93,7 +93,7 @@ def loops_of(
 
 
 def node_text(
-    graph: Graph, place: int, text: list[str], names: list[str], piece: Piece, spelling: Spelling
+    graph: Graph, place: int, text: list[str], names: list[str], literals: Sequence[float | None], spelling: Spelling
 ) -> str:
     """One node in terms of its arguments."""
     node = graph.nodes[place]
@@ -101,12 +101,14 @@ def node_text(
     if node.op == "input":
         return names[node.value]
     if node.op == "const":
-        value: Any = piece.literals[place]
+        value: Any = literals[place]
         return spelling.number(value)
     if node.op == "neg":
         return f"(-{args[0]})"
     if node.op in SIGNS:
         return f"({args[0]} {SIGNS[node.op]} {args[1]})"
+    if node.op == "filled":
+        return f"navsym_{name_of(node.value)}({bare(args[0])})"
     return spelling.calls[node.op].format(*(bare(a) for a in args))
 
 

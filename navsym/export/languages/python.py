@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 
 from navsym.export.accuracy.vectors import Vector
-from navsym.export.languages.helpers import helper_parts, helpers_used, squares_if_needed
+from navsym.export.languages.helpers import Helper, helper_parts, helpers_used, squares_if_needed
 from navsym.export.languages.printing import Spelling, assignments, calls, code_names
 from navsym.export.languages.programs import calls_table, python_program
 from navsym.export.languages.summary import summary
@@ -129,12 +129,12 @@ def files(
     }
 
 
-def helper_text(name: str) -> str:
+def helper_text(helper: Helper) -> str:
     """One function against cancellation, over arrays: both forms, each where it holds."""
-    switch, below, above = helper_parts(name, SPELLING, "far")
+    switch, below, above = helper_parts(helper, SPELLING, "far")
     return "\n".join([
-        f"def navsym_{name}(x):",
-        *squares_if_needed(name, "    y = x * x"),
+        f"def navsym_{helper.name}(x):",
+        *squares_if_needed(helper, "    y = x * x"),
         f"    near = np.abs(x) < {switch}",
         "    far = np.where(near, 1.0, x)",
         f"    return np.where(near, {below}, {above})",

@@ -6,8 +6,8 @@ import math
 from collections.abc import Sequence
 
 from navsym.export.accuracy.vectors import Vector
-from navsym.export.languages.helpers import HELPERS, helper_parts, helpers_used, squares_if_needed
-from navsym.export.languages.printing import Spelling, assignments, bare, code_names, result_fields
+from navsym.export.languages.helpers import Helper, helper_parts, helpers_used, squares_if_needed
+from navsym.export.languages.printing import Spelling, assignments, code_names, result_fields
 from navsym.export.languages.programs import rust_program, rust_through_state, through_accessors
 from navsym.export.languages.summary import summary
 from navsym.export.parts import Argument, ExportedFunction, Output
@@ -22,7 +22,6 @@ def spelling(real: str) -> Spelling:
     table |= {
         name: f"{kind}::{special.get(name, name)}({{0}}, {{1}})" for name in ("atan2", "pow", "max", "min")
     }
-    table |= {name: f"navsym_{name}({{0}})" for name in HELPERS}
     return Spelling(table, f"{kind}::NAN", f"{kind}::INFINITY", f"_{kind}")
 
 
@@ -51,7 +50,7 @@ def module(functions: Sequence[ExportedFunction], license_: str) -> str:
     ]
     lines += ["/// Why there is no result.", "#[derive(Clone, Copy, Debug, PartialEq, Eq)]"]
     lines += ["pub enum Status {", "    Domain = 1,", "    NotFinite = 2,", "}", ""]
-    lines += [helper_text(name, kind, s) for name in helpers_used(*functions)]
+    lines += [helper_text(helper, kind, s) for helper in helpers_used(*functions)]
     return "\n".join([*lines, *(text for f in functions for text in (source(f, s, kind), *rust_program(f, kind)))])
 
 
@@ -94,14 +93,14 @@ def bound(x: float, s: Spelling, kind: str) -> str:
     return s.number(x)
 
 
-def helper_text(name: str, kind: str, s: Spelling) -> str:
+def helper_text(helper: Helper, kind: str, s: Spelling) -> str:
     """One function against cancellation."""
-    switch, below, above = helper_parts(name, s)
+    switch, below, above = helper_parts(helper, s)
     return "\n".join([
-        f"fn navsym_{name}(x: {kind}) -> {kind} {{",
-        *squares_if_needed(name, "    let y = x * x;"),
+        f"fn navsym_{helper.name}(x: {kind}) -> {kind} {{",
+        *squares_if_needed(helper, "    let y = x * x;"),
         f"    if {kind}::abs(x) < {switch} {{",
-        f"        return {bare(below)};",
+        f"        return {below};",
         "    }",
         f"    {above}",
         "}",
