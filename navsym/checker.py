@@ -27,7 +27,7 @@ touch, range pieces [{from, to, basis, dual, contacts [{panel, at, weight}], rad
              v_i - at; f(v_i) - s_i). There s_i W_i > 0, places are inside, and |f| < 1 elsewhere: the optimum is x.P,
              and no other estimator reaches it. (F' is regular, hence so is basis.)
 Bounds of f on a cell: Taylor's formula; near a contact f is concave, or monotone up to the end of the panel. Other
-cells are halved, 4 cells + 200 in all (cells bits <= 4 * 10**7). For all |s| <= 1: f(0) + s f'(0) + s s f''(any s)/2.
+cells are halved, 4 cells + 200 in all (cells bits <= 4 * 10**7). For all |s| <= 1: f(0) + s f'(0) + s s (a ball).
 """
 
 from __future__ import annotations
@@ -36,10 +36,10 @@ import ast
 import json
 import operator
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from fractions import Fraction
 from functools import lru_cache, reduce
-from itertools import product, zip_longest
+from itertools import product, repeat, zip_longest
 from math import factorial, prod
 from typing import Any
 
@@ -48,7 +48,6 @@ from flint import arb, arb_mat, arb_poly, arb_series, ctx, fmpq, fmpq_poly, fmpz
 
 class Refused(Exception):
     """The certificate does not prove what it says."""
-
 def need(condition: Any, why: str) -> None:
     if not condition:
         raise Refused(why)
@@ -61,7 +60,6 @@ def load(text: str) -> Any:
         return json.loads(text, object_pairs_hook=unique, parse_float=refuse, parse_constant=refuse)
     except (ValueError, RecursionError) as error:
         raise Refused(f"not JSON: {error}") from None
-
 def fields(item: Any, names: str) -> list[Any]:
     need(isinstance(item, dict) and set(item) == set(names.split()), f"expected exactly the keys {names}")
     return [item[name] for name in names.split()]
@@ -88,28 +86,34 @@ def parse(text: Any) -> ast.expr:
 
 # -- values ------------------------------------------------------------------------------------------------------------
 class Jet:
-    """A polynomial in s, cut off behind s**2 (or earlier, all alike); a constant has one part. Parts are balls, series
-    of balls in a place with coefficients [k], or Exact."""
+    """A function of s in [-1, 1]: c0 + s c1 + s s c2, or c0 + s c1, where the last part holds the values for all s; a
+    constant has one part. Parts are balls, series of balls in a place with coefficients [k], or Exact (near s = 0)."""
     def __init__(self, *parts: Any):
         self.parts = parts
+    def cut(self) -> Jet:
+        *first, a, b = self.parts
+        return Jet(*first, a if isinstance(a, Exact) else a + EVERY * b)
+    def all(self) -> Any:
+        """A ball, or a series of balls, for all s."""
+        return polynomial(self.parts, EVERY)
     def __add__(self, o: Jet) -> Jet:
         return Jet(*(x + y for x, y in zip_longest(self.parts, o.parts, fillvalue=0)))
     def __mul__(self, o: Jet) -> Jet:
-        a, b = self.parts, o.parts
-        if len(a) == 1 or len(b) == 1:
-            return Jet(*(x * y for x in a for y in b))
-        return Jet(*(sum(map(operator.mul, a[:k], b[k - 1::-1])) for k in range(1, len(a) + 1)))
+        if len(self.parts) == 1 or len(o.parts) == 1:
+            return Jet(*(x * y for x in self.parts for y in o.parts))
+        return Jet(self.parts[0]) * o + Jet(0, *(Jet(*self.parts[1:]) * o.cut()).parts)
     def __sub__(self, o: Jet) -> Jet:
         return self + o * Jet(-1)
     def __truediv__(self, o: Jet) -> Jet:
-        return self * power(o, fmpq(-1), arb)
+        return self * power(o, fmpq(-1))
     def __getitem__(self, k: int) -> Jet:
         return Jet(*(part[k] for part in self.parts))
     def through(self, value: Any, slope: Callable[[Jet], Jet]) -> Jet:
-        """A function f of this from its value at s = 0 and its derivative: f(x)' = slope(x) x'."""
-        rise = [c * k for k, c in enumerate(self.parts)][1:]
-        rest = slope(Jet(*self.parts[:-1])) * Jet(*rise) if rise else Jet()
-        return Jet(value, *(c * fmpq(1, k) for k, c in enumerate(rest.parts, 1)))
+        """A function f of x = c0 + s h from f(c0) and its derivative, whose mean from c0 to x is multiplied by s h."""
+        if len(self.parts) == 1:
+            return Jet(value)
+        mean = Jet(*(c * fmpq(1, k) for k, c in enumerate(slope(self.cut()).parts, 1)))
+        return Jet(value, *(mean * Jet(*self.parts[1:])).parts)
 
 OPERATIONS: dict[type, Any] = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul,
                                ast.Div: operator.truediv, ast.UAdd: operator.add, ast.USub: operator.sub}
@@ -133,19 +137,18 @@ def value(node: ast.expr, names: dict[str, Jet], field: Any) -> Jet:
         case ast.BinOp(x, ast.Pow(), q):
             terms = value(q, {}, Exact).parts[0].terms
             need(set(terms) <= {frozenset()}, "an exponent that is no rational number")
-            return power(value(x, names, field), terms.get(frozenset(), fmpq(0)), field)
+            return power(value(x, names, field), terms.get(frozenset(), fmpq(0))) * Jet(field(1))
         case ast.BinOp(x, sign, y) if type(sign) in OPERATIONS:
             return OPERATIONS[type(sign)](value(x, names, field), value(y, names, field))  # type: ignore[no-any-return]
         case ast.UnaryOp(ast.UAdd() | ast.USub() as sign, x):
             return OPERATIONS[type(sign)](Jet(0), value(x, names, field))  # type: ignore[no-any-return]
     raise Refused("not an expression")
 
-def power(x: Jet, q: fmpq, field: Any) -> Jet:
+def power(x: Jet, q: fmpq) -> Jet:
     need(abs(q) < 1000, "a large exponent")
     if q.q == 1 and q >= 0:
-        return prod([x] * int(q), start=Jet(field(1)))
-    return x.through(x.parts[0] ** q, lambda y: power(y, q - 1, field) * Jet(q))
-
+        return prod([x] * int(q), start=Jet(1))
+    return x.through(x.parts[0] ** q, lambda y: power(y, q - 1) * Jet(q))
 def polynomial(c: Sequence[Any], at: Any) -> Any:
     return reduce(lambda total, a: total * at + a, reversed(c))
 
@@ -161,41 +164,41 @@ def apply(name: str, x: Jet, field: Any) -> Jet:
     signs, k = {"exp": (1, 1, 1, 1), "sin": (0, 1, 0, -1), "cos": (1, 0, -1, 0)}[f], int(digits)
     c = [Jet(field(fmpq(signs[j % 4], factorial(j)))) for j in range(k + 60)]
     if field is Exact:
-        return (apply(f, x, field) - polynomial([*c[:k], Jet(0)], x)) / power(x, fmpq(k), field)
-    need(abs(a if isinstance(a, arb) else a[0]) <= 1, f"{name} beyond 1")
+        return (apply(f, x, field) - polynomial([*c[:k], Jet(0)], x)) * power(x, fmpq(-k))
+    need(abs(arb_series(x.all())[0]) <= 1, f"{name} beyond 1")
     # the last coefficient: the sum of binomial(j, 60)/(j + k)! over j >= 60 is at most e/(60 + k)!
     return polynomial([*c[k:], Jet(arb(0, 3) / factorial(k + 60))], x)
 
 # -- exact numbers -----------------------------------------------------------------------------------------------------
-def plus(a: dict[Any, Any], b: dict[Any, Any]) -> dict[Any, Any]:
-    total = {k: a.get(k, 0) + b.get(k, 0) for k in {**a, **b}}
+def collect(pairs: Iterable[tuple[Any, Any]]) -> dict[Any, Any]:
+    """The sums, other than zero, of what stands at each key."""
+    total = dict[Any, Any]()
+    for k, c in pairs:
+        total[k] = total.get(k, 0) + c
     return {k: c for k, c in total.items() if c != 0}
-
 class Exact:
     """A sum of c k1**q1 k2**q2 ... with rational c and q, {frozenset of (k, q): c}. Keys k = (size, kind, content) are
     symbols, pi, functions of an argument, exp(M) and "cis" exp(i M) of the products M in arguments, and "sum"s: what
     something is divided by, or a root of. What vanishes does so wherever all of it is defined."""
     def __init__(self, x: Any):
-        terms = x if isinstance(x, dict) else x.terms if isinstance(x, Exact) else {frozenset(): fmpq(x)}
-        self.terms: dict[Any, Any] = {m: c for m, c in terms.items() if c != 0}
+        self.terms = collect(x if isinstance(x, Iterable) else [(frozenset(), fmpq(x))])
+    def __iter__(self) -> Iterator[tuple[Any, Any]]:
+        return iter(self.terms.items())
     def key(self, kind: str, q: Any = 1) -> Exact:
         """(a function of this number)**q; the number itself for the kind "sum"."""
         size = len(self.terms) + sum(k[0] for m in self.terms for k, _ in m)
-        return Exact({frozenset({((size, kind, frozenset(self.terms.items())), q)}): fmpq(1)})
+        return Exact([(frozenset({((size, kind, frozenset(self)), q)}), fmpq(1))])
     def __add__(self, o: Any) -> Exact:
-        return Exact(plus(self.terms, Exact(o).terms))
+        return Exact([*self, *Exact(o)])
     def __mul__(self, o: Any) -> Exact:
-        total, others = dict[Any, Any](), Exact(o).terms
-        need(len(self.terms) * len(others) < 10**6, "too many terms")
-        for (m, c), (n, d) in product(self.terms.items(), others.items()):
-            mn = frozenset(plus(dict(m), dict(n)).items())
-            total[mn] = total.get(mn, 0) + c * d
-        return Exact(total)
+        other = Exact(o)
+        need(len(self.terms) * len(other.terms) < 10**6, "too many terms")
+        return Exact((frozenset(collect([*m, *n]).items()), c * d) for (m, c), (n, d) in product(self, other))
     __radd__, __rmul__ = __add__, __mul__
     def __pow__(self, q: fmpq) -> Exact:
         if len(self.terms) == 1 and q.q == 1:
-            ((m, c),) = self.terms.items()
-            return Exact({frozenset((k, e * q) for k, e in m): c ** int(q)})
+            ((m, c),) = self
+            return Exact([(frozenset((k, e * q) for k, e in m), c ** int(q))])
         need(not self.vanishes(), "division by zero, or a root of it")
         all_c = fmpq_poly([*self.terms.values()])
         c = fmpq(all_c.numer().content(), all_c.denom())
@@ -205,7 +208,7 @@ class Exact:
         return prod(parts, start=rest if rest.terms == {frozenset(): 1} else rest.key("sum", q))
     def exp(self, kind: str = "exp", sign: int = 1) -> Exact:
         """exp(x), or exp(i sign x) for the kind "cis"."""
-        return prod((Exact({m: fmpq(1)}).key(kind, c * sign) for m, c in self.terms.items()), start=Exact(1))
+        return prod((Exact([(m, fmpq(1))]).key(kind, c * sign) for m, c in self), start=Exact(1))
     def cos(self) -> Exact:
         return (self.exp("cis") + self.exp("cis", -1)) * fmpq(1, 2)
     def sin(self) -> Exact:
@@ -214,19 +217,18 @@ class Exact:
         """Powers of a sum that differ by integers are multiplied out; then sums of roots of unity are left."""
         key = max((k for m in self.terms for k, _ in m if k[1] == "sum"), key=lambda k: k[0], default=TURN)
         powers = [fmpq(dict(m).get(key, 0)) for m in self.terms]
-        n, lowest, parts = int(fmpq_poly(powers).denom()), min(powers, default=fmpq()).floor(), dict[Any, Any]()
+        terms = [(m - {(key, q)}, q, c) for q, (m, c) in zip(powers, self, strict=True)]
+        if key != TURN:
+            base, low = Exact(key[2]), min(powers).floor()
+            raised = [(q - q.floor(), prod([base] * int(q.floor() - low), start=Exact([(m, c)]))) for m, q, c in terms]
+            return all(part.vanishes() for part in collect(raised).values())
+        n = int(fmpq_poly(powers).denom())
         need(n <= 5040, "roots of a high order")
-        for q, (m, c) in zip(powers, self.terms.items(), strict=True):
-            rest, up = m - {(key, q)}, q.floor()
-            if key == TURN:
-                parts[rest] = parts.get(rest, 0) + fmpq_poly([0] * (int(q * n) % (2 * n)) + [c])
-            else:
-                term = Exact({rest: c}) * prod([Exact(dict(key[2]))] * int(up - lowest), start=Exact(1))
-                parts[q - up] = parts.get(q - up, 0) + term
-        turn = fmpq_poly(fmpz_poly.cyclotomic(2 * n)) if key == TURN else None
-        return all(part % turn == 0 if turn else part.vanishes() for part in parts.values())
+        turn = fmpq_poly(fmpz_poly.cyclotomic(2 * n))
+        sums = collect((m, fmpq_poly([0] * (int(q * n) % (2 * n)) + [c])) for m, q, c in terms)
+        return all(part % turn == 0 for part in sums.values())
 
-PI = Exact({}).key("pi")
+PI = Exact([]).key("pi")
 (((TURN, _),),) = PI.key("cis").terms
 SURDS = {(p, fmpq(1, 2)): value(parse(text), {}, Exact).parts[0] for p, text in
          ((2, "2*cos(pi/4)"), (3, "2*cos(pi/6)"), (5, "4*cos(pi/5) - 1"))}
@@ -237,7 +239,7 @@ def surd(p: int, q: fmpq) -> Exact:
     return SURDS.get((p, part), Exact(p).key("sum", part)) * fmpq(p) ** int(q.floor())
 
 def generic(symbols: list[Any]) -> dict[str, Jet]:
-    return {s: Jet(Exact({}).key(f"symbol {s}")) for s in distinct(symbols)}
+    return {s: Jet(Exact([]).key(f"symbol {s}")) for s in distinct(symbols)}
 def table(item: Any, columns: int, names: dict[str, Jet], field: Any) -> list[list[Jet]]:
     return array(item, lambda row: array(row, lambda e: value(parse(e), names, field), columns))
 def dot(x: list[Jet], y: list[Jet]) -> Jet:
@@ -247,115 +249,104 @@ def identity(left: Any, right: Any, symbols: Any) -> None:
     x, y = (value(parse(side), generic(array(symbols, str)), Exact) for side in (left, right))
     need((x - y).parts[0].vanishes(), "the sides differ")
 
-def exponential(A: Any, X: Any, t: Any, symbols: Any) -> None:
-    names, n = generic([*array(symbols, str), t]), len(A)
-    moving, start = {t: Jet(names.pop(t).parts[0], 1)}, {t: Jet(Exact(0))}
-    F, Y, Z = (table(M, n, names | at, Exact) for M, at in ((A, {}), (X, moving), (X, start)))
-    need(len(F) == len(Y) == n, "expected square matrices")
+def exponential(matrix: Any, solution: Any, variable: Any, symbols: Any) -> None:
+    names, n = generic([*array(symbols, str), variable]), len(matrix)
+    moving, start = Jet(names.pop(variable).parts[0], 1), Jet(Exact(0))
+    A, X, I = (table(rows, n, names | at, Exact) for rows, at in (
+        (matrix, {}), (solution, {variable: moving}), (solution, {variable: start})))
+    need(len(A) == len(X) == n, "expected square matrices")
     for i, j in product(range(n), repeat=2):
-        rise = [*Y[i][j].parts, 0][1]
-        need((dot(F[i], [row[j] for row in Y]) - Jet(rise)).parts[0].vanishes(), "X' differs from A X")
-        need((Z[i][j].parts[0] + -int(i == j)).vanishes(), "X(0) differs from I")
+        rise = dot(A[i], [row[j] for row in X]) - Jet([*X[i][j].parts, 0][1])
+        need(rise.parts[0].vanishes(), "X' differs from A X")
+        need((I[i][j] - Jet(int(i == j))).parts[0].vanishes(), "X(0) differs from I")
 
-def rank(M: Any, symbols: Any, r: Any, point: Any, rows: Any, null: Any) -> None:
-    names, n = generic(array(symbols, str)), len(M[0])
+def rank(matrix: Any, symbols: Any, rank: Any, point: Any, rows: Any, null: Any) -> None:
+    names, n = generic(array(symbols, str)), len(matrix[0])
     need(set(point) == set(names), "the point gives every symbol")
     here = {s: ball(q) for s, q in point.items()}
-    chosen = array(rows, lambda k: M[whole(k, 0, len(M) - 1)], whole(r, 0, n))
+    chosen = array(rows, lambda k: matrix[whole(k, 0, len(matrix) - 1)], whole(rank, 0, n))
     square = arb_mat([[e.parts[0] for e in row] for row in table([*chosen, *null], n, here, arb)])
     need(not square.det().contains(0), "the rows and null vectors may be dependent at the point")
-    for row, v in product(table(M, n, names, Exact), table(null, n, names, Exact)):
+    for row, v in product(table(matrix, n, names, Exact), table(null, n, names, Exact)):
         need(dot(row, v).parts[0].vanishes(), "M v does not vanish")
 
 # -- balls -------------------------------------------------------------------------------------------------------------
-EVERY, UNIT, ORDER = arb(0, 1), (fmpq(0), fmpq(1)), 16
-
+EVERY, UNIT, ORDER = arb(0, 1), (fmpq(1, 2), fmpq(1, 2)), 16
 def ball(text: Any) -> Jet:
     return Jet(arb(number(text)))
-def hull(ends: tuple[fmpq, fmpq]) -> arb:
-    return arb(ends[0]).union(arb(ends[1]))
-def work(bits: Any, cells: Any) -> int:
-    """Sets the precision; the number of cells that may be looked at."""
+def work(bits: Any, cells: Any) -> Iterator[bool]:
+    """Sets the precision; True for every cell that may be looked at."""
     ctx.prec = whole(bits, 53, 20000)
-    return 4 * whole(cells, 0, min(20000, 4 * 10**7 // ctx.prec)) + 200
+    return repeat(True, 4 * whole(cells, 0, min(20000, 4 * 10**7 // ctx.prec)) + 200)
 
-def cover(cells: list[dict[Any, Any]], limit: int, passes: Any) -> int:
-    """Halve boxes of fractions until all cells pass; returns what is left of the limit."""
+def cover(cells: list[dict[Any, tuple[fmpq, fmpq]]], budget: Iterator[bool], passes: Any) -> None:
+    """Halve boxes, of middles and radii, until all cells pass."""
     for cell in cells:
-        need(len(cells) < limit, "the bound is not shown in so many cells")
+        need(next(budget, False), "the bound is not shown in so many cells")
         if not passes(cell):
-            side = max(cell, key=lambda s: cell[s][1] - cell[s][0])
-            low, middle, high = cell[side][0], sum(cell[side]) / 2, cell[side][1]
-            cells += [cell | {side: (low, middle)}, cell | {side: (middle, high)}]
-    return limit - len(cells)
+            side = max(cell, key=lambda s: cell[s][1])
+            middle, r = cell[side][0], cell[side][1] / 2
+            cells += [cell | {side: (half, r)} for half in (middle - r, middle + r)]
 
-def positivity(text: Any, box: Any, bits: Any, cells: Any) -> None:
-    limit, tree = work(bits, cells), parse(text)
+def positivity(expression: Any, box: Any, bits: Any, cells: Any) -> None:
+    budget, tree = work(bits, cells), parse(expression)
     ends = {s: array(box[s], lambda e: value(parse(e), {}, arb), 2) for s in distinct([*box])}
     def passes(cell: dict[str, tuple[fmpq, fmpq]]) -> Any:
-        return value(tree, {s: a + (b - a) * Jet(hull(cell[s])) for s, (a, b) in ends.items()}, arb).parts[0] > 0
-    cover([dict.fromkeys(ends, UNIT)], limit, passes)
+        return value(tree, {s: a + (b - a) * Jet(arb(*cell[s])) for s, (a, b) in ends.items()}, arb).parts[0] > 0
+    cover([dict.fromkeys(ends, UNIT)], budget, passes)
 
 # -- the optimum -------------------------------------------------------------------------------------------------------
 class Problem:
-    """Panels and functional at p = middle + half s."""
-    def __init__(self, t: Any, panels: Any, P: Any, bits: Any, cells: Any, p: Any, *numbers: Any):
-        self.limit, (self.t, self.p), self.P = work(bits, cells), distinct([t, p]), array(P, parse)
-        self.low, self.high, self.lower, self.upper = map(number, numbers)
+    """Panels and functional, after focus at p = middle + half s."""
+    def __init__(self, variable: Any, panels: Any, functional: Any, bits: Any, cells: Any, parameter: Any, **rest: Any):
+        self.budget, (self.t, self.p) = work(bits, cells), distinct([variable, parameter])
+        self.low, self.high, self.lower, self.upper = map(number, fields(rest, "from to lower upper"))
+        self.P = array(functional, parse)
         rows = array(panels, lambda panel: fields(panel, "measurement from to sigma H"))
         self.panels = [[*map(parse, ends), *array(H, parse, len(self.P))] for _, *ends, H in rows]
     def focus(self, middle: arb, half: fmpq, basis: list[list[Jet]]) -> None:
-        self.middle, self.half, self.basis = Jet(middle), half, basis
-    def moving(self, s: arb) -> Jet:
-        return Jet(s, 1, 0) if self.half else Jet(s)
-    def names(self, s: arb) -> dict[str, Jet]:
-        return {self.p: self.middle + self.moving(s) * Jet(arb(self.half))}
-    def over(self, make: Callable[[arb], list[Jet]]) -> list[Any]:
-        """Enclosures for all |s| <= 1 by Taylor's formula."""
-        thin = make(arb(0))
-        parts = [x.parts[:2] + y.parts[2:] for x, y in zip(thin, make(EVERY) if self.half else thin, strict=True)]
-        return [polynomial(part, EVERY) for part in parts]
-    def mixed(self, q: list[Jet]) -> list[Jet]:
-        return [dot(row, q) for row in self.basis] or q
-    def target(self, s: arb) -> list[Jet]:
-        return self.mixed([value(e, self.names(s), arb) for e in self.P])
-    def rows(self, panel: int, place: Jet, s: arb, n: int) -> list[Jet]:
+        self.s, self.basis = Jet(0, 1, 0) if half else Jet(0), basis
+        self.names = {self.p: Jet(middle) + self.s * Jet(arb(half))}
+        self.target = self.mixed(self.P, self.names)
+    def mixed(self, q: list[ast.expr], names: dict[str, Jet]) -> list[Jet]:
+        column = [value(e, names, arb) for e in q]
+        return [dot(row, column) for row in self.basis] or column
+    def rows(self, panel: int, place: Jet, n: int) -> list[Jet]:
         """basis q as series of n terms about a place."""
-        ctx.cap, names = n, self.names(s)
+        ctx.cap = n
         low, high, sigma, *H = self.panels[whole(panel, 0, len(self.panels) - 1)]
-        start, end, bound = (value(e, names, arb) for e in (low, high, sigma))
-        need((end - start).parts[0] > 0 and bound.parts[0] > 0, "noise bound and length are positive")
-        names[self.t] = start + (end - start) * (place + Jet(arb_series([0, 1])))
-        return self.mixed([value(e, names, arb) / bound * Jet(arb_series([1])) for e in H])
-    def feasible(self, x: Callable[[arb], list[Jet]], contacts: list[Any]) -> None:
+        start, end, bound = (value(e, self.names, arb) for e in (low, high, sigma))
+        need((end - start).all() > 0 and bound.all() > 0, "noise bound and length are positive")
+        t = start + (end - start) * (place + Jet(arb_series([0, 1])))
+        return [h / bound * Jet(arb_series([1])) for h in self.mixed(H, self.names | {self.t: t})]
+    def feasible(self, x: list[Jet], contacts: list[Any]) -> None:
         """|f| < 1 off the contacts (panel, place, sign, outward direction at an end)."""
         def passes(cell: dict[int, tuple[fmpq, fmpq]]) -> bool:
-            ((panel, ends),) = cell.items()
-            part, length = hull(ends), ends[1] - ends[0]
-            near = [c for c in contacts if c[0] == panel and abs(c[1].mid() - part.mid()) < length]
-            _, place, sign, end = [*near, (panel, part, *UNIT)][0]
+            ((panel, (middle, half)),) = cell.items()
+            part = arb(middle, half)
+            near = [c for c in contacts if c[0] == panel and abs(c[1].mid() - middle) < 2 * half]
+            _, place, sign, end = [*near, (panel, part, 1, 0)][0]
             centre = place.mid()
             r = abs(part.union(place) - centre).upper()
-            thin, wide = (self.over(lambda s: [dot(x(s), self.rows(panel, Jet(at), s, ORDER))])[0]  # noqa: B023
-                          for at in (centre, arb(centre, r)))
+            thin, wide = (dot(x, self.rows(panel, Jet(at), ORDER)).all() for at in (centre, arb(centre, r)))
             f, u = arb_poly([*(thin[k] for k in range(ORDER - 1)), wide[ORDER - 1]]), arb(0, r)
             if not near:
                 return bool(abs(f(u)) < 1)
             slope = f.derivative() * (sign * end)
             concave = slope(place - centre) >= 0 and sign * f.derivative().derivative()(u) < 0
             return bool((concave or slope(u) > 0) and sign * f(u) > -1)
-        self.limit = cover([{k: UNIT} for k in range(len(self.panels))], self.limit, passes)
+        cover([{k: UNIT} for k in range(len(self.panels))], self.budget, passes)
 
-def gap(dual: Any, support: Any, *head: Any) -> None:
-    problem = Problem(*head)
-    problem.focus(hull((problem.low, problem.high)), fmpq(0), [])
-    m, P = len(problem.P), problem.target(EVERY)
+def gap(dual: Any, support: Any, **head: Any) -> None:
+    problem = Problem(**head)
+    problem.focus(arb(problem.low).union(arb(problem.high)), fmpq(0), [])
+    m, P = len(problem.P), [[p.all()] for p in problem.target]
     x = array(dual, ball, m)
-    problem.feasible(lambda s: x, [])
-    need(dot(x, P).parts[0] >= problem.lower, "the lower bound is above x.P")
+    problem.feasible(x, [])
+    need(dot(x, problem.target).all() >= problem.lower, "the lower bound is above x.P")
     need(all(0 <= number(v) <= 1 for _, v in array(support, list, m)), "a place outside its panel")
-    columns = [[h.parts[0][0] for h in problem.rows(k, ball(v), EVERY, 1)] for k, v in support]
-    w = arb_mat(columns).transpose().solve(arb_mat([[p.parts[0]] for p in P])).entries()
+    columns = [[h[0].all() for h in problem.rows(k, ball(v), 1)] for k, v in support]
+    w = arb_mat(columns).transpose().solve(arb_mat(P)).entries()
     need(sum(map(abs, w)) <= problem.upper, "the weights cost more than the upper bound")
 
 def optimum(problem: Problem, dual: Any, contacts: Any, radii: Any) -> arb:
@@ -365,15 +356,12 @@ def optimum(problem: Problem, dual: Any, contacts: Any, radii: Any) -> arb:
     curves = [array(c, ball) for c in (*array(dual, list, m), *places, *weights)]
     ends = [-1 if at == ["0"] else int(at == ["1"]) for at in places]
     signs = [1 if c[0].parts[0] > 0 else -1 for c in curves[m + l:]]
-    radius = [r.parts[0] for r in array(radii, ball, len(curves))]
-    def unknowns(s: arb, shift: list[arb]) -> list[Jet]:
-        return [polynomial(c, problem.moving(s)) + Jet(d) for c, d in zip(curves, shift, strict=True)]
-    def system(s: arb, shift: list[arb]) -> list[Jet]:
-        """-F, and behind it all derivatives of F."""
-        z = unknowns(s, shift)
-        F, J = [*problem.target(s), *z[m:]], [[Jet(0)] * len(z) for _ in z]
+    radius, centre = array(radii, number, len(curves)), [polynomial(c, problem.s) for c in curves]
+    def system(z: list[Jet]) -> tuple[arb_mat, arb_mat]:
+        """-F, and all derivatives of F."""
+        F, J = [*problem.target, *z[m:]], [[Jet(0)] * len(z) for _ in z]
         for i, v, w in zip(range(l), range(m, m + l), range(m + l, m + 2 * l), strict=True):
-            q = problem.rows(panels[i], z[v], s, 3)
+            q = problem.rows(panels[i], z[v], 3)
             f = dot(z, q)
             F[w], J[w][v], J[w][:m] = Jet(signs[i]) - f[0], f[1], [h[0] for h in q]
             F[v], J[v][v] = curves[v][0] - z[v], Jet(1)
@@ -381,20 +369,19 @@ def optimum(problem: Problem, dual: Any, contacts: Any, radii: Any) -> arb:
                 F[v], J[v][v], J[v][:m] = f[1] * Jet(-1), f[2] * Jet(2), [h[1] for h in q]
             for j, h in enumerate(q):
                 F[j], J[j][v], J[j][w] = F[j] - z[w] * h[0], z[w] * h[1], h[0]
-        return [*F, *(d for row in J for d in row)]
-    n, box = len(curves), [EVERY * r for r in radius]
-    F = arb_mat(n, 1, problem.over(lambda s: system(s, [arb(0)] * n))[:n])
-    J = arb_mat(n, n, problem.over(lambda s: system(s, box))[n:])
+        return arb_mat([[x.all()] for x in F]), arb_mat([[x.all() for x in row] for row in J])
+    F, J = system(centre)[0], system([c + Jet(EVERY * r) for c, r in zip(centre, radius, strict=True)])[1]
     move = J.solve(F, algorithm="precond").entries()
     need(all(abs(d) < r for d, r in zip(move, radius, strict=True)), "Newton's test fails")
-    z = problem.over(lambda s: unknowns(s, move))  # the image of the box is a better box
-    need(all(s * w > 0 for s, w in zip(signs, z[m + l:], strict=True)), "a weight of the wrong sign")
-    need(all(end or 0 < v < 1 for end, v in zip(ends, z[m:m + l], strict=True)), "a contact outside its panel")
-    problem.feasible(lambda s: unknowns(s, move), list(zip(panels, z[m:m + l], signs, ends, strict=True)))
-    return problem.over(lambda s: [dot(unknowns(s, move), problem.target(s))])[0]  # type: ignore[no-any-return]
+    z = [c + Jet(d) for c, d in zip(centre, move, strict=True)]  # the image of the box is a better box
+    v, w = [x.all() for x in z[m:m + l]], [x.all() for x in z[m + l:]]
+    need(all(s * x > 0 for s, x in zip(signs, w, strict=True)), "a weight of the wrong sign")
+    need(all(end or 0 < x < 1 for end, x in zip(ends, v, strict=True)), "a contact outside its panel")
+    problem.feasible(z, list(zip(panels, v, signs, ends, strict=True)))
+    return dot(z, problem.target).all()  # type: ignore[no-any-return]
 
-def touch(pieces: Any, *head: Any) -> None:
-    problem = Problem(*head)
+def touch(pieces: Any, **head: Any) -> None:
+    problem = Problem(**head)
     edge, m = problem.low, len(problem.P)
     for low, high, basis, *solution in array(pieces, lambda p: fields(p, "from to basis dual contacts radius")):
         a, b = number(low), number(high)
@@ -404,22 +391,18 @@ def touch(pieces: Any, *head: Any) -> None:
         edge = b
     need(pieces and edge == problem.high, "the pieces do not reach the end")
 
-HEAD = " variable panels functional bits cells parameter from to lower upper"
-KINDS: dict[str, tuple[Callable[..., Any], str]] = {
-    "identity": (identity, "left right symbols"), "exponential": (exponential, "matrix solution variable symbols"),
-    "rank": (rank, "matrix symbols rank point rows null"), "positivity": (positivity, "expression box bits cells"),
-    "gap": (gap, "dual support" + HEAD), "sliver": (gap, "dual support" + HEAD), "touch": (touch, "pieces" + HEAD),
-    "range": (touch, "pieces" + HEAD), "all": (lambda of: array(of or None, check), "of")}
+KINDS: dict[str, Callable[..., Any]] = {
+    "identity": identity, "exponential": exponential, "rank": rank, "positivity": positivity, "gap": gap, "sliver": gap,
+    "touch": touch, "range": touch, "all": lambda of: array(of or None, check)}
 
 def check(item: Any) -> str:
-    """The kind of a certificate that holds; raises Refused with the reason otherwise."""
+    """The kind of a certificate that holds (its keys are the names of the parameters); else raises Refused."""
     before, ctx.prec = (ctx.prec, ctx.cap), 128
     try:
         need(item["kind"] in KINDS, "expected a certificate of a known kind")
-        function, names = KINDS[item["kind"]]
-        function(*fields(item, f"{names} kind")[:-1])
+        KINDS[item["kind"]](**{key: item[key] for key in item if key != "kind"})
+        return str(item["kind"])
     except Exception as error:
         raise error if isinstance(error, Refused) else Refused(repr(error)) from None
     finally:
         ctx.prec, ctx.cap = before
-    return str(item["kind"])

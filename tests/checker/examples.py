@@ -165,9 +165,9 @@ TIGHT = EXACT | {
     "bits": 64, "cells": 210, "dual": ["99/100"], "support": [[0, "1/97"]], "upper": "1000",
     "panels": [{"measurement": 0, "from": "0", "to": "10", "sigma": "1", "H": ["sin(20*t)"]}],
 }  # fmt: skip
-# With three panels more the cells are 4 cells + 200 to the last, which is one too many.
-MORE = [{"measurement": k, "from": "0", "to": "1", "sigma": "1", "H": ["t/9"]} for k in (1, 2, 3)]
-EVEN = TIGHT | {"panels": [*TIGHT["panels"], *MORE]}
+# With three panels more the cells are 4 cells + 200 to the last; with four there is one too many.
+MORE = [{"measurement": k, "from": "0", "to": "1", "sigma": "1", "H": ["t/9"]} for k in (1, 2, 3, 4)]
+EVEN, UNEVEN = (TIGHT | {"panels": [*TIGHT["panels"], *MORE[:n]]} for n in (3, 4))
 
 
 def remainder(tenths):
@@ -190,7 +190,7 @@ FULL = EXACT | {"cells": 0, "dual": ["0.999"], "lower": "0.9", "upper": "1.1", "
 ALL = {"kind": "all", "of": [IDENTITY, RANK]}
 GOOD = [
     IDENTITY, ROW, OFFSET, DIGITS, EXPONENTIAL, RANK, POSITIVITY, EDGE, CELLS, ALL,
-    CHAIN, FULL, TIGHT, REMAINDER, KERNEL, NOTHING, AT_ONCE, NO_CELLS, MANY_CELLS,
+    CHAIN, FULL, TIGHT, EVEN, REMAINDER, KERNEL, NOTHING, AT_ONCE, NO_CELLS, MANY_CELLS,
     GAP, EXACT, SLIVER, TOUCH, PARABOLA, COARSE, CONSTANT, FLAT,
     FLAT_LEFT, RANGE, MOVING, SLOPES,
 ]  # fmt: skip

@@ -21,7 +21,6 @@ from tests.checker.examples import (
     CONSTANT,
     DIGITS,
     EDGE,
-    EVEN,
     EXACT,
     EXPONENTIAL,
     FLAT,
@@ -40,6 +39,7 @@ from tests.checker.examples import (
     SLOPES,
     TIGHT,
     TOUCH,
+    UNEVEN,
     alone,
     remainder,
 )
@@ -132,7 +132,7 @@ FORGERIES = [
     (CLIMB, ["kind"], "touch", "not shown"),
     (SHIFTED, ["kind"], "touch", "Newton"),
     (REMAINDER, ["expression"], remainder(37), "not shown"),
-    (EVEN, ["kind"], "gap", "not shown"),
+    (UNEVEN, ["kind"], "gap", "not shown"),
     (DIP, ["kind"], "touch", "not shown"),
     (BEYOND, ["kind"], "gap", "beyond 1"),
     (AT_ONCE, ["expression"], "exp_2(3/2) + x", "beyond 1"),
@@ -164,8 +164,8 @@ FORGERIES = [
     (IDENTITY, ["kind"], 3, "known kind"),
     (IDENTITY, ["symbols"], ["a", 1], "expected names"),
     (IDENTITY, ["symbols"], "a", "expected a list"),
-    (IDENTITY, ["note"], "more", "expected exactly the keys"),
-    (IDENTITY, ["left"], ..., "expected exactly the keys"),
+    (IDENTITY, ["note"], "more", "unexpected keyword"),
+    (IDENTITY, ["left"], ..., "missing 1 required"),
     (ALL, ["of", 0, "right"], "sin(a)", "the sides differ"),
     (ALL, ["of", 1], 7, "TypeError"),
     (ALL, ["of"], [], "entries"),
@@ -216,7 +216,11 @@ FORGERIES = [
     (SLIVER, ["to"], "1.2", "cost more"),
     (SLIVER, ["functional"], ["p - 1"], "lower bound is above"),
     (GAP, ["parameter"], "t", "given twice"),
-    (GAP, ["kind"], "touch", "expected exactly the keys"),
+    (GAP, ["kind"], "touch", "missing 1 required"),
+    (GAP, ["end"], "1", "expected exactly the keys"),
+    (GAP, ["upper"], ..., "expected exactly the keys"),
+    (GAP, ["bits"], ..., "missing 1 required"),
+    (GAP, ["self"], "1", "multiple values"),
     (SLIVER, ["parameter"], 1, "TypeError"),
     (SLIVER, ["from"], "0", "positive"),
     (TOUCH, [*LINE, "weight"], ["0.5"], "Newton"),
@@ -323,6 +327,10 @@ FORGERIES = [
 ]  # fmt: skip
 
 
+# The parameter of :data:`FUNCTIONS`.
+PARTS = arb(3) / 2, arb(-5) / 1000, arb(7) / 10**6
+
+
 def identity(left: str, right: str) -> dict[str, Any]:
     return {"kind": "identity", "left": left, "right": right, "symbols": SYMBOLS}
 
@@ -344,15 +352,25 @@ def discrepancies(module: Any) -> Iterator[str]:
 
 
 def enclosed(text: str, series: Any, module: Any) -> bool:
-    """The jet of a function of the parameter overlaps its series, and is as narrow as that."""
+    """A function of a parameter lies in its jets of three parts and of two, which are narrow, at s = -1, 0 and 1."""
     before, ctx.cap = ctx.cap, 3
-    parts = arb(1.5), arb(-5), arb(7)
     try:
-        jet = module.value(module.parse(text), {"p": module.Jet(*parts)}, arb).parts
-        exact = series(arb_series(list(parts)))
-        return all(part.overlaps(exact[k]) and part.rad() < 1e-9 for k, part in enumerate(map(arb, jet)))
+        exact = series(arb_series(list(PARTS)))
+        for parts, width in ((PARTS, 2e-6), (PARTS[:2], 2e-4)):
+            jet = [arb(c) for c in module.value(module.parse(text), {"p": module.Jet(*parts)}, arb).parts]
+            ends = [(at(jet, s), series(arb_series([at(parts, s)]))[0]) for s in (-1, 1)]
+            near = [(c, exact[k]) for k, c in enumerate(jet)]
+            if not all(x.overlaps(y) for x, y in (*ends, *near)):
+                return False
+            if max(c.rad() for c in jet[:-1]) > 1e-13 or jet[-1].rad() > width:
+                return False
+        return True
     finally:
         ctx.cap = before
+
+
+def at(parts: Any, s: int) -> Any:
+    return sum((c * s**k for k, c in enumerate(parts)), arb(0))
 
 
 def readable(text: str, module: Any) -> bool:

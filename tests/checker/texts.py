@@ -80,7 +80,7 @@ UNEQUAL = [
     ("1/x", "x"),
     ("0", "1"),
 ]
-# Functions of a parameter p = 3/2 - 5 s + 7 s**2, and the series that they are.
+# Functions of a parameter p, and the series that they are.
 FUNCTIONS: list[tuple[str, Any]] = [
     ("p", lambda p: p),
     ("2 - p*p + pi", lambda p: 2 - p * p + arb.pi()),
