@@ -18,7 +18,10 @@ def find(wanted: str) -> tuple[Paper, Claim]:
     """Paper and claim of an id ``module:number``; ``module:4.3`` alone is refused with the ids that begin so."""
     from navsym.cli.verify import load
 
-    module, _, number = wanted.partition(":")
+    module, colon, number = wanted.partition(":")
+    if not colon and (known := [name for name in stored_records() if name.partition(":")[2] == wanted]):
+        message = f"expected the id of a claim, MODULE:NUMBER; got {wanted[:80]}; take {' or '.join(known)}"
+        raise DomainError(message, where="command line")
     (paper,) = load([module])
     for claim in paper.claims:
         if claim.number == number:

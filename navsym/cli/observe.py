@@ -42,8 +42,9 @@ def command(
 ) -> None:
     """Exact observability of a model: dimensions, rank drops, splits, gains by poles.
 
-    Examples: navsym observe examples/schuler-velocity.toml
-    navsym observe model.toml --restore --candidate "gps = x" --candidate "log = v + b"
+    Example: navsym observe examples/schuler-velocity.toml
+
+    What is missing: navsym observe model.toml --restore --candidate "gps = x"
     """
     from navsym.methods.observability.document import document, examine
     from navsym.methods.observability.pages import as_html, as_latex

@@ -64,4 +64,6 @@ def remark_of(record: dict[str, Any]) -> str:
         point = ", ".join(f"{k} = {v}" for k, v in record["counterexample"].items()) or "no symbols"
         difference = record["difference"]
         return f"at {point}" + (f": left - right = {difference['lower']}…" if difference else "")
-    return "; ".join(record["assumptions"]) or record["scope"] or record["evidence"]
+    if record["assumptions"]:
+        return f"assuming {'; '.join(record['assumptions'])}"
+    return record["scope"] or record["evidence"]

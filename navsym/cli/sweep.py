@@ -21,6 +21,9 @@ def command(
     patience: Annotated[
         float, typer.Option(min=1.0, help="seconds without any worker until a scheduler is given up"),
     ] = 120.0,
+    size: Annotated[
+        int | None, typer.Option(min=1, help="jobs in a shard, which is kept whole; default: at most 100"),
+    ] = None,
     out: Annotated[
         Path | None, typer.Option(help="folder of the shards in Parquet; default: one in the cache"),
     ] = None,
@@ -43,8 +46,8 @@ def command(
     resume = "finished shards are kept: the same command (without --fresh) goes on from there"
     with Progress("jobs", resume=resume) as bar:
         document = run_sweep(
-            sweep, workers=workers, scheduler=scheduler, folder=out, fresh=fresh, patience=patience,
-            progress=bar.told_by_job,
+            sweep, workers=workers, scheduler=scheduler, folder=out, size=size, fresh=fresh,
+            patience=patience, progress=bar.told_by_job,
         )  # fmt: skip
     emit(document, as_json=json_, text=lambda: as_text(document))
     return 1 if document["done"] < sweep.jobs else 3 if document["unsaved"] else 0

@@ -148,6 +148,9 @@ class KeptVerdicts:
             self.known = {name: records[key] for name, key in self.keys.items() if key in records}
         except StoreError as error:
             self.lost = [name for name in self.keys if name not in self.known]
+            if self.store is not None:
+                self.store.close()
+            self.store = None               # what cannot be read is not written either, and named once
             remark(f"verdicts are not kept: {error}")
 
     def keep(self, record: dict[str, Any]) -> None:

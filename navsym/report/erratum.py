@@ -151,7 +151,7 @@ def printed_side(record: Record) -> Formula:
     """The printed formula; a statement in words, which is only said to hold or not, is its title."""
     if only_truth(record["printed"]):
         ending = " (does not hold)" if record["printed"] == "False" else ""
-        return Formula(record["title"] + ending, None, None)
+        return Formula(record["title"] + ending, None, None, words=True)
     return formula(record["printed"])
 
 

@@ -247,7 +247,7 @@ def claim_view(record: Record, correction: Record | None, corrected: Record | No
 
 def side(text: str) -> Formula:
     """A side set in type; what is only said to hold or not comes in words."""
-    return Formula(truth_words(text), None, None) if only_truth(text) else formula(text)
+    return Formula(truth_words(text), None, None, words=True) if only_truth(text) else formula(text)
 
 
 def link(record: Record | None) -> ClaimLink | None:

@@ -22,11 +22,12 @@ FOLDED = 400
 
 @dataclass(frozen=True, slots=True)
 class Formula:
-    """A side of a claim: its text, and its MathML and LaTeX where it is a formula."""
+    """A side of a claim: its text, and its MathML and LaTeX where it is a formula; ``words`` for a sentence."""
 
     text: str
     mathml: Markup | None
     latex: str | None
+    words: bool = False
 
     @property
     def long(self) -> bool:
