@@ -192,6 +192,22 @@ def test_the_propagated_covariance_reaches_the_exact_steady_one():
     assert np.abs(found[-1] - exact).max() < 1e-10
 
 
+@pytest.mark.parametrize("step", [0.1, 10.0, 100.0, 1e4, 1e9])
+def test_a_covariance_over_many_time_constants_is_the_steady_one(step):
+    """Van Loan's exponential once held exp(100) for a step of a hundred time constants: variances of -1e28."""
+    A, intensity = np.array([[-1.0, 0.0], [1.0, -0.01]]), np.eye(2)
+    steady = np.array([[0.5, 0.5 / 1.01], [0.5 / 1.01, 50.0 + 50.0 / 1.01]])
+    Phi = np.array([[np.exp(-step), 0.0], [(np.exp(-0.01 * step) - np.exp(-step)) / 0.99, np.exp(-0.01 * step)]])
+    found = error_covariance(A, intensity, np.eye(2), step, 1)[-1]
+    np.testing.assert_allclose(found, steady + Phi @ (np.eye(2) - steady) @ Phi.T, rtol=1e-10)
+
+
+@pytest.mark.parametrize("step", [0.0, -1.0, np.nan, np.inf])
+def test_a_step_that_is_no_duration_is_refused(step):
+    with pytest.raises(DomainError, match="step: expected a positive number"):
+        error_covariance(-np.eye(1), np.eye(1), np.eye(1), step, 1)
+
+
 def test_the_riccati_gain_solves_its_equation_and_stabilises():
     G, g, Q = np.array([[0.0, 1.0], [-1.0, 0.0]]), np.array([0.0, 1.0]), np.diag([0.3, 1.0])
     K, P = riccati_gain(G, g, Q, 0.5)

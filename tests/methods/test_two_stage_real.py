@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from navsym.errors import EmptyError, UnknownSymbolError
+from navsym.errors import DomainError, EmptyError, NotFiniteError, ShapeError, UnknownSymbolError
 from navsym.methods.observability.chains import observe
 from navsym.methods.observability.split import split
 from navsym.methods.two_stage.flight import EARTH_RADIUS
@@ -66,6 +66,29 @@ def test_both_estimators_find_a_constant_bias():
     for estimates in (two_stage_estimates(aided, 0), kalman_estimates(aided, 0)):
         assert abs(estimates[-1, 2] - 0.02) < 2e-3
         assert abs(estimates[-1, 0] - aided.position[-1, 0]) < 0.3
+
+
+def test_one_bad_entry_is_named_and_does_not_spoil_the_flight_in_silence():
+    """A force of NaN once made every later reckoning NaN, and times that went back were integrated backwards."""
+    spoilt = made_record()
+    spoilt["ax"][700] = np.nan
+    with pytest.raises(NotFiniteError, match=r"ax: expected finite numbers; got nan at index \(700,\)"):
+        reckon(spoilt)
+    reversed_times = made_record()
+    reversed_times["time"] = reversed_times["time"][::-1]
+    with pytest.raises(DomainError, match="time: expected no time before the one above it"):
+        reckon(reversed_times)
+    short = made_record()
+    short["ve"] = short["ve"][:-1]
+    with pytest.raises(ShapeError, match="ve: expected shape"):
+        reckon(short)
+
+
+def test_a_flight_across_the_date_line_is_any_other_flight():
+    here, there = made_record(), made_record()
+    east = np.arange(len(here["lon"])) * 1e-7
+    here["lon"], there["lon"] = 10.0 + east, (179.9999 + east + 180.0) % 360.0 - 180.0
+    assert np.allclose(reckon(here).position, reckon(there).position, atol=1e-3)
 
 
 def test_missing_columns_and_missing_fixes_are_named():

@@ -116,7 +116,7 @@ def run(found: TwoStageObserver, sigma: Array, step: float, start: Array | None 
     A, B = closed_loop(found)
     n = len(A)
     sigma = named("sigma", sigma, (None, 2), "one row per step")
-    Phi, Gamma = held(A, B, step)
+    Phi, Gamma = held(A, B, positive_step(step))
     state = np.zeros(n) if start is None else np.array(named("start", start, (n,), "one entry per variable"))
     back = np.linalg.inv(found.L)
     estimates = np.empty((len(sigma), n))
@@ -185,20 +185,41 @@ def error_covariance(A: Array, intensity: Array, P: Array, step: float, count: i
     """Covariances (count + 1, n, n) of e, de/dt = A e + white noise of the given intensity, at multiples of
     the step.
 
-    Exact: Van Loan's exponential gives the noise of a step.
+    Exact: the noise of a step is an integral that Van Loan's exponential gives.
     """
-    n = len(A)
-    P = covariance("P", P, n)
-    block = np.zeros((2 * n, 2 * n))
-    block[:n, :n], block[:n, n:], block[n:, n:] = -A * step, intensity * step, A.T * step
-    whole = exponential(block)
-    Phi = whole[n:, n:].T
-    noise = Phi @ whole[:n, n:]
-    found = [np.array(P)]
+    Phi, noise = noise_of_step(A, intensity, positive_step(step))
+    found = [np.array(covariance("P", P, len(A)))]
     for _ in range(count):
         following = Phi @ found[-1] @ Phi.T + noise
         found.append((following + following.T) / 2)
     return np.array(found)
+
+
+def noise_of_step(A: Array, intensity: Array, step: float) -> tuple[Array, Array]:
+    """Phi = exp(A step) and the covariance (n, n) that white noise adds in a step.
+
+    Van Loan's exponential holds exp(-A t), which swamps the noise over many time constants: it is taken over a part
+    of the step that A hardly moves, and doubled by N(2 t) = Phi N Phi^T + N, a sum in which nothing cancels.
+    """
+    n = len(A)
+    norm = float(np.abs(A).sum(axis=1).max()) * step
+    doublings = max(0, int(np.ceil(np.log2(norm)))) if norm > 1.0 else 0
+    part = step / 2.0**doublings
+    block = np.zeros((2 * n, 2 * n))
+    block[:n, :n], block[:n, n:], block[n:, n:] = -A * part, intensity * part, A.T * part
+    whole = exponential(block)
+    Phi: Array = whole[n:, n:].T
+    noise: Array = Phi @ whole[:n, n:]
+    for _ in range(doublings):
+        noise, Phi = Phi @ noise @ Phi.T + noise, Phi @ Phi
+    return Phi, noise
+
+
+def positive_step(step: float) -> float:
+    """The step as it is; DomainError unless it is a positive number."""
+    if not (np.isfinite(step) and step > 0):
+        raise DomainError(f"step: expected a positive number; got {step}; time runs forward")
+    return step
 
 
 def riccati_gain(G: Array, g: Array, intensity: Array, r: float) -> tuple[Array, Array]:

@@ -15,7 +15,7 @@ from functools import cache
 import numpy as np
 import sympy as sp
 
-from navsym.errors import EmptyError, UnknownSymbolError
+from navsym.errors import DomainError, EmptyError, UnknownSymbolError
 from navsym.methods.observability.chains import observe
 from navsym.methods.observability.split import split, two_stage_blocks
 from navsym.methods.two_stage.flight import EARTH_RADIUS, GRAVITY
@@ -23,7 +23,7 @@ from navsym.methods.two_stage.gains import POLE, gains_by_poles
 from navsym.methods.two_stage.observer import TwoStageObserver, held, observer
 from navsym.methods.two_stage.observer import closed_loop as loop_of
 from navsym.models.linear import LinearModel
-from navsym.numeric.arrays import Array, frozen
+from navsym.numeric.arrays import Array, frozen, named
 
 FIELDS = ("time", "ax", "ay", "az", "phi", "theta", "psi", "vn", "ve", "lat", "lon", "GPS_TOW")
 
@@ -55,13 +55,11 @@ def aiding_model() -> LinearModel:
 def reckon(record: Mapping[str, Array]) -> Aided:
     """Integrate the recorded forces and subtract GPS at every new fix.
 
-    record : columns of :data:`FIELDS`, angles in radians but lat, lon in degrees. Raises
-    UnknownSymbolError (a missing column) and EmptyError (no fixes).
+    record : columns of :data:`FIELDS`, angles in radians but lat, lon in degrees. Raises UnknownSymbolError (a
+    missing column), ShapeError, NotFiniteError (one such force would spoil all that follows), DomainError (a time
+    that goes back) and EmptyError (no fixes).
     """
-    for name in FIELDS:
-        if name not in record:
-            raise UnknownSymbolError(f"expected a column {name}; got none; record it")
-    columns = {name: np.asarray(record[name], dtype=float).ravel() for name in FIELDS}
+    columns = columns_of(record)
     usable = (np.abs(columns["lat"]) > 0) & (columns["psi"] != 0)
     fixes = np.flatnonzero(usable & (np.diff(columns["GPS_TOW"], prepend=columns["GPS_TOW"][0]) > 0))
     if len(fixes) < 2:
@@ -83,6 +81,19 @@ def reckon(record: Mapping[str, Array]) -> Aided:
     )
 
 
+def columns_of(record: Mapping[str, Array]) -> dict[str, Array]:
+    """The columns of :data:`FIELDS`, checked: equally long, finite, with times that never go back."""
+    for name in FIELDS:
+        if name not in record:
+            raise UnknownSymbolError(f"expected a column {name}; got none; record it")
+    size = np.size(record["time"])
+    columns = {name: named(name, np.ravel(record[name]), (size,), "one entry per row") for name in FIELDS}
+    back = np.flatnonzero(np.diff(columns["time"]) < 0)
+    if back.size:
+        raise DomainError(f"time: expected no time before the one above it; got row {back[0] + 1}; sort the rows")
+    return columns
+
+
 def horizontal_force(columns: Mapping[str, Array]) -> Array:
     """(N, 2) north and east components of the specific force, from roll, pitch and yaw."""
     phi, theta, psi = columns["phi"], columns["theta"], columns["psi"]
@@ -95,10 +106,11 @@ def horizontal_force(columns: Mapping[str, Array]) -> Array:
 
 
 def metres(latitude: Array, longitude: Array) -> Array:
-    """North and east from the first point on a sphere, degrees in, metres out."""
+    """North and east from the first point on a sphere, degrees in, metres out; across the 180th meridian as well."""
     first = np.radians(latitude[0])
     north = np.radians(latitude - latitude[0]) * EARTH_RADIUS
-    return np.column_stack([north, np.radians(longitude - longitude[0]) * EARTH_RADIUS * np.cos(first)])
+    turned = np.remainder(longitude - longitude[0] + 180.0, 360.0) - 180.0
+    return np.column_stack([north, np.radians(turned) * EARTH_RADIUS * np.cos(first)])
 
 
 @cache
