@@ -1,14 +1,14 @@
-"""What is decided is what is printed: every claim's text read back, evaluated by other means, and its units.
+"""What is decided is what is printed: every claim's text read back, and evaluated by other means.
 
 1. every formula of every claim goes through the printer and the parser and comes back the same;
 2. the texts of both sides, evaluated by Python's reader and mpmath, agree where the claim holds, and differ
-   at the counterexample where it is refuted; printed numerals agree within half a unit of their last digit;
-3. formulas whose symbols have units are homogeneous in metres, in seconds and in units of the measurement.
+   at the counterexample where it is refuted; printed numerals agree within half a unit of their last digit.
+
+Units are looked at in ``test_units.py``.
 """
 
 from __future__ import annotations
 
-import importlib
 import json
 from functools import cache
 from pathlib import Path
@@ -17,9 +17,9 @@ import mpmath
 import pytest
 import sympy as sp
 from plain_arithmetic import Undefined, value
+from statements import PAPERS, assertions, claims, formulas, symbols_in
 
-from navsym.claims import Bound, Equation, Optimum, Property, claims_of
-from navsym.cli.verify import names
+from navsym.claims import Bound, Equation, Optimum, Property
 from navsym.methods.verification.verify import sides
 from navsym.proof.equations import entries
 from navsym.proof.sampling.points import points
@@ -28,35 +28,14 @@ from navsym.text.expression import parse, to_text
 from navsym.text.tokens import LENGTH
 
 ROOT = Path(__file__).resolve().parents[2]
-PAPERS = names()
 CLOSE = mpmath.mpf(10) ** -25
 SHORT = 1_000  # characters of a formula that is looked at in every run
-
-
-@cache
-def claims(paper):
-    return [(claim, claim.derive()) for claim in claims_of(importlib.import_module(f"derivations.{paper}"))]
-
-
-def assertions(paper):
-    """Claims with formulas on both sides."""
-    return [(claim, s) for claim, s in claims(paper) if not isinstance(s, Property)]
 
 
 @cache
 def ledger():
     records = json.loads((ROOT / "derivations" / "verdicts.json").read_text())["claims"]
     return {record["id"]: record for record in records}
-
-
-def formulas(statement):
-    """Every expression of a statement, the ends of its ranges included."""
-    fields = ("printed", "derived")
-    if isinstance(statement, Optimum):
-        fields = ("regressors", "functional", "interval", "dual", "support", "weights", "value")
-    found = [part for name in fields for part in entries(getattr(statement, name))]
-    ends = [end for pair in statement.box.values() for end in pair if end is not None]
-    return [*found, *(end for end in (sp.sympify(e, strict=True) for e in ends) if end.is_finite)]
 
 
 # -- 1. printer and parser -------------------------------------------------------------------------
@@ -91,10 +70,6 @@ def lost_on_the_way(paper, longest):
             if back != renamed and not same_number(back, renamed):
                 failed.append(f"{formula!s:.80} came back as {back!s:.80}")
     return failed
-
-
-def symbols_in(statement):
-    return set().union(*(formula.free_symbols for formula in formulas(statement)))
 
 
 def in_plain_names(formula):
@@ -217,71 +192,6 @@ def complete(statement, point):
     pairs = zip(entries(statement.printed), entries(statement.derived), strict=True)
     kept = [(p, d) for p, d in pairs if (p - d).free_symbols | p.free_symbols | d.free_symbols <= set(point)]
     return type("Kept", (), {"printed": [p for p, _ in kept], "derived": [d for _, d in kept]})
-
-
-# -- 3. units ---------------------------------------------------------------------------------------------
-
-#: Symbol -> powers of metre, second and the unit of the measurement.
-METRE, SECOND, SPEED, NONE, SIGNAL = (1, 0, 0), (0, 1, 0), (1, -1, 0), (0, 0, 0), (0, 0, 1)
-UNITS = {
-    "alpha_beta_filter": {
-        "T": SECOND, "sigma_v": METRE, "a": (1, -2, 0), "r": NONE, "alpha": NONE, "beta": NONE, "Lambda": NONE,
-        "z": NONE,
-    },
-    "guaranteed_velocity": {
-        "T": NONE, "tau": NONE, "v": NONE, "sigma": SIGNAL, "sigma1": SIGNAL, "sigma2": SIGNAL, "zT": SIGNAL,
-        "z0": SIGNAL, "zm": SIGNAL,
-    },
-    "trajectory": {
-        "tau": SECOND, "t": SECOND, "rho": (-1, 0, 0), "radius": METRE, "r": METRE, "a": METRE, "h": METRE,
-        "e": NONE, "latitude": NONE, "longitude": NONE, "phi": NONE, "phi_e": NONE, "lambda_e": NONE,
-        "latitude_rate": (0, -1, 0), "longitude_rate": (0, -1, 0), "radius_rate": SPEED,
-        "V1": SPEED, "V2": SPEED, "V3": SPEED,
-    },
-    "terrain_search": {
-        "t": SECOND, "t_G": SECOND, "t_0": SECOND, "t_k": SECOND, "t_n": SECOND, "Deltat": SECOND,
-        "x": METRE, "y": METRE, "deltax": METRE, "deltay": METRE, "Deltas": METRE, "v_x": SPEED, "v_y": SPEED,
-        "V": SPEED, "deltaV": SPEED, "DeltaVx": SPEED, "DeltaVy": SPEED, "deltaVx": SPEED, "deltaVy": SPEED,
-        "Vi": NONE, "Vj": NONE, "beta": NONE, "alpha": NONE,
-    },
-}  # fmt: skip
-
-
-def homogeneous(formula, units):
-    """True when scaling one base unit by 2 scales the formula by one and the same factor everywhere."""
-    text, symbols = to_text(formula), sorted(formula.free_symbols, key=str)
-    for base in range(3):
-        ratios = set()
-        for k in range(1, 5):
-            point = {s.name: mpmath.mpf(3 + 2 * i + k) / (7 + 3 * i + k * k) for i, s in enumerate(symbols)}
-            scaled = {name: x * mpmath.mpf(2) ** units[name][base] for name, x in point.items()}
-            try:
-                ratios.add(mpmath.nstr(value(text, scaled) / value(text, point), 12))
-            except (Undefined, ZeroDivisionError):
-                continue
-        if len(ratios) > 1:
-            return False
-    return True
-
-
-@pytest.mark.parametrize("paper", UNITS)
-def test_formulas_with_units_are_homogeneous(paper):
-    units, seen = UNITS[paper], 0
-    for claim, statement in assertions(paper):
-        if isinstance(statement, Optimum) or not claim.expect.holds:
-            continue
-        for formula in (*entries(statement.printed), *entries(statement.derived)):
-            if formula.free_symbols and {s.name for s in formula.free_symbols} <= set(units):
-                seen += 1
-                assert homogeneous(formula, units), (claim.id, formula)
-    assert seen >= 10
-
-
-def test_a_sum_of_metres_and_seconds_is_noticed():
-    tau, r = sp.symbols("tau r", positive=True)
-    assert not homogeneous(tau + r, UNITS["trajectory"])
-    assert not homogeneous(sp.sin(tau), UNITS["trajectory"])
-    assert homogeneous(tau * r + 2 * tau * r, UNITS["trajectory"])
 
 
 def test_inequalities_and_optima_are_among_what_is_read_back():
