@@ -63,7 +63,7 @@ def spread(generator: random.Random, low: float, high: float) -> float:
     """A number of the range, often near zero when the range is positive."""
     if low > 0 and generator.random() < 0.5:
         return math.exp(generator.uniform(math.log(max(low, high * 1e-6)), math.log(high)))
-    return generator.uniform(low, high)
+    return 2 * generator.uniform(low / 2, high / 2)
 
 
 def tie_to_formula(

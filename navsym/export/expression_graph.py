@@ -45,18 +45,20 @@ class Node:
 class Graph:
     """Inputs, operations in order, and the nodes that are the results.
 
-    names : node -> what its value is called in the formulas, for those that read the code
+    names  : node -> what its value is called in the formulas, for those that read the code
+    guards : nodes whose overflow a later operation would hide, so that the code must ask for it
     """
 
     inputs: tuple[sp.Symbol, ...]
     nodes: tuple[Node, ...]
     roots: tuple[int, ...]
     names: Mapping[int, str] = field(default_factory=dict)
+    guards: tuple[int, ...] = ()
 
     def uses(self) -> list[int]:
         """How often each node is used, as an argument or as a result."""
         counts = [0] * len(self.nodes)
-        for place in (*(a for node in self.nodes for a in node.args), *self.roots):
+        for place in (*(a for node in self.nodes for a in node.args), *self.roots, *self.guards):
             counts[place] += 1
         return counts
 
@@ -183,6 +185,7 @@ class Builder:
         return self.known[e]
 
     def node(self, e: sp.Expr) -> int:
+        """Place of an expression that was not met before."""
         if isinstance(e, sp.Symbol):
             if e not in self.inputs:
                 raise UnknownSymbolError(f"expected only the inputs; got {e.name}; do list it as one")

@@ -14,6 +14,7 @@ import sympy as sp
 from navsym.claims import CONFIRMED, REFUTED, Bound, Equation, Optimum, Statement, Verdict
 from navsym.errors import NavsymError, ShapeError
 from navsym.export.accuracy.literals import literals_of
+from navsym.export.accuracy.overflow import unseen
 from navsym.export.accuracy.rounding import ARITHMETICS, Arithmetic, with_library
 from navsym.export.accuracy.uniform import CELLS, uniform_bound
 from navsym.export.choice import best_form, best_graph, tie_to_formula
@@ -192,6 +193,9 @@ def piece_of(
     graph = replace(graph, names=local_names(graph.names, [*(i.name for i in inputs), *taken]))
     literals = literals_of(graph, arithmetic)
     bound = uniform_bound(graph, box, arithmetic, literals, cells=cells_for(graph))
+    whole = all(i.low == i.test_low and i.high == i.test_high for i in inputs)  # else the bound says where it holds
+    if whole and not bound.finite:
+        graph = replace(graph, guards=unseen(graph, box, arithmetic, literals))
     named = tuple((name, formula, form) for (name, formula), (_, form) in zip(part.lets, lets, strict=True))
     return Piece(
         limit, tuple(formulas), tuple(forms), graph, literals, bound, tie, part.source, named, tuple(equals), tuple(box)

@@ -82,7 +82,7 @@ def split(b: sp.Expr, x: sp.Symbol) -> tuple[sp.Expr, sp.Expr, int] | None:
         return split_again(b, x)
     if b.has(filled) or b.count_ops() > MOST_OPERATIONS:
         return None
-    found = []
+    found: list[tuple[int, int, sp.Expr, sp.Expr]] = []
     for q in scales(b, x):
         part = b.xreplace({x: T}) if q == 1 else b.subs(x, T / q)
         if part.free_symbols == {T}:

@@ -16,7 +16,7 @@ from navsym.proof.sampling.points import Range, range_of
 from navsym.proof.wording import text_of
 
 SMALLEST = {"double": 2.0**-60, "float": 2.0**-20}  # stands for an open end at zero
-LARGE = 1000.0  # of a symbol without a range, for vectors and bounds
+LARGE = 1000.0  # the end of a range that has none, for vectors and bounds
 
 
 def inputs_of(
@@ -89,8 +89,8 @@ def input_of(symbol: sp.Symbol, name: str, box: Mapping[Any, Any], real: str) ->
     low = -np.inf if limits.lower is None else inside(limits.lower, 1, real)
     high = np.inf if limits.upper is None else inside(limits.upper, -1, real)
     opened = bool(limits.open_lower) and limits.lower is not None
-    test_high = min(high, max(LARGE, 2 * abs(low))) if np.isfinite(low) else min(high, LARGE)
-    test_low = max(low, -max(LARGE, 2 * abs(high))) if np.isfinite(high) else max(low, -LARGE)
+    test_high = high if np.isfinite(high) else max(LARGE, 2 * abs(low)) if np.isfinite(low) else LARGE
+    test_low = low if np.isfinite(low) else -max(LARGE, 2 * abs(high)) if np.isfinite(high) else -LARGE
     if opened and low == 0.0:
         test_low = low = SMALLEST[real]
         opened = False

@@ -2,13 +2,23 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import reduce
 
 from flint import arb, arb_series
 
 from navsym.export.accuracy.continuation import MARGIN, Continuation, continuation
-from navsym.export.accuracy.rounding import INFINITE, Arithmetic, Bounded, analyse, ratio, sane, tightened, up
+from navsym.export.accuracy.rounding import (
+    ARITHMETICS,
+    INFINITE,
+    Arithmetic,
+    Bounded,
+    analyse,
+    ratio,
+    sane,
+    tightened,
+    up,
+)
 from navsym.export.holes import Part, T
 
 NOTHING = Bounded(arb("nan"), INFINITE, INFINITE, INFINITE)
@@ -95,7 +105,8 @@ def relative_inside(known: Continuation, a: Bounded) -> arb:
 
 def outside_bounds(known: Continuation, t: arb, arithmetic: Arithmetic) -> Bounded:
     """The plain form, called with exactly t."""
-    return analyse(known.above, [t], arithmetic, known.literals)[known.above.roots[0]]
+    strict = replace(arithmetic, top=ARITHMETICS[arithmetic.name].top)  # an overflow in here has no status of its own
+    return analyse(known.above, [t], strict, known.literals)[known.above.roots[0]]
 
 
 def slope_outside(known: Continuation, t: arb) -> arb:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import heapq
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from flint import arb
@@ -15,13 +15,14 @@ from navsym.proof.balls import precision
 
 CELLS = 160
 GEOMETRIC = 40  # cells that halve their distance to zero
+NEVER = 10**6  # the exponent of an overflow that does not happen: where one does, the code says so by its status
 
 Box = tuple[tuple[float, float], ...]
 
 
 @dataclass(frozen=True, slots=True)
 class Uniform:
-    """Bounds for each result that hold on the whole box; infinite where there is none.
+    """Bounds for each result that hold on the whole box wherever nothing overflows; infinite where there is none.
 
     relative : in units of u: ``|computed - exact| <= relative u |exact|``
     scaled   : in units of u, over the sum of the magnitudes of the terms (underflow aside)
@@ -103,7 +104,7 @@ def measured(graph: Graph, box: Box, arithmetic: Arithmetic, literals: Sequence[
     """Bounds of one cell, with floats as ends."""
     with precision(BITS):
         balls = [arb(low).union(arb(high)) if low != high else arb(low) for low, high in box]
-    found = analyse(graph, balls, arithmetic, literals)
+    found = analyse(graph, balls, replace(arithmetic, top=NEVER), literals)
     results = [found[root] for root in graph.roots]
     with precision(BITS):
         unit, largest = arithmetic.unit(), arb(2) ** arithmetic.top

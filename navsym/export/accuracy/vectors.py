@@ -190,7 +190,7 @@ def sample(i: Input, generator: random.Random) -> float:
     if i.test_low < 0 < i.test_high and generator.random() < 0.3:
         sign = generator.choice((-1, 1))
         return sign * min(-i.test_low, i.test_high) * 10 ** generator.uniform(-6, 0)
-    return generator.uniform(i.test_low, i.test_high)
+    return 2 * generator.uniform(i.test_low / 2, i.test_high / 2)  # the width of a range may be infinite
 
 
 def cast(function: ExportedFunction, point: Sequence[float]) -> tuple[float, ...]:

@@ -89,7 +89,17 @@ def loops_of(
             lines.append((name, bare(written), node.op in apart))
             written = name
         text.append(written)
-    return lines, [bare(text[root]) for root in graph.roots]
+    results = [bare(text[root]) for root in graph.roots]
+    if graph.guards:
+        results[0] = guarded(text[graph.roots[0]], [text[k] for k in graph.guards], spelling)
+    return lines, results
+
+
+def guarded(result: str, values: Sequence[str], spelling: Spelling) -> str:
+    """The result, which is no number when one of the values is none: a finite one adds an exact zero."""
+    for value in values:
+        result = f"({result} + ({spelling.number(0.0)} * {value}))"
+    return bare(result)
 
 
 def node_text(

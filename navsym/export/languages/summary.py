@@ -21,6 +21,7 @@ def summary(function: ExportedFunction) -> list[str]:
         lines += [f"Assumes  {'; '.join(source.assumptions)}"] if source.assumptions else []
         lines += [f"Formula  {formula}" for formula in source.formula]
         lines += [f"Cost     {cost(piece)}", f"Rounding {bound_text(function, piece)}"]
+        lines += ["         where nothing overflows; the status says where"] if piece.graph.guards else []
         lines += [f"Tie      code graph equals the formula: {TIES[piece.tie]}"]
     lines += [f"Domain   {line}" for line in domain_lines(function)]
     return lines + [f"Result   {o.name} [{unit_of(o.unit)}]" for o in function.outputs]
