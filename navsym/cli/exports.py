@@ -27,6 +27,7 @@ def command(
     points: Annotated[
         int, typer.Option("--points", min=0, max=10_000_000, help="points at which C is held, too")
     ] = 0,
+    jobs: Annotated[int, typer.Option("--jobs", min=1, max=256, help="groups or functions at the same time")] = 1,
     write: Annotated[Path | None, typer.Option("--write", help="write the table as a markdown page")] = None,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> int:
@@ -47,11 +48,12 @@ def command(
     targets = chosen(spoken, real)
     groups: dict[str, list[ExportedFunction]] = {name: [] for name in wanted}
     parts = [(name, claim) for name in wanted for claim in READY[name]]
-    with Progress("parts", len(parts) + len(wanted) * (len(targets) + 1), RESUME) as bar:
+    with Progress("parts", len(parts), RESUME) as bar:
         for name, claim in parts:
             groups[name] += functions_for(claim, real, False)
             bar.step(claim)
-        document = closing_table(groups, targets, vectors, bar.step, points)
+        bar.total = len(parts) + len(groups) + sum(len(made) for made in groups.values() if points)
+        document = closing_table(groups, targets, vectors, bar.step, points, jobs)
     words = ["navsym", "exports", *(names or []), *(["--to", to] if to != EVERY else []),
              *(["--real", real] if real != "double" else []), "--vectors", str(vectors),
              *(["--points", str(points)] if points else [])]  # fmt: skip

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import platform
 import tempfile
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+from navsym.errors import MissingEngineError
 from navsym.export.accuracy.sweep import Swept, sweep_c
 from navsym.export.folder import write_folder
 from navsym.export.languages.summary import bound_text
@@ -17,44 +18,77 @@ from navsym.export.package import Order, files_of
 from navsym.export.parts import ExportedFunction
 from navsym.export.roundtrip import Outcome, run_target
 from navsym.export.tools import Said, cortex_m4_sizes, ctest, misra
+from navsym.proof.sandbox import MOST_MEGABYTES, Exhausted, Failed, run_many
 
 Record = dict[str, Any]
+SECONDS = 36_000.0  # of one task; what runs code has limits of its own
 
 
 def closing_table(
     groups: Mapping[str, Sequence[ExportedFunction]], targets: Sequence[Target], count: int,
-    progress: Callable[[str], None] = lambda doing: None, points: int = 0,
+    progress: Callable[[str], None] = lambda doing: None, points: int = 0, jobs: int = 1,
 ) -> Record:  # fmt: skip
     """Export every group, run every language, ask every tool; the document of ``navsym exports``.
 
-    progress : called with "group language" when a language of a group was run, with "group points" after the points.
+    progress : called with "group languages" when all languages of a group were run, with "function points" after the
+        points of a function.
     points   : points at which the C of every function is held besides its vectors
         (:mod:`navsym.export.accuracy.sweep`).
+    jobs     : how many groups, or functions under points, are at work at the same time, each in a child process.
     Keys: ``functions`` (name, group, status, claims, bound, languages, misra, cortex_m4_bytes, points), ``languages``
     and ``tools`` (status, why), ``vectors``, ``points``, ``machine``.
     """
+    ran = {group: Task(group, functions, tuple(targets), count) for group, functions in groups.items()}
+    swept = {(group, f.name): Task(f.name, (f,), (), points) for group, fs in groups.items() for f in fs if points}
+    done = dict(all_done([*ran.items(), *swept.items()], jobs, progress))
     records: list[Record] = []
     languages: dict[str, Record] = {}
     tools: dict[str, Record] = {}
     for group, functions in groups.items():
-        with tempfile.TemporaryDirectory(prefix="navsym-table-") as folder:
-            write_folder(Path(folder), files_of(functions, Order(tuple(targets), count=count)), force=True)
-            outcomes = []
-            for target in targets:
-                outcomes.append(run_target(Path(folder) / target.name, target))
-                progress(f"{group} {target.name}")
-            said = tools_on(Path(folder) / "c")
-        swept = sweep_c(functions, points) if points else {}
-        progress(f"{group} points")
+        outcomes, said = done[group]
         for outcome in outcomes:
             worse(languages, outcome.language, outcome.status, outcome.why)
         for name, what in said.items():
             worse(tools, name, what.status, what.why)
-        if swept:
-            worse(tools, "points", *points_said(swept))
-        records += [function_row(group, f, outcomes, said) | points_row(swept.get(f.name)) for f in functions]
+        found = {f.name: done[group, f.name] for f in functions if points}
+        if found:
+            worse(tools, "points", *points_said(found))
+        records += [function_row(group, f, outcomes, said) | points_row(found.get(f.name)) for f in functions]
     return {"functions": records, "languages": languages, "tools": tools, "vectors": count, "points": points,
             "machine": f"{platform.machine()} {platform.system()}, Python {platform.python_version()}"}  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """Functions to be run in some languages on ``count`` vectors; without languages, held at so many points."""
+
+    name: str
+    functions: Sequence[ExportedFunction]
+    targets: tuple[Target, ...]
+    count: int
+
+    def done(self) -> Any:
+        """What every language and tool said, or what came of the points."""
+        if not self.targets:
+            return sweep_c(self.functions, self.count)[self.functions[0].name]
+        with tempfile.TemporaryDirectory(prefix="navsym-table-") as folder:
+            write_folder(Path(folder), files_of(self.functions, Order(self.targets, count=self.count)), force=True)
+            outcomes = [run_target(Path(folder) / target.name, target) for target in self.targets]
+            return outcomes, tools_on(Path(folder) / "c")
+
+
+def all_done(
+    tasks: Sequence[tuple[Any, Task]], jobs: int, progress: Callable[[str], None]
+) -> Iterator[tuple[Any, Any]]:
+    """(key, result) of every task, as they come; raises what a task raised."""
+    for outcome in run_many(lambda item: item[1].done(), tasks, jobs, SECONDS, MOST_MEGABYTES):
+        key, task = tasks[outcome.place]
+        if isinstance(outcome.value, Failed):
+            raise outcome.value.error
+        if isinstance(outcome.value, Exhausted):
+            raise MissingEngineError(f"expected {task.name} to be run; got {outcome.value.why}; do try fewer points")
+        progress(f"{task.name} {'languages' if task.targets else 'points'}")
+        yield key, outcome.value
 
 
 def tools_on(folder: Path) -> dict[str, Said]:

@@ -15,7 +15,9 @@ from dataclasses import dataclass
 import numpy as np
 from flint import arb
 
+from navsym.export.accuracy.continuation import continuation
 from navsym.export.accuracy.rounding import BITS, Arithmetic, Bounded, analyse, with_library
+from navsym.export.expression_graph import Node
 from navsym.export.parts import ExportedFunction, Input, Piece
 from navsym.proof.balls import Tape, enclose, precision, tape
 
@@ -173,8 +175,20 @@ def edge_values(function: ExportedFunction, k: int) -> list[float]:
     if function.switch == k:
         limits = [piece.limit for piece in function.pieces if piece.limit is not None]
         values += [x for limit in limits for x in (limit, step(limit, math.inf), step(limit, -math.inf))]
+    values += [x for s in sorted(switches(function, k)) for t in (s, step(s, 0.0), s / 2) for x in (t, -t)]
     values += [1e-7, 1e-3, 1e-9, 0.0, -1e-5, 1.0, -1.0, 1e-30, -1e-160]
     return [x for x in values if i.test_low <= x <= i.test_high]
+
+
+def switches(function: ExportedFunction, k: int) -> set[float]:
+    """Where the code changes from a polynomial to a formula in one argument."""
+    graphs = [piece.graph for piece in function.pieces]
+    parts = {n.value for g in graphs for n in g.nodes if n.op == "filled" and is_input(g.nodes[n.args[0]], k)}
+    return {continuation(part, function.arithmetic.name).switch for part in parts}
+
+
+def is_input(node: Node, k: int) -> bool:
+    return node.op == "input" and node.value == k
 
 
 def next_float(function: ExportedFunction):  # type: ignore[no-untyped-def]
