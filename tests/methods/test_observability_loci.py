@@ -15,6 +15,7 @@ from navsym.methods.observability.loci import (
     compositions,
     drops_and_completeness,
     drops_by_minors,
+    drops_by_staircases,
     rank_drops,
     staircases,
 )
@@ -138,6 +139,49 @@ def test_drops_by_cases_are_the_common_zeros_of_all_minors(seed):
     for point in itertools.product(range(-3, 4), repeat=size):
         on_slow, on_fast = (any(all(f(*point) == 0 for f in system) for system in listed) for listed in (slow, fast))
         assert on_fast == on_slow or (on_slow and not complete), point
+
+
+def dense_model(n: int, symbols: tuple[sp.Symbol, ...], outputs: int, seed: int) -> LinearModel:
+    """No zeros to lean on: every entry a number, or an affine function of a parameter."""
+    rng = random.Random(seed)
+    entries = [
+        rng.randint(1, 3) * rng.choice(symbols) + rng.randint(-1, 1) if rng.random() < 0.4 else rng.randint(1, 3)
+        for _ in range(n * n)
+    ]
+    H = sp.Matrix(outputs, n, lambda i, j: 1 if i == j else rng.randint(-2, 2))
+    return LinearModel(sp.Matrix(n, n, entries), None, H)
+
+
+@pytest.mark.parametrize(("n", "count", "outputs"), [(5, 3, 2), (7, 2, 2), (5, 2, 3)])
+def test_dense_systems_of_several_measurements_are_listed_completely(n, count, outputs):
+    """By the determinants of the staircases; pivots alone left them open. Every listed point has to be a drop."""
+    symbols = (a, b, c)[:count]
+    model = dense_model(n, symbols, outputs, 4)
+    found = observe(model)
+    drops, complete = drops_and_completeness(found)
+    assert complete["joint"] and found.joint_dimension == n
+    joint = [d.zeros for d in drops if d.subspace == "joint"]
+    for values in itertools.product((-2, 0, 1), repeat=count):
+        at = dict(zip(symbols, values, strict=True))
+        F, H = model.F.subs(at), model.H.subs(at)
+        rank = sp.Matrix.vstack(*[H * F**j for j in range(n)]).rank()
+        assert (rank < n) == any(all(zero.subs(at) == 0 for zero in zeros) for zeros in joint), at
+
+
+def test_staircases_list_the_drops_of_a_scrambled_system():
+    """Two equal modes, told apart by the coupling c alone."""
+    turn = sp.Matrix([[1, 1, 0], [0, 1, 1], [1, 1, 1]])
+    core = sp.Matrix([[a, c, 0], [0, b, 0], [0, 0, b]])
+    model = LinearModel(turn.inv() * core * turn, None, sp.Matrix([[1, 0, 0], [0, b, 1]]) * turn)
+    found = observe(model)
+    listed = drops_by_staircases(found.chains)
+    assert found.joint_dimension == 3 and listed is not None
+    for values in itertools.product(range(-2, 3), repeat=3):
+        at = dict(zip((a, b, c), values, strict=True))
+        rank = sp.Matrix.vstack(*[(model.H * model.F**j).subs(at) for j in range(3)]).rank()
+        ring = found.chains.ring
+        point = [int(at[symbol]) for symbol in ring.symbols]
+        assert (rank < 3) == any(all(f(*point) == 0 for f in system) for system in listed), at
 
 
 def test_a_list_that_is_too_long_to_prove_says_so():

@@ -13,12 +13,16 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from navsym.methods.observability.cases import drops_by_cases
+from navsym.errors import TooLargeError
+from navsym.methods.observability.cases import LAST_PRODUCTS, LAST_TERMS, drops_by_cases, minor_on
 from navsym.methods.observability.chains import Chains, Observability
 from navsym.methods.observability.linear import Matrix, determinant, maximal_minors
 from navsym.methods.observability.reduction import krylov_remainder
 from navsym.methods.observability.ring import Poly, Ring, odd
 from navsym.methods.observability.zeros import System, components, irredundant
+
+#: So many staircases at most, when the joint locus is written down by its definition.
+MOST_STAIRCASES = 40
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -100,7 +104,34 @@ def all_drops(chains: Chains) -> dict[str, tuple[list[System], bool]]:
     ]:
         rest = krylov_remainder(part, chains.matrix, chains.ring)
         answer[name] = drops_of(rest.rows, rank - rest.regular, chains.ring)
-    return answer
+    listed = None if answer["joint"][1] else drops_by_staircases(chains)
+    return answer if listed is None else {**answer, "joint": (irredundant(listed), True)}
+
+
+def drops_by_staircases(chains: Chains) -> list[System] | None:
+    """The joint drop locus by its definition, or None when it is too long to write down.
+
+    At any point take vectors of the first chain while they are independent, then of the second, and so on: what a
+    chain adds is closed under the motion modulo the chains before it, so the vectors taken span all. The joint rank is
+    therefore n exactly where one staircase (k_1, ..., k_s) has a determinant that is not zero; that is far fewer
+    determinants than all maximal minors. Only for systems that are observable somewhere.
+    """
+    ring, steps = chains.ring, staircases(chains)
+    if chains.joint_dimension < len(chains.matrix) or len(steps) > MOST_STAIRCASES:
+        return None
+    minors: list[Poly] = []
+    for step in steps:
+        rows = chains.staircase_vectors(step)
+        try:
+            minor, full, _ = minor_on(rows, len(rows), [], list(range(len(rows))), ring, LAST_PRODUCTS)
+        except TooLargeError:
+            return None
+        minors += [minor] if full else []
+        if minors and minors[-1].is_constant():
+            return []
+        if sum(map(len, minors)) > LAST_TERMS:
+            return None
+    return components(minors, ring)
 
 
 def staircases(chains: Chains) -> list[tuple[int, ...]]:
