@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
+import sqlite3
 
 import pytest
 
@@ -49,3 +51,11 @@ def test_a_second_run_takes_every_verdict_from_the_store(monkeypatch, capsys):
     first = claims(capsys)
     monkeypatch.setattr("navsym.methods.verification.verify.record_of", None)  # nothing is decided any more
     assert claims(capsys) == first
+
+
+def test_what_a_store_of_others_cannot_keep_is_named_once(tmp_path, capsys):
+    with contextlib.closing(sqlite3.connect(tmp_path / "results.sqlite")) as connection:
+        connection.execute("create table results (a, b)")
+        connection.commit()
+    status, document = claims(capsys)
+    assert status == 3 and sorted(document["unsaved"]) == sorted(claim["id"] for claim in document["claims"])

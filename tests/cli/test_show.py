@@ -79,3 +79,10 @@ def test_python_without_docstrings_is_refused_in_one_line():
 def test_a_cited_refutation_names_what_stands_in_its_place(capsys):
     cited = document(capsys, "cite", "guaranteed_velocity:4.3.u2")[1]["bibtex"]
     assert "Corrected by guaranteed\\_velocity:4.3.u2*, PROVED: -sin(T/4)**2/cos(T/2)." in cited
+
+
+def test_a_number_without_its_paper_is_answered_with_the_papers_that_have_it(capsys):
+    assert run(["show", "4.3.u2"]) == 2
+    assert "take guaranteed_velocity:4.3.u2" in capsys.readouterr().err
+    assert run(["explain", "9", "--json"]) == 2
+    assert "multistructure:9 or terrain_search:9" in capsys.readouterr().out

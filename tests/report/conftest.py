@@ -47,6 +47,11 @@ def records() -> list[dict[str, object]]:
         plain("2*", "PROVED", "sin(T)", "sin(T)", corrects="sample:2", title="The sine without a sign."),
         plain("3", "CERTIFIED", "4.6 +- 1/20", "23*sqrt(3)/9", method="ball arithmetic"),
         plain("short-name", "CONFIRMED", "exp(-a*t)", "exp(-a*t)", method="sampling", evidence="at 40 points"),
+        plain(
+            "7", "REFUTED", "(True, True)", "(True, False)", slip="scan", reason="a dot is lost in the copy",
+            method="exact ranks", scope="all T in (0, oo), real w", assumptions=["w != 0"],
+        ),
+        plain("7*", "PROVED", "(True, True, True)", "(True, True, True)", corrects="sample:7", title="With its dot."),
         plain("4", "OPEN", "[[1, T], [0, 1]]", "[[1, T], [0, 1]]", method="none", evidence="nothing helped"),
     ]  # fmt: skip
 
@@ -54,7 +59,7 @@ def records() -> list[dict[str, object]]:
 @pytest.fixture(scope="session")
 def card() -> Paper:
     return Paper(
-        "sample", "A sample", ("A. Author",), 1984, "A journal", "English", ("1", "2", "3", "4", "5", "6"),
+        "sample", "A sample", ("A. Author",), 1984, "A journal", "English", ("1", "2", "3", "4", "5", "6", "7"),
         definitions={"5": "notation"},
     )  # fmt: skip
 

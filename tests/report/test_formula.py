@@ -27,6 +27,7 @@ LATEX = [
     ("6.37e+07", "6.37 \\cdot 10^{7}"),
     ("2*3", "2 \\cdot 3"),
     ("pi*pi_", "\\pi  \\cdot \\pi \\_"),
+    ("dphi_1 - deta", "\\mathrm{d}\\varphi_{1} - \\mathrm{deta}"),
     ("DeltaV*t_G", "\\Delta V \\cdot t_{G}"),
 ]
 

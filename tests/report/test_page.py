@@ -8,7 +8,7 @@ from xml.dom import minidom
 
 import pytest
 
-from navsym.report.ledger import papers_in_order
+from navsym.report.ledger import about, only_in_the_copy, papers_in_order
 from navsym.report.page import site, visible
 from navsym.report.page_files import slug
 
@@ -99,6 +99,28 @@ def test_marks_say_the_verdict_without_colour(files):
         assert words in cells, words
 
 
+def test_damage_of_the_copy_is_not_counted_against_the_paper(files):
+    index, page = (" ".join(Reading(files[name]).text.split()) for name in ("index.html", "sample.html"))
+    assert "7 copy copy" in index and "7 ✗" not in index
+    assert "1 correction, 1 of the copy" in index
+    assert "1 of the refuted is damage of the copy" in page
+
+
+def test_a_paper_that_slips_and_whose_copy_is_damaged_counts_as_the_paper_s(records):
+    mixed = [record for record in records if record["number"] in ("2", "7")]
+    mixed = [{**record, "number": f"9.{record['number']}"} for record in mixed]
+    for order in (mixed, mixed[::-1]):
+        assert not only_in_the_copy(about("9", ("9",), order)[0])
+    assert only_in_the_copy(about("9", ("9",), [r for r in mixed if r["slip"] == "scan"])[0])
+
+
+def test_scopes_assumptions_and_truth_values_are_said_in_words(files):
+    page = " ".join(Reading(files["sample.html"]).text.split())
+    truth = ("it holds in all 3 cases", "case 1: it holds; case 2: it does not hold")
+    for words in ("all T > 0, real w", "w ≠ 0", *truth):
+        assert words in page, words
+
+
 def test_a_refuted_formula_is_drawn_and_the_drawing_has_words(files):
     drawings = [a for tag, a in Reading(files["sample.html"]).elements if tag == "svg"]
     assert len(drawings) == 1
@@ -119,7 +141,7 @@ def test_the_erratum_sheet_alone_is_enough_to_correct_the_paper(files):
         assert words in text, words
     tex = files["sample.erratum.tex"]
     assert r"\[  - \sin\left( T \right) \]" in tex and r"\[ \sin\left( T \right) \]" in tex
-    assert tex.count(r"\begin{enumerate}") == tex.count(r"\end{enumerate}") == 1
+    assert tex.count(r"\begin{enumerate}") == tex.count(r"\end{enumerate}") == 2      # the paper, its copy
 
 
 def test_hostile_words_are_shown_as_text(hostile_files, hostile_words):
@@ -180,4 +202,4 @@ def test_a_refuted_card_shows_what_should_stand_there_and_what_that_is_worth(fil
 def test_claims_of_the_ledger_for_people_stand_in_the_order_of_the_paper(records, card):
     shuffled = {"papers": [{"module": "sample"}], "claims": records[::-1]}
     ((_, ordered),) = papers_in_order(shuffled, {"sample": card})
-    assert [r["number"] for r in ordered] == ["1", "2*", "2", "3", "4", "short-name"]
+    assert [r["number"] for r in ordered] == ["1", "2*", "2", "3", "4", "7*", "7", "short-name"]
