@@ -91,14 +91,16 @@ class Jet:
     def __init__(self, *parts: Any):
         self.parts = parts
     def cut(self) -> Jet:
+        """One part less: the last one, times s, joins the one before."""
         *first, a, b = self.parts
         return Jet(*first, a if isinstance(a, Exact) else a + EVERY * b)
     def all(self) -> Any:
-        """A ball, or a series of balls, for all s."""
+        """The values for all s, as a ball or a series of balls."""
         return polynomial(self.parts, EVERY)
     def __add__(self, o: Jet) -> Jet:
         return Jet(*(x + y for x, y in zip_longest(self.parts, o.parts, fillvalue=0)))
     def __mul__(self, o: Jet) -> Jet:
+        """(c0 + s h) o = c0 o + s (h o)."""
         if len(self.parts) == 1 or len(o.parts) == 1:
             return Jet(*(x * y for x in self.parts for y in o.parts))
         return Jet(self.parts[0]) * o + Jet(0, *(Jet(*self.parts[1:]) * o.cut()).parts)

@@ -37,11 +37,11 @@ PARABOLA = {
     **alone(["1", "-8", "8"], [(0, "0", "2"), (0, "0.5", "-4"), (0, "1", "2")], ["0.0000001"] * 9),
     "lower": "7.99999", "upper": "8.00001", **NONE,
 }  # fmt: skip
-# The same from far away: Newton's step has something to do, in the direction of the contact.
+# The same from far away: Newton's step needs the direction of the contact, its length, and the weights that it moves.
 COARSE = PARABOLA | {
     **alone(
         ["1", "-8", "8"], [(0, "0", "2"), (0, "0.501", "-4"), (0, "1", "2")],
-        ["0.0005", "0.0005", "0.0005", "0.001", "0.002", "0.001", "0.05", "0.05", "0.05"],
+        [*["0.0005"] * 3, "0.001", "0.0015", "0.001", *["0.001"] * 3],
     ),
     "lower": "7.99", "upper": "8.01",
 }  # fmt: skip
@@ -187,10 +187,15 @@ CHAIN = EXPONENTIAL | {"matrix": [["0", "1"], ["0", "0"]], "symbols": [], "solut
 FULL = EXACT | {"cells": 0, "dual": ["0.999"], "lower": "0.9", "upper": "1.1", "panels": [{
     "measurement": 0, "from": "0", "to": "1", "sigma": "1", "H": ["(2*t - 1)**14"],
 }] * 199}  # fmt: skip
+# As many as are allowed; the one with the contact is good at once by Taylor's formula, its last term in its place.
+LAST = CONSTANT | {"cells": 0, "panels": [
+    {"measurement": 0, "from": "0", "to": "1", "sigma": "1", "H": ["1 + 3/2*(t - 1) + 3/50*(t - 1)**15"]},
+    *[{"measurement": 1, "from": "0", "to": "1", "sigma": "1", "H": ["t/9"]}] * 199,
+]} | alone(["1"], [(0, "1", "1")], ["0.000001"] * 3)  # fmt: skip
 ALL = {"kind": "all", "of": [IDENTITY, RANK]}
 GOOD = [
     IDENTITY, ROW, OFFSET, DIGITS, EXPONENTIAL, RANK, POSITIVITY, EDGE, CELLS, ALL,
     CHAIN, FULL, TIGHT, EVEN, REMAINDER, KERNEL, NOTHING, AT_ONCE, NO_CELLS, MANY_CELLS,
-    GAP, EXACT, SLIVER, TOUCH, PARABOLA, COARSE, CONSTANT, FLAT,
+    GAP, EXACT, SLIVER, TOUCH, PARABOLA, COARSE, CONSTANT, FLAT, LAST,
     FLAT_LEFT, RANGE, MOVING, SLOPES,
 ]  # fmt: skip
