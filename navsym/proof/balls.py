@@ -20,6 +20,9 @@ from navsym.errors import NavsymError
 
 DEFAULT_BITS = 96
 
+#: Roots from here on are taken by logarithms: flint counts them with a machine word.
+MOST_ROOT = 2**31
+
 
 class UnsupportedError(NavsymError):
     """An expression outside the language that balls can enclose."""
@@ -182,7 +185,7 @@ def not_negative(x: arb) -> arb:
 def rational_power(x: Any, p: int, q: int) -> Any:
     """x**(p/q) for x >= 0, the real branch; undefined when x may be negative."""
     head = constant_term(x)
-    if isinstance(x, arb):
+    if isinstance(x, arb) and q < MOST_ROOT:
         if not head >= 0:
             return undefined(x)
         root = x.sqrt() if q == 2 else x.root(q)

@@ -48,6 +48,7 @@ def decide_equation(statement: Equation) -> Verdict:
 
 
 def shape_of(side: object) -> tuple[int, ...]:
+    """Rows and columns of a matrix, the length of a sequence, nothing for a scalar."""
     if isinstance(side, sp.MatrixBase):
         return tuple(side.shape)
     return (len(side),) if isinstance(side, (tuple, list)) else ()

@@ -15,7 +15,8 @@ from navsym.errors import DomainError
 from navsym.proof.assumptions import remaining_assumptions, with_sides
 from navsym.proof.balls import UnsupportedError, tape
 from navsym.proof.certificates import positivity_certificate
-from navsym.proof.equations import after_look, broken, decide_equation, sampled
+from navsym.proof.equations import after_look, broken, decide_equation, entries, sampled, shape_of
+from navsym.proof.identities.equalities import WAYS, first_proof
 from navsym.proof.identities.normal_form import OutsideLanguageError, reduce_to_zero
 from navsym.proof.identities.numbers import is_zero
 from navsym.proof.sampling.points import Point, Sample, points, ranges, search_counterexample, value_at
@@ -45,6 +46,9 @@ GOALS: dict[str, Callable[[sp.Expr], tuple[sp.Expr, ...]]] = {
 #: Relations that equality breaks.
 STRICT = ("<", ">", "!=")
 
+#: Sides that are nearer than this at every sampled point may be equal.
+EQUAL = 1e-20
+
 
 def decide_bound(statement: Bound) -> Verdict:
     """Verdict of an inequality; ``=`` is handed to the equations."""
@@ -54,10 +58,10 @@ def decide_bound(statement: Bound) -> Verdict:
         )
     if statement.relation not in EXCLUDES:
         raise DomainError(f"expected one of = != < <= > >=; got {statement.relation!r}; correct the relation")
-    difference = sp.sympify(statement.printed, strict=True) - sp.sympify(statement.derived, strict=True)
+    difference = difference_of(statement)
     scope = scope_of(difference, statement.box)
     try:
-        sides = [sp.sympify(side, strict=True) for side in (statement.printed, statement.derived)]
+        sides = [*entries(statement.printed), *entries(statement.derived)]
         existing = (*sides, *statement.exists)
         verdict = decide_difference(difference, statement.relation, statement.box, scope, existing)
         if not verdict.status.holds and verdict.status != CONFIRMED:
@@ -68,6 +72,19 @@ def decide_bound(statement: Bound) -> Verdict:
         return replace(verdict, assumptions=assumed)
     except (UnsupportedError, OutsideLanguageError) as error:
         return Verdict(OPEN, "none", scope, evidence=str(error))
+
+
+def difference_of(statement: Bound) -> sp.Expr:
+    """Printed - derived; of matrices the sum of the squares, which vanishes only where they are equal."""
+    if shape_of(statement.printed) != shape_of(statement.derived):
+        raise DomainError("expected sides of one shape; got two shapes; correct one of them")
+    pairs = zip(entries(statement.printed), entries(statement.derived), strict=True)
+    differences = [printed - derived for printed, derived in pairs]
+    if not shape_of(statement.printed):
+        return differences[0]
+    if statement.relation != "!=":
+        raise DomainError(f"expected = or != between matrices; got {statement.relation}; compare them entry by entry")
+    return sp.Add(*(difference**2 for difference in differences))
 
 
 def decide_difference(
@@ -84,7 +101,7 @@ def decide_difference(
     if sample.counterexample is not None:
         assert sample.difference is not None
         return broken(sample.counterexample, sample.difference)
-    proof = prove_relation(difference, relation, box)
+    proof = prove_relation(difference, relation, box, sample)
     if proof.sign != Sign.UNKNOWN:
         status = PROVED if proof.exact else CERTIFIED
         certificate = certificate_of(difference, relation, box)
@@ -147,16 +164,27 @@ def exact_zero_point(difference: sp.Expr, box: Box, sides: Sequence[sp.Expr] = (
     return None
 
 
-def prove_relation(difference: sp.Expr, relation: str, box: Box) -> SignProof:
+def prove_relation(difference: sp.Expr, relation: str, box: Box, sample: Sample) -> SignProof:
+    """The sign that the relation asks for, and equality where that is enough."""
     if relation in ("<=", "<"):
         difference = -difference
     wanted = Sign.NONNEGATIVE if relation in ("<=", ">=") else Sign.POSITIVE
-    if wanted == Sign.NONNEGATIVE and reduce_to_zero(difference).zero:
+    if wanted == Sign.NONNEGATIVE and is_equality(difference, box, sample):
         return SignProof(Sign.NONNEGATIVE, "the two sides are equal", exact=True)
     proof = prove_sign(difference, box, wanted)
     if relation == "!=" and not proof.at_least(wanted):
         proof = prove_sign(-difference, box, wanted)
     return proof if proof.at_least(wanted) else SignProof(Sign.UNKNOWN)
+
+
+def is_equality(difference: sp.Expr, box: Box, sample: Sample) -> bool:
+    """True when the difference is proved to vanish on the whole box, with nothing left to assume."""
+    if reduce_to_zero(difference).zero:
+        return True
+    if sample.largest is None or not sample.largest < EQUAL:
+        return False
+    proof = first_proof(difference, sp.Integer(0), box, WAYS)
+    return proof is not None and not remaining_assumptions(proof.reduction, box)
 
 
 def certificate_of(difference: sp.Expr, relation: str, box: Box) -> Mapping[str, Any] | None:

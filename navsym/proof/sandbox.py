@@ -19,13 +19,16 @@ from dataclasses import dataclass
 from multiprocessing.connection import Connection, wait
 from typing import Any
 
-from navsym.errors import NavsymError
+from navsym.errors import DomainError, NavsymError
 
 DEFAULT_SECONDS = 60.0
 DEFAULT_MEGABYTES = 6144
 
 #: A child has this many times its seconds of processor time by the clock: a machine may be busy with other things.
 PATIENCE = 10
+
+MOST_SECONDS = 1e7
+MOST_MEGABYTES = 2**30
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,8 +108,9 @@ def run_many(
 ) -> Iterator[Outcome]:
     """Outcomes of ``function(item)``, each in a child of its own, at most ``jobs`` at once.
 
-    Outcomes come as they are ready, in no particular order.
+    Outcomes come as they are ready, in no particular order. Raises DomainError for limits that are none.
     """
+    require_limits(seconds, megabytes)
     waiting = list(enumerate(items))[::-1]
     running: list[Child] = []
     try:
@@ -120,6 +124,14 @@ def run_many(
     finally:
         for child in running:
             stop(child)
+
+
+def require_limits(seconds: float, megabytes: int) -> None:
+    """Refuse a time that no child can have: nan, infinity, nothing, or more than the kernel counts."""
+    if not 0 < seconds <= MOST_SECONDS:
+        raise DomainError(f"expected seconds above 0 and at most {MOST_SECONDS:g}; got {seconds:g}; correct the limit")
+    if not 0 < megabytes <= MOST_MEGABYTES:
+        raise DomainError(f"expected megabytes above 0 and at most {MOST_MEGABYTES}; got {megabytes}; correct it")
 
 
 def start(place: int, function: Callable[[Any], Any], item: Any, limits: Limits) -> Child:
@@ -146,6 +158,7 @@ def work(sender: Connection, function: Callable[[Any], Any], item: Any, limits: 
     """Runs in the child. Ctrl-C reaches the whole group; here the parent answers it, and kills its children."""
     die_with_parent(limits.parent)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    os.dup2(2, 1)  # a C library that gives up writes to standard output, where the parent's document is to stand alone
     limits.apply()
     try:
         sender.send(("result", function(item)))

@@ -13,6 +13,9 @@ from navsym.proof.balls import precision
 from navsym.proof.sampling.points import Point, Range, range_of
 from navsym.text.expression import to_text
 
+#: Powers of two beyond which a number is written as a power of ten.
+MOST_SIZE = 20_000
+
 
 def text_of(expression: sp.Basic) -> str:
     """Text in the language of files; sympy's own words for what lies outside it."""
@@ -60,6 +63,8 @@ def decimal(end: arb, digits: int, direction: int) -> str:
     if numerator == 0:
         return "0"
     size = abs(numerator).bit_length() + power
+    if abs(size) > MOST_SIZE:
+        return power_of_ten(size, numerator > 0, direction)
     places = max(0, digits - int(size * 0.30103) - 1)
     scaled = numerator * 10**places
     whole = scaled << power if power >= 0 else rounded_shift(scaled, -power, direction)
@@ -67,6 +72,17 @@ def decimal(end: arb, digits: int, direction: int) -> str:
     head, tail = (text[:-places], text[-places:]) if places else (text, "")
     sign = "-" if whole < 0 else ""
     return sign + (f"{head}.{tail}" if tail else head)
+
+
+def power_of_ten(size: int, positive: bool, direction: int) -> str:
+    """A power of ten beyond a number between 2**(size - 1) and 2**size: its digits would fill the memory.
+
+    log10(2) lies between 0.30102 and 0.30103.
+    """
+    away = (direction > 0) == positive
+    two = size if away else size - 1
+    ends = (two * 30102 // 10**5, two * 30103 // 10**5)
+    return f"{'' if positive else '-'}1e{max(ends) + 1 if away else min(ends)}"
 
 
 def rounded_shift(value: int, bits: int, direction: int) -> int:

@@ -10,6 +10,9 @@ from navsym.proof.identities.normal_form import vanishes_identically
 
 Test = Callable[[sp.Expr], bool]
 
+#: Powers beyond which nothing is factored: it would take for ever.
+MOST_DEGREE = 1000
+
 
 def expand_logarithms(expression: sp.Expr, is_positive: Test) -> sp.Expr:
     """Every logarithm as a sum over the factors of its argument that are proved to be positive.
@@ -55,7 +58,14 @@ def rational_logarithm(number: sp.Rational) -> sp.Expr:
 
 def factored(argument: sp.Expr) -> sp.Expr:
     """The argument as a product; a factoring is taken only when the normal form proves it."""
-    if argument.is_number or not argument.has(sp.Add):
+    if argument.is_number or not argument.has(sp.Add) or degree_bound(argument) > MOST_DEGREE:
         return argument
     product = sp.factor(argument)
     return product if vanishes_identically(argument - product) else argument
+
+
+def degree_bound(argument: sp.Expr) -> int:
+    """The largest number in an exponent: exp(12345/67891) is a power of 12345 to the algebra."""
+    exponents = [power.exp for power in argument.atoms(sp.Pow)] + [node.args[0] for node in argument.atoms(sp.exp)]
+    numbers = set().union(*(exponent.atoms(sp.Rational) for exponent in exponents))
+    return max((max(abs(int(number.p)), int(number.q)) for number in numbers), default=1)

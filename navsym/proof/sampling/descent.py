@@ -14,7 +14,7 @@ from fractions import Fraction
 import sympy as sp
 from flint import arb, arb_mat, fmpq
 
-from navsym.proof.balls import Tape, UnsupportedError, enclose, exact_ball, precision, tape
+from navsym.proof.balls import DEFAULT_BITS, Tape, UnsupportedError, enclose, exact_ball, precision, tape
 from navsym.proof.sampling.points import Range
 
 STARTS = 16
@@ -22,6 +22,10 @@ KEPT = 3
 STEPS = 400
 ROUNDS = 8
 BITS = 640
+
+#: A Newton step below this one is believed without looking whether it goes down; so many larger ones are taken.
+SMALL = 1e-3
+LARGE_STEPS = 24
 
 Place = list[float]
 Guess = dict[sp.Symbol, Fraction]
@@ -102,14 +106,16 @@ def polisher(
     hessian = [[sp.diff(slope, symbol) for symbol in symbols] for slope in gradient]
     try:
         slopes, curves = [tape(g) for g in gradient], [[tape(h) for h in row] for row in hessian]
+        height = tape(goal)
     except UnsupportedError:
         return lambda rough: iter(())
 
     def polish(rough: dict[sp.Symbol, Fraction]) -> Iterator[Guess]:
         at = {s: arb(fmpq(x.numerator, x.denominator)) for s, x in rough.items()}
+        at = approached(height, slopes, curves, at)
         for _ in range(ROUNDS):
             step = newton_step(slopes, curves, at)
-            if step is None or not all(abs(float(d)) < 1e-3 for d in step):
+            if step is None or not all(abs(float(d)) < SMALL for d in step):
                 return
             with precision(BITS):
                 at = {s: arb((at[s] - d).mid()) for s, d in zip(symbols, step, strict=True)}
@@ -118,15 +124,34 @@ def polisher(
     return polish
 
 
-def newton_step(slopes: list[Tape], curves: list[list[Tape]], at: dict[sp.Symbol, arb]) -> list[arb] | None:
+def approached(
+    height: Tape, slopes: list[Tape], curves: list[list[Tape]], at: dict[sp.Symbol, arb]
+) -> dict[sp.Symbol, arb]:
+    """Newton's steps as long as they are large, each halved until it goes down: a compass stops in narrow valleys."""
+    here = enclose(height, at).mid()
+    for _ in range(LARGE_STEPS):
+        step = newton_step(slopes, curves, at, DEFAULT_BITS)
+        if step is None or all(abs(float(d)) < SMALL for d in step):
+            break
+        halved = ({s: arb((at[s] - d * fmpq(1, 2**k)).mid()) for s, d in zip(at, step, strict=True)} for k in range(8))
+        lower = next((place for place in halved if enclose(height, place).mid() < here), None)
+        if lower is None:
+            break
+        at, here = lower, enclose(height, lower).mid()
+    return at
+
+
+def newton_step(
+    slopes: list[Tape], curves: list[list[Tape]], at: dict[sp.Symbol, arb], bits: int = BITS
+) -> list[arb] | None:
     """Solution of hessian * step = gradient by midpoints; None where it is singular or undefined."""
     size = len(slopes)
-    right = arb_mat([[enclose(program, at, BITS).mid()] for program in slopes])
-    matrix = arb_mat([[enclose(program, at, BITS).mid() for program in row] for row in curves])
+    right = arb_mat([[enclose(program, at, bits).mid()] for program in slopes])
+    matrix = arb_mat([[enclose(program, at, bits).mid() for program in row] for row in curves])
     if not all(entry.is_finite() for entry in (*right.entries(), *matrix.entries())):
         return None
     try:
-        with precision(BITS):
+        with precision(bits):
             solution = matrix.solve(right)
     except ZeroDivisionError:
         return None

@@ -17,13 +17,13 @@ from fractions import Fraction
 from functools import partial
 
 import sympy as sp
-from flint import arb
+from flint import arb, fmpq
 
 from navsym.claims.statement import Box
-from navsym.proof.balls import UnsupportedError, enclose, tape
+from navsym.proof.balls import UnsupportedError, enclose, exact_ball, tape
 from navsym.proof.identities.normal_form import OutsideLanguageError
 from navsym.proof.identities.numbers import is_zero
-from navsym.proof.sampling.descent import lowest
+from navsym.proof.sampling.descent import Guess, lowest
 from navsym.proof.sampling.points import AWKWARD, Point, Range, points, ranges, value_at
 from navsym.proof.sampling.zeros import zeros_of_factors
 
@@ -34,6 +34,13 @@ FAR = tuple(sp.Integer(10) ** k for k in (3, 12, 31))
 NEAR = tuple(sp.Rational(1, 10**k) for k in (3, 12, 31, 75, 150, 300))
 DENOMINATORS = (1, 2, 3, 4, 6, 12, 100, 10**12, 10**150)
 TOUCHING = 1e-60
+MOST_EXPONENT = 10_000
+
+#: A descent that comes so near to an end of a range is meant to reach it.
+NEARBY = 1e-3
+
+#: What a compass search in floats leaves open of a coordinate.
+SAME = Fraction(1, 10**12)
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,7 +107,10 @@ def sharp_value(difference: sp.Expr, point: Point, sides: Sequence[sp.Expr]) -> 
         ball = value_at(tape(difference), point, BITS)
         if ball.is_finite() and (not ball.contains(0) or ball.rad() < SHARP):
             return ball
-        ball = enclose(tape(difference.subs(point)), {}, BITS)
+        put_in = substituted(difference, point)
+        if put_in is None:
+            return None
+        ball = enclose(tape(put_in), {}, BITS)
     except (UnsupportedError, OutsideLanguageError):
         return None
     return ball if ball.is_finite() else None
@@ -111,15 +121,25 @@ def exists_at(side: sp.Expr, point: Point) -> bool:
     if value_at(tape(side), point, BITS).is_finite():
         return True
     # every part has to exist: 1/log(0) would come out as 1/zoo = 0
-    parts = [node.subs(point) for node in sp.preorder_traversal(side) if not node.is_Atom]
-    if any(part.has(sp.nan, sp.zoo, sp.oo, -sp.oo, sp.I) for part in parts):
+    parts = [substituted(node, point) for node in sp.preorder_traversal(side) if not node.is_Atom]
+    if any(part is None or part.has(sp.nan, sp.zoo, sp.oo, -sp.oo, sp.I) for part in parts):
         return False
     return all(enclose(tape(part), {}, BITS).is_finite() for part in parts)
 
 
+def substituted(expression: sp.Expr, point: Point) -> sp.Expr | None:
+    """The expression with exact numbers put in; None where that would multiply out a power with too many digits."""
+    exponents = [power.exp for power in expression.atoms(sp.Pow) if power.exp.free_symbols]
+    turned = [node.args[0] for node in expression.atoms(sp.exp) if node.has(sp.log)]  # exp(y log x) becomes x**y
+    exponents += [argument.replace(sp.log, lambda *_: sp.Integer(1)) for argument in turned]
+    sizes = (abs(value_at(tape(exponent), point)) for exponent in exponents)
+    return expression.subs(point) if all(size < MOST_EXPONENT for size in sizes) else None
+
+
 def is_zero_at(difference: sp.Expr, point: Point) -> bool:
     try:
-        return is_zero(difference.subs(point))
+        put_in = substituted(difference, point)
+        return put_in is not None and is_zero(put_in)
     except (UnsupportedError, OutsideLanguageError):
         return False
 
@@ -196,10 +216,11 @@ def descents(goal: sp.Expr, limits: dict[sp.Symbol, Range]) -> Iterator[Point]:
     while len(held) < len(limits):
         rest = {symbol: limit for symbol, limit in limits.items() if symbol not in held}
         places = list(lowest(goal.subs(held), rest))
-        for place, snap in itertools.product(places, snappings()):
-            point = {**held, **{symbol: snap(place[symbol]) for symbol in rest}}
-            if all(limits[symbol].contains(value) for symbol, value in point.items()):
-                yield point
+        yield from snapped(places, held, limits)
+        ends = nearby_ends(places[0], rest) if places else {}
+        if ends and len(ends) < len(rest):  # lowest on a face: once more, inside that face
+            face = {symbol: limit for symbol, limit in rest.items() if symbol not in ends}
+            yield from snapped(list(lowest(goal.subs({**held, **ends}), face)), {**held, **ends}, limits)
         symbol = next(iter(rest))
         value = to_rational(DENOMINATORS[5], places[0][symbol]) if places else None
         if value is None or not limits[symbol].contains(value):
@@ -207,14 +228,42 @@ def descents(goal: sp.Expr, limits: dict[sp.Symbol, Range]) -> Iterator[Point]:
         held[symbol] = value
 
 
+def snapped(places: Sequence[Guess], held: Point, limits: dict[sp.Symbol, Range]) -> Iterator[Point]:
+    """The places with their coordinates rounded in every way, those that are held as they are."""
+    for place, snap in itertools.product(places, snappings()):
+        point = {**held, **{symbol: snap(value) for symbol, value in place.items()}}
+        if all(limits[symbol].contains(value) for symbol, value in point.items()):
+            yield point
+
+
+def nearby_ends(place: Guess, limits: dict[sp.Symbol, Range]) -> Point:
+    """The coordinates that lie almost at an end of their range, moved to that end."""
+    found: Point = {}
+    for symbol, value in place.items():
+        limit = limits[symbol]
+        for end in (limit.lower, limit.upper):
+            if end is None or not limit.contains(end):
+                continue
+            if abs(exact_ball(end) - fmpq(value.numerator, value.denominator)) < NEARBY:
+                found[symbol] = end
+    return found
+
+
 def snappings() -> Iterator[Callable[[Fraction], sp.Expr]]:
     """Ways to round a coordinate to a simple exact number."""
     yield from (partial(to_rational, denominator) for denominator in DENOMINATORS)
+    yield to_simplest
     yield from (partial(to_turns, denominator) for denominator in (6, 24))
 
 
 def to_rational(denominator: int, value: Fraction) -> sp.Expr:
     return rational(value.limit_denominator(denominator))
+
+
+def to_simplest(value: Fraction) -> sp.Expr:
+    """A fraction with few digits that a float cannot tell from the value."""
+    shorter = (value.limit_denominator(10**k) for k in range(1, 9))
+    return rational(next((short for short in shorter if abs(short - value) < SAME), value))
 
 
 def to_turns(denominator: int, value: Fraction) -> sp.Expr:

@@ -17,13 +17,22 @@ from navsym.proof.sampling.points import Point, Range, points
 ORDINARY = 6
 MOST_FACTORS = 8
 
+#: Functions that are zero where their argument is.
+VANISHING = (sp.Abs, sp.sin, sp.tan, sp.atan, sp.asin, sp.sinh, sp.tanh)
+
 
 def zeros_of_factors(difference: sp.Expr, limits: Mapping[sp.Symbol, Range]) -> Iterator[Point]:
     """Points of the box where a factor is zero; the caller shows that the whole is, and exists there."""
-    bases = dict.fromkeys(factor.as_base_exp()[0] for factor in sp.Mul.make_args(factored(difference)))
+    bases = dict.fromkeys(unwrapped(factor) for factor in sp.Mul.make_args(factored(difference)))
     for base in list(bases)[:MOST_FACTORS]:
         for symbol in sorted(base.free_symbols, key=str):
             yield from zeros_in(base, symbol, limits)
+
+
+def unwrapped(factor: sp.Expr) -> sp.Expr:
+    """What a power or a function like |u| vanishes with."""
+    base = factor.as_base_exp()[0]
+    return unwrapped(base.args[0]) if isinstance(base, VANISHING) else base
 
 
 def zeros_in(base: sp.Expr, symbol: sp.Symbol, limits: Mapping[sp.Symbol, Range]) -> Iterator[Point]:

@@ -8,7 +8,7 @@ statement that is proved stronger than the one that is asked.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from functools import lru_cache
 
 import sympy as sp
@@ -25,6 +25,7 @@ from navsym.proof.signs.half_angles import without_angles
 from navsym.proof.signs.known import Limits, Sign, SignProof
 from navsym.proof.signs.polynomials import Span, polynomial_sign
 from navsym.proof.signs.products import monomial_expression
+from navsym.proof.signs.sums import cases_of_sum
 
 MOST_VALUES = 5
 EFFORT = 4000
@@ -46,20 +47,35 @@ def known_sign(expression: sp.Expr, ranges: tuple[tuple[sp.Symbol, Range], ...],
 
 
 def sign_by_cases(expression: sp.Expr, limits: Mapping[sp.Symbol, Range], effort: Effort, left: int) -> Sign:
-    """|x| of a symbol by the two parts of its range, |u| of anything else by both signs everywhere."""
+    """Absolute values by both signs, those of symbols first."""
     values = sorted(expression.atoms(sp.Abs), key=sp.default_sort_key)
+    values = sorted(values, key=lambda value: not value.args[0].is_Symbol)
     inner = next((value for value in values if not value.args[0].has(sp.Abs)), None)
     if inner is None:
         return plain_sign(expression, limits, effort)
     if left == 0:
         return Sign.UNKNOWN
-    inside, worst = inner.args[0], Sign.POSITIVE
+    worst = Sign.POSITIVE
+    for case, narrowed in cases_of(expression, inner, limits):
+        worst = min(worst, sign_by_cases(case, narrowed, effort, left - 1))
+        if worst == Sign.UNKNOWN:
+            break
+    return worst
+
+
+def cases_of(
+    expression: sp.Expr, value: sp.Abs, limits: Mapping[sp.Symbol, Range]
+) -> Iterator[tuple[sp.Expr, Mapping[sp.Symbol, Range]]]:
+    """|x| of a symbol by the two parts of its range, of a sum by a variable for it, of anything else everywhere."""
+    inside = value.args[0]
+    sums = None if inside.is_Symbol else cases_of_sum(expression, value, limits)
+    if sums is not None and not any(forms[0].wider for forms in sums):
+        yield from ((forms[0].expression, forms[0].limits) for forms in sums)
+        return
     for sign in (1, -1):
         narrowed = half_range(limits, inside, sign)
         if narrowed is not None:
-            case = expression.xreplace({inner: sign * inside})
-            worst = min(worst, sign_by_cases(case, narrowed, effort, left - 1))
-    return worst
+            yield expression.xreplace({value: sign * inside}), narrowed
 
 
 def plain_sign(expression: sp.Expr, limits: Mapping[sp.Symbol, Range], effort: Effort) -> Sign:

@@ -35,6 +35,7 @@ from navsym.proof.signs.slopes import (
     by_monotony,
     by_quotient,
     by_squares,
+    by_sums,
     by_taylor,
     by_values,
     is_defined,
@@ -87,7 +88,7 @@ def attempt(expression: sp.Expr, limits: Limits, wanted: Sign, budget: int, dept
             return proof
     if depth >= MAX_DEPTH:
         return UNKNOWN
-    for way in (by_values, by_squares):
+    for way in (by_values, by_squares, by_sums):
         proof = way(expression, limits, wanted, prove)
         if proof.at_least(wanted):
             return proof
@@ -192,6 +193,8 @@ def product_sign(expression: sp.Expr, limits: Limits, budget: int, depth: int) -
         return power_sign(expression, limits, budget, depth)
     if isinstance(expression, sp.Add):
         return sum_sign(expression, limits, budget, depth)
+    if isinstance(expression, sp.Abs) and exists(expression, limits, budget, depth):
+        return SignProof(Sign.NONNEGATIVE, "an absolute value", exact=True)
     if not isinstance(expression, sp.Mul):
         return UNKNOWN
     worst, negative, exact, boxes = Sign.POSITIVE, False, True, 0

@@ -24,7 +24,9 @@ from navsym.proof.identities.normal_form import (
 from navsym.proof.identities.numbers import is_zero
 from navsym.proof.sampling.points import Range
 from navsym.proof.signs.contacts import guessed_points
-from navsym.proof.signs.known import UNKNOWN, Limits, Sign, SignProof
+from navsym.proof.signs.exact import is_entire
+from navsym.proof.signs.known import UNKNOWN, Limits, Sign, SignProof, constant_sign
+from navsym.proof.signs.sums import cases_of_sum
 
 Prove = Callable[[sp.Expr, Limits, Sign], SignProof]
 
@@ -44,16 +46,22 @@ def is_defined(expression: sp.Expr, limits: Limits, prove: Prove) -> bool:
 
     Factoring may cancel a pole, and so may a derivative: that of atan(tan(x)) is 1.
     """
-
-    def reaches(inside: sp.Basic, wanted: Sign) -> bool:
-        return prove(inside, own(limits, inside), wanted).at_least(wanted)
-
-    positive, zero = Sign.POSITIVE, Sign.NONNEGATIVE
-    return (
-        all(reaches(d, positive) or reaches(-d, positive) for d in dict.fromkeys(divisors_inside(expression)))
-        and all(reaches(r, zero) for r in dict.fromkeys(radicands_inside(expression)))
-        and all(reaches(a, positive) for a in dict.fromkeys(logarithms_inside(expression)))
+    return roots_exist(expression, limits, prove) and all(
+        is_never_zero(d, limits, prove) for d in dict.fromkeys(divisors_inside(expression))
     )
+
+
+def roots_exist(expression: sp.Expr, limits: Limits, prove: Prove) -> bool:
+    """No radicand and no argument of a logarithm leaves its range."""
+    needs = [(radicand, Sign.NONNEGATIVE) for radicand in dict.fromkeys(radicands_inside(expression))]
+    needs += [(argument, Sign.POSITIVE) for argument in dict.fromkeys(logarithms_inside(expression))]
+    return all(prove(inside, own(limits, inside), wanted).at_least(wanted) for inside, wanted in needs)
+
+
+def is_never_zero(divisor: sp.Expr, limits: Limits, prove: Prove) -> bool:
+    """One sign on the whole box."""
+    positive = Sign.POSITIVE
+    return any(prove(d, own(limits, divisor), positive).at_least(positive) for d in (divisor, -divisor))
 
 
 def left_out(limit: Range) -> bool:
@@ -95,13 +103,61 @@ def by_monotony(expression: sp.Expr, limits: Limits, wanted: Sign, prove: Prove)
                 continue
             rising = prove(direction * slope, limits, Sign.NONNEGATIVE)
             if rising.sign == Sign.UNKNOWN:
+                rising = almost_everywhere(direction * slope, symbol, limits, prove)
+            if rising.sign == Sign.UNKNOWN:
                 continue
-            lifted = direction == 1 and left_out(limit) and rising.sign == Sign.POSITIVE
+            lifted = direction == 1 and left_out(limit) and rises_at_once(expression, limits, rising)
             sign = Sign.POSITIVE if floor.sign == Sign.POSITIVE or lifted else Sign.NONNEGATIVE
             if sign >= wanted:
                 exact = floor.exact and rising.exact
                 return SignProof(sign, f"monotone in {symbol}", floor.boxes + rising.boxes, exact)
     return UNKNOWN
+
+
+def almost_everywhere(slope: sp.Expr, symbol: sp.Symbol, limits: Limits, prove: Prove) -> SignProof:
+    """Not negative wherever it exists, and it exists but for finitely many values of the symbol.
+
+    A continuous function with such a derivative does not fall: that of asin(x) - x is infinite at x = 1.
+    """
+    top, bottom = sp.fraction(sp.together(slope))
+    if slope.has(*BENT) or not bottom.has(symbol) or not vanishes_identically(slope - top / bottom):
+        return UNKNOWN
+    divisors = dict.fromkeys([*divisors_inside(slope), *divisors_inside(1 / bottom)])
+    seldom = all(has_few_zeros(d, symbol) or is_never_zero(d, limits, prove) for d in divisors)
+    if not seldom or not roots_exist(sp.Tuple(slope, top, bottom), limits, prove):
+        return UNKNOWN
+    for sign in (1, -1):
+        below = prove(sign * bottom, own(limits, bottom), Sign.NONNEGATIVE)
+        if below.sign != Sign.UNKNOWN:
+            above = prove(sp.expand(sign * top), own(limits, top), Sign.NONNEGATIVE)
+            sign_there = min(above.sign, Sign.NONNEGATIVE)
+            return SignProof(sign_there, "", above.boxes + below.boxes, above.exact and below.exact)
+    return UNKNOWN
+
+
+def has_few_zeros(divisor: sp.Expr, symbol: sp.Symbol) -> bool:
+    """A polynomial in the symbol whose leading coefficient is a rational number: finitely many zeros."""
+    if not divisor.has(symbol) or not divisor.is_polynomial(symbol):
+        return False
+    leading = sp.Poly(divisor, symbol).LC()
+    return bool(leading.is_Rational and leading != 0)
+
+
+def rises_at_once(expression: sp.Expr, limits: Limits, slope: SignProof) -> bool:
+    """True when a function that does not fall is above its lower end everywhere else.
+
+    If it stayed there for a while, an analytic function of one symbol would be constant.
+    """
+    if slope.sign == Sign.POSITIVE:
+        return True
+    if len(limits) != 1 or not is_entire(expression):
+        return False
+    ((symbol, limit),) = limits.items()
+    if limit.lower is None:
+        return False
+    inside = limit.lower + 1 if limit.upper is None else (limit.lower + limit.upper) / 2
+    gained = expression.subs(symbol, inside) - expression.subs(symbol, limit.lower)
+    return constant_sign(gained).sign == Sign.POSITIVE
 
 
 def by_taylor(expression: sp.Expr, limits: Limits, wanted: Sign, simple: Prove) -> SignProof:
@@ -146,9 +202,9 @@ def taylor_at(
         rest = simple(derivative, limits, Sign.NONNEGATIVE)
         exact = exact and at_end.exact and rest.exact
         if rest.sign != Sign.UNKNOWN:
-            rising = strict or rest.sign == Sign.POSITIVE
-            inside = direction == 1 and left_out(limits[symbol]) and rising
-            sign = Sign.POSITIVE if floor == Sign.POSITIVE or inside else Sign.NONNEGATIVE
+            inside = direction == 1 and left_out(limits[symbol])
+            lifted = inside and (strict or rises_at_once(expression, limits, rest))
+            sign = Sign.POSITIVE if floor == Sign.POSITIVE or lifted else Sign.NONNEGATIVE
             words = f"derivatives at {symbol} = {place} not negative, nor that of order {order} anywhere"
             return SignProof(sign, words, at_end.boxes + rest.boxes, exact)
     return UNKNOWN
@@ -249,6 +305,23 @@ def signs_of(inside: sp.Expr, limits: Limits, prove: Prove) -> tuple[int, ...]:
         return (1, -1)
     proved = [s for s in (1, -1) if prove(s * inside, own(limits, inside), Sign.NONNEGATIVE).sign != Sign.UNKNOWN]
     return (proved[0],) if proved else (1, -1)
+
+
+def by_sums(expression: sp.Expr, limits: Limits, wanted: Sign, prove: Prove) -> SignProof:
+    """The absolute value of a sum of symbols by a variable of its own: |sin x - sin y| <= |x - y|."""
+    values = sorted(expression.atoms(sp.Abs), key=sp.default_sort_key)
+    found = (cases_of_sum(expression, value, limits) for value in values if not value.args[0].is_Symbol)
+    cases = next((cases for cases in found if cases is not None), None)
+    if not cases or not is_defined(expression, limits, prove):
+        return UNKNOWN
+    proofs = []
+    for forms in cases:
+        tried = (prove(form.expression, form.limits, wanted) for form in forms)
+        proofs.append(next((proof for proof in tried if proof.at_least(wanted)), UNKNOWN))
+        if not proofs[-1].at_least(wanted):
+            return UNKNOWN
+    worst = min(proofs, key=lambda proof: proof.sign)
+    return replace(worst, reason=f"a variable for the sum; {worst.reason}", exact=all(p.exact for p in proofs))
 
 
 def by_quotient(expression: sp.Expr, limits: Limits, wanted: Sign, prove: Prove) -> SignProof:
