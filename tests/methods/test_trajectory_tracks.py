@@ -390,6 +390,40 @@ def test_speed_of_a_car_from_single_point_positions_with_gaps_and_outliers():
     assert any("gap" in line for line in remarks) and any("left out" in line for line in remarks)
 
 
+def speed_correlations(t, order, q=0.02, r=4.0):
+    """Correlations (N, N) of the smoother's errors of the speed, from the information of all states at once."""
+    N = len(t)
+    information = np.diag(np.tile([1 / r, *[0.0] * (order - 1)], N))
+    information[:order, :order] += 1e-6 * np.eye(order)
+    for k in range(1, N):
+        Phi, Q = step_of(t[k] - t[k - 1], q, order)
+        rows, both = np.hstack([-Phi, np.eye(order)]), slice((k - 1) * order, (k + 1) * order)
+        information[both, both] += rows.T @ np.linalg.solve(Q, rows)
+    covariance = np.linalg.inv(information)[1::order, 1::order]
+    deviation = np.sqrt(np.diag(covariance))
+    return covariance / np.outer(deviation, deviation)
+
+
+@pytest.mark.parametrize(("order", "worth"), [(2, 133), (3, 78)])
+def test_the_squared_errors_of_370_rows_are_worth_far_fewer(order, worth):
+    """Errors of neighbours are correlated: the band of independent rows is twice too narrow, and 1.10 no wonder in it.
+
+    The mean of N squared normal errors with the correlations R has the variance 2/N^2 sum R^2, that of 2/var
+    independent ones; rows forty apart are independent.
+    """
+    noise, means = Noise(np.full(3, 4.0), np.full(3, 0.02)), []
+    t = simulated(0, order=order)[0]
+    R = speed_correlations(t, order)
+    counted = R[20:-10, 20:-10]
+    spread = np.sqrt(2 * (counted**2).sum()) / len(counted)
+    assert round(2 / spread**2) == worth and np.abs(R[40:-10:40, 40:-10:40] - np.eye(9)).max() < 1e-3
+    for seed in range(700, 716):
+        t, truth, measured = simulated(seed, order=order)
+        found = by_method(flat_track(t, measured), noise, Settings(order=order, gate=0.0), np.ones(len(t), np.int64))
+        means.append((((found.velocity - truth[:, :, 1].T) / found.velocity_sd)[20:-10] ** 2).mean())
+    assert abs(np.mean(means) - 1) < 3 * spread / np.sqrt(3 * len(means))
+
+
 @pytest.mark.slow
 def test_over_a_hundred_tracks_the_squared_errors_have_the_mean_one():
     """Order 3, estimated noise: 1.010 with a standard error of 0.012; single samples of twenty tracks lie up to 1.1."""
