@@ -122,3 +122,20 @@ def test_decimals_are_rounded_outwards():
 def test_twenty_monomials_have_exact_contacts_at_few_digits_too(digits):
     found = certify(problem([t**k for k in range(20)], [int(k == 11) for k in range(20)], 1), digits)
     assert found.certificate["kind"] == "touch" and found.reaches(digits) and found.unique is True
+
+def test_a_dual_that_is_constant_with_coefficients_of_no_round_numbers_is_certified():
+    """``x = (1 + sqrt(2)) (1, 0, sqrt(2))`` makes f the bound on the whole interval: the cost is its square."""
+    root = sp.sqrt(2)
+    c = sp.cos(sp.root(2, 4) * (3 - t))
+    found = certify(problem([-c, sp.sin(sp.root(2, 4) * (3 - t)), root * c / 2 - root / 2 + 1], [1, 0, 1], 3), 30)
+    assert found.width < 1e-30
+    value = ((1 + root) ** 2).evalf(50)
+    assert sp.Rational(str(found.lower)) < value < sp.Rational(str(found.upper))
+    assert accepted(found) == "gap"
+
+
+def test_a_stiff_motion_that_cancels_hundreds_of_digits_ends_with_two_bounds():
+    """Cells of three thousand bits are dear: fewer are tried, and what is known comes back within seconds."""
+    fast = sp.exp(1000 - 1000 * t)
+    found = certify(problem([fast, sp.exp(1 - t) / 999 - fast / 999], [0, 1], 1), 12)
+    assert found.lower <= found.upper and accepted(found) == "gap"

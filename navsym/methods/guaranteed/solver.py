@@ -13,21 +13,20 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-import sympy as sp
 from flint import arb
 
-from navsym.claims import CERTIFIED, OPEN, PROVED, Equation, Status
+from navsym.claims import CERTIFIED, OPEN, Status
 from navsym.claims.display import card, shortened, table, verdict_words
-from navsym.errors import NavsymError, NotEstimableError
+from navsym.errors import NavsymError
+from navsym.methods.guaranteed.dependence import drop_dependent
 from navsym.methods.guaranteed.problem import GuaranteedProblem
 from navsym.methods.guaranteed.unique import several_optimal
 from navsym.methods.guaranteed.varying import ERROR
 from navsym.numeric.exchange.search import find_contacts
 from navsym.proof.balls import precision
 from navsym.proof.decimals import decimal
-from navsym.proof.ladder import decide
 from navsym.proof.optimality.basis import Basis, DependentError, make_basis
-from navsym.proof.optimality.enclosure import Problem, rational
+from navsym.proof.optimality.enclosure import Problem
 from navsym.proof.optimality.fixed import Certified, certify
 from navsym.text.expression import to_text
 
@@ -175,8 +174,7 @@ def independent(problem: GuaranteedProblem) -> tuple[Problem, list[int], Basis]:
         try:
             return exact, kept, make_basis(exact)
         except DependentError as found:
-            relation = [recognised(c) for c in found.relation]
-            drop_dependent(problem, kept, found.index, relation)
+            drop_dependent(problem, kept, found.index, found.relation)
 
 
 def restricted(problem: GuaranteedProblem, kept: list[int]) -> Problem:
@@ -185,45 +183,3 @@ def restricted(problem: GuaranteedProblem, kept: list[int]) -> Problem:
         replace(panel, functions=tuple(panel.functions[k] for k in kept)) for panel in problem.exact().panels
     )
     return Problem(panels, tuple(problem.functional[k] for k in kept))
-
-
-def recognised(x: arb) -> sp.Rational | None:
-    """The rational number with a small denominator next to x, or None."""
-    value = rational(x)
-    number = sp.Rational(int(value.p), int(value.q))
-    best = number.limit_denominator(10**9)
-    return best if abs(best - number) < sp.Rational(1, 10**40) else None
-
-
-def drop_dependent(
-    problem: GuaranteedProblem, kept: list[int], index: int, relation: list[sp.Rational | None]
-) -> None:
-    """Remove the unknown ``kept[index]``, whose regressor is the given combination of those before it."""
-    k = kept[index]
-    if any(c is None for c in relation) or not proved_relation(problem, k, kept, relation):
-        raise NavsymError(
-            "expected regressors whose dependence can be decided; got functions that agree to 1800 digits; "
-            "rewrite them so that equal ones are written alike",
-            kind="open",
-        )
-    pairs = [(j, c) for j, c in zip(kept, relation, strict=False) if c]
-    rest = problem.functional[k] - sum((c * problem.functional[j] for j, c in pairs), sp.S.Zero)
-    if decide(Equation(rest, sp.S.Zero)).status is not PROVED:
-        direction = {j: -c for j, c in pairs} | {k: sp.S.One}
-        words = ", ".join(to_text(sp.sympify(direction.get(j, 0), strict=True)) for j in range(len(problem.functional)))
-        raise NotEstimableError(
-            f"functional: expected one that the measurements determine; got one that changes along the null "
-            f"direction [{words}] which no measurement shows; estimate another combination"
-        )
-    kept.remove(k)
-
-
-def proved_relation(
-    problem: GuaranteedProblem, k: int, kept: list[int], relation: list[sp.Rational | None]
-) -> bool:
-    for stretch in problem.stretches:
-        for row in stretch.rows:
-            other = sum((c * row[j] for j, c in zip(kept, relation, strict=False) if c), sp.S.Zero)
-            if decide(Equation(row[k], other)).status is not PROVED:
-                return False
-    return True

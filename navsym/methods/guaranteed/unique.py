@@ -24,7 +24,8 @@ from navsym.proof.optimality.enclosure import Panel, Problem, Touch, rational
 from navsym.proof.optimality.whole import bounded
 
 BITS = 256
-NEAR = 1e-8
+NEAR = sp.Rational(1, 10**8)
+NOTHING = arb(2) ** -200
 SAMPLES = 12
 
 
@@ -151,11 +152,14 @@ def numbers_at(problem: Problem, places: Sequence[Place]) -> tuple[np.ndarray, n
     """Signed regressors at the places as columns and P, in doubles, rows scaled."""
     with precision(BITS):
         columns = [problem.panels[p.panel].rows(arb(p.at)) for p in places]
-        N = np.array([[p.sign * float(h) for h in c] for p, c in zip(places, columns, strict=True)]).T
-        P = np.array([float(p.mid()) for p in problem.target()])
-    N[np.abs(N) < 1e-14 * np.abs(N).max()] = 0.0  # a cosine that vanishes is no row to be scaled up
-    scale = np.where(np.abs(N).max(axis=1) > 0, np.abs(N).max(axis=1), 1.0)
-    return N / scale[:, None], P / scale
+        sizes = [[abs(h).mid() for h in row] for row in zip(*columns, strict=True)]
+        largest = max(map(max, sizes))
+        # A cosine that vanishes is no row to be scaled up.
+        scale = [max(row) if max(row) > NOTHING * largest else arb(1) for row in sizes]
+        signed = zip((p.sign for p in places), columns, strict=True)
+        N = [[sign * float(h / s) for h, s in zip(column, scale, strict=True)] for sign, column in signed]
+        P = [float((p / s).mid()) for p, s in zip(problem.target(), scale, strict=True)]
+    return np.array(N).T, np.array(P)
 
 
 def largest_support(N: np.ndarray, P: np.ndarray) -> list[int]:

@@ -9,7 +9,7 @@ import sympy as sp
 
 from navsym.claims import PROVED, Equation
 from navsym.errors import NotEstimableError
-from navsym.methods.guaranteed.solver import recognised
+from navsym.methods.guaranteed.dependence import recognised
 from navsym.methods.phases.family import Family, U
 from navsym.proof.ladder import decide
 from navsym.proof.optimality.basis import DependentError, make_basis

@@ -28,6 +28,10 @@ MOST_BITS = 6000
 #: the coefficients are computed in balls and resolved to the second number, beyond the digits of a double.
 RESOLVED, SHARP_RESOLVED = 3e-13, 1e-19
 SHARP = 96
+#: Part of a function that its last coefficients may be in doubles, which say nothing below.
+GUESSED = 1e-13
+#: Places between the points, and what is called zero there.
+ELSEWHERE, SAME = (fmpq(2, 7), fmpq(5, 11), fmpq(9, 13)), arb(2) ** -400
 NODE_BITS = 128
 
 
@@ -45,15 +49,22 @@ class Basis:
 
     transform  : A (m, m), exact entries; A^-1 exists
     functional : A P as balls
-    scale      : the double number by which ``A P`` was divided for the search
+    size       : the exact number by which ``A P`` was divided for the search; any power of ten
     panels     : Chebyshev coefficients of q / sigma in double precision
+    loss       : digits that cancel in ``x . H`` when x is written in the basis of the problem
     """
 
     transform: arb_mat
     functional: arb_mat
-    scale: float
+    size: arb
     panels: Panels
     bits: int
+    loss: int
+
+    @property
+    def scale(self) -> float:
+        """The size as a double number, infinite or zero where it is none."""
+        return float(self.size)
 
 
 @lru_cache(maxsize=16)
@@ -109,13 +120,15 @@ def relation_of(gram: arb_mat, index: int) -> list[arb]:
     return [solved[i, 0].mid() for i in range(index)]
 
 
-def transform_of(values: arb_mat, bits: int) -> arb_mat:
-    """A = L^-1 for the Gram matrix ``L L^T`` of the rows, as exact midpoints."""
+def transform_of(values: arb_mat, bits: int) -> tuple[arb_mat, int]:
+    """A = L^-1 for the Gram matrix ``L L^T`` of the rows, as exact midpoints; the digits that A and L span."""
     gram = values.transpose() * values
     count = values.nrows()
-    L = cholesky(gram * (arb(1) / count), bits)
-    m = len(L)
-    return arb_mat([[e.mid() for e in row] for row in arb_mat(L).inv().tolist()]) if m else arb_mat(0, 0)
+    L = arb_mat(cholesky(gram * (arb(1) / count), bits))
+    inverse = L.inv()
+    A = arb_mat(L.nrows(), L.ncols(), [e.mid() for e in inverse.entries()])
+    digits = [(max(map(arb.abs_upper, matrix.entries())).log() / arb(10).log()).mid() for matrix in (A, L)]
+    return A, max(0, int(float(sum(digits, arb(0)))) + 1)
 
 
 def make_basis(problem: Problem, bits: int = 192) -> Basis:
@@ -140,19 +153,22 @@ def kept_basis(panels: tuple[tuple[Any, ...], ...], functional: tuple[Any, ...],
 
 def made_basis(problem: Problem, bits: int) -> Basis:
     """The basis, computed."""
-    panels = problem.panels
-    count = FIRST
+    panels, least = problem.panels, bits
+    count = first_count(problem)
     while True:
         try:
             with precision(bits):
                 values = samples(panels, count, bits)
-                A = transform_of(values, bits)
+                A, loss = transform_of(values, bits)
                 q = values * A.transpose()
                 P = A * arb_mat([[p] for p in problem.target()])
-        except DependentError:
-            if bits >= MOST_BITS:
+        except DependentError as found:
+            if bits < MOST_BITS:
+                bits *= 2
+            elif count < LARGEST and only_at_points(problem, found):
+                count, bits = 2 * count, least
+            else:
                 raise
-            bits *= 2
             continue
         high, low = chebyshev_coefficients(q, len(panels), count)
         tail = np.abs(high[:, -3:, :]).max() / np.abs(high).max()
@@ -164,23 +180,76 @@ def made_basis(problem: Problem, bits: int) -> Basis:
                 "shorten the interval or split it into pieces"
             )
         count *= 2
-    p = double(P)[:, 0]
-    scale = float(np.linalg.norm(p))
     used = resolved(high)
-    p_high, p_low = twofold(P * (1 / arb(scale)))
-    return Basis(A, P, scale, Panels(high[:, :used], p_high[:, 0], low[:, :used], p_low[:, 0]), bits)
+    with precision(bits):
+        size = sum((p * p for p in P.entries()), arb(0)).sqrt().mid()
+        p_high, p_low = twofold(P * (1 / size))
+    return Basis(A, P, size, Panels(high[:, :used], p_high[:, 0], low[:, :used], p_low[:, 0]), bits, loss)
+
+
+def first_count(problem: Problem) -> int:
+    """Points a panel to begin with: no fewer than functions, and where doubles say so what resolves the functions.
+
+    Only a guess: what is too few shows itself in balls later.
+    """
+    count = FIRST
+    while count < len(problem.functional):
+        count *= 2
+    while count < SHARP and not all(smooth(panel, count) for panel in problem.panels):
+        count *= 2
+    return count
+
+
+@lru_cache(maxsize=8)
+def last_cosines(count: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Chebyshev points in [0, 1], and what takes values there to the last three coefficients."""
+    angles = np.pi * (np.arange(count) + 0.5) / count
+    return (1 + np.cos(angles)) / 2, np.cos(np.outer(angles, np.arange(count - 3, count))) * (2 / count)
+
+
+def smooth(panel: Panel, count: int) -> bool:
+    """The last coefficients of every function of a panel are small in doubles, or doubles say nothing."""
+    inputs: dict[Any, Any] = {symbol: float(arb(value).mid()) for symbol, value in panel.values.items()}
+    start, end, _ = (float(edge.mid()) for edge in panel.edges())
+    shares, cosines = last_cosines(count)
+    inputs[panel.variable] = start + (end - start) * shares
+    rows = np.empty((len(panel.functions), count))
+    with np.errstate(all="ignore"):
+        try:
+            values = panel.program.numbers(inputs)
+        except (ArithmeticError, ValueError):  # a number beyond the range of a double
+            return True
+        for row, h in zip(rows, values, strict=True):
+            row[:] = h
+        tail = np.abs(rows @ cosines).max(axis=1)
+        return not bool((tail > GUESSED * np.abs(rows).max(axis=1)).any())
+
+
+def only_at_points(problem: Problem, found: DependentError) -> bool:
+    """True when functions that look dependent at the Chebyshev points are not so between them.
+
+    ``T_{n+k} = -T_{n-k}`` at n of these points.
+    """
+    with precision(found.bits):
+        for panel in problem.panels:
+            for v in ELSEWHERE:
+                rows = panel.rows(arb(v))
+                parts = [c * h for c, h in zip(found.relation, rows, strict=False)]
+                away = abs(rows[found.index] - sum(parts, arb(0)))
+                if bool(away > SAME * sum((abs(p) for p in parts), abs(rows[found.index]))):
+                    return True
+    return False
 
 
 def double(matrix: arb_mat) -> NDArray[np.float64]:
-    return np.array([[float(e.mid()) for e in row] for row in matrix.tolist()])
+    return np.array(list(map(float, matrix.entries()))).reshape(matrix.nrows(), matrix.ncols())
 
 
 def twofold(matrix: arb_mat) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """The midpoints as doubles, and what these lack."""
-    rows = matrix.tolist()
-    high = np.array([[float(e.mid()) for e in row] for row in rows])
-    low = [[float((e - h).mid()) for e, h in zip(*pair, strict=True)] for pair in zip(rows, high.tolist(), strict=True)]
-    return high, np.array(low)
+    high = double(matrix)
+    low = [float(e - h) for e, h in zip(matrix.entries(), high.ravel().tolist(), strict=True)]
+    return high, np.array(low).reshape(high.shape)
 
 
 def chebyshev_coefficients(
@@ -195,17 +264,31 @@ def chebyshev_coefficients(
         return high, np.zeros_like(high)
     rows = q.tolist()
     with precision(NODE_BITS):
-        parts = [twofold(ball_cosines(count) * arb_mat(rows[i * count : (i + 1) * count])) for i in range(panels)]
+        parts = [transformed(rows[i * count : (i + 1) * count]) for i in range(panels)]
     return np.stack([high for high, _ in parts]), np.stack([low for _, low in parts])
 
 
+def transformed(rows: list[list[arb]]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Coefficients from an even number of values, the even ones from their sums about the middle, the odd ones
+    from their differences."""
+    count, half = len(rows), len(rows) // 2
+    pairs = list(zip(rows[:half], reversed(rows), strict=False))
+    even = arb_mat([[a + b for a, b in zip(*pair, strict=True)] for pair in pairs])
+    odd = arb_mat([[a - b for a, b in zip(*pair, strict=True)] for pair in pairs])
+    high, low = np.empty((2, count, len(rows[0])))
+    for k, folded in enumerate((even, odd)):
+        high[k::2], low[k::2] = twofold(ball_cosines(count)[k] * folded)
+    return high, low
+
+
 @lru_cache(maxsize=8)
-def ball_cosines(count: int) -> arb_mat:
-    """``2/n cos(pi k (j + 1/2) / n)``, the first row halved: values at the points to coefficients."""
+def ball_cosines(count: int) -> tuple[arb_mat, arb_mat]:
+    """``2/n cos(pi k (j + 1/2) / n)`` for j < n/2 with k even, the first row halved, and with k odd."""
     with precision(NODE_BITS):
         cosines = [arb.cos_pi(arb(j) / (2 * count)) * 2 / count for j in range(4 * count)]
-        rows = [[cosines[k * (2 * j + 1) % (4 * count)] for j in range(count)] for k in range(count)]
-        return arb_mat([[c / 2 for c in rows[0]], *rows[1:]])
+        rows = [[cosines[k * (2 * j + 1) % (4 * count)] for j in range(count // 2)] for k in range(count)]
+        rows[0] = [c / 2 for c in rows[0]]
+        return arb_mat(rows[::2]), arb_mat(rows[1::2])
 
 
 def resolved(high: NDArray[np.float64]) -> int:

@@ -11,10 +11,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import lru_cache
 from typing import Any
 
-import numpy as np
 from flint import arb, arb_mat, ctx, fmpq
 
 from navsym.numeric.exchange.interior import interior_dual, pinned_rows
@@ -30,7 +28,10 @@ from navsym.proof.optimality.supports import balanced, cost, support_points
 from navsym.proof.optimality.whole import bounded
 from navsym.text.expression import to_text
 
-LIMIT = 20000
+#: Cells of one proof, where numbers have the usual bits or fewer.
+LIMIT, USUAL = 20000, 1500
+#: Every attempt that gives up digits may have half of those before it, at least this part.
+LEAST = 1 / 32
 #: With so many lost digits a second box is tried.
 CLOSE = 8
 
@@ -86,7 +87,7 @@ def from_contacts(problem: Problem, basis: Basis, contacts: Contacts, digits: in
 
     Functions that are close to dependent need a smaller box than the digits ask for: it is tried second.
     """
-    loss = lost_digits(basis)
+    loss = basis.loss
     # A ball in the regressors is an error that may differ from instant to instant: only two sides are rigorous then.
     exact_data = not any(panel.values for panel in problem.panels)
     first = refined, bits = refined_to(problem, basis, contacts, digits)
@@ -104,22 +105,14 @@ def from_contacts(problem: Problem, basis: Basis, contacts: Contacts, digits: in
 
 def refined_to(problem: Problem, basis: Basis, contacts: Contacts, digits: int) -> tuple[Polished, int]:
     """Contacts good for so many digits of the value, and the bits to compute them with."""
-    loss = lost_digits(basis)
+    loss = basis.loss
     bits = int(3.33 * (digits + 2 * loss + 25)) + 64
     return polish(problem.panels, basis, contacts, bits, goal_of(digits + loss)), bits
 
 
-def goal_of(digits: int) -> float:
-    """How small corrections must become for so many digits; beyond doubles, until they shrink no more."""
-    return 10.0 ** -(digits + 14) if digits + 14 <= 300 else 0.0
-
-
-@lru_cache(maxsize=64)
-def lost_digits(basis: Basis) -> int:
-    """Digits that cancel in ``x . H`` when x is written in the basis of the problem."""
-    largest = max(float(abs(e).mid()) for row in basis.transform.tolist() for e in row)
-    inverse = max(float(abs(e).mid()) for row in basis.transform.inv().tolist() for e in row)
-    return max(0, int(np.log10(largest) + np.log10(inverse)) + 1)
+def goal_of(digits: int) -> arb:
+    """How small corrections must become for so many digits."""
+    return arb(10) ** -(digits + 14)
 
 
 # -- exact contacts ---------------------------------------
@@ -127,7 +120,7 @@ def lost_digits(basis: Basis) -> int:
 
 def touch(problem: Problem, basis: Basis, found: Polished, digits: int, bits: int) -> Certified | None:
     """The exact-contact certificate, or None when one of its tests fails."""
-    loss = lost_digits(basis)
+    loss = basis.loss
     places = digits + 10 + loss // 2  # the digits that cancel in x . H widen what a checker sees of a box
     with precision(bits):
         middles = [decimal(c, places + loss + 8) for c in unknowns(found)]
@@ -233,11 +226,13 @@ def covered(problem: Problem, x: Sequence[arb], touches: Sequence[Sequence[Touch
     return every_cell(problem, x, touches) if cells is None else cells
 
 
-def every_cell(problem: Problem, x: Sequence[arb], touches: Sequence[Sequence[Touch]]) -> int | None:
-    """Cells that prove ``|x . H| <= sigma`` on every panel, or None."""
-    cells = 0
+def every_cell(
+    problem: Problem, x: Sequence[arb], touches: Sequence[Sequence[Touch]], share: float = 1.0
+) -> int | None:
+    """Cells that prove ``|x . H| <= sigma`` on every panel, or None; with many bits fewer of them may be tried."""
+    cells, limit = 0, int(share * LIMIT * min(1.0, USUAL / ctx.prec) ** 2)
     for k, panel in enumerate(problem.panels):
-        used = bounded(panel, x, touches[k] if k < len(touches) else [], LIMIT)
+        used = bounded(panel, x, touches[k] if k < len(touches) else [], limit)
         if used is None:
             return None
         cells += used
@@ -301,7 +296,7 @@ def gap(
 
     carriers : what carries the weights; by default the contacts
     """
-    places = digits + lost_digits(basis) + 12
+    places = digits + basis.loss + 12
     with precision(bits):
         if carriers is None:
             at = [exact(decimal(v, places)) for v in found.v]
@@ -332,14 +327,17 @@ def best_dual(
 
     The first attempt within the digits of the upper bound is taken: those after it are no better.
     """
-    places, target = digits + lost_digits(basis) + 12, problem.target()
+    places, target = digits + basis.loss + 12, problem.target()
     best: tuple[list[fmpq], int, list[list[Touch]]] = [fmpq(0)] * len(found.dual), 0, []
-    highest = fmpq(0)
+    highest, share = fmpq(0), 1.0
     for base, shrink, seen in attempts(problem, basis, contacts, found, digits):
         scale, touches = 1 - fmpq(1, 10) ** shrink, near_touches(problem, seen, places)
         x = [exact(decimal(c * scale, places + 8)) for c in base]
         reached = rational(total([arb(c) for c in x], target))
-        cells = every_cell(problem, [arb(c) for c in x], touches) if reached > highest else None
+        if reached <= highest:
+            continue
+        cells = every_cell(problem, [arb(c) for c in x], touches, share)
+        share = share if shrink > digits else max(share / 2, LEAST)
         if cells is not None:
             best, highest = (x, cells, touches), reached
             if (upper - reached) * 10**digits <= upper:
@@ -355,7 +353,7 @@ def attempts(
     Where the contacts do not fix the dual, round numbers come first, then one that touches at all places where it
     nearly does, then one with room to spare.
     """
-    base, goal = [rational(c) for c in found.dual], goal_of(digits + lost_digits(basis))
+    base, goal = [rational(c) for c in found.dual], goal_of(digits + basis.loss)
     if not found.regular:
         yield [round_number(c) for c in base], digits + 3, found
         if 0 < len(contacts.touching) <= len(base):

@@ -22,7 +22,9 @@ from navsym.proof.optimality.enclosure import Panel, Problem
 
 STEPS = 60
 #: A residual so many times the smallest one, or no number at all, says that Newton's method has run away.
-AWAY = 1e6
+AWAY = arb(10) ** 6
+#: Corrections below this may stop shrinking: the precision is used up.
+SMALL = arb(1e-12)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -47,7 +49,9 @@ class Polished:
     touching: tuple[tuple[int, fmpq], ...] = ()
 
 
-def polish(panels: Sequence[Panel], basis: Basis, contacts: Contacts, bits: int, goal: float) -> Polished:
+def polish(
+    panels: Sequence[Panel], basis: Basis, contacts: Contacts, bits: int, goal: arb | float
+) -> Polished:
     """Newton with a fixed Jacobian until the correction is below ``goal`` or stops shrinking.
 
     Steps that run away lead back to where they began; the answer is then called irregular.
@@ -58,21 +62,22 @@ def polish(panels: Sequence[Panel], basis: Basis, contacts: Contacts, bits: int,
         x = [arb(float(c)) for c in contacts.dual]
         v = [arb(as_fraction(float(u))) for u in contacts.u]
         w = [arb(float(c)) for c in contacts.weights]
-        p = [basis.functional[i, 0] / basis.scale for i in range(m)]
+        p = [basis.functional[i, 0] / basis.size for i in range(m)]
         signs = [int(s) for s in contacts.sign]
         inner = [bool(i) for i in contacts.inner]
-        begun, away, last = (x, v, w), np.inf, np.inf
+        begun, away, last = (x, v, w), arb("inf"), None
         for _ in range(STEPS):
             F = residual(panels, basis, contacts.panel.tolist(), x, v, w, p, signs, inner)
-            size = max(float(abs(f).mid()) for f in F)
+            size = largest(F)
             if not size <= away:
                 (x, v, w), regular, size = begun, False, away / AWAY
                 break
-            away = min(away, AWAY * max(size, 1e-12))
-            if size < goal or (size > 0.5 * last and size < 1e-12):
+            away = min(away, AWAY * max(size, SMALL))
+            ratio = arb(0) if last is None else (size / last).mid()
+            if size < goal or (ratio > 0.5 and size < SMALL):
                 break
-            done = last < np.inf and size < 1e-6 * last and size * (size / last) < goal
-            last, size = size, size * (size / last)
+            done = 0 < ratio < 1e-6 and size * ratio < goal
+            last, size = size, (size * ratio).mid()
             step = correction(inverse, F)
             x = [(a + s).mid() for a, s in zip(x, step[:m], strict=True)]
             free = iter(step[m : len(step) - l])
@@ -81,15 +86,15 @@ def polish(panels: Sequence[Panel], basis: Basis, contacts: Contacts, bits: int,
             if done:  # with the ratio of the last two the next correction would be below the goal
                 break
         dual = basis.transform.transpose() * arb_mat([[a] for a in x])
-        weights = [a * basis.scale / panels[k].bound() for a, k in zip(w, contacts.panel, strict=True)]
+        weights = [a * basis.size / panels[k].bound() for a, k in zip(w, contacts.panel, strict=True)]
         touching = tuple((k, as_fraction(u)) for k, u in contacts.touching)
         return Polished(
             tuple(int(k) for k in contacts.panel), tuple(v), tuple(inner), tuple(signs),
-            tuple(a.mid() for a in weights), tuple(dual[i, 0].mid() for i in range(m)), size, regular, touching,
+            tuple(a.mid() for a in weights), tuple(dual[i, 0].mid() for i in range(m)), float(size), regular, touching,
         )  # fmt: skip
 
 
-def pinned(problem: Problem, basis: Basis, found: Polished, rows: np.ndarray, x: np.ndarray, goal: float) -> list[arb]:
+def pinned(problem: Problem, basis: Basis, found: Polished, rows: np.ndarray, x: np.ndarray, goal: arb | float) -> list[arb]:
     """The dual next to x, in the basis of the problem, that meets its bound at the contacts and is flat at inner ones.
 
     rows : these conditions on x in double precision, fewer than unknowns
@@ -99,7 +104,7 @@ def pinned(problem: Problem, basis: Basis, found: Polished, rows: np.ndarray, x:
     for _ in range(STEPS):
         F = residual(problem.panels, basis, found.panel, y, found.v, found.weights, p, found.sign, found.inner)
         F = F[: rows.shape[0]]
-        if max(float(abs(f).mid()) for f in F) < goal:
+        if largest(F) < goal:
             break
         y = [(a + s).mid() for a, s in zip(y, correction(inverse, F), strict=True)]
     return [a.mid() for a in (basis.transform.transpose() * arb_mat([[a] for a in y])).entries()]
@@ -131,12 +136,17 @@ def well_conditioned(J: np.ndarray) -> np.ndarray | None:
     return inverse if np.linalg.norm(J) * np.linalg.norm(inverse) < 1e9 else None
 
 
+def largest(F: Sequence[arb]) -> arb:
+    """The largest modulus of numbers, exactly; no number where one of them is none."""
+    sizes = [abs(f).mid() for f in F]
+    return max(sizes) if all(size.is_finite() for size in sizes) else arb("nan")
+
+
 def correction(inverse: np.ndarray, F: Sequence[arb]) -> list[arb]:
-    """``-inverse F`` where F is split into a double and its power of two, so that tiny residuals keep their digits."""
-    largest = max(float(abs(f).mid()) for f in F)
-    if largest == 0.0:
+    """``-inverse F`` where F is divided by its largest number, so that tiny residuals keep their digits."""
+    scale = largest(F)
+    if scale == 0:
         return [arb(0)] * inverse.shape[0]
-    scale = arb(largest)
     small = np.array([float((f / scale).mid()) for f in F])
     return [-arb(float(s)) * scale for s in inverse @ small]
 

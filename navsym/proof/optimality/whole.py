@@ -19,6 +19,8 @@ from navsym.proof.optimality.enclosure import Cell, Expansion, Panel, Touch, cov
 HALF = fmpq(1, 2)
 #: Orders of the polynomial that are tried, and how small R must be, as a part of the bound.
 LARGEST, SMALL = 48, arb(2) ** -20
+#: What varies by less than so many times that is called constant.
+FLAT = 16
 #: Cells shorter than this part of the panel are expanded on their own: R may be too much for them.
 SHORTEST = fmpq(1, 1 << 16)
 
@@ -32,15 +34,19 @@ def bounded(panel: Panel, x: Sequence[arb], touches: Sequence[Touch], limit: int
 
 
 def polynomial(panel: Panel, x: Sequence[arb]) -> arb_poly | None:
-    """The coefficients ``c_0 … c_(n-1), R`` of f in u, or None where no R is small, or where balls in the data make
-    the coefficients wide: each of them is wide on its own then, and f is not."""
+    """The coefficients ``c_0 … c_(n-1), R`` of f in u, or None where they do not help.
+
+    No R may be small; balls in the data may make the coefficients wide, each on its own, while f is not; or f is
+    almost constant, so that all of it may lie nearer to the bound than R.
+    """
     wide = panel.dual_polynomial(x, interval(fmpq(0), fmpq(1)), HALF, LARGEST)
     small = SMALL * panel.bound()
     order = next((k for k in range(3, LARGEST + 1) if bool(abs(wide[k]) < small)), None)
     if order is None:
         return None
     thin = panel.dual_polynomial(x, arb(HALF), HALF, order - 1)
-    if not bool(sum((c.rad() for c in thin), arb(0)) < small):
+    wavering = sum((abs(c) for c in thin[1:]), abs(wide[order]))
+    if bool(wavering < FLAT * small) or not bool(sum((c.rad() for c in thin), arb(0)) < small):
         return None
     return arb_poly([*thin, wide[order]])
 
