@@ -283,3 +283,17 @@ def channels_share_the_solution():
     ratio = sp.Symbol("k", positive=True)
     scaled = sum((w * ratio * z for w, z in zip(weights(2), (z0, zm, zT), strict=True)), sp.Integer(0))
     return Equation(printed=ratio * derived_estimate(2), derived=scaled, box=STATED)
+
+
+@claim("4.scale")
+def dimensional_variables():
+    """In dimensional variables the estimates of y1 and y3 and every error are multiplied by the scale factor.
+
+    The functional k e_s has the weights ``N^-1 (k e_s)`` and the value ``x . (k e_s)`` of the same dual.
+    """
+    k, readings = sp.Symbol("k", positive=True), sp.Matrix([z0, zm, zT])
+    scaled = [sp.Matrix(3, 1, lambda i, _, s=s: k * int(i == s)) for s in range(3)]
+    estimates = [(N().adjugate() * scaled[s] / N().det()).dot(readings) for s in (0, 2)]
+    errors = [sp.Matrix(dual_of(s)).dot(scaled[s]) for s in range(3)]
+    printed = (k * zT, k * PRINTED_DRIFT, *(k * error for error in PRINTED_ERRORS))
+    return Equation(printed=printed, derived=(*estimates, *errors), box=STATED)
