@@ -141,16 +141,26 @@ def duals(
 ) -> Iterator[tuple[sp.Expr, ...]]:
     """Solutions x of ``x . H(u_i) = s_i sigma`` and ``x . H'(u_i) = 0``; those with most zeros first.
 
-    Where these leave x free, further ones are balanced: ``x . H`` is opposite at the ends of a measurement.
+    Where these leave x free, further conditions are tried: ``x . H`` opposite at the ends of a measurement, or at its
+    bound at an end.
     """
     rows, right = contact_equations(family, span, places)
     rank = rank_at(family, rows, found[0].T)
     for columns in itertools.combinations(range(len(rows[0])), rank):
         yield from solved_dual(family, rows, right, columns, found)
     free = len(rows[0]) - rank
-    ends = [[h.subs(U, a) + h.subs(U, b) for h in row] for row, (a, b) in zip(family.rows, family.panels, strict=True)]
-    for more in itertools.combinations(ends, free) if free else ():
-        yield from solved_dual(family, [*rows, *more], [*right, *[sp.S.Zero] * free], range(len(rows[0])), found)
+    for more in itertools.combinations(conditions_at_ends(family), free) if free else ():
+        left, bounds = [row for row, _ in more], [bound for _, bound in more]
+        yield from solved_dual(family, [*rows, *left], [*right, *bounds], range(len(rows[0])), found)
+
+
+def conditions_at_ends(family: Family) -> list[tuple[list[sp.Expr], sp.Expr]]:
+    """Rows and right sides: a dual polynomial balanced between the ends of a panel, or at its bound at one of them."""
+    ends = [([h.subs(U, a) for h in row], [h.subs(U, b) for h in row])
+            for row, (a, b) in zip(family.rows, family.panels, strict=True)]  # fmt: skip
+    balanced = [([x + y for x, y in zip(a, b, strict=True)], sp.S.Zero) for a, b in ends]
+    signed_ = [(e, s * sigma) for pair, sigma in zip(ends, family.sigma, strict=True) for e in pair for s in (1, -1)]
+    return balanced + [(row, sp.sympify(bound, strict=True)) for row, bound in signed_]
 
 
 def fixed_duals(family: Family, span: Span, found: Sequence[Sample]) -> list[tuple[sp.Expr, ...]]:

@@ -22,6 +22,7 @@ from navsym.errors import DomainError
 from navsym.methods.guaranteed.solver import solve
 from navsym.methods.phases.answer import Phases, Regime, end_text, number_of
 from navsym.methods.phases.closed import Closed, candidates, prove
+from navsym.methods.phases.continued import continued
 from navsym.methods.phases.dependent import without_dependent
 from navsym.methods.phases.events import Boundary, boundary
 from navsym.methods.phases.family import Family
@@ -192,6 +193,8 @@ def stretch(section: Section, follow: Follow, steps: Steps) -> Phases:
     for span in spans:
         guesses.append(candidates(family, span))
         steps.did(Steps.LOOKS)
+    found, (spans, guesses) = len(spans), continued(family, spans, guesses)
+    steps.did(Steps.LOOKS * (found - len(spans)))
     firsts = [g[0] if g else None for g in guesses]
     pairs = zip(spans, spans[1:], firsts, firsts[1:], strict=False)
     changes = tuple(boundary(family, a, b, c, d) for a, b, c, d in pairs)

@@ -187,6 +187,7 @@ def implicit(family: Family, left: Span, right: Span) -> Boundary:
     """The length at which a room of one of the two patterns closes; enclosed by two exact-contact proofs."""
     edge = left.upper
     starts = [next(anchors(family, span, edge, side), None) for span, side in ((left, -1), (right, 1))]
+    guesses = []
     for span, start, beyond in ((left, starts[0], starts[1]), (right, starts[1], starts[0])):
         if start is None:
             continue
@@ -194,10 +195,12 @@ def implicit(family: Family, left: Span, right: Span) -> Boundary:
         others = [] if c is None else list(zip(c.panel.tolist(), c.u.tolist(), c.sign.tolist(), strict=True))
         found = closing(family, span.pattern, start, edge, others)
         if found is not None:
-            root, why = found
-            return enclosed(family, left, right, root, why)
+            guesses.append(enclosed(family, left, right, *found))
+            if guesses[-1].proved:
+                return guesses[-1]
     text = decimal(fmpq(edge.numerator, edge.denominator), 8)
-    return Boundary(None, text, text, "the pattern of instants changes; not located further", False)
+    nowhere = Boundary(None, text, text, "the pattern of instants changes; not located further", False)
+    return next(iter(guesses), nowhere)
 
 
 def closing(

@@ -18,7 +18,7 @@ import sympy as sp
 from navsym.errors import DomainError
 from navsym.methods.phases.alike import Pattern, alike, pattern_of
 from navsym.methods.phases.family import Family
-from navsym.numeric.exchange.search import Contacts, find_contacts
+from navsym.numeric.exchange.search import Contacts, Panels, find_contacts, rows_at
 from navsym.proof.optimality.basis import Basis, DependentError, make_basis
 
 COUNT = 72
@@ -50,7 +50,7 @@ def sample(family: Family, T: Fraction, *wanted: Pattern | None) -> tuple[Basis,
             f"{family.parameter.name}: expected a range inside which the regressors are independent; got dependent "
             f"ones at or next to {float(T):.9g}, which was not foreseen; give a range that ends there"
         ) from None
-    found = ordered(find_contacts(basis.panels))
+    found = ordered(find_contacts(basis.panels), basis.panels)
     for pattern in wanted:
         if pattern is None or pattern_of(found) == pattern:
             continue
@@ -60,13 +60,17 @@ def sample(family: Family, T: Fraction, *wanted: Pattern | None) -> tuple[Basis,
     return basis, found
 
 
-def ordered(found: Contacts) -> Contacts:
-    """The same contacts by panel and place; those whose weight is rounding are touches only."""
+def ordered(found: Contacts, panels: Panels | None = None) -> Contacts:
+    """The same contacts by panel and place; those whose weight is rounding, or has not the sign of the dual
+    polynomial there (with panels), are touches only."""
     sizes = np.abs(found.weights)
-    rounding = sizes <= ROUNDING * sizes.sum()
-    touches = zip(found.panel[rounding].tolist(), found.u[rounding].tolist(), strict=True)
+    idle = sizes <= ROUNDING * sizes.sum()
+    if panels is not None:
+        against = found.weights * (rows_at(panels.coefficients, found.panel, found.u) @ found.dual) < 0
+        idle |= against & ~against.all()
+    touches = zip(found.panel[idle].tolist(), found.u[idle].tolist(), strict=True)
     order = np.lexsort((found.u, found.panel))
-    order = order[~rounding[order]]
+    order = order[~idle[order]]
     return Contacts(
         found.panel[order], found.u[order], found.inner[order], found.sign[order], found.weights[order],
         found.dual, found.excess, (*found.touching, *touches), found.value,

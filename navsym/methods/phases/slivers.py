@@ -23,7 +23,7 @@ from navsym.numeric.exchange.search import Contacts, find_contacts
 from navsym.proof.balls import precision
 from navsym.proof.decimals import decimal, exact
 from navsym.proof.optimality.basis import Basis, DependentError, as_fraction, make_basis
-from navsym.proof.optimality.enclosure import Problem, Touch, interval, rational, total
+from navsym.proof.optimality.enclosure import Panel, Problem, Touch, interval, rational, total
 from navsym.proof.optimality.fixed import attempts, every_cell, header, near_touches
 from navsym.proof.optimality.polish import Polished, polish
 from navsym.proof.optimality.range import fraction
@@ -100,9 +100,10 @@ def joined(stretches: list[tuple[fmpq, fmpq]]) -> list[tuple[fmpq, fmpq]]:
 def sliver(family: Family, start: fmpq, end: fmpq) -> tuple[Sliver | None, float]:
     """The two-sided certificate with the parameter as a ball, None when it is too wide, and how wide it is."""
     middle = (start + end) / 2
-    ball = ball_problem(family, interval(start, end))
-    if not all(bool(b > a) and bool(sigma > 0) for a, b, sigma in (panel.edges() for panel in ball.panels)):
+    shown = ball_problem(family, interval(start, end))
+    if not all(bool(b > a) and bool(sigma > 0) for a, b, sigma in (panel.edges() for panel in shown.panels)):
         return None, inf
+    ball = over_bounds(shown)
     try:
         problem = family.exact(sp.Rational(int(middle.p), int(middle.q)))
         basis = make_basis(problem)
@@ -119,7 +120,7 @@ def sliver(family: Family, start: fmpq, end: fmpq) -> tuple[Sliver | None, float
         return None, width if width > 0 else inf
     room = (most - least) / ROOM
     lower, upper = decimal(least - room, DIGITS + 6, -1), decimal(most + room, DIGITS + 6, 1)
-    document = header(ball, "sliver", BITS, cells, lower, upper) | {
+    document = header(shown, "sliver", BITS, cells, lower, upper) | {
         "parameter": family.parameter.name, "from": fraction(start), "to": fraction(end),
         "dual": [decimal(c, PLACES) for c in x], "support": [[k, decimal(v, PLACES)] for k, v in support],
     }  # fmt: skip
@@ -210,3 +211,14 @@ def ball_problem(family: Family, ball: arb) -> Problem:
     values = {family.parameter: ball}
     panels = tuple(replace(panel, values=values) for panel in family.moving.panels)
     return Problem(panels, family.moving.functional, values)
+
+
+def over_bounds(problem: Problem) -> Problem:
+    """Regressors over their noise bounds, one by one: where a bound moves, a checker's balls are as wide as these."""
+
+    def scaled(panel: Panel) -> Panel:
+        functions = tuple(sp.Mul(h, 1 / panel.sigma, evaluate=False) for h in panel.functions)
+        return replace(panel, functions=functions, sigma=sp.S.One)
+
+    panels = tuple(scaled(panel) if panel.sigma.free_symbols else panel for panel in problem.panels)
+    return replace(problem, panels=panels)
