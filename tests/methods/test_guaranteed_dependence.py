@@ -8,7 +8,7 @@ import pytest
 import sympy as sp
 
 from navsym import checker
-from navsym.errors import NotEstimableError
+from navsym.errors import NavsymError, NotEstimableError
 from navsym.methods.guaranteed.problem import from_regressors
 from navsym.methods.guaranteed.solver import solve
 
@@ -72,3 +72,8 @@ def test_a_function_beyond_the_range_of_a_double_is_solved():
     """exp(1000 s) and 1 on [0, 1]: the coefficient of exp costs 2 / (exp(1000) - 1), far below any double."""
     solution = solved([1, exp(1000 * s)], [0, 1])
     assert sp.Rational(solution.lower) < 2 / (exp(1000) - 1).evalf(40) < sp.Rational(solution.upper)
+
+
+def test_functions_that_differ_beyond_all_bits_are_left_open_with_the_direction_that_is_not_seen():
+    with pytest.raises(NavsymError, match=r"about the direction \[0, -1, 1\]"):
+        solve(from_regressors([[1, s, s + exp(s) / sp.Integer(10) ** 700]], [0, 0, 1], s, (0, 1)))

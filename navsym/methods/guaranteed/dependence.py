@@ -37,11 +37,7 @@ def drop_dependent(problem: GuaranteedProblem, kept: list[int], index: int, coef
     k = kept[index]
     relation = proved_relation(problem, k, dict(zip(kept, coefficients, strict=False)))
     if relation is None:
-        raise NavsymError(
-            "expected regressors whose dependence can be decided; got functions that agree to 1800 digits; "
-            "rewrite them so that equal ones are written alike",
-            kind="open",
-        )
+        raise undecided(problem, k, dict(zip(kept, coefficients, strict=False)))
     rest = problem.functional[k] - sum((c * problem.functional[j] for j, c in relation.items()), sp.S.Zero)
     if decide(Equation(rest, sp.S.Zero)).status is not PROVED:
         direction = {j: -c for j, c in relation.items()} | {k: sp.S.One}
@@ -51,6 +47,20 @@ def drop_dependent(problem: GuaranteedProblem, kept: list[int], index: int, coef
             f"direction [{words}] which no measurement shows; estimate another combination"
         )
     kept.remove(k)
+
+
+def undecided(problem: GuaranteedProblem, k: int, balls: dict[int, arb]) -> NavsymError:
+    """What is known where no relation is proved: the direction along which nothing is seen to change."""
+    seen = {j: decimal(-c, 12) for j, c in balls.items() if not abs(c) < NOTHING} | {k: "1"}
+    near = [seen.get(j, "0") for j in range(len(problem.functional))]
+    got = "functions that agree to 1800 digits"
+    if problem.error:
+        got = f"integrated functions that agree within their error of {float(problem.error):.0e}"
+    return NavsymError(
+        f"expected regressors whose dependence can be decided; got {got}: no measurement shows about the "
+        f"direction [{', '.join(near)}]; leave that unknown out or rewrite equal functions alike",
+        kind="open",
+    )
 
 
 def in_words(c: sp.Expr) -> str:

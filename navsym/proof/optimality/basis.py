@@ -177,7 +177,7 @@ def made_basis(problem: Problem, bits: int) -> Basis:
         if count >= LARGEST:
             raise TooLargeError(
                 f"expected functions that {LARGEST} points a piece resolve; got a tail of {tail:.1e}; "
-                "shorten the interval or split it into pieces"
+                "shorten the interval, or keep poles and kinks out of it"
             )
         count *= 2
     used = resolved(high)

@@ -94,7 +94,9 @@ def polish(
         )  # fmt: skip
 
 
-def pinned(problem: Problem, basis: Basis, found: Polished, rows: np.ndarray, x: np.ndarray, goal: arb | float) -> list[arb]:
+def pinned(
+    problem: Problem, basis: Basis, found: Polished, rows: np.ndarray, x: np.ndarray, goal: arb | float
+) -> list[arb]:
     """The dual next to x, in the basis of the problem, that meets its bound at the contacts and is flat at inner ones.
 
     rows : these conditions on x in double precision, fewer than unknowns
