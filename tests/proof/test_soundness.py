@@ -12,7 +12,7 @@ import mpmath
 import pytest
 import sympy as sp
 
-from navsym.claims import CERTIFIED, OPEN, PROVED, REFUTED, Bound, Equation, Finding, Property
+from navsym.claims import CERTIFIED, OPEN, PROVED, REFUTED, Bound, Equation, Finding, Optimum, Property
 from navsym.errors import DomainError
 from navsym.methods.prove import prove
 from navsym.proof.balls import UnsupportedError
@@ -335,3 +335,13 @@ def test_a_root_of_a_quotient_with_a_negative_constant_below_keeps_its_sign():
 def test_a_point_where_an_inner_part_is_infinite_refutes_nothing():
     x = sp.Symbol("x", real=True)
     assert decide(Bound(1 / sp.log(x), "<", sp.Integer(0), {x: (0, sp.S.Half)})).status != REFUTED
+
+
+def test_a_dual_that_moves_with_the_variable_proves_no_optimum():
+    """|5 + t x2| <= 1 with x2 = -5/t: the printed value 5 passed for optimal, where 3 is reached."""
+    t = sp.Symbol("t", real=True)
+    problem = ((sp.Integer(1), t), (sp.Integer(1), sp.Integer(0)), t, (sp.Integer(1), sp.Integer(2)))
+    solution = ((sp.Integer(1), sp.Rational(3, 2)), (sp.Integer(3), sp.Integer(-2)), sp.Integer(5))
+    assert decide(Optimum(*problem, (sp.Integer(5), -5 / t), *solution)).status == OPEN
+    best = ((sp.Integer(1), sp.Integer(2)), (sp.Integer(2), sp.Integer(-1)), sp.Integer(3))
+    assert decide(Optimum(*problem, (sp.Integer(3), sp.Integer(-2)), *best)).status == PROVED

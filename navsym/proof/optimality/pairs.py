@@ -30,6 +30,8 @@ SHARE = sp.Symbol("share", nonnegative=True)
 
 def decide_optimum(statement: Optimum) -> Verdict:
     """Verdict of a printed optimum; REFUTED as soon as one of the four conditions is."""
+    if statement.variable in fixed_parts(statement).free_symbols:
+        return Verdict(OPEN, "none", evidence=f"{statement.variable} occurs outside the regressors; name it otherwise")
     parts = [
         constraints(statement),
         instants(statement),
@@ -44,6 +46,14 @@ def decide_optimum(statement: Optimum) -> Verdict:
         method=f"exact primal-dual pair ({verdict.method})",
         scope=scope_of(parameters(statement), statement.box),
         evidence=f"{words}. {verdict.evidence}",
+    )
+
+
+def fixed_parts(statement: Optimum) -> sp.Basic:
+    """What does not move with the variable: a dual that does, such as -5/t, would satisfy every bound."""
+    return sp.Tuple(
+        *statement.dual, *statement.support, *statement.weights, *statement.functional, *statement.interval,
+        statement.value,
     )
 
 
