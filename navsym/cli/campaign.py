@@ -8,6 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
+from navsym.cli._choice import one_of
 from navsym.cli._progress import Progress
 from navsym.cli.output import emit, table
 
@@ -27,7 +28,7 @@ NAMES = {
 #: Campaigns that are tables of cases: where they are, and how many are one batch.
 TESTED = {
     "engines": ("tests/engines", 10), "identities": ("tests/proof/test_textbook.py", 40),
-    "filters": ("tests/honesty", 30), "fidelity": ("tests/fidelity", 4),
+    "filters": ("tests/honesty", 30), "fidelity": ("tests/fidelity", 8),
     "checker-mutants": ("tests/checker/mutants.py", 24),
 }
 INPUTS = {"kills": 200}  # otherwise ten thousand
@@ -54,10 +55,7 @@ def command(
 
     Example: navsym campaign mutants guaranteed_velocity --share 0.02 --jobs 2
     """
-    from navsym.errors import DomainError
-
-    if name not in NAMES:
-        raise DomainError(f"expected one of {', '.join(NAMES)}; got {name}; correct the name", where="NAME")
+    one_of(name, NAMES, "NAME")
     started = time.monotonic()
     chosen = chosen_batches(name, modules or [], share, inputs or INPUTS.get(name, 10_000), seed)
     document = in_batches(name, *chosen, jobs=jobs, seconds=seconds, fresh=fresh)

@@ -7,9 +7,9 @@ from typing import Annotated
 
 import typer
 
+from navsym.cli._choice import one_of
 from navsym.cli._completion import PLACES, SCRIPTS, SHELLS
 from navsym.cli.output import OutputError, emit, write_text
-from navsym.errors import DomainError
 
 
 def command(
@@ -24,8 +24,7 @@ def command(
     Example: navsym completion bash --install
     Example: eval "$(navsym completion bash)"        (this shell only)
     """
-    if shell not in SCRIPTS:
-        raise DomainError(f"expected one of {', '.join(SHELLS)}; got {shell[:40]}; name one", where="completion")
+    one_of(shell, SHELLS, "completion")
     if not install:
         emit({"shell": shell, "script": SCRIPTS[shell]}, as_json=json_, text=SCRIPTS[shell])
         return

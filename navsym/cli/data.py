@@ -6,6 +6,7 @@ from typing import Annotated, Any
 
 import typer
 
+from navsym.cli._choice import one_of
 from navsym.cli.output import emit, table
 from navsym.errors import EmptyError, ExpressionSyntaxError, NavsymError
 
@@ -31,7 +32,7 @@ def command(
         raise EmptyError("expected names of data sets; got none; see navsym data list", where="data get")
     wanted = list(DATASETS) if names == ["all"] else names
     for name in wanted:
-        dataset(name)
+        one_of(name, DATASETS, "data get")
     got = [{"name": name, "path": str(fetch(name)), "citation": dataset(name).citation} for name in wanted]
     text = "\n".join(f"{item['path']}\n  cite: {item['citation']}" for item in got)
     emit({"datasets": got}, as_json=json_, text=text)

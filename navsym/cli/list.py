@@ -7,9 +7,9 @@ from typing import Annotated, Any
 
 import typer
 
+from navsym.cli._choice import one_of
 from navsym.cli._claims import stored_records
 from navsym.cli.output import emit, table
-from navsym.errors import DomainError
 
 STATUSES = ("PROVED", "CERTIFIED", "CONFIRMED", "REFUTED", "OPEN")
 SLIPS = ("paper", "scan", "any")
@@ -39,12 +39,6 @@ def command(
     ]
     chosen = [r for r in rows if fits(r, wanted, kind, (words or "").lower())]
     emit({"claims": chosen, "count": len(chosen)}, as_json=json_, text=lambda: as_text(chosen))
-
-
-def one_of(value: str, known: tuple[str, ...], option: str) -> str:
-    if value not in known:
-        raise DomainError(f"expected one of {', '.join(known)}; got {value[:40]}; name one of them", where=option)
-    return value
 
 
 def row(claim: Any, stored: dict[str, dict[str, Any]]) -> dict[str, Any]:

@@ -10,6 +10,7 @@ from typing import Annotated, Any
 
 import typer
 
+from navsym.cli._choice import one_of
 from navsym.cli._progress import Progress
 from navsym.cli.output import emit, table
 
@@ -45,8 +46,7 @@ def command(
     """
     from navsym.errors import DomainError
 
-    if name not in EXPERIMENTS:
-        raise DomainError(f"expected one of {', '.join(EXPERIMENTS)}; got {name[:60]!r}; choose one", where="name")
+    one_of(name, EXPERIMENTS, "name")
     if seed < 0:
         raise DomainError(f"expected a seed of at least 0; got {seed}; choose another", where="--seed")
     module_name, experiment, as_table = EXPERIMENTS[name].split(":")

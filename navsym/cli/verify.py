@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import importlib
 import pkgutil
 import textwrap
@@ -13,9 +12,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from navsym.cli._choice import one_of
 from navsym.cli._progress import Progress
 from navsym.cli.output import emit, remark, table, write_text
-from navsym.errors import DomainError
 
 if TYPE_CHECKING:
     from navsym.claims import Paper
@@ -84,12 +83,7 @@ def load(wanted: Sequence[str]) -> list[PaperModule]:
 
     known = names()
     for name in wanted:
-        if name not in known:
-            close = difflib.get_close_matches(name, known, n=1)
-            advice = f"did you mean {close[0]}?" if close else "name one of them"
-            raise DomainError(
-                f"expected one of {', '.join(known)}; got {name[:60]}; {advice}", where="command line"
-            )
+        one_of(name, known, "command line")
     chosen = list(dict.fromkeys(wanted)) or known
     return [paper_module(importlib.import_module(f"derivations.{name}")) for name in chosen]
 
