@@ -16,6 +16,7 @@ from random_claims import random_claim
 from navsym.claims import CERTIFIED, PROVED, REFUTED
 from navsym.errors import NavsymError
 from navsym.methods.prove import decide_claim
+from navsym.methods.verification.verify import warm_up
 from navsym.proof.sandbox import run_many
 from navsym.text.claimfile import claims_from
 
@@ -97,6 +98,7 @@ def attack(seed, count, seconds=5):
     source = random.Random(seed)
     documents = [random_claim(source) for _ in range(count)]
     statuses, found = {}, []
+    warm_up()
     for outcome in run_many(judged, documents, 2, seconds):
         verdict = outcome.value
         status = getattr(verdict, "status", "none")
