@@ -189,7 +189,8 @@ def inside(end: Any, direction: int, real: str = "double") -> float:
     """The number of the type nearest to an exact end on its inner side (1: not below it, -1: not above)."""
     kind = np.float32 if real == "float" else np.float64
     ball = enclose(sp.sympify(end, strict=True), {}, 200)
-    value = kind(float(sp.N(sp.sympify(end, strict=True), 40)))
-    while (ball > float(value)) if direction > 0 else (ball < float(value)):
-        value = np.nextafter(value, kind(direction * np.inf))
+    with np.errstate(over="ignore"):  # an end beyond the largest number becomes the largest number
+        value = kind(float(sp.N(sp.sympify(end, strict=True), 40)))
+        while (ball > float(value)) if direction > 0 else (ball < float(value)):
+            value = np.nextafter(value, kind(direction * np.inf))
     return float(value)

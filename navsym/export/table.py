@@ -37,6 +37,7 @@ def closing_table(
     jobs     : how many groups, or functions under points, are at work at the same time, each in a child process.
     Keys: ``functions`` (name, group, status, claims, bound, languages, misra, cortex_m4_bytes, points), ``languages``
     and ``tools`` (status, why), ``vectors``, ``points``, ``machine``.
+    Raises MissingEngineError when something that runs code is missing or gave up.
     """
     ran = {group: Task(group, functions, tuple(targets), count) for group, functions in groups.items()}
     swept = {(group, f.name): Task(f.name, (f,), (), points) for group, fs in groups.items() for f in fs if points}

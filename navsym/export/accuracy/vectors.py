@@ -194,7 +194,12 @@ def is_input(node: Node, k: int) -> bool:
 def next_float(function: ExportedFunction):  # type: ignore[no-untyped-def]
     if function.arithmetic.name == "double":
         return math.nextafter
-    return lambda x, to: float(np.nextafter(np.float32(x), np.float32(to)))
+
+    def step(x: float, to: float) -> float:
+        with np.errstate(over="ignore"):  # behind the largest number comes infinity
+            return float(np.nextafter(np.float32(x), np.float32(to)))
+
+    return step
 
 
 def sample(i: Input, generator: random.Random) -> float:
