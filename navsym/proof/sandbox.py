@@ -91,7 +91,7 @@ def run_limited(
     """Result of ``function(*arguments)`` from a limited child, or :class:`Exhausted`.
 
     A NavsymError of the child is raised again here; any other exception is an Exhausted with
-    its text.
+    its text. Raises DomainError for limits that are none.
     """
     (outcome,) = run_many(lambda packed: function(*packed), [arguments], 1, seconds, megabytes)
     if isinstance(outcome.value, Failed):
