@@ -31,7 +31,7 @@ def velocity(state):
 
 def test_the_benchmark_prints_ratios(capsys):
     script("guaranteed").main(count=100, rounds=1, lengths=10)
-    assert capsys.readouterr().out.count("cvxpy/this") == 21
+    assert capsys.readouterr().out.count("cvxpy/this") == 22
 
 
 def test_a_small_campaign_has_no_contradiction_and_goes_on_where_it_stopped(tmp_path, capsys):
