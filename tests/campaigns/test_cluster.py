@@ -157,5 +157,7 @@ def test_a_scheduler_lost_between_its_greeting_and_its_work_is_said(scheduler, t
 @pytest.mark.slow
 def test_two_processes_of_this_machine_give_the_bits_of_one(tmp_path):
     alone = run_sweep(STUDY, folder=tmp_path / "alone", size=3)
+    before = dict(os.environ)
     together = run_sweep(STUDY, workers=2, folder=tmp_path / "together", size=3)
+    assert {name: os.environ.get(name) for name in cluster.ALONE} == {name: before.get(name) for name in cluster.ALONE}
     assert json.dumps(alone["rows"]) == json.dumps(together["rows"])

@@ -10,6 +10,7 @@ import asyncio
 import contextlib
 import gc
 import logging
+import os
 import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import CancelledError, Future, InvalidStateError, ThreadPoolExecutor
@@ -42,6 +43,7 @@ def cluster(workers: int, scheduler: str | None) -> Iterator[Any]:
         raise MissingEngineError(message) from None
     with contextlib.ExitStack() as stack:
         stack.enter_context(hushed("distributed"))
+        stack.enter_context(environment_restored())
         stack.enter_context(dask.config.set({
             "distributed.scheduler.allowed-failures": DEATHS,
             "distributed.nanny.pre-spawn-environ": dask.config.get("distributed.nanny.pre-spawn-environ") | ALONE,
@@ -51,6 +53,19 @@ def cluster(workers: int, scheduler: str | None) -> Iterator[Any]:
             scheduler = stack.enter_context(local).scheduler_address
         greet(scheduler)
         yield stack.enter_context(client_of(scheduler))
+
+
+@contextlib.contextmanager
+def environment_restored() -> Iterator[None]:
+    """Leave nothing behind that dask sets here for its processes: numba refuses another number of threads later on."""
+    before = {name: os.environ.get(name) for name in ALONE}
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            os.environ.pop(name, None)
+            if value is not None:
+                os.environ[name] = value
 
 
 @contextlib.contextmanager
