@@ -23,6 +23,7 @@ from navsym.methods.trajectory.estimate import (
     least_squares,
     minimum_sum,
     minimum_sum_solution,
+    window_of,
 )
 from navsym.methods.trajectory.marginal import covariance_root, noise_points
 from navsym.methods.trajectory.tracks import Fit, Noise, Track, isolated_outliers, noise_of, track_of
@@ -313,6 +314,15 @@ def test_two_receivers_merged_in_one_track_are_one_track(method):
     assert list(gaps(track_of(t, *twice))) == []
     error = (found.velocity - [3.0, 2.0, 0.0]) / found.velocity_sd
     assert np.isfinite(found.velocity_sd).all() and np.abs(error[20:-20]).max() < 5
+
+
+def test_the_window_of_a_long_straight_track_does_not_grow_with_it():
+    """Its memory is as long as itself; every row once looked at all others, for hours at 20,000 rows."""
+    t, *where = straight_drive(8, rows=3000)
+    track = track_of(t, *where)
+    quiet = Noise(np.ones(3), np.full(3, 1e-18))
+    assert window_of(track, quiet, Settings("window", order=2)) == 1000.0
+    assert window_of(track, quiet, Settings("window", order=2, window=2500.0)) == 2500.0
 
 
 def test_bad_tracks_say_what_is_wrong():

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from navsym.methods.trajectory.estimate import Settings, estimate, filtered, gaps, largest_gap
+from navsym.methods.trajectory.estimate import Settings, estimate, filtered, gaps, largest_gap, window_of
 from navsym.methods.trajectory.tracks import Noise, Rows, Track, TrackEstimate, memory, usual_step
 from navsym.numeric.arrays import Array
 
@@ -70,7 +70,7 @@ def window_in_use(track: Track, noise: Noise, settings: Settings) -> float | Non
     """Length of the window in seconds, None for methods without one."""
     if settings.method not in ("window", "guaranteed"):
         return None
-    return settings.window or 4 * memory(noise, track.variance, settings.order)
+    return window_of(track, noise, settings)
 
 
 def remarks(track: Track, found: TrackEstimate, noise: Noise, settings: Settings, lines: Rows) -> list[str]:

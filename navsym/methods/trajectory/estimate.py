@@ -42,6 +42,8 @@ METHODS = ("differences", "window", "filter", "smoother", "guaranteed")
 CHANNELS = ("east", "north", "up")
 #: How often the track is smoothed again without the worst positions.
 DEPARTURE_ROUNDS = 12
+#: Usual steps in a window whose length was not asked for, at most.
+LONGEST_WINDOW = 1000
 #: So many different windows of the guaranteed method are certified.
 EXAMINED = 400
 
@@ -54,7 +56,7 @@ class Settings:
     """What to do with a track.
 
     method : one of METHODS; order : states, 2 (constant speed) to 6
-    window : seconds, for the two window methods; None takes four times the memory of the filter
+    window : seconds, for the two window methods; None takes four times the memory of the filter, at most 1000 steps
     gate   : largest innovation in standard deviations; 0 switches the gate off
     """
 
@@ -157,10 +159,20 @@ def by_method(track: Track, noise: Noise, settings: Settings, use: Rows) -> Trac
     if settings.method == "differences":
         windows = difference_windows(track, use)
         return from_weights(track, noise, windows, settings.order, least_squares, words)
-    span = settings.window or 4 * memory(noise, track.variance, settings.order)
+    span = window_of(track, noise, settings)
     windows = sliding_windows(track, use, span, settings.order)
     weights = minimum_sum if settings.method == "guaranteed" else least_squares
     return from_weights(track, noise, windows, settings.order, weights, words)
+
+
+def window_of(track: Track, noise: Noise, settings: Settings) -> float:
+    """Seconds of the window: what was asked for, or four memories of the filter, at most ``LONGEST_WINDOW`` steps.
+
+    A track without manoeuvres has a memory as long as itself, and every row would then look at all others.
+    """
+    if settings.window is not None:
+        return settings.window
+    return min(4 * memory(noise, track.variance, settings.order), LONGEST_WINDOW * usual_step(track.t))
 
 
 def word(used: int, flags: Rows) -> str:
