@@ -74,12 +74,13 @@ def test_a_regime_in_pieces_agrees_with_single_values():
         assert sp.Rational(found.lower) <= sp.Rational(str(value)) <= sp.Rational(found.upper)
 
 
-@pytest.mark.slow
-def test_a_contact_at_the_switch_is_covered_by_slivers_and_what_meets_the_switch_is_named():
+def test_a_contact_at_the_switch_stands_in_one_stretch_and_every_regime_has_its_closed_form():
     answer = phases(family_of(model_from(STOPPED), "v", "T"), sp.Integer(0), sp.Integer(3))
-    assert accepted(answer) <= {"range", "sliver", "all"}
-    assert all(sp.Rational(b) - sp.Rational(a) < sp.Rational(1, 10**9) for a, b in answer.uncovered)
-    assert sum(len(r.slivers) for r in answer.regimes) > 20
+    assert answer.uncovered == () and all(regime.status.holds for regime in answer.regimes)
+    assert [b.at for b in answer.boundaries] == [1, 1 + sp.pi / 4, 1 + sp.pi / 2]
+    T = answer.family.parameter
+    first, _, third, last = (regime.closed.value for regime in answer.regimes)
+    assert (first, third, last) == (2 / T, sp.sin(T - 1), 1)
 
 
 def test_a_length_that_only_depends_on_the_parameter_is_refused_where_F_comes_in_pieces():

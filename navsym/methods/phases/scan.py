@@ -8,7 +8,7 @@ changes are bracketed by bisection. Hints only: what is found here is proved aft
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
 
@@ -23,6 +23,8 @@ from navsym.proof.optimality.basis import Basis, DependentError, make_basis
 
 COUNT = 72
 BRACKET = 1e-7
+#: Regressors on both sides of a cut that differ by less than this part are the same.
+SAME = 1e-9
 #: A weight below this part of their sum is the rounding of zero.
 ROUNDING = 1e-13
 #: A span below this part of the range is taken for an accident of contacts that merge.
@@ -50,7 +52,7 @@ def sample(family: Family, T: Fraction, *wanted: Pattern | None) -> tuple[Basis,
             f"{family.parameter.name}: expected a range inside which the regressors are independent; got dependent "
             f"ones at or next to {float(T):.9g}, which was not foreseen; give a range that ends there"
         ) from None
-    found = ordered(find_contacts(basis.panels), basis.panels)
+    found = ordered(at_cuts(find_contacts(basis.panels), basis.panels, family.many), basis.panels)
     for pattern in wanted:
         if pattern is None or pattern_of(found) == pattern:
             continue
@@ -58,6 +60,19 @@ def sample(family: Family, T: Fraction, *wanted: Pattern | None) -> tuple[Basis,
         if other is not None:
             return basis, other
     return basis, found
+
+
+def at_cuts(found: Contacts, panels: Panels, many: int) -> Contacts:
+    """The same contacts; one at the start of a stretch stands at the end of the stretch before where the regressors go
+    on without a jump: such a place belongs to both, and a pattern names it in one way."""
+    panel, u = found.panel.copy(), found.u.copy()
+    for i in np.flatnonzero((found.inner == 0) & (u < 0) & (panel >= many)):
+        here = rows_at(panels.coefficients, panel[i : i + 1], u[i : i + 1])
+        before = rows_at(panels.coefficients, panel[i : i + 1] - many, -u[i : i + 1])
+        twin = ((panel == panel[i] - many) & (u == 1.0)).any()
+        if not twin and np.abs(here - before).max() <= SAME * np.abs(here).max():
+            panel[i], u[i] = panel[i] - many, 1.0
+    return replace(found, panel=panel, u=u)
 
 
 def ordered(found: Contacts, panels: Panels | None = None) -> Contacts:
