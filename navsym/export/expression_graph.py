@@ -20,8 +20,9 @@ from typing import Any
 import sympy as sp
 
 from navsym.errors import DomainError, UnknownSymbolError
-from navsym.export.forms import common_step, expm1, plain
-from navsym.export.holes import filled, part_of
+from navsym.export.atoms import expm1, filled, plain
+from navsym.export.forms import common_step
+from navsym.export.holes import part_of
 
 UNARY: dict[type, str] = {
     sp.sin: "sin", sp.cos: "cos", sp.exp: "exp", sp.log: "log", sp.Abs: "abs",

@@ -17,15 +17,11 @@ from typing import Any
 import sympy as sp
 
 from navsym.export import holes
+from navsym.export.atoms import expm1
 
 Ranges = Mapping[sp.Symbol, tuple[Any, Any]]
 
 
-class expm1(sp.Function):
-    """exp(x) - 1."""
-
-
-MEANING: dict[type, Callable[..., sp.Expr]] = {expm1: lambda x: sp.exp(x) - 1, holes.filled: holes.meaning}
 QUOTIENTS: dict[type, Callable[[sp.Expr], sp.Expr]] = {
     sp.tan: lambda x: sp.sin(x) / sp.cos(x),
     sp.cot: lambda x: sp.cos(x) / sp.sin(x),
@@ -79,13 +75,6 @@ def partners(term: sp.Expr) -> list[tuple[sp.Expr, sp.Expr]]:
         if isinstance(function, sp.exp):
             found.append((-rest, rest * expm1(function.args[0])))
     return found
-
-
-def plain(expression: sp.Expr) -> sp.Expr:
-    """The expression with the functions of this file written out."""
-    return expression.replace(
-        lambda node: type(node) in MEANING, lambda node: MEANING[type(node)](*node.args)
-    )
 
 
 # -- nicer forms, as candidates ---------------------------------------

@@ -19,22 +19,12 @@ from typing import Any
 
 import sympy as sp
 
+from navsym.export.atoms import filled, plain
 from navsym.export.series import NoSeriesError, order
 
 Ranges = Mapping[sp.Symbol, tuple[Any, Any]]
 T = sp.Symbol("t", real=True)  # the variable of every part
 MOST_OPERATIONS = 200  # of a part that is looked at
-
-
-class filled(sp.Function):
-    """filled(Lambda(t, b), k, u) = b(u)/u^k, and its limit at u = 0."""
-
-    nargs = 3
-
-
-def meaning(part: sp.Lambda, k: sp.Integer, u: sp.Expr) -> sp.Expr:
-    """The formula of ``filled``."""
-    return part(u) / u**k
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +37,7 @@ class Part:
     @property
     def plain(self) -> sp.Expr:
         """The formula in functions that have a series."""
-        return plainly(self.formula)
+        return plain(self.formula)
 
     @property
     def order(self) -> int:
@@ -90,7 +80,7 @@ def split(b: sp.Expr, x: sp.Symbol) -> tuple[sp.Expr, sp.Expr, int] | None:
     if not found:
         return None
     _, _, q, part = min(found, key=lambda item: item[:2])
-    v = order_of(plainly(part))
+    v = order_of(plain(part))
     return None if v is None else (q, part, v)
 
 
@@ -98,7 +88,7 @@ def split_again(b: filled, x: sp.Symbol) -> tuple[sp.Expr, sp.Expr, int] | None:
     """The same for a part that was found before, in a sum."""
     part, k, u = b.args
     q = sp.cancel(u / x)
-    v = order_of(plainly(part.expr))
+    v = order_of(plain(part.expr))
     return None if k != 0 or q.has(x) or v is None else (q, part.expr.xreplace({part.variables[0]: T}), v)
 
 
@@ -112,13 +102,6 @@ def scales(b: sp.Expr, x: sp.Symbol) -> Iterator[sp.Expr]:
             if q not in seen and not q.has(x):
                 seen.append(q)
                 yield q
-
-
-def plainly(part: sp.Expr) -> sp.Expr:
-    """The part in functions that have a series."""
-    from navsym.export.forms import plain
-
-    return plain(part)
 
 
 def filled_part(x: sp.Expr, q: sp.Expr, part: sp.Expr, v: int) -> sp.Expr:
@@ -227,7 +210,7 @@ def joined_terms(whole: sp.Expr, x: sp.Symbol, ranges: Ranges) -> sp.Expr | None
     if known is None:
         return None
     q, part, v = known
-    orders = [order_of(plainly(term)) for term in part.args]
+    orders = [order_of(plain(term)) for term in part.args]
     if any(one is None for one in orders) or v <= min(one for one in orders if one is not None):
         return None
     if min(one for one in orders if one is not None) >= 0:

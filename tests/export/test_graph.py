@@ -7,8 +7,9 @@ import sympy as sp
 from flint import arb
 
 from navsym.errors import UnknownSymbolError
+from navsym.export.atoms import plain
 from navsym.export.expression_graph import build
-from navsym.export.forms import factored, plain, safe
+from navsym.export.forms import factored, safe
 from navsym.proof.balls import enclose
 from navsym.proof.identities.normal_form import reduce_to_zero
 

@@ -21,10 +21,11 @@ from navsym.export.accuracy.literals import literals_of
 from navsym.export.accuracy.rounding import ARITHMETICS, DOUBLE, Bounded, analyse
 from navsym.export.accuracy.sweep import sweep_c
 from navsym.export.accuracy.vectors import vectors
+from navsym.export.atoms import expm1, filled, plain
 from navsym.export.expression_graph import Graph, build
-from navsym.export.forms import expm1, plain, safe
+from navsym.export.forms import safe
 from navsym.export.functions import function_of
-from navsym.export.holes import Part, T, filled
+from navsym.export.holes import Part, T
 from navsym.proof.balls import enclose, precision
 
 x, a, b, tau = sp.symbols("x a b tau", real=True)

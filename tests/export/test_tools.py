@@ -41,6 +41,16 @@ def test_misra_findings_are_deviations_that_are_written_down(programs, tmp_path:
 
 
 @pytest.mark.skipif(shutil.which("cppcheck") is None, reason="needs cppcheck with its MISRA add-on")
+def test_a_part_with_a_hole_in_two_sources_breaks_no_other_rule(samples, tmp_path: Path) -> None:
+    a = sp.Symbol("a", real=True)
+    quotient = sp.log(1 + a) / a
+    functions = [function_of([samples.of_statement(name, Equation(form, form, {a: (0, 1)}))])
+                 for name, form in (("one", quotient), ("two", 2 + quotient))]  # fmt: skip
+    said = tools.misra(written(functions, "c", tmp_path))
+    assert said.status == "passed" and "5.9" in said.counts, said.why
+
+
+@pytest.mark.skipif(shutil.which("cppcheck") is None, reason="needs cppcheck with its MISRA add-on")
 def test_a_broken_rule_without_a_deviation_is_a_failure(tmp_path: Path) -> None:
     body = "    if (a) goto end;\n    a = 07;\nend:\n    return a;\n"
     (tmp_path / "bad.c").write_text(f"int f(int a);\nint f(int a)\n{{\n{body}}}\n")
@@ -132,6 +142,14 @@ def test_the_table_says_what_ran_and_what_did_not(samples, tmp_path: Path, monke
     assert document["languages"]["julia"]["status"] == "not executed" and record["misra"] is None
     page = as_markdown(document, "navsym exports")
     assert "julia | not executed" in page and "| guaranteed_velocity_4_12_Phi33 |" in page
+
+
+def test_the_table_is_the_same_with_several_at_work(samples) -> None:
+    groups = {"g": [samples.by_name("Phi33")], "h": [samples.by_name("versine")]}
+    said: list[str] = []
+    tables = [closing_table(groups, [TARGETS["python"]], 6, said.append, points=64, jobs=jobs) for jobs in (1, 2)]
+    assert tables[0] == tables[1] and tables[0]["functions"][1]["points"]["points"] >= 64
+    assert sorted(said[:4]) == sorted(said[4:]) and "g languages" in said and "sample_versine points" in said
 
 
 def test_exports_names_what_is_ready_made(capsys) -> None:

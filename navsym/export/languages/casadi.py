@@ -17,7 +17,7 @@ from typing import Any
 import sympy as sp
 
 from navsym.export.accuracy.vectors import Vector
-from navsym.export.forms import plain
+from navsym.export.atoms import plain
 from navsym.export.languages.helpers import helpers_used
 from navsym.export.languages.python import ENDING, vectors_json
 from navsym.export.parts import ExportedFunction

@@ -5,10 +5,7 @@ Every language writes them from the same two branches (:func:`helper_parts`): th
 
 from __future__ import annotations
 
-import hashlib
-import re
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import sympy as sp
 
@@ -16,20 +13,11 @@ from navsym.export.accuracy.continuation import Continuation, continuation
 from navsym.export.accuracy.literals import literals_of
 from navsym.export.accuracy.rounding import ARITHMETICS
 from navsym.export.expression_graph import Graph
-from navsym.export.forms import expm1
 from navsym.export.holes import Part, T
+from navsym.export.languages.part_names import name_of
+from navsym.export.languages.printing import Spelling, bare, node_text
 from navsym.export.parts import ExportedFunction
 from navsym.proof.wording import text_of
-
-if TYPE_CHECKING:
-    from navsym.export.languages.printing import Spelling
-
-LONGEST_NAME = 24
-#: What people call some of them.
-NAMES = {
-    Part(sp.sin(T), 1): "sinc", Part(expm1(T), 1): "exprel", Part(sp.sinh(T), 1): "sinhc",
-    Part(T - sp.sin(T), 0): "x_minus_sin", Part(T - sp.sin(T), 3): "sinc_defect",
-}  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,18 +49,6 @@ class Helper:
         return {*self.known.below.operations(), *self.known.above.operations()}
 
 
-def name_of(part: Part) -> str:
-    """A name from people, or one from the formula with a few digits that tell equal ones apart."""
-    if part in NAMES:
-        return NAMES[part]
-    text = f"{text_of(part.plain)}{'_over_t' * bool(part.divided)}"
-    for sign, word in (("**", ""), ("+", "_plus_"), ("-", "_minus_"), ("/", "_over_")):
-        text = text.replace(sign, word)
-    plain = re.sub(r"_+", "_", re.sub(r"\W", "_", text)).strip("_")[:LONGEST_NAME].rstrip("_")
-    digest = hashlib.sha256(f"{part.formula} {part.divided}".encode()).hexdigest()[:4]
-    return f"{plain}_{digest}"
-
-
 def helpers_used(*functions: ExportedFunction) -> list[Helper]:
     """The parts that the code needs, by name."""
     used = {Helper(node.value, function.arithmetic.name) for function in functions for piece in function.pieces
@@ -82,8 +58,6 @@ def helpers_used(*functions: ExportedFunction) -> list[Helper]:
 
 def helper_parts(helper: Helper, s: Spelling, x: str = "x") -> tuple[str, str, str]:
     """(switch, polynomial below it, formula above it) in this language; ``x`` is the formula's argument."""
-    from navsym.export.languages.printing import bare
-
     known = helper.known
     below = nested(known.below, helper, s, "x", "y" if squared_node(helper) is not None else "")
     return s.number(known.switch), bare(below), bare(nested(known.above, helper, s, x))
@@ -91,8 +65,6 @@ def helper_parts(helper: Helper, s: Spelling, x: str = "x") -> tuple[str, str, s
 
 def nested(graph: Graph, helper: Helper, s: Spelling, x: str, y: str = "") -> str:
     """A graph of one argument as one expression."""
-    from navsym.export.languages.printing import node_text  # which needs the names of this file
-
     literals, square = literals_of(graph, ARITHMETICS[helper.real]), squared_node(helper) if y else None
     text: list[str] = []
     for place in range(len(graph.nodes)):
