@@ -50,7 +50,7 @@ def taken_over(
     if dual is None:
         return None
     for k in beside:
-        fits = [one for closed in guesses[k] if (one := with_dual(family, closed, dual, found)) is not None]
+        fits = [pair for closed in guesses[k] if (pair := with_dual(family, closed, dual, found)) is not None]
         if fits:
             signs = signs_at(family, fits[0], found[0])
             pattern = tuple((p, e, sign) for (p, e, _), sign in zip(spans[k].pattern, signs, strict=True))
