@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from fractions import Fraction
 
 import pytest
 import sympy as sp
 
 from navsym import checker
+from navsym.claims import OPEN, PROVED, Verdict
+from navsym.methods.phases.closed import Closed, prove
 from navsym.methods.phases.continuation import phases
 from navsym.methods.phases.family import family_of
 from navsym.methods.phases.places import constant
@@ -152,3 +155,14 @@ def test_roots_with_one_square_root_are_found():
     p = sp.Symbol("p", real=True)
     assert set(real_roots(sp.sqrt(4 - p**2) / 2, p)) == {2, -2}
     assert real_roots(p / 2 - sp.sqrt(4 - p**2) / 2, p) == [sp.sqrt(2)]
+
+
+def test_a_closed_form_that_divides_by_zero_inside_its_range_is_not_proved():
+    """2 (p - 2)/(p (p - 2)) is 2/p but for p = 2, where it is nothing."""
+    family = family_of(model_from(basis(["1", "u"], ["0", "p"], ["0", "1"])), "c", "p")
+    p = family.parameter
+    guess = Closed((0, 0), (sp.S.Zero, p), (-1 / p, 1 / p), (sp.S.NegativeOne, 2 / p), 2 / p, Verdict(OPEN, "none"))
+    holed = sp.Mul(2 * (p - 2), 1 / p, 1 / (p - 2), evaluate=False)
+    for value, status in ((2 / p, PROVED), (holed, OPEN)):
+        found = prove(family, [replace(guess, value=value)], sp.S.One, sp.Integer(3))
+        assert found is not None and found.verdict.status is status

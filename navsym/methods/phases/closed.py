@@ -125,10 +125,15 @@ def monomial_guess(
 def prove(
     family: Family, guesses: Sequence[Closed], lower: sp.Expr, upper: sp.Expr, seconds: float = 60.0
 ) -> Closed | None:
-    """The first guess that the ladder proves or certifies on the whole of (lower, upper); else the first."""
+    """The first guess that the ladder proves or certifies on the whole of (lower, upper); else the first.
+
+    What had to be taken for granted on the way (a divisor that may vanish inside the range) leaves a guess OPEN.
+    """
     best: Closed | None = None
     for guess in guesses:
         verdict = proved(family, guess, lower, upper, seconds)
+        if verdict.assumptions:
+            verdict = Verdict(OPEN, "none", evidence=f"not shown: {', '.join(verdict.assumptions)}")
         done = replace(guess, verdict=verdict)
         if verdict.status.holds:
             return done

@@ -7,7 +7,7 @@ from typing import Any
 
 import sympy as sp
 
-from navsym.claims import PROVED, Equation
+from navsym.claims import PROVED, REFUTED, Equation
 from navsym.errors import NotEstimableError
 from navsym.methods.guaranteed.dependence import recognised
 from navsym.methods.phases.family import Family, U
@@ -43,8 +43,9 @@ def dropped(
     k = found.index
     for row in (*family.rows, family.functional):
         other = sum((c * h for c, h in zip(relation, row, strict=False) if c), sp.S.Zero)
-        if decide(Equation(row[k], other)).status is not PROVED:
-            if row is family.functional:
+        verdict = decide(Equation(row[k], other))
+        if verdict.status is not PROVED or verdict.assumptions:
+            if row is family.functional and verdict.status is REFUTED:
                 raise NotEstimableError(
                     f"functional: expected one that the measurements determine; got one that changes along a "
                     f"direction of unknown {k + 1} which no measurement shows; estimate another combination"
