@@ -285,7 +285,13 @@ def tidy(expression: sp.Expr) -> sp.Expr:
     choices = [expression] if product is None else [product]
     simplified = sp.simplify(choices[0])
     choices.append(simplified)
-    return min(choices, key=sp.count_ops)
+    return in_cotangents(min(choices, key=sp.count_ops))
+
+
+def in_cotangents(expression: sp.Expr) -> sp.Expr:
+    """``1/tan(x)`` as ``cot(x)``, which exists at the poles of the tangent as well."""
+    inverse = lambda e: e.is_Pow and isinstance(e.base, sp.tan) and e.exp.is_negative  # noqa: E731
+    return expression.replace(inverse, lambda e: sp.cot(*e.base.args) ** -e.exp)
 
 
 def weights_of(
