@@ -13,6 +13,7 @@ import typer
 from navsym.cli._progress import Progress
 from navsym.cli.output import emit, table
 from navsym.errors import EmptyError, NavsymError
+from navsym.text.files import decode
 
 LARGEST = 50_000_000
 #: Every key that a certificate has: a file of nothing else is one, even if it lost its kind.
@@ -78,10 +79,12 @@ def check_file(path: Path) -> dict[str, Any]:
     try:
         if path.stat().st_size > LARGEST:
             raise checker.Refused("longer than 50 MB")
-        item = checker.load(path.read_text("utf-8"))
+        item = checker.load(decode(path.read_bytes(), str(path)))
         kind = checker.check(item)
-    except (OSError, UnicodeDecodeError) as error:
-        return verdict(path, None, f"cannot be read: {type(error).__name__}")
+    except OSError as error:
+        return verdict(path, None, f"cannot be read: {error.strerror}")
+    except NavsymError as error:
+        return verdict(path, None, error.message)
     except checker.Refused as error:
         return verdict(path, kind_of(path), str(error))
     return {"path": str(path), "kind": kind, "status": "ACCEPTED", "why": ""}

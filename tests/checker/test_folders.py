@@ -28,3 +28,12 @@ def test_every_kind_is_accepted_from_a_file_combined_ones_as_one(tmp_path, capsy
     status, found = rows(capsys, str(tmp_path))
     assert status == 0 and len(found) == len(GOOD)
     assert {row["kind"] for row in found} >= {"all", "sliver", "range", "touch", "gap", "rank"}
+
+
+def test_a_file_that_is_no_text_is_rejected_in_words(tmp_path, capsys):
+    (tmp_path / "a.json").write_bytes(b"\xff\xfe{}")
+    (tmp_path / "b.json").write_bytes(b'{"kind": "\xe9"}')
+    (tmp_path / "c.json").write_bytes(b"")
+    status, found = rows(capsys, str(tmp_path))
+    assert status == 1 and [row["status"] for row in found] == ["REJECTED"] * 3
+    assert all("expected" in row["why"] for row in found)
