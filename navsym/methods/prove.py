@@ -92,6 +92,7 @@ def statement_of(claim: FileClaim) -> Statement:
 
 
 def record_of(claim: FileClaim, verdict: Verdict) -> dict[str, Any]:
+    """The id of a claim of a file with its verdict, as plain data."""
     return {"id": claim.id, **outcome(verdict)}
 
 

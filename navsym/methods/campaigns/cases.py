@@ -51,6 +51,7 @@ def case_names(root: Path, folder: str) -> list[str]:
 
 
 def pytest_of(root: Path, *words: str) -> list[str]:
+    """The command that runs pytest on a checkout with these words, by this Python and without a cache folder."""
     return [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", f"--rootdir={root}", *words]
 
 

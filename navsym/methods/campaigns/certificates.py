@@ -75,6 +75,7 @@ def judge(task: tuple[dict[str, Any], int, int]) -> Result:
 
 
 def answer(item: dict[str, Any]) -> str:
+    """The checker's answer to a certificate: ``accepted``, ``refused``, or ``crashed`` and the name of the error."""
     try:
         check(item)
     except Refused:
@@ -99,6 +100,7 @@ def altered_identities(honest: dict[str, Any]) -> list[tuple[dict[str, Any], boo
 
 
 def unequal(difference: sp.Expr) -> bool:
+    """True when the difference is a number above 1e-15 at one of three rational points, evaluated to 30 digits."""
     symbols = sorted(difference.free_symbols, key=str)
     for k in range(1, 4):
         point = {s: sp.Rational(3 + 7 * k + 5 * i, 11 + 2 * i) for i, s in enumerate(symbols)}
@@ -127,6 +129,7 @@ def lost_optimum(item: dict[str, Any], honest: dict[str, Any]) -> bool:
 
 
 def leaves(value: Any, place: tuple[Any, ...]) -> list[tuple[Any, ...]]:
+    """Paths, keys and places from the outside in, to all parts of nested data that are neither dict nor list."""
     if isinstance(value, dict):
         return [leaf for key, part in value.items() for leaf in leaves(part, (*place, key))]
     if isinstance(value, list):
@@ -135,12 +138,14 @@ def leaves(value: Any, place: tuple[Any, ...]) -> list[tuple[Any, ...]]:
 
 
 def get(item: Any, place: tuple[Any, ...]) -> Any:
+    """The part of nested data at the end of a path of keys and places."""
     for key in place:
         item = item[key]
     return item
 
 
 def put(item: Any, place: tuple[Any, ...], value: Any) -> None:
+    """Replace, in place, the part of nested data at the end of a path, which has at least one step."""
     get(item, place[:-1])[place[-1]] = value
 
 
@@ -161,6 +166,7 @@ def changed(value: Any, source: random.Random) -> Any:
 
 
 def decimal(text: Any) -> Fraction | None:
+    """The exact number that a text is, as a decimal or a fraction; None for other text and for what is no text."""
     try:
         return Fraction(text) if isinstance(text, str) else None
     except (ValueError, ZeroDivisionError):

@@ -30,6 +30,7 @@ SECONDS_TO_MOUNT, SECONDS_TO_VERIFY, SECONDS_TO_DIE = 30, 600, 30  # longer than
 
 
 def batches() -> list[Batch]:
+    """One batch for each trouble of :data:`TROUBLES`."""
     return [Batch(name, name) for name in TROUBLES]
 
 

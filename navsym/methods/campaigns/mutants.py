@@ -65,6 +65,11 @@ def judge(task: tuple[Claim, float, int]) -> Result:
 
 
 def judged(name: str, statement: Assertion, share: float, source: random.Random) -> Result:
+    """The result of a statement: a random share of its changes, at the points of a table first and then decided.
+
+    Kept: the points that refute, the number of one for every change taken (None where none does), and what deciding
+    has refuted.
+    """
     counts: Counter[str] = Counter()
     wrong: list[Any] = []
     undecided: list[Any] = []
@@ -99,6 +104,11 @@ def slowly(statement: Assertion, change: Change, kept: list[Any]) -> tuple[str, 
 
 
 def decided(statement: Assertion, change: Change, kept: list[Any]) -> tuple[str, str]:
+    """Outcome of a mutant by the ladder, with the reason; the counterexample of a refutation is added to ``kept``.
+
+    ``held`` where the change is none or is proved equal to the printed formula, and where the mutant is proved, unless
+    numbers deny it: that is ``wrong``.
+    """
     mutant = spoilt(statement, change)
     if same_tree(statement, mutant, change):
         return "held", "the same formula"
@@ -131,6 +141,7 @@ def same_formula(statement: Assertion, mutant: Assertion, change: Change) -> boo
 
 
 def changed_formula(mutant: Assertion, change: Change) -> sp.Expr:
+    """The printed formula of a mutant that was changed; a spoilt equation has this entry alone."""
     return printed_parts(mutant)[0 if isinstance(mutant, Equation) else change.part]
 
 
@@ -201,6 +212,7 @@ def differs(mutant: Assertion, count: int = 8, digits: int = 40) -> bool:
 
 
 def differences_of(mutant: Assertion) -> list[sp.Expr]:
+    """Printed less derived entries; of an optimum, the value less that of the dual."""
     if isinstance(mutant, Optimum):
         of_dual = sum(x * p for x, p in zip(mutant.dual, mutant.functional, strict=True))
         return [sp.sympify(mutant.value - of_dual, strict=True)]

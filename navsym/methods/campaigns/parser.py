@@ -92,6 +92,9 @@ def peak() -> float:
 
 
 def answer(read: Reader, data: bytes) -> str:
+    """What a reader does with bytes: ``read``, ``refused`` (by a NavsymError), ``missing`` (an engine that is not
+    installed), or the name and text of another exception.
+    """
     try:
         read(data)
     except MissingEngineError:

@@ -161,6 +161,10 @@ def refuting_point(statement: Assertion, change: Change, table: Sequence[Row]) -
 
 
 def formula_falls(statement: Equation | Bound, change: Change, row: Row) -> bool:
+    """True when the changed printed side contradicts the derived one at a point: the rearranged entries, or one edited.
+
+    Raises UnsupportedError outside the language of balls.
+    """
     parts = printed_parts(statement)
     if change.order is not None:
         balls = [row.values.of(parts[place]) for place in change.order]
@@ -187,6 +191,11 @@ def optimum_falls(statement: Optimum, change: Change, row: Row) -> bool:
 def primal_dual_falls(
     statement: Optimum, row: Row, parts: tuple[list[arb], list[arb], list[arb], arb]
 ) -> bool:
+    """True when balls of dual, support, weights and value contradict an optimum at one point.
+
+    Looked at: instants inside, ``sum w_k H(t_k) = P``, the value against ``x . P`` and against ``sum |w_k|``, and
+    ``|x . H| <= 1`` on a grid of the interval. Raises UnsupportedError outside the language of balls.
+    """
     dual, support, weights, value = parts
     start, end = (row.values.of(sp.sympify(side, strict=True)) for side in statement.interval)
     if any(at < start or at > end for at in support):
@@ -203,13 +212,16 @@ def primal_dual_falls(
 
 
 def product(left: Sequence[arb], right: Sequence[arb]) -> arb:
+    """Scalar product of two rows of balls of one length."""
     return sum((a * b for a, b in zip(left, right, strict=True)), arb(0))
 
 
 def regressors_at(statement: Optimum, row: Row, at: arb) -> list[arb]:
+    """Balls of H(t) at an instant, with the parameters of the row's point; raises UnsupportedError."""
     values = Values({**row.values.point, statement.variable: at})
     return [values.of(sp.sympify(h, strict=True)) for h in statement.regressors]
 
 
 def apart(left: arb, right: arb) -> bool:
+    """True when two balls are finite and have no number in common."""
     return bool(left.is_finite() and right.is_finite() and not (left - right).contains(0))

@@ -100,6 +100,7 @@ def matlab_header() -> bytes:
 
 
 def npy(array: Any) -> bytes:
+    """The bytes of an npy file that holds an array."""
     buffer = io.BytesIO()
     np.save(buffer, np.asarray(array), allow_pickle=False)
     return buffer.getvalue()
@@ -149,10 +150,12 @@ def from_file(read: Callable[[Path], Any], name: str) -> Reader:
 
 
 def text_reader(read: Callable[[Any], Any]) -> Reader:
+    """A reader of parsed JSON as one of bytes."""
     return lambda data: read(parse_json(data, "f"))
 
 
 def map_reader(path: Path) -> Any:
+    """The map of a file in its local frame, as ``navsym locate`` reads it."""
     return readers_maps.local_frame(readers_maps.read_map(path))
 
 
@@ -221,6 +224,7 @@ def lying_tiff(width: int, height: int) -> bytes:
 
 
 def many_members(count: int) -> bytes:
+    """An npz with so many empty members."""
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w") as out:
         for k in range(count):

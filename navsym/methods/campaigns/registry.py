@@ -81,10 +81,15 @@ def kept(store: Store, key: str, value: Result) -> bool:
 
 
 def reason(value: Exhausted | Failed) -> str:
+    """Why a batch has no result: the limit that it reached, or the error that ended it."""
     return value.why if isinstance(value, Exhausted) else str(value.error)
 
 
 def document(campaign: str, batches: int, results: Sequence[Result], stopped: list[str]) -> dict[str, Any]:
+    """The results of the batches as one: counts added up, wrong and open items one after the other.
+
+    stopped : names of batches without a result, each with the reason; sorted in the document
+    """
     counts: Counter[str] = Counter()
     for found in results:
         counts.update(found["counts"])

@@ -141,6 +141,7 @@ def client_of(address: str) -> Any:
 
 
 def nobody(address: str, got: str) -> NoReturn:
+    """Raises MissingEngineError: no dask scheduler at the address; got says what came instead."""
     message = f"expected a dask scheduler; got {got}; start one (dask scheduler), and {AGAIN}"
     raise MissingEngineError(message, where=address)
 

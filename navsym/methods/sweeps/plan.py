@@ -135,6 +135,10 @@ def run_job(sweep: Sweep, index: int) -> dict[str, Any]:
 
 
 def filter_job(sweep: Sweep, index: int) -> dict[str, Any]:
+    """Mean squared error of each state, ``mse0`` and on, over all runs and steps of the Schuler bank under one filter.
+
+    The signals are drawn with a seed of their own, from the sweep's seed and the index.
+    """
     from navsym.methods.multimodel.batch import run_batch
     from navsym.methods.multimodel.study import schuler_bank, simulate
 
@@ -147,6 +151,10 @@ def filter_job(sweep: Sweep, index: int) -> dict[str, Any]:
 
 
 def guaranteed_job(sweep: Sweep, index: int) -> dict[str, Any]:
+    """Guaranteed estimation of the highest coefficient of a polynomial on [0, T], noise bound one.
+
+    lower, upper : decimal strings that enclose the optimum, to 15 digits
+    """
     import sympy as sp
 
     from navsym.methods.guaranteed.problem import from_regressors
@@ -161,6 +169,10 @@ def guaranteed_job(sweep: Sweep, index: int) -> dict[str, Any]:
 
 
 def phases_job(sweep: Sweep, index: int) -> dict[str, Any]:
+    """Guaranteed estimation of a constant beside a sine and a cosine of w t on [0, T], noise bound one.
+
+    lower, upper : decimal strings that enclose the optimum, to 15 digits ; instants : size of the support
+    """
     import sympy as sp
 
     from navsym.methods.guaranteed.problem import from_regressors
@@ -178,6 +190,7 @@ def phases_job(sweep: Sweep, index: int) -> dict[str, Any]:
 
 
 def terrain_job(sweep: Sweep, index: int) -> dict[str, Any]:
+    """Errors of position and velocity of every search algorithm on one simulated flight over the sample terrain."""
     from navsym.methods.terrain.experiment import Setting, one_flight
 
     terrain = matching_map()
@@ -191,12 +204,17 @@ ERRORS = ("position", "velocity")
 
 @functools.cache
 def matching_map() -> Any:
+    """The sample terrain, read once in a process; raises MissingEngineError without matplotlib."""
     from navsym.methods.terrain.experiment import sample_terrain
 
     return sample_terrain()
 
 
 def two_stage_job(sweep: Sweep, index: int) -> dict[str, Any]:
+    """Standard deviations of position in metres, after 30 minutes of both measurements, of the compared estimators.
+
+    The parameters are lambda_c and lambda_h, the flight a great circle of two hours.
+    """
     from navsym.methods.two_stage.flight import great_circle
     from navsym.methods.two_stage.ins import Errors, compare
 

@@ -58,6 +58,7 @@ class Shards:
     study: str
 
     def path(self, shard: range) -> Path:
+        """File of a shard, named by its first index and the one after its last."""
         return self.folder / f"jobs-{shard.start:07d}-{shard.stop:07d}.parquet"
 
     def read(self, shard: range) -> Rows | None:
@@ -74,6 +75,7 @@ class Shards:
         return rows if same and [row.get("index") for row in rows] == list(shard) else None
 
     def seal(self, rows: Sequence[dict[str, Any]]) -> bytes:
+        """Digest of the study and of the rows, kept in the metadata of the file."""
         return key_of(self.study, *(json.dumps(row, sort_keys=True) for row in rows)).encode()
 
     def write(self, shard: range, rows: Sequence[dict[str, Any]]) -> None:

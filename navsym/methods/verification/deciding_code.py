@@ -90,6 +90,7 @@ def snapshot(*folders: Path) -> Snapshot:
 
 
 def seen(path: Path) -> tuple[str, int, int]:
+    """Path, time of change in nanoseconds and size of a file; 0 and -1 when it is gone."""
     try:
         found = path.stat()
     except OSError:  # removed meanwhile, which is a change

@@ -60,6 +60,7 @@ def fingerprints(claims: Iterable[Claim]) -> dict[str, str]:
 
 
 def card(claim: Claim) -> tuple[str, ...]:
+    """What a claim says beside its code: id, expected verdict, the claim it corrects, slip, reason, title."""
     return claim.id, str(claim.expect), str(claim.corrects), str(claim.slip), claim.reason, claim.title
 
 
@@ -160,6 +161,7 @@ def loaded(name: str) -> ModuleType | None:
 
 
 def package_of(module: ModuleType) -> str:
+    """Name of the package that a module belongs to."""
     return module.__name__.partition(".")[0]
 
 

@@ -63,6 +63,7 @@ def whole_text(module: ModuleType) -> str:
 
 @functools.cache
 def tree_of(module: ModuleType) -> ast.Module:
+    """Syntax tree of the source of a module, parsed once."""
     return ast.parse(Path(str(module.__file__)).read_text(encoding="utf-8"))
 
 
@@ -90,6 +91,7 @@ def package_digest_of_all() -> str:
 
 
 def package_sources() -> list[Path]:
+    """Source files of the derivations, in a fixed order; none when they are not imported."""
     package = sys.modules.get(PACKAGE)
     folders = [] if package is None else [Path(folder) for folder in package.__path__]
     return [path for folder in folders for path in sorted(folder.rglob("*.py"))]

@@ -96,6 +96,7 @@ def warm_up() -> None:
 
 
 def stopped(outcome: Exhausted | Failed) -> Verdict:
+    """The OPEN verdict of a claim that reached a limit or ended with an error, with the reason."""
     why = outcome.why if isinstance(outcome, Exhausted) else str(outcome.error)
     return Verdict(OPEN, "none", evidence=f"not decided: {why}")
 
@@ -107,6 +108,10 @@ def record_of(paper: Paper, claim: Claim) -> Record:
 
 
 def record_from(paper: Paper, claim: Claim, statement: Statement | None, verdict: Verdict) -> Record:
+    """The record of a claim: name, both sides as text, verdict and certificate, as plain data.
+
+    statement : None when deriving it was stopped; the sides are then empty
+    """
     printed, derived = ("", "") if statement is None else sides(statement)
     return {
         "id": claim.id,
@@ -148,6 +153,7 @@ def sides(statement: Statement) -> tuple[str, str]:
 
 
 def side_text(side: Any) -> str:
+    """One side of a statement as text: a matrix by rows, a tuple, or one expression."""
     if isinstance(side, sp.MatrixBase):
         rows = ["[" + ", ".join(text_of(entry) for entry in side.row(i)) + "]" for i in range(side.rows)]
         return "[" + ", ".join(rows) + "]"
@@ -157,12 +163,14 @@ def side_text(side: Any) -> str:
 
 
 def value_text(value: Any) -> str:
+    """A value of a property as text, tuples entry by entry."""
     if isinstance(value, tuple):
         return "(" + ", ".join(value_text(item) for item in value) + ")"
     return value if isinstance(value, str) else str(value)
 
 
 def optimum_text(statement: Optimum) -> tuple[str, str]:
+    """The printed dual, support, weights and value as text, and the regressors and functional."""
     parts = (
         ("dual", statement.dual),
         ("support", statement.support),
@@ -177,6 +185,7 @@ def optimum_text(statement: Optimum) -> tuple[str, str]:
 
 
 def paper_record(module: PaperModule) -> Record:
+    """Coverage of a paper: how many numbered equations are claimed or definitions, and which are missing."""
     covered = coverage(module.paper, module.claims)
     return {
         "module": module.name,
@@ -189,6 +198,7 @@ def paper_record(module: PaperModule) -> Record:
 
 
 def counts(records: Iterable[Record]) -> dict[str, int]:
+    """How many records have each status, zero included."""
     found = Counter(record["status"] for record in records)
     return {
         status: found.get(status, 0) for status in ("PROVED", "CERTIFIED", "CONFIRMED", "REFUTED", "OPEN")
