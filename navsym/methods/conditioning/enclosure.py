@@ -43,6 +43,7 @@ def decimal_up(x: Fraction, digits: int) -> str:
 
 
 def shifted_decimal(whole: int, places: int) -> str:
+    """The integer ``whole`` times ``10**-places`` as a plain decimal string; whole nonnegative."""
     if places <= 0:
         return str(whole * 10**-places)
     text = str(whole).rjust(places + 1, "0")

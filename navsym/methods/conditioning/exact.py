@@ -47,6 +47,7 @@ def rational_matrix(rows: Rows) -> flint.fmpq_mat:
 
 
 def inverse_diagonal(gram: flint.fmpq_mat) -> flint.fmpq_mat:
+    """The diagonal matrix D^-2 (n, n) of 1 / gram[j, j]. Raises NotEstimableError when a column of N is zero."""
     n = gram.nrows()
     if any(gram[j, j] == 0 for j in range(n)):
         raise NotEstimableError("expected columns that are not zero; got a zero column; leave it out")

@@ -50,6 +50,7 @@ class Conditioning:
 
     @property
     def trustworthy(self) -> bool:
+        """True when the double-precision value is within :data:`TRUST`, relative, of the certified one."""
         return abs(self.error) <= TRUST
 
 
@@ -97,6 +98,10 @@ def condition_numbers(
 
 
 def check_request(n: int, rho: Fraction, tau: Fraction) -> None:
+    """Refuse orders and steps for which the four matrices are not made.
+
+    Raises TooLargeError above :data:`LARGEST_ORDER`, and DomainError for n below 1, tau below 0, and rho or tau zero.
+    """
     if n < 1:
         raise DomainError(f"expected 1 to {LARGEST_ORDER}; got {n}; choose a positive order", where="n")
     if n > LARGEST_ORDER:
@@ -123,6 +128,7 @@ def double_values(measured: Rows, powers: Rows) -> dict[str, float]:
 
 
 def doubles(rows: Rows) -> np.ndarray:
+    """Exact rows as an array (m, n) of the nearest doubles."""
     return np.array([[float(x) for x in row] for row in rows])
 
 
@@ -134,6 +140,7 @@ def column_norms(matrix: np.ndarray) -> np.ndarray:
 
 
 def double_condition(matrix: np.ndarray) -> float:
+    """Largest over smallest singular value of a matrix (m, n) in doubles; inf where that is no number."""
     if not np.all(np.isfinite(matrix)):
         return math.inf
     values = np.linalg.svd(matrix, compute_uv=False)

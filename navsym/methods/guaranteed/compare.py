@@ -107,6 +107,11 @@ def grid_problem(problem: GuaranteedProblem, count: int = GRID) -> GridProblem:
 
 
 def solver_row(grid: GridProblem, name: str, optimum: float) -> dict[str, Any]:
+    """The answer of one solver to the problem on the grid, beside the optimum on the interval.
+
+    relative_error : its value / optimum - 1, None without a value
+    Raises NotEstimableError, and DomainError for an unknown solver.
+    """
     result = guaranteed_lp(grid, solver=name)
     error = None if result.value is None else result.value / optimum - 1.0
     return {
@@ -127,6 +132,7 @@ def worst_covariance(solution: GuaranteedSolution) -> Array:
 
 
 def bound_of(solution: GuaranteedSolution, measurement: str) -> float:
+    """The noise bound sigma of a measurement, by its name."""
     problem = solution.problem
     return float(problem.sigma[problem.measurements.index(measurement)])
 

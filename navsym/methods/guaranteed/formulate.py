@@ -80,6 +80,7 @@ def formulate(
 
 
 def numbers(values: Array) -> str:
+    """A row of numbers as a JSON list whose decimals give the same doubles when read."""
     return json.dumps([float(x) for x in values])
 
 
@@ -140,6 +141,10 @@ if __name__ == "__main__":
 
 
 def script(grid: Grid, linear: Array, quadratic: Array, to: str) -> str:
+    """Python source that states the problem on the grid for cvxpy or casadi and solves it.
+
+    linear, quadratic : (N,) of the cost ``linear . (a + b) + quadratic . (a - b)^2 / 2``
+    """
     head = HEAD.format(
         times=numbers(grid.times), rows="[" + ",\n".join(numbers(row) for row in grid.regressors) + "]",
         functional=numbers(grid.functional), linear=numbers(linear), quadratic=numbers(quadratic),

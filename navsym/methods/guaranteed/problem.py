@@ -74,6 +74,7 @@ class GuaranteedProblem:
 
     @property
     def interval(self) -> tuple[sp.Expr, sp.Expr]:
+        """Start of the first stretch and end of the last."""
         return self.stretches[0].start, self.stretches[-1].end
 
     @property
@@ -92,6 +93,11 @@ class GuaranteedProblem:
 
 
 def need_shapes(problem: GuaranteedProblem) -> None:
+    """Refuse a problem whose parts do not fit.
+
+    Raises EmptyError without unknowns, measurements or stretches, and ShapeError when a stretch is not n rows of m
+    entries or the names are not n.
+    """
     m, n = len(problem.functional), len(problem.sigma)
     if m == 0 or n == 0 or not problem.stretches:
         raise EmptyError(
@@ -231,6 +237,7 @@ def stretches_of(found: ModelFile) -> tuple[Stretch, ...]:
 
 
 def rows_of(matrix: sp.ImmutableMatrix) -> Rows:
+    """The rows of a matrix as tuples."""
     return tuple(tuple(row) for row in matrix.tolist())
 
 

@@ -73,6 +73,7 @@ class GuaranteedSolution:
 
     @property
     def weights(self) -> tuple[str, ...]:
+        """Weights of the support as decimal strings, in its order."""
         return tuple(row.weight for row in self.support)
 
     @property
@@ -145,6 +146,10 @@ def with_error(problem: GuaranteedProblem, certificate: Mapping[str, Any]) -> Ma
 def support_rows(
     problem: GuaranteedProblem, exact: Problem, found: Certified, digits: int
 ) -> tuple[Support, ...]:
+    """Instants and weights of a certified solution as decimal strings, by measurement and time.
+
+    Places v in [0, 1] on their panels become instants ``start + (end - start) v``.
+    """
     rows = []
     with precision(int(3.4 * digits) + 128):
         for k, v, w in found.support:

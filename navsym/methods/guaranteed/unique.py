@@ -117,10 +117,12 @@ def level(panel: Panel, f: sp.Expr, place: Place) -> bool:
 
 
 def time_of(panel: Panel, place: Place) -> sp.Expr:
+    """The exact instant of a place, whose share of the panel is from 0 to 1."""
     return panel.start + (panel.end - panel.start) * sp.Rational(int(place.at.p), int(place.at.q))
 
 
 def end_of(at: fmpq) -> str:
+    """The end of a panel at which a share lies: ``from`` at 0, ``to`` at 1, ``no`` inside."""
     return "from" if at == 0 else "to" if at == 1 else "no"
 
 

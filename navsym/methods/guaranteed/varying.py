@@ -88,6 +88,7 @@ def steps_of(found: ModelFile) -> list[Step]:
 
 
 def exact_end(end: sp.Expr | None) -> fmpq:
+    """An end of the interval as a rational of flint; raises DomainError where it is none."""
     if end is None or not end.is_Rational:
         raise DomainError(
             f"interval: expected rational ends where F depends on the time; got {end}; give fractions"
@@ -189,6 +190,7 @@ def regressors_of(
 
 
 def horner(c: list[fmpq], at: sp.Expr) -> sp.Expr:
+    """The polynomial with coefficients c, lowest power first, at an expression, in Horner's form."""
     value: sp.Expr = sp.S.Zero
     for a in reversed(c):
         value = value * at + sp.Rational(int(a.p), int(a.q))

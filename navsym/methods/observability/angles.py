@@ -39,6 +39,7 @@ class Angle:
 
     @property
     def cosine(self) -> sp.Expr:
+        """cos of half the smallest part: the other generator of the ring."""
         return sp.cos(self.symbol / (2 * self.parts))
 
 

@@ -56,6 +56,7 @@ class Chain:
 
     @property
     def dimension(self) -> int:
+        """m, the dimension of what the measurement observes."""
         return len(self.vectors)
 
 
@@ -77,10 +78,12 @@ class Chains:
 
     @property
     def size(self) -> int:
+        """n, the number of states."""
         return len(self.states)
 
     @property
     def joint_dimension(self) -> int:
+        """Dimension of what all measurements observe together, the generic rank of the model."""
         return sum(self.staircase)
 
     def staircase_vectors(self, counts: Sequence[int]) -> Matrix:
@@ -321,6 +324,7 @@ class MeasurementObservability:
 
     @property
     def dimension(self) -> int:
+        """m, the dimension of what the measurement observes."""
         return self.basis.rows
 
 
@@ -352,10 +356,12 @@ class Observability:
 
     @property
     def joint_dimension(self) -> int:
+        """Dimension of what all measurements observe together, the generic rank of the model."""
         return sum(self.staircase)
 
     @property
     def observable(self) -> bool:
+        """True when the measurements together observe all states, for all but special parameters."""
         return self.joint_dimension == len(self.states)
 
 

@@ -40,6 +40,7 @@ class RankDrop:
 
     @property
     def condition(self) -> str:
+        """The drop as text: ``zero = 0`` for every polynomial, joined by ``and``."""
         return " and ".join(f"{zero} = 0" for zero in self.zeros)
 
     @property

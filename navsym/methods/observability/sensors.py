@@ -73,6 +73,7 @@ class Setting:
 
     @property
     def size(self) -> int:
+        """n, the number of states."""
         return len(self.matrix)
 
     def seen_by(self, names: Sequence[str]) -> int:

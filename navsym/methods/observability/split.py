@@ -58,6 +58,7 @@ class Split:
 
     @property
     def m(self) -> int:
+        """Dimension of the first chain (joint_correction:1.5)."""
         return len(self.theta)
 
     @property

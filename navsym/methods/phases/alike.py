@@ -27,6 +27,7 @@ def pattern_of(found: Contacts) -> Pattern:
 
 
 def marks(panel: Ints, end: Array, sign: Array) -> Pattern:
+    """The pattern of contacts, all (l,): panel, kind of place, sign; end is -1, 1 at an end of the panel, 0 inside."""
     kinds = {-1: "from", 0: "no", 1: "to"}
     return tuple((int(k), kinds[int(e)], int(s)) for k, e, s in zip(panel, end, sign, strict=True))
 

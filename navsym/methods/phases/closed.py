@@ -113,6 +113,10 @@ def candidates(family: Family, span: Span) -> list[Closed]:
 def monomial_guess(
     family: Family, span: Span, places: tuple[sp.Expr, ...], found: Sequence[Sample]
 ) -> Closed | None:
+    """A closed form for monomials on [0, T], not yet proved: weights from the places, the dual by powers of T.
+
+    places : closed forms of the contacts. None when the samples follow no power law or the weights are not found
+    """
     duals_ = [[number(x) for x in s.polished.dual] for s in found]
     dual = power_law_dual(family, duals_, [s.T for s in found])
     weights = monomial_weights(family, places)
@@ -189,6 +193,7 @@ def fixed_duals(family: Family, span: Span, found: Sequence[Sample]) -> list[tup
 
 
 def exact_fraction(x: sp.Rational) -> Fraction:
+    """A rational of sympy as a fraction of Python."""
     return Fraction(int(x.p), int(x.q))
 
 
@@ -212,6 +217,7 @@ def numbers_at(family: Family, rows: Sequence[Sequence[sp.Expr]], p: sp.Rational
 
 
 def rank_at(family: Family, rows: Sequence[Sequence[sp.Expr]], p: sp.Rational) -> int:
+    """Rank of a matrix, in doubles, for one value of the parameter."""
     return int(np.linalg.matrix_rank(numbers_at(family, rows, p), tol=1e-9))
 
 
@@ -373,6 +379,7 @@ def own(places: Sequence[sp.Expr], panels: Sequence[int], k: int) -> tuple[sp.Ex
 
 
 def is_polynomial(statement: Optimum) -> bool:
+    """True when the dual polynomial in the share v = t/T has rational coefficients and contains no other symbol."""
     T = statement.interval[1]
     f = sum((x * h for x, h in zip(statement.dual, statement.regressors, strict=True)), sp.S.Zero)
     scaled = sp.expand(f.subs(statement.variable, T * SHARE))

@@ -174,6 +174,7 @@ def not_looked_at(section: Section) -> Boundary:
 
 
 def need_range(family: Family, lower: sp.Expr, upper: sp.Expr) -> None:
+    """Raises DomainError for ends that are no finite numbers, for from >= to, and for lengths below zero."""
     for end in (lower, upper):
         if end.free_symbols or not enclose(end).is_finite():
             raise DomainError(f"range: expected finite numbers; got {end}; give two numbers")
@@ -239,6 +240,7 @@ def between(guess: Boundary, before: Regime, after: Regime) -> Boundary:
 
 
 def exact_fraction(x: Fraction) -> fmpq:
+    """A fraction of Python as a rational of flint."""
     return fmpq(x.numerator, x.denominator)
 
 
@@ -251,6 +253,7 @@ def inner_range(lower: sp.Expr, upper: sp.Expr, singular: set[sp.Expr]) -> tuple
 
 
 def middle_of(b: Boundary) -> sp.Expr:
+    """The exact value of a boundary, or the middle of its bracket."""
     return b.at if b.at is not None else (sp.Rational(b.lower) + sp.Rational(b.upper)) / 2
 
 
@@ -328,6 +331,7 @@ def rests(done: Ranged, limits: Limits) -> list[tuple[fmpq, fmpq]]:
 
 
 def exact(x: Fraction) -> sp.Rational:
+    """A fraction of Python as a rational of sympy."""
     return sp.Rational(x.numerator, x.denominator)
 
 

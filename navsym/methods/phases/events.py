@@ -174,6 +174,7 @@ def rooms(found: Polished, problem: Problem, others: Others) -> dict[Room, arb]:
 
 
 def in_words(family: Family, room: Room, others: Others) -> str:
+    """What happens where a room closes; others are the contacts of the regime beyond."""
     kind, i = room
     if kind == "weight":
         return f"the weight of contact {i + 1} vanishes"
@@ -275,6 +276,7 @@ def enclosed(family: Family, left: Span, right: Span, root: sp.Rational, why: st
 
 
 def exact_decimal(x: sp.Rational) -> str:
+    """A decimal string of a rational, to 60 digits."""
     return decimal(fmpq(int(x.p), int(x.q)), 60)
 
 

@@ -116,6 +116,7 @@ class Family:
         return GuaranteedProblem(stretches, functional, sigma, U, self.measurements[:n], self.target)
 
     def exact(self, value: Any) -> Problem:
+        """The member with an exact value of the parameter, as panels for the proofs."""
         return self.problem(value).exact()
 
     @cached_property
@@ -172,6 +173,7 @@ def declared(found: ModelFile | BasisFile, parameter: str) -> sp.Symbol:
 
 
 def refuse_others(family: Family) -> None:
+    """Raises DomainError when the family depends on other symbols than its parameter, or not on the parameter."""
     parts = [*family.functional, *family.sigma, *(h for r in family.rows for h in r)]
     parts += [family.start, *family.cuts, family.stop]
     free = {s for part in parts for s in part.free_symbols} - {U}
@@ -188,6 +190,7 @@ def refuse_others(family: Family) -> None:
 
 
 def direct(found: BasisFile, name: str, functional: tuple[sp.Expr, ...], symbol: sp.Symbol) -> Family:
+    """The family of a basis file: its regressors, written in U, on its interval."""
     start, end = found.interval
     rows = tuple(tuple(h.subs(found.variable, U) for h in row) for row in found.H)
     names = tuple(f"z{j + 1}" for j in range(len(rows)))
@@ -195,6 +198,10 @@ def direct(found: BasisFile, name: str, functional: tuple[sp.Expr, ...], symbol:
 
 
 def of_model(found: ModelFile, name: str, functional: tuple[sp.Expr, ...], symbol: sp.Symbol) -> Family:
+    """The family of a model file: backward in time for one F, forward for an F in pieces.
+
+    Raises EmptyError without an interval, and DomainError where F depends on the time.
+    """
     if found.T is None:
         raise EmptyError("expected the length of the interval; got no [interval]; add T", where="interval.T")
     if varying(found):

@@ -58,6 +58,7 @@ class Sliver:
     certificate: Mapping[str, Any]
 
     def row(self) -> tuple[str, str, str, str]:
+        """Decimal strings of start, end, lower and upper, the first two to 60 digits."""
         return decimal(self.start, 60), decimal(self.end, 60), self.lower, self.upper
 
 

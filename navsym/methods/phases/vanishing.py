@@ -201,6 +201,7 @@ def opened(h: sp.Expr, K: int, T: str, v: str, parts: dict[sp.Symbol, str]) -> s
 
 
 def polynomial_of(name: str, c: sp.Rational, K: int) -> sp.Expr:
+    """Taylor polynomial, of degree below K, of exp, sin or cos of c u."""
     signs = {"exp": lambda k: 1, "sin": lambda k: (0, 1, 0, -1)[k % 4], "cos": lambda k: (1, 0, -1, 0)[k % 4]}
     return sum((signs[name](k) * (c * U) ** k / sp.factorial(k) for k in range(K)), sp.S.Zero)
 
@@ -216,6 +217,7 @@ def tie(form: Echelon, i: int, row: tuple[sp.Expr, ...], text: str, T: sp.Symbol
 
 
 def scaled_functional(family: Family, form: Echelon) -> list[str]:
+    """``(A P)_i T**(shift - k_i)`` as texts for the certificate."""
     image = form.basis * fmpq_mat(form.basis.nrows(), 1, exact_functional(family.moving))
     T = family.parameter.name
     return [
@@ -225,4 +227,5 @@ def scaled_functional(family: Family, form: Echelon) -> list[str]:
 
 
 def rational_of(x: fmpq) -> sp.Rational:
+    """A rational of flint as one of sympy."""
     return sp.Rational(int(x.p), int(x.q))
