@@ -48,14 +48,17 @@ class Bank:
 
     @property
     def modes(self) -> int:
+        """Number m of models."""
         return int(self.F.shape[1])
 
     @property
     def states(self) -> int:
+        """Size n of the state."""
         return int(self.F.shape[2])
 
     @property
     def channels(self) -> int:
+        """Size p of the measurement."""
         return int(self.H.shape[2])
 
     @property

@@ -204,18 +204,22 @@ def fold(rule: Scheme, k: int, step: ExactStep, kit: Kit) -> list[Leaf]:
 
 
 def apply(A: Matrix, x: Vector) -> Vector:
+    """A x for A (m, n) and x (n,)."""
     return [sum(a * b for a, b in zip(row, x, strict=True)) for row in A]
 
 
 def product(A: Matrix, B: Matrix) -> Matrix:
+    """A B for A (m, n) and B (n, p)."""
     return [apply(transposed(B), row) for row in A]
 
 
 def add(A: Matrix, B: Matrix) -> Matrix:
+    """A + B, entry by entry."""
     return [[a + b for a, b in zip(*rows, strict=True)] for rows in zip(A, B, strict=True)]
 
 
 def transposed(A: Matrix) -> Matrix:
+    """The transpose of A."""
     return [list(column) for column in zip(*A, strict=True)]
 
 

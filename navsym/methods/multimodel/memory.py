@@ -26,11 +26,13 @@ class Workspace:
     arrays: dict[str, Array] = field(default_factory=dict)
 
     def put(self, name: str, value: Any) -> Array:
+        """Keep a copy of a value under a name, in place of what was there; the copy, an array of floats."""
         self.arrays[name] = np.array(value, dtype=float)
         return self.arrays[name]
 
     @property
     def floats(self) -> int:
+        """Floats that all arrays hold together."""
         return sum(array.size for array in self.arrays.values())
 
 

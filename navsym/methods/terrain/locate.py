@@ -91,11 +91,13 @@ def locate(
 
 
 def by_position(terrain: TerrainMap, track: Track, grid: Hypotheses, offset_free: bool) -> Answer:
+    """The best position, velocity errors taken as zero; raises NotEstimableError over flat terrain."""
     found = search_position(terrain, track, grid, offset_free=offset_free)
     return checked(terrain, track, answer_of(found, track, grid))
 
 
 def by_full(terrain: TerrainMap, track: Track, grid: Hypotheses, offset_free: bool) -> Answer:
+    """The best of all hypotheses in position and velocity; raises NotEstimableError over flat terrain."""
     found = search_full(terrain, track, grid, offset_free=offset_free)
     return checked(terrain, track, answer_of(found, track, grid))
 
@@ -125,6 +127,7 @@ def corrected(track: Track, answer: Answer) -> tuple[Array, Array]:
 
 
 def by_sequence(terrain: TerrainMap, track: Track, grid: Hypotheses, offset_free: bool) -> Answer:
+    """Position first and then velocity, with the times t_G and the quadratic of the paper."""
     found = search_sequential(terrain, track, grid, offset_free=offset_free)
     return Answer(
         found.index, found.criterion, found.second_best, found.unique,
@@ -151,6 +154,7 @@ SEARCHES = {"position": by_position, "full": by_full, "sequential": by_sequence,
 
 
 def nullable(value: float) -> float | None:
+    """A finite number, or None for infinity and nan, which JSON does not have."""
     return float(value) if math.isfinite(value) else None
 
 

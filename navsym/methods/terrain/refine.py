@@ -96,6 +96,7 @@ def evaluated(terrain: TerrainMap, track: Track, q: Array) -> tuple[Array, Array
 
 
 def moved(track: Track, q: Array) -> tuple[Array, Array]:
+    """x and y (n,) of the track under the correction q: two of position, two of velocity; an offset is not used."""
     tau = track.elapsed
     return track.x + (q[0] + q[2] * tau), track.y + (q[1] + q[3] * tau)
 

@@ -118,6 +118,10 @@ def reach(b: Array, w: Array, s: float, M: int, Mv: int) -> tuple[float, float]:
 
 
 def void_within(terrain: TerrainMap, across: tuple[float, float], along: tuple[float, float]) -> bool:
+    """True when the map has a void among the nodes that hypotheses may touch.
+
+    across, along : smallest and largest coordinate in cells, of columns and of rows
+    """
     if not terrain.has_voids:
         return False
     rows, columns = (slice(max(math.floor(low), 0), max(math.floor(high) + 2, 0)) for low, high in (along, across))
@@ -153,6 +157,7 @@ def each_velocity(work: Callable[[int], None], count: int, threads: int) -> None
 
 
 def one_slab(prepared: Prepared, Vi: int, out: Array) -> None:
+    """Criteria at one velocity index Vi across, added to ``out`` (Mvy, My, W), W = Mx padded to whole lanes."""
     Mx, My, Mvx, Mvy = prepared.counts
     rows = patch_rows(prepared.by, prepared.wy, prepared.steps[1], My, Mvy, prepared.H.shape[0])
     patch = np.empty((TOGETHER, rows, out.shape[2]))

@@ -74,6 +74,10 @@ def window_in_use(track: Track, noise: Noise, settings: Settings) -> float | Non
 
 
 def remarks(track: Track, found: TrackEstimate, noise: Noise, settings: Settings, lines: Rows) -> list[str]:
+    """What a person should know of a track, in sentences: gaps, rows left out or doubted, uneven steps, doubts.
+
+    lines : (N,) number of the line of each row in its file
+    """
     out = [
         f"gap of {track.t[k + 1] - track.t[k]:.3g} s after line {lines[k]}" for k in gaps(track)[:20].tolist()
     ]

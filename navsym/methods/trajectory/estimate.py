@@ -150,6 +150,10 @@ def agreeing(track: Track, noise: Noise, settings: Settings, use: Rows) -> Mask:
 
 
 def by_method(track: Track, noise: Noise, settings: Settings, use: Rows) -> TrackEstimate:
+    """Velocity and acceleration by the method of the settings, for one noise.
+
+    use : (N,) 1 for rows that count, 0 for outliers
+    """
     run = filtered(track, noise, settings, use)
     words = tuple(word(use[k], run.flags[k]) for k in range(len(track.t)))
     if settings.method in ("filter", "smoother"):
@@ -231,6 +235,10 @@ def variance(run: FilterRun, i: int) -> Array:
 
 
 def from_states(track: Track, run: FilterRun, words: tuple[str, ...]) -> TrackEstimate:
+    """The answer of a filter or smoother run; acceleration is zero for a state of order 2.
+
+    The gains are those of the last row at which the first channel used its measurement.
+    """
     last = int(np.flatnonzero((run.gains[0] != 0).any(axis=1))[-1])
     gains = {name: run.gains[c, last].tolist() for c, name in enumerate(CHANNELS)}
     n = run.states.shape[2]

@@ -66,6 +66,7 @@ class SteppedModel:
 
     @property
     def order(self) -> int:
+        """n, the number of states."""
         return len(self.row)
 
 
@@ -159,6 +160,10 @@ def metric_scale(n: int, tau: float) -> Array:
 
 
 def checked(z: Array, model: SteppedModel, start: Start) -> Array:
+    """The measurements (N,) as an array.
+
+    Raises TooLargeError for more than :data:`LARGEST_FIELD` states, and DomainError for a start of another size.
+    """
     if model.order > LARGEST_FIELD:
         raise TooLargeError(
             f"n: expected at most {LARGEST_FIELD} states, 3^n candidates; got {model.order}; lower the order"
@@ -171,6 +176,7 @@ def checked(z: Array, model: SteppedModel, start: Start) -> Array:
 
 
 def empty_run(N: int, n: int) -> tuple[Array, Array, Array, Array]:
+    """Arrays for a run to fill: states, gains, diagonals (N, n), and values of the criterion (N,)."""
     return np.empty((N, n)), np.empty((N, n)), np.empty((N, n)), np.empty(N)
 
 

@@ -140,6 +140,10 @@ def gain_stability(
 
 
 def decide_box(box: Sequence[tuple[Fraction, Fraction]], scale: Sequence[flint.arb] | None) -> bool | None:
+    """True when every gain of a box is stable, False when none is, None when the balls leave it undecided.
+
+    Routh's column of the characteristic polynomial, mapped from the unit circle to the half plane, in balls.
+    """
     balls = [interval(low, high) for low, high in box]
     if scale is not None:
         balls = [b * s for b, s in zip(balls, scale, strict=True)]
@@ -148,6 +152,7 @@ def decide_box(box: Sequence[tuple[Fraction, Fraction]], scale: Sequence[flint.a
 
 
 def halves(box: list[tuple[Fraction, Fraction]]) -> list[list[tuple[Fraction, Fraction]]]:
+    """The box cut in two across its largest relative width; raises TooLargeError for a single point."""
     widths = [(high - low) / max(abs(low), abs(high), Fraction(1, 10**30)) for low, high in box]
     i = widths.index(max(widths))
     middle = (box[i][0] + box[i][1]) / 2
@@ -162,6 +167,7 @@ def interval(low: Fraction, high: Fraction) -> flint.arb:
 
 
 def exact(x: Fraction) -> flint.arb:
+    """A ball that contains a fraction, at the working precision."""
     return flint.arb(flint.fmpq(x.numerator, x.denominator))
 
 
@@ -201,10 +207,12 @@ def stationary_covariance(gain: Sequence[Fraction]) -> list[list[Fraction]]:
 
 
 def rational(rows: int, columns: int, entries: Sequence[Fraction]) -> flint.fmpq_mat:
+    """A matrix (rows, columns) of flint from fractions, row by row."""
     return flint.fmpq_mat(rows, columns, [flint.fmpq(x.numerator, x.denominator) for x in entries])
 
 
 def back(x: flint.fmpq) -> Fraction:
+    """A rational of flint as a fraction."""
     return Fraction(int(x.p), int(x.q))
 
 

@@ -240,6 +240,10 @@ class Fit:
     fixed_scale: bool
 
     def sums(self, scale: float, density: float, gate: float) -> tuple[float, float, int]:
+        """Sums of log S and of innovation^2 / S over the channels, and the number of innovations.
+
+        scale : factor of the given variances ; density : of the process noise ; gate : as in :func:`noise_of`
+        """
         spread = first_spread(self.track, self.order)
         total = np.zeros(3)
         for c in self.channels:
@@ -254,6 +258,7 @@ class Fit:
         return logs + count * np.log(scale) + squares / scale, scale
 
     def cost(self, log_scale: float, log_density: float) -> float:
+        """Minus twice the log-likelihood, but for a constant, at decimal logarithms of scale and density."""
         logs, squares, _ = self.sums(10.0**log_scale, 10.0**log_density, self.gate)
         return logs + squares
 
