@@ -102,9 +102,11 @@ class Store:
             raise self.trouble("written", error) from error
 
     def close(self) -> None:
+        """Close the file; the store is not used afterwards."""
         self.connection.close()
 
     def trouble(self, what: str, error: Exception) -> StoreError:
+        """The StoreError of what could not be done with the file: opened, read or written."""
         message = (
             f"expected a store that can be {what}; got {error}; "
             "free space, mend the permissions, move a damaged file away, or set NAVSYM_CACHE to another folder"

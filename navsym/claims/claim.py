@@ -41,10 +41,12 @@ class Claim:
 
     @property
     def id(self) -> str:
+        """``module:number``, under which verbs and files name the claim."""
         return f"{self.module}:{self.number}"
 
     @property
     def corrects_id(self) -> str | None:
+        """The id of the claim that this one corrects, or None."""
         return None if self.corrects is None else f"{self.module}:{self.corrects}"
 
     def _repr_html_(self) -> str:
@@ -91,6 +93,10 @@ def module_of(derive: Callable[[], Statement]) -> str:
 
 
 def first_line(derive: Callable[[], Statement]) -> str:
+    """First line of the docstring of a claim's function: the title.
+
+    Raises MissingEngineError under -OO, which drops docstrings, and ValueError without one.
+    """
     text = (derive.__doc__ or "").strip()
     if not text and sys.flags.optimize > 1:
         raise MissingEngineError("expected Python with docstrings, which hold titles; got -OO; run it without -OO")

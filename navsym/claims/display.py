@@ -66,6 +66,7 @@ def table(heads: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:
 
 
 def cell(value: Any) -> str:
+    """One cell of a table of text in HTML; a verdict has its mark and colour."""
     text = str(value)
     shown = verdict_words(text) if text in MARKS else html.escape(text)
     return f'<td style="text-align:left">{shown}</td>'

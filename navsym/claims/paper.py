@@ -79,6 +79,7 @@ def claims_of(module: ModuleType) -> tuple[Claim, ...]:
 
 
 def claims_in(value: object) -> Iterator[Claim]:
+    """The claim that a module attribute is, or the claims in a tuple; nothing for other values."""
     if isinstance(value, Claim):
         yield value
     elif isinstance(value, tuple):

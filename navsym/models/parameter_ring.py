@@ -47,14 +47,17 @@ class Ring:
 
     @property
     def one(self) -> Poly:
+        """1 as a polynomial of the ring."""
         return self.context.constant(1)
 
     @property
     def zero(self) -> Poly:
+        """0 as a polynomial of the ring."""
         return self.context.constant(0)
 
     @property
     def mu(self) -> Poly:
+        """The variable of characteristic polynomials."""
         return self.context.gens()[-1]
 
 

@@ -59,6 +59,7 @@ class Kernel(Generic[P, R]):
         return self.fast
 
     def price(self) -> float:
+        """Seconds to have it compiled: to load it where it lies compiled on the disk, else to compile it."""
         return TO_LOAD if was_compiled(cast(FunctionType, self.py_func)) else TO_COMPILE
 
 
@@ -88,10 +89,12 @@ def compiled(function: FunctionType) -> Callable[..., Any]:
 
 
 def is_loop(thing: Any) -> bool:
+    """True for a kernel, and for a function marked by :func:`part`."""
     return isinstance(thing, Kernel) or bool(getattr(thing, "part", False))
 
 
 def written(thing: Any) -> FunctionType:
+    """The function as it is written, also of a kernel."""
     return cast(FunctionType, thing.py_func if isinstance(thing, Kernel) else thing)
 
 

@@ -45,10 +45,12 @@ class Dataset:
 
     @property
     def address(self) -> str:
+        """Where the file is fetched from: the recorded commit of its repository."""
         return f"https://raw.githubusercontent.com/{self.repository}/{self.commit}/{self.source}"
 
     @property
     def citation(self) -> str:
+        """Repository, commit, file and licence in one line."""
         return f"{self.repository} at commit {self.commit}, {self.source}; {self.licence}"
 
 
@@ -132,6 +134,7 @@ def cache_folder() -> Path:
 
 
 def require_checksum(path: Path, data: Dataset) -> None:
+    """Raises ChecksumError when the sha256 of a file is not the recorded one."""
     with path.open("rb") as file:
         found = hashlib.file_digest(file, "sha256").hexdigest()
     if found != data.sha256:

@@ -119,6 +119,7 @@ class Reader:
 
     @property
     def token(self) -> Token:
+        """The token that is read next; the last one marks the end."""
         return self.tokens[self.position]
 
     def take(self, *marks: str) -> Token | None:

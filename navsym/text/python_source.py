@@ -88,6 +88,7 @@ def divides(factor: sp.Expr) -> bool:
 
 
 def power(expression: sp.Pow) -> tuple[str, int]:
+    """A power and how tightly it binds: ``sp.sqrt`` for 1/2, ``1/`` for -1 over what is no number, else ``**``."""
     base, exponent = expression.args
     if exponent == sp.Rational(1, 2):
         return f"sp.sqrt({exact_source(base)})", ATOM

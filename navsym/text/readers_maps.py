@@ -115,6 +115,7 @@ def read_npz(path: Path) -> Raster:
 
 
 def opened_zip(path: Path) -> zipfile.ZipFile:
+    """An npz archive; raises NavsymError for a missing file, ExpressionSyntaxError for a damaged one."""
     try:
         if not path.is_file():
             raise FileNotFoundError
@@ -127,11 +128,13 @@ def opened_zip(path: Path) -> zipfile.ZipFile:
 
 
 def damaged(path: Path, what: str, reason: object) -> ExpressionSyntaxError:
+    """The error of a damaged file; what says what was expected in it, reason what came."""
     message = f"expected {what}; got a damaged file ({reason!s:.80}); fetch or write it again"
     return ExpressionSyntaxError(message, where=called(path))
 
 
 def member_names(archive: zipfile.ZipFile, path: Path) -> frozenset[str]:
+    """Names of the arrays in an archive; raises DuplicateError when one comes twice."""
     names = [name.removesuffix(".npy") for name in archive.namelist()]
     if len(set(names)) < len(names):
         message = "expected every array once; got one name twice; write it again"
@@ -161,6 +164,10 @@ def read_member(archive: zipfile.ZipFile, names: frozenset[str], name: str, path
 
 
 def npy_header(file: Any) -> tuple[tuple[int, ...], bool, np.dtype[Any]]:
+    """Shape, whether the order is Fortran's, and type of an npy member; the file then stands at its data.
+
+    Raises ValueError for another version of the format, and numpy's errors for a header that cannot be read.
+    """
     version = np.lib.format.read_magic(file)
     readers = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.read_array_header_2_0}
     if version not in readers:
@@ -184,6 +191,10 @@ def checked_size(header: Header, where: str) -> int:
 
 
 def scalar(get: Callable[[str], NDArray[Any]], name: str, path: Path, *, finite: bool = True) -> float:
+    """A single number of the archive as a float; get reads an array by name.
+
+    Raises ShapeError for more or fewer numbers, NotFiniteError for nan and infinity unless finite is False.
+    """
     array, where = get(name), f"{called(path)}: {name}"
     if array.size != 1:
         raise ShapeError(f"expected one number; got shape {array.shape}; give one", where=where)

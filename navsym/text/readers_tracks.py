@@ -95,6 +95,10 @@ class Log:
     warnings: list[str] = field(default_factory=list)
 
     def problem(self, kind: type[NavsymError], line: int, message: str, repair: str) -> None:
+        """Note a problem of a line: an error of this kind when strict, else the repair that was made.
+
+        Raises the first error as soon as there are :data:`MOST_PROBLEMS`.
+        """
         if self.policy == "strict":
             self.errors.append(kind(message, where=f"{self.where}: line {line}"))
             if len(self.errors) >= MOST_PROBLEMS:
@@ -164,6 +168,7 @@ def text_of(data: bytes, log: Log) -> str:
 
 
 def looks_like_rtklib(text: str) -> bool:
+    """True for RTKLIB's files, which begin with a comment after %."""
     return text.lstrip().startswith("%")
 
 
@@ -311,10 +316,12 @@ def number_of(text: str) -> float | None:
 
 
 def decimal_comma(text: str) -> float | None:
+    """The number in a text with one decimal comma; None for any other text."""
     return number_of(text.replace(",", ".")) if re.fullmatch(r"[+-]?\d+,\d+", text.strip(), re.A) else None
 
 
 def too_long(log: Log) -> NavsymError:
+    """The error of a file with more than :data:`LARGEST_ROWS` rows."""
     return TooLargeError(f"expected at most {LARGEST_ROWS} rows; got more; split the file", where=log.where)
 
 
@@ -393,6 +400,10 @@ def slow(rows: Sequence[Row]) -> bool:
 
 
 def assembled(rows: Sequence[Row], log: Log) -> TrackFile:
+    """The track of checked rows: latitudes and longitudes in radians, arrays (N,).
+
+    Standard deviations that only some rows have are left out, with a warning.
+    """
     known = [row.sigma for row in rows if row.sigma is not None]
     if known and len(known) < len(rows):
         log.warnings.append("standard deviations are missing in some rows and were not used")

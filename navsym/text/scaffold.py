@@ -130,6 +130,7 @@ def equation_numbers(text: str) -> tuple[str, ...]:
 
 
 def check_number(number: str) -> str:
+    """The number of an equation; raises ExpressionSyntaxError when it has another form."""
     if NUMBER.fullmatch(number):
         return number
     raise ExpressionSyntaxError(
@@ -211,6 +212,7 @@ def declared_as(kind: str, names: set[str]) -> str:
 
 
 def tolerance_source(text: str | None) -> str:
+    """The line that gives a claim its tolerance, empty without one; raises the errors of reading it."""
     return "" if text is None else f"        tolerance={side_source(read_tolerance(text))},\n"
 
 
@@ -306,6 +308,7 @@ def assigned(tree: ast.Module) -> set[str]:
 
 
 def function_name(number: str, known: set[str]) -> str:
+    """A name that is not yet known for the function of a claim: ``claim_2_17_corrected`` of 2.17*."""
     base = "claim_" + re.sub(r"\W", "_", number.replace("*", "_corrected"))
     return next(name for name in (base, *(f"{base}_{k}" for k in range(2, 1000))) if name not in known)
 

@@ -95,6 +95,7 @@ class Hypotheses:
 
     @property
     def size(self) -> int:
+        """Number of hypotheses, Mx My Mvx Mvy."""
         return math.prod(self.counts)
 
     @property

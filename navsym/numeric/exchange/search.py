@@ -78,6 +78,7 @@ class Panels:
 
     @cached_property
     def search(self) -> Search:
+        """Nodes, values there and rows to start from, made at the first use."""
         nodes = nodes_for(self)
         grid = grid_values(self.coefficients, nodes)
         fine = chebyshev_nodes(fine_count(self.coefficients.shape[1]))
@@ -118,6 +119,7 @@ def nodes_for(panels: Panels) -> Array:
 
 @lru_cache(maxsize=32)
 def chebyshev_nodes(count: int) -> Array:
+    """``-cos(pi k / (count - 1))``, (count,) rising from -1 to 1, both exact; read-only, since it is shared."""
     nodes: Array = -np.cos(np.pi * np.arange(count) / (count - 1))
     nodes[0], nodes[-1] = -1.0, 1.0
     nodes.flags.writeable = False
@@ -263,11 +265,13 @@ def merged(
 
 
 def end_or_mean(u: Array, weights: Array) -> float:
+    """The weighted mean of places u (l,) in [-1, 1], or the outermost of them when the mean is at an end."""
     mean = float((u * weights).sum() / weights.sum())
     return float(u[np.abs(u).argmax()]) if abs(mean) > 1.0 - 1e-9 else mean
 
 
 def spacing(nodes: Array, u: float) -> float:
+    """Distance of the two search nodes around u."""
     k = int(np.clip(np.searchsorted(nodes, u), 1, nodes.size - 1))
     return float(nodes[k] - nodes[k - 1])
 

@@ -68,6 +68,7 @@ def place(context: Any, builder: Any, declared: Any, array: Any, index: Any) -> 
 
 
 def flat_doubles(declared: Any) -> bool:
+    """True for numba's type of a one-dimensional array of doubles."""
     return isinstance(declared, types.Array) and declared.ndim == 1 and declared.dtype == types.float64
 
 
