@@ -54,7 +54,10 @@ def missing(where: str, got: str) -> NavsymError:
 
 
 def decode(data: bytes, where: str) -> str:
-    """UTF-8 text without a byte order mark and without NUL."""
+    """UTF-8 text without a byte order mark and without NUL.
+
+    Raises ExpressionSyntaxError for other bytes, and EmptyError when nothing but white space is in it.
+    """
     for mark, what in MARKS.items():
         if data.startswith(mark):
             raise not_text(f"{what} at the start", where)

@@ -155,7 +155,7 @@ def text_reader(read: Callable[[Any], Any]) -> Reader:
 
 
 def map_reader(path: Path) -> Any:
-    """The map of a file in its local frame, as ``navsym locate`` reads it."""
+    """The map of a file in its local frame, in metres."""
     return readers_maps.local_frame(readers_maps.read_map(path))
 
 

@@ -211,7 +211,7 @@ def matching_map() -> Any:
 
 
 def two_stage_job(sweep: Sweep, index: int) -> dict[str, Any]:
-    """Standard deviations of position in metres, after 30 minutes of both measurements, of the compared estimators.
+    """Standard deviations of position in metres, 30 minutes after position is first measured, of every estimator.
 
     The parameters are lambda_c and lambda_h, the flight a great circle of two hours.
     """
