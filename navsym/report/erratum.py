@@ -81,10 +81,12 @@ class Erratum:
 
     @property
     def of_paper(self) -> tuple[Entry, ...]:
+        """Slips of the paper itself."""
         return tuple(entry for entry in self.entries if entry.slip == "paper")
 
     @property
     def of_scan(self) -> tuple[Entry, ...]:
+        """Slips of the scan that was read."""
         return tuple(entry for entry in self.entries if entry.slip == "scan")
 
 
@@ -118,6 +120,7 @@ def grouped(refuted: Iterable[Record], words: Words) -> list[tuple[str | None, l
 
 
 def entry(paper: Paper, group: Sequence[Record], corrections: Mapping[str, Record], words: Wording | None) -> Entry:
+    """One entry of the sheet from a group of records, whose first speaks for it; a correction only if it holds."""
     record = group[0]
     fixed = [corrections.get(r["id"]) for r in group]
     correction = fixed[0]
@@ -139,11 +142,13 @@ def entry(paper: Paper, group: Sequence[Record], corrections: Mapping[str, Recor
 
 
 def row(record: Record, correction: Record | None) -> Row:
+    """One line of a group: what it is about, as printed, and the correction."""
     what = re.sub(r", as .*$", "", record["title"]).rstrip(".")
     return Row(what, record["printed"], correction["printed"] if correction is not None else "none proved")
 
 
 def capital(sentence: str) -> str:
+    """The sentence with a capital letter."""
     return sentence[:1].upper() + sentence[1:]
 
 

@@ -91,6 +91,7 @@ def people_text(document: Mapping[str, Any], cards: Mapping[str, Paper]) -> str:
 
 
 def paper_lines(paper: Record, records: list[Record]) -> list[str]:
+    """The section of a paper: coverage, numbers of verdicts and a table of the claims."""
     statuses = [record["status"] for record in records]
     summary = ", ".join(f"{statuses.count(s)} {s}" for s in MARKS if s in statuses)
     lines = [
@@ -107,6 +108,7 @@ def paper_lines(paper: Record, records: list[Record]) -> list[str]:
 
 
 def row(record: Record) -> str:
+    """One claim as a line of the table."""
     slip = f"{record['slip']}: {record['reason']}" if record["slip"] else record["reason"] or ""
     cells = (f"`{record['number']}`", f"{MARKS[record['status']]} {record['status']}", record["title"], slip)
     return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"

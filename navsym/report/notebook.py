@@ -80,6 +80,7 @@ def explore(draw: Callable[..., Any], **ranges: tuple[float, float, float]) -> A
 
 
 def remarks(claim: Claim, verdict: Verdict) -> list[str]:
+    """What stands below a verdict: reason or slip, counterexample, assumptions."""
     found = []
     if claim.reason:
         found.append(f"{claim.slip or 'note'}: {claim.reason}")

@@ -169,11 +169,13 @@ def visible(value: Any) -> Any:
 
 
 def bare_card(module: str, document: Mapping[str, Any]) -> Paper:
+    """A card for a paper of which only the document is known: module and title."""
     title = next((paper["title"] for paper in document["papers"] if paper["module"] == module), module)
     return Paper(module, title, authors=(), year=None, source="", language="", equations=())
 
 
 def total(papers: Sequence[PaperView]) -> dict[str, int]:
+    """Numbers of verdicts of all papers together, by status."""
     return {status: sum(paper.counts[status] for paper in papers) for status in MARKS}
 
 
@@ -216,10 +218,12 @@ def cell(card: Paper, equation: str, records: Sequence[Record]) -> Cell:
 
 
 def anchor_of(record: Record) -> str:
+    """Anchor of a claim on the page of its paper."""
     return f"c-{slug(record['number'])}"
 
 
 def claim_views(records: Sequence[Record], progress: Callable[[str], None]) -> Iterator[ClaimView]:
+    """What the page of a paper shows of its claims, one after the other; progress gets the id of each."""
     known = {record["id"]: record for record in records}
     corrections = {record["corrects"]: record for record in records if record["corrects"]}
     for record in records:
@@ -228,6 +232,7 @@ def claim_views(records: Sequence[Record], progress: Callable[[str], None]) -> I
 
 
 def claim_view(record: Record, correction: Record | None, corrected: Record | None) -> ClaimView:
+    """What the page shows of a claim; correction and corrected are the records it is linked with, or None."""
     story = tuple((step, formula(step.formula) if step.formula else None) for step in steps(record))
     return ClaimView(
         record=record,
@@ -251,6 +256,7 @@ def side(text: str) -> Formula:
 
 
 def link(record: Record | None) -> ClaimLink | None:
+    """A link to a claim, None without one."""
     if record is None:
         return None
     return ClaimLink(record["number"], anchor_of(record), printed_side(record), record["status"])

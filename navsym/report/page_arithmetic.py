@@ -32,6 +32,7 @@ class Arithmetic:
 
     @property
     def differs(self) -> bool:
+        """True when the two sides are not the same."""
         return self.printed != self.derived
 
 
@@ -86,6 +87,7 @@ def entries_of(text: str) -> list[str]:
 
 
 def closing_place(text: str) -> int:
+    """Place of the bracket that closes the one at the beginning, -1 when there is none."""
     depth = 0
     for place, char in enumerate(text):
         depth += (char in "([") - (char in ")]")

@@ -63,14 +63,17 @@ def correction_words(correction: Record | None) -> list[str]:
 
 
 def block(kind: str, key: str, fields: Mapping[str, str]) -> str:
+    """An entry of BibTeX; empty fields are left out."""
     lines = [f"  {name} = {{{value}}}," for name, value in fields.items() if value]
     return "\n".join([f"@{kind}{{{key},", *lines, "}", ""])
 
 
 def paper_key(paper: Paper) -> str:
+    """Key of a paper: last name of the first author and year."""
     first = paper.authors[0].split()[-1] if paper.authors else paper.module
     return plain(f"{first}{paper.year or ''}").lower()
 
 
 def plain(text: str) -> str:
+    """Letters, digits and points of a text; a star becomes ``corrected``."""
     return re.sub(r"[^A-Za-z0-9.]", "", text.replace("*", "corrected"))

@@ -56,11 +56,13 @@ def snippets(record: Record) -> tuple[Snippet, ...]:
 
 
 def python(called: str, names: list[str], tree: Node, claim: str) -> Snippet:
+    """The formula as a function of Python."""
     head = f"import math\n\ndef {called}({', '.join(names)}):  # {claim}\n"
     return Snippet("Python", f"{head}    return {written(tree, 'python')}\n")
 
 
 def c(called: str, names: list[str], tree: Node, claim: str) -> Snippet:
+    """The formula as a function of C on doubles."""
     arguments = ", ".join(f"double {name}" for name in names)
     head = f"#include <math.h>\n\ndouble {called}({arguments}) {{  /* {claim} */\n"
     return Snippet("C", f"{head}    return {written(tree, 'c')};\n}}\n")
@@ -92,6 +94,7 @@ def written(node: Node, language: str) -> str:
 
 
 def operation(node: Node, language: str) -> str:
+    """Two operands around their operator, in brackets where they bind looser."""
     own = LOOSENESS[node.kind]
     left, right = bound(node.parts[0], own, language), bound(node.parts[1], own + 1, language)
     return f"{left} {OPERATIONS[node.kind]} {right}" if own == 1 else f"{left}{OPERATIONS[node.kind]}{right}"
@@ -104,6 +107,7 @@ def bound(node: Node, own: int, language: str) -> str:
 
 
 def call(node: Node, language: str) -> str:
+    """A call of the language's library; raises NoCodeError for a function that it does not have."""
     inside = ", ".join(written(part, language) for part in node.parts)
     place = "math." if language == "python" else ""
     if node.text == "abs":

@@ -48,6 +48,7 @@ def steps(record: Record) -> list[Step]:
 
 
 def derived_step(record: Record) -> Step:
+    """The derived side, or that there is none."""
     if not record["derived"]:
         return Step("What follows from the model", "The statement itself was derived and then examined.")
     return Step("What follows from the model", "Derived without looking at the printed side:", record["derived"])
@@ -101,6 +102,7 @@ def decision(record: Record) -> str:
 
 
 def counterexample_steps(record: Record) -> list[Step]:
+    """The point of the counterexample, the entries that differ there, and the enclosure of the difference."""
     point = record["counterexample"] or {}
     where = ", ".join(f"{name} = {value}" for name, value in point.items())
     found = [Step("The counterexample", f"At {where}:" if where else "Nothing has to be inserted:")]
@@ -115,17 +117,20 @@ def counterexample_steps(record: Record) -> list[Step]:
 
 
 def arithmetic_words(line: Arithmetic) -> str:
+    """Both sides at the counterexample as a sentence."""
     start = f"Entry {line.entry}: the" if line.entry else "The"
     sides = f"printed side is {ball_words(line.printed)}, the derived side is {ball_words(line.derived)}"
     return ended(f"{start} {sides}")
 
 
 def slip_words(record: Record) -> str:
+    """Whose slip it is, and the reason."""
     place = {"paper": "A slip of the paper: ", "scan": "A slip of the scan, not of the authors: "}
     return place.get(record["slip"] or "", "") + record["reason"] + "."
 
 
 def replay(record: Record) -> str:
+    """How the certificate can be checked."""
     kind = record["certificate"].get("kind", "")
     return (
         f"A certificate of kind '{kind}' goes with this verdict. The report keeps it as a file; `navsym check` on that "

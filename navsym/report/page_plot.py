@@ -50,6 +50,7 @@ def value(node: Node, point: Mapping[str, float]) -> float:
 
 
 def real_power(base: float, exponent: float) -> float:
+    """A power of real numbers; raises ValueError where it is not real."""
     result = base**exponent
     if isinstance(result, complex):
         raise ValueError("not real")
@@ -98,11 +99,13 @@ def differing_sides(record: Mapping[str, Any], point: Mapping[str, str]) -> tupl
 
 
 def constant(text: str) -> float | None:
+    """The number that a text is, None when it is none."""
     node = read_formula(text)
     return None if node is None else safe(node, {})
 
 
 def safe(node: Node, point: Mapping[str, float]) -> float | None:
+    """The value of a formula at a point, None where it has none or is 1e12 and more."""
     try:
         found = value(node, point)
     except (ValueError, ArithmeticError, KeyError, TypeError):
@@ -111,6 +114,7 @@ def safe(node: Node, point: Mapping[str, float]) -> float | None:
 
 
 def uses(node: Node, name: str) -> bool:
+    """True when the name stands in the formula."""
     return (node.kind == "name" and node.text == name) or any(uses(part, name) for part in node.parts)
 
 
@@ -120,6 +124,7 @@ def window(centre: float) -> tuple[float, float]:
 
 
 def curve(side: Node, along: str, held: Mapping[str, float], lower: float, upper: float) -> Curve:
+    """Points (x, y) of one side along a symbol, those with a value, the others held."""
     found = []
     for i in range(POINTS + 1):
         x = lower + (upper - lower) * i / POINTS
@@ -185,6 +190,7 @@ def others_words(held: Mapping[str, float]) -> str:
 
 
 def scale(source: tuple[float, float], target: tuple[float, float]) -> Callable[[float], float]:
+    """The linear map that takes one interval to the other."""
     slope = (target[1] - target[0]) / (source[1] - source[0])
     return lambda x: target[0] + (x - source[0]) * slope
 
@@ -193,6 +199,7 @@ def axes(
     along: str, ends: tuple[float, float], limits: tuple[float, float],
     at_x: Callable[[float], float], at_y: Callable[[float], float],
 ) -> list[str]:  # fmt: skip
+    """SVG of the axes, their ticks and the grid."""
     bottom = HEIGHT - BOTTOM
     parts = [f'<path class="axis" d="M{LEFT} {TOP}V{bottom}H{WIDTH - RIGHT}"/>']
     for x in ticks(*ends):

@@ -51,6 +51,10 @@ def read_wording(text: str, where: str = "wording") -> dict[str, Wording]:
 
 
 def wording_of(section: object, where: str) -> Wording:
+    """The wording of one equation, its keys and its formulas checked.
+
+    Raises UnknownSymbolError for missing or further keys, and NavsymError for a formula that cannot be shown.
+    """
     if not isinstance(section, dict) or not set(KEYS[:3]) <= set(section) <= set(KEYS):
         got = ", ".join(section) if isinstance(section, dict) else "no section"
         message = f"expected the keys where, printed, correct and perhaps why; got {got}; write them"

@@ -46,14 +46,17 @@ class Reader:
         self.tokens = list(TOKEN.finditer(source))
 
     def refuse(self, got: str) -> ExpressionSyntaxError:
+        """The error for what is not in this part of LaTeX."""
         message = f"expected one of the known LaTeX commands; got {got[:40]}; write it with those"
         return ExpressionSyntaxError(message, where=self.source[:60])
 
     @property
     def next(self) -> re.Match[str] | None:
+        """The token that is read next, None at the end."""
         return self.tokens[self.place] if self.place < len(self.tokens) else None
 
     def take(self) -> re.Match[str]:
+        """The next token, which is read; raises ExpressionSyntaxError at the end."""
         token = self.next
         if token is None:
             raise self.refuse("the end")
@@ -102,6 +105,7 @@ class Reader:
         return gap + base + gap
 
     def atom(self) -> str:
+        """A letter, number, sign, command, group or matrix; raises ExpressionSyntaxError for anything else."""
         token = self.take()
         if token["open"] is not None:
             return self.matrix(token["open"])
@@ -121,11 +125,13 @@ class Reader:
         return f"<mo{still}>{html.escape(sign)}</mo>"
 
     def group(self) -> str:
+        """What stands up to the closing brace, the opening one being read."""
         inner = self.row(lambda token: token["char"] == "}")
         self.take()
         return inner
 
     def command(self, word: str) -> str:
+        """A command with its arguments; raises ExpressionSyntaxError for one that is not known."""
         if word in LETTERS:
             return f"<mi>{LETTERS[word]}</mi>"
         if word in FUNCTIONS:
@@ -149,6 +155,7 @@ class Reader:
         raise self.refuse(f"\\{word}")
 
     def upright(self) -> str:
+        """Words between braces as text; raises ExpressionSyntaxError for no brace, or a command inside."""
         opening = self.take()
         if opening["char"] != "{":
             raise self.refuse("no brace")
@@ -159,6 +166,7 @@ class Reader:
         return f"<mtext>{html.escape(words)}</mtext>"
 
     def fenced(self) -> str:
+        """What stands between ``\\left`` and ``\\right``, with brackets as tall as it."""
         left = self.bracket()
         inner = self.row(lambda token: token["word"] == "right")
         self.take()
@@ -175,6 +183,7 @@ class Reader:
         return "" if sign == "." else html.escape(sign)
 
     def matrix(self, kind: str) -> str:
+        """Rows and cells of a matrix up to its end; raises ExpressionSyntaxError for another environment."""
         if kind not in MATRICES:
             raise self.refuse(rf"\begin{{{kind}}}")
         left, right = (f"<mo>{sign}</mo>" if sign else "" for sign in MATRICES[kind])

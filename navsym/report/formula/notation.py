@@ -32,10 +32,12 @@ def scientific(text: str, plain: str, powered: str) -> str:
 
 
 def operator(text: str) -> str:
+    """A sign of MathML."""
     return f"<mo>{html.escape(text)}</mo>"
 
 
 def mathml_sign(text: str) -> str:
+    """A sign of a formula as MathML: an invisible product beside a function, else the sign for it."""
     if text == BESIDE_A_FUNCTION:
         return '<mo lspace="0.17em">⁢</mo>'
     return operator(MATHML_SIGNS.get(text, text))
@@ -54,10 +56,12 @@ def mathml_fenced(left: str, inner: str, right: str) -> str:
 
 
 def rowed(parts: list[str]) -> str:
+    """Parts in a row; a single one as it is."""
     return parts[0] if len(parts) == 1 else "<mrow>" + "".join(parts) + "</mrow>"
 
 
 def mathml_matrix(rows: list[list[str]]) -> str:
+    """A matrix in square brackets."""
     body = "".join("<mtr>" + "".join(f"<mtd>{cell}</mtd>" for cell in row) + "</mtr>" for row in rows)
     return rowed([operator("["), f"<mtable>{body}</mtable>", operator("]")])
 

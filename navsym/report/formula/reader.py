@@ -31,6 +31,7 @@ class Node:
 
 
 def tokens_of(text: str) -> list[str]:
+    """The tokens of a text; raises NotAFormulaError for one that is too long or has another sign."""
     if len(text) > LONGEST:
         raise NotAFormulaError("too long")
     found, place = [], 0
@@ -51,19 +52,23 @@ class Reader:
         self.tokens, self.place, self.depth = tokens, 0, 0
 
     def peek(self) -> str:
+        """The token that is read next, empty at the end."""
         return self.tokens[self.place] if self.place < len(self.tokens) else ""
 
     def take(self) -> str:
+        """The next token, which is read; empty at the end."""
         self.place += 1
         return self.tokens[self.place - 1] if self.place <= len(self.tokens) else ""
 
     def whole(self) -> Node:
+        """The tree of the whole text; raises NotAFormulaError when something is left."""
         node = self.separated((";", ","))
         if self.peek():
             raise NotAFormulaError(self.peek())
         return node
 
     def separated(self, signs: tuple[str, ...]) -> Node:
+        """Relations between these signs, as a list; a single one as it is."""
         parts, sign = [self.relation()], ""
         while self.peek() in signs:
             sign = self.take()
@@ -73,6 +78,7 @@ class Reader:
         return parts[0] if not sign else Node("list", sign, tuple(parts))
 
     def relation(self) -> Node:
+        """Sums joined by relations, from the left."""
         node = self.sum()
         while self.peek() in RELATIONS:
             sign = self.take()
@@ -80,6 +86,7 @@ class Reader:
         return node
 
     def sum(self) -> Node:
+        """Products joined by + and -, from the left."""
         node = self.product()
         while self.peek() in ("+", "-"):
             kind = "sum" if self.take() == "+" else "difference"
@@ -87,6 +94,7 @@ class Reader:
         return node
 
     def product(self) -> Node:
+        """Factors joined by * and /, from the left; a minus before the first is one of the whole."""
         node = self.unary()
         negative = node.kind == "minus" and self.peek() in ("*", "/")
         node = node.parts[0] if negative else node
@@ -108,6 +116,7 @@ class Reader:
         return Node("power", "", (base, self.unary()))
 
     def atom(self) -> Node:
+        """A number, name, call or bracket; raises NotAFormulaError for anything else."""
         token = self.take()
         if token[:1].isdigit():
             return Node("number", token)
@@ -122,6 +131,7 @@ class Reader:
         return Node("call", token, inner.parts)
 
     def bracket(self, opening: str) -> Node:
+        """What stands in a bracket whose opening is read; raises NotAFormulaError when it is not closed or too deep."""
         closing = ")" if opening == "(" else "]"
         self.depth += 1
         if self.depth > DEEPEST:

@@ -24,6 +24,8 @@ def write(node: Node, style: Style, floor: int = 0) -> str:
 
 
 def write_two(sign: str, left: int, right: int) -> Callable[[Node, Style], str]:
+    """A writer of two parts around a sign; left and right are how tightly each must bind."""
+
     def writer(node: Node, style: Style) -> str:
         first, second = node.parts
         return style.row([write(first, style, left), style.sign(sign), write(second, style, right)])
@@ -32,6 +34,7 @@ def write_two(sign: str, left: int, right: int) -> Callable[[Node, Style], str]:
 
 
 def write_product(node: Node, style: Style) -> str:
+    """A product: a dot before a number or beside a name of several letters, else the style's sign, as a rule unseen."""
     first, second = node.parts
     dotted = unwrapped(second).kind == "number" or any(is_word(part) for part in node.parts)
     sign = "·" if dotted else BESIDE_A_FUNCTION if any(is_function(part) for part in node.parts) else "*"
@@ -53,11 +56,13 @@ def is_function(node: Node) -> bool:
 
 
 def last_factor(node: Node) -> Node:
+    """The second part of a product, or the node itself, without brackets that mean nothing."""
     node = unwrapped(node)
     return unwrapped(node.parts[1]) if node.kind == "product" else node
 
 
 def write_power(node: Node, style: Style) -> str:
+    """A power; of a function it stands at its name: sin^2(x)."""
     base, exponent = (unwrapped(part) for part in node.parts)
     raised = write(exponent, style)
     if base.kind == "call" and base.text not in UNNAMED:
@@ -67,6 +72,7 @@ def write_power(node: Node, style: Style) -> str:
 
 
 def write_call(node: Node, style: Style) -> str:
+    """A call; root, modulus and exponential have signs of their own."""
     if node.text == "sqrt" and len(node.parts) == 1:
         return style.root(write(node.parts[0], style))
     if node.text in ("abs", "Abs") and len(node.parts) == 1:
@@ -77,10 +83,12 @@ def write_call(node: Node, style: Style) -> str:
 
 
 def arguments(node: Node, style: Style) -> str:
+    """The arguments of a call in brackets."""
     return style.fenced("(", joined(node.parts, ",", style), ")")
 
 
 def joined(parts: tuple[Node, ...], sign: str, style: Style) -> str:
+    """Parts with a sign between them."""
     written: list[str] = []
     for part in parts:
         written += [style.sign(sign)] * bool(written) + [write(part, style, RELATION)]
