@@ -69,6 +69,7 @@ class Chain:
         return function_of([whole], real=real, name=name, layout=self.layout)
 
     def output(self, name: str, entries: tuple[str, ...] | str, names: Names) -> tuple[Output, list[sp.Expr]]:
+        """An output, a number or an array of names, with the symbols of its entries."""
         flat = (entries,) if isinstance(entries, str) else entries
         return Output(name, () if isinstance(entries, str) else (len(flat),)), [names.symbol(n) for n in flat]
 
@@ -125,6 +126,7 @@ class Names:
         return self.inputs.setdefault(name, sp.Symbol(name, positive=True) if positive else sp.Symbol(name, real=True))
 
     def make(self, name: str) -> sp.Symbol:
+        """A new symbol for a value; raises DomainError when the name is taken."""
         if name in self.values or name in self.inputs:
             raise DomainError(f"expected a new name in the chain; got {name} again; do rename the result")
         self.values[name] = sp.Symbol(name, real=True)
@@ -197,6 +199,7 @@ class Regimes:
     layout: Layout = field(default_factory=Layout)
 
     def function(self, name: str, decided: Decided, real: str) -> ExportedFunction:
+        """The claims as one function of several pieces; raises RefusedError when one does not hold."""
         parts = [self.arrange(decided(claim)) for claim in self.claims]
         return function_of(parts, real=real, name=name, layout=self.layout)
 

@@ -56,6 +56,7 @@ def compare(old: Mapping[str, Formula], new: Mapping[str, Formula]) -> Record:
 
 
 def record_for(name: str, old: Formula | None, new: Formula | None) -> Record:
+    """The record of two formulas of one name, or of one without a counterpart; statuses as in the document."""
     if old is None or new is None:
         status = "ONLY-NEW" if old is None else "ONLY-OLD"
         return said(name, status, "no counterpart")
@@ -123,12 +124,14 @@ def common_box(old: Formula, new: Formula) -> dict[sp.Symbol, tuple[Any, Any]]:
 
 
 def larger(a: Any, b: Any) -> Any:
+    """The larger of two exact numbers; of one and None, the number."""
     if a is None or b is None:
         return b if a is None else a
     return a if enclose(sp.sympify(a - b, strict=True), {}) >= 0 else b
 
 
 def smaller(a: Any, b: Any) -> Any:
+    """The smaller of two exact numbers; of one and None, the number."""
     if a is None or b is None:
         return b if a is None else a
     return b if enclose(sp.sympify(a - b, strict=True), {}) >= 0 else a

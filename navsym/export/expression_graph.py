@@ -227,6 +227,7 @@ class Builder:
         return self.chain("sub", minus, self.chain("add", plus))
 
     def chain(self, op: str, terms: Sequence[sp.Expr], start: int | None = None) -> int:
+        """The node of terms joined by an operation from the left, behind the node ``start`` if there is one."""
         places = [self.visit(term) for term in terms]
         if start is not None:
             places.insert(0, start)
@@ -255,6 +256,7 @@ class Builder:
         return self.put("neg", result) if coefficient.is_negative else result
 
     def times(self, places: Sequence[int]) -> int:
+        """The node of the product of nodes, from the left."""
         return reduce(lambda x, y: self.put("mul", x, y), places)
 
     def power(self, base: sp.Expr, exponent: sp.Expr) -> int:
@@ -270,6 +272,7 @@ class Builder:
         return self.put("pow", self.visit(base), self.visit(exponent))
 
     def whole_power(self, x: int, n: int) -> int:
+        """The node of x^n, n at least 1, by repeated squaring."""
         result: int | None = None
         while n:
             if n & 1:

@@ -156,6 +156,7 @@ def whole_again(quotient: sp.Expr, angle: sp.Expr, s: sp.Symbol, c: sp.Symbol) -
 
 
 def half_angle(node: sp.Add, angle: sp.Expr, c: sp.Symbol) -> sp.Expr:
+    """``c - 1`` as ``-2 sin(angle/2)^2``, ``c + 1`` as ``2 cos(angle/2)^2``, c = cos(angle); else the sum."""
     if sp.expand(node - (c - 1)) == 0:
         return -2 * sp.sin(angle / 2) ** 2
     if sp.expand(node - (c + 1)) == 0:

@@ -45,6 +45,7 @@ class Part:
         return order(self.plain, T)
 
     def at(self, u: sp.Expr) -> sp.Expr:
+        """The operation applied to an argument, as an expression."""
         return filled(sp.Lambda(T, self.formula), sp.Integer(self.divided), u)
 
 

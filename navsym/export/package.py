@@ -60,6 +60,7 @@ def files_of(functions: Sequence[ExportedFunction], order: Order) -> dict[str, s
 
 
 def license_id(text: str) -> str:
+    """The identifier as it is; raises DomainError when it cannot be one of SPDX."""
     if not text or len(text) > 80 or not all(c.isascii() and (c.isalnum() or c in ".-+() ") for c in text):
         raise DomainError(
             f"expected an SPDX identifier such as Apache-2.0; got {text[:40]!r}; do correct --license"
@@ -75,6 +76,7 @@ class Spoken:
     made: dict[int, list[ExportedFunction]] = field(default_factory=dict)
 
     def for_library(self, library: int) -> list[ExportedFunction]:
+        """The functions with the bounds for a library that is accurate to so many ulps."""
         if library not in self.made:
             self.made[library] = [
                 f if library == f.arithmetic.library else rebounded(f, library) for f in self.functions
@@ -90,6 +92,7 @@ class Tests:
     made: dict[tuple[int, int], dict[str, list[Vector]]] = field(default_factory=dict)
 
     def of(self, functions: Sequence[ExportedFunction], target: Target) -> dict[str, list[Vector]]:
+        """Vectors of the functions by name, for the accuracy of the target's library and widened as it asks."""
         key = (target.library, target.widen)
         if key not in self.made:
             self.made[key] = {
@@ -151,6 +154,7 @@ def manifest(functions: Sequence[ExportedFunction], order: Order, files: Mapping
 
 
 def function_record(function: ExportedFunction) -> dict[str, Any]:
+    """A function for the manifest: inputs with ranges, arguments, outputs, state and pieces."""
     return {
         "name": function.name,
         "inputs": [
@@ -171,6 +175,7 @@ def ends(low: float, high: float) -> dict[str, float | None]:
 
 
 def piece_record(function: ExportedFunction, piece: Piece) -> dict[str, Any]:
+    """A piece for the manifest: where it ends, its source without the certificate, operations, rounding bound."""
     source = {k: v for k, v in asdict(piece.source).items() if k != "certificate"}
     return {
         "up_to": piece.limit,
@@ -230,12 +235,14 @@ def export(
 
 
 def run_or_not(folder: Path, target: Target, execute: bool) -> Outcome:
+    """The outcome of compiling and running a language, or that this was not asked for."""
     if not execute:
         return Outcome(target.name, "not executed", "not asked for", {})
     return run_target(folder / target.name, target)
 
 
 def summary_record(function: ExportedFunction) -> dict[str, Any]:
+    """A function for the document of the verb: claims, verdicts, rounding bounds."""
     return {
         "name": function.name,
         "claims": [source.claim for source in function.sources],
@@ -245,6 +252,7 @@ def summary_record(function: ExportedFunction) -> dict[str, Any]:
 
 
 def outcome_record(outcome: Outcome) -> dict[str, Any]:
+    """The outcome of a language as plain data."""
     functions = {
         name: {"vectors": n, "wrong": wrong, "worst": worst}
         for name, (n, wrong, worst) in outcome.functions.items()

@@ -66,6 +66,7 @@ class Output:
 
     @property
     def size(self) -> int:
+        """How many numbers the output has."""
         return int(np.prod(self.shape, dtype=int))
 
 
@@ -156,6 +157,7 @@ class ExportedFunction:
 
     @property
     def sources(self) -> tuple[Source, ...]:
+        """Sources of all pieces."""
         return tuple(piece.source for piece in self.pieces)
 
 

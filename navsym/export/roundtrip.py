@@ -76,10 +76,12 @@ def steps_of(target: Target, folder: Path, tool: str, build: str, sanitize: bool
 
 
 def word_is_compiler(command: list[str], tool: str) -> bool:
+    """True when the command starts with this tool itself."""
     return command[0] == tool
 
 
 def measured(text: str) -> dict[str, tuple[int, int, float]]:
+    """What a test program printed: name -> vectors, wrong ones, worst distance."""
     return {name: (int(n), int(wrong), float(worst)) for name, n, wrong, worst in LINE.findall(text)}
 
 
@@ -136,10 +138,12 @@ def unsealed(data: bytes) -> tuple[dict[str, Any], str]:
 
 
 def seal_of(manifest: Mapping[str, Any]) -> str:
+    """sha256 of a manifest without its seal."""
     return hashlib.sha256(as_json(manifest).encode()).hexdigest()
 
 
 def as_json(manifest: Any) -> str:
+    """The text of a manifest as it is written."""
     return json.dumps(manifest, indent=2) + "\n"
 
 
@@ -195,4 +199,5 @@ def hash_trouble(folder: Path, files: dict[str, Any]) -> str:
 
 
 def row(path: Path, kind: str, why: str) -> dict[str, Any]:
+    """A row of the document: ACCEPTED without a reason, else REJECTED."""
     return {"path": str(path), "kind": kind, "status": "REJECTED" if why else "ACCEPTED", "why": why}

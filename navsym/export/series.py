@@ -53,6 +53,7 @@ def order(expression: sp.Expr, t: sp.Symbol) -> int:
 
 
 def first_power(coefficients: tuple[fmpq, ...]) -> int:
+    """Place of the first coefficient that is not zero; raises NoSeriesError when all are."""
     for place, coefficient in enumerate(coefficients):
         if coefficient != 0:
             return place

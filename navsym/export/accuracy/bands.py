@@ -42,6 +42,7 @@ class Band:
 
     @property
     def shape(self) -> tuple[int, ...]:
+        """Shape of the numbers, the three parts broadcast together."""
         return np.broadcast_shapes(self.high.shape, self.low.shape, self.error.shape)
 
 
@@ -75,6 +76,7 @@ def two_product(a: Array, b: Array) -> tuple[Array, Array]:
 
 
 def halves(a: Array) -> tuple[Array, Array]:
+    """Dekker's splitting: a as the exact sum of two doubles of at most 26 bits each."""
     t = SPLIT * a
     high = t - (t - a)
     return high, a - high
@@ -120,6 +122,7 @@ def divided(a: Band, b: Band) -> Band:
 
 
 def times_double(a: Band, q: Array) -> tuple[Array, Array]:
+    """The number in two doubles times a double, as two doubles; the errors are not carried."""
     ch, cl = two_product(a.high, q)
     th, tl = fast_two_sum(ch, a.low * q)
     return fast_two_sum(th, tl + cl)
@@ -156,11 +159,13 @@ def through_balls(function: Callable[..., arb], *bands: Band) -> Band:
 
 
 def spread(values: Array, shape: tuple[int, ...]) -> list[float]:
+    """Values broadcast to a shape, as a flat list."""
     found: list[float] = np.broadcast_to(values, shape).ravel().tolist()
     return found
 
 
 def balls_of(row: tuple[float, ...]) -> list[arb]:
+    """Balls of a row that holds high, low and error of one number after the other."""
     return [ball_of(*row[k : k + 3]) for k in range(0, len(row), 3)]
 
 

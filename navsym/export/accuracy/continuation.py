@@ -113,11 +113,13 @@ def lagrange(formula: Tape, n: int, reach: arb) -> arb:
 
 
 def cells(low: arb, high: arb) -> list[arb]:
+    """The interval from low to high cut in :data:`CELLS` balls that cover it."""
     ends = [low + (high - low) * k / CELLS for k in range(CELLS + 1)]
     return [a.union(b) for a, b in itertools.pairwise(ends)]
 
 
 def horner(polynomial: Sequence[fmpq], t: arb) -> arb:
+    """The polynomial at a ball, lowest coefficient first."""
     total = arb(0)
     for coefficient in reversed(polynomial):
         total = total * t + coefficient
@@ -125,6 +127,7 @@ def horner(polynomial: Sequence[fmpq], t: arb) -> arb:
 
 
 def least_value(polynomial: Sequence[fmpq], reach: arb) -> arb:
+    """A lower bound of the modulus of the polynomial on [-reach, reach], in cells; zero where one may hold a root."""
     return min((down(horner(polynomial, cell)) for cell in cells(-reach, reach)), key=float)
 
 
@@ -174,6 +177,7 @@ def polynomial_graph(polynomial: Sequence[fmpq], power: int) -> Graph:
 
 
 def with_term(builder: Builder, total: int | None, size: int, sign: str) -> int:
+    """The node of total + size or total - size; of the term alone where there is no total yet."""
     if total is None:
         return builder.put("neg", size) if sign == "sub" else size
     return builder.put(sign, total, size)

@@ -70,6 +70,7 @@ def zones(known: Continuation, t: arb) -> Zones:
 
 
 def exact_value(known: Continuation, where: Zones, arithmetic: Arithmetic) -> arb:
+    """A ball of the part's exact value on the zones, b(t)/t^k."""
     values = [known.value(t) for t in where.inside]
     values += [outside_bounds(known, t, arithmetic).value for t in where.outside]
     return reduce(arb.union, values)

@@ -40,6 +40,7 @@ class Arithmetic:
     library: int = 1
 
     def unit(self) -> arb:
+        """The unit roundoff 2^u as a ball."""
         return arb(2) ** self.u
 
 
@@ -111,12 +112,14 @@ def rounded(node: Node, args: list[Bounded], arithmetic: Arithmetic) -> Bounded:
 
 
 def filled_in(node: Node, args: list[Bounded], arithmetic: Arithmetic) -> Bounded:
+    """Value and bounds of a part with a hole at zero, by its branches."""
     from navsym.export.accuracy.filled import filled_bounds  # which needs this file for the branches
 
     return filled_bounds(node.value, args[0], arithmetic)
 
 
 def rounded_plainly(node: Node, args: list[Bounded], arithmetic: Arithmetic) -> Bounded:
+    """Value and bounds of any other operation: errors of the arguments carried through, and its own rounding."""
     value = exact_value(node, args)
     absolute, relative = propagated(node, args, value)
     absolute, relative = sane(absolute), sane(relative)
@@ -250,6 +253,7 @@ def propagated(node: Node, args: list[Bounded], value: arb) -> tuple[arb, arb]:
 
 
 def carried_sum(node: Node, args: list[Bounded]) -> tuple[arb, arb]:
+    """Bounds of the error of a sum or difference; a relative one only where both terms have one sign."""
     a, b = args
     other = b.value if node.op == "add" else -b.value
     same_sign = (a.value >= 0 and other >= 0) or (a.value <= 0 and other <= 0)
@@ -258,12 +262,14 @@ def carried_sum(node: Node, args: list[Bounded]) -> tuple[arb, arb]:
 
 
 def carried_product(args: list[Bounded], value: arb) -> tuple[arb, arb]:
+    """Bounds of the error of a b: ``|a| db + |b| da + da db``, and the same of relative errors."""
     a, b = args
     absolute = up(a.value) * b.absolute + up(b.value) * a.absolute + a.absolute * b.absolute
     return absolute, a.relative + b.relative + a.relative * b.relative
 
 
 def carried_quotient(args: list[Bounded], value: arb) -> tuple[arb, arb]:
+    """Bounds of the error of a / b; infinite where the error of b may reach b."""
     a, b = args
     room = down(b.value) - b.absolute if b.absolute.is_finite() else arb(-1)
     absolute = (a.absolute + up(value) * b.absolute) / room if room > 0 else INFINITE
@@ -288,6 +294,7 @@ def carried_arctangent(args: list[Bounded], value: arb) -> tuple[arb, arb]:
 
 
 def carried_extreme(args: list[Bounded], value: arb) -> tuple[arb, arb]:
+    """Bounds of the error of max or min: the larger of the two."""
     a, b = args
     return a.absolute.max(b.absolute), a.relative.max(b.relative)
 

@@ -68,6 +68,7 @@ def sweep(function: ExportedFunction, call: Call, count: int, *, library: int = 
 
 
 def joined(a: Swept, b: Swept) -> Swept:
+    """What came of two sets of points together."""
     return Swept(
         a.points + b.points, a.by_balls + b.by_balls, a.undefined + b.undefined, a.wrong + b.wrong,
         max(a.worst, b.worst), a.example or b.example,
@@ -184,6 +185,7 @@ def compiled_c(functions: Sequence[ExportedFunction], folder: Path) -> list[Call
 
 
 def loop(function: ExportedFunction) -> str:
+    """C source of a loop that calls the function at row after row."""
     n, size = len(function.inputs), function.size
     words = [f"{'&' if a.size else ''}in[(k * {n}) + {a.first}]" for a in function.called_with]
     words += [f"&out[(k * {size}) + {place}]" for place in output_places(function)]

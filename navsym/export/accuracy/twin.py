@@ -89,6 +89,7 @@ def run(flattened: Tape, named: dict[sp.Symbol, Band], known: Known) -> Band:
 
 
 def as_band(value: Band | arb) -> Band:
+    """A ball as a band; bands as they are."""
     return value if isinstance(value, Band) else constant(value)
 
 
@@ -108,6 +109,7 @@ def instruction(operation: str, value: Any, args: list[Band | arb], named: dict[
 
 
 def folded(operation: Callable[[Band, Band], Band], args: list[Band]) -> Band:
+    """Several bands joined by an operation of two, from the left."""
     result = args[0]
     for other in args[1:]:
         result = operation(result, other)
@@ -135,6 +137,7 @@ def rounding_bounds(piece: Piece, columns: Sequence[Array], arithmetic: Arithmet
 
 
 def literal_error(value: Any, literal: Any) -> Rounded:
+    """A constant with the error of the number in the code, which stands for it."""
     with precision(BITS):
         exact = enclose(value, {}, BITS)
         error = upper(abs(exact - arb(literal)))
@@ -151,6 +154,7 @@ def settled(node: Rounded) -> Rounded:
 
 
 def node_bounds(node: Node, args: list[Rounded], arithmetic: Arithmetic) -> Rounded:
+    """Value and bounds of one operation, by the ball analysis where it has no formula here."""
     if node.op in CARRIED:
         value, absolute, relative, doubt = CARRIED[node.op](*args)
         return with_own_rounding(node.op, value, absolute, relative, doubt, arithmetic)
@@ -174,6 +178,7 @@ def with_own_rounding(
 
 
 def tightened(size: Array, absolute: Array, relative: Array) -> tuple[Array, Array]:
+    """Absolute and relative bound, each lowered by what the other implies for values of this size."""
     absolute, relative = sane(absolute), sane(relative)
     implied = np.where(np.isfinite(relative), np.where(np.isfinite(relative), relative, 0.0) * size * UP, np.inf)
     absolute = np.minimum(absolute, implied)
@@ -187,6 +192,7 @@ def ratio(error: Array, size: Array) -> Array:
 
 
 def sane(bound: Array) -> Array:
+    """The bound; infinite where it is no finite number."""
     return np.where(np.isfinite(bound), bound, np.inf)
 
 
@@ -196,6 +202,7 @@ Carried = tuple[Band, Array, Array, Flags]
 
 
 def carried_sum(a: Rounded, b: Rounded) -> Carried:
+    """a + b: absolute errors add, a relative bound only where both have one sign."""
     value = added(a.value, b.value)
     same = np.sign(a.value.high) * np.sign(b.value.high) >= 0
     relative = np.where(same, np.maximum(a.relative, b.relative), np.inf)
@@ -203,10 +210,12 @@ def carried_sum(a: Rounded, b: Rounded) -> Carried:
 
 
 def carried_difference(a: Rounded, b: Rounded) -> Carried:
+    """a - b as the sum of a and -b."""
     return carried_sum(a, Rounded(negated(b.value), b.absolute, b.relative, b.doubt))
 
 
 def carried_product(a: Rounded, b: Rounded) -> Carried:
+    """a b: ``|a| db + |b| da + da db``, and the same of relative errors; zero where both are exact."""
     value, x, y = multiplied(a.value, b.value), a.value.size(), b.value.size()
     absolute = (x * b.absolute + y * a.absolute + a.absolute * b.absolute) * UP
     relative = (a.relative + b.relative + a.relative * b.relative) * UP
@@ -228,6 +237,7 @@ def carried_quotient(a: Rounded, b: Rounded) -> Carried:
 
 
 def carried_negation(a: Rounded) -> Carried:
+    """-a, which changes no error."""
     return negated(a.value), a.absolute, a.relative, a.doubt
 
 
@@ -251,6 +261,10 @@ def by_the_balls(node: Node, args: list[Rounded], arithmetic: Arithmetic) -> Rou
 
 
 def row_bounds(node: Node, row: tuple[float, ...], arithmetic: Arithmetic) -> tuple[float, ...]:
+    """One operation at one point by the ball analysis: high, low, error of the value, absolute and relative bound.
+
+    row : the same five numbers of every argument. All is nan and infinite where an argument is not finite
+    """
     args = []
     for k in range(0, len(row), 5):
         high, low, error, absolute, relative = row[k : k + 5]
@@ -262,4 +276,5 @@ def row_bounds(node: Node, row: tuple[float, ...], arithmetic: Arithmetic) -> tu
 
 
 def bound_of(x: arb) -> float:
+    """A bound as a double above it; infinite where the ball is not finite."""
     return upper(x) if x.is_finite() else float("inf")

@@ -188,10 +188,12 @@ def switches(function: ExportedFunction, k: int) -> set[float]:
 
 
 def is_input(node: Node, k: int) -> bool:
+    """True for the node of the k-th input."""
     return node.op == "input" and node.value == k
 
 
 def next_float(function: ExportedFunction):  # type: ignore[no-untyped-def]
+    """The function (x, to) -> the number of the function's type next to x towards ``to``."""
     if function.arithmetic.name == "double":
         return math.nextafter
 

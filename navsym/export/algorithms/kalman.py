@@ -19,6 +19,7 @@ UNITS = {"x": "units of the state", "P": "their products", "z": "units of the me
 
 
 def real(name: str) -> sp.Symbol:
+    """A real symbol."""
     return sp.Symbol(name, real=True)
 
 
@@ -28,6 +29,7 @@ def triangle(name: str, n: int) -> tuple[str, ...]:
 
 
 def entry(name: str, i: int, j: int) -> sp.Symbol:
+    """Symbol of the entry (i, j) of a symmetric matrix, the smaller index first."""
     return real(f"{name}{min(i, j)}_{max(i, j)}")
 
 

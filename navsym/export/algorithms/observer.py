@@ -22,6 +22,7 @@ lam_c, lam_h = sp.symbols("lambda_c lambda_h", positive=True)
 
 
 def plain(name: str) -> sp.Symbol:
+    """A real symbol."""
     return sp.Symbol(name, real=True)
 
 
@@ -66,6 +67,7 @@ def moved(stage: int, share: sp.Expr) -> Link:
 
 
 def last() -> Link:
+    """The state after the step, from the four rates: ``s + h/6 (k1 + 2 k2 + 2 k3 + k4)``."""
     formulas = tuple(
         plain(s) + h / 6 * (plain(f"k1_{s}") + 2 * plain(f"k2_{s}") + 2 * plain(f"k3_{s}") + plain(f"k4_{s}"))
         for s in STATE

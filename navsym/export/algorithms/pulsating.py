@@ -23,6 +23,7 @@ g, z = sp.symbols("g1 g2", real=True), sp.Symbol("z", real=True)
 
 
 def named(text: str) -> tuple[sp.Symbol, ...]:
+    """Real symbols of these names."""
     return sp.symbols(text, real=True)
 
 
@@ -32,6 +33,7 @@ def full(upper: tuple[sp.Expr, ...]) -> sp.Matrix:
 
 
 def triangle(matrix: sp.Matrix) -> tuple[sp.Expr, ...]:
+    """Upper triangle (11, 12, 22) of a symmetric matrix (2, 2)."""
     return (matrix[0, 0], matrix[0, 1], matrix[1, 1])
 
 
@@ -77,6 +79,7 @@ def information(i: int) -> Equation:
 
 
 def names(i: int, text: str) -> tuple[str, ...]:
+    """The words with the number of the mode behind each."""
     return tuple(f"{word}_{i}" for word in text.split())
 
 

@@ -21,6 +21,7 @@ UNITS = {
 
 
 def symmetric(upper: tuple[sp.Expr, ...]) -> sp.Matrix:
+    """A symmetric matrix (2, 2) from its upper triangle (11, 12, 22)."""
     return sp.Matrix([[upper[0], upper[1]], [upper[1], upper[2]]])
 
 

@@ -225,6 +225,7 @@ def files(
 
 
 def wrapper(function: ExportedFunction) -> str:
+    """Python source of the function that hands rows of points to the library."""
     rows = ", ".join(i.symbol.name for i in function.inputs).replace("\\", "/").replace('"', "'")
     results = ", ".join(f"{o.name}[{o.size}]" if o.shape else o.name for o in function.outputs)
     return "\n".join([
@@ -239,6 +240,7 @@ def batch(function: ExportedFunction) -> str:
 
 
 def signature(function: ExportedFunction) -> list[str]:
+    """The lines up to the opening brace: summary as comments, prototype, head of the definition."""
     real = function.arithmetic.name
     lines = [f"/* {line.replace('*/', '* /').replace('/*', '/ *')} */" for line in summary(function)]
     lines += [f"int {function.name}(long n, const {real} *restrict in, {real} *restrict out);"]

@@ -59,20 +59,24 @@ def files(
 
 
 def parameters(function: ExportedFunction) -> str:
+    """Parameters of the C function: arguments, then a pointer for each result."""
     real = function.arithmetic.name
     values = [value_parameter(a, real) for a in function.called_with]
     return ", ".join([*values, *(result_parameter(o, real) for o in function.outputs)]) or "void"
 
 
 def value_parameter(argument: Argument, real: str) -> str:
+    """An argument of the C function: a number, or a constant array."""
     return f"const {real} {argument.name}[{argument.size}]" if argument.size else f"{real} {argument.name}"
 
 
 def result_parameter(output: Output, real: str) -> str:
+    """Where the C function writes a result: a pointer, or an array."""
     return f"{real} {output.name}[{output.size}]" if output.shape else f"{real} *{output.name}"
 
 
 def signature(function: ExportedFunction) -> str:
+    """The head of the C function, broken where it is long."""
     line = f"navsym_status {function.name}({parameters(function)})"
     return line if len(line) < 100 else line.replace("(", "(\n    ", 1).replace(", ", ",\n    ")
 
@@ -145,6 +149,7 @@ def safe_comment(text: str) -> str:
 
 
 def shape_text(output: Output) -> str:
+    """The shape of a result in words, for the documentation."""
     if not output.shape:
         return "scalar"
     return "x".join(map(str, output.shape)) + (", row by row" if len(output.shape) > 1 else " entries")
@@ -174,6 +179,7 @@ def helper_texts(*functions: ExportedFunction) -> list[str]:
 
 
 def body(function: ExportedFunction, s: Spelling) -> list[str]:
+    """Lines of the definition: test of the domain, pieces, test of the results where it is needed, stores."""
     real = function.arithmetic.name
     largest = "FLT_MAX" if real == "float" else "DBL_MAX"
     lines = [f"    {real} r{k};" for k in range(function.size)]
@@ -195,6 +201,7 @@ def body(function: ExportedFunction, s: Spelling) -> list[str]:
 
 
 def switch_name(function: ExportedFunction) -> str:
+    """Name of the input that decides between the pieces."""
     assert function.switch is not None, "a limit needs the input that switches"
     return function.inputs[function.switch].name
 
@@ -216,6 +223,7 @@ def domain_test(function: ExportedFunction, s: Spelling, largest: str) -> list[s
 
 
 def stores(function: ExportedFunction) -> list[str]:
+    """Lines that write the local results r0, r1, ... to where the caller wants them."""
     lines, k = [], 0
     for output in function.outputs:
         for entry in range(output.size):
@@ -349,6 +357,7 @@ def test_program(functions: Sequence[ExportedFunction], tests: dict[str, list[Ve
 
 
 def test_function(function: ExportedFunction) -> str:
+    """C source that runs one function on its vectors."""
     n, real = len(function.inputs), function.arithmetic.name
     arguments = []
     for a in function.called_with:

@@ -33,6 +33,7 @@ def files(
 
 
 def header(functions: Sequence[ExportedFunction], license_: str) -> str:
+    """The text of the header: helpers and functions in the namespace navsym."""
     real = functions[0].arithmetic.name
     s = spelling(real)
     helpers = [helper_text(helper, real, s, "inline") for helper in helpers_used(*functions)]
@@ -104,11 +105,13 @@ def regimes(function: ExportedFunction, names: list[str], targets: list[str], s:
 
 
 def parameter(argument: Argument, real: str) -> str:
+    """An argument of the C++ function: a number, or a reference to a constant std::array."""
     kind = f"const std::array<{real}, {argument.size}>& " if argument.size else f"{real} "
     return f"{kind}{argument.name}"
 
 
 def member(output: Output, real: str) -> str:
+    """A result as a member of the structure that is returned, zero at first."""
     return (
         f"std::array<{real}, {output.size}> {output.name}{{}}"
         if output.shape
@@ -117,6 +120,7 @@ def member(output: Output, real: str) -> str:
 
 
 def bound(x: float, s: Spelling, largest: str) -> str:
+    """An end of a range as a number; the largest finite one for infinity."""
     if math.isinf(x):
         return largest if x > 0 else f"-{largest}"
     return s.number(x)
@@ -170,6 +174,7 @@ def program(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]
 
 
 def test_function(function: ExportedFunction, found: list[Vector]) -> str:
+    """C++ source that runs one function on its vectors."""
     s, n, real = spelling(function.arithmetic.name), len(function.inputs), function.arithmetic.name
     d = spelling("double")
 
@@ -201,6 +206,7 @@ def cpp_call(function: ExportedFunction, real: str) -> str:
 
 
 def rows(numbers: list[str]) -> str:
+    """Numbers separated by commas, four in a line."""
     return ",\n        ".join(", ".join(numbers[k : k + 4]) for k in range(0, len(numbers), 4))
 
 

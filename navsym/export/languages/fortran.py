@@ -74,6 +74,7 @@ def continued(line: str) -> list[str]:
 
 
 def source(function: ExportedFunction, name: str) -> list[str]:
+    """Lines of the pure subroutine of a function, under this name."""
     names = [i.name for i in function.inputs]
     pieces = [assignments(piece, names, SPELLING) for piece in function.pieces]
     arguments = ", ".join([*names, *(o.name for o in function.outputs), "status"])

@@ -34,6 +34,7 @@ class Helper:
 
     @property
     def known(self) -> Continuation:
+        """The two branches of the part for this type."""
         return continuation(self.part, self.real)
 
     @property

@@ -108,6 +108,7 @@ def source(function: ExportedFunction) -> str:
 
 
 def bound(x: float) -> str:
+    """An end of a range as a number; the largest finite one for infinity."""
     if x in (float("inf"), float("-inf")):
         return "Number.MAX_VALUE" if x > 0 else "-Number.MAX_VALUE"
     return SPELLING.number(x)

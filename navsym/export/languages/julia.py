@@ -38,6 +38,7 @@ def helper_text(helper: Helper) -> list[str]:
 
 
 def source(function: ExportedFunction) -> list[str]:
+    """Lines of a function: (status, results...), with the status alone where there are none."""
     names = [i.name for i in function.inputs]
     lines = [*(f"# {line}" for line in summary(function)), f"function {function.name}({', '.join(names)})"]
     lines += [f"    if !({domain(function, 'floatmax(Float64)', SPELLING)})", "        return (1,)", "    end"]

@@ -39,6 +39,7 @@ def helper_text(helper: Helper) -> str:
 
 
 def source(function: ExportedFunction, license_: str) -> str:
+    """The text of the file of a function; results are zero where the status is not 0."""
     names = [i.name for i in function.inputs]
     outputs = ", ".join(["status", *(o.name for o in function.outputs)])
     lines = [f"function [{outputs}] = {function.name}({', '.join(names)})", f"  % {license_}"]

@@ -14,6 +14,7 @@ from navsym.export.parts import Argument, ExportedFunction, Output, State
 
 
 def state_of(function: ExportedFunction) -> State:
+    """The state of a step, which has one."""
     assert function.state is not None, "only a step has a state"
     return function.state
 
@@ -80,6 +81,7 @@ def c_header(function: ExportedFunction, license_: str) -> str:
 
 
 def c_parameter(argument: Argument, real: str) -> str:
+    """An argument of a C function: a number, or a constant array."""
     return f"const {real} {argument.name}[{argument.size}]" if argument.size else f"{real} {argument.name}"
 
 
@@ -146,6 +148,7 @@ def cpp_program(function: ExportedFunction) -> list[str]:
 
 
 def cpp_parameters(arguments: Sequence[Argument], real: str) -> str:
+    """Arguments of a C++ function: numbers, or references to constant std::arrays."""
     return ", ".join(
         f"const std::array<{real}, {a.size}>& {a.name}" if a.size else f"{real} {a.name}" for a in arguments
     )
@@ -202,6 +205,7 @@ def rust_program(function: ExportedFunction, kind: str) -> list[str]:
 
 
 def rust_parameter(argument: Argument, kind: str) -> str:
+    """An argument of a Rust function: a number, or a reference to an array."""
     return f"{argument.name}: &[{kind}; {argument.size}]" if argument.size else f"{argument.name}: {kind}"
 
 

@@ -152,6 +152,8 @@ def vectors_json(functions: Sequence[ExportedFunction], tests: dict[str, list[Ve
 
 
 def row_text(v: Vector) -> str:
+    """A vector as one JSON object; numbers that are not finite stand in quotes."""
+
     def plain(values: Sequence[float]) -> str:
         shown = (repr(x) if math.isfinite(x) else f'"{x}"' for x in values)
         return f"[{', '.join(shown)}]"
@@ -179,12 +181,14 @@ def source(function: ExportedFunction) -> str:
 
 
 def docstring(function: ExportedFunction) -> list[str]:
+    """Lines of the docstring of an exported function: its title, then the summary."""
     text = [line.replace("\\", "/").replace('"""', "'''") for line in summary(function)]
     title = function.sources[0].title or function.name
     return [f'    """{title.replace(chr(34) * 3, "")}', "", *(f"    {line}" for line in text), '    """']
 
 
 def checks(function: ExportedFunction) -> list[str]:
+    """Lines that check every argument against its range, one for each."""
     largest = (
         "np.finfo(np.float32).max" if function.arithmetic.name == "float" else "np.finfo(np.float64).max"
     )
@@ -217,6 +221,7 @@ def regimes(function: ExportedFunction, names: list[str], kind: str) -> list[str
 
 
 def returned(function: ExportedFunction, kind: str) -> list[str]:
+    """The line that returns the results; the entries of an output that has several stand on the last axes."""
     parts, k = [], 0
     for output in function.outputs:
         entries = [f"np.broadcast_to(np.asarray(r{k + e}, dtype={kind}), shape)" for e in range(output.size)]

@@ -26,6 +26,7 @@ def spelling(real: str) -> Spelling:
 
 
 def rust_type(real: str) -> str:
+    """f32 for float, f64 for double."""
     return "f32" if real == "float" else "f64"
 
 
@@ -40,6 +41,7 @@ def files(
 
 
 def module(functions: Sequence[ExportedFunction], license_: str) -> str:
+    """The text of the module: status, helpers, functions."""
     real = functions[0].arithmetic.name
     s, kind = spelling(real), rust_type(real)
     lines = [
@@ -80,14 +82,17 @@ def source(function: ExportedFunction, s: Spelling, kind: str) -> str:
 
 
 def parameter(argument: Argument, kind: str) -> str:
+    """An argument of the Rust function: a number, or a reference to an array."""
     return f"{argument.name}: &[{kind}; {argument.size}]" if argument.size else f"{argument.name}: {kind}"
 
 
 def member(output: Output, kind: str) -> str:
+    """Type of a result in the structure that is returned."""
     return f"[{kind}; {output.size}]" if output.shape else kind
 
 
 def bound(x: float, s: Spelling, kind: str) -> str:
+    """An end of a range as a number; the largest or smallest finite one for infinity."""
     if math.isinf(x):
         return f"{kind}::MAX" if x > 0 else f"{kind}::MIN"
     return s.number(x)
@@ -154,6 +159,7 @@ def program(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]
 
 
 def test_function(function: ExportedFunction, found: list[Vector]) -> str:
+    """Rust source that runs one function on its vectors."""
     real = function.arithmetic.name
     s, d, n, kind = spelling(real), spelling("double"), len(function.inputs), rust_type(real)
 

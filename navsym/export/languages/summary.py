@@ -63,6 +63,7 @@ TIES = {
 
 
 def cost(piece: Piece) -> str:
+    """How many operations of each kind a piece takes, in words."""
     counted = sorted(piece.graph.operations().items())
     return ", ".join(f"{count} {op}" for op, count in counted) or "no operation"
 
