@@ -78,14 +78,14 @@ def part(function: Callable[P, R]) -> Callable[P, R]:
 def compiled(function: FunctionType) -> Callable[..., Any]:
     """The function compiled, with every part that it calls."""
     try:
-        from numba import njit
+        from navsym.numeric.compiled import njit
     except ImportError:
         return function
     names = {name: function.__globals__.get(name) for name in function.__code__.co_names}
     parts = {name: compiled(written(g)) for name, g in names.items() if is_loop(g)}
     twin = FunctionType(function.__code__, {**function.__globals__, **parts}, function.__name__)
     twin.__qualname__, twin.__doc__ = function.__qualname__, function.__doc__
-    return njit(cache=True)(twin)  # type: ignore[no-any-return]
+    return njit()(twin)  # type: ignore[no-any-return]
 
 
 def is_loop(thing: Any) -> bool:

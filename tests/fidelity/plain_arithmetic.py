@@ -35,6 +35,14 @@ def inside(value, low, high):
     return value
 
 
+def wave(function):
+    """sin or cos, and zero where nothing but rounding is left of it: sin(pi) has no sign."""
+    def value_of(x):
+        y = function(x)
+        return mpmath.mpf(0) if abs(y) < (1 + abs(x)) * mpmath.mpf(10) ** (12 - mpmath.mp.dps) and x != 0 else y
+    return value_of
+
+
 def divided(top, bottom):
     if abs(bottom) < mpmath.mpf(10) ** (12 - mpmath.mp.dps):
         raise Undefined  # zero, or not to be told from it
@@ -56,7 +64,7 @@ def power(base, exponent, whole):
 
 
 FUNCTIONS = {
-    "sin": mpmath.sin, "cos": mpmath.cos, "exp": mpmath.exp, "abs": abs, "atan": mpmath.atan,
+    "sin": wave(mpmath.sin), "cos": wave(mpmath.cos), "exp": mpmath.exp, "abs": abs, "atan": mpmath.atan,
     "sinh": mpmath.sinh, "cosh": mpmath.cosh, "tanh": mpmath.tanh,
     "tan": lambda x: divided(mpmath.sin(x), mpmath.cos(x)), "cot": lambda x: divided(mpmath.cos(x), mpmath.sin(x)),
     "sec": lambda x: divided(mpmath.mpf(1), mpmath.cos(x)), "csc": lambda x: divided(mpmath.mpf(1), mpmath.sin(x)),

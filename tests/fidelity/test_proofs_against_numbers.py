@@ -121,3 +121,12 @@ def test_no_verdict_on_many_random_claims_is_contradicted(seed):
     """Eight thousand in all, in pieces of less than a minute, so that a stopped campaign loses little."""
     _, found = attack(seed, 200)
     assert not found, found
+
+
+def test_a_sine_that_is_zero_has_no_sign():
+    """sqrt(cos(x)) has a value at pi/2, and atan2(sin(x), cos(x)) is pi at pi: rounding would deny both."""
+    with mpmath.workdps(DIGITS):
+        assert value("sqrt(cos(x))", {"x": "pi/2"}, DIGITS) == 0
+        assert value("sqrt(-cos(x))", {"x": "3*pi/2"}, DIGITS) == 0
+        assert value("atan2(sin(x), cos(x))", {"x": "pi"}, DIGITS) > 3
+        assert value("sin(x)", {"x": "1/10**40"}, DIGITS) > 0

@@ -11,11 +11,12 @@ import math
 import numba
 import numpy as np
 
+from navsym.numeric.compiled import njit
 from navsym.numeric.mixture.filter import COMPILE, account, aligned
 from navsym.numeric.mixture.lanes import load, spread, store
 
 
-@numba.njit(**COMPILE)
+@njit(**COMPILE)
 def predict_mode(i, n, F, Q, x, P, scratch):  # type: ignore[no-untyped-def]
     """Predict mode i of eight runs by one model F, Q (n, n); scratch (n + n n) 8."""
     start, square = i * n * 8, i * n * n * 8
@@ -39,7 +40,7 @@ def predict_mode(i, n, F, Q, x, P, scratch):  # type: ignore[no-untyped-def]
             store(P, square + (b * n + a) * 8, total)
 
 
-@numba.njit(**COMPILE)
+@njit(**COMPILE)
 def correct_mode(i, n, p, H, r, z, x, P, scratch, log_likelihood, volume):  # type: ignore[no-untyped-def]
     """Correct mode i of eight runs by scalars z [c] at 8 c; the same order as in ``correct_group``.
 
@@ -85,7 +86,7 @@ def correct_mode(i, n, p, H, r, z, x, P, scratch, log_likelihood, volume):  # ty
     return True
 
 
-@numba.njit(**COMPILE)
+@njit(**COMPILE)
 def merge_modes(m, n, weights, place, x, P, target, mean, covariance, off):  # type: ignore[no-untyped-def]
     """Merge the m modes of eight runs by weights [s] at ``(place + s) 8`` into slot ``target``; off (m n) 8."""
     start, square = target * n * 8, target * n * n * 8
@@ -106,7 +107,7 @@ def merge_modes(m, n, weights, place, x, P, target, mean, covariance, off):  # t
             store(covariance, square + (b * n + a) * 8, total)
 
 
-@numba.njit(**COMPILE)
+@njit(**COMPILE)
 def mode_weights(m, branching, p_mode, logs, totals, shares, mixing, raw):  # type: ignore[no-untyped-def]
     """P[next mode] as exp(totals) shares and, for IMM, P[mode | next mode] in mixing [target, source].
 
@@ -136,7 +137,7 @@ def mode_weights(m, branching, p_mode, logs, totals, shares, mixing, raw):  # ty
                 shares[i * 8 + lane] = 1.0
 
 
-@numba.njit(**COMPILE)
+@njit(**COMPILE)
 def slow_column(m, i, lane, top, p_mode, logs, mixing):  # type: ignore[no-untyped-def]
     """One next mode in logarithms throughout, for weights that would underflow; returns its log-weight."""
     best = -np.inf
@@ -162,7 +163,7 @@ def slow_column(m, i, lane, top, p_mode, logs, mixing):  # type: ignore[no-untyp
     return best + math.log(total)
 
 
-@numba.njit(inline="always", **COMPILE)
+@njit(inline="always", **COMPILE)
 def begin_eight(m, n, log_prior, means, covariances, logs, x, P):  # type: ignore[no-untyped-def]
     """The same first estimates, means (m, n), covariances (m, n, n), in every lane."""
     for i in range(m):
@@ -174,7 +175,7 @@ def begin_eight(m, n, log_prior, means, covariances, logs, x, P):  # type: ignor
                 store(P, ((i * n + a) * n + b) * 8, spread(covariances[i, a, b]))
 
 
-@numba.njit(inline="always", **COMPILE)
+@njit(inline="always", **COMPILE)
 def lay_eight(first, k, i, rotated, u, z, zl):  # type: ignore[no-untyped-def]
     """Measurement k of eight runs, rotated into independent scalars of mode i where R is not diagonal."""
     runs, _, p = z.shape
@@ -189,7 +190,7 @@ def lay_eight(first, k, i, rotated, u, z, zl):  # type: ignore[no-untyped-def]
             zl[c * 8 + lane] = value
 
 
-@numba.njit(inline="always", **COMPILE)
+@njit(inline="always", **COMPILE)
 def weigh_eight(m, totals, shares, volume, ll, logs, weights, total_log):  # type: ignore[no-untyped-def]
     """Bayes' rule over the modes of every run; False when all modes of one are impossible."""
     for lane in range(8):
@@ -212,7 +213,7 @@ def weigh_eight(m, totals, shares, volume, ll, logs, weights, total_log):  # typ
     return True
 
 
-@numba.njit(inline="always", **COMPILE)
+@njit(inline="always", **COMPILE)
 def keep_eight(  # type: ignore[no-untyped-def]
     first, k, m, n, total_log, weights, now_mean, now, mean, covariance, probabilities, log_likelihood,
 ):
@@ -228,7 +229,7 @@ def keep_eight(  # type: ignore[no-untyped-def]
                 covariance[run, k, a, b] = now[(a * n + b) * 8 + lane]
 
 
-@numba.njit(inline="always", **COMPILE)
+@njit(inline="always", **COMPILE)
 def restart_eight(m, n, now_mean, now, x, P):  # type: ignore[no-untyped-def]
     """Every mode goes on from the merged estimate: the pulsating filter."""
     for i in range(m):
@@ -238,7 +239,7 @@ def restart_eight(m, n, now_mean, now, x, P):  # type: ignore[no-untyped-def]
                 store(P, ((i * n + a) * n + b) * 8, load(now, (a * n + b) * 8))
 
 
-@numba.njit(**COMPILE)
+@njit(**COMPILE)
 def run_eight(  # type: ignore[no-untyped-def]
     first, branching, F, Q, H, r, U, rotated, p_mode, log_prior, means, covariances, z,
     mean, covariance, probabilities, log_likelihood,
@@ -290,7 +291,7 @@ def run_eight(  # type: ignore[no-untyped-def]
     return True
 
 
-@numba.njit(cache=True, error_model="numpy", nogil=True, parallel=True)
+@njit(error_model="numpy", nogil=True, parallel=True)
 def run_all(  # type: ignore[no-untyped-def]
     branching, F, Q, H, r, U, rotated, p_mode, log_prior, means, covariances, z,
     mean, covariance, probabilities, log_likelihood,

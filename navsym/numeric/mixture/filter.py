@@ -9,16 +9,16 @@ from __future__ import annotations
 
 import math
 
-import numba
 import numpy as np
 
+from navsym.numeric.compiled import njit
 from navsym.numeric.mixture.lanes import load, spread, store
 
 LOG_TWO_PI = math.log(2.0 * math.pi)
-COMPILE = {"cache": True, "error_model": "numpy", "nogil": True}
+COMPILE = {"error_model": "numpy", "nogil": True}
 
 
-@numba.njit(**COMPILE)
+@njit(**COMPILE)
 def aligned(size):  # type: ignore[no-untyped-def]
     """Zeros that begin on a cache line: eight doubles then never straddle two, which would cost half the speed."""
     raw = np.zeros(size + 8)
@@ -26,7 +26,7 @@ def aligned(size):  # type: ignore[no-untyped-def]
     return raw[skip : skip + size]
 
 
-@numba.njit(**COMPILE)
+@njit(**COMPILE)
 def predict_group(g, n, F, Q, x, P, scratch):  # type: ignore[no-untyped-def]
     """x <- F x, P <- F P F^T + Q for the eight filters of group g; scratch (n + n n) 8."""
     start, square = g * n * 8, g * n * n * 8
@@ -67,7 +67,7 @@ def predict_group(g, n, F, Q, x, P, scratch):  # type: ignore[no-untyped-def]
             store_twice(P, square, n, a, b, total)
 
 
-@numba.njit(inline="always", **COMPILE)
+@njit(inline="always", **COMPILE)
 def six_of_product(n, A, at_a, B, at_b, out, at_out, a, b):  # type: ignore[no-untyped-def]
     """Entries [a, b..b+2] and [a+1, b..b+2] of a product: five loads for six products."""
     s0, s1, s2, t0, t1, t2 = spread(0.0), spread(0.0), spread(0.0), spread(0.0), spread(0.0), spread(0.0)
@@ -86,7 +86,7 @@ def six_of_product(n, A, at_a, B, at_b, out, at_out, a, b):  # type: ignore[no-u
     store(out, place + n * 8 + 16, t2)
 
 
-@numba.njit(inline="always", **COMPILE)
+@njit(inline="always", **COMPILE)
 def one_of_product(n, A, at_a, B, at_b, out, at_out, a, b):  # type: ignore[no-untyped-def]
     """Entry [a, b] of a product."""
     total = spread(0.0)
@@ -95,14 +95,14 @@ def one_of_product(n, A, at_a, B, at_b, out, at_out, a, b):  # type: ignore[no-u
     store(out, at_out + (a * n + b) * 8, total)
 
 
-@numba.njit(inline="always", **COMPILE)
+@njit(inline="always", **COMPILE)
 def store_twice(P, square, n, a, b, value):  # type: ignore[no-untyped-def]
     """Write [a, b] and [b, a] of a symmetric matrix."""
     store(P, square + (a * n + b) * 8, value)
     store(P, square + (b * n + a) * 8, value)
 
 
-@numba.njit(inline="always", **COMPILE)
+@njit(inline="always", **COMPILE)
 def account(found, at, log_likelihood, here, volume, there):  # type: ignore[no-untyped-def]
     """One scalar's part of the log-likelihood of eight filters; False when a variance is not positive.
 
@@ -122,7 +122,7 @@ def account(found, at, log_likelihood, here, volume, there):  # type: ignore[no-
     return True
 
 
-@numba.njit(**COMPILE)
+@njit(**COMPILE)
 def correct_group(g, n, p, came, H, r, z, x, P, scratch, log_likelihood):  # type: ignore[no-untyped-def]
     """Correct the eight filters of group g by the scalars that came; False when a variance is not positive.
 
@@ -174,7 +174,7 @@ def correct_group(g, n, p, came, H, r, z, x, P, scratch, log_likelihood):  # typ
     return True
 
 
-@numba.njit(**COMPILE)
+@njit(**COMPILE)
 def mix_group(g, n, sources, weights, x, P, mean, covariance, off):  # type: ignore[no-untyped-def]
     """Merge all sources with the weights of each of eight targets: the interaction of IMM.
 
@@ -201,7 +201,7 @@ def mix_group(g, n, sources, weights, x, P, mean, covariance, off):  # type: ign
         mix_one(g, n, sources, weights, P, covariance, off, even, even)
 
 
-@numba.njit(inline="always", **COMPILE)
+@njit(inline="always", **COMPILE)
 def mix_four(g, n, sources, weights, P, covariance, off, a, b):  # type: ignore[no-untyped-def]
     """Entries [a, b], [a, b + 1], [a + 1, b], [a + 1, b + 1]: nine loads for four entries, and see mix_pair."""
     square, up, given = g * n * n * 8, a * sources * 8, g * sources * 8
@@ -227,7 +227,7 @@ def mix_four(g, n, sources, weights, P, covariance, off, a, b):  # type: ignore[
         store_twice(covariance, square, n, a, b + 1, i01 + d01)
 
 
-@numba.njit(inline="always", **COMPILE)
+@njit(inline="always", **COMPILE)
 def mix_pair(g, n, sources, weights, P, covariance, off, a, b):  # type: ignore[no-untyped-def]
     """Entries [a, b] and [a, b + 1] of the mixed covariance: sum of w (P + d d^T) over the sources.
 
@@ -250,7 +250,7 @@ def mix_pair(g, n, sources, weights, P, covariance, off, a, b):  # type: ignore[
     store_twice(covariance, square, n, a, b + 1, inside2 + between2)
 
 
-@numba.njit(inline="always", **COMPILE)
+@njit(inline="always", **COMPILE)
 def mix_one(g, n, sources, weights, P, covariance, off, a, b):  # type: ignore[no-untyped-def]
     """Entry [a, b] of the mixed covariance, for the odd one out."""
     left, right, given = a * sources * 8, b * sources * 8, g * sources * 8
@@ -262,7 +262,7 @@ def mix_one(g, n, sources, weights, P, covariance, off, a, b):  # type: ignore[n
     store_twice(covariance, g * n * n * 8, n, a, b, inside + between)
 
 
-@numba.njit(**COMPILE)
+@njit(**COMPILE)
 def moments(groups, n, weights, x, P, mean, covariance, scratch):  # type: ignore[no-untyped-def]
     """Mean (n,) and covariance (n, n) of all lanes with their weights (8 groups,); scratch (8,)."""
     for a in range(n):
@@ -283,7 +283,7 @@ def moments(groups, n, weights, x, P, mean, covariance, scratch):  # type: ignor
             covariance[b, a] = covariance[a, b]
 
 
-@numba.njit(**COMPILE)
+@njit(**COMPILE)
 def gathered(lanes):  # type: ignore[no-untyped-def]
     """Sum of eight doubles, in pairs."""
     return ((lanes[0] + lanes[1]) + (lanes[2] + lanes[3])) + ((lanes[4] + lanes[5]) + (lanes[6] + lanes[7]))

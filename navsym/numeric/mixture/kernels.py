@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import math
 
-import numba
 import numpy as np
 
+from navsym.numeric.compiled import njit
 from navsym.numeric.mixture.filter import COMPILE, aligned, correct_group, mix_group, moments, predict_group
 from navsym.numeric.mixture.layout import copy_sources, lay_measurement, lay_models, lay_start
 from navsym.numeric.mixture.modes import log_sums_by_mode, mix_quickly, mixing_weights, predict_modes, weigh
@@ -20,7 +20,7 @@ CROSS, MIXED, OWN = 0, 1, 2
 KEEP, ALL, BY_MODE = 0, 1, 2
 
 
-@numba.njit(inline="always", **COMPILE)
+@njit(inline="always", **COMPILE)
 def branch_modes(  # type: ignore[no-untyped-def]
     branching, known, sources, m, k, logs, p_mode, log_p, totals, mixing, ahead, terms,
 ):
@@ -39,7 +39,7 @@ def branch_modes(  # type: ignore[no-untyped-def]
             totals[b] = ahead[b // m, b % m]
 
 
-@numba.njit(inline="always", **COMPILE)
+@njit(inline="always", **COMPILE)
 def keep(k, n, now_mean, now, mean, covariance):  # type: ignore[no-untyped-def]
     """Estimate of step k into the answer; by entries, since assigning a row of a short array takes longer."""
     for a in range(n):
@@ -48,7 +48,7 @@ def keep(k, n, now_mean, now, mean, covariance):  # type: ignore[no-untyped-def]
             covariance[k, a, c] = now[a, c]
 
 
-@numba.njit(**COMPILE)
+@njit(**COMPILE)
 def fold_to_one(n, mean, covariance, x, P):  # type: ignore[no-untyped-def]
     """The merged estimate (n,), (n, n) as the only source: GPB1."""
     for a in range(n):
@@ -57,7 +57,7 @@ def fold_to_one(n, mean, covariance, x, P):  # type: ignore[no-untyped-def]
             P[(a * n + c) * 8] = covariance[a, c]
 
 
-@numba.njit(**COMPILE)
+@njit(**COMPILE)
 def fold_by_mode(branches, modes, n, logs, totals, weights, x, P, mean, covariance):  # type: ignore[no-untyped-def]
     """Merge the branches of every last mode: GPB2.
 
@@ -84,13 +84,13 @@ def fold_by_mode(branches, modes, n, logs, totals, weights, x, P, mean, covarian
                 covariance[((g * n + a) * n + c) * 8 + lane] = total
 
 
-@numba.njit(**COMPILE)
+@njit(**COMPILE)
 def constant(F, Q, H, r):  # type: ignore[no-untyped-def]
     """Whether no model changes with time."""
     return F.shape[0] == 1 and Q.shape[0] == 1 and H.shape[0] == 1 and r.shape[0] == 1
 
 
-@numba.njit(**COMPILE)
+@njit(**COMPILE)
 def run_bank(  # type: ignore[no-untyped-def]
     branching, folding, period, widest, F, Q, H, r, U, rotated, p_mode, log_p, log_prior, common, means, covariances, z,
     probabilities, mean, covariance, log_likelihood, best,

@@ -7,12 +7,11 @@ from __future__ import annotations
 
 import math
 
-import numba
-
+from navsym.numeric.compiled import njit
 from navsym.numeric.mixture.filter import COMPILE
 
 
-@numba.njit(**COMPILE)
+@njit(**COMPILE)
 def lay_start(sources, n, means, covariances, x, P):  # type: ignore[no-untyped-def]
     """The estimates of step 0, means (sources, n), covariances (sources, n, n), one in each lane."""
     for s in range(sources):
@@ -22,7 +21,7 @@ def lay_start(sources, n, means, covariances, x, P):  # type: ignore[no-untyped-
                 P[(((s // 8) * n + a) * n + c) * 8 + s % 8] = covariances[s, a, c]
 
 
-@numba.njit(**COMPILE)
+@njit(**COMPILE)
 def lay_models(k, branches, modes, F, Q, H, r, U, z, lanes):  # type: ignore[no-untyped-def]
     """Models of step k, branch b has mode b % modes, into the layout of lanes; idle lanes get a unit model.
 
@@ -45,7 +44,7 @@ def lay_models(k, branches, modes, F, Q, H, r, U, z, lanes):  # type: ignore[no-
             lanes[3][(g * p + a) * 8 + lane] = v[i, a] if used else 1.0
 
 
-@numba.njit(inline="always", **COMPILE)
+@njit(inline="always", **COMPILE)
 def lay_measurement(k, branches, modes, rotated, U, z, came, out):  # type: ignore[no-untyped-def]
     """Measurement k in every lane, rotated into independent scalars where R is not diagonal."""
     p = z.shape[1]
@@ -63,7 +62,7 @@ def lay_measurement(k, branches, modes, rotated, U, z, came, out):  # type: igno
             out[(g * p + c) * 8 + lane] = value if b < branches else 0.0
 
 
-@numba.njit(**COMPILE)
+@njit(**COMPILE)
 def copy_sources(branches, modes, n, x, P, mean, covariance):  # type: ignore[no-untyped-def]
     """Branch b starts from source b // m."""
     for b in range(branches):

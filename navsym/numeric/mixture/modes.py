@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 
-import numba
 import numpy as np
 
+from navsym.numeric.compiled import njit
 from navsym.numeric.mixture.filter import COMPILE
 
 
-@numba.njit(**COMPILE)
+@njit(**COMPILE)
 def log_sum(values, count):  # type: ignore[no-untyped-def]
     """log of the sum of exp of the first entries; -inf when there is none."""
     top = -np.inf
@@ -24,7 +24,7 @@ def log_sum(values, count):  # type: ignore[no-untyped-def]
     return top + math.log(total)
 
 
-@numba.njit(**COMPILE)
+@njit(**COMPILE)
 def predict_modes(sources, known, modes, log_weights, log_p, out, terms):  # type: ignore[no-untyped-def]
     """log P[source, next mode] (sources, m).
 
@@ -41,7 +41,7 @@ def predict_modes(sources, known, modes, log_weights, log_p, out, terms):  # typ
                 out[s, i] = log_sum(terms, modes)
 
 
-@numba.njit(**COMPILE)
+@njit(**COMPILE)
 def mixing_weights(sources, modes, ahead, totals, weights, terms):  # type: ignore[no-untyped-def]
     """P[source | next mode] in lanes and log P[next mode]; an impossible mode takes the weights of all.
 
@@ -64,7 +64,7 @@ def mixing_weights(sources, modes, ahead, totals, weights, terms):  # type: igno
             weights[((b // 8) * sources + s) * 8 + b % 8] = math.exp(terms[s] - total)
 
 
-@numba.njit(inline="always", **COMPILE)
+@njit(inline="always", **COMPILE)
 def mix_quickly(modes, logs, transition, totals, weights, terms):  # type: ignore[no-untyped-def]
     """The same with one exponential per source, when every source knows its mode; False when it must not.
 
@@ -92,7 +92,7 @@ def mix_quickly(modes, logs, transition, totals, weights, terms):  # type: ignor
     return True
 
 
-@numba.njit(**COMPILE)
+@njit(**COMPILE)
 def log_sums_by_mode(branches, modes, logs, totals, terms):  # type: ignore[no-untyped-def]
     """totals[i] <- log of the sum of the weights of all branches with the last mode i."""
     for i in range(modes):
@@ -103,7 +103,7 @@ def log_sums_by_mode(branches, modes, logs, totals, terms):  # type: ignore[no-u
         totals[i] = log_sum(terms, count)
 
 
-@numba.njit(inline="always", **COMPILE)
+@njit(inline="always", **COMPILE)
 def weigh(branches, modes, totals, likelihoods, logs, weights, k, probabilities):  # type: ignore[no-untyped-def]
     """Bayes' rule over the branches: log of the evidence, and the largest log-likelihood.
 

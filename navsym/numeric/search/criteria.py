@@ -10,8 +10,8 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numba import njit
 
+from navsym.numeric.compiled import njit
 from navsym.numeric.search.sample import COMPILE, add_square, blend, criterion_one, shift_of, unsigned
 
 #: Rows of hypotheses are padded to this many entries, so that vector loops have no remainder.

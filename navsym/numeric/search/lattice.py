@@ -12,9 +12,9 @@ import math
 from typing import Any
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from navsym.numeric.compiled import njit
 from navsym.numeric.mixture.lanes import load, spread, store
 from navsym.numeric.search.sample import COMPILE, add_square, blend
 

@@ -16,10 +16,11 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numba import njit
+
+from navsym.numeric.compiled import njit
 
 unsigned = np.uint64
-COMPILE: dict[str, Any] = {"nogil": True, "cache": True, "error_model": "numpy"}
+COMPILE: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
 
 #: Multiplication and addition may be fused into one rounding, in these two expressions only: the
 #: compiler has no choice how, so that scalar and vector code still agree to the last bit.

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numba import njit
 
+from navsym.numeric.compiled import njit
 from navsym.numeric.search.sample import (
     COMPILE,
     add_square,

@@ -8,15 +8,15 @@ The plain twin is in ``navsym.methods.trajectory.twins``.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from navsym.numeric.compiled import njit
 from navsym.numeric.trajectory.kernels import Array, candidate
 
 #: Candidates in a block: a multiple of what one vector instruction takes.
 LANES = 32
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
+@njit(error_model="numpy", fastmath={"contract"})
 def bank_step(
     Phi: Array,
     h0: float,
@@ -76,7 +76,7 @@ def bank_step(
                 Ps[i, j, c] = B[i, j, c] - B[0, i, c] * B[0, j, c] * T[0, 1, c]
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def run_block(
     Phi: Array,
     h0: float,
@@ -118,7 +118,7 @@ def run_block(
         cost[c] += misfit[c]
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def tune_by_windows(
     Phi: Array,
     h: Array,

@@ -12,8 +12,9 @@ and no candidate needs a covariance of its own. Candidates that carry their own 
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from navsym.numeric.compiled import njit
 
 Array = NDArray[np.float64]
 
@@ -24,7 +25,7 @@ PREDICTED, CORRECTED, LIKELIHOOD = 0, 1, 2
 LEAST, GREATEST = np.iinfo(np.int64).min, np.iinfo(np.int64).max
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
+@njit(error_model="numpy", fastmath={"contract"})
 def predict(
     Phi: Array,
     y: Array,
@@ -64,7 +65,7 @@ def predict(
     return total
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def innovation_variances(
     s0: float,
     h: Array,
@@ -96,7 +97,7 @@ def innovation_variances(
         size *= 3
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def neighbours(S: Array, around: Array) -> None:
     """Write the largest S up to around[0] into around[1] and the smallest S above it into around[2].
 
@@ -112,7 +113,7 @@ def neighbours(S: Array, around: Array) -> None:
     ends[1], ends[2] = low, high
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def first_place(S: Array, value: float) -> int:
     """Index of the first entry that equals ``value``; the length when none does.
 
@@ -124,7 +125,7 @@ def first_place(S: Array, value: float) -> int:
     return place
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def likeliest(S: Array, squared: float, around: Array) -> tuple[int, float]:
     """Index and value of the smallest log S + squared / S, the first of equals.
 
@@ -142,7 +143,7 @@ def likeliest(S: Array, squared: float, around: Array) -> tuple[int, float]:
     return place, min(left, right)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def smallest_change(
     S: Array,
     g: Array,
@@ -184,7 +185,7 @@ def smallest_change(
     return best, value
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def candidate(
     q: Array,
     seen: NDArray[np.bool_],
@@ -202,7 +203,7 @@ def candidate(
                 out[i] = q[i] / step if digit == 1 else q[i] * step
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
+@njit(error_model="numpy", fastmath={"contract"})
 def apply(
     B: Array,
     g: Array,
@@ -229,7 +230,7 @@ def apply(
         P[i, i] += q[i]
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def tune_one_step(
     Phi: Array,
     h: Array,
@@ -291,7 +292,7 @@ def tune_one_step(
             states[k, i], gains[k, i], diagonals[k, i] = y[i], gain[i], q[i]
 
 
-@njit(cache=True, error_model="numpy")
+@njit(error_model="numpy")
 def run_fixed_gain(Phi: Array, row: Array, gain: Array, z: Array, y: Array, states: Array) -> None:
     """Constant gain: y <- Phi y + gain (z - row y); Phi upper triangular, y (n,) is overwritten."""
     n = y.shape[0]

@@ -20,8 +20,9 @@ library would take three times as long to compile at the first start.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from navsym.numeric.compiled import njit
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.int64]
@@ -30,7 +31,7 @@ Flags = NDArray[np.int64]
 USED, LEFT_OUT, DOUBTED = 0, 1, 2
 
 
-@njit(cache=True)
+@njit()
 def transition(dt: float, Phi: Array) -> None:
     """Write the transition matrix of a step, (n, n), upper triangular with ones."""
     n = Phi.shape[0]
@@ -43,7 +44,7 @@ def transition(dt: float, Phi: Array) -> None:
             factor *= dt / (j - i + 1)
 
 
-@njit(cache=True)
+@njit()
 def noise_shape(n: int) -> Array:
     """Root (n, n) of the noise matrix of a unit step and density: row k holds moments of a Legendre polynomial.
 
@@ -61,7 +62,7 @@ def noise_shape(n: int) -> Array:
     return shape
 
 
-@njit(cache=True)
+@njit()
 def noise_root(dt: float, q: float, shape: Array, root: Array) -> None:
     """Write a root (n, n) of the noise matrix of a step, root^T root = Q: columns of the shape by powers of dt."""
     n = shape.shape[0]
@@ -72,7 +73,7 @@ def noise_root(dt: float, q: float, shape: Array, root: Array) -> None:
         power *= dt
 
 
-@njit(cache=True)
+@njit()
 def triangularise(W: Array, columns: int) -> None:
     """Turn the rows of W so that its first columns become upper triangular, in place (Householder).
 
@@ -100,7 +101,7 @@ def triangularise(W: Array, columns: int) -> None:
         W[j, j] = length
 
 
-@njit(cache=True)
+@njit()
 def move(Phi: Array, x: Array, out: Array) -> None:
     """out <- Phi x for upper triangular Phi; out may be x."""
     n = x.shape[0]
@@ -111,7 +112,7 @@ def move(Phi: Array, x: Array, out: Array) -> None:
         out[i] = total
 
 
-@njit(cache=True)
+@njit()
 def stack(U: Array, Phi: Array, root: Array, W: Array) -> None:
     """Write U Phi^T above root into the first n columns of W (2n, ...): a root of Phi P Phi^T + Q."""
     n = U.shape[0]
@@ -124,7 +125,7 @@ def stack(U: Array, Phi: Array, root: Array, W: Array) -> None:
             W[n + i, j] = root[i, j]
 
 
-@njit(cache=True)
+@njit()
 def predict(dt: float, q: float, shape: Array, y: Array, U: Array, Phi: Array, root: Array, W: Array) -> None:
     """y <- Phi y and the root of Phi P Phi^T + Q in place; shape as from noise_shape;
     Phi, root (n, n) and W (2n, n) are scratch."""
@@ -139,7 +140,7 @@ def predict(dt: float, q: float, shape: Array, y: Array, U: Array, Phi: Array, r
             U[i, j] = W[i, j]
 
 
-@njit(cache=True)
+@njit()
 def correct(y: Array, U: Array, gain: Array, innovation: float, S: float, noise: float) -> None:
     """y and U after a measurement of the first state with variance ``noise``, S = P_00 + noise, in place.
 
@@ -155,7 +156,7 @@ def correct(y: Array, U: Array, gain: Array, innovation: float, S: float, noise:
         U[0, i] *= shrink
 
 
-@njit(cache=True)
+@njit()
 def begin(first: float, spread: Array, y: Array, U: Array) -> None:
     """The state before the first measurement: at its position, at rest, with deviations ``spread``."""
     for i in range(y.shape[0]):
@@ -166,7 +167,7 @@ def begin(first: float, spread: Array, y: Array, U: Array) -> None:
     y[0] = first
 
 
-@njit(cache=True)
+@njit()
 def believed(innovation: float, S: float, gate: float) -> float:
     """Variance of an innovation, raised until it is at the gate; 0 for no gate."""
     if gate > 0.0 and innovation * innovation > gate * gate * S:
@@ -174,7 +175,7 @@ def believed(innovation: float, S: float, gate: float) -> float:
     return S
 
 
-@njit(cache=True)
+@njit()
 def forward(
     t: Array,
     z: Array,
@@ -215,7 +216,7 @@ def forward(
         gains[k], states[k], roots[k] = gain, y, U
 
 
-@njit(cache=True)
+@njit()
 def gain_and_rest(W: Array, back: Array) -> None:
     """The smoother's gain, transposed, from the triangle A of the first n columns of W: A back = W[:n, n:]."""
     n = back.shape[0]
@@ -227,7 +228,7 @@ def gain_and_rest(W: Array, back: Array) -> None:
             back[i, j] = total / W[i, i]
 
 
-@njit(cache=True)
+@njit()
 def backward(t: Array, states: Array, roots: Array, q: float) -> None:
     """Smooth in place: states (N, n) and roots (N, n, n) of the filter become those given all data.
 
@@ -261,7 +262,7 @@ def backward(t: Array, states: Array, roots: Array, q: float) -> None:
             roots[k, i, i:] = V[i, i:]
 
 
-@njit(cache=True)
+@njit()
 def misfit(
     t: Array, z: Array, r: Array, use: Flags, q: float, spread: Array, order: int, gate: float
 ) -> tuple[float, float, int]:
