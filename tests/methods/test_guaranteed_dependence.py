@@ -77,3 +77,11 @@ def test_a_function_beyond_the_range_of_a_double_is_solved():
 def test_functions_that_differ_beyond_all_bits_are_left_open_with_the_direction_that_is_not_seen():
     with pytest.raises(NavsymError, match=r"about the direction \[0, -1, 1\]"):
         solve(from_regressors([[1, s, s + exp(s) / sp.Integer(10) ** 700]], [0, 0, 1], s, (0, 1)))
+
+
+@pytest.mark.parametrize("digits", [9, 12, 16, 20, 30])
+def test_no_place_of_a_certificate_is_outside_its_panel(digits):
+    """The optimum 1 is cos(9 t/2) at 0, a single contact at an end: Newton's steps had left the interval by 1e-31."""
+    row = [cos(9 * s / 2), s * exp(-5 * s / 4), cos(9 * s / 4)]
+    document = solved(row, [1, 0, 0], (0, 5), digits).certificate
+    assert all(0 <= R(v) <= 1 for _, v in document.get("support", []))

@@ -15,7 +15,7 @@ from navsym.proof.optimality.enclosure import Problem
 def support_points(basis: Basis, contacts: Contacts, at: Sequence[fmpq]) -> list[tuple[int, fmpq]]:
     """As many places as unknowns, regressors far from dependent: the contacts, filled up from the grid.
 
-    at : the exact fraction of each contact
+    at : the exact fraction of each contact; where a step of Newton's left the panel by a rounding, its end is taken
     """
     C = basis.panels.coefficients
     m = C.shape[2]
@@ -28,7 +28,7 @@ def support_points(basis: Basis, contacts: Contacts, at: Sequence[fmpq]) -> list
     for i in order:
         row = rows_at(C, contacts.panel[i : i + 1], contacts.u[i : i + 1])[0] @ rest
         if np.linalg.norm(row) > 1e-7 and len(chosen) < m:
-            chosen.append((int(contacts.panel[i]), at[i]))
+            chosen.append((int(contacts.panel[i]), min(max(at[i], fmpq(0)), fmpq(1))))
             rest = without(rest, row)
     rows = rows_at(C, np.array([k for k, _ in grid]), np.array([u for _, u in grid]))
     while len(chosen) < m:
