@@ -8,6 +8,14 @@ got …; do …*. Nothing else may leave a public function on bad input.
 from __future__ import annotations
 
 
+def printable(text: str) -> str:
+    """The text with every character that is not printable (controls, line ends, half surrogates) written as an escape.
+
+    Names and values of a file stand in messages; they can neither steer a terminal nor feign a second line.
+    """
+    return "".join(char if char.isprintable() else repr(char)[1:-1] for char in text)
+
+
 class NavsymError(Exception):
     """Base of all errors that are the user's to mend.
 
@@ -20,9 +28,9 @@ class NavsymError(Exception):
     status = 2
 
     def __init__(self, message: str, *, where: str = "", kind: str | None = None):
-        super().__init__(message)
-        self.message = message
-        self.where = where
+        self.message = printable(message)
+        self.where = printable(where)
+        super().__init__(self.message)
         if kind is not None:
             self.kind = kind
 
@@ -31,7 +39,8 @@ class NavsymError(Exception):
 
     def at(self, where: str) -> NavsymError:
         """The same error with a place put in front of the one it has."""
-        self.where = f"{where}: {self.where}" if self.where else where
+        place = printable(where)
+        self.where = f"{place}: {self.where}" if self.where else place
         return self
 
     def as_json(self) -> dict[str, dict[str, str]]:

@@ -6,10 +6,18 @@ import os
 
 import pytest
 from hypothesis import settings
+from hypothesis.internal.conjecture import providers
 
-# Examples are the same on every machine and every run; a shared machine may be slow, so no deadline.
+# Examples are the same on every machine and every run; a shared machine may be slow, so no deadline. They would differ
+# with the modules that happen to be loaded, whose constants hypothesis also tries, hence with the worker that runs a
+# test: so none of these are taken. NAVSYM_EXAMPLES=random looks for new ones, constants of the modules included.
 settings.register_profile("navsym", derandomize=True, deadline=None, max_examples=50, database=None)
-settings.load_profile("navsym")
+settings.register_profile("random", deadline=None, max_examples=200, database=None, print_blob=True)
+if os.environ.get("NAVSYM_EXAMPLES") == "random":
+    settings.load_profile("random")
+else:
+    settings.load_profile("navsym")
+    providers._get_local_constants = lambda: providers._local_constants
 
 os.environ["NO_COLOR"] = "1"
 os.environ["MPLBACKEND"] = "Agg"

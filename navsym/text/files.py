@@ -6,7 +6,7 @@ import codecs
 import os
 from pathlib import Path
 
-from navsym.errors import EmptyError, ExpressionSyntaxError, NavsymError, TooLargeError
+from navsym.errors import EmptyError, ExpressionSyntaxError, NavsymError, TooLargeError, printable
 
 MARKS = {
     codecs.BOM_UTF8: "a byte order mark",
@@ -21,7 +21,7 @@ MARKS = {
 
 def called(path: str | os.PathLike[str]) -> str:
     """The path as it may stand in a message."""
-    return "".join(char if char.isprintable() else f"\\x{ord(char):02x}" for char in os.fspath(path))
+    return printable(os.fspath(path))
 
 
 def read_text(path: str | os.PathLike[str], limit: int) -> str:
