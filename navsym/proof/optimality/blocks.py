@@ -15,11 +15,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from flint import arb, arb_mat, ctx
+from flint import arb, arb_mat, ctx, fmpq
 
 from navsym.proof.balls import precision
-from navsym.proof.optimality.enclosure import Problem
+from navsym.proof.optimality.enclosure import Problem, interval
 from navsym.proof.optimality.existence import inside
+from navsym.proof.optimality.local import series_rows
 from navsym.proof.optimality.polish import Polished
 
 
@@ -65,11 +66,16 @@ def alternance_image(
     """Balls around the only exact solution in ``centre +- radius``, or None when the test fails.
 
     The unknowns are x, the inner places and the weights, in this order; the contacts are as many as the x.
+    Y and I - Y J need only be good for contraction: few bits first, and bounds of whole panels.
     """
-    F = residual(problem, found, centre)
-    for bits in (ctx.prec // 2 + 32, ctx.prec):  # Y and I - Y J need only be good for contraction
+    thin = rows_at(problem, found, centre, 2)
+    F, around = residual(problem, found, centre, thin), [r * arb(0, 1) for r in radius]
+    box = [c + r for c, r in zip(centre, around, strict=True)]
+    within = all(bool(at >= 0) and bool(at <= 1) for at in parted(found, box)[1].entries())
+    for bits, whole in ((ctx.prec // 2 + 32, within), (ctx.prec, False)):
         with precision(bits):
-            step = newton_step(problem, found, F, centre, radius)
+            rows = spread_rows(problem, found, thin, around) if whole else rows_at(problem, found, box, 2)
+            step = newton_step(found, F, blocks(found, rows, box), around)
         image = None if step is None else inside([c + d for c, d in zip(centre, step, strict=True)], centre, radius)
         if image is not None:
             return image
@@ -77,12 +83,9 @@ def alternance_image(
 
 
 def newton_step(
-    problem: Problem, found: Polished, F: tuple[arb_mat, arb_mat, arb_mat], centre: Sequence[arb],
-    radius: Sequence[arb],
-) -> list[arb] | None:  # fmt: skip
-    """``-Y F + (I - Y J)(Z - z)`` over the box Z around z; None where Y cannot be made."""
-    around = [r * arb(0, 1) for r in radius]
-    J = blocks(problem, found, [c + r for c, r in zip(centre, around, strict=True)])
+    found: Polished, F: tuple[arb_mat, arb_mat, arb_mat], J: Blocks, around: Sequence[arb]
+) -> list[arb] | None:
+    """``-Y F + (I - Y J) d`` for all d in the balls ``around`` zero; None where Y cannot be made."""
     Y = inverse(J)
     if Y is None:
         return None
@@ -103,29 +106,40 @@ def gathered(found: Polished, parts: tuple[arb_mat, arb_mat, arb_mat]) -> list[a
     return [*x, *(at for at, inner in zip(v, found.inner, strict=True) if inner), *w]
 
 
-def series_rows(problem: Problem, found: Polished, v: Sequence[arb], order: int) -> list[arb_mat]:
-    """Taylor coefficients 0 … order of H at the places, (l, m) each; zeros beyond the first at ends."""
-    rows: list[list[list[arb]]] = [[] for _ in range(order + 1)]
-    still = [arb(0)] * len(found.dual)
-    for k, at, exact_at, inner in zip(found.panel, v, found.v, found.inner, strict=True):
-        series = problem.panels[k].series(at if inner else exact_at, arb(1), order if inner else 0)
-        for d, row in enumerate(rows):
-            row.append([h[d] for h in series] if inner or d == 0 else still)
-    return [arb_mat(row) for row in rows]
+def rows_at(problem: Problem, found: Polished, z: Sequence[arb], order: int) -> list[arb_mat]:
+    """Taylor coefficients 0 … order of H at the places in z."""
+    free = iter(z[len(found.dual) :])
+    at = [next(free) if inner else v for v, inner in zip(found.v, found.inner, strict=True)]
+    return series_rows(problem.panels, found.panel, at, found.inner, order)
 
 
-def residual(problem: Problem, found: Polished, z: Sequence[arb]) -> tuple[arb_mat, arb_mat, arb_mat]:
-    """``B x - s sigma, S x, B^T w - P`` at z."""
-    x, v, w = parted(found, z)
-    B, S = series_rows(problem, found, v.entries(), 1)
+def spread_rows(problem: Problem, found: Polished, thin: list[arb_mat], around: Sequence[arb]) -> list[arb_mat]:
+    """Taylor coefficients 0 … 2 of H for every place within ``around`` of those of ``thin`` and on its panel.
+
+    ``c_k(v + d)`` lies in ``c_k(v) + d (k + 1) C_(k+1)`` where C holds for the whole panel (mean value theorem).
+    """
+    used = sorted(set(found.panel))
+    whole = {k: problem.panels[k].series(interval(fmpq(0), fmpq(1)), arb(1), 3) for k in used}
+    d, size = parted(found, around)[1].entries(), len(found.v)
+    shifts = arb_mat([[d[i] if i == j else 0 for j in range(size)] for i in range(size)])
+    bounds = [arb_mat([[h[k + 1] for h in whole[place]] for place in found.panel]) for k in range(3)]
+    return [row + shifts * bound * (k + 1) for k, (row, bound) in enumerate(zip(thin, bounds, strict=True))]
+
+
+def residual(
+    problem: Problem, found: Polished, z: Sequence[arb], rows: Sequence[arb_mat]
+) -> tuple[arb_mat, arb_mat, arb_mat]:
+    """``B x - s sigma, S x, B^T w - P`` at z, from H and its slopes there."""
+    x, _, w = parted(found, z)
+    B, S = rows[:2]
     bounds = [s * problem.panels[k].bound() for k, s in zip(found.panel, found.sign, strict=True)]
     return B * x - column(bounds), S * x, B.transpose() * w - column(problem.target())
 
 
-def blocks(problem: Problem, found: Polished, z: Sequence[arb]) -> Blocks:
-    """The parts of the derivative over a box z."""
-    x, v, w = parted(found, z)
-    B, S, bends = series_rows(problem, found, v.entries(), 2)
+def blocks(found: Polished, rows: Sequence[arb_mat], z: Sequence[arb]) -> Blocks:
+    """The parts of the derivative over a box z, from the Taylor coefficients of H over it."""
+    x, _, w = parted(found, z)
+    B, S, bends = rows
     weighted = arb_mat([[a * h for h in row] for a, row in zip(w.entries(), S.tolist(), strict=True)])
     return Blocks(B, S, weighted, S * x, bends * x * 2)
 

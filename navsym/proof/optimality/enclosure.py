@@ -16,11 +16,12 @@ from operator import mul
 from typing import Any
 
 import sympy as sp
-from flint import arb, arb_mat, arb_series, ctx, fmpq
+from flint import arb, arb_mat, arb_series, ctx, fmpq, fmpz
 
 from navsym.proof.optimality.tapes import Program, program
 
 ORDER = 10
+ONE = fmpz(1)
 
 
 @contextmanager
@@ -244,7 +245,7 @@ def rational(x: Any) -> fmpq:
     if isinstance(x, arb):
         mantissa, exponent = x.mid().man_exp()
         power = int(exponent)
-        return fmpq(int(mantissa)) * fmpq(2) ** power
+        return fmpq(mantissa << power) if power >= 0 else fmpq(mantissa, ONE << -power)
     return fmpq(x)
 
 

@@ -89,16 +89,6 @@ class Moving:
         """Coefficients 0 … order in w of every q on panel k, at the fraction ``v + r w``."""
         return self.mixed(self.mix, *self.functions(k, v, r, s, order), order)
 
-    def rows_of_problem(self, k: int, v: Any, r: Any, s: arb, order: int) -> list[list[Any]]:
-        """The same of ``H / sigma``."""
-        m = self.size
-        return self.mixed(arb_mat(m, m, 1), *self.functions(k, v, r, s, order), order)
-
-    def dual_of_problem(self, y: Sequence[Any]) -> list[Any]:
-        """``A^T y``: what multiplies ``H / sigma`` where y multiplies q."""
-        columns = self.mix.transpose().tolist()
-        return [sum((a * c for a, c in zip(y, column, strict=True)), arb(0)) for column in columns]
-
     def functions(self, k: int, v: Any, r: Any, s: arb, order: int) -> tuple[list[list[Any]], Any]:
         """Coefficients of every H, and ``1 / sigma``."""
         panel, p = self.problem.panels[k], self.value(s)
@@ -167,13 +157,6 @@ class Vanishing(Moving):
                 value = value * place
             done.append(padded(value, order))
         return done
-
-    def rows_of_problem(self, k: int, v: Any, r: Any, s: arb, order: int) -> list[list[Any]]:
-        return self.rows(k, v, r, s, order)
-
-    def dual_of_problem(self, y: Sequence[Any]) -> list[Any]:
-        """The certificate is one of the scaled rows themselves."""
-        return list(y)
 
     def target(self, s: arb) -> list[Any]:
         p, P = self.value(s), exact_functional(self.problem)

@@ -12,13 +12,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from flint import arb, arb_mat, fmpq
+from flint import arb, arb_mat
 
 from navsym.numeric.exchange.kernels import chebyshev_derivative, contact_system
 from navsym.numeric.exchange.search import Contacts
 from navsym.proof.balls import precision
 from navsym.proof.optimality.basis import Basis, as_fraction
 from navsym.proof.optimality.enclosure import Panel, Problem
+from navsym.proof.optimality.local import Local, local
 
 STEPS = 60
 #: A residual so many times the smallest one, or no number at all, says that Newton's method has run away.
@@ -65,9 +66,14 @@ def polish(
         p = [basis.functional[i, 0] / basis.size for i in range(m)]
         signs = [int(s) for s in contacts.sign]
         inner = [bool(i) for i in contacts.inner]
+        places, goal = contacts.panel.tolist(), arb(goal)
+        bounds = [panels[k].bound() for k in places]
+        about = local(panels, places, v, inner, goal)
         begun, away, last = (x, v, w), arb("inf"), None
         for _ in range(STEPS):
-            F = residual(panels, basis, contacts.panel.tolist(), x, v, w, p, signs, inner)
+            if not about.reaches(v, goal):
+                about = local(panels, places, v, inner, goal)
+            F = residual(about, bounds, basis, x, v, w, p, signs, inner)
             size = largest(F)
             if not size <= away:
                 (x, v, w), regular, size = begun, False, away / AWAY
@@ -102,10 +108,11 @@ def pinned(
     rows : these conditions on x in double precision, fewer than unknowns
     """
     inverse, p = np.linalg.pinv(rows), [arb(0)] * x.size
-    y = [arb(float(c)) for c in x]
+    y, goal = [arb(float(c)) for c in x], arb(goal)
+    bounds = [problem.panels[k].bound() for k in found.panel]
+    about = local(problem.panels, found.panel, found.v, found.inner, goal)
     for _ in range(STEPS):
-        F = residual(problem.panels, basis, found.panel, y, found.v, found.weights, p, found.sign, found.inner)
-        F = F[: rows.shape[0]]
+        F = residual(about, bounds, basis, y, found.v, found.weights, p, found.sign, found.inner)[: rows.shape[0]]
         if largest(F) < goal:
             break
         y = [(a + s).mid() for a, s in zip(y, correction(inverse, F), strict=True)]
@@ -154,17 +161,16 @@ def correction(inverse: np.ndarray, F: Sequence[arb]) -> list[arb]:
 
 
 def residual(
-    panels: Sequence[Panel], basis: Basis, places: Sequence[int], x: Sequence[arb], v: Sequence[arb],
+    about: Local, bounds: Sequence[arb], basis: Basis, x: Sequence[arb], v: Sequence[arb],
     w: Sequence[arb], p: Sequence[arb], signs: Sequence[int], inner: Sequence[bool],
 ) -> list[arb]:  # fmt: skip
-    """The optimality system in high precision; slopes with respect to u = 2 v - 1."""
+    """The optimality system in high precision; slopes with respect to u = 2 v - 1.
+
+    bounds : the noise bound at every contact
+    """
     dual = basis.transform.transpose() * arb_mat([[a] for a in x])
-    series = [panels[k].series(v[i], fmpq(1, 2), int(inner[i])) for i, k in enumerate(places)]
-    bounds = [panels[k].bound() for k in places]
-    values = arb_mat([[h[0] for h in row] for row in series])
-    slopes = [(b, [h[1] for h in row]) for b, row, i in zip(bounds, series, inner, strict=True) if i]
-    balance = basis.transform * (values.transpose() * arb_mat([[a / b] for a, b in zip(w, bounds, strict=True)]))
-    heights = [f / b - s for f, b, s in zip((values * dual).entries(), bounds, signs, strict=True)]
-    flat = (arb_mat([row for _, row in slopes]) * dual).entries() if slopes else []
-    flat = [f / b for f, (b, _) in zip(flat, slopes, strict=True)]
+    values, slopes = about.sums(dual, v)
+    heights = [f / b - s for f, b, s in zip(values, bounds, signs, strict=True)]
+    flat = [f / (2 * b) for f, b, i in zip(slopes, bounds, inner, strict=True) if i]
+    balance = basis.transform * about.balance([a / b for a, b in zip(w, bounds, strict=True)], v)
     return [a.mid() for a in [*heights, *flat, *(b - a for a, b in zip(p, balance.entries(), strict=True))]]

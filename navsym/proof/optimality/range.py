@@ -37,8 +37,11 @@ BITS = 192
 ORDER = 2
 DEGREE = 5
 DIGITS = 32
-MOST_CELLS = 80
+#: Cells for one panel: so many, and so many more for each contact on it.
+MOST_CELLS, CELLS_EACH = 24, 12
 HUGE = 10**9
+#: A box has this much more room than Newton's step in it needs.
+MARGIN = arb(5) / 4
 #: Bounds of the value are this part of it wider than what is proved here.
 ROOM = 10**6
 #: The bound is proved here for a box wider by this part, so that a checker with other cells has room.
@@ -243,9 +246,9 @@ def verified(
         move = image(moving, pattern, z, residual, radius, free)
         if move is None or not all(bool(abs(d) < HUGE) for d in move.values()):
             return None
-        if attempt and all(bool(abs(d) * 2 < radius[k]) for k, d in move.items()):
+        if attempt and all(bool(abs(d) * MARGIN < radius[k]) for k, d in move.items()):
             break
-        wanted = {k: (abs(d).upper() * 4 + arb(10) ** (4 - DIGITS) * size_of(z[k])).upper() for k, d in move.items()}
+        wanted = {k: (abs(d).upper() * 2 + arb(10) ** (4 - DIGITS) * size_of(z[k])).upper() for k, d in move.items()}
         radius = {k: arb(exact(decimal(r, 3, 1))) for k, r in wanted.items()}
     else:
         return None
@@ -253,7 +256,7 @@ def verified(
     touches = touches_of(track, here, m)
     if touches is None:
         return None
-    spread = {k: here_radius(radius, k) for k in range(m)}
+    spread = {k: abs(move[k]).upper() * (1 + WIDER) for k in range(m)}
     cells = 0
     for k, mine in enumerate(touches):
         used = halved(mine, partial(expansion, moving, z[:m], spread, k))
@@ -274,10 +277,6 @@ def value_over(moving: Moving, y: Sequence[Sequence[arb]], spread: dict[int, arb
 
 def size_of(c: Sequence[arb]) -> arb:
     return max((abs(a) for a in c), key=lambda a: float(a.mid())) + arb(10) ** -20
-
-
-def here_radius(radius: dict[int, arb], k: int) -> arb:
-    return radius.get(k, arb(0)) * (1 + WIDER)
 
 
 def system_values(
@@ -301,32 +300,20 @@ def image(
     moving: Moving, pattern: Pattern, z: Sequence[Sequence[arb]], residual: Sequence[Sequence[arb]],
     radius: dict[int, arb], free: Sequence[int],
 ) -> dict[int, arb] | None:  # fmt: skip
-    """Krawczyk's image of the box relative to its moving centre for all s, or None when F' looks singular."""
+    """Newton's step from the moving centre for all s, by the derivatives of the whole box; None when they look
+    singular. The checker does the same, with balls of the same order."""
     n = len(free)
 
     def entries(s: arb) -> list[Any]:
         J = optimality_system(moving, pattern, z, radius, s)[1]
         return [row_.get(k, arb(0)) for row_ in J for k in free]
 
-    J = enclosed_series(entries)
-    Y = inverse_of(matrix(J, n, 0).tolist(), 0)
-    if Y is None:
+    J = arb_mat(n, n, [at_all(e) for e in enclosed_series(entries)])
+    try:
+        moved = J.solve(-arb_mat([[at_all(r)] for r in residual]), algorithm="precond").entries()
+    except ZeroDivisionError:
         return None
-    # Ranges first, products after: the same order as in the checker, which has to find the box good enough too.
-    spread = arb_mat([[radius.get(k, arb(0)) * EVERY] for k in free])
-    moved = (identity(n) - Y * arb_mat(n, n, [at_all(e) for e in J])) * spread
-    moved -= Y * arb_mat([[at_all(r)] for r in residual])
-    if not all(moved[i, 0].is_finite() for i in range(n)):
-        return None
-    return {k: moved[i, 0] for i, k in enumerate(free)}
-
-
-def matrix(J: Sequence[Sequence[arb]], n: int, k: int) -> arb_mat:
-    return arb_mat(n, n, [e[k] for e in J])
-
-
-def identity(n: int) -> arb_mat:
-    return arb_mat([[int(i == j) for j in range(n)] for i in range(n)])
+    return dict(zip(free, moved, strict=True)) if all(d.is_finite() for d in moved) else None
 
 
 def halved(touches: Sequence[Touch], expand: Expansion) -> int | None:
@@ -340,7 +327,7 @@ def halved(touches: Sequence[Touch], expand: Expansion) -> int | None:
     while stack:
         a, b = stack.pop()
         used += 1
-        if used > MOST_CELLS:
+        if used > MOST_CELLS + CELLS_EACH * len(touches):
             return None
         if not passes(expand, cell_for(a, b, marks), arb(1), bool(touches)):
             stack += [(a, (a + b) / 2), ((a + b) / 2, b)]
@@ -378,21 +365,18 @@ def touches_of(track: Track, here: Sequence[arb], m: int) -> list[list[Touch]] |
 def expansion(
     moving: Moving, y: Sequence[Sequence[arb]], spread: dict[int, arb], k: int, cell: Cell, centre: fmpq, radius: fmpq
 ) -> list[arb]:
-    """Taylor coefficients of f in w, place ``centre + radius w``, for all |s| <= 1; the last over the whole cell.
-
-    In the basis of the problem, where cancellation costs width, because a checker has it so.
-    """
+    """Taylor coefficients of f in w, place ``centre + radius w``, for all |s| <= 1; the last over the whole cell."""
     order = order_for(moving.size)
 
     def values(s: arb) -> list[Any]:
-        x = moving.dual_of_problem([series_at(c, s) + spread[j] * EVERY for j, c in enumerate(y)])
-        h = moving.rows_of_problem(k, arb(centre), arb(radius), s, order - 1)
-        return [dot(x, [row_[d] for row_ in h]) for d in range(order)]
+        x = [series_at(c, s) + spread[j] * EVERY for j, c in enumerate(y)]
+        q = moving.rows(k, arb(centre), arb(radius), s, order - 1)
+        return [dot(x, [row_[d] for row_ in q]) for d in range(order)]
 
     point = [at_all(c) for c in enclosed_series(values)]
     with terms(1):
-        x = moving.dual_of_problem([at_all(c) + spread[j] * EVERY for j, c in enumerate(y)])
-        wide = moving.rows_of_problem(k, interval(cell.lower, cell.upper), arb(radius), EVERY, order)
+        x = [at_all(c) + spread[j] * EVERY for j, c in enumerate(y)]
+        wide = moving.rows(k, interval(cell.lower, cell.upper), arb(radius), EVERY, order)
         last = total(x, [number_of(row_[order], 0) for row_ in wide])
     return [*point, last]
 
