@@ -8,8 +8,9 @@ that needs; the orthonormal functions are then safe in double precision.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -33,6 +34,9 @@ GUESSED = 1e-13
 #: Places between the points, and what is called zero there.
 ELSEWHERE, SAME = (fmpq(2, 7), fmpq(5, 11), fmpq(9, 13)), arb(2) ** -400
 NODE_BITS = 128
+#: Functions whose triangular factor has a condition below the inverse of this are made orthonormal in doubles, when
+#: their sizes allow.
+APART, RANGE = 1e-8, (1e-100, 1e100)
 
 
 class DependentError(Exception):
@@ -81,9 +85,9 @@ def samples(panels: Sequence[Panel], count: int, bits: int) -> arb_mat:
     rows: list[list[arb]] = []
     with precision(bits):
         for panel in panels:
-            sigma = panel.bound()
-            rows += [[h / sigma for h in panel.rows(arb(v))] for v in fractions]
-            if not all(h.is_finite() for row in rows[-count:] for h in row):
+            sigma, mine = panel.bound(), [panel.rows(arb(v)) for v in fractions]
+            rows += mine if panel.sigma == 1 else [[h / sigma for h in row] for row in mine]
+            if not sum(map(abs, chain(*mine)), arb(0)).is_finite():
                 raise NotFiniteError(
                     f"regressors: expected functions that are finite on the interval; got {panel.functions} between "
                     f"{panel.start} and {panel.end}; change the interval"
@@ -121,7 +125,13 @@ def relation_of(gram: arb_mat, index: int) -> list[arb]:
 
 
 def transform_of(values: arb_mat, bits: int) -> tuple[arb_mat, int]:
-    """A = L^-1 for the Gram matrix ``L L^T`` of the rows, as exact midpoints; the digits that A and L span."""
+    """A = L^-1 for the Gram matrix ``L L^T`` of the rows, as exact midpoints; the digits that A and L span.
+
+    Any regular A near it will do: one of doubles, where the functions are far from dependent.
+    """
+    rounded = rounded_transform(double(values))
+    if rounded is not None:
+        return rounded
     gram = values.transpose() * values
     count = values.nrows()
     L = arb_mat(cholesky(gram * (arb(1) / count), bits))
@@ -129,6 +139,24 @@ def transform_of(values: arb_mat, bits: int) -> tuple[arb_mat, int]:
     A = arb_mat(L.nrows(), L.ncols(), [e.mid() for e in inverse.entries()])
     digits = [(max(map(arb.abs_upper, matrix.entries())).log() / arb(10).log()).mid() for matrix in (A, L)]
     return A, max(0, int(float(sum(digits, arb(0)))) + 1)
+
+
+def rounded_transform(values: NDArray[np.float64]) -> tuple[arb_mat, int] | None:
+    """:func:`transform_of` in doubles; None where these do not tell the functions apart for certain."""
+    sizes = np.abs(values).max(axis=0)
+    if not np.isfinite(sizes).all() or sizes.min() < RANGE[0] or sizes.max() > RANGE[1]:
+        return None
+    scale = np.exp2(np.round(np.log2(sizes)))
+    factor = np.linalg.qr(values / scale, mode="r") / np.sqrt(len(values))
+    factor *= np.where(np.diag(factor) < 0, -1.0, 1.0)[:, None]
+    if not np.abs(np.diag(factor)).min() > APART:
+        return None
+    inverse = np.linalg.inv(factor)
+    if np.linalg.norm(inverse) * np.linalg.norm(factor) > 1 / APART:
+        return None
+    A = inverse.T / scale
+    span = np.log10(np.abs(A).max()) + np.log10(np.abs(factor * scale).max())
+    return arb_mat(*A.shape, [arb(a) for a in A.ravel().tolist()]), max(0, int(span) + 1)
 
 
 def make_basis(problem: Problem, bits: int = 192) -> Basis:
@@ -142,13 +170,21 @@ def make_basis(problem: Problem, bits: int = 192) -> Basis:
     if any(panel.values or panel.mix is not None for panel in problem.panels):
         return made_basis(problem, bits)
     panels = tuple((p.measurement, p.functions, p.variable, p.start, p.end, p.sigma) for p in problem.panels)
-    return kept_basis(panels, problem.functional, bits)
+    return kept_basis(Exact((panels, problem.functional), problem), bits)
+
+
+@dataclass(frozen=True, slots=True)
+class Exact:
+    """A problem that is compared by its exact expressions."""
+
+    expressions: tuple[Any, ...]
+    problem: Problem = field(compare=False)
 
 
 @lru_cache(maxsize=64)
-def kept_basis(panels: tuple[tuple[Any, ...], ...], functional: tuple[Any, ...], bits: int) -> Basis:
+def kept_basis(exact: Exact, bits: int) -> Basis:
     """:func:`made_basis` for exact expressions, which are compared as a whole."""
-    return made_basis(Problem(tuple(Panel(*fields) for fields in panels), functional), bits)
+    return made_basis(exact.problem, bits)
 
 
 def made_basis(problem: Problem, bits: int) -> Basis:
