@@ -17,7 +17,7 @@ from navsym.report.page_names import letter_of, split_name
 Curve = list[tuple[float, float]]
 POINTS = 160
 WIDTH, HEIGHT = 460, 220
-LEFT, RIGHT, TOP, BOTTOM = 62, 12, 26, 34
+LEFT, RIGHT, TOP, BOTTOM = 72, 12, 26, 34
 
 FUNCTIONS: dict[str, Callable[..., float]] = {
     "sin": math.sin, "cos": math.cos, "tan": math.tan, "exp": math.exp, "log": math.log, "sqrt": math.sqrt,
@@ -153,7 +153,7 @@ def drawing(
     at_y = scale((low, high), (HEIGHT - BOTTOM, TOP))
     others = others_words({other: number for other, number in held.items() if other != along})
     words = f"Printed side (dashed) and derived side (solid) along {along}" + (f" with {others}" if others else "")
-    words += f"; at {along} = {held[along]:.4g} they are {marks[0]:.6g} and {marks[1]:.6g}."
+    words += f"; at {along} = {held[along]:.4g} they are {marks[0]:.6g} and {marks[1]:.6g}. Units are the paper's."
     parts = [*axes(along, ends, (low, high), at_x, at_y), *KEY]
     for kind, points in zip(("printed", "derived"), curves, strict=True):
         parts.append(f'<path class="line {kind}" d="{path(points, at_x, at_y, low, high)}"/>')
@@ -210,6 +210,10 @@ def axes(
     middle = (LEFT + WIDTH - RIGHT) / 2
     parts.append(
         f'<text class="tick" x="{middle}" y="{HEIGHT - 4}" text-anchor="middle">{written(along)}</text>'
+    )
+    height = (TOP + bottom) / 2
+    parts.append(
+        f'<text class="tick" transform="translate(12 {height}) rotate(-90)" text-anchor="middle">both sides</text>'
     )
     return parts
 

@@ -14,7 +14,7 @@ from fnmatch import fnmatchcase
 from navsym.errors import ExpressionSyntaxError, NavsymError, UnknownSymbolError
 from navsym.report.formula.latex import sentence_html
 
-KEYS = ("where", "printed", "correct", "why")
+KEYS = ("where", "printed", "correct", "why", "check")
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,12 +25,14 @@ class Wording:
     printed : what stands there
     correct : what should stand there
     why     : the reason, a sentence or two; empty to take that of the claim
+    check   : numbers to see it by; empty where those of the counterexample will do
     """
 
     where: str
     printed: str
     correct: str
     why: str = ""
+    check: str = ""
 
 
 Words = Mapping[str, Wording]
@@ -57,7 +59,7 @@ def wording_of(section: object, where: str) -> Wording:
     """
     if not isinstance(section, dict) or not set(KEYS[:3]) <= set(section) <= set(KEYS):
         got = ", ".join(section) if isinstance(section, dict) else "no section"
-        message = f"expected the keys where, printed, correct and perhaps why; got {got}; write them"
+        message = f"expected the keys where, printed, correct and perhaps why and check; got {got}; write them"
         raise UnknownSymbolError(message, where=where)
     try:
         for value in section.values():

@@ -68,6 +68,61 @@ def test_a_correction_names_a_place_changes_something_and_gives_a_reason(module)
         assert worded.why.rstrip().endswith((".", ")", "?")), number
 
 
+@pytest.mark.parametrize("module", MODULES)
+def test_every_correction_can_be_seen_in_numbers(module):
+    card = importlib.import_module(f"derivations.{module}").PAPER
+    entries = erratum_of(card, [r for r in LEDGER["claims"] if r["paper"] == module], words_of(module)).entries
+    assert [e.ids[0] for e in entries if not (e.check or e.rows or (e.words and e.words.check))] == []
+
+
+def folded(prior, stay, likelihood):
+    """Numerators of Bayes' rule for a state of two values, and the denominator with the transition squared."""
+    step = [[stay, 1 - stay], [1 - stay, stay]]
+    ahead = [sum(prior[i] * step[i][j] ** power for i in (0, 1)) for power in (1, 2) for j in (0, 1)]
+    return [likelihood[j] * ahead[j] for j in (0, 1)], sum(likelihood[j] * ahead[2 + j] for j in (0, 1))
+
+
+def spread(weights, estimates):
+    """Terms of (13) with unit covariances: weight times one and the square of the distance to the estimate."""
+    mean = sum(w * x for w, x in zip(weights, estimates, strict=True))
+    return [w * (1 + (x - mean) ** 2) for w, x in zip(weights, estimates, strict=True)]
+
+
+(ABOVE, BELOW), SQUARED = folded((0.5, 0.5), 0.9, (0.8, 0.2))
+EARTH = 6.371e6
+FIGURES = [      # claim, the figure as the sheet has it, and what it is
+    ("multistructure:7", "0.41", SQUARED), ("multistructure:7", "1.22", (ABOVE + BELOW) / SQUARED),
+    ("multistructure:13.index", "1.21", sum(spread((0.3, 0.7), (0, 1)))),
+    ("multistructure:13.index", "0.894", 2 * spread((0.3, 0.7), (0, 1))[0]),
+    ("multistructure:13.index", "1.526", 2 * spread((0.3, 0.7), (0, 1))[1]),
+    ("multistructure:20.integral", "0.74", 0.9 * 0.8 + 0.1 * 0.2),
+    ("multistructure:1.arguments", "1.75", 100 * math.sin(math.radians(1))),
+    ("multistructure:1.arguments", "3.49", 200 * math.sin(math.radians(1))),
+    ("multistructure:2.form", "3.14", 1e7 / (6.37e6 * math.cos(math.radians(60)))),
+    ("multistructure:2.form", "3.24", 1e7 / (6.37e6 * math.cos(math.radians(61)))),
+    ("multistructure:4.type", "5.4", 1e7 * math.tan(math.radians(60)) / (6.37e6 * math.cos(math.radians(60)))),
+    ("terrain_search:sigma.table", "118.6", math.sqrt(21 / 19 * 9000 * math.sqrt(2))),
+    ("terrain_search:table.bias", "1021", 250 * 5 * math.sqrt(2 / 3)),
+    ("terrain_search:table.grid", "104", math.sqrt(2 * (50**2 + 250**2) / 12)),
+    ("terrain_search:table.percent", "1.049", 2.15 / 2.05), ("terrain_search:gain", "17.8", 40.05 / 2.25),
+    ("joint_correction:2.scale.noise", "8.1", 1e-5 / 1.24e-3 * 1e3),
+    ("guaranteed_velocity:4.6.same-instants", "0.707", 1 / (2 * math.sin(math.pi / 4))),
+    ("trajectory:6.first_stage", "0.39", 1.4788 / 3.7743),
+    ("trajectory:experiment.sigma_phi.100", "0.076", 1.2e-8 * EARTH),
+    ("trajectory:experiment.sigma_phi.100", "0.0013", math.radians(1.2e-8) * EARTH),
+    ("trajectory:experiment.sigma_phi.2", "0.0024", math.radians(2.2e-8) * EARTH),
+    ("trajectory:experiment.one_gain.straight", "3.2", 1e7 * (0.06**2 - 0.019**2) / (100**2 - 2**2)),
+    ("trajectory:experiment.one_gain.yawing", "0.18", math.sqrt(0.07**2 + 3.2e-7 * (300**2 - 2**2))),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("name", "figure", "number"), FIGURES)
+def test_the_numbers_of_a_sheet_are_right_to_their_last_digit(name, figure, number):
+    module, _, claim = name.partition(":")
+    assert figure in words_of(module)[claim].check
+    assert abs(float(figure) - number) <= 0.5001 * 10.0 ** -len(figure.partition(".")[2])
+
+
 def test_what_covers_several_figures_becomes_a_table():
     records = [r for r in LEDGER["claims"] if r["paper"] == "trajectory"]
     card = Paper("trajectory", "T", (), 2018, "", "", ())
@@ -98,7 +153,7 @@ CHILDREN = {
 @pytest.mark.parametrize("module", MODULES)
 def test_formulas_of_the_sheets_are_mathml_with_the_right_number_of_parts(module):
     for worded in words_of(module).values():
-        for text in (worded.where, worded.printed, worded.correct, worded.why):
+        for text in (worded.where, worded.printed, worded.correct, worded.why, worded.check):
             for formula in re.findall(r"<math.*?</math>", sentence_html(text), re.S):
                 for node in minidom.parseString(formula).getElementsByTagName("*"):
                     assert len(node.childNodes) == CHILDREN.get(node.tagName, len(node.childNodes)), text

@@ -17,7 +17,13 @@ LATEX = [
     ("a - (b - c)", "a - \\left( b - c \\right)"),
     ("-(a + b)*c", " - \\left( a + b \\right)\\,c"),
     ("a/b", "\\frac{a}{b}"),
-    ("sin(T/4)**2", "\\sin^{2}\\left( \\frac{T}{4} \\right)"),
+    ("sin(T/4)**2", "\\sin^{2}\\left( T/4 \\right)"),
+    ("sin(T - tau/2)", "\\sin\\left( T - \\tau /2 \\right)"),
+    ("sin(T/2*x)", "\\sin\\left( \\dfrac{T}{2}\\,x \\right)"),
+    ("exp(-t/(2*a))", "e^{ - \\frac{t}{2\\,a}}"),
+    ("(a/(b + c))/d", "\\frac{\\dfrac{a}{b + c}}{d}"),
+    ("(T/2)**2/b", "\\frac{\\left( \\dfrac{T}{2} \\right)^{2}}{b}"),
+    ("[[1/2, a/(2*b)], [0, 1]]", "\\begin{bmatrix} 1/2 & \\dfrac{a}{2\\,b} \\\\[1ex] 0 & 1 \\end{bmatrix}"),
     ("2**(-n)", "2^{ - n}"),
     ("(-2)**2", "\\left(  - 2 \\right)^{2}"),
     ("sqrt(x + 1)", "\\sqrt{x + 1}"),
@@ -73,12 +79,20 @@ def test_words_cannot_command_latex():
 
 def test_brackets_grow_around_fractions_only_and_functions_keep_their_distance():
     assert mathml("cos(T)").count('stretchy="false"') == 2
-    assert "stretchy" not in mathml("cos(T/2)")
+    assert mathml("cos(T/2)").count('stretchy="false"') == 2
+    assert "stretchy" not in mathml("cos(T/(2*a))")
     assert '<mo lspace="0.17em">' in mathml("2*cos(T)") and "lspace" not in mathml("2*T")
 
 
+def test_a_quotient_inside_something_keeps_its_size_or_goes_in_one_line():
+    assert mathml("a/b").count("<mfrac") == 1 and "scriptlevel" not in mathml("a/b")
+    assert mathml("(a/(b + 1))/c").count('scriptlevel="0"') == 1      # the inner one
+    assert "<mfrac" not in mathml("sin(T/4)") and "scriptlevel" not in mathml("x**(a/(b + 1))")
+
+
 def test_a_point_is_one_equation_for_each_coordinate():
-    assert [part.latex for part in coordinates({"Deltat": "1", "V": "sqrt(2)"})] == [r"\Delta t = 1", r"V = \sqrt{2}"]
+    point = coordinates({"Deltat": "1", "V": "sqrt(2)", "T": "pi/4"})
+    assert [part.latex for part in point] == [r"\Delta t = 1", r"V = \sqrt{2}", r"T = \pi /4"]
     assert coordinates(None) == ()
 
 

@@ -4,25 +4,44 @@ from __future__ import annotations
 
 import html
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Literal
 
 from navsym.report.page_names import latex_name, mathml_name
 
 
 @dataclass(frozen=True, slots=True)
 class Style:
-    """How one notation writes the pieces."""
+    """How one notation writes the pieces.
+
+    quotient : a fraction; full : the same in the size of the line, wherever it stands
+    place    : on the line; inside a fraction, a call or a matrix; or raised as an exponent
+    """
 
     number: Callable[[str], str]
     name: Callable[[str], str]
     function: Callable[[str], str]
     sign: Callable[[str], str]
     row: Callable[[list[str]], str]
-    fraction: Callable[[str, str], str]
+    quotient: Callable[[str, str], str]
+    full: Callable[[str, str], str]
     power: Callable[[str, str], str]
     root: Callable[[str], str]
     fenced: Callable[[str, str, str], str]
     matrix: Callable[[list[list[str]]], str]
+    place: Literal["line", "inside", "raised"] = "line"
+
+    def inside(self) -> Style:
+        """The style of what stands inside a fraction, a call or a matrix; in an exponent nothing grows again."""
+        return replace(self, place="inside") if self.place == "line" else self
+
+    def above(self) -> Style:
+        """The style of an exponent."""
+        return replace(self, place="raised")
+
+    def fraction(self, top: str, bottom: str) -> str:
+        """A fraction; inside something it keeps the size of the line, so that it can still be read."""
+        return (self.full if self.place == "inside" else self.quotient)(top, bottom)
 
 
 def scientific(text: str, plain: str, powered: str) -> str:
@@ -40,6 +59,8 @@ def mathml_sign(text: str) -> str:
     """A sign of a formula as MathML: an invisible product beside a function, else the sign for it."""
     if text == BESIDE_A_FUNCTION:
         return '<mo lspace="0.17em">⁢</mo>'
+    if text == "/":
+        return '<mo lspace="0.05em" rspace="0.05em">/</mo>'
     return operator(MATHML_SIGNS.get(text, text))
 
 
@@ -66,13 +87,20 @@ def mathml_matrix(rows: list[list[str]]) -> str:
     return rowed([operator("["), f"<mtable>{body}</mtable>", operator("]")])
 
 
+def latex_matrix(rows: list[list[str]]) -> str:
+    """A matrix in square brackets, its rows apart where they hold tall fractions."""
+    lines = [" & ".join(row) for row in rows]
+    apart = r" \\[1ex] " if any(r"\dfrac" in line for line in lines) else r" \\ "
+    return r"\begin{bmatrix} " + apart.join(lines) + r" \end{bmatrix}"
+
+
 BESIDE_A_FUNCTION = "thin *"     # a product in which the name of a function would touch its neighbour
 MATHML_SIGNS = {
     "-": "−", "*": "⁢", "<=": "≤", ">=": "≥", "!=": "≠", "+-": "±",
 }  # fmt: skip
 LATEX_SIGNS = {
     "*": r"\,", BESIDE_A_FUNCTION: r"\,",
-    "<=": r" \le ", ">=": r" \ge ", "!=": r" \ne ", "+-": r" \pm ", "·": r" \cdot ", ";": r";\quad ",
+    "<=": r" \le ", ">=": r" \ge ", "!=": r" \ne ", "+-": r" \pm ", "/": "/", "·": r" \cdot ", ";": r";\quad ",
 }  # fmt: skip
 
 POWER_OF_TEN = "<mrow><mn>{}</mn><mo>·</mo><msup><mn>10</mn><mn>{}</mn></msup></mrow>"
@@ -82,7 +110,8 @@ MATHML = Style(
     function=lambda text: mathml_name(text, function=True),
     sign=mathml_sign,
     row=rowed,
-    fraction=lambda top, bottom: f"<mfrac>{top}{bottom}</mfrac>",
+    quotient=lambda top, bottom: f"<mfrac>{top}{bottom}</mfrac>",
+    full=lambda top, bottom: f'<mstyle displaystyle="true" scriptlevel="0"><mfrac>{top}{bottom}</mfrac></mstyle>',
     power=lambda base, exponent: f"<msup>{base}{exponent}</msup>",
     root=lambda inner: f"<msqrt>{inner}</msqrt>",
     fenced=mathml_fenced,
@@ -94,11 +123,10 @@ LATEX = Style(
     function=lambda text: latex_name(text, function=True),
     sign=lambda text: LATEX_SIGNS.get(text, f" {text} " if text != "," else ", "),
     row=lambda parts: "".join(parts),
-    fraction=lambda top, bottom: rf"\frac{{{top}}}{{{bottom}}}",
+    quotient=lambda top, bottom: rf"\frac{{{top}}}{{{bottom}}}",
+    full=lambda top, bottom: rf"\dfrac{{{top}}}{{{bottom}}}",
     power=lambda base, exponent: f"{base}^{{{exponent}}}",
     root=lambda inner: rf"\sqrt{{{inner}}}",
     fenced=lambda left, inner, right: rf"\left{left} {inner} \right{right}",
-    matrix=lambda rows: (
-        r"\begin{bmatrix} " + r" \\ ".join(" & ".join(row) for row in rows) + r" \end{bmatrix}"
-    ),
+    matrix=latex_matrix,
 )

@@ -36,10 +36,10 @@ class Formula:
 
 
 @functools.lru_cache(maxsize=4096)
-def formula(text: str) -> Formula:
-    """A side of a claim, set in type where it can be."""
-    written = mathml(text) if text not in ("", "True", "False") else None
-    return Formula(text, None, None) if written is None else Formula(text, Markup(written), latex(text))
+def formula(text: str, inline: bool = False) -> Formula:
+    """A side of a claim, set in type where it can be; in a line of words simple quotients are T/4."""
+    written = mathml(text, inline) if text not in ("", "True", "False") else None
+    return Formula(text, None, None) if written is None else Formula(text, Markup(written), latex(text, inline))
 
 
 def only_truth(text: str) -> bool:
@@ -49,22 +49,23 @@ def only_truth(text: str) -> bool:
 
 def coordinates(point: Mapping[str, str] | None) -> tuple[Formula, ...]:
     """A point in type, one equation for each coordinate, so that a narrow page can break between them."""
-    return tuple(formula(f"{name} = {value}") for name, value in (point or {}).items())
+    return tuple(formula(f"{name} = {value}", inline=True) for name, value in (point or {}).items())
 
 
-def mathml(text: str) -> str | None:
+def mathml(text: str, inline: bool = False) -> str | None:
     """MathML of a formula, one element for each part between semicolons; None for what is not a formula."""
     node = read_formula(text)
     if node is None:
         return None
     several = node.kind == "list" and node.text == ";"
-    bodies = [write(part, MATHML) for part in (node.parts if several else (node,))]
+    style = MATHML.above() if inline else MATHML
+    bodies = [write(part, style) for part in (node.parts if several else (node,))]
     return "".join(
         f'<math xmlns="http://www.w3.org/1998/Math/MathML" display="block">{body}</math>' for body in bodies
     )
 
 
-def latex(text: str) -> str | None:
-    """LaTeX of a formula, for a display of its own; or None."""
+def latex(text: str, inline: bool = False) -> str | None:
+    """LaTeX of a formula, for a display of its own or for a line of words; or None."""
     node = read_formula(text)
-    return None if node is None else write(node, LATEX)
+    return None if node is None else write(node, LATEX.above() if inline else LATEX)

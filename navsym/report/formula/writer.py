@@ -8,17 +8,19 @@ from navsym.report.formula.notation import BESIDE_A_FUNCTION, Style
 from navsym.report.formula.reader import Node, unwrapped
 from navsym.report.page_names import letter_of, split_name
 
-ATOM, POWER, PRODUCT, SUM, RELATION, LIST = 6, 5, 4, 3, 2, 1
+ATOM, POWER, FACTOR, PRODUCT, SUM, RELATION, LIST = 7, 6, 5, 4, 3, 2, 1
 UNNAMED = frozenset(("sqrt", "abs", "Abs", "exp"))     # functions with a sign of their own
 LEVELS = {
     "list": LIST, "relation": RELATION, "sum": SUM, "difference": SUM, "minus": SUM,
-    "product": PRODUCT, "quotient": PRODUCT, "power": POWER,
+    "product": PRODUCT, "quotient": FACTOR, "power": POWER,
 }  # fmt: skip
 
 
 def write(node: Node, style: Style, floor: int = 0) -> str:
     """The tree in one notation, in brackets when it binds looser than its neighbours need."""
     node = unwrapped(node)
+    if style.place != "line" and floor < FACTOR and is_simple(node):
+        return write_two("/", PRODUCT, ATOM)(node, style)
     written = WRITERS[node.kind](node, style)
     return style.fenced("(", written, ")") if LEVELS.get(node.kind, ATOM) < floor else written
 
@@ -38,7 +40,21 @@ def write_product(node: Node, style: Style) -> str:
     first, second = node.parts
     dotted = unwrapped(second).kind == "number" or any(is_word(part) for part in node.parts)
     sign = "·" if dotted else BESIDE_A_FUNCTION if any(is_function(part) for part in node.parts) else "*"
-    return style.row([write(first, style, PRODUCT), style.sign(sign), write(second, style, PRODUCT)])
+    return style.row([factor(first, style), style.sign(sign), factor(second, style)])
+
+
+def factor(node: Node, style: Style) -> str:
+    """A part of a product: a quotient is set as a fraction, because T/2 x in one line can be read in two ways."""
+    return write(node, style, FACTOR if unwrapped(node).kind == "quotient" else PRODUCT)
+
+
+def is_simple(node: Node) -> bool:
+    """A quotient of numbers and names that one line holds: T/4, 2 T/3."""
+    if node.kind != "quotient":
+        return False
+    top, bottom = (unwrapped(part) for part in node.parts)
+    factors = [unwrapped(part) for part in top.parts] if top.kind == "product" else [top]
+    return all(part.kind in ("number", "name") for part in (*factors, bottom))
 
 
 def is_word(node: Node) -> bool:
@@ -64,7 +80,7 @@ def last_factor(node: Node) -> Node:
 def write_power(node: Node, style: Style) -> str:
     """A power; of a function it stands at its name: sin^2(x)."""
     base, exponent = (unwrapped(part) for part in node.parts)
-    raised = write(exponent, style)
+    raised = write(exponent, style.above())
     if base.kind == "call" and base.text not in UNNAMED:
         head = style.power(style.function(base.text), raised)
         return style.row([head, arguments(base, style)])
@@ -78,13 +94,13 @@ def write_call(node: Node, style: Style) -> str:
     if node.text in ("abs", "Abs") and len(node.parts) == 1:
         return style.fenced("|", write(node.parts[0], style), "|")
     if node.text == "exp" and len(node.parts) == 1:
-        return style.power(style.name("e"), write(node.parts[0], style))
+        return style.power(style.name("e"), write(node.parts[0], style.above()))
     return style.row([style.function(node.text), arguments(node, style)])
 
 
 def arguments(node: Node, style: Style) -> str:
     """The arguments of a call in brackets."""
-    return style.fenced("(", joined(node.parts, ",", style), ")")
+    return style.fenced("(", joined(node.parts, ",", style.inside()), ")")
 
 
 def joined(parts: tuple[Node, ...], sign: str, style: Style) -> str:
@@ -99,7 +115,7 @@ def write_group(node: Node, style: Style) -> str:
     """A tuple, or a matrix when it is a list of rows of one length."""
     rows = [part.parts for part in node.parts if part.kind == "group" and part.text == "["]
     if node.text == "[" and rows and len(rows) == len(node.parts) and len({len(r) for r in rows}) == 1:
-        return style.matrix([[write(cell, style) for cell in row] for row in rows])
+        return style.matrix([[write(cell, style.inside()) for cell in row] for row in rows])
     left, right = ("[", "]") if node.text == "[" else ("(", ")")
     return style.fenced(left, joined(node.parts, ",", style), right)
 
@@ -112,7 +128,7 @@ WRITERS: dict[str, Callable[[Node, Style], str]] = {
     "difference": write_two("-", SUM, PRODUCT),
     "minus": lambda node, style: style.row([style.sign("-"), write(node.parts[0], style, PRODUCT)]),
     "product": write_product,
-    "quotient": lambda node, style: style.fraction(write(node.parts[0], style), write(node.parts[1], style)),
+    "quotient": lambda node, style: style.fraction(*(write(part, style.inside()) for part in node.parts)),
     "power": write_power,
     "relation": lambda node, style: style.row(
         [write(node.parts[0], style, RELATION), style.sign(node.text), write(node.parts[1], style, SUM)]
