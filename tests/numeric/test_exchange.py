@@ -109,7 +109,7 @@ def test_the_value_in_twofold_precision_is_that_of_the_chebyshev_polynomial_to_t
     panel = Panel(0, tuple(t**j for j in range(8)), t, sp.Integer(0), sp.Integer(1), sp.Integer(1))
     basis = make_basis(Problem((panel,), tuple(sp.Integer(int(j == k)) for j in range(8))))
     shifted = sp.Poly(sp.chebyshevt(7, 2 * t - 1), t).coeff_monomial(t**k)
-    assert find_contacts(basis.panels).value * basis.scale == pytest.approx(abs(int(shifted)), rel=1e-15)
+    assert find_contacts(basis.sharp).value * basis.scale == pytest.approx(abs(int(shifted)), rel=1e-15)
 
 
 def test_products_and_sums_of_two_doubles_lose_nothing():

@@ -49,13 +49,13 @@ def fill(
     """Values for the first lengths of a descending block; how many were done, at least one."""
     top = Fraction(float(T[block[0]]))
     basis = make_basis(family.exact(sp.Rational(top.numerator, top.denominator)))
-    found = ordered(find_contacts(basis.panels))
+    found = ordered(find_contacts(basis.sharp))
     values[block[0]] = found.value * basis.scale
     if block.size == 1 or not regular(basis, found):
         return 1
     ends = 2.0 * T[block[1:]] / float(top) - 1.0
     kind = np.where(found.inner == 1, 1, np.where(found.u < 0, 0, 2)).astype(np.int64)
-    followed, _, _ = follow_lengths(basis.panels, ends, found.u, kind, found.sign)
+    followed, _, _ = follow_lengths(basis.sharp, ends, found.u, kind, found.sign)
     done = int(np.isfinite(followed).argmin()) if not np.isfinite(followed).all() else followed.size
     values[block[1 : done + 1]] = followed[:done] * basis.scale
     return 1 + done
@@ -63,4 +63,4 @@ def fill(
 
 def regular(basis: Basis, found: Contacts) -> bool:
     """One panel, as many contacts as unknowns."""
-    return basis.panels.coefficients.shape[0] == 1 and found.u.size == basis.panels.functional.size
+    return basis.sharp.coefficients.shape[0] == 1 and found.u.size == basis.sharp.functional.size

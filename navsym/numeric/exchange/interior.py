@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from navsym.numeric.exchange.kernels import Array, chebyshev_derivative, grid_values
+from navsym.numeric.exchange.kernels import Array, grid_values
 from navsym.numeric.exchange.search import Contacts, Panels, nodes_for, rows_at
 
 
@@ -32,10 +32,9 @@ def interior_dual(panels: Panels, contacts: Contacts) -> Array | None:
 
 def pinned_rows(panels: Panels, contacts: Contacts) -> tuple[Array, Array]:
     """Values at the contacts and slopes at the inner ones as rows for x, with what they must be."""
-    slopes = np.stack([chebyshev_derivative(c) for c in panels.coefficients])
     inner = contacts.inner == 1
     rows = rows_at(panels.coefficients, contacts.panel, contacts.u)
-    flat = rows_at(slopes, contacts.panel[inner], contacts.u[inner])
+    flat = rows_at(panels.derivatives[0], contacts.panel[inner], contacts.u[inner])
     return np.vstack([rows, flat]), np.r_[contacts.sign.astype(float), np.zeros(int(inner.sum()))]
 
 

@@ -20,8 +20,8 @@ from navsym.numeric.exchange.alternance import SAME, alternance
 from navsym.numeric.exchange.kernels import (
     Array,
     Ints,
-    chebyshev_derivative,
     contact_system,
+    differentiation,
     grid_values,
     simplex,
     spread_rows,
@@ -75,6 +75,13 @@ class Panels:
         """The low parts of coefficients and functional."""
         assert self.coefficients_low is not None and self.functional_low is not None
         return self.coefficients_low, self.functional_low
+
+    @cached_property
+    def derivatives(self) -> tuple[Array, Array]:
+        """Coefficients of the first and second derivative with respect to u."""
+        D = differentiation(self.coefficients.shape[1])
+        slopes = D @ self.coefficients
+        return slopes, D @ slopes
 
     @cached_property
     def search(self) -> Search:
@@ -193,8 +200,7 @@ def completed(panels: Panels, found: Contacts) -> Contacts:
 
     Where the dual is unique and contacts without weight belong to it, the contacts with weight do not fix it.
     """
-    C1 = np.stack([chebyshev_derivative(c) for c in panels.coefficients])
-    C2 = np.stack([chebyshev_derivative(c) for c in C1])
+    C1, C2 = panels.derivatives
     where, places, heights = local_maxima(panels.coefficients @ found.dual, panels.search.fine)
     near = heights > 1.0 - max(NEAR, 30.0 * found.excess)
     all_ = with_places(panels, found, apart(where[near], places[near], found.panel, found.u))
@@ -279,8 +285,7 @@ def spacing(nodes: Array, u: float) -> float:
 def polish(panels: Panels, start: tuple[Ints, Array, Array, Array], x: Array) -> Contacts:
     """Newton in the least-squares sense on the optimality system, contacts kept inside their panels."""
     C = panels.coefficients
-    C1 = np.stack([chebyshev_derivative(c) for c in C])
-    C2 = np.stack([chebyshev_derivative(c) for c in C1])
+    C1, C2 = panels.derivatives
     panel, u, sign, weights = start
     inner = inner_flags(C1, panel, u, sign, x)
     m, l = panels.functional.size, u.size

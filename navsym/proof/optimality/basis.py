@@ -7,9 +7,9 @@ that needs; the orthonormal functions are then safe in double precision.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from functools import lru_cache
+from functools import cached_property, lru_cache, partial
 from itertools import chain
 from typing import Any
 
@@ -20,20 +20,28 @@ from numpy.typing import NDArray
 from navsym.errors import NotFiniteError, TooLargeError
 from navsym.numeric.exchange.search import Panels
 from navsym.proof.balls import precision
+from navsym.proof.optimality.chebyshev import (
+    NODE_BITS,
+    RESOLVED,
+    SHARP,
+    SHARP_RESOLVED,
+    double,
+    resolved,
+    rounded_coefficients,
+    sharp_coefficients,
+    tail,
+    twofold,
+)
 from navsym.proof.optimality.enclosure import Panel, Problem, rational
 
-FIRST = 24
+#: Points a panel that are tried first; even numbers.
+COUNTS = (24, 32, 40, 48, 64, 96)
 LARGEST = 3072
-MOST_BITS = 6000
-#: Trailing coefficients below this part of the largest: the functions are resolved. Up to ``SHARP`` points a panel
-#: the coefficients are computed in balls and resolved to the second number, beyond the digits of a double.
-RESOLVED, SHARP_RESOLVED = 3e-13, 1e-19
-SHARP = 96
+BITS, MOST_BITS = 192, 6000
 #: Part of a function that its last coefficients may be in doubles, which say nothing below.
 GUESSED = 1e-13
 #: Places between the points, and what is called zero there.
 ELSEWHERE, SAME = (fmpq(2, 7), fmpq(5, 11), fmpq(9, 13)), arb(2) ** -400
-NODE_BITS = 128
 #: Functions whose triangular factor has a condition below the inverse of this are made orthonormal in doubles, when
 #: their sizes allow.
 APART, RANGE = 1e-8, (1e-100, 1e100)
@@ -47,7 +55,7 @@ class DependentError(Exception):
         self.index, self.relation, self.bits = index, relation, bits
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Basis:
     """Orthonormal functions ``q = A H`` with an exact matrix A, and what the search needs.
 
@@ -56,6 +64,7 @@ class Basis:
     size       : the exact number by which ``A P`` was divided for the search; any power of ten
     panels     : Chebyshev coefficients of q / sigma in double precision
     loss       : digits that cancel in ``x . H`` when x is written in the basis of the problem
+    sharpen    : makes the panels again with what the doubles lack
     """
 
     transform: arb_mat
@@ -64,6 +73,12 @@ class Basis:
     panels: Panels
     bits: int
     loss: int
+    sharpen: Callable[[], Panels]
+
+    @cached_property
+    def sharp(self) -> Panels:
+        """The panels with coefficients beyond doubles, for a value to the last bits; made at the first use."""
+        return self.sharpen()
 
     @property
     def scale(self) -> float:
@@ -159,7 +174,7 @@ def rounded_transform(values: NDArray[np.float64]) -> tuple[arb_mat, int] | None
     return arb_mat(*A.shape, [arb(a) for a in A.ravel().tolist()]), max(0, int(span) + 1)
 
 
-def make_basis(problem: Problem, bits: int = 192) -> Basis:
+def make_basis(problem: Problem, bits: int = BITS) -> Basis:
     """Orthonormal basis of a problem, with points and bits increased until both suffice.
 
     The last ones are kept: the same exact expressions have the same basis.
@@ -206,21 +221,34 @@ def made_basis(problem: Problem, bits: int) -> Basis:
             else:
                 raise
             continue
-        high, low = chebyshev_coefficients(q, len(panels), count)
-        tail = np.abs(high[:, -3:, :]).max() / np.abs(high).max()
-        if tail < (SHARP_RESOLVED if 2 * count <= SHARP else RESOLVED):
+        high = rounded_coefficients(q, len(panels), count)
+        if tail(high) < RESOLVED:
             break
         if count >= LARGEST:
             raise TooLargeError(
-                f"expected functions that {LARGEST} points a piece resolve; got a tail of {tail:.1e}; "
+                f"expected functions that {LARGEST} points a piece resolve; got a tail of {tail(high):.1e}; "
                 "shorten the interval, or keep poles and kinks out of it"
             )
         count *= 2
-    used = resolved(high)
     with precision(bits):
         size = sum((p * p for p in P.entries()), arb(0)).sqrt().mid()
-        p_high, p_low = twofold(P * (1 / size))
-    return Basis(A, P, size, Panels(high[:, :used], p_high[:, 0], low[:, :used], p_low[:, 0]), bits, loss)
+        search = Panels(high[:, : resolved(high)], double(P * (1 / size))[:, 0])
+    return Basis(A, P, size, search, bits, loss, partial(sharpened, panels, A, P, size, search, count, bits))
+
+
+def sharpened(
+    panels: Sequence[Panel], A: arb_mat, P: arb_mat, size: arb, rounded: Panels, count: int, bits: int
+) -> Panels:
+    """The panels of a basis with what the doubles lack; as they are where that would take too many points."""
+    while count <= SHARP:
+        with precision(bits):
+            high, low = sharp_coefficients(samples(panels, count, bits) * A.transpose(), len(panels), count)
+            p_high, p_low = twofold(P * (1 / size))
+        if tail(high) < (SHARP_RESOLVED if 2 * count <= SHARP else RESOLVED):
+            used = resolved(high, SHARP_RESOLVED)
+            return Panels(high[:, :used], p_high[:, 0], low[:, :used], p_low[:, 0])
+        count *= 2
+    return rounded
 
 
 def first_count(problem: Problem) -> int:
@@ -228,12 +256,11 @@ def first_count(problem: Problem) -> int:
 
     Only a guess: what is too few shows itself in balls later.
     """
-    count = FIRST
-    while count < len(problem.functional):
-        count *= 2
-    while count < SHARP and not all(smooth(panel, count) for panel in problem.panels):
-        count *= 2
-    return count
+    enough = [count for count in COUNTS if count >= len(problem.functional)]
+    if not enough:
+        return COUNTS[-1] * -(-len(problem.functional) // COUNTS[-1])
+    smooth_at = (n for n in enough[:-1] if all(smooth(panel, n) for panel in problem.panels))
+    return next(smooth_at, enough[-1])
 
 
 @lru_cache(maxsize=8)
@@ -275,63 +302,6 @@ def only_at_points(problem: Problem, found: DependentError) -> bool:
                 if bool(away > SAME * sum((abs(p) for p in parts), abs(rows[found.index]))):
                     return True
     return False
-
-
-def double(matrix: arb_mat) -> NDArray[np.float64]:
-    return np.array(list(map(float, matrix.entries()))).reshape(matrix.nrows(), matrix.ncols())
-
-
-def twofold(matrix: arb_mat) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """The midpoints as doubles, and what these lack."""
-    high = double(matrix)
-    low = [float(e - h) for e, h in zip(matrix.entries(), high.ravel().tolist(), strict=True)]
-    return high, np.array(low).reshape(high.shape)
-
-
-def chebyshev_coefficients(
-    q: arb_mat, panels: int, count: int
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Coefficients (panels, count, m) from values at the points of the first kind, and what the doubles lack."""
-    if count > SHARP:
-        k, values = np.arange(count), double(q)
-        cosines = np.cos(np.pi * np.outer(k, k + 0.5) / count) * (2.0 / count)
-        cosines[0] *= 0.5
-        high = np.stack([cosines @ values[i * count : (i + 1) * count] for i in range(panels)])
-        return high, np.zeros_like(high)
-    rows = q.tolist()
-    with precision(NODE_BITS):
-        parts = [transformed(rows[i * count : (i + 1) * count]) for i in range(panels)]
-    return np.stack([high for high, _ in parts]), np.stack([low for _, low in parts])
-
-
-def transformed(rows: list[list[arb]]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Coefficients from an even number of values, the even ones from their sums about the middle, the odd ones
-    from their differences."""
-    count, half = len(rows), len(rows) // 2
-    pairs = list(zip(rows[:half], reversed(rows), strict=False))
-    even = arb_mat([[a + b for a, b in zip(*pair, strict=True)] for pair in pairs])
-    odd = arb_mat([[a - b for a, b in zip(*pair, strict=True)] for pair in pairs])
-    high, low = np.empty((2, count, len(rows[0])))
-    for k, folded in enumerate((even, odd)):
-        high[k::2], low[k::2] = twofold(ball_cosines(count)[k] * folded)
-    return high, low
-
-
-@lru_cache(maxsize=8)
-def ball_cosines(count: int) -> tuple[arb_mat, arb_mat]:
-    """``2/n cos(pi k (j + 1/2) / n)`` for j < n/2 with k even, the first row halved, and with k odd."""
-    with precision(NODE_BITS):
-        cosines = [arb.cos_pi(arb(j) / (2 * count)) * 2 / count for j in range(4 * count)]
-        rows = [[cosines[k * (2 * j + 1) % (4 * count)] for j in range(count // 2)] for k in range(count)]
-        rows[0] = [c / 2 for c in rows[0]]
-        return arb_mat(rows[::2]), arb_mat(rows[1::2])
-
-
-def resolved(high: NDArray[np.float64]) -> int:
-    """How many coefficients are above their rounding."""
-    size = np.abs(high).max(axis=(0, 2))
-    least = SHARP_RESOLVED if high.shape[1] <= SHARP else 1e-15
-    return max(int(np.flatnonzero(size > least * size.max()).max()) + 1, 3)
 
 
 def as_fraction(u: float) -> fmpq:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from flint import arb, fmpq
 
 from navsym.proof.optimality.enclosure import rational
@@ -15,19 +17,28 @@ MOST_FAILURES = 12
 NEAREST = fmpq(1, 10**16)
 
 
-def follow(track: Track, lower: fmpq, upper: fmpq) -> list[Piece]:
-    """Pieces from the middle towards both ends, each as long as its tests allow."""
+def never() -> bool:
+    """No limit is met."""
+    return False
+
+
+def follow(track: Track, lower: fmpq, upper: fmpq, enough: Callable[[], bool] = never) -> list[Piece]:
+    """Pieces from the middle towards both ends, each as long as its tests allow, until it is enough."""
     middle = simple((lower + upper) / 2, upper - lower)
     member = track.first(middle)
     if member is None:
         return []
-    up = march(track, member, middle, upper)
-    down = march(track, up[0].ends[0] if up else member, middle, lower)
+    up = march(track, member, middle, upper, enough=enough)
+    down = march(track, up[0].ends[0] if up else member, middle, lower, enough=enough)
     return [*reversed(down), *up]
 
 
-def march(track: Track, member: Member, at: fmpq, last: fmpq, failures: int = MOST_FAILURES) -> list[Piece]:
-    """Pieces from ``at`` to ``last``, upwards or downwards; given up after ``failures`` halvings of one step.
+def march(
+    track: Track, member: Member, at: fmpq, last: fmpq, failures: int = MOST_FAILURES,
+    enough: Callable[[], bool] = never,
+) -> list[Piece]:  # fmt: skip
+    """Pieces from ``at`` to ``last``, upwards or downwards; given up after ``failures`` halvings of one step, and when
+    it is enough.
 
     Towards the end of a regime a weight, the room of a contact or the room below the bound shrinks to nothing;
     a piece may then be about as long as the root of what is left behind it, so steps square their distance.
@@ -35,7 +46,7 @@ def march(track: Track, member: Member, at: fmpq, last: fmpq, failures: int = MO
     pieces: list[Piece] = []
     span = abs(last - at)
     step, failed = span / 3, 0
-    while at != last and len(pieces) < MOST_PIECES and failed < failures:
+    while at != last and len(pieces) < MOST_PIECES and failed < failures and not enough():
         made = None
         for end in ends_to_try(at, last, step, span):
             made = piece(track, member, at, end)

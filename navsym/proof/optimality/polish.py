@@ -12,9 +12,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from flint import arb, arb_mat
+from flint import arb, arb_mat, fmpq
 
-from navsym.numeric.exchange.kernels import chebyshev_derivative, contact_system
+from navsym.numeric.exchange.kernels import contact_system
 from navsym.numeric.exchange.search import Contacts
 from navsym.proof.balls import precision
 from navsym.proof.optimality.basis import Basis, as_fraction
@@ -121,10 +121,8 @@ def pinned(
 
 def pseudo_inverse(basis: Basis, contacts: Contacts) -> tuple[np.ndarray, bool]:
     C = basis.panels.coefficients
-    C1 = np.stack([chebyshev_derivative(c) for c in C])
-    C2 = np.stack([chebyshev_derivative(c) for c in C1])
     _, J = contact_system(
-        C, C1, C2, basis.panels.functional, contacts.panel, contacts.u, contacts.inner,
+        C, *basis.panels.derivatives, basis.panels.functional, contacts.panel, contacts.u, contacts.inner,
         contacts.sign, contacts.dual, contacts.weights,
     )  # fmt: skip
     if J.shape[0] == J.shape[1] and (inverse := well_conditioned(J)) is not None:
