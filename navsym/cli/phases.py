@@ -12,7 +12,7 @@ from navsym.cli._settings import values_of
 from navsym.cli.output import dumps, emit, table, write_text
 from navsym.errors import DomainError, ExpressionSyntaxError, NavsymError
 
-RESUME = "nothing is kept: a shorter --range, or --quick, takes less time"
+RESUME = "nothing is kept: a shorter --range, --quick, or fewer --seconds take less time"
 
 
 def command(
@@ -33,6 +33,10 @@ def command(
     unique: Annotated[
         bool, typer.Option("--unique", help="prove of closed forms, too, that no other estimator is optimal (slower)")
     ] = False,
+    seconds: Annotated[
+        float,
+        typer.Option(help="work (processor time) after which what is known is given, and the rest named as uncovered"),
+    ] = 120.0,
     out: Annotated[
         Path | None, typer.Option(help="write the certificates to files of this name, numbered")
     ] = None,
@@ -52,7 +56,7 @@ def command(
         with Progress("steps", resume=RESUME) as bar:
             answer = phases(
                 family_of(found, target, parameter), lower, upper,
-                certify=not quick, alone=unique, progress=bar.told_by_job,
+                certify=not quick, alone=unique, seconds=seconds, progress=bar.told_by_job,
             )  # fmt: skip
     except NavsymError as error:
         raise error.at(str(file)) from None
@@ -155,6 +159,7 @@ def remarks(document: dict[str, Any]) -> list[str]:
         "OPEN": "OPEN: not shown for the whole regime.",
     }
     lines = [text for status, text in words.items() if status in said]
+    lines += [f"Given up: {what}; more --seconds may help." for what in document.get("given_up", ())]
     if document["uncovered"]:
         parts = ", ".join(f"{short(a)} to {short(b)}" for a, b in document["uncovered"])
         return [*lines, f"Not covered: {name} from {parts}."]

@@ -53,7 +53,7 @@ class Regime:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Phases:
-    """Regimes in order, the boundaries between them, and what is left uncovered."""
+    """Regimes in order, the boundaries between them, what is left uncovered, and what was given up at the limit."""
 
     family: Family
     lower: sp.Expr
@@ -62,6 +62,7 @@ class Phases:
     boundaries: tuple[Boundary, ...]
     uncovered: tuple[tuple[str, str], ...] = field(default=())
     ties: tuple[Mapping[str, Any], ...] = field(default=())
+    given_up: tuple[str, ...] = field(default=())
 
     def certificates(self) -> list[dict[str, Any]]:
         """Certificates of the regimes without a closed form and of slivers, for ``navsym check``."""
@@ -93,7 +94,7 @@ class Phases:
                 for b in self.boundaries
             ],
             "uncovered": [list(pair) for pair in self.uncovered],
-        }  # fmt: skip
+        } | ({"given_up": list(self.given_up)} if self.given_up else {})  # fmt: skip
 
 
 def regime_row(regime: Regime) -> dict[str, Any]:

@@ -17,6 +17,7 @@ import sympy as sp
 
 from navsym.claims import OPEN, PROVED, Equation, Optimum, Verdict
 from navsym.methods.phases.family import Family, U
+from navsym.methods.phases.limit import LEAST, Limit
 from navsym.methods.phases.places import number, place_or_share
 from navsym.methods.phases.polynomial import is_monomial, monomial_weights, power_law_dual
 from navsym.methods.phases.scan import Pattern, Span, pattern_of, sample
@@ -131,11 +132,16 @@ def prove(
 ) -> Closed | None:
     """The first guess that the ladder proves or certifies on the whole of (lower, upper); else the first.
 
+    seconds : for all guesses together; each may take its share of what is left
     What had to be taken for granted on the way (a divisor that may vanish inside the range) leaves a guess OPEN.
     """
     best: Closed | None = None
-    for guess in guesses:
-        verdict = proved(family, guess, lower, upper, seconds)
+    limit = Limit.of(seconds)
+    for k, guess in enumerate(guesses):
+        mine = limit.share(1 / (len(guesses) - k)).left()
+        if mine < LEAST:
+            break
+        verdict = proved(family, guess, lower, upper, mine)
         if verdict.assumptions:
             verdict = Verdict(OPEN, "none", evidence=f"not shown: {', '.join(verdict.assumptions)}")
         done = replace(guess, verdict=verdict)

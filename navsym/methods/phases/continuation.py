@@ -9,36 +9,26 @@ two-sided certificates.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
-from typing import Any
 
 import sympy as sp
-from flint import fmpq
 
-from navsym.claims import CERTIFIED, OPEN
-from navsym.errors import DomainError
-from navsym.methods.guaranteed.solver import solve
-from navsym.methods.phases.answer import Phases, Regime, end_text, number_of
+from navsym.methods.phases.answer import Phases, Regime, end_text
 from navsym.methods.phases.closed import Closed, candidates, prove
 from navsym.methods.phases.continued import continued
-from navsym.methods.phases.dependent import without_dependent
-from navsym.methods.phases.events import Boundary, boundary
+from navsym.methods.phases.events import Boundary, boundary, nowhere
 from navsym.methods.phases.family import Family
-from navsym.methods.phases.range import followed, fraction_of
-from navsym.methods.phases.scan import COUNT, Span, scan
-from navsym.methods.phases.singular import Singular, singular_values
-from navsym.methods.phases.slivers import slivers
+from navsym.methods.phases.limit import DEFAULT_SECONDS, Limit
+from navsym.methods.phases.range import fraction_of
+from navsym.methods.phases.scan import COUNT, Span, exact, scan
+from navsym.methods.phases.sections import Section, event, need_range, not_looked_at, sections, split
+from navsym.methods.phases.settle import Follow, exact_fraction, limits_of, regime_of
 from navsym.proof.balls import enclose
-from navsym.proof.decimals import decimal, lower_end, upper_end
-from navsym.proof.decimals import exact as exact_decimal
+from navsym.proof.decimals import decimal
 from navsym.proof.optimality.enclosure import rational
-from navsym.proof.optimality.range import Ranged
 
-POINTS = 5
-#: Next to a singular value this part of the range is left, and named in ``uncovered``.
-MARGIN = Fraction(1, 100_000)
 #: A span below this part of the range is given up when its neighbours are proved to meet.
 SHORT = Fraction(1, 50)
 DIGITS = 34
@@ -46,90 +36,51 @@ DIGITS = 34
 
 def phases(
     family: Family, lower: sp.Expr, upper: sp.Expr, *, certify: bool = True, alone: bool = False,
-    progress: Callable[[int, int], None] = lambda done, of: None,
+    seconds: float = DEFAULT_SECONDS, progress: Callable[[int, int], None] = lambda done, of: None,
 ) -> Phases:  # fmt: skip
     """All regimes for values of the parameter between two exact numbers.
 
     The range is split at singular values. certify : follow regimes without a closed form rigorously.
     alone : follow the others as well, which proves that no other estimator is optimal and gives them certificates.
+    seconds : of work, after which what is known is returned: ``uncovered`` names the rest, ``given_up`` what was left
     progress : called with (finished, all) steps of the search: each stretch is scanned, each regime settled
-    Raises DomainError for a range without length, and lengths of the interval below zero.
+    Raises DomainError for a range without length, lengths of the interval below zero, and seconds that are none.
     """
     need_range(family, lower, upper)
-    plan = [section for part in sections(family, lower, upper) for section in split(*part)]
+    limit = Limit.of(seconds)
+    plan, lost = planned(family, lower, upper, limit.share(1 / 4))
     steps = Steps(progress, len(plan) * (COUNT - 1))
     follow = Follow(certify, alone)
-    parts = [stretch(section, follow, steps) for section in plan]
-    singular = {s.at: s for section in plan for s in section.singular}
-    changes = [event(s) for s in singular.values() if not (s.at == lower == 0 and plan[0].family.growing)]
-    changes += [b for part in parts for b in part.boundaries] + [not_looked_at(s) for s in plan if s.unknown]
+    parts = [stretch(section, follow, steps, limit.share(1 / (len(plan) - k))) for k, section in enumerate(plan)]
+    uncovered = [*lost, *(pair for part in parts for pair in part.uncovered)]
+    changes = changes_between(plan, lower) + [b for part in parts for b in part.boundaries]
     changes.sort(key=lambda b: sp.Rational(b.lower))
     regimes = [regime for part in parts for regime in part.regimes]
-    uncovered = [pair for part in parts for pair in part.uncovered]
     ties = {id(tie): tie for section in plan for tie in section.ties}
     return Phases(
-        plan[-1].family, lower, upper, tuple(regimes), tuple(changes), tuple(uncovered), tuple(ties.values())
-    )
+        plan[-1].family if plan else family, lower, upper, tuple(regimes), tuple(changes), tuple(uncovered),
+        tuple(ties.values()), tuple(limit.given_up),
+    )  # fmt: skip
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Section:
-    """A part of the range without a singular value inside, as far as they are known.
-
-    singular : those of the range
-    unknown  : expressions that may have roots in the range at which it is singular
-    ties     : certificates of unknowns left out
-    """
-
-    family: Family
-    lower: sp.Expr
-    upper: sp.Expr
-    singular: tuple[Singular, ...]
-    unknown: tuple[sp.Expr, ...]
-    ties: tuple[dict[str, Any], ...]
-
-    @property
-    def names(self) -> set[sp.Expr]:
-        """The singular values."""
-        return {s.at for s in self.singular}
+def planned(
+    family: Family, lower: sp.Expr, upper: sp.Expr, limit: Limit
+) -> tuple[list[Section], list[tuple[str, str]]]:
+    """The sections of the range, and the ends of parts that were not split within the limit."""
+    parts, plan, lost = sections(family, lower, upper), [], []
+    for k, part in enumerate(parts):
+        ends = end_text(part[1]), end_text(part[2])
+        found = limit.share(1 / (len(parts) - k)).within(f"singular values from {ends[0]} to {ends[1]}", split, *part)
+        plan += found or []
+        lost += [ends] if found is None else []
+    return plan, lost
 
 
-@dataclass(frozen=True, slots=True)
-class Follow:
-    """Which regimes are followed rigorously: those without a closed form, those with one."""
-
-    implicit: bool
-    closed: bool
-
-
-def sections(family: Family, lower: sp.Expr, upper: sp.Expr) -> list[tuple[Family, sp.Expr, sp.Expr]]:
-    """The range cut where one family of a chain follows another."""
-    chain = family.chain
-    first = [lower, *(one.least for one in chain[1:])]
-    last = [*(one.least for one in chain[1:]), upper]
-    done = []
-    for one, a, b in zip(chain, first, last, strict=True):
-        start, end = (lower if above(lower, a) else a), (upper if above(b, upper) else b)
-        if above(end, start):
-            done.append((one, start, end))
-    return done
-
-
-def above(x: sp.Expr, y: sp.Expr) -> bool:
-    """x > y, by balls."""
-    return x != y and bool(enclose(x - y) > 0)
-
-
-def split(family: Family, lower: sp.Expr, upper: sp.Expr) -> list[Section]:
-    """The range cut at its singular values, and unknowns that depend on others left out."""
-    inside = inside_of(lower, upper)
-    family, ties = without_dependent(family.real_near(inside), inside)
-    singular, unknown = singular_values(family, lower, upper)
-    inner = [s.at for s in singular if above(s.at, lower) and above(upper, s.at)]
-    return [
-        Section(family.real_near(inside_of(a, b)), a, b, singular, unknown, ties)
-        for a, b in pairwise([lower, *inner, upper])
-    ]
+def changes_between(plan: Sequence[Section], lower: sp.Expr) -> list[Boundary]:
+    """The singular values of all sections as boundaries, and what may hide further ones."""
+    singular = {s.at: s for section in plan for s in section.singular}
+    known = [event(s) for s in singular.values() if not (s.at == lower == 0 and plan[0].family.growing)]
+    return known + [not_looked_at(s) for s in plan if s.unknown]
 
 
 class Steps:
@@ -154,75 +105,102 @@ class Steps:
         self.progress(self.done, self.of)
 
 
-def inside_of(lower: sp.Expr, upper: sp.Expr) -> sp.Rational:
-    """A rational value between the ends that no symmetry singles out."""
-    ball = enclose(lower + (upper - lower) * sp.Rational(5, 13), bits=96)
-    return exact(fraction_of(rational(ball)).limit_denominator(10**6))
-
-
-def event(singular: Singular) -> Boundary:
-    """A singular value as a boundary."""
-    ball = enclose(singular.at, bits=200)
-    return Boundary(singular.at, lower_end(ball, DIGITS), upper_end(ball, DIGITS), singular.why, True)
-
-
-def not_looked_at(section: Section) -> Boundary:
-    """What may split a section further, as a boundary somewhere in it that was not located."""
-    ends = lower_end(enclose(section.lower, bits=200), DIGITS), upper_end(enclose(section.upper, bits=200), DIGITS)
-    shown = ", ".join(map(str, section.unknown[:5])) + (", …" if len(section.unknown) > 5 else "")
-    return Boundary(None, *ends, f"singular values may lie where these vanish, which were not solved: {shown}", False)
-
-
-def need_range(family: Family, lower: sp.Expr, upper: sp.Expr) -> None:
-    """Raises DomainError for ends that are no finite numbers, for from >= to, and for lengths below zero."""
-    for end in (lower, upper):
-        if end.free_symbols or not enclose(end).is_finite():
-            raise DomainError(f"range: expected finite numbers; got {end}; give two numbers")
-    if not bool(enclose(upper - lower) > 0):
-        raise DomainError(f"range: expected from < to; got {lower} to {upper}; exchange or mend them")
-    if family.growing and not bool(enclose(lower) >= 0):
-        raise DomainError(f"range: expected lengths 0 <= from < to; got {lower} to {upper}; mend them")
-
-
-def stretch(section: Section, follow: Follow, steps: Steps) -> Phases:
+def stretch(section: Section, follow: Follow, steps: Steps, limit: Limit) -> Phases:
     """All regimes between two values without a singular one inside."""
-    family, lower, upper, singular = section.family, section.lower, section.upper, section.names
-    low, high = inner_range(lower, upper, singular)
-    spans = without_accidents(family, scan(family, low, high, step=steps.did))
+    family, lower, singular = section.family, section.lower, section.names
+    low, high = inner_range(lower, section.upper, singular)
+    spans = scanned(family, low, high, steps, limit)
+    upper = section.upper if spans[-1].upper == high else exact(spans[-1].upper)
+    spans = without_accidents(family, spans, limit.share(1 / 4))
     steps.found(len(spans))
-    guesses = []
-    for span in spans:
-        guesses.append(candidates(family, span))
-        steps.did(Steps.LOOKS)
-    found, (spans, guesses) = len(spans), continued(family, spans, guesses)
-    steps.did(Steps.LOOKS * (found - len(spans)))
-    firsts = [g[0] if g else None for g in guesses]
-    pairs = zip(spans, spans[1:], firsts, firsts[1:], strict=False)
-    changes = tuple(boundary(family, a, b, c, d) for a, b, c, d in pairs)
+    guesses = guessed(family, spans, steps, limit.share(1 / 2))
+    spans, guesses = limit.share(1 / 4).within("closed forms next to others", continued, family, spans, guesses) or (
+        spans, guesses
+    )  # fmt: skip
+    changes = located(family, spans, [g[0] if g else None for g in guesses], limit.share(1 / 2))
     cuts = [lower, *(middle_of(b) for b in changes), upper]
     limits = limits_of(family, lower, upper, low, high, changes, singular)
     regimes, uncovered = [], []
     for k, span in enumerate(spans):
-        closed = prove(family, guesses[k], cuts[k], cuts[k + 1]) if guesses[k] else None
-        held = closed if closed is not None and closed.verdict.status.holds else None
-        regime, holes = regime_of(family, span, (cuts[k], cuts[k + 1]), limits[k], held, follow)
+        mine, ends = limit.share(1 / (len(spans) - k)), (cuts[k], cuts[k + 1])
+        closed = proved_form(family, guesses[k], ends, mine)
+        regime, holes = regime_of(family, span, ends, limits[k], closed, follow, mine)
         regimes.append(regime)
         uncovered += holes
         steps.did(Steps.LOOKS)
+    if upper != section.upper:
+        uncovered.append((end_text(upper), end_text(section.upper)))
     honest = tuple(b if b.proved else between(b, *pair) for b, pair in zip(changes, pairwise(regimes), strict=True))
     return Phases(family, lower, upper, tuple(regimes), honest, tuple(uncovered))
 
 
-def without_accidents(family: Family, spans: list[Span]) -> list[Span]:
+def scanned(family: Family, low: Fraction, high: Fraction, steps: Steps, limit: Limit) -> list[Span]:
+    """The spans of a section, up to where half of its time allows."""
+    half = limit.share(1 / 2)
+
+    def step() -> bool:
+        steps.did()
+        return not half.met()
+
+    spans = scan(family, low, high, step=step)
+    if spans[-1].upper != high:
+        limit.gives_up(f"the search for patterns from {float(spans[-1].upper):.6g} to {float(high):.6g}")
+    return spans
+
+
+def guessed(family: Family, spans: Sequence[Span], steps: Steps, limit: Limit) -> list[list[Closed]]:
+    """Closed forms of every span, not yet proved."""
+    found = []
+    for k, span in enumerate(spans):
+        what = f"the search for a closed form from {float(span.lower):.6g} to {float(span.upper):.6g}"
+        found.append(limit.share(1 / (len(spans) - k)).within(what, candidates, family, span) or [])
+        steps.did(Steps.LOOKS)
+    return found
+
+
+def located(
+    family: Family, spans: Sequence[Span], closed: Sequence[Closed | None], limit: Limit
+) -> tuple[Boundary, ...]:
+    """The changes from each span to the next, as exactly as they are had within the limit."""
+    found = []
+    for k, (left, right) in enumerate(pairwise(spans)):
+        part = limit.share(1 / (len(spans) - 1 - k))
+        found.append(change(family, left, right, part, closed[k], closed[k + 1]) or nowhere(left.upper))
+    return tuple(found)
+
+
+def change(
+    family: Family, left: Span, right: Span, limit: Limit, before: Closed | None = None, after: Closed | None = None
+) -> Boundary | None:
+    """The change from one span to the next; None when it is not had within the limit."""
+    return limit.within(
+        f"the change of pattern near {float(left.upper):.6g}", boundary, family, left, right, before, after
+    )  # type: ignore[no-any-return]
+
+
+def proved_form(
+    family: Family, guesses: Sequence[Closed], ends: tuple[sp.Expr, sp.Expr], limit: Limit
+) -> Closed | None:
+    """The closed form that is proved between the ends within half of the limit."""
+    half = limit.share(1 / 2)
+    found = prove(family, guesses, *ends, seconds=half.left()) if guesses and not half.met() else None
+    if found is not None and found.verdict.status.holds:
+        return found
+    if half.met():
+        limit.gives_up(f"the proof of a closed form from {end_text(ends[0])} to {end_text(ends[1])}")
+    return None
+
+
+def without_accidents(family: Family, spans: list[Span], limit: Limit) -> list[Span]:
     """Spans without short ones between neighbours that are proved to follow each other: there contacts merge, and
     the search in double precision takes one pattern for another, or for several."""
     short = SHORT * (spans[-1].upper - spans[0].lower)
     kept, rest = spans[:1], spans[1:]
     while rest:
         beyond = next((k for k, span in enumerate(rest) if span.upper - span.lower >= short), 0)
-        change = boundary(family, kept[-1], rest[beyond], None, None) if beyond else None
-        if change is not None and change.proved:
-            cut = fraction_of(rational(enclose(middle_of(change), bits=200)))
+        found = change(family, kept[-1], rest[beyond], limit) if beyond else None
+        if found is not None and found.proved:
+            cut = fraction_of(rational(enclose(middle_of(found), bits=200)))
             kept[-1], rest = replace(kept[-1], upper=cut), rest[beyond:]
             rest[0] = replace(rest[0], lower=cut)
         kept.append(rest.pop(0))
@@ -239,11 +217,6 @@ def between(guess: Boundary, before: Regime, after: Regime) -> Boundary:
     return replace(guess, lower=decimal(last, DIGITS, -1), upper=decimal(first, DIGITS, 1))
 
 
-def exact_fraction(x: Fraction) -> fmpq:
-    """A fraction of Python as a rational of flint."""
-    return fmpq(x.numerator, x.denominator)
-
-
 def inner_range(lower: sp.Expr, upper: sp.Expr, singular: set[sp.Expr]) -> tuple[Fraction, Fraction]:
     """Rational values just inside the range, further inside at singular ends."""
     a, b = (fraction_of(rational(enclose(e, bits=200))) for e in (lower, upper))
@@ -255,104 +228,6 @@ def inner_range(lower: sp.Expr, upper: sp.Expr, singular: set[sp.Expr]) -> tuple
 def middle_of(b: Boundary) -> sp.Expr:
     """The exact value of a boundary, or the middle of its bracket."""
     return b.at if b.at is not None else (sp.Rational(b.lower) + sp.Rational(b.upper)) / 2
-
-
-Limits = tuple[fmpq, fmpq, fmpq, fmpq]
-
-
-def limits_of(
-    family: Family, lower: sp.Expr, upper: sp.Expr, low: Fraction, high: Fraction,
-    changes: Sequence[Boundary], singular: set[sp.Expr],
-) -> list[Limits]:  # fmt: skip
-    """For every regime: where it must be covered (outer) and where exact contacts are followed (inner)."""
-    margin = exact_fraction(MARGIN * (high - low))
-    marks = [end_marks(family, lower, -1, singular, margin)]
-    marks += [(exact_decimal(b.lower), exact_decimal(b.upper)) for b in changes]
-    marks.append(end_marks(family, upper, 1, singular, margin))
-    done: list[Limits] = []
-    for k, (left, right) in enumerate(pairwise(marks)):
-        outer = left[0] if k == 0 else (left[0] + left[1]) / 2
-        done.append((outer, left[1], right[0], right[1] if k == len(changes) else (right[0] + right[1]) / 2))
-    return done
-
-
-def end_marks(
-    family: Family, end: sp.Expr, side: int, singular: set[sp.Expr], margin: fmpq
-) -> tuple[fmpq, fmpq]:
-    """An end of the range as two rationals in order, the outer at or beyond it, the inner where contacts start."""
-    ball = enclose(end, bits=200)
-    if end.is_Rational:
-        at = fmpq(int(end.p), int(end.q))
-    else:
-        at = exact_decimal(lower_end(ball, DIGITS) if side < 0 else upper_end(ball, DIGITS))
-    vanishing = side < 0 and end == 0 and family.growing
-    inner = at - side * margin if end in singular and not vanishing else at
-    return (at, inner) if side < 0 else (inner, at)
-
-
-def regime_of(
-    family: Family, span: Span, ends: tuple[sp.Expr, sp.Expr], limits: Limits, closed: Closed | None, follow: Follow
-) -> tuple[Regime, list[tuple[str, str]]]:
-    """One regime: its proved closed form, or contacts followed for every value, slivers and holes."""
-    a, b = ends
-    if closed is not None:
-        return with_closed_form(family, span, ends, limits, closed, follow), []
-    if not follow.implicit:
-        return Regime(family, span, a, b, None, OPEN, table_of(family, span)), [(end_text(a), end_text(b))]
-    done = followed(family, span.pattern, limits[1], limits[2])
-    holes, thin = [], []
-    for left, right in rests(done, limits):
-        made, left_over = slivers(family, left, right)
-        thin += made
-        holes += [(end_text(number_of(p), -1), end_text(number_of(q), 1)) for p, q in left_over]
-    status = CERTIFIED if done.ends is not None else OPEN
-    shown = table_of(family, span)
-    return Regime(
-        family, span, a, b, None, status, shown, done.documents, tuple(thin), done.ends, done.ends
-    ), holes
-
-
-def with_closed_form(
-    family: Family, span: Span, ends: tuple[sp.Expr, sp.Expr], limits: Limits, closed: Closed, follow: Follow
-) -> Regime:
-    """A regime whose closed form is proved, and where it is the only optimum when this is asked for."""
-    done = followed(family, span.pattern, limits[1], limits[2]) if follow.closed else Ranged((), ())
-    return Regime(
-        family, span, *ends, closed, closed.verdict.status, (), done.documents, (), (limits[1], limits[2]), done.ends
-    )
-
-
-def rests(done: Ranged, limits: Limits) -> list[tuple[fmpq, fmpq]]:
-    """Stretches of the regime that the followed contacts leave."""
-    if done.ends is None:
-        return [(limits[0], limits[3])]
-    first, last = done.ends
-    return [(a, b) for a, b in ((limits[0], first), (last, limits[3])) if a < b]
-
-
-def exact(x: Fraction) -> sp.Rational:
-    """A fraction of Python as a rational of sympy."""
-    return sp.Rational(x.numerator, x.denominator)
-
-
-def table_of(family: Family, span: Span) -> tuple[dict[str, Any], ...]:
-    """Enclosures of the value, instants and weights at a few values of the parameter."""
-    rows = []
-    for k in range(POINTS):
-        T = (span.lower + (span.upper - span.lower) * Fraction(2 * k + 1, 2 * POINTS)).limit_denominator(1000)
-        found = solve(family.problem(exact(T)), 20)
-        places = [
-            {"measurement": s.measurement, "at": instant(family, T, s.at), "weight": s.weight} for s in found.support
-        ]
-        places.sort(key=lambda place: sp.Rational(place["at"]))
-        rows.append({family.parameter.name: str(T), "lower": found.lower, "upper": found.upper, "support": places})
-    return tuple(rows)
-
-
-def instant(family: Family, T: Fraction, u: str) -> str:
-    """The instant that a coordinate means at a value of the parameter, to twenty digits."""
-    end = family.at(family.stop, exact(T))
-    return decimal(rational(enclose(end - sp.Rational(u), bits=200)), 20) if family.backward else u
 
 
 __all__ = ["Phases", "Regime", "phases"]

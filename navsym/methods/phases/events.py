@@ -199,9 +199,13 @@ def implicit(family: Family, left: Span, right: Span) -> Boundary:
             guesses.append(enclosed(family, left, right, *found))
             if guesses[-1].proved:
                 return guesses[-1]
+    return next(iter(guesses), nowhere(edge))
+
+
+def nowhere(edge: Fraction) -> Boundary:
+    """A change of which no more is known than that the search saw it at the edge."""
     text = decimal(fmpq(edge.numerator, edge.denominator), 8)
-    nowhere = Boundary(None, text, text, "the pattern of instants changes; not located further", False)
-    return next(iter(guesses), nowhere)
+    return Boundary(None, text, text, "the pattern of instants changes; not located further", False)
 
 
 def closing(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 
 import sympy as sp
@@ -15,7 +15,7 @@ from navsym.methods.phases.vanishing import Echelon, echelon, rescaled, scaled, 
 from navsym.proof.decimals import decimal, exact
 from navsym.proof.optimality.basis import make_basis
 from navsym.proof.optimality.enclosure import rational
-from navsym.proof.optimality.march import follow, march, simple
+from navsym.proof.optimality.march import follow, march, never, simple
 from navsym.proof.optimality.moving import Member, Moving
 from navsym.proof.optimality.range import Piece, Ranged, Track, piece, range_document
 
@@ -27,22 +27,25 @@ def fraction_of(x: fmpq) -> Fraction:
     return Fraction(int(x.p), int(x.q))
 
 
-def followed(family: Family, pattern: Pattern, lower: fmpq, upper: fmpq) -> Ranged:
-    """Certificate pieces for the pattern between two values, as far as the tests pass."""
+def followed(
+    family: Family, pattern: Pattern, lower: fmpq, upper: fmpq, enough: Callable[[], bool] = never
+) -> Ranged:
+    """Certificate pieces for the pattern between two values, as far as the tests pass and until it is enough."""
     form = echelon(family) if family.growing else None
     if form is None:
-        found = follow(plain_track(family, pattern), max(lower, upper / 400) if family.growing else lower, upper)
+        least = max(lower, upper / 400) if family.growing else lower
+        found = follow(plain_track(family, pattern), least, upper, enough)
         documents = [range_document(family.moving, family.parameter.name, part) for part in parts(found)]
         return Ranged(tuple(found), tuple(documents))
     start, documents = [], []
     if lower == 0:
-        start = from_zero(family, form, pattern, upper)
+        start = from_zero(family, form, pattern, upper, enough)
         if not start:
             return Ranged((), ())
         lower = start[-1].upper
         documents += [scaled_certificate(family, form, part) for part in parts(start)]
     scaled_family = rescaled(family, form)
-    rest = follow(plain_track(scaled_family, pattern), lower, upper) if lower < upper else []
+    rest = follow(plain_track(scaled_family, pattern), lower, upper, enough) if lower < upper else []
     for part in parts(rest):
         document = range_document(scaled_family.moving, family.parameter.name, part)
         documents.append(tied(family, form, document))
@@ -75,7 +78,9 @@ def plain_track(family: Family, pattern: Pattern) -> Track:
     return Track(family.moving, family.parameter, pattern, lambda p: member(family, pattern, p), moving)
 
 
-def from_zero(family: Family, form: Echelon, pattern: Pattern, upper: fmpq) -> list[Piece]:
+def from_zero(
+    family: Family, form: Echelon, pattern: Pattern, upper: fmpq, enough: Callable[[], bool]
+) -> list[Piece]:
     """Pieces from the length zero on, scaled by powers of the length, as far as their series are sharp."""
     track = Track(
         family.moving, family.parameter, pattern, lambda p: member(family, pattern, p),
@@ -87,7 +92,7 @@ def from_zero(family: Family, form: Echelon, pattern: Pattern, upper: fmpq) -> l
         start = track.first(end / 2)
         first = None if start is None else piece(track, start, fmpq(0), end)
         if first is not None:
-            return [first, *march(track, first.ends[1], end, last, 3)]
+            return [first, *march(track, first.ends[1], end, last, 3, enough)]
         end = simple(end / 2, end)
     return []
 

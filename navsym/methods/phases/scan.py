@@ -40,13 +40,18 @@ class Span:
     pattern: Pattern
 
 
+def exact(x: Fraction) -> sp.Rational:
+    """A fraction of Python as a rational of sympy."""
+    return sp.Rational(x.numerator, x.denominator)
+
+
 def sample(family: Family, T: Fraction, *wanted: Pattern | None) -> tuple[Basis, Contacts]:
     """Basis and contacts for one length; the contacts in order.
 
     wanted : patterns to prefer where there are several optimal estimators, the first that is optimal wins
     """
     try:
-        basis = make_basis(family.exact(sp.Rational(T.numerator, T.denominator)))
+        basis = make_basis(family.exact(exact(T)))
     except DependentError:
         raise DomainError(
             f"{family.parameter.name}: expected a range inside which the regressors are independent; got dependent "
@@ -93,11 +98,11 @@ def ordered(found: Contacts, panels: Panels | None = None) -> Contacts:
 
 
 def scan(
-    family: Family, lower: Fraction, upper: Fraction, count: int = COUNT, step: Callable[[], None] = lambda: None
+    family: Family, lower: Fraction, upper: Fraction, count: int = COUNT, step: Callable[[], bool] = lambda: True
 ) -> list[Span]:
     """Spans of equal pattern between two positive lengths, from a scan and bisections.
 
-    step : called after each of the ``count - 1`` stretches of the scan
+    step : called after each of the ``count - 1`` stretches of the scan; False ends it there, before ``upper``
     """
 
     def at(T: Fraction, *wanted: Pattern) -> Pattern:
@@ -111,7 +116,9 @@ def scan(
         for cut, after in changes(at, a, b, pattern, at(b, pattern)):
             spans.append(Span(edge, cut, pattern))
             edge, pattern = cut, after
-        step()
+        if not step() and b != places[-1]:
+            upper = b
+            break
     spans.append(Span(edge, upper, pattern))
     return joined([s for s in spans if s.upper - s.lower > SHORTEST * width])
 

@@ -6,7 +6,7 @@ fixed, and weak duality bounds the optimum from both sides for every value in th
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import inf
@@ -25,6 +25,7 @@ from navsym.proof.decimals import decimal, exact
 from navsym.proof.optimality.basis import Basis, DependentError, as_fraction, make_basis
 from navsym.proof.optimality.enclosure import Panel, Problem, Touch, interval, rational, total
 from navsym.proof.optimality.fixed import attempts, every_cell, header, near_touches
+from navsym.proof.optimality.march import never
 from navsym.proof.optimality.polish import Polished, polish
 from navsym.proof.optimality.range import fraction
 from navsym.proof.optimality.supports import support_points
@@ -62,14 +63,17 @@ class Sliver:
         return decimal(self.start, 60), decimal(self.end, 60), self.lower, self.upper
 
 
-def slivers(family: Family, start: fmpq, end: fmpq) -> tuple[list[Sliver], list[tuple[fmpq, fmpq]]]:
-    """Slivers on a stretch, each as long as it stays narrow, and what they leave when the attempts are used up."""
+def slivers(
+    family: Family, start: fmpq, end: fmpq, enough: Callable[[], bool] = never
+) -> tuple[list[Sliver], list[tuple[fmpq, fmpq]]]:
+    """Slivers on a stretch, each as long as it stays narrow, and what they leave when the attempts are used up or it is
+    enough."""
     made: list[Sliver] = []
     left: list[tuple[fmpq, fmpq]] = []
     stack, tries, shortest = [(start, end)], 0, (end - start) * SHORTEST
     while stack:
         a, b = stack.pop()
-        if tries == MOST_TRIES or b - a < shortest:
+        if tries == MOST_TRIES or b - a < shortest or enough():
             left.append((a, b))
             continue
         tries += 1
