@@ -141,9 +141,9 @@ def noise_of_z():
     "1.10.gz",
     expect=REFUTED,
     slip="paper",
-    reason="a transposed row (1 0 ... 0)^T cannot be multiplied by C_2^-1 unless n - m = 1; in (1.5) "
-    "and after (1.14) "
-    "the same row stands without the transposition",
+    reason="a transposed row (1 0 ... 0)^T cannot be multiplied by C_2^-1 unless n - m = 1; in (1.5) and after "
+    "(1.14) the same row stands without the transposition; by hand: for n - m = 2 a (2, 1) column stands before a "
+    "(2, 2) matrix",
 )
 def output_row_of_z_printed():
     """g_z^T = (1 0 ... 0)^T C_2^-1, as printed: a column times a matrix."""

@@ -125,9 +125,9 @@ def drift_2():
     "2.2.beta3",
     expect=REFUTED,
     slip="scan",
-    reason="index 2 for 1 in the second term: beta x omega has -omega_x1 beta_2, and the paper's own "
-    "(2.8) for x_3 "
-    "follows only with omega_x1",
+    reason="index 2 for 1 in the second term: beta x omega has -omega_x1 beta_2, and the paper's own (2.8) for x_3 "
+    "follows only with omega_x1; by hand: omega_x1 = beta_2 = 1, all others 0: the platform turns at -1, the print "
+    "has 0",
 )
 def drift_3_printed():
     """beta_3' = omega_x2 beta_1 - omega_x2 beta_2 + nu_x3, as printed."""
@@ -215,9 +215,9 @@ RATE = sp.sqrt(w1**2 + w2**2)
     "2.assumption1.units",
     expect=REFUTED,
     slip="scan",
-    reason="a rate (1/s) is compared with a squared rate (1/s^2); the dot of the derivative over the "
-    "root is lost, as are "
-    "the dots in (2.9) and (3.3)",
+    reason="a rate (1/s) is compared with a squared rate (1/s^2); the dot of the derivative over the root is lost, "
+    "as are the dots in (2.9) and (3.3); by hand: in minutes the left side is 60 times larger, the right one 3600 "
+    "times",
 )
 def stationarity_units_printed():
     """(omega_x1^2 + omega_x2^2)^(1/2) < max(omega_x1^2 + omega_x2^2), as printed.
@@ -355,7 +355,8 @@ def omega_symbol():
     expect=REFUTED,
     slip="paper",
     reason="(2.6) and (2.8) use w_10^c, w_20^c and r^c without the index x, but the list of dimensionless "
-    "quantities leaves them out; with w_x10^c itself (2.6) would add a rate in 1/s to numbers",
+    "quantities leaves them out; with w_x10^c itself (2.6) would add a rate in 1/s to numbers; by hand: sigma_x1^c "
+    "and w_x1^c are added in (2.4), and only the first is divided by omega_0",
 )
 def noise_symbols_printed():
     """The list of dimensionless quantities defines every symbol of (2.6) that differs from (2.1)-(2.5)."""

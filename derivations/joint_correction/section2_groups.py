@@ -136,9 +136,9 @@ row_x6_printed = row(
     lambda: velocity().rates[5],
     expect=REFUTED,
     slip="paper",
-    reason="sign of the last bracket: x_6 contains -u_1 beta_3 and u_3 beta_1, whose drifts give -u_1 "
-    "nu_3 + u_3 nu_1; the row "
-    "of x_3 turned by 90 degrees gives the same",
+    reason="sign of the last bracket: x_6 contains -u_1 beta_3 and u_3 beta_1, whose drifts give -u_1 nu_3 + u_3 "
+    "nu_1; the row of x_3 turned by 90 degrees gives the same; by hand: u_1 = nu_3 = 1, all others 0: beta_3 grows "
+    "at 1 and x_6 = -mu beta_3 at -mu, the print has mu",
 )
 row_x6 = row(
     "2.8.x6*",
@@ -180,9 +180,10 @@ rows_y = tuple(
     for k, printed in POSITION_ROWS.items()
 )
 DOT = (
-    "the dot over omega is lost: beta_3 enters through the derivative of omega only (mu omega nu_3 "
-    "cancels); as printed the term "
-    "has the order rho, against the paper's own remark that the inhomogeneous terms have the order mu"
+    "the dot over omega is lost: beta_3 enters through the derivative of omega only (mu omega nu_3 cancels); as "
+    "printed the term has the order rho, against the paper's own remark that the inhomogeneous terms have the order "
+    "mu; by hand: constant omega, beta_3 = 1, all others 0: y_2 and y_6 stand still, the print has mu omega_2 and "
+    "-mu omega_1"
 )
 row_y2_printed = row(
     "2.9.y2",

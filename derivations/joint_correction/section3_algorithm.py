@@ -149,8 +149,8 @@ y1_printed = row(
     lambda: position_row(1),
     expect=REFUTED,
     slip="scan",
-    reason="the circle that marks an estimate is lost: y_2 is not known; the row of y_5 beside it has "
-    "y_6 with the circle",
+    reason="the circle that marks an estimate is lost: y_2 is not known; the row of y_5 beside it has y_6 with the "
+    "circle; by hand: y_2 = 1, all estimates 0 and K = 0: the estimator has no way to the rate 1 of the print",
 )
 y1_row = row(
     "3.3.y1*",
@@ -166,9 +166,9 @@ y2_row = row(
     lambda: position_row(2),
 )
 DOT = (
-    "the dot of the derivative is lost on the left side: as printed the row is no differential "
-    "equation, although the "
-    "algorithm is one; rows y_1 and y_2 have theirs"
+    "the dot of the derivative is lost on the left side: as printed the row is no differential equation, although "
+    "the algorithm is one; rows y_1 and y_2 have theirs; by hand: K = 0 and y_6 = 1: the print says that y_5 is 1, "
+    "not that it grows by 1 in a unit of time"
 )
 
 

@@ -7,7 +7,8 @@ analogues with free symbols for every probability (:mod:`derivations.multistruct
 are sums, for any number of modes by induction (:mod:`derivations.multistructure.any_number`), and again for Gaussian
 families. Words are decided by counting, by one exact example, or by an integral in balls.
 
-``conditions`` has what stands in words between the equations.
+``conditions`` has what stands in words between the equations; ``forgetting`` goes beyond the paper: how wrong the
+probabilities of the modes can be, and for how long.
 
 Slips without a claim of their own, since nothing can be computed from them: the text below (11) says "in the form (1)"
 for the form (11), and "the j-th step" above (12) for the k-th.

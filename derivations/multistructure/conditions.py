@@ -55,8 +55,9 @@ def covariance_at(step: int, series: list[list[int]], kit: Kit = examples.EXPRES
     "18.next",
     expect=REFUTED,
     slip="paper",
-    reason="(12) and (13) at step k give P(k); P(k+1) of a switching signal depends on the measurement Y(k+1), through "
-    "the weights, unlike in a single Kalman filter",
+    reason="(12) and (13) at step k give P(k); P(k+1) of a switching signal depends on the measurement Y(k+1), "
+    "through the weights, unlike in a single Kalman filter; in the example P(1) is 0.574 larger for Y(1) = 3 than "
+    "for Y(1) = 1",
 )
 def next_covariance_printed():
     """Below (18): (12) and (13) at step k give P(k+1), which does not depend on Y(k+1) (3 or 1, k = 0)."""
@@ -98,7 +99,8 @@ def fourth_moment(generating: sp.Expr, variable: sp.Symbol) -> sp.Expr:
     expect=REFUTED,
     slip="paper",
     reason="a white noise with a covariance, which is all that (4) and (6) ask for, may take two values; that the "
-    "noises are normal has to be said, or neither the densities nor (18) are Gaussian",
+    "noises are normal has to be said, or neither the densities nor (18) are Gaussian; by hand: a noise of +-1 has "
+    "the fourth moment 1, a normal one of the same variance 3",
 )
 def white_noise_is_not_enough():
     """Before (14), read literally: (4) and (6) with white noise of covariance R make f^i[Y(k)/x(k)] Gaussian."""

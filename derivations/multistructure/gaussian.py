@@ -154,7 +154,7 @@ d = sp.Symbol("d", positive=True)
     expect=REFUTED,
     slip="scan",
     reason="the index i is lost: pi^i[x(k)] is Gaussian, the sum pi[x(k)] of two or more is not, as its fourth "
-    "moment shows; the parameters named beside it carry i",
+    "moment shows; the parameters named beside it carry i; by hand: d = 1 gives 12 against 1 + 6 + 3 = 10",
 )
 def sum_is_gaussian():
     """Before (14): pi[x(k)] is Gaussian, so its fourth central moment is 3 P^2 (means -d and d, variances 1)."""

@@ -87,7 +87,8 @@ def markov():
     "14",
     expect=REFUTED,
     slip="scan",
-    reason="P[I(k) = 1] is one number for all modes; the letter i was read as the digit 1, and ij as j",
+    reason="P[I(k) = 1] is one number for all modes; the letter i was read as the digit 1, and ij as j; by hand: "
+    "probabilities 1/2, 1/3, 1/6 would all be 1/2",
 )
 def forgetful_printed():
     """(14) as printed: p^i(k) = P[I(k) = 1] for every mode i."""
@@ -113,7 +114,8 @@ def forgetful():
     expect=REFUTED,
     slip="paper",
     reason="folding pi[x(k-1)] into one Gaussian forgets the state's dependence on the mode, not the mode: the mode "
-    "before is still known through g^j(k-1), and P[I(k) = i] is not its prediction",
+    "before is still known through g^j(k-1), and P[I(k) = i] is not its prediction; by hand: a mode that never "
+    "changes, g = (0.9, 0.1) after an even start: the next mode is 1 with 0.9, not 0.5",
 )
 def follows_printed():
     """Before (14): after the Gaussian approximation the mode is predicted by P[I(k) = i] (two modes)."""

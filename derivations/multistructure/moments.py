@@ -34,7 +34,8 @@ def partial_mean(s: Step, name: str, i: int):
     "12",
     expect=REFUTED,
     slip="paper",
-    reason="the sum runs over j while every factor carries i, as in (11)",
+    reason="the sum runs over j while every factor carries i, as in (11); by hand: g = (3/4, 1/4), X^i = (0, 4) "
+    "have the mean 1, the print has 2 g^i X^i, 0 or 2",
 )
 def estimate_printed():
     """(12) as printed, summed over j."""
@@ -120,7 +121,8 @@ def covariance_of_densities():
     "13.index",
     expect=REFUTED,
     slip="paper",
-    reason="the sum runs over j while every factor carries i, as in (11)",
+    reason="the sum runs over j while every factor carries i, as in (11); by hand: g = (3/4, 1/4), X^i = (0, 4), "
+    "P^i = 0 have the variance 3, the print has 1.5 or 4.5",
 )
 def covariance_index_printed():
     """(13) as printed, summed over j (two components)."""
@@ -146,7 +148,8 @@ def expected_product(first, second, i, symbols):
     expect=REFUTED,
     slip="paper",
     reason="the first bracket must be x - X^i like the second, and X(k) the estimate: as printed the spread of the "
-    "partial estimates is counted twice",
+    "partial estimates is counted twice; by hand: g = (1/2, 1/2), X^i = (-1, 1), P^i = 0 have the variance 1, the "
+    "print has 2",
 )
 def middle_printed():
     """(13), middle expression as printed: [x - X] + [X^i - X] beside [x - X^i] + [X^i - X]."""

@@ -33,7 +33,8 @@ def rho(s: Step, i: int) -> sp.Expr:
     "20",
     expect=REFUTED,
     slip="scan",
-    reason="an equals sign stands between the fraction and the integral where (8) has a product, as in (15)",
+    reason="an equals sign stands between the fraction and the integral where (8) has a product, as in (15); by "
+    "hand: a measurement that says nothing makes the fraction 1, and the posterior is the integral",
 )
 def partial_printed():
     """(20) as printed: pi^i equals the fraction, and equals the integral."""
@@ -56,8 +57,8 @@ def partial():
     "20.integral",
     expect=REFUTED,
     slip="scan",
-    reason="there are two integral signs and one differential: integrating over x(k) too leaves no function of x(k); "
-    "(15) has one",
+    reason="there are two integral signs and one differential: integrating over x(k) too leaves no function of "
+    "x(k); (15) has one; by hand: without information the print is 1 for every x(k)",
 )
 def double_integral_printed():
     """(20) with the double integral as printed, over x(k-1) and x(k)."""
@@ -112,7 +113,8 @@ def mixture():
     expect=REFUTED,
     slip="paper",
     reason="g^i(0) is defined as f[i / Y_0^0], after the measurement Y(0); the prior p^i is what stands before it, "
-    "so either the measurements begin at step 1 or g^i(0) needs Bayes' rule",
+    "so either the measurements begin at step 1 or g^i(0) needs Bayes' rule; by hand: p = (1/2, 1/2) and "
+    "likelihoods 3 : 1 make g(0) = (3/4, 1/4)",
 )
 def start_printed():
     """Below (21): the initial condition is g^i(0) = p^i, with measurements from step 0 on."""

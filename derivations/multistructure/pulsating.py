@@ -37,7 +37,8 @@ def rho(s: Step, i: int) -> sp.Expr:
     "15",
     expect=REFUTED,
     slip="scan",
-    reason="an equals sign stands between the fraction and the integral where (8) has a product",
+    reason="an equals sign stands between the fraction and the integral where (8) has a product; by hand: a "
+    "measurement that says nothing makes the fraction 1, and the posterior is the integral",
 )
 def partial_printed():
     """(15) as printed: pi^i equals the fraction, and equals the integral."""
@@ -179,7 +180,8 @@ def excess_of_two():
     expect=REFUTED,
     slip="paper",
     reason="g^i near one is not enough: a mode of probability epsilon at the distance 1/sqrt(epsilon) makes the "
-    "Gaussian approximation arbitrarily bad while g tends to one; the distance must be bounded",
+    "Gaussian approximation arbitrarily bad while g tends to one; the distance must be bounded; by hand: epsilon "
+    "d^2 = 1 leaves the variance 2 and a fourth cumulant near 1/epsilon",
 )
 def near_optimal():
     """The error of the Gaussian approximation vanishes when g^i tends to one for one mode."""
@@ -243,7 +245,8 @@ CASES = [(modes, n) for modes in (2, 3, 8) for n in (1, 2, 6)]
     expect=REFUTED,
     slip="paper",
     reason="beside the probabilities of (17) the adders and the partial estimate at work must be kept, while every "
-    "model starts from the same estimate: two means, two covariances and a sum of weights",
+    "model starts from the same estimate: two means, two covariances and a sum of weights; by hand: one state and "
+    "two modes need 7 numbers more, not 2",
 )
 def memory_printed():
     """Pulsating needs more memory than Kalman only for the I probabilities of (17)."""

@@ -40,8 +40,9 @@ def chain():
     "7",
     expect=REFUTED,
     slip="scan",
-    reason="the denominator prints the transition density twice; the sum of the numerator over x and i has it "
-    "once, and without that the posterior does not sum to one",
+    reason="the denominator prints the transition density twice; the sum of the numerator over x and i has it once, "
+    "and without that the posterior does not sum to one; by hand: with f = 1/2 for both values of x the denominator "
+    "is half of what it should be",
 )
 def posterior_printed():
     """(7) with the denominator as printed, the transition density f^i[x(k)/x(k-1)] standing there twice."""
@@ -80,7 +81,8 @@ def UNIT(s: Step):
     expect=REFUTED,
     slip="paper",
     reason="the denominator sums over i as well, which gives the joint density of state and mode; given i(k) the "
-    "sum runs over j alone, as (8) itself has it",
+    "sum runs over j alone, as (8) itself has it; by hand: two modes that fit equally well would each have half of "
+    "a density",
 )
 def partial_definition_printed():
     """The fraction above (8): pi^i with a denominator summed over i and j."""
@@ -125,7 +127,8 @@ def partial_posterior():
     expect=REFUTED,
     slip="paper",
     reason="the density of the state before must be pi^j[x(k-1)], of the mode before; with pi^i the left side's j "
-    "does not occur on the right",
+    "does not occur on the right; by hand: all rho^ij of one i would be equal, however different the densities "
+    "before",
 )
 def pair_likelihood_printed():
     """(9) as printed, with the partial density of mode i in the double integral."""
@@ -138,7 +141,8 @@ def pair_likelihood_printed():
     "9.condition",
     expect=REFUTED,
     slip="paper",
-    reason="the condition must be j(k-1), as (10) has it: with i(k-1) the density is that of staying in mode i",
+    reason="the condition must be j(k-1), as (10) has it: with i(k-1) the density is that of staying in mode i; by "
+    "hand: rho^12 would be rho^11",
 )
 def pair_condition_printed():
     """(9), last line as printed: rho^ij is the density of Y(k) given i(k) and i(k-1)."""
@@ -175,7 +179,8 @@ def pair_condition():
     "10.definition",
     expect=REFUTED,
     slip="scan",
-    reason="an integral sign stands where the sum over j must be: unsummed, the numerator still depends on j",
+    reason="an integral sign stands where the sum over j must be: unsummed, the numerator still depends on j; by "
+    "hand: two modes before with equal terms: the numerator is half of g^i",
 )
 def mode_definition_printed():
     """The fraction above (10): g^i with a numerator that is not summed over j."""
@@ -229,7 +234,7 @@ def mode_probability():
     expect=REFUTED,
     slip="paper",
     reason="the sum runs over j while every factor carries i: taken literally it is I g^i pi^i; the same index "
-    "stands in (12) and (13)",
+    "stands in (12) and (13); by hand: two modes of 1/2 would make pi = pi^1, without pi^2",
 )
 def mixture_printed():
     """(11) as printed, summed over j."""

@@ -3,7 +3,8 @@
 The files follow the paper: ``problem`` (1)-(5), ``crossing`` (6)-(10) for one coordinate, ``directions``
 (11)-(13) for two, ``extremes`` (t_min, t_max and their middle), ``solution`` (8), (14) and what the
 sequential estimate really is, ``cost`` (complexity and its numbers), ``experiment`` (noise, accuracy
-measures, table 1), ``reading`` (what its figures would mean).
+measures, table 1), ``reading`` (what its figures would mean), ``degenerate`` (beyond the paper: where nothing can be
+told).
 
 **The simple form.** With the slopes g_k of the map under the track and the times k, three symmetric matrices
 say everything: G = sum g g', M1 = sum k g g', M2 = sum k^2 g g'. A velocity error v moves the position fix by

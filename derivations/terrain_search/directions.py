@@ -33,8 +33,8 @@ def quotient(points, way=DIRECTION):
     "11",
     expect=REFUTED,
     slip="paper",
-    reason="the numerator carries a factor Delta s that (10) and the range [0, n] exclude: it would be a"
-    " length",
+    reason="the numerator carries a factor Delta s that (10) and the range [0, n] exclude: it would be a length; by "
+    "hand: two equal slopes make t_G = 1/2, the print half of 50 m",
 )
 def crossing_as_printed():
     """t_G for a velocity error in two directions, as printed."""
@@ -55,8 +55,9 @@ def crossing():
     "11.beta",
     expect=REFUTED,
     slip="paper",
-    reason="arctan of each component turns the direction unless the components are equal, and an error "
-    "along the track is no angle at all; beta has to be (deltaVx, deltaVy)/V",
+    reason="arctan of each component turns the direction unless the components are equal, and an error along the "
+    "track is no angle at all; beta has to be (deltaVx, deltaVy)/V; by hand: (V, 2 V) has the ratio 2, its "
+    "arctangents 1.107/0.785 = 1.41",
 )
 def direction_as_printed():
     """The direction in (11) is (arctan(deltaVx / V), arctan(deltaVy / V))."""
@@ -165,7 +166,8 @@ def ax1():
     "12.Ax0",
     expect=REFUTED,
     slip="paper",
-    reason="the last product is (dh_j/dy)(dh_j/dy) where the derivative of (11) gives (dh_i/dy)(dh_j/dx)",
+    reason="the last product is (dh_j/dy)(dh_j/dy) where the derivative of (11) gives (dh_i/dy)(dh_j/dx); by hand: "
+    "slopes (0, 1), (1, 1) make it 1, the print 0",
 )
 def ax0_as_printed():
     """The sum A_x0, as printed."""
@@ -194,8 +196,8 @@ def ay1():
     "13.Ay0",
     expect=REFUTED,
     slip="paper",
-    reason="the bracket is (dh_i/dy)(dh_j/dy) - (dh_j/dy)^2, without any slope along x; the derivative "
-    "of (11) gives (dh_i/dy)(dh_j/dx) - (dh_i/dx)(dh_j/dy)",
+    reason="the bracket is (dh_i/dy)(dh_j/dy) - (dh_j/dy)^2, without any slope along x; the derivative of (11) "
+    "gives (dh_i/dy)(dh_j/dx) - (dh_i/dx)(dh_j/dy); by hand: slopes (0, 1), (1, 1) make it -1, the print 0",
 )
 def ay0_as_printed():
     """The sum A_y0, as printed."""
@@ -252,8 +254,9 @@ def scaled(size, variable):
     "12",
     expect=REFUTED,
     slip="paper",
-    reason="the derivative is the quadratic form times 2 beta_y / D^2; only the equation '= 0' survives "
-    "without the factor, and it also vanishes at beta_y = 0",
+    reason="the derivative is the quadratic form times 2 beta_y / D^2; only the equation '= 0' survives without the "
+    "factor, and it also vanishes at beta_y = 0; by hand: slopes (1, 0), (0, 1) at beta = (1, 1): the derivative is "
+    "-1/2, the form -1",
 )
 def derivative_x_as_printed():
     """The derivative of t_G by beta_x is the quadratic form itself."""
@@ -277,8 +280,9 @@ def derivative_x():
     "13",
     expect=REFUTED,
     slip="paper",
-    reason="the derivative is the quadratic form times 2 beta_x / D^2; only the equation '= 0' survives "
-    "without the factor, and it also vanishes at beta_x = 0",
+    reason="the derivative is the quadratic form times 2 beta_x / D^2; only the equation '= 0' survives without the "
+    "factor, and it also vanishes at beta_x = 0; by hand: slopes (1, 0), (0, 1) at beta = (1, 1): the derivative is "
+    "1/2, the form 1",
 )
 def derivative_y_as_printed():
     """The derivative of t_G by beta_y is the quadratic form itself."""
@@ -312,8 +316,8 @@ def opposite_sums_1():
     "13.sign0",
     expect=REFUTED,
     slip="paper",
-    reason="with A_y0 as printed the two sums are not opposite: both brackets are misprinted, "
-    "differently",
+    reason="with A_y0 as printed the two sums are not opposite: both brackets are misprinted, differently; by hand: "
+    "slopes (0, 1), (1, 1) make A_x0 = 1 and the printed A_y0 = 0",
 )
 def opposite_sums_0_as_printed():
     """A_x0 = -A_y0, with A_y0 as printed."""

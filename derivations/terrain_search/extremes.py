@@ -49,8 +49,9 @@ def slope_at_the_axis(size):
     "case1",
     expect=REFUTED,
     slip="paper",
-    reason="read as a case of solving (12), (13), which is how it is introduced: at beta_y = 0 only the derivative by"
-    " beta_x vanishes, and t_G is stationary there if and only if A_2 = 0; its value is right (case1.value)",
+    reason="read as a case of solving (12), (13), which is how it is introduced: at beta_y = 0 only the derivative "
+    "by beta_x vanishes, and t_G is stationary there if and only if A_2 = 0; its value is right (case1.value); by "
+    "hand: slopes (1, 0), (1, 1) at beta = (1, 0): the derivative is 1/2",
 )
 def axis_as_printed():
     """Read as a case of the solution: beta_y = 0 always solves the necessary conditions."""
@@ -207,8 +208,9 @@ BOX = {a: (2, 3), b: (sp.Rational(1, 2), 1)}
     "mean",
     expect=REFUTED,
     slip="paper",
-    reason="t_G is not spread evenly over [t_min, t_max] when the direction is uniform: the direction "
-    "with the larger slopes counts for more; equal only when both slopes are equally strong",
+    reason="t_G is not spread evenly over [t_min, t_max] when the direction is uniform: the direction with the "
+    "larger slopes counts for more; equal only when both slopes are equally strong; by hand: G = diag(4, 1), M1 = "
+    "diag(4, 0): the middle of [0, 1] is 1/2, the mean 2/3",
 )
 def middle_as_printed():
     """The mean of t_G over a uniform direction is the middle of [t_min, t_max], half the trace of G^-1 M1."""

@@ -26,7 +26,8 @@ def number_of_hypotheses():
     "2.count",
     expect=REFUTED,
     slip="paper",
-    reason="the text makes n measurements, k = 1…n, while the sums (2), (4), (6) run over k = 0…n",
+    reason="the text makes n measurements, k = 1…n, while the sums (2), (4), (6) run over k = 0…n; by hand: n = 2 "
+    "makes three terms",
 )
 def measurements_as_printed():
     """The criterion sums n measurements."""
@@ -115,6 +116,37 @@ def bias_at_the_end():
     start, velocity = sp.symbols("deltax0 deltaV", real=True)
     fix = start + velocity * T / 2
     return Equation(printed=-velocity * T / 2, derived=fix - free_motion(T, start, velocity, 0)[0])
+
+
+def mean_fix(at: sp.Expr, start: sp.Expr, velocity: sp.Expr) -> sp.Expr:
+    """Mean error of the position search, its fix taken for the error of the inertial system at the instant ``at``."""
+    points = slopes(1)
+    both = [inverse(moment(track, 0)) * moment(track, 1) for track in (points, points[::-1])]
+    displaced = sp.cancel(((both[0] + both[1]) / 2)[0, 0]) * T * velocity
+    return start + displaced - free_motion(at, start, velocity, 0)[0]
+
+
+@claim(
+    "bias.only_way",
+    expect=REFUTED,
+    slip="paper",
+    reason="the fix is right on average for the middle of the interval, T/2: only its date is wrong, and two fixes, "
+    "one of each half of the run, give the velocity (claim halves) from position searches alone; by hand: 2 m/s for "
+    "500 s are 0, 500 and 1000 m at start, middle and end, and the fix is 500 m",
+)
+def only_way_as_printed():
+    """Read as: without hypotheses of velocity the mean fix is off by deltaV T/2 at every instant, T/2 too."""
+    return Equation(printed=dVx * T / 2, derived=mean_fix(T / 2, x, dVx))
+
+
+@claim("bias.only_way*", corrects="bias.only_way")
+def another_way():
+    """On average the fix of the position search is right at T/2, and off by deltaV (T/2 - t) at another instant t."""
+    instant = sp.Symbol("t", real=True)
+    return Equation(
+        printed=[sp.Integer(0), dVx * (T / 2 - instant)],
+        derived=[mean_fix(T / 2, x, dVx), mean_fix(instant, x, dVx)],
+    )
 
 
 @claim("velocity.grid")

@@ -35,7 +35,8 @@ def refined_x():
     "8.y",
     expect=REFUTED,
     slip="paper",
-    reason="the first sign is a product: (14) and the formula for x beside it have a sum",
+    reason="the first sign is a product: (14) and the formula for x beside it have a sum; by hand: 100 m and 2 m/s "
+    "after 10 s are 120 m, the print has 2000 m^2",
 )
 def refined_y_as_printed():
     """The refined error along y at the last time, as printed."""
@@ -94,8 +95,8 @@ def coarse_fix():
     "crossing.exists",
     expect=REFUTED,
     slip="paper",
-    reason="in two dimensions C v is not along v, so the coarse and the true track are skew: they meet "
-    "only when v is an eigenvector of C",
+    reason="in two dimensions C v is not along v, so the coarse and the true track are skew: they meet only when v "
+    "is an eigenvector of C; by hand: C = diag(0, 1), v = (1, 1): (0, 1) - t (1, 1) never vanishes",
 )
 def crossing_as_printed():
     """The coarse track meets the true one at some t: the displacement C v - t v vanishes for t = t_G."""

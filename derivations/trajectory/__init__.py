@@ -3,7 +3,7 @@
 Split along the paper: ``earth`` (basic model notions), ``motion`` (equations 1 to 4), ``scaling`` (equations
 5 and 6), ``table`` (condition numbers), ``stages`` (what each stage does by itself), ``algorithm`` (dynamic
 inversion), ``experiment``, ``gain``, ``figures`` and ``speeds`` (three runs that differ in speed alone);
-``limits`` goes beyond it: what no algorithm can undercut.
+``limits`` and ``window`` go beyond it: what no algorithm can undercut.
 """
 
 from navsym.claims import Paper

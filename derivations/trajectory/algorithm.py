@@ -64,8 +64,8 @@ NORMALISED = sp.Matrix(sp.symbols(f"y1:{N + 1}", real=True))
     "algorithm.estimate",
     expect=REFUTED,
     slip="scan",
-    reason="one line names y_k the estimate of x^q and then x^q = D^-1 p y_k that of x: the second superscript has to "
-    "be the star that J uses, and the p belongs to no factor",
+    reason="one line names y_k the estimate of x^q and then x^q = D^-1 p y_k that of x: the second superscript has "
+    "to be the star that J uses, and the p belongs to no factor; by hand: D = 2, y = 4: x^q is 4, and 2 is x",
 )
 def estimate_printed():
     """The estimate of x^q, which is y, is D^-1 y, as it came out of the scan; n = 3."""
@@ -83,8 +83,9 @@ def estimate_in_physical_variables():
     "algorithm.K",
     expect=REFUTED,
     slip="paper",
-    reason="P^- is the matrix of the state after the step, but H^- = H_p D^-1 of equation 5 reads the state "
-    "before it: the row has to be H D^-1, the same slip as in the second measurement equation of 4",
+    reason="P^- is the matrix of the state after the step, but H^- = H_p D^-1 of equation 5 reads the state before "
+    "it: the row has to be H D^-1, the same slip as in the second measurement equation of 4; by hand: n = 2, P^- = "
+    "E, R = 1: the gain is (1/2, 0), the print has (1/3, 1/3)",
 )
 def gain_printed():
     """Gain with the row H^- of equation 5, as printed; n = 3."""

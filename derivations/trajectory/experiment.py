@@ -44,8 +44,9 @@ def heading_jump(argument: sp.Expr) -> sp.Expr:
     "experiment.heading",
     expect=REFUTED,
     slip="paper",
-    reason="2 pi 1000/360 is not an odd multiple of pi/2: the heading jumps by 0.87 degrees when yawing "
-    "starts and ends, the northern speed by 1.1 m/s, which no ship and no polynomial does",
+    reason="2 pi 1000/360 is not an odd multiple of pi/2: the heading jumps by 0.87 degrees when yawing starts and "
+    "ends, the northern speed by 1.1 m/s, which no ship and no polynomial does; by hand: 1000/360 turns are 280 "
+    "degrees more than two, and 5 cos(280 degrees) = 0.87",
 )
 def heading_printed():
     """The printed heading, 45 + 5 cos(2 pi t/T) degrees, starts from the straight course at 1000 s."""
@@ -100,7 +101,7 @@ def metres_per_radian() -> flint.arb:
     "experiment.sigma_phi.100",
     expect=REFUTED,
     slip="paper",
-    reason="1.2e-8 degrees are 1.3 mm; the unit is the radian, and even then it is 0.08 m",
+    reason="1.2e-8 degrees are 1.3 mm; the unit is the radian, and even then it is 0.08 m (111.2 km to a degree)",
 )
 def position_error_printed():
     """|V| = 100 m/s: 1.2e-8 degrees are 0.06 m."""

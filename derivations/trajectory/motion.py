@@ -64,7 +64,8 @@ def first_row():
     "1.row2",
     expect=REFUTED,
     slip="scan",
-    reason="indices are lost: the second row cannot be a second equation for dx_1/dt",
+    reason="indices are lost: the second row cannot be a second equation for dx_1/dt; by hand: a latitude in "
+    "radians does not change at metres per second",
 )
 def second_row_printed():
     """Second row, dx_1/dt = x_2, as it came out of the scan."""
@@ -81,7 +82,8 @@ def second_row():
     "1.rown",
     expect=REFUTED,
     slip="scan",
-    reason="an index is lost: the last row is that of x_n, whose initial value stands beside it",
+    reason="an index is lost: the last row is that of x_n, whose initial value stands beside it; by hand: a "
+    "coordinate at rest whatever the speed",
 )
 def last_row_printed():
     """Last row, dx_1/dt = 0, as it came out of the scan."""
@@ -229,7 +231,8 @@ def better_for_smaller_steps():
     "4.z",
     expect=REFUTED,
     slip="paper",
-    reason="H_p = H Phi acts on the state before the step: the index of x is k, as in equations 5 and 6",
+    reason="H_p = H Phi acts on the state before the step: the index of x is k, as in equations 5 and 6; by hand: n "
+    "= 2, rho tau = 1, x_k = (0, 1): the coordinate after the step is 1, the print gives 2",
 )
 def stepped_measurement_printed():
     """The measurement z_(k+1) = H_p x_(k+1), as printed; n = 5."""
@@ -278,8 +281,8 @@ def improves(n: int, longer: sp.Rational, shorter: sp.Rational) -> bool:
     "4.hadamard",
     expect=REFUTED,
     slip="paper",
-    reason="true for small tau only: at n = 10 the columns of N_p are best balanced near 2 s, beyond that a "
-    "smaller step is the better one",
+    reason="true for small tau only: at n = 10 the columns of N_p are best balanced near 2 s, beyond that a smaller "
+    "step is the better one (3.2e10 at 3 s, 2.2e10 at 2 s)",
 )
 def smaller_steps_always_worsen():
     """A smaller step inevitably worsens the condition number (n = 10, 3 s against 2 s)."""
