@@ -15,10 +15,11 @@ from navsym.errors import (
     ShapeError,
     TooLargeError,
 )
+from navsym.text.advice import for_relation
 from navsym.text.arithmetic import sign
 from navsym.text.expression import ZERO, Expr, Matrix, Parsed, Symbol
 from navsym.text.files import called
-from navsym.text.names import nearest, shown
+from navsym.text.names import shown
 from navsym.text.parameters import Parameter, box_of, read_parameters, read_range, symbols_of
 from navsym.text.schema import (
     Table,
@@ -131,7 +132,7 @@ def read_claim(block: Any, symbols: Mapping[str, Parameter], where: str) -> File
     label = as_label(required(table, "id", where), inside(where, "id"))
     relation = as_text(table.get("relation", "="), inside(where, "relation"), "a relation")
     if relation not in RELATIONS:
-        hint = "write =" if relation == "==" else nearest(relation, RELATIONS)
+        hint = for_relation(relation, RELATIONS)
         message = f"expected one of {' '.join(RELATIONS)}; got {shown(relation)}; do correct it: {hint}"
         raise ExpressionSyntaxError(message, where=inside(where, "relation"))
     known = symbols_of(symbols)

@@ -26,8 +26,8 @@ from navsym.errors import (
     TooLargeError,
     UnknownSymbolError,
 )
-from navsym.text import arithmetic
-from navsym.text.names import FUNCTIONS, RESERVED, check_name, nearest, shown
+from navsym.text import advice, arithmetic
+from navsym.text.names import FUNCTIONS, RESERVED, check_name, shown
 from navsym.text.printer import to_text
 from navsym.text.tokens import CALLS, DEPTH, Source, Token, tokenize
 
@@ -224,7 +224,7 @@ class Reader:
         if token.text == "pi":
             return sp.pi
         if token.text not in self.symbols:
-            got, do = shown(token.text), f"declare it or correct it: {nearest(token.text, self.symbols)}"
+            got, do = shown(token.text), advice.for_name(token.text, self.symbols)
             self.source.fail(token.start, "a declared name or a function", got, do, UnknownSymbolError)
         if self.token.kind == "mark" and self.token.text == "(":
             do = f"write a product with *: {token.text}*(...)"
@@ -298,8 +298,7 @@ class Reader:
         token = self.token
         got = "the end of the text" if token.kind == "end" else shown(token.text)
         implicit = token.kind in ("number", "name") or token.text == "("
-        do = "write a product with *" if implicit else "complete or remove this part"
-        self.source.fail(token.start, expected, got, do)
+        self.source.fail(token.start, expected, got, advice.for_token(self.source.text, token.start, implicit))
 
     def do(self, at: int, step: Callable[..., sp.Expr], *arguments: object) -> sp.Expr:
         """One step of arithmetic, with its refusal placed in the text."""

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import NoReturn
 
 from navsym.errors import ExpressionSyntaxError, NavsymError, TooLargeError
+from navsym.text.advice import for_character
 from navsym.text.names import character, shown
 
 LENGTH = 10_000  # characters of one expression
@@ -23,28 +24,6 @@ TOKEN = re.compile(
     r"[ \t\r\n]*(?:(?P<number>[0-9]+(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?)"
     r"|(?P<name>[A-Za-z][A-Za-z0-9_]*)|(?P<mark>\*\*|[-+*/(),])|(?P<end>\Z))"
 )
-
-HINTS = {
-    "^": "write ** for a power",
-    "\u2212": "write the ASCII minus -",
-    "\u2013": "write the ASCII minus -",
-    "\u00b7": "write * for a product",
-    "\u00d7": "write * for a product",
-    "\u00f7": "write / for a quotient",
-    "\u03c0": "write pi",
-    "\u221a": "write sqrt(...)",
-    "[": "use ( and ) only",
-    "{": "use ( and ) only",
-    "=": "give the two sides separately",
-    "<": "give the two sides separately",
-    ">": "give the two sides separately",
-    "!": "write a factorial as a number",
-    "%": "divide by 100",
-    "|": "write abs(...)",
-    ".": "write the digits on both sides of the point: 0.5, 1.0",
-    "_": "let a name start with a letter, and write numbers without separators",
-}
-
 
 @dataclass(frozen=True, slots=True)
 class Token:
@@ -106,7 +85,7 @@ def refuse_character(source: Source, at: int) -> NoReturn:
     """Refuse a character that the language does not have, with a hint when there is one."""
     char = source.text[at]
     expected = "ASCII letters, digits and + - * / ** ( ) ,"
-    source.fail(at, expected, character(char), HINTS.get(char, "remove it or write it in ASCII"))
+    source.fail(at, expected, character(char), for_character(source.text, at))
 
 
 def refuse_tail(source: Source, token: Token, at: int) -> None:
