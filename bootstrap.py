@@ -18,7 +18,7 @@ import sys
 SUPPORTED = ((3, 11), (3, 12), (3, 13))
 ROOT = os.path.dirname(os.path.realpath(__file__))
 LOCK = "requirements.lock"
-EXTRAS = "requirements-extra.lock"   # jupyterlab, documentation, cross compilers, GeoTIFF
+EXTRAS = "requirements-extra.lock"   # jupyterlab, documentation, cross compilers, GeoTIFF, fuzzing
 INPUTS = (LOCK, "pyproject.toml")
 STAMP = "navsym-stamp.json"
 MINE = "navsym-bootstrap"      # stands in every environment made here; nothing else is ever removed
@@ -38,7 +38,7 @@ WHOLE = ["-n", "2", "--dist", "loadfile", "--max-worker-restart", "1"]
 USAGE = """usage: python3 bootstrap.py VERB [arguments]
 
   test [pytest arguments]   run the tests
-  extras                    add jupyterlab, sphinx, cross compilers and GeoTIFF to the environment
+  extras                    add jupyterlab, sphinx, cross compilers, GeoTIFF and atheris to the environment
   doctor                    what this machine lacks
   --help                    this text, then every verb of navsym
 

@@ -102,6 +102,7 @@ OWNERS: dict[str, dict[str, str]] = {
     "distributed": {"navsym/methods/sweeps/cluster.py": "sweeps on a cluster"},
     "pyarrow": {"navsym/methods/sweeps/shards.py": "shards of sweeps"},
     "hypothesis": {"navsym/testing": "strategies for users' own tests"},
+    "atheris": {"navsym/methods/campaigns/guided.py": "inputs guided by coverage, in a process of their own"},
     "rasterio": {"navsym/text": "GeoTIFF maps"},
     "pooch": {"navsym/text": "data sets, cached and checked", "navsym/cli/data.py": "the verb data"},
 }

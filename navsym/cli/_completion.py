@@ -105,7 +105,7 @@ POSITIONAL: dict[str, Callable[[], Iterable[str]]] = {
     "report": modules,
     "new-claim": modules,
     "simulate": lambda: ("joint_correction", "multistructure", "terrain_search", "trajectory"),
-    "campaign": lambda: ("mutants", "engines", "parser", "certificates", "identities", *modules()),
+    "campaign": lambda: ("mutants", "engines", "parser", "fuzz", "certificates", "identities", *modules()),
     "data": datasets,
     "completion": lambda: SHELLS,
 }

@@ -16,6 +16,7 @@ from navsym.cli.output import emit, table
 NAMES = {
     "mutants": "mutants of the formulas",
     "parser": "damaged files, and files that lie about their size",
+    "fuzz": "every reader of files by inputs that coverage guides",
     "certificates": "altered certificates",
     "kills": "writers of the store killed at random moments",
     "disk": "full disk, read-only folder, stale lock, clock set back",
@@ -66,7 +67,8 @@ def command(
 
 def chosen_batches(name: str, modules: list[str], share: float, inputs: int, seed: int) -> tuple[Any, Any]:
     """The batches of a campaign and their judge."""
-    from navsym.methods.campaigns import certificates, disks, kills, mutants, parser
+    from navsym.methods.campaigns import certificates, disks, fuzz, kills, mutants, parser
+    from navsym.store import default_path
 
     if name in TESTED:
         return tested(name)
@@ -75,6 +77,8 @@ def chosen_batches(name: str, modules: list[str], share: float, inputs: int, see
         return mutants.batches(claims, share, seed), mutants.judge
     if name == "parser":
         return parser.batches(inputs, seed), parser.judge
+    if name == "fuzz":
+        return fuzz.batches(inputs, default_path().with_name("corpus"), seed), fuzz.judge
     if name == "kills":
         return kills.batches(inputs, seed), kills.judge
     if name == "disk":
@@ -127,6 +131,8 @@ def row(document: dict[str, Any], seconds: float) -> str:
     words = shlex.join(word for word in sys.argv[1:] if word not in ("--markdown", "--fresh"))
     said = [f"{count:,} {outcome}" for outcome, count in document["counts"].items() if not is_kind(outcome)]
     said += [f"{len(document[name])} {name}" for name in ("wrong", "stopped") if document[name] or name == "wrong"]
+    if document["measured"]:
+        said.append(f"slowest {max(row['slowest'] for row in document['measured'].values()):.2f} s")
     took = f"{seconds / 60:.0f} min" if seconds > 90 else f"{seconds:.0f} s"
     took += f", {document['resumed']} of {document['batches']} batches kept from before" * bool(document["resumed"])
     date = datetime.date.today().isoformat()
@@ -138,9 +144,17 @@ def is_kind(outcome: str) -> bool:
     return outcome.startswith("kind ")
 
 
+def of_readers(measured: dict[str, dict[str, float]]) -> str:
+    """The table of what was measured: a reader in each row."""
+    names = list(next(iter(measured.values())))
+    return table(("reader", *names), [(reader, *(f"{row[n]:g}" for n in names)) for reader, row in measured.items()])
+
+
 def as_text(document: dict[str, Any]) -> str:
     rows = [(outcome, str(count)) for outcome, count in document["counts"].items()]
     lines = [table((document["campaign"], "count"), rows)]
+    if document["measured"]:
+        lines.append(of_readers(document["measured"]))
     lines.append(
         f"{document['batches']} batches, {document['resumed']} resumed, wrong: {len(document['wrong'])}"
     )

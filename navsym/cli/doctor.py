@@ -48,6 +48,7 @@ EXTRAS = {
     "rasterio": ("rasterio", "maps", "GeoTIFF maps"),
     "jupyterlab": ("jupyterlab", "notebook", "notebooks in a browser"),
     "wasmtime": ("wasmtime", "cross", "running exported WebAssembly"),
+    "atheris": ("atheris", "fuzz", "campaign fuzz"),
     "ziglang": ("ziglang", "cross", "cross-compiling exported C"),
 }
 

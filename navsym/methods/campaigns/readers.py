@@ -132,19 +132,23 @@ def tiff() -> bytes:
     return b"II*\0" + struct.pack("<IH", 8, len(entries)) + table + struct.pack("<I", 0) + doubles + pixels
 
 
+def scratch() -> Path:
+    """Folder of this process for files that are read from a path; who reads many removes it at the end."""
+    folder = Path(tempfile.gettempdir()) / f"navsym-read-{os.getpid()}"
+    folder.mkdir(exist_ok=True)
+    return folder
+
+
 def from_file(read: Callable[[Path], Any], name: str) -> Reader:
-    """A reader of paths as one of bytes: they are written to the temporary folder first."""
+    """A reader of paths as one of bytes: they are written to a temporary file first."""
 
     def reader(data: bytes) -> Any:
-        path = Path(tempfile.gettempdir()) / f"navsym-{os.getpid()}-{name}"
-        folder = path.with_suffix(".d")
+        path = scratch() / name
         try:
-            folder.mkdir(exist_ok=True)
-            (folder / name).write_bytes(data)
-            return read(folder / name)
+            path.write_bytes(data)
+            return read(path)
         finally:
-            (folder / name).unlink(missing_ok=True)
-            folder.rmdir()
+            path.unlink(missing_ok=True)
 
     return reader
 

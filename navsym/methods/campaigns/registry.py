@@ -50,8 +50,9 @@ def run_campaign(
     """Judge every batch that is not yet in the store; the document of ``navsym campaign``.
 
     Keys: ``campaign``, ``batches``, ``resumed`` (taken from the store), ``counts``, ``wrong`` (must be
-    empty), ``open`` (undecided, with the reason), ``stopped`` (batches over their limit) and ``unsaved``
-    (batches that the store did not take: they count here, and another run will do them again).
+    empty), ``open`` (undecided, with the reason), ``stopped`` (batches over their limit), ``measured`` (largest
+    seconds, megabytes and lines reached, of each reader of files) and ``unsaved`` (batches that the store did
+    not take: they count here, and another run will do them again).
     """
     keys = [key_of("campaign", campaign, batch.name, rooms_digest()) for batch in batches]
     known = store.get(keys) if store is not None else {}
@@ -89,6 +90,8 @@ def document(campaign: str, batches: int, results: Sequence[Result], stopped: li
     """The results of the batches as one: counts added up, wrong and open items one after the other.
 
     stopped : names of batches without a result, each with the reason; sorted in the document
+
+    ``measured`` has what the batches of each reader of files measured, the largest of each.
     """
     counts: Counter[str] = Counter()
     for found in results:
@@ -100,4 +103,14 @@ def document(campaign: str, batches: int, results: Sequence[Result], stopped: li
         "wrong": [item for found in results for item in found["wrong"]],
         "open": [item for found in results for item in found["open"]],
         "stopped": sorted(stopped),
+        "measured": measured(results),
     }
+
+
+def measured(results: Sequence[Result]) -> dict[str, dict[str, float]]:
+    """Reader -> name -> the largest number that a batch of this reader kept under the name."""
+    found: dict[str, dict[str, float]] = {}
+    for item in (item for one in results for item in one["kept"] if "reader" in item):
+        known = found.setdefault(item["reader"], {})
+        known.update({name: max(value, known.get(name, value)) for name, value in item.items() if name != "reader"})
+    return dict(sorted(found.items()))
