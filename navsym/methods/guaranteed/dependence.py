@@ -7,6 +7,7 @@ exact solution of as many equations at instants. Only a proof for all instants c
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import sympy as sp
@@ -15,6 +16,7 @@ from flint import arb
 from navsym.claims import PROVED, Equation
 from navsym.errors import NavsymError, NotEstimableError
 from navsym.methods.guaranteed.problem import GuaranteedProblem
+from navsym.methods.guaranteed.unobservable import null_directions
 from navsym.proof.balls import enclose
 from navsym.proof.decimals import decimal
 from navsym.proof.ladder import decide
@@ -25,28 +27,51 @@ from navsym.text.expression import to_text
 MOST, LONGEST = 4, 40
 NOTHING = 1e-40
 SHARES = [sp.Rational(k, 12) for k in (0, 12, 6, 3, 9, 4, 8, 2, 10, 1, 5, 7, 11)]
+DECIDING = 1200
 Relation = dict[int, sp.Expr]
 
 
+@dataclass(frozen=True, slots=True)
+class Null:
+    """Entries of a direction that no measurement shows, and the unknown that is dropped for it."""
+
+    entries: Relation
+    at: int
+
+
 def drop_dependent(problem: GuaranteedProblem, kept: list[int], index: int, coefficients: Sequence[arb]) -> None:
-    """Remove the unknown ``kept[index]``, whose regressor is about this combination of those before it.
+    """Remove an unknown: ``kept[index]``, whose regressor is about this combination of those before it, or another.
 
     Raises NotEstimableError with a null direction where the functional changes along it, and a NavsymError of
-    kind ``"open"`` where the relation cannot be proved.
+    kind ``"open"`` where neither this nor the relation can be proved.
     """
-    k = kept[index]
-    relation = proved_relation(problem, k, dict(zip(kept, coefficients, strict=False)))
-    if relation is None:
-        raise undecided(problem, k, dict(zip(kept, coefficients, strict=False)))
-    rest = problem.functional[k] - sum((c * problem.functional[j] for j, c in relation.items()), sp.S.Zero)
-    if decide(Equation(rest, sp.S.Zero)).status is not PROVED:
-        direction = {j: -c for j, c in relation.items()} | {k: sp.S.One}
-        words = ", ".join(in_words(direction.get(j, sp.S.Zero)) for j in range(len(problem.functional)))
+    k, balls = kept[index], dict(zip(kept, coefficients, strict=False))
+    direction = integrated_direction(problem, kept) if problem.model else exact_direction(problem, k, balls)
+    if direction is None:
+        raise undecided(problem, k, balls)
+    change = sum((c * problem.functional[j] for j, c in direction.entries.items()), sp.S.Zero)
+    if decide(Equation(change, sp.S.Zero)).status is not PROVED:
+        if enclose(change, bits=DECIDING).contains(0):
+            raise undecided(problem, k, balls)
+        words = ", ".join(in_words(direction.entries.get(j, sp.S.Zero)) for j in range(len(problem.functional)))
         raise NotEstimableError(
             f"functional: expected one that the measurements determine; got one that changes along the null "
             f"direction [{words}] which no measurement shows; estimate another combination"
         )
-    kept.remove(k)
+    kept.remove(direction.at)
+
+
+def exact_direction(problem: GuaranteedProblem, k: int, balls: dict[int, arb]) -> Null | None:
+    """The direction of the proved relation of the regressor k."""
+    relation = proved_relation(problem, k, balls)
+    return None if relation is None else Null({j: -c for j, c in relation.items()} | {k: sp.S.One}, k)
+
+
+def integrated_direction(problem: GuaranteedProblem, kept: Sequence[int]) -> Null | None:
+    """A direction of an integrated model, proved from F and h, whose own unknown is left."""
+    assert problem.model is not None
+    known = (d for d in null_directions(problem.model) if d.at in kept)
+    return next((Null({j: c for j, c in enumerate(d.entries) if c != 0}, d.at) for d in known), None)
 
 
 def undecided(problem: GuaranteedProblem, k: int, balls: dict[int, arb]) -> NavsymError:

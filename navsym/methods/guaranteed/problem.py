@@ -47,6 +47,7 @@ class GuaranteedProblem:
     measurements : names
     target       : name of the functional
     error        : bound of the error of regressors that contain ERROR; zero when they are exact
+    model        : the model whose regressors were integrated, None when they are exact
 
     Raises ShapeError, EmptyError, NotFiniteError and DomainError (no length, sigma <= 0, P = 0, free symbols).
     """
@@ -58,6 +59,7 @@ class GuaranteedProblem:
     measurements: tuple[str, ...] = ()
     target: str = "target"
     error: sp.Rational = sp.S.Zero
+    model: ModelFile | None = None
 
     def __post_init__(self) -> None:
         put = object.__setattr__
@@ -173,7 +175,7 @@ def from_file(found: ModelFile | BasisFile, target: str | None = None) -> Guaran
     stretches, error = all_stretches(found)
     return GuaranteedProblem(
         stretches, functional, tuple(m.sigma for m in found.measurements), found.time,
-        tuple(m.name for m in found.measurements), name, error,
+        tuple(m.name for m in found.measurements), name, error, found if error else None,
     )  # fmt: skip
 
 

@@ -7,6 +7,9 @@ import numpy as np
 from navsym.numeric.exchange.kernels import Array, grid_values
 from navsym.numeric.exchange.search import Contacts, Panels, nodes_for, rows_at
 
+#: Less room than this is none.
+LEAST = 1e-7
+
 
 def interior_dual(panels: Panels, contacts: Contacts) -> Array | None:
     """x with ``x . q = sign`` at the contacts, flat at inner ones, and the largest delta with
@@ -19,7 +22,7 @@ def interior_dual(panels: Panels, contacts: Contacts) -> Array | None:
 
     A, values = pinned_rows(panels, contacts)
     m = panels.functional.size
-    if A.shape[0] >= m:
+    if np.linalg.matrix_rank(A, tol=1e-9) >= m:
         return None
     nodes = nodes_for(panels)
     G, room = grid_values(panels.coefficients, nodes), rooms(panels, contacts, nodes)[:, None]
@@ -27,7 +30,7 @@ def interior_dual(panels: Panels, contacts: Contacts) -> Array | None:
         np.r_[np.zeros(m), -1.0], A_ub=np.block([[G, room], [-G, room]]), b_ub=np.ones(2 * G.shape[0]),
         A_eq=np.c_[A, np.zeros(A.shape[0])], b_eq=values, bounds=[(None, None)] * m + [(0.0, 1.0)],
     )  # fmt: skip
-    return np.asarray(answer.x[:m], dtype=float) if answer.success else None
+    return np.asarray(answer.x[:m], dtype=float) if answer.success and answer.x[m] > LEAST else None
 
 
 def pinned_rows(panels: Panels, contacts: Contacts) -> tuple[Array, Array]:

@@ -171,7 +171,7 @@ def rounded_transform(values: NDArray[np.float64]) -> tuple[arb_mat, int] | None
         return None
     A = inverse.T / scale
     span = np.log10(np.abs(A).max()) + np.log10(np.abs(factor * scale).max())
-    return arb_mat(*A.shape, [arb(a) for a in A.ravel().tolist()]), max(0, int(span) + 1)
+    return arb_mat([[arb(a) for a in row] for row in A.tolist()]), max(0, int(span) + 1)
 
 
 def make_basis(problem: Problem, bits: int = BITS) -> Basis:

@@ -13,9 +13,10 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
+import numpy as np
 from flint import arb, arb_mat, ctx, fmpq
 
-from navsym.numeric.exchange.interior import interior_dual, pinned_rows
+from navsym.numeric.exchange.interior import interior_dual
 from navsym.numeric.exchange.search import Contacts, roads, with_places
 from navsym.proof.balls import precision
 from navsym.proof.decimals import decimal, exact, lower_end, upper_end
@@ -351,23 +352,34 @@ def attempts(
     """Duals, by how many digits to shrink them, and where they touch.
 
     Where the contacts do not fix the dual, round numbers come first, then one that touches at all places where it
-    nearly does, then one with room to spare.
+    nearly does, then one with room to spare off the contacts, or off all places where it touches.
     """
     base, goal = [rational(c) for c in found.dual], goal_of(digits + basis.loss)
+    few = 0 < len(contacts.touching) <= len(base)
+    # More touches than unknowns are places of a dual that is near its bound along a part of a panel.
+    found = found if few else replace(found, touching=())
     if not found.regular:
         yield [round_number(c) for c in base], digits + 3, found
-        if 0 < len(contacts.touching) <= len(base):
+        full, v = contacts, found.v
+        if few:
             full = with_places(basis.panels, contacts, contacts.touching)
             whole = polish(problem.panels, basis, full, ctx.prec, goal)
+            v = whole.v
             yield [rational(c) for c in whole.dual], digits + 3, whole
-        inside = interior_dual(basis.panels, contacts)
-        if inside is not None:
-            rows = pinned_rows(basis.panels, contacts)[0]
-            dual = pinned(problem, basis, found, rows, inside, goal)
-            yield [rational(c) for c in dual], digits + 3, replace(found, touching=())
+        for places, at in ((contacts, found.v), (flattened(full), v)):
+            inside = interior_dual(basis.panels, places)
+            if inside is not None:
+                dual = pinned(problem, basis, places, at, inside, goal)
+                yield [rational(c) for c in dual], digits + 3, replace(found, touching=())
+                break
     fewer = {3 * digits // 4, digits // 2, 12, 9, 6, 4, 3, 2, 1}
     for k in (digits + 3, *sorted((k for k in fewer if 0 < k < digits + 3), reverse=True)):
         yield base, k, found
+
+
+def flattened(places: Contacts) -> Contacts:
+    """The same, taken to be flat at ends as well: so are duals that must touch at places which belong together."""
+    return replace(places, inner=np.ones_like(places.inner))
 
 
 def round_number(x: fmpq) -> fmpq:

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from flint import arb, arb_mat, fmpq
 
+from navsym.numeric.exchange.interior import pinned_rows
 from navsym.numeric.exchange.kernels import contact_system
 from navsym.numeric.exchange.search import Contacts
 from navsym.proof.balls import precision
@@ -101,18 +102,20 @@ def polish(
 
 
 def pinned(
-    problem: Problem, basis: Basis, found: Polished, rows: np.ndarray, x: np.ndarray, goal: arb | float
+    problem: Problem, basis: Basis, places: Contacts, v: Sequence[arb], x: np.ndarray, goal: arb | float
 ) -> list[arb]:
     """The dual next to x, in the basis of the problem, that meets its bound at the contacts and is flat at inner ones.
 
-    rows : these conditions on x in double precision, fewer than unknowns
+    v : the places of the contacts to high precision; they give fewer conditions on x than unknowns
     """
-    inverse, p = np.linalg.pinv(rows), [arb(0)] * x.size
+    rows = pinned_rows(basis.panels, places)[0]
+    inverse, nothing = np.linalg.pinv(rows, rcond=1e-9), [arb(0)] * x.size
+    signs, inner = [int(s) for s in places.sign], [bool(i) for i in places.inner]
     y, goal = [arb(float(c)) for c in x], arb(goal)
-    bounds = [problem.panels[k].bound() for k in found.panel]
-    about = local(problem.panels, found.panel, found.v, found.inner, goal)
+    bounds = [problem.panels[k].bound() for k in places.panel]
+    about = local(problem.panels, places.panel.tolist(), v, inner, goal)
     for _ in range(STEPS):
-        F = residual(about, bounds, basis, y, found.v, found.weights, p, found.sign, found.inner)[: rows.shape[0]]
+        F = residual(about, bounds, basis, y, v, [arb(0)] * len(v), nothing, signs, inner)[: rows.shape[0]]
         if largest(F) < goal:
             break
         y = [(a + s).mid() for a, s in zip(y, correction(inverse, F), strict=True)]
