@@ -110,7 +110,7 @@ def functions_for(
 ) -> list[ExportedFunction]:
     """The functions of one argument; ``name=A+B`` gives a name; a ready-made program has two."""
     from navsym.export.functions import function_of
-    from navsym.export.languages.names import identifier
+    from navsym.export.languages.names import function_name
     from navsym.export.parts import Layout
     from navsym.export.ready import ALGORITHMS, UNITS, algorithm
 
@@ -119,7 +119,7 @@ def functions_for(
     name, _, claims = text.rpartition("=") if "=" in text else ("", "", text)
     parts = [material_for(part, allow_confirmed) for part in claims.split("+")]
     known = {**UNITS.get(claims.partition(":")[0], {}), **(units or {})}
-    return [function_of(parts, real=real, name=identifier(name) if name else None, layout=Layout(units=known))]
+    return [function_of(parts, real=real, name=function_name(name) if name else None, layout=Layout(units=known))]
 
 
 def material_for(text: str, allow_confirmed: bool) -> Material:

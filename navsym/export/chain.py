@@ -165,7 +165,7 @@ def part_of(link: Link, decided: Decided) -> Material:
     if link.claim:
         return decided(link.claim)
     verdict = Verdict(PROVED, "definition") if link.theorem is None else decide_within(link.theorem(), SECONDS)
-    shown = ", ".join(n for n in link.results if n)
+    shown = ", ".join(n for n in link.results if n) or "the first state, which is given"
     require_exportable(f"the formulas of {shown}", verdict, None, False)
     where = f"definition of {shown}" if link.theorem is None else f"theorem of {shown}"
     source = Source(

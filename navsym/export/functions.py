@@ -5,6 +5,7 @@ A claim that does not hold is refused here, and nowhere later; a refuted one nam
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
@@ -140,6 +141,7 @@ def function_of(
     outputs, padded = common_outputs(parts)
     inputs = inputs_of(symbols, box, real, layout, [o.name for o in outputs])
     outputs = tuple(replace(o, unit=layout.units.get(o.name, o.unit)) for o in outputs)
+    clash = name.lower() in {i.name.lower() for i in inputs}  # Fortran tells neither them nor their case apart
     arithmetic = ARITHMETICS[real]
     pieces = tuple(
         piece_of(
@@ -156,7 +158,7 @@ def function_of(
     places = {i.symbol: k for k, i in enumerate(inputs)}
     switch = None if switch_symbol is None else places[switch_symbol]
     arguments = arguments_of(inputs, layout) if layout.arrays else ()
-    return ExportedFunction(name, inputs, outputs, pieces, arithmetic, switch, arguments)
+    return ExportedFunction(f"{name}_" if clash else name, inputs, outputs, pieces, arithmetic, switch, arguments)
 
 
 def needed_symbols(parts: Sequence[Material]) -> set[sp.Symbol]:
@@ -193,9 +195,9 @@ def piece_of(
     graph = replace(graph, names=local_names(graph.names, [*(i.name for i in inputs), *taken]))
     literals = literals_of(graph, arithmetic)
     bound = uniform_bound(graph, box, arithmetic, literals, cells=cells_for(graph))
-    whole = all(i.low == i.test_low and i.high == i.test_high for i in inputs)  # else the bound says where it holds
-    if whole and not bound.finite:
-        graph = replace(graph, guards=unseen(graph, box, arithmetic, literals))
+    every = accepted_box(inputs, box, arithmetic)
+    if every != box or not bound.finite:
+        graph = replace(graph, guards=unseen(graph, every, arithmetic, literals))
     named = tuple((name, formula, form) for (name, formula), (_, form) in zip(part.lets, lets, strict=True))
     return Piece(
         limit, tuple(formulas), tuple(forms), graph, literals, bound, tie, part.source, named, tuple(equals), tuple(box)
@@ -222,6 +224,17 @@ def box_of(
         low, high = (inside(end, d, arithmetic.name) for end, d in zip(part.box[switch], (1, -1), strict=True))
         box[k] = (max(box[k][0], low), min(box[k][1], high))
     return box
+
+
+def accepted_box(
+    inputs: Sequence[Input], box: Sequence[tuple[float, float]], arithmetic: Arithmetic
+) -> list[tuple[float, float]]:
+    """All that the code accepts in one regime: vectors and bounds may live in less of it."""
+    top = math.ldexp(1.0, arithmetic.top)
+    return [
+        (low if i.low == i.test_low else max(i.low, -top), high if i.high == i.test_high else min(i.high, top))
+        for i, (low, high) in zip(inputs, box, strict=True)
+    ]
 
 
 def cells_for(graph: Graph) -> int:

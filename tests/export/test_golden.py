@@ -13,7 +13,7 @@ from navsym.export.ready import READY
 
 GOLDEN = Path(__file__).resolve().parents[1] / "golden" / "export"
 READY_GOLDEN = GOLDEN.with_name("export-ready")
-READY_LANGUAGES = ("c", "cpp", "python", "javascript", "rust")
+READY_LANGUAGES = ("c", "cpp", "python", "javascript", "rust", "octave")
 VECTORS = 2
 LANGUAGES = ("c", "cpp", "python", "javascript", "rust", "fortran", "julia", "octave")
 
@@ -61,7 +61,7 @@ def ready_functions(name: str) -> list:
 
 
 def ready_files(name: str) -> dict[str, str]:
-    """Code in five languages and the certificates; tests and vectors are made by the same writers as above."""
+    """Code in six languages and the certificates; tests and vectors are made by the same writers as above."""
     files = files_of(ready_functions(name), Order(tuple(TARGETS[n] for n in READY_LANGUAGES), count=VECTORS))
     words = ("test_", "vectors.", "CMakeLists", "MISRA", "manifest")
     return {f"{n}.golden": text for n, text in files.items() if not n.rpartition("/")[2].startswith(words)}

@@ -77,3 +77,23 @@ def test_a_constant_that_the_type_does_not_have_is_refused(samples, real: str, s
     formula = sp.Integer(10) ** size * x
     with pytest.raises(DomainError, match="rescale"):
         function_of([samples.of_statement("large", Equation(formula, formula, {x: (0, 1)}))], real=real)
+
+
+#: Formula with no declared range, a point where its value is plain, and one where a hidden value is none.
+UNDECLARED = {
+    "gain": (x / (x + y), (1.0, 3.0), (1.5e308, 1.5e308)),
+    "root": (sp.Max(sp.sqrt(x), 1) + y, (4.0, 0.0), (-1.0, 0.0)),
+    "ratio": (1 / (1 + x**2 * y**2), (1.0, 2.0), (1e200, 1e-3)),
+}
+
+
+@COMPILER
+@pytest.mark.parametrize("name", UNDECLARED)
+def test_far_outside_of_an_undeclared_range_there_is_a_status_and_no_wrong_number(samples, name, tmp_path) -> None:
+    """Bounds are stated up to a thousand there, but a call with 1e308 must not give zero for a half."""
+    formula, good, bad = UNDECLARED[name]
+    made = function_of([samples.of_statement(name, Equation(formula, formula))])
+    (call,) = compiled_c([made], tmp_path)
+    given = {"x": (good[0], bad[0]), "y": (good[1], bad[1])}
+    statuses, _ = call(np.array([given[i.symbol.name] for i in made.inputs]))
+    assert statuses.tolist() == [0, 2]

@@ -22,7 +22,7 @@ PROGRAMS = ("trajectory-filter", "pulsating-filter", "two-stage-observer", "terr
 def test_values_keep_the_names_of_their_formulas(programs) -> None:
     _, step = programs.functions("trajectory-filter")
     text = source(step, LICENSE)
-    assert re.search(r"const double K1 = m11 / \w+;", text) and "r0 = g1;" in text
+    assert re.search(r"const double K1 = m11 / \w+;", text) and "r1 = g2;" in text
     assert "Formula  estimate[0] = g1" in header(step, LICENSE)
 
 

@@ -266,3 +266,15 @@ def test_unknown_languages_are_named() -> None:
         chosen(["cobol"], "double")
     with pytest.raises(NavsymError, match="only double"):
         chosen(["javascript"], "float")
+
+
+def test_a_function_is_not_called_like_one_that_a_language_has() -> None:
+    for name in ("sum", "main", "printf", "test_vectors", "size", "value", "AUX", "step"):
+        assert function_name(name) == f"{name}_"
+    assert function_name("drift") == "drift" and function_name("navsym_numbers") == "navsym_numbers_"
+
+
+def test_a_function_is_not_called_like_one_of_its_arguments() -> None:
+    """Fortran has one name for one thing, in capitals or not."""
+    found = function_of([material("m:1", TRUE, decide(TRUE))], name="A")
+    assert found.name == "A_" and [i.name for i in found.inputs] == ["a"]

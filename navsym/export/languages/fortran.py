@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from navsym.export.accuracy.vectors import Vector
 from navsym.export.languages.helpers import Helper, helper_parts, helpers_used, squares_if_needed
 from navsym.export.languages.printing import Spelling, assignments, calls
-from navsym.export.languages.scripts import branch, domain, vectors_text
+from navsym.export.languages.scripts import branch, domain, short_names, vectors_text
 from navsym.export.languages.summary import summary
 from navsym.export.parts import ExportedFunction
 
@@ -21,7 +21,7 @@ def files(
     functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str
 ) -> dict[str, str]:
     """Module and test program."""
-    names = {f.name: f"nv{k}_{f.name}"[:63] if len(f.name) > 63 else f.name for k, f in enumerate(functions)}
+    names = short_names(functions)
     lines = head(functions, license_)
     for function in functions:
         lines += source(function, names[function.name])

@@ -20,6 +20,27 @@ TAKEN = frozenset(
     template tgamma this throw trait true try type typedef typeof union unless unsigned use using var virtual
     void volatile where while with y0 y1 yield yn
     eof err errno every here huge infinity left linux np number ok shape some std stderr stdin stdout unix
+    all ans arguments classdef end_try_catch end_unwind_protect endclassdef endenumeration endevents endfor
+    endfunction endmethods endparfor endproperties endswitch endwhile enumeration eps events inf isfinite methods
+    na nargin nargout otherwise parfor persistent properties realmax spmd until unwind_protect
+    unwind_protect_cleanup varargin varargout
+    """.split()
+)
+#: Functions of C, POSIX, Octave and MATLAB, programs and variables of our own, and files that Windows does not have.
+FUNCTIONS = frozenset(
+    """
+    abort access acosh alarm angle any arrayfun asinh atanh atexit atof atoi atol aux axis beta binomial bsearch calloc
+    cell cellfun chol circshift clear clock close com1 complex con cond conj conv cot cov cross csc cumprod cumsum date
+    deal det diff difftime disp display div dot drem dual dup eig erfinv error eval exit expm eye factorial fclose
+    fdim feval fft fgetl fgets fieldnames figure filter find finite fix fopen fprintf free fscanf fzero gcd getc getenv
+    help hypot ifft ilogb imag index info init instants integral interp1 inv isa iscell ischar isempty isequal isfield
+    isinf isnan isnormal isnumeric isreal isstruct kron labs lcm ldiv length link linspace logb lrint lu main malloc
+    mat2cell mean median memcmp memcpy memmove memset mktime mode modf nchoosek ndims nearbyint norm nul num2str numel
+    ode45 ones open path pause perror pinv pipe plot poly polyfit polyval primes printf prn prod putc puts qr qsort quad
+    quit rand randn random rank read realloc regexp rem remove rename repmat reshape rindex rint roots rotate scalbn
+    scanf sec select shift sign signal signbit significand size sleep snprintf sort sprintf squeeze srand std step
+    str2double strcat strcmp strcpy strlen strrep strsplit strtod strtrim sum svd sync system table test test_main
+    test_vectors tic time toc trace trapz trunc truncate unique unlink value var wait weights who write zeros
     """.split()
 )
 #: Numbers that the headers of C define, such as M_PI and DBL_MAX.
@@ -70,5 +91,9 @@ def spelled(char: str) -> str:
 
 
 def function_name(claim_id: str) -> str:
-    """``guaranteed_velocity:4.12.Phi33`` -> ``guaranteed_velocity_4_12_Phi33``; a star -> ``_corrected``."""
-    return identifier(claim_id.replace("*", "_corrected"))
+    """``guaranteed_velocity:4.12.Phi33`` -> ``guaranteed_velocity_4_12_Phi33``; a star -> ``_corrected``.
+
+    A name that is a function somewhere gets a ``_``.
+    """
+    name = identifier(claim_id.replace("*", "_corrected"))
+    return f"{name}_" if name.lower() in FUNCTIONS else name

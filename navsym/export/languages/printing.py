@@ -134,10 +134,12 @@ def bare(text: str) -> str:
     return text[1:-1]
 
 
-def code_names(function: ExportedFunction, entry: str = "{0}[{1}]") -> list[str]:
-    """The name of every input in code: a number by itself, or an entry of its array."""
+def code_names(function: ExportedFunction, entry: str = "{0}[{1}]", first: int = 0) -> list[str]:
+    """The name of every input in code: a number by itself, or an entry of its array, counted from ``first``."""
     return [
-        entry.format(a.name, k) if a.size else a.name for a in function.called_with for k in range(a.size or 1)
+        entry.format(a.name, first + k) if a.size else a.name
+        for a in function.called_with
+        for k in range(a.size or 1)
     ]
 
 

@@ -7,7 +7,7 @@ refused measurement leaves the state as it was. The test programs run every step
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from navsym.export.parts import Argument, ExportedFunction, Output, State
@@ -262,6 +262,48 @@ def python_program(function: ExportedFunction) -> list[str]:
     for k, o in enumerate(function.outputs):
         lines += [f"        self.{back[o.name]} = results{f'[{k}]' if many else ''}"] if o.name in back else []
     return ["\n".join([*lines, "        return results", ""])]
+
+
+# -- Octave and MATLAB ---------------------------------------
+
+
+def octave_program(function: ExportedFunction, names: Mapping[str, str], license_: str) -> dict[str, str]:
+    """``PROGRAM_init.m`` and ``PROGRAM_step.m``: a structure goes in and comes back, changed when the status is 0."""
+    if function.state is None:
+        return {}
+    state, start = function.state, function.state.init
+    fields = [f"state.{o.name}" for o in start.outputs]
+    given = ", ".join(a.name for a in start.called_with)
+    init = [f"function [status, state] = {state.program}_init({given})", f"  % {license_}"]
+    init += ["  % Makes the first state; every field is NaN unless the status is 0.", "  state = struct();"]
+    init += [f"  [{', '.join(['status', *fields])}] = {names[start.name]}({given});", "end", ""]
+    kept = dict(state.fields)
+    back = {new: old for old, new in kept.items() if new}
+    left = [o.name for o in extras(function)]
+    words = [f"state.{a.name}" if a.name in kept else a.name for a in function.called_with]
+    given = ", ".join(["state", *(a.name for a in others(function))])
+    step = [f"function [{', '.join(['status', 'state', *left])}] = {state.program}_step({given})", f"  % {license_}"]
+    step += ["  % One step; when refused, the state stays as it was."]
+    step += [f"  % state.{o.name}: {field_text(function, o)}" for o in field_outputs(function)]
+    made = ", ".join(["status", *(o.name for o in function.outputs)])
+    step += [f"  [{made}] = {names[function.name]}({', '.join(words)});", "  if status == 0"]
+    step += [f"    state.{old} = {new};" for new, old in back.items()] + ["  end", "end", ""]
+    return {f"{state.program}_init.m": "\n".join(init), f"{state.program}_step.m": "\n".join(step)}
+
+
+def octave_through_state(function: ExportedFunction, name: str, results: str) -> str:
+    """For the test: the step with loose arguments, through the state; a refused step must leave the state."""
+    state, known = state_of(function), {a.name for a in function.called_with}
+    back = {new: old for old, new in state.fields if new}
+    lines = ["", f"function {results} = navsym_through_{name}({', '.join(a.name for a in function.called_with)})"]
+    lines += [f"  before.{o.name} = {o.name if o.name in known else '0'};" for o in field_outputs(function)]
+    left = ", ".join(["status", "after", *(o.name for o in extras(function))])
+    given = ", ".join(["before", *(a.name for a in others(function))])
+    lines += [f"  [{left}] = {state.program}_step({given});"]
+    lines += [f"  {o.name} = after.{back[o.name]};" for o in function.outputs if o.name in back]
+    lines += ["  if status ~= 0 && isequaln(before, after)"]
+    lines += [f"    {o.name} = NaN;" for o in function.outputs if o.name in back]
+    return "\n".join([*lines, "  end", "end", ""])
 
 
 def calls_table(functions: Sequence[ExportedFunction], python: bool = False) -> str:

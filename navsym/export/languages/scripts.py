@@ -43,3 +43,8 @@ def domain(
         high = largest if math.isinf(i.high) else s.number(i.high)
         tests.append(f"({i.name} >= {low}){both}({i.name} <= {high})")
     return both.join(tests) or true
+
+
+def short_names(functions: Sequence[ExportedFunction]) -> dict[str, str]:
+    """Names of functions with at most 63 signs, which is what Fortran and MATLAB tell apart."""
+    return {f.name: f"nv{k}_{f.name}"[:63] if len(f.name) > 63 else f.name for k, f in enumerate(functions)}

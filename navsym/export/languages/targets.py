@@ -107,8 +107,8 @@ TARGETS = {
                 ("{python}", "-B", "run_wasi.py", "{build}/run.wasm")), modules=("ziglang", "wasmtime"), reals=BOTH),
         Target("html", "navsym.export.languages.wasm:page_files", "chromium",
                (("{tool}", *HEADLESS, "--user-data-dir={build}/profile", "--dump-dom", "index.html"),), reals=BOTH),
-        Target("octave", "navsym.export.languages.octave:files", "octave",
-               (("{tool}", "--no-gui", "--quiet", "--eval", "test_vectors"),), library=2),
+        Target("octave", "navsym.export.languages.octave:files", "octave-cli",
+               (("{tool}", "--norc", "--no-history", "--quiet", "--eval", "test_vectors"),), library=2),
     )
 }  # fmt: skip
 ALIASES = {"js": "javascript", "numpy": "python", "c++": "cpp", "matlab": "octave"}
