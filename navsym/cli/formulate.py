@@ -48,6 +48,6 @@ def command(
             as_json=True,
             text="",
         )
-    elif out is None:
-        put(text)
+    else:
+        put(text if out is None else f"{out}: {kind} for {to}, {grid} instants of each measurement\n")
 

@@ -33,7 +33,7 @@ def command(
 ) -> int:
     """Decide the claims (or read verdicts with --from) and write the pages. Status 1 as in verify.
 
-    Example: navsym report guaranteed_velocity --out site
+    Example: navsym report alpha_beta_filter --out report
     """
     from navsym.cli.verify import cards_of, decided, load, not_as_declared
     from navsym.methods.verification.verify import unexpected

@@ -36,7 +36,7 @@ def command(
 
     Every job has its own seed sequence: the rows are the same bits whoever computes them.
 
-    Example: navsym sweep study.json --workers 2
+    Example: navsym sweep examples/study.json --workers 2
     """
     from navsym.methods.sweeps.plan import sweep_from
     from navsym.methods.sweeps.run import run_sweep
