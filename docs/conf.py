@@ -72,6 +72,12 @@ ACCESSIBLE = {
     'role="heading">': 'role="heading" aria-level="2">',
     "<pre": '<pre tabindex="0"',
     '<div class="table-wrapper': '<div tabindex="0" class="table-wrapper',
+    '<div style="border-left': '<div tabindex="0" style="border-left',
+}
+#: The same for what stands outside the body of a page: parts of one kind are told apart by a name.
+LANDMARKS = {
+    '<aside class="sidebar-drawer">': '<aside class="sidebar-drawer" aria-label="Site">',
+    '<aside class="toc-drawer">': '<aside class="toc-drawer" aria-label="Contents of this page">',
 }
 
 
@@ -82,7 +88,17 @@ def finished(app: Any, pagename: str, templatename: str, context: dict[str, Any]
             context[part] = context[part].replace(written, better)
     if pagename.startswith("notebooks/") and "body" in context:
         found = re.compile(r"\$\\displaystyle (.+?)\$", re.S)
-        context["body"] = found.sub(lambda match: formula(html.unescape(match[1]), False), context["body"])
+        context["body"] = found.sub(lambda match: formula(html.unescape(match[1]), True), context["body"])
+
+
+def name_landmarks(app: Any, failure: Exception | None) -> None:
+    """Names of landmarks in the pages as they were written; the theme's own template has none."""
+    for path in Path(app.outdir).rglob("*.html") if failure is None else ():
+        text = better = path.read_text(encoding="utf-8")
+        for written, named in LANDMARKS.items():
+            better = better.replace(written, named)
+        if better != text:
+            path.write_text(better, encoding="utf-8")
 
 
 def generate(app: Any) -> None:
@@ -97,3 +113,4 @@ def setup(app: Any) -> None:
     app.add_html_math_renderer("mathml", (inline_formula, None), (displayed_formula, None))
     app.connect("builder-inited", generate)
     app.connect("html-page-context", finished, priority=900)      # behind the theme, which makes the navigation
+    app.connect("build-finished", name_landmarks)

@@ -6,6 +6,7 @@ The first page has what a user meets (:mod:`entry_points`); then comes one page 
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Iterable, Iterator
 from itertools import groupby
 from pathlib import Path
@@ -91,7 +92,23 @@ def public_parts(path: Path) -> list[str]:
 def definition(node: Definition) -> list[str]:
     """Signature and docstring as Markdown; nothing where there is no docstring."""
     doc = ast.get_docstring(node)
-    return [f"### {node.name}", "", "````text", signature(node), "", *doc.splitlines(), "````", ""] if doc else []
+    if not doc:
+        return []
+    first, _, rest = doc.partition("\n\n")
+    more = ["````text", *rest.strip("\n").splitlines(), "````", ""] if rest.strip() else []
+    return [f"### {node.name}", "", "````text", signature(node), "````", "", prose(first), "", *more]
+
+
+def prose(text: str) -> str:
+    """A paragraph of a docstring as Markdown: code stays code, and no other sign means anything."""
+    text = re.sub(r":\w+:`~?([^`]+)`", r"``\1``", " ".join(text.split()))
+    parts = re.split(r"(``.+?``)", text)
+    return "".join(part if part.startswith("``") else plain(part) for part in parts)
+
+
+def plain(text: str) -> str:
+    """Text with every sign of Markdown written out."""
+    return re.sub(r"([\\*_<>\[\]$|#~`{}^])", r"\\\1", text)
 
 
 def signature(node: Definition) -> str:
