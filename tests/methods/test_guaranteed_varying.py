@@ -12,9 +12,10 @@ from scipy.linalg import expm
 from scipy.optimize import linprog
 
 from navsym import checker
-from navsym.errors import DomainError, NavsymError
+from navsym.errors import DomainError, NavsymError, NotEstimableError
 from navsym.methods.guaranteed.problem import from_file
 from navsym.methods.guaranteed.solver import solve
+from navsym.methods.guaranteed.unobservable import null_directions
 from navsym.methods.guaranteed.varying import largest
 from navsym.text.modelfile import model_from
 
@@ -67,6 +68,35 @@ def test_a_matrix_without_a_closed_exponential_is_integrated(T):
     grid = linprog(np.ones(2 * len(H)), A_eq=np.hstack([H.T, -H.T]), b_eq=[0, 0, 1])
     assert solution.value == pytest.approx(grid.fun, rel=1e-6)
 
+
+@pytest.mark.parametrize(
+    ("F", "h", "target", "direction"),
+    [
+        ([["0", "t"], ["0", "0"]], ["0", "1"], ["1", "0"], "1, 0"),
+        ([["0", "1+t", "1+t"], ["0", "0", "0"], ["0", "0", "0"]], ["1", "0", "0"], ["0", "1", "0"], "0, -1, 1"),
+        ([["0", "-t"], ["t", "0"]], ["cos(t**2/2)", "sin(t**2/2)"], ["1", "0"], r"-sin\(1/2\)/cos\(1/2\), 1"),
+        ([["0", "1/(1+t)"], ["0", "-1/(1+t)"]], ["0", "1"], ["1", "0"], "1, 0"),
+    ],
+)
+def test_a_state_that_no_measurement_shows_is_named_exactly_also_where_F_depends_on_the_time(F, h, target, direction):
+    with pytest.raises(NotEstimableError, match=rf"null direction \[{direction}\]"):
+        solve(model(F, h, "1", target), 20)
+
+
+def test_what_a_null_direction_does_not_change_is_estimated():
+    """The component along the measured direction, of a state that turns: one observation at the end."""
+    F, h = [["0", "-t"], ["t", "0"]], ["cos(t**2/2)", "sin(t**2/2)"]
+    assert encloses(solve(model(F, h, "1", ["cos(1/2)", "sin(1/2)"]), 20), 1)
+
+
+def test_a_regressor_with_a_kink_proves_no_null_direction():
+    """z = |t - 1/2| x1 + (t - 1/2) x2 is blind to (1, 1) before 1/2 only, or after it; both are seen together."""
+    found = model_from({
+        "model": {"states": ["a", "b"], "F": [["t", "0"], ["0", "t"]]},
+        "measurement": [{"name": "z", "h": ["abs(t - 1/2)", "t - 1/2"], "sigma": "1"}],
+        "interval": {"T": "1"}, "targets": {"c": ["1", "0"]},
+    })  # fmt: skip
+    assert null_directions(found) == []
 
 
 def test_ends_that_are_not_rational_and_singularities_are_refused():

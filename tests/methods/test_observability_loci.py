@@ -12,6 +12,8 @@ from navsym.errors import DuplicateError
 from navsym.methods.observability.chains import observe
 from navsym.methods.observability.loci import (
     all_drops,
+    by_elimination,
+    by_values,
     compositions,
     drops_and_completeness,
     drops_by_minors,
@@ -174,14 +176,15 @@ def test_staircases_list_the_drops_of_a_scrambled_system():
     core = sp.Matrix([[a, c, 0], [0, b, 0], [0, 0, b]])
     model = LinearModel(turn.inv() * core * turn, None, sp.Matrix([[1, 0, 0], [0, b, 1]]) * turn)
     found = observe(model)
-    listed = drops_by_staircases(found.chains)
-    assert found.joint_dimension == 3 and listed is not None
-    for values in itertools.product(range(-2, 3), repeat=3):
-        at = dict(zip((a, b, c), values, strict=True))
-        rank = sp.Matrix.vstack(*[(model.H * model.F**j).subs(at) for j in range(3)]).rank()
-        ring = found.chains.ring
-        point = [int(at[symbol]) for symbol in ring.symbols]
-        assert (rank < 3) == any(all(f(*point) == 0 for f in system) for system in listed), at
+    for determinant_of in (by_values, by_elimination):
+        listed = drops_by_staircases(found.chains, found.chains.chains, found.joint_dimension, determinant_of)
+        assert found.joint_dimension == 3 and listed is not None
+        for values in itertools.product(range(-2, 3), repeat=3):
+            at = dict(zip((a, b, c), values, strict=True))
+            rank = sp.Matrix.vstack(*[(model.H * model.F**j).subs(at) for j in range(3)]).rank()
+            ring = found.chains.ring
+            point = [int(at[symbol]) for symbol in ring.symbols]
+            assert (rank < 3) == any(all(f(*point) == 0 for f in system) for system in listed), at
 
 
 def test_a_list_that_is_too_long_to_prove_says_so():

@@ -19,6 +19,7 @@ from navsym.claims import CERTIFIED, OPEN, Status
 from navsym.claims.display import card, shortened, table, verdict_words
 from navsym.errors import NavsymError
 from navsym.methods.guaranteed.dependence import drop_dependent
+from navsym.methods.guaranteed.only import only_optimal
 from navsym.methods.guaranteed.problem import GuaranteedProblem
 from navsym.methods.guaranteed.unique import several_optimal
 from navsym.methods.guaranteed.varying import ERROR
@@ -122,8 +123,9 @@ def solve(problem: GuaranteedProblem, digits: int = 30) -> GuaranteedSolution:
     exact, kept, basis = independent(problem)
     found = certify(exact, digits, basis)
     unique = found.unique
-    if unique is None and not problem.error and several_optimal(exact, find_contacts(basis.panels), found.dual):
-        unique = False
+    if unique is None and not problem.error:
+        contacts, dual = find_contacts(basis.panels), found.dual
+        unique = False if several_optimal(exact, contacts, dual) else only_optimal(exact, basis, contacts, dual)
     status = CERTIFIED if found.reaches(digits) else OPEN
     dual = ["0"] * len(problem.functional)
     for k, x in zip(kept, found.dual, strict=True):
