@@ -56,10 +56,6 @@ def drops_by_cases(rows: Matrix, rank: int, ring: Ring) -> tuple[list[System], b
     """
     search = Search(ring)
     visit(search, rows, rank, [])
-    if not search.complete:
-        listed = drops_by_all_minors(rows, rank, ring)
-        if listed is not None:
-            return listed, True
     return search.found, search.complete
 
 

@@ -8,14 +8,21 @@ regular everywhere is taken out first (``observability_reduction``); the rest is
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import sympy as sp
 
 from navsym.errors import TooLargeError
-from navsym.methods.observability.cases import LAST_PRODUCTS, LAST_TERMS, drops_by_cases, minor_on
-from navsym.methods.observability.chains import Chains, Observability
+from navsym.methods.observability.cases import (
+    LAST_PRODUCTS,
+    LAST_TERMS,
+    drops_by_all_minors,
+    drops_by_cases,
+    minor_on,
+)
+from navsym.methods.observability.chains import Chain, Chains, Observability
+from navsym.methods.observability.interpolation import POINTS, chain_determinant, points_needed
 from navsym.methods.observability.linear import Matrix, determinant, maximal_minors
 from navsym.methods.observability.reduction import krylov_remainder
 from navsym.methods.observability.ring import Poly, Ring, odd
@@ -97,42 +104,82 @@ def whole_angles(systems: list[System], ring: Ring) -> list[System]:
 
 def all_drops(chains: Chains) -> dict[str, tuple[list[System], bool]]:
     """Drops of every chain and of all of them together, each from what is not regular everywhere."""
-    starts = [(chain.vectors[0], chain.dimension) for chain in chains.chains]
-    answer = {}
-    for name, part, rank in [
-        *((chain.name, [start], chain.dimension) for chain, start in zip(chains.chains, starts, strict=True)),
-        ("joint", starts, chains.joint_dimension),
-    ]:
-        rest = krylov_remainder(part, chains.matrix, chains.ring)
-        answer[name] = drops_of(rest.rows, rank - rest.regular, chains.ring)
-    listed = None if answer["joint"][1] else drops_by_staircases(chains)
-    return answer if listed is None else {**answer, "joint": (irredundant(listed), True)}
+    answer = {chain.name: drops_of_group(chains, (chain,), chain.dimension) for chain in chains.chains}
+    if len(chains.chains) == 1:
+        return {**answer, "joint": answer[chains.chains[0].name]}
+    return {**answer, "joint": drops_of_group(chains, chains.chains, chains.joint_dimension)}
 
 
-def drops_by_staircases(chains: Chains) -> list[System] | None:
-    """The joint drop locus by its definition, or None when it is too long to write down.
+def drops_of_group(chains: Chains, part: tuple[Chain, ...], rank: int) -> tuple[list[System], bool]:
+    """Drops of what some chains span together: by cases, or else by the definition, written in one of three ways."""
+    ring = chains.ring
+    rest = krylov_remainder([(chain.vectors[0], chain.dimension) for chain in part], chains.matrix, ring)
+    found, complete = drops_by_cases(rest.rows, rank - rest.regular, ring)
+    if not complete:
+        for written in (
+            lambda: drops_by_staircases(chains, part, rank, by_values),
+            lambda: drops_by_all_minors(rest.rows, rank - rest.regular, ring),
+            lambda: drops_by_staircases(chains, part, rank, by_elimination),
+        ):
+            listed = written()
+            if listed is not None:
+                return irredundant(listed), True
+    return irredundant(found), complete
+
+
+#: The determinant of the first vectors of some chains, so many of each; None when it is too long to form.
+Determinant = Callable[[Chains, tuple[Chain, ...], tuple[int, ...]], Poly | None]
+
+
+def by_values(chains: Chains, part: tuple[Chain, ...], step: tuple[int, ...]) -> Poly | None:
+    """By interpolation from values at integer points."""
+    starts = [(chain.vectors[0], count) for chain, count in zip(part, step, strict=True)]
+    return chain_determinant(starts, chains.matrix, chains.ring)
+
+
+def by_elimination(chains: Chains, part: tuple[Chain, ...], step: tuple[int, ...]) -> Poly | None:
+    """By fraction-free elimination."""
+    rows = [v for chain, count in zip(part, step, strict=True) for v in chains.first(chain, count)]
+    zero = chains.ring.constant(0)
+    try:
+        minor, full, _ = minor_on(rows, len(rows), [], list(range(len(rows))), chains.ring, LAST_PRODUCTS)
+    except TooLargeError:
+        return None
+    return minor if full else zero
+
+
+def drops_by_staircases(
+    chains: Chains, part: tuple[Chain, ...], rank: int, determinant_of: Determinant
+) -> list[System] | None:
+    """The drop locus of some chains by its definition, or None when it is too long to write down.
 
     At any point take vectors of the first chain while they are independent, then of the second, and so on: what a
     chain adds is closed under the motion modulo the chains before it, so the vectors taken span all. The joint rank is
     therefore n exactly where one staircase (k_1, ..., k_s) has a determinant that is not zero; that is far fewer
-    determinants than all maximal minors. Only for systems that are observable somewhere.
+    determinants than all maximal minors. Only for chains that observe everything somewhere.
     """
-    ring, steps = chains.ring, staircases(chains)
-    if chains.joint_dimension < len(chains.matrix) or len(steps) > MOST_STAIRCASES:
+    steps = list(compositions(rank, [chain.dimension for chain in part]))
+    if rank < len(chains.matrix) or len(steps) > MOST_STAIRCASES:
+        return None
+    if determinant_of is by_values and too_many_points(chains, part, steps):
         return None
     minors: list[Poly] = []
     for step in steps:
-        rows = chains.staircase_vectors(step)
-        try:
-            minor, full, _ = minor_on(rows, len(rows), [], list(range(len(rows))), ring, LAST_PRODUCTS)
-        except TooLargeError:
+        minor = determinant_of(chains, part, step)
+        if minor is None:
             return None
-        minors += [minor] if full else []
-        if minors and minors[-1].is_constant():
+        if minor != 0 and minor.is_constant():
             return []
+        minors += [minor] if minor != 0 else []
         if sum(map(len, minors)) > LAST_TERMS:
             return None
-    return components(minors, ring)
+    return components(minors, chains.ring)
+
+
+def too_many_points(chains: Chains, part: tuple[Chain, ...], steps: Sequence[tuple[int, ...]]) -> bool:
+    """Whether the determinants of all staircases take more values than one of them may."""
+    starts = [chain.vectors[0] for chain in part]
+    return sum(points_needed(list(zip(starts, step, strict=True)), chains.matrix) for step in steps) > POINTS
 
 
 def staircases(chains: Chains) -> list[tuple[int, ...]]:
@@ -149,12 +196,6 @@ def compositions(total: int, caps: Sequence[int]) -> Iterator[tuple[int, ...]]:
     for first in range(min(total, caps[0]), -1, -1):
         for rest in compositions(total - first, caps[1:]):
             yield (first, *rest)
-
-
-def drops_of(rows: Matrix, rank: int, ring: Ring) -> tuple[list[System], bool]:
-    """Components of the locus where rows with a generic rank have a smaller one, and whether these are all."""
-    found, complete = drops_by_cases(rows, rank, ring)
-    return irredundant(found), complete
 
 
 def drops_by_minors(sets: Sequence[Matrix], ring: Ring) -> list[System]:
