@@ -31,7 +31,7 @@ def test_all_samples_stay_inside_their_enclosures(samples, language: str, tmp_pa
     outcome = run_target(exported(samples.functions(), language, tmp_path), TARGETS[language])
     assert outcome.status == "verified", outcome.why
     assert all(wrong == 0 for _, wrong, _ in outcome.functions.values())
-    assert len(outcome.functions) >= len(samples.functions()) - 3  # casadi leaves out what needs a helper
+    assert len(outcome.functions) == len(samples.functions())
 
 
 @pytest.mark.parametrize(

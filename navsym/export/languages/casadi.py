@@ -1,8 +1,8 @@
 """casadi: the independent second source. Its own translator and its own C generator, no printer of ours.
 
 The order of its operations is not ours, so the rounding error in its vectors is multiplied by a stated factor
-(``targets.py``); a formula that needs a helper of ours against cancellation has no casadi form and is left out,
-as is a constant.
+(``targets.py``). A part with a hole at zero is ``if_else`` of its proved polynomial and its plain form; a constant is
+left out.
 """
 
 from __future__ import annotations
@@ -14,14 +14,16 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+import casadi as ca
 import sympy as sp
 
+from navsym.export.accuracy.continuation import continuation
 from navsym.export.accuracy.vectors import Vector
-from navsym.export.atoms import plain
-from navsym.export.languages.helpers import helpers_used
+from navsym.export.atoms import expm1, filled
+from navsym.export.holes import Part, T, part_of
 from navsym.export.languages.python import ENDING, vectors_json
-from navsym.export.parts import ExportedFunction
-from navsym.numeric.casadi_functions import casadi_function
+from navsym.export.parts import ExportedFunction, Piece
+from navsym.numeric.casadi_functions import Memo, inputs_of, translated
 
 TEST = '''# {license}
 """Evaluates every casadi function on its vectors; the exit status is the number that failed."""
@@ -64,18 +66,13 @@ def files(
     """Serialised functions, their generated C, vectors and test."""
     found: dict[str, str] = {}
     index = {}
-    functions = [f for f in functions if f.inputs and not helpers_used(f)]
+    functions = [f for f in functions if f.inputs]
     tests = {f.name: [v for v in tests[f.name] if v.status == 0] for f in functions}
     for function in functions:
         pieces = []
         for place, piece in enumerate(function.pieces):
             name = f"f{place}_{function.name.strip('_')}"[:60].replace("__", "_").rstrip("_")
-            made = casadi_function(
-                name,
-                [i.symbol for i in function.inputs],
-                sp.Matrix([plain(form) for form in piece.forms]),
-                [(symbol, plain(form)) for symbol, _, form in piece.lets],
-            )
+            made = function_of_piece(name, [i.symbol for i in function.inputs], piece)
             found[f"{name}.casadi"] = made.serialize()
             found[f"{name}.c"] = generated(made, name)
             pieces.append({"file": f"{name}.casadi", "limit": piece.limit})
@@ -85,6 +82,35 @@ def files(
         "vectors.json": vectors_json(functions, tests),
         "test_vectors.py": (TEST + ENDING).format(license=license_),
     }
+
+
+def function_of_piece(name: str, symbols: Sequence[sp.Symbol], piece: Piece) -> ca.Function:
+    """One regime in casadi's own operations, from its formulas."""
+    inputs, memo = inputs_of(symbols)
+    for symbol, _, form in piece.lets:
+        memo[symbol] = in_casadi(form, memo)
+    outputs = [in_casadi(form, memo) for form in piece.forms]
+    return ca.Function(name, inputs, [ca.densify(ca.vertcat(*outputs))])
+
+
+def in_casadi(form: sp.Expr, memo: Memo) -> ca.SX:
+    """A formula in casadi's operations; its parts with a hole are put into the table first, inner ones before outer."""
+    form = form.replace(expm1, lambda x: sp.exp(x) - 1)
+    for part in sp.postorder_traversal(form):
+        if isinstance(part, filled) and part not in memo:
+            memo[part] = without_hole(part_of(part), translated(part.args[2], memo))
+    return translated(form, memo)
+
+
+def without_hole(part: Part, t: ca.SX) -> ca.SX:
+    """The polynomial of the part below its switch, its plain form above it."""
+    proved, total = continuation(part, "double"), ca.SX(0)
+    for c in reversed(proved.polynomial):
+        total = total * t + int(c.p) / int(c.q)
+    above = translated(part.plain, {T: t})
+    for _ in range(part.divided):
+        above = above / t
+    return ca.if_else(ca.fabs(t) < proved.switch, t**proved.power * total, above)
 
 
 def generated(function: Any, name: str) -> str:
