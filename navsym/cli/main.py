@@ -179,6 +179,8 @@ def translated(error: Exception, arguments: Sequence[str]) -> NavsymError:
     """A NavsymError that says the same: usage errors of typer, missing engines, our own defects."""
     if hasattr(error, "format_message"):
         return usage_error(error, arguments)
+    if isinstance(error.__cause__, EOFError):       # typer takes every end of a file for one of its questions
+        error = error.__cause__
     if os.environ.get("NAVSYM_DEBUG"):
         traceback.print_exception(error, file=sys.stderr)
     if isinstance(error, ModuleNotFoundError) and not is_our_own(error.name):
