@@ -36,6 +36,10 @@ class Stopped(Exception):
     """Carries an interruption or a broken pipe past typer, which has answers of its own for them."""
 
 
+class EndOfFile(Exception):
+    """The same for the end of a file, which typer takes for an answer to a question that it never asked."""
+
+
 def main() -> NoReturn:
     """Entry point of the console script and of ``python -m navsym``."""
     for stream in (sys.stdout, sys.stderr):
@@ -150,7 +154,7 @@ def call(module: str, verb: str, arguments: list[str]) -> int:
 
 
 def guarded(command: Callable[..., Any]) -> Callable[..., Any]:
-    """The command with the two ways of being stopped from outside handed to :func:`run`."""
+    """The command with what typer would answer itself handed to :func:`run`."""
 
     @functools.wraps(command)
     def inner(*positional: Any, **named: Any) -> Any:
@@ -158,6 +162,8 @@ def guarded(command: Callable[..., Any]) -> Callable[..., Any]:
             return command(*positional, **named)
         except (KeyboardInterrupt, BrokenPipeError) as error:
             raise Stopped from error
+        except EOFError as error:
+            raise EndOfFile(str(error)) from error
 
     return inner
 
@@ -179,8 +185,6 @@ def translated(error: Exception, arguments: Sequence[str]) -> NavsymError:
     """A NavsymError that says the same: usage errors of typer, missing engines, our own defects."""
     if hasattr(error, "format_message"):
         return usage_error(error, arguments)
-    if isinstance(error.__cause__, EOFError):       # typer takes every end of a file for one of its questions
-        error = error.__cause__
     if os.environ.get("NAVSYM_DEBUG"):
         traceback.print_exception(error, file=sys.stderr)
     if isinstance(error, ModuleNotFoundError) and not is_our_own(error.name):

@@ -146,7 +146,7 @@ ERRORS = [
     (["count-things", "defect"], 1, "internal", "", "got KeyError"),
     (["count-things", "nan"], 1, "internal", "", "got ValueError"),
     (["count-things", "deep"], 1, "internal", "", "got RecursionError"),
-    (["count-things", "cut"], 1, "internal", "", "got EOFError: marshal data too short"),
+    (["count-things", "cut"], 1, "internal", "", "got EndOfFile: marshal data too short"),
     (["count-things"], 2, "syntax", "command line", "got nothing after the verb"),
     (["count-things", "a", "b"], 2, "syntax", "command line", "got a b"),
     (["count-things", "a", "--times", "x"], 2, "syntax", "command line", "got a --times x"),
