@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import importlib
 import json
+import sys
 
 import pytest
 
@@ -21,6 +23,18 @@ def test_four_writers_killed_lose_nothing_that_was_acknowledged():
 @pytest.mark.parametrize("trouble", [name for name in disks.TROUBLES if name != "full disk"])
 def test_trouble_is_said_and_old_results_are_intact(trouble):
     assert not disks.judge(trouble)["wrong"]
+
+
+def test_a_module_that_is_imported_without_room_is_not_left_by_half_for_others(tmp_path, monkeypatch):
+    (tmp_path / "long_module.py").write_text(f"TEXT = {'word ' * 200!r}\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setattr("sys.dont_write_bytecode", False)
+    with disks.files_of_at_most(512):
+        importlib.import_module("long_module")
+    assert not list(tmp_path.rglob("*.pyc"))
+    monkeypatch.delitem(sys.modules, "long_module")
+    importlib.import_module("long_module")
+    assert list(tmp_path.rglob("*.pyc"))
 
 
 @pytest.mark.slow

@@ -12,6 +12,7 @@ import pytest
 ROOT = Path(__file__).parents[2]
 PROGRAM = """
 import resource, signal, sys
+sys.dont_write_bytecode = True  # Python would leave the half of a module where others import it
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 if sys.argv[1:]:
     resource.setrlimit(resource.RLIMIT_FSIZE, (512, resource.RLIM_INFINITY))

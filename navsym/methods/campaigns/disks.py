@@ -103,7 +103,11 @@ def full_disk(folder: Path) -> list[str]:
 
 @contextlib.contextmanager
 def files_of_at_most(size: int) -> Iterator[None]:
-    """No file of this process grows above so many bytes in the block: a write fails there as on a full disk."""
+    """No file of this process grows above so many bytes in the block: a write fails there as on a full disk.
+
+    Nor does it write the bytecode of what it imports: Python puts the half of a module in place without a look.
+    """
+    written, sys.dont_write_bytecode = sys.dont_write_bytecode, True
     before = resource.getrlimit(resource.RLIMIT_FSIZE)
     handler = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
     resource.setrlimit(resource.RLIMIT_FSIZE, (size, before[1]))
@@ -111,6 +115,7 @@ def files_of_at_most(size: int) -> Iterator[None]:
         yield
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, before)
+        sys.dont_write_bytecode = written
         signal.signal(signal.SIGXFSZ, handler)
 
 

@@ -68,7 +68,7 @@ def judge(task: tuple[str, int, int, str]) -> Result:
 def options(folder: str, size: int, seed: int) -> list[str]:
     """What libFuzzer is told: how much, how long, and where it leaves the input that ends it."""
     extent = [f"-runs={size}", f"-seed={seed}", f"-max_len={LONGEST}", "-len_control=0", "-mutate_depth=1"]
-    limits = [f"-timeout={SECONDS}", f"-rss_limit_mb={MEGABYTES}"]
+    limits = [f"-timeout={SECONDS}", f"-report_slow_units={SECONDS}", f"-rss_limit_mb={MEGABYTES}"]
     return [*extent, *limits, f"-artifact_prefix={folder}/end-", f"-dict={folder}/words"]
 
 
