@@ -102,6 +102,29 @@ def look(index: Path, folder: Path) -> None:
         browser.close()
 
 
+def spaced(text: str) -> str:
+    """Text with single spaces: a table may be wider or narrower, and a line may end elsewhere."""
+    return " ".join(text.split())
+
+
+def shown_after(words: str) -> list[str]:
+    """The lines of the block that follows some words of the README."""
+    block = re.search(r"```(?:text)?\n(.*?)```", (ROOT / "README.md").read_text(encoding="utf-8").split(words)[1], re.S)
+    assert block is not None
+    return [spaced(line) for line in block.group(1).splitlines() if line.strip()]
+
+
+def test_the_example_of_the_first_screen_is_what_is_printed(tmp_path: Path) -> None:
+    said = spaced(run(["explain", "guaranteed_velocity:4.3.u2"], tmp_path).stdout)
+    assert [line for line in shown_after("guaranteed_velocity:4.3.u2`, shortened") if line not in said] == []
+
+
+@pytest.mark.slow
+def test_the_regimes_of_the_readme_are_what_is_printed(tmp_path: Path) -> None:
+    said = spaced(run(next(words for words in commands() if words[0] == "phases"), tmp_path).stdout)
+    assert [line for line in shown_after("## Beyond the paper") if line not in said] == []
+
+
 PAPERS = ("guaranteed_velocity", "joint_correction", "multistructure", "terrain_search", "trajectory")
 
 
