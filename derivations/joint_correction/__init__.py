@@ -3,7 +3,8 @@
 ``section1_*`` splits a linear system by its two measurements and builds two-stage estimators,
 ``section2_*`` derives the error equations and the two groups of observable variables from the
 kinematics of small rotations, ``section3_*`` examines the algorithm, its gains and its stability;
-``sensors`` goes beyond the paper: how few measurements are enough.
+``section3_noise`` and ``sensors`` go beyond the paper: what poles cost in noise and which are best, how few
+measurements are enough.
 """
 
 from __future__ import annotations
