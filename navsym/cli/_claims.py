@@ -6,6 +6,7 @@ import difflib
 import json
 from typing import TYPE_CHECKING, Any
 
+from navsym.claims import equation_of
 from navsym.errors import DomainError
 
 if TYPE_CHECKING:
@@ -19,8 +20,9 @@ def find(wanted: str) -> tuple[Paper, Claim]:
     from navsym.cli.verify import load
 
     module, colon, number = wanted.partition(":")
-    if not colon and (known := [name for name in stored_records() if name.partition(":")[2] == wanted]):
-        message = f"expected the id of a claim, MODULE:NUMBER; got {wanted[:80]}; take {' or '.join(known)}"
+    if not colon and (known := modules_with(wanted)):
+        ids = " or ".join(f"{name}:{wanted}" for name in known)
+        message = f"expected the id of a claim, MODULE:NUMBER; got {wanted[:80]}; take {ids}"
         raise DomainError(message, where="command line")
     (paper,) = load([module])
     for claim in paper.claims:
@@ -32,6 +34,26 @@ def find(wanted: str) -> tuple[Paper, Claim]:
         close = [f"{module}:{n}" for n in difflib.get_close_matches(number, [c.number for c in paper.claims])]
     advice = f"take one of {', '.join(close[:6])}" if close else f"see navsym list --paper {module}"
     raise DomainError(f"expected the id of a claim; got {wanted[:80]}; {advice}", where="command line")
+
+
+def modules_with(number: str) -> list[str]:
+    """Modules that have claims of this number, or of parts of it."""
+    pairs = (name.partition(":")[::2] for name in stored_records())
+    return sorted({module for module, known in pairs if known == number or known.startswith(f"{number}.")})
+
+
+def parts_of(wanted: str) -> list[str]:
+    """Ids of all claims about a numbered equation, ``module:4.16``; of anything else, what was wanted."""
+    from navsym.cli.verify import load
+
+    module, colon, number = wanted.partition(":")
+    if not colon:
+        return [wanted]
+    (paper,) = load([module])
+    numbers = [claim.number for claim in paper.claims]
+    if number in numbers or number not in paper.paper.equations:
+        return [wanted]
+    return [f"{module}:{n}" for n in numbers if equation_of(n, paper.paper.equations) == number] or [wanted]
 
 
 def decide(wanted: str, seconds: float = SECONDS) -> tuple[Paper, dict[str, Any]]:

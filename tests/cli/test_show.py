@@ -30,6 +30,14 @@ def test_show_prints_lines_for_people(capsys):
     assert text.startswith(f"{REMARK}  REFUTED\n") and "  at       r = 1/2" in text
 
 
+def test_show_of_an_equation_in_parts_has_all_of_them(capsys):
+    status, answer = document(capsys, "show", "alpha_beta_filter:12")
+    assert status == 0 and {record["number"] for record in answer["claims"]} == {
+        "12.characteristic", "12.other-root", "12.stable",
+    }  # fmt: skip
+    assert run(["show", "4.16"]) == 2 and "take guaranteed_velocity:4.16" in capsys.readouterr().err
+
+
 def test_explain_works_the_counterexample_out_and_names_the_correction(capsys):
     status, told = document(capsys, "explain", REMARK)
     assert status == 0 and told["corrected_by"] == f"{REMARK}*"
