@@ -57,15 +57,28 @@ def writer(path, log, name):
             acknowledged.write(f"{name}-{count}\n".encode())
 
 
+def lines(log):
+    return log.read_bytes().count(b"\n")
+
+
+def wait_until(log, count):
+    """Wait until the log has so many lines, however slow disk and machine are; at most two minutes."""
+    end = time.monotonic() + 120
+    while lines(log) < count and time.monotonic() < end:
+        time.sleep(0.01)
+
+
 def test_nothing_acknowledged_is_lost_when_writers_are_killed(tmp_path):
     path, log = tmp_path / "s.sqlite", tmp_path / "log"
     Store(path).close()
+    log.touch()
     context = multiprocessing.get_context("fork")
     for round_ in range(6):
         children = [context.Process(target=writer, args=(path, log, f"{round_}{k}")) for k in range(2)]
         for child in children:
             child.start()
-        time.sleep(0.15 + 0.03 * round_)
+        wait_until(log, lines(log) + 3)
+        time.sleep(0.03 * round_)
         for child in children:
             os.kill(child.pid, signal.SIGKILL)
             child.join()
