@@ -15,7 +15,9 @@ from navsym.proof.identities.normal_form import (
     radicands_inside,
     reduce_to_zero,
 )
+from navsym.proof.sampling.points import ranges
 from navsym.proof.signs.bounds import Sign, prove_sign
+from navsym.proof.signs.one_variable import survey
 from navsym.proof.wording import text_of
 
 
@@ -52,14 +54,41 @@ def is_nonnegative(expression: sp.Basic, box: Box) -> bool:
     return prove_sign(expression, box).at_least(Sign.NONNEGATIVE)
 
 
+def without_zeros(expression: sp.Basic, box: Box) -> bool:
+    """True when exact real roots show that an expression in one symbol is zero nowhere in its range."""
+    found = list(ranges(list(expression.free_symbols), box).values())
+    known = survey(expression, found[0]) if len(found) == 1 else None
+    return known is not None and all(found[0].nonzero and zero.at == 0 for zero in known.zeros)
+
+
 def is_nonzero(expression: sp.Basic, box: Box) -> bool:
-    """True when the expression is proved to keep one sign on the box."""
+    """True when the expression is proved to vanish nowhere on the box."""
+    if without_zeros(expression, box):
+        return True
     return is_positive(expression, box) or is_positive(-expression, box)
 
 
-def remaining_assumptions(reduction: Reduction, box: Box, nonzero: Sequence[sp.Expr] = ()) -> tuple[str, ...]:
-    """What the proof took for granted and the box does not guarantee."""
-    found = [f"{text_of(d)} != 0" for d in (*reduction.divisors, *nonzero) if not is_nonzero(d, box)]
-    found += [f"{text_of(r)} >= 0" for r in reduction.radicands if not is_nonnegative(r, box)]
-    found += [f"{text_of(a)} > 0" for a in reduction.arguments if not is_positive(a, box)]
+#: What is taken for granted of the parts of a reduction: in words, and when the box guarantees it.
+KINDS: tuple[tuple[str, str, Callable[[sp.Expr, Box], bool]], ...] = (
+    ("divisors", "!= 0", is_nonzero), ("radicands", ">= 0", is_nonnegative), ("arguments", "> 0", is_positive),
+)  # fmt: skip
+
+
+def remaining_assumptions(
+    reduction: Reduction,
+    box: Box,
+    nonzero: Sequence[sp.Expr] = (),
+    at: Callable[[sp.Expr], sp.Expr] = lambda part: part,
+) -> tuple[str, ...]:
+    """What the proof took for granted and the box does not guarantee.
+
+    at : what stands for a part on the box, where its variables are written by others there
+    """
+    whole = replace(reduction, divisors=(*reduction.divisors, *nonzero))
+    found = [
+        f"{text_of(part)} {sign}"
+        for name, sign, holds in KINDS
+        for part in getattr(whole, name)
+        if not holds(at(part), box)
+    ]
     return tuple(dict.fromkeys(found))

@@ -10,7 +10,6 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import sympy as sp
-from flint import arb
 
 from navsym.claims.statement import Equation
 from navsym.claims.verdict import CERTIFIED, CONFIRMED, OPEN, PROVED, REFUTED, Verdict
@@ -19,10 +18,11 @@ from navsym.proof.balls import UnsupportedError, enclose
 from navsym.proof.certificates import identity_certificate
 from navsym.proof.identities.equalities import WAYS, Proof, first_proof
 from navsym.proof.identities.normal_form import OutsideLanguageError, UndefinedExpressionError, reduce_to_zero
-from navsym.proof.sampling.points import Point, Sample, search_counterexample
+from navsym.proof.one_symbol import decide_by_roots
+from navsym.proof.sampling.points import Sample, search_counterexample
 from navsym.proof.sampling.second_look import BITS, Look, second_look
 from navsym.proof.signs.bounds import Sign, prove_sign
-from navsym.proof.wording import decimal_ends, point_text, scope_of
+from navsym.proof.wording import broken, decimal_ends, scope_of
 
 ENOUGH_POINTS = 32
 
@@ -129,15 +129,19 @@ def decide_numeral(printed: sp.Expr, derived: sp.Expr, statement: Equation) -> V
     if sample.points == 0:  # what exists nowhere is near to everything
         return sampled(sample, scope_of(difference, box), f"within {tolerance}")
     for side in (tolerance - difference, tolerance + difference):
-        if not prove_sign(side, box).at_least(Sign.NONNEGATIVE):
-            look = second_look(
-                difference,
-                lambda ball: bool(abs(ball) > enclose(tolerance, bits=BITS)),
-                box,
-                finite_sides(printed, derived, statement),
-                goals=(tolerance - difference, tolerance + difference),
-            )
-            return after_look(look, sample, scope_of(difference, box), f"within {tolerance}")
+        if prove_sign(side, box).at_least(Sign.NONNEGATIVE):
+            continue
+        decided = decide_by_roots(side, ">=", box, scope_of(difference, box), finite_sides(printed, derived, statement))
+        if decided is not None and decided.status == PROVED:
+            continue
+        look = second_look(
+            difference,
+            lambda ball: bool(abs(ball) > enclose(tolerance, bits=BITS)),
+            box,
+            finite_sides(printed, derived, statement),
+            goals=(tolerance - difference, tolerance + difference),
+        )
+        return decided or after_look(look, sample, scope_of(difference, box), f"within {tolerance}")
     return Verdict(
         CERTIFIED,
         method="ball arithmetic",
@@ -168,6 +172,9 @@ def unproved(printed: sp.Expr, derived: sp.Expr, statement: Equation, sample: Sa
     """What no rung proves: broken by a second look, or sampled; OPEN when the normal form denies it."""
     difference, scope = printed - derived, scope_of(printed - derived, statement.box)
     sides = finite_sides(printed, derived, statement)
+    decided = decide_by_roots(difference, "=", statement.box, scope, sides)
+    if decided is not None:
+        return decided
     look = second_look(difference, lambda ball: not ball.contains(0), statement.box, sides)
     verdict = after_look(look, sample, scope, "equality")
     if verdict.status == CONFIRMED and not difference.has(*BENT) and reduce_to_zero(difference).complete:
@@ -183,20 +190,6 @@ def after_look(look: Look, sample: Sample, scope: str, what: str) -> Verdict:
     if look.counterexample is None or look.difference is None:
         return sampled(sample, scope, what)
     return broken(look.counterexample, look.difference, look.exact)
-
-
-def broken(point: Point, difference: arb, exact: bool = False) -> Verdict:
-    """REFUTED at one exact point."""
-    ends = ("0", "0") if exact else decimal_ends(difference)
-    evidence = (
-        "the difference is exactly zero there"
-        if exact
-        else f"the sides differ by {ends[0]} at an exact point"
-    )
-    method = "exact point" if exact else "exact point, ball arithmetic"
-    return Verdict(
-        REFUTED, method, "one point", evidence=evidence, counterexample=point_text(point), difference=ends
-    )
 
 
 def proved(proof: Proof, printed: sp.Expr, derived: sp.Expr, statement: Equation) -> Verdict:

@@ -15,14 +15,15 @@ from navsym.errors import DomainError
 from navsym.proof.assumptions import remaining_assumptions, with_sides
 from navsym.proof.balls import UnsupportedError, tape
 from navsym.proof.certificates import positivity_certificate
-from navsym.proof.equations import after_look, broken, decide_equation, entries, sampled, shape_of
+from navsym.proof.equations import after_look, decide_equation, entries, sampled, shape_of
 from navsym.proof.identities.equalities import WAYS, first_proof
 from navsym.proof.identities.normal_form import OutsideLanguageError, reduce_to_zero
 from navsym.proof.identities.numbers import is_zero
+from navsym.proof.one_symbol import decide_by_roots
 from navsym.proof.sampling.points import Point, Sample, points, ranges, search_counterexample, value_at
 from navsym.proof.sampling.second_look import Look, second_look
 from navsym.proof.signs.bounds import Sign, SignProof, prove_sign
-from navsym.proof.wording import point_text, scope_of
+from navsym.proof.wording import broken, point_text, scope_of
 
 #: relation -> when a finite ball of printed - derived contradicts it.
 EXCLUDES: dict[str, Callable[[arb], bool]] = {
@@ -101,6 +102,10 @@ def decide_difference(
     if sample.counterexample is not None:
         assert sample.difference is not None
         return broken(sample.counterexample, sample.difference)
+    decided = decide_by_roots(difference, relation, box, scope, sides)
+    if decided is not None:
+        certificate = certificate_of(difference, relation, box) if decided.status == PROVED else None
+        return replace(decided, certificate=certificate)
     proof = prove_relation(difference, relation, box, sample)
     if proof.sign != Sign.UNKNOWN:
         status = PROVED if proof.exact else CERTIFIED

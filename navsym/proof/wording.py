@@ -1,4 +1,4 @@
-"""Scopes, points and balls in words: decimal strings are always rounded outwards."""
+"""Scopes, points, balls and refutations in words: decimal strings are always rounded outwards."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import sympy as sp
 from flint import arb
 
 from navsym.claims.statement import Box
+from navsym.claims.verdict import REFUTED, Verdict
 from navsym.errors import NavsymError
 from navsym.proof.balls import precision
 from navsym.proof.sampling.points import Point, Range, range_of
@@ -88,3 +89,17 @@ def power_of_ten(size: int, positive: bool, direction: int) -> str:
 def rounded_shift(value: int, bits: int, direction: int) -> int:
     """value / 2**bits rounded down or up."""
     return value >> bits if direction < 0 else -((-value) >> bits)
+
+
+def broken(point: Point, difference: arb, exact: bool = False) -> Verdict:
+    """REFUTED at one exact point."""
+    ends = ("0", "0") if exact else decimal_ends(difference)
+    evidence = (
+        "the difference is exactly zero there"
+        if exact
+        else f"the sides differ by {ends[0]} at an exact point"
+    )
+    method = "exact point" if exact else "exact point, ball arithmetic"
+    return Verdict(
+        REFUTED, method, "one point", evidence=evidence, counterexample=point_text(point), difference=ends
+    )

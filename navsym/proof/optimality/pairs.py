@@ -18,6 +18,7 @@ import sympy as sp
 
 from navsym.claims.statement import Box, Equation, Optimum
 from navsym.claims.verdict import CERTIFIED, OPEN, PROVED, Status, Verdict
+from navsym.proof.assumptions import remaining_assumptions, written_conditions
 from navsym.proof.equations import combine, decide_equation
 from navsym.proof.inequalities import decide_difference
 from navsym.proof.signs.bounds import Sign, SignProof, prove_sign
@@ -39,6 +40,8 @@ def decide_optimum(statement: Optimum) -> Verdict:
         equal_values(statement),
     ]
     verdict = combine(parts)
+    if verdict.status.holds:
+        verdict = replace(verdict, assumptions=tuple(dict.fromkeys((*verdict.assumptions, *assumed(statement)))))
     names = ("constraints", "instants inside", "dual feasible", "equal values")
     words = ", ".join(f"{name}: {part.status}" for name, part in zip(names, parts, strict=True))
     return replace(
@@ -47,6 +50,20 @@ def decide_optimum(statement: Optimum) -> Verdict:
         scope=scope_of(parameters(statement), statement.box),
         evidence=f"{words}. {verdict.evidence}",
     )
+
+
+def assumed(statement: Optimum) -> tuple[str, ...]:
+    """Where the printed solution and the regressors exist, as far as the box does not guarantee it.
+
+    A component of the dual that the functional does not meet, or that a regressor cancels, is part of the solution
+    as well: (1, 1/(T - 1)) is no dual at T = 1.
+    """
+    fixed = remaining_assumptions(written_conditions(fixed_parts(statement)), statement.box)
+    start, end = statement.interval
+    place, box = start + (end - start) * SHARE, {**statement.box, SHARE: (0, 1)}
+    conditions = written_conditions(*statement.regressors)
+    moving = remaining_assumptions(conditions, box, at=lambda part: part.subs(statement.variable, place))
+    return (*fixed, *moving)
 
 
 def fixed_parts(statement: Optimum) -> sp.Basic:
@@ -111,8 +128,16 @@ def feasibility(statement: Optimum) -> Verdict:
         inside = (side if product is None else product).subs(
             statement.variable, start + (end - start) * SHARE
         )
-        verdicts.append(decide_difference(inside, ">=", box, scope_of(inside, box)))
+        verdicts.append(everywhere(decide_difference(inside, ">=", box, scope_of(inside, box))))
     return combine(verdicts)
+
+
+def everywhere(verdict: Verdict) -> Verdict:
+    """OPEN for a bound that is proved only where it exists: the interval of an optimum has no holes."""
+    if not verdict.status.holds or not verdict.assumptions:
+        return verdict
+    words = f"the bound is proved only where {', '.join(verdict.assumptions)}"
+    return Verdict(OPEN, verdict.method, verdict.scope, evidence=words)
 
 
 def equal_values(statement: Optimum) -> Verdict:

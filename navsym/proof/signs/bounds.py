@@ -29,6 +29,7 @@ from navsym.proof.signs.contacts import end_contact
 from navsym.proof.signs.exact import angle_sign, bounded_terms, is_entire, multilinear_sign
 from navsym.proof.signs.exponentials import by_exponential
 from navsym.proof.signs.known import UNKNOWN, Limits, Sign, SignProof, constant_sign, symbol_sign
+from navsym.proof.signs.one_variable import root_sign
 from navsym.proof.signs.products import as_product
 from navsym.proof.signs.slopes import (
     between_contacts,
@@ -74,6 +75,11 @@ def attempt(expression: sp.Expr, limits: Limits, wanted: Sign, budget: int, dept
     """One level of the search; the cheap and exact ways come first."""
     if not expression.free_symbols:
         return constant_sign(expression)
+    by_roots = root_sign(expression, limits)
+    if by_roots is not None and not by_roots.at_least(wanted):
+        return UNKNOWN
+    if by_roots is not None and exists(expression, limits, budget, depth):
+        return by_roots
     if negative_somewhere(expression, limits):
         return UNKNOWN
 
