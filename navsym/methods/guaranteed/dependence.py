@@ -131,6 +131,8 @@ def solved_at_instants(problem: GuaranteedProblem, k: int, involved: list[int]) 
 
 def independent_rows(values: np.ndarray, count: int) -> list[int] | None:
     """Rows whose first ``count`` entries are independent, the best first; None when there are not enough."""
+    if not np.isfinite(values).all():
+        return None
     rest, chosen = values[:, :count] / np.maximum(np.abs(values[:, :count]).max(axis=0), 1e-300), []
     for _ in range(count):
         sizes = np.linalg.norm(rest, axis=1)

@@ -21,6 +21,7 @@ from navsym.errors import NavsymError
 from navsym.methods.guaranteed.dependence import drop_dependent
 from navsym.methods.guaranteed.only import only_optimal
 from navsym.methods.guaranteed.problem import GuaranteedProblem
+from navsym.methods.guaranteed.separated import FAR, separated
 from navsym.methods.guaranteed.unique import several_optimal
 from navsym.methods.guaranteed.varying import ERROR
 from navsym.numeric.exchange.search import find_contacts
@@ -121,7 +122,7 @@ def solve(problem: GuaranteedProblem, digits: int = 30) -> GuaranteedSolution:
         message = f"digits: expected 1 to {MOST_DIGITS}; got {digits}; choose a number between"
         raise NavsymError(message, kind="domain")
     exact, kept, basis = independent(problem)
-    found = certify(exact, digits, basis)
+    found = certified(exact, digits, basis)
     unique = found.unique
     if unique is None and not problem.error:
         contacts, dual = find_contacts(basis.panels), found.dual
@@ -135,6 +136,19 @@ def solve(problem: GuaranteedProblem, digits: int = 30) -> GuaranteedSolution:
         problem, support_rows(problem, exact, found, digits), tuple(dual), found.certificate["lower"],
         found.certificate["upper"], unique, certificate, status, found.width, digits,
     )  # fmt: skip
+
+
+def certified(exact: Problem, digits: int, basis: Basis) -> Certified:
+    """The optimum and its certificate; of the same problem in other unknowns, where too much cancels in these."""
+    other = separated(exact) if basis.loss >= FAR and not any(panel.values for panel in exact.panels) else None
+    if other is None:
+        return certify(exact, digits, basis)
+    better = make_basis(other.problem)
+    if better.loss >= basis.loss:
+        return certify(exact, digits, basis)
+    found = certify(other.problem, digits, better)
+    with precision(int(3.34 * (digits + 2 * basis.loss)) + 128):
+        return replace(found, dual=other.back(found.dual))
 
 
 def with_error(problem: GuaranteedProblem, certificate: Mapping[str, Any]) -> Mapping[str, Any]:

@@ -38,6 +38,8 @@ from navsym.proof.optimality.enclosure import Panel, Problem, rational
 COUNTS = (24, 32, 40, 48, 64, 96)
 LARGEST = 3072
 BITS, MOST_BITS = 192, 6000
+#: Bits of a pivot that must be known.
+KNOWN = 64
 #: Part of a function that its last coefficients may be in doubles, which say nothing below.
 GUESSED = 1e-13
 #: Places between the points, and what is called zero there.
@@ -111,7 +113,7 @@ def samples(panels: Sequence[Panel], count: int, bits: int) -> arb_mat:
 
 
 def cholesky(gram: arb_mat, bits: int) -> list[list[arb]]:
-    """Lower factor of the Gram matrix, midpoints only; raises DependentError at a vanishing pivot."""
+    """Lower factor of the Gram matrix in balls; raises DependentError at a pivot that is not known well enough."""
     m = gram.nrows()
     L = [[arb(0)] * m for _ in range(m)]
     for i in range(m):
@@ -120,12 +122,11 @@ def cholesky(gram: arb_mat, bits: int) -> list[list[arb]]:
             for k in range(j):
                 rest = rest - L[i][k] * L[j][k]
             if i == j:
-                size = abs(gram[i, i]).mid()
-                if size == 0 or not bool(rest > size * arb(2) ** (-bits // 2)):
+                if not bool(rest > 0) or rest.rel_accuracy_bits() < KNOWN:
                     raise DependentError(i, relation_of(gram, i), bits)
-                L[i][i] = rest.sqrt().mid()
+                L[i][i] = rest.sqrt()
             else:
-                L[i][j] = (rest / L[j][j]).mid()
+                L[i][j] = rest / L[j][j]
     return L
 
 
@@ -149,7 +150,7 @@ def transform_of(values: arb_mat, bits: int) -> tuple[arb_mat, int]:
         return rounded
     gram = values.transpose() * values
     count = values.nrows()
-    L = arb_mat(cholesky(gram * (arb(1) / count), bits))
+    L = arb_mat(cholesky(gram * (arb(1) / count), bits)).mid()
     inverse = L.inv()
     A = arb_mat(L.nrows(), L.ncols(), [e.mid() for e in inverse.entries()])
     digits = [(max(map(arb.abs_upper, matrix.entries())).log() / arb(10).log()).mid() for matrix in (A, L)]

@@ -22,23 +22,35 @@ def never() -> bool:
     return False
 
 
-def follow(track: Track, lower: fmpq, upper: fmpq, enough: Callable[[], bool] = never) -> list[Piece]:
-    """Pieces from the middle towards both ends, each as long as its tests allow, until it is enough."""
+def always(piece: Piece) -> bool:
+    """Every piece is accepted."""
+    return True
+
+
+Accepts = Callable[[Piece], bool]
+
+
+def follow(
+    track: Track, lower: fmpq, upper: fmpq, enough: Callable[[], bool] = never, accepts: Accepts = always
+) -> list[Piece]:
+    """Pieces from the middle towards both ends, each as long as its tests allow and accepted, until it is enough."""
     middle = simple((lower + upper) / 2, upper - lower)
     member = track.first(middle)
     if member is None:
         return []
-    up = march(track, member, middle, upper, enough=enough)
-    down = march(track, up[0].ends[0] if up else member, middle, lower, enough=enough)
+    up = march(track, member, middle, upper, MOST_FAILURES, enough, accepts)
+    down = march(track, up[0].ends[0] if up else member, middle, lower, MOST_FAILURES, enough, accepts)
     return [*reversed(down), *up]
 
 
 def march(
     track: Track, member: Member, at: fmpq, last: fmpq, failures: int = MOST_FAILURES,
-    enough: Callable[[], bool] = never,
+    enough: Callable[[], bool] = never, accepts: Accepts = always,
 ) -> list[Piece]:  # fmt: skip
     """Pieces from ``at`` to ``last``, upwards or downwards; given up after ``failures`` halvings of one step, and when
     it is enough.
+
+    accepts : what else a piece has to pass
 
     Towards the end of a regime a weight, the room of a contact or the room below the bound shrinks to nothing;
     a piece may then be about as long as the root of what is left behind it, so steps square their distance.
@@ -50,8 +62,9 @@ def march(
         made = None
         for end in ends_to_try(at, last, step, span):
             made = piece(track, member, at, end)
-            if made is not None:
+            if made is not None and accepts(made):
                 break
+            made = None
         if made is None:
             if abs(last - at) < span * NEAREST:
                 break
