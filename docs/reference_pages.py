@@ -1,6 +1,7 @@
-"""The reference as Markdown pages, from docstrings and without importing anything.
+"""The reference as Markdown pages, from docstrings and without importing anything but the verbs.
 
-The first page has what a user meets (:mod:`entry_points`); then comes one page for each folder of the package.
+The first pages have what a user meets (:mod:`entry_points`, :mod:`verb_pages`); then comes one page for each folder of
+the package.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from itertools import groupby
 from pathlib import Path
 
 from entry_points import PACKAGE, ROOT, EntryPoint, entry_points
+from verb_pages import verbs_page
 
 #: Folder -> what its page is called; a folder inside takes the first line of its own docstring.
 ROOMS = {
@@ -48,6 +50,7 @@ def write_reference(folder: Path) -> None:
 def all_pages() -> Iterator[tuple[str, str]]:
     """Name and text of every page; the glob of the index sorts them by name."""
     yield "0_entry_points.md", entry_page(entry_points())
+    yield "0_verbs.md", verbs_page()
     for room, title in ROOMS.items():
         for path in folders(ROOT / PACKAGE / room):
             parts = path.relative_to(ROOT / PACKAGE).parts

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import importlib
 import json
 import re
 import shlex
@@ -14,7 +15,7 @@ from pathlib import Path
 
 import pytest
 
-from navsym.cli.main import run
+from navsym.cli.main import run, verbs
 
 DOCS = Path(__file__).parent.parent / "docs"
 PAGES = sorted(DOCS.glob("*.md"))
@@ -88,6 +89,17 @@ def test_the_glossary_has_three_languages_in_every_line():
         english, russian, ukrainian = (cell.strip() for cell in row.strip("|").split("|"))
         assert english.isascii() and re.search("[а-яё]", russian) and re.search("[а-яієїґ]", ukrainian)
         assert not re.search("[ыэёъ]", ukrainian) and not re.search("[ієїґ]", russian)
+
+
+def test_every_verb_and_every_option_is_told_in_the_reference(monkeypatch):
+    monkeypatch.syspath_prepend(str(DOCS))
+    page = importlib.import_module("verb_pages").verbs_page()
+    told = dict(re.findall(r"^## ([\w-]+)\n\n(.*?)(?=^## |\Z)", page, re.M | re.S))
+    assert set(told) == set(verbs())
+    for verb, text in told.items():
+        assert f"Example: navsym {verb}" in text and "--json" in text, verb
+        silent = re.findall(r"^  (--[\w-]+|\w[\w.]*) <[^>]*>\s*$\n(?=  \S|\n|`)", text, re.M)
+        assert silent == [], f"{verb}: {silent} without a word of help"
 
 
 def test_the_picture_of_the_readme_agrees_with_the_ledger():
