@@ -31,6 +31,11 @@ RAW, DEFLATE, OLD_DEFLATE = 1, 8, 32946
 MOST_TAGS, MOST_VALUES = 200, 2_000_000
 #: GeoKeys: model type (2 = geographic), raster type (2 = heights stand at points, not in areas).
 MODEL_TYPE, RASTER_TYPE = 1024, 1025
+#: Units of angles, lengths and heights, and the system of coordinates; codes of the metre, the degree, Web Mercator.
+ANGLES, SYSTEM, LENGTHS, HEIGHTS = 2054, 3072, 3076, 4099
+METRE, DEGREE, WEB_MERCATOR = 9001, 9102, (3857, 3785)
+#: A grid without a word about its coordinates and with a spacing below this is one in degrees, not in metres.
+LEAST_SPACING = 0.05
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,12 +52,13 @@ class Transform:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Plain:
-    """One band: heights (rows from the north), transform, value for none, whether in degrees."""
+    """One band: heights (rows from the north), transform, value for none, whether in degrees, what is foreign to us."""
 
     heights: NDArray[Any]
     transform: Transform
     nodata: float | None
     geographic: bool
+    foreign: str | None = None
 
 
 class Damaged(ValueError):
@@ -73,7 +79,8 @@ def read_plain(data: bytes, most: int) -> Plain | None:
         raise OverflowError(f"shape {shape}")
     heights = assembled(data, tags, shape, dtype)
     keys = geo_keys(tags)
-    return Plain(heights, placed(tags, keys.get(RASTER_TYPE) == 2), void(tags), keys.get(MODEL_TYPE) == 2)
+    transform = placed(tags, keys.get(RASTER_TYPE) == 2)
+    return Plain(heights, transform, void(tags), keys.get(MODEL_TYPE) == 2, foreign(keys, transform.a))
 
 
 def directory(data: bytes) -> tuple[dict[int, tuple[Any, ...]], str]:
@@ -188,6 +195,20 @@ def geo_keys(tags: dict[int, tuple[Any, ...]]) -> dict[int, int]:
     values = tags.get(KEYS, ())
     rows = [values[k : k + 4] for k in range(4, len(values) - 3, 4)]
     return {row[0]: row[3] for row in rows if row[1] == 0}
+
+
+def foreign(keys: dict[int, int], spacing: float) -> str | None:
+    """What the keys say that is neither degrees nor true metres; None when all is well."""
+    if keys.get(SYSTEM) in WEB_MERCATOR:
+        return "Web Mercator, whose metres are too long away from the equator"
+    for key, known, what in (
+        (ANGLES, DEGREE, "angles"), (LENGTHS, METRE, "lengths"), (HEIGHTS, METRE, "heights"),
+    ):
+        if keys.get(key, known) != known:
+            return f"{what} in the unit of EPSG code {keys[key]}"
+    if MODEL_TYPE not in keys and spacing < LEAST_SPACING:
+        return f"no system of coordinates and a spacing of {spacing:g}"
+    return None
 
 
 def void(tags: dict[int, tuple[Any, ...]]) -> float | None:

@@ -34,7 +34,7 @@ from navsym.errors import (
     TooLargeError,
 )
 from navsym.text.files import called, read_bytes, read_text
-from navsym.text.geotiff import Damaged, read_plain
+from navsym.text.geotiff import WEB_MERCATOR, Damaged, read_plain
 
 #: Largest number of heights in a map file, and of bytes in a track file.
 MOST_HEIGHTS, MOST_BYTES = 200_000_000, 64_000_000
@@ -251,6 +251,7 @@ def read_geotiff(path: Path) -> Raster:
     except (Damaged, struct.error, UnicodeDecodeError) as reason:
         raise damaged(path, "a GeoTIFF", reason) from None
     if plain is not None:
+        ours(plain.foreign, path)
         return upright(plain.heights, plain.transform, plain.nodata, plain.geographic, path)
     return by_rasterio(path)
 
@@ -270,11 +271,31 @@ def by_rasterio(path: Path) -> Raster:
             shape, transform = (source.height, source.width), source.transform
             checked_size((shape, np.dtype(source.dtypes[0])), called(path))
             geographic = bool(source.crs is not None and source.crs.is_geographic)
+            ours(foreign_to_us(source.crs), path)
             return upright(source.read(1), transform, source.nodata, geographic, path)
     except NavsymError:
         raise
     except Exception as reason:                # whatever GDAL says about a damaged file
         raise damaged(path, "a GeoTIFF", reason) from None
+
+
+def ours(foreign: str | None, path: Path) -> None:
+    """Refuse coordinates that would be taken for metres, or for degrees, without being that."""
+    if foreign is not None:
+        raise DomainError(
+            f"expected places in degrees or true metres, and heights in metres; got {foreign}; warp it first",
+            where=called(path),
+        )
+
+
+def foreign_to_us(crs: Any) -> str | None:
+    """The same question to rasterio's system of coordinates."""
+    if crs is None or crs.is_geographic:
+        return None
+    if crs.to_epsg() in WEB_MERCATOR:
+        return "Web Mercator, whose metres are too long away from the equator"
+    name, metres = crs.linear_units_factor
+    return None if math.isclose(metres, 1.0, rel_tol=1e-9) else f"lengths in {name}"
 
 
 def upright(heights: NDArray[Any], transform: Any, nodata: Any, geographic: bool, path: Path) -> Raster:

@@ -177,10 +177,7 @@ def looks_like_rtklib(text: str) -> bool:
 
 def rtklib_rows(text: str, log: Log) -> Iterator[Row]:
     """Rows of an RTKLIB solution in degrees: two time fields, lat, lon, height, Q, ns, sdn, sde, sdu, ..."""
-    if any("x-ecef" in line for line in lines_of(text[:20000]) if line.startswith("%")):
-        raise DomainError(
-            "expected lat/lon/height; got x/y/z-ecef; write the solution as llh", where=log.where
-        )
+    understood(text, log)
     for number, line in enumerate(lines_of(text), 1):
         if not line.strip() or line.startswith("%"):
             continue
@@ -191,12 +188,35 @@ def rtklib_rows(text: str, log: Log) -> Iterator[Row]:
             message = f"expected at least 5 fields; got {len(fields)}; mend or remove the row"
             log.problem(ShapeError, number, message, "row left out")
             continue
+        if fields[5:6] == ["0"]:
+            message = "Q: expected a solution, 1 to 7; got 0, which is none; remove the row"
+            log.problem(DomainError, number, message, "row left out")
+            continue
         time = rtklib_time(fields[0], fields[1])
         values = [time, *(number_of(x) for x in fields[2:5])]
-        sigma = rtklib_sigma(fields)
+        sigma = rtklib_sigma(fields, number, log)
         row = row_of(values, number, [" ".join(fields[:2]), *fields[2:5]], sigma, log)
         if row is not None:
             yield row
+
+
+#: What a header says when the columns are not decimal degrees: (mark, what it is, what to do).
+OTHER_COLUMNS = (
+    ("x-ecef", "x/y/z-ecef", "write the solution as llh"),
+    ("-baseline", "a baseline east, north, up", "write the solution as llh"),
+    ("latitude(d'", "degrees, minutes and seconds", "write the solution in decimal degrees"),
+)
+
+
+def understood(text: str, log: Log) -> None:
+    """Refuse files whose header names other columns than degrees and metres; say which clock it names."""
+    header = [line.lower() for line in lines_of(text[:20000]) if line.startswith("%")]
+    for mark, what, remedy in OTHER_COLUMNS:
+        if any(mark in line for line in header):
+            raise DomainError(f"expected lat/lon/height in degrees; got {what}; {remedy}", where=log.where)
+    clock = next((name for name in ("utc", "jst") for line in header if line.lstrip("% ").startswith(name)), None)
+    if clock:
+        log.warnings.append(f"times are {clock.upper()} by the header and are taken as they stand, not as GPS time")
 
 
 def rtklib_time(day: str, clock: str) -> float | None:
@@ -215,9 +235,12 @@ def rtklib_time(day: str, clock: str) -> float | None:
     return (moment - GPS_EPOCH).total_seconds() + 3600.0 * hours + 60.0 * minutes + seconds
 
 
-def rtklib_sigma(fields: Sequence[str]) -> tuple[float, float, float] | None:
+def rtklib_sigma(fields: Sequence[str], line: int, log: Log) -> tuple[float, float, float] | None:
     """East, North, Up from the columns sdn, sde, sdu; None when they are missing or zero."""
     values = [number_of(x) for x in fields[7:10]]
+    if any(v is not None and not math.isfinite(v) for v in values):
+        message = f"sdn, sde, sdu: expected finite numbers; got {' '.join(fields[7:10])}; mend or remove the row"
+        log.problem(NotFiniteError, line, message, "standard deviations not used")
     if len(values) < 3 or any(v is None or not math.isfinite(v) or v <= 0 for v in values):
         return None
     north, east, up = (float(v) for v in values if v is not None)

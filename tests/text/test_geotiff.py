@@ -91,6 +91,27 @@ def test_heights_at_points_stand_half_a_pixel_nearer_to_the_corner(tmp_path):
     assert (raster.x0, raster.y0, raster.nodata) == (5e5, 4.9e6 - 36 * 50.0, -9999.0)
 
 
+@pytest.mark.parametrize(("keys", "said"), [
+    ([3072, 0, 1, 3857], "Web Mercator"),
+    ([3076, 0, 1, 9003], "lengths in the unit of EPSG code 9003"),
+    ([2054, 0, 1, 9105], "angles in the unit of EPSG code 9105"),
+    ([4099, 0, 1, 9002], "heights in the unit of EPSG code 9002"),
+])
+def test_coordinates_that_would_be_taken_for_metres_are_refused_in_words(tmp_path, keys, said):
+    directory = (3, [1, 1, 0, 3, 1024, 0, 1, 1, 1025, 0, 1, 1, *keys])
+    (tmp_path / "m.tif").write_bytes(geotiff(relief(), extra={34735: directory}))
+    with pytest.raises(NavsymError, match=said) as caught:
+        read_map(tmp_path / "m.tif")
+    assert caught.value.kind == "domain" and "warp it" in caught.value.message
+
+
+def test_degrees_without_a_word_about_them_are_not_taken_for_metres(tmp_path):
+    degrees = {33550: (12, [1 / 1200, 1 / 1200, 0.0]), 33922: (12, [0.0, 0.0, 0.0, -72.0, 45.0, 0.0])}
+    (tmp_path / "m.tif").write_bytes(geotiff(relief(), extra=degrees, drop=(34735,)))
+    with pytest.raises(NavsymError, match=r"no system of coordinates and a spacing of 0\.000833"):
+        read_map(tmp_path / "m.tif")
+
+
 @pytest.mark.parametrize("compression", [None, "tiff_adobe_deflate"])
 @pytest.mark.parametrize("mode", ["F", "I;16", "L", "I"])
 def test_files_of_another_program_are_read(tmp_path, mode, compression):

@@ -90,6 +90,11 @@ BAD = [
     (GOOD.encode() + b"# caf\xe9\n", ExpressionSyntaxError, "0xe9", "line 5"),
     (GOOD.encode("utf-16"), ExpressionSyntaxError, "UTF-16", None),
     ("% x-ecef(m)\n2270 1.0 1 2 3 1 9\n", DomainError, "llh", None),
+    ("%  GPST  e-baseline(m)  n-baseline(m)  u-baseline(m) Q\n2270 1.0 10.5 22.9 0.1 1 9\n", DomainError, "llh", None),
+    ("%  GPST  latitude(d'\")  longitude(d'\") height(m)  Q\n2270 1.0 55 45 00.0 37 36 36.0 150.0 1 9\n", DomainError,
+     "minutes and seconds", None),
+    (POS.replace("   5  20", "   0  20"), DomainError, "got 0, which is none", "line 3"),
+    (POS.replace("3.4239", "nan"), NotFiniteError, "sdn, sde, sdu", "line 3"),
 ]
 
 
@@ -170,3 +175,18 @@ def test_a_row_with_several_bad_fields_is_named_once(tmp_path):
     rows = "".join(f"{k},x,y,z\n" for k in range(3, 6))
     with pytest.raises(NavsymError, match=r"; 2 more rows have problems \(lines 6, 7\)"):
         read_track(write(tmp_path, GOOD + rows))
+
+
+@pytest.mark.parametrize("clock", ["UTC", "JST"])
+def test_a_clock_that_is_not_that_of_gps_is_named(tmp_path, clock):
+    (tmp_path / "x.pos").write_text(POS.replace("GPST", clock + " "), encoding="utf-8")
+    track = read_track(tmp_path / "x.pos")
+    assert any(clock in warning for warning in track.warnings)
+    (tmp_path / "x.pos").write_text(POS, encoding="utf-8")
+    assert read_track(tmp_path / "x.pos").warnings == ()
+
+
+def test_repair_keeps_a_place_whose_deviations_are_not_numbers(tmp_path):
+    track = read_track(write(tmp_path, POS.replace("3.4239", "nan")), "repair")
+    assert track.t.size == 2 and track.sigma is None
+    assert any("standard deviations not used" in repair for repair in track.repairs)
