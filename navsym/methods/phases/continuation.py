@@ -23,7 +23,16 @@ from navsym.methods.phases.family import Family
 from navsym.methods.phases.limit import DEFAULT_SECONDS, Limit
 from navsym.methods.phases.range import fraction_of
 from navsym.methods.phases.scan import COUNT, Span, exact, scan
-from navsym.methods.phases.sections import Section, event, need_range, not_looked_at, sections, split
+from navsym.methods.phases.sections import (
+    Section,
+    begins,
+    event,
+    need_range,
+    not_looked_at,
+    real_parts,
+    sections,
+    split,
+)
 from navsym.methods.phases.settle import Follow, exact_fraction, limits_of, regime_of
 from navsym.proof.balls import enclose
 from navsym.proof.decimals import decimal
@@ -48,32 +57,39 @@ def phases(
     """
     need_range(family, lower, upper)
     limit = Limit.of(seconds)
-    plan, lost = planned(family, lower, upper, limit.share(1 / 4))
+    plan, lost, edges = planned(family, lower, upper, limit.share(1 / 4))
     steps = Steps(progress, len(plan) * (COUNT - 1))
     follow = Follow(certify, alone)
     parts = [stretch(section, follow, steps, limit.share(1 / (len(plan) - k))) for k, section in enumerate(plan)]
     uncovered = [*lost, *(pair for part in parts for pair in part.uncovered)]
-    changes = changes_between(plan, lower) + [b for part in parts for b in part.boundaries]
-    changes.sort(key=lambda b: sp.Rational(b.lower))
-    regimes = [regime for part in parts for regime in part.regimes]
+    changes = {b if b.at is None else b.at: b for b in (*changes_between(plan, lower), *edges)}
+    inner = [b for part in parts for b in part.boundaries]
     ties = {id(tie): tie for section in plan for tie in section.ties}
     return Phases(
-        plan[-1].family if plan else family, lower, upper, tuple(regimes), tuple(changes), tuple(uncovered),
+        plan[-1].family if plan else family, lower, upper, tuple(regime for part in parts for regime in part.regimes),
+        tuple(sorted((*changes.values(), *inner), key=lambda b: sp.Rational(b.lower))), tuple(uncovered),
         tuple(ties.values()), tuple(limit.given_up),
     )  # fmt: skip
 
 
 def planned(
     family: Family, lower: sp.Expr, upper: sp.Expr, limit: Limit
-) -> tuple[list[Section], list[tuple[str, str]]]:
-    """The sections of the range, and the ends of parts that were not split within the limit."""
-    parts, plan, lost = sections(family, lower, upper), [], []
-    for k, part in enumerate(parts):
-        ends = end_text(part[1]), end_text(part[2])
-        found = limit.share(1 / (len(parts) - k)).within(f"singular values from {ends[0]} to {ends[1]}", split, *part)
-        plan += found or []
-        lost += [ends] if found is None else []
-    return plan, lost
+) -> tuple[list[Section], list[tuple[str, str]], list[Boundary]]:
+    """The sections of the range, the ends of parts that have none (imaginary, or not split within the limit), and where
+    imaginary ones begin."""
+    plan: list[Section] = []
+    lost: list[tuple[str, str]] = []
+    edges: list[Boundary] = []
+    for part in sections(family, lower, upper):
+        real, imaginary = real_parts(*part)
+        lost += [(end_text(one.lower), end_text(one.upper)) for one in imaginary]
+        edges += [b for one in imaginary for b in begins(one, lower, upper, family.parameter.name)]
+        for one in real:
+            ends = end_text(one[1]), end_text(one[2])
+            found = limit.share(1 / 2).within(f"singular values from {ends[0]} to {ends[1]}", split, *one)
+            plan += found or []
+            lost += [ends] if found is None else []
+    return plan, lost, edges
 
 
 def changes_between(plan: Sequence[Section], lower: sp.Expr) -> list[Boundary]:

@@ -300,13 +300,16 @@ def proves(family: Family, span: Span, T: sp.Rational, side: int, root: sp.Ratio
 def doubled(problem: Problem, found: Polished) -> bool:
     """True when a contact sits where two stretches meet: the end of the other touches as well, and no strict bound
     holds there."""
+    many = 1 + max(panel.measurement for panel in problem.panels)
+    contacts = {(int(k), rational(at)) for k, at in zip(found.panel, found.v, strict=True)}
+    twins = {(k - many, 1) for k, v in contacts if v == 0} | {(k + many, 0) for k, v in contacts if v == 1}
     with precision(BITS):
-        for k, panel in enumerate(problem.panels):
-            for v in (0, 1):
-                if not any(j == k and rational(at) == v for j, at in zip(found.panel, found.v, strict=True)):
-                    room = panel.bound() - abs(total(found.dual, panel.rows(arb(v))))
-                    if bool(abs(room) < arb(10) ** -40 * panel.bound()):
-                        return True
+        for k, v in twins - contacts:
+            if 0 <= k < len(problem.panels):
+                panel = problem.panels[k]
+                room = panel.bound() - abs(total(found.dual, panel.rows(arb(v))))
+                if bool(abs(room) < arb(10) ** -40 * panel.bound()):
+                    return True
     return False
 
 

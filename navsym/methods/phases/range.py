@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Sequence
 from fractions import Fraction
+from functools import partial
+from typing import Any
 
 import sympy as sp
 from flint import fmpq, fmpq_mat
 
+from navsym import checker
 from navsym.methods.phases.closed import refined
 from navsym.methods.phases.family import Family
 from navsym.methods.phases.scan import Pattern
@@ -34,8 +38,8 @@ def followed(
     form = echelon(family) if family.growing else None
     if form is None:
         least = max(lower, upper / 400) if family.growing else lower
-        found = follow(plain_track(family, pattern), least, upper, enough)
-        documents = [range_document(family.moving, family.parameter.name, part) for part in parts(found)]
+        found = follow(plain_track(family, pattern), least, upper, enough, accepted_by(partial(plain, family)))
+        documents = [plain(family, part) for part in parts(found)]
         return Ranged(tuple(found), tuple(documents))
     start, documents = [], []
     if lower == 0:
@@ -45,11 +49,29 @@ def followed(
         lower = start[-1].upper
         documents += [scaled_certificate(family, form, part) for part in parts(start)]
     scaled_family = rescaled(family, form)
-    rest = follow(plain_track(scaled_family, pattern), lower, upper, enough) if lower < upper else []
-    for part in parts(rest):
-        document = range_document(scaled_family.moving, family.parameter.name, part)
-        documents.append(tied(family, form, document))
+    accepts = accepted_by(partial(plain, scaled_family))
+    rest = follow(plain_track(scaled_family, pattern), lower, upper, enough, accepts) if lower < upper else []
+    documents += [tied(family, form, plain(scaled_family, part)) for part in parts(rest)]
     return Ranged((*start, *rest), tuple(documents))
+
+
+def plain(family: Family, pieces: Sequence[Piece]) -> dict[str, Any]:
+    """The range certificate of pieces that lie next to each other."""
+    return range_document(family.moving, family.parameter.name, pieces)
+
+
+def accepted_by(document: Callable[[Sequence[Piece]], dict[str, Any]]) -> Callable[[Piece], bool]:
+    """Whether the independent checker accepts the certificate of a piece alone: its balls come from texts, and are not
+    those of the proof here."""
+
+    def accepts(one: Piece) -> bool:
+        try:
+            checker.check(checker.load(json.dumps(document([one]))))
+        except checker.Refused:
+            return False
+        return True
+
+    return accepts
 
 
 def parts(pieces: Sequence[Piece]) -> list[list[Piece]]:
@@ -86,13 +108,14 @@ def from_zero(
         family.moving, family.parameter, pattern, lambda p: member(family, pattern, p),
         lambda a, b: scaled(family, form, a, b),
     )  # fmt: skip
+    accepts = accepted_by(lambda part: scaled_certificate(family, form, part)["of"][0])
     last = min(simple(upper * fmpq(7, 8), upper), simple(form.reach, form.reach))
     end = last
     for _ in range(12):
         start = track.first(end / 2)
         first = None if start is None else piece(track, start, fmpq(0), end)
-        if first is not None:
-            return [first, *march(track, first.ends[1], end, last, 3, enough)]
+        if first is not None and accepts(first):
+            return [first, *march(track, first.ends[1], end, last, 3, enough, accepts)]
         end = simple(end / 2, end)
     return []
 

@@ -14,12 +14,15 @@ from navsym.methods.phases.events import Boundary
 from navsym.methods.phases.family import Family
 from navsym.methods.phases.range import fraction_of
 from navsym.methods.phases.scan import exact
-from navsym.methods.phases.singular import Singular, singular_values
+from navsym.methods.phases.singular import Singular, is_square_root, real_roots, singular_values
 from navsym.proof.balls import enclose
 from navsym.proof.decimals import lower_end, upper_end
 from navsym.proof.optimality.enclosure import rational
 
 DIGITS = 34
+
+
+Part = tuple[Family, sp.Expr, sp.Expr]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -44,7 +47,7 @@ class Section:
         return {s.at for s in self.singular}
 
 
-def sections(family: Family, lower: sp.Expr, upper: sp.Expr) -> list[tuple[Family, sp.Expr, sp.Expr]]:
+def sections(family: Family, lower: sp.Expr, upper: sp.Expr) -> list[Part]:
     """The range cut where one family of a chain follows another."""
     chain = family.chain
     first = [lower, *(one.least for one in chain[1:])]
@@ -55,6 +58,64 @@ def sections(family: Family, lower: sp.Expr, upper: sp.Expr) -> list[tuple[Famil
         if above(end, start):
             done.append((one, start, end))
     return done
+
+
+@dataclass(frozen=True, slots=True)
+class Imaginary:
+    """A part of the range in which a square root of the file is imaginary: there is no problem there."""
+
+    root: sp.Expr
+    lower: sp.Expr
+    upper: sp.Expr
+
+    def in_words(self, name: str) -> str:
+        """What is imaginary where."""
+        return f"{self.root} is imaginary for {name} from {self.lower} to {self.upper}, where there is no problem"
+
+
+def real_parts(family: Family, lower: sp.Expr, upper: sp.Expr) -> tuple[list[Part], list[Imaginary]]:
+    """The range cut where square roots of the parameter become imaginary, and the parts in which one of them is.
+
+    Roots that only stand where sines become hyperbolic sines, or in pairs, cut nothing. Raises DomainError when one is
+    imaginary on the whole range.
+    """
+    roots = {r for e in expressions(family) for r in e.atoms(sp.Pow) if is_square_root(r, family.parameter)}
+    found = {z for r in roots for z in real_roots(r.base, family.parameter) or ()}
+    marks = sorted((z for z in found if above(z, lower) and above(upper, z)), key=lambda z: float(enclose(z).mid()))
+    parts, left = [], []
+    for a, b in pairwise([lower, *marks, upper]):
+        bad = imaginary_at(family, roots, inside_of(a, b))
+        if bad is None:
+            parts.append((family, a, b))
+        else:
+            left.append(Imaginary(bad, a, b))
+    if not parts:
+        raise DomainError(
+            f"{family.parameter.name}: expected a range in which the problem is real; got {lower} to {upper}, and "
+            f"{left[0].in_words(family.parameter.name)}; give a range in which {left[0].root.base} is not negative"
+        )
+    return ([(family, lower, upper)] if not left else parts), left
+
+
+def expressions(family: Family) -> list[sp.Expr]:
+    """All that may depend on the parameter."""
+    rows = [h for row in family.rows for h in row]
+    return [*family.functional, *family.sigma, *rows, family.start, *family.cuts, family.stop]
+
+
+def imaginary_at(family: Family, roots: set[sp.Expr], value: sp.Rational) -> sp.Expr | None:
+    """A square root that makes the problem imaginary at a value, or None."""
+    real = family.real_near(value)
+    if not any(real.at(e, value).has(sp.I) for e in expressions(real)):
+        return None
+    negative = [sp.sqrt(r.base) for r in roots if bool(enclose(family.at(r.base, value)) < 0)]
+    return min(negative, key=sp.default_sort_key, default=None)
+
+
+def begins(part: Imaginary, lower: sp.Expr, upper: sp.Expr, name: str) -> list[Boundary]:
+    """The ends of an imaginary part inside the range, as boundaries."""
+    ends = [end for end in (part.lower, part.upper) if end not in (lower, upper)]
+    return [event(Singular(end, part.in_words(name))) for end in ends]
 
 
 def above(x: sp.Expr, y: sp.Expr) -> bool:

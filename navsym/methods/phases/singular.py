@@ -66,11 +66,18 @@ def suspects(family: Family) -> Iterator[sp.Expr]:
         for power in part.atoms(sp.Pow):
             if power.exp.is_negative and p in power.base.free_symbols and U not in power.base.free_symbols:
                 yield power.base
+    for part in (*parts, family.start, family.stop):
+        yield from (e.base for e in part.atoms(sp.Pow) if is_square_root(e, p))
     yield from lost_ranks(family)
     rates = list(dict.fromkeys(r for part in parts for r in rates_of(part)))
     yield from (r for r in rates if p in r.free_symbols)
     for a, b in combinations(rates, 2):
         yield from (e for e in (a - b, a + b) if p in e.free_symbols)
+
+
+def is_square_root(power: sp.Pow, parameter: sp.Symbol) -> bool:
+    """True for ``base**(k/2)`` with a base in the parameter alone."""
+    return bool(power.exp.is_Rational and power.exp.q == 2 and power.base.free_symbols == {parameter})
 
 
 def lost_ranks(family: Family) -> Iterator[sp.Expr]:
@@ -125,6 +132,8 @@ def vanishes(x: sp.Expr) -> bool:
 
 def polynomial_roots(top: sp.Expr, p: sp.Symbol) -> list[sp.Expr] | None:
     """Real roots of a polynomial in p; None for anything else."""
+    if top.is_Rational and top != 0:
+        return []
     if not top.is_polynomial(p) or top.free_symbols != {p}:
         return None
     try:

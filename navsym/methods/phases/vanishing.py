@@ -58,14 +58,47 @@ def echelon(family: Family) -> Echelon | None:
 
 
 def rates_of_row(row: list[sp.Expr]) -> list[fmpq] | None:
-    """|c| of every ``sin(c u)``, ``cos(c u)``, ``exp(c u)``; None when there is another function."""
+    """|c| of every ``sin(c u)``, ``cos(c u)``, ``exp(c u)``, and a bound of 1/|z| for the zeros z of every denominator;
+    None when there is another function."""
     rates = []
-    for f in {f for h in row for f in h.atoms(sp.Function) | h.atoms(sp.exp)}:
-        c = sp.expand(f.args[0] / U)
-        if f.func not in (sp.sin, sp.cos, sp.exp) or not c.is_Rational:
+    for f in {f for h in map(in_exponentials, row) for f in h.atoms(sp.Function, sp.exp) | denominators(h)}:
+        rate = pole_rate(f) if f.is_Pow and not f.is_polynomial(U) and f.base != sp.E else of_argument(f)
+        if rate is None:
             return None
-        rates.append(abs(fmpq(int(c.p), int(c.q))))
-    return rates
+        rates.append(rate)
+    return rates if all(is_polynomial_in_terms(in_exponentials(h)) for h in row) else None
+
+
+def in_exponentials(h: sp.Expr) -> sp.Expr:
+    """Hyperbolic functions written with exponentials."""
+    return sp.expand(h.rewrite(sp.exp)) if h.has(sp.sinh, sp.cosh) else h
+
+
+def is_polynomial_in_terms(h: sp.Expr) -> bool:
+    """True for a polynomial in U and in what :func:`opened` replaces: functions and reciprocals."""
+    own = {f: sp.Dummy() for f in h.atoms(sp.Function, sp.exp) | denominators(h)}
+    return bool(h.xreplace(own).is_polynomial(U))
+
+
+def denominators(h: sp.Expr) -> set[sp.Expr]:
+    """Reciprocals of polynomials in U."""
+    powers = (e for e in h.atoms(sp.Pow) if e.exp.is_Integer and e.exp.is_negative)
+    return {e for e in powers if e.has(U) and e.base.is_polynomial(U)}
+
+
+def of_argument(f: sp.Expr) -> fmpq | None:
+    """|c| of ``sin(c u)``, ``cos(c u)``, ``exp(c u)``."""
+    c = sp.expand(f.args[0] / U) if f.func in (sp.sin, sp.cos, sp.exp) else sp.S.NaN
+    return abs(fmpq(int(c.p), int(c.q))) if c.is_Rational else None
+
+
+def pole_rate(f: sp.Expr) -> fmpq | None:
+    """A bound of 1/|z| for the zeros z of ``sum a_k u**k``, by Cauchy: ``max |a_k / a_0| + 1``; None where a_0 = 0."""
+    c = sp.Poly(f.base, U).all_coeffs()
+    if c[-1] == 0 or not all(a.is_Rational for a in c):
+        return None
+    most = max(abs(a / c[-1]) for a in c) + 1
+    return fmpq(int(most.p), int(most.q))
 
 
 def taylor_table(row: tuple[sp.Expr, ...], count: int) -> list[list[fmpq]] | None:
@@ -189,15 +222,26 @@ def scaled_text(form: Echelon, i: int, row: tuple[sp.Expr, ...], T: str, v: str)
 
 
 def opened(h: sp.Expr, K: int, T: str, v: str, parts: dict[sp.Symbol, str]) -> sp.Expr:
-    """h with every function written as its Taylor polynomial and ``(c u)**K`` times an entire function."""
+    """h with every function written as its Taylor polynomial and ``(c u)**K`` times an entire function, and every
+    reciprocal as its Taylor polynomial and ``u**K`` times a rational function."""
 
-    def replaced(f: sp.Expr) -> sp.Expr:
+    def function(f: sp.Expr) -> sp.Expr:
         c, name = sp.expand(f.args[0] / U), {sp.sin: "sin", sp.cos: "cos", sp.exp: "exp"}[f.func]
         symbol = sp.Symbol(f"{name}[{c}]")
         parts[symbol] = f"{name}_{K}(({to_text(c)})*{T}*{v})"
         return polynomial_of(name, c, K) + (c * U) ** K * symbol
 
-    return sp.expand(h.replace(lambda e: isinstance(e, (sp.sin, sp.cos, sp.exp)), replaced))
+    def reciprocal(f: sp.Expr) -> sp.Expr:
+        (table,), symbol = taylor_table((f,), K) or ([],), sp.Symbol(f"rest[{f}]")
+        polynomial = sum((rational_of(a) * U**k for k, a in enumerate(table)), sp.S.Zero)
+        rest = sp.cancel(sp.together(f - polynomial) / U**K)
+        parts[symbol] = f"({to_text(rest.subs(U, sp.Symbol(T, real=True) * sp.Symbol(v, real=True)))})"
+        return polynomial + U**K * symbol
+
+    shown = in_exponentials(h)
+    below = denominators(shown)
+    shown = shown.replace(lambda e: isinstance(e, (sp.sin, sp.cos, sp.exp)), function)
+    return sp.expand(shown.xreplace({f: reciprocal(f) for f in below}))
 
 
 def polynomial_of(name: str, c: sp.Rational, K: int) -> sp.Expr:

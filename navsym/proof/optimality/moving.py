@@ -65,6 +65,11 @@ class Moving:
     def size(self) -> int:
         return int(self.basis.nrows())
 
+    @property
+    def slack(self) -> int:
+        """How many times Newton's step here a checker may need, whose balls come from texts."""
+        return 2
+
     @cached_property
     def mix(self) -> arb_mat:
         m = self.size
@@ -131,6 +136,11 @@ class Vanishing(Moving):
     lows: tuple[int, ...] = ()
     shift: int = 0
     local: tuple[tuple[tuple[arb, ...], ...], ...] = ()
+
+    @property
+    def slack(self) -> int:
+        """More than elsewhere: here the series are exact, there powers cancel."""
+        return 5
 
     def local_member(self, member: Member) -> list[fmpq]:
         """Scaled for the middle of the piece: ``y_i = p**k_i (A^-T x)_i``, weights times p**shift."""

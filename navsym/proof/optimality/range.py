@@ -44,8 +44,6 @@ HUGE = 10**9
 MARGIN = arb(5) / 4
 #: Bounds of the value are this part of it wider than what is proved here.
 ROOM = 10**6
-#: The bound is proved here for a dual so many times further off, so that a checker with other balls has room.
-WIDER = arb(5) / 2
 #: Of what the unknown that moves most needs, relative to its size, every other has this part as well.
 SHARE = arb(1) / 4
 
@@ -250,14 +248,14 @@ def verified(
             return None
         if attempt and all(bool(abs(d) * MARGIN < radius[k]) for k, d in move.items()):
             break
-        radius = {k: arb(exact(decimal(r, 3, 1))) for k, r in room_for(move, z).items()}
+        radius = {k: arb(exact(decimal(r, 3, 1))) for k, r in room_for(move, z, moving.slack).items()}
     else:
         return None
     here = [at_all(c) + move.get(k, arb(0)) for k, c in enumerate(z)]
     touches = touches_of(track, here, m)
     if touches is None:
         return None
-    spread = {k: abs(move[k]).upper() * WIDER for k in range(m)}
+    spread = {k: abs(move[k]).upper() * moving.slack for k in range(m)}
     cells = 0
     for k, mine in enumerate(touches):
         used = halved(mine, partial(expansion, moving, z[:m], spread, k))
@@ -267,11 +265,11 @@ def verified(
     return row(track, moving, curves, radius), cells, value_over(moving, z[:m], spread)
 
 
-def room_for(move: dict[int, arb], z: Sequence[Sequence[arb]]) -> dict[int, arb]:
-    """The radius of a box in which Newton's step has twice the room that it needs."""
+def room_for(move: dict[int, arb], z: Sequence[Sequence[arb]], slack: int) -> dict[int, arb]:
+    """The radius of a box in which Newton's step has so many times the room that it needs."""
     sizes = {k: size_of(z[k]) for k in move}
     worst = max((abs(d).upper() / sizes[k] for k, d in move.items()), key=rational) + arb(10) ** (4 - DIGITS)
-    return {k: (2 * abs(d).upper() + SHARE * worst * sizes[k]).upper() for k, d in move.items()}
+    return {k: (slack * abs(d).upper() + SHARE * worst * sizes[k]).upper() for k, d in move.items()}
 
 
 def value_over(moving: Moving, y: Sequence[Sequence[arb]], spread: dict[int, arb]) -> arb:
