@@ -30,6 +30,7 @@ from derivations import joint_correction as paper
 from derivations.joint_correction import section2_error_equations as errors_of_section_2
 from derivations.joint_correction import section2_groups as groups
 from derivations.joint_correction import section3_gains as analysis
+from derivations.joint_correction import section3_noise as poles
 from derivations.joint_correction import sensors
 from navsym.claims import claims_of
 from navsym.cli.main import run as navsym
@@ -101,10 +102,12 @@ steps = np.cumsum((0, *found.staircase))
 figure, axis = plt.subplots(figsize=(7, 3))
 for k, (low, high) in enumerate(pairwise(steps)):
     axis.bar(k, high - low, bottom=low, color=(BLUE, BLUE, ORANGE, ORANGE)[k])
-    axis.text(k, high + 0.1, f"+{high - low}", ha="center")
-names = [measurement.name for measurement in found.measurements]
-axis.set(xticks=range(4), xticklabels=names, ylabel="observed dimensions", ylim=(0, 11.5))
+    axis.text(k, (low + high) / 2 if high > low else high - 0.6, f"+{high - low}", ha="center", va="center",
+              color="white" if high > low else "black")
+names = ["velocity 1", "velocity 2", "position 1", "position 2"]
+axis.set(xticks=range(4), xticklabels=names, ylabel="observed dimensions", ylim=(0, 11))
 axis.axhline(10, color="black", lw=0.5)
+axis.text(-0.4, 10.15, "all ten variables", fontsize=8)
 plt.show()
 assert found.observable
 
@@ -171,6 +174,31 @@ interact(
 )
 
 # %% [markdown]
+# ## What the poles cost
+# The paper leaves λ_c and λ_h to the engineer. Noise alone wants them small, what the model leaves out wants them
+# large: the steady variances have closed forms, and with a constant drive d of y₂ the best λ_h is (16 d²/5)^(1/5).
+
+# %%
+for found in claims_of(poles):
+    require(found)
+    print(f"{found.number:20s} {found.title}")
+show(poles.best_decay_of_the_position_stage)
+
+# %%
+drive, decays = 2.0, np.linspace(0.4, 4.0, 200)
+squares = 5 * decays / 4 + drive**2 / decays**4
+best = (16 * drive**2 / 5) ** 0.2
+figure, axis = plt.subplots(figsize=(7, 3))
+axis.plot(decays, np.sqrt(squares), color=BLUE, label="noise and drive d = 2")
+axis.plot(decays, np.sqrt(5 * decays / 4), ":", color="0.5", label="noise alone")
+axis.plot(best, np.sqrt(25 * best / 16), "o", color=RED, label=f"best λ_h = {best:.3f}")
+axis.set(xlabel="λ_h", ylabel="RMS error of y₁, roots of noise", ylim=(0, 6))
+axis.legend()
+plt.close(figure)
+assert squares.min() >= 25 * best / 16 - 1e-12
+figure
+
+# %% [markdown]
 # ## The experiment
 # 250 m/s on a great circle from 45° north, gyroscopes of 0.01°/h; truth is the full model. Ninety minutes of
 # velocity, then half an hour of both; y starts at the first measured position. Exact covariance and drawn runs agree.
@@ -221,6 +249,9 @@ for axis, column, factor, label in (
     axis.set_ylabel(label)
     for end in np.cumsum([length for _, length in phases]):
         axis.axvline(end, color="black", lw=0.5)
+for (situation, length), end in zip(phases, np.cumsum([length for _, length in phases]), strict=True):
+    axes[0].text(end - length / 2, 1.02, situation.name.lower(), transform=axes[0].get_xaxis_transform(),
+                 ha="center", fontsize=8)
 axes[0].legend()
 axes[1].set_xlabel("minutes")
 plt.show()
@@ -257,8 +288,8 @@ if record:
         ours, theirs = (np.sqrt((aiding.outage_errors(aided, e, horizon) ** 2).mean()) for e in (two, kalman))
         print(f"{horizon:2d} s ahead: two stages {ours:6.2f} m, Kalman filter {theirs:6.2f} m")
     figure, axis = plt.subplots(figsize=(7, 3))
-    axis.plot(aided.t, two[0][:, 2], color=BLUE, label="two stages")
-    axis.plot(aided.t, kalman[0][:, 2], color=GREEN, label="Kalman filter")
+    axis.plot(aided.t, two[0][:, 2], color=BLUE, lw=2.2, alpha=0.6, label="two stages")
+    axis.plot(aided.t, kalman[0][:, 2], color="black", lw=0.7, label="Kalman filter")
     axis.set(xlabel="t, s", ylabel="northward force error, m/s²")
     axis.legend()
     plt.show()

@@ -38,6 +38,7 @@ from derivations.trajectory import (
     speeds,
     stages,
     table,
+    window,
 )
 from navsym.claims import claims_of
 from navsym.cli.main import run as navsym
@@ -232,8 +233,8 @@ for i in range(ORDER):
     axes[0].semilogy(truth.t[1:], tuned.diagonals[:, i], lw=0.9, label=f"$q_{i + 1}$")
 axes[0].set(ylabel="elements of Q", title="windows of 20 s, 243 candidates each")
 axes[0].legend(ncol=5, fontsize=8)
-axes[1].plot(truth.t[100::100], tuned.values[99::100], color=GREEN)
-axes[1].set(xlabel="t, s", ylabel="criterion of the best candidate")
+axes[1].semilogy(truth.t[100::100], tuned.values[99::100], color=GREEN)
+axes[1].set(xlabel="t, s", ylabel="criterion, best candidate")
 plt.close(figure)
 figure
 
@@ -314,6 +315,27 @@ axis.plot(-past, wave, color=BLUE)
 axis.axhspan(-1, 1, color="0.93")
 axis.plot(-ages, np.interp(ages, past, wave), "o", color=RED)
 axis.set(xlabel="time, windows", ylabel="position / noise", title="never outside the noise, and 18 σ/T fast now")
+plt.close(figure)
+figure
+
+# %% [markdown]
+# ## The price of the order
+# Against noise that is white instead of adversarial a window helps, and a higher order costs. The least variance of any
+# unbiased algorithm at the end of a window is a ratio of factorials: n = 5 knows the speed 20 times worse than n = 2.
+
+# %%
+for found in claims_of(window):
+    require(found)
+show(window.price_of_the_order)
+lengths, noise_intensity = np.geomspace(5, 500, 60), 0.2
+figure, axis = plt.subplots(figsize=(7, 3.2))
+for n, colour in zip((2, 3, 4, 5), (GREEN, BLUE, ORANGE, RED), strict=True):
+    at_one = float(window.least_variance(1, n - 1).subs({window.T: 1, window.q: 1}))
+    axis.loglog(lengths, np.sqrt(at_one * noise_intensity / lengths**3), color=colour, label=f"n = {n}")
+axis.axhline(0.019, color="0.5", ls=":")
+axis.text(160, 0.022, "0.019 m/s of the paper", fontsize=8)
+axis.set(xlabel="window, s", ylabel="least RMS error of speed, m/s", title="1 m every 0.2 s, at the end of the window")
+axis.legend()
 plt.close(figure)
 figure
 

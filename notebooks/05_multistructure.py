@@ -27,6 +27,7 @@ from ipywidgets import FloatSlider, IntSlider, interact
 from derivations import multistructure as paper
 from derivations.multistructure import (
     any_number,
+    forgetting,
     gaussian,
     interval,
     jump_model,
@@ -182,6 +183,9 @@ for row in document["methods"][1:-1]:
 plt.xlabel("Kalman filters per step")
 plt.ylabel("excess over the exact estimate")
 plt.xscale("log")
+plt.xlim(2.5, 32)
+plt.xticks((3, 5, 10, 20, 30), ("3", "5", "10", "20", "30"))
+plt.minorticks_off()
 plt.title(f"modes: {', '.join(MODES)}")
 plt.show()
 by_name = {(row["method"], row["depth"]): row for row in document["methods"]}
@@ -228,8 +232,12 @@ for axis, name in zip(axes, ("log_loss", "nees"), strict=True):
             np.arange(len(stays)) + 0.06 * number, [m.value for m in scores], [m.half_width for m in scores],
             fmt="o", ms=4, label=label,
         )
-    axis.set(xticks=np.arange(len(stays)) + 0.15, xticklabels=[f"{s:g}" for s in stays], title=name.replace("_", " "),
+    axis.set(xticks=np.arange(len(stays)) + 0.15, xticklabels=[f"{s:g}" for s in stays], yscale="log",
              xlabel="probability that a mode lasts another step")
+axes[0].set_ylabel("log loss, nats per step")
+axes[1].set_ylabel("NEES")
+axes[1].axhline(3, color="0.6", lw=0.8)
+axes[1].text(-0.1, 3.2, "3: consistent", fontsize=8)
 axes[0].legend(fontsize=7)
 plt.close(figure)
 rare = {score.method: score for score in study_of_stays[0.99] if score.depth is None}
@@ -268,6 +276,40 @@ interact(
 # %%
 show(pulsating.near_optimal)
 require(pulsating.near_optimal_corrected)
+
+# %% [markdown]
+# ## How long a mistake about the modes lasts
+# A fold, a truncated tree or a wrong covariance reaches the modes through the likelihoods. If each of them is known
+# within a factor exp(±c), one step errs by tanh(c/2) at most; and (10) forgets: whatever is measured, an error of the
+# log-odds is multiplied by at most κ, so that it never exceeds 2c/(1 - κ). Drawn: κ = 0.8, c = 0.1, mistakes at random
+# and at their worst.
+
+# %%
+for found in claims_of(forgetting):
+    require(found)
+    print(f"{found.number:24s} {found.title}")
+show(forgetting.modes_are_forgotten)
+
+# %%
+generator, c, stay = np.random.default_rng(3), 0.1, 0.9
+limit = 2 * c / (1 - (2 * stay - 1))
+figure, axis = plt.subplots(figsize=(7, 3))
+for name, colour in (("at random", BLUE), ("at their worst", RED)):
+    odds = wrong = 1.0
+    gap = []
+    for _ in range(40):
+        ratio = np.exp(generator.normal(0.0, 1.0 if name == "at random" else 0.0))
+        mistake = generator.uniform(-2 * c, 2 * c) if name == "at random" else 2 * c
+        odds, wrong = (r * (stay * x + 1 - stay) / ((1 - stay) * x + stay)
+                       for r, x in ((ratio, odds), (ratio * np.exp(mistake), wrong)))
+        gap.append(abs(np.log(wrong / odds)))
+    axis.plot(np.arange(1, 41), gap, color=colour, label=f"mistakes {name}")
+    assert max(gap) <= limit
+axis.axhline(limit, color="black", lw=0.8, label="2c/(1 - κ)")
+axis.set(xlabel="step", ylabel="error of the log-odds", ylim=(0, 1.1 * limit))
+axis.legend()
+plt.close(figure)
+figure
 
 # %% [markdown]
 # ## Modes that never switch

@@ -29,6 +29,7 @@ from derivations import terrain_search as paper
 from derivations.terrain_search import (
     cost,
     crossing,
+    degenerate,
     directions,
     experiment,
     extremes,
@@ -104,7 +105,7 @@ for value, mark in ((low, "<"), (middle, "o"), (high, ">")):
     x, y = corrected((50 * sequential.index[0], 50 * sequential.index[1]), (0, 0))
     axis.plot(np.interp(value, number, x), np.interp(value, number, y), mark, color=ORANGE, ms=8)
 axis.plot([], [], "o", color=ORANGE, label="t_G on the coarse track: least, middle, largest")
-axis.legend(loc="upper left")
+axis.legend(loc="upper left", fontsize=8, facecolor="0.7", framealpha=0.9)
 plt.close(figure)
 figure
 
@@ -160,6 +161,7 @@ axis.plot(np.degrees(angles), [info.time_of((np.cos(a), np.sin(a))) for a in ang
 for value, name in zip(info.interval, ("t_min", "t_max"), strict=True):
     axis.axhline(value, color="0.5", lw=0.8)
     axis.text(2, value, name, va="bottom")
+axis.margins(y=0.12)
 axis.axhline(sum(info.interval) / 2, color=ORANGE, label="middle, the paper's choice")
 axis.axhline(info.mean_time, color=GREEN, ls="--", label="true mean over directions")
 axis.axhline(number[-1] / 2, color="0.7", ls=":", label="middle of the track")
@@ -185,6 +187,38 @@ show(extremes.middle_as_printed)
 
 # %%
 show(extremes.mean_in_any_axes)
+
+# %% [markdown]
+# ## Ground over which nothing can be told
+# The matrix of all searches is singular exactly where one error c + k v lies along the contour line under every
+# measurement: over a hill of revolution (a turn about its summit), a fan (a stretch), and **every quadratic ground**.
+# There the second stage of the sequential search answers zero, and nothing shows that it knows nothing.
+
+# %%
+for found in claims_of(degenerate):
+    require(found)
+    print(f"{found.number:24s} {found.title}")
+show(degenerate.four_measurements)
+
+# %%
+summit, ticks = np.array([0.0, 0.0]), np.linspace(-4, 4, 161)
+east, north = np.meshgrid(ticks, ticks)
+hill = 300 * np.exp(-(east**2 + north**2) / 6)
+flown = np.column_stack([np.linspace(-3.5, 3.0, 60), np.linspace(-1.5, 0.5, 60)])
+figure, axis = plt.subplots(figsize=(5.6, 5))
+axis.contour(east, north, hill, 12, colors="0.6", linewidths=0.7)
+heights = []
+for angle, colour in ((0.0, "black"), (0.35, BLUE), (-0.35, ORANGE)):
+    turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    x, y = (flown @ turn.T).T
+    heights.append(300 * np.exp(-(x**2 + y**2) / 6))
+    axis.plot(x, y, color=colour, label="flown" if angle == 0 else f"turned by {np.degrees(angle):.0f}°")
+axis.plot(*summit, "^", color=RED, label="summit")
+axis.set(aspect="equal", xlabel="east, km", ylabel="north, km", title="three tracks, one profile of heights")
+axis.legend(fontsize=8)
+plt.close(figure)
+assert max(np.abs(heights[0] - other).max() for other in heights[1:]) < 1e-9
+figure
 
 # %% [markdown]
 # ## The experiment of the paper
