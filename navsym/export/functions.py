@@ -15,7 +15,7 @@ import sympy as sp
 from navsym.claims import CONFIRMED, REFUTED, Bound, Equation, Optimum, Statement, Verdict
 from navsym.errors import NavsymError, ShapeError
 from navsym.export.accuracy.literals import literals_of
-from navsym.export.accuracy.overflow import unseen
+from navsym.export.accuracy.overflow import watched
 from navsym.export.accuracy.rounding import ARITHMETICS, Arithmetic, with_library
 from navsym.export.accuracy.uniform import CELLS, uniform_bound
 from navsym.export.choice import best_form, best_graph, tie_to_formula
@@ -195,9 +195,8 @@ def piece_of(
     graph = replace(graph, names=local_names(graph.names, [*(i.name for i in inputs), *taken]))
     literals = literals_of(graph, arithmetic)
     bound = uniform_bound(graph, box, arithmetic, literals, cells=cells_for(graph))
-    every = accepted_box(inputs, box, arithmetic)
-    if every != box or not bound.finite:
-        graph = replace(graph, guards=unseen(graph, every, arithmetic, literals))
+    graph = watched(graph, accepted_box(inputs, box, arithmetic), arithmetic, literals)
+    literals = literals_of(graph, arithmetic)
     named = tuple((name, formula, form) for (name, formula), (_, form) in zip(part.lets, lets, strict=True))
     return Piece(
         limit, tuple(formulas), tuple(forms), graph, literals, bound, tie, part.source, named, tuple(equals), tuple(box)

@@ -153,7 +153,7 @@ class ExportedFunction:
     def always_finite(self) -> bool:
         """Proved: nothing overflows for any accepted argument, so that no test of the results is needed."""
         whole = all(i.low == i.test_low and i.high == i.test_high for i in self.inputs)
-        return whole and all(piece.bound.finite for piece in self.pieces)
+        return whole and all(piece.bound.finite and not piece.graph.guards for piece in self.pieces)
 
     @property
     def sources(self) -> tuple[Source, ...]:

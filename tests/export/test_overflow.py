@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import importlib.util
+import random
 from pathlib import Path
 
 import numpy as np
 import pytest
 import sympy as sp
+from flint import arb
 
 from navsym.claims import Equation
 from navsym.errors import DomainError
@@ -16,6 +18,7 @@ from navsym.export.accuracy.vectors import vectors
 from navsym.export.functions import ExportedFunction, function_of
 from navsym.export.languages.python import files as python_files
 from navsym.export.languages.targets import TARGETS
+from navsym.proof.balls import enclose, tape
 
 x, y = sp.symbols("x y", real=True)
 COMPILER = pytest.mark.skipif(TARGETS["c"].executable() is None, reason="needs a C compiler")
@@ -97,3 +100,54 @@ def test_far_outside_of_an_undeclared_range_there_is_a_status_and_no_wrong_numbe
     given = {"x": (good[0], bad[0]), "y": (good[1], bad[1])}
     statuses, _ = call(np.array([given[i.symbol.name] for i in made.inputs]))
     assert statuses.tolist() == [0, 2]
+
+
+# -- underflow ---------------------------------------
+
+TINY = sp.Rational(1, 10**200)
+
+
+@COMPILER
+@pytest.mark.parametrize("formula", [sp.sqrt(x * y), x * y / (x * y + y**2), (x * y) ** sp.Rational(2, 3) / x])
+def test_a_product_that_loses_its_digits_by_underflow_is_a_status(samples, formula: sp.Expr, tmp_path: Path) -> None:
+    """x y is 1e-340 at the second point, which is zero in double; the root of it is 1e-170."""
+    statement = Equation(formula, formula, {x: (TINY, 1), y: (TINY, 1)})
+    made = function_of([samples.of_statement("tiny", statement)])
+    (call,) = compiled_c([made], tmp_path)
+    statuses, results = call(np.array([[1e-100, 1e-170, 1e-155], [1e-120, 1e-170, 1e-155]]))
+    assert statuses.tolist() == [0, 2, 2]
+    (found,) = sweep_c([made], 256).values()
+    assert found.wrong == 0
+    exact = formula.subs({x: sp.Rational(1, 10**100), y: sp.Rational(1, 10**120)})
+    assert results[0, 0] == pytest.approx(float(exact), rel=1e-14)
+
+
+def random_formula(generator: random.Random, depth: int) -> sp.Expr:
+    """Positive quantities by operations that lose no digits unless they overflow or underflow."""
+    if depth == 0:
+        return generator.choice(POSITIVE)
+    a, b = random_formula(generator, depth - 1), random_formula(generator, generator.randrange(depth))
+    return generator.choice([a + b, a * b, a / b, sp.sqrt(a), a ** sp.Rational(2, 3), a**3, 1 / (1 + a)])
+
+
+POSITIVE = sp.symbols("x y z", positive=True)
+
+
+@COMPILER
+@pytest.mark.parametrize("seed", [1, *(pytest.param(k, marks=pytest.mark.slow) for k in range(2, 12))])
+def test_no_random_formula_over_four_hundred_decades_gives_a_wrong_number(samples, seed: int, tmp_path: Path) -> None:
+    generator, made = random.Random(seed), []
+    while len(made) < 12:
+        formula = random_formula(generator, 4)
+        box = {s: (TINY, 1 / TINY) for s in sorted(formula.free_symbols, key=str)}
+        if box:
+            statement = Equation(formula, formula, box)
+            made.append((formula, function_of([samples.of_statement(f"wide{len(made)}", statement)])))
+    for (formula, function), call in zip(made, compiled_c([f for _, f in made], tmp_path), strict=True):
+        given = 10.0 ** np.random.default_rng(seed).uniform(-195, 195, (len(function.inputs), 100))
+        statuses, (results,) = call(given)
+        flattened, symbols = tape(formula), [i.symbol for i in function.inputs]
+        for k in np.flatnonzero(statuses == 0):
+            exact = enclose(flattened, dict(zip(symbols, map(arb, given[:, k].tolist()), strict=True)), 300)
+            near = abs(exact - float(results[k])) <= abs(exact) * arb("1e-12") or abs(exact) < arb(2) ** -1020
+            assert near, (formula, given[:, k], results[k])

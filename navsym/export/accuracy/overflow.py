@@ -1,15 +1,21 @@
-"""Intermediate values that may overflow where nobody would see it: under a division, an infinity becomes a zero."""
+"""Intermediate values that may overflow or underflow where nobody would see it.
+
+Under a division an infinity becomes a zero; under a root a product that underflows is a zero, or has lost its digits.
+"""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
+import sympy as sp
 from flint import arb
 
-from navsym.export.accuracy.rounding import BITS, Arithmetic, analyse, up
+from navsym.export.accuracy.rounding import BITS, Arithmetic, Bounded, analyse, down, up
 from navsym.export.accuracy.uniform import Box, starting_cells
-from navsym.export.expression_graph import Graph
+from navsym.export.expression_graph import Graph, Node
 from navsym.proof.balls import precision
 
 #: Places of the arguments whose infinity (or, for extremes, NaN) a result may hide. Every other operation hands it on,
@@ -17,24 +23,117 @@ from navsym.proof.balls import precision
 HIDES = {"div": (1,), "atan2": (0, 1), "pow": (0, 1), "max": (0, 1), "min": (0, 1), "filled": (0,)}
 
 
-def unseen(
+#: Operations whose result is as wrong, relative to its size, as their arguments are.
+RELATIVE = frozenset({"mul", "div", "sqrt", "log", "pow", "atan2"})
+
+
+def watched(
     graph: Graph, box: Sequence[tuple[float, float]], arithmetic: Arithmetic, literals: Sequence[Any]
-) -> tuple[int, ...]:
-    """Nodes that a later operation hides and that are not proved to stay finite on the box."""
-    hidden = {node.args[k] for node in graph.nodes for k in HIDES.get(node.op, ())}
-    left = {place for place in hidden if graph.nodes[place].op not in ("input", "const")}
+) -> Graph:
+    """The graph with guards for what may overflow unseen on the box, or lose its digits by underflow."""
+    hidden = {node.args[k] for node in graph.nodes for k in HIDES.get(node.op, ())} & made(graph)
     found: set[int] = set()
     for cell in starting_cells(box):
-        found |= {place for place in left - found if place in large(graph, cell, arithmetic, literals)}
-        if found == left:
+        if found == hidden:
             break
-    return tuple(sorted(found))
+        done = on_cell(graph, cell, arithmetic, literals)
+        found |= {k for k in hidden - found if not finite(done[k], arithmetic)}
+    needed = {a for node in graph.nodes if node.op in RELATIVE for a in node.args} & made(graph)
+    ranges, least = sizes(graph, box, arithmetic, literals), arithmetic.eta - arithmetic.u
+    small = [k for k in sorted(needed) if (known := ranges[k]) is not None and known.low < least]
+    return with_guards(graph, sorted(found), small)
 
 
-def large(graph: Graph, cell: Box, arithmetic: Arithmetic, literals: Sequence[Any]) -> set[int]:
-    """Nodes that are not proved to be finite on one cell; in code they would be infinite, or undefined."""
+@dataclass(frozen=True, slots=True)
+class Size:
+    """Sign of a quantity that is never zero, and bounds of log2 of its magnitude, near enough."""
+
+    sign: int
+    low: float
+    high: float
+
+
+def sizes(
+    graph: Graph, box: Sequence[tuple[float, float]], arithmetic: Arithmetic, literals: Sequence[Any]
+) -> list[Size | None]:
+    """How small and how large every node may be on the box; None for one that may be zero.
+
+    Quantities that range over hundreds of decades are followed in logarithms, where balls hold zero.
+    """
+    done, found = on_cell(graph, tuple(box), arithmetic, literals), list[Size | None]()
+    for node, value in zip(graph.nodes, (one.value for one in done), strict=True):
+        if node.op == "input":
+            found.append(size_of_input(*box[node.value]))
+        elif value.is_finite() and not value.contains(0):
+            found.append(Size(1 if value > 0 else -1, log2(down(value)), log2(up(value))))
+        else:
+            found.append(combined(node, [found[a] for a in node.args], graph))
+    return found
+
+
+def size_of_input(low: float, high: float) -> Size | None:
+    """The size of an argument; None for a range that has zero in it."""
+    if low <= 0 <= high:
+        return None
+    small, large = sorted((abs(low), abs(high)))
+    return Size(1 if low > 0 else -1, math.log2(small), math.log2(large))
+
+
+def combined(node: Node, args: Sequence[Size | None], graph: Graph) -> Size | None:
+    """The size of a result from those of its arguments."""
+    if not args or args[0] is None:
+        return None
+    a, b = args[0], args[-1]
+    if node.op in ("neg", "abs"):
+        return Size(1 if node.op == "abs" else -a.sign, a.low, a.high)
+    if node.op == "sqrt" and a.sign > 0:
+        return Size(1, a.low / 2, a.high / 2)
+    if node.op == "pow" and a.sign > 0 and graph.nodes[node.args[1]].op == "const":
+        low, high = sorted(end * float(graph.nodes[node.args[1]].value) for end in (a.low, a.high))
+        return Size(1, low, high)
+    if b is None:
+        return None
+    if node.op == "mul":
+        return Size(a.sign * b.sign, a.low + b.low, a.high + b.high)
+    if node.op == "div":
+        return Size(a.sign * b.sign, a.low - b.high, a.high - b.low)
+    if node.op == "add" and a.sign == b.sign:
+        return Size(a.sign, max(a.low, b.low), max(a.high, b.high) + 1)
+    return None
+
+
+def with_guards(graph: Graph, large: Sequence[int], small: Sequence[int]) -> Graph:
+    """Guards are finite where all is well: a value itself, and 4/value, which overflows where the value is subnormal.
+
+    A value that may be zero by right, as x in sqrt(x y), cannot be asked in this way.
+    """
+    if not small:
+        return replace(graph, guards=tuple(large))
+    four = len(graph.nodes)
+    nodes = [*graph.nodes, Node("const", (), sp.Integer(4)), *(Node("div", (four, k)) for k in small)]
+    places = range(four + 1, len(nodes))
+    return replace(graph, nodes=tuple(nodes), guards=(*large, *places))
+
+
+def made(graph: Graph) -> set[int]:
+    """The nodes that are results of operations."""
+    return {k for k, node in enumerate(graph.nodes) if node.op not in ("input", "const")}
+
+
+def on_cell(graph: Graph, cell: Box, arithmetic: Arithmetic, literals: Sequence[Any]) -> list[Bounded]:
+    """Values and bounds of all nodes on one cell; in code a node without a bound would be infinite, or undefined."""
     with precision(BITS):
         balls = [arb(low).union(arb(high)) if low != high else arb(low) for low, high in cell]
-        largest = arb(2) ** arithmetic.top
-        done = analyse(graph, balls, arithmetic, literals)
-        return {k for k, node in enumerate(done) if not up(node.value) + node.absolute < largest}
+    return analyse(graph, balls, arithmetic, literals)
+
+
+def finite(found: Bounded, arithmetic: Arithmetic) -> bool:
+    """True for a value that is proved to be finite in code."""
+    with precision(BITS):
+        return bool(up(found.value) + found.absolute < arb(2) ** arithmetic.top)
+
+
+def log2(x: arb) -> float:
+    """The binary logarithm of a positive number of any size, near enough."""
+    with precision(BITS):
+        return float(x.log() / arb(2).log())

@@ -10,13 +10,13 @@ from __future__ import annotations
 import math
 import random
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from flint import arb
 
 from navsym.export.accuracy.continuation import continuation
-from navsym.export.accuracy.rounding import BITS, Arithmetic, Bounded, analyse, with_library
+from navsym.export.accuracy.rounding import BITS, INFINITE, Arithmetic, Bounded, analyse, with_library
 from navsym.export.expression_graph import Node
 from navsym.export.parts import ExportedFunction, Input, Piece
 from navsym.proof.balls import Tape, enclose, precision, tape
@@ -117,9 +117,11 @@ def tapes(piece: Piece) -> tuple[list[Tape], list[Tape]]:
 
 
 def analysed(piece: Piece, balls: Sequence[arb], arithmetic: Arithmetic) -> list[Bounded]:
-    """Exact values and error bounds of the graph's results."""
+    """Exact values and error bounds of the graph's results; no bounds where a guard is not finite."""
     done = analyse(piece.graph, balls, arithmetic, piece.literals)
-    return [done[root] for root in piece.graph.roots]
+    found = [done[root] for root in piece.graph.roots]
+    kept = all(done[guard].absolute.is_finite() for guard in piece.graph.guards)
+    return found if kept else [replace(result, absolute=INFINITE) for result in found]
 
 
 def ends_of(value: arb, error: arb) -> tuple[float, float, float] | None:

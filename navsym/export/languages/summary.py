@@ -3,12 +3,29 @@
 from __future__ import annotations
 
 import math
+import textwrap
 
 from navsym.export.parts import ExportedFunction, Piece
 
+WIDTH = 108
+INDENT = " " * 9
+
 
 def summary(function: ExportedFunction) -> list[str]:
-    """What every header says: formula, source, verdict, domain, cost, bound. One line each."""
+    """What every header says: formula, source, verdict, domain, cost, bound; long lines go on below their words."""
+    return [part for line in facts(function) for part in wrapped(line)]
+
+
+def wrapped(line: str) -> list[str]:
+    """A line as lines that fit on a screen."""
+    broken = textwrap.wrap(
+        line, WIDTH, subsequent_indent=INDENT, break_long_words=False, break_on_hyphens=False, drop_whitespace=True
+    )
+    return broken or [line]
+
+
+def facts(function: ExportedFunction) -> list[str]:
+    """One line for each thing there is to say, its kind in the first nine places."""
     lines = []
     for piece in function.pieces:
         source = piece.source
@@ -21,7 +38,7 @@ def summary(function: ExportedFunction) -> list[str]:
         lines += [f"Assumes  {'; '.join(source.assumptions)}"] if source.assumptions else []
         lines += [f"Formula  {formula}" for formula in source.formula]
         lines += [f"Cost     {cost(piece)}", f"Rounding {bound_text(function, piece)}"]
-        lines += ["         where nothing overflows; the status says where"] if piece.graph.guards else []
+        lines += ["         where nothing overflows or underflows; the status says where"] if piece.graph.guards else []
         lines += [f"Tie      code graph equals the formula: {TIES[piece.tie]}"]
     lines += [f"Domain   {line}" for line in domain_lines(function)]
     return lines + [f"Result   {o.name} [{unit_of(o.unit)}]" for o in function.outputs]
@@ -109,7 +126,7 @@ def entry_bound(piece: Piece, entries: slice) -> str:
     if relative < 1e4:
         return f"relative error at most {relative:.3g} u, within {math.ceil(relative - 1e-6)} ulp"
     if scaled < 1e4:
-        return f"error at most {scaled:.3g} u times the sum of the magnitudes of its terms"
+        return f"error at most {scaled:.3g} u times the sum of the magnitudes of its terms (underflow aside)"
     if math.isfinite(absolute):
         return f"absolute error at most {absolute:.3g}"
     return "no uniform bound; each test vector carries its own"
