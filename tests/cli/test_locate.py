@@ -70,6 +70,15 @@ def test_the_full_search_finds_the_flight(tmp_path, capsys):
     assert 0 < answer["evaluated"] <= 81 * 49
 
 
+def test_a_hypothesis_without_others_on_the_map_is_not_called_unique(tmp_path, capsys):
+    """Steps in another unit than the map carry all other hypotheses off it: nothing was compared."""
+    far = {"step": [3e4, 3e4], "half_count": [4, 4]}
+    steps = config(position=far, velocity={"step": [1e3, 1e3], "half_count": [1, 1]})
+    status, answer = call(tmp_path, capsys, steps)
+    assert status == 0 and answer["unique"] is None and answer["second_best"] is None
+    assert any("nothing was compared" in remark for remark in locate(steps).remarks)
+
+
 def test_the_printed_sequential_search_follows_equation_14(tmp_path, capsys):
     _, answer = call(tmp_path, capsys, config(), "--method", "sequential")
     (i, j), (Vi, Vj), t_G = answer["position_index"], answer["velocity_index"], answer["t_G"]

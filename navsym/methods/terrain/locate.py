@@ -171,13 +171,19 @@ def written(method: str, track: Track, grid: Hypotheses, answer: Answer) -> dict
         "velocity_index": [Vi, Vj],
         "criterion": answer.criterion,
         "second_best": nullable(answer.second_best),
-        "unique": answer.unique,
+        "unique": None if alone(grid, answer) else answer.unique,
         "t_G": t_G,
         "quadratic": None if answer.quadratic is None else list(answer.quadratic),
         "fix": {"x": float(track.x[-1]) + dx, "y": float(track.y[-1]) + dy, "vx": vx + dvx, "vy": vy + dvy},
         "correction": {"dx": dx, "dy": dy, "dvx": dvx, "dvy": dvy},
         "evaluated": answer.evaluated,
     }
+
+
+def alone(grid: Hypotheses, answer: Answer) -> bool:
+    """Whether no other hypothesis could be compared with the best one, although there are others."""
+    counts = (*grid.half_count, *grid.velocity_half_count)
+    return math.isinf(answer.second_best) and any(n > 0 for n in counts)
 
 
 def height_offset(terrain: TerrainMap, track: Track, answer: Answer) -> float:
@@ -207,7 +213,12 @@ def remarks(
     ends = (*grid.half_count, *grid.velocity_half_count)
     if any(n > 0 and abs(k) == n for k, n in zip(answer.index, ends, strict=True)):
         found.append("the best hypothesis lies on the edge of the grid; widen it")
-    if answer.unique is not True:
+    if alone(grid, answer):
+        found.append(
+            "no other hypothesis lies on known ground, so that nothing was compared: are the steps in the unit of the "
+            "map? A tile in degrees is searched in metres with \"frame\": \"local\""
+        )
+    elif answer.unique is not True:
         found.append("two hypotheses fit equally well, or too nearly so to tell them apart")
     return tuple(found)
 
