@@ -185,7 +185,7 @@ def careful(panels: Panels, nodes: Array) -> Contacts:
             for reach in {1.0, 3.0**-k}:  # contacts may be nearer than nodes: later rounds keep them apart
                 tried.append(polish(panels, merged(panels, G, p, basis, panel, u, nodes, reach), x))
             best = min(tried if best is None else [best, *tried], key=lambda c: c.excess)
-            best = best if best.excess < 1e-9 else completed(panels, best)
+            best = best if best.excess < 1e-9 or misfits(best) else completed(panels, best)
             if best.excess < 1e-9:
                 return best
         more = [place for dual in (*vertices, tried[-1].dual) for place in peaks(panels, dual)]
@@ -303,13 +303,19 @@ def polish(panels: Panels, start: tuple[Ints, Array, Array, Array], x: Array) ->
         if np.abs(step).max() < 1e-13 * max(1.0, float(np.abs(x).max())):
             break
     kept, weights = independent(rows_at(C, panel, u), weights)
+    heavy = np.abs(weights) > NEGLIGIBLE * np.abs(weights).sum()  # the others touch without a weight
+    kept, weights = kept[heavy], weights[heavy]
     panel, u, inner, sign = panel[kept], u[kept], inner[kept], sign[kept]
     excess, touching = survey(panels, x, panel, u)
-    if (weights * sign <= 0).any():
-        excess = max(excess, 1e-3)
     (C_low, p_low), p = panels.low, panels.functional
     value = lagrangian(C, C_low, p, p_low, panel, u, sign, weights, x)
-    return Contacts(panel, u, inner, sign, weights, x, excess, touching, value)
+    found = Contacts(panel, u, inner, sign, weights, x, excess, touching, value)
+    return replace(found, excess=max(excess, 1e-3)) if misfits(found) else found
+
+
+def misfits(found: Contacts) -> bool:
+    """Some weight has not the sign of the dual polynomial at its contact."""
+    return bool((found.weights * found.sign <= 0).any())
 
 
 def independent(rows: Array, weights: Array) -> tuple[Ints, Array]:
