@@ -19,6 +19,7 @@ HINTS = {
     "\u00d7": "write * for a product",
     "\u00f7": "write / for a quotient",
     "\u03c0": "write pi",
+    "\u00b0": "write *pi/180: angles are radians",
     "\u221a": "write sqrt(...)",
     "[": "use ( and ) only",
     "{": "use ( and ) only",

@@ -23,6 +23,9 @@ def required(table: Table, key: str, where: str) -> Any:
     return table[key]
 
 
+LIST_ADVICE = 'write it in brackets with commas: ["1", "0"], and a matrix by its rows: [["0", "1"], ["0", "0"]]'
+
+
 def as_table(value: Any, where: str) -> Table:
     """The value, when it is a table."""
     if not isinstance(value, dict):
@@ -34,7 +37,8 @@ def as_table(value: Any, where: str) -> Table:
 def as_list(value: Any, where: str, what: str = "a list") -> Sequence[Any]:
     """A list with at least one entry and at most ``SIDE``."""
     if not isinstance(value, list):
-        raise ShapeError(f"expected {what}; got {kind_of(value)}; do write it in brackets", where=where)
+        do = f"write [[{where.rpartition(': ')[2]}]], with two brackets" if isinstance(value, dict) else LIST_ADVICE
+        raise ShapeError(f"expected {what}; got {kind_of(value)}; do {do}", where=where)
     if not value:
         raise EmptyError(f"expected {what}; got an empty one; do fill it in", where=where)
     if len(value) > SIDE:

@@ -71,7 +71,7 @@ def refused(message: str, where: str) -> NavsymError:
     if message.startswith(TWICE):
         got = f"one twice ({what})"
         return DuplicateError(f"expected every key and table once; got {got}; do remove one", where=place)
-    advice = "do correct it there (names and formulas stand in quotation marks)"
+    advice = "do correct it there (keys are ASCII, names and formulas stand in quotation marks)"
     return ExpressionSyntaxError(f"expected TOML; got an error ({what}); {advice}", where=place)
 
 

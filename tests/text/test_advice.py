@@ -7,6 +7,7 @@ import pytest
 from navsym.errors import NavsymError
 from navsym.text.claimfile import read_claims
 from navsym.text.expression import parse, symbol
+from navsym.text.modelfile import read_model
 
 SYMBOLS = {name: symbol(name) for name in ("a", "T", "omega")}
 SLIPS = [
@@ -19,7 +20,8 @@ SLIPS = [
     ("a.*T", "leave the point out"), ("np.sin(a)", "write the function alone"),
     ("sin**2(a)", "write the power behind the call: sin(x)**2"), ("9.81 m/s*T", "leave the unit out"),
     ("sin(30 deg)", "leave the unit out"), ("sin(w*T)", "known are 'T', 'a', 'omega'"),
-    ("|a|", "write abs(...)"), ("a\u2212T", "write the ASCII minus -"), ("a, T", "complete or remove this part"),
+    ("sin(45\u00b0)", "write *pi/180"), ("|a|", "write abs(...)"), ("a\u2212T", "write the ASCII minus -"),
+    ("a, T", "complete or remove this part"),
 ]  # fmt: skip
 
 
@@ -41,3 +43,27 @@ def test_a_relation_of_another_language_is_translated(tmp_path, relation, sign):
     path.write_text('[symbols]\na = "real"\n' + claim, encoding="utf-8")
     with pytest.raises(NavsymError, match=f"write {sign}$"):
         read_claims(path)
+
+
+MODEL = """
+[model]
+name = "m"
+states = ["x"]
+F = [["0"]]
+[[measurement]]
+name = "z"
+h = ["1"]
+sigma = "1"
+"""
+
+
+@pytest.mark.parametrize(("right", "wrong", "advice"), [
+    ("[[measurement]]", "[measurement]", r"write \[\[measurement\]\], with two brackets"),
+    ('[["0"]]', '"[0]"', "a matrix by its rows"),
+    ('h = ["1"]', '\u03bb = "1"', "keys are ASCII"),
+])  # fmt: skip
+def test_a_slip_of_a_model_file_is_answered_with_what_to_write(tmp_path, right, wrong, advice):
+    path = tmp_path / "model.toml"
+    path.write_text(MODEL.replace(right, wrong), encoding="utf-8")
+    with pytest.raises(NavsymError, match=advice):
+        read_model(path)
