@@ -17,6 +17,25 @@
 #
 # A model is symbols; a derivation reaches a formula by its own route; a claim holds the printed side
 # beside the derived one; a verdict says how far the claim holds and why.
+#
+# ## Five words first
+#
+# * **Channel.** An inertial system integrates accelerations. A small tilt of its platform mixes gravity into
+#   them, so that the velocity goes wrong; the wrong velocity turns the platform back. The errors of velocity
+#   and tilt therefore swing together like a pendulum of 84 minutes, pushed by the drift of a gyroscope. Those
+#   three errors are one channel.
+# * **Schuler unit.** Time divided by that period over 2π, about 13.4 minutes. A quarter of a swing is $T =
+#   \pi/2$.
+# * **Guaranteed error.** Two measurements with noise of standard deviation σ, averaged: if their noises are
+#   equal the mean is wrong by σ; if they are opposite, by nothing. Who does not know the correlation can
+#   promise σ and no less. The guaranteed error is that promise, and the best estimate is the one whose promise
+#   is smallest.
+# * **Ball.** A number with a radius that holds every rounding error. Where the balls of two sides have no point
+#   in common, the sides differ.
+# * **Dual polynomial.** The witness that no estimate does better: a curve that stays in a band and touches it
+#   just at the instants at which the best estimate measures.
+#
+# Other words are in the glossary of the documentation.
 
 # %%
 import tempfile
@@ -64,8 +83,10 @@ show(system.reversed_argument)
 
 # %% [markdown]
 # ## A printed line that is right
-# The guaranteed error of the drift estimate, proved optimal by an exact primal–dual pair: no solver is
-# believed, four algebraic conditions are checked for every T of the range at once.
+# The guaranteed error of the drift estimate. It is proved optimal by a pair, an estimate and a dual polynomial
+# with the same value: one shows what can be reached, the other that nothing better can. No solver is believed;
+# the four conditions of such a pair (no bias, instants inside the interval, polynomial in its band, equal
+# values) are checked by algebra for every T of the range at once.
 
 # %%
 drift = weights.OPTIMAL_ERRORS[2]
