@@ -24,8 +24,8 @@
 #   them, so that the velocity goes wrong; the wrong velocity turns the platform back. The errors of velocity
 #   and tilt therefore swing together like a pendulum of 84 minutes, pushed by the drift of a gyroscope. Those
 #   three errors are one channel.
-# * **Schuler unit.** Time divided by that period over 2π, about 13.4 minutes. A quarter of a swing is $T =
-#   \pi/2$.
+# * **Schuler unit.** Time divided by that period over 2π, about 13.4 minutes. A quarter of a
+#   swing is $\pi/2$.
 # * **Guaranteed error.** Two measurements with noise of standard deviation σ, averaged: if their noises are
 #   equal the mean is wrong by σ; if they are opposite, by nothing. Who does not know the correlation can
 #   promise σ and no less. The guaranteed error is that promise, and the best estimate is the one whose promise
