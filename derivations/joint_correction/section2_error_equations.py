@@ -100,7 +100,7 @@ def climb_is_negligible():
     )
 
 
-@claim("2.condition2.height", expect=CERTIFIED)
+@claim("2.condition2.height")
 def height_is_negligible():
     """A height of at most e^2 a changes omega_0^2, as 1/r^3, by less than 0.02: of the order mu^2 where mu is 0.1."""
     flattening = sp.Rational(10, 2983)
@@ -322,7 +322,7 @@ def earth_rate_is_of_order_one():
     return Equation(sp.Rational(3, 4), EARTH_RATE / largest, tolerance=sp.Rational(1, 4))
 
 
-@claim("2.scale.mu_u3", expect=CERTIFIED)
+@claim("2.scale.mu_u3")
 def coupling_is_small():
     """|mu u_3| = Omega |sin(latitude)|/omega_0 is at most 0.06, far from 1, where (2.8) breaks."""
     sine = sp.Symbol("s", real=True)
