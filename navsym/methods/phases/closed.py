@@ -18,7 +18,7 @@ import sympy as sp
 from navsym.claims import OPEN, PROVED, Equation, Optimum, Verdict
 from navsym.methods.phases.family import Family, U
 from navsym.methods.phases.limit import LEAST, Limit
-from navsym.methods.phases.places import number, place_or_share, share_where_flat
+from navsym.methods.phases.places import middle_of_constant, number, place_or_share
 from navsym.methods.phases.polynomial import is_monomial, monomial_weights, power_law_dual
 from navsym.methods.phases.scan import Pattern, Span, pattern_of, sample
 from navsym.proof.balls import enclose
@@ -92,8 +92,9 @@ def candidates(family: Family, span: Span) -> list[Closed]:
         return []
     lengths = [s.T for s in found]
     columns = [[s.places[i] for s in found] for i in range(len(span.pattern))]
-    places = [place_or_share(family, k, c, lengths) for (k, _, _), c in zip(span.pattern, columns, strict=True)]
-    places = [flat(family, span, i, found[0]) if place is None else place for i, place in enumerate(places)]
+    panels = [k for k, _, _ in span.pattern]
+    places = [place_or_share(family, k, c, lengths) for k, c in zip(panels, columns, strict=True)]
+    places = [middle_of_constant(family, k) if p is None else p for k, p in zip(panels, places, strict=True)]
     if any(p is None for p in places):
         return []
     exact = tuple(p for p in places if p is not None)
@@ -110,14 +111,6 @@ def candidates(family: Family, span: Span) -> list[Closed]:
         value = tidy(sum((x * p for x, p in zip(dual, family.functional, strict=True)), sp.S.Zero))
         guesses.append(Closed(panels, exact, weights, dual, value, Verdict(OPEN, "none")))
     return guesses
-
-
-def flat(family: Family, span: Span, i: int, one: Sample) -> sp.Expr | None:
-    """A place for contact i where the dual polynomial is constant: equal shares for the contacts of a panel."""
-    k = span.pattern[i][0]
-    before, all_ = (sum(j == k for j, _, _ in part) for part in (span.pattern[:i], span.pattern))
-    share = sp.Rational(before + 1, all_ + 1)
-    return share_where_flat(family, k, share, one.T, [number(x) for x in one.polished.dual])
 
 
 def monomial_guess(

@@ -54,8 +54,12 @@ def boundary(
 ) -> Boundary:
     """The change from one span to the next, as exactly as it can be had."""
     guess = float(left.upper)
-    # A guess near zero has no size of its own, and patterns next to each other are told apart only so far.
-    reach = REACH * max(abs(guess), float(right.upper - left.lower))
+    if before is not None and after is not None and before.dual == after.dual:
+        # Both are optimal on either side for a while: where the search went from one to the other says nothing.
+        reach = min(guess - float(left.lower), float(right.upper) - guess)
+    else:
+        # A guess near zero has no size of its own, and patterns next to each other are told apart only so far.
+        reach = REACH * max(abs(guess), float(right.upper - left.lower))
     for expression, why in events(family, left, before, right, after):
         found = exact_root(expression, family.parameter, guess, reach)
         if found is not None:

@@ -9,7 +9,6 @@ import sympy as sp
 from flint import arb
 
 from navsym.methods.phases.family import Family, U
-from navsym.proof.balls import enclose
 from navsym.proof.optimality.enclosure import rational
 
 NEAR = sp.Rational(1, 10**40)
@@ -116,18 +115,8 @@ def share_of(
     return start + (stop - start) * shares[0] if len(set(shares)) == 1 else None
 
 
-def share_where_flat(
-    family: Family, panel: int, share: sp.Rational, p: sp.Rational, dual: Sequence[sp.Rational]
-) -> sp.Expr | None:
-    """A share of a panel on which the dual polynomial is constant for one value of the parameter: there one place is as
-    good as another, and what a search found says nothing. None where it is not constant."""
-    start, stop = family.ends(p, panel)
-    row = [family.at(h, p) for h in family.rows[panel]]
-    seen = [
-        enclose(sum((x * h.subs(U, u) for x, h in zip(dual, row, strict=True)), sp.S.Zero))
-        for u in (start + (stop - start) * sp.Rational(k, 7) for k in range(8))
-    ]  # fmt: skip
-    if not all(bool(abs(f - seen[0]) < 1e-25) for f in seen):
-        return None
-    first, last = family.panels[panel]
-    return first + (last - first) * share
+def middle_of_constant(family: Family, panel: int) -> sp.Expr | None:
+    """The middle of a panel whose regressors do not change on it: there one place is as good as another, and what a
+    search found says nothing. None for other panels."""
+    start, stop = family.panels[panel]
+    return None if any(h.has(U) for h in family.rows[panel]) else (start + stop) / 2
