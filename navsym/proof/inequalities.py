@@ -15,6 +15,7 @@ from navsym.errors import DomainError
 from navsym.proof.assumptions import remaining_assumptions, with_sides
 from navsym.proof.balls import UnsupportedError, tape
 from navsym.proof.certificates import positivity_certificate
+from navsym.proof.certificates_factored import factored_certificate
 from navsym.proof.equations import after_look, decide_equation, entries, sampled, shape_of
 from navsym.proof.identities.equalities import WAYS, first_proof
 from navsym.proof.identities.normal_form import OutsideLanguageError, reduce_to_zero
@@ -193,9 +194,13 @@ def is_equality(difference: sp.Expr, box: Box, sample: Sample) -> bool:
 
 
 def certificate_of(difference: sp.Expr, relation: str, box: Box) -> Mapping[str, Any] | None:
-    """Positivity on a closed box, replayed by the checker; a side that is touched has none."""
+    """Positivity on a closed box, or of what is left beside squares, for the checker; None where it has none."""
     limits = ranges(sorted(difference.free_symbols, key=str), box)
-    if relation in ("<", "<="):
-        return positivity_certificate(-difference, limits)
-    certificate = positivity_certificate(difference, limits)
-    return positivity_certificate(-difference, limits) if certificate is None and relation == "!=" else certificate
+    signs = {"<": (-1,), "<=": (-1,), "!=": (1, -1)}.get(relation, (1,))
+    found = (positivity_certificate(sign * difference, limits) for sign in signs)
+    certificate = next((item for item in found if item is not None), None)
+    if certificate is not None or len(limits) != 1:
+        return certificate
+    ((symbol, limit),) = limits.items()
+    others = (factored_certificate(sign * difference, symbol, limit, relation in STRICT) for sign in signs)
+    return next((item for item in others if item is not None), None)
