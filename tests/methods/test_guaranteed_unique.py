@@ -75,3 +75,8 @@ def test_the_third_cosine_over_a_full_period_shares_the_weight_of_its_ends():
 def test_a_second_measurement_that_only_touches_is_seen_before_one_estimator_is_called_the_only_one():
     """z2 = 1 - t repeats at 0 what z1 = 1 + t says there: weights may be shared."""
     assert unique([[1, t], [1, -t]], [1, 0], (0, 1)) is False
+
+
+def test_an_end_where_the_dual_is_flat_in_any_case_has_one_estimator():
+    """cos(t) and t**2 at 0: every dual has slope zero there."""
+    assert unique([[sp.cos(t), t**2 * sp.exp(-t)]], [1, 0], (0, 1)) is True

@@ -89,6 +89,17 @@ def test_what_a_null_direction_does_not_change_is_estimated():
     assert encloses(solve(model(F, h, "1", ["cos(1/2)", "sin(1/2)"]), 20), 1)
 
 
+def test_a_state_that_no_piece_shows_is_named_and_one_that_an_earlier_piece_shows_is_estimated():
+    """Velocity is measured: position is never seen. A gain that begins at 1 hides the bias after it only."""
+    velocity = [["0", "1", "0"], ["0", "0", "t"], ["0", "0", "0"]]
+    later = [["0", "1", "0"], ["0", "0", "1"], ["0", "0", "0"]]
+    pieces = [{"from": "0", "to": "1", "F": velocity}, {"from": "1", "to": "2", "F": later}]
+    with pytest.raises(NotEstimableError, match=r"null direction \[1, 0, 0\]"):
+        solve(model(None, ["0", "1", "0"], "2", ["1", "0", "0"], pieces), 20)
+    seen = [{"from": "0", "to": "1", "F": [["0", "t"], ["0", "0"]]}, {"from": "1", "to": "2", "F": [["0", "0"]] * 2}]
+    assert solve(model(None, ["1", "0"], "2", ["0", "1"], seen), 20).status == "CERTIFIED"
+
+
 def test_a_regressor_with_a_kink_proves_no_null_direction():
     """z = |t - 1/2| x1 + (t - 1/2) x2 is blind to (1, 1) before 1/2 only, or after it; both are seen together."""
     found = model_from({

@@ -37,6 +37,7 @@ from navsym.proof.balls import enclose, precision
 from navsym.proof.ladder import decide
 from navsym.proof.optimality.basis import Basis, as_fraction
 from navsym.proof.optimality.enclosure import Panel, Problem, Touch
+from navsym.proof.optimality.fixed import flattened
 from navsym.proof.optimality.whole import bounded
 
 #: Shares of a panel with a larger denominator, or further away than this, are not guessed; more places not solved.
@@ -55,10 +56,9 @@ def only_optimal(problem: Problem, basis: Basis, contacts: Contacts, dual: Seque
     """True when the optimal estimator is proved to be the only one, False when another is, else None."""
     if any(panel.values for panel in problem.panels):
         return None
-    sets = [contacts]
+    sets = [contacts, flattened(contacts)]
     if 0 < len(contacts.touching) <= basis.panels.functional.size:
-        full = with_places(basis.panels, contacts, contacts.touching)
-        sets.append(replace(full, inner=np.ones_like(full.inner)))
+        sets.append(flattened(with_places(basis.panels, contacts, contacts.touching)))
     for places in sets:
         pins = guessed(places)
         x = None if pins is None else interior_dual(basis.panels, places)

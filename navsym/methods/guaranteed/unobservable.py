@@ -9,7 +9,7 @@ nowhere on it. A rank decides nothing here: the two identities do.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import sympy as sp
@@ -21,7 +21,7 @@ from navsym.proof.balls import UnsupportedError, enclose, precision
 from navsym.proof.ladder import decide
 from navsym.proof.optimality.enclosure import coefficients, interval, terms
 from navsym.proof.optimality.tapes import program
-from navsym.text.modeltypes import ModelFile
+from navsym.text.modeltypes import ModelFile, Piece
 
 BITS = 256
 #: Rows with more operations than this are not differentiated again; a pivot below this is called zero (a guess).
@@ -41,30 +41,44 @@ class Direction:
 def null_directions(found: ModelFile) -> list[Direction]:
     """Independent directions, exact; empty where none is proved. No two have an entry at each other's place.
 
-    Only for models in one piece; h and F must be analytic on the interval.
+    h and F must be analytic on every piece. Where two pieces meet, the columns of the later one must lie among those
+    of the earlier one: ``x = N c`` goes on to the start of a piece, as N is meromorphic beside the interval.
     """
-    T = found.T
-    if T is None or not T.is_Rational or len(found.pieces) > 1:
+    T, after = found.T, None
+    if T is None or not T.is_Rational:
         return []
+    directions: list[Direction] = []
     try:
-        R, pivots = independent_rows(found, T)
-        free = [j for j in range(len(found.states)) if j not in pivots]
-        if R is None or not free:
-            return []
-        N = kernel(R, pivots, free, found.time)
-        if not shown(found, N, free) or not all(analytic(found, entry) for entry in entries_of(found)):
-            return []
+        for piece in reversed(found.pieces):
+            end = T if piece.end is None else piece.end
+            part = kernel_of(found, piece, end)
+            if part is None or not analytic(found, piece, end):
+                return []
+            N, free = part
+            at_end = N.subs(found.time, end)
+            if after is None:
+                directions = [Direction(tuple(at_end[:, k]), j) for k, j in enumerate(free)]
+            elif not vanishes(after - at_end * after.extract(free, list(range(after.cols)))):
+                return []
+            after = N.subs(found.time, piece.start)
     except UnsupportedError:
         return []
-    at_end = N.subs(found.time, T)
-    return [Direction(tuple(at_end[:, k]), j) for k, j in enumerate(free)]
+    return directions
 
 
-def entries_of(found: ModelFile) -> Iterator[sp.Expr]:
-    """Every entry of F and of the measurements."""
-    yield from found.pieces[0].F
-    for measurement in found.measurements:
-        yield from measurement.h
+def vanishes(matrix: sp.Matrix) -> bool:
+    """Every entry is proved to be zero."""
+    return all(entry == 0 or decide(Equation(entry, sp.S.Zero)).status is PROVED for entry in matrix)
+
+
+def kernel_of(found: ModelFile, piece: Piece, end: sp.Expr) -> tuple[sp.Matrix, list[int]] | None:
+    """N on a piece with its identities proved, and its free rows; None where there is none."""
+    R, pivots = independent_rows(found, piece, end)
+    free = [j for j in range(len(found.states)) if j not in pivots]
+    if R is None or not free:
+        return None
+    N = kernel(R, pivots, free, found.time)
+    return (N, free) if shown(found, piece, N, free) else None
 
 
 def kernel(R: sp.Matrix, pivots: Sequence[int], free: Sequence[int], time: sp.Symbol) -> sp.Matrix:
@@ -81,9 +95,9 @@ def kernel(R: sp.Matrix, pivots: Sequence[int], free: Sequence[int], time: sp.Sy
     return N
 
 
-def independent_rows(found: ModelFile, T: sp.Expr) -> tuple[sp.Matrix | None, list[int]]:
-    """Rows o_k that are independent at T, and the columns of a regular block of them there."""
-    F, time = found.pieces[0].F, found.time
+def independent_rows(found: ModelFile, piece: Piece, end: sp.Expr) -> tuple[sp.Matrix | None, list[int]]:
+    """Rows o_k that are independent at the end of a piece, and the columns of a regular block of them there."""
+    F, time = piece.F, found.time
     waiting = [sp.Matrix([list(measurement.h)]) for measurement in found.measurements]
     chosen: list[sp.Matrix] = []
     reduced: list[list[arb]] = []
@@ -93,7 +107,7 @@ def independent_rows(found: ModelFile, T: sp.Expr) -> tuple[sp.Matrix | None, li
         if row.has(sp.zoo, sp.nan) or sp.count_ops(row) > LONGEST:
             return None, []
         with precision(BITS):
-            left = remaining([enclose(f.subs(time, T), bits=BITS) for f in row], reduced, pivots)
+            left = remaining([enclose(f.subs(time, end), bits=BITS) for f in row], reduced, pivots)
             best = max(range(len(left)), key=lambda j: float(abs(left[j]).lower()))
             if not bool(abs(left[best]) > NOTHING):
                 continue
@@ -112,30 +126,35 @@ def remaining(row: list[arb], reduced: Sequence[Sequence[arb]], pivots: Sequence
     return row
 
 
-def shown(found: ModelFile, N: sp.Matrix, free: Sequence[int]) -> bool:
-    """N has a value at T, and the identities ``h N = 0`` and ``N' - F N = N M`` are proved."""
-    at_end = [enclose(entry, bits=BITS) for entry in N.subs(found.time, found.T)]
-    if not all(entry.is_finite() for entry in at_end):
-        return False
-    moved = N.diff(found.time) - found.pieces[0].F * N
+def shown(found: ModelFile, piece: Piece, N: sp.Matrix, free: Sequence[int]) -> bool:
+    """N has values at the ends of the piece, and the identities ``h N = 0`` and ``N' - F N = N M`` are proved."""
+    for end in (piece.start, found.T if piece.end is None else piece.end):
+        if not all(enclose(entry, bits=BITS).is_finite() for entry in N.subs(found.time, end)):
+            return False
+    moved = N.diff(found.time) - piece.F * N
     defect = moved - N * moved.extract(list(free), list(range(N.cols)))
     H = sp.Matrix([list(measurement.h) for measurement in found.measurements])
-    zeros = [entry for entry in [*(H * N), *defect] if entry != 0]
-    return all(decide(Equation(entry, sp.S.Zero)).status is PROVED for entry in zeros)
+    return vanishes(H * N) and vanishes(defect)
 
 
-def analytic(found: ModelFile, entry: sp.Expr) -> bool:
-    """Series in balls exist about every place of the interval, on parts of it."""
-    if entry.is_polynomial(found.time):
-        return True
-    assert found.T is not None
-    tape, waiting, used = program([entry]), [(fmpq(0), exact_end(found.T))], 0
+def analytic(found: ModelFile, piece: Piece, end: sp.Expr) -> bool:
+    """Every entry of F and h has series in balls about every place of the piece, on parts of it."""
+    entries = {*piece.F, *(h for measurement in found.measurements for h in measurement.h)}
+    return all(
+        entry.is_polynomial(found.time) or resolved(entry, found.time, exact_end(piece.start), exact_end(end))
+        for entry in entries
+    )
+
+
+def resolved(entry: sp.Expr, time: sp.Symbol, start: fmpq, end: fmpq) -> bool:
+    """The series of an entry exist on parts of [start, end]."""
+    tape, waiting, used = program([entry]), [(start, end)], 0
     while waiting and used < MOST_PARTS:
-        start, end = waiting.pop()
+        lower, upper = waiting.pop()
         used += 1
         with terms(2):
-            value = coefficients(tape.run({found.time: arb_series([interval(start, end), arb(1)])})[0], 1)
+            value = coefficients(tape.run({time: arb_series([interval(lower, upper), arb(1)])})[0], 1)
         if not all(c.is_finite() for c in value):
-            middle = (start + end) / 2
-            waiting += [(start, middle), (middle, end)]
+            middle = (lower + upper) / 2
+            waiting += [(lower, middle), (middle, upper)]
     return not waiting
