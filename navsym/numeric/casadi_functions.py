@@ -95,6 +95,16 @@ def on_grid(function: ca.Function, points: Any, *constants: float) -> Array:
     return np.array(function(row, *repeated)).reshape(-1, n)
 
 
+def column_function(name: str, inputs: Sequence[Any], outputs: Sequence[Any]) -> ca.Function:
+    """A casadi function of expressions that are translated already; its output is the column of them."""
+    return ca.Function(identifier(name), list(inputs), [ca.densify(ca.vertcat(*outputs))])
+
+
+def by_distance(x: Any, limit: float, below: Any, above: Any) -> Any:
+    """``below`` where |x| < limit, ``above`` elsewhere; what the other one comes to, NaN also, does not matter."""
+    return ca.if_else(ca.fabs(x) < limit, below, above)
+
+
 def identifier(name: str) -> str:
     """The name, if it may stand in generated code."""
     if not re.fullmatch(r"[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*", name):

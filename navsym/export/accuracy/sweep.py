@@ -31,7 +31,7 @@ from navsym.export.processes import run
 
 BLOCK = 2048
 CORNERED = 0.1  # part of the points with several arguments at an edge
-LEAST_BOUND = 2.0**-1000
+LEAST_BOUND = 2.0**-800  # below it half a subnormal, which no double is, may be much of the bound
 
 Points = list[tuple[float, ...]]
 Call = Callable[[Array], tuple[Array, Array]]

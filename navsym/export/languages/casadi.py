@@ -14,7 +14,6 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-import casadi as ca
 import sympy as sp
 
 from navsym.export.accuracy.continuation import continuation
@@ -23,7 +22,7 @@ from navsym.export.atoms import expm1, filled
 from navsym.export.holes import Part, T, part_of
 from navsym.export.languages.python import ENDING, vectors_json
 from navsym.export.parts import ExportedFunction, Piece
-from navsym.numeric.casadi_functions import Memo, inputs_of, translated
+from navsym.numeric.casadi_functions import Memo, by_distance, column_function, inputs_of, translated
 
 TEST = '''# {license}
 """Evaluates every casadi function on its vectors; the exit status is the number that failed."""
@@ -84,16 +83,15 @@ def files(
     }
 
 
-def function_of_piece(name: str, symbols: Sequence[sp.Symbol], piece: Piece) -> ca.Function:
+def function_of_piece(name: str, symbols: Sequence[sp.Symbol], piece: Piece) -> Any:
     """One regime in casadi's own operations, from its formulas."""
     inputs, memo = inputs_of(symbols)
     for symbol, _, form in piece.lets:
         memo[symbol] = in_casadi(form, memo)
-    outputs = [in_casadi(form, memo) for form in piece.forms]
-    return ca.Function(name, inputs, [ca.densify(ca.vertcat(*outputs))])
+    return column_function(name, inputs, [in_casadi(form, memo) for form in piece.forms])
 
 
-def in_casadi(form: sp.Expr, memo: Memo) -> ca.SX:
+def in_casadi(form: sp.Expr, memo: Memo) -> Any:
     """A formula in casadi's operations; its parts with a hole are put into the table first, inner ones before outer."""
     form = form.replace(expm1, lambda x: sp.exp(x) - 1)
     for part in sp.postorder_traversal(form):
@@ -102,15 +100,15 @@ def in_casadi(form: sp.Expr, memo: Memo) -> ca.SX:
     return translated(form, memo)
 
 
-def without_hole(part: Part, t: ca.SX) -> ca.SX:
+def without_hole(part: Part, t: Any) -> Any:
     """The polynomial of the part below its switch, its plain form above it."""
-    proved, total = continuation(part, "double"), ca.SX(0)
+    proved, total = continuation(part, "double"), 0 * t
     for c in reversed(proved.polynomial):
         total = total * t + int(c.p) / int(c.q)
     above = translated(part.plain, {T: t})
     for _ in range(part.divided):
         above = above / t
-    return ca.if_else(ca.fabs(t) < proved.switch, t**proved.power * total, above)
+    return by_distance(t, proved.switch, t**proved.power * total, above)
 
 
 def generated(function: Any, name: str) -> str:
