@@ -61,10 +61,10 @@ PRICES = tuple(price(r) for r in range(4))
 
 @claim("window.scaling")
 def powers_of_the_window():
-    """Stretching the window stretches row and column k of the information by T^k: variances fall as T^-(2r+1)."""
-    stretch = sp.diag(*(T**k for k in range(LARGEST + 1)))
-    at_one = information(LARGEST).subs({T: 1, q: 1})
-    return Equation(information(LARGEST), T / q * stretch * at_one * stretch)
+    """Stretching the window stretches row and column k of the information by T^k (n = 5): T^-(2r+1) follows."""
+    stretch = sp.diag(*(T**k for k in range(5)))
+    at_one = information(4).subs({T: 1, q: 1})
+    return Equation(information(4), T / q * stretch * at_one * stretch)
 
 
 def falling(degree: sp.Expr, r: int) -> sp.Expr:
