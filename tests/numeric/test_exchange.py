@@ -13,7 +13,14 @@ from scipy.optimize import linprog
 from navsym.numeric import tiers
 from navsym.numeric.exchange import kernels
 from navsym.numeric.exchange.maxima import local_maxima, values_on
-from navsym.numeric.exchange.search import Panels, chebyshev_nodes, find_contacts, independent, rows_at
+from navsym.numeric.exchange.search import (
+    Panels,
+    careful,
+    chebyshev_nodes,
+    find_contacts,
+    independent,
+    rows_at,
+)
 from navsym.numeric.exchange.twofold import two_product, two_sum
 from navsym.numeric.tiers import compiled
 from navsym.proof.optimality.basis import make_basis
@@ -119,3 +126,24 @@ def test_products_and_sums_of_two_doubles_lose_nothing():
         assert Fraction(product) + Fraction(rest) == Fraction(a) * Fraction(b)
         total, rest = two_sum(a, b)
         assert Fraction(total) + Fraction(rest) == Fraction(a) + Fraction(b)
+
+
+@pytest.mark.parametrize("K", [1, 2, 3, 9, 30])
+def test_the_matrix_of_the_derivative_does_what_the_loop_does(K):
+    c = np.random.default_rng(K).standard_normal((K, 4))
+    assert np.allclose(kernels.differentiation(K) @ c, kernels.chebyshev_derivative(c), rtol=1e-13, atol=1e-11)
+
+
+def test_a_contact_whose_weight_is_nothing_is_a_touch_and_no_contact():
+    """The value at 1 of functions one of which is 1e-9 of another: three contacts had weights of 1e-15, of any sign."""
+    s = sp.Symbol("t", real=True)
+    functions = (
+        sp.exp(-s) / 10**9, sp.cos(8 * s / 3), sp.tanh(3 * s - 3), s**2 * sp.exp(-6 * s), s**2 * sp.exp(-s / 4),
+        sp.exp(-2 * s),
+    )  # fmt: skip
+    panel = Panel(0, functions, s, sp.S.Zero, sp.Rational(33, 10), sp.S.One)
+    basis = make_basis(Problem((panel,), tuple(h.subs(s, 1) for h in functions)))
+    for found in (find_contacts(basis.panels), careful(basis.panels, basis.panels.search.nodes)):
+        f = rows_at(basis.panels.coefficients, found.panel, found.u) @ found.dual
+        assert (found.weights * f > 0).all() and (found.sign == np.sign(found.weights)).all()
+        assert np.abs(found.weights).min() > 1e-7 * np.abs(found.weights).sum()

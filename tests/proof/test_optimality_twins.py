@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import random
+from functools import partial
 
 import pytest
 import sympy as sp
-from flint import arb, arb_series, fmpq
+from flint import arb, arb_mat, arb_series, fmpq
 
 from navsym.numeric.exchange.search import find_contacts
 from navsym.proof.balls import OPERATIONS, precision
-from navsym.proof.optimality.basis import make_basis
+from navsym.proof.optimality import basis as basis_room
+from navsym.proof.optimality.basis import DependentError, make_basis, samples, transform_of
 from navsym.proof.optimality.blocks import alternance_image
 from navsym.proof.optimality.enclosure import Cell, Panel, Problem, Touch, interval, terms
 from navsym.proof.optimality.existence import krawczyk
 from navsym.proof.optimality.fixed import certify, optimality_system, unknowns
+from navsym.proof.optimality.local import local
 from navsym.proof.optimality.polish import polish
 from navsym.proof.optimality.tapes import program
 from navsym.proof.optimality.whole import bounded, polynomial, shifted
@@ -136,3 +139,44 @@ def test_a_scaled_noise_bound_scales_the_weights_in_the_certificate():
     assert 2 * one.lower <= two.upper and two.lower <= 2 * one.upper
     weights = [[float(row["weight"][0]) for row in c.certificate["pieces"][0]["contacts"]] for c in (one, two)]
     assert weights[1] == pytest.approx([2 * w for w in weights[0]])
+
+
+@pytest.mark.parametrize("case", FULL)
+def test_a_transform_of_doubles_makes_the_functions_as_orthonormal_as_that_in_balls(case, monkeypatch):
+    made = problem(*FULL[case])
+    with precision(192):
+        values = samples(made.panels, 32, 192)
+        for transform in (transform_of, partial(in_balls, monkeypatch)):
+            A, loss = transform(values, 192)
+            q = values * A.transpose()
+            gram = (q.transpose() * q) * (arb(1) / 32)
+            assert all(abs(gram[i, j] - (i == j)) < 1e-6 for i in range(gram.nrows()) for j in range(gram.ncols()))
+            assert A.det() != 0 and loss < 12
+
+
+def in_balls(monkeypatch, values, bits):
+    monkeypatch.setattr(basis_room, "rounded_transform", lambda values: None)
+    return transform_of(values, bits)
+
+
+@pytest.mark.parametrize("case", FULL)
+def test_polynomials_about_contacts_give_the_sums_that_new_expansions_give(case):
+    made, found = polished(FULL[case])
+    with precision(256):
+        start = [arb(float(v)) for v in found.v]
+        about = local(made.panels, found.panel, start, found.inner, arb(10) ** -40)
+        anew = local(made.panels, found.panel, found.v, found.inner, arb(10) ** -40)
+        assert about.reaches(found.v, arb(10) ** -30)
+        dual = arb_mat([[c] for c in found.dual])
+        for a, b in zip(about.sums(dual, found.v), anew.sums(dual, found.v), strict=True):
+            assert all(abs(x - y) < 1e-30 for x, y in zip(a, b, strict=True))
+        near, exact = about.balance(found.weights, found.v), anew.balance(found.weights, found.v)
+        assert all(abs(x - y) < 1e-28 for x, y in zip(near.entries(), exact.entries(), strict=True))
+
+
+def test_pivots_that_are_known_to_few_bits_are_no_pivots():
+    """1e-150 of an independent function is too little for 192 bits, and enough for more."""
+    made = problem([1, t, t + e(t) / 10**150], [0, 0, 1], 1)
+    with pytest.raises(DependentError):
+        transform_of(samples(made.panels, 32, 192), 192)
+    assert make_basis(made).bits > 192
