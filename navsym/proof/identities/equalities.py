@@ -24,7 +24,7 @@ from navsym.proof.identities.normal_form import (
     reduce_to_zero,
     vanishes_identically,
 )
-from navsym.proof.identities.numbers import is_zero
+from navsym.proof.identities.numbers import denested, is_zero
 from navsym.proof.sampling.points import Point, points, ranges
 
 
@@ -83,6 +83,17 @@ def by_logarithms(printed: sp.Expr, derived: sp.Expr, box: Box) -> Proof | None:
         return None
     evidence = f"with logarithms of products written out, printed - derived reduces to 0: {spread}"
     return Proof("logarithms of factors", evidence, conditions_of(printed, derived))
+
+
+def by_nested_roots(printed: sp.Expr, derived: sp.Expr, box: Box) -> Proof | None:
+    """Nested square roots of numbers replaced by sums of roots that are proved to be the same numbers."""
+    difference = printed - derived
+    roots = {node: denested(node) for node in difference.atoms(sp.Pow) if not node.free_symbols}
+    simpler = difference.xreplace({node: value for node, value in roots.items() if value != node})
+    if simpler == difference or not reduce_to_zero(simpler).zero:
+        return None
+    evidence = f"with nested roots written out, printed - derived reduces to 0: {simpler}"
+    return Proof("nested roots", evidence, conditions_of(printed, derived))
 
 
 def by_cases(printed: sp.Expr, derived: sp.Expr, box: Box) -> Proof | None:
@@ -233,6 +244,6 @@ def common_point(difference: sp.Expr, symbols: list[sp.Symbol], box: Box) -> Poi
 
 #: What follows from algebra alone, and what the verdict of an equation tries, in this order.
 ALGEBRAIC: tuple[Way, ...] = (
-    by_normal_form, by_number, by_logarithms, by_cases, by_resolved_signs, by_coefficients, by_squares,
+    by_normal_form, by_number, by_logarithms, by_nested_roots, by_cases, by_resolved_signs, by_coefficients, by_squares,
 )  # fmt: skip
 WAYS: tuple[Way, ...] = (*ALGEBRAIC, by_inverses, by_derivative)

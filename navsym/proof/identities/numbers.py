@@ -30,6 +30,24 @@ def is_zero(number: sp.Expr, depth: int = DEPTH) -> bool:
     return is_formally_zero(spread) or (depth > 0 and by_inverses(number, depth))
 
 
+def denested(root: sp.Expr) -> sp.Expr:
+    """sqrt(a + sqrt(b)) = sqrt((a + d)/2) + sqrt((a - d)/2) for d**2 = a**2 - b, and the same with minus.
+
+    The root as it was where d is not rational, or where the two are not proved to be the same number.
+    """
+    parts = root.as_base_exp()[0].as_two_terms() if root.is_Pow and root.exp == sp.S.Half and root.base.is_Add else ()
+    if len(parts) != 2 or not parts[0].is_Rational or not (parts[1] ** 2).is_Rational:
+        return root
+    if parts[0] <= 0 or parts[1] ** 2 <= 0:
+        return root
+    d = sp.sqrt(parts[0] ** 2 - parts[1] ** 2)
+    if not d.is_Rational:
+        return root
+    sign = 1 if exact_ball(parts[1]) > 0 else -1
+    simpler = sp.sqrt((parts[0] + d) / 2) + sign * sp.sqrt((parts[0] - d) / 2)
+    return simpler if is_zero(root - simpler) else root
+
+
 def is_formally_zero(number: sp.Expr) -> bool:
     """Zero by the normal form; false where the number lies outside its language."""
     try:
