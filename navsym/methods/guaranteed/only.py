@@ -171,6 +171,7 @@ def exact_conditions(problem: Problem, pins: Sequence[Pin]) -> list[tuple[sp.Exp
 
 
 def zero(row: Sequence[sp.Expr]) -> bool:
+    """Every entry is proved to be zero."""
     return all(entry == 0 or proved(entry) for entry in row)
 
 
@@ -180,7 +181,8 @@ def same(row: Sequence[sp.Expr], other: Sequence[sp.Expr]) -> bool:
 
 
 def proved(entry: sp.Expr) -> bool:
-    return decide(Equation(sp.sympify(entry), sp.S.Zero)).status is PROVED
+    """The number is proved to be zero."""
+    return decide(Equation(sp.sympify(entry, strict=True), sp.S.Zero)).status is PROVED
 
 
 def decided(problem: Problem, places: Sequence[Place]) -> bool | None:

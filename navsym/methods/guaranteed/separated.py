@@ -69,6 +69,7 @@ def in_other_unknowns(
 
 
 def number(x: fmpq) -> sp.Rational:
+    """The same number for expressions."""
     return sp.Rational(int(x.p), int(x.q))
 
 

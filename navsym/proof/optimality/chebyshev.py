@@ -18,6 +18,7 @@ NODE_BITS = 128
 
 
 def double(matrix: arb_mat) -> NDArray[np.float64]:
+    """The midpoints as doubles."""
     return np.array(list(map(float, matrix.entries()))).reshape(matrix.nrows(), matrix.ncols())
 
 

@@ -117,6 +117,7 @@ class Panel:
 
 
 def coefficients(value: Any, order: int) -> list[arb]:
+    """Coefficients 0 … order of a series, or of a number as a constant one."""
     if isinstance(value, arb_series):
         return [value[k] for k in range(order + 1)]
     return [arb(value)] + [arb(0)] * order
