@@ -39,7 +39,7 @@ RAISED = {"\u00b2": "2", "\u00b3": "3"}
 FOREIGN = {
     "ln": "log", "arcsin": "asin", "arccos": "acos", "arctan": "atan", "arctg": "atan", "arctan2": "atan2",
     "tg": "tan", "ctg": "cot", "cosec": "csc", "sh": "sinh", "ch": "cosh", "th": "tanh", "Abs": "abs", "fabs": "abs",
-    "Pi": "pi", "PI": "pi", "e": "exp(...)", "pow": "**",
+    "Pi": "pi", "PI": "pi", "e": "exp(...)", "E": "exp(...)", "pow": "**",
 }  # fmt: skip
 
 UNITS = frozenset(("m", "km", "s", "min", "h", "deg", "rad", "kg", "Hz", "mg"))

@@ -28,6 +28,10 @@ BUILDERS: dict[str, Callable[..., sp.Expr]] = {
 }  # fmt: skip
 
 
+#: Roots are the real ones of numbers that are not negative, as in (-8)**(1/3).
+ROOT_ADVICE = "restrict the symbols, or take the sign out of an odd root: -(8**(1/3))"
+
+
 class Refusal(Exception):
     """Why a step is not done; the parser adds the place."""
 
@@ -187,7 +191,7 @@ def real(value: sp.Expr) -> sp.Expr:
                 raise undefined("an undefined or infinite value")
             if factor is sp.I or (factor.is_Pow and factor.base.is_negative and factor.exp.is_Rational
                                   and not factor.exp.is_integer):  # fmt: skip
-                raise undefined("a value that is not real")
+                raise Refusal(DomainError, "a finite real value", "a root of a negative number", ROOT_ADVICE)
             if factor.is_Rational and number_bits(factor) > BITS:
                 raise too_large(f"numbers of at most {BITS} bits", "a larger number")
     return value

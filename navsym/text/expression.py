@@ -234,7 +234,13 @@ class Reader:
     def function(self, token: Token) -> sp.Expr:
         """A call with as many arguments as the function takes."""
         wanted = 2 if token.text == "atan2" else 1
-        opening = self.take("(") or self.unexpected(f"( after {token.text}")
+        opening = self.take("(")
+        if opening is None and self.token.text == "**":
+            self.unexpected(f"( after {token.text}")
+        if opening is None:
+            got = "the end of the text" if self.token.kind == "end" else shown(self.token.text)
+            do = f"put what it is taken of in parentheses: {token.text}(...)"
+            self.source.fail(self.token.start, f"( after {token.text}", got, do)
         self.calls += 1
         if self.calls > CALLS:
             got, do = "more", "give parts a name"
@@ -244,6 +250,10 @@ class Reader:
             arguments.append(self.nested(opening, self.sum))
         if len(arguments) < wanted:
             self.unexpected(f"a comma, since {token.text} takes {wanted} arguments,")
+        if self.token.text == "," and self.token.kind == "mark":
+            number = "one argument" if wanted == 1 else "two arguments"
+            do = f"write a decimal point, or remove the rest: {token.text} takes {number}"
+            self.source.fail(self.token.start, f") after the last argument of {token.text}", "','", do)
         self.close(opening)
         self.calls -= 1
         if token.text == "sqrt":
