@@ -34,7 +34,7 @@ class StoreError(NavsymError):
 
 
 def default_path() -> Path:
-    """``NAVSYM_CACHE`` or the user's cache folder."""
+    """The file in ``NAVSYM_CACHE`` or in the user's cache folder; raises StoreError on a machine without a home."""
     folder = os.environ.get("NAVSYM_CACHE")
     if folder:
         return Path(folder) / "results.sqlite"
