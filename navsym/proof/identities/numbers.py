@@ -35,16 +35,16 @@ def denested(root: sp.Expr) -> sp.Expr:
 
     The root as it was where d is not rational, or where the two are not proved to be the same number.
     """
-    parts = root.as_base_exp()[0].as_two_terms() if root.is_Pow and root.exp == sp.S.Half and root.base.is_Add else ()
-    if len(parts) != 2 or not parts[0].is_Rational or not (parts[1] ** 2).is_Rational:
+    if not root.is_Pow or root.exp != sp.S.Half or not root.base.is_Add:
         return root
-    if parts[0] <= 0 or parts[1] ** 2 <= 0:
+    a, surd = root.base.as_two_terms()
+    if not (a.is_Rational and a > 0 and (surd**2).is_Rational and surd**2 > 0):
         return root
-    d = sp.sqrt(parts[0] ** 2 - parts[1] ** 2)
+    d = sp.sqrt(a**2 - surd**2)
     if not d.is_Rational:
         return root
-    sign = 1 if exact_ball(parts[1]) > 0 else -1
-    simpler = sp.sqrt((parts[0] + d) / 2) + sign * sp.sqrt((parts[0] - d) / 2)
+    sign = 1 if exact_ball(surd) > 0 else -1
+    simpler = sp.sqrt((a + d) / 2) + sign * sp.sqrt((a - d) / 2)
     return simpler if is_zero(root - simpler) else root
 
 

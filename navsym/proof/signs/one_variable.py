@@ -58,6 +58,7 @@ class Branch:
     tests: tuple[tuple[int, Fraction], ...]
 
     def holds_at(self, u: fmpq) -> bool:
+        """True where all tests have their signs."""
         return all(sign * sign_at(test, u) >= 0 for sign, test in self.tests)
 
 
@@ -156,10 +157,12 @@ def belongs(root: Place, piece: Piece) -> bool:
 
 
 def is_end(root: Place, piece: Piece) -> bool:
+    """True for a root at one of the ends of the piece."""
     return at_end(root, piece.lower) or at_end(root, piece.upper)
 
 
 def at_end(root: Place, end: Place | None) -> bool:
+    """True where a root is the end."""
     return end is not None and compare(root, end) == 0
 
 
@@ -172,6 +175,7 @@ def formula(root: Place, piece: Piece) -> sp.Expr | None:
 
 
 def rational(number: fmpq) -> sp.Rational:
+    """The same number for the algebra."""
     return sp.Rational(int(number.p), int(number.q))
 
 

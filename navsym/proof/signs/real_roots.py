@@ -90,6 +90,7 @@ def place_of(value: sp.Expr) -> Place:
 
 
 def fraction(ball: object) -> fmpq:
+    """The midpoint of a ball, exactly."""
     return fmpq(*exact(ball).as_integer_ratio())  # type: ignore[arg-type]
 
 
@@ -203,6 +204,7 @@ def one_root(left: Place, right: Place) -> bool:
 
 
 def is_same_number(left: Place, right: Place) -> bool:
+    """True when the formulas of two numbers are proved to be equal."""
     return left.value is not None and right.value is not None and is_zero(left.value - right.value)
 
 

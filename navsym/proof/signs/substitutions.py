@@ -119,6 +119,7 @@ def fraction_of(quotient: Quotient, images: dict[int, fmpq_poly]) -> Fraction:
 
 
 def substituted(polynomial: fmpq_mpoly, images: dict[int, fmpq_poly]) -> fmpq_poly:
+    """The polynomial with images in u for its generators."""
     total = fmpq_poly([0])
     for exponents, value in polynomial.to_dict().items():
         term = fmpq_poly([value])
@@ -205,6 +206,7 @@ def by_root(
 
 
 def is_odd_power(radicand: sp.Expr, symbol: sp.Symbol) -> bool:
+    """True for x**3, x**5 and so on."""
     base, exponent = radicand.as_base_exp()
     return bool(base == symbol and exponent.is_Integer and exponent > 1 and exponent % 2 == 1)
 
