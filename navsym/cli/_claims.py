@@ -21,8 +21,8 @@ def find(wanted: str) -> tuple[Paper, Claim]:
 
     module, colon, number = wanted.partition(":")
     if not colon and (known := modules_with(wanted)):
-        ids = " or ".join(f"{name}:{wanted}" for name in known)
-        message = f"expected the id of a claim, MODULE:NUMBER; got {wanted[:80]}; take {ids}"
+        whole = " or ".join(f"{name}:{wanted}" for name in known)
+        message = f"expected the id of a claim, MODULE:NUMBER; got {wanted[:80]}; take {whole}"
         raise DomainError(message, where="command line")
     (paper,) = load([module])
     for claim in paper.claims:
@@ -38,7 +38,7 @@ def find(wanted: str) -> tuple[Paper, Claim]:
 
 def modules_with(number: str) -> list[str]:
     """Modules that have claims of this number, or of parts of it."""
-    pairs = (name.partition(":")[::2] for name in stored_records())
+    pairs = [(name.partition(":")[0], name.partition(":")[2]) for name in stored_records()]
     return sorted({module for module, known in pairs if known == number or known.startswith(f"{number}.")})
 
 
