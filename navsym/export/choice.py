@@ -11,8 +11,9 @@ import sympy as sp
 from flint import arb
 
 from navsym.errors import NavsymError
+from navsym.export.accuracy.analysis import analyse
 from navsym.export.accuracy.literals import literals_of
-from navsym.export.accuracy.rounding import BITS, LIBRARY, Arithmetic, analyse
+from navsym.export.accuracy.rounding import BITS, LIBRARY, Arithmetic
 from navsym.export.expression_graph import Graph, build
 from navsym.export.forms import factored, safe
 from navsym.proof.balls import precision

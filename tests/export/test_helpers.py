@@ -15,10 +15,11 @@ import sympy as sp
 from flint import arb, arb_series, ctx
 
 from navsym.claims import Equation
+from navsym.export.accuracy.analysis import analyse
 from navsym.export.accuracy.continuation import MARGIN, SWITCHES, continuation
 from navsym.export.accuracy.filled import filled_bounds, zones
 from navsym.export.accuracy.literals import literals_of
-from navsym.export.accuracy.rounding import ARITHMETICS, DOUBLE, Bounded, analyse
+from navsym.export.accuracy.rounding import ARITHMETICS, DOUBLE, Bounded
 from navsym.export.accuracy.sweep import sweep_c
 from navsym.export.accuracy.vectors import vectors
 from navsym.export.atoms import expm1, filled, plain

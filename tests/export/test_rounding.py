@@ -10,7 +10,8 @@ import pytest
 import sympy as sp
 from flint import arb
 
-from navsym.export.accuracy.rounding import DOUBLE, FLOAT, analyse
+from navsym.export.accuracy.analysis import analyse
+from navsym.export.accuracy.rounding import DOUBLE, FLOAT
 from navsym.export.accuracy.uniform import uniform_bound
 from navsym.export.accuracy.vectors import vectors
 from navsym.export.expression_graph import build

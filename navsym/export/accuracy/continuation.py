@@ -22,7 +22,7 @@ from flint import arb, arb_series, fmpq
 
 from navsym.errors import DomainError
 from navsym.export.accuracy.literals import literals_of
-from navsym.export.accuracy.rounding import ARITHMETICS, INFINITE, Arithmetic, analyse, down, up
+from navsym.export.accuracy.rounding import ARITHMETICS, INFINITE, Arithmetic, down, followed, up
 from navsym.export.expression_graph import Builder, Graph, pruned
 from navsym.export.holes import Part, T
 from navsym.export.series import capped, taylor
@@ -142,7 +142,7 @@ def proved(
     slope = max((up(horner(derived, cell)) for cell in cells(-reach, reach)), key=float) + rest
     sums = polynomial_graph(polynomial, 0)
     literals, unit = literals_of(sums, arithmetic), arithmetic.unit()
-    found = [analyse(sums, [cell], arithmetic, literals)[sums.roots[0]] for cell in cells(-arb(switch), arb(switch))]
+    found = [followed(sums, [cell], arithmetic, literals)[sums.roots[0]] for cell in cells(-arb(switch), arb(switch))]
     rounding = max((one.relative for one in found), key=float)
     power = v - part.divided
     near = (rounding + remainder / least) / unit * (1 + 8 * unit) + 2 * power

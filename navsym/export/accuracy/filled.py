@@ -13,7 +13,7 @@ from navsym.export.accuracy.rounding import (
     INFINITE,
     Arithmetic,
     Bounded,
-    analyse,
+    followed,
     ratio,
     sane,
     tightened,
@@ -107,7 +107,7 @@ def relative_inside(known: Continuation, a: Bounded) -> arb:
 def outside_bounds(known: Continuation, t: arb, arithmetic: Arithmetic) -> Bounded:
     """The plain form, called with exactly t."""
     strict = replace(arithmetic, top=ARITHMETICS[arithmetic.name].top)  # an overflow in here has no status of its own
-    return analyse(known.above, [t], strict, known.literals)[known.above.roots[0]]
+    return followed(known.above, [t], strict, known.literals)[known.above.roots[0]]
 
 
 def slope_outside(known: Continuation, t: arb) -> arb:

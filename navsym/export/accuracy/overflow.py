@@ -13,7 +13,8 @@ from typing import Any
 import sympy as sp
 from flint import arb
 
-from navsym.export.accuracy.rounding import BITS, Arithmetic, Bounded, analyse, down, up
+from navsym.export.accuracy.analysis import analyse
+from navsym.export.accuracy.rounding import BITS, Arithmetic, Bounded, down, up
 from navsym.export.accuracy.uniform import Box, starting_cells
 from navsym.export.expression_graph import Graph, Node
 from navsym.proof.balls import precision

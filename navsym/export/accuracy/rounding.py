@@ -81,12 +81,21 @@ def factor(op: str, arithmetic: Arithmetic) -> int:
     return LIBRARY.get(op, 4) * arithmetic.library
 
 
-def analyse(
-    graph: Graph, inputs: Sequence[arb], arithmetic: Arithmetic, literals: Sequence[Any]
+Filled = Callable[[Any, Bounded, Arithmetic], Bounded]
+
+
+def no_parts(part: Any, argument: Bounded, arithmetic: Arithmetic) -> Bounded:
+    """For graphs without parts that have a hole."""
+    raise AssertionError(f"a branch of a part has no part itself, but came to {part}")
+
+
+def followed(
+    graph: Graph, inputs: Sequence[arb], arithmetic: Arithmetic, literals: Sequence[Any], filled: Filled = no_parts
 ) -> list[Bounded]:
     """Value and error bounds of every node over the box of the inputs, which are taken as exact.
 
     literals : the number that stands in the code for each constant node (None for other nodes)
+    filled   : the bounds of a part with a hole (:mod:`navsym.export.accuracy.filled`)
     """
     with precision(BITS):
         done: list[Bounded] = []
@@ -99,23 +108,17 @@ def analyse(
                 error = up(value - arb(literal))
                 done.append(tightened(value, error, ratio(error, value), INFINITE))
             else:
-                done.append(rounded(node, args, arithmetic))
+                done.append(rounded(node, args, arithmetic, filled))
         return done
 
 
-def rounded(node: Node, args: list[Bounded], arithmetic: Arithmetic) -> Bounded:
+def rounded(node: Node, args: list[Bounded], arithmetic: Arithmetic, filled: Filled) -> Bounded:
     """One operation: errors of the arguments carried through, and its own rounding; none is known if it overflows."""
-    found = filled_in(node, args, arithmetic) if node.op == "filled" else rounded_plainly(node, args, arithmetic)
+    part = node.op == "filled"
+    found = filled(node.value, args[0], arithmetic) if part else rounded_plainly(node, args, arithmetic)
     if up(found.value) + found.absolute < arb(2) ** arithmetic.top:
         return found
     return Bounded(found.value, INFINITE, INFINITE, INFINITE)
-
-
-def filled_in(node: Node, args: list[Bounded], arithmetic: Arithmetic) -> Bounded:
-    """Value and bounds of a part with a hole at zero, by its branches."""
-    from navsym.export.accuracy.filled import filled_bounds  # which needs this file for the branches
-
-    return filled_bounds(node.value, args[0], arithmetic)
 
 
 def rounded_plainly(node: Node, args: list[Bounded], arithmetic: Arithmetic) -> Bounded:

@@ -36,6 +36,7 @@ from navsym.export.accuracy.bands import (
     upper,
     whole_power,
 )
+from navsym.export.accuracy.filled import filled_bounds
 from navsym.export.accuracy.rounding import Arithmetic, Bounded, factor, rounded
 from navsym.export.accuracy.vectors import tapes
 from navsym.export.expression_graph import Node
@@ -271,7 +272,7 @@ def row_bounds(node: Node, row: tuple[float, ...], arithmetic: Arithmetic) -> tu
         args.append(Bounded(ball_of(high, low, error), arb(absolute), arb(relative), arb("inf")))
     if any(not a.value.is_finite() for a in args):
         return float("nan"), float("nan"), float("inf"), float("inf"), float("inf")
-    found = rounded(node, args, arithmetic)
+    found = rounded(node, args, arithmetic, filled_bounds)
     return (*parts_of(found.value), bound_of(found.absolute), bound_of(found.relative))
 
 

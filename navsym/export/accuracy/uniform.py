@@ -9,7 +9,8 @@ from typing import Any
 
 from flint import arb
 
-from navsym.export.accuracy.rounding import BITS, Arithmetic, analyse, up
+from navsym.export.accuracy.analysis import analyse
+from navsym.export.accuracy.rounding import BITS, Arithmetic, up
 from navsym.export.expression_graph import Graph
 from navsym.proof.balls import precision
 

@@ -15,8 +15,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from flint import arb
 
+from navsym.export.accuracy.analysis import analyse
 from navsym.export.accuracy.continuation import continuation
-from navsym.export.accuracy.rounding import BITS, INFINITE, Arithmetic, Bounded, analyse, with_library
+from navsym.export.accuracy.rounding import BITS, INFINITE, Arithmetic, Bounded, with_library
 from navsym.export.expression_graph import Node
 from navsym.export.parts import ExportedFunction, Input, Piece
 from navsym.proof.balls import Tape, enclose, precision, tape
