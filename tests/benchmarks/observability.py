@@ -12,13 +12,15 @@ from __future__ import annotations
 
 import argparse
 import multiprocessing
+import random
 import statistics
 import time
 
 import sympy as sp
 from sympy.polys.matrices import DomainMatrix
 
-from navsym.methods.observability.chains import numerators, observe, proved_rank
+from navsym.methods.observability.chains import chains_of, numerators, observe, proved_rank
+from navsym.methods.observability.interpolation import chain_determinant
 from navsym.methods.observability.linear import reduce_rows
 from navsym.methods.observability.ring import Ring
 from navsym.models.inertial.errors import FULL, full_model
@@ -53,6 +55,33 @@ SYSTEMS = {
     "coupled oscillators, 9 states": lambda: chain(9),
     "coupled oscillators, 10 states": lambda: chain(10),
 }
+
+
+def dense(n: int, count: int) -> LinearModel:
+    """Numbers everywhere, and ``count`` parameters in one entry each; one measurement."""
+    source = random.Random(1)
+    F = sp.Matrix(n, n, lambda i, j: source.randint(-3, 3))
+    for symbol in (a, b, c, d, e, f)[:count]:
+        F[source.randrange(n), source.randrange(n)] = symbol
+    return LinearModel(F, None, sp.Matrix(1, n, lambda i, j: source.randint(-2, 2) or 1))
+
+
+#: Where the rank drops is one determinant here: that is what is formed, by values at points and by the peer.
+DENSE = {f"dense, {n} states, {count} parameters": (n, count) for n, count in ((7, 4), (8, 3), (9, 5))}
+
+
+def ours_determinant(model: LinearModel) -> int:
+    """Number of terms of the determinant of the chain."""
+    chains = chains_of(model)
+    found = chain_determinant([(chains.chains[0].vectors[0], model.size)], chains.matrix, chains.ring)
+    return 0 if found is None else len(found)
+
+
+def sympy_determinant(model: LinearModel) -> int:
+    """The peer, vectors and all: the determinant of the observability matrix over the polynomial ring."""
+    matrix = sp.Matrix(observability_matrix(model)).applyfunc(sp.expand)
+    domain = sp.ZZ[tuple(sorted(matrix.free_symbols, key=str))]
+    return len(DomainMatrix.from_Matrix(matrix).convert_to(domain).det())
 
 
 def ours_rank(model: LinearModel) -> int:
@@ -98,6 +127,9 @@ CONTESTS = {
 }
 
 
+CONTEST_OF_DENSE = {"determinant": (ours_determinant, sympy_determinant, "DomainMatrix.det", lambda model: model)}
+
+
 def timed(function, argument, limit: float) -> tuple[float | None, object]:
     """Seconds of one call in a child process and its result; None when it does not end within the limit."""
     context = multiprocessing.get_context("fork")
@@ -118,8 +150,8 @@ def timed(function, argument, limit: float) -> tuple[float | None, object]:
 
 def contest(name: str, kind: str, rounds: int, limit: float) -> str:
     """One line of the report."""
-    ours, peer, peer_name, prepare = CONTESTS[kind]
-    argument = prepare(SYSTEMS[name]())
+    ours, peer, peer_name, prepare = {**CONTESTS, **CONTEST_OF_DENSE}[kind]
+    argument = prepare(dense(*DENSE[name]) if name in DENSE else SYSTEMS[name]())
     own, other, values = [], [], set()
     for _ in range(rounds):
         seconds, value = timed(ours, argument, limit)
@@ -150,6 +182,9 @@ def main() -> None:
         if options.only in name:
             for kind in CONTESTS:
                 print(contest(name, kind, options.rounds, options.limit), flush=True)
+    for name in DENSE:
+        if options.only in name:
+            print(contest(name, "determinant", options.rounds, options.limit), flush=True)
 
 
 if __name__ == "__main__":
