@@ -19,6 +19,7 @@ from navsym.numeric.exchange.search import (
     chebyshev_nodes,
     find_contacts,
     independent,
+    roads,
     rows_at,
 )
 from navsym.numeric.exchange.twofold import two_product, two_sum
@@ -147,3 +148,14 @@ def test_a_contact_whose_weight_is_nothing_is_a_touch_and_no_contact():
         f = rows_at(basis.panels.coefficients, found.panel, found.u) @ found.dual
         assert (found.weights * f > 0).all() and (found.sign == np.sign(found.weights)).all()
         assert np.abs(found.weights).min() > 1e-7 * np.abs(found.weights).sum()
+
+
+def test_a_weight_that_changes_its_sign_between_the_grid_and_the_contacts_is_not_returned():
+    """The contacts of the grid keep their signs in the dual; the second weight became positive where f is -1."""
+    s = sp.Symbol("t", real=True)
+    functions = (sp.exp(-s / 2) * sp.sin(3 * s / 2), s * sp.sin(8 * s / 3))
+    panel = Panel(0, functions, s, sp.S.Zero, sp.Rational(27, 10), sp.S.One)
+    basis = make_basis(Problem((panel,), (sp.S.One, sp.Integer(-2))))
+    for found in roads(basis.panels):
+        f = rows_at(basis.panels.coefficients, found.panel, found.u) @ found.dual
+        assert (found.weights * f > 0).all() or found.excess > 1e-7

@@ -133,6 +133,8 @@ def alternance(
     if not regular:
         return nowhere
     weights, x = combined(inverse, p), applied(inverse, sign)
+    if not (weights * sign).min() > 0.0:  # on the grid it had this sign, at the contacts it has not
+        return nowhere
     where, places, heights = local_maxima(sums_of(C, x), fine)
     rest = others(where, places, heights, near, panel, u)
     value = lagrangian(C, C_low, p, p_low, panel, u, sign, weights, x)
