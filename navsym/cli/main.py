@@ -231,6 +231,8 @@ def report(error: NavsymError, as_json: bool) -> int:
             put(dumps(error.as_json()) + "\n")
         else:
             complain(line)
+        if error.where == "standard output":    # what did not get out waits for the interpreter's last flush
+            silence_stdout()
     except BrokenPipeError:
         silence_stdout()
     except OutputError:                     # standard output is full or closed: the line goes where it can

@@ -175,6 +175,9 @@ SHOW = [sys.executable, "-m", "navsym", "cite", "guaranteed_velocity:4.3.u2"]
 @pytest.mark.parametrize("redirection", [">/dev/full", ">&-"])
 def test_an_output_that_is_full_or_closed_is_one_line_on_standard_error(options, redirection):
     line = shlex.join([*SHOW, *options]) + " " + redirection
-    done = subprocess.run(["sh", "-c", line], cwd=ROOT, capture_output=True, text=True, timeout=120, check=False)
+    buffered = {name: value for name, value in os.environ.items() if name != "PYTHONUNBUFFERED"}
+    done = subprocess.run(
+        ["sh", "-c", line], cwd=ROOT, env=buffered, capture_output=True, text=True, timeout=120, check=False
+    )
     assert done.returncode == 2
     assert len(done.stderr.splitlines()) == 1 and done.stderr.startswith("navsym: output: standard output: expected")
