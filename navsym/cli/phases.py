@@ -36,7 +36,7 @@ def command(
     seconds: Annotated[
         float,
         typer.Option(help="work (processor time) after which what is known is given, and the rest named as uncovered"),
-    ] = 120.0,
+    ] = 300.0,
     out: Annotated[
         Path | None, typer.Option(help="write the certificates to files of this name, numbered")
     ] = None,

@@ -92,7 +92,7 @@ def candidates(family: Family, span: Span) -> list[Closed]:
         return []
     lengths = [s.T for s in found]
     columns = [[s.places[i] for s in found] for i in range(len(span.pattern))]
-    panels = [k for k, _, _ in span.pattern]
+    panels = tuple(k for k, _, _ in span.pattern)
     places = [place_or_share(family, k, c, lengths) for k, c in zip(panels, columns, strict=True)]
     places = [middle_of_constant(family, k) if p is None else p for k, p in zip(panels, places, strict=True)]
     if any(p is None for p in places):
@@ -105,7 +105,7 @@ def candidates(family: Family, span: Span) -> list[Closed]:
     weights = weights_of(family, span, exact, found[0])
     if weights is None:
         return []
-    panels, guesses = tuple(k for k, _, _ in span.pattern), []
+    guesses = []
     moving = itertools.islice(duals(family, span, exact, found), 3)
     for dual in (*moving, *fixed_duals(family, span, found)):
         value = tidy(sum((x * p for x, p in zip(dual, family.functional, strict=True)), sp.S.Zero))

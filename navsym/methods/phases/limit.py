@@ -16,7 +16,7 @@ from typing import Any
 from navsym.proof.sandbox import DEFAULT_MEGABYTES, Exhausted, require_limits, run_limited
 
 #: Seconds of work for one answer, unless told otherwise.
-DEFAULT_SECONDS = 120.0
+DEFAULT_SECONDS = 300.0
 #: A child is not started for less than this many seconds.
 LEAST = 0.1
 
