@@ -125,8 +125,8 @@ def solve(problem: GuaranteedProblem, digits: int = 30) -> GuaranteedSolution:
     found = certified(exact, digits, basis)
     unique = found.unique
     if unique is None and not problem.error:
-        contacts, x = find_contacts(basis.panels), found.dual
-        unique = False if several_optimal(exact, contacts, x) else only_optimal(exact, basis, contacts, x)
+        contacts, bound = find_contacts(basis.panels), found.dual
+        unique = False if several_optimal(exact, contacts, bound) else only_optimal(exact, basis, contacts, bound)
     status = CERTIFIED if found.reaches(digits) else OPEN
     dual = ["0"] * len(problem.functional)
     for k, x in zip(kept, found.dual, strict=True):
