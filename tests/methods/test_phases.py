@@ -8,8 +8,9 @@ import pytest
 import sympy as sp
 
 from navsym import checker
+from navsym.claims import CERTIFIED
 from navsym.errors import DomainError, NotEstimableError
-from navsym.methods.phases import events
+from navsym.methods.phases import continuation, events
 from navsym.methods.phases.continuation import phases
 from navsym.methods.phases.family import family_of
 from navsym.text.modelfile import model_from
@@ -231,3 +232,18 @@ def test_the_position_measured_model_is_complete_with_four_boundaries_of_thirty_
     widths = [sp.Rational(b.upper) - sp.Rational(b.lower) for b in answer.boundaries]
     assert all(b.proved for b in answer.boundaries) and max(widths) < sp.Rational(1, 10**29)
     assert set(accepted(answer)) <= {"all", "sliver", "range"}
+
+
+def test_a_numerator_that_vanishes_with_its_denominator_is_no_zero():
+    T = sp.Symbol("T", positive=True)
+    assert events.exact_root((T - 1) / (T**2 - 1), T, 1.0, 0.1) is None
+    assert events.exact_root((T - 1) / (T**2 + 1), T, 1.0, 0.1) == 1
+
+
+def test_a_change_does_not_rest_on_a_closed_form_that_is_not_proved(monkeypatch):
+    monkeypatch.setattr(continuation, "proved_form", lambda *_: None)
+    answer = phases(family(VELOCITY, "y2"), sp.Integer(1), sp.Rational(9, 2))
+    (change,) = answer.boundaries
+    assert {r.status for r in answer.regimes} == {CERTIFIED}
+    assert change.at is None and change.proved
+    assert sp.Rational(change.lower) <= 4 * sp.pi / 3 <= sp.Rational(change.upper)

@@ -136,17 +136,19 @@ def stretch(section: Section, follow: Follow, steps: Steps, limit: Limit) -> Pha
     changes = located(family, spans, [g[0] if g else None for g in guesses], limit.share(1 / 2))
     cuts = [lower, *(middle_of(b) for b in changes), upper]
     limits = limits_of(family, lower, upper, low, high, changes, singular)
-    regimes, uncovered = [], []
+    regimes, uncovered, forms = [], [], list[Closed | None]()
     for k, span in enumerate(spans):
         mine, ends = limit.share(1 / (len(spans) - k)), (cuts[k], cuts[k + 1])
         closed = proved_form(family, guesses[k], ends, mine)
+        forms.append(closed)
         regime, holes = regime_of(family, span, ends, limits[k], closed, follow, mine)
         regimes.append(regime)
         uncovered += holes
         steps.did(Steps.LOOKS)
     if upper != section.upper:
         uncovered.append((end_text(upper), end_text(section.upper)))
-    honest = tuple(b if b.proved else between(b, *pair) for b, pair in zip(changes, pairwise(regimes), strict=True))
+    firm = relocated(family, spans, changes, guesses, forms, limit)
+    honest = tuple(b if b.proved else between(b, *pair) for b, pair in zip(firm, pairwise(regimes), strict=True))
     return Phases(family, lower, upper, tuple(regimes), honest, tuple(uncovered))
 
 
@@ -183,6 +185,21 @@ def located(
         part = limit.share(1 / (len(spans) - 1 - k))
         found.append(change(family, left, right, part, closed[k], closed[k + 1]) or nowhere(left.upper))
     return tuple(found)
+
+
+def relocated(
+    family: Family, spans: Sequence[Span], changes: Sequence[Boundary], guesses: Sequence[list[Closed]],
+    forms: Sequence[Closed | None], limit: Limit,
+) -> list[Boundary]:  # fmt: skip
+    """The changes, located again where they rest on a closed form that is not the one proved afterwards."""
+    firm = [not g or (form is not None and replace(form, verdict=g[0].verdict) == g[0])
+            for g, form in zip(guesses, forms, strict=True)]  # fmt: skip
+    found = []
+    for k, b in enumerate(changes):
+        if b.at is not None and not (firm[k] and firm[k + 1]):
+            b = change(family, spans[k], spans[k + 1], limit, forms[k], forms[k + 1]) or nowhere(spans[k].upper)
+        found.append(b)
+    return found
 
 
 def change(

@@ -39,7 +39,7 @@ class Boundary:
     at           : closed form, or None
     lower, upper : decimal strings that enclose it
     why          : what happens there
-    proved       : True when the event, or the change of pattern inside the enclosure, is proved
+    proved       : True when the event in the closed forms, or the change of pattern inside the enclosure, is proved
     """
 
     at: sp.Expr | None
@@ -80,10 +80,7 @@ def events(
             continue
         for i, w in enumerate(closed.weights):
             if w.free_symbols:
-                yield (
-                    sp.fraction(sp.together(w))[0],
-                    f"the weight at {family.time(closed.places[i])} vanishes",
-                )
+                yield w, f"the weight at {family.time(closed.places[i])} vanishes"
         for place, (k, kind, _) in zip(closed.places, span.pattern, strict=True):
             if kind == "no":
                 start, stop = family.panels[k]
@@ -106,17 +103,17 @@ def rooms_below(
         if any(j == k and v == u for j, v in zip(closed.panels, closed.places, strict=True)):
             continue
         f = sum((x * h.subs(U, u) for x, h in zip(closed.dual, family.rows[k], strict=True)), sp.S.Zero)
-        room = sp.fraction(sp.together(family.sigma[k] - sign * f))[0]
-        yield room, f"the dual polynomial reaches its bound at {family.time(u)}"
+        yield family.sigma[k] - sign * f, f"the dual polynomial reaches its bound at {family.time(u)}"
 
 
 def exact_root(expression: sp.Expr, T: sp.Symbol, guess: float, reach: float) -> sp.Expr | None:
-    """A recognised root within reach of the guess, proved to be one."""
-    if T not in expression.free_symbols:
+    """A recognised root within reach of the guess, proved to be one: zero is the numerator, and not the denominator."""
+    top, bottom = sp.fraction(sp.together(expression))
+    if T not in top.free_symbols:
         return None
 
     def function(t: mpmath.mpf) -> mpmath.mpf:
-        return mpmath.mpf(str(sp.N(expression.subs(T, sp.Float(mpmath.nstr(t, 60), 60)), 60)))
+        return mpmath.mpf(str(sp.N(top.subs(T, sp.Float(mpmath.nstr(t, 60), 60)), 60)))
 
     with mpmath.workdps(60):
         try:
@@ -125,9 +122,9 @@ def exact_root(expression: sp.Expr, T: sp.Symbol, guess: float, reach: float) ->
         except (ValueError, ZeroDivisionError):
             return None
         found = constant(sp.Rational(mpmath.nstr(root, 55))) if near else None
-    if found is None or decide(Equation(expression.subs(T, found), sp.S.Zero)).status is not PROVED:
+    if found is None or decide(Equation(top.subs(T, found), sp.S.Zero)).status is not PROVED:
         return None
-    return found
+    return None if enclose(bottom.subs(T, found), bits=200).contains(0) else found
 
 
 # -- without closed forms ---------------------------------------------------------------------------
