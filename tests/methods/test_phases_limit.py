@@ -11,6 +11,8 @@ import sympy as sp
 from navsym import checker
 from navsym.errors import DomainError
 from navsym.methods.phases import limit as limits
+from navsym.methods.phases import range as range_
+from navsym.methods.phases.answer import number_of
 from navsym.methods.phases.continuation import phases
 from navsym.methods.phases.family import family_of
 from navsym.methods.phases.limit import Limit
@@ -112,3 +114,31 @@ def test_a_pole_at_zero_or_another_function_has_no_scaled_form():
     for h in ("1/u", "log(1+u)"):
         family = family_of(model_from(basis(["1", h], ["0", "T"], ["1", "0"], "T")), "c", "T")
         assert echelon(family) is None
+
+
+def gaps(known, lower, upper):
+    """What stretches leave of a range."""
+    left, at = [], sp.Rational(lower)
+    for a, b in [*sorted((sp.Rational(a), sp.Rational(b)) for a, b in known), (upper, upper)]:
+        left += [(at, min(a, upper))] if at < min(a, upper) else []
+        at = max(at, b)
+    return left
+
+
+def followed_pieces(answer):
+    """The stretches of the parameter on which contacts are followed, from the certificates."""
+    ranges = [one for c in answer.certificates() for one in c.get("of", [c]) if one["kind"] == "range"]
+    return [(piece["from"], piece["to"]) for one in ranges for piece in one["pieces"]]
+
+
+@pytest.mark.parametrize("seconds", [300.0, 12.0])
+def test_between_the_pieces_from_zero_on_and_those_from_the_middle_nothing_is_lost(monkeypatch, seconds):
+    found = range_.follow
+    monkeypatch.setattr(range_, "follow", lambda *these: found(*these)[1:])
+    monkeypatch.setattr(limits, "used", Clock(0.1))
+    answer = solved(basis(["1", "u", "exp(-u)"], ["0", "T"], ["0", "0", "1"], "T"), 0, 1, "T", seconds=seconds)
+    (regime,) = answer.regimes
+    pieces, slivers = followed_pieces(answer), [(number_of(s.start), number_of(s.end)) for s in regime.slivers]
+    assert gaps(pieces, 0, regime.upper) and gaps([*pieces, *slivers, *answer.uncovered], 0, 1) == []
+    assert gaps(pieces, *map(number_of, regime.alone)) == []
+    assert accepted(answer) <= {"all", "range", "sliver"}

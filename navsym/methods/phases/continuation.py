@@ -146,7 +146,7 @@ def stretch(section: Section, follow: Follow, steps: Steps, limit: Limit) -> Pha
         uncovered += holes
         steps.did(Steps.LOOKS)
     if upper != section.upper:
-        uncovered.append((end_text(upper), end_text(section.upper)))
+        uncovered.append((end_text(upper, -1), end_text(section.upper)))
     firm = relocated(family, spans, changes, guesses, forms, limit)
     honest = tuple(b if b.proved else between(b, *pair) for b, pair in zip(firm, pairwise(regimes), strict=True))
     return Phases(family, lower, upper, tuple(regimes), honest, tuple(uncovered))

@@ -55,6 +55,16 @@ def followed(
     return Ranged((*start, *rest), tuple(documents))
 
 
+def covered(pieces: Sequence[Piece]) -> list[tuple[fmpq, fmpq]]:
+    """What pieces in order cover, neighbours made one: the pieces from zero on and those from the middle need not meet.
+    """
+    done: list[tuple[fmpq, fmpq]] = []
+    for one in pieces:
+        start = done.pop()[0] if done and done[-1][1] == one.lower else one.lower
+        done.append((start, one.upper))
+    return done
+
+
 def plain(family: Family, pieces: Sequence[Piece]) -> dict[str, Any]:
     """The range certificate of pieces that lie next to each other."""
     return range_document(family.moving, family.parameter.name, pieces)

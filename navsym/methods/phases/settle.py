@@ -18,7 +18,7 @@ from navsym.methods.phases.closed import Closed
 from navsym.methods.phases.events import Boundary
 from navsym.methods.phases.family import Family
 from navsym.methods.phases.limit import Limit
-from navsym.methods.phases.range import followed
+from navsym.methods.phases.range import covered, followed
 from navsym.methods.phases.scan import Span, exact
 from navsym.methods.phases.slivers import slivers
 from navsym.proof.balls import enclose
@@ -89,7 +89,7 @@ def regime_of(
     if closed is not None:
         done = followed_within(family, span, limits, limit, name) if follow.closed else Ranged((), ())
         held, status = (limits[1], limits[2]), closed.verdict.status
-        return Regime(family, span, a, b, closed, status, (), done.documents, (), held, done.ends), []
+        return Regime(family, span, a, b, closed, status, (), done.documents, (), held, longest(done)), []
     shown = limit.share(1 / 4).within(f"the table of values {name}", table_of, family, span) or ()
     if not follow.implicit:
         return Regime(family, span, a, b, None, OPEN, shown), [(end_text(a), end_text(b))]
@@ -99,8 +99,9 @@ def regime_of(
         made, left_over = slivers(family, left, right, limit.met)
         thin += made
         holes += [(end_text(number_of(p), -1), end_text(number_of(q), 1)) for p, q in left_over]
-    status = CERTIFIED if done.ends is not None else OPEN
-    return Regime(family, span, a, b, None, status, shown, done.documents, tuple(thin), done.ends, done.ends), holes
+    held = longest(done)
+    status = CERTIFIED if held is not None else OPEN
+    return Regime(family, span, a, b, None, status, shown, done.documents, tuple(thin), held, held), holes
 
 
 def followed_within(family: Family, span: Span, limits: Limits, limit: Limit, name: str) -> Ranged:
@@ -112,11 +113,14 @@ def followed_within(family: Family, span: Span, limits: Limits, limit: Limit, na
 
 
 def rests(done: Ranged, limits: Limits) -> list[tuple[fmpq, fmpq]]:
-    """Stretches of the regime that the followed contacts leave."""
-    if done.ends is None:
-        return [(limits[0], limits[3])]
-    first, last = done.ends
-    return [(a, b) for a, b in ((limits[0], first), (last, limits[3])) if a < b]
+    """Stretches of the regime that the followed contacts leave, before, between and behind their pieces."""
+    edges = [limits[0], *(edge for run in covered(done.pieces) for edge in run), limits[3]]
+    return [(a, b) for a, b in zip(edges[::2], edges[1::2], strict=True) if a < b]
+
+
+def longest(done: Ranged) -> tuple[fmpq, fmpq] | None:
+    """The longest stretch that the followed contacts cover without a gap."""
+    return max(covered(done.pieces), key=lambda run: run[1] - run[0], default=None)
 
 
 def table_of(family: Family, span: Span) -> tuple[dict[str, Any], ...]:
