@@ -10,7 +10,7 @@ import sympy as sp
 from navsym import checker
 from navsym.claims import CERTIFIED
 from navsym.errors import DomainError, NotEstimableError
-from navsym.methods.phases import continuation, events
+from navsym.methods.phases import changes, events
 from navsym.methods.phases.continuation import phases
 from navsym.methods.phases.family import family_of
 from navsym.text.modelfile import model_from
@@ -241,7 +241,7 @@ def test_a_numerator_that_vanishes_with_its_denominator_is_no_zero():
 
 
 def test_a_change_does_not_rest_on_a_closed_form_that_is_not_proved(monkeypatch):
-    monkeypatch.setattr(continuation, "proved_form", lambda *_: None)
+    monkeypatch.setattr(changes, "proved_form", lambda *_: None)
     answer = phases(family(VELOCITY, "y2"), sp.Integer(1), sp.Rational(9, 2))
     (change,) = answer.boundaries
     assert {r.status for r in answer.regimes} == {CERTIFIED}

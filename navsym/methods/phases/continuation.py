@@ -16,9 +16,10 @@ from itertools import pairwise
 import sympy as sp
 
 from navsym.methods.phases.answer import Phases, Regime, end_text
-from navsym.methods.phases.closed import Closed, candidates, prove
+from navsym.methods.phases.changes import change, firm, located, middle_of
+from navsym.methods.phases.closed import Closed, candidates
 from navsym.methods.phases.continued import continued
-from navsym.methods.phases.events import Boundary, boundary, nowhere
+from navsym.methods.phases.events import Boundary
 from navsym.methods.phases.family import Family
 from navsym.methods.phases.limit import DEFAULT_SECONDS, Limit
 from navsym.methods.phases.range import fraction_of
@@ -133,22 +134,20 @@ def stretch(section: Section, follow: Follow, steps: Steps, limit: Limit) -> Pha
     spans, guesses = limit.share(1 / 4).within("closed forms next to others", continued, family, spans, guesses) or (
         spans, guesses
     )  # fmt: skip
-    changes = located(family, spans, [g[0] if g else None for g in guesses], limit.share(1 / 2))
+    first = located(family, spans, [g[0] if g else None for g in guesses], limit.share(1 / 2))
+    changes, forms = firm(family, spans, guesses, first, (lower, upper), limit.share(1 / 2))
     cuts = [lower, *(middle_of(b) for b in changes), upper]
     limits = limits_of(family, lower, upper, low, high, changes, singular)
-    regimes, uncovered, forms = [], [], list[Closed | None]()
+    regimes, uncovered = [], []
     for k, span in enumerate(spans):
-        mine, ends = limit.share(1 / (len(spans) - k)), (cuts[k], cuts[k + 1])
-        closed = proved_form(family, guesses[k], ends, mine)
-        forms.append(closed)
-        regime, holes = regime_of(family, span, ends, limits[k], closed, follow, mine)
+        part = limit.share(1 / (len(spans) - k))
+        regime, holes = regime_of(family, span, (cuts[k], cuts[k + 1]), limits[k], forms[k], follow, part)
         regimes.append(regime)
         uncovered += holes
         steps.did(Steps.LOOKS)
     if upper != section.upper:
         uncovered.append((end_text(upper, -1), end_text(section.upper)))
-    firm = relocated(family, spans, changes, guesses, forms, limit)
-    honest = tuple(b if b.proved else between(b, *pair) for b, pair in zip(firm, pairwise(regimes), strict=True))
+    honest = tuple(b if b.proved else between(b, *pair) for b, pair in zip(changes, pairwise(regimes), strict=True))
     return Phases(family, lower, upper, tuple(regimes), honest, tuple(uncovered))
 
 
@@ -174,54 +173,6 @@ def guessed(family: Family, spans: Sequence[Span], steps: Steps, limit: Limit) -
         found.append(limit.share(1 / (len(spans) - k)).within(what, candidates, family, span) or [])
         steps.did(Steps.LOOKS)
     return found
-
-
-def located(
-    family: Family, spans: Sequence[Span], closed: Sequence[Closed | None], limit: Limit
-) -> tuple[Boundary, ...]:
-    """The changes from each span to the next, as exactly as they are had within the limit."""
-    found = []
-    for k, (left, right) in enumerate(pairwise(spans)):
-        part = limit.share(1 / (len(spans) - 1 - k))
-        found.append(change(family, left, right, part, closed[k], closed[k + 1]) or nowhere(left.upper))
-    return tuple(found)
-
-
-def relocated(
-    family: Family, spans: Sequence[Span], changes: Sequence[Boundary], guesses: Sequence[list[Closed]],
-    forms: Sequence[Closed | None], limit: Limit,
-) -> list[Boundary]:  # fmt: skip
-    """The changes, located again where they rest on a closed form that is not the one proved afterwards."""
-    firm = [not g or (form is not None and replace(form, verdict=g[0].verdict) == g[0])
-            for g, form in zip(guesses, forms, strict=True)]  # fmt: skip
-    found = []
-    for k, b in enumerate(changes):
-        if b.at is not None and not (firm[k] and firm[k + 1]):
-            b = change(family, spans[k], spans[k + 1], limit, forms[k], forms[k + 1]) or nowhere(spans[k].upper)
-        found.append(b)
-    return found
-
-
-def change(
-    family: Family, left: Span, right: Span, limit: Limit, before: Closed | None = None, after: Closed | None = None
-) -> Boundary | None:
-    """The change from one span to the next; None when it is not had within the limit."""
-    return limit.within(
-        f"the change of pattern near {float(left.upper):.6g}", boundary, family, left, right, before, after
-    )  # type: ignore[no-any-return]
-
-
-def proved_form(
-    family: Family, guesses: Sequence[Closed], ends: tuple[sp.Expr, sp.Expr], limit: Limit
-) -> Closed | None:
-    """The closed form that is proved between the ends within half of the limit."""
-    half = limit.share(1 / 2)
-    found = prove(family, guesses, *ends, seconds=half.left()) if guesses and not half.met() else None
-    if found is not None and found.verdict.status.holds:
-        return found
-    if half.met():
-        limit.gives_up(f"the proof of a closed form from {end_text(ends[0])} to {end_text(ends[1])}")
-    return None
 
 
 def without_accidents(family: Family, spans: list[Span], limit: Limit) -> list[Span]:
@@ -256,11 +207,6 @@ def inner_range(lower: sp.Expr, upper: sp.Expr, singular: set[sp.Expr]) -> tuple
     steps = [Fraction(1, 400) if e in singular else Fraction(1, 10**9) for e in (lower, upper)]
     low, high = a + steps[0] * (b - a), b - steps[1] * (b - a)
     return low.limit_denominator(10**12), high.limit_denominator(10**12)
-
-
-def middle_of(b: Boundary) -> sp.Expr:
-    """The exact value of a boundary, or the middle of its bracket."""
-    return b.at if b.at is not None else (sp.Rational(b.lower) + sp.Rational(b.upper)) / 2
 
 
 __all__ = ["Phases", "Regime", "phases"]
