@@ -163,7 +163,7 @@ def work(sender: Connection, function: Callable[[Any], Any], item: Any, limits: 
     try:
         sender.send(("result", function(item)))
     except NavsymError as error:
-        sender.send(("error", error))
+        sender.send(("error", alone(error)))
     except MemoryError:
         sender.send(("stopped", f"memory above {limits.megabytes} MB"))
     except RecursionError:
@@ -172,6 +172,13 @@ def work(sender: Connection, function: Callable[[Any], Any], item: Any, limits: 
         sender.send(("stopped", f"{type(error).__name__}: {error}"))
     finally:
         sender.close()
+
+
+def alone(error: NavsymError) -> NavsymError:
+    """The error without those that led to it: where tblib is at work (distributed brings it) they would be sent along,
+    and what their frames hold cannot always be."""
+    error.__cause__ = error.__context__ = None
+    return error.with_traceback(None)
 
 
 def ready(running: Sequence[Child], seconds: float) -> list[Child]:

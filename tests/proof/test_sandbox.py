@@ -4,13 +4,18 @@ from __future__ import annotations
 
 import multiprocessing
 import os
+import subprocess
+import sys
 import time
+from pathlib import Path
 
 import pytest
 
 from navsym.errors import DomainError
 from navsym.proof import sandbox
 from navsym.proof.sandbox import Exhausted, Failed, run_limited, run_many
+
+ROOT = Path(__file__).parents[2]
 
 
 def spin(seconds):
@@ -50,6 +55,33 @@ def test_an_error_of_the_user_comes_back_as_itself():
     assert isinstance(outcome.value, Failed)
     with pytest.raises(DomainError):
         run_limited(refuse, (0,))
+
+
+class Unsendable(ValueError):
+    """An error with something that no pipe carries."""
+
+    def __init__(self):
+        super().__init__("inside")
+        self.held = (x for x in ())
+
+
+def refuse_after_another(_):
+    try:
+        raise Unsendable
+    except Unsendable as error:
+        raise DomainError("expected something else") from error
+
+
+def test_an_error_comes_back_where_errors_are_sent_with_all_that_led_to_them():
+    program = (
+        "import sys; sys.path[:0] = ['.', 'tests/proof']\n"
+        "from test_sandbox import refuse_after_another, run_limited, DomainError\n"
+        "from tblib import pickling_support; pickling_support.install()\n"
+        "try: print(run_limited(refuse_after_another, (0,)))\n"
+        "except DomainError as error: print('refused', error)\n"
+    )
+    done = subprocess.run([sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, timeout=120)
+    assert done.stdout == "refused expected something else\n", done.stderr
 
 
 def test_no_child_is_left():
