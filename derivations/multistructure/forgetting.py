@@ -22,7 +22,7 @@ rho1, rho2 = sp.symbols("rho1 rho2", positive=True)
 #: Square roots of p^11, p^12, p^21, p^22, so that kappa needs none.
 a, b, c, d = sp.symbols("a b c d", positive=True)
 CHAIN = ((a**2, b**2), (c**2, d**2))  # p^ij: row to, column from
-error, share = sp.Symbol("c_rho", positive=True), sp.Symbol("g", positive=True)
+error, share = sp.Symbol("c_rho", positive=True), sp.Symbol("g_i", positive=True)
 
 
 def odds_after(switch: tuple[tuple[sp.Expr, ...], ...]) -> sp.Expr:

@@ -129,7 +129,7 @@ def windows_of_the_printed_errors():
     )
 
 
-a = sp.Symbol("a", positive=True)  # rho tau
+s = sp.Symbol("s", positive=True)  # rho tau
 
 
 @claim("table.n2.closed")
@@ -147,13 +147,13 @@ def closed_form_for_two_states():
 
 @claim("table.n2.best")
 def normalisation_is_optimal_for_two_states():
-    """n = 2: no scaling beats unit columns: at rho tau = a, mu + 1/mu exceeds 2 sqrt(10) by (sqrt(2) - sqrt(5) a)^2/a.
+    """n = 2: no scaling beats unit columns: at rho tau = s, mu + 1/mu exceeds 2 sqrt(10) by (sqrt(2) - sqrt(5) s)^2/s.
 
-    Equal at a = sqrt(2/5): a step of 0.63 s in the radius channel, of four million seconds in that of latitude.
+    Equal at s = sqrt(2/5): a step of 0.63 s in the radius channel, of four million seconds in that of latitude.
     """
-    rows = sp.Matrix([[1, a], [1, 2 * a]])
+    rows = sp.Matrix([[1, s], [1, 2 * s]])
     value = sum(entry**2 for entry in rows) / sp.sqrt(sp.expand(rows.det()) ** 2)
-    return Equation(2 * sp.sqrt(10) + (sp.sqrt(2) - sp.sqrt(5) * a) ** 2 / a, value)
+    return Equation(2 * sp.sqrt(10) + (sp.sqrt(2) - sp.sqrt(5) * s) ** 2 / s, value)
 
 
 @claim("6.Nf.determinant")

