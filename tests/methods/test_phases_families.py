@@ -8,6 +8,7 @@ from fractions import Fraction
 
 import pytest
 import sympy as sp
+from flint import fmpq
 
 from navsym import checker
 from navsym.claims import OPEN, PROVED, Verdict
@@ -15,6 +16,7 @@ from navsym.methods.phases.closed import Closed, prove
 from navsym.methods.phases.continuation import phases
 from navsym.methods.phases.family import family_of
 from navsym.methods.phases.places import constant
+from navsym.methods.phases.range import covered, followed
 from navsym.methods.phases.scan import sample
 from navsym.methods.phases.singular import real_roots
 from navsym.methods.phases.slivers import exact, slivers
@@ -166,3 +168,13 @@ def test_a_closed_form_that_divides_by_zero_inside_its_range_is_not_proved():
     for value, status in ((2 / p, PROVED), (holed, OPEN)):
         found = prove(family, [replace(guess, value=value)], sp.S.One, sp.Integer(3))
         assert found is not None and found.verdict.status is status
+
+
+def test_an_unknown_of_the_dual_that_is_zero_throughout_does_not_stop_the_contacts_from_being_followed():
+    H = ["a*cos(u)+sin(u)", "cos(u)-a*sin(u)"]
+    document = {"basis": {"variable": "u", "H": H, "interval": ["0", "3"]}, "parameters": {"a": ["-2", "2"]},
+                "targets": {"c": ["1", "0"]}}  # fmt: skip
+    family = family_of(model_from(document), "c", "a")
+    found = followed(family, ((0, "no", 1),), fmpq(-2), fmpq(2))
+    assert found.ends == (-2, 2) and covered(found.pieces) == [found.ends]
+    assert [checker.check(checker.load(json.dumps(one))) for one in found.documents] == ["range"]

@@ -38,7 +38,7 @@ def followed(
     form = echelon(family) if family.growing else None
     if form is None:
         least = max(lower, upper / 400) if family.growing else lower
-        found = follow(plain_track(family, pattern), least, upper, enough, accepted_by(partial(plain, family)))
+        found = from_middle(family, pattern, least, upper, enough)
         documents = [plain(family, part) for part in parts(found)]
         return Ranged(tuple(found), tuple(documents))
     start, documents = [], []
@@ -49,10 +49,18 @@ def followed(
         lower = start[-1].upper
         documents += [scaled_certificate(family, form, part) for part in parts(start)]
     scaled_family = rescaled(family, form)
-    accepts = accepted_by(partial(plain, scaled_family))
-    rest = follow(plain_track(scaled_family, pattern), lower, upper, enough, accepts) if lower < upper else []
+    rest = from_middle(scaled_family, pattern, lower, upper, enough) if lower < upper else []
     documents += [tied(family, form, plain(scaled_family, part)) for part in parts(rest)]
     return Ranged((*start, *rest), tuple(documents))
+
+
+def from_middle(
+    family: Family, pattern: Pattern, lower: fmpq, upper: fmpq, enough: Callable[[], bool]
+) -> list[Piece]:
+    """Pieces from the middle towards both ends; in a turned basis where the first one makes none."""
+    accepts = accepted_by(partial(plain, family))
+    found = follow(plain_track(family, pattern, conditioner), lower, upper, enough, accepts)
+    return found or follow(plain_track(family, pattern, turned), lower, upper, enough, accepts)
 
 
 def covered(pieces: Sequence[Piece]) -> list[tuple[fmpq, fmpq]]:
@@ -97,14 +105,14 @@ def parts(pieces: Sequence[Piece]) -> list[list[Piece]]:
     return done
 
 
-def plain_track(family: Family, pattern: Pattern) -> Track:
-    """The problem in an orthonormal basis that is renewed now and then."""
+def plain_track(family: Family, pattern: Pattern, basis: Callable[[Family, fmpq], fmpq_mat]) -> Track:
+    """The problem in a basis at a value of the parameter, which is renewed now and then."""
     bases: list[tuple[fmpq, fmpq, fmpq_mat]] = []
 
     def moving(a: fmpq, b: fmpq) -> Moving:
         middle, half = (a + b) / 2, (b - a) / 2
         if not bases or abs(middle - bases[-1][0]) > 2 * bases[-1][1]:
-            bases.append((middle, half, conditioner(family, middle)))
+            bases.append((middle, half, basis(family, middle)))
         return Moving(family.moving, family.parameter, bases[-1][2], middle, half)
 
     return Track(family.moving, family.parameter, pattern, lambda p: member(family, pattern, p), moving)
@@ -145,6 +153,16 @@ def conditioner(family: Family, p: fmpq) -> fmpq_mat:
     basis = make_basis(family.exact(sp.Rational(int(p.p), int(p.q))))
     m = basis.transform.nrows()
     return fmpq_mat(m, m, [exact(decimal(basis.transform[i, j], 12)) for i in range(m) for j in range(m)])
+
+
+def turned(family: Family, p: fmpq) -> fmpq_mat:
+    """The same after a reflection along (1, ..., m): the boxes of the proof are as large as what moves in them, and an
+    unknown of the dual that is zero for all values has no size of its own."""
+    A = conditioner(family, p)
+    m = A.nrows()
+    squares = sum(k * k for k in range(1, m + 1))
+    mirror = [fmpq(int(i == j)) - fmpq(2 * (i + 1) * (j + 1), squares) for i in range(m) for j in range(m)]
+    return fmpq_mat(m, m, mirror) * A
 
 
 
