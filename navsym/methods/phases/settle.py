@@ -99,9 +99,9 @@ def regime_of(
         made, left_over = slivers(family, left, right, limit.met)
         thin += made
         holes += [(end_text(number_of(p), -1), end_text(number_of(q), 1)) for p, q in left_over]
-    held = longest(done)
-    status = CERTIFIED if held is not None else OPEN
-    return Regime(family, span, a, b, None, status, shown, done.documents, tuple(thin), held, held), holes
+    run = longest(done)
+    status = CERTIFIED if run is not None else OPEN
+    return Regime(family, span, a, b, None, status, shown, done.documents, tuple(thin), run, run), holes
 
 
 def followed_within(family: Family, span: Span, limits: Limits, limit: Limit, name: str) -> Ranged:
