@@ -12,6 +12,7 @@ from flint import fmpq
 
 from navsym import checker
 from navsym.claims import OPEN, PROVED, Verdict
+from navsym.errors import DomainError
 from navsym.methods.phases.closed import Closed, prove
 from navsym.methods.phases.continuation import phases
 from navsym.methods.phases.family import family_of
@@ -178,3 +179,14 @@ def test_an_unknown_of_the_dual_that_is_zero_throughout_does_not_stop_the_contac
     found = followed(family, ((0, "no", 1),), fmpq(-2), fmpq(2))
     assert found.ends == (-2, 2) and covered(found.pieces) == [found.ends]
     assert [checker.check(checker.load(json.dumps(one))) for one in found.documents] == ["range"]
+
+
+def test_eigenvalues_without_a_closed_form_are_refused_in_words_of_the_model():
+    F = [["0", "1", "0"], ["0", "0", "1"], ["-1", "-p", "-2"]]
+    document = {
+        "model": {"name": "cubic", "states": ["x", "v", "w"], "F": F}, "parameters": {"p": ["1", "2"]},
+        "interval": {"T": "2"}, "targets": {"c": ["0", "1", "0"]},
+        "measurement": [{"name": "z", "h": ["1", "0", "0"], "sigma": "1"}],
+    }  # fmt: skip
+    with pytest.raises(DomainError, match=r"F: expected eigenvalues with a closed form.*solve for single values"):
+        family_of(model_from(document), "c", "p")

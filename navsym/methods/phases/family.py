@@ -149,8 +149,8 @@ class Family:
 def family_of(found: ModelFile | BasisFile, target: str | None, parameter: str) -> Family:
     """The family of a file with one parameter free.
 
-    Raises DomainError when nothing depends on the parameter, when F depends on the time, or when other
-    parameters have no value.
+    Raises DomainError when nothing depends on the parameter, when F depends on the time or has eigenvalues without a
+    closed form, or when other parameters have no value.
     """
     name, functional = chosen_target(found, target)
     symbol = declared(found, parameter)
@@ -159,6 +159,7 @@ def family_of(found: ModelFile | BasisFile, target: str | None, parameter: str) 
     else:
         family = of_model(found, name, functional, symbol)
     refuse_others(family)
+    refuse_sums_over_roots(family)
     return family
 
 
@@ -187,6 +188,16 @@ def refuse_others(family: Family) -> None:
         raise DomainError(
             f"expected a problem that depends on {parameter}; got one that does not; choose another parameter"
         )
+
+
+def refuse_sums_over_roots(family: Family) -> None:
+    """Raises DomainError where regressors are sums over the roots of a polynomial, which no certificate can name."""
+    for one in family.chain:
+        if any(h.has(sp.RootSum) for row in one.rows for h in row):
+            raise DomainError(
+                f"F: expected eigenvalues with a closed form, for all values of {family.parameter.name}; got the roots "
+                "of a polynomial that has none; solve for single values instead"
+            )
 
 
 def direct(found: BasisFile, name: str, functional: tuple[sp.Expr, ...], symbol: sp.Symbol) -> Family:

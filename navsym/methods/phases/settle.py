@@ -92,7 +92,7 @@ def regime_of(
         return Regime(family, span, a, b, closed, status, (), done.documents, (), held, longest(done)), []
     shown = limit.share(1 / 4).within(f"the table of values {name}", table_of, family, span) or ()
     if not follow.implicit:
-        return Regime(family, span, a, b, None, OPEN, shown), [(end_text(a), end_text(b))]
+        return Regime(family, span, a, b, None, OPEN, shown), [(end_text(a, -1), end_text(b, 1))]
     done = followed_within(family, span, limits, limit.share(3 / 4), name)
     thin, holes = [], []
     for left, right in rests(done, limits):
