@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import json
 import time
+from types import SimpleNamespace
 
 import pytest
 import sympy as sp
+from flint import fmpq
 
 from navsym import checker
 from navsym.errors import DomainError
@@ -16,6 +18,7 @@ from navsym.methods.phases.answer import number_of
 from navsym.methods.phases.continuation import phases
 from navsym.methods.phases.family import family_of
 from navsym.methods.phases.limit import Limit
+from navsym.methods.phases.range import covered, parts
 from navsym.methods.phases.vanishing import echelon
 from navsym.text.modelfile import model_from
 
@@ -142,3 +145,9 @@ def test_between_the_pieces_from_zero_on_and_those_from_the_middle_nothing_is_lo
     assert gaps(pieces, 0, regime.upper) and gaps([*pieces, *slivers, *answer.uncovered], 0, 1) == []
     assert gaps(pieces, *map(number_of, regime.alone)) == []
     assert accepted(answer) <= {"all", "range", "sliver"}
+
+
+
+def test_pieces_with_a_gap_between_them_have_certificates_of_their_own():
+    one, two, three = (SimpleNamespace(lower=fmpq(k), upper=fmpq(k + 1), cells=7) for k in (0, 1, 5))
+    assert parts([one, two, three]) == [[one, two], [three]] and covered([one, two, three]) == [(0, 2), (5, 6)]

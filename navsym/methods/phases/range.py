@@ -50,6 +50,8 @@ def followed(
         documents += [scaled_certificate(family, form, part) for part in parts(start)]
     scaled_family = rescaled(family, form)
     rest = from_middle(scaled_family, pattern, lower, upper, enough) if lower < upper else []
+    if rest and lower < rest[0].lower and not enough():
+        rest = [*from_middle(scaled_family, pattern, lower, rest[0].lower, enough), *rest]
     documents += [tied(family, form, plain(scaled_family, part)) for part in parts(rest)]
     return Ranged((*start, *rest), tuple(documents))
 
@@ -60,7 +62,7 @@ def from_middle(
     """Pieces from the middle towards both ends; in a turned basis where the first one makes none."""
     accepts = accepted_by(partial(plain, family))
     found = follow(plain_track(family, pattern, conditioner), lower, upper, enough, accepts)
-    return found or follow(plain_track(family, pattern, turned), lower, upper, enough, accepts)
+    return found or ([] if enough() else follow(plain_track(family, pattern, turned), lower, upper, enough, accepts))
 
 
 def covered(pieces: Sequence[Piece]) -> list[tuple[fmpq, fmpq]]:
@@ -97,7 +99,8 @@ def parts(pieces: Sequence[Piece]) -> list[list[Piece]]:
     done: list[list[Piece]] = []
     used = MOST_CELLS
     for one in pieces:
-        if used + one.cells > MOST_CELLS:
+        apart = bool(done) and done[-1][-1].upper != one.lower
+        if apart or used + one.cells > MOST_CELLS:
             done.append([])
             used = 0
         done[-1].append(one)

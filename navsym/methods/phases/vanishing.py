@@ -21,13 +21,15 @@ from navsym.proof.optimality.range import BITS, Piece, value_bounds
 from navsym.text.expression import to_text
 
 EXTRA = 12
+#: Series about zero are sharp, and their certificates accepted, for arguments up to about this.
+REACH = fmpq(7, 8)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Echelon:
     """Rational A, the first powers of its rows, the power for the functional, coefficients of A H by panel.
 
-    reach : the length up to which every argument stays within one, places twice as long as the interval included
+    reach : the length up to which every argument stays within REACH
     """
 
     basis: fmpq_mat
@@ -54,7 +56,7 @@ def echelon(family: Family) -> Echelon | None:
     exact = tuple(A * fmpq_mat(m, count, [c for row in t for c in row]) for t in tables if t is not None)
     image = A * fmpq_mat(m, 1, exact_functional(family.moving))
     shift = max(low for i, low in enumerate(lows) if image[i, 0] != 0)
-    return Echelon(A, lows, shift, exact, fmpq(1, 2) / max(rates) if rates else fmpq(10**6))
+    return Echelon(A, lows, shift, exact, REACH / max(rates) if rates else fmpq(10**6))
 
 
 def rates_of_row(row: list[sp.Expr]) -> list[fmpq] | None:
