@@ -160,3 +160,9 @@ def test_squares_taken_out_leave_no_certificate_where_zero_is_not_allowed():
     found = factored_certificate((x - 1) ** 2, x, Range(sp.Integer(0), sp.Integer(2)), strict=True)
     assert found is None
     assert factored_certificate(x**2 - 1, x, Range(None, None), strict=False) is None
+
+
+def test_an_exponential_over_a_range_that_no_fraction_can_end_is_left_to_the_other_proofs():
+    x = sp.Symbol("x")
+    verdict = decide(Bound(sp.exp(x) + sp.exp(-x), ">=", sp.Integer(2), {x: (sp.Integer(0), sp.Integer(10**12))}))
+    assert verdict.status is PROVED and verdict.method != "real roots"

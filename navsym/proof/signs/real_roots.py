@@ -21,6 +21,8 @@ from navsym.proof.sampling.descent import exact
 #: Bits of a first enclosure, and those beyond which two numbers stay undecided.
 FIRST_BITS, MOST_BITS = 64, 8192
 MOST_DEGREE = 400
+#: Ends of a range are fractions with at most about so many bits: exp(10**12) is none.
+LONGEST = 10**5
 
 
 class UndecidedError(Exception):
@@ -75,13 +77,13 @@ def rational_place(number: fmpq) -> Place:
 
 
 def place_of(value: sp.Expr) -> Place:
-    """An exact real number of the language. Raises UndecidedError where it has no finite ball."""
+    """An exact real number of the language. Raises UndecidedError where it has no finite ball, or is too long."""
     if isinstance(value, sp.Rational):
         return rational_place(fmpq(int(value.p), int(value.q)))
 
     def enclosure(bits: int) -> tuple[fmpq, fmpq]:
         ball = exact_ball(value, bits)
-        if not ball.is_finite():
+        if not ball.is_finite() or abs(int(ball.mid().man_exp()[1])) > LONGEST:
             raise UndecidedError
         with precision(2 * bits):
             return (fraction(ball.lower()), fraction(ball.upper()))
