@@ -14,6 +14,7 @@ from navsym.methods.phases import changes, events
 from navsym.methods.phases.continuation import phases
 from navsym.methods.phases.family import family_of
 from navsym.text.modelfile import model_from
+from tests.methods.phases_cover import lost
 from tests.methods.test_guaranteed import VELOCITY
 
 POSITION = {
@@ -80,7 +81,7 @@ def test_a_regime_without_a_closed_form_is_certified_for_every_length():
 @pytest.mark.slow
 def test_position_alone_is_certified_for_every_length_from_zero_to_a_full_period():
     answer = phases(family(POSITION, "y3"), sp.Integer(0), 2 * sp.pi)
-    assert answer.uncovered == () and len(answer.regimes) == 5
+    assert answer.uncovered == () and lost(answer) == [] and len(answer.regimes) == 5
     assert {regime.status for regime in answer.regimes} == {"CERTIFIED"}
     assert all(float(sp.Rational(b.upper) - sp.Rational(b.lower)) < 1e-30 for b in answer.boundaries)
     assert set(accepted(answer)) == {"all", "sliver"}
@@ -228,7 +229,7 @@ def test_the_position_measured_model_is_complete_with_four_boundaries_of_thirty_
         "measurement": [{"name": "position", "h": ["0", "0", "0", "1"], "sigma": "1"}],
     }  # fmt: skip
     answer = phases(family_of(model_from(document), "y3", "T"), sp.Integer(0), 2 * sp.pi)
-    assert answer.uncovered == () and len(answer.boundaries) == 4
+    assert answer.uncovered == () and lost(answer) == [] and len(answer.boundaries) == 4
     widths = [sp.Rational(b.upper) - sp.Rational(b.lower) for b in answer.boundaries]
     assert all(b.proved for b in answer.boundaries) and max(widths) < sp.Rational(1, 10**29)
     assert set(accepted(answer)) <= {"all", "sliver", "range"}

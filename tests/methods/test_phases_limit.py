@@ -21,6 +21,7 @@ from navsym.methods.phases.limit import Limit
 from navsym.methods.phases.range import covered, parts
 from navsym.methods.phases.vanishing import echelon
 from navsym.text.modelfile import model_from
+from tests.methods.phases_cover import followed_pieces, gaps
 
 
 def basis(H, interval, target, parameter="p", sigma=None):
@@ -117,21 +118,6 @@ def test_a_pole_at_zero_or_another_function_has_no_scaled_form():
     for h in ("1/u", "log(1+u)"):
         family = family_of(model_from(basis(["1", h], ["0", "T"], ["1", "0"], "T")), "c", "T")
         assert echelon(family) is None
-
-
-def gaps(known, lower, upper):
-    """What stretches leave of a range."""
-    left, at = [], sp.Rational(lower)
-    for a, b in [*sorted((sp.Rational(a), sp.Rational(b)) for a, b in known), (upper, upper)]:
-        left += [(at, min(a, upper))] if at < min(a, upper) else []
-        at = max(at, b)
-    return left
-
-
-def followed_pieces(answer):
-    """The stretches of the parameter on which contacts are followed, from the certificates."""
-    ranges = [one for c in answer.certificates() for one in c.get("of", [c]) if one["kind"] == "range"]
-    return [(piece["from"], piece["to"]) for one in ranges for piece in one["pieces"]]
 
 
 @pytest.mark.parametrize("seconds", [300.0, 12.0])
