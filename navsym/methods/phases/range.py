@@ -133,6 +133,8 @@ def from_zero(
     last = min(simple(upper * fmpq(7, 8), upper), simple(form.reach, form.reach))
     end = last
     for _ in range(12):
+        if enough():
+            break
         start = track.first(end / 2)
         first = None if start is None else piece(track, start, fmpq(0), end)
         if first is not None and accepts(first):
