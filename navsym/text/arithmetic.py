@@ -128,7 +128,7 @@ def bound_exponent(base: sp.Expr, exponent: sp.Expr) -> None:
 
     Every rational part of the exponent counts, also beside symbols: ``2**(x + n)*2**(-x)`` is ``2**n``.
     """
-    size = max((abs(part) for part in rational_parts(exponent)), default=sp.Integer(0))
+    size = max((abs(part) for part in [*rational_parts(exponent), *irrational(exponent)]), default=sp.Integer(0))
     bits = number_bits(base)
     if size > EXPONENT:
         raise too_large(f"an exponent of at most {EXPONENT}", "a larger one")
@@ -164,6 +164,15 @@ def rational_parts(exponent: sp.Expr) -> list[sp.Rational]:
     """Rational coefficients of the terms of an exponent."""
     parts = (term.as_coeff_Mul()[0] for term in sp.Add.make_args(exponent))
     return [part for part in parts if part.is_Rational]
+
+
+def irrational(exponent: sp.Expr) -> list[sp.Expr]:
+    """The value of a constant exponent that is no fraction, to a few digits: of towers such as ``9**9**9**(1/2)`` sympy
+    would want all digits when it puts terms in order."""
+    if exponent.free_symbols or exponent.is_Rational:
+        return []
+    value = exponent.evalf(5)
+    return [value] if value.is_Float else []
 
 
 def number_bits(base: sp.Expr) -> int:

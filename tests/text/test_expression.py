@@ -142,6 +142,8 @@ def test_a_name_must_be_plain_ascii(name):
         ("(3**1000*x)**1000", TooLargeError, "column 12", "bits"),
         ("(sqrt(3)**1001*x)**999", TooLargeError, "column 9", "exponent"),
         ("sin(exp(exp(99)))", TooLargeError, "column 5", "bounded size"),
+        ("1 + 99**9**9**9**9e-1", TooLargeError, "column 10", "exponent"),
+        ("2**exp(8000)", TooLargeError, "column 2", "exponent"),
         ("1e1001", TooLargeError, "column 1", "decimal exponent"),
         ("1e" + "9" * 50, TooLargeError, "column 1", "decimal exponent"),
         ("7" * 1001, TooLargeError, "column 1", "digits"),
