@@ -328,6 +328,11 @@ def enclose(
         return arb(program.run(values or {}))
 
 
+def exact_rational(x: fmpq) -> sp.Rational:
+    """A rational number of flint as one of sympy."""
+    return sp.Rational(int(x.p), int(x.q))
+
+
 def exact_ball(value: Any, bits: int = DEFAULT_BITS) -> arb:
     """A ball around an exact number: a Python or sympy number, or a constant expression."""
     return enclose(sp.sympify(value, strict=True), {}, bits)

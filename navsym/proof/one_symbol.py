@@ -16,7 +16,7 @@ from flint import arb
 from navsym.claims.statement import Box
 from navsym.claims.verdict import PROVED, REFUTED, Verdict
 from navsym.proof.assumptions import remaining_assumptions, written_conditions
-from navsym.proof.balls import UnsupportedError, exact_ball, tape
+from navsym.proof.balls import UnsupportedError, exact_ball, exact_rational, tape
 from navsym.proof.identities.normal_form import (
     OutsideLanguageError,
     divisors_inside,
@@ -26,7 +26,7 @@ from navsym.proof.identities.normal_form import (
 from navsym.proof.sampling.descent import exact
 from navsym.proof.sampling.points import Point, Range, ranges, value_at
 from navsym.proof.sampling.second_look import exists_at
-from navsym.proof.signs.one_variable import Survey, Zero, rational, survey
+from navsym.proof.signs.one_variable import Survey, Zero, survey
 from navsym.proof.signs.real_roots import is_root
 from navsym.proof.wording import broken
 
@@ -151,7 +151,7 @@ def refuted_at_zero(statement: Sides, zero: Zero) -> Verdict:
     if zero.at is not None:
         return broken({statement.symbol: zero.at}, arb(0), exact=True)
     assert zero.root is not None
-    ends = " and ".join(str(rational(end)) for end in (zero.root.lower, zero.root.upper))
+    ends = " and ".join(str(exact_rational(end)) for end in (zero.root.lower, zero.root.upper))
     words = f"the difference is exactly zero at a root that has no formula, of the polynomial {zero.root.factor}"
     words += f" between {ends}"
     return Verdict(REFUTED, "real roots", "one point", evidence=words, counterexample={}, difference=("0", "0"))

@@ -14,12 +14,12 @@ from navsym import checker
 from navsym.errors import DomainError
 from navsym.methods.phases import limit as limits
 from navsym.methods.phases import range as range_
-from navsym.methods.phases.answer import number_of
 from navsym.methods.phases.continuation import phases
 from navsym.methods.phases.family import family_of
 from navsym.methods.phases.limit import Limit
 from navsym.methods.phases.range import covered, parts
 from navsym.methods.phases.vanishing import echelon
+from navsym.proof.balls import exact_rational
 from navsym.text.modelfile import model_from
 from tests.methods.phases_cover import followed_pieces, gaps
 
@@ -127,9 +127,10 @@ def test_between_the_pieces_from_zero_on_and_those_from_the_middle_nothing_is_lo
     monkeypatch.setattr(limits, "used", Clock(0.1))
     answer = solved(basis(["1", "u", "exp(-u)"], ["0", "T"], ["0", "0", "1"], "T"), 0, 1, "T", seconds=seconds)
     (regime,) = answer.regimes
-    pieces, slivers = followed_pieces(answer), [(number_of(s.start), number_of(s.end)) for s in regime.slivers]
+    pieces = followed_pieces(answer)
+    slivers = [(exact_rational(s.start), exact_rational(s.end)) for s in regime.slivers]
     assert gaps(pieces, 0, regime.upper) and gaps([*pieces, *slivers, *answer.uncovered], 0, 1) == []
-    assert gaps(pieces, *map(number_of, regime.alone)) == []
+    assert gaps(pieces, *map(exact_rational, regime.alone)) == []
     assert accepted(answer) <= {"all", "range", "sliver"}
 
 

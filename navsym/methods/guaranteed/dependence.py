@@ -17,7 +17,7 @@ from navsym.claims import PROVED, Equation
 from navsym.errors import NavsymError, NotEstimableError
 from navsym.methods.guaranteed.problem import GuaranteedProblem
 from navsym.methods.guaranteed.unobservable import null_directions
-from navsym.proof.balls import enclose
+from navsym.proof.balls import enclose, exact_rational
 from navsym.proof.decimals import decimal
 from navsym.proof.ladder import decide
 from navsym.proof.optimality.enclosure import rational
@@ -108,7 +108,7 @@ def proved_relation(problem: GuaranteedProblem, k: int, balls: dict[int, arb]) -
 def recognised(x: arb) -> sp.Rational | None:
     """The rational number with a small denominator next to x, or None."""
     value = rational(x)
-    number = sp.Rational(int(value.p), int(value.q))
+    number = exact_rational(value)
     best = number.limit_denominator(10**9)
     return best if abs(best - number) < sp.Rational(1, 10**40) else None
 

@@ -33,7 +33,7 @@ from navsym.methods.guaranteed.unique import (
 )
 from navsym.numeric.exchange.interior import interior_dual
 from navsym.numeric.exchange.search import Contacts, with_places
-from navsym.proof.balls import enclose, precision
+from navsym.proof.balls import enclose, exact_rational, precision
 from navsym.proof.ladder import decide
 from navsym.proof.optimality.basis import Basis, as_fraction
 from navsym.proof.optimality.enclosure import Panel, Problem, Touch
@@ -92,7 +92,7 @@ def guessed(contacts: Contacts) -> list[Pin] | None:
     pins = []
     for k, u, inner, sign in zip(contacts.panel, contacts.u, contacts.inner, contacts.sign, strict=True):
         share = as_fraction(float(u))
-        exact = sp.Rational(int(share.p), int(share.q))
+        exact = exact_rational(share)
         best = exact.limit_denominator(LARGEST)
         if abs(best - exact) > NEAR:
             return None

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import sympy as sp
 from flint import arb, fmpq, fmpq_mat
 
-from navsym.proof.balls import enclose
+from navsym.proof.balls import enclose, exact_rational
 from navsym.proof.optimality.enclosure import Panel, Problem
 
 #: Digits that cancel before the regressors are separated, places at which sizes are seen, bits for that.
@@ -62,15 +62,11 @@ def in_other_unknowns(
     panels = []
     for k, panel in enumerate(problem.panels):
         mine = [(j, atom) for j, (place, atom) in enumerate(atoms) if place == k]
-        rows = [sp.Add(*(number(R[i][j] * scale[i]) * atom for j, atom in mine)) for i in range(m)]
+        rows = [sp.Add(*(exact_rational(R[i][j] * scale[i]) * atom for j, atom in mine)) for i in range(m)]
         panels.append(replace(panel, functions=tuple(rows)))
-    functional = [sp.Add(*(number(M[i, j]) * problem.functional[j] for j in range(m))) for i in range(m)]
+    functional = [sp.Add(*(exact_rational(M[i, j]) * problem.functional[j] for j in range(m))) for i in range(m)]
     return Problem(tuple(panels), tuple(functional))
 
-
-def number(x: fmpq) -> sp.Rational:
-    """The same number for expressions."""
-    return sp.Rational(int(x.p), int(x.q))
 
 
 def coefficients_of(h: sp.Expr, panel: Panel) -> dict[sp.Expr, fmpq] | None:

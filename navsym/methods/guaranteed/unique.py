@@ -17,7 +17,7 @@ from flint import arb, arb_mat, fmpq, fmpq_mat
 
 from navsym.claims import PROVED, Equation
 from navsym.numeric.exchange.search import Contacts
-from navsym.proof.balls import enclose, precision
+from navsym.proof.balls import enclose, exact_rational, precision
 from navsym.proof.ladder import decide
 from navsym.proof.optimality.basis import as_fraction
 from navsym.proof.optimality.enclosure import Panel, Problem, Touch, rational
@@ -60,7 +60,7 @@ def several_optimal(problem: Problem, contacts: Contacts, dual: Sequence[arb]) -
 def recognised(x: arb) -> sp.Rational | None:
     """The rational with a small denominator next to a ball."""
     value = rational(x)
-    number = sp.Rational(int(value.p), int(value.q))
+    number = exact_rational(value)
     best = number.limit_denominator(720)
     return best if abs(best - number) <= NEAR * max(1, abs(number)) else None
 
@@ -97,7 +97,7 @@ def guessed(contacts: Contacts, k: int, panel: Panel, f: sp.Expr) -> list[Place]
     shares = {as_fraction(u) for j, u in [*at, *contacts.touching] if j == k}
     found = {}
     for share in shares:
-        best = sp.Rational(int(share.p), int(share.q)).limit_denominator(60)
+        best = exact_rational(share).limit_denominator(60)
         value = f.subs(panel.variable, panel.start + (panel.end - panel.start) * best)
         found[fmpq(int(best.p), int(best.q))] = 1 if bool(enclose(value) > 0) else -1
     return [Place(k, at_, sign) for at_, sign in found.items()]

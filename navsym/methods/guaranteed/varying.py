@@ -19,7 +19,7 @@ import sympy as sp
 from flint import arb, arb_mat, arb_series, fmpq
 
 from navsym.errors import DomainError, TooLargeError
-from navsym.proof.balls import enclose, precision
+from navsym.proof.balls import enclose, exact_rational, precision
 from navsym.proof.decimals import decimal, exact
 from navsym.proof.optimality.enclosure import interval, rational
 from navsym.proof.optimality.moving import number_of, terms
@@ -61,7 +61,7 @@ def on_rational_interval(found: ModelFile) -> tuple[ModelFile, sp.Expr]:
     if found.T.is_Rational or varying(found) or len(found.pieces) > 1:
         return found, sp.S.Zero
     above = rational(enclose(found.T).upper())
-    S = sp.Rational(int(above.p), int(above.q))
+    S = exact_rational(above)
     return replace(found, T=S, pieces=(replace(found.pieces[0], end=None),)), found.T - S
 
 
@@ -193,7 +193,7 @@ def horner(c: list[fmpq], at: sp.Expr) -> sp.Expr:
     """The polynomial with coefficients c, lowest power first, at an expression, in Horner's form."""
     value: sp.Expr = sp.S.Zero
     for a in reversed(c):
-        value = value * at + sp.Rational(int(a.p), int(a.q))
+        value = value * at + exact_rational(a)
     return value
 
 

@@ -145,8 +145,3 @@ def pattern_rows(family: Family, span: Span) -> list[dict[str, Any]]:
         at = {"from": to_text(family.time(start)), "to": to_text(family.time(stop))}.get(kind)
         rows.append({"measurement": family.measurements[k], "at": at, "sign": s})
     return rows[::-1] if family.backward else rows
-
-
-def number_of(x: fmpq) -> sp.Rational:
-    """The same rational number for sympy."""
-    return sp.Rational(int(x.p), int(x.q))

@@ -21,7 +21,7 @@ from navsym.methods.phases.limit import LEAST, Limit
 from navsym.methods.phases.places import middle_of_constant, number, place_or_share
 from navsym.methods.phases.polynomial import is_monomial, monomial_weights, power_law_dual
 from navsym.methods.phases.scan import Pattern, Span, pattern_of, sample
-from navsym.proof.balls import enclose
+from navsym.proof.balls import enclose, exact_rational
 from navsym.proof.equations import combine, decide_equation
 from navsym.proof.ladder import DEFAULT_MEGABYTES, decide_within
 from navsym.proof.optimality.fixed import attempts
@@ -193,7 +193,7 @@ def fixed_duals(family: Family, span: Span, found: Sequence[Sample]) -> list[tup
         problem = family.exact(sp.Rational(T.numerator, T.denominator))
         refined_ = polish(problem.panels, basis, contacts, BITS, GOAL)
         for base, _, _ in attempts(problem, basis, contacts, refined_, 14):
-            x = tuple(sp.Rational(int(c.p), int(c.q)) for c in base)
+            x = tuple(exact_rational(c) for c in base)
             short = all(c.q <= 720 for c in x)
             if short and x not in done and all(feasible(family, one, np.array(x, dtype=float)) for one in found):
                 done.append(x)

@@ -9,6 +9,7 @@ import sympy as sp
 from flint import arb
 
 from navsym.methods.phases.family import Family, U
+from navsym.proof.balls import exact_rational
 from navsym.proof.optimality.enclosure import rational
 
 NEAR = sp.Rational(1, 10**40)
@@ -19,7 +20,7 @@ SHORT = 1000
 def number(x: arb) -> sp.Rational:
     """Midpoint of a ball as an exact rational."""
     value = rational(x)
-    return sp.Rational(int(value.p), int(value.q))
+    return exact_rational(value)
 
 
 def constant(x: sp.Rational) -> sp.Expr | None:

@@ -8,7 +8,6 @@ from fractions import Fraction
 from functools import partial
 from typing import Any
 
-import sympy as sp
 from flint import fmpq, fmpq_mat
 
 from navsym import checker
@@ -16,6 +15,7 @@ from navsym.methods.phases.closed import refined
 from navsym.methods.phases.family import Family
 from navsym.methods.phases.scan import Pattern
 from navsym.methods.phases.vanishing import Echelon, echelon, rescaled, scaled, scaled_certificate, tied
+from navsym.proof.balls import exact_rational
 from navsym.proof.decimals import decimal, exact
 from navsym.proof.optimality.basis import make_basis
 from navsym.proof.optimality.enclosure import rational
@@ -148,14 +148,14 @@ def member(family: Family, pattern: Pattern, p: fmpq) -> Member | None:
     found = refined(family, fraction_of(p), pattern)
     if found is None:
         return None
-    done, problem = found.polished, family.exact(sp.Rational(int(p.p), int(p.q)))
+    done, problem = found.polished, family.exact(exact_rational(p))
     weights = [w * problem.panels[k].bound() for w, k in zip(done.weights, done.panel, strict=True)]
     return Member(tuple(map(rational, done.dual)), tuple(map(rational, done.v)), tuple(map(rational, weights)))
 
 
 def conditioner(family: Family, p: fmpq) -> fmpq_mat:
     """The orthonormalising matrix at a value, rounded to twelve digits."""
-    basis = make_basis(family.exact(sp.Rational(int(p.p), int(p.q))))
+    basis = make_basis(family.exact(exact_rational(p)))
     m = basis.transform.nrows()
     return fmpq_mat(m, m, [exact(decimal(basis.transform[i, j], 12)) for i in range(m) for j in range(m)])
 

@@ -13,7 +13,7 @@ from flint import fmpq
 
 from navsym.claims import CERTIFIED, OPEN
 from navsym.methods.guaranteed.solver import solve
-from navsym.methods.phases.answer import Regime, end_text, number_of
+from navsym.methods.phases.answer import Regime, end_text
 from navsym.methods.phases.closed import Closed
 from navsym.methods.phases.events import Boundary
 from navsym.methods.phases.family import Family
@@ -21,7 +21,7 @@ from navsym.methods.phases.limit import Limit
 from navsym.methods.phases.range import covered, followed
 from navsym.methods.phases.scan import Span, exact
 from navsym.methods.phases.slivers import slivers
-from navsym.proof.balls import enclose
+from navsym.proof.balls import enclose, exact_rational
 from navsym.proof.decimals import decimal, lower_end, upper_end
 from navsym.proof.decimals import exact as exact_decimal
 from navsym.proof.optimality.enclosure import rational
@@ -98,7 +98,7 @@ def regime_of(
     for left, right in rests(done, limits):
         made, left_over = slivers(family, left, right, limit.met)
         thin += made
-        holes += [(end_text(number_of(p), -1), end_text(number_of(q), 1)) for p, q in left_over]
+        holes += [(end_text(exact_rational(p), -1), end_text(exact_rational(q), 1)) for p, q in left_over]
     run = longest(done)
     status = CERTIFIED if run is not None else OPEN
     return Regime(family, span, a, b, None, status, shown, done.documents, tuple(thin), run, run), holes

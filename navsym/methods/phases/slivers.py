@@ -20,7 +20,7 @@ from navsym.errors import NavsymError
 from navsym.methods.phases.family import Family
 from navsym.methods.phases.scan import ordered
 from navsym.numeric.exchange.search import Contacts, find_contacts
-from navsym.proof.balls import precision
+from navsym.proof.balls import exact_rational, precision
 from navsym.proof.decimals import decimal, exact
 from navsym.proof.optimality.basis import Basis, DependentError, as_fraction, make_basis
 from navsym.proof.optimality.enclosure import Panel, Problem, Touch, interval, rational, total
@@ -110,7 +110,7 @@ def sliver(family: Family, start: fmpq, end: fmpq) -> tuple[Sliver | None, float
         return None, inf
     ball = over_bounds(shown)
     try:
-        problem = family.exact(sp.Rational(int(middle.p), int(middle.q)))
+        problem = family.exact(exact_rational(middle))
         basis = make_basis(problem)
         contacts = find_contacts(basis.panels)
         refined = polish(problem.panels, basis, contacts, BITS, 1e-40)

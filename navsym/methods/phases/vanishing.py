@@ -14,7 +14,7 @@ import sympy as sp
 from flint import arb, arb_mat, arb_series, fmpq, fmpq_mat
 
 from navsym.methods.phases.family import Family, U
-from navsym.proof.balls import enclose
+from navsym.proof.balls import enclose, exact_rational
 from navsym.proof.optimality.enclosure import interval
 from navsym.proof.optimality.moving import Vanishing, exact_functional, number_of, terms
 from navsym.proof.optimality.range import BITS, Piece, value_bounds
@@ -188,14 +188,14 @@ def rescaled(family: Family, form: Echelon) -> Family:
     T, m = family.parameter, len(family.functional)
     rows = tuple(
         tuple(
-            sum((rational_of(form.basis[i, j]) * h.subs(U, T * U) for j, h in enumerate(row)), sp.S.Zero)
+            sum((exact_rational(form.basis[i, j]) * h.subs(U, T * U) for j, h in enumerate(row)), sp.S.Zero)
             / T ** form.lows[i]
             for i in range(m)
         )
         for row in family.rows
     )
     image = form.basis * fmpq_mat(m, 1, exact_functional(family.moving))
-    functional = tuple(rational_of(image[i, 0]) * T ** (form.shift - low) for i, low in enumerate(form.lows))
+    functional = tuple(exact_rational(image[i, 0]) * T ** (form.shift - low) for i, low in enumerate(form.lows))
     return replace(family, rows=rows, functional=functional, start=sp.S.Zero, end=sp.S.One)
 
 
@@ -213,7 +213,7 @@ def scaled_text(form: Echelon, i: int, row: tuple[sp.Expr, ...], T: str, v: str)
     """Row i of ``A H(T v) / T**k_i``, powers cancelled."""
     parts: dict[sp.Symbol, str] = {}
     K = max(form.lows) + 1
-    total = sum((rational_of(form.basis[i, j]) * opened(h, K, T, v, parts) for j, h in enumerate(row)), sp.S.Zero)
+    total = sum((exact_rational(form.basis[i, j]) * opened(h, K, T, v, parts) for j, h in enumerate(row)), sp.S.Zero)
     terms = []
     for (power,), factor in sp.Poly(sp.expand(total), U).terms():
         for monomial, c in sp.Poly(factor, *parts).terms() if parts else [((), factor)]:
@@ -235,7 +235,7 @@ def opened(h: sp.Expr, K: int, T: str, v: str, parts: dict[sp.Symbol, str]) -> s
 
     def reciprocal(f: sp.Expr) -> sp.Expr:
         (table,), symbol = taylor_table((f,), K) or ([],), sp.Symbol(f"rest[{f}]")
-        polynomial = sum((rational_of(a) * U**k for k, a in enumerate(table)), sp.S.Zero)
+        polynomial = sum((exact_rational(a) * U**k for k, a in enumerate(table)), sp.S.Zero)
         rest = sp.cancel(sp.together(f - polynomial) / U**K)
         parts[symbol] = f"({to_text(rest.subs(U, sp.Symbol(T, real=True) * sp.Symbol(v, real=True)))})"
         return polynomial + U**K * symbol
@@ -255,7 +255,7 @@ def polynomial_of(name: str, c: sp.Rational, K: int) -> sp.Expr:
 def tie(form: Echelon, i: int, row: tuple[sp.Expr, ...], text: str, T: sp.Symbol, v: str) -> dict[str, Any]:
     """``H_i T**k_i = sum_j A_ij H_j(T v)``."""
     place = sp.Symbol(v, real=True)
-    pairs = [(rational_of(form.basis[i, j]), h.subs(U, T * place)) for j, h in enumerate(row)]
+    pairs = [(exact_rational(form.basis[i, j]), h.subs(U, T * place)) for j, h in enumerate(row)]
     right = " + ".join(f"({to_text(a)})*({to_text(h)})" for a, h in pairs if a != 0)
     return {
         "kind": "identity", "left": f"({text})*{T.name}**{form.lows[i]}", "right": right, "symbols": [T.name, v],
@@ -267,11 +267,7 @@ def scaled_functional(family: Family, form: Echelon) -> list[str]:
     image = form.basis * fmpq_mat(form.basis.nrows(), 1, exact_functional(family.moving))
     T = family.parameter.name
     return [
-        f"({to_text(rational_of(image[i, 0]))})*{T}**{form.shift - low}" if image[i, 0] != 0 else "0"
+        f"({to_text(exact_rational(image[i, 0]))})*{T}**{form.shift - low}" if image[i, 0] != 0 else "0"
         for i, low in enumerate(form.lows)
     ]
 
-
-def rational_of(x: fmpq) -> sp.Rational:
-    """A rational of flint as one of sympy."""
-    return sp.Rational(int(x.p), int(x.q))

@@ -15,7 +15,7 @@ from itertools import pairwise
 import sympy as sp
 from flint import fmpq
 
-from navsym.proof.balls import UnsupportedError
+from navsym.proof.balls import UnsupportedError, exact_rational
 from navsym.proof.sampling.points import Range
 from navsym.proof.signs.known import Limits, Sign, SignProof
 from navsym.proof.signs.real_roots import Place, UndecidedError, between, compare, is_root, real_roots
@@ -124,7 +124,7 @@ def survey_of_piece(branches: list[Branch], piece: Piece) -> Survey:
     known = [branch_at(branches, u) for u in cells]
     signs: dict[int, list[sp.Expr]] = {1: [], 0: [], -1: []}
     for u, branch in zip(cells, known, strict=True):
-        signs[sign_at(branch.value, u)].append(piece.back(rational(u)))
+        signs[sign_at(branch.value, u)].append(piece.back(exact_rational(u)))
     # |f| is continuous: at a root the branch of the interval before it has the value, at the lower end that after it.
     before = {id(root): known[k] for k, root in enumerate(inside)}
     low = [root for root in places if id(root) not in before and at_end(root, piece.lower)]
@@ -173,10 +173,6 @@ def formula(root: Place, piece: Piece) -> sp.Expr | None:
             return end
     return None if root.value is None else piece.back(root.value)
 
-
-def rational(number: fmpq) -> sp.Rational:
-    """The same number for the algebra."""
-    return sp.Rational(int(number.p), int(number.q))
 
 
 # -- what the search for signs asks ---------------------------------------

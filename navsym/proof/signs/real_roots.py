@@ -14,7 +14,7 @@ from itertools import pairwise
 import sympy as sp
 from flint import fmpq, fmpq_poly, fmpz_poly
 
-from navsym.proof.balls import exact_ball, precision
+from navsym.proof.balls import exact_ball, exact_rational, precision
 from navsym.proof.identities.numbers import is_zero
 from navsym.proof.sampling.descent import exact
 
@@ -73,7 +73,7 @@ class Place:
 
 def rational_place(number: fmpq) -> Place:
     """A rational number."""
-    return Place(number, number, value=sp.Rational(int(number.p), int(number.q)))
+    return Place(number, number, value=exact_rational(number))
 
 
 def place_of(value: sp.Expr) -> Place:
@@ -214,7 +214,7 @@ def value_of(polynomial: fmpq_poly, at: sp.Expr) -> sp.Expr:
     """The value of a polynomial at an exact number."""
     total = sp.Integer(0)
     for c in reversed(polynomial.coeffs()):
-        total = total * at + sp.Rational(int(c.p), int(c.q))
+        total = total * at + exact_rational(c)
     return total
 
 
