@@ -18,17 +18,29 @@ import sys
 SUPPORTED = ((3, 11), (3, 12), (3, 13))
 ROOT = os.path.dirname(os.path.realpath(__file__))
 LOCK = "requirements.lock"
-EXTRAS = "requirements-extra.lock"   # jupyterlab, documentation, cross compilers, GeoTIFF, fuzzing
+EXTRAS = "requirements-extra.lock"  # jupyterlab, documentation, cross compilers, GeoTIFF, fuzzing
 INPUTS = (LOCK, "pyproject.toml")
 STAMP = "navsym-stamp.json"
-MINE = "navsym-bootstrap"      # stands in every environment made here; nothing else is ever removed
-MISSING = 3                    # exit status: this machine lacks something
+MINE = "navsym-bootstrap"  # stands in every environment made here; nothing else is ever removed
+MISSING = 3  # exit status: this machine lacks something
 
 # Settings of pip that would put the packages elsewhere, or other packages here. Where packages
 # come from (index, mirror, folder of wheels, proxy, certificates) stays as the user has it.
 ASTRAY = (
-    "USER", "TARGET", "PREFIX", "ROOT", "REQUIREMENT", "CONSTRAINT", "REQUIRE_VIRTUALENV", "DRY_RUN",
-    "IGNORE_INSTALLED", "NO_BINARY", "NO_DEPS", "REPORT", "QUIET", "VERBOSE",
+    "USER",
+    "TARGET",
+    "PREFIX",
+    "ROOT",
+    "REQUIREMENT",
+    "CONSTRAINT",
+    "REQUIRE_VIRTUALENV",
+    "DRY_RUN",
+    "IGNORE_INSTALLED",
+    "NO_BINARY",
+    "NO_DEPS",
+    "REPORT",
+    "QUIET",
+    "VERBOSE",
 )
 
 # The whole suite runs on two cores, whole files apart: what a file prepares is prepared once. A worker that dies
@@ -152,9 +164,7 @@ def quiet_environment() -> "dict[str, str]":
 
 def run(command: "list[str]", advice: str) -> None:
     """Run one step quietly; when it fails, show its last lines and the advice."""
-    done = subprocess.run(
-        command, cwd=ROOT, env=quiet_environment(), stdout=subprocess.PIPE, stderr=subprocess.STDOUT
-    )
+    done = subprocess.run(command, cwd=ROOT, env=quiet_environment(), stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
     if done.returncode:
         lines = done.stdout.decode("utf-8", "replace").strip().splitlines()
         print("\n".join("  " + line for line in lines[-8:]), file=sys.stderr)
@@ -194,16 +204,28 @@ def install(venv: str) -> None:
     """The locked packages, then this checkout itself, editable."""
     install_locked(venv, LOCK)
     run(
-        [python_of(venv), "-m", "pip", "install", "--quiet", "--no-deps", "--no-build-isolation", "--no-index",
-         "-e", "."],
+        [
+            python_of(venv),
+            "-m",
+            "pip",
+            "install",
+            "--quiet",
+            "--no-deps",
+            "--no-build-isolation",
+            "--no-index",
+            "-e",
+            ".",
+        ],
         "pip could not install this checkout; is it complete?",
     )
 
 
 def install_extras(venv: str) -> None:
     """What is optional; the locked packages that are there already stay as they are."""
-    say("adding the optional packages of %s to %s (%d with their needs)"
-        % (EXTRAS, os.path.basename(venv), locked(EXTRAS)))
+    say(
+        "adding the optional packages of %s to %s (%d with their needs)"
+        % (EXTRAS, os.path.basename(venv), locked(EXTRAS))
+    )
     with alone(ROOT):
         install_locked(venv, EXTRAS)
     say("the optional packages are ready")
@@ -214,7 +236,7 @@ def alone(root: str) -> "object":
     """Only one process at a time makes the environment; the others wait for it."""
     try:
         import fcntl
-    except ImportError:                    # Windows: two first runs at once are the user's to avoid
+    except ImportError:  # Windows: two first runs at once are the user's to avoid
         yield
         return
     with open(os.path.join(root, "bootstrap.py"), "rb") as file:
@@ -223,7 +245,7 @@ def alone(root: str) -> "object":
         except BlockingIOError:
             say("waiting for another run that is making the environment")
             fcntl.flock(file, fcntl.LOCK_EX)
-        except OSError:                    # a file system without locks
+        except OSError:  # a file system without locks
             say("this file system has no locks; let only one first run at a time go")
         yield
 
@@ -242,7 +264,7 @@ def prepare(root: str) -> str:
 def update(venv: str, stamp: "dict[str, str]") -> None:
     """Make or refresh the environment; the stamp is dropped first and written last."""
     found = state(venv, stamp)
-    if found == "ready":                   # another run finished while this one waited
+    if found == "ready":  # another run finished while this one waited
         return
     drop_stamp(venv)
     name = os.path.basename(venv)
@@ -265,7 +287,7 @@ def command_for(python: str, arguments: "list[str]") -> "list[str]":
     if arguments[0] == "test":
         given = arguments[1:] or (WHOLE if (os.cpu_count() or 1) > 1 else [])
         return [python, "-m", "pytest", *given]
-    return [python, "-P", "-m", "navsym", *arguments]      # -P: no module is taken from the user's folder
+    return [python, "-P", "-m", "navsym", *arguments]  # -P: no module is taken from the user's folder
 
 
 def hand_over(command: "list[str]") -> int:
@@ -275,7 +297,7 @@ def hand_over(command: "list[str]") -> int:
     if os.name == "nt":
         return subprocess.run(command, env=env).returncode
     os.execve(command[0], command, env)
-    return 0                               # never reached
+    return 0  # never reached
 
 
 def fail(message: str, as_json: bool) -> int:

@@ -30,12 +30,12 @@ PAPER = Paper(
     },
 )
 
-T = sp.Symbol("T", positive=True)              # period
-L = sp.Symbol("Lambda", positive=True)         # tracking index
-sv = sp.Symbol("sigma_v", positive=True)       # standard deviation of the measurement
-r = sp.Symbol("r", positive=True)              # sigma_v / sqrt(S), between 0 and 1
+T = sp.Symbol("T", positive=True)  # period
+L = sp.Symbol("Lambda", positive=True)  # tracking index
+sv = sp.Symbol("sigma_v", positive=True)  # standard deviation of the measurement
+r = sp.Symbol("r", positive=True)  # sigma_v / sqrt(S), between 0 and 1
 alpha, beta = sp.symbols("alpha beta", positive=True)
-a = sp.Symbol("a", real=True)                  # a constant acceleration
+a = sp.Symbol("a", real=True)  # a constant acceleration
 
 F = sp.Matrix([[1, T], [0, 1]])
 G = sp.Matrix([T**2 / 2, T])
@@ -192,9 +192,7 @@ def noise_of_position():
 @claim("10.velocity")
 def noise_of_velocity():
     """Noise of variance one gives the filtered velocity 2 beta^2 / (T^2 alpha (4 - 2 alpha - beta))."""
-    return Equation(
-        printed=2 * beta**2 / (T**2 * alpha * (4 - 2 * alpha - beta)), derived=noise_covariance()[1, 1]
-    )
+    return Equation(printed=2 * beta**2 / (T**2 * alpha * (4 - 2 * alpha - beta)), derived=noise_covariance()[1, 1])
 
 
 @claim("11.position")
@@ -213,9 +211,7 @@ def lag_of_velocity():
 def characteristic_polynomial():
     """The filter has the characteristic polynomial z^2 - (2 - alpha - beta) z + 1 - alpha."""
     z = sp.Symbol("z", real=True)
-    return Equation(
-        printed=z**2 - (2 - alpha - beta) * z + 1 - alpha, derived=(z * sp.eye(2) - closed_loop()).det()
-    )
+    return Equation(printed=z**2 - (2 - alpha - beta) * z + 1 - alpha, derived=(z * sp.eye(2) - closed_loop()).det())
 
 
 @claim("12.stable")

@@ -16,7 +16,7 @@ from docutils import nodes
 
 ROOT = Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(ROOT), str(ROOT / "docs")]
-os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, (str(ROOT), os.environ.get("PYTHONPATH"))))   # of the kernels
+os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, (str(ROOT), os.environ.get("PYTHONPATH"))))  # of the kernels
 project = "navsym"
 author = "navsym contributors"
 html_title = "navsym"
@@ -26,14 +26,15 @@ html_theme = "furo"
 html_theme_options = {"top_of_page_buttons": []}
 html_static_path = ["_static"]
 html_css_files = ["site.css"]
-html_math_renderer = "mathml"            # pages ask no network for anything
+html_math_renderer = "mathml"  # pages ask no network for anything
 exclude_patterns = ["_build"]
 nb_execution_mode = "force" if os.environ.get("NAVSYM_DOCS_EXECUTE") else "off"
 nb_execution_timeout = 300
 nb_execution_raise_on_error = True
 nb_render_text_lexer = "text"
-nb_ipywidgets_js: dict[str, Any] = {}      # sliders live in the notebook itself; the page asks no network
+nb_ipywidgets_js: dict[str, Any] = {}  # sliders live in the notebook itself; the page asks no network
 suppress_warnings: list[str] = []
+
 
 def write_notebooks(folder: Path) -> None:
     """The notebooks of the project as pages; a page is only written when it has changed."""
@@ -112,5 +113,5 @@ def setup(app: Any) -> None:
     """Reference and notebooks are written before the sources are read; formulas are shown without a script."""
     app.add_html_math_renderer("mathml", (inline_formula, None), (displayed_formula, None))
     app.connect("builder-inited", generate)
-    app.connect("html-page-context", finished, priority=900)      # behind the theme, which makes the navigation
+    app.connect("html-page-context", finished, priority=900)  # behind the theme, which makes the navigation
     app.connect("build-finished", name_landmarks)

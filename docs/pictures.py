@@ -79,8 +79,11 @@ def phases() -> Figure:
         label = f"{len(places)} instants: ${latex}$"
         regimes.append({"at": at, "value": value, "label": label, "instants": places})
     return plots.phase_diagram(
-        regimes, parameter="length of the interval T", unit="Schuler units",
-        quantity="guaranteed deviation\nof the drift, σ", logarithmic=True,
+        regimes,
+        parameter="length of the interval T",
+        unit="Schuler units",
+        quantity="guaranteed deviation\nof the drift, σ",
+        logarithmic=True,
     )
 
 
@@ -146,8 +149,12 @@ def surface() -> Figure:
     flight = fly(terrain, start, heading, setting, np.random.default_rng(11))
     found = criteria(prepare(terrain, flight.track, GRID.position_only))[0, 0]
     return plots.criterion_surface(
-        terrain.heights, found, cell=terrain.dx, track=np.c_[flight.track.x, flight.track.y],
-        origin=(terrain.extent[0], terrain.extent[2]), step=50.0,
+        terrain.heights,
+        found,
+        cell=terrain.dx,
+        track=np.c_[flight.track.x, flight.track.y],
+        origin=(terrain.extent[0], terrain.extent[2]),
+        step=50.0,
     )
 
 
@@ -178,15 +185,23 @@ def conditions() -> Figure:
     found = [condition_numbers(int(n), "1/6371000", "1/5", digits=15)["N_f"] for n in orders]
     printed = [float(row[2]) if (row := table.PRINTED.get((int(n), "tau0.2"))) else np.nan for n in orders]
     return plots.condition_numbers(
-        orders, np.array(printed), np.array([float(f.enclosure.lower) for f in found]),
+        orders,
+        np.array(printed),
+        np.array([float(f.enclosure.lower) for f in found]),
         double=np.array([f.double or np.nan for f in found]),
     )
 
 
 PICTURES: dict[str, Callable[[], Figure]] = {
-    "verdicts": verdicts, "phases": phases, "dual": dual, "ladder": ladder, "modes": modes, "surface": surface,
-    "errors": errors, "conditions": conditions,
-}  # fmt: skip
+    "verdicts": verdicts,
+    "phases": phases,
+    "dual": dual,
+    "ladder": ladder,
+    "modes": modes,
+    "surface": surface,
+    "errors": errors,
+    "conditions": conditions,
+}
 
 
 def main(names: list[str]) -> None:

@@ -18,9 +18,7 @@ from typing import Any
 
 from navsym.errors import NavsymError
 
-SCHEMA = (
-    "CREATE TABLE IF NOT EXISTS results (key TEXT PRIMARY KEY, value TEXT NOT NULL, digest TEXT NOT NULL)"
-)
+SCHEMA = "CREATE TABLE IF NOT EXISTS results (key TEXT PRIMARY KEY, value TEXT NOT NULL, digest TEXT NOT NULL)"
 #: As bytes, so that an entry whose text is none any more is one damaged entry and not the end of reading.
 READ = "SELECT CAST(value AS BLOB), CAST(digest AS BLOB) FROM results WHERE key = ?"
 #: What comes of a file that cannot be used; SQLite may name a damaged table in bytes that are no text.
@@ -95,9 +93,7 @@ class Store:
         """Keep a result; when this returns, a kill or a power cut does not lose it."""
         text = json.dumps(value, allow_nan=False)
         try:
-            self.connection.execute(
-                "INSERT OR REPLACE INTO results VALUES (?, ?, ?)", (key, text, key_of(key, text))
-            )
+            self.connection.execute("INSERT OR REPLACE INTO results VALUES (?, ?, ?)", (key, text, key_of(key, text)))
         except TROUBLE as error:
             raise self.trouble("written", error) from error
 

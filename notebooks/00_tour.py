@@ -104,9 +104,16 @@ for claim in (system.second_component, system.second_component_corrected, drift)
 # %%
 printed = drift.derive()
 longer = Optimum(
-    printed.regressors, printed.functional, printed.variable, printed.interval, printed.dual,
-    printed.support, printed.weights, printed.value, box={model.T: (0, 3 * sp.pi / 4)},
-)  # fmt: skip
+    printed.regressors,
+    printed.functional,
+    printed.variable,
+    printed.interval,
+    printed.dual,
+    printed.support,
+    printed.weights,
+    printed.value,
+    box={model.T: (0, 3 * sp.pi / 4)},
+)
 verdict = decide(longer)
 assert verdict.status == "REFUTED"
 verdict

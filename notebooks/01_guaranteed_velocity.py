@@ -173,8 +173,12 @@ show(duality.using_all_measurements_can_be_worse)
 # is as short: two instants.
 
 # %%
-for claim in (beyond.tilt_holds_to_four_thirds_of_pi, beyond.drift_holds_to_two_thirds_of_pi,
-              beyond.tilt_with_two_instants, beyond.drift_with_two_instants):  # fmt: skip
+for claim in (
+    beyond.tilt_holds_to_four_thirds_of_pi,
+    beyond.drift_holds_to_two_thirds_of_pi,
+    beyond.tilt_with_two_instants,
+    beyond.drift_with_two_instants,
+):
     require(claim)
 show(beyond.drift_with_two_instants)
 

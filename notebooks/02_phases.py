@@ -105,9 +105,7 @@ figure.tight_layout()
 # %%
 lengths = np.linspace(0.3, 6.2, 1000)
 for state, answer in ANSWER.items():
-    difference = (
-        values_for_lengths(FAMILY[state], lengths) / curve(answer, lambda r: r.closed.value, lengths) - 1
-    )
+    difference = values_for_lengths(FAMILY[state], lengths) / curve(answer, lambda r: r.closed.value, lengths) - 1
     print(state, f"largest relative difference {np.nanmax(np.abs(difference)):.1e}")
     assert np.nanmax(np.abs(difference)) < 1e-9
 
@@ -207,9 +205,7 @@ if noise is not None:
         errors["guaranteed"].append(nearest @ noise[inside][picked])
         errors["least squares"].append((np.linalg.pinv(H.T) @ noise[inside])[1])
     for name, values in errors.items():
-        print(
-            f"{name:14} median |error| {np.median(np.abs(values)):.3f}, worst {np.max(np.abs(values)):.3f} m/s"
-        )
+        print(f"{name:14} median |error| {np.median(np.abs(values)):.3f}, worst {np.max(np.abs(values)):.3f} m/s")
     plt.figure(figsize=(8, 3))
     for name, values in errors.items():
         plt.plot(np.abs(values), label=name)

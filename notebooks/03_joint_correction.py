@@ -102,8 +102,14 @@ steps = np.cumsum((0, *found.staircase))
 figure, axis = plt.subplots(figsize=(7, 3))
 for k, (low, high) in enumerate(pairwise(steps)):
     axis.bar(k, high - low, bottom=low, color=(BLUE, BLUE, ORANGE, ORANGE)[k])
-    axis.text(k, (low + high) / 2 if high > low else high - 0.6, f"+{high - low}", ha="center", va="center",
-              color="white" if high > low else "black")
+    axis.text(
+        k,
+        (low + high) / 2 if high > low else high - 0.6,
+        f"+{high - low}",
+        ha="center",
+        va="center",
+        color="white" if high > low else "black",
+    )
 names = ["velocity 1", "velocity 2", "position 1", "position 2"]
 axis.set(xticks=range(4), xticklabels=names, ylabel="observed dimensions", ylim=(0, 11))
 axis.axhline(10, color="black", lw=0.5)
@@ -242,7 +248,8 @@ bound = experiment.kalman_deviations(flight, chosen, errors)
 figure, axes = plt.subplots(2, 1, figsize=(8, 5), sharex=True)
 minutes = np.arange(len(curve)) * STEP / 60
 for axis, column, factor, label in (
-    (axes[0], 6, EARTH_RADIUS, "y₁, m"), (axes[1], 1, EARTH_RADIUS * SCHULER_RATE, "x₂, m/s"),
+    (axes[0], 6, EARTH_RADIUS, "y₁, m"),
+    (axes[1], 1, EARTH_RADIUS * SCHULER_RATE, "x₂, m/s"),
 ):
     axis.semilogy(minutes, curve[:, column] * factor, color=BLUE, label="algorithm")
     axis.semilogy(minutes, bound[:, column] * factor, color=GREEN, label="Kalman filter")
@@ -250,8 +257,9 @@ for axis, column, factor, label in (
     for end in np.cumsum([length for _, length in phases]):
         axis.axvline(end, color="black", lw=0.5)
 for (situation, length), end in zip(phases, np.cumsum([length for _, length in phases]), strict=True):
-    axes[0].text(end - length / 2, 1.02, situation.name.lower(), transform=axes[0].get_xaxis_transform(),
-                 ha="center", fontsize=8)
+    axes[0].text(
+        end - length / 2, 1.02, situation.name.lower(), transform=axes[0].get_xaxis_transform(), ha="center", fontsize=8
+    )
 axes[0].legend()
 axes[1].set_xlabel("minutes")
 plt.show()

@@ -45,16 +45,8 @@ from navsym.cli.main import run as navsym
 from navsym.methods.conditioning.numbers import condition_numbers
 from navsym.methods.conditioning.scaling import best_scaling
 from navsym.methods.trajectory.estimate import METHODS, Settings, estimate
-from navsym.methods.trajectory.experiment import (
-    ORDER,
-    TAU,
-    course,
-    measured,
-    with_printed_gain,
-)  # fmt: skip
-from navsym.methods.trajectory.experiment import (
-    experiment as rerun,
-)
+from navsym.methods.trajectory.experiment import ORDER, TAU, course, measured, with_printed_gain
+from navsym.methods.trajectory.experiment import experiment as rerun
 from navsym.methods.trajectory.inversion import (
     Start,
     Tuning,
@@ -63,7 +55,7 @@ from navsym.methods.trajectory.inversion import (
     normalised_scale,
     scaled_model,
     windowed_filter,
-)  # fmt: skip
+)
 from navsym.methods.trajectory.limits import best_ages, least_error, rule
 from navsym.methods.trajectory.tracks import track_of
 from navsym.report.notebook import explore, require, show
@@ -99,9 +91,7 @@ for name, colour in (("N_p", RED), ("N_f", ORANGE), ("N_s", BLUE)):
     axis.semilogy(orders, [float(found[n][name].enclosure.lower) for n in orders], color=colour, label=name)
     axis.semilogy(orders, [found[n][name].double for n in orders], ".", color=colour)
 axis.axhline(2.0**52, color="0.6", lw=0.8)
-axis.set(
-    xlabel="order n", ylabel="condition number", title="lines: certified; dots: double precision; τ = 0.2 s"
-)
+axis.set(xlabel="order n", ylabel="condition number", title="lines: certified; dots: double precision; τ = 0.2 s")
 axis.legend()
 plt.close(figure)
 assert all(found[n]["N_s"].trustworthy for n in orders if n <= 18)
@@ -122,8 +112,14 @@ def conditioning_for(step, order):
         values.append(float(found[name].enclosure.lower))
         axis.barh(place, values[-1], color=colour)
         axis.plot(found[name].double, place, "|", color="black", markersize=14, markeredgewidth=2)
-    axis.set(xscale="log", xlim=(1, 1e32), yticks=range(3), yticklabels=names, xlabel="condition number",
-             title=f"n = {round(order)}, τ = {step:.2f} s; bar: certified, mark: double precision")  # fmt: skip
+    axis.set(
+        xscale="log",
+        xlim=(1, 1e32),
+        yticks=range(3),
+        yticklabels=names,
+        xlabel="condition number",
+        title=f"n = {round(order)}, τ = {step:.2f} s; bar: certified, mark: double precision",
+    )
     plt.close(figure)
     assert values[2] <= values[1]
     return figure
@@ -141,9 +137,7 @@ for (n, step), row in table.PRINTED.items():
         float(table.relative_error(text, table.true_value(n, step, column)))
         for text, column in zip(row, table.COLUMNS, strict=True)
     ]
-    print(
-        f"n = {n:<3}{step:<8}" + "  ".join(f"{t:>10} ({e:+8.1e})" for t, e in zip(row, errors, strict=True))
-    )
+    print(f"n = {n:<3}{step:<8}" + "  ".join(f"{t:>10} ({e:+8.1e})" for t, e in zip(row, errors, strict=True)))
 for entry in (*table.ENTRIES, *table.CORRECTIONS):
     require(entry)
 
@@ -166,9 +160,7 @@ show(remarks.variables_change_the_filter)
 # %%
 for n in (2, 3, 5, 10):
     best = best_scaling(n)
-    print(
-        f"n = {n:<3} unit columns {float(best.unit.lower):.6g}, best scaling {float(best.enclosure.lower):.6g}"
-    )
+    print(f"n = {n:<3} unit columns {float(best.unit.lower):.6g}, best scaling {float(best.enclosure.lower):.6g}")
     assert best.enclosure.lower <= best.unit.upper * (1 + Fraction(1, 10**9))
 
 # %% [markdown]
@@ -219,9 +211,7 @@ axes[1].set_xlabel("t, s")
 axes[0].legend(loc="upper right")
 plt.close(figure)
 yawing = (truth.t[1:] > 1100) & (truth.t[1:] < 2080)
-assert np.std(metric[yawing, 1] - truth.speed[1:][yawing]) < np.std(
-    states[yawing, 1] - truth.speed[1:][yawing]
-)
+assert np.std(metric[yawing, 1] - truth.speed[1:][yawing]) < np.std(states[yawing, 1] - truth.speed[1:][yawing])
 figure
 
 # %% [markdown]
@@ -266,10 +256,16 @@ show(experiment.position_error_printed)
 # compares the measurement with the estimate before the step, which no candidate of that step can change.
 
 # %%
-for claim in (speeds.the_tuning_does_not_see_the_speed, speeds.mean_square_is_noise_plus_lag,
-              speeds.one_gain_on_straight_courses, speeds.one_gain_while_yawing,
-              algorithm.first_term_of_the_criterion, algorithm.criterion_prefers_standing_still,
-              stages.each_state_costs_nearly_a_digit, stages.the_first_stage_alone_can_worsen):
+for claim in (
+    speeds.the_tuning_does_not_see_the_speed,
+    speeds.mean_square_is_noise_plus_lag,
+    speeds.one_gain_on_straight_courses,
+    speeds.one_gain_while_yawing,
+    algorithm.first_term_of_the_criterion,
+    algorithm.criterion_prefers_standing_still,
+    stages.each_state_costs_nearly_a_digit,
+    stages.the_first_stage_alone_can_worsen,
+):
     require(claim)
     print(f"{claim.number:<26} {claim.expect:<9} {claim.title}")
 
@@ -296,8 +292,10 @@ for order, derivative, unit in ((2, 1, "m/s"), (3, 1, "m/s"), (3, 2, "m/s²")):
     ages = best_ages(noise, manoeuvre[order], order)
     error = least_error(noise, manoeuvre[order], derivative, order)
     assert np.isclose(rule(ages, noise, manoeuvre[order], derivative).error, error)
-    print(f"derivative {derivative}, order {order} bounded: {error:.3f} {unit} from the ages "
-          f"{', '.join(f'{age:.1f}' for age in ages)} s")
+    print(
+        f"derivative {derivative}, order {order} bounded: {error:.3f} {unit} from the ages "
+        f"{', '.join(f'{age:.1f}' for age in ages)} s"
+    )
 
 # %% [markdown]
 # The invisible motion (order 3, in units of the noise), and the three positions that are enough against it.
@@ -307,8 +305,11 @@ ages = best_ages(1.0, 192.0, 3)
 past = np.linspace(0, 3, 601)
 young = past <= ages[-1]
 piece, share = np.divmod((past - ages[-1]) * 2, 1.0)
-wave = np.where(young, np.polynomial.chebyshev.chebval(1 - 2 * past, [0, 0, 0, 1]),
-                (-1.0) ** piece * (1 - 6 * share**2 + 4 * share**3))
+wave = np.where(
+    young,
+    np.polynomial.chebyshev.chebval(1 - 2 * past, [0, 0, 0, 1]),
+    (-1.0) ** piece * (1 - 6 * share**2 + 4 * share**3),
+)
 assert np.abs(wave).max() <= 1 + 1e-12
 figure, axis = plt.subplots(figsize=(8, 2.6))
 axis.plot(-past, wave, color=BLUE)
@@ -357,9 +358,7 @@ if positions and judge:
         answer, _ = estimate(track, Settings(method))
         error = answer.velocity - expected
         rms[method] = np.sqrt(np.mean(error[:, :2] ** 2))
-        print(
-            f"{method:<12} rms {rms[method]:.2f} m/s, median {np.median(np.hypot(*error[:, :2].T)):.2f} m/s"
-        )
+        print(f"{method:<12} rms {rms[method]:.2f} m/s, median {np.median(np.hypot(*error[:, :2].T)):.2f} m/s")
     assert rms["smoother"] == min(rms.values())
     answer, _ = estimate(track, Settings())
     figure, axis = plt.subplots(figsize=(8, 3.5))
@@ -377,9 +376,7 @@ figure
 # ## Every refuted line, with its reason
 
 # %%
-refuted = [
-    claim for claim in claims_of(paper) if claim.expect == "REFUTED" and not claim.number.startswith("table")
-]
+refuted = [claim for claim in claims_of(paper) if claim.expect == "REFUTED" and not claim.number.startswith("table")]
 for claim in refuted:
     require(claim)
     print(f"{claim.number:<28} {claim.slip}: {claim.reason}")

@@ -95,14 +95,23 @@ def draw_folds(stay=0.9, first=3.0, second=1.0, depth=2):
     series = [[first], [second], [0.0]]
     x = np.linspace(-4, 8, 400)
     figure, axes = plt.subplots(1, 3, figsize=(11, 3), sharey=True)
-    for method, colour, K in (("exact", "black", None), ("pulsating", RED, None), ("k-pulsating", ORANGE, depth),
-                              ("gpb2", GREEN, None), ("imm", BLUE, None)):
+    for method, colour, K in (
+        ("exact", "black", None),
+        ("pulsating", RED, None),
+        ("k-pulsating", ORANGE, depth),
+        ("gpb2", GREEN, None),
+        ("imm", BLUE, None),
+    ):
         found = run(two_modes(stay), series, method, depth=K)
         for k, axis in enumerate(axes):
             mean, variance = found.mean[k, 0], found.covariance[k, 0, 0]
             name = method if K is None else f"{method} {K}"
-            axis.plot(x, np.exp(-0.5 * (x - mean) ** 2 / variance) / np.sqrt(2 * np.pi * variance), color=colour,
-                      label=f"{name}: {found.probabilities[k, 1]:.3f}")
+            axis.plot(
+                x,
+                np.exp(-0.5 * (x - mean) ** 2 / variance) / np.sqrt(2 * np.pi * variance),
+                color=colour,
+                label=f"{name}: {found.probabilities[k, 1]:.3f}",
+            )
             axis.set_title(f"step {k + 1}: moments, P[jump]")
             axis.legend(fontsize=7)
     plt.show()
@@ -229,11 +238,19 @@ for axis, name in zip(axes, ("log_loss", "nees"), strict=True):
     for number, label in enumerate(("pulsating", "K = 2", "K = 3", "K = 4", "gpb2", "imm")):
         scores = [getattr(study_of_stays[stay][number], name) for stay in stays]
         axis.errorbar(
-            np.arange(len(stays)) + 0.06 * number, [m.value for m in scores], [m.half_width for m in scores],
-            fmt="o", ms=4, label=label,
+            np.arange(len(stays)) + 0.06 * number,
+            [m.value for m in scores],
+            [m.half_width for m in scores],
+            fmt="o",
+            ms=4,
+            label=label,
         )
-    axis.set(xticks=np.arange(len(stays)) + 0.15, xticklabels=[f"{s:g}" for s in stays], yscale="log",
-             xlabel="probability that a mode lasts another step")
+    axis.set(
+        xticks=np.arange(len(stays)) + 0.15,
+        xticklabels=[f"{s:g}" for s in stays],
+        yscale="log",
+        xlabel="probability that a mode lasts another step",
+    )
 axes[0].set_ylabel("log loss, nats per step")
 axes[1].set_ylabel("NEES")
 axes[1].axhline(3, color="0.6", lw=0.8)
@@ -300,8 +317,10 @@ for name, colour in (("at random", BLUE), ("at their worst", RED)):
     for _ in range(40):
         ratio = np.exp(generator.normal(0.0, 1.0 if name == "at random" else 0.0))
         mistake = generator.uniform(-2 * c, 2 * c) if name == "at random" else 2 * c
-        odds, wrong = (r * (stay * x + 1 - stay) / ((1 - stay) * x + stay)
-                       for r, x in ((ratio, odds), (ratio * np.exp(mistake), wrong)))
+        odds, wrong = (
+            r * (stay * x + 1 - stay) / ((1 - stay) * x + stay)
+            for r, x in ((ratio, odds), (ratio * np.exp(mistake), wrong))
+        )
         gap.append(abs(np.log(wrong / odds)))
     axis.plot(np.arange(1, 41), gap, color=colour, label=f"mistakes {name}")
     assert max(gap) <= limit
@@ -330,9 +349,11 @@ if all(files):
     run_of_nagoya = road.read_road(files[0].parent)
     for method in ("pulsating", "imm", "gpb2"):
         judged = road.judge(run_of_nagoya, method)
-        print(f"{method:10s} horizontal rms {judged.rms_raw:.1f} m -> {judged.rms:.2f} m; wrong fixes noticed "
-              f"{judged.caught} of {judged.wrong_fixes}; good fixes kept {judged.kept} of {judged.good_fixes}; "
-              f"NEES {judged.nees:.0f} (2 if the noise were white, which it is not)")
+        print(
+            f"{method:10s} horizontal rms {judged.rms_raw:.1f} m -> {judged.rms:.2f} m; wrong fixes noticed "
+            f"{judged.caught} of {judged.wrong_fixes}; good fixes kept {judged.kept} of {judged.good_fixes}; "
+            f"NEES {judged.nees:.0f} (2 if the noise were white, which it is not)"
+        )
         print(judged.confusion)
     judged = road.judge(run_of_nagoya, "imm")
     figure, axis = plt.subplots(figsize=(10, 2.6))

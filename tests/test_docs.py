@@ -36,7 +36,7 @@ def test_every_block_runs_in_order(path, tmp_path, monkeypatch, capsys):
     shutil.copytree(DOCS.parent / "examples", tmp_path / "examples")
     script, said = [], ""
     for kind, body in blocks(path):
-        if kind == "text":                      # what the commands above it print, a line or its beginning
+        if kind == "text":  # what the commands above it print, a line or its beginning
             assert [line for line in body.splitlines() if spaced(line) not in said] == [], said
         elif kind == "toml":
             (tmp_path / body.splitlines()[0].removeprefix("# file: ")).write_text(body, encoding="utf-8")

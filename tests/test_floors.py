@@ -19,7 +19,7 @@ ROOT = Path(__file__).resolve().parents[1]
 #: Imports go from a higher number to a lower one, or stay in their room.
 FLOORS = {
     "errors": 0,
-    "checker": 0,          # stands apart: see CHECKER below
+    "checker": 0,  # stands apart: see CHECKER below
     "claims": 1,
     "text": 1,
     "store": 1,
@@ -91,11 +91,7 @@ OWNERS: dict[str, dict[str, str]] = {
     "markupsafe": {"navsym/report": "marks what is already escaped"},
     "IPython": {"navsym/report/notebook.py": "what notebooks show"},
     "ipywidgets": {"navsym/report/notebook.py": "sliders in notebooks"},
-    "msgspec": {
-        "navsym/text": "schemas of files",
-        "navsym/report": "the ledger",
-        "navsym/cli": "schemas of documents",
-    },
+    "msgspec": {"navsym/text": "schemas of files", "navsym/report": "the ledger", "navsym/cli": "schemas of documents"},
     "typer": {"navsym/cli": "options and arguments"},
     "rich": {"navsym/cli": "tables on a terminal"},
     "dask": {"navsym/methods/sweeps/cluster.py": "sweeps on a cluster"},

@@ -30,7 +30,5 @@ def test_the_notebook_is_a_percent_script_without_outputs_that_asserts_something
     assert "# %%" in text
     tree = ast.parse(text)
     asserts = [node for node in ast.walk(tree) if isinstance(node, ast.Assert)]
-    required = [
-        n for n in ast.walk(tree) if isinstance(n, ast.Call) and getattr(n.func, "id", "") == "require"
-    ]
+    required = [n for n in ast.walk(tree) if isinstance(n, ast.Call) and getattr(n.func, "id", "") == "require"]
     assert asserts or required

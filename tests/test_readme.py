@@ -43,8 +43,16 @@ def run(words: list[str], folder: Path) -> subprocess.CompletedProcess[str]:
 
 def test_the_tour_has_its_steps() -> None:
     assert [words[0] for words in commands()] == [
-        "verify", "explain", "prove", "derive", "solve", "phases", "export", "check", "report",
-    ]  # fmt: skip
+        "verify",
+        "explain",
+        "prove",
+        "derive",
+        "solve",
+        "phases",
+        "export",
+        "check",
+        "report",
+    ]
 
 
 def clean_clone(folder: Path) -> Path:
@@ -150,11 +158,17 @@ def test_the_first_screen_counts_what_the_ledger_counts() -> None:
 
 #: What the table of the first screen says was found, as claims: id -> whose slip it is.
 SAID = {
-    "guaranteed_velocity:4.14.y2": "paper", "guaranteed_velocity:4.3.u2": "paper",
-    "joint_correction:2.8.x6": "paper", "joint_correction:1.10.gz": "paper", "joint_correction:3.3.y1": "scan",
-    "multistructure:11": "paper", "multistructure:12": "paper", "multistructure:13.index": "paper",
-    "multistructure:9": "paper", "multistructure:14.follows": "paper",
-}  # fmt: skip
+    "guaranteed_velocity:4.14.y2": "paper",
+    "guaranteed_velocity:4.3.u2": "paper",
+    "joint_correction:2.8.x6": "paper",
+    "joint_correction:1.10.gz": "paper",
+    "joint_correction:3.3.y1": "scan",
+    "multistructure:11": "paper",
+    "multistructure:12": "paper",
+    "multistructure:13.index": "paper",
+    "multistructure:9": "paper",
+    "multistructure:14.follows": "paper",
+}
 
 
 def test_every_slip_that_the_first_screen_names_is_refuted_in_the_ledger() -> None:

@@ -257,17 +257,13 @@ def test_somebody_elses_environment_is_left_alone(bootstrap: ModuleType, checkou
     assert bootstrap.choose(str(checkout)) == str(checkout / ".venv-navsym")
 
 
-def test_a_link_to_an_environment_is_left_alone(
-    bootstrap: ModuleType, finished: Path, tmp_path: Path
-) -> None:
+def test_a_link_to_an_environment_is_left_alone(bootstrap: ModuleType, finished: Path, tmp_path: Path) -> None:
     link = tmp_path / ".venv"
     link.symlink_to(finished)
     assert not bootstrap.is_ours(str(link))
 
 
-def test_the_stamp_is_written_last(
-    bootstrap: ModuleType, checkout: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_stamp_is_written_last(bootstrap: ModuleType, checkout: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def stop(venv: str) -> None:
         raise bootstrap.Trouble("no network")
 
@@ -286,9 +282,7 @@ def test_verbs_and_their_arguments_are_passed_on_unchanged(bootstrap: ModuleType
     assert bootstrap.command_for("py", words) == ["py", "-P", "-m", "navsym", *words]
 
 
-def test_settings_that_lead_pip_astray_are_dropped(
-    bootstrap: ModuleType, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_settings_that_lead_pip_astray_are_dropped(bootstrap: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
     for name, value in {"PIP_USER": "1", "PYTHONPATH": "x", "PIP_INDEX_URL": "kept"}.items():
         monkeypatch.setenv(name, value)
     environment = bootstrap.quiet_environment()

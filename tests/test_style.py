@@ -20,9 +20,7 @@ LONG_FILES: dict[str, str] = {}
 
 def tracked(*suffixes: str) -> list[Path]:
     """Files under version control that exist, by ending; without version control, all files."""
-    done = subprocess.run(
-        ["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, check=False, timeout=60
-    )
+    done = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, check=False, timeout=60)
     if done.returncode == 0:
         paths = [ROOT / name for name in done.stdout.decode().split("\0") if name]
     else:
@@ -117,9 +115,7 @@ def is_plain_property(item: ast.stmt) -> bool:
 
 
 def test_every_public_function_says_what_it_computes() -> None:
-    files = [
-        p for p in tracked(".py") if p.relative_to(ROOT).parts[0] in ("navsym", "derivations", "notebooks")
-    ]
+    files = [p for p in tracked(".py") if p.relative_to(ROOT).parts[0] in ("navsym", "derivations", "notebooks")]
     public = imported_names(files)
     rooms = [p for p in files if p.relative_to(ROOT).parts[0] == "navsym"]
     found = [

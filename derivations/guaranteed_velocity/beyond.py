@@ -64,9 +64,7 @@ def drift_holds_to_two_thirds_of_pi():
 
 
 @claim(
-    "range.y2.end",
-    expect=REFUTED,
-    reason="a test of sharpness: at the end of this range a weight has the wrong sign",
+    "range.y2.end", expect=REFUTED, reason="a test of sharpness: at the end of this range a weight has the wrong sign"
 )
 def tilt_does_not_hold_further():
     """y2: the printed solution is optimal up to T = 3 pi/2."""
@@ -77,11 +75,7 @@ def tilt_does_not_hold_further():
 def tilt_with_two_instants():
     """y2, 4 pi/3 <= T <= 3 pi/2: two instants, 2(T - pi) and 0, and the error -1/sin T."""
     sine = sp.sin(T)
-    dual = (
-        -sp.sin(T) * 0 + (1 - 1 / sine**2) + sp.cos(2 * sp.pi - T) / sine**2,
-        -1 / sine,
-        sp.cos(T) / sine**2,
-    )
+    dual = (-sp.sin(T) * 0 + (1 - 1 / sine**2) + sp.cos(2 * sp.pi - T) / sine**2, -1 / sine, sp.cos(T) / sine**2)
     return solution(
         "y2",
         dual,
@@ -108,9 +102,7 @@ def tilt_with_two_inner_instants():
 
 
 @claim(
-    "range.y3.end",
-    expect=REFUTED,
-    reason="a test of sharpness: at the end of this range a weight has the wrong sign",
+    "range.y3.end", expect=REFUTED, reason="a test of sharpness: at the end of this range a weight has the wrong sign"
 )
 def drift_does_not_hold_further():
     """y3: the printed solution is optimal up to T = 3 pi/4."""
@@ -137,13 +129,7 @@ def drift_with_two_instants():
 def drift_with_half_a_period():
     """y3, pi <= T <= 2 pi: half the difference of two measurements half a period apart, error 1."""
     return solution(
-        "y3",
-        (1, 0, 1),
-        (T, T - sp.pi),
-        (sp.Rational(1, 2), -sp.Rational(1, 2)),
-        sp.Integer(1),
-        sp.pi,
-        FULL,
+        "y3", (1, 0, 1), (T, T - sp.pi), (sp.Rational(1, 2), -sp.Rational(1, 2)), sp.Integer(1), sp.pi, FULL
     )
 
 
@@ -159,9 +145,9 @@ def meeting(left: sp.Expr, right: sp.Expr, at: sp.Expr) -> Callable[[], Statemen
 
 
 MEETINGS: tuple[Claim, ...] = tuple(
-    claim(
-        f"range.{state}.meets.{place}", title=f"The errors of {state} on both sides of T = {at} agree there."
-    )(meeting(left, right, at))
+    claim(f"range.{state}.meets.{place}", title=f"The errors of {state} on both sides of T = {at} agree there.")(
+        meeting(left, right, at)
+    )
     for state, place, left, right, at in (
         ("y2", "1", 2 * sp.cot(T / 4), -1 / sp.sin(T), 4 * sp.pi / 3),
         ("y2", "2", -1 / sp.sin(T), sp.Integer(1), 3 * sp.pi / 2),

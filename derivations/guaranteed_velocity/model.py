@@ -17,10 +17,7 @@ STATED = {T: (0, sp.pi / 2)}
 
 #: Velocity error, tilt and drift of one channel, in the paper's variables; z = y1 + w.
 CHANNEL = LinearModel(
-    F=[[0, -1, 0], [0, 0, 1], [0, -1, 0]],
-    H=[[1, 0, 0]],
-    states=("y1", "y2", "y3"),
-    measurements=("velocity",),
+    F=[[0, -1, 0], [0, 0, 1], [0, -1, 0]], H=[[1, 0, 0]], states=("y1", "y2", "y3"), measurements=("velocity",)
 )
 
 

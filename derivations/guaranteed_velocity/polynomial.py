@@ -146,9 +146,7 @@ def sine_coefficient():
 def alternance_determines_the_polynomial():
     """The equations of alternance have one solution: their determinant does not vanish for T <= pi/2."""
     u2, u3, L = sp.symbols("u2 u3 L", real=True)
-    conditions = [
-        polynomial(u2, u3).subs(tau, at) - sign * L for at, sign in zip(INSTANTS, (-1, 1, -1), strict=True)
-    ]
+    conditions = [polynomial(u2, u3).subs(tau, at) - sign * L for at, sign in zip(INSTANTS, (-1, 1, -1), strict=True)]
     matrix = sp.Matrix(conditions).jacobian([u2, u3, L])
     return Bound(matrix.det(), "!=", 0, STATED)
 
@@ -300,10 +298,7 @@ def optimal_deviation(state: int) -> sp.Expr:
 def signs_of_the_weights():
     """The weights of y2 alternate -, +, - on the stated range, as optimal_deviation takes for granted."""
     found = tuple(proved_sign(weight) for weight in weights(1))
-    return Property(
-        printed=(-1, 1, -1),
-        derived=Finding(found, "signs of the product forms", PROVED, "T in (0, pi/2]"),
-    )
+    return Property(printed=(-1, 1, -1), derived=Finding(found, "signs of the product forms", PROVED, "T in (0, pi/2]"))
 
 
 def proved_sign(weight: sp.Expr) -> int:

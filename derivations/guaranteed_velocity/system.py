@@ -120,10 +120,7 @@ def adjoint_form():
     A = sp.Matrix(CHANNEL.F)
     printed = transition_matrix(A.T, tau - T).matrix * h1
     # A linear equation has one solution: the derivative and the end value decide.
-    return Equation(
-        printed=(*(sp.diff(printed, tau) - A.T * printed), *printed.subs(tau, T)),
-        derived=(0, 0, 0, *h1),
-    )
+    return Equation(printed=(*(sp.diff(printed, tau) - A.T * printed), *printed.subs(tau, T)), derived=(0, 0, 0, *h1))
 
 
 @claim("1.9.H1")

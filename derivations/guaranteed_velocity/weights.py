@@ -6,18 +6,7 @@ from collections.abc import Callable
 
 import sympy as sp
 
-from derivations.guaranteed_velocity.model import (
-    INSTANTS,
-    STATED,
-    H,
-    N,
-    T,
-    alternating,
-    sigma1,
-    sigma2,
-    tau,
-    weights,
-)
+from derivations.guaranteed_velocity.model import INSTANTS, STATED, H, N, T, alternating, sigma1, sigma2, tau, weights
 from navsym.claims import REFUTED, Bound, Claim, Equation, Optimum, Statement, claim
 
 # -- (4.10), (4.11) ---------------------------------------
@@ -27,9 +16,7 @@ from navsym.claims import REFUTED, Bound, Claim, Equation, Optimum, Statement, c
 def weights_by_inversion():
     """Phi_s = N^-1 e_s: the three columns of the inverse solve the unbiasedness conditions."""
     inverse = N().adjugate() / N().det()
-    return Equation(
-        printed=inverse, derived=sp.Matrix.hstack(*(sp.Matrix(weights(s)) for s in range(3))), box=STATED
-    )
+    return Equation(printed=inverse, derived=sp.Matrix.hstack(*(sp.Matrix(weights(s)) for s in range(3))), box=STATED)
 
 
 PRINTED_N = sp.Matrix([[1, 1, 0], [sp.sin(T), sp.sin(T / 2), 0], [sp.cos(T) - 1, sp.cos(T / 2) - 1, 0]])
@@ -91,11 +78,7 @@ def determinant_does_not_vanish_further():
 SINE = sp.sin(T / 4) ** 2
 PRINTED_WEIGHTS = (
     (sp.Integer(0), sp.Integer(0), sp.Integer(1)),
-    (
-        -1 / (2 * sp.sin(T / 2)),
-        sp.cot(T / 4),
-        -sp.sin(3 * T / 4) / (2 * sp.sin(T / 2) * sp.sin(T / 4)),
-    ),
+    (-1 / (2 * sp.sin(T / 2)), sp.cot(T / 4), -sp.sin(3 * T / 4) / (2 * sp.sin(T / 2) * sp.sin(T / 4))),
     (-1 / (4 * SINE), sp.cos(T / 2) / (2 * SINE), (1 - 2 * sp.cos(T / 2)) / (4 * SINE)),
 )
 
@@ -109,9 +92,7 @@ def weight(state: int, place: int) -> Callable[[], Statement]:
 
 
 WEIGHTS: tuple[Claim, ...] = tuple(
-    claim(f"4.12.Phi{s + 1}{j + 1}", title=f"Weight Phi_{s + 1}{j + 1} of the estimate of y{s + 1}.")(
-        weight(s, j)
-    )
+    claim(f"4.12.Phi{s + 1}{j + 1}", title=f"Weight Phi_{s + 1}{j + 1} of the estimate of y{s + 1}.")(weight(s, j))
     for s in range(3)
     for j in range(3)
 )
@@ -151,24 +132,20 @@ def error_with_sigma(state: int, sigma: sp.Symbol) -> Callable[[], Statement]:
     """The printed error with its factor sigma, against sigma times the dual value x.P."""
 
     def derive() -> Statement:
-        return Equation(
-            printed=PRINTED_ERRORS[state] * sigma, derived=sigma * dual_of(state)[state], box=STATED
-        )
+        return Equation(printed=PRINTED_ERRORS[state] * sigma, derived=sigma * dual_of(state)[state], box=STATED)
 
     derive.__module__ = __name__
     return derive
 
 
 OPTIMAL_ERRORS: tuple[Claim, ...] = tuple(
-    claim(
-        f"4.13.y{s + 1}", title=f"Guaranteed error of y{s + 1}: optimal among all linear unbiased estimates."
-    )(guaranteed_error(s))
+    claim(f"4.13.y{s + 1}", title=f"Guaranteed error of y{s + 1}: optimal among all linear unbiased estimates.")(
+        guaranteed_error(s)
+    )
     for s in range(3)
 )
 LATERAL_ERRORS: tuple[Claim, ...] = tuple(
-    claim(f"4.13.y{s + 1}.sigma", title=f"d_opt(y{s + 1}) with its factor sigma1.")(
-        error_with_sigma(s, sigma1)
-    )
+    claim(f"4.13.y{s + 1}.sigma", title=f"d_opt(y{s + 1}) with its factor sigma1.")(error_with_sigma(s, sigma1))
     for s in range(3)
 )
 LONGITUDINAL_ERRORS: tuple[Claim, ...] = tuple(
@@ -196,9 +173,7 @@ def estimate_of_tilt(first: sp.Expr) -> sp.Expr:
 
 PRINTED_FIRST = 1 / (2 * sp.sin(T / 2) ** 2)
 TRUE_FIRST = 1 / (2 * sp.sin(T / 2))
-TILT_REASON = (
-    "sin^2(T/2) stands for sin(T/2): Phi_21 of (4.12) is right, and the estimate as printed is biased"
-)
+TILT_REASON = "sin^2(T/2) stands for sin(T/2): Phi_21 of (4.12) is right, and the estimate as printed is biased"
 PRINTED_DRIFT = (-z0 + 2 * sp.cos(T / 2) * zm + (1 - 2 * sp.cos(T / 2)) * zT) / (4 * SINE)
 
 
@@ -265,9 +240,7 @@ def longitudinal_drift_estimate_corrected():
 def bias_of_printed_tilt(state: int) -> sp.Expr:
     """Coefficient of y_state in the printed estimate of y2 when nothing is noisy."""
     vector = [H(at)[state] for at in INSTANTS]
-    return estimate_of_tilt(PRINTED_FIRST).subs(
-        dict(zip((z0, zm, zT), vector, strict=True)), simultaneous=True
-    )
+    return estimate_of_tilt(PRINTED_FIRST).subs(dict(zip((z0, zm, zT), vector, strict=True)), simultaneous=True)
 
 
 @claim("4.14.y2.bias")

@@ -19,11 +19,7 @@ PAPER = Paper(
     source="received 9 October 1979; original title: O korrektsii inertsial'nykh navigatsionnykh sistem "
     "pri pomoshchi sovmestnoi skorostnoi i pozitsionnoi dopolnitel'noi informatsii",
     language="ru",
-    equations=(
-        *(f"1.{k}" for k in range(1, 15)),
-        *(f"2.{k}" for k in range(1, 10)),
-        *(f"3.{k}" for k in range(1, 4)),
-    ),
+    equations=(*(f"1.{k}" for k in range(1, 15)), *(f"2.{k}" for k in range(1, 10)), *(f"3.{k}" for k in range(1, 4))),
     definitions={
         "1.1": "the given linear system and its measurements",
         "1.2": "definition of the two chains of vectors",

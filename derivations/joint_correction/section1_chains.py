@@ -241,8 +241,7 @@ def riccati_difference(m: int) -> tuple[list[sp.Expr], list[sp.Expr]]:
     R = sp.Symbol("R", positive=True)
     G, g = sp.Matrix(m, m, sp.symbols(f"G1:{m * m + 1}", real=True)), sp.Matrix(sp.symbols(f"g1:{m + 1}", real=True))
     first, second = (
-        sp.Matrix(m, m, lambda i, j, name=name: sp.Symbol(f"{name}{min(i, j)}{max(i, j)}", real=True))
-        for name in "PS"
+        sp.Matrix(m, m, lambda i, j, name=name: sp.Symbol(f"{name}{min(i, j)}{max(i, j)}", real=True)) for name in "PS"
     )
     rests = [G * P + P * G.T - P * g * g.T * P / R for P in (first, second)]
     loops = [G - P * g * g.T / R for P in (first, second)]

@@ -66,9 +66,7 @@ def scrambled(core: sp.Matrix, m: int, second: sp.Matrix) -> System:
     lower = sp.Matrix(n, n, lambda r, s: int(r == s) if s >= r else (2 * r + s) % 3 - 1)
     T = upper * lower
     first = sp.Matrix(1, n, lambda _, s: int(s == 0))
-    model = LinearModel(
-        inverse("T", sp.ImmutableMatrix(T)) * core * T, None, sp.Matrix.vstack(first * T, second * T)
-    )
+    model = LinearModel(inverse("T", sp.ImmutableMatrix(T)) * core * T, None, sp.Matrix.vstack(first * T, second * T))
     found = observe(model)
     return System(model, found, sp.ImmutableMatrix(core[:m, :m]))
 
@@ -87,7 +85,7 @@ def systems() -> tuple[System, ...]:
             [g[2], 0, 0, 1, 1],
             [0, 1, 0, g[3], 2],
         ]
-    )
+    )  # fmt: skip
     return (
         scrambled(one, 1, sp.Matrix([[1, 2]])),
         scrambled(two, 2, sp.Matrix([[0, 1, 1]])),
@@ -119,9 +117,7 @@ def flat(*matrices: sp.MatrixBase) -> list[sp.Expr]:
     return [entry for matrix in matrices for entry in matrix]
 
 
-def coordinates(
-    system: System, C1: sp.MatrixBase, C2: sp.MatrixBase
-) -> tuple[sp.ImmutableMatrix, sp.ImmutableMatrix]:
+def coordinates(system: System, C1: sp.MatrixBase, C2: sp.MatrixBase) -> tuple[sp.ImmutableMatrix, sp.ImmutableMatrix]:
     """L of (1.8) and its inverse."""
     L = sp.ImmutableMatrix.vstack(C1 * system.chain(1, system.m), C2 * system.chain(2, system.rest))
     return L, inverse("L", L)

@@ -9,15 +9,7 @@ import sympy as sp
 from derivations.joint_correction.section1_chains import coefficients, theta_of
 from derivations.joint_correction.section1_systems import System, flat, free, k, overlapping, polynomial_of
 from navsym.claims import Equation, Finding, Property, claim
-from navsym.methods.observability.split import (
-    companion,
-    corner,
-    inverse,
-    last_row,
-    lowest_terms,
-    shift,
-    unit_row,
-)
+from navsym.methods.observability.split import companion, corner, inverse, last_row, lowest_terms, shift, unit_row
 
 #: Splits i, j of the overlapping system (n = 4, m = 3) that have all three parts.
 CASES = ((2, 2), (1, 3))
@@ -155,9 +147,7 @@ def constant_matrices():
     first = [coefficients(A[:3, :], A[row, :]) for row in (1, 2, 3)]
     second = [coefficients(sp.Matrix.vstack(A[:2, :], B[:2, :]), B[row, :]) for row in (1, 2)]
     printed = [[0, 1, 0], [0, 0, 1], [t1, t2, t3], [0, 0, 0, 1], [d1, d2, d3, d4]]
-    return Equation(
-        [sp.sympify(x) for row in printed for x in row], [x for row in [*first, *second] for x in row]
-    )
+    return Equation([sp.sympify(x) for row in printed for x in row], [x for row in [*first, *second] for x in row])
 
 
 @claim("1.14.delta")
@@ -243,8 +233,7 @@ def error_dynamics():
     F, F0 = shift(i), corner(i, m - i)
     printed += list((F - gains["u"] * unit_row(i)) * error["u"] + F0 * error["v"])
     printed += list(
-        (last_row(m - i, theta[:i]) - gains["v"] * unit_row(i)) * error["u"]
-        + companion(theta[i:]) * error["v"]
+        (last_row(m - i, theta[:i]) - gains["v"] * unit_row(i)) * error["u"] + companion(theta[i:]) * error["v"]
     )
     printed += list(link * error["u"] + (own - gains["w"] * unit_row(j)) * error["w"])
     derived += [*rate, *rate_w]
@@ -290,10 +279,7 @@ def choice_of_i():
 
     best = best_split(overlapping().found)
     return Property(
-        (2, 2),
-        Finding(
-            (best.i, best.j), "all determinants of a_1 ... a_i, b_1 ... b_j", scope="n = 4, m = 3, l = 4"
-        ),
+        (2, 2), Finding((best.i, best.j), "all determinants of a_1 ... a_i, b_1 ... b_j", scope="n = 4, m = 3, l = 4")
     )
 
 

@@ -213,8 +213,7 @@ def closed_loop(b: dict[str, sp.Matrix]) -> sp.Matrix:
     """Matrix of the errors (x - x°, z - z°), from the truth and the estimator run side by side."""
     m, rest = b["Gx"].rows, b["Gz2"].rows
     names = [
-        sp.symbols(f"{name}1:{size + 1}", real=True)
-        for name, size in (("x", m), ("z", rest), ("e", m), ("f", rest))
+        sp.symbols(f"{name}1:{size + 1}", real=True) for name, size in (("x", m), ("z", rest), ("e", m), ("f", rest))
     ]
     x, z, e, f = map(sp.Matrix, names)
     dx = b["Gx"] * x - (b["Gx"] * e + b["Kx"] * (b["gx"] * x - b["gx"] * e))
@@ -252,9 +251,7 @@ def second_gain_is_unique():
         C2 = free("z", size)
         G = C2 * companion(phi) * inverse("C2", C2)
         K = sp.Matrix(k[:size])
-        jacobian = sp.Matrix(
-            coefficients_of_polynomial(G - K * unit_row(size) * inverse("C2", C2))[1:]
-        ).jacobian(K)
+        jacobian = sp.Matrix(coefficients_of_polynomial(G - K * unit_row(size) * inverse("C2", C2))[1:]).jacobian(K)
         found = found and rank_of(jacobian) == size and not any(jacobian.has(symbol) for symbol in K)
     return Property(
         True,

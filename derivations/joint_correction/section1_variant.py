@@ -17,9 +17,7 @@ def general(m: int, rest: int) -> dict[str, sp.Matrix]:
     T = sp.Matrix(
         rest,
         rest,
-        lambda r, s: (
-            sp.Symbol(f"t{r}", positive=True) if r == s else sp.Symbol(f"t{r}{s}", real=True) if s < r else 0
-        ),
+        lambda r, s: sp.Symbol(f"t{r}", positive=True) if r == s else sp.Symbol(f"t{r}{s}", real=True) if s < r else 0,
     )
     L = sp.Matrix(sp.BlockMatrix([[sp.eye(m), sp.zeros(m, rest)], [S, T]]))
     back = sp.Matrix(inverse("L", sp.ImmutableMatrix(L)))
@@ -47,14 +45,10 @@ def general_model():
     printed, derived = [], []
     for m, rest in PAIRS[:4]:
         b = general(m, rest)
-        x, z = (
-            sp.Matrix(sp.symbols(f"{name}1:{size + 1}", real=True)) for name, size in (("x", m), ("z", rest))
-        )
+        x, z = (sp.Matrix(sp.symbols(f"{name}1:{size + 1}", real=True)) for name, size in (("x", m), ("z", rest)))
         raw = blocks(m, rest)
         new = b["S"] * x + b["T"] * z
-        printed += (
-            list(b["Gz1"] * x + b["Gz2"] * new) + list(b["g1"] * x + b["g2"] * new) + list(b["upper"][:, m:])
-        )
+        printed += list(b["Gz1"] * x + b["Gz2"] * new) + list(b["g1"] * x + b["g2"] * new) + list(b["upper"][:, m:])
         derived += list(b["S"] * raw["Gx"] * x + b["T"] * (raw["Gz1"] * x + raw["Gz2"] * z))
         derived += [*list(raw["gz"] * z), *[sp.Integer(0)] * (m * rest)]
     return Equation(printed, derived)
@@ -75,9 +69,7 @@ def general_error():
         )
         printed += list((b["Gz1"] - b["Kz"] * b["g1"]) * e + (b["Gz2"] - b["Kz"] * b["g2"]) * f)
         innovation = (b["g1"] * x + b["g2"] * z - b["g1"] * (x - e) - b["g2"] * (z - f))[0]
-        derived += list(
-            b["Gz1"] * x + b["Gz2"] * z - b["Gz1"] * (x - e) - b["Gz2"] * (z - f) - b["Kz"] * innovation
-        )
+        derived += list(b["Gz1"] * x + b["Gz2"] * z - b["Gz1"] * (x - e) - b["Gz2"] * (z - f) - b["Kz"] * innovation)
     return Equation(printed, derived)
 
 
@@ -103,12 +95,8 @@ def general_variant_in_the_old_coordinates():
         itself = b["Gz2"] - b["T"] * raw["Kz"] * b["g2"]
         first = raw["Gx"] - raw["Kx"] * raw["gx"]
         # the error of S x + T z in the coordinates e (of x) and f (of z): S e + T f
-        printed += flat(
-            raw["Gz1"] + T_inverse * b["S"] * raw["Kx"] * raw["gx"], raw["Gz2"] - raw["Kz"] * raw["gz"]
-        )
-        derived += flat(
-            T_inverse * (coupling + itself * b["S"] - b["S"] * first), T_inverse * itself * b["T"]
-        )
+        printed += flat(raw["Gz1"] + T_inverse * b["S"] * raw["Kx"] * raw["gx"], raw["Gz2"] - raw["Kz"] * raw["gz"])
+        derived += flat(T_inverse * (coupling + itself * b["S"] - b["S"] * first), T_inverse * itself * b["T"])
     return Equation(printed, derived)
 
 

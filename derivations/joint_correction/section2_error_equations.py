@@ -256,10 +256,7 @@ def great_circles_are_stationary():
     """
     s, course = sp.symbols("s c", real=True)
     return Bound(
-        (1 - course**2) * s**2,
-        "<",
-        (s**2 + 2 * s * course + 1) ** 2,
-        {s: (0, sp.Rational(54, 100)), course: (-1, 1)},
+        (1 - course**2) * s**2, "<", (s**2 + 2 * s * course + 1) ** 2, {s: (0, sp.Rational(54, 100)), course: (-1, 1)}
     )
 
 
@@ -271,9 +268,7 @@ def where_great_circles_are_not_stationary():
     return Property(
         False,
         Finding(
-            bool(left < right),
-            "exact values at one flight",
-            scope="speed 0.9 Omega R = 419 m/s, course constant -0.99",
+            bool(left < right), "exact values at one flight", scope="speed 0.9 Omega R = 419 m/s, course constant -0.99"
         ),
     )
 
@@ -282,14 +277,9 @@ def where_great_circles_are_not_stationary():
 def mu_is_small():
     """mu <= 0.1 for every latitude and heading up to 250 m/s."""
     v, sine, cosine = sp.symbols("v s c", real=True)
-    square = (
-        v**2 / EARTH_RADIUS**2 + 2 * v * sine * EARTH_RATE * cosine / EARTH_RADIUS + EARTH_RATE**2 * cosine**2
-    )
+    square = v**2 / EARTH_RADIUS**2 + 2 * v * sine * EARTH_RATE * cosine / EARTH_RADIUS + EARTH_RATE**2 * cosine**2
     return Bound(
-        square * EARTH_RADIUS / GRAVITY,
-        "<=",
-        sp.Rational(1, 100),
-        {v: (0, 250), sine: (-1, 1), cosine: (0, 1)},
+        square * EARTH_RADIUS / GRAVITY, "<=", sp.Rational(1, 100), {v: (0, 250), sine: (-1, 1), cosine: (0, 1)}
     )
 
 
@@ -326,9 +316,7 @@ def earth_rate_is_of_order_one():
 def coupling_is_small():
     """|mu u_3| = Omega |sin(latitude)|/omega_0 is at most 0.06, far from 1, where (2.8) breaks."""
     sine = sp.Symbol("s", real=True)
-    return Bound(
-        sine**2 * EARTH_RATE**2 * EARTH_RADIUS / GRAVITY, "<=", sp.Rational(6, 100) ** 2, {sine: (-1, 1)}
-    )
+    return Bound(sine**2 * EARTH_RATE**2 * EARTH_RADIUS / GRAVITY, "<=", sp.Rational(6, 100) ** 2, {sine: (-1, 1)})
 
 
 @claim(

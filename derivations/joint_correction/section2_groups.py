@@ -112,13 +112,7 @@ meanings_y = tuple(
 # (2.8): the velocity group
 
 earth_drift = u1 * b2 - u2 * b1
-VELOCITY_ROWS = (
-    x2,
-    -x1 - mu * w2 * v3,
-    -(mu**2) * w2 * earth_drift + mu * (u2 * v3 - u3 * v2),
-    x5,
-    -x4 + mu * w1 * v3,
-)
+VELOCITY_ROWS = (x2, -x1 - mu * w2 * v3, -(mu**2) * w2 * earth_drift + mu * (u2 * v3 - u3 * v2), x5, -x4 + mu * w1 * v3)
 
 rows_x = tuple(
     row(
@@ -162,20 +156,10 @@ output_c2 = row(
 
 # (2.9): the position group
 
-POSITION_ROWS = {
-    1: y2,
-    3: y4,
-    4: -y3 - mu * w2 * v3,
-    5: y6,
-    7: y8,
-    8: -y7 + mu * w1 * v3,
-}
+POSITION_ROWS = {1: y2, 3: y4, 4: -y3 - mu * w2 * v3, 5: y6, 7: y8, 8: -y7 + mu * w1 * v3}
 rows_y = tuple(
     row(
-        f"2.9.y{k}",
-        f"Derivative of y_{k} up to terms of order mu^2 rho.",
-        printed,
-        lambda k=k: position().rates[k - 1],
+        f"2.9.y{k}", f"Derivative of y_{k} up to terms of order mu^2 rho.", printed, lambda k=k: position().rates[k - 1]
     )
     for k, printed in POSITION_ROWS.items()
 )
@@ -240,10 +224,8 @@ def neglected_terms():
         Finding(
             tuple(sorted(orders)),
             "bookkeeping of every monomial",
-            scope="alpha, pi, epsilon, nu, w of order rho; beta, gamma of order rho/mu; d omega/d tau "
-            "of order mu",
-            evidence=f"{sum(len(r) for g in (velocity(), position()) for r in g.dropped)} terms, listed "
-            f"by the model",
+            scope="alpha, pi, epsilon, nu, w of order rho; beta, gamma of order rho/mu; d omega/d tau of order mu",
+            evidence=f"{sum(len(r) for g in (velocity(), position()) for r in g.dropped)} terms, listed by the model",
         ),
     )
 
@@ -251,16 +233,10 @@ def neglected_terms():
 @claim("2.8.inhomogeneous")
 def inhomogeneous_terms():
     """(2.8) and (2.9) are inhomogeneous, and all terms that make them so have the order mu (times rho)."""
-    orders = {
-        lowest_order(f, ORDERS) for group in (velocity(), position()) for f in group.linear()[2] if f != 0
-    }
-    highest = {
-        truncate(f, ORDERS, 2).dropped for group in (velocity(), position()) for f in group.linear()[2]
-    }
+    orders = {lowest_order(f, ORDERS) for group in (velocity(), position()) for f in group.linear()[2] if f != 0}
+    highest = {truncate(f, ORDERS, 2).dropped for group in (velocity(), position()) for f in group.linear()[2]}
     found = tuple(sorted(orders)) if highest == {()} else None
-    return Property(
-        (1,), Finding(found, "bookkeeping of every monomial", scope="orders as declared in 2.8.neglected")
-    )
+    return Property((1,), Finding(found, "bookkeeping of every monomial", scope="orders as declared in 2.8.neglected"))
 
 
 @claim("2.9.inhomogeneous_printed", expect=REFUTED, slip="scan", reason=DOT)
@@ -272,9 +248,7 @@ def inhomogeneous_term_as_printed():
 @claim("2.9.inhomogeneous_printed*", corrects="2.9.inhomogeneous_printed")
 def inhomogeneous_term():
     """With the derivative of omega the inhomogeneous term of y_2 has the order mu (times rho)."""
-    return Property(
-        1, Finding(lowest_order(position().linear()[2][1], ORDERS), "bookkeeping of every monomial")
-    )
+    return Property(1, Finding(lowest_order(position().linear()[2][1], ORDERS), "bookkeeping of every monomial"))
 
 
 def rank_and_drops(group: Group) -> tuple[int, tuple[str, ...]]:
@@ -290,9 +264,7 @@ def velocity_group_is_observable():
     return Property(
         (6, ("mu*u_3 + 1 = 0", "mu*u_3 - 1 = 0")),
         Finding(
-            rank_and_drops(velocity()),
-            "fraction-free rank, all split determinants",
-            scope="homogeneous part of (2.8)",
+            rank_and_drops(velocity()), "fraction-free rank, all split determinants", scope="homogeneous part of (2.8)"
         ),
     )
 

@@ -69,17 +69,13 @@ def measurement_before_the_end():
 @claim("2.8.accuracy_short", expect=CERTIFIED)
 def velocity_accuracy_on_a_short_interval():
     """tau_h = 1: the standard deviation of x_2 is 24.0 roots of the noise intensity, hardly well observable."""
-    return Equation(
-        sp.Integer(24), sp.sqrt(variance(VELOCITY, 1, sp.Integer(1))), tolerance=sp.Rational(1, 20)
-    )
+    return Equation(sp.Integer(24), sp.sqrt(variance(VELOCITY, 1, sp.Integer(1))), tolerance=sp.Rational(1, 20))
 
 
 @claim("2.8.accuracy_long", expect=CERTIFIED)
 def velocity_accuracy_on_a_long_interval():
     """tau_h = 3: the standard deviation of x_2 is 0.85 roots of the noise intensity, 28 times better."""
-    return Equation(
-        sp.Rational(85, 100), sp.sqrt(variance(VELOCITY, 1, sp.Integer(3))), tolerance=sp.Rational(1, 200)
-    )
+    return Equation(sp.Rational(85, 100), sp.sqrt(variance(VELOCITY, 1, sp.Integer(3))), tolerance=sp.Rational(1, 200))
 
 
 @claim("3.preestimation.variance")
@@ -126,7 +122,6 @@ def position_variables_are_well_observable():
 def position_accuracy_needs_time():
     """Of the last two thirds of tau_h = 3 the Schuler variable y_4 gains a factor 135 in accuracy, y_1 only 1.8."""
     gains = [
-        sp.sqrt(variance(POSITION, place, sp.Integer(1)) / variance(POSITION, place, sp.Integer(3)))
-        for place in (3, 0)
+        sp.sqrt(variance(POSITION, place, sp.Integer(1)) / variance(POSITION, place, sp.Integer(3))) for place in (3, 0)
     ]
     return Equation([sp.Integer(135), sp.Rational(18, 10)], gains, tolerance=sp.Rational(1, 2))

@@ -7,15 +7,7 @@ from functools import cache
 import sympy as sp
 
 from derivations.joint_correction.section1_systems import p, polynomial_of
-from derivations.joint_correction.section2_groups import (
-    mu,
-    position,
-    row,
-    u3,
-    velocity,
-    w1,
-    w2,
-)
+from derivations.joint_correction.section2_groups import mu, position, row, u3, velocity, w1, w2
 from navsym.claims import REFUTED, Equation, Finding, Property, claim
 from navsym.methods.observability.chains import observe
 from navsym.models.inertial.errors import FULL, X, Y, joint_model
@@ -58,9 +50,7 @@ def overlap():
     return Property(
         4,
         Finding(
-            shared,
-            "exact ranks of the functionals and of their union",
-            scope="16 error variables, all omega, u, mu",
+            shared, "exact ranks of the functionals and of their union", scope="16 error variables, all omega, u, mu"
         ),
     )
 
@@ -198,11 +188,7 @@ def y6_printed():
 
 
 y5_row = row(
-    "3.3.y5*",
-    "Derivative of y_5°: y_6° and the innovation.",
-    RIGHT_5,
-    lambda: position_row(5),
-    corrects="3.3.y5",
+    "3.3.y5*", "Derivative of y_5°: y_6° and the innovation.", RIGHT_5, lambda: position_row(5), corrects="3.3.y5"
 )
 y6_row = row(
     "3.3.y6*",

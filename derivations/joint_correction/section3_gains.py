@@ -111,9 +111,7 @@ def coupled_characteristic_polynomial():
 
     kappa = mu u_3 and l = lambda_c.
     """
-    return Equation(
-        (p + lam) ** 6 + kappa**2 * link_polynomial(p) ** 2, polynomial_of(coupled_velocity_block())
-    )
+    return Equation((p + lam) ** 6 + kappa**2 * link_polynomial(p) ** 2, polynomial_of(coupled_velocity_block()))
 
 
 @claim("3.coupled.without_link")
@@ -152,9 +150,7 @@ def poles_cross_the_axis_at_one():
     """
     real, imaginary = crossing()
     combination = real * omega * (1 - 3 * lam**2) - imaginary * (3 * lam - lam**3)
-    return Equation(
-        [8 * lam**3 * omega * (omega**2 - 1), lam**3], [sp.expand(combination), real.subs(omega, 0)]
-    )
+    return Equation([8 * lam**3 * omega * (omega**2 - 1), lam**3], [sp.expand(combination), real.subs(omega, 0)])
 
 
 @claim("3.coupled.crossing_value")
@@ -182,8 +178,7 @@ def coupled_system_is_stable_inside():
     on {kappa > 1}; it is counted at one point of each. At kappa = 1 there is a pole on the axis.
     """
     counts = tuple(
-        poles_on_the_right(sp.Integer(1), value)
-        for value in (sp.Integer(0), sp.Rational(1, 2), sp.Integer(2))
+        poles_on_the_right(sp.Integer(1), value) for value in (sp.Integer(0), sp.Rational(1, 2), sp.Integer(2))
     )
     no_other = parts_never_vanish_together()
     found = counts[0] == counts[1] == 0 and counts[2] > 0 and no_other
@@ -234,8 +229,7 @@ def decay_rate(lambda_value: sp.Rational, kappa_value: sp.Rational) -> sp.Ration
     from flint import ctx, fmpq, fmpq_poly
 
     polynomial = sp.Poly(
-        sp.expand((p + lambda_value) ** 6 + kappa_value**2 * link_polynomial(p).subs(lam, lambda_value) ** 2),
-        p,
+        sp.expand((p + lambda_value) ** 6 + kappa_value**2 * link_polynomial(p).subs(lam, lambda_value) ** 2), p
     )
     coefficients = [fmpq(int(c.p), int(c.q)) for c in polynomial.all_coeffs()[::-1]]
     before, ctx.prec = ctx.prec, 200
@@ -273,9 +267,7 @@ def link_removed_by_the_split():
     K[:3, 0] = K[3:, 1] = sp.Matrix(VELOCITY_GAINS)
     free = F - K * H.subs(kappa, 0)
     repaired = L * (F - lowest_terms(back * L_0 * K) * H) * back
-    return Equation(
-        [(p + lam) ** 6, *(L_0 * free * back_0)], [polynomial_of(free), *lowest_terms(sp.Matrix(repaired))]
-    )
+    return Equation([(p + lam) ** 6, *(L_0 * free * back_0)], [polynomial_of(free), *lowest_terms(sp.Matrix(repaired))])
 
 
 # The coupled position stage
@@ -312,9 +304,7 @@ def whole_polynomial():
     """The ten errors have the product of the polynomials of both stages."""
     from sympy import expand
 
-    A = joint_error_matrix(
-        (*VELOCITY_GAINS, *VELOCITY_GAINS), {1: 2 * lam_h, 2: lam_h**2, 5: 2 * lam_h, 6: lam_h**2}
-    )
+    A = joint_error_matrix((*VELOCITY_GAINS, *VELOCITY_GAINS), {1: 2 * lam_h, 2: lam_h**2, 5: 2 * lam_h, 6: lam_h**2})
     A = A.subs(EARTH[2], kappa / MU).applyfunc(expand)
     first = (p + lam) ** 6 + kappa**2 * link_polynomial(p) ** 2
     second = (p + lam_h) ** 2 * ((p + lam_h) ** 2 + mu**2 * (w1**2 + w2**2))

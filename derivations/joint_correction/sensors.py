@@ -28,8 +28,9 @@ def measured_by(names: Sequence[str]) -> LinearModel:
     """The same model with some of its measurements."""
     model = joint()
     kept = [model.measurements.index(name) for name in names]
-    return LinearModel(model.F, None, model.H.extract(kept, list(range(model.size))), model.states,
-                       measurements=tuple(names))
+    return LinearModel(
+        model.F, None, model.H.extract(kept, list(range(model.size))), model.states, measurements=tuple(names)
+    )
 
 
 def hidden(names: Sequence[str]) -> int:

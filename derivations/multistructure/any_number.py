@@ -29,10 +29,10 @@ def entry():
 @claim("8.every")
 def partial_posterior():
     """(8) for any number of modes and values: numerator and denominator grow by the entries of the joint table."""
-    numerator_mode = l * f * (W + p * g * q) - l * f * W     # one mode more in the inner sum, at one value y
-    numerator_value = l * (S + f * W) - l * S                # one value y more, its inner sum complete
-    denominator_pair = (R + l * f * q) * p * g - R * p * g   # one pair (x, y) more in rho^ij
-    denominator_mode = (D + R * p * g) - D                   # one mode more, its rho^ij complete
+    numerator_mode = l * f * (W + p * g * q) - l * f * W  # one mode more in the inner sum, at one value y
+    numerator_value = l * (S + f * W) - l * S  # one value y more, its inner sum complete
+    denominator_pair = (R + l * f * q) * p * g - R * p * g  # one pair (x, y) more in rho^ij
+    denominator_mode = (D + R * p * g) - D  # one mode more, its rho^ij complete
     empty = [numerator_mode.subs({W: 0, p: 0}), (R * p * g).subs(R, 0)]
     return Equation(
         printed=[numerator_mode, numerator_value, denominator_pair, denominator_mode, *empty],
@@ -44,8 +44,10 @@ def partial_posterior():
 def mode_probability():
     """(10) for any number of modes and values: the weight rho^ij p^ij g^j is the sum of its entries."""
     pair = (R + l * f * q) * p * g - R * p * g
-    return Equation(printed=[pair, (R * p * g).subs(R, 0), (N + R * p * g) / (D + R * p * g)],
-                    derived=[entry(), 0, (N + p * g * R) / (D + g * p * R)])
+    return Equation(
+        printed=[pair, (R * p * g).subs(R, 0), (N + R * p * g) / (D + R * p * g)],
+        derived=[entry(), 0, (N + p * g * R) / (D + g * p * R)],
+    )
 
 
 @claim("11.every")
@@ -54,8 +56,7 @@ def mixture():
     weight, whole = sp.symbols("w E", positive=True)
     inside = sp.Symbol("n", nonnegative=True)
     return Equation(
-        printed=[S / whole + (weight / whole) * (inside / weight), 0 * whole],
-        derived=[(S + inside) / whole, 0],
+        printed=[S / whole + (weight / whole) * (inside / weight), 0 * whole], derived=[(S + inside) / whole, 0]
     )
 
 
@@ -65,8 +66,10 @@ def estimate():
     weight, whole = sp.symbols("w E", positive=True)
     moment, inside = sp.Symbol("M", real=True), sp.Symbol("n", nonnegative=True)
     one_value = (weight / whole) * ((moment + xi * inside) / weight)
-    return Equation(printed=[one_value, S / whole + one_value],
-                    derived=[moment / whole + xi * inside / whole, (S + moment + xi * inside) / whole])
+    return Equation(
+        printed=[one_value, S / whole + one_value],
+        derived=[moment / whole + xi * inside / whole, (S + moment + xi * inside) / whole],
+    )
 
 
 @claim("13.sequences.every")
@@ -80,8 +83,8 @@ def sequences():
 @claim("17.every")
 def forgetful():
     """(15)-(17) for any number of modes: with p^ij = p^i the factor leaves the sums, and pi[x(k-1)] is the mixture."""
-    numerator = l * f * (W + g * q) * p - l * f * W * p      # p^i times the likelihood times (15)'s integral
-    weight = (R + l * f * q * g) * p - R * p                 # p^i rho^i, rho^i over the mixture of all j
+    numerator = l * f * (W + g * q) * p - l * f * W * p  # p^i times the likelihood times (15)'s integral
+    weight = (R + l * f * q * g) * p - R * p  # p^i rho^i, rho^i over the mixture of all j
     return Equation(printed=[numerator, weight, p * (S + R * g) - p * S], derived=[entry(), entry(), p * g * R])
 
 
@@ -90,8 +93,9 @@ def frozen():
     """(20), (21) for any number of modes: with (19) a mode j other than i adds nothing, and i adds its own entries."""
     other = (S + R * 0 * g) - S
     own = (S + R * 1 * g) - S
-    return Equation(printed=[other, own, l * (W + f * q) - l * W],
-                    derived=[entry().subs(p, 0), R * g, (entry() / g).subs(p, 1)])
+    return Equation(
+        printed=[other, own, l * (W + f * q) - l * W], derived=[entry().subs(p, 0), R * g, (entry() / g).subs(p, 1)]
+    )
 
 
 @claim("5.every")

@@ -11,10 +11,7 @@ RECKONING = model.dead_reckoning()
 S = RECKONING.right_side()
 scale = sp.Symbol("epsilon", real=True)
 #: The whole sphere but the poles, at heights above its centre.
-SPHERE = {
-    model.latitude: (sp.Rational(-3, 2), sp.Rational(3, 2)),
-    model.height: (0, None),
-}
+SPHERE = {model.latitude: (sp.Rational(-3, 2), sp.Rational(3, 2)), model.height: (0, None)}
 
 
 def at_zero(matrix: sp.Matrix) -> sp.Matrix:
@@ -29,7 +26,9 @@ def nonlinear():
     return Property(
         printed=True,
         derived=Finding(
-            bool(curvature != 0), "second derivative at an exact point", scope="course and log on a sphere",
+            bool(curvature != 0),
+            "second derivative at an exact point",
+            scope="course and log on a sphere",
             evidence=f"d2S/dK2 = {curvature} at the equator, heading north at unit speed",
         ),
     )
@@ -56,8 +55,9 @@ def arguments_corrected():
     known = {*RECKONING.reckoned, *RECKONING.errors, *RECKONING.sensor_errors, *RECKONING.readings, model.radius}
     return Property(
         printed=True,
-        derived=Finding(S.free_symbols <= known, "free symbols of the derived right side",
-                        scope="course and log on a sphere"),
+        derived=Finding(
+            S.free_symbols <= known, "free symbols of the derived right side", scope="course and log on a sphere"
+        ),
     )
 
 
@@ -82,11 +82,19 @@ def jacobians():
     S1, S2 = RECKONING.linear_parts()
     k, p, v, u, r = model.heading, model.latitude, model.vy, model.vx, model.radius + model.height
     north, east = v * sp.cos(k) - u * sp.sin(k), v * sp.sin(k) + u * sp.cos(k)
-    by_hand = sp.Matrix([
-        [0, 0, sp.cos(k) / r, -sp.sin(k) / r, -east / r, -north / r**2],
-        [east * sp.sin(p) / (r * sp.cos(p) ** 2), 0, sp.sin(k) / (r * sp.cos(p)), sp.cos(k) / (r * sp.cos(p)),
-         north / (r * sp.cos(p)), -east / (r**2 * sp.cos(p))],
-    ])
+    by_hand = sp.Matrix(
+        [
+            [0, 0, sp.cos(k) / r, -sp.sin(k) / r, -east / r, -north / r**2],
+            [
+                east * sp.sin(p) / (r * sp.cos(p) ** 2),
+                0,
+                sp.sin(k) / (r * sp.cos(p)),
+                sp.cos(k) / (r * sp.cos(p)),
+                north / (r * sp.cos(p)),
+                -east / (r**2 * sp.cos(p)),
+            ],
+        ]
+    )
     return Equation(printed=by_hand, derived=S1.row_join(S2), box=SPHERE)
 
 
@@ -94,14 +102,23 @@ def jacobians():
 def unsteady():
     """(3): S1 and S2 depend on the coordinates, hence on time."""
     S1, S2 = RECKONING.linear_parts()
-    point = {model.latitude: sp.pi / 4, model.vy: 1, model.vx: 0, model.heading: sp.pi / 2, model.height: 0,
-             model.radius: 1}
+    point = {
+        model.latitude: sp.pi / 4,
+        model.vy: 1,
+        model.vx: 0,
+        model.heading: sp.pi / 2,
+        model.height: 0,
+        model.radius: 1,
+    }
     slopes = [S1.diff(model.latitude)[1, 0].subs(point), S2.diff(model.latitude)[1, 0].subs(point)]
     return Property(
         printed=True,
-        derived=Finding(all(bool(slope != 0) for slope in slopes),
-                        "derivative by latitude at an exact point", scope="course and log on a sphere",
-                        evidence=f"dS1/dphi = {slopes[0]}, dS2/dphi = {slopes[1]} at 45 degrees, heading east"),
+        derived=Finding(
+            all(bool(slope != 0) for slope in slopes),
+            "derivative by latitude at an exact point",
+            scope="course and log on a sphere",
+            evidence=f"dS1/dphi = {slopes[0]}, dS2/dphi = {slopes[1]} at 45 degrees, heading east",
+        ),
     )
 
 
@@ -163,8 +180,7 @@ def type_corrected():
     east = model.vy * sp.sin(model.heading) + model.vx * sp.cos(model.heading)
     lever = east * sp.tan(model.latitude) / ((model.radius + model.height) * sp.cos(model.latitude))
     return Equation(
-        printed=sp.Matrix([[1, 0], [lever * tau, 1]]),
-        derived=discretised(RECKONING.linear_parts()[0], tau), box=SPHERE,
+        printed=sp.Matrix([[1, 0], [lever * tau, 1]]), derived=discretised(RECKONING.linear_parts()[0], tau), box=SPHERE
     )
 
 
@@ -192,8 +208,12 @@ def inertial_is_nonlinear():
     curvature = rate.diff(tilt, 2).subs(at_rest).subs({f: 1, gravity: 10})
     return Property(
         printed=(0, True),
-        derived=Finding((int(rate.subs(at_rest)), bool(curvature != 0)), "value, second derivative at a point",
-                        scope="one horizontal axis, a tilted platform", evidence=f"d2S/dbeta2 = {curvature} at f = 1"),
+        derived=Finding(
+            (int(rate.subs(at_rest)), bool(curvature != 0)),
+            "value, second derivative at a point",
+            scope="one horizontal axis, a tilted platform",
+            evidence=f"d2S/dbeta2 = {curvature} at f = 1",
+        ),
     )
 
 
@@ -213,8 +233,14 @@ def every_sensor_error_grows():
     North-east at unit speed from 45 degrees: each column of S2 is a constant rate that is not zero.
     """
     _, S2 = RECKONING.linear_parts()
-    point = {model.latitude: sp.pi / 4, model.heading: sp.pi / 4, model.vy: 1, model.vx: 0, model.height: 0,
-             model.radius: 1}
+    point = {
+        model.latitude: sp.pi / 4,
+        model.heading: sp.pi / 4,
+        model.vy: 1,
+        model.vx: 0,
+        model.height: 0,
+        model.radius: 1,
+    }
     rates = tuple(any(bool(entry.subs(point) != 0) for entry in S2.col(k)) for k in range(S2.cols))
     return Property(
         printed=(True,) * 4,

@@ -21,8 +21,7 @@ EXPRESSIONS = Kit(
 
 #: The same in balls, for what only has to be told apart.
 BALLS = Kit(
-    density=lambda distance, determinant, p: (-distance / 2).exp() / determinant.sqrt(),
-    tidy=lambda value: value,
+    density=lambda distance, determinant, p: (-distance / 2).exp() / determinant.sqrt(), tidy=lambda value: value
 )
 BITS = 400
 

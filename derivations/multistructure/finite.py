@@ -108,9 +108,7 @@ def normalised(states: int) -> Step:
     return step(2, states, 2, entries=distribution)
 
 
-def forgetful(
-    modes: int, entries: Callable[[str, int], list[sp.Expr]] = free
-) -> Callable[[int, int], sp.Expr]:
+def forgetful(modes: int, entries: Callable[[str, int], list[sp.Expr]] = free) -> Callable[[int, int], sp.Expr]:
     """p^ij = p^i, whatever j: condition (14)."""
     row = entries("p", modes)
     return lambda i, j: row[i]

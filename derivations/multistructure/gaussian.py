@@ -101,8 +101,13 @@ def posterior_exponent():
 
 
 v, D, P, R, H, Y, mean = (
-    sp.Symbol("v", real=True), sp.Symbol("D", positive=True), sp.Symbol("P", positive=True),
-    sp.Symbol("R", positive=True), sp.Symbol("H", real=True), sp.Symbol("Y", real=True), sp.Symbol("m", real=True),
+    sp.Symbol("v", real=True),
+    sp.Symbol("D", positive=True),
+    sp.Symbol("P", positive=True),
+    sp.Symbol("R", positive=True),
+    sp.Symbol("H", real=True),
+    sp.Symbol("Y", real=True),
+    sp.Symbol("m", real=True),
 )
 
 

@@ -29,8 +29,11 @@ def number_in_an_interval():
     counted = tuple(leaves_by_tree(modes, K, 1) for modes, K in cases)
     return Property(
         printed=tuple(modes**K for modes, K in cases),
-        derived=Finding(counted if counted == found else found, "sequences enumerated, filters scheduled",
-                        scope="I = 1..4, K = 1..5, four intervals"),
+        derived=Finding(
+            counted if counted == found else found,
+            "sequences enumerated, filters scheduled",
+            scope="I = 1..4, K = 1..5, four intervals",
+        ),
     )
 
 
@@ -38,9 +41,7 @@ def number_in_an_interval():
 def cost_of_pulsating():
     """The pulsating filter cuts the cost: I Kalman filters in every step, where the exact one needs I^k at step k."""
     cases = [(modes, k) for modes in (2, 3, 4) for k in (1, 2, 3, 4)]
-    found = tuple(
-        (filters_at(scheme("pulsating"), modes, 1, k), leaves_by_tree(modes, k, 1)) for modes, k in cases
-    )
+    found = tuple((filters_at(scheme("pulsating"), modes, 1, k), leaves_by_tree(modes, k, 1)) for modes, k in cases)
     return Property(
         printed=tuple((modes, modes**k) for modes, k in cases),
         derived=Finding(found, "filters scheduled, sequences enumerated", scope="I = 2..4, k = 1..4"),
@@ -71,8 +72,11 @@ def estimates(method, depth):
     one = [Model(*map(rational, (m.F, m.Q, m.H, m.R))) for m in TURNING]
     half = fmpq(1, 2)
     steps = run_exactly(
-        scheme(method, depth), [one] * STEPS, [rational(examples.STICKY)] * STEPS,
-        [Leaf((half, half), [fmpq(0)], [[fmpq(1)]])], [[fmpq(1)], *([[None]] * (STEPS - 1))],
+        scheme(method, depth),
+        [one] * STEPS,
+        [rational(examples.STICKY)] * STEPS,
+        [Leaf((half, half), [fmpq(0)], [[fmpq(1)]])],
+        [[fmpq(1)], *([[None]] * (STEPS - 1))],
         Kit(density=lambda v, d, p: 2 * (w if d == GOOD else 1 - w), tidy=lambda value: value),
     )
     return [fmpq_poly(1) * step.mean[0] for step in steps]
@@ -142,8 +146,11 @@ def lower(first, second) -> Finding:
     if first.overlaps(second):
         raise ArithmeticError("balls overlap: finer cells are needed")
     return Finding(
-        bool(first < second), "integrals over the measurement by Taylor's formula in balls", status=CERTIFIED,
-        scope=SCOPE, evidence=f"{first.str(6)} with K = 2, {second.str(6)} with K = 1",
+        bool(first < second),
+        "integrals over the measurement by Taylor's formula in balls",
+        status=CERTIFIED,
+        scope=SCOPE,
+        evidence=f"{first.str(6)} with K = 2, {second.str(6)} with K = 1",
     )
 
 
@@ -186,9 +193,12 @@ def longer_may_be_worse_on_a_series():
     one = abs(examples.enclosures("pulsating", MODELS, SWITCHING, WORSE)[-1] - exact)
     two = abs(examples.enclosures("k-pulsating", MODELS, SWITCHING, WORSE, depth=2)[-1] - exact)
     finding = differs(two, one)
-    return Property(printed=True, derived=Finding(
-        bool(two > one), finding.method, status=CERTIFIED, scope=finding.scope, evidence=finding.evidence
-    ))
+    return Property(
+        printed=True,
+        derived=Finding(
+            bool(two > one), finding.method, status=CERTIFIED, scope=finding.scope, evidence=finding.evidence
+        ),
+    )
 
 
 @claim("K.exact")
@@ -203,7 +213,8 @@ def exact_up_to_K():
     return Property(
         printed=True,
         derived=Finding(
-            equal, "trees compared leaf by leaf in rational arithmetic",
+            equal,
+            "trees compared leaf by leaf in rational arithmetic",
             scope="one model of two modes; the argument, that no fold comes before the estimate of step K, is general",
         ),
     )
@@ -221,9 +232,12 @@ def lossless_fold():
     second = {(leaf.mean[0], leaf.covariance[0][0]) for leaf in steps[1].leaves}
     return Property(
         printed=1,
-        derived=Finding(len(second), "leaves of the exact tree compared as rational numbers",
-                        scope="this model, every series of measurements: gains do not depend on them",
-                        evidence="all leaves of step 2 are one Gaussian, so the fold of K = 2 changes nothing"),
+        derived=Finding(
+            len(second),
+            "leaves of the exact tree compared as rational numbers",
+            scope="this model, every series of measurements: gains do not depend on them",
+            evidence="all leaves of step 2 are one Gaussian, so the fold of K = 2 changes nothing",
+        ),
     )
 
 

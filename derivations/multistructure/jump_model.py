@@ -48,8 +48,13 @@ def path(start, switch, step, likelihood):
     table = {}
     for x0, i0, x1, i1, y0, x2, i2, y1 in product(TWO, repeat=8):
         table[x0, i0, x1, i1, y0, x2, i2, y1] = (
-            start[i0][x0] * likelihood[i0][x0][y0] * switch[i0][i1] * step[i1][x0][x1]
-            * likelihood[i1][x1][y1] * switch[i1][i2] * step[i2][x1][x2]
+            start[i0][x0]
+            * likelihood[i0][x0][y0]
+            * switch[i0][i1]
+            * step[i1][x0][x1]
+            * likelihood[i1][x1][y1]
+            * switch[i1][i2]
+            * step[i2][x1][x2]
         )
     return table
 

@@ -182,10 +182,7 @@ def accumulate():
     W, w = sp.symbols("W w", positive=True)
     X, Y, C, a, b, c = sp.symbols("X Y C a b c", real=True)
     share = w / (W + w)
-    printed = [
-        X + share * (a - X),
-        (1 - share) * C + share * c + share * (1 - share) * (a - X) * (b - Y),
-    ]
+    printed = [X + share * (a - X), (1 - share) * C + share * c + share * (1 - share) * (a - X) * (b - Y)]
     mean_x, mean_y = (W * X + w * a) / (W + w), (W * Y + w * b) / (W + w)
     product = (W * (C + X * Y) + w * (c + a * b)) / (W + w)
     return Equation(printed=printed, derived=[mean_x, product - mean_x * mean_y])

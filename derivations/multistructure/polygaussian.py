@@ -64,9 +64,7 @@ def double_integral_printed():
     """(20) with the double integral as printed, over x(k-1) and x(k)."""
     s = frozen_steps()[0]
     doubled = sum(predicted(s, 0, x) for x in s.X)
-    return Equation(
-        printed=s.L(0, 0) / rho(s, 0) * doubled, derived=finite.partial(s, 0, 0), box=UNIT(s)
-    )
+    return Equation(printed=s.L(0, 0) / rho(s, 0) * doubled, derived=finite.partial(s, 0, 0), box=UNIT(s))
 
 
 @claim("20.integral*", corrects="20.integral")
@@ -153,8 +151,11 @@ def polygaussian_and_exact(steps: int):
     ]
 
 
-MODES = [(Fraction(1), Fraction(0), Fraction(1)), (Fraction(1, 2), Fraction(1), Fraction(1)),
-         (Fraction(1), Fraction(4), Fraction(9))]
+MODES = [
+    (Fraction(1), Fraction(0), Fraction(1)),
+    (Fraction(1, 2), Fraction(1), Fraction(1)),
+    (Fraction(1), Fraction(4), Fraction(9)),
+]
 
 
 @claim("19.count")
@@ -192,8 +193,11 @@ def prior():
     """Below (21): one Gaussian per mode needs I filters; a sum of L common to all modes would need I L (I = 2)."""
     return Property(
         printed=tuple(2 * L for L in (1, 2, 3)),
-        derived=Finding(tuple(len(different_gaussians(L)) for L in (1, 2, 3)),
-                        "different Gaussians of the exact tree counted", scope="two modes, L = 1..3, one step"),
+        derived=Finding(
+            tuple(len(different_gaussians(L)) for L in (1, 2, 3)),
+            "different Gaussians of the exact tree counted",
+            scope="two modes, L = 1..3, one step",
+        ),
     )
 
 
@@ -202,11 +206,10 @@ def different_gaussians(summands: int):
     share = Fraction(1, 2 * summands)
     roots = [
         Leaf(tuple(share if i == j else Fraction(0) for j in (0, 1)), [Fraction(number)], [[Fraction(1)]])
-        for number in range(summands) for i in (0, 1)
+        for number in range(summands)
+        for i in (0, 1)
     ]
     models = [[Model([[F]], [[Q]], [[Fraction(1)]], [[R]]) for F, Q, R in MODES[:2]]]
     identity = [[[Fraction(1), Fraction(0)], [Fraction(0), Fraction(1)]]]
-    step, = run_exactly(scheme("exact"), models, identity, roots, [[Fraction(2)]], fractions_kit())
+    (step,) = run_exactly(scheme("exact"), models, identity, roots, [[Fraction(2)]], fractions_kit())
     return {gaussian(leaf) for leaf in step.leaves if sum(leaf.weights) > 0}
-
-

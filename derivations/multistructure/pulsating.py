@@ -109,7 +109,8 @@ def number_of_sequences():
     return Property(
         printed=tuple(modes ** (steps + 1) for modes, steps in GRID),
         derived=Finding(
-            tuple(leaves_by_tree(modes, steps, modes) for modes, steps in GRID), "sequences enumerated",
+            tuple(leaves_by_tree(modes, steps, modes) for modes, steps in GRID),
+            "sequences enumerated",
             scope="I = 1..4, k = 0..5; every step multiplies by I, so for all by induction",
         ),
     )
@@ -131,7 +132,10 @@ def differs(first, second) -> Finding:
     if first.overlaps(second):
         raise ArithmeticError("balls overlap: more bits are needed")
     return Finding(
-        True, "ball arithmetic, 400 bits", status=CERTIFIED, scope="one model, one series of measurements",
+        True,
+        "ball arithmetic, 400 bits",
+        status=CERTIFIED,
+        scope="one model, one series of measurements",
         evidence=f"{first.str(12, radius=False)} against {second.str(12, radius=False)}",
     )
 
@@ -189,7 +193,8 @@ def near_optimal():
     return Property(
         printed=True,
         derived=Finding(
-            all(b < a for a, b in pairwise(values)), "exact excess kurtosis",
+            all(b < a for a, b in pairwise(values)),
+            "exact excess kurtosis",
             scope="g = 1 - 10^-k, unit Gaussians 10^(k/2) apart, k = 1..6",
             evidence=f"excess kurtosis grows from {float(values[0]):.3g} to {float(values[-1]):.3g}",
         ),
@@ -205,7 +210,9 @@ def near_optimal_corrected():
     square = sp.Symbol("D", nonnegative=True)
     spread = share * (1 - share)
     return Bound(
-        printed=(1 - share) * (1 - 6 * spread), relation="<=", derived=(1 + spread * square) ** 2,
+        printed=(1 - share) * (1 - 6 * spread),
+        relation="<=",
+        derived=(1 + spread * square) ** 2,
         box={share: (0, sp.Rational(1, 10)), square: (0, None)},
     )
 
@@ -263,4 +270,3 @@ def memory_corrected():
         printed=tuple(modes + 1 + 2 * (n + n * n) for modes, n in CASES),
         derived=Finding(memory(CASES), "arrays of the one-pass filter counted", scope="I = 2, 3, 8; n = 1, 2, 6"),
     )
-

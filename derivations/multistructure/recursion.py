@@ -49,7 +49,10 @@ def posterior_printed():
     s = step(2, 2)
     doubled = total(
         s.L(i, x) * s.f(i, x, y) ** 2 * s.p(i, j) * s.modes[j] * s.past[j][y]
-        for i in s.I for j in s.I for x in s.X for y in s.X
+        for i in s.I
+        for j in s.I
+        for x in s.X
+        for y in s.X
     )
     return Equation(printed=bayes_numerator(s, 0, 0) / doubled, derived=finite.posterior(s, 0, 0), box=UNIT(s))
 
@@ -106,9 +109,7 @@ def partial_definition():
 
 
 def right_side_of_8(s: Step, i: int, x: int) -> sp.Expr:
-    above = s.L(i, x) * total(
-        s.f(i, x, y) * total(s.p(i, j) * s.modes[j] * s.past[j][y] for j in s.I) for y in s.X
-    )
+    above = s.L(i, x) * total(s.f(i, x, y) * total(s.p(i, j) * s.modes[j] * s.past[j][y] for j in s.I) for y in s.X)
     return above / total(rho(s, i, j) * s.p(i, j) * s.modes[j] for j in s.I)
 
 
@@ -160,8 +161,7 @@ def pair_likelihood():
     """(9) with pi^j[x(k-1)]: rho^ij is the density of Y(k) given both modes [I,n = 2,2 2,3]."""
     cases = pairs()
     return Equation(
-        printed=[rho(s, i, j) for s, i, j in cases],
-        derived=[finite.pair_likelihood(s, i, j) for s, i, j in cases],
+        printed=[rho(s, i, j) for s, i, j in cases], derived=[finite.pair_likelihood(s, i, j) for s, i, j in cases]
     )
 
 
@@ -170,8 +170,7 @@ def pair_condition():
     """(9), last line with the condition j(k-1) [I,n = 2,2 2,3]."""
     cases = pairs()
     return Equation(
-        printed=[finite.pair_likelihood(s, i, j) for s, i, j in cases],
-        derived=[rho(s, i, j) for s, i, j in cases],
+        printed=[finite.pair_likelihood(s, i, j) for s, i, j in cases], derived=[rho(s, i, j) for s, i, j in cases]
     )
 
 
@@ -207,8 +206,10 @@ def mode_probability_by_densities():
     for size in (2, 3, 4):
         pairs = [(i, j) for i in range(size) for j in range(size)]
         together = {key: sp.Symbol("a_{}{}".format(*key), positive=True) for key in pairs}
-        before = {key: sp.Symbol("p_{}{}".format(*key), positive=True) * sp.Symbol(f"g_{key[1]}", positive=True)
-                  for key in pairs}
+        before = {
+            key: sp.Symbol("p_{}{}".format(*key), positive=True) * sp.Symbol(f"g_{key[1]}", positive=True)
+            for key in pairs
+        }
         density = {key: together[key] / before[key] for key in pairs}
         weight = {key: density[key] * before[key] for key in pairs}
         whole = total(weight.values())

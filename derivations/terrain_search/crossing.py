@@ -4,17 +4,7 @@ from __future__ import annotations
 
 import sympy as sp
 
-from derivations.terrain_search.model import (
-    SIZES,
-    crossing_time,
-    free_motion,
-    misfit,
-    n,
-    slopes,
-    speed,
-    step,
-    t,
-)
+from derivations.terrain_search.model import SIZES, crossing_time, free_motion, misfit, n, slopes, speed, step, t
 from navsym.claims import CERTIFIED, REFUTED, Bound, Equation, claim
 
 alpha, beta, y, dV = sp.symbols("alpha beta y deltaV", real=True)
@@ -143,9 +133,7 @@ def first_order():
 )
 def height_as_printed():
     """Height on the crossing track, as printed."""
-    return Equation(
-        printed=relief(y) + sp.diff(relief(y), y) * beta * step * (index - t), derived=first_order()
-    )
+    return Equation(printed=relief(y) + sp.diff(relief(y), y) * beta * step * (index - t), derived=first_order())
 
 
 @claim("9*", corrects="9")
@@ -278,9 +266,7 @@ def curvature_of(q):
 def sum_of_numbers():
     """The sum of 0…n is n (n + 1)/2: it starts at 0 and grows by n."""
     printed = n * (n + 1) / 2
-    return Equation(
-        printed=[printed.subs(n, 0), printed - printed.subs(n, n - 1)], derived=[sp.Integer(0), n]
-    )
+    return Equation(printed=[printed.subs(n, 0), printed - printed.subs(n, n - 1)], derived=[sp.Integer(0), n])
 
 
 @claim("10.equal")

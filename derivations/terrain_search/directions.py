@@ -4,16 +4,7 @@ from __future__ import annotations
 
 import sympy as sp
 
-from derivations.terrain_search.model import (
-    SIZES,
-    beta_x,
-    beta_y,
-    crossing_time,
-    moment,
-    slopes,
-    speed,
-    step,
-)
+from derivations.terrain_search.model import SIZES, beta_x, beta_y, crossing_time, moment, slopes, speed, step
 from navsym.claims import PROVED, REFUTED, Equation, Finding, Property, claim
 
 DIRECTION = (beta_x, beta_y)
@@ -267,9 +258,7 @@ def derivative_x_as_printed():
 @claim("12*", corrects="12")
 def derivative_x():
     """The derivative of t_G by beta_x is the quadratic form times 2 beta_y / D^2, D the sum of squares."""
-    forms = [
-        quadratic_form([double_sum(s, PRINTED[name]) for name in ("Ax2*", "Ax1", "Ax0*")]) for s in PAIRS
-    ]
+    forms = [quadratic_form([double_sum(s, PRINTED[name]) for name in ("Ax2*", "Ax1", "Ax0*")]) for s in PAIRS]
     return Equation(
         printed=[scaled(s, beta_y) * form for s, form in zip(PAIRS, forms, strict=True)],
         derived=[derivative(slopes(s), beta_x) for s in PAIRS],

@@ -96,9 +96,7 @@ def unit_as_printed():
 def unit():
     """The root of the mean square error is a length."""
     runs = errors(3)
-    return Equation(
-        printed=scale * mean_square_measure(runs, 3), derived=mean_square_measure(stretched(runs), 3)
-    )
+    return Equation(printed=scale * mean_square_measure(runs, 3), derived=mean_square_measure(stretched(runs), 3))
 
 
 @claim(
@@ -118,32 +116,21 @@ def velocity_unit_as_printed():
 def velocity_unit():
     """The root of the mean square velocity error is a velocity."""
     runs = errors(2)
-    return Equation(
-        printed=scale * mean_square_measure(runs, 2), derived=mean_square_measure(stretched(runs), 2)
-    )
+    return Equation(printed=scale * mean_square_measure(runs, 2), derived=mean_square_measure(stretched(runs), 2))
 
 
-@claim(
-    "sigma.count",
-    expect=REFUTED,
-    slip="paper",
-    reason="the sum i = 0…n has n + 1 terms for n experiments",
-)
+@claim("sigma.count", expect=REFUTED, slip="paper", reason="the sum i = 0…n has n + 1 terms for n experiments")
 def count_as_printed():
     """The sum over i = 0…n has as many terms as there are experiments, n."""
     sizes = range(2, 6)
-    return Equation(
-        printed=[sp.Integer(n) for n in sizes], derived=[sp.Integer(len(range(n + 1))) for n in sizes]
-    )
+    return Equation(printed=[sp.Integer(n) for n in sizes], derived=[sp.Integer(len(range(n + 1))) for n in sizes])
 
 
 @claim("sigma.count*", corrects="sigma.count")
 def count():
     """The sum over i = 1…n has n terms."""
     sizes = range(2, 6)
-    return Equation(
-        printed=[sp.Integer(n) for n in sizes], derived=[sp.Integer(len(range(1, n + 1))) for n in sizes]
-    )
+    return Equation(printed=[sp.Integer(n) for n in sizes], derived=[sp.Integer(len(range(1, n + 1))) for n in sizes])
 
 
 @claim(
@@ -164,9 +151,7 @@ def divisor():
     """The divisor n makes it unbiased: the mean of n equal expectations."""
     s2 = sp.Symbol("s2", positive=True)
     sizes = (2, 20, 100)
-    return Equation(
-        printed=[s2] * len(sizes), derived=[sum(s2 for _ in range(n)) / sp.Integer(n) for n in sizes]
-    )
+    return Equation(printed=[s2] * len(sizes), derived=[sum(s2 for _ in range(n)) / sp.Integer(n) for n in sizes])
 
 
 def largest_error():
@@ -197,9 +182,7 @@ def mean_error_that_the_measure_would_need():
     """As a value of the printed measure for 20 runs, 152.2 would need a mean error of 20 km and more."""
     runs, mean_error = 20, sp.Symbol("e", nonnegative=True)
     # At a mean error of 20 km - e the square of the measure is (n + 1)/(n - 1) times it, below 152.2^2.
-    return Bound(
-        printed=(20000 - mean_error) * sp.Rational(runs + 1, runs - 1), relation="<", derived=POSITION**2
-    )
+    return Bound(printed=(20000 - mean_error) * sp.Rational(runs + 1, runs - 1), relation="<", derived=POSITION**2)
 
 
 @claim("sigma.table*", corrects="sigma.table")

@@ -7,15 +7,7 @@ from fractions import Fraction
 import sympy as sp
 
 from derivations.terrain_search.directions import quotient
-from derivations.terrain_search.model import (
-    beta_x,
-    beta_y,
-    crossing_time,
-    inverse,
-    moment,
-    slopes,
-    symmetric,
-)
+from derivations.terrain_search.model import beta_x, beta_y, crossing_time, inverse, moment, slopes, symmetric
 from navsym.claims import OPEN, PROVED, REFUTED, Bound, Equation, Finding, Property, claim
 
 G, M = symmetric("G"), symmetric("M")
@@ -77,9 +69,7 @@ def roots_of_the_quadratic():
     A0 = (A1**2 - root**2) / (4 * A2)  # any A0 with the discriminant root^2
     discriminant = sp.sqrt(A1**2 - 4 * A2 * A0)
     solutions = [(-A1 + root) / (2 * A2), (-A1 - root) / (2 * A2)]
-    return Equation(
-        printed=[(-A1 + discriminant) / (2 * A2), (-A1 - discriminant) / (2 * A2)], derived=solutions
-    )
+    return Equation(printed=[(-A1 + discriminant) / (2 * A2), (-A1 - discriminant) / (2 * A2)], derived=solutions)
 
 
 @claim("roots.solve")
@@ -102,9 +92,7 @@ def solutions_solve():
 )
 def two_roots_as_printed():
     """With beta_y = 1 the quadratic has two roots, one for t_min and one for t_max."""
-    return Property(
-        2, Finding(len(roots_on_the_example()), "exact example: slopes (1, 0) and (0, 1)", PROVED)
-    )
+    return Property(2, Finding(len(roots_on_the_example()), "exact example: slopes (1, 0) and (0, 1)", PROVED))
 
 
 def example():
@@ -300,7 +288,9 @@ def accuracy_of_the_middle():
     share = sp.Symbol("s", nonnegative=True)
     # t_G = t_min + s L, s in [0, 1]; the track is 10 L + e long. The other side is the same with 1 - s for s.
     return Bound(
-        printed=length * share - length / 2, relation="<=", derived=(10 * length + rest) / 20,
+        printed=length * share - length / 2,
+        relation="<=",
+        derived=(10 * length + rest) / 20,
         box={share: (0, 1), length: (0, None), rest: (0, None)},
     )
 
@@ -314,6 +304,4 @@ def distance_from_the_middle():
     square = (v.T * G * v)[0]
     middle = (inverse(G) * M).trace() / 2
     quarter = (A1**2 - 4 * A2 * A0) / G.det() ** 2 / 4
-    return Equation(
-        printed=(W / square) ** 2 / G.det(), derived=quarter - ((v.T * M * v)[0] / square - middle) ** 2
-    )
+    return Equation(printed=(W / square) ** 2 / G.det(), derived=quarter - ((v.T * M * v)[0] / square - middle) ** 2)

@@ -17,8 +17,7 @@ def number_of_hypotheses():
     """Indices from -N to N are 2N + 1 hypotheses."""
     halves = range(21)
     return Equation(
-        printed=[2 * sp.Integer(N) + 1 for N in halves],
-        derived=[sp.Integer(len(range(-N, N + 1))) for N in halves],
+        printed=[2 * sp.Integer(N) + 1 for N in halves], derived=[sp.Integer(len(range(-N, N + 1))) for N in halves]
     )
 
 
@@ -63,8 +62,7 @@ def position_cost():
     sizes = [(a, b) for a in range(4) for b in range(4)]
     pairs = [[(u, v) for u in range(-a, a + 1) for v in range(-b, b + 1)] for a, b in sizes]
     return Equation(
-        printed=[(2 * sp.Integer(a) + 1) * (2 * b + 1) for a, b in sizes],
-        derived=[sp.Integer(len(p)) for p in pairs],
+        printed=[(2 * sp.Integer(a) + 1) * (2 * b + 1) for a, b in sizes], derived=[sp.Integer(len(p)) for p in pairs]
     )
 
 
@@ -75,10 +73,7 @@ def joint_hypothesis():
     moved = [free_motion(tau, a, v, 0)[0] for a, v in ((i * Dx, Vi * DVx), (j * Dy, Vj * DVy))]
     printed = [x + i * Dx + Vi * DVx * tau, y + j * Dy + Vj * DVy * tau]
     still = [p.subs({Vi: 0, Vj: 0}) for p in printed]
-    return Equation(
-        printed=[*printed, *still],
-        derived=[x + moved[0], y + moved[1], x + i * Dx, y + j * Dy],
-    )
+    return Equation(printed=[*printed, *still], derived=[x + moved[0], y + moved[1], x + i * Dx, y + j * Dy])
 
 
 @claim("bias.mean")
@@ -144,8 +139,7 @@ def another_way():
     """On average the fix of the position search is right at T/2, and off by deltaV (T/2 - t) at another instant t."""
     instant = sp.Symbol("t", real=True)
     return Equation(
-        printed=[sp.Integer(0), dVx * (T / 2 - instant)],
-        derived=[mean_fix(T / 2, x, dVx), mean_fix(instant, x, dVx)],
+        printed=[sp.Integer(0), dVx * (T / 2 - instant)], derived=[mean_fix(T / 2, x, dVx), mean_fix(instant, x, dVx)]
     )
 
 

@@ -86,8 +86,7 @@ def coarse_fix():
     criterion = (c.T * G * c - 2 * c.T * M1 * v)[0]  # sum (g'(c - k v))^2 up to what is free of c
     at_fix = dict(zip(c, centre() * v, strict=True))
     return Equation(
-        printed=[sp.Integer(0)] * 2,
-        derived=[sp.diff(criterion, s).subs(at_fix, simultaneous=True) for s in c],
+        printed=[sp.Integer(0)] * 2, derived=[sp.diff(criterion, s).subs(at_fix, simultaneous=True) for s in c]
     )
 
 
@@ -150,9 +149,7 @@ def two_stages():
 def two_stages_are_the_joint_solution():
     """Turning about C, the two stages solve the joint normal equations exactly, whatever the noise."""
     position, velocity = two_stages()
-    return Equation(
-        printed=[*b0, *b1], derived=[*(G * position + M1 * velocity), *(M1 * position + M2 * velocity)]
-    )
+    return Equation(printed=[*b0, *b1], derived=[*(G * position + M1 * velocity), *(M1 * position + M2 * velocity)])
 
 
 @claim("sequential.second")
@@ -176,7 +173,7 @@ def final_position_from_the_centre():
 @claim("halves")
 def two_windows():
     """Two position fixes over different windows give the velocity: v = (C_b - C_a)^-1 (c_b - c_a)."""
-    first, second = symmetric("A"), symmetric("B")           # sums of the first and the second window
+    first, second = symmetric("A"), symmetric("B")  # sums of the first and the second window
     moved, moved_later = symmetric("P"), symmetric("Q")
     start = sp.Matrix(sp.symbols("c_x c_y", real=True))
     centres = inverse(first) * moved, inverse(second) * moved_later

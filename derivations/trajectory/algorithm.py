@@ -130,12 +130,7 @@ def corrected_matrix():
 # -- the field of Q ----------------------------------------------------------------------------------------
 
 
-@claim(
-    "algorithm.NQ",
-    expect=REFUTED,
-    slip="paper",
-    reason="3^5 = 243; one candidate of the field is not counted",
-)
+@claim("algorithm.NQ", expect=REFUTED, slip="paper", reason="3^5 = 243; one candidate of the field is not counted")
 def field_size_printed():
     """Number of values in the field for n = 5, as printed."""
     return Property(printed=242, derived=Finding(len(field(5)), "enumeration", scope="n = 5"))
@@ -151,9 +146,7 @@ def field_size():
 def field_size_power():
     """The field has 3^n candidates: each of n elements may fall, stay or rise."""
     found = tuple(len(field(n)) for n in range(1, 8))
-    return Property(
-        printed=tuple(3**n for n in range(1, 8)), derived=Finding(found, "enumeration", scope="n = 1..7")
-    )
+    return Property(printed=tuple(3**n for n in range(1, 8)), derived=Finding(found, "enumeration", scope="n = 1..7"))
 
 
 def field(n: int) -> list[tuple[Fraction, ...]]:
@@ -254,9 +247,7 @@ def commensurate(speed_power: int, acceleration_power: int) -> Finding:
         unit((SPEED, 2), (TIME, speed_power)),
         unit((ACCELERATION, 2), (TIME, acceleration_power)),
     }
-    return Finding(
-        len(terms) == 1, "exponents of metre and second", evidence=f"units of the terms: {sorted(terms)}"
-    )
+    return Finding(len(terms) == 1, "exponents of metre and second", evidence=f"units of the terms: {sorted(terms)}")
 
 
 @claim(
@@ -287,6 +278,4 @@ def matrix_is_not_the_covariance():
     matrix = root * R  # P = K R for H = 1
     error = root * R / (2 - root)  # E e^2 = (1 - K)^2 E e^2 + K^2 R
     balance = error - (1 - root) ** 2 * error - root**2 * R
-    return Equation(
-        printed=[R * root * (1 - root) / (2 - root), sp.Integer(0)], derived=[matrix - error, balance]
-    )
+    return Equation(printed=[R * root * (1 - root) / (2 - root), sp.Integer(0)], derived=[matrix - error, balance])

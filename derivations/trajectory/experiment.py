@@ -64,9 +64,7 @@ def heading():
 def tuning_stops_at_a_step():
     """Tuning stops at 168.8 s, a whole number of steps of 0.2 s."""
     steps = Fraction("168.8") / TAU
-    return Property(
-        printed=True, derived=Finding(steps.denominator == 1, "exact division", evidence=f"{steps} steps")
-    )
+    return Property(printed=True, derived=Finding(steps.denominator == 1, "exact division", evidence=f"{steps} steps"))
 
 
 # -- printed errors of position ------------------------------------------------------------------------
@@ -80,9 +78,7 @@ def agree(angle: str, half_angle: str, length: str, half_length: str, per_unit: 
     apart, meet = bool(low > top) or bool(high < bottom), bool(low <= top) and bool(high >= bottom)
     assert apart != meet, "the ranges touch within the precision of the balls"
     evidence = f"angle gives {low.str(4, radius=False)} to {high.str(4, radius=False)} m"
-    return Finding(
-        meet, "ball arithmetic", CERTIFIED, scope="rounding ranges of both figures", evidence=evidence
-    )
+    return Finding(meet, "ball arithmetic", CERTIFIED, scope="rounding ranges of both figures", evidence=evidence)
 
 
 def ball(x: Fraction) -> flint.arb:
@@ -126,10 +122,7 @@ def other_speed(speed: int) -> tuple[Claim, Claim]:
         title=f"|V| = {speed} m/s: 2.2e-8 degrees are 0.1 m",
     )(lambda: Property(printed=True, derived=agree(*figures, metres_per_degree())))
     right = claim(
-        f"{number}*",
-        expect=CERTIFIED,
-        corrects=number,
-        title=f"|V| = {speed} m/s: 2.2e-8 radians are 0.1 m",
+        f"{number}*", expect=CERTIFIED, corrects=number, title=f"|V| = {speed} m/s: 2.2e-8 radians are 0.1 m"
     )(lambda: Property(printed=True, derived=agree(*figures, metres_per_radian())))
     return wrong, right
 

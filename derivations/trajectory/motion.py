@@ -206,9 +206,7 @@ def transition_matrix():
 @claim("4.Phi.series")
 def transition_matrix_is_the_finite_series():
     """The transition matrix is the series of exp(A tau), which ends because A is nilpotent; n = 8."""
-    return Equation(
-        printed=printed_transition(ORDER), derived=motion.transition(motion.dynamics(ORDER, rho), tau)
-    )
+    return Equation(printed=printed_transition(ORDER), derived=motion.transition(motion.dynamics(ORDER, rho), tau))
 
 
 @claim("4.exact")
@@ -301,10 +299,6 @@ def smaller_steps_always_worsen():
 def smaller_steps_worsen_below_a_second():
     """For tau up to 1 s each halving of the step worsens the condition number, n of the table."""
     steps = [sp.Rational(1, 2**k) for k in range(6)]
-    holds = all(
-        improves(n, longer, shorter) for n in (2, 3, 4, 5, 10, 19, 20) for longer, shorter in pairwise(steps)
-    )
+    holds = all(improves(n, longer, shorter) for n in (2, 3, 4, 5, 10, 19, 20) for longer, shorter in pairwise(steps))
     scope = "rho = 1/6371000, tau = 1, 1/2, ..., 1/32, n of the table"
-    return Property(
-        printed=True, derived=Finding(holds, "certified condition numbers", CERTIFIED, scope=scope)
-    )
+    return Property(printed=True, derived=Finding(holds, "certified condition numbers", CERTIFIED, scope=scope))

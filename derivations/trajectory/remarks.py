@@ -6,14 +6,7 @@ from fractions import Fraction
 
 import sympy as sp
 
-from derivations.trajectory.table import (
-    COLUMNS,
-    ORDERS,
-    PRINTED,
-    STEPS,
-    in_printed_format,
-    true_value,
-)
+from derivations.trajectory.table import COLUMNS, ORDERS, PRINTED, STEPS, in_printed_format, true_value
 from navsym.claims import CERTIFIED, REFUTED, Equation, Finding, Property, claim
 from navsym.methods.conditioning.numbers import condition_number
 from navsym.methods.trajectory.experiment import scaling_changes_rounding
@@ -25,9 +18,7 @@ RADIUS = Fraction(6371000)
 @claim("experiment.eps", expect=CERTIFIED)
 def relative_precision():
     """Relative precision of the computing environment: 2^-52 = 2.2e-16."""
-    return Equation(
-        printed=sp.Rational("2.2e-16"), derived=sp.Rational(1, 2**52), tolerance=sp.Rational("0.05e-16")
-    )
+    return Equation(printed=sp.Rational("2.2e-16"), derived=sp.Rational(1, 2**52), tolerance=sp.Rational("0.05e-16"))
 
 
 def printed_equal(left: tuple[str, int], right: tuple[str, int], n: int) -> bool:
@@ -43,9 +34,7 @@ def independent_orders(column: int) -> tuple[int, ...]:
 def independence_is_violated_from_19():
     """In the printed table independence of tau holds up to n = 10 and is violated for n = 19 and 20."""
     found = tuple(independent_orders(COLUMNS.index(c)) for c in ("NpN", "Nf", "Ns"))
-    return Property(
-        printed=((2, 3, 4, 5, 10),) * 3, derived=Finding(found, "comparison of the printed digits")
-    )
+    return Property(printed=((2, 3, 4, 5, 10),) * 3, derived=Finding(found, "comparison of the printed digits"))
 
 
 @claim("experiment.violated.equality")

@@ -44,9 +44,7 @@ def D_f(n: int) -> sp.Matrix:
 def in_first_stage(n: int) -> tuple[sp.Matrix, sp.Matrix]:
     """Transition matrix and measurement row in f = D_f x."""
     scale = D_f(n)
-    return (scale * step(n) * scale.inv()).applyfunc(sp.cancel), (measured(n) * scale.inv()).applyfunc(
-        sp.cancel
-    )
+    return (scale * step(n) * scale.inv()).applyfunc(sp.cancel), (measured(n) * scale.inv()).applyfunc(sp.cancel)
 
 
 def N_f(n: int) -> sp.Matrix:
@@ -75,9 +73,7 @@ def normalised_measurement():
     """In x^q = D x the measurement row is H_p D^-1; n = 4."""
     x = sp.Matrix(X[:SMALL])
     scale = D(SMALL)
-    return Equation(
-        printed=(measured(SMALL) * scale.inv() * (scale * x))[0], derived=(measured(SMALL) * x)[0]
-    )
+    return Equation(printed=(measured(SMALL) * scale.inv() * (scale * x))[0], derived=(measured(SMALL) * x)[0])
 
 
 @claim("5.N")
@@ -141,7 +137,7 @@ def first_stage_observability():
             [1, 4, 16, 64, 256],
             [1, 5, 25, 125, 625],
         ]
-    )
+    )  # fmt: skip
     return Equation(printed=printed, derived=N_f(PRINTED))
 
 
@@ -158,9 +154,7 @@ SCOPE = f"n = {LARGEST} and, as leading blocks, every smaller n; D_f exp(A tau) 
 def transition_is_triangular():
     """Phi_f is upper triangular with integer elements."""
     Phi = transitions()
-    holds = all(
-        Phi[i, j].is_Integer and (j >= i or Phi[i, j] == 0) for i in range(LARGEST) for j in range(LARGEST)
-    )
+    holds = all(Phi[i, j].is_Integer and (j >= i or Phi[i, j] == 0) for i in range(LARGEST) for j in range(LARGEST))
     return Property(printed=True, derived=Finding(holds, "exact matrix", scope=SCOPE))
 
 
@@ -327,8 +321,5 @@ def both_variables_meet():
 def an_earlier_stage_takes_rho_out():
     """With D_p = diag(1, rho, ..., rho) as a first stage the model no longer contains rho; n = 5."""
     D_p = sp.diag(1, *([rho] * (PRINTED - 1)))
-    changes = [
-        *(D_p * step(PRINTED) * D_p.inv()).diff(rho),
-        *(measured(PRINTED) * D_p.inv()).diff(rho),
-    ]
+    changes = [*(D_p * step(PRINTED) * D_p.inv()).diff(rho), *(measured(PRINTED) * D_p.inv()).diff(rho)]
     return Equation(printed=[sp.Integer(0)] * len(changes), derived=changes)

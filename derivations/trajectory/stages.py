@@ -48,7 +48,10 @@ def each_state_costs_nearly_a_digit():
     return Property(
         printed=("6.3", "7.8"),
         derived=Finding(
-            (f"{float(low):.1f}", f"{float(high):.1f}"), METHOD, CERTIFIED, scope="n = 3 ... 20 against n - 1",
+            (f"{float(low):.1f}", f"{float(high):.1f}"),
+            METHOD,
+            CERTIFIED,
+            scope="n = 3 ... 20 against n - 1",
             evidence=f"{float(low):.4f} to {float(high):.4f}; sixteen digits are used up at n = 20",
         ),
     )

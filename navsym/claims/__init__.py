@@ -3,15 +3,7 @@
 from navsym.claims.claim import Claim, claim
 from navsym.claims.paper import Coverage, Paper, claims_of, coverage, equation_of
 from navsym.claims.statement import Bound, Box, Equation, Finding, Optimum, Property, Statement
-from navsym.claims.verdict import (
-    CERTIFIED,
-    CONFIRMED,
-    OPEN,
-    PROVED,
-    REFUTED,
-    Status,
-    Verdict,
-)
+from navsym.claims.verdict import CERTIFIED, CONFIRMED, OPEN, PROVED, REFUTED, Status, Verdict
 
 __all__ = [
     "CERTIFIED",

@@ -11,13 +11,7 @@ from collections.abc import Iterable, Sequence
 from typing import Any
 
 #: Colours of verdicts; dark enough on white, light enough on black. The mark says the same without colour.
-COLOURS = {
-    "PROVED": "#1a7f37",
-    "CERTIFIED": "#0f7f7f",
-    "CONFIRMED": "#0969da",
-    "REFUTED": "#cf222e",
-    "OPEN": "#9a6700",
-}
+COLOURS = {"PROVED": "#1a7f37", "CERTIFIED": "#0f7f7f", "CONFIRMED": "#0969da", "REFUTED": "#cf222e", "OPEN": "#9a6700"}
 MARKS = {"PROVED": "✓", "CERTIFIED": "◎", "CONFIRMED": "≈", "REFUTED": "✗", "OPEN": "?"}
 SIGNS = {"<=": r"\le", ">=": r"\ge", "!=": r"\ne"}
 

@@ -46,9 +46,7 @@ def equation_of(number: str, equations: Iterable[str]) -> str | None:
     ``"4.12.Phi21"`` and ``"4.8*"`` belong to ``"4.12"`` and ``"4.8"``; a short name belongs to none.
     """
     fits = [
-        equation
-        for equation in equations
-        if number == equation or number.startswith((f"{equation}.", f"{equation}*"))
+        equation for equation in equations if number == equation or number.startswith((f"{equation}.", f"{equation}*"))
     ]
     return max(fits, key=len, default=None)
 

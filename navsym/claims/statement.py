@@ -42,6 +42,7 @@ class Equation:
         """Both sides for notebooks, with a question mark: a statement is not yet a verdict."""
         within = "" if self.tolerance is None else rf" \pm {latex_of(self.tolerance)}"
         return displayed(rf"{latex_of(self.printed)}{within} \overset{{?}}{{=}} {latex_of(self.derived)}")
+
     exists: tuple[Any, ...] = ()
 
 
@@ -61,6 +62,7 @@ class Bound:
     def _repr_latex_(self) -> str:
         sign = rf"\overset{{?}}{{{SIGNS.get(self.relation, self.relation)}}}"
         return displayed(f"{latex_of(self.printed)} {sign} {latex_of(self.derived)}")
+
     exists: tuple[Any, ...] = ()
 
 

@@ -24,7 +24,7 @@ def read_candidates(texts: Sequence[str], found: ModelFile) -> dict[str, list[An
     for text in texts:
         name, equals, formula = (part.strip() for part in text.partition("="))
         if not equals or not name:
-            message = f"expected NAME = formula of the states; got {text[:40]!r}; write \"gps = {found.states[0]}\""
+            message = f'expected NAME = formula of the states; got {text[:40]!r}; write "gps = {found.states[0]}"'
             raise ExpressionSyntaxError(message, where=WHERE)
         if name in rows:
             raise DuplicateError(f"expected one formula of {name[:40]}; got two; rename one", where=WHERE)
@@ -49,10 +49,13 @@ def restoration(model: LinearModel, rows: Mapping[str, Sequence[Any]]) -> dict[s
 
     found = restore(model, rows or None)
     return {
-        "hidden": found.hidden, "needed": found.needed, "fewest": found.fewest,
-        "sets": [list(names) for names in found.sets], "proved": found.proved,
+        "hidden": found.hidden,
+        "needed": found.needed,
+        "fewest": found.fewest,
+        "sets": [list(names) for names in found.sets],
+        "proved": found.proved,
         "candidates": list(rows) or list(model.states),
-    }  # fmt: skip
+    }
 
 
 def restored_text(data: Mapping[str, Any]) -> str:

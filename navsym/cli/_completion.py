@@ -39,7 +39,7 @@ def split(line: str) -> tuple[list[str], str]:
     """Finished words after the program's name, and the one that is being written."""
     try:
         words = shlex.split(line)
-    except ValueError:                               # an open quote
+    except ValueError:  # an open quote
         words = line.split()
     last = "" if not words or line[-1:].isspace() else words.pop()
     return words[1:], last

@@ -15,8 +15,8 @@ import time
 from collections.abc import Callable
 from types import TracebackType
 
-PATIENCE = 2.0           # seconds without a word
-BETWEEN_REMARKS = 10.0   # seconds, where there is no terminal
+PATIENCE = 2.0  # seconds without a word
+BETWEEN_REMARKS = 10.0  # seconds, where there is no terminal
 BETWEEN_TICKS = 0.5
 
 
@@ -26,7 +26,7 @@ class Line:
     def __init__(self) -> None:
         self.text = ""
         self.lock = threading.Lock()
-        self.job: Progress | None = None     # what counts at present, for the ticker
+        self.job: Progress | None = None  # what counts at present, for the ticker
 
     @property
     def drawn(self) -> bool:

@@ -28,8 +28,10 @@ NAMES = {
 }
 #: Campaigns that are tables of cases: where they are, and how many are one batch.
 TESTED = {
-    "engines": ("tests/engines", 10), "identities": ("tests/proof/test_textbook.py", 40),
-    "filters": ("tests/honesty", 30), "fidelity": ("tests/fidelity", 8),
+    "engines": ("tests/engines", 10),
+    "identities": ("tests/proof/test_textbook.py", 40),
+    "filters": ("tests/honesty", 30),
+    "fidelity": ("tests/fidelity", 8),
     "checker-mutants": ("tests/checker/mutants.py", 24),
 }
 INPUTS = {"kills": 200}  # otherwise ten thousand
@@ -40,15 +42,12 @@ def command(
     modules: Annotated[list[str] | None, typer.Argument(help="papers, for mutants; default: all")] = None,
     share: Annotated[float, typer.Option(min=0.0, max=1.0, help="share of the mutants that are tried")] = 1.0,
     inputs: Annotated[
-        int | None,
-        typer.Option(min=1, help="number of damaged files, certificates or kills; default 10000, 200 kills"),
+        int | None, typer.Option(min=1, help="number of damaged files, certificates or kills; default 10000, 200 kills")
     ] = None,
     seed: Annotated[int, typer.Option(min=0, help="seed of the random choices")] = 0,
     jobs: Annotated[int, typer.Option(min=1, help="batches at the same time")] = 1,
     seconds: Annotated[float, typer.Option(min=1.0, help="limit for one batch, seconds")] = 3600.0,
-    fresh: Annotated[
-        bool, typer.Option("--fresh", help="do everything again, ignoring what is kept"),
-    ] = False,
+    fresh: Annotated[bool, typer.Option("--fresh", help="do everything again, ignoring what is kept")] = False,
     markdown: Annotated[bool, typer.Option("--markdown", help="print the row for TRUST.md")] = False,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> int:
@@ -108,9 +107,7 @@ def in_batches(name: str, batches: Any, judge: Any, *, jobs: int, seconds: float
         with Progress("batches", resume="with --fresh nothing is kept: leave it out to be able to go on") as bar:
             return run_campaign(name, batches, judge, jobs=jobs, seconds=seconds, progress=bar.told_by_job)
     with opened() as store, Progress("batches", resume="they are kept: the same command goes on from there") as bar:
-        return run_campaign(
-            name, batches, judge, store=store, jobs=jobs, seconds=seconds, progress=bar.told_by_job
-        )
+        return run_campaign(name, batches, judge, store=store, jobs=jobs, seconds=seconds, progress=bar.told_by_job)
 
 
 def papers(names: list[str]) -> list[Any]:
@@ -155,9 +152,7 @@ def as_text(document: dict[str, Any]) -> str:
     lines = [table((document["campaign"], "count"), rows)]
     if document["measured"]:
         lines.append(of_readers(document["measured"]))
-    lines.append(
-        f"{document['batches']} batches, {document['resumed']} resumed, wrong: {len(document['wrong'])}"
-    )
+    lines.append(f"{document['batches']} batches, {document['resumed']} resumed, wrong: {len(document['wrong'])}")
     lines += [f"wrong: {item}" for item in document["wrong"][:20]]
     lines += [f"open: {item}" for item in document["open"][:20]]
     lines += [f"stopped: {item}" for item in document["stopped"][:20]]

@@ -42,9 +42,7 @@ def command(
         emit({"checked": rows, "interrupted": True}, as_json=json_, text=lambda: as_text(rows))
         raise
     if not rows:
-        raise EmptyError(
-            "expected certificates; got none; name JSON files or exported folders", where=str(paths[0])
-        )
+        raise EmptyError("expected certificates; got none; name JSON files or exported folders", where=str(paths[0]))
     emit({"checked": rows}, as_json=json_, text=lambda: as_text(rows))
     if any(row["status"] != "ACCEPTED" for row in rows):
         raise typer.Exit(1)

@@ -14,9 +14,7 @@ from navsym.cli.output import OutputError, emit, write_text
 
 def command(
     shell: Annotated[str, typer.Argument(help="bash, zsh or fish")],
-    install: Annotated[
-        bool, typer.Option("--install", help="write the script where the shell looks for it")
-    ] = False,
+    install: Annotated[bool, typer.Option("--install", help="write the script where the shell looks for it")] = False,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> None:
     """Print the script that completes verbs, options and claim ids, or install it for this user.

@@ -47,13 +47,28 @@ def row(data: Any) -> dict[str, Any]:
     except NavsymError as error:
         path, trouble = None, error.message
     return {
-        "name": data.name, "what": data.what, "path": data.path, "repository": data.repository,
-        "commit": data.commit, "source": data.source, "sha256": data.sha256, "licence": data.licence,
-        "here": None if path is None else str(path), "trouble": trouble,
-    }  # fmt: skip
+        "name": data.name,
+        "what": data.what,
+        "path": data.path,
+        "repository": data.repository,
+        "commit": data.commit,
+        "source": data.source,
+        "sha256": data.sha256,
+        "licence": data.licence,
+        "here": None if path is None else str(path),
+        "trouble": trouble,
+    }
 
 
 def listed(rows: list[dict[str, Any]]) -> str:
-    cells = [(r["name"], "yes" if r["here"] else "damaged" if r["trouble"] else "no", r["what"], r["licence"],
-              f"{r['repository']} @ {r['commit']}") for r in rows]  # fmt: skip
+    cells = [
+        (
+            r["name"],
+            "yes" if r["here"] else "damaged" if r["trouble"] else "no",
+            r["what"],
+            r["licence"],
+            f"{r['repository']} @ {r['commit']}",
+        )
+        for r in rows
+    ]
     return table(("data set", "here", "what it is", "licence", "source"), cells)

@@ -16,15 +16,13 @@ if TYPE_CHECKING:
 
 def command(
     file: Annotated[Path, typer.Argument(help="model file (TOML)")],
-    latex: Annotated[
-        bool, typer.Option("--latex", help="print LaTeX instead of text; with --json add it"),
-    ] = False,
+    latex: Annotated[bool, typer.Option("--latex", help="print LaTeX instead of text; with --json add it")] = False,
     set_: Annotated[
-        list[str] | None, typer.Option("--set", help="value of a parameter, such as w=1/2; may be repeated"),
+        list[str] | None, typer.Option("--set", help="value of a parameter, such as w=1/2; may be repeated")
     ] = None,
     out: Annotated[Path | None, typer.Option(help="write the text to this file")] = None,
     certificate: Annotated[
-        Path | None, typer.Option(help="write proofs of exp(F t) and of the observed rank, for navsym check"),
+        Path | None, typer.Option(help="write proofs of exp(F t) and of the observed rank, for navsym check")
     ] = None,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> None:
@@ -64,7 +62,5 @@ def setting(text: str) -> tuple[str, str]:
     """NAME=VALUE as a pair."""
     name, equals, value = text.partition("=")
     if not equals:
-        raise ExpressionSyntaxError(
-            f"expected NAME=VALUE; got {text[:40]!r}; write --set w=1/2", where="--set"
-        )
+        raise ExpressionSyntaxError(f"expected NAME=VALUE; got {text[:40]!r}; write --set w=1/2", where="--set")
     return name.strip(), value.strip()

@@ -11,9 +11,7 @@ from navsym.errors import DomainError, ExpressionSyntaxError, ShapeError
 
 
 def command(
-    old: Annotated[
-        str, typer.Argument(help="a formula, a claim or model file (TOML), or an exported folder")
-    ],
+    old: Annotated[str, typer.Argument(help="a formula, a claim or model file (TOML), or an exported folder")],
     new: Annotated[str, typer.Argument(help="what it is compared with, of the same kind")],
     box: Annotated[
         list[str] | None, typer.Option("--range", help='range of a symbol, such as "T=0,2*pi"; may be repeated')
@@ -61,9 +59,7 @@ def read_range(text: str) -> tuple[str, tuple[Any, Any]]:
     name, equals, ends = text.partition("=")
     parts = ends.split(",")
     if not equals or len(parts) != 2:
-        raise ExpressionSyntaxError(
-            f"expected NAME=LOWER,UPPER; got {text[:60]!r}; do correct it", where="--range"
-        )
+        raise ExpressionSyntaxError(f"expected NAME=LOWER,UPPER; got {text[:60]!r}; do correct it", where="--range")
     lower, upper = (parse(part, {}, where="--range") for part in parts)
     return name.strip(), (lower, upper)
 

@@ -20,7 +20,7 @@ from navsym import __version__
 from navsym.cli.output import emit, table
 
 SUPPORTED = ((3, 11), (3, 13))
-SECONDS = 60                   # for one import or one "--version"
+SECONDS = 60  # for one import or one "--version"
 
 #: Engines that navsym cannot do without: module -> distribution.
 ENGINES = {

@@ -34,10 +34,14 @@ def command(
     told = [{"heading": s.heading, "words": s.words, "formula": s.formula} for s in steps(record)]
     correction = correction_of(claim)
     document = {
-        "id": record["id"], "status": record["status"], "paper": paper.title, "source": place_of(found.derive),
-        "corrected_by": correction and correction.id, "steps": told,
+        "id": record["id"],
+        "status": record["status"],
+        "paper": paper.title,
+        "source": place_of(found.derive),
+        "corrected_by": correction and correction.id,
+        "steps": told,
         "correction": correction and {"title": correction.title, "formula": formula_of(correction)},
-    }  # fmt: skip
+    }
     emit(document, as_json=json_, text=lambda: as_text(document))
     return 0 if record["status"] == record["expect"] else 1
 

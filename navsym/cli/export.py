@@ -23,33 +23,22 @@ RESUME = "nothing was written: fewer languages in --to, fewer --vectors, or --no
 
 def command(
     claims: Annotated[
-        list[str],
-        typer.Argument(help="module:number, FILE.toml:id, or regimes joined as A+B+C; or a ready-made name"),
+        list[str], typer.Argument(help="module:number, FILE.toml:id, or regimes joined as A+B+C; or a ready-made name")
     ],
-    to: Annotated[
-        str, typer.Option("--to", help="languages separated by commas: see the documentation for all"),
-    ] = "c",
-    out: Annotated[
-        Path, typer.Option("--out", help="folder for the code; made when it is not there"),
-    ] = Path("export"),
-    real: Annotated[
-        str, typer.Option("--real", help="floating-point type of the code: double or float"),
-    ] = "double",
+    to: Annotated[str, typer.Option("--to", help="languages separated by commas: see the documentation for all")] = "c",
+    out: Annotated[Path, typer.Option("--out", help="folder for the code; made when it is not there")] = Path("export"),
+    real: Annotated[str, typer.Option("--real", help="floating-point type of the code: double or float")] = "double",
     force: Annotated[bool, typer.Option("--force", help="replace files that are there")] = False,
     allow_confirmed: Annotated[
         bool, typer.Option("--allow-confirmed", help="accept claims that were only sampled (CONFIRMED)")
     ] = False,
-    license_: Annotated[
-        str, typer.Option("--license", help="SPDX identifier for the headers")
-    ] = "Apache-2.0",
-    vectors: Annotated[
-        int, typer.Option("--vectors", min=4, max=100_000, help="test vectors for each function")
-    ] = 48,
+    license_: Annotated[str, typer.Option("--license", help="SPDX identifier for the headers")] = "Apache-2.0",
+    vectors: Annotated[int, typer.Option("--vectors", min=4, max=100_000, help="test vectors for each function")] = 48,
     unit: Annotated[
         list[str] | None, typer.Option("--unit", help="unit of a symbol or result, such as T=s; may be repeated")
     ] = None,
     run: Annotated[
-        bool, typer.Option("--run/--no-run", help="compile and run the code on its vectors where this machine can"),
+        bool, typer.Option("--run/--no-run", help="compile and run the code on its vectors where this machine can")
     ] = True,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> int:
@@ -64,19 +53,7 @@ def command(
         raise DomainError(f"expected double or float; got {real[:20]!r}; do correct it", where="--real")
     targets = tuple(chosen(to.split(","), real))
     units = dict(read_unit(text) for text in unit or [])
-    words = [
-        "navsym",
-        "export",
-        *claims,
-        "--to",
-        to,
-        "--real",
-        real,
-        "--license",
-        license_,
-        "--vectors",
-        str(vectors),
-    ]
+    words = ["navsym", "export", *claims, "--to", to, "--real", real, "--license", license_, "--vectors", str(vectors)]
     words += ["--allow-confirmed"] if allow_confirmed else []
     words += [word for text in unit or [] for word in ("--unit", text)]
     order = Order(targets, license_, vectors, tuple(words))
@@ -149,13 +126,15 @@ def from_paper(module: str, number: str, allow_confirmed: bool) -> Material:
     corrections = [c.id for c in found.claims if c.corrects == number]
     equation = equation_of(number, found.paper.equations)
     return material(
-        claim.id, statement, decide_within(statement, SECONDS),
+        claim.id,
+        statement,
+        decide_within(statement, SECONDS),
         title=claim.title,
         paper=", ".join([*found.paper.authors, found.paper.title, str(found.paper.year or "")]).strip(", "),
         equation=f"equation ({equation})" if equation else f"statement {number}",
         correction=corrections[0] if corrections else None,
         allow_confirmed=allow_confirmed,
-    )  # fmt: skip
+    )
 
 
 def from_file(path: Path, wanted: str, allow_confirmed: bool) -> Material:
@@ -172,10 +151,14 @@ def from_file(path: Path, wanted: str, allow_confirmed: bool) -> Material:
     outcome = run_limited(decide_claim, (claim,), SECONDS, MEGABYTES)
     verdict = exhausted(outcome) if isinstance(outcome, Exhausted) else outcome
     return material(
-        f"{path.stem}:{wanted}", statement_of(claim), verdict,
-        title=f"Claim {wanted} of a claim file", equation=f"claim {wanted}", paper=path.name,
+        f"{path.stem}:{wanted}",
+        statement_of(claim),
+        verdict,
+        title=f"Claim {wanted} of a claim file",
+        equation=f"claim {wanted}",
+        paper=path.name,
         allow_confirmed=allow_confirmed,
-    )  # fmt: skip
+    )
 
 
 def unknown(name: str, known: list[str], where: str) -> NavsymError:

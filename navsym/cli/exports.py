@@ -24,9 +24,7 @@ def command(
     to: Annotated[str, typer.Option("--to", help="languages")] = EVERY,
     real: Annotated[str, typer.Option("--real", help="double or float")] = "double",
     vectors: Annotated[int, typer.Option("--vectors", min=4, max=200_000, help="vectors for each function")] = 48,
-    points: Annotated[
-        int, typer.Option("--points", min=0, max=10_000_000, help="points at which C is held, too")
-    ] = 0,
+    points: Annotated[int, typer.Option("--points", min=0, max=10_000_000, help="points at which C is held, too")] = 0,
     jobs: Annotated[int, typer.Option("--jobs", min=1, max=256, help="groups or functions at the same time")] = 1,
     write: Annotated[Path | None, typer.Option("--write", help="write the table as a markdown page")] = None,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
@@ -54,9 +52,16 @@ def command(
             bar.step(claim)
         bar.total = len(parts) + len(groups) + sum(len(made) for made in groups.values() if points)
         document = closing_table(groups, targets, vectors, bar.step, points, jobs)
-    words = ["navsym", "exports", *(names or []), *(["--to", to] if to != EVERY else []),
-             *(["--real", real] if real != "double" else []), "--vectors", str(vectors),
-             *(["--points", str(points)] if points else [])]  # fmt: skip
+    words = [
+        "navsym",
+        "exports",
+        *(names or []),
+        *(["--to", to] if to != EVERY else []),
+        *(["--real", real] if real != "double" else []),
+        "--vectors",
+        str(vectors),
+        *(["--points", str(points)] if points else []),
+    ]
     if write is not None:
         write.write_text(as_markdown(document, shlex.join(words)), encoding="utf-8")
     emit(document, as_json=json_, text=lambda: as_text(document))
@@ -70,10 +75,14 @@ def as_text(document: dict[str, Any]) -> str:
 
     names = [n for n, record in document["languages"].items() if record["status"] != "not executed"]
     rows = [
-        (f["name"], *(cell(f["languages"][n]) for n in names), f["misra"] if f["misra"] is not None else "-",
-         f["cortex_m4_bytes"] or "-")
+        (
+            f["name"],
+            *(cell(f["languages"][n]) for n in names),
+            f["misra"] if f["misra"] is not None else "-",
+            f["cortex_m4_bytes"] or "-",
+        )
         for f in document["functions"]
-    ]  # fmt: skip
+    ]
     said = [(name, r["status"], r["why"]) for name, r in (*document["languages"].items(), *document["tools"].items())]
     head = ("function", *names, "MISRA", "M4 bytes")
     held = [

@@ -15,13 +15,13 @@ if TYPE_CHECKING:
 
 def command(
     file: Annotated[
-        Path, typer.Argument(metavar="BANK.json", help="JSON: models, mode_transition, initial, measurements"),
+        Path, typer.Argument(metavar="BANK.json", help="JSON: models, mode_transition, initial, measurements")
     ],
     method: Annotated[
         str, typer.Option("--method", help="pulsating, k-pulsating, polygaussian, imm, gpb2 or exact")
     ] = "pulsating",
     depth: Annotated[
-        int | None, typer.Option("--depth", help="K of k-pulsating: steps between two mergers  [default: 2]"),
+        int | None, typer.Option("--depth", help="K of k-pulsating: steps between two mergers  [default: 2]")
     ] = None,
     missing: Annotated[
         bool, typer.Option("--missing", help="take null in a measurement for a number that did not come")
@@ -42,8 +42,15 @@ def command(
     document = read_json(file)
     try:
         given = read_bank(document)
-        estimate = run(given.bank, given.measurements, method, depth=depth, forget=given.forget,
-                       missing=missing or given.missing, form=form)
+        estimate = run(
+            given.bank,
+            given.measurements,
+            method,
+            depth=depth,
+            forget=given.forget,
+            missing=missing or given.missing,
+            form=form,
+        )
     except NavsymError as error:
         raise error.at(str(file)) from None
     if method == "polygaussian" and not stays(given.bank.mode_transition):
@@ -73,8 +80,11 @@ def as_document(estimate: Estimate) -> dict[str, Any]:
 
 def remarks(estimate: Estimate) -> list[str]:
     """What the user should know and the document does not say."""
-    out = [f"step {k}: every mode gives this measurement a likelihood below 1e-323; weighed by logarithms"
-           for k in estimate.impossible if k not in estimate.left_out]
+    out = [
+        f"step {k}: every mode gives this measurement a likelihood below 1e-323; weighed by logarithms"
+        for k in estimate.impossible
+        if k not in estimate.left_out
+    ]
     out += [f"step {k}: the measurement is impossible under every mode; left out" for k in estimate.left_out]
     return out
 

@@ -16,11 +16,9 @@ def command(
     file: Annotated[Path, typer.Argument(help="model or basis file (TOML)")],
     to: Annotated[str, typer.Option(help="casadi, cvxpy or mps")] = "mps",
     kind: Annotated[str, typer.Option(help="lp (worst correlation), qp (white noise) or mixed")] = "lp",
-    target: Annotated[
-        str | None, typer.Option(help="name of the target; not needed where the file has one"),
-    ] = None,
+    target: Annotated[str | None, typer.Option(help="name of the target; not needed where the file has one")] = None,
     set_: Annotated[
-        list[str] | None, typer.Option("--set", help="value of a parameter, such as T=2.5; may be repeated"),
+        list[str] | None, typer.Option("--set", help="value of a parameter, such as T=2.5; may be repeated")
     ] = None,
     grid: Annotated[int, typer.Option(help="number of instants of each measurement")] = 201,
     mixture: Annotated[float, typer.Option(help="factor of the quadratic term, for --kind mixed")] = 1.0,
@@ -50,4 +48,3 @@ def command(
         )
     else:
         put(text if out is None else f"{out}: {kind} for {to}, {grid} instants of each measurement\n")
-

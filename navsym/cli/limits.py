@@ -52,9 +52,12 @@ def command(
             raise DomainError(message, where=name)
     limits = [limit(noise, bound, derivative, order) for derivative in range(1, order)]
     data = {
-        "noise": noise, "bounded": BOUNDED[order][0], "bound": bound, "limits": limits,
+        "noise": noise,
+        "bounded": BOUNDED[order][0],
+        "bound": bound,
+        "limits": limits,
         "sampled": sampled(noise, bound, order, step, memory),
-    }  # fmt: skip
+    }
     emit(data, as_json=json_, text=lambda: as_text(data))
 
 
@@ -76,16 +79,16 @@ def limit(noise: float, bound: float, derivative: int, order: int) -> dict[str, 
     name, unit = ASKED[derivative]
     claims = f"trajectory:limit.{name}.{BOUNDED[order][0]}"
     return {
-        "derivative": name, "unit": unit, "least_error": least_error(noise, bound, derivative, order),
+        "derivative": name,
+        "unit": unit,
+        "least_error": least_error(noise, bound, derivative, order),
         "formula": FORMULAS[derivative, order],
         "rule": as_data(rule(best_ages(noise, bound, order), noise, bound, derivative)),
         "claims": [f"{claims}.lower", f"{claims}.upper"],
-    }  # fmt: skip
+    }
 
 
-def sampled(
-    noise: float, bound: float, order: int, step: float | None, memory: float | None
-) -> dict[str, Any] | None:
+def sampled(noise: float, bound: float, order: int, step: float | None, memory: float | None) -> dict[str, Any] | None:
     """The best rules among positions that come at a rate; None without one."""
     from navsym.methods.trajectory.limits import best_rule
 
@@ -127,9 +130,12 @@ def available(noise: float, bound: float, order: int, step: float, memory: float
 def as_data(found: Rule) -> dict[str, Any]:
     """A rule as plain data."""
     return {
-        "ages": found.ages.tolist(), "weights": found.weights.tolist(),
-        "error": found.error, "noise": found.noise, "motion": found.motion,
-    }  # fmt: skip
+        "ages": found.ages.tolist(),
+        "weights": found.weights.tolist(),
+        "error": found.error,
+        "noise": found.noise,
+        "motion": found.motion,
+    }
 
 
 # Text for people
@@ -143,7 +149,8 @@ def as_text(data: dict[str, Any]) -> str:
         f"positions wrong by at most {data['noise']:g} m, {name} at most {data['bound']:g} {unit}\n",
         rules_text("least guaranteed error", data["limits"]),
         "No algorithm does better; these positions reach it, and older ones add nothing.\nProved in "
-        + "; ".join(found["claims"][0] + ", .upper" for found in data["limits"]) + "\n",
+        + "; ".join(found["claims"][0] + ", .upper" for found in data["limits"])
+        + "\n",
     ]
     if data["sampled"]:
         head = f"guaranteed with a position every {data['sampled']['step']:g} s"
@@ -155,11 +162,13 @@ def rules_text(title: str, found: list[dict[str, Any]]) -> str:
     """Errors with the ages and weights that reach them."""
     rows = [
         [
-            part["derivative"], f"{part['rule']['error']:.6g} {part['unit']}",
-            several(part["rule"]["ages"]), several(part["rule"]["weights"]),
+            part["derivative"],
+            f"{part['rule']['error']:.6g} {part['unit']}",
+            several(part["rule"]["ages"]),
+            several(part["rule"]["weights"]),
         ]
         for part in found
-    ]  # fmt: skip
+    ]
     return table(["", title, "ages of the positions, s", "weights"], rows)
 
 

@@ -28,8 +28,8 @@ from navsym.errors import ExpressionSyntaxError, MissingEngineError, NavsymError
 FOLDER = Path(__file__).parent
 NOT_VERBS = frozenset({"main", "output"})
 
-INTERRUPTED = 130      # 128 + SIGINT, as shells have it
-BROKEN_PIPE = 141      # 128 + SIGPIPE
+INTERRUPTED = 130  # 128 + SIGINT, as shells have it
+BROKEN_PIPE = 141  # 128 + SIGPIPE
 
 
 class Stopped(Exception):
@@ -44,7 +44,7 @@ def main() -> NoReturn:
     """Entry point of the console script and of ``python -m navsym``."""
     for stream in (sys.stdout, sys.stderr):
         with contextlib.suppress(AttributeError, ValueError):
-            stream.reconfigure(errors="backslashreplace")      # type: ignore[union-attr]
+            stream.reconfigure(errors="backslashreplace")  # type: ignore[union-attr]
     sys.exit(run(sys.argv[1:]))
 
 
@@ -75,7 +75,7 @@ def dispatch(arguments: list[str]) -> int:
     if arguments[0] in ("-V", "--version"):
         put(f"navsym {__version__}\n")
         return 0
-    if arguments[:2] == ["completion", "words"]:       # at every press of Tab: without typer
+    if arguments[:2] == ["completion", "words"]:  # at every press of Tab: without typer
         return complete(arguments[2:])
     return call(module_of(arguments[0]), arguments[0], arguments[1:])
 
@@ -144,7 +144,7 @@ def call(module: str, verb: str, arguments: list[str]) -> int:
     app = typer.Typer(
         add_completion=False,
         pretty_exceptions_enable=False,
-        rich_markup_mode=None,                      # square brackets in help are TOML, not markup
+        rich_markup_mode=None,  # square brackets in help are TOML, not markup
         context_settings={"help_option_names": ["-h", "--help"]},
     )
     with Ticker(verb):
@@ -231,11 +231,11 @@ def report(error: NavsymError, as_json: bool) -> int:
             put(dumps(error.as_json()) + "\n")
         else:
             complain(line)
-        if error.where == "standard output":    # what did not get out waits for the interpreter's last flush
+        if error.where == "standard output":  # what did not get out waits for the interpreter's last flush
             silence_stdout()
     except BrokenPipeError:
         silence_stdout()
-    except OutputError:                     # standard output is full or closed: the line goes where it can
+    except OutputError:  # standard output is full or closed: the line goes where it can
         silence_stdout()
         complain(line)
     return error.status

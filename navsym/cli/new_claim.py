@@ -48,13 +48,16 @@ def command(
     sentence = title or f"Equation ({number.rstrip('*')}), {'corrected' if corrects else 'as it stands in the paper'}."
     source = path.read_text(encoding="utf-8")
     asked = NewClaim(number, sentence, printed, derived, "OPEN", corrects, reason, "", names, tolerance)
-    with_claim(source, asked)                   # what cannot be written is refused before it is decided
+    with_claim(source, asked)  # what cannot be written is refused before it is decided
     verdict = decided(source, asked)
     write_text(path, with_claim(source, declared(asked, verdict, slip)))
     document = {
-        "path": str(path), "id": f"{module}:{number}", "status": str(verdict.status), "evidence": verdict.evidence,
+        "path": str(path),
+        "id": f"{module}:{number}",
+        "status": str(verdict.status),
+        "evidence": verdict.evidence,
         "equation": equation_of(number, equations_of(source)),
-    }  # fmt: skip
+    }
     emit(document, as_json=json_, text=lambda: as_text(document, asked))
 
 

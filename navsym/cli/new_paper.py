@@ -18,9 +18,7 @@ def command(
     year: Annotated[int | None, typer.Option(help="year")] = None,
     source: Annotated[str, typer.Option(help="journal, volume, pages")] = "",
     language: Annotated[str, typer.Option(help="language of the paper")] = "English",
-    equations: Annotated[
-        str, typer.Option(help='every number printed, such as "1-6" or "1.1-1.9, 2.1"'),
-    ] = "1",
+    equations: Annotated[str, typer.Option(help='every number printed, such as "1-6" or "1.1-1.9, 2.1"')] = "1",
     folder: Annotated[Path | None, typer.Option(help="where; default: the folder of derivations")] = None,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> None:

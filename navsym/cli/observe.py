@@ -21,16 +21,16 @@ if TYPE_CHECKING:
 def command(
     file: Annotated[Path, typer.Argument(help="model file (TOML) with constant F and h")],
     split: Annotated[
-        str | None, typer.Option(help='vectors taken from each measurement, such as "2,1"; default m,n-m'),
+        str | None, typer.Option(help='vectors taken from each measurement, such as "2,1"; default m,n-m')
     ] = None,
     poles: Annotated[
         str | None, typer.Option(help='wanted polynomials in p, one per stage, such as "(p+1)**2; p+2"')
     ] = None,
     set_: Annotated[
-        list[str] | None, typer.Option("--set", help="value of a parameter, such as w=1/2; may be repeated"),
+        list[str] | None, typer.Option("--set", help="value of a parameter, such as w=1/2; may be repeated")
     ] = None,
     restoring: Annotated[
-        bool, typer.Option("--restore", help="the fewest further measurements that would show every state"),
+        bool, typer.Option("--restore", help="the fewest further measurements that would show every state")
     ] = False,
     candidate: Annotated[
         list[str] | None,
@@ -113,15 +113,12 @@ def read_poles(text: str, found: ModelFile) -> tuple[tuple[Any, ...], Any]:
     declared = {name: parameter.symbol for name, parameter in found.parameters.items()}
     if "p" in declared:
         raise DuplicateError(
-            "expected p to be free for the variable of the polynomials; got a parameter p; rename the "
-            "parameter",
+            "expected p to be free for the variable of the polynomials; got a parameter p; rename the parameter",
             where="--poles",
         )
     names = set(re.findall(r"[A-Za-z][A-Za-z0-9_]*", text)) - RESERVED - declared.keys() - {"p"}
     for name in sorted(names & set(found.states)):
-        raise DuplicateError(
-            f"expected a symbol of its own; got {name}, which is a state; rename it", where="--poles"
-        )
+        raise DuplicateError(f"expected a symbol of its own; got {name}, which is a state; rename it", where="--poles")
     variable = symbol("p")
     known = {**declared, "p": variable, **{name: symbol(name, positive=True) for name in sorted(names)}}
     parts = [part.strip() for part in text.split(";")]
@@ -143,14 +140,16 @@ def overview(data: Mapping[str, Any]) -> str:
     """What each measurement observes, and what none of them does."""
     verdict = "observable" if data["observable"] else "NOT observable"
     hidden = data["unobservable_directions"]
-    return "\n".join([
-        f"{data['n']} states, joint dimension {data['joint_dimension']}: {verdict}\n",
-        table(
-            ["measurement", "dimension", "companion"],
-            [[m["name"], str(m["dimension"]), ", ".join(m["companion"])] for m in data["measurements"]],
-        ),
-        *(["hidden: " + "; ".join(hidden) + "\n"] if hidden else []),
-    ])
+    return "\n".join(
+        [
+            f"{data['n']} states, joint dimension {data['joint_dimension']}: {verdict}\n",
+            table(
+                ["measurement", "dimension", "companion"],
+                [[m["name"], str(m["dimension"]), ", ".join(m["companion"])] for m in data["measurements"]],
+            ),
+            *(["hidden: " + "; ".join(hidden) + "\n"] if hidden else []),
+        ]
+    )
 
 
 def drops_text(data: Mapping[str, Any]) -> str:

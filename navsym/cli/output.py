@@ -73,7 +73,7 @@ def put(text: str, stream: IO[str] | None = None) -> None:
     """
     stream = sys.stdout if stream is None else stream
     LINE.clear()
-    if stream is None:                         # Python's word for an output that was closed before the start
+    if stream is None:  # Python's word for an output that was closed before the start
         raise OutputError("expected an output that is open; got a closed one; do open it", where="standard output")
     try:
         write_whole(stream, text.encode("utf-8", "replace"))
@@ -117,13 +117,7 @@ def wants_colour(stream: Any = None) -> bool:
     return bool(getattr(stream, "isatty", lambda: False)())
 
 
-def table(
-    columns: Sequence[str],
-    rows: Iterable[Sequence[Any]],
-    *,
-    title: str = "",
-    right: Iterable[str] = (),
-) -> str:
+def table(columns: Sequence[str], rows: Iterable[Sequence[Any]], *, title: str = "", right: Iterable[str] = ()) -> str:
     """A table as text: drawn by rich on a terminal, aligned plain columns otherwise.
 
     columns : headings
@@ -182,7 +176,7 @@ def write_bytes(path: str | os.PathLike[str], data: bytes, *, durable: bool = Tr
     """Like :func:`write_text`, for bytes."""
     target = Path(os.path.realpath(path))
     try:
-        if target.exists() and not target.is_file():     # a pipe or /dev/stdout cannot be renamed over
+        if target.exists() and not target.is_file():  # a pipe or /dev/stdout cannot be renamed over
             target.write_bytes(data)
         else:
             replace_file(target, data, durable)

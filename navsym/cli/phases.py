@@ -17,19 +17,15 @@ RESUME = "nothing is kept: a shorter --range, --quick, or fewer --seconds take l
 
 def command(
     file: Annotated[Path, typer.Argument(help="model or basis file (TOML)")],
-    target: Annotated[
-        str | None, typer.Option(help="name of the target; not needed where the file has one")
-    ] = None,
+    target: Annotated[str | None, typer.Option(help="name of the target; not needed where the file has one")] = None,
     parameter: Annotated[str, typer.Option(help="name of the parameter that is the interval's length")] = "T",
     range_: Annotated[
         str | None, typer.Option("--range", help='its range, such as "0, 2*pi"; default: the declared one')
     ] = None,
     set_: Annotated[
-        list[str] | None, typer.Option("--set", help="value of another parameter, such as w=1/2; may be repeated"),
+        list[str] | None, typer.Option("--set", help="value of another parameter, such as w=1/2; may be repeated")
     ] = None,
-    quick: Annotated[
-        bool, typer.Option("--quick", help="leave regimes without a closed form uncertified")
-    ] = False,
+    quick: Annotated[bool, typer.Option("--quick", help="leave regimes without a closed form uncertified")] = False,
     unique: Annotated[
         bool, typer.Option("--unique", help="prove of closed forms, too, that no other estimator is optimal (slower)")
     ] = False,
@@ -37,9 +33,7 @@ def command(
         float,
         typer.Option(help="work (processor time) after which what is known is given, and the rest named as uncovered"),
     ] = 300.0,
-    out: Annotated[
-        Path | None, typer.Option(help="write the certificates to files of this name, numbered")
-    ] = None,
+    out: Annotated[Path | None, typer.Option(help="write the certificates to files of this name, numbered")] = None,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> None:
     """Which instants, which weights and which value are optimal, on exactly which range of a parameter.
@@ -55,9 +49,14 @@ def command(
         lower, upper = ends_of(found, parameter, range_)
         with Progress("steps", resume=RESUME) as bar:
             answer = phases(
-                family_of(found, target, parameter), lower, upper,
-                certify=not quick, alone=unique, seconds=seconds, progress=bar.told_by_job,
-            )  # fmt: skip
+                family_of(found, target, parameter),
+                lower,
+                upper,
+                certify=not quick,
+                alone=unique,
+                seconds=seconds,
+                progress=bar.told_by_job,
+            )
     except NavsymError as error:
         raise error.at(str(file)) from None
     document = answer.document()

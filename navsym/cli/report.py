@@ -14,21 +14,15 @@ from navsym.errors import ShapeError
 
 def command(
     modules: Annotated[list[str] | None, typer.Argument(help="derivation modules; default: all")] = None,
-    out: Annotated[
-        Path, typer.Option(help="folder for the pages; made when it is not there"),
-    ] = Path("report"),
+    out: Annotated[Path, typer.Option(help="folder for the pages; made when it is not there")] = Path("report"),
     source: Annotated[
         Path | None, typer.Option("--from", help="take verdicts from a document of navsym verify --json, or a ledger")
     ] = None,
-    jobs: Annotated[
-        int | None, typer.Option(help="claims decided at the same time; default: one per core"),
-    ] = None,
+    jobs: Annotated[int | None, typer.Option(help="claims decided at the same time; default: one per core")] = None,
     seconds: Annotated[
-        float, typer.Option(help="limit for one claim, seconds of processor time; above it the verdict is OPEN"),
+        float, typer.Option(help="limit for one claim, seconds of processor time; above it the verdict is OPEN")
     ] = 90.0,
-    fresh: Annotated[
-        bool, typer.Option("--fresh", help="decide everything again, ignoring what is kept")
-    ] = False,
+    fresh: Annotated[bool, typer.Option("--fresh", help="decide everything again, ignoring what is kept")] = False,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> int:
     """Decide the claims (or read verdicts with --from) and write the pages. Status 1 as in verify.
@@ -40,7 +34,7 @@ def command(
 
     chosen = load(modules or [])
     given = read_document(source, modules or []) if source else None
-    make_folder(out)                    # before minutes are spent on what cannot be written
+    make_folder(out)  # before minutes are spent on what cannot be written
     document = given or decided(chosen, jobs, seconds, fresh)
 
     names = write_pages(out, document, cards_of(chosen))

@@ -25,18 +25,14 @@ EXPERIMENTS = {
 
 
 def command(
-    name: Annotated[
-        str, typer.Argument(help="joint_correction, multistructure, terrain_search or trajectory"),
-    ],
-    runs: Annotated[
-        int | None, typer.Option("--runs", help="Monte-Carlo runs; default: those of the study"),
-    ] = None,
+    name: Annotated[str, typer.Argument(help="joint_correction, multistructure, terrain_search or trajectory")],
+    runs: Annotated[int | None, typer.Option("--runs", help="Monte-Carlo runs; default: those of the study")] = None,
     steps: Annotated[
-        int | None, typer.Option("--steps", help="time steps of each run; default: those of the study"),
+        int | None, typer.Option("--steps", help="time steps of each run; default: those of the study")
     ] = None,
     seed: Annotated[int, typer.Option("--seed", help="same seed, same answer")] = 1,
     journal: Annotated[
-        Path | None, typer.Option("--journal", help="keep finished runs in this file and go on from it"),
+        Path | None, typer.Option("--journal", help="keep finished runs in this file and go on from it")
     ] = None,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> None:

@@ -15,11 +15,9 @@ from navsym.errors import NavsymError
 
 def command(
     file: Annotated[Path, typer.Argument(help="model or basis file (TOML)")],
-    target: Annotated[
-        str | None, typer.Option(help="name of the target; not needed where the file has one")
-    ] = None,
+    target: Annotated[str | None, typer.Option(help="name of the target; not needed where the file has one")] = None,
     set_: Annotated[
-        list[str] | None, typer.Option("--set", help="value of a parameter, such as T=2.5; may be repeated"),
+        list[str] | None, typer.Option("--set", help="value of a parameter, such as T=2.5; may be repeated")
     ] = None,
     digits: Annotated[int, typer.Option(help="certified digits of the value")] = 30,
     compare: Annotated[
@@ -76,9 +74,6 @@ def as_text(document: dict[str, Any]) -> str:
 
 
 def comparison(data: dict[str, Any]) -> str:
-    rows = [
-        ("least squares", "", data["least_squares"]),
-        ("Kalman, white noise", "", data["kalman_white_noise"]),
-    ]
+    rows = [("least squares", "", data["least_squares"]), ("Kalman, white noise", "", data["kalman_white_noise"])]
     rows += [(row["solver"], row["status"], row["value"]) for row in data["solvers"]]
     return table(("estimator", "status", "guaranteed deviation"), rows, right=("guaranteed deviation",))

@@ -15,21 +15,17 @@ from navsym.cli.output import emit
 def command(
     config: Annotated[Path, typer.Argument(help='JSON: {"kind": "filter", "jobs": 100, "seed": 1, …}')],
     workers: Annotated[
-        int, typer.Option(min=0, help="local processes, 0 computes in this one; default: all cores"),
+        int, typer.Option(min=0, help="local processes, 0 computes in this one; default: all cores")
     ] = os.cpu_count() or 1,
     scheduler: Annotated[str | None, typer.Option(help="tcp://host:port of a running dask scheduler")] = None,
     patience: Annotated[
-        float, typer.Option(min=1.0, help="seconds without any worker until a scheduler is given up"),
+        float, typer.Option(min=1.0, help="seconds without any worker until a scheduler is given up")
     ] = 120.0,
     size: Annotated[
-        int | None, typer.Option(min=1, help="jobs in a shard, which is kept whole; default: at most 100"),
+        int | None, typer.Option(min=1, help="jobs in a shard, which is kept whole; default: at most 100")
     ] = None,
-    out: Annotated[
-        Path | None, typer.Option(help="folder of the shards in Parquet; default: one in the cache"),
-    ] = None,
-    fresh: Annotated[
-        bool, typer.Option("--fresh", help="do everything again, ignoring what is kept"),
-    ] = False,
+    out: Annotated[Path | None, typer.Option(help="folder of the shards in Parquet; default: one in the cache")] = None,
+    fresh: Annotated[bool, typer.Option("--fresh", help="do everything again, ignoring what is kept")] = False,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> int:
     """Compute the shards of a study that are not kept yet, and sum up; stopped, it goes on where it was.
@@ -46,17 +42,21 @@ def command(
     resume = "finished shards are kept: the same command (without --fresh) goes on from there"
     with Progress("jobs", resume=resume) as bar:
         document = run_sweep(
-            sweep, workers=workers, scheduler=scheduler, folder=out, size=size, fresh=fresh,
-            patience=patience, progress=bar.told_by_job,
-        )  # fmt: skip
+            sweep,
+            workers=workers,
+            scheduler=scheduler,
+            folder=out,
+            size=size,
+            fresh=fresh,
+            patience=patience,
+            progress=bar.told_by_job,
+        )
     emit(document, as_json=json_, text=lambda: as_text(document))
     return 1 if document["done"] < sweep.jobs else 3 if document["unsaved"] else 0
 
 
 def as_text(document: dict[str, Any]) -> str:
-    lines = [
-        f"{document['kind']}: {document['done']} of {document['jobs']} jobs, {document['resumed']} resumed"
-    ]
+    lines = [f"{document['kind']}: {document['done']} of {document['jobs']} jobs, {document['resumed']} resumed"]
     if "rmse" in document:
         lines.append("root mean square errors: " + ", ".join(f"{value:.6g}" for value in document["rmse"]))
     lines += [f"not kept: {item}" for item in document["unsaved"]]

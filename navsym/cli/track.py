@@ -19,14 +19,13 @@ SHOWN = 12
 def command(
     file: Annotated[Path, typer.Argument(help="CSV of time, latitude, longitude, height, or an RTKLIB .pos")],
     window: Annotated[
-        float | None, typer.Option("--window", help="length of the sliding window, seconds; chooses --method window"),
+        float | None, typer.Option("--window", help="length of the sliding window, seconds; chooses --method window")
     ] = None,
     order: Annotated[
-        int, typer.Option("--order", help="states of the motion: 2 to speed, 3 to acceleration, up to 6"),
+        int, typer.Option("--order", help="states of the motion: 2 to speed, 3 to acceleration, up to 6")
     ] = 3,
     method: Annotated[
-        str | None,
-        typer.Option("--method", help="differences, window, filter, smoother (default) or guaranteed"),
+        str | None, typer.Option("--method", help="differences, window, filter, smoother (default) or guaranteed")
     ] = None,
     sigma: Annotated[
         float | None, typer.Option("--sigma", help="standard deviation of positions, metres; default: the file's")

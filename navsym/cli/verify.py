@@ -27,17 +27,13 @@ WIDTH = 100
 def command(
     modules: Annotated[list[str] | None, typer.Argument(help="derivation modules; default: all")] = None,
     write: Annotated[
-        bool, typer.Option("--write", help="write the verdicts to the ledger derivations/verdicts.json"),
+        bool, typer.Option("--write", help="write the verdicts to the ledger derivations/verdicts.json")
     ] = False,
-    jobs: Annotated[
-        int | None, typer.Option(help="claims decided at the same time; default: one per core"),
-    ] = None,
+    jobs: Annotated[int | None, typer.Option(help="claims decided at the same time; default: one per core")] = None,
     seconds: Annotated[
-        float, typer.Option(help="limit for one claim, seconds of processor time; above it the verdict is OPEN"),
+        float, typer.Option(help="limit for one claim, seconds of processor time; above it the verdict is OPEN")
     ] = 90.0,
-    fresh: Annotated[
-        bool, typer.Option("--fresh", help="decide everything again, ignoring what is kept")
-    ] = False,
+    fresh: Annotated[bool, typer.Option("--fresh", help="decide everything again, ignoring what is kept")] = False,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> int:
     """Decide every claim of the papers. Status 1 when a verdict is not the one declared.
@@ -72,9 +68,7 @@ def cards_of(chosen: Sequence[PaperModule]) -> dict[str, Paper]:
 def names() -> list[str]:
     """Derivation modules that are installed, by listing the folder."""
     package = importlib.import_module("derivations")
-    return sorted(
-        entry.name for entry in pkgutil.iter_modules(package.__path__) if not entry.name.startswith("_")
-    )
+    return sorted(entry.name for entry in pkgutil.iter_modules(package.__path__) if not entry.name.startswith("_"))
 
 
 def load(wanted: Sequence[str]) -> list[PaperModule]:
@@ -144,7 +138,7 @@ class KeptVerdicts:
             self.lost = [name for name in self.keys if name not in self.known]
             if self.store is not None:
                 self.store.close()
-            self.store = None               # what cannot be read is not written either, and named once
+            self.store = None  # what cannot be read is not written either, and named once
             remark(f"verdicts are not kept: {error}")
 
     def keep(self, record: dict[str, Any]) -> None:

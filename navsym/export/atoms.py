@@ -27,6 +27,4 @@ MEANING: dict[type, Callable[..., sp.Expr]] = {expm1: lambda x: sp.exp(x) - 1, f
 
 def plain(expression: sp.Expr) -> sp.Expr:
     """The expression with the functions of this file written out."""
-    return expression.replace(
-        lambda node: type(node) in MEANING, lambda node: MEANING[type(node)](*node.args)
-    )
+    return expression.replace(lambda node: type(node) in MEANING, lambda node: MEANING[type(node)](*node.args))

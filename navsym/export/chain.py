@@ -103,7 +103,6 @@ class Chain:
             certificate={"kind": "all", "of": certificates} if certificates else None,
         )
 
-
     def results(self) -> list[str]:
         """Which value is which result."""
         numbers = [f"{o} = {entry}" for o, entry in self.outputs.items() if isinstance(entry, str) and entry != o]
@@ -169,9 +168,17 @@ def part_of(link: Link, decided: Decided) -> Material:
     require_exportable(f"the formulas of {shown}", verdict, None, False)
     where = f"definition of {shown}" if link.theorem is None else f"theorem of {shown}"
     source = Source(
-        " and ".join(link.cites) or where, "", "", where, str(verdict.status), verdict.method,
-        verdict.scope, tuple(verdict.assumptions), (), verdict.certificate,
-    )  # fmt: skip
+        " and ".join(link.cites) or where,
+        "",
+        "",
+        where,
+        str(verdict.status),
+        verdict.method,
+        verdict.scope,
+        tuple(verdict.assumptions),
+        (),
+        verdict.certificate,
+    )
     return Material(where, [(Output("own", (len(link.formulas),)), list(link.formulas))], {}, source)
 
 

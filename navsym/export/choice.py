@@ -40,10 +40,7 @@ def best_form(
     other = safe(nicer, ranges)
     graphs = [build([form], symbols, share=False) for form in (printed, other)]
     costs = [lost_digits(graph, box, arithmetic) + 0.1 * graph.operations().total() for graph in graphs]
-    better = costs[1] < costs[0] - 0.5 and tie_to_formula(graphs[1], [formula])[1] in (
-        "identical",
-        "normal form",
-    )
+    better = costs[1] < costs[0] - 0.5 and tie_to_formula(graphs[1], [formula])[1] in ("identical", "normal form")
     return other if better else printed
 
 

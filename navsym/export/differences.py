@@ -69,16 +69,18 @@ def record_for(name: str, old: Formula | None, new: Formula | None) -> Record:
     if verdict.status.holds:
         apart = different_ranges(old, new)
         if apart:
-            return said(name, "OVERLAP", f"equal where both are stated; ranges differ: {', '.join(apart)}",
-                        verdict.assumptions)  # fmt: skip
+            return said(
+                name, "OVERLAP", f"equal where both are stated; ranges differ: {', '.join(apart)}", verdict.assumptions
+            )
         return said(name, "EQUAL", verdict.method, verdict.assumptions)
     if verdict.status != REFUTED:
         return said(name, "OPEN", verdict.evidence)
     point, difference = worst_point(left - right, box)
     if point is None or difference is None:
         return said(name, "DIFFERENT", "counterexample") | {
-            "worst": dict(verdict.counterexample or {}), "difference": list(verdict.difference or ())
-        }  # fmt: skip
+            "worst": dict(verdict.counterexample or {}),
+            "difference": list(verdict.difference or ()),
+        }
     return said(name, "DIFFERENT", f"largest of {POINTS} points") | {
         "worst": {s.name: text_of(value) for s, value in point.items()},
         "difference": list(decimal_ends(difference)),
@@ -87,8 +89,14 @@ def record_for(name: str, old: Formula | None, new: Formula | None) -> Record:
 
 def said(name: str, status: str, why: str, assumptions: Sequence[str] = ()) -> Record:
     """A record without a point."""
-    return {"name": name, "status": status, "worst": None, "difference": None, "why": why,
-            "assumptions": list(assumptions)}  # fmt: skip
+    return {
+        "name": name,
+        "status": status,
+        "worst": None,
+        "difference": None,
+        "why": why,
+        "assumptions": list(assumptions),
+    }
 
 
 def different_ranges(old: Formula, new: Formula) -> list[str]:
@@ -137,9 +145,7 @@ def smaller(a: Any, b: Any) -> Any:
     return b if enclose(sp.sympify(a - b, strict=True), {}) >= 0 else a
 
 
-def worst_point(
-    difference: sp.Expr, box: Mapping[Any, Any]
-) -> tuple[dict[sp.Symbol, sp.Expr] | None, arb | None]:
+def worst_point(difference: sp.Expr, box: Mapping[Any, Any]) -> tuple[dict[sp.Symbol, sp.Expr] | None, arb | None]:
     """The sampled point where two formulas are farthest apart, with the difference enclosed there."""
     generator = random.Random(0)
     symbols = sorted(difference.free_symbols, key=lambda s: s.name)
@@ -155,13 +161,9 @@ def worst_point(
 def random_in(s: sp.Symbol, box: Mapping[Any, Any], generator: random.Random) -> sp.Expr:
     """An exact number of the range, short enough to read; ends and quarters are likely."""
     limits = range_of(s, box)
-    low = (
-        limits.lower if limits.lower is not None else (limits.upper - 10 if limits.upper is not None else -10)
-    )
+    low = limits.lower if limits.lower is not None else (limits.upper - 10 if limits.upper is not None else -10)
     high = limits.upper if limits.upper is not None else low + 20
-    share = sp.Rational(
-        generator.choice([1, 4, *range(4), *(generator.randint(0, 100) for _ in range(12))]), 100
-    )
+    share = sp.Rational(generator.choice([1, 4, *range(4), *(generator.randint(0, 100) for _ in range(12))]), 100)
     if generator.random() < 0.2:
         share = sp.Rational(generator.randint(0, 4), 4)
     value = low + (high - low) * share
@@ -260,7 +262,8 @@ def of_export(folder: Path) -> dict[str, Formula]:
     except (ValueError, KeyError, TypeError, AttributeError) as error:
         raise DomainError(
             f"expected a manifest of navsym export; got one without its keys ({type(error).__name__}: {error}); "
-            "do export again", where=where
+            "do export again",
+            where=where,
         ) from None
 
 

@@ -25,10 +25,19 @@ from navsym.export.forms import common_step
 from navsym.export.holes import part_of
 
 UNARY: dict[type, str] = {
-    sp.sin: "sin", sp.cos: "cos", sp.exp: "exp", sp.log: "log", sp.Abs: "abs",
-    sp.asin: "asin", sp.acos: "acos", sp.atan: "atan", sp.sinh: "sinh", sp.cosh: "cosh", sp.tanh: "tanh",
+    sp.sin: "sin",
+    sp.cos: "cos",
+    sp.exp: "exp",
+    sp.log: "log",
+    sp.Abs: "abs",
+    sp.asin: "asin",
+    sp.acos: "acos",
+    sp.atan: "atan",
+    sp.sinh: "sinh",
+    sp.cosh: "cosh",
+    sp.tanh: "tanh",
     expm1: "expm1",
-}  # fmt: skip
+}
 BINARY: dict[type, str] = {sp.atan2: "atan2", sp.Max: "max", sp.Min: "min"}
 MULTIPLES = 16  # above it an angle is computed by itself
 
@@ -112,11 +121,14 @@ def value_of(node: Node, args: list[sp.Expr], inputs: Sequence[sp.Symbol]) -> sp
     if node.op in FUNCTION_OF:
         return FUNCTION_OF[node.op](*args)
     arithmetic = {
-        "add": lambda: args[0] + args[1], "sub": lambda: args[0] - args[1],
-        "mul": lambda: args[0] * args[1], "div": lambda: args[0] / args[1],
-        "neg": lambda: -args[0], "sqrt": lambda: sp.sqrt(args[0]),
+        "add": lambda: args[0] + args[1],
+        "sub": lambda: args[0] - args[1],
+        "mul": lambda: args[0] * args[1],
+        "div": lambda: args[0] / args[1],
+        "neg": lambda: -args[0],
+        "sqrt": lambda: sp.sqrt(args[0]),
         "pow": lambda: args[0] ** args[1],
-    }  # fmt: skip
+    }
     return arithmetic[node.op]()
 
 

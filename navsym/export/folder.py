@@ -100,8 +100,7 @@ def target_for(root: Path, name: str) -> Path:
             return target
         if part.is_symlink():
             raise FolderError(
-                f"expected files and folders; got the symbolic link {part.name}; do remove it",
-                where=str(root),
+                f"expected files and folders; got the symbolic link {part.name}; do remove it", where=str(root)
             )
         if part != target and part.exists() and not part.is_dir():
             raise FolderError(f"expected a folder; got the file {part.name}; do remove it", where=str(root))
@@ -111,9 +110,7 @@ def target_for(root: Path, name: str) -> Path:
 def stage(target: Path, text: str, staged: list[tuple[Path, Path]]) -> None:
     """A temporary file beside the target, to be renamed when all are written."""
     if target.is_dir():
-        raise FolderError(
-            f"expected a file; got the folder {target.name}; do remove it", where=str(target.parent)
-        )
+        raise FolderError(f"expected a file; got the folder {target.name}; do remove it", where=str(target.parent))
     handle, name = tempfile.mkstemp(prefix=".export.", dir=target.parent)
     staged.append((Path(name), target))
     with os.fdopen(handle, "w", encoding="utf-8", newline="\n") as file:

@@ -49,9 +49,7 @@ def require_exportable(claim: str, verdict: Verdict, correction: str | None, all
         raise RefusedError(f"expected a claim that holds; got {claim}, which is refuted; {advice}")
     if verdict.status == CONFIRMED:
         advice = "add --allow-confirmed if samples are enough for you"
-        raise RefusedError(
-            f"expected a proved claim; got {claim}, which is only CONFIRMED by samples; {advice}"
-        )
+        raise RefusedError(f"expected a proved claim; got {claim}, which is only CONFIRMED by samples; {advice}")
     raise RefusedError(
         f"expected a proved claim; got {claim}, which is {verdict.status} ({verdict.evidence[:160]}); prove it first"
     )
@@ -70,9 +68,7 @@ def results_of(statement: Statement, claim: str) -> list[tuple[Output, list[sp.E
         parts += [("instants", statement.support), ("dual", statement.dual)]
         return [entries(side, name) for name, side in parts]
     kind = "an inequality" if isinstance(statement, Bound) else "a fact"
-    raise RefusedError(
-        f"expected an equation or an optimum; got {claim}, {kind}; there is nothing to compute"
-    )
+    raise RefusedError(f"expected an equation or an optimum; got {claim}, {kind}; there is nothing to compute")
 
 
 def entries(side: Any, name: str) -> tuple[Output, list[sp.Expr]]:
@@ -113,9 +109,17 @@ def material(
         for k, e in enumerate(flat)
     )
     source = Source(
-        claim, title, paper, equation, str(verdict.status), verdict.method, verdict.scope,
-        tuple(verdict.assumptions), formula, verdict.certificate,
-    )  # fmt: skip
+        claim,
+        title,
+        paper,
+        equation,
+        str(verdict.status),
+        verdict.method,
+        verdict.scope,
+        tuple(verdict.assumptions),
+        formula,
+        verdict.certificate,
+    )
     box = statement.box if isinstance(statement, (Equation, Optimum)) else {}
     return Material(claim, results, box, source)
 

@@ -94,9 +94,7 @@ def input_of(symbol: sp.Symbol, name: str, box: Mapping[Any, Any], real: str) ->
     if opened and low == 0.0:
         test_low = low = SMALLEST[real]
         opened = False
-    return Input(
-        symbol, name, float(low), float(high), opened, float(test_low), float(test_high), around(limits)
-    )  # fmt: skip
+    return Input(symbol, name, float(low), float(high), opened, float(test_low), float(test_high), around(limits))
 
 
 def around(limits: Range) -> str:

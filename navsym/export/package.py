@@ -43,9 +43,7 @@ def files_of(functions: Sequence[ExportedFunction], order: Order) -> dict[str, s
     """Relative name -> text of everything that is exported, the manifest included."""
     names = [function.name.lower() for function in functions]
     if len(set(names)) < len(names):
-        raise DuplicateError(
-            "expected functions with different names; got one name twice; do name each claim once"
-        )
+        raise DuplicateError("expected functions with different names; got one name twice; do name each claim once")
     notice = f"SPDX-License-Identifier: {license_id(order.license)}"
     found: dict[str, str] = {}
     spoken, tests = Spoken(functions), Tests(order.count)
@@ -62,9 +60,7 @@ def files_of(functions: Sequence[ExportedFunction], order: Order) -> dict[str, s
 def license_id(text: str) -> str:
     """The identifier as it is; raises DomainError when it cannot be one of SPDX."""
     if not text or len(text) > 80 or not all(c.isascii() and (c.isalnum() or c in ".-+() ") for c in text):
-        raise DomainError(
-            f"expected an SPDX identifier such as Apache-2.0; got {text[:40]!r}; do correct --license"
-        )
+        raise DomainError(f"expected an SPDX identifier such as Apache-2.0; got {text[:40]!r}; do correct --license")
     return text
 
 
@@ -254,12 +250,6 @@ def summary_record(function: ExportedFunction) -> dict[str, Any]:
 def outcome_record(outcome: Outcome) -> dict[str, Any]:
     """The outcome of a language as plain data."""
     functions = {
-        name: {"vectors": n, "wrong": wrong, "worst": worst}
-        for name, (n, wrong, worst) in outcome.functions.items()
+        name: {"vectors": n, "wrong": wrong, "worst": worst} for name, (n, wrong, worst) in outcome.functions.items()
     }
-    return {
-        "language": outcome.language,
-        "status": outcome.status,
-        "why": outcome.why,
-        "functions": functions,
-    }
+    return {"language": outcome.language, "status": outcome.status, "why": outcome.why, "functions": functions}

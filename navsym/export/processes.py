@@ -16,9 +16,16 @@ def run(command: list[str], folder: Path) -> tuple[int, str]:
     """Exit status and output of one command without a shell or input, limited in time."""
     try:
         process = subprocess.Popen(
-            command, cwd=folder, env=os.environ | QUIET, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE, text=True, errors="replace", start_new_session=True,
-        )  # fmt: skip
+            command,
+            cwd=folder,
+            env=os.environ | QUIET,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            errors="replace",
+            start_new_session=True,
+        )
     except OSError as error:
         return -1, error.strerror or "cannot be started"
     with process:

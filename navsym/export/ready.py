@@ -36,9 +36,16 @@ READY: dict[str, tuple[str, ...]] = {
 
 #: Paper -> symbol or result -> unit, for claims that are exported by themselves.
 UNITS: dict[str, dict[str, str]] = {
-    _GV: velocity.UNITS | {"tau": "1/omega_0 (Schuler time)", "z0": "any, say m/s", "zm": "that of z0",
-                           "zT": "that of z0", "dual": "1", "sigma": "unit of z"},
-}  # fmt: skip
+    _GV: velocity.UNITS
+    | {
+        "tau": "1/omega_0 (Schuler time)",
+        "z0": "any, say m/s",
+        "zm": "that of z0",
+        "zT": "that of z0",
+        "dual": "1",
+        "sigma": "unit of z",
+    }
+}
 
 #: Name -> a chain (one function) or a program (a first state and a step).
 ALGORITHMS: dict[str, Chain | Program] = {

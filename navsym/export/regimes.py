@@ -25,9 +25,7 @@ def in_order(parts: Sequence[Material]) -> tuple[list[Material], sp.Symbol | Non
     ordered = sorted(parts, key=lambda part: inside(part.box[symbol][0], 1))
     for before, after in pairwise(ordered):
         if not same_number(before.box[symbol][1], after.box[symbol][0]):
-            raise DomainError(
-                f"expected regimes that adjoin; got a gap before {after.claim}; do add the missing one"
-            )
+            raise DomainError(f"expected regimes that adjoin; got a gap before {after.claim}; do add the missing one")
     return ordered, symbol
 
 
@@ -58,9 +56,7 @@ def common_outputs(parts: Sequence[Material]) -> tuple[tuple[Output, ...], list[
         sizes = [part.results[k][0].shape for part in parts]
         shape = max(sizes, key=lambda s: int(np.prod(s, dtype=int)))
         if any(len(s) != len(shape) or (len(s) != 1 and s != shape) for s in sizes):
-            raise ShapeError(
-                f"expected {name} of one shape in all regimes; got several; do export them singly"
-            )
+            raise ShapeError(f"expected {name} of one shape in all regimes; got several; do export them singly")
         outputs.append(Output(name, shape))
         columns.append(
             [part.results[k][1] + [sp.S.Zero] * (outputs[k].size - len(part.results[k][1])) for part in parts]

@@ -61,11 +61,7 @@ def run_target(folder: Path, target: Target, *, sanitize: bool = False) -> Outco
 
 def steps_of(target: Target, folder: Path, tool: str, build: str, sanitize: bool) -> list[list[str]]:
     """The commands with their places filled in."""
-    table = {
-        "{tool}": [tool],
-        "{python}": [sys.executable],
-        "{c}": [p.name for p in sorted(folder.glob("*.c"))],
-    }
+    table = {"{tool}": [tool], "{python}": [sys.executable], "{c}": [p.name for p in sorted(folder.glob("*.c"))]}
     made = []
     for step in target.steps:
         command = [w for word in step for w in table.get(word, [word.replace("{build}", build)])]
@@ -87,9 +83,7 @@ def measured(text: str) -> dict[str, tuple[int, int, float]]:
 
 def words(text: str) -> str:
     """The first lines that say what went wrong."""
-    bad = [
-        f"{name}: {wrong} of {n} vectors outside" for name, n, wrong, _ in LINE.findall(text) if wrong != "0"
-    ]
+    bad = [f"{name}: {wrong} of {n} vectors outside" for name, n, wrong, _ in LINE.findall(text) if wrong != "0"]
     lines = bad or [line for line in text.splitlines() if line.strip()]
     lines = lines[-1:] if lines and lines[0].startswith("Traceback") else lines[:3]
     return "; ".join(lines)[:300]

@@ -12,10 +12,17 @@ from flint import ctx, fmpq, fmpq_series
 TERMS = 48  # coefficients that are computed; a formula that vanishes to a higher order is left alone
 
 FUNCTIONS: dict[type, Callable[[Any], Any]] = {
-    sp.exp: lambda x: x.exp(), sp.sin: lambda x: x.sin(), sp.cos: lambda x: x.cos(), sp.tan: lambda x: x.tan(),
-    sp.sinh: lambda x: x.sinh(), sp.cosh: lambda x: x.cosh(), sp.tanh: lambda x: x.tanh(), sp.log: lambda x: x.log(),
-    sp.asin: lambda x: x.asin(), sp.atan: lambda x: x.atan(),
-}  # fmt: skip
+    sp.exp: lambda x: x.exp(),
+    sp.sin: lambda x: x.sin(),
+    sp.cos: lambda x: x.cos(),
+    sp.tan: lambda x: x.tan(),
+    sp.sinh: lambda x: x.sinh(),
+    sp.cosh: lambda x: x.cosh(),
+    sp.tanh: lambda x: x.tanh(),
+    sp.log: lambda x: x.log(),
+    sp.asin: lambda x: x.asin(),
+    sp.atan: lambda x: x.atan(),
+}
 
 
 class NoSeriesError(ArithmeticError):

@@ -25,9 +25,13 @@ SECONDS = 36_000.0  # of one task; what runs code has limits of its own
 
 
 def closing_table(
-    groups: Mapping[str, Sequence[ExportedFunction]], targets: Sequence[Target], count: int,
-    progress: Callable[[str], None] = lambda doing: None, points: int = 0, jobs: int = 1,
-) -> Record:  # fmt: skip
+    groups: Mapping[str, Sequence[ExportedFunction]],
+    targets: Sequence[Target],
+    count: int,
+    progress: Callable[[str], None] = lambda doing: None,
+    points: int = 0,
+    jobs: int = 1,
+) -> Record:
     """Export every group, run every language, ask every tool; the document of ``navsym exports``.
 
     progress : called with "group languages" when all languages of a group were run, with "function points" after the
@@ -55,8 +59,14 @@ def closing_table(
         if found:
             worse(tools, "points", *points_said(found))
         records += [function_row(group, f, outcomes, said) | points_row(found.get(f.name)) for f in functions]
-    return {"functions": records, "languages": languages, "tools": tools, "vectors": count, "points": points,
-            "machine": f"{platform.machine()} {platform.system()}, Python {platform.python_version()}"}  # fmt: skip
+    return {
+        "functions": records,
+        "languages": languages,
+        "tools": tools,
+        "vectors": count,
+        "points": points,
+        "machine": f"{platform.machine()} {platform.system()}, Python {platform.python_version()}",
+    }
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,9 +127,7 @@ def worse(table: dict[str, Record], name: str, status: str, why: str) -> None:
         table[name] = {"status": status, "why": why}
 
 
-def function_row(
-    group: str, function: ExportedFunction, outcomes: Sequence[Outcome], said: dict[str, Said]
-) -> Record:
+def function_row(group: str, function: ExportedFunction, outcomes: Sequence[Outcome], said: dict[str, Said]) -> Record:
     """One function: what every language measured, and what the tools found in its C."""
     measured = {}
     for outcome in outcomes:

@@ -66,8 +66,15 @@ def misra(folder: Path) -> Said:
     if tool is None:
         return Said("cppcheck", "not executed", "cppcheck is not on this machine (Debian: apt install cppcheck)")
     sources = sorted(p.name for p in folder.glob("*.c") if p.name != "test_main.c")
-    command = [tool, "--addon=misra", "--enable=style", "--std=c99", "--quiet", "--template={id}:{file}:{line}",
-               *(f"--suppress={name}" for name in UNTAKEN)]  # fmt: skip
+    command = [
+        tool,
+        "--addon=misra",
+        "--enable=style",
+        "--std=c99",
+        "--quiet",
+        "--template={id}:{file}:{line}",
+        *(f"--suppress={name}" for name in UNTAKEN),
+    ]
     status, text = run([*command, *sources], folder)
     if status != 0:
         return Said("cppcheck", "not executed", f"cppcheck ended with status {status}: {text[:160]}")
@@ -84,8 +91,11 @@ def ctest(folder: Path) -> Said:
     if answering("cmake") is None or answering("ctest") is None:
         return Said("ctest", "not executed", "cmake is not on this machine (Debian: apt install cmake; or its wheel)")
     with tempfile.TemporaryDirectory(prefix="navsym-cmake-") as build:
-        for command in (["cmake", "-S", str(folder.resolve()), "-B", build], ["cmake", "--build", build],
-                        ["ctest", "--test-dir", build, "--output-on-failure", "--no-tests=error"]):  # fmt: skip
+        for command in (
+            ["cmake", "-S", str(folder.resolve()), "-B", build],
+            ["cmake", "--build", build],
+            ["ctest", "--test-dir", build, "--output-on-failure", "--no-tests=error"],
+        ):
             status, text = run(command, Path(build))
             if status != 0:
                 return Said("ctest", "failed", text.strip()[-300:])
@@ -126,4 +136,3 @@ def deviations_page(license_: str) -> str:
     lines += ["findings, is what `navsym check` says of this folder; this page claims nothing about it.", ""]
     lines += ["| rule | kind | reason |", "| --- | --- | --- |"]
     return "\n".join([*lines, *(f"| {rule} | {kind} | {reason} |" for rule, (kind, reason) in DEVIATIONS.items()), ""])
-

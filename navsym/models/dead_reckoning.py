@@ -38,9 +38,7 @@ class ErrorModel:
         """S: the ideal algorithm at the shown values minus the same at the true ones."""
         truth = {
             shown: shown - error
-            for shown, error in zip(
-                (*self.reckoned, *self.readings), (*self.errors, *self.sensor_errors), strict=True
-            )
+            for shown, error in zip((*self.reckoned, *self.readings), (*self.errors, *self.sensor_errors), strict=True)
         }
         return sp.Matrix([rate - rate.subs(truth, simultaneous=True) for rate in self.rates])
 
@@ -48,10 +46,7 @@ class ErrorModel:
         """S1 = dS/d error and S2 = dS/d sensor_error at zero errors: multistructure:3."""
         S = self.right_side()
         zero = dict.fromkeys((*self.errors, *self.sensor_errors), 0)
-        return (
-            S.jacobian(sp.Matrix(self.errors)).subs(zero),
-            S.jacobian(sp.Matrix(self.sensor_errors)).subs(zero),
-        )
+        return (S.jacobian(sp.Matrix(self.errors)).subs(zero), S.jacobian(sp.Matrix(self.sensor_errors)).subs(zero))
 
 
 def dead_reckoning() -> ErrorModel:

@@ -47,8 +47,7 @@ def formulas(derivation: Derivation, write: Writer) -> dict[str, Any]:
                 "time": write(t.time),
                 "matrix": written(t.matrix, write),
                 "characteristic": [
-                    {"factor": write(factor), "multiplicity": times, "form": kind}
-                    for factor, times, kind in t.factors
+                    {"factor": write(factor), "multiplicity": times, "form": kind} for factor, times, kind in t.factors
                 ],
             }
             for t in derivation.transition
@@ -84,9 +83,7 @@ def condition_data(derivation: Derivation, conditions: Conditions, write: Writer
         "functional": [write(entry) for entry in conditions.functional],
         "dual_polynomial": [[write(f) for f in polynomials] for polynomials in conditions.dual],
         "slope": [[write(f) for f in slopes] for slopes in conditions.slope],
-        "value": write(sp.Add(*(
-            x * p for x, p in zip(derivation.multipliers, conditions.functional, strict=True)
-        ))),
+        "value": write(sp.Add(*(x * p for x, p in zip(derivation.multipliers, conditions.functional, strict=True)))),
     }
 
 
@@ -145,9 +142,7 @@ def conditions_text(data: dict[str, Any]) -> list[str]:
     t = data["regressors"][0]["variable"]
     lines = ["conditions of the contacts"]
     first = data["conditions"][0]
-    for stretch, duals, slopes in zip(
-        data["regressors"], first["dual_polynomial"], first["slope"], strict=True
-    ):
+    for stretch, duals, slopes in zip(data["regressors"], first["dual_polynomial"], first["slope"], strict=True):
         where = f" for {stretch['from']} <= {t} <= {stretch['to']}" if len(data["regressors"]) > 1 else ""
         for (m, f), slope in zip(measured(data, duals), slopes, strict=True):
             lines += [
@@ -196,9 +191,7 @@ def condition_displays(tex: dict[str, Any]) -> list[str]:
     if not tex["conditions"]:
         return []
     shows, first = [], tex["conditions"][0]
-    for stretch, duals, slopes in zip(
-        tex["regressors"], first["dual_polynomial"], first["slope"], strict=True
-    ):
+    for stretch, duals, slopes in zip(tex["regressors"], first["dual_polynomial"], first["slope"], strict=True):
         v = stretch["variable"]
         for j, (m, f, slope) in enumerate(zip(tex["measurements"], duals, slopes, strict=True), start=1):
             shows += [

@@ -39,7 +39,7 @@ class LinearModel:
     """
 
     F: sp.ImmutableMatrix
-    G: Any = None                          # sp.ImmutableMatrix once constructed
+    G: Any = None  # sp.ImmutableMatrix once constructed
     H: Any = None
     states: tuple[str, ...] = ()
     noise: Noise = field(default_factory=Noise)
@@ -54,9 +54,7 @@ class LinearModel:
         need_shape("G", G, (n, G.cols), "states by process noises")
         need_shape("H", H, (H.rows, n), "measurements by states")
         states = different("states", self.states or numbered("x", n), n, "states")
-        measurements = different(
-            "measurements", self.measurements or numbered("z", H.rows), H.rows, "measurements"
-        )
+        measurements = different("measurements", self.measurements or numbered("z", H.rows), H.rows, "measurements")
         need_noise(self.noise, G.cols, H.rows)
         values = {"F": F, "G": G, "H": H, "states": states, "measurements": measurements}
         for name, value in values.items():
@@ -82,9 +80,7 @@ class LinearModel:
         """The functional (n, 1) that picks one state, by name or by number."""
         place = self.states.index(state) if isinstance(state, str) and state in self.states else state
         if not isinstance(place, int) or not 0 <= place < self.size:
-            raise DomainError(
-                f"state: expected one of {', '.join(self.states)}; got {state!r}; name one of them"
-            )
+            raise DomainError(f"state: expected one of {', '.join(self.states)}; got {state!r}; name one of them")
         return sp.ImmutableMatrix(self.size, 1, lambda i, _: int(i == place))
 
     def _repr_latex_(self) -> str:
@@ -122,9 +118,7 @@ def exact_matrix(name: str, value: Any) -> sp.ImmutableMatrix:
 
 def is_nested(value: Any) -> bool:
     """True for a list of lists."""
-    return isinstance(value, Sequence) and all(
-        isinstance(row, Sequence) and not isinstance(row, str) for row in value
-    )
+    return isinstance(value, Sequence) and all(isinstance(row, Sequence) and not isinstance(row, str) for row in value)
 
 
 def exact_entry(name: str, i: int, j: int, entry: Any) -> sp.Expr:
@@ -136,8 +130,7 @@ def exact_entry(name: str, i: int, j: int, entry: Any) -> sp.Expr:
     place = f"{name}[{i}, {j}]"
     if isinstance(entry, str | float | complex) or (isinstance(entry, sp.Basic) and entry.has(sp.Float)):
         raise DomainError(
-            f"{place}: expected an exact number or an expression; got {entry!r}; "
-            "write sp.Rational(1, 10), not 0.1"
+            f"{place}: expected an exact number or an expression; got {entry!r}; write sp.Rational(1, 10), not 0.1"
         )
     try:
         expression = sp.sympify(entry, strict=True)

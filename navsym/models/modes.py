@@ -69,9 +69,9 @@ class SchulerChannel:
         w = np.sqrt(GRAVITY / EARTH_RADIUS)
         s, c = np.sin(w * self.tau), np.cos(w * self.tau)
         half = np.sin(0.5 * w * self.tau)
-        return np.array([
-            [c, GRAVITY / w * s, 2.0 * EARTH_RADIUS * half * half], [-w / GRAVITY * s, c, s / w], [0.0, 0.0, 1.0]
-        ])
+        return np.array(
+            [[c, GRAVITY / w * s, 2.0 * EARTH_RADIUS * half * half], [-w / GRAVITY * s, c, s / w], [0.0, 0.0, 1.0]]
+        )
 
     def models(self) -> list[dict[str, Array]]:
         """F, Q, H, R of the modes in the order of :data:`MODES`."""
@@ -87,10 +87,13 @@ class SchulerChannel:
     def mode_transition(self) -> Array:
         """Rows = from: a jump lasts one step on average, a degraded measurement 1 / recover steps."""
         stay = 1.0 - self.jump - self.degrade
-        return np.array([
-            [stay, self.jump, self.degrade], [1.0 - self.jump, self.jump, 0.0],
-            [self.recover, 0.0, 1.0 - self.recover],
-        ])
+        return np.array(
+            [
+                [stay, self.jump, self.degrade],
+                [1.0 - self.jump, self.jump, 0.0],
+                [self.recover, 0.0, 1.0 - self.recover],
+            ]
+        )
 
     def start(self) -> dict[str, Array]:
         """Mean, covariance and mode probabilities at step 0."""

@@ -22,12 +22,7 @@ from navsym.errors import DomainError
 Poly = fmpq_mpoly
 Fraction = tuple[Poly, Poly]
 
-QUOTIENTS = {
-    sp.tan: (sp.sin, sp.cos),
-    sp.cot: (sp.cos, sp.sin),
-    sp.sec: (None, sp.cos),
-    sp.csc: (None, sp.sin),
-}
+QUOTIENTS = {sp.tan: (sp.sin, sp.cos), sp.cot: (sp.cos, sp.sin), sp.sec: (None, sp.cos), sp.csc: (None, sp.sin)}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -207,10 +202,12 @@ def constant_value(poly: Poly) -> sp.Rational:
 
 def expanded(ring: Ring, poly: Poly) -> sp.Expr:
     """A polynomial without mu as a sympy sum of monomials."""
-    return sp.Add(*(
-        sp.Mul(number(coefficient), *(g**e for g, e in zip(ring.generators, exponents, strict=False) if e))
-        for exponents, coefficient in poly.to_dict().items()
-    ))
+    return sp.Add(
+        *(
+            sp.Mul(number(coefficient), *(g**e for g, e in zip(ring.generators, exponents, strict=False) if e))
+            for exponents, coefficient in poly.to_dict().items()
+        )
+    )
 
 
 def factored(ring: Ring, poly: Poly) -> sp.Expr:
@@ -265,7 +262,7 @@ def square_root(ring: Ring, number_: Poly, divisor: Poly) -> tuple[Fraction, Pol
     Squares are taken out without absolute values: the callers use even functions of the root only,
     for which its sign does not matter. The radicand is a polynomial.
     """
-    content, factors = (number_ * divisor).factor()      # sqrt(n / d) = sqrt(n d) / d
+    content, factors = (number_ * divisor).factor()  # sqrt(n / d) = sqrt(n d) / d
     outer, inner = ring.one, ring.one
     for base, times in factors:
         outer *= base ** (int(times) // 2)

@@ -56,7 +56,7 @@ def companion_inverse(ring: Ring, a: Coefficients, q: Coefficients) -> tuple[Coe
     Column k of the linear system is x^k a modulo q; its determinant is the resultant of q and a.
     """
     n = len(q) - 1
-    if all(c.is_zero() for c in a[1:]):                # a constant, as for the only factor of q
+    if all(c.is_zero() for c in a[1:]):  # a constant, as for the only factor of q
         return lowest_terms([ring.one], a[0])
     columns = [a]
     for _ in range(n - 1):
@@ -73,9 +73,7 @@ def solved(ring: Ring, rows: list[Coefficients]) -> tuple[Coefficients, Poly]:
         rows[k], rows[pivot] = rows[pivot], rows[k]
         for i in range(n):
             if i != k:
-                rows[i] = [
-                    (rows[k][k] * x - rows[i][k] * y) / last for x, y in zip(rows[i], rows[k], strict=True)
-                ]
+                rows[i] = [(rows[k][k] * x - rows[i][k] * y) / last for x, y in zip(rows[i], rows[k], strict=True)]
         last = rows[k][k]
     # Every diagonal entry is now the determinant (up to the sign of the row exchanges, which cancels).
     return [row[-1] for row in rows], last

@@ -38,14 +38,10 @@ def named(name: str, value: Any, shape: Shape, why: str) -> Array:
         want is None or want == got for want, got in zip(shape, array.shape, strict=True)
     )
     if not fits:
-        raise ShapeError(
-            f"{name}: expected shape {written(shape)}, {why}; got {array.shape}; give one entry for each"
-        )
+        raise ShapeError(f"{name}: expected shape {written(shape)}, {why}; got {array.shape}; give one entry for each")
     if not np.isfinite(array).all():
         place = tuple(int(i) for i in np.argwhere(~np.isfinite(array))[0])
-        raise NotFiniteError(
-            f"{name}: expected finite numbers; got {array[place]} at index {place}; remove or mend it"
-        )
+        raise NotFiniteError(f"{name}: expected finite numbers; got {array[place]} at index {place}; remove or mend it")
     return frozen(array)
 
 
@@ -62,9 +58,7 @@ def numbers(name: str, value: Any, why: str) -> Array:
             f"{name}: expected numbers in rows of one length, {why}; got {reason}; give a full array"
         ) from None
     except OverflowError:
-        raise NotFiniteError(
-            f"{name}: expected numbers below 1.8e308; got a larger one; rescale it"
-        ) from None
+        raise NotFiniteError(f"{name}: expected numbers below 1.8e308; got a larger one; rescale it") from None
 
 
 def written(shape: Shape) -> str:

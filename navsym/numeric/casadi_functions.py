@@ -29,10 +29,19 @@ Argument: TypeAlias = sp.Symbol | Sequence[sp.Symbol]
 Memo = dict[sp.Basic, Any]
 
 UNARY = {
-    sp.sin: ca.sin, sp.cos: ca.cos, sp.tan: ca.tan,
-    sp.asin: ca.asin, sp.acos: ca.acos, sp.atan: ca.atan,
-    sp.sinh: ca.sinh, sp.cosh: ca.cosh, sp.tanh: ca.tanh,
-    sp.exp: ca.exp, sp.log: ca.log, sp.Abs: ca.fabs, sp.sign: ca.sign,
+    sp.sin: ca.sin,
+    sp.cos: ca.cos,
+    sp.tan: ca.tan,
+    sp.asin: ca.asin,
+    sp.acos: ca.acos,
+    sp.atan: ca.atan,
+    sp.sinh: ca.sinh,
+    sp.cosh: ca.cosh,
+    sp.tanh: ca.tanh,
+    sp.exp: ca.exp,
+    sp.log: ca.log,
+    sp.Abs: ca.fabs,
+    sp.sign: ca.sign,
     sp.cot: lambda x: ca.cos(x) / ca.sin(x),
     sp.sec: lambda x: 1 / ca.cos(x),
     sp.csc: lambda x: 1 / ca.sin(x),
@@ -40,18 +49,11 @@ UNARY = {
 }
 CONSTANTS = {sp.pi: np.pi, sp.E: np.e}
 #: f(x) - 1 without cancellation, for the functions with f(0) = 1.
-LESS_ONE = {
-    sp.cos: lambda x: -2 * ca.sin(x / 2) ** 2,
-    sp.cosh: lambda x: 2 * ca.sinh(x / 2) ** 2,
-    sp.exp: ca.expm1,
-}
+LESS_ONE = {sp.cos: lambda x: -2 * ca.sin(x / 2) ** 2, sp.cosh: lambda x: 2 * ca.sinh(x / 2) ** 2, sp.exp: ca.expm1}
 
 
 def casadi_function(
-    name: str,
-    arguments: Sequence[Argument],
-    expression: Any,
-    named: Sequence[tuple[sp.Symbol, sp.Expr]] = (),
+    name: str, arguments: Sequence[Argument], expression: Any, named: Sequence[tuple[sp.Symbol, sp.Expr]] = ()
 ) -> ca.Function:
     """A casadi function of the given arguments.
 
@@ -69,9 +71,7 @@ def casadi_function(
     return ca.Function(identifier(name), inputs, [output_of(expression, memo)])
 
 
-def jacobian_function(
-    name: str, arguments: Sequence[Argument], expression: Any, *, by: int = 0
-) -> ca.Function:
+def jacobian_function(name: str, arguments: Sequence[Argument], expression: Any, *, by: int = 0) -> ca.Function:
     """The Jacobian of the expression by one of its arguments, by casadi's own differentiation.
 
     For an (m,) column and an argument of k symbols the output is (m, k).
@@ -119,7 +119,7 @@ def inputs_of(arguments: Sequence[Argument]) -> tuple[list[Any], Memo]:
         symbols = [argument] if isinstance(argument, sp.Symbol) else list(argument)
         if not symbols:
             raise ShapeError(f"argument {place}: expected at least one symbol; got none; leave it out")
-        vector = ca.SX.sym(f"a{place}", len(symbols))       # names of the user never reach the engine
+        vector = ca.SX.sym(f"a{place}", len(symbols))  # names of the user never reach the engine
         inputs.append(vector)
         for k, symbol in enumerate(symbols):
             if symbol in memo:
@@ -166,9 +166,7 @@ def node(expression: sp.Expr, memo: Memo) -> Any:
         return function(translated(expression.args[0], memo))
     if isinstance(expression, sp.Symbol):
         raise UnknownSymbolError(f"expression: expected only its arguments; got {expression}; name it as one")
-    raise DomainError(
-        f"expression: expected functions of the language; got {type(expression).__name__}; rewrite it"
-    )
+    raise DomainError(f"expression: expected functions of the language; got {type(expression).__name__}; rewrite it")
 
 
 def rounded(number: sp.Rational) -> Any:
@@ -176,9 +174,7 @@ def rounded(number: sp.Rational) -> Any:
     try:
         return ca.SX(int(number.p) / int(number.q))
     except OverflowError:
-        raise NotFiniteError(
-            "expression: expected numbers below 1.8e308; got a larger one; rescale"
-        ) from None
+        raise NotFiniteError("expression: expected numbers below 1.8e308; got a larger one; rescale") from None
 
 
 def sum_of(expression: sp.Add, memo: Memo) -> Any:
@@ -209,8 +205,10 @@ def product_of(expression: sp.Mul, memo: Memo) -> Any:
     """Numerator over denominator: one division, and the rational coefficient in its two parts."""
     above, below = expression.as_numer_denom() if expression.is_commutative else (expression, sp.S.One)
     if below == 1:
-        return reduce(mul, (translated(factor, memo) for factor in above.args)) if above.is_Mul else (
-            translated(above, memo)
+        return (
+            reduce(mul, (translated(factor, memo) for factor in above.args))
+            if above.is_Mul
+            else (translated(above, memo))
         )
     return translated(above, memo) / translated(below, memo)
 
@@ -223,8 +221,10 @@ def power_of(expression: sp.Pow, memo: Memo) -> Any:
         n = int(exponent)
         return whole_power(x, n) if n > 0 else 1 / whole_power(x, -n)
     if exponent.is_Rational and exponent.q == 2:
-        return whole_power(ca.sqrt(x), int(exponent.p)) if exponent.p > 0 else (
-            1 / whole_power(ca.sqrt(x), -int(exponent.p))
+        return (
+            whole_power(ca.sqrt(x), int(exponent.p))
+            if exponent.p > 0
+            else (1 / whole_power(ca.sqrt(x), -int(exponent.p)))
         )
     return ca.power(x, translated(exponent, memo))
 

@@ -29,10 +29,7 @@ QP_SOLVERS = ("casadi:osqp", "casadi:highs", "cvxpy:CLARABEL", "cvxpy:OSQP", "cv
 
 #: What a solver says when it believes that it has succeeded.
 SUCCESS = frozenset({"Optimal", "solved", "optimal"})
-SILENT = {
-    "highs": {"highs": {"output_flag": False}},
-    "osqp": {"osqp": {"verbose": False}},
-}
+SILENT = {"highs": {"highs": {"output_flag": False}}, "osqp": {"osqp": {"verbose": False}}}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -47,7 +44,7 @@ class GridProblem:
 
     regressors: Array
     functional: Array
-    bounds: Any = None                       # arrays once constructed
+    bounds: Any = None  # arrays once constructed
     spacing: Any = None
 
     def __post_init__(self) -> None:
@@ -146,7 +143,7 @@ def least_squares_qp(problem: GridProblem, *, solver: str = QP_SOLVERS[0]) -> Co
 
 
 def engine_of(solver: str, known: tuple[str, ...]) -> tuple[str, str]:
-    """"programme:engine" as a pair; DomainError when it is not known."""
+    """ "programme:engine" as a pair; DomainError when it is not known."""
     if solver not in known:
         raise DomainError(f"solver: expected one of {', '.join(known)}; got {solver!r}; name one of them")
     programme, engine = solver.split(":")
@@ -171,18 +168,16 @@ def need_estimable(problem: GridProblem) -> None:
         )
 
 
-def judged(
-    problem: GridProblem, solver: str, run: Callable[[GridProblem, str], Answer], engine: str
-) -> ConvexResult:
+def judged(problem: GridProblem, solver: str, run: Callable[[GridProblem, str], Answer], engine: str) -> ConvexResult:
     """Run a solver, measure it, and compute what its answer is worth."""
     start = time.perf_counter()
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")              # "may be inaccurate" is in the status too
+            warnings.simplefilter("ignore")  # "may be inaccurate" is in the status too
             weights, multipliers, status = run(problem, engine)
     except MemoryError:
         raise
-    except Exception as reason:                          # engines raise types of their own
+    except Exception as reason:  # engines raise types of their own
         weights, multipliers, status = None, None, f"failed: {type(reason).__name__}: {first_line(reason)}"
     seconds = time.perf_counter() - start
     weights = usable(weights)
@@ -340,10 +335,18 @@ def trust_table(
             result = guaranteed_lp(problem, solver=solver)
             error = None if result.value is None else abs(result.value - expected) / expected
             off = error is None or error > tolerance
-            rows.append(Trust(
-                parameter, solver, result.status, result.value, expected, error, result.residual,
-                honest=not (result.claims and off),
-            ))
+            rows.append(
+                Trust(
+                    parameter,
+                    solver,
+                    result.status,
+                    result.value,
+                    expected,
+                    error,
+                    result.residual,
+                    honest=not (result.claims and off),
+                )
+            )
     return tuple(rows)
 
 

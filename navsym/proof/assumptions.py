@@ -28,9 +28,7 @@ def with_sides(reduction: Reduction, *sides: sp.Expr) -> Reduction:
     def union(name: str) -> tuple[sp.Basic, ...]:
         return tuple(dict.fromkeys(item for part in parts for item in getattr(part, name)))
 
-    return replace(
-        reduction, divisors=union("divisors"), radicands=union("radicands"), arguments=union("arguments")
-    )
+    return replace(reduction, divisors=union("divisors"), radicands=union("radicands"), arguments=union("arguments"))
 
 
 def written_conditions(*sides: sp.Expr) -> Reduction:
@@ -70,8 +68,10 @@ def is_nonzero(expression: sp.Basic, box: Box) -> bool:
 
 #: What is taken for granted of the parts of a reduction: in words, and when the box guarantees it.
 KINDS: tuple[tuple[str, str, Callable[[sp.Expr, Box], bool]], ...] = (
-    ("divisors", "!= 0", is_nonzero), ("radicands", ">= 0", is_nonnegative), ("arguments", "> 0", is_positive),
-)  # fmt: skip
+    ("divisors", "!= 0", is_nonzero),
+    ("radicands", ">= 0", is_nonnegative),
+    ("arguments", "> 0", is_positive),
+)
 
 
 def remaining_assumptions(

@@ -84,11 +84,26 @@ def tape(expression: sp.Expr) -> Tape:
 
 
 FUNCTIONS = {
-    sp.sin: "sin", sp.cos: "cos", sp.tan: "tan", sp.cot: "cot", sp.sec: "sec", sp.csc: "csc",
-    sp.exp: "exp", sp.log: "log", sp.Abs: "abs", sp.asin: "asin", sp.acos: "acos", sp.atan: "atan",
-    sp.atan2: "atan2", sp.sinh: "sinh", sp.cosh: "cosh", sp.tanh: "tanh", sp.sign: "sign",
-    sp.Max: "max", sp.Min: "min",
-}  # fmt: skip
+    sp.sin: "sin",
+    sp.cos: "cos",
+    sp.tan: "tan",
+    sp.cot: "cot",
+    sp.sec: "sec",
+    sp.csc: "csc",
+    sp.exp: "exp",
+    sp.log: "log",
+    sp.Abs: "abs",
+    sp.asin: "asin",
+    sp.acos: "acos",
+    sp.atan: "atan",
+    sp.atan2: "atan2",
+    sp.sinh: "sinh",
+    sp.cosh: "cosh",
+    sp.tanh: "tanh",
+    sp.sign: "sign",
+    sp.Max: "max",
+    sp.Min: "min",
+}
 
 
 def instruction(node: sp.Basic) -> tuple[str, Sequence[sp.Basic], Any]:
@@ -316,9 +331,7 @@ OPERATIONS: dict[str, Callable[[Any, list[Any], Any], Any]] = {
 # -- what the other rooms call ---------------------------------------
 
 
-def enclose(
-    expression: sp.Expr | Tape, values: Mapping[sp.Symbol, arb] | None = None, bits: int = DEFAULT_BITS
-) -> arb:
+def enclose(expression: sp.Expr | Tape, values: Mapping[sp.Symbol, arb] | None = None, bits: int = DEFAULT_BITS) -> arb:
     """A ball that contains the expression for every value of the symbols in the given balls.
 
     Not finite when the expression may be undefined there.

@@ -82,5 +82,3 @@ def covers(curve: fmpq_poly, limit: Range) -> Iterator[tuple[fmpq_poly, Range]]:
 def reversed_polynomial(curve: fmpq_poly) -> fmpq_poly:
     """x**n Q(1/x)."""
     return fmpq_poly(list(reversed(curve.coeffs())))
-
-

@@ -31,9 +31,12 @@ def exponential_certificate(F: sp.MatrixBase, Phi: sp.MatrixBase, time: sp.Symbo
     symbols = sorted({s.name for s in F.free_symbols | Phi.free_symbols} - {time.name})
     try:
         return {
-            "kind": "exponential", "matrix": texts(F), "solution": texts(Phi), "variable": time.name,
+            "kind": "exponential",
+            "matrix": texts(F),
+            "solution": texts(Phi),
+            "variable": time.name,
             "symbols": symbols,
-        }  # fmt: skip
+        }
     except NavsymError:
         return None
 
@@ -51,10 +54,14 @@ def rank_certificate(M: sp.MatrixBase) -> dict[str, Any] | None:
         rows = here.T.rref()[1] if all(x.is_Rational for x in here) else ()
         if len(rows) == rank and sp.Matrix([*(here.row(k) for k in rows), *(v.subs(point).T for v in null)]).det() != 0:
             return {
-                "kind": "rank", "matrix": texts(M), "symbols": sorted(s.name for s in M.free_symbols), "rank": rank,
-                "point": {s.name: to_text(value) for s, value in point.items()}, "rows": [int(k) for k in rows],
+                "kind": "rank",
+                "matrix": texts(M),
+                "symbols": sorted(s.name for s in M.free_symbols),
+                "rank": rank,
+                "point": {s.name: to_text(value) for s, value in point.items()},
+                "rows": [int(k) for k in rows],
                 "null": [[to_text(sp.factor(x)) for x in v] for v in null],
-            }  # fmt: skip
+            }
     return None
 
 

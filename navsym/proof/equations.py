@@ -75,9 +75,7 @@ def combine(verdicts: Sequence[Verdict]) -> Verdict:
     certificate = None
     if all(verdict.certificate for verdict in verdicts):
         certificate = {"kind": "all", "of": [dict(verdict.certificate or {}) for verdict in verdicts]}
-    return replace(
-        weakest, assumptions=assumptions, evidence=prefix + weakest.evidence, certificate=certificate
-    )
+    return replace(weakest, assumptions=assumptions, evidence=prefix + weakest.evidence, certificate=certificate)
 
 
 def decide_entry(printed: sp.Expr, derived: sp.Expr, statement: Equation) -> Verdict:
@@ -86,10 +84,7 @@ def decide_entry(printed: sp.Expr, derived: sp.Expr, statement: Equation) -> Ver
         if statement.tolerance is not None:
             return decide_numeral(printed, derived, statement)
         sample = search_counterexample(
-            printed - derived,
-            lambda b: not b.contains(0),
-            box,
-            sides=finite_sides(printed, derived, statement),
+            printed - derived, lambda b: not b.contains(0), box, sides=finite_sides(printed, derived, statement)
         )
         if sample.counterexample is not None:
             return refuted(sample)

@@ -55,9 +55,7 @@ EQUAL = 1e-20
 def decide_bound(statement: Bound) -> Verdict:
     """Verdict of an inequality; ``=`` is handed to the equations."""
     if statement.relation == "=":
-        return decide_equation(
-            Equation(statement.printed, statement.derived, statement.box, exists=statement.exists)
-        )
+        return decide_equation(Equation(statement.printed, statement.derived, statement.box, exists=statement.exists))
     if statement.relation not in EXCLUDES:
         raise DomainError(f"expected one of = != < <= > >=; got {statement.relation!r}; correct the relation")
     difference = difference_of(statement)
@@ -139,14 +137,10 @@ def doubt_of(look: Look, relation: str) -> str:
         return ""
     if relation == "!=" and look.positive and look.negative:
         places = " and ".join(str(dict(point_text(point))) for point in (look.negative, look.positive))
-        return (
-            f"printed - derived changes its sign between {places}: a continuous difference has a zero there"
-        )
+        return f"printed - derived changes its sign between {places}: a continuous difference has a zero there"
     if look.touching is not None:
         near = {symbol.name: f"{float(value):.12g}" for symbol, value in look.touching.items()}
-        return (
-            f"the sides come within 1e-60 of each other near {near}: equality there would break the relation"
-        )
+        return f"the sides come within 1e-60 of each other near {near}: equality there would break the relation"
     return ""
 
 

@@ -44,9 +44,19 @@ def shifted(side: Any, step: Any) -> Any:
 # -- one-token mutants -----------------------------------------------------------------------
 
 SWAPS = {
-    sp.sin: sp.cos, sp.cos: sp.sin, sp.tan: sp.cot, sp.cot: sp.tan, sp.sec: sp.csc, sp.csc: sp.sec,
-    sp.sinh: sp.cosh, sp.cosh: sp.sinh, sp.exp: sp.cosh, sp.log: sp.exp, sp.asin: sp.atan, sp.acos: sp.asin,
-}  # fmt: skip
+    sp.sin: sp.cos,
+    sp.cos: sp.sin,
+    sp.tan: sp.cot,
+    sp.cot: sp.tan,
+    sp.sec: sp.csc,
+    sp.csc: sp.sec,
+    sp.sinh: sp.cosh,
+    sp.cosh: sp.sinh,
+    sp.exp: sp.cosh,
+    sp.log: sp.exp,
+    sp.asin: sp.atan,
+    sp.acos: sp.asin,
+}
 
 #: Kinds of changes: of one token, of the order of entries, of a range.
 TOKENS = ("sign", "number", "factor", "power", "function", "index", "dropped", "doubled")

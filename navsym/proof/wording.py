@@ -94,12 +94,6 @@ def rounded_shift(value: int, bits: int, direction: int) -> int:
 def broken(point: Point, difference: arb, exact: bool = False) -> Verdict:
     """REFUTED at one exact point."""
     ends = ("0", "0") if exact else decimal_ends(difference)
-    evidence = (
-        "the difference is exactly zero there"
-        if exact
-        else f"the sides differ by {ends[0]} at an exact point"
-    )
+    evidence = "the difference is exactly zero there" if exact else f"the sides differ by {ends[0]} at an exact point"
     method = "exact point" if exact else "exact point, ball arithmetic"
-    return Verdict(
-        REFUTED, method, "one point", evidence=evidence, counterexample=point_text(point), difference=ends
-    )
+    return Verdict(REFUTED, method, "one point", evidence=evidence, counterexample=point_text(point), difference=ends)

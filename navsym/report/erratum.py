@@ -18,7 +18,7 @@ from navsym.report.page_arithmetic import arithmetic, ball_words, ended
 from navsym.report.wording import Wording, Words, pattern_of
 
 Record = Mapping[str, Any]
-MOST_COORDINATES = 6     # more than that nobody inserts by hand
+MOST_COORDINATES = 6  # more than that nobody inserts by hand
 
 
 @dataclass(frozen=True, slots=True)

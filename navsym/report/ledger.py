@@ -15,9 +15,24 @@ from navsym.claims import Paper, equation_of
 
 Record = Mapping[str, Any]
 KEPT = (
-    "id", "paper", "number", "title", "status", "expect", "method", "scope", "assumptions", "printed", "derived",
-    "corrects", "slip", "reason", "evidence", "counterexample", "difference",
-)  # fmt: skip
+    "id",
+    "paper",
+    "number",
+    "title",
+    "status",
+    "expect",
+    "method",
+    "scope",
+    "assumptions",
+    "printed",
+    "derived",
+    "corrects",
+    "slip",
+    "reason",
+    "evidence",
+    "counterexample",
+    "difference",
+)
 MARKS = {"PROVED": "✓", "CERTIFIED": "✓", "CONFIRMED": "~", "REFUTED": "✗", "OPEN": "?"}
 WORST_FIRST = ("REFUTED", "OPEN", "CONFIRMED", "CERTIFIED", "PROVED")
 
@@ -37,9 +52,7 @@ def read_ledger(path: Path) -> dict[str, Record]:
     return {record["id"]: record for record in document["claims"]}
 
 
-def merged(
-    document: Mapping[str, Any], old: Mapping[str, Record], old_papers: Iterable[Record]
-) -> dict[str, Any]:
+def merged(document: Mapping[str, Any], old: Mapping[str, Record], old_papers: Iterable[Record]) -> dict[str, Any]:
     """The new verdicts together with the old ones of papers that were not run."""
     run = {paper["module"] for paper in document["papers"]}
     claims = [record for record in old.values() if record["paper"] not in run] + list(document["claims"])

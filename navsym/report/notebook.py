@@ -107,8 +107,6 @@ def statement_latex(statement: Statement) -> list[tuple[str, str]]:
 
 def verdict_table(claims: Mapping[str, Claim] | list[Claim], choose: Callable[[Claim], bool] = bool) -> str:
     """Claims and verdicts as aligned text, one line each."""
-    chosen = [
-        claim for claim in (claims.values() if isinstance(claims, Mapping) else claims) if choose(claim)
-    ]
+    chosen = [claim for claim in (claims.values() if isinstance(claims, Mapping) else claims) if choose(claim)]
     width = max((len(claim.number) for claim in chosen), default=0)
     return "\n".join(f"{c.number:<{width}}  {decide(c.derive()).status:<9}  {c.title}" for c in chosen)

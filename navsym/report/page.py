@@ -43,7 +43,7 @@ MEANINGS = {
     "REFUTED": "an exact point at which what is printed fails; the correction stands beside it",
     "OPEN": "undecided; the evidence says what was tried",
 }
-COPY_MARK = "copy"      # a word: no sign says it
+COPY_MARK = "copy"  # a word: no sign says it
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,7 +138,7 @@ def pages(
         yield f"{paper.file}.html", env.get_template("paper.html").render(shared, paper=paper)
         yield f"{paper.file}.erratum.html", env.get_template("erratum.html").render(shared, paper=paper)
         yield f"{paper.file}.erratum.tex", env.get_template("erratum.tex").render(paper=paper)
-    papers.sort(key=lambda paper: not paper.erratum.entries)      # those with something to correct come first
+    papers.sort(key=lambda paper: not paper.erratum.entries)  # those with something to correct come first
     yield "index.html", env.get_template("index.html").render(shared, papers=papers, total=total(papers))
 
 

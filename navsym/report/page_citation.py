@@ -11,7 +11,7 @@ from navsym.report.formula.sides import only_truth
 from navsym.report.page_names import latex_escape
 
 Record = Mapping[str, Any]
-SHORT = 120     # characters of a formula that a note may hold
+SHORT = 120  # characters of a formula that a note may hold
 
 
 def bibtex(paper: Paper, record: Record, version: str, correction: Record | None = None) -> str:

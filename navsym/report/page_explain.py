@@ -69,25 +69,39 @@ def question(record: Record) -> str:
 
 
 METHODS = (
-    ("exact point", "Exact points of the range were tried, each in ball arithmetic, which encloses every "
-     "rounding error. At one of them the balls of the two sides have no point in common."),
-    ("exact primal-dual", "Weights and dual were put into four conditions: the weights are unbiased, the instants "
-     "lie inside the interval, the dual polynomial stays within its bounds, and both values are equal. Together "
-     "they prove optimality without any solver."),
-    ("normal form after signs", "Absolute values and roots of squares were replaced by what they are on the range, "
-     "the signs being proved first; then the difference was reduced to its normal form."),
-    ("normal form", "The difference of the sides was written as a quotient of polynomials with exact coefficients "
-     "and multiplied out. Sines and cosines become powers of exp(i x), which leaves nothing to simplify by luck: "
-     "two expressions are equal exactly when the numerator is the zero polynomial."),
+    (
+        "exact point",
+        "Exact points of the range were tried, each in ball arithmetic, which encloses every "
+        "rounding error. At one of them the balls of the two sides have no point in common.",
+    ),
+    (
+        "exact primal-dual",
+        "Weights and dual were put into four conditions: the weights are unbiased, the instants "
+        "lie inside the interval, the dual polynomial stays within its bounds, and both values are equal. Together "
+        "they prove optimality without any solver.",
+    ),
+    (
+        "normal form after signs",
+        "Absolute values and roots of squares were replaced by what they are on the range, "
+        "the signs being proved first; then the difference was reduced to its normal form.",
+    ),
+    (
+        "normal form",
+        "The difference of the sides was written as a quotient of polynomials with exact coefficients "
+        "and multiplied out. Sines and cosines become powers of exp(i x), which leaves nothing to simplify by luck: "
+        "two expressions are equal exactly when the numerator is the zero polynomial.",
+    ),
     ("squares", "Both sides were proved to have one sign, and their squares were reduced to the same normal form."),
     ("derivative", "The derivatives of the two sides are the same on the range, and so is one value."),
-    ("ball arithmetic", "The range was covered by balls, each with all rounding errors enclosed; none of them "
-     "leaves room for failure."),
+    (
+        "ball arithmetic",
+        "The range was covered by balls, each with all rounding errors enclosed; none of them leaves room for failure.",
+    ),
     ("sign on the box", "The sign was proved on the whole range, by factors of known sign or by halving the range."),
     ("sampling", "No proof was found. The statement was tried at exact points, which confirms and does not prove."),
     ("shape", "The two sides do not even have the same shape."),
     ("none", "Nothing decided it."),
-)  # fmt: skip
+)
 
 
 def decision(record: Record) -> str:

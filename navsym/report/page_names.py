@@ -7,12 +7,43 @@ import html
 import re
 
 GREEK = {
-    "alpha": "α", "beta": "β", "gamma": "γ", "delta": "δ", "epsilon": "ε", "zeta": "ζ", "eta": "η",
-    "theta": "θ", "iota": "ι", "kappa": "κ", "lambda": "λ", "mu": "μ", "nu": "ν", "xi": "ξ", "pi": "π",
-    "rho": "ρ", "sigma": "σ", "tau": "τ", "phi": "φ", "chi": "χ", "psi": "ψ", "omega": "ω", "upsilon": "υ",
-    "Gamma": "Γ", "Delta": "Δ", "Theta": "Θ", "Lambda": "Λ", "Xi": "Ξ", "Pi": "Π", "Sigma": "Σ",
-    "Phi": "Φ", "Psi": "Ψ", "Omega": "Ω", "lam": "λ", "oo": "∞", "eps": "ε",
-}  # fmt: skip
+    "alpha": "α",
+    "beta": "β",
+    "gamma": "γ",
+    "delta": "δ",
+    "epsilon": "ε",
+    "zeta": "ζ",
+    "eta": "η",
+    "theta": "θ",
+    "iota": "ι",
+    "kappa": "κ",
+    "lambda": "λ",
+    "mu": "μ",
+    "nu": "ν",
+    "xi": "ξ",
+    "pi": "π",
+    "rho": "ρ",
+    "sigma": "σ",
+    "tau": "τ",
+    "phi": "φ",
+    "chi": "χ",
+    "psi": "ψ",
+    "omega": "ω",
+    "upsilon": "υ",
+    "Gamma": "Γ",
+    "Delta": "Δ",
+    "Theta": "Θ",
+    "Lambda": "Λ",
+    "Xi": "Ξ",
+    "Pi": "Π",
+    "Sigma": "Σ",
+    "Phi": "Φ",
+    "Psi": "Ψ",
+    "Omega": "Ω",
+    "lam": "λ",
+    "oo": "∞",
+    "eps": "ε",
+}
 LATEX_SPELLING = {"lam": "lambda", "oo": "infty", "eps": "varepsilon", "epsilon": "varepsilon", "phi": "varphi"}
 LATEX_FUNCTIONS = frozenset("sin cos tan cot sec csc exp log sinh cosh tanh det".split())
 STEM = re.compile(r"(?P<stem>[A-Za-z]+?)(?P<index>\d*)$")
@@ -21,14 +52,14 @@ STEM = re.compile(r"(?P<stem>[A-Za-z]+?)(?P<index>\d*)$")
 @functools.lru_cache(maxsize=4096)
 def split_name(name: str) -> tuple[str, str]:
     """Stem and index: ``theta2_11`` -> theta, 2,11; ``y1`` -> y, 1; ``zT`` -> z, T."""
-    if name.endswith("_"):                       # pi_ is a symbol and must not look like the number pi
+    if name.endswith("_"):  # pi_ is a symbol and must not look like the number pi
         return name, ""
     head, *rest = [part for part in name.split("_") if part] or [name]
     match = STEM.match(head)
     stem, index = (match["stem"], match["index"]) if match else (head, "")
     greek = max((name for name in GREEK if stem.startswith(name)), key=len, default="")
     base = stem[len(greek) :]
-    if len(base) == 2 and (base[0].isupper() or base[1] in "TNm"):      # zT, Vj, DeltaVy
+    if len(base) == 2 and (base[0].isupper() or base[1] in "TNm"):  # zT, Vj, DeltaVy
         stem, index = greek + base[0], base[1] + index
     return stem, ",".join(part for part in (index, *rest) if part)
 
@@ -84,10 +115,20 @@ def latex_name(name: str, function: bool = False) -> str:
 
 
 LATEX_ESCAPES = {
-    "\\": r"\textbackslash{}", "{": r"\{", "}": r"\}", "$": r"\$", "&": r"\&", "#": r"\#", "%": r"\%",
-    "_": r"\_", "^": r"\textasciicircum{}", "~": r"\textasciitilde{}", "<": r"\textless{}",
-    ">": r"\textgreater{}", '"': "''",
-}  # fmt: skip
+    "\\": r"\textbackslash{}",
+    "{": r"\{",
+    "}": r"\}",
+    "$": r"\$",
+    "&": r"\&",
+    "#": r"\#",
+    "%": r"\%",
+    "_": r"\_",
+    "^": r"\textasciicircum{}",
+    "~": r"\textasciitilde{}",
+    "<": r"\textless{}",
+    ">": r"\textgreater{}",
+    '"': "''",
+}
 
 
 def latex_escape(text: str) -> str:

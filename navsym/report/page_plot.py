@@ -20,15 +20,30 @@ WIDTH, HEIGHT = 460, 220
 LEFT, RIGHT, TOP, BOTTOM = 72, 12, 26, 34
 
 FUNCTIONS: dict[str, Callable[..., float]] = {
-    "sin": math.sin, "cos": math.cos, "tan": math.tan, "exp": math.exp, "log": math.log, "sqrt": math.sqrt,
-    "asin": math.asin, "acos": math.acos, "atan": math.atan, "atan2": math.atan2, "sinh": math.sinh,
-    "cosh": math.cosh, "tanh": math.tanh, "abs": abs, "cot": lambda x: 1 / math.tan(x),
-    "sec": lambda x: 1 / math.cos(x), "csc": lambda x: 1 / math.sin(x),
-}  # fmt: skip
+    "sin": math.sin,
+    "cos": math.cos,
+    "tan": math.tan,
+    "exp": math.exp,
+    "log": math.log,
+    "sqrt": math.sqrt,
+    "asin": math.asin,
+    "acos": math.acos,
+    "atan": math.atan,
+    "atan2": math.atan2,
+    "sinh": math.sinh,
+    "cosh": math.cosh,
+    "tanh": math.tanh,
+    "abs": abs,
+    "cot": lambda x: 1 / math.tan(x),
+    "sec": lambda x: 1 / math.cos(x),
+    "csc": lambda x: 1 / math.sin(x),
+}
 OPERATIONS: dict[str, Callable[[float, float], float]] = {
-    "sum": lambda a, b: a + b, "difference": lambda a, b: a - b, "product": lambda a, b: a * b,
+    "sum": lambda a, b: a + b,
+    "difference": lambda a, b: a - b,
+    "product": lambda a, b: a * b,
     "quotient": lambda a, b: a / b,
-}  # fmt: skip
+}
 
 
 def value(node: Node, point: Mapping[str, float]) -> float:
@@ -144,9 +159,13 @@ def heights(curves: Sequence[Curve], marks: Sequence[float]) -> tuple[float, flo
 
 
 def drawing(
-    along: str, held: Mapping[str, float], curves: Sequence[Curve], marks: Sequence[float],
-    ends: tuple[float, float], name: str,
-) -> str:  # fmt: skip
+    along: str,
+    held: Mapping[str, float],
+    curves: Sequence[Curve],
+    marks: Sequence[float],
+    ends: tuple[float, float],
+    name: str,
+) -> str:
     """The SVG: solid line for the derived side, dashed for the printed one, a mark on each at the point."""
     low, high = heights(curves, marks)
     at_x = scale(ends, (LEFT, WIDTH - RIGHT))
@@ -196,9 +215,12 @@ def scale(source: tuple[float, float], target: tuple[float, float]) -> Callable[
 
 
 def axes(
-    along: str, ends: tuple[float, float], limits: tuple[float, float],
-    at_x: Callable[[float], float], at_y: Callable[[float], float],
-) -> list[str]:  # fmt: skip
+    along: str,
+    ends: tuple[float, float],
+    limits: tuple[float, float],
+    at_x: Callable[[float], float],
+    at_y: Callable[[float], float],
+) -> list[str]:
     """SVG of the axes, their ticks and the grid."""
     bottom = HEIGHT - BOTTOM
     parts = [f'<path class="axis" d="M{LEFT} {TOP}V{bottom}H{WIDTH - RIGHT}"/>']
@@ -208,9 +230,7 @@ def axes(
         parts.append(f'<text class="tick" x="{LEFT - 6}" y="{at_y(y) + 4:.1f}" text-anchor="end">{y:.4g}</text>')
         parts.append(f'<path class="grid" d="M{LEFT} {at_y(y):.1f}H{WIDTH - RIGHT}"/>')
     middle = (LEFT + WIDTH - RIGHT) / 2
-    parts.append(
-        f'<text class="tick" x="{middle}" y="{HEIGHT - 4}" text-anchor="middle">{written(along)}</text>'
-    )
+    parts.append(f'<text class="tick" x="{middle}" y="{HEIGHT - 4}" text-anchor="middle">{written(along)}</text>')
     height = (TOP + bottom) / 2
     parts.append(
         f'<text class="tick" transform="translate(12 {height}) rotate(-90)" text-anchor="middle">both sides</text>'
@@ -226,9 +246,7 @@ def ticks(low: float, high: float) -> list[float]:
     return [k * step for k in range(first, math.floor(high / step) + 1)]
 
 
-def path(
-    points: Curve, at_x: Callable[[float], float], at_y: Callable[[float], float], low: float, high: float
-) -> str:
+def path(points: Curve, at_x: Callable[[float], float], at_y: Callable[[float], float], low: float, high: float) -> str:
     """A polyline that is lifted over what lies outside the window."""
     found, down = [], False
     for x, y in points:

@@ -91,9 +91,7 @@ def dual_polynomial(
     return made
 
 
-def phase_diagram(
-    regimes: Rows, *, parameter: str, unit: str, quantity: str, logarithmic: bool = False
-) -> Figure:
+def phase_diagram(regimes: Rows, *, parameter: str, unit: str, quantity: str, logarithmic: bool = False) -> Figure:
     """The optimum over a parameter, and below it the instants that reach it; boundaries of regimes as lines.
 
     regimes : each with ``at`` (n,) values of the parameter, ``value`` (n,), ``label`` and perhaps

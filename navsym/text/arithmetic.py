@@ -22,10 +22,24 @@ FACTORS = 128  # of one product: the algebra compares all of them
 ROOT_BITS = 700  # size of a number under a root: sympy looks for square factors in it
 
 BUILDERS: dict[str, Callable[..., sp.Expr]] = {
-    "sin": sp.sin, "cos": sp.cos, "tan": sp.tan, "cot": sp.cot, "sec": sp.sec, "csc": sp.csc,
-    "exp": sp.exp, "log": sp.log, "sqrt": sp.sqrt, "abs": sp.Abs, "asin": sp.asin, "acos": sp.acos,
-    "atan": sp.atan, "atan2": sp.atan2, "sinh": sp.sinh, "cosh": sp.cosh, "tanh": sp.tanh,
-}  # fmt: skip
+    "sin": sp.sin,
+    "cos": sp.cos,
+    "tan": sp.tan,
+    "cot": sp.cot,
+    "sec": sp.sec,
+    "csc": sp.csc,
+    "exp": sp.exp,
+    "log": sp.log,
+    "sqrt": sp.sqrt,
+    "abs": sp.Abs,
+    "asin": sp.asin,
+    "acos": sp.acos,
+    "atan": sp.atan,
+    "atan2": sp.atan2,
+    "sinh": sp.sinh,
+    "cosh": sp.cosh,
+    "tanh": sp.tanh,
+}
 
 
 #: Roots are the real ones of numbers that are not negative, as in (-8)**(1/3).
@@ -198,8 +212,9 @@ def real(value: sp.Expr) -> sp.Expr:
         for factor in sp.Mul.make_args(term):
             if factor in (sp.nan, sp.zoo, sp.oo, -sp.oo):
                 raise undefined("an undefined or infinite value")
-            if factor is sp.I or (factor.is_Pow and factor.base.is_negative and factor.exp.is_Rational
-                                  and not factor.exp.is_integer):  # fmt: skip
+            if factor is sp.I or (
+                factor.is_Pow and factor.base.is_negative and factor.exp.is_Rational and not factor.exp.is_integer
+            ):
                 raise Refusal(DomainError, "a finite real value", "a root of a negative number", ROOT_ADVICE)
             if factor.is_Rational and number_bits(factor) > BITS:
                 raise too_large(f"numbers of at most {BITS} bits", "a larger number")

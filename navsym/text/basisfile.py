@@ -59,8 +59,7 @@ def read_rows(value: Any, known: Known, where: str) -> tuple[tuple[Expr, ...], .
     size = len(rows[0])
     places = [inside(where, i) if nested[0] else where for i in range(len(rows))]
     return tuple(
-        vector(row, known, here, size, "as many as in the first row")
-        for row, here in zip(rows, places, strict=True)
+        vector(row, known, here, size, "as many as in the first row") for row, here in zip(rows, places, strict=True)
     )
 
 

@@ -7,14 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from navsym.errors import (
-    DomainError,
-    EmptyError,
-    ExpressionSyntaxError,
-    NavsymError,
-    ShapeError,
-    TooLargeError,
-)
+from navsym.errors import DomainError, EmptyError, ExpressionSyntaxError, NavsymError, ShapeError, TooLargeError
 from navsym.text.advice import for_relation
 from navsym.text.arithmetic import sign
 from navsym.text.expression import ZERO, Expr, Matrix, Parsed, Symbol
@@ -112,9 +105,7 @@ def claims_from(document: Table, where: str = "", *, go_on: bool = False) -> Cla
     return ClaimFile(symbols, claims, undefined)
 
 
-def claim_or_error(
-    block: Any, symbols: Mapping[str, Parameter], where: str, place: int
-) -> FileClaim | UndefinedClaim:
+def claim_or_error(block: Any, symbols: Mapping[str, Parameter], where: str, place: int) -> FileClaim | UndefinedClaim:
     """The claim, or why a side of it has no value; everything else that is wrong with it is raised."""
     try:
         return read_claim(block, symbols, inside(where, place))

@@ -18,14 +18,7 @@ from typing import NoReturn
 
 import sympy as sp
 
-from navsym.errors import (
-    DomainError,
-    EmptyError,
-    ExpressionSyntaxError,
-    NavsymError,
-    TooLargeError,
-    UnknownSymbolError,
-)
+from navsym.errors import DomainError, EmptyError, ExpressionSyntaxError, NavsymError, TooLargeError, UnknownSymbolError
 from navsym.text import advice, arithmetic
 from navsym.text.names import FUNCTIONS, RESERVED, check_name, shown
 from navsym.text.printer import to_text
@@ -71,8 +64,7 @@ def parse_noting(text: str, symbols: Mapping[str, sp.Symbol], *, where: str = ""
     """Like :func:`parse`, together with every symbolic divisor and radicand that the text has."""
     if not isinstance(text, str):
         raise ExpressionSyntaxError(
-            f'expected an expression as text; got {shown(text)}; do put it in quotes, such as "1/2"',
-            where=where,
+            f'expected an expression as text; got {shown(text)}; do put it in quotes, such as "1/2"', where=where
         )
     for name in RESERVED & symbols.keys():
         check_name(name, where=where)

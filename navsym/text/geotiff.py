@@ -22,8 +22,18 @@ WIDTH, HEIGHT, BITS, COMPRESSION, OFFSETS, SAMPLES, ROWS, COUNTS = 256, 257, 258
 PLANES, PREDICTOR, TILE_WIDTH, TILE_HEIGHT, TILE_OFFSETS, TILE_COUNTS, FORMAT = 284, 317, 322, 323, 324, 325, 339
 SCALE, TIEPOINT, MATRIX, KEYS, NODATA = 33550, 33922, 34264, 34735, 42113
 #: Field types: number -> (bytes, letter of struct).
-FIELDS = {1: (1, "B"), 2: (1, "c"), 3: (2, "H"), 4: (4, "I"), 5: (8, "Q"), 6: (1, "b"), 8: (2, "h"), 9: (4, "i"),
-          11: (4, "f"), 12: (8, "d")}
+FIELDS = {
+    1: (1, "B"),
+    2: (1, "c"),
+    3: (2, "H"),
+    4: (4, "I"),
+    5: (8, "Q"),
+    6: (1, "b"),
+    8: (2, "h"),
+    9: (4, "i"),
+    11: (4, "f"),
+    12: (8, "d"),
+}
 #: SampleFormat -> kind of a numpy type.
 KINDS = {1: "u", 2: "i", 3: "f"}
 RAW, DEFLATE, OLD_DEFLATE = 1, 8, 32946
@@ -201,9 +211,7 @@ def foreign(keys: dict[int, int], spacing: float) -> str | None:
     """What the keys say that is neither degrees nor true metres; None when all is well."""
     if keys.get(SYSTEM) in WEB_MERCATOR:
         return "Web Mercator, whose metres are too long away from the equator"
-    for key, known, what in (
-        (ANGLES, DEGREE, "angles"), (LENGTHS, METRE, "lengths"), (HEIGHTS, METRE, "heights"),
-    ):
+    for key, known, what in ((ANGLES, DEGREE, "angles"), (LENGTHS, METRE, "lengths"), (HEIGHTS, METRE, "heights")):
         if keys.get(key, known) != known:
             return f"{what} in the unit of EPSG code {keys[key]}"
     if MODEL_TYPE not in keys and spacing < LEAST_SPACING:

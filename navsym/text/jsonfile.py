@@ -53,9 +53,7 @@ def unique(pairs: list[tuple[str, Any]], where: str) -> dict[str, Any]:
         seen: set[str] = set()
         twice = next(key for key, _ in pairs if key in seen or seen.add(key))  # type: ignore[func-returns-value]
         place = f"{where}: {printable(twice)}" if where else printable(twice)
-        raise DuplicateError(
-            f"expected every key once; got {shown(twice)} again; do remove one of them", where=place
-        )
+        raise DuplicateError(f"expected every key once; got {shown(twice)} again; do remove one of them", where=place)
     return table
 
 

@@ -13,14 +13,7 @@ from navsym.text.expression import ZERO, Expr, parse, symbol
 from navsym.text.files import called
 from navsym.text.modeltypes import BasisFile, Measurement, ModelFile, Piece
 from navsym.text.names import check_name, nearest, shown
-from navsym.text.parameters import (
-    Parameter,
-    brief,
-    read_parameters,
-    require_order,
-    require_positive,
-    symbols_of,
-)
+from navsym.text.parameters import Parameter, brief, read_parameters, require_order, require_positive, symbols_of
 from navsym.text.schema import (
     Table,
     as_label,
@@ -42,9 +35,7 @@ __all__ = ["BasisFile", "Measurement", "ModelFile", "Piece", "model_from", "read
 TABLES = ("model", "basis", "parameters", "measurement", "piece", "interval", "targets")
 
 
-def read_model(
-    path: str | os.PathLike[str], values: Mapping[str, str] | None = None
-) -> ModelFile | BasisFile:
+def read_model(path: str | os.PathLike[str], values: Mapping[str, str] | None = None) -> ModelFile | BasisFile:
     """The model or basis of a TOML file.
 
     values : parameter -> exact value as text, put in its place everywhere (``--set T=2.5``)
@@ -54,9 +45,7 @@ def read_model(
     return model_from(read_toml(path), called(path), values)
 
 
-def model_from(
-    document: Table, where: str = "", values: Mapping[str, str] | None = None
-) -> ModelFile | BasisFile:
+def model_from(document: Table, where: str = "", values: Mapping[str, str] | None = None) -> ModelFile | BasisFile:
     """Like :func:`read_model` for a document in memory, with the same errors."""
     place = inside(where, "parameters")
     parameters = read_parameters(as_table(document.get("parameters", {}), place), place)
@@ -137,9 +126,7 @@ def read_interval(document: Table, known: Known, where: str) -> Expr | None:
     return T
 
 
-def read_pieces(
-    document: Table, model: Table, moving: Known, n: int, T: Expr | None, where: str
-) -> tuple[Piece, ...]:
+def read_pieces(document: Table, model: Table, moving: Known, n: int, T: Expr | None, where: str) -> tuple[Piece, ...]:
     """F of [model], or the [[piece]] blocks in order and without gaps."""
     place, why = inside(where, "piece"), "one per state"
     if "piece" not in document:

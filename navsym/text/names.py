@@ -14,9 +14,24 @@ NAME_LENGTH = 64
 
 #: Functions of the language; `atan2` takes two arguments, the others one.
 FUNCTIONS = (
-    "sin", "cos", "tan", "cot", "sec", "csc", "exp", "log", "sqrt", "abs",
-    "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh",
-)  # fmt: skip
+    "sin",
+    "cos",
+    "tan",
+    "cot",
+    "sec",
+    "csc",
+    "exp",
+    "log",
+    "sqrt",
+    "abs",
+    "asin",
+    "acos",
+    "atan",
+    "atan2",
+    "sinh",
+    "cosh",
+    "tanh",
+)
 
 #: Names that have a meaning already.
 RESERVED = frozenset({"pi", *FUNCTIONS})
@@ -43,8 +58,7 @@ def check_name(name: object, *, where: str = "") -> str:
         )
     if name in RESERVED:
         raise DuplicateError(
-            f"expected a new name; got {name!r}, which already means {meaning(name)}; do rename it",
-            where=where,
+            f"expected a new name; got {name!r}, which already means {meaning(name)}; do rename it", where=where
         )
     return name
 

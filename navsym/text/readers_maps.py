@@ -70,7 +70,10 @@ def read_map(path: str | os.PathLike[str]) -> Raster:
     Raises NavsymError: ``missing-file``, ``syntax``, ``shape``, ``too-large``, ``domain``, ``missing``.
     """
     readers: dict[str, Callable[[Path], Raster]] = {
-        ".npz": read_npz, ".hgt": read_hgt, ".tif": read_geotiff, ".tiff": read_geotiff,
+        ".npz": read_npz,
+        ".hgt": read_hgt,
+        ".tif": read_geotiff,
+        ".tiff": read_geotiff,
     }
     reader = readers.get(Path(path).suffix.lower())
     if reader is None:
@@ -123,7 +126,7 @@ def opened_zip(path: Path) -> zipfile.ZipFile:
     except FileNotFoundError:
         message = "expected a readable map file; got nothing there; check the path"
         raise NavsymError(message, where=called(path), kind="missing-file") from None
-    except Exception as reason:                # zipfile has many: BadZipFile, NotImplementedError, struct errors
+    except Exception as reason:  # zipfile has many: BadZipFile, NotImplementedError, struct errors
         raise damaged(path, "an npz archive", reason) from None
 
 
@@ -155,7 +158,7 @@ def read_member(archive: zipfile.ZipFile, names: frozenset[str], name: str, path
             data = file.read(size + 1)
     except NavsymError:
         raise
-    except Exception as reason:                # zlib, zipfile and struct errors of a damaged member
+    except Exception as reason:  # zlib, zipfile and struct errors of a damaged member
         raise damaged(path, f"the array '{name}'", reason) from None
     if len(data) != size:
         raise damaged(path, f"{size} bytes of '{name}'", f"{len(data)} bytes")
@@ -173,7 +176,7 @@ def npy_header(file: Any) -> tuple[tuple[int, ...], bool, np.dtype[Any]]:
     if version not in readers:
         raise ValueError(f"version {version} of the npy format")
     with warnings.catch_warnings():
-        warnings.simplefilter("error")     # numpy warns of headers that only Python 2 wrote
+        warnings.simplefilter("error")  # numpy warns of headers that only Python 2 wrote
         shape, fortran, dtype = readers[version](file, max_header_size=4096)
     return shape, bool(fortran), dtype
 
@@ -215,8 +218,7 @@ def read_hgt(path: Path) -> Raster:
     name = re.match(r"([NS])(\d{2})([EW])(\d{3})", path.name.upper())
     if name is None:
         raise DomainError(
-            f"expected a name such as N44W072.hgt, which gives the corner; got {called(path.name)[-40:]}; "
-            "rename it",
+            f"expected a name such as N44W072.hgt, which gives the corner; got {called(path.name)[-40:]}; rename it",
             where=called(path),
         )
     data = read_bytes(path, 2 * 3601 * 3601)
@@ -224,7 +226,8 @@ def read_hgt(path: Path) -> Raster:
     if side is None:
         raise ShapeError(
             f"expected {2 * 1201**2} or {2 * 3601**2} bytes (1201 or 3601 samples squared); got {len(data)}; "
-            "fetch it again", where=called(path),
+            "fetch it again",
+            where=called(path),
         )
     latitude = int(name[2]) * (1 if name[1] == "N" else -1)
     longitude = int(name[4]) * (1 if name[3] == "E" else -1)
@@ -275,7 +278,7 @@ def by_rasterio(path: Path) -> Raster:
             return upright(source.read(1), transform, source.nodata, geographic, path)
     except NavsymError:
         raise
-    except Exception as reason:                # whatever GDAL says about a damaged file
+    except Exception as reason:  # whatever GDAL says about a damaged file
         raise damaged(path, "a GeoTIFF", reason) from None
 
 
@@ -302,8 +305,7 @@ def upright(heights: NDArray[Any], transform: Any, nodata: Any, geographic: bool
     """A north-up raster with its rows turned round; heights stand at the middle of the pixels."""
     if transform.b or transform.d or transform.a <= 0 or transform.e >= 0:
         raise DomainError(
-            "expected a raster with north up and no rotation; got another one; warp it first",
-            where=called(path),
+            "expected a raster with north up and no rotation; got another one; warp it first", where=called(path)
         )
     x0 = transform.c + 0.5 * transform.a
     y0 = transform.f + transform.e * (heights.shape[0] - 0.5)
@@ -335,9 +337,7 @@ def read_track(path: str | os.PathLike[str]) -> dict[str, list[float]]:
             where=f"{where}: line {lines[0][0]}",
         )
     place = {name: header.index(name) for name in ("t", "x", "y", "h")}
-    table = [
-        {name: cell(row, k, f"{where}: line {line}") for name, k in place.items()} for line, row in lines[1:]
-    ]
+    table = [{name: cell(row, k, f"{where}: line {line}") for name, k in place.items()} for line, row in lines[1:]]
     if not table:
         raise EmptyError("expected at least one row below the header; got none; add the track", where=where)
     return {name: [row[name] for row in table] for name in place}

@@ -352,11 +352,7 @@ def too_long(log: Log) -> NavsymError:
 
 
 def row_of(
-    values: Sequence[float | None],
-    line: int,
-    texts: Sequence[str],
-    sigma: tuple[float, float, float] | None,
-    log: Log,
+    values: Sequence[float | None], line: int, texts: Sequence[str], sigma: tuple[float, float, float] | None, log: Log
 ) -> Row | None:
     """A row, or None after noting what is wrong with it."""
     for name, value, text in zip(("time", "latitude", "longitude", "height"), values, texts, strict=True):
@@ -397,9 +393,7 @@ def in_order(rows: list[Row], log: Log) -> list[Row]:
             message = f"time: expected a later time than {kept[-1].t:.3f}; got the same; keep one of the rows"
             log.problem(DuplicateError, row.line, message, "row left out")
         else:
-            message = (
-                f"time: expected a later time than {kept[-1].t:.3f}; got {row.t:.3f}; sort or remove the row"
-            )
+            message = f"time: expected a later time than {kept[-1].t:.3f}; got {row.t:.3f}; sort or remove the row"
             log.problem(DomainError, row.line, message, "row left out")
     return kept
 
@@ -408,9 +402,7 @@ def sanity(rows: Sequence[Row], log: Log) -> None:
     """What is possible but unlikely."""
     heights = [row.h for row in rows]
     if max(heights) > 9000 and slow(rows):
-        log.warnings.append(
-            f"heights reach {max(heights):.0f} m at the speed of a car or ship: are they in feet?"
-        )
+        log.warnings.append(f"heights reach {max(heights):.0f} m at the speed of a car or ship: are they in feet?")
     if all(abs(row.lat) <= math.pi / 2 and abs(row.lon) <= math.pi for row in rows) and len(rows) > 1:
         log.warnings.append("all latitudes and longitudes are below pi/2 and pi: are they in radians?")
 

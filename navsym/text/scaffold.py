@@ -94,10 +94,17 @@ def module_source(
         check_number(number)
     lines = "".join(f'        "{number}": {NOT_YET},\n' for number in equations)
     return MODULE.format(
-        name=quoted(check_module_name(name)), heading=plain(title) or name, title=quoted(title or name),
-        authors=several(authors), year=year, source=quoted(source), language=quoted(language),
-        equations=several(equations), definitions=lines, example=EXAMPLE,
-    )  # fmt: skip
+        name=quoted(check_module_name(name)),
+        heading=plain(title) or name,
+        title=quoted(title or name),
+        authors=several(authors),
+        year=year,
+        source=quoted(source),
+        language=quoted(language),
+        equations=several(equations),
+        definitions=lines,
+        example=EXAMPLE,
+    )
 
 
 def quoted(text: str) -> str:
@@ -194,9 +201,13 @@ def with_claim(source: str, new: NewClaim) -> str:
     if idle := sorted(new.positive - used):
         raise UnknownSymbolError(f"expected names of the two sides; got {idle[0]}; do leave it out", where="--positive")
     block = CLAIM.format(
-        arguments=new.arguments, function=function_name(new.number, assigned(tree)), title=plain(new.title),
-        printed=side_source(sides[0]), derived=side_source(sides[1]), tolerance=tolerance_source(new.tolerance),
-    )  # fmt: skip
+        arguments=new.arguments,
+        function=function_name(new.number, assigned(tree)),
+        title=plain(new.title),
+        printed=side_source(sides[0]),
+        derived=side_source(sides[1]),
+        tolerance=tolerance_source(new.tolerance),
+    )
     names = used - assigned(tree)
     declared = declared_as("real", names - new.positive) + declared_as("positive", names & new.positive)
     return looked_at(source, new.number).rstrip("\n") + "\n" + declared + block

@@ -16,6 +16,7 @@ from navsym.text.tomlfile import Numeral
 LABEL = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.:*'+-]*")
 SIDE = 64  # rows of a matrix, entries of a vector
 
+
 def required(table: Table, key: str, where: str) -> Any:
     """The value of a key that must be there."""
     if key not in table:
@@ -108,9 +109,7 @@ def entry_noting(value: Any, symbols: Mapping[str, Expr], where: str) -> Parsed:
     return parse_noting(str(value), symbols, where=where)
 
 
-def vector(
-    value: Any, symbols: Mapping[str, Expr], where: str, size: int, why: str
-) -> tuple[Expr, ...]:
+def vector(value: Any, symbols: Mapping[str, Expr], where: str, size: int, why: str) -> tuple[Expr, ...]:
     """A list of ``size`` expressions."""
     items = as_list(value, where, "a list of expressions")
     if len(items) != size:
@@ -125,9 +124,7 @@ def square(value: Any, symbols: Mapping[str, Expr], where: str, size: int, why: 
     if len(rows) != size:
         message = f"expected {size} rows, {why}; got {len(rows)}; do correct the matrix"
         raise ShapeError(message, where=where)
-    return Matrix(
-        [list(vector(row, symbols, inside(where, i), size, why)) for i, row in enumerate(rows)]
-    )
+    return Matrix([list(vector(row, symbols, inside(where, i), size, why)) for i, row in enumerate(rows)])
 
 
 def kind_of(value: Any) -> str:

@@ -25,6 +25,7 @@ TOKEN = re.compile(
     r"|(?P<name>[A-Za-z][A-Za-z0-9_]*)|(?P<mark>\*\*|[-+*/(),])|(?P<end>\Z))"
 )
 
+
 @dataclass(frozen=True, slots=True)
 class Token:
     """A piece of the text: its kind, its characters and where it starts."""

@@ -15,8 +15,9 @@ def test_the_honest_file_is_read_before_it_is_damaged(name):
     read, honest = READERS[name]
     outcome = answer(read, honest)
     assert outcome == ("refused" if name in REFUSED_AS_THEY_ARE else "read") or (name, outcome) == (
-        "map.tif", "missing",
-    )  # fmt: skip
+        "map.tif",
+        "missing",
+    )
 
 
 @pytest.mark.parametrize("name", READERS)

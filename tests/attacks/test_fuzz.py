@@ -80,9 +80,7 @@ PIECES = [
 
 def spoiled(honest):
     """The file with a few slices removed, repeated or replaced by awkward pieces."""
-    cut = st.tuples(
-        st.integers(0, len(honest)), st.integers(0, 12), st.sampled_from(PIECES) | st.binary(max_size=4)
-    )
+    cut = st.tuples(st.integers(0, len(honest)), st.integers(0, 12), st.sampled_from(PIECES) | st.binary(max_size=4))
 
     def apply(cuts):
         data = honest
@@ -124,9 +122,7 @@ def test_a_damaged_file_is_read_or_refused(name, data):
 
 @pytest.mark.parametrize("name", READERS)
 @settings(max_examples=60, suppress_health_check=list(HealthCheck))
-@given(
-    data=st.binary(max_size=80) | st.text(max_size=40).map(lambda text: text.encode("utf-8", "surrogatepass"))
-)
+@given(data=st.binary(max_size=80) | st.text(max_size=40).map(lambda text: text.encode("utf-8", "surrogatepass")))
 def test_random_bytes_are_read_or_refused(name, data):
     survives(READERS[name][0], data, name not in TEXTS)
 

@@ -56,9 +56,7 @@ MIXED = [
     t * sp.cos(t),
 ]
 PROBLEMS = {
-    "velocity, T = pi/2, y3": problem(
-        [1, -sp.sin(sp.pi / 2 - t), sp.cos(sp.pi / 2 - t) - 1], unit(3, 2), sp.pi / 2
-    ),
+    "velocity, T = pi/2, y3": problem([1, -sp.sin(sp.pi / 2 - t), sp.cos(sp.pi / 2 - t) - 1], unit(3, 2), sp.pi / 2),
     "monomials m = 8, e6": problem([t**k for k in range(8)], unit(8, 6), 1),
     "mixed basis of 12, sin(t)": problem(MIXED, unit(12, 3), 6),
 }
@@ -88,11 +86,7 @@ def by_highspy(H, P):
     lp = highspy.HighsLp()
     lp.num_col_, lp.num_row_ = m, n
     lp.sense_ = highspy.ObjSense.kMaximize
-    lp.col_cost_, lp.col_lower_, lp.col_upper_ = (
-        P,
-        np.full(m, -highspy.kHighsInf),
-        np.full(m, highspy.kHighsInf),
-    )
+    lp.col_cost_, lp.col_lower_, lp.col_upper_ = (P, np.full(m, -highspy.kHighsInf), np.full(m, highspy.kHighsInf))
     lp.row_lower_, lp.row_upper_ = -np.ones(n), np.ones(n)
     lp.a_matrix_.format_ = highspy.MatrixFormat.kRowwise
     lp.a_matrix_.start_ = np.arange(0, m * n + 1, m)
@@ -152,10 +146,14 @@ def compare_case(name, case, count, rounds):
     reference = (float(exact.lower) + float(exact.upper)) / 2
     run = prepared(case)
     jobs = {
-        "cvxpy+HiGHS": lambda: by_cvxpy(H, P), "highspy": lambda: by_highspy(H, P), SEARCH: run,
-        WHOLE: lambda: alone(case), COLD: lambda: cold(case),
-        CERTIFIED: lambda: certify(case, 14), CERTIFIED_COLD: lambda: certified_cold(case),
-    }  # fmt: skip
+        "cvxpy+HiGHS": lambda: by_cvxpy(H, P),
+        "highspy": lambda: by_highspy(H, P),
+        SEARCH: run,
+        WHOLE: lambda: alone(case),
+        COLD: lambda: cold(case),
+        CERTIFIED: lambda: certify(case, 14),
+        CERTIFIED_COLD: lambda: certified_cold(case),
+    }
     for job in jobs.values():
         job()
     seconds = {key: [] for key in jobs}

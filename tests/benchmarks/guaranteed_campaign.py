@@ -227,7 +227,8 @@ def table_of(problems, alterations, digits):
     certified = [r for r in solved if r["width"] <= 10.0**-digits]
     altered_ = [r for r in alterations.values() if not r.get("same")]
     rows = [
-        ("problems", len(problems)), ("solved", len(solved)),
+        ("problems", len(problems)),
+        ("solved", len(solved)),
         (f"certified at 1e-{digits}", f"{len(certified)} ({100 * len(certified) / max(1, len(solved)):.2f} %)"),
         *((f"by {kind}", n) for kind, n in sorted(Counter(r["kind"] for r in solved).items())),
         *((f"refused: {kind}", n) for kind, n in sorted(refused.items())),
@@ -235,8 +236,9 @@ def table_of(problems, alterations, digits):
         ("contradictions: grid below the lower bound", sum(r["grid_below"] for r in solved)),
         ("proved unique / proved not unique", f"{only} / {several}"),
         ("median and largest time, ms", "{:.1f} / {:.0f}".format(*times_of(solved))),
-        ("altered certificates", len(altered_)), ("of these accepted", sum(r["accepted"] for r in altered_)),
-    ]  # fmt: skip
+        ("altered certificates", len(altered_)),
+        ("of these accepted", sum(r["accepted"] for r in altered_)),
+    ]
     return "\n".join(f"{name:45} {value}" for name, value in rows)
 
 
@@ -247,14 +249,10 @@ def times_of(solved):
 
 def main(problems=2000, alterations=5000, seed=1, digits=12, seconds=1e9, jobs=1, out=None):
     begun = time.perf_counter()
-    done = run(
-        "problem", range(problems), partial(problem_record, seed, digits=digits), out, jobs, begun + seconds / 2
-    )
+    done = run("problem", range(problems), partial(problem_record, seed, digits=digits), out, jobs, begun + seconds / 2)
     kept = [done[k]["certificate"] for k in sorted(done) if done[k].get("accepted") and "certificate" in done[k]]
     tasks = range(alterations if kept else 0)
-    forged = run(
-        "alteration", tasks, partial(alteration_record, seed, certificates=kept), out, jobs, begun + seconds
-    )
+    forged = run("alteration", tasks, partial(alteration_record, seed, certificates=kept), out, jobs, begun + seconds)
     print(table_of(done, forged, digits))
     for record in [*done.values(), *forged.values()]:
         wide = record.get("width", 0.0) > 10.0**-digits

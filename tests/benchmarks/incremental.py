@@ -43,9 +43,14 @@ def python(folder: Path, *words: str) -> tuple[str, float, float]:
     environment = {**os.environ, "NAVSYM_CACHE": str(folder / "cache")}
     before, started = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
     ended = subprocess.run(
-        [sys.executable, *words], cwd=folder, env=environment, stdout=subprocess.PIPE, text=True, check=False,
+        [sys.executable, *words],
+        cwd=folder,
+        env=environment,
+        stdout=subprocess.PIPE,
+        text=True,
+        check=False,
         timeout=SECONDS,
-    )  # fmt: skip
+    )
     wall, after = time.perf_counter() - started, resource.getrusage(resource.RUSAGE_CHILDREN)
     return ended.stdout, wall, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
@@ -69,8 +74,10 @@ def main(repeats: int = 3) -> None:
             touch(folder, repeat)
             told, wall, spent = python(folder, "-m", "navsym", "verify", "--json")
             own = sum(r["seconds"] for r in json.loads(told)["claims"] if r["id"] in TOUCHED)
-            print(f"two claims decided in {own:.2f} s; beside them {wall - own:.2f} s of wall time "
-                  f"(the line is 5 s), {spent:.2f} s of processor time with everything")  # fmt: skip
+            print(
+                f"two claims decided in {own:.2f} s; beside them {wall - own:.2f} s of wall time "
+                f"(the line is 5 s), {spent:.2f} s of processor time with everything"
+            )
 
 
 if __name__ == "__main__":

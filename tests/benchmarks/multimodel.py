@@ -71,9 +71,7 @@ def filterpy_bank(models: Bank, z: np.ndarray) -> np.ndarray:
     return np.array(out)
 
 
-def best_of(
-    rounds: int, *actions: Callable[[], object], clock: Callable[[], float] = time.perf_counter
-) -> list[float]:
+def best_of(rounds: int, *actions: Callable[[], object], clock: Callable[[], float] = time.perf_counter) -> list[float]:
     """Seconds of each action: the least of several rounds, taken in turn."""
     least = [float("inf")] * len(actions)
     for _ in range(rounds):
@@ -91,6 +89,7 @@ def single_runs(sizes: tuple[tuple[int, int], ...], steps: int, peer_steps: int,
         models = random_bank(modes, states)
         z = np.random.default_rng(1).standard_normal((steps, models.channels))
         for method, peer in (("imm", filterpy_imm), ("polygaussian", filterpy_bank)):
+
             def ours(method: str = method, models: Bank = models, z: np.ndarray = z) -> object:
                 return run(models, z, method, engine="compiled")
 

@@ -80,9 +80,11 @@ def main(jobs: int = 48, workers: int = os.cpu_count() or 1) -> None:
     for repeat in range(2):
         alone, apart = seconds_alone(sweep, size), seconds_apart(sweep, size, workers)
         together = seconds_together(sweep, size, workers)
-        print(f"{jobs} jobs, round {repeat + 1}: alone {alone:.2f} s, {workers} workers {together:.2f} s, "
-              f"efficiency {alone / together / workers:.2f}; {workers} processes that share nothing {apart:.2f} s, "
-              f"efficiency {alone / apart / workers:.2f}")  # fmt: skip
+        print(
+            f"{jobs} jobs, round {repeat + 1}: alone {alone:.2f} s, {workers} workers {together:.2f} s, "
+            f"efficiency {alone / together / workers:.2f}; {workers} processes that share nothing {apart:.2f} s, "
+            f"efficiency {alone / apart / workers:.2f}"
+        )
     with tempfile.TemporaryDirectory() as folder:
         started = time.perf_counter()
         run_sweep(sweep, workers=workers, folder=Path(folder), size=size)

@@ -134,10 +134,7 @@ def dense_part(terrain: TerrainMap, n: int, grid: Hypotheses, repeats: int) -> N
     track = flight(terrain, n)
     prepared = prepare(terrain, track, grid)
     found = best_of(
-        {
-            "ours": lambda: criteria(prepared, threads=2),
-            "plain": lambda: plain(terrain, track, grid),
-        },
+        {"ours": lambda: criteria(prepared, threads=2), "plain": lambda: plain(terrain, track, grid)},
         repeats,
         wall=True,
     )

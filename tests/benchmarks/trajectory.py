@@ -40,7 +40,7 @@ def alternately(*jobs: Callable[[], object], rounds: int = ROUNDS) -> list[float
     """Least CPU time of each job in seconds; the jobs take turns, so that all see the same machine."""
     best = [np.inf] * len(jobs)
     for job in jobs:
-        job()                                              # compile, warm caches
+        job()  # compile, warm caches
     for _ in range(rounds):
         for i, job in enumerate(jobs):
             began = time.process_time()
@@ -79,9 +79,7 @@ def batched_one_step(z: np.ndarray, model: SteppedModel, start: Start, tuning: T
     return y
 
 
-def batched_windows(
-    z: np.ndarray, model: SteppedModel, start: Start, tuning: Tuning, window: int
-) -> np.ndarray:
+def batched_windows(z: np.ndarray, model: SteppedModel, start: Start, tuning: Tuning, window: int) -> np.ndarray:
     """Every candidate carried, as stacks of vectors and matrices."""
     y, P, q = start.estimate.copy(), start.P.copy(), start.Q.copy()
     n, h, Phi = model.order, model.gain_row, model.Phi
@@ -141,8 +139,10 @@ def compare_one_step(model: SteppedModel, distinct: int, steps: int, loop_steps:
         rounds=7,
     )
     ours, batched, loop = ours / steps, batched / steps, loop / loop_steps
-    print(f"one-step criterion, n = {model.order}, {3**model.order} candidates, {distinct} different variances: "
-          f"{1e6 * ours:.2f} us a step; batched numpy {batched / ours:.0f} x, numpy loop {loop / ours:.0f} x slower")
+    print(
+        f"one-step criterion, n = {model.order}, {3**model.order} candidates, {distinct} different variances: "
+        f"{1e6 * ours:.2f} us a step; batched numpy {batched / ours:.0f} x, numpy loop {loop / ours:.0f} x slower"
+    )
 
 
 def compare_filters(n: int, steps: int, loop_steps: int) -> None:
@@ -155,8 +155,10 @@ def compare_filters(n: int, steps: int, loop_steps: int) -> None:
         lambda: batched_windows(z, model, start, tuning, window),
         rounds=7,
     )
-    print(f"every candidate carried, n = {n}: {1e6 * ours / steps:.1f} us a step; batched numpy "
-          f"{batched / ours:.1f} x slower")
+    print(
+        f"every candidate carried, n = {n}: {1e6 * ours / steps:.1f} us a step; batched numpy "
+        f"{batched / ours:.1f} x slower"
+    )
 
 
 def compare_conditioning(n: int, digits: int = 30) -> None:
@@ -177,8 +179,10 @@ def compare_conditioning(n: int, digits: int = 30) -> None:
             lambda rows=rows, e=equilibrate, w=working: mpmath_condition(rows, e, w),
             rounds=7,
         )
-        print(f"condition number {name}, n = {n}, {digits} digits: {1e3 * ours_time:.2f} ms; mpmath "
-              f"({working} digits, no guarantee) {theirs_time / ours_time:.1f} x slower")
+        print(
+            f"condition number {name}, n = {n}, {digits} digits: {1e3 * ours_time:.2f} ms; mpmath "
+            f"({working} digits, no guarantee) {theirs_time / ours_time:.1f} x slower"
+        )
 
 
 def main(arguments: list[str] | None = None) -> None:

@@ -21,11 +21,20 @@ from navsym.store import opened
 
 x, y = sp.symbols("x y", real=True)
 LINE = {
-    "kind": "gap", "variable": "t", "functional": ["0", "1"], "bits": 80, "cells": 40,
+    "kind": "gap",
+    "variable": "t",
+    "functional": ["0", "1"],
+    "bits": 80,
+    "cells": 40,
     "panels": [{"measurement": 0, "from": "0", "to": "2", "sigma": "1", "H": ["1", "t"]}],
-    "dual": ["-0.999", "0.999"], "support": [[0, "0"], [0, "1"]], "lower": "0.9989", "upper": "1.0001",
-    "parameter": "p", "from": "0", "to": "0",
-}  # fmt: skip
+    "dual": ["-0.999", "0.999"],
+    "support": [[0, "0"], [0, "1"]],
+    "lower": "0.9989",
+    "upper": "1.0001",
+    "parameter": "p",
+    "from": "0",
+    "to": "0",
+}
 
 
 def double_angle():

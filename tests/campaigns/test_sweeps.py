@@ -135,7 +135,9 @@ def test_other_studies_run_too(kind):
     assert document["done"] == 2 and document["rows"][0] != document["rows"][1]
 
 
-@pytest.mark.parametrize("address", ["tcp://127.0.0.1:9", "tcp://nowhere.invalid:8786", "", "file", "http://127.0.0.1:80"])
+@pytest.mark.parametrize(
+    "address", ["tcp://127.0.0.1:9", "tcp://nowhere.invalid:8786", "", "file", "http://127.0.0.1:80"]
+)
 def test_a_scheduler_that_does_not_answer_is_said(tmp_path, capsys, monkeypatch, address):
     monkeypatch.setattr("navsym.methods.sweeps.cluster.SECONDS_TO_ANSWER", 1)
     config = tmp_path / "c.json"

@@ -22,100 +22,182 @@ def alone(dual, contacts, radius):
 
 # Slope of a line on [0, 2]: weights -1/2 and 1/2 at the ends, dual polynomial t - 1, optimum 1.
 GAP = {
-    "kind": "gap", "variable": "t", "panels": [VELOCITY], "functional": ["0", "1"], "bits": 80, "cells": 40,
-    "dual": ["-0.999", "0.999"], "support": [[0, "0"], [0, "1"]], "lower": "0.9989", "upper": "1.0001", **NONE,
-}  # fmt: skip
+    "kind": "gap",
+    "variable": "t",
+    "panels": [VELOCITY],
+    "functional": ["0", "1"],
+    "bits": 80,
+    "cells": 40,
+    "dual": ["-0.999", "0.999"],
+    "support": [[0, "0"], [0, "1"]],
+    "lower": "0.9989",
+    "upper": "1.0001",
+    **NONE,
+}
 TOUCH = {
-    "kind": "touch", "variable": "t", "panels": [VELOCITY], "functional": ["0", "1"], "bits": 80, "cells": 10,
+    "kind": "touch",
+    "variable": "t",
+    "panels": [VELOCITY],
+    "functional": ["0", "1"],
+    "bits": 80,
+    "cells": 10,
     **alone(["-1", "1"], [(0, "0", "-0.5"), (0, "1", "0.5")], ["0.000001"] * 6),
-    "lower": "0.9999999", "upper": "1.0000001", **NONE,
-}  # fmt: skip
+    "lower": "0.9999999",
+    "upper": "1.0000001",
+    **NONE,
+}
 # Second coefficient on [0, 1]: contacts 0, 1/2, 1, optimum 8.
 PARABOLA = {
-    "kind": "touch", "variable": "t", "functional": ["0", "0", "1"], "bits": 90, "cells": 20,
+    "kind": "touch",
+    "variable": "t",
+    "functional": ["0", "0", "1"],
+    "bits": 90,
+    "cells": 20,
     "panels": [{"measurement": 0, "from": "0", "to": "1", "sigma": "1", "H": ["1", "t", "t**2"]}],
     **alone(["1", "-8", "8"], [(0, "0", "2"), (0, "0.5", "-4"), (0, "1", "2")], ["0.0000001"] * 9),
-    "lower": "7.99999", "upper": "8.00001", **NONE,
-}  # fmt: skip
+    "lower": "7.99999",
+    "upper": "8.00001",
+    **NONE,
+}
 # The same from far away: Newton's step needs the direction of the contact, its length, and the weights that it moves.
 COARSE = PARABOLA | {
     **alone(
-        ["1", "-8", "8"], [(0, "0", "2"), (0, "0.501", "-4"), (0, "1", "2")],
+        ["1", "-8", "8"],
+        [(0, "0", "2"), (0, "0.501", "-4"), (0, "1", "2")],
         [*["0.0005"] * 3, "0.001", "0.0015", "0.001", *["0.001"] * 3],
     ),
-    "lower": "7.99", "upper": "8.01",
-}  # fmt: skip
+    "lower": "7.99",
+    "upper": "8.01",
+}
 # The second coefficient for every T in [1, 1.02]: contacts 0, T/2, T, weights 2, -4, 2 over T**2.
 W1 = ["1.9605920988", "-0.038823605", "0.0005765882", "-0.000007611"]
 W2 = ["-3.921184197", "0.0776472118", "-0.001153176", "0.0000152234"]
 RANGE = {
-    "kind": "range", "variable": "t", "functional": ["0", "0", "1"], "bits": 90, "cells": 20,
+    "kind": "range",
+    "variable": "t",
+    "functional": ["0", "0", "1"],
+    "bits": 90,
+    "cells": 20,
     "panels": [{"measurement": 0, "from": "0", "to": "T", "sigma": "1", "H": ["1", "t", "t**2"]}],
-    "parameter": "T", "from": "1", "to": "1.02", "lower": "7.6", "upper": "8.1",
-    "pieces": [{
-        "from": "1", "to": "1.02", "basis": unit(3),
-        "dual": [
-            ["1"],
-            ["-7.920792079", "0.0784236839", "-0.000776472", "0.0000076878"],
-            ["7.8423683952", "-0.155294423", "0.0023063528", "-0.000030446"],
-        ],
-        "contacts": [
-            {"panel": 0, "at": ["0"], "weight": W1},
-            {"panel": 0, "at": ["0.5"], "weight": W2},
-            {"panel": 0, "at": ["1"], "weight": W1},
-        ],
-        "radius": ["0.003"] * 9,
-    }],
-}  # fmt: skip
+    "parameter": "T",
+    "from": "1",
+    "to": "1.02",
+    "lower": "7.6",
+    "upper": "8.1",
+    "pieces": [
+        {
+            "from": "1",
+            "to": "1.02",
+            "basis": unit(3),
+            "dual": [
+                ["1"],
+                ["-7.920792079", "0.0784236839", "-0.000776472", "0.0000076878"],
+                ["7.8423683952", "-0.155294423", "0.0023063528", "-0.000030446"],
+            ],
+            "contacts": [
+                {"panel": 0, "at": ["0"], "weight": W1},
+                {"panel": 0, "at": ["0.5"], "weight": W2},
+                {"panel": 0, "at": ["1"], "weight": W1},
+            ],
+            "radius": ["0.003"] * 9,
+        }
+    ],
+}
 # One number seen with noise bound 2 on [0, 1], and the number times p for p in [1, 1.1].
 CONSTANT = {
-    "kind": "touch", "variable": "t", "functional": ["1"], "bits": 80, "cells": 10,
+    "kind": "touch",
+    "variable": "t",
+    "functional": ["1"],
+    "bits": 80,
+    "cells": 10,
     "panels": [{"measurement": 0, "from": "0", "to": "1", "sigma": "2", "H": ["2 - t"]}],
-    **alone(["1"], [(0, "0", "1")], ["0.000001"] * 3), "lower": "0.99999", "upper": "1.00001", **NONE,
-}  # fmt: skip
+    **alone(["1"], [(0, "0", "1")], ["0.000001"] * 3),
+    "lower": "0.99999",
+    "upper": "1.00001",
+    **NONE,
+}
 SLIVER = {
-    "kind": "sliver", "variable": "t", "functional": ["p"], "bits": 80, "cells": 10, "parameter": "p", "from": "1",
-    "to": "1.1", "panels": [{"measurement": 0, "from": "0", "to": "p", "sigma": "1", "H": ["1 - t/p"]}],
-    "dual": ["0.999"], "support": [[0, "0"]], "lower": "0.998", "upper": "1.11",
-}  # fmt: skip
+    "kind": "sliver",
+    "variable": "t",
+    "functional": ["p"],
+    "bits": 80,
+    "cells": 10,
+    "parameter": "p",
+    "from": "1",
+    "to": "1.1",
+    "panels": [{"measurement": 0, "from": "0", "to": "p", "sigma": "1", "H": ["1 - t/p"]}],
+    "dual": ["0.999"],
+    "support": [[0, "0"]],
+    "lower": "0.998",
+    "upper": "1.11",
+}
 # The line 1 + t - p t seen for p in [1, 1.02] with a noise bound that depends on p, on [0, p]: all of it at t = 0.
 MOVING = {
-    "kind": "range", "variable": "t", "functional": ["p**2"], "bits": 90, "cells": 20,
+    "kind": "range",
+    "variable": "t",
+    "functional": ["p**2"],
+    "bits": 90,
+    "cells": 20,
     "panels": [{"measurement": 0, "from": "0", "to": "p", "sigma": "1 + p/10", "H": ["p + 1 - t*p"]}],
-    "parameter": "p", "from": "1", "to": "1.02", "lower": "0.54", "upper": "0.58",
-    "pieces": [{
-        "from": "1", "to": "1.02", "basis": [["1"]],
-        "dual": [["0.547761194029850", "-0.00222766763198", "0.000011082923542"]],
-        "contacts": [{
-            "panel": 0, "at": ["0"],
-            "weight": ["0.558771194029850", "0.008792332368010", "0.000021082923542"],
-        }],
-        "radius": ["0.000001"] * 3,
-    }],
-}  # fmt: skip
+    "parameter": "p",
+    "from": "1",
+    "to": "1.02",
+    "lower": "0.54",
+    "upper": "0.58",
+    "pieces": [
+        {
+            "from": "1",
+            "to": "1.02",
+            "basis": [["1"]],
+            "dual": [["0.547761194029850", "-0.00222766763198", "0.000011082923542"]],
+            "contacts": [
+                {"panel": 0, "at": ["0"], "weight": ["0.558771194029850", "0.008792332368010", "0.000021082923542"]}
+            ],
+            "radius": ["0.000001"] * 3,
+        }
+    ],
+}
 # The slope for every T in [1, 1.02] in two pieces, seen as (1, 1 + t).
 SLOPES = {
-    "kind": "range", "variable": "t", "functional": ["0", "1"], "bits": 90, "cells": 20,
+    "kind": "range",
+    "variable": "t",
+    "functional": ["0", "1"],
+    "bits": 90,
+    "cells": 20,
     "panels": [{"measurement": 0, "from": "0", "to": "T", "sigma": "1", "H": ["1", "t"]}],
-    "parameter": "T", "from": "1", "to": "51/50", "lower": "1.9", "upper": "2.1",
-    "pieces": [{
-        "from": ends[0], "to": ends[1], "basis": [["1", "0"], ["1", "1"]],
-        "dual": [["-2.98019801980198", rise, "-0.00019411802958"], ["1.98019801980198", fall, "0.000194118029585"]],
-        "contacts": [
-            {"panel": 0, "at": ["0"], "weight": ["-0.99009900990099"]},
-            {"panel": 0, "at": ["1"], "weight": ["0.99009900990099"]},
-        ],
-        "radius": ["0.05"] * 6,
-    } for ends, rise, fall in (
-        (("1", "1.01"), "0.01", "-0.01"), (("1.01", "51/50"), "0.01", "-0.01"),
-    )],
-}  # fmt: skip
+    "parameter": "T",
+    "from": "1",
+    "to": "51/50",
+    "lower": "1.9",
+    "upper": "2.1",
+    "pieces": [
+        {
+            "from": ends[0],
+            "to": ends[1],
+            "basis": [["1", "0"], ["1", "1"]],
+            "dual": [["-2.98019801980198", rise, "-0.00019411802958"], ["1.98019801980198", fall, "0.000194118029585"]],
+            "contacts": [
+                {"panel": 0, "at": ["0"], "weight": ["-0.99009900990099"]},
+                {"panel": 0, "at": ["1"], "weight": ["0.99009900990099"]},
+            ],
+            "radius": ["0.05"] * 6,
+        }
+        for ends, rise, fall in ((("1", "1.01"), "0.01", "-0.01"), (("1.01", "51/50"), "0.01", "-0.01"))
+    ],
+}
 # One number whose regressor is largest at an end of [0, 1], where its slope is nearly zero.
 FLAT = {
-    "kind": "touch", "variable": "t", "functional": ["1"], "bits": 400, "cells": 0,
+    "kind": "touch",
+    "variable": "t",
+    "functional": ["1"],
+    "bits": 400,
+    "cells": 0,
     "panels": [{"measurement": 0, "from": "0", "to": "1", "sigma": "1", "H": ["1 + (t - 1)/10**45 - (t - 1)**2/2"]}],
-    **alone(["1"], [(0, "1", "1")], ["0.000001"] * 3), "lower": "0.99999", "upper": "1.00001", **NONE,
-}  # fmt: skip
+    **alone(["1"], [(0, "1", "1")], ["0.000001"] * 3),
+    "lower": "0.99999",
+    "upper": "1.00001",
+    **NONE,
+}
 # The same at the other end, of the other sign, beside a second panel that is not needed.
 FLAT_LEFT = FLAT | {
     "panels": [
@@ -123,48 +205,75 @@ FLAT_LEFT = FLAT | {
         {"measurement": 0, "from": "0", "to": "1", "sigma": "1", "H": ["t/10**45 + t**2/2 - 1"]},
     ],
     **alone(["1"], [(1, "0", "-1")], ["0.000001"] * 3),
-}  # fmt: skip
+}
 # Bounds that are met exactly: the optimum 2 from below, the cost 2 from above.
 EXACT = {
-    "kind": "gap", "variable": "t", "functional": ["1"], "bits": 53, "cells": 20000, "dual": ["0.5"],
+    "kind": "gap",
+    "variable": "t",
+    "functional": ["1"],
+    "bits": 53,
+    "cells": 20000,
+    "dual": ["0.5"],
     "support": [[0, "1"]],
-    "panels": [{"measurement": 0, "from": "0", "to": "1", "sigma": "1", "H": ["t"]}], "lower": "0.5", "upper": "1",
+    "panels": [{"measurement": 0, "from": "0", "to": "1", "sigma": "1", "H": ["t"]}],
+    "lower": "0.5",
+    "upper": "1",
     **NONE,
-}  # fmt: skip
+}
 # Positive on this box and no larger one.
 EDGE = {
-    "kind": "positivity", "expression": "x*(1 - x)*(y + 2)*(3 - y)", "bits": 53, "cells": 20000,
+    "kind": "positivity",
+    "expression": "x*(1 - x)*(y + 2)*(3 - y)",
+    "bits": 53,
+    "cells": 20000,
     "box": {"x": ["0.01", "0.99"], "y": ["-1.99", "2.99"]},
-}  # fmt: skip
+}
 # As many cells as 14 announced ones allow: 255.
 CELLS = {"kind": "positivity", "expression": "x - x + 1/65", "bits": 64, "cells": 14, "box": {"x": ["0", "1"]}}
 IDENTITY = {"kind": "identity", "left": "sin(2*a)", "right": "2*sin(a)*cos(a)", "symbols": ["a"]}
 EXPONENTIAL = {
-    "kind": "exponential", "matrix": [["0", "1"], ["-w**2", "0"]], "variable": "t", "symbols": ["w"],
+    "kind": "exponential",
+    "matrix": [["0", "1"], ["-w**2", "0"]],
+    "variable": "t",
+    "symbols": ["w"],
     "solution": [["cos(w*t)", "sin(w*t)/w"], ["-w*sin(w*t)", "cos(w*t)"]],
-}  # fmt: skip
+}
 RANK = {
-    "kind": "rank", "matrix": [["a", "b"], ["2*a", "2*b"]], "symbols": ["a", "b"], "rank": 1,
-    "point": {"a": "1", "b": "1/2"}, "rows": [0], "null": [["-b", "a"]],
-}  # fmt: skip
+    "kind": "rank",
+    "matrix": [["a", "b"], ["2*a", "2*b"]],
+    "symbols": ["a", "b"],
+    "rank": 1,
+    "point": {"a": "1", "b": "1/2"},
+    "rows": [0],
+    "null": [["-b", "a"]],
+}
 POSITIVITY = {
-    "kind": "positivity", "expression": "2 - sin(x)*cos(y) - y/10", "box": {"x": ["0", "pi"], "y": ["-1", "1"]},
-    "bits": 64, "cells": 60,
-}  # fmt: skip
+    "kind": "positivity",
+    "expression": "2 - sin(x)*cos(y) - y/10",
+    "box": {"x": ["0", "pi"], "y": ["-1", "1"]},
+    "bits": 64,
+    "cells": 60,
+}
 # One row; and a dual that is a little off inside its box, as the bounds are not.
 ROW = RANK | {"matrix": [["a", "b"]]}
-OFFSET = CONSTANT | alone(["1.0000003"], [(0, "0", "1.0000002")], ["0.000001"] * 3) | {
-    "lower": "0.99999999", "upper": "1.00000001",
-}  # fmt: skip
+OFFSET = (
+    CONSTANT
+    | alone(["1.0000003"], [(0, "0", "1.0000002")], ["0.000001"] * 3)
+    | {"lower": "0.99999999", "upper": "1.00000001"}
+)
 DIGITS = CELLS | {"bits": 20000, "cells": 2000}
 # Announced work: none, and as much as a precision of a thousand bits allows.
 AT_ONCE = CELLS | {"expression": "x + 1", "cells": 0}
 NO_CELLS, MANY_CELLS = GAP | {"cells": 0}, GAP | {"bits": 1000, "cells": 15000}
 # A wave that comes near its bound so often that one announced cell less is too few.
 TIGHT = EXACT | {
-    "bits": 64, "cells": 210, "dual": ["99/100"], "support": [[0, "1/97"]], "upper": "1000",
+    "bits": 64,
+    "cells": 210,
+    "dual": ["99/100"],
+    "support": [[0, "1/97"]],
+    "upper": "1000",
     "panels": [{"measurement": 0, "from": "0", "to": "10", "sigma": "1", "H": ["sin(20*t)"]}],
-}  # fmt: skip
+}
 # With three panels more the cells are 4 cells + 200 to the last; with four there is one too many.
 MORE = [{"measurement": k, "from": "0", "to": "1", "sigma": "1", "H": ["t/9"]} for k in (1, 2, 3, 4)]
 EVEN, UNEVEN = (TIGHT | {"panels": [*TIGHT["panels"], *MORE[:n]]} for n in (3, 4))
@@ -178,24 +287,69 @@ def remainder(tenths):
 REMAINDER = {"kind": "positivity", "expression": remainder(43), "bits": 400, "cells": 0, "box": {"x": ["0", "1"]}}
 KERNEL = AT_ONCE | {"expression": "exp_2(1) + x"}
 NOTHING = {
-    "kind": "rank", "matrix": [["a - a", "0"]], "symbols": ["a"], "rank": 0, "point": {"a": "1"}, "rows": [],
+    "kind": "rank",
+    "matrix": [["a - a", "0"]],
+    "symbols": ["a"],
+    "rank": 0,
+    "point": {"a": "1"},
+    "rows": [],
     "null": [["1", "0"], ["0", "1"]],
-}  # fmt: skip
+}
 # A chain of integrators: entries of the solution that do not move.
 CHAIN = EXPONENTIAL | {"matrix": [["0", "1"], ["0", "0"]], "symbols": [], "solution": [["1", "t"], ["0", "1"]]}
 # As many panels as cells are allowed, and each is seen to be good at once.
-FULL = EXACT | {"cells": 0, "dual": ["0.999"], "lower": "0.9", "upper": "1.1", "panels": [{
-    "measurement": 0, "from": "0", "to": "1", "sigma": "1", "H": ["(2*t - 1)**14"],
-}] * 199}  # fmt: skip
+FULL = EXACT | {
+    "cells": 0,
+    "dual": ["0.999"],
+    "lower": "0.9",
+    "upper": "1.1",
+    "panels": [{"measurement": 0, "from": "0", "to": "1", "sigma": "1", "H": ["(2*t - 1)**14"]}] * 199,
+}
 # As many as are allowed; the one with the contact is good at once by Taylor's formula, its last term in its place.
-LAST = CONSTANT | {"cells": 0, "panels": [
-    {"measurement": 0, "from": "0", "to": "1", "sigma": "1", "H": ["1 + 3/2*(t - 1) + 3/50*(t - 1)**15"]},
-    *[{"measurement": 1, "from": "0", "to": "1", "sigma": "1", "H": ["t/9"]}] * 199,
-]} | alone(["1"], [(0, "1", "1")], ["0.000001"] * 3)  # fmt: skip
+LAST = (
+    CONSTANT
+    | {
+        "cells": 0,
+        "panels": [
+            {"measurement": 0, "from": "0", "to": "1", "sigma": "1", "H": ["1 + 3/2*(t - 1) + 3/50*(t - 1)**15"]},
+            *[{"measurement": 1, "from": "0", "to": "1", "sigma": "1", "H": ["t/9"]}] * 199,
+        ],
+    }
+    | alone(["1"], [(0, "1", "1")], ["0.000001"] * 3)
+)
 ALL = {"kind": "all", "of": [IDENTITY, RANK]}
 GOOD = [
-    IDENTITY, ROW, OFFSET, DIGITS, EXPONENTIAL, RANK, POSITIVITY, EDGE, CELLS, ALL,
-    CHAIN, FULL, TIGHT, EVEN, REMAINDER, KERNEL, NOTHING, AT_ONCE, NO_CELLS, MANY_CELLS,
-    GAP, EXACT, SLIVER, TOUCH, PARABOLA, COARSE, CONSTANT, FLAT, LAST,
-    FLAT_LEFT, RANGE, MOVING, SLOPES,
-]  # fmt: skip
+    IDENTITY,
+    ROW,
+    OFFSET,
+    DIGITS,
+    EXPONENTIAL,
+    RANK,
+    POSITIVITY,
+    EDGE,
+    CELLS,
+    ALL,
+    CHAIN,
+    FULL,
+    TIGHT,
+    EVEN,
+    REMAINDER,
+    KERNEL,
+    NOTHING,
+    AT_ONCE,
+    NO_CELLS,
+    MANY_CELLS,
+    GAP,
+    EXACT,
+    SLIVER,
+    TOUCH,
+    PARABOLA,
+    COARSE,
+    CONSTANT,
+    FLAT,
+    LAST,
+    FLAT_LEFT,
+    RANGE,
+    MOVING,
+    SLOPES,
+]

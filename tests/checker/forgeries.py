@@ -79,27 +79,43 @@ def judged(item, module) -> str:
 
 # The value at zero, seen as 2 t - t**2 on [0, 1/2]: its stationary point 1 is the place 2 of the panel.
 STATIONARY = {
-    "kind": "touch", "variable": "t", "functional": ["1"], "bits": 80, "cells": 40,
+    "kind": "touch",
+    "variable": "t",
+    "functional": ["1"],
+    "bits": 80,
+    "cells": 40,
     "panels": [{"measurement": 0, "from": "0", "to": "1/2", "sigma": "1", "H": ["2*t - t**2"]}],
-    **alone(["1"], [(0, "2", "1")], ["0.0001"] * 3), "lower": "0.999", "upper": "1.001", **NONE,
-}  # fmt: skip
+    **alone(["1"], [(0, "2", "1")], ["0.0001"] * 3),
+    "lower": "0.999",
+    "upper": "1.001",
+    **NONE,
+}
 LINE = ["pieces", 0, "contacts", 0]
 # The same to the left of its panel [3/2, 2].
 LEFT = changed(changed(STATIONARY, ["panels", 0, "from"], "3/2"), ["panels", 0, "to"], "2")
 # One number seen twice: the weights 2 and -1 satisfy the system of the optimum, and cost more than 1.
 TWICE = {
-    "kind": "touch", "variable": "t", "functional": ["0", "1"], "bits": 80, "cells": 40,
-    "panels": [{"measurement": 0, "from": "0", "to": "1", "sigma": "1", "H": ["1 - 2*t", "1"]},
-               {"measurement": 1, "from": "0", "to": "1", "sigma": "1", "H": ["1/2 - t/4", "1"]}],
-    **alone(["0", "1"], [(0, "0", "-1"), (1, "0", "2")], ["0.0001"] * 6), "lower": "0.999", "upper": "1.001", **NONE,
-}  # fmt: skip
+    "kind": "touch",
+    "variable": "t",
+    "functional": ["0", "1"],
+    "bits": 80,
+    "cells": 40,
+    "panels": [
+        {"measurement": 0, "from": "0", "to": "1", "sigma": "1", "H": ["1 - 2*t", "1"]},
+        {"measurement": 1, "from": "0", "to": "1", "sigma": "1", "H": ["1/2 - t/4", "1"]},
+    ],
+    **alone(["0", "1"], [(0, "0", "-1"), (1, "0", "2")], ["0.0001"] * 6),
+    "lower": "0.999",
+    "upper": "1.001",
+    **NONE,
+}
 # The box of the first weight reaches from one sign to the other.
 SIGNED = TWICE | alone(["0", "1"], [(0, "0", "0.1"), (1, "0", "2")], [*["5"] * 2, *["0.0001"] * 2, *["5"] * 2])
 # A wave that touches the bound in the middle, bends down there, and rises above it towards both ends.
 WAVE = STATIONARY | {
     "panels": [{"measurement": 0, "from": "0", "to": "1", "sigma": "1", "H": ["1 - (t - 1/2)**2/10 + (t - 1/2)**4"]}],
     **alone(["1"], [(0, "1/2", "1")], ["0.0001"] * 3),
-}  # fmt: skip
+}
 # The same, bent down so far that it falls through the other bound.
 DIP = changed(WAVE, ["panels", 0, "H"], ["1 - 10*(t - 1/2)**2"])
 # Bent up a little more slowly than the wave; and a line at the start of the panel that turns and climbs over the bound.
@@ -107,19 +123,21 @@ SWELL = changed(WAVE, ["panels", 0, "H"], ["1 - (t - 1/2)**2/10 + 21/50*(t - 1/2
 CLIMB = WAVE | {
     "panels": [{"measurement": 0, "from": "0", "to": "1", "sigma": "1", "H": ["1 - t/10 + t**2/5"]}],
     **alone(["1"], [(0, "0", "1")], ["0.0001"] * 3),
-}  # fmt: skip
+}
 # The contact stands a little farther from the stationary point than its radius.
-SHIFTED = changed(WAVE, ["panels", 0, "H"], ["1 - (t - 1/2)**2"]) | alone(
-    ["1"], [(0, "0.50025", "1")], ["0.0002"] * 3
-)
+SHIFTED = changed(WAVE, ["panels", 0, "H"], ["1 - (t - 1/2)**2"]) | alone(["1"], [(0, "0.50025", "1")], ["0.0002"] * 3)
 # A kernel beyond the ball on which its series is summed, reached with a panel of length one.
 BEYOND = EXACT | {"panels": [{"measurement": 0, "from": "1", "to": "2", "sigma": "1", "H": ["exp_2(t)"]}]}
 # Powers about the middle of the panel: the last coefficients of Taylor's formula alone rise above the bound.
 POWERS = [
-    EXACT | {"cells": 5, "dual": ["1"], "panels": [{
-        "measurement": 0, "from": "0", "to": "1", "sigma": "1", "H": [f"3/2*(2*t - 1)**{n}"],
-    }]} for n in (13, 14, 15, 16)
-]  # fmt: skip
+    EXACT
+    | {
+        "cells": 5,
+        "dual": ["1"],
+        "panels": [{"measurement": 0, "from": "0", "to": "1", "sigma": "1", "H": [f"3/2*(2*t - 1)**{n}"]}],
+    }
+    for n in (13, 14, 15, 16)
+]
 # Three cells each: together they are more than the certificate announces.
 REPEATED = TOUCH | {"cells": 0, "pieces": TOUCH["pieces"] * 67}
 ONE = ["pieces", 0]
@@ -284,12 +302,18 @@ FORGERIES = [
     (SLOPES, ["pieces", 1, "radius"], ["0.0001"] * 6, "Newton"),
     (FLAT, ["panels", 0, "H"], ["1 - (t - 1)/10 - (t - 1)**2/2"], "not shown"),
     (FLAT, ["panels", 0, "H"], ["1 + (t - 1)/10 - 8*(t - 1)**2"], "not shown"),
-    (STATIONARY, ["panels", 0], {
-        "measurement": 0, "from": "-3/2", "to": "1/4", "sigma": "1", "H": ["1 + (t - 2)**2/16"],
-    }, "outside its panel"),
-    (changed(STATIONARY, [*LINE, "at"], ["0.5"]), ["panels", 0], {
-        "measurement": 0, "from": "0", "to": "4", "sigma": "1", "H": ["1 + (t - 2)**2/16"],
-    }, "not shown"),
+    (
+        STATIONARY,
+        ["panels", 0],
+        {"measurement": 0, "from": "-3/2", "to": "1/4", "sigma": "1", "H": ["1 + (t - 2)**2/16"]},
+        "outside its panel",
+    ),
+    (
+        changed(STATIONARY, [*LINE, "at"], ["0.5"]),
+        ["panels", 0],
+        {"measurement": 0, "from": "0", "to": "4", "sigma": "1", "H": ["1 + (t - 2)**2/16"]},
+        "not shown",
+    ),
     (IDENTITY, ["right"], "sin(2*a) + 0/(1/a + 1/(a + 1) - (2*a + 1)/(a*(a + 1)))", "division by zero"),
     (IDENTITY, ["right"], "sin(2*a) + 0*sqrt(1/a + 1/(a + 1) - (2*a + 1)/(a*(a + 1)))", "division by zero"),
     (FLAT, [*LINE, "at"], ["0"], "Newton"),
@@ -324,7 +348,7 @@ FORGERIES = [
     (IDENTITY, ["right"], "sin(2*a) + 0*(a - a)**(-1)", "division by zero"),
     (IDENTITY, ["right"], "sin(2*a) + ((1 + a)**31*(1 + exp(a))**31)**2", "too many terms"),
     (IDENTITY, ["right"], f"sin(2*a) + 0*sqrt({2**100})", "root of a large number"),
-]  # fmt: skip
+]
 
 
 # The parameter of :data:`FUNCTIONS`.

@@ -22,14 +22,28 @@ SOURCE = ROOT / "navsym" / "checker.py"
 EXPLAINED = Path(__file__).with_name("survivors.txt")
 SECONDS, MEMORY = 20, 3 * 2**30
 COMPARISONS: dict[type[ast.cmpop], type[ast.cmpop]] = {
-    ast.Lt: ast.LtE, ast.LtE: ast.Lt, ast.Gt: ast.GtE, ast.GtE: ast.Gt, ast.Eq: ast.NotEq, ast.NotEq: ast.Eq,
-    ast.In: ast.NotIn, ast.NotIn: ast.In, ast.Is: ast.IsNot, ast.IsNot: ast.Is,
-}  # fmt: skip
+    ast.Lt: ast.LtE,
+    ast.LtE: ast.Lt,
+    ast.Gt: ast.GtE,
+    ast.GtE: ast.Gt,
+    ast.Eq: ast.NotEq,
+    ast.NotEq: ast.Eq,
+    ast.In: ast.NotIn,
+    ast.NotIn: ast.In,
+    ast.Is: ast.IsNot,
+    ast.IsNot: ast.Is,
+}
 REVERSED = {ast.Lt: ast.Gt, ast.LtE: ast.GtE, ast.Gt: ast.Lt, ast.GtE: ast.LtE}
 OPERATORS: dict[type[ast.operator], type[ast.operator]] = {
-    ast.Add: ast.Sub, ast.Sub: ast.Add, ast.Mult: ast.Add, ast.Div: ast.Mult, ast.FloorDiv: ast.Mult,
-    ast.Mod: ast.Add, ast.Pow: ast.Mult, ast.BitOr: ast.BitAnd,
-}  # fmt: skip
+    ast.Add: ast.Sub,
+    ast.Sub: ast.Add,
+    ast.Mult: ast.Add,
+    ast.Div: ast.Mult,
+    ast.FloorDiv: ast.Mult,
+    ast.Mod: ast.Add,
+    ast.Pow: ast.Mult,
+    ast.BitOr: ast.BitAnd,
+}
 
 
 def mutants(source: str) -> Iterator[tuple[str, int, int]]:
@@ -138,9 +152,10 @@ def explained() -> set[str]:
     return {line for line in lines if line and not line.startswith(("#", "    "))}
 
 
-@pytest.mark.parametrize(("name", "place", "number"), [
-    pytest.param(*mutant, id=mutant[0]) for mutant in mutants(SOURCE.read_text(encoding="utf-8"))
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("name", "place", "number"),
+    [pytest.param(*mutant, id=mutant[0]) for mutant in mutants(SOURCE.read_text(encoding="utf-8"))],
+)
 def test_a_mutant_is_noticed_or_explained(name, place, number):
     if noticed(SOURCE.read_text(encoding="utf-8"), place, number):
         return

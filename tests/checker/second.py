@@ -255,9 +255,14 @@ def plus(x: Poly, y: Poly, sign: int = 1) -> Poly:
 
 ONE: Poly = {(0, 0): Fraction(1)}
 DERIVED = {
-    "tan": "sin(x)/cos(x)", "cot": "cos(x)/sin(x)", "sec": "1/cos(x)", "csc": "1/sin(x)",
-    "sinh": "(exp(x) - exp(-x))/2", "cosh": "(exp(x) + exp(-x))/2", "tanh": "(exp(x) - exp(-x))/(exp(x) + exp(-x))",
-}  # fmt: skip
+    "tan": "sin(x)/cos(x)",
+    "cot": "cos(x)/sin(x)",
+    "sec": "1/cos(x)",
+    "csc": "1/sin(x)",
+    "sinh": "(exp(x) - exp(-x))/2",
+    "cosh": "(exp(x) + exp(-x))/2",
+    "tanh": "(exp(x) - exp(-x))/(exp(x) + exp(-x))",
+}
 
 
 def value(node: Any, names: dict[str, Any], world: World) -> tuple[Poly, Poly]:
@@ -420,7 +425,8 @@ def exponential(item: dict[str, Any], world: World) -> bool:
             top = world.times({(0, 1): Fraction(1)}, world.times(a, here[k][j][0]))
             bottom = world.times(b, here[k][j][1])
             expected = (
-                plus(world.times(expected[0], bottom), world.times(top, expected[1])), world.times(expected[1], bottom),
+                plus(world.times(expected[0], bottom), world.times(top, expected[1])),
+                world.times(expected[1], bottom),
             )
         start = value(X[i][j], names | still, world)
         unit = {(0, 0): Fraction(1)} if i == j else {}

@@ -116,9 +116,7 @@ def harmless(kind, path, old, new) -> bool:
     parameter that occurs nowhere."""
     if kind != "range" and path[0] in ("parameter", "from", "to"):
         return True
-    return (
-        old == new or path[-1] in ("lower", "upper", "variable", "kind") or "radius" in path or "null" in path
-    )
+    return old == new or path[-1] in ("lower", "upper", "variable", "kind") or "radius" in path or "null" in path
 
 
 def test_random_alterations_do_not_pass():

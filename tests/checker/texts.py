@@ -59,7 +59,7 @@ EQUAL = [
     ("cos(x/5040)**2", "1 - sin(x/5040)**2"),
     ("cos(pi/5040) + cos(pi/5040 + 2*pi/3) + cos(pi/5040 + 4*pi/3)", "0"),
     ("(T + x + y + lambda + a_1 + 1 + pi + exp(T))**2", "(a_1 + lambda + y + x + T + exp(T) + pi + 1)**2"),
-]  # fmt: skip
+]
 UNEQUAL = [
     ("2**(1/3)", "1"),
     ("sqrt(x**2)", "x"),
@@ -101,12 +101,44 @@ FUNCTIONS: list[tuple[str, Any]] = [
     ("exp_0(p/2)*sin_0(p/2)*cos_0(p/2)", lambda p: (p / 2).exp() * p.sin() / 2),
 ]
 OUTSIDE = [
-    "1e5", "0x10", "1_0", "__import__", "_x", "x.y", "x[0]", "lambda: 1",
-    "x if y else z", "x;y", "'a'", "x**y", "x**pi", "f(x, y)", "",
-    "((", "x + 1.", "1.5.2", "sin", "sin(x)(y)", "pi(x)", "sin(x=1)", "2 x", "x\\n", "~x", "not x", "x < y",
-    "(x, y)", "x**(1/0)", "x**sin(1)", "х",
-]  # fmt: skip
+    "1e5",
+    "0x10",
+    "1_0",
+    "__import__",
+    "_x",
+    "x.y",
+    "x[0]",
+    "lambda: 1",
+    "x if y else z",
+    "x;y",
+    "'a'",
+    "x**y",
+    "x**pi",
+    "f(x, y)",
+    "",
+    "((",
+    "x + 1.",
+    "1.5.2",
+    "sin",
+    "sin(x)(y)",
+    "pi(x)",
+    "sin(x=1)",
+    "2 x",
+    "x\\n",
+    "~x",
+    "not x",
+    "x < y",
+    "(x, y)",
+    "x**(1/0)",
+    "x**sin(1)",
+    "х",
+]
 BROKEN = [
-    '{"kind": "gap", "kind": "gap"}', '{"bits": 1.5}', '{"bits": NaN}', '{"bits": Infinity}', "[1,", "[" * 100000,
+    '{"kind": "gap", "kind": "gap"}',
+    '{"bits": 1.5}',
+    '{"bits": NaN}',
+    '{"bits": Infinity}',
+    "[1,",
+    "[" * 100000,
     '{"kind": 1e3}',
-]  # fmt: skip
+]

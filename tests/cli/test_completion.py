@@ -52,18 +52,22 @@ def test_asking_does_not_load_typer():
     code = "import sys; from navsym.cli.main import run; run(['completion', 'words', 'navsym ver']); "
     done = subprocess.run(
         [sys.executable, "-c", code + "print('typer' in sys.modules)"],
-        cwd=ROOT, capture_output=True, text=True, check=True, timeout=120,
-    )  # fmt: skip
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=120,
+    )
     assert done.stdout.split() == ["verify", "False"]
 
 
 ASK = {
     "bash": 'eval "$(navsym completion bash)"; COMP_LINE="$LINE"; COMP_POINT=${#COMP_LINE}; _navsym; '
-            'printf "%s\\n" "${COMPREPLY[@]}"',
-    "fish": "navsym completion fish | source; complete -C \"$LINE\"",
+    'printf "%s\\n" "${COMPREPLY[@]}"',
+    "fish": 'navsym completion fish | source; complete -C "$LINE"',
     "zsh": 'compdef() { :; }; eval "$(navsym completion zsh)"; compadd() { shift; print -l -- $@; }; '
-           "words=(${(s: :)LINE}); CURRENT=$#words; _navsym",
-}  # fmt: skip
+    "words=(${(s: :)LINE}); CURRENT=$#words; _navsym",
+}
 
 
 @pytest.mark.parametrize("shell", SHELLS)

@@ -16,9 +16,15 @@ def own(monkeypatch, tmp_path):
     """A data set of our own with a local copy and an empty cache."""
     content = b"t,x\n0,1\n"
     data = datasets.Dataset(
-        "own", "a/own.csv", "a sample", "nobody/nothing", "0" * 12, "own.csv",
-        hashlib.sha256(content).hexdigest(), "none",
-    )  # fmt: skip
+        "own",
+        "a/own.csv",
+        "a sample",
+        "nobody/nothing",
+        "0" * 12,
+        "own.csv",
+        hashlib.sha256(content).hexdigest(),
+        "none",
+    )
     monkeypatch.setattr(datasets, "DATASETS", {"own": data})
     monkeypatch.setenv("NAVSYM_DATA", str(tmp_path / "copy"))
     monkeypatch.setenv("NAVSYM_CACHE", str(tmp_path / "cache"))

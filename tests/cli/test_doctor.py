@@ -17,17 +17,13 @@ OPTIONAL = Finding("julia", False, False, "", "for exported Julia: install julia
 LACKING = Finding("flint", True, False, "", "install it")
 
 
-def answers(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], *findings: Finding
-) -> tuple[int, str]:
+def answers(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], *findings: Finding) -> tuple[int, str]:
     """Status and output of ``navsym doctor --json`` on a machine with these findings."""
     monkeypatch.setattr(doctor, "examine", lambda: list(findings))
     return main.run(["doctor", "--json"]), capsys.readouterr().out
 
 
-def test_optional_things_may_be_missing(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_optional_things_may_be_missing(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     status, out = answers(monkeypatch, capsys, HEALTHY, OPTIONAL)
     assert status == 0 and json.loads(out)["complete"] is True
 
@@ -37,18 +33,14 @@ def test_required_things_may_not(monkeypatch: pytest.MonkeyPatch, capsys: pytest
     assert status == 3 and json.loads(out)["missing"] == ["flint"]
 
 
-def test_the_table_says_what_to_do(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_table_says_what_to_do(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.setattr(doctor, "examine", lambda: [HEALTHY, OPTIONAL, LACKING])
     assert main.run(["doctor"]) == 3
     out = capsys.readouterr().out
     assert "for exported Julia: install julia" in out and "something required is missing" in out
 
 
-def test_an_engine_that_crashes_on_import_is_a_finding(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+def test_an_engine_that_crashes_on_import_is_a_finding(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     (tmp_path / "crashing.py").write_text("import os\nos.abort()\n")
     monkeypatch.setenv("PYTHONPATH", str(tmp_path))
     found = doctor.engine("crashing", "crashing")
@@ -61,9 +53,7 @@ def test_an_engine_that_is_there_is_found() -> None:
 
 
 @pytest.mark.skipif(os.name == "nt", reason="a shell script stands in for the program")
-def test_a_program_that_does_not_answer_is_not_there(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+def test_a_program_that_does_not_answer_is_not_there(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     script = tmp_path / "cc"
     script.write_text("#!/bin/sh\nexit 1\n")
     script.chmod(0o755)
@@ -80,9 +70,7 @@ def test_a_data_folder_that_is_not_there_is_said(monkeypatch: pytest.MonkeyPatch
     assert doctor.data_folder().found
 
 
-def test_a_file_in_place_of_the_cache_folder_is_a_fault(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+def test_a_file_in_place_of_the_cache_folder_is_a_fault(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file" / "cache"))
     assert not doctor.cache_folder().found

@@ -27,7 +27,7 @@ def test_the_jumps_of_the_example_are_found_and_nothing_else(capsys):
 def test_the_profile_of_the_example_brings_the_track_back(capsys, method, metres):
     found = answer(capsys, "locate", str(EXAMPLES / "flight.json"), "--method", method)
     correction = (found["correction"]["dx"], found["correction"]["dy"])
-    assert correction == pytest.approx((200.0, -100.0), abs=metres)        # one step of the grid
+    assert correction == pytest.approx((200.0, -100.0), abs=metres)  # one step of the grid
     assert found["unique"] is True
 
 

@@ -32,10 +32,17 @@ def answer(capsys, *arguments):
     return status, json.loads(captured.out), captured.err
 
 
-@pytest.mark.parametrize(("options", "filters"), [
-    ((), 6), (("--method", "k-pulsating", "--depth", "3"), 14), (("--method", "polygaussian"), 6),
-    (("--method", "imm"), 6), (("--method", "gpb2"), 10), (("--method", "exact"), 14),
-])
+@pytest.mark.parametrize(
+    ("options", "filters"),
+    [
+        ((), 6),
+        (("--method", "k-pulsating", "--depth", "3"), 14),
+        (("--method", "polygaussian"), 6),
+        (("--method", "imm"), 6),
+        (("--method", "gpb2"), 10),
+        (("--method", "exact"), 14),
+    ],
+)
 def test_every_method_writes_the_keys_of_the_interface(tmp_path, capsys, options, filters):
     status, document, _ = answer(capsys, bank_file(tmp_path), *options)
     assert status == 0
@@ -73,8 +80,12 @@ def test_memoryless_uses_the_unconditional_chain(tmp_path, capsys):
 
 def test_models_over_time_are_lists(tmp_path, capsys):
     over_time = {"F": [UNIT, UNIT, [[2.0]]], "Q": [UNIT] * 3, "H": UNIT, "R": UNIT}
-    given = bank_file(tmp_path, models=[over_time], mode_transition=UNIT,
-                      initial={"mean": [0.0], "covariance": UNIT, "probabilities": [1.0]})
+    given = bank_file(
+        tmp_path,
+        models=[over_time],
+        mode_transition=UNIT,
+        initial={"mean": [0.0], "covariance": UNIT, "probabilities": [1.0]},
+    )
     status, document, _ = answer(capsys, given)
     assert status == 0
     mean, P = 0.0, 1.0
@@ -111,47 +122,51 @@ def start(**changes):
 
 INDEFINITE = {
     "models": [{"F": np.eye(2).tolist(), "Q": [[1, 2], [2, 1]], "H": [[1, 0]], "R": UNIT}],
-    "mode_transition": [[1.0]], **start(mean=[0, 0], covariance=np.eye(2).tolist(), probabilities=[1.0]),
+    "mode_transition": [[1.0]],
+    **start(mean=[0, 0], covariance=np.eye(2).tolist(), probabilities=[1.0]),
 }
 
 
-@pytest.mark.parametrize(("changes", "options", "kind", "words"), [
-    ({"mode_transition": [[0.9, 0.2], [0.2, 0.8]]}, (), "domain", "row 0 sums to 1.1"),
-    ({"mode_transition": [[1.2, -0.2], [0.2, 0.8]]}, (), "domain", "negative"),
-    ({"mode_transition": [[1.0]]}, (), "shape", "mode_transition"),
-    ({"mode_transition": []}, (), None, "mode_transition"),
-    (model(Q=[[-1.0]]), (), "domain", "models[0].Q"),
-    (model(R=[[-1.0]]), (), "domain", "models[0].R"),
-    (INDEFINITE, (), "domain", "models[0].Q"),
-    (start(covariance=[[-1.0]]), (), "domain", "initial.covariance"),
-    (start(probabilities=[0.0, 0.0]), (), "domain", "sums to 0"),
-    (start(probabilities=[0.5, 0.25, 0.25]), (), "shape", "initial.probabilities"),
-    (start(mean=[0.0, 1.0]), (), "shape", "initial.mean"),
-    (model(H=[[1.0, 0.0]]), (), "shape", "models[0].H"),
-    (model(F=[[1.0], [0.0]]), (), "shape", "models[0].F"),
-    (model(F=[[[1.0]], [[1.0]]]), (), "shape", "measurements"),
-    ({"models": []}, (), "empty", "models"),
-    ({"measurements": []}, (), "empty", "measurements"),
-    ({"measurements": [[1.0, 2.0]]}, (), "shape", "measurements[0]"),
-    ({"measurements": [[1.0], [None]]}, (), "not-finite", "measurements[1]"),
-    ({"measurements": [[1.0], [True]]}, (), "shape", "measurements[1]"),
-    ({"measurements": [[0.0]] * 60}, ("--method", "exact"), "too-large", str(2**60)),
-    ({"measurements": [[0.0]] * 60}, ("--method", "k-pulsating", "--depth", "50"), "too-large", str(2**50)),
-    ({}, ("--method", "k-pulsating", "--depth", "0"), "domain", "depth"),
-    ({}, ("--method", "imm", "--depth", "2"), "domain", "depth"),
-    ({}, ("--method", "kalman"), "domain", "method"),
-    ({}, ("--form", "cholesky"), "domain", "form"),
-    ({"memoryless": True}, ("--method", "polygaussian"), "domain", "memoryless"),
-    ({"memoryless": 1}, (), "domain", "memoryless"),
-    ({"memoryles": True}, (), "unknown-symbol", "memoryles"),
-    (model(G=UNIT), (), "unknown-symbol", "models[0].G"),
-    (start(mode=1), (), "unknown-symbol", "initial.mode"),
-    (start(mean=[True]), (), "shape", "initial.mean"),
-    (model(Q=[[False]]), (), "shape", "models[0].Q"),
-    (model(F=[[1e200]]), (), "not-finite", "step 1"),
-    (model(F=[[1e200]]), ("--method", "imm", "--form", "ud"), "not-finite", "step 1"),
-    (model(F=[[1.0], [1.0, 2.0]]), (), "shape", "got rows of different lengths"),
-])
+@pytest.mark.parametrize(
+    ("changes", "options", "kind", "words"),
+    [
+        ({"mode_transition": [[0.9, 0.2], [0.2, 0.8]]}, (), "domain", "row 0 sums to 1.1"),
+        ({"mode_transition": [[1.2, -0.2], [0.2, 0.8]]}, (), "domain", "negative"),
+        ({"mode_transition": [[1.0]]}, (), "shape", "mode_transition"),
+        ({"mode_transition": []}, (), None, "mode_transition"),
+        (model(Q=[[-1.0]]), (), "domain", "models[0].Q"),
+        (model(R=[[-1.0]]), (), "domain", "models[0].R"),
+        (INDEFINITE, (), "domain", "models[0].Q"),
+        (start(covariance=[[-1.0]]), (), "domain", "initial.covariance"),
+        (start(probabilities=[0.0, 0.0]), (), "domain", "sums to 0"),
+        (start(probabilities=[0.5, 0.25, 0.25]), (), "shape", "initial.probabilities"),
+        (start(mean=[0.0, 1.0]), (), "shape", "initial.mean"),
+        (model(H=[[1.0, 0.0]]), (), "shape", "models[0].H"),
+        (model(F=[[1.0], [0.0]]), (), "shape", "models[0].F"),
+        (model(F=[[[1.0]], [[1.0]]]), (), "shape", "measurements"),
+        ({"models": []}, (), "empty", "models"),
+        ({"measurements": []}, (), "empty", "measurements"),
+        ({"measurements": [[1.0, 2.0]]}, (), "shape", "measurements[0]"),
+        ({"measurements": [[1.0], [None]]}, (), "not-finite", "measurements[1]"),
+        ({"measurements": [[1.0], [True]]}, (), "shape", "measurements[1]"),
+        ({"measurements": [[0.0]] * 60}, ("--method", "exact"), "too-large", str(2**60)),
+        ({"measurements": [[0.0]] * 60}, ("--method", "k-pulsating", "--depth", "50"), "too-large", str(2**50)),
+        ({}, ("--method", "k-pulsating", "--depth", "0"), "domain", "depth"),
+        ({}, ("--method", "imm", "--depth", "2"), "domain", "depth"),
+        ({}, ("--method", "kalman"), "domain", "method"),
+        ({}, ("--form", "cholesky"), "domain", "form"),
+        ({"memoryless": True}, ("--method", "polygaussian"), "domain", "memoryless"),
+        ({"memoryless": 1}, (), "domain", "memoryless"),
+        ({"memoryles": True}, (), "unknown-symbol", "memoryles"),
+        (model(G=UNIT), (), "unknown-symbol", "models[0].G"),
+        (start(mode=1), (), "unknown-symbol", "initial.mode"),
+        (start(mean=[True]), (), "shape", "initial.mean"),
+        (model(Q=[[False]]), (), "shape", "models[0].Q"),
+        (model(F=[[1e200]]), (), "not-finite", "step 1"),
+        (model(F=[[1e200]]), ("--method", "imm", "--form", "ud"), "not-finite", "step 1"),
+        (model(F=[[1.0], [1.0, 2.0]]), (), "shape", "got rows of different lengths"),
+    ],
+)
 def test_bad_input_is_a_document_with_status_two(tmp_path, capsys, changes, options, kind, words):
     path = bank_file(tmp_path, **changes)
     status, document, _ = answer(capsys, path, *options)

@@ -103,10 +103,7 @@ def test_scaling_laws_of_the_functional_and_of_the_noise(answer, factor):
     rows = ["1", "s", "sin(s)", "cos(2*s)"]
     plain = answer(rows, (0, 2), unit(4, 2))[1]["value"]
     middle = (sp.Rational(plain["lower"]) + sp.Rational(plain["upper"])) / 2
-    for found in (
-        answer(rows, (0, 2), unit(4, 2, c)),
-        answer([rows], (0, 2), unit(4, 2), [c]),
-    ):
+    for found in (answer(rows, (0, 2), unit(4, 2, c)), answer([rows], (0, 2), unit(4, 2), [c])):
         low, high = (sp.Rational(found[1]["value"][end]) for end in ("lower", "upper"))
         assert low <= c * middle * (1 + sp.Rational(1, 10**29)) and c * middle * (1 - sp.Rational(1, 10**29)) <= high
 

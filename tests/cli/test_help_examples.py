@@ -13,8 +13,8 @@ import pytest
 from navsym.cli.main import run, verbs
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
-STATUS = {"prove": 1}           # one of its three formulas is wrong on purpose
-AFTER = {"check": "report"}     # what a verb reads, another one writes
+STATUS = {"prove": 1}  # one of its three formulas is wrong on purpose
+AFTER = {"check": "report"}  # what a verb reads, another one writes
 NOT_HERE = {
     "eval": "for a shell",
     "campaign": "minutes; tests/campaigns runs small ones",

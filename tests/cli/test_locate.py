@@ -13,9 +13,18 @@ from navsym.errors import NavsymError
 from navsym.methods.terrain.locate import METHODS, locate
 
 KEYS = {
-    "method", "position_index", "velocity_index", "criterion", "second_best", "unique",
-    "t_G", "quadratic", "fix", "correction", "evaluated",
-}  # fmt: skip
+    "method",
+    "position_index",
+    "velocity_index",
+    "criterion",
+    "second_best",
+    "unique",
+    "t_G",
+    "quadratic",
+    "fix",
+    "correction",
+    "evaluated",
+}
 
 
 def heights():
@@ -182,27 +191,33 @@ BAD = {
     "nodata": [holed],
     "not-estimable": [flat, ridge, lambda d: d.update(track={k: v[:3] for k, v in d["track"].items()})],
     "domain": [
-        spoil("map", "dx", -30), spoil("map", "dy", 0), spoil("position", "step", [30, -30]),
-        spoil("position", "half_count", [-1, 2]), lambda d: d.update(interpolation="cubic"),
-        spoil("track", "t", list(range(39, -1, -1))), lambda d: d.update(map={"file": "map.xyz"}),
+        spoil("map", "dx", -30),
+        spoil("map", "dy", 0),
+        spoil("position", "step", [30, -30]),
+        spoil("position", "half_count", [-1, 2]),
+        lambda d: d.update(interpolation="cubic"),
+        spoil("track", "t", list(range(39, -1, -1))),
+        lambda d: d.update(map={"file": "map.xyz"}),
     ],
     "duplicate": [spoil("track", "t", [0, 0, *range(1, 39)])],
     "shape": [
-        spoil("track", "h", [1.0] * 39), drop("map"), drop("track"), drop("position"), drop("velocity"),
-        spoil("map", "heights", [[1, 2], [3]]), spoil("map", "heights", "x"), spoil("position", "step", 30),
+        spoil("track", "h", [1.0] * 39),
+        drop("map"),
+        drop("track"),
+        drop("position"),
+        drop("velocity"),
+        spoil("map", "heights", [[1, 2], [3]]),
+        spoil("map", "heights", "x"),
+        spoil("position", "step", 30),
         spoil("map", "heights", [[1, "a"], [3, 4]]),
     ],
     "empty": [lambda d: d["map"].pop("dx"), lambda d: d["track"].pop("h"), spoil("track", "t", [])],
     "too-large": [spoil("position", "half_count", [100000, 100000])],
-    "missing-file": [
-        lambda d: d.update(map={"file": "gone.npz"}), lambda d: d.update(track={"file": "gone.csv"}),
-    ],
-}  # fmt: skip
+    "missing-file": [lambda d: d.update(map={"file": "gone.npz"}), lambda d: d.update(track={"file": "gone.csv"})],
+}
 
 
-@pytest.mark.parametrize(
-    ("kind", "change"), [(kind, change) for kind, changes in BAD.items() for change in changes]
-)
+@pytest.mark.parametrize(("kind", "change"), [(kind, change) for kind, changes in BAD.items() for change in changes])
 def test_bad_input_is_one_document_of_its_kind(tmp_path, capsys, kind, change):
     document = config()
     change(document)
@@ -281,7 +296,8 @@ def test_heights_that_repeat_every_second_node_are_not_flat(method):
     document = {
         "map": {"heights": heights_of_two.tolist(), "x0": 0, "y0": 0, "dx": 50, "dy": 40},
         "track": {"t": list(range(8)), "x": x.tolist(), "y": y.tolist(), "h": [0.0, 10.0] * 4},
-        "position": {"step": [50, 40], "half_count": [3, 3]}, "velocity": {"step": [1, 1], "half_count": [0, 0]},
+        "position": {"step": [50, 40], "half_count": [3, 3]},
+        "velocity": {"step": [1, 1], "half_count": [0, 0]},
     }
     answer = locate(document, method).document
     assert answer["criterion"] == answer["second_best"] == 0.0 and answer["unique"] is False

@@ -11,7 +11,7 @@ def test_an_experiment_prints_one_document_and_goes_on_from_its_journal(tmp_path
     monkeypatch.delenv("NAVSYM_DATA", raising=False)
     monkeypatch.setenv("NAVSYM_CACHE", str(tmp_path / "none"))
     monkeypatch.setenv("NAVSYM_PROGRESS", "1")
-    monkeypatch.setattr("navsym.cli._progress.PATIENCE", 0.0)          # a fast machine would say nothing
+    monkeypatch.setattr("navsym.cli._progress.PATIENCE", 0.0)  # a fast machine would say nothing
     monkeypatch.setattr("navsym.cli._progress.BETWEEN_REMARKS", 0.0)
     journal = tmp_path / "runs.jsonl"
     words = ["simulate", "terrain_search", "--runs", "1", "--steps", "60", "--journal", str(journal), "--json"]

@@ -159,13 +159,7 @@ ERRORS = [
 
 @pytest.mark.parametrize(("words", "status", "kind", "where", "message"), ERRORS)
 def test_an_error_is_one_line_on_standard_error(
-    folder: Path,
-    capsys: pytest.CaptureFixture[str],
-    words: list[str],
-    status: int,
-    kind: str,
-    where: str,
-    message: str,
+    folder: Path, capsys: pytest.CaptureFixture[str], words: list[str], status: int, kind: str, where: str, message: str
 ) -> None:
     got, out, err = run(capsys, *words)
     assert (got, out) == (status, "")
@@ -175,13 +169,7 @@ def test_an_error_is_one_line_on_standard_error(
 
 @pytest.mark.parametrize(("words", "status", "kind", "where", "message"), ERRORS)
 def test_with_json_an_error_is_the_one_document_on_standard_output(
-    folder: Path,
-    capsys: pytest.CaptureFixture[str],
-    words: list[str],
-    status: int,
-    kind: str,
-    where: str,
-    message: str,
+    folder: Path, capsys: pytest.CaptureFixture[str], words: list[str], status: int, kind: str, where: str, message: str
 ) -> None:
     got, out, err = run(capsys, *words, "--json")
     error = json.loads(out)["error"]
@@ -201,9 +189,7 @@ def test_the_debug_switch_shows_the_traceback(
     assert "Traceback" in err
 
 
-def test_an_interruption_is_one_line_and_status_130(
-    folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_an_interruption_is_one_line_and_status_130(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     said = "navsym: interrupted and nothing is kept: the same command starts again\n"
     assert run(capsys, "count-things", "interrupt") == (130, "", said)
 

@@ -52,8 +52,10 @@ def test_claims_are_added_with_the_verdict_that_was_found(folder, capsys):
     assert add(folder, "2*", "--printed", "a/4", "--derived", "a*(1/4)", "--corrects", "2") == 0
     document = verify([loaded(folder / "sample_paper.py")], jobs=1)
     assert [(r["number"], r["status"], r["expect"]) for r in document["claims"]] == [
-        ("1", "PROVED", "PROVED"), ("2", "REFUTED", "REFUTED"), ("2*", "PROVED", "PROVED"),
-    ]  # fmt: skip
+        ("1", "PROVED", "PROVED"),
+        ("2", "REFUTED", "REFUTED"),
+        ("2*", "PROVED", "PROVED"),
+    ]
     paper = document["papers"][0]
     assert (paper["claimed"], paper["definitions"], paper["missing"]) == (2, 1, [])
 
@@ -65,7 +67,7 @@ def test_names_that_must_be_positive_are_asked_for_and_declared(folder, capsys):
     assert "add --positive R,g if they are" in capsys.readouterr().err
     assert (folder / "sample_paper.py").read_text() == before
     assert add(folder, "1", *sides, "--positive", "R,g") == 0
-    assert add(folder, "2", "--printed", "sqrt(R**2)", "--derived", "R") == 0     # as the file declares it now
+    assert add(folder, "2", "--printed", "sqrt(R**2)", "--derived", "R") == 0  # as the file declares it now
     document = verify([loaded(folder / "sample_paper.py")], jobs=1)
     assert [r["status"] for r in document["claims"]] == ["PROVED", "PROVED"]
     assert add(folder, "3", "--printed", "R", "--derived", "R", "--positive", "R,q") == 2

@@ -215,7 +215,7 @@ def test_candidates_are_formulas_of_the_states(observe):
     _, out, _ = observe(UNSEEN, "--restore", *options, "--json")
     found = json.loads(out)["restore"]
     assert found["candidates"] == ["gps", "second"] and found["sets"] == [["gps"]]
-    _, out, _ = observe(UNSEEN, *options[2:])                 # the option alone asks the question as well
+    _, out, _ = observe(UNSEEN, *options[2:])  # the option alone asks the question as well
     assert "not enough, all together: second (proved)" in out
 
 

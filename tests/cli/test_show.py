@@ -33,8 +33,10 @@ def test_show_prints_lines_for_people(capsys):
 def test_show_of_an_equation_in_parts_has_all_of_them(capsys):
     status, answer = document(capsys, "show", "alpha_beta_filter:12")
     assert status == 0 and {record["number"] for record in answer["claims"]} == {
-        "12.characteristic", "12.other-root", "12.stable",
-    }  # fmt: skip
+        "12.characteristic",
+        "12.other-root",
+        "12.stable",
+    }
     assert run(["show", "4.16"]) == 2 and "take guaranteed_velocity:4.16" in capsys.readouterr().err
 
 

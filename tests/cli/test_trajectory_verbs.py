@@ -21,16 +21,9 @@ def answer(capsys, *arguments):
 
 
 def test_condition_answers_with_enclosures_and_doubles(capsys):
-    status, found = answer(
-        capsys, "condition", "--n", "20", "--tau", "0.2", "--rho", "1/6371000", "--digits", "30"
-    )
+    status, found = answer(capsys, "condition", "--n", "20", "--tau", "0.2", "--rho", "1/6371000", "--digits", "30")
     assert status == 0
-    for name, start in (
-        ("N_p", "3663853839"),
-        ("N_pN", "3166136464"),
-        ("N_f", "1801977022"),
-        ("N_s", "3166136464"),
-    ):
+    for name, start in (("N_p", "3663853839"), ("N_pN", "3166136464"), ("N_f", "1801977022"), ("N_s", "3166136464")):
         part = found[name]
         assert part["lower"].startswith(start)
         width = Fraction(part["upper"]) / Fraction(part["lower"]) - 1

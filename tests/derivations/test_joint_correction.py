@@ -40,25 +40,15 @@ def test_the_example_systems_have_the_sizes_that_they_promise():
 
 
 def test_the_true_decay_rate_is_that_of_the_numerical_eigenvalues():
-    A = section3_gains.coupled_velocity_block().subs(
-        {section3_gains.kappa: sp.Rational(1, 20), section3_gains.lam: 1}
-    )
+    A = section3_gains.coupled_velocity_block().subs({section3_gains.kappa: sp.Rational(1, 20), section3_gains.lam: 1})
     numeric = -np.linalg.eigvals(np.array(A, dtype=float)).real.max()
     exact = float(section3_gains.decay_rate(sp.Integer(1), sp.Rational(1, 20)))
     assert abs(numeric - exact) < 1e-4
 
 
 def test_routh_counts_the_poles_that_numpy_finds():
-    for lam, kappa in (
-        (1, 0),
-        (1, sp.Rational(1, 2)),
-        (1, 2),
-        (2, sp.Rational(9, 10)),
-        (sp.Rational(1, 2), 3),
-    ):
-        A = section3_gains.coupled_velocity_block().subs(
-            {section3_gains.kappa: kappa, section3_gains.lam: lam}
-        )
+    for lam, kappa in ((1, 0), (1, sp.Rational(1, 2)), (1, 2), (2, sp.Rational(9, 10)), (sp.Rational(1, 2), 3)):
+        A = section3_gains.coupled_velocity_block().subs({section3_gains.kappa: kappa, section3_gains.lam: lam})
         right = int((np.linalg.eigvals(np.array(A, dtype=float)).real > 1e-9).sum())
         assert section3_gains.poles_on_the_right(sp.sympify(lam), sp.sympify(kappa)) == right
 

@@ -75,10 +75,5 @@ def test_a_sample_of_the_mutants_of_a_paper_falls(name):
 def test_a_sign_a_number_and_a_function_are_among_the_mutants():
     x = sp.Symbol("x", real=True)
     found = mutants(2 * sp.sin(x) ** 2 + 1)
-    for expected in (
-        2 * sp.sin(x) ** 2 - 1,
-        3 * sp.sin(x) ** 2 + 1,
-        2 * sp.cos(x) ** 2 + 1,
-        2 * sp.sin(x) ** 3 + 1,
-    ):
+    for expected in (2 * sp.sin(x) ** 2 - 1, 3 * sp.sin(x) ** 2 + 1, 2 * sp.cos(x) ** 2 + 1, 2 * sp.sin(x) ** 3 + 1):
         assert expected in found

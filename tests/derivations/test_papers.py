@@ -23,9 +23,7 @@ def document(request):
 
 def test_every_verdict_is_the_one_that_its_source_declares(document):
     wrong = [
-        (r["id"], r["status"], r["expect"], r["evidence"])
-        for r in document["claims"]
-        if r["status"] != r["expect"]
+        (r["id"], r["status"], r["expect"], r["evidence"]) for r in document["claims"] if r["status"] != r["expect"]
     ]
     assert not wrong
 

@@ -99,9 +99,7 @@ def monomials(n, nodes=400):
     return GridProblem(np.vander(instants, n + 1, increasing=True).T, functional)
 
 
-@pytest.mark.parametrize(
-    "solver", [name for name in LP_SOLVERS if name.startswith("casadi") or "highs" not in name]
-)
+@pytest.mark.parametrize("solver", [name for name in LP_SOLVERS if name.startswith("casadi") or "highs" not in name])
 @pytest.mark.parametrize("degree", [9, 19])
 def test_a_solvers_success_is_only_a_word(solver, degree):
     """Whatever the solver says, its weights are judged here by the constraints and the exact optimum."""

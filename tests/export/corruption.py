@@ -27,14 +27,19 @@ SWAPS = {"sin(": "cos(", "cos(": "sin("}
 ASSIGNMENT = re.compile(
     r"^\s+(?:(?:const|let)\s+(?:double\s+|auto\s+)?)?(?:[\w.\[\]: ]+|out\[[^=]*\]|nv_r\(\d+\)) = .*|^\s{12,}.*,$"
 )
-RESULT = re.compile(
-    r"^\s+(?:r\d+|result\.(?!status)[\w\[\]]+|nv_r\(\d+\)|out\[[^=]*\]|\w+\[k\]) = ([^;\n]+)", re.M
-)
+RESULT = re.compile(r"^\s+(?:r\d+|result\.(?!status)[\w\[\]]+|nv_r\(\d+\)|out\[[^=]*\]|\w+\[k\]) = ([^;\n]+)", re.M)
 SOURCE_OF = {
-    "c": "{name}.c", "cpp": "navsym_functions.hpp", "python": "navsym_functions.py", "wasm": "{name}.c",
-    "javascript": "navsym_functions.mjs", "rust": "navsym_functions.rs", "fortran": "navsym_functions.f90",
-    "julia": "NavsymFunctions.jl", "octave": "{name}.m", "batch": "navsym_batch.c",
-}  # fmt: skip
+    "c": "{name}.c",
+    "cpp": "navsym_functions.hpp",
+    "python": "navsym_functions.py",
+    "wasm": "{name}.c",
+    "javascript": "navsym_functions.mjs",
+    "rust": "navsym_functions.rs",
+    "fortran": "navsym_functions.f90",
+    "julia": "NavsymFunctions.jl",
+    "octave": "{name}.m",
+    "batch": "navsym_batch.c",
+}
 
 
 def corrupted(text: str, start: int, end: int) -> Iterator[tuple[str, str]]:

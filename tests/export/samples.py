@@ -35,9 +35,13 @@ def lag() -> Equation:
 
 def holes() -> Equation:
     """The coefficients of a rotation vector and of a Markov process: every one has a hole at zero that is none."""
-    other = [2 * sp.sin(w / 2) * sp.cos(w / 2) / w, 2 * sp.sin(w / 2) ** 2 / w**2,
-             (w - 2 * sp.sin(w / 2) * sp.cos(w / 2)) / w**3, (1 - sp.exp(-w / 2) ** 2) / w,
-             (sp.exp(w) - sp.exp(-w)) / (2 * w)]  # fmt: skip
+    other = [
+        2 * sp.sin(w / 2) * sp.cos(w / 2) / w,
+        2 * sp.sin(w / 2) ** 2 / w**2,
+        (w - 2 * sp.sin(w / 2) * sp.cos(w / 2)) / w**3,
+        (1 - sp.exp(-w / 2) ** 2) / w,
+        (sp.exp(w) - sp.exp(-w)) / (2 * w),
+    ]
     printed = [sp.sin(w) / w, (1 - sp.cos(w)) / w**2, (w - sp.sin(w)) / w**3, (1 - sp.exp(-w)) / w, sp.sinh(w) / w]
     return Equation(sp.Matrix(printed), sp.Matrix(other), {w: (-3, 3)})
 
@@ -46,19 +50,13 @@ def rotation() -> Equation:
     c, s = sp.cos(lam), sp.sin(lam)
     printed = sp.Matrix([[c, s / beta], [-beta * s, c]])
     half = lam / 2
-    other = sp.Matrix(
-        [[1 - 2 * sp.sin(half) ** 2, s / beta], [-beta * s, sp.cos(half) ** 2 - sp.sin(half) ** 2]]
-    )
+    other = sp.Matrix([[1 - 2 * sp.sin(half) ** 2, s / beta], [-beta * s, sp.cos(half) ** 2 - sp.sin(half) ** 2]])
     return Equation(printed, other, {lam: (-3, 3), beta: (sp.Rational(1, 10), 2)})
 
 
 @cache
 def functions(real: str = "double") -> tuple[ExportedFunction, ...]:
-    regimes = (
-        beyond.drift_holds_to_two_thirds_of_pi,
-        beyond.drift_with_two_instants,
-        beyond.drift_with_half_a_period,
-    )
+    regimes = (beyond.drift_holds_to_two_thirds_of_pi, beyond.drift_with_two_instants, beyond.drift_with_half_a_period)
     return (
         function_of([of_claim(weights.WEIGHTS[8])], real=real),
         function_of([of_claim(weights.tilt_estimate_corrected)], real=real),

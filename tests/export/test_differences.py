@@ -49,9 +49,7 @@ def test_exports_are_compared_by_their_formulas(capsys, tmp_path: Path) -> None:
     assert status == 1 and found["differences"][0]["status"] == "DIFFERENT"
 
 
-@pytest.mark.parametrize(
-    "words", [("x +", "x"), ("", "x"), ("x", "missing.toml"), ("x", "x", "--range", "x=1")]
-)
+@pytest.mark.parametrize("words", [("x +", "x"), ("", "x"), ("x", "missing.toml"), ("x", "x", "--range", "x=1")])
 def test_bad_input_is_bad_input(capsys, words: tuple[str, ...]) -> None:
     status, found = document(capsys, *words)
     assert status == 2 and "expected" in found["error"]["message"]

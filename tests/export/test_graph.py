@@ -57,9 +57,7 @@ def test_a_quotient_of_positive_numbers_keeps_its_division() -> None:
 
 
 def test_a_factored_form_is_the_same_function() -> None:
-    formula = (sp.sin(T / 2) - sp.sin(T)) / (
-        sp.sin(T) * (sp.cos(T / 2) - 1) - sp.sin(T / 2) * (sp.cos(T) - 1)
-    )
+    formula = (sp.sin(T / 2) - sp.sin(T)) / (sp.sin(T) * (sp.cos(T / 2) - 1) - sp.sin(T / 2) * (sp.cos(T) - 1))
     nicer = factored(formula)
     assert nicer is not None
     assert reduce_to_zero(formula - nicer).zero

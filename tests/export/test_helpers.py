@@ -33,20 +33,38 @@ x, a, b, tau = sp.symbols("x a b tau", real=True)
 REALS = ("double", "float")
 KINDS = {"double": np.float64, "float": np.float32}
 PARTS = [
-    Part(sp.sin(T), 1), Part(expm1(T), 1), Part(sp.sinh(T), 1), Part(T - sp.sin(T), 3), Part(T - sp.sin(T), 0),
-    Part(expm1(T) - T, 2), Part(sp.log(1 + T), 1), Part(sp.sqrt(1 + T) - 1, 1), Part(sp.atan(T), 1),
-    Part(sp.asin(T), 1), Part(sp.tanh(T), 1), Part(T * sp.cosh(T) - sp.sinh(T), 3),
-]  # fmt: skip
+    Part(sp.sin(T), 1),
+    Part(expm1(T), 1),
+    Part(sp.sinh(T), 1),
+    Part(T - sp.sin(T), 3),
+    Part(T - sp.sin(T), 0),
+    Part(expm1(T) - T, 2),
+    Part(sp.log(1 + T), 1),
+    Part(sp.sqrt(1 + T) - 1, 1),
+    Part(sp.atan(T), 1),
+    Part(sp.asin(T), 1),
+    Part(sp.tanh(T), 1),
+    Part(T * sp.cosh(T) - sp.sinh(T), 3),
+]
 ids = pytest.mark.parametrize("part", PARTS, ids=lambda p: f"{p.formula} over {p.divided}")
 #: Formula -> value at the hole (x = 0 unless a place is given).
 FORMULAS = {
-    sp.log(1 + x) / x: 1, (sp.sqrt(1 + x) - 1) / x: sp.Rational(1, 2), sp.atan(x) / x: 1, sp.tan(x) / x: 1,
-    sp.asin(x / 4) / x: sp.Rational(1, 4), sp.tanh(x) / x: 1, (1 - sp.cos(x)) / x: 0, x / sp.sin(x): 1,
-    (sp.exp(x) - 1 - x) / x**2: sp.Rational(1, 2), 1 / x - 1 / (sp.exp(x) - 1): sp.Rational(1, 2),
-    sp.cosh(x) / sp.sinh(x) - 1 / x: 0, sp.cot(x) - 1 / x: 0, (x - sp.sin(x)) / x**3: sp.Rational(1, 6),
+    sp.log(1 + x) / x: 1,
+    (sp.sqrt(1 + x) - 1) / x: sp.Rational(1, 2),
+    sp.atan(x) / x: 1,
+    sp.tan(x) / x: 1,
+    sp.asin(x / 4) / x: sp.Rational(1, 4),
+    sp.tanh(x) / x: 1,
+    (1 - sp.cos(x)) / x: 0,
+    x / sp.sin(x): 1,
+    (sp.exp(x) - 1 - x) / x**2: sp.Rational(1, 2),
+    1 / x - 1 / (sp.exp(x) - 1): sp.Rational(1, 2),
+    sp.cosh(x) / sp.sinh(x) - 1 / x: 0,
+    sp.cot(x) - 1 / x: 0,
+    (x - sp.sin(x)) / x**3: sp.Rational(1, 6),
     1 / x**2 - (1 + sp.cos(x)) / (2 * x * sp.sin(x)): sp.Rational(1, 12),
     ((1 + x) ** sp.Rational(2, 3) - 1) / x: sp.Rational(2, 3),
-}  # fmt: skip
+}
 
 
 def value(part: Part, t: arb) -> arb:
@@ -72,22 +90,35 @@ def test_a_quotient_that_has_a_value_at_zero_is_written_with_one(formula: sp.Exp
 
 @pytest.mark.parametrize(
     ("formula", "ranges"),
-    [(sp.log(x) / x, {}), (sp.exp(x) / x, {}), (abs(x) / x, {}), ((sp.exp(1 + x) - sp.E) / x, {}), (sp.sqrt(x) / x, {}),
-     (sp.sin(x) / x, {x: (1, 2)}), (sp.sin(x) + x**2, {}), ((x + 1) ** 2 / (x + 2), {}), (sp.sin(x + a) / x, {})],
+    [
+        (sp.log(x) / x, {}),
+        (sp.exp(x) / x, {}),
+        (abs(x) / x, {}),
+        ((sp.exp(1 + x) - sp.E) / x, {}),
+        (sp.sqrt(x) / x, {}),
+        (sp.sin(x) / x, {x: (1, 2)}),
+        (sp.sin(x) + x**2, {}),
+        ((x + 1) ** 2 / (x + 2), {}),
+        (sp.sin(x + a) / x, {}),
+    ],
     ids=str,
-)  # fmt: skip
+)
 def test_what_has_no_such_hole_is_left_as_it_is(formula: sp.Expr, ranges: dict) -> None:
     assert safe(formula, ranges) == formula
 
 
 @pytest.mark.parametrize(
     ("formula", "place", "limit"),
-    [(sp.log(x) / (x - 1), {x: 1}, 1), (sp.sin(x) / (x - sp.pi), {x: sp.pi}, -1),
-     ((sp.sqrt(x) - 1) / (2 * x - 2), {x: 1}, sp.Rational(1, 4)),
-     ((1 - sp.exp(-a * tau)) / a, {a: 0, tau: 3}, 3), (sp.sin(a * x) * sp.sin(b * x) / x**2, {x: 0, a: 2, b: 3}, 6),
-     ((sp.exp(-a * tau) - 1 + a * tau) / a**2, {a: 0, tau: 3}, sp.Rational(9, 2))],
+    [
+        (sp.log(x) / (x - 1), {x: 1}, 1),
+        (sp.sin(x) / (x - sp.pi), {x: sp.pi}, -1),
+        ((sp.sqrt(x) - 1) / (2 * x - 2), {x: 1}, sp.Rational(1, 4)),
+        ((1 - sp.exp(-a * tau)) / a, {a: 0, tau: 3}, 3),
+        (sp.sin(a * x) * sp.sin(b * x) / x**2, {x: 0, a: 2, b: 3}, 6),
+        ((sp.exp(-a * tau) - 1 + a * tau) / a**2, {a: 0, tau: 3}, sp.Rational(9, 2)),
+    ],
     ids=str,
-)  # fmt: skip
+)
 def test_holes_elsewhere_and_along_a_product_of_symbols(formula: sp.Expr, place: dict, limit: sp.Expr) -> None:
     form = safe(formula, {})
     symbols = sorted(formula.free_symbols, key=str)
@@ -120,8 +151,10 @@ def test_the_polynomials_of_sine_are_those_of_the_textbook() -> None:
     for part, first in ((Part(sp.sin(T), 1), 1), (Part(T - sp.sin(T), 3), 3)):
         found = continuation(part, "double").polynomial
         sign = 1 if first == 1 else -1
-        expected = [sp.Rational(sign * (-1) ** ((j + first - 1) // 2), sp.factorial(j + first)) if j % 2 == 0 else 0
-                    for j in range(len(found))]  # fmt: skip
+        expected = [
+            sp.Rational(sign * (-1) ** ((j + first - 1) // 2), sp.factorial(j + first)) if j % 2 == 0 else 0
+            for j in range(len(found))
+        ]
         assert [sp.Rational(int(c.p), int(c.q)) for c in found] == expected
 
 
@@ -131,9 +164,23 @@ def test_the_polynomials_of_sine_are_those_of_the_textbook() -> None:
 def computed(graph: Graph, t: float, real: str) -> float:
     """The operations of a branch in numbers of the type."""
     kind, done = KINDS[real], []
-    functions = {"expm1": np.expm1, "sin": np.sin, "cos": np.cos, "log": np.log, "sqrt": np.sqrt, "atan": np.arctan,
-                 "asin": np.arcsin, "tanh": np.tanh, "sinh": np.sinh, "cosh": np.cosh, "neg": np.negative,
-                 "add": np.add, "sub": np.subtract, "mul": np.multiply, "div": np.divide}  # fmt: skip
+    functions = {
+        "expm1": np.expm1,
+        "sin": np.sin,
+        "cos": np.cos,
+        "log": np.log,
+        "sqrt": np.sqrt,
+        "atan": np.arctan,
+        "asin": np.arcsin,
+        "tanh": np.tanh,
+        "sinh": np.sinh,
+        "cosh": np.cosh,
+        "neg": np.negative,
+        "add": np.add,
+        "sub": np.subtract,
+        "mul": np.multiply,
+        "div": np.divide,
+    }
     for node, literal in zip(graph.nodes, literals_of(graph, ARITHMETICS[real]), strict=True):
         given = {"input": t, "const": literal}
         done.append(kind(given[node.op]) if node.op in given else functions[node.op](*(done[k] for k in node.args)))

@@ -31,15 +31,32 @@ def exported(folder: Path, symbols: str, left: str, right: str, *words: str) -> 
 @pytest.mark.parametrize(
     "names",
     [
-        ("double", "int"), ("lambda", "E"), ("T", "t"),
-        *(pytest.param(pair, marks=pytest.mark.slow) for pair in (
-            ("I", "def"), ("x_", "x"), ("status", "r0"), ("t0", "nv_k"), ("value", "NaN"), ("self", "this"),
-            ("function", "numbers"), ("navsym_sinc", "Math"), ("M_PI", "DBL_MAX"),
-            ("np", "shape"), ("left", "every"), ("here", "Number"), ("errno", "r"), ("Ok", "w"),
-            ("bad", "in"), ("n" * 64, "n" * 63 + "m"),
-        )),
+        ("double", "int"),
+        ("lambda", "E"),
+        ("T", "t"),
+        *(
+            pytest.param(pair, marks=pytest.mark.slow)
+            for pair in (
+                ("I", "def"),
+                ("x_", "x"),
+                ("status", "r0"),
+                ("t0", "nv_k"),
+                ("value", "NaN"),
+                ("self", "this"),
+                ("function", "numbers"),
+                ("navsym_sinc", "Math"),
+                ("M_PI", "DBL_MAX"),
+                ("np", "shape"),
+                ("left", "every"),
+                ("here", "Number"),
+                ("errno", "r"),
+                ("Ok", "w"),
+                ("bad", "in"),
+                ("n" * 64, "n" * 63 + "m"),
+            )
+        ),
     ],
-)  # fmt: skip
+)
 def test_any_names_become_arguments(names: tuple[str, str], tmp_path: Path, capsys) -> None:
     a, b = names
     status, _ = exported(tmp_path, f'{a} = ["0", "2"]\n{b} = "real"', f"{a}*{b} + 2*{b}", f"({a} + 2)*{b}")
@@ -50,8 +67,26 @@ def test_any_names_become_arguments(names: tuple[str, str], tmp_path: Path, caps
 
 @pytest.mark.slow
 def test_names_of_every_language_become_arguments_in_every_language(tmp_path: Path, capsys) -> None:
-    names = ["M_PI", "DBL_MAX", "np", "shape", "left", "every", "here", "Number", "errno", "r", "Ok", "w", "bad",
-             "main", "printf", "if", "n" * 64, "n" * 63 + "m"]  # fmt: skip
+    names = [
+        "M_PI",
+        "DBL_MAX",
+        "np",
+        "shape",
+        "left",
+        "every",
+        "here",
+        "Number",
+        "errno",
+        "r",
+        "Ok",
+        "w",
+        "bad",
+        "main",
+        "printf",
+        "if",
+        "n" * 64,
+        "n" * 63 + "m",
+    ]
     symbols = "\n".join(f'"{name}" = ["0", "2"]' for name in names)
     left, right = " + ".join(f"2*{n}" for n in names), f"2*({' + '.join(names)})"
     status, _ = exported(tmp_path, symbols, left, right, "--to", ",".join(EVERY))

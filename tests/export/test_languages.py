@@ -36,11 +36,7 @@ def test_all_samples_stay_inside_their_enclosures(samples, language: str, tmp_pa
 
 @pytest.mark.parametrize(
     "language",
-    [
-        pytest.param(n, marks=[] if n == "c" else pytest.mark.slow)
-        for n in HERE
-        if "float" in TARGETS[n].reals
-    ],
+    [pytest.param(n, marks=[] if n == "c" else pytest.mark.slow) for n in HERE if "float" in TARGETS[n].reals],
 )
 def test_single_precision_stays_inside_its_enclosures(samples, language: str, tmp_path: Path) -> None:
     outcome = run_target(exported(samples.functions("float"), language, tmp_path), TARGETS[language])

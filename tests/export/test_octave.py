@@ -63,8 +63,10 @@ def test_a_program_keeps_its_state_in_a_structure_and_a_refused_step_leaves_it(p
     series = [0.5, float("nan"), -1.25, 3.0]
     lines = ["[s, state] = trajectory_filter_init([0 0 0], [4 0 0 3 0 2]);"]
     for z in series:
-        lines += [f"[s, state] = trajectory_filter_step(state, [0.25 0.125 0.0625], 0.5, {z});".replace("nan", "NaN"),
-                  "printf('%d', s); printf(' %.17g', state.f, state.P); printf('\\n');"]  # fmt: skip
+        lines += [
+            f"[s, state] = trajectory_filter_step(state, [0.25 0.125 0.0625], 0.5, {z});".replace("nan", "NaN"),
+            "printf('%d', s); printf(' %.17g', state.f, state.P); printf('\\n');",
+        ]
     found = [row.split() for row in said(tmp_path, list(programs.functions("trajectory-filter")), lines)]
     made = programs.module("trajectory-filter").trajectory_filter([0.0] * 3, [4.0, 0.0, 0.0, 3.0, 0.0, 2.0])
     for z, row in zip(series, found, strict=True):
@@ -79,11 +81,16 @@ def test_a_program_keeps_its_state_in_a_structure_and_a_refused_step_leaves_it(p
 @pytest.mark.parametrize(
     ("formula", "at"),
     [
-        (sp.Abs(sp.sqrt(x)), -1.0), (sp.Abs(sp.log(x)), -3.0), (sp.acos(x) + 1, 1.5),
-        (sp.asin(x) ** 2, -1.5), (sp.Abs(x ** sp.Rational(1, 3)), -8.0), (sp.Abs(x**y), -8.0), (1 / x, 0.0),
+        (sp.Abs(sp.sqrt(x)), -1.0),
+        (sp.Abs(sp.log(x)), -3.0),
+        (sp.acos(x) + 1, 1.5),
+        (sp.asin(x) ** 2, -1.5),
+        (sp.Abs(x ** sp.Rational(1, 3)), -8.0),
+        (sp.Abs(x**y), -8.0),
+        (1 / x, 0.0),
         (sp.Max(sp.sqrt(x), 1), -1.0),
     ],
-)  # fmt: skip
+)
 def test_what_is_not_real_is_a_status_and_never_a_complex_number(samples, formula, at: float, tmp_path: Path) -> None:
     """abs(sqrt(-1)) is 1 in Octave, which is no value of the formula."""
     function = function_of([samples.of_statement("real", Equation(formula, formula))])
@@ -98,8 +105,29 @@ def test_every_function_that_leaves_the_real_numbers_is_one_of_ours() -> None:
 
 
 def test_names_of_matlab_become_arguments_and_functions_of_other_names(samples, tmp_path: Path) -> None:
-    names = ["arguments", "end", "methods", "persistent", "realmax", "NaN", "Inf", "all", "isfinite", "i", "e", "gamma",
-             "nargin", "varargin", "ans", "eps", "zeros", "endfunction", "spmd", "otherwise", "classdef"]  # fmt: skip
+    names = [
+        "arguments",
+        "end",
+        "methods",
+        "persistent",
+        "realmax",
+        "NaN",
+        "Inf",
+        "all",
+        "isfinite",
+        "i",
+        "e",
+        "gamma",
+        "nargin",
+        "varargin",
+        "ans",
+        "eps",
+        "zeros",
+        "endfunction",
+        "spmd",
+        "otherwise",
+        "classdef",
+    ]
     symbols = [sp.Symbol(name, real=True) for name in names]
     left, right = sum(k * s for k, s in enumerate(symbols, 1)), sum(-k * -s for k, s in enumerate(symbols, 1))
     function = function_of([samples.of_statement("words", Equation(left, right))])

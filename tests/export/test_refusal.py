@@ -44,15 +44,9 @@ def test_a_user_formula_that_holds_is_exported_and_checked(capsys, tmp_path: Pat
     text = '[symbols]\nlambda = "real"\nT = ["0", "2"]\nt = ["0", "2"]\n[[claim]]\nid = "double"\n'
     file.write_text(f'{text}left = "sin(2*lambda)*T*t"\nright = "2*t*T*sin(lambda)*cos(lambda)"\n')
     out = tmp_path / "out"
-    assert (
-        run(["export", f"{file}:double", "--to", "c,python", "--out", str(out), "--vectors", "12", "--json"])
-        == 0
-    )
+    assert run(["export", f"{file}:double", "--to", "c,python", "--out", str(out), "--vectors", "12", "--json"]) == 0
     document = json.loads(capsys.readouterr().out)
-    assert {row["language"]: row["status"] for row in document["languages"]} == {
-        "c": "verified",
-        "python": "verified",
-    }
+    assert {row["language"]: row["status"] for row in document["languages"]} == {"c": "verified", "python": "verified"}
     assert run(["check", str(out), "--json"]) == 0
     rows = json.loads(capsys.readouterr().out)["checked"]
     assert rows and all(row["status"] == "ACCEPTED" for row in rows)
@@ -64,10 +58,7 @@ def test_open_and_confirmed_claims_are_refused() -> None:
         material("m:1", TRUE, Verdict(OPEN, "none", evidence="not decided"))
     with pytest.raises(RefusedError, match="allow-confirmed"):
         material("m:1", TRUE, Verdict(CONFIRMED, "sampling"))
-    assert (
-        material("m:1", TRUE, Verdict(CONFIRMED, "sampling"), allow_confirmed=True).source.status
-        == "CONFIRMED"
-    )
+    assert material("m:1", TRUE, Verdict(CONFIRMED, "sampling"), allow_confirmed=True).source.status == "CONFIRMED"
 
 
 def test_an_inequality_and_a_fact_have_nothing_to_compute() -> None:
@@ -128,21 +119,7 @@ def test_links_are_not_followed(tmp_path: Path) -> None:
 
 def test_a_changed_file_is_noticed(capsys, tmp_path: Path) -> None:
     out = tmp_path / "e"
-    assert (
-        run(
-            [
-                "export",
-                "guaranteed_velocity:4.12.Phi31",
-                "--to",
-                "python",
-                "--out",
-                str(out),
-                "--vectors",
-                "8",
-            ]
-        )
-        == 0
-    )
+    assert run(["export", "guaranteed_velocity:4.12.Phi31", "--to", "python", "--out", str(out), "--vectors", "8"]) == 0
     capsys.readouterr()
     source = out / "python" / "navsym_functions.py"
     source.write_text(source.read_text() + "\n# touched\n")
@@ -248,9 +225,7 @@ def test_a_comment_cannot_be_closed_by_a_title(samples) -> None:
 @pytest.mark.parametrize("license_", ["", "MIT\n*/", "x" * 100, "Ünicode"])
 def test_a_licence_is_an_identifier(samples, license_: str) -> None:
     with pytest.raises(DomainError, match="SPDX"):
-        files_of(
-            [samples.by_name("versine")], Order(tuple(chosen(["c"], "double")), license=license_, count=4)
-        )
+        files_of([samples.by_name("versine")], Order(tuple(chosen(["c"], "double")), license=license_, count=4))
 
 
 @pytest.mark.parametrize(

@@ -27,7 +27,11 @@ LANGUAGES = "c,cpp,python,javascript,rust,fortran,julia,octave,casadi,batch"
 def navsym(words: list[str], folder: Path, seed: str) -> None:
     environment = os.environ | {"PYTHONHASHSEED": seed, "PYTHONPATH": str(ROOT)}
     done = subprocess.run(
-        [sys.executable, "-m", "navsym", *words], cwd=folder, env=environment, capture_output=True, text=True,
+        [sys.executable, "-m", "navsym", *words],
+        cwd=folder,
+        env=environment,
+        capture_output=True,
+        text=True,
         timeout=600,
     )
     assert done.returncode == 0, done.stderr

@@ -64,9 +64,11 @@ def test_nothing_is_known_of_what_underflows_or_overflows() -> None:
     tiny, large = bands.exactly(np.array([1e-200])), bands.exactly(np.array([1e200]))
     with np.errstate(all="ignore"):
         for found in (
-            bands.multiplied(tiny, tiny), bands.multiplied(large, large), bands.divided(tiny, large),
+            bands.multiplied(tiny, tiny),
+            bands.multiplied(large, large),
+            bands.divided(tiny, large),
             bands.divided(large, bands.exactly(np.zeros(1))),
-        ):  # fmt: skip
+        ):
             assert np.isinf(found.error).all()
 
 
@@ -97,9 +99,13 @@ def held_to_the_balls(function, count: int = 120) -> int:
             values = twin.formula_values(piece, columns)
             bounds, doubt = twin.rounding_bounds(piece, columns, function.arithmetic)
         for k in np.flatnonzero(~np.broadcast_to(doubt, len(here))):
-            settled += agreed(piece, here[k], function.arithmetic, [at(v, k, len(here)) for v in values], [
-                float(np.broadcast_to(b, len(here))[k]) for b in bounds
-            ])  # fmt: skip
+            settled += agreed(
+                piece,
+                here[k],
+                function.arithmetic,
+                [at(v, k, len(here)) for v in values],
+                [float(np.broadcast_to(b, len(here))[k]) for b in bounds],
+            )
     return settled
 
 

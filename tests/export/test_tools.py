@@ -44,8 +44,10 @@ def test_misra_findings_are_deviations_that_are_written_down(programs, tmp_path:
 def test_a_part_with_a_hole_in_two_sources_breaks_no_other_rule(samples, tmp_path: Path) -> None:
     a = sp.Symbol("a", real=True)
     quotient = sp.log(1 + a) / a
-    functions = [function_of([samples.of_statement(name, Equation(form, form, {a: (0, 1)}))])
-                 for name, form in (("one", quotient), ("two", 2 + quotient))]  # fmt: skip
+    functions = [
+        function_of([samples.of_statement(name, Equation(form, form, {a: (0, 1)}))])
+        for name, form in (("one", quotient), ("two", 2 + quotient))
+    ]
     said = tools.misra(written(functions, "c", tmp_path))
     assert said.status == "passed" and "5.9" in said.counts, said.why
 

@@ -37,9 +37,11 @@ def inside(value, low, high):
 
 def wave(function):
     """sin or cos, and zero where nothing but rounding is left of it: sin(pi) has no sign."""
+
     def value_of(x):
         y = function(x)
         return mpmath.mpf(0) if abs(y) < (1 + abs(x)) * mpmath.mpf(10) ** (12 - mpmath.mp.dps) and x != 0 else y
+
     return value_of
 
 
@@ -64,13 +66,23 @@ def power(base, exponent, whole):
 
 
 FUNCTIONS = {
-    "sin": wave(mpmath.sin), "cos": wave(mpmath.cos), "exp": mpmath.exp, "abs": abs, "atan": mpmath.atan,
-    "sinh": mpmath.sinh, "cosh": mpmath.cosh, "tanh": mpmath.tanh,
-    "tan": lambda x: divided(mpmath.sin(x), mpmath.cos(x)), "cot": lambda x: divided(mpmath.cos(x), mpmath.sin(x)),
-    "sec": lambda x: divided(mpmath.mpf(1), mpmath.cos(x)), "csc": lambda x: divided(mpmath.mpf(1), mpmath.sin(x)),
-    "log": lambda x: mpmath.log(positive(x)), "sqrt": lambda x: power(x, mpmath.mpf(1) / 2, None),
-    "asin": lambda x: mpmath.asin(inside(x, -1, 1)), "acos": lambda x: mpmath.acos(inside(x, -1, 1)),
-}  # fmt: skip
+    "sin": wave(mpmath.sin),
+    "cos": wave(mpmath.cos),
+    "exp": mpmath.exp,
+    "abs": abs,
+    "atan": mpmath.atan,
+    "sinh": mpmath.sinh,
+    "cosh": mpmath.cosh,
+    "tanh": mpmath.tanh,
+    "tan": lambda x: divided(mpmath.sin(x), mpmath.cos(x)),
+    "cot": lambda x: divided(mpmath.cos(x), mpmath.sin(x)),
+    "sec": lambda x: divided(mpmath.mpf(1), mpmath.cos(x)),
+    "csc": lambda x: divided(mpmath.mpf(1), mpmath.sin(x)),
+    "log": lambda x: mpmath.log(positive(x)),
+    "sqrt": lambda x: power(x, mpmath.mpf(1) / 2, None),
+    "asin": lambda x: mpmath.asin(inside(x, -1, 1)),
+    "acos": lambda x: mpmath.acos(inside(x, -1, 1)),
+}
 
 
 NAME = re.compile(r"(?<![0-9A-Za-z_.])[A-Za-z][A-Za-z0-9_]*")
@@ -80,8 +92,10 @@ KNOWN = {*FUNCTIONS, "atan2", "pi"}
 def value(text, point, digits=DIGITS):
     """The number that the text means at a point (name -> text or number)."""
     with mpmath.workdps(digits):
-        known = {name: entry if isinstance(entry, mpmath.mpf) else value(str(entry), {}, digits)
-                 for name, entry in point.items()}  # fmt: skip
+        known = {
+            name: entry if isinstance(entry, mpmath.mpf) else value(str(entry), {}, digits)
+            for name, entry in point.items()
+        }
         return real(evaluate(tree_of(text), known))
 
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-IDENTITIES = [line.split(" == ") for line in """\
+IDENTITIES = [
+    line.split(" == ")
+    for line in """\
 sqrt({u}**2) == {u}
 sqrt({u}**2) == abs({u})
 ({u}**3)**(1/3) == {u}
@@ -61,12 +63,26 @@ tanh({u}) == 1
 sqrt(sqrt({u}**2) - {u}) == 0
 sec({u})**2 - tan({u})**2 == 1
 sin(2*atan2({u}, {v})) == 2*{u}*{v}/({u}**2 + {v}**2)
-cos(atan2({u}, {v})/2) == sqrt(1/2 + {v}/(2*sqrt({u}**2 + {v}**2)))""".splitlines()]
+cos(atan2({u}, {v})/2) == sqrt(1/2 + {v}/(2*sqrt({u}**2 + {v}**2)))""".splitlines()
+]
 ARGUMENTS = "x; y; -x; x + y; 2*x; x - 1; x*y; x**2; cos(x); sin(x); 1 - x; x/2; x - y; abs(x)".split("; ")
 DECLARED = [
-    "real", "positive", "nonnegative", "nonzero", ["0", "1"], ["-1", "1"], ["-1", "0"], ["0", "2*pi"], ["0", "pi/2"],
-    ["-pi/2", "pi/2"], ["1", "2"], ["0", "1/10**30"], ["-2", "-1/10**20"], ["pi/2", "3*pi/2"], ["1/3", "1"],
-]  # fmt: skip
+    "real",
+    "positive",
+    "nonnegative",
+    "nonzero",
+    ["0", "1"],
+    ["-1", "1"],
+    ["-1", "0"],
+    ["0", "2*pi"],
+    ["0", "pi/2"],
+    ["-pi/2", "pi/2"],
+    ["1", "2"],
+    ["0", "1/10**30"],
+    ["-2", "-1/10**20"],
+    ["pi/2", "3*pi/2"],
+    ["1/3", "1"],
+]
 RELATIONS = ["=", "=", "=", "!=", "<", "<=", ">", ">="]
 
 

@@ -24,9 +24,13 @@ DIGITS = 500  # 1 - cos(x**2) of an x of 1e-31 loses a quarter of them
 ZERO = mpmath.mpf(10) ** -150  # of the larger side: x**4 of an x of 1e-30 is not zero,
 LEAST = mpmath.mpf(10) ** -200  # and sin(pi) is
 FAILS = {
-    "=": lambda d: abs(d) > ZERO, "!=": lambda d: abs(d) <= ZERO, "<": lambda d: d >= -ZERO, "<=": lambda d: d > ZERO,
-    ">": lambda d: d <= ZERO, ">=": lambda d: d < -ZERO,
-}  # fmt: skip
+    "=": lambda d: abs(d) > ZERO,
+    "!=": lambda d: abs(d) <= ZERO,
+    "<": lambda d: d >= -ZERO,
+    "<=": lambda d: d > ZERO,
+    ">": lambda d: d <= ZERO,
+    ">=": lambda d: d < -ZERO,
+}
 #: At a random point nothing is to be told of what is exactly zero: only what fails by a margin denies a proof.
 DENIES = {**FAILS, "!=": lambda d: False, "<": lambda d: d > ZERO, ">": lambda d: d < -ZERO}
 

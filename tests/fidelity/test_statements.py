@@ -138,9 +138,13 @@ def symbols_of(statement):
 
 
 DENIED = {
-    "=": lambda d, e: abs(d) > e, "!=": lambda d, e: False, "<": lambda d, e: d > e, "<=": lambda d, e: d > e,
-    ">": lambda d, e: d < -e, ">=": lambda d, e: d < -e,
-}  # fmt: skip
+    "=": lambda d, e: abs(d) > e,
+    "!=": lambda d, e: False,
+    "<": lambda d, e: d > e,
+    "<=": lambda d, e: d > e,
+    ">": lambda d, e: d < -e,
+    ">=": lambda d, e: d < -e,
+}
 
 
 @pytest.mark.parametrize("paper", PAPERS)

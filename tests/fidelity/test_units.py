@@ -15,12 +15,17 @@ A_NUMBER = "a number stands beside a quantity without unit, so that the other si
 CANCELLED = "what cancels on the printed side does not occur on the derived one, or there as a product only"
 #: Claims whose printed side allows fewer units than the derived one, and why.
 NARROWER = {
-    "guaranteed_velocity:2.D.never-exceeded": A_NUMBER, "joint_correction:1.two_stage.small": A_NUMBER,
-    "joint_correction:2.scale.period": A_NUMBER, "terrain_search:9.small": A_NUMBER,
-    "terrain_search:10.equal.sum": A_NUMBER, "joint_correction:1.13.model": CANCELLED,
-    "joint_correction:3.bias.velocity": CANCELLED, "multistructure:8.every": CANCELLED,
-    "multistructure:10.every": CANCELLED, "multistructure:17.every": CANCELLED,
-}  # fmt: skip
+    "guaranteed_velocity:2.D.never-exceeded": A_NUMBER,
+    "joint_correction:1.two_stage.small": A_NUMBER,
+    "joint_correction:2.scale.period": A_NUMBER,
+    "terrain_search:9.small": A_NUMBER,
+    "terrain_search:10.equal.sum": A_NUMBER,
+    "joint_correction:1.13.model": CANCELLED,
+    "joint_correction:3.bias.velocity": CANCELLED,
+    "multistructure:8.every": CANCELLED,
+    "multistructure:10.every": CANCELLED,
+    "multistructure:17.every": CANCELLED,
+}
 
 
 def held(paper):
@@ -47,10 +52,17 @@ def test_what_is_printed_allows_the_units_that_its_derivation_allows(paper):
     assert {name for name, statement in compared if narrowed(statement)} == expected
 
 
-@pytest.mark.parametrize(("paper", "at_least"), [
-    ("alpha_beta_filter", (6, 9)), ("guaranteed_velocity", (16, 53)), ("joint_correction", (0, 22)),
-    ("multistructure", (23, 7)), ("terrain_search", (56, 4)), ("trajectory", (45, 12)),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("paper", "at_least"),
+    [
+        ("alpha_beta_filter", (6, 9)),
+        ("guaranteed_velocity", (16, 53)),
+        ("joint_correction", (0, 22)),
+        ("multistructure", (23, 7)),
+        ("terrain_search", (56, 4)),
+        ("trajectory", (45, 12)),
+    ],
+)
 def test_the_claims_that_units_say_something_about_are_counted(paper, at_least):
     """Those with a unit of the tables, and those whose symbols can have none at all; the rest allows any of many."""
     all_held = list(held(paper))

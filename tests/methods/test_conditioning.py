@@ -12,11 +12,7 @@ from hypothesis import strategies as st
 
 from navsym.errors import DomainError, NotEstimableError, ShapeError, TooLargeError
 from navsym.methods.conditioning.enclosure import Enclosure, scientific
-from navsym.methods.conditioning.exact import (
-    condition_by_polynomial,
-    roots_above,
-    squared_singular_polynomial,
-)
+from navsym.methods.conditioning.exact import condition_by_polynomial, roots_above, squared_singular_polynomial
 from navsym.methods.conditioning.numbers import condition_number, condition_numbers, document
 from navsym.methods.conditioning.perron import condition_by_signs
 from navsym.methods.conditioning.scaling import best_scaling
@@ -152,12 +148,9 @@ def test_the_best_scaling_beats_unit_columns_and_is_stationary(n):
             scale = [f * (factor if i == j else 1) for i, f in enumerate(found.factors)]
             norms = np.linalg.norm(np.array(power_rows(n), dtype=float), axis=0)
             moved = [
-                [x * s / Fraction(float(l)) for x, s, l in zip(row, scale, norms, strict=True)]
-                for row in power_rows(n)
+                [x * s / Fraction(float(l)) for x, s, l in zip(row, scale, norms, strict=True)] for row in power_rows(n)
             ]
-            assert condition_number(moved, digits=15).upper >= found.enclosure.lower * (
-                1 - Fraction(1, 10**8)
-            )
+            assert condition_number(moved, digits=15).upper >= found.enclosure.lower * (1 - Fraction(1, 10**8))
 
 
 def test_unit_columns_are_worse_than_none_in_the_radius_channel():

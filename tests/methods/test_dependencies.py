@@ -90,7 +90,8 @@ CHANGES = {
         "def w(f):\n @functools.wraps(f)\n def g(): return 2*f()\n return g\n@w\ndef helper(): return sp.Integer(2)",
     ),
     "a function inside if": (
-        "if True:\n def helper(): return sp.Integer(2)", "if True:\n def helper(): return sp.Integer(5)",
+        "if True:\n def helper(): return sp.Integer(2)",
+        "if True:\n def helper(): return sp.Integer(5)",
     ),
     "what is caught": (
         "def helper():\n try: return 1 // 0\n except ZeroDivisionError: return sp.Integer(2)",
@@ -100,7 +101,7 @@ CHANGES = {
         "class A:\n def f(self): return sp.Integer(2)\ndef helper(): return A().f()",
         "class A:\n def f(self): return sp.Integer(5)\ndef helper(): return A().f()",
     ),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("change", CHANGES)
@@ -209,7 +210,11 @@ def test_another_copy_of_an_engine_on_the_path_counts(monkeypatch, tmp_path):
     told = {
         path: subprocess.run(
             [sys.executable, "-c", script],
-            cwd=ROOT, env={"PYTHONPATH": path}, capture_output=True, text=True, timeout=60,
+            cwd=ROOT,
+            env={"PYTHONPATH": path},
+            capture_output=True,
+            text=True,
+            timeout=60,
         ).stdout.strip()
         for path in (str(ROOT), f"{tmp_path}:{ROOT}")
     }
@@ -227,7 +232,11 @@ def test_what_a_claim_reaches_is_told_alike_by_every_process():
         json.loads(
             subprocess.run(
                 [sys.executable, "-c", script],
-                cwd=ROOT, env={"PYTHONHASHSEED": seed}, capture_output=True, check=True, timeout=300,
+                cwd=ROOT,
+                env={"PYTHONHASHSEED": seed},
+                capture_output=True,
+                check=True,
+                timeout=300,
             ).stdout
         )
         for seed in ("1", "2")

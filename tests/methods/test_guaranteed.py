@@ -10,12 +10,7 @@ import sympy as sp
 
 from navsym import checker
 from navsym.errors import DomainError, NavsymError, NotEstimableError, NotFiniteError, ShapeError
-from navsym.methods.guaranteed.compare import (
-    compare,
-    realise,
-    search_correlations,
-    worst_covariance,
-)
+from navsym.methods.guaranteed.compare import compare, realise, search_correlations, worst_covariance
 from navsym.methods.guaranteed.problem import from_file, from_regressors
 from navsym.methods.guaranteed.solver import solve
 from navsym.text.modelfile import model_from
@@ -23,13 +18,14 @@ from navsym.text.modelfile import model_from
 t = sp.Symbol("t", real=True)
 VELOCITY = {
     "model": {
-        "name": "velocity", "states": ["y1", "y2", "y3"],
+        "name": "velocity",
+        "states": ["y1", "y2", "y3"],
         "F": [["0", "-1", "0"], ["0", "0", "1"], ["0", "-1", "0"]],
     },
     "parameters": {"T": ["0", "2*pi"]},
     "measurement": [{"name": "velocity", "h": ["1", "0", "0"], "sigma": "1"}],
     "interval": {"T": "T"},
-}  # fmt: skip
+}
 
 
 def velocity(state, T="pi/2"):
@@ -135,22 +131,34 @@ HARD = {
     "the functional is a value of the regressors inside": ([1, t, t + t**3 / 10**6], sp.pi, R(1, 3)),
     "the functional is a value of the regressors at the end": (
         [e(-t / 2) * cos(2 * t), t * sin(3 * t), t * sin(6 * t), cos(t / 4) - 1, cos(t), t * e(-t / 4)],
-        R(9, 10), R(9, 10),
+        R(9, 10),
+        R(9, 10),
     ),
     "several estimators are optimal and the first contacts lead astray": (
-        [t * e(t / 4), sin(4 * t), t * sin(11 * t / 2), cos(11 * t / 2), e(-3 * t / 2) * cos(9 * t / 2),
-         sin(3 * t / 4)],
-        R(32, 5), [0, 0, 0, 1, 0, 0],
+        [
+            t * e(t / 4),
+            sin(4 * t),
+            t * sin(11 * t / 2),
+            cos(11 * t / 2),
+            e(-3 * t / 2) * cos(9 * t / 2),
+            sin(3 * t / 4),
+        ],
+        R(32, 5),
+        [0, 0, 0, 1, 0, 0],
     ),
     "the dual is unique, its other contacts carry no weight": ([cos(6 * t / 5), t**4, e(t / 8)], R(27, 5), 0),
     "contacts without weight lie where no grid point is": ([sin(t / 5), cos(7 * t / 4) - 1, cos(t)], 7, 0),
     "the same with a dual of no round numbers": (
-        [cos(6 * t / 5) + sp.sqrt(2) * t**4 / 100, sp.pi * cos(6 * t / 5) / 7 + t**4 / 50,
-         sp.sqrt(3) * t**4 / 200 + e(t / 8)],
-        R(27, 5), 0,
+        [
+            cos(6 * t / 5) + sp.sqrt(2) * t**4 / 100,
+            sp.pi * cos(6 * t / 5) / 7 + t**4 / 50,
+            sp.sqrt(3) * t**4 / 200 + e(t / 8),
+        ],
+        R(27, 5),
+        0,
     ),
     "regressors vanish together at the start": ([t * sin(5 * t), t**5, cos(t) - 1], R(83, 10), R(83, 20)),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("case", HARD)

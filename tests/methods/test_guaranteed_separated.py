@@ -26,8 +26,10 @@ THREE = [["-1000", "0", "1"], ["0", "-1", "0"], ["0", "0", "0"]]
 def stiff(F, h, target, T="1"):
     document = {
         "model": {"states": [f"x{k}" for k in range(len(h))], "F": F},
-        "measurement": [{"name": "z", "h": h, "sigma": "1"}], "interval": {"T": T}, "targets": {"c": target},
-    }  # fmt: skip
+        "measurement": [{"name": "z", "h": h, "sigma": "1"}],
+        "interval": {"T": T},
+        "targets": {"c": target},
+    }
     return from_file(model_from(document))
 
 

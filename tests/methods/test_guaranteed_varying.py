@@ -24,8 +24,10 @@ def model(F, h, T, target, pieces=None):
     n = len(h)
     document = {
         "model": {"states": [f"x{k}" for k in range(n)], "F": F},
-        "measurement": [{"name": "z", "h": h, "sigma": "1"}], "interval": {"T": T}, "targets": {"c": target},
-    }  # fmt: skip
+        "measurement": [{"name": "z", "h": h, "sigma": "1"}],
+        "interval": {"T": T},
+        "targets": {"c": target},
+    }
     if pieces is not None:
         del document["model"]["F"]
         document["piece"] = pieces
@@ -102,11 +104,14 @@ def test_a_state_that_no_piece_shows_is_named_and_one_that_an_earlier_piece_show
 
 def test_a_regressor_with_a_kink_proves_no_null_direction():
     """z = |t - 1/2| x1 + (t - 1/2) x2 is blind to (1, 1) before 1/2 only, or after it; both are seen together."""
-    found = model_from({
-        "model": {"states": ["a", "b"], "F": [["t", "0"], ["0", "t"]]},
-        "measurement": [{"name": "z", "h": ["abs(t - 1/2)", "t - 1/2"], "sigma": "1"}],
-        "interval": {"T": "1"}, "targets": {"c": ["1", "0"]},
-    })  # fmt: skip
+    found = model_from(
+        {
+            "model": {"states": ["a", "b"], "F": [["t", "0"], ["0", "t"]]},
+            "measurement": [{"name": "z", "h": ["abs(t - 1/2)", "t - 1/2"], "sigma": "1"}],
+            "interval": {"T": "1"},
+            "targets": {"c": ["1", "0"]},
+        }
+    )
     assert null_directions(found) == []
 
 

@@ -46,8 +46,11 @@ def rational_bank(seed):
 def in_floats(models, transition, start):
     floats = [{key: np.array(value, dtype=float) for key, value in model.items()} for model in models]
     return bank(
-        floats, np.array(transition, dtype=float), np.array(start["mean"], dtype=float),
-        np.array(start["covariance"], dtype=float), np.array(start["probabilities"], dtype=float),
+        floats,
+        np.array(transition, dtype=float),
+        np.array(start["mean"], dtype=float),
+        np.array(start["covariance"], dtype=float),
+        np.array(start["probabilities"], dtype=float),
     )
 
 
@@ -55,8 +58,11 @@ def in_fractions(method, models, transition, start, z):
     rows = [Model(*(model[key].tolist() for key in "FQHR")) for model in models]
     if method == "polygaussian":
         roots = [
-            Leaf(tuple(g if i == j else Fraction(0) for j in range(len(models))), list(start["mean"]),
-                 start["covariance"].tolist())
+            Leaf(
+                tuple(g if i == j else Fraction(0) for j in range(len(models))),
+                list(start["mean"]),
+                start["covariance"].tolist(),
+            )
             for i, g in enumerate(start["probabilities"])
         ]
     else:
@@ -88,15 +94,24 @@ def random_bank(seed, modes=3, states=3, channels=2, **options):
         F /= 1.1 * np.abs(np.linalg.eigvals(F)).max()
         A, C = rng.standard_normal((states, states)), rng.standard_normal((channels, channels))
         R = C @ C.T + 0.2 * np.eye(channels)
-        models.append({
-            "F": F, "Q": 0.1 * A @ A.T, "H": rng.standard_normal((channels, states)),
-            "R": np.diag(np.diag(R)) if options.get("diagonal") else R,
-        })
+        models.append(
+            {
+                "F": F,
+                "Q": 0.1 * A @ A.T,
+                "H": rng.standard_normal((channels, states)),
+                "R": np.diag(np.diag(R)) if options.get("diagonal") else R,
+            }
+        )
     transition = rng.random((modes, modes)) + 0.1
     transition /= transition.sum(axis=1, keepdims=True)
     prior = rng.random(modes) + 0.1
-    return bank(models, options.get("transition", transition), rng.standard_normal(states), 2 * np.eye(states),
-                prior / prior.sum())
+    return bank(
+        models,
+        options.get("transition", transition),
+        rng.standard_normal(states),
+        2 * np.eye(states),
+        prior / prior.sum(),
+    )
 
 
 def series(seed, steps, channels=2):
@@ -142,8 +157,13 @@ def test_without_switching_exact_imm_and_gpb2_are_polygaussian():
 
 def test_modes_that_are_equal_change_nothing():
     models, z = random_bank(4, modes=1), series(4, 6)
-    twins = bank([{"F": models.F[0, 0], "Q": models.Q[0, 0], "H": models.H[0, 0], "R": models.R[0, 0]}] * 3,
-                 np.full((3, 3), 1 / 3), models.means[0], models.covariances[0], [0.2, 0.3, 0.5])
+    twins = bank(
+        [{"F": models.F[0, 0], "Q": models.Q[0, 0], "H": models.H[0, 0], "R": models.R[0, 0]}] * 3,
+        np.full((3, 3), 1 / 3),
+        models.means[0],
+        models.covariances[0],
+        [0.2, 0.3, 0.5],
+    )
     single = run(models, z, "exact")
     for method in METHODS:
         found = run(twins, z, method)
@@ -179,15 +199,22 @@ def test_memoryless_and_markov_differ_from_the_second_step_on():
 def test_compiled_loops_equal_their_twin(method, diagonal):
     steps = 5 if method == "exact" else 40
     models, z = random_bank(7, diagonal=diagonal), series(7, steps)
-    assert_same(run(models, z, method, engine="compiled"), run(models, z, method, engine="numpy"),
-                fields=(*FIELDS, "filters_run", "impossible"))
+    assert_same(
+        run(models, z, method, engine="compiled"),
+        run(models, z, method, engine="numpy"),
+        fields=(*FIELDS, "filters_run", "impossible"),
+    )
 
 
 def test_compiled_loops_take_gaps_and_models_over_time():
     rng, steps = np.random.default_rng(8), 10
     models = [
-        {"F": 0.4 * rng.standard_normal((steps, 2, 2)), "Q": [[0.1, 0.0], [0.0, 0.2]],
-         "H": rng.standard_normal((steps, 2, 2)), "R": [[1.0 + i, 0.0], [0.0, 0.5]]}
+        {
+            "F": 0.4 * rng.standard_normal((steps, 2, 2)),
+            "Q": [[0.1, 0.0], [0.0, 0.2]],
+            "H": rng.standard_normal((steps, 2, 2)),
+            "R": [[1.0 + i, 0.0], [0.0, 0.5]],
+        }
         for i in range(9)
     ]
     rows = rng.random((steps, 9, 9)) + 0.1
@@ -195,8 +222,9 @@ def test_compiled_loops_take_gaps_and_models_over_time():
     z = series(8, steps)
     z[3], z[5, 0] = np.nan, np.nan
     for method in ("imm", "pulsating", "gpb2", "polygaussian"):
-        assert_same(run(made, z, method, engine="compiled", missing=True),
-                    run(made, z, method, engine="numpy", missing=True))
+        assert_same(
+            run(made, z, method, engine="compiled", missing=True), run(made, z, method, engine="numpy", missing=True)
+        )
 
 
 @pytest.mark.parametrize("method", METHODS)
@@ -265,10 +293,17 @@ def test_an_unreachable_mode_has_probability_zero_and_no_nan():
             assert np.isfinite(found.mean).all()
 
 
-@pytest.mark.parametrize(("method", "depth", "steps"), [
-    ("exact", None, 5), ("pulsating", None, 7), ("k-pulsating", 3, 8), ("gpb2", None, 6), ("imm", None, 6),
-    ("polygaussian", None, 6),
-])
+@pytest.mark.parametrize(
+    ("method", "depth", "steps"),
+    [
+        ("exact", None, 5),
+        ("pulsating", None, 7),
+        ("k-pulsating", 3, 8),
+        ("gpb2", None, 6),
+        ("imm", None, 6),
+        ("polygaussian", None, 6),
+    ],
+)
 def test_filters_run_counts_the_kalman_filters_of_every_step(method, depth, steps, monkeypatch):
     ran = []
     original = steps_module.filtered
@@ -286,11 +321,17 @@ def test_means_of_every_mode_start_the_tree_with_one_root_each():
     rule = scheme("exact")
     assert [filters_at(rule, 3, 3, k) for k in (1, 2, 3)] == [9, 27, 81]
     models = random_bank(14)
-    apart = bank([{k: getattr(models, k)[0, i] for k in "FQHR"} for i in range(3)], models.mode_transition[0],
-                 np.arange(9.0).reshape(3, 3), np.eye(3), models.probabilities)
+    apart = bank(
+        [{k: getattr(models, k)[0, i] for k in "FQHR"} for i in range(3)],
+        models.mode_transition[0],
+        np.arange(9.0).reshape(3, 3),
+        np.eye(3),
+        models.probabilities,
+    )
     for method in METHODS:
-        assert_same(run(apart, series(14, 4), method, engine="numpy"),
-                    run(apart, series(14, 4), method, engine="compiled"))
+        assert_same(
+            run(apart, series(14, 4), method, engine="numpy"), run(apart, series(14, 4), method, engine="compiled")
+        )
 
 
 def document(**changes):
@@ -316,25 +357,32 @@ def with_model(**changes):
     return given
 
 
-@pytest.mark.parametrize(("given", "kind", "match"), [
-    (document(mode_transition=[[0.9, 0.2], [0.2, 0.8]]), DomainError, "row 0 sums to 1.1"),
-    (document(mode_transition=[[1.1, -0.1], [0.2, 0.8]]), DomainError, "negative"),
-    (document(mode_transition=[[1.0]]), ShapeError, "mode_transition"),
-    (with_model(Q=[[-1.0]]), DomainError, r"models\[1\].Q.*semidefinite"),
-    (with_model(R=[[-1.0]]), DomainError, r"models\[1\].R"),
-    (with_model(H=[[1.0], [2.0]]), ShapeError, "share one state and one measurement"),
-    (with_model(F=[[1.0, 0.0]]), ShapeError, r"models\[1\].F"),
-    (with_model(F=None), ShapeError, r"models\[1\].F"),
-    (document(models=[]), EmptyError, "models"),
-    (document(measurements=[]), EmptyError, "measurements"),
-    (document(measurements=[[1.0], [float("nan")]]), NotFiniteError, r"measurements\[1\]"),
-    (document(measurements=[[1.0], [None]]), NotFiniteError, r"measurements\[1\]"),
-    (document(measurements=[[1.0, 2.0]]), ShapeError, r"measurements\[0\]"),
-    (document(measurements=[["x"]]), ShapeError, r"measurements\[0\]"),
-    (document(initial={"mean": [0.0], "covariance": [[1.0]], "probabilities": [0.0, 0.0]}), DomainError, "sums to 0"),
-    (document(initial={"mean": [0.0], "covariance": [[1.0]]}), ShapeError, "initial.probabilities"),
-    (document(memoryless="yes"), DomainError, "memoryless"),
-])
+@pytest.mark.parametrize(
+    ("given", "kind", "match"),
+    [
+        (document(mode_transition=[[0.9, 0.2], [0.2, 0.8]]), DomainError, "row 0 sums to 1.1"),
+        (document(mode_transition=[[1.1, -0.1], [0.2, 0.8]]), DomainError, "negative"),
+        (document(mode_transition=[[1.0]]), ShapeError, "mode_transition"),
+        (with_model(Q=[[-1.0]]), DomainError, r"models\[1\].Q.*semidefinite"),
+        (with_model(R=[[-1.0]]), DomainError, r"models\[1\].R"),
+        (with_model(H=[[1.0], [2.0]]), ShapeError, "share one state and one measurement"),
+        (with_model(F=[[1.0, 0.0]]), ShapeError, r"models\[1\].F"),
+        (with_model(F=None), ShapeError, r"models\[1\].F"),
+        (document(models=[]), EmptyError, "models"),
+        (document(measurements=[]), EmptyError, "measurements"),
+        (document(measurements=[[1.0], [float("nan")]]), NotFiniteError, r"measurements\[1\]"),
+        (document(measurements=[[1.0], [None]]), NotFiniteError, r"measurements\[1\]"),
+        (document(measurements=[[1.0, 2.0]]), ShapeError, r"measurements\[0\]"),
+        (document(measurements=[["x"]]), ShapeError, r"measurements\[0\]"),
+        (
+            document(initial={"mean": [0.0], "covariance": [[1.0]], "probabilities": [0.0, 0.0]}),
+            DomainError,
+            "sums to 0",
+        ),
+        (document(initial={"mean": [0.0], "covariance": [[1.0]]}), ShapeError, "initial.probabilities"),
+        (document(memoryless="yes"), DomainError, "memoryless"),
+    ],
+)
 def test_bad_banks_are_refused_by_name(given, kind, match):
     with pytest.raises(kind, match=match):
         attempt(given)
@@ -347,13 +395,16 @@ def test_a_tree_that_cannot_fit_is_refused_with_its_count():
         attempt(document(measurements=[[0.0]] * 5000), "k-pulsating", depth=4000)
 
 
-@pytest.mark.parametrize(("method", "options", "match"), [
-    ("kalman", {}, "expected one of"),
-    ("imm", {"depth": 2}, "belongs to k-pulsating"),
-    ("k-pulsating", {"depth": 0}, "from 1 on"),
-    ("polygaussian", {"forget": True}, "never switch"),
-    ("imm", {"engine": "fast"}, "auto, numpy or compiled"),
-])
+@pytest.mark.parametrize(
+    ("method", "options", "match"),
+    [
+        ("kalman", {}, "expected one of"),
+        ("imm", {"depth": 2}, "belongs to k-pulsating"),
+        ("k-pulsating", {"depth": 0}, "from 1 on"),
+        ("polygaussian", {"forget": True}, "never switch"),
+        ("imm", {"engine": "fast"}, "auto, numpy or compiled"),
+    ],
+)
 def test_bad_requests_are_refused(method, options, match):
     models = random_bank(0)
     with pytest.raises(DomainError, match=match):

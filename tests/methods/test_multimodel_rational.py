@@ -43,8 +43,10 @@ def changing_bank(seed):
     models = []
     for mode in range(m):
         model = {
-            "F": [rational(rng, n, n) / 4 for _ in range(STEPS)], "Q": [spd(rng, n) for _ in range(STEPS)],
-            "H": [rational(rng, p, n) for _ in range(STEPS)], "R": [spd(rng, p) for _ in range(STEPS)],
+            "F": [rational(rng, n, n) / 4 for _ in range(STEPS)],
+            "Q": [spd(rng, n) for _ in range(STEPS)],
+            "H": [rational(rng, p, n) for _ in range(STEPS)],
+            "R": [spd(rng, p) for _ in range(STEPS)],
         }
         if rng.random() < 0.5:
             for H in model["H"]:
@@ -69,8 +71,11 @@ def with_gaps(z):
 
 
 def float_bank(models, switch, start):
-    return bank([{key: [floats(a) for a in model[key]] for key in model} for model in models],
-                [floats(matrix) for matrix in switch], *map(floats, start))
+    return bank(
+        [{key: [floats(a) for a in model[key]] for key in model} for model in models],
+        [floats(matrix) for matrix in switch],
+        *map(floats, start),
+    )
 
 
 def exact_steps(method, models, switch, start, z, depth=None):

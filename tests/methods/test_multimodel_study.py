@@ -43,9 +43,14 @@ def test_the_batch_equals_stacked_numpy():
     rng = np.random.default_rng(4)
     eye = np.eye(2)
     made = bank(
-        [{"F": 0.9 * eye, "Q": (i + 1) * eye, "H": rng.standard_normal((2, 2)), "R": [[2.0, 0.5], [0.5, 1.0]]}
-         for i in range(3)],
-        [[0.8, 0.1, 0.1], [0.2, 0.7, 0.1], [0.1, 0.1, 0.8]], [0.0, 1.0], eye, [0.2, 0.3, 0.5],
+        [
+            {"F": 0.9 * eye, "Q": (i + 1) * eye, "H": rng.standard_normal((2, 2)), "R": [[2.0, 0.5], [0.5, 1.0]]}
+            for i in range(3)
+        ],
+        [[0.8, 0.1, 0.1], [0.2, 0.7, 0.1], [0.1, 0.1, 0.8]],
+        [0.0, 1.0],
+        eye,
+        [0.2, 0.3, 0.5],
     )
     z = 2.0 * rng.standard_normal((21, 7, 2))
     for ours, theirs in zip(run_batch(made, z, "imm"), imm_in_numpy(made, z), strict=True):
@@ -118,17 +123,18 @@ def test_the_memory_of_one_pass_does_not_grow_with_the_modes_but_for_a_probabili
 
 def made_up_road():
     """A road with a wrong fix in it: satellite rows of a car standing still."""
-    reference = np.column_stack([
-        0.2 * np.arange(60.0), np.full(60, 35.0), np.full(60, 136.0), np.zeros(60), np.zeros(60)
-    ])
+    reference = np.column_stack(
+        [0.2 * np.arange(60.0), np.full(60, 35.0), np.full(60, 136.0), np.zeros(60), np.zeros(60)]
+    )
     rng = np.random.default_rng(5)
     shift = rng.standard_normal(60) * 0.02
     shift[30:40] = 8.0
     flag = np.ones(60)
     flag[30:35] = 2
-    return multimodel_road.align(reference, np.column_stack([
-        reference[:, 0], reference[:, 1], 136.0 + shift / 91287.8, flag
-    ])[np.arange(60) != 50])
+    return multimodel_road.align(
+        reference,
+        np.column_stack([reference[:, 0], reference[:, 1], 136.0 + shift / 91287.8, flag])[np.arange(60) != 50],
+    )
 
 
 def test_wrong_fixes_are_noticed_without_the_flag():

@@ -48,15 +48,10 @@ def random_system(seed: int) -> tuple[list[list[Fraction]], list[list[Fraction]]
     def number() -> Fraction:
         return Fraction(source.randint(-3, 3), source.choice([1, 1, 2, 3]))
 
-    F = [
-        [number() if kind != 1 or source.random() < 0.3 else Fraction(0) for _ in range(n)] for _ in range(n)
-    ]
+    F = [[number() if kind != 1 or source.random() < 0.3 else Fraction(0) for _ in range(n)] for _ in range(n)]
     if kind == 2:
         cut = source.randint(0, n - 1)
-        F = [
-            [value if not (r < cut <= c) else Fraction(0) for c, value in enumerate(row)]
-            for r, row in enumerate(F)
-        ]
+        F = [[value if not (r < cut <= c) else Fraction(0) for c, value in enumerate(row)] for r, row in enumerate(F)]
     if kind == 3:
         F = [[Fraction(source.randint(0, 1)) if r == c else Fraction(0) for c in range(n)] for r in range(n)]
     rows = [[number() if source.random() < 0.6 else Fraction(0) for _ in range(n)] for _ in range(2)]
@@ -81,9 +76,7 @@ def test_two_hundred_random_systems_agree_with_schoolbook_elimination(block):
             chain = krylov(F, h, n + 1)
             assert measurement.dimension == fraction_rank(chain)
             m = measurement.dimension
-            assert [
-                [Fraction(int(x.p), int(x.q)) for x in measurement.basis.row(r)] for r in range(m)
-            ] == chain[:m]
+            assert [[Fraction(int(x.p), int(x.q)) for x in measurement.basis.row(r)] for r in range(m)] == chain[:m]
             theta = [Fraction(int(x.p), int(x.q)) for x in measurement.companion]
             combined = [sum(t * chain[j][c] for j, t in enumerate(theta)) for c in range(n)]
             assert combined == chain[m]
@@ -104,9 +97,7 @@ def test_symbolic_dimensions_agree_with_sympys_field_of_fractions():
     field = sp.QQ.frac_field(a, b, c)
     for k, measurement in enumerate(found.measurements):
         rows = sp.Matrix.vstack(*[H[k, :] * F**j for j in range(4)])
-        assert (
-            measurement.dimension == sp.polys.matrices.DomainMatrix.from_Matrix(rows).convert_to(field).rank()
-        )
+        assert measurement.dimension == sp.polys.matrices.DomainMatrix.from_Matrix(rows).convert_to(field).rank()
 
 
 def test_companion_coefficients_of_a_full_chain_are_those_of_the_characteristic_polynomial():
@@ -175,9 +166,7 @@ def test_maximal_minors_are_all_square_minors():
     a, b = (ring.quotient(s).top for s in ring.symbols)
     one, zero = ring.constant(1), ring.constant(0)
     rows = [[a, one, b, zero], [b, a, zero, one]]
-    direct = [
-        determinant_slowly([[row[i], row[j]] for row in rows], ring) for i, j in combinations(range(4), 2)
-    ]
+    direct = [determinant_slowly([[row[i], row[j]] for row in rows], ring) for i, j in combinations(range(4), 2)]
     assert sorted(map(str, maximal_minors(rows, ring))) == sorted(str(d) for d in direct if d != 0)
 
 

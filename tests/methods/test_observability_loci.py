@@ -36,10 +36,7 @@ def conditions(model: LinearModel) -> dict[str, set[frozenset[sp.Expr]]]:
 
 def test_a_chain_breaks_where_its_coupling_vanishes():
     model = LinearModel([[0, a, 0], [0, 0, b], [0, 0, 0]], None, [[1, 0, 0]])
-    assert conditions(model) == {
-        "z1": {frozenset({a}), frozenset({b})},
-        "joint": {frozenset({a}), frozenset({b})},
-    }
+    assert conditions(model) == {"z1": {frozenset({a}), frozenset({b})}, "joint": {frozenset({a}), frozenset({b})}}
 
 
 def test_a_drop_of_codimension_two_is_listed_as_two_conditions_together():
@@ -300,7 +297,8 @@ def test_a_dense_system_has_all_its_drops_also_over_a_finite_field(seed):
     others = {symbol: source.randrange(p) for symbol in symbols[1:]}
     conditions = [
         [sp.Poly(zero.subs(others), symbols[0], modulus=p) for zero in drop.zeros]
-        for drop in drops if drop.subspace == "z1"
+        for drop in drops
+        if drop.subspace == "z1"
     ]
     F = model.F.subs(others)
     for value in range(p):

@@ -7,14 +7,7 @@ import sympy as sp
 
 from navsym.errors import DomainError, ShapeError, UnobservableError
 from navsym.methods.observability.chains import observe
-from navsym.methods.observability.split import (
-    best_split,
-    general_blocks,
-    split,
-    splits,
-    three_blocks,
-    two_stage_blocks,
-)
+from navsym.methods.observability.split import best_split, general_blocks, split, splits, three_blocks, two_stage_blocks
 from navsym.models.inertial.errors import joint_model, position_group, velocity_group
 from navsym.models.linear import LinearModel
 
@@ -57,9 +50,7 @@ SCRAMBLE = sp.Matrix([[1, 2, 0, 1], [0, 1, 1, 0], [1, 2, 1, 1], [0, 1, 1, 1]])
 #: name -> model, (n, m, l), all feasible splits, the split with the least max(i, j)
 KNOWN = {
     "direct sum": (
-        LinearModel(
-            [[0, 1, 0, 0], [a, 0, 0, 0], [0, 0, 0, 1], [0, 0, b, 0]], None, [[1, 0, 0, 0], [0, 0, 1, 0]]
-        ),
+        LinearModel([[0, 1, 0, 0], [a, 0, 0, 0], [0, 0, 0, 1], [0, 0, b, 0]], None, [[1, 0, 0, 0], [0, 0, 1, 0]]),
         (4, 2, 2),
         [(2, 2)],
         (2, 2),
@@ -87,26 +78,20 @@ KNOWN = {
         (1, 2),
     ),
     "overlap in two dimensions": (
-        LinearModel(
-            [[0, 1, 0, 0], [0, 0, 1, 0], [a, b, 0, 0], [0, 0, 1, d]], None, [[1, 0, 0, 0], [0, 0, 0, 1]]
-        ),
+        LinearModel([[0, 1, 0, 0], [0, 0, 1, 0], [a, b, 0, 0], [0, 0, 1, d]], None, [[1, 0, 0, 0], [0, 0, 0, 1]]),
         (4, 3, 4),
         [(3, 1), (2, 2), (1, 3), (0, 4)],
         (2, 2),
     ),
     "u, v, w needed": (
-        LinearModel(
-            [[0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1], [a, b, c, d]], None, [[1, 0, 0, 0], [0, 0, 1, 0]]
-        ),
+        LinearModel([[0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1], [a, b, c, d]], None, [[1, 0, 0, 0], [0, 0, 1, 0]]),
         (4, 4, 4),
         [(4, 0), (2, 2), (1, 3), (0, 4)],
         (2, 2),
     ),
     "oscillators of one frequency": (
         LinearModel(
-            [[0, 1, 0, 0], [-(w**2), 0, 0, 0], [0, 0, 0, 1], [0, 0, -(w**2), 0]],
-            None,
-            [[1, 0, 1, 0], [0, 1, 1, 0]],
+            [[0, 1, 0, 0], [-(w**2), 0, 0, 0], [0, 0, 0, 1], [0, 0, -(w**2), 0]], None, [[1, 0, 1, 0], [0, 1, 1, 0]]
         ),
         (4, 2, 2),
         [(2, 2)],
@@ -160,9 +145,7 @@ def test_a_hidden_mode_refuses_every_split_and_names_the_mode():
 
 def test_a_split_that_is_no_basis_names_the_determinant_that_vanishes():
     found = observe(KNOWN["position group"][0])
-    with pytest.raises(
-        DomainError, match=r"det\(a1, a2, a3, a4, a5, b1, b2, b3\) = 0 .*choose one of 6,2, 4,4, 2,6"
-    ):
+    with pytest.raises(DomainError, match=r"det\(a1, a2, a3, a4, a5, b1, b2, b3\) = 0 .*choose one of 6,2, 4,4, 2,6"):
         split(found, 5, 3)
 
 

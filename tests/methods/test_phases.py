@@ -19,13 +19,14 @@ from tests.methods.test_guaranteed import VELOCITY
 
 POSITION = {
     "model": {
-        "name": "position", "states": ["x", "y1", "y2", "y3"],
+        "name": "position",
+        "states": ["x", "y1", "y2", "y3"],
         "F": [["0", "1", "0", "0"], ["0", "0", "-1", "0"], ["0", "0", "0", "1"], ["0", "0", "-1", "0"]],
     },
     "parameters": {"T": ["0", "2*pi"]},
     "measurement": [{"name": "position", "h": ["1", "0", "0", "0"], "sigma": "1"}],
     "interval": {"T": "T"},
-}  # fmt: skip
+}
 
 
 def family(document, target):
@@ -37,14 +38,7 @@ def monomials(degree):
     return {"basis": {"variable": "s", "H": rows, "interval": ["0", "T"]}, "parameters": {"T": ["0", "10"]}}
 
 
-@pytest.mark.parametrize(
-    ("state", "ends"),
-    [
-        ("y1", []),
-        ("y2", ["4*pi/3", "3*pi/2"]),
-        ("y3", ["2*pi/3", "pi"]),
-    ],
-)
+@pytest.mark.parametrize(("state", "ends"), [("y1", []), ("y2", ["4*pi/3", "3*pi/2"]), ("y3", ["2*pi/3", "pi"])])
 def test_the_velocity_problem_is_proved_up_to_a_full_period(state, ends):
     answer = phases(family(VELOCITY, state), sp.Integer(0), 2 * sp.pi)
     document = answer.document()
@@ -97,7 +91,8 @@ def test_the_range_certificate_of_another_functional_is_refused():
 
 SCHULER = {
     "model": {
-        "name": "Schuler oscillator", "states": ["v", "phi", "drift"],
+        "name": "Schuler oscillator",
+        "states": ["v", "phi", "drift"],
         "F": [["0", "-1", "0"], ["w**2", "0", "1"], ["0", "0", "0"]],
     },
     "parameters": {"w": ["1/2", "2"], "Tf": ["0", "7"], "s": ["1/10", "10"]},
@@ -106,7 +101,7 @@ SCHULER = {
         {"name": "tilt", "h": ["0", "1", "0"], "sigma": "s"},
     ],
     "interval": {"T": "Tf"},
-}  # fmt: skip
+}
 
 
 def test_the_frequency_is_a_parameter_like_any_other():
@@ -132,7 +127,7 @@ def test_of_several_optimal_estimators_a_regime_keeps_one():
         "parameters": {"w": ["1/2", "3"]},
         "measurement": [{"name": "position", "h": ["1", "0"], "sigma": "1"}],
         "interval": {"T": "2"},
-    }  # fmt: skip
+    }
     answer = phases(family_of(model_from(document), "v", "w"), sp.Rational(1, 2), sp.Integer(3))
     first, second = answer.regimes
     assert answer.uncovered == () and first.upper == sp.pi / 4
@@ -144,10 +139,11 @@ def test_a_measurement_of_the_target_itself_is_enough_while_it_is_the_better_one
         "model": {"name": "double integrator", "states": ["x", "v"], "F": [["0", "1"], ["0", "0"]]},
         "parameters": {"q": ["1/10", "5"]},
         "measurement": [
-            {"name": "position", "h": ["1", "0"], "sigma": "1"}, {"name": "velocity", "h": ["0", "1"], "sigma": "q"},
+            {"name": "position", "h": ["1", "0"], "sigma": "1"},
+            {"name": "velocity", "h": ["0", "1"], "sigma": "q"},
         ],
         "interval": {"T": "2"},
-    }  # fmt: skip
+    }
     answer = phases(family_of(model_from(document), "v", "q"), sp.Rational(1, 10), sp.Integer(5))
     first, second = answer.regimes
     assert answer.uncovered == () and first.closed.value == answer.family.parameter and second.closed.value == 1
@@ -164,8 +160,9 @@ def test_the_length_may_have_any_name():
 def test_a_range_with_a_singular_value_is_split_there():
     document = {
         "basis": {"variable": "u", "H": ["1", "sin(2*u)", "sin(p*u)"], "interval": ["0", "1"]},
-        "parameters": {"p": ["1", "3"]}, "targets": {"c": ["1", "0", "0"]},
-    }  # fmt: skip
+        "parameters": {"p": ["1", "3"]},
+        "targets": {"c": ["1", "0", "0"]},
+    }
     answer = phases(family_of(model_from(document), "c", "p"), sp.Integer(1), sp.Integer(3))
     (split,) = [b for b in answer.boundaries if b.at == 2]
     assert "dependent" in split.why
@@ -174,8 +171,9 @@ def test_a_range_with_a_singular_value_is_split_there():
 def test_an_unknown_that_depends_on_the_others_is_left_out_with_a_certificate():
     document = {
         "basis": {"variable": "u", "H": ["1", "u", "1+2*u"], "interval": ["0", "T"]},
-        "parameters": {"T": ["0", "4"]}, "targets": {"seen": ["0", "1", "2"], "hidden": ["0", "1", "1"]},
-    }  # fmt: skip
+        "parameters": {"T": ["0", "4"]},
+        "targets": {"seen": ["0", "1", "2"], "hidden": ["0", "1", "1"]},
+    }
     answer = phases(family_of(model_from(document), "seen", "T"), sp.Integer(0), sp.Integer(4))
     assert {regime.status for regime in answer.regimes} == {"PROVED"} and answer.uncovered == ()
     (row,) = answer.document()["regimes"]
@@ -199,8 +197,9 @@ def test_a_change_at_zero_is_found_and_the_mirrored_regime_has_its_closed_form()
         "model": {"name": "triple", "states": ["x", "v", "a"], "F": [["0", "1", "0"], ["0", "0", "1"], ["0"] * 3]},
         "parameters": {"k": ["-3", "3"]},
         "measurement": [{"name": "position", "h": ["1", "0", "0"], "sigma": "1"}],
-        "interval": {"T": "1"}, "targets": {"c": ["1", "k", "0"]},
-    }  # fmt: skip
+        "interval": {"T": "1"},
+        "targets": {"c": ["1", "k", "0"]},
+    }
     answer = phases(family_of(model_from(document), "c", "k"), sp.Integer(-3), sp.Integer(3))
     k = answer.family.parameter
     assert [b.at for b in answer.boundaries] == [sp.Rational(-1, 3), 0] and answer.uncovered == ()
@@ -222,12 +221,14 @@ def test_a_boundary_that_is_not_located_is_enclosed_by_what_is_proved_on_both_si
 def test_the_position_measured_model_is_complete_with_four_boundaries_of_thirty_digits():
     document = {
         "model": {
-            "name": "position", "states": ["y1", "y2", "y3", "x"],
+            "name": "position",
+            "states": ["y1", "y2", "y3", "x"],
             "F": [["0", "-1", "0", "0"], ["0", "0", "1", "0"], ["0", "-1", "0", "0"], ["1", "0", "0", "0"]],
         },
-        "parameters": {"T": ["0", "2*pi"]}, "interval": {"T": "T"},
+        "parameters": {"T": ["0", "2*pi"]},
+        "interval": {"T": "T"},
         "measurement": [{"name": "position", "h": ["0", "0", "0", "1"], "sigma": "1"}],
-    }  # fmt: skip
+    }
     answer = phases(family_of(model_from(document), "y3", "T"), sp.Integer(0), 2 * sp.pi)
     assert answer.uncovered == () and lost(answer) == [] and len(answer.boundaries) == 4
     widths = [sp.Rational(b.upper) - sp.Rational(b.lower) for b in answer.boundaries]

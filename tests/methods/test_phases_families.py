@@ -28,8 +28,9 @@ def basis(H, interval, target, sigma=None):
     """A family of regressors with the parameter p."""
     return {
         "basis": {"variable": "u", "H": H, "interval": interval} | ({"sigma": sigma} if sigma else {}),
-        "parameters": {"p": ["-20", "20"]}, "targets": {"c": target},
-    }  # fmt: skip
+        "parameters": {"p": ["-20", "20"]},
+        "targets": {"c": target},
+    }
 
 
 def oscillator(damping, sigmas, T="3"):
@@ -37,9 +38,11 @@ def oscillator(damping, sigmas, T="3"):
     rows = (["1", "0"], ["0", "1"])
     return {
         "model": {"name": "oscillator", "states": ["x", "v"], "F": [["0", "1"], ["-1", damping]]},
-        "parameters": {"p": ["-20", "20"]}, "interval": {"T": T}, "targets": {"c": ["1", "1"], "v": ["0", "1"]},
+        "parameters": {"p": ["-20", "20"]},
+        "interval": {"T": T},
+        "targets": {"c": ["1", "1"], "v": ["0", "1"]},
         "measurement": [{"name": f"z{k}", "h": rows[k], "sigma": s} for k, s in enumerate(sigmas)],
-    }  # fmt: skip
+    }
 
 
 def solved(document, lower, upper, target="c", **options):
@@ -97,12 +100,14 @@ def test_a_dual_that_two_contacts_leave_free_is_held_at_an_end_of_the_other_meas
     """Two velocities give the acceleration while they are the better ones: up to sigma = 4 for two seconds."""
     triple = {
         "model": {"name": "triple", "states": ["x", "v", "a"], "F": [["0", "1", "0"], ["0", "0", "1"], ["0"] * 3]},
-        "parameters": {"p": ["1/10", "10"]}, "interval": {"T": "2"}, "targets": {"c": ["0", "0", "1"]},
+        "parameters": {"p": ["1/10", "10"]},
+        "interval": {"T": "2"},
+        "targets": {"c": ["0", "0", "1"]},
         "measurement": [
             {"name": "position", "h": ["1", "0", "0"], "sigma": "1"},
             {"name": "velocity", "h": ["0", "1", "0"], "sigma": "p"},
         ],
-    }  # fmt: skip
+    }
     answer = solved(triple, "1/10", 10)
     assert regimes(answer) == [("1/10", "4", "p"), ("4", "10", "4")]
 
@@ -110,9 +115,11 @@ def test_a_dual_that_two_contacts_leave_free_is_held_at_an_end_of_the_other_meas
 def test_where_many_are_optimal_the_closed_form_next_to_it_is_continued():
     triple = {
         "model": {"name": "triple", "states": ["x", "v", "a"], "F": [["0", "1", "0"], ["0", "0", "1"], ["0"] * 3]},
-        "parameters": {"p": ["-9", "9"]}, "interval": {"T": "1"}, "targets": {"c": ["1-p", "p", "1"]},
+        "parameters": {"p": ["-9", "9"]},
+        "interval": {"T": "1"},
+        "targets": {"c": ["1-p", "p", "1"]},
         "measurement": [{"name": "position", "h": ["1", "0", "0"], "sigma": "1"}],
-    }  # fmt: skip
+    }
     answer = solved(triple, -3, -2)
     assert [str(b.at) for b in answer.boundaries] == ["-sqrt(3) - 1", "-5/2"]
     assert regimes(answer)[1] == ("-sqrt(3) - 1", "-5/2", "1 - p")
@@ -129,8 +136,10 @@ def test_beyond_critical_damping_no_regressor_is_imaginary():
     beyond = family.real_near(sp.Rational(5, 2))
     assert family.real_near(1) is family
     assert not any(h.has(sp.I) for row in beyond.rows for h in row) and any(h.has(sp.sinh) for h in beyond.rows[0])
-    place = {family.parameter: sp.Rational(5, 2), **{s: sp.Rational(1, 3) for s in beyond.rows[0][0].free_symbols
-                                                     if s != family.parameter}}
+    place = {
+        family.parameter: sp.Rational(5, 2),
+        **{s: sp.Rational(1, 3) for s in beyond.rows[0][0].free_symbols if s != family.parameter},
+    }
     for one, other in zip(family.rows[0], beyond.rows[0], strict=True):
         assert abs(sp.N(one.subs(place) - other.subs(place), 30)) < 1e-25
 
@@ -173,8 +182,11 @@ def test_a_closed_form_that_divides_by_zero_inside_its_range_is_not_proved():
 
 def test_an_unknown_of_the_dual_that_is_zero_throughout_does_not_stop_the_contacts_from_being_followed():
     H = ["a*cos(u)+sin(u)", "cos(u)-a*sin(u)"]
-    document = {"basis": {"variable": "u", "H": H, "interval": ["0", "3"]}, "parameters": {"a": ["-2", "2"]},
-                "targets": {"c": ["1", "0"]}}  # fmt: skip
+    document = {
+        "basis": {"variable": "u", "H": H, "interval": ["0", "3"]},
+        "parameters": {"a": ["-2", "2"]},
+        "targets": {"c": ["1", "0"]},
+    }
     family = family_of(model_from(document), "c", "a")
     found = followed(family, ((0, "no", 1),), fmpq(-2), fmpq(2))
     assert found.ends == (-2, 2) and covered(found.pieces) == [found.ends]
@@ -184,9 +196,11 @@ def test_an_unknown_of_the_dual_that_is_zero_throughout_does_not_stop_the_contac
 def test_eigenvalues_without_a_closed_form_are_refused_in_words_of_the_model():
     F = [["0", "1", "0"], ["0", "0", "1"], ["-1", "-p", "-2"]]
     document = {
-        "model": {"name": "cubic", "states": ["x", "v", "w"], "F": F}, "parameters": {"p": ["1", "2"]},
-        "interval": {"T": "2"}, "targets": {"c": ["0", "1", "0"]},
+        "model": {"name": "cubic", "states": ["x", "v", "w"], "F": F},
+        "parameters": {"p": ["1", "2"]},
+        "interval": {"T": "2"},
+        "targets": {"c": ["0", "1", "0"]},
         "measurement": [{"name": "z", "h": ["1", "0", "0"], "sigma": "1"}],
-    }  # fmt: skip
+    }
     with pytest.raises(DomainError, match=r"F: expected eigenvalues with a closed form.*solve for single values"):
         family_of(model_from(document), "c", "p")

@@ -27,8 +27,9 @@ from tests.methods.phases_cover import followed_pieces, gaps
 def basis(H, interval, target, parameter="p", sigma=None):
     return {
         "basis": {"variable": "u", "H": H, "interval": interval} | ({"sigma": sigma} if sigma else {}),
-        "parameters": {parameter: ["-20", "20"]}, "targets": {"c": target},
-    }  # fmt: skip
+        "parameters": {parameter: ["-20", "20"]},
+        "targets": {"c": target},
+    }
 
 
 def solved(document, lower, upper, parameter="p", **options):
@@ -132,7 +133,6 @@ def test_between_the_pieces_from_zero_on_and_those_from_the_middle_nothing_is_lo
     assert gaps(pieces, 0, regime.upper) and gaps([*pieces, *slivers, *answer.uncovered], 0, 1) == []
     assert gaps(pieces, *map(exact_rational, regime.alone)) == []
     assert accepted(answer) <= {"all", "range", "sliver"}
-
 
 
 def test_pieces_with_a_gap_between_them_have_certificates_of_their_own():

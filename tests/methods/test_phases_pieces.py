@@ -30,17 +30,18 @@ STOPPED = {
     "parameters": {"T": ["0", "3"]},
     "measurement": [{"name": "position", "h": ["1", "0"], "sigma": "1"}],
     "interval": {"T": "T"},
-}  # fmt: skip
+}
 
 RAMP = {
     "model": {
-        "name": "Schuler oscillator with a ramp", "states": ["v", "phi", "e", "r"],
+        "name": "Schuler oscillator with a ramp",
+        "states": ["v", "phi", "e", "r"],
         "F": [["0", "-1", "0", "0"], ["1", "0", "1", "0"], ["0", "0", "0", "1"], ["0", "0", "0", "0"]],
     },
     "parameters": {"T": ["0", "7"]},
     "measurement": [{"name": "velocity", "h": ["1", "0", "0", "0"], "sigma": "1"}],
     "interval": {"T": "T"},
-}  # fmt: skip
+}
 
 
 def accepted(answer):
@@ -142,13 +143,14 @@ def test_one_contact_that_leaves_the_dual_free_has_a_closed_form_with_three_meas
     """The speed is measured: two units for every length. x = (1, 2, 1) keeps all three bounds up to T = 4."""
     document = {
         "model": {"name": "inertial", "states": ["x", "v", "a"], "F": [["0", "1", "0"], ["0", "0", "1"], ["0"] * 3]},
-        "parameters": {"T": ["0", "4"]}, "interval": {"T": "T"},
+        "parameters": {"T": ["0", "4"]},
+        "interval": {"T": "T"},
         "measurement": [
             {"name": "position", "h": ["1", "0", "0"], "sigma": "1"},
             {"name": "velocity", "h": ["0", "1", "0"], "sigma": "2"},
             {"name": "acceleration", "h": ["0", "0", "1"], "sigma": "3"},
         ],
-    }  # fmt: skip
+    }
     answer = phases(family_of(model_from(document), "v", "T"), sp.Integer(0), sp.Integer(4))
     (regime,) = answer.regimes
     assert regime.status == "PROVED" and regime.closed.value == 2 and answer.uncovered == ()
@@ -160,8 +162,9 @@ def test_one_contact_that_leaves_the_dual_free_has_a_closed_form_with_three_meas
 def reasons(rows, target=None, sigma=None, lower="-1", upper="4", end="1"):
     document = {
         "basis": {"variable": "u", "H": rows, "interval": ["0", end]} | ({"sigma": sigma} if sigma else {}),
-        "parameters": {"p": ["-9", "9"]}, "targets": {"c": target or ["1"] + ["0"] * (len(rows) - 1)},
-    }  # fmt: skip
+        "parameters": {"p": ["-9", "9"]},
+        "targets": {"c": target or ["1"] + ["0"] * (len(rows) - 1)},
+    }
     found, unknown = singular_values(family_of(model_from(document), "c", "p"), sp.sympify(lower), sp.sympify(upper))
     return {str(s.at): s.why for s in found}, [str(e) for e in unknown]
 

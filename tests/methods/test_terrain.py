@@ -11,13 +11,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from navsym.errors import NoDataError, NotEstimableError, OutsideMapError
 from navsym.methods.terrain.incremental import add_measurement, begin, fix
 from navsym.methods.terrain.refine import refine
-from navsym.methods.terrain.search import (
-    criteria,
-    exact_criterion,
-    prepare,
-    search_full,
-    search_position,
-)
+from navsym.methods.terrain.search import criteria, exact_criterion, prepare, search_full, search_position
 from navsym.methods.terrain.sequential import search_sequential
 from navsym.models.terrain.heights import TerrainMap
 from navsym.models.terrain.track import Hypotheses, Track
@@ -52,9 +46,7 @@ def test_bounding_returns_what_the_dense_search_returns():
     for seed in range(6):
         track = flight(terrain, noise=20.0, seed=seed)
         quick, dense = (search_full(terrain, track, GRID, dense=d) for d in (False, True))
-        assert (quick.index, quick.criterion, quick.second_best) == (
-            dense.index, dense.criterion, dense.second_best
-        )  # fmt: skip
+        assert (quick.index, quick.criterion, quick.second_best) == (dense.index, dense.criterion, dense.second_best)
 
 
 def test_two_threads_add_up_the_same():
@@ -121,9 +113,7 @@ def test_a_track_off_the_map_is_refused():
         search_full(terrain, Track(track.t, track.x - 1e5, track.y, track.h), GRID)
 
 
-@pytest.mark.parametrize(
-    ("search", "least"), [(search_position, 2), (search_full, 4), (search_sequential, 4)]
-)
+@pytest.mark.parametrize(("search", "least"), [(search_position, 2), (search_full, 4), (search_sequential, 4)])
 def test_too_few_measurements_are_refused(search, least):
     terrain = relief()
     track = flight(terrain, n=least - 1)

@@ -124,7 +124,7 @@ def test_the_interval_covers_the_rms_of_correlated_flights_as_often_as_it_says()
     generator, covered = np.random.default_rng(4), 0
     tracks = np.repeat(np.arange(8), 10)
     for _ in range(400):
-        scale = generator.gamma(4.0, 0.25, 8)                 # mean square of a track, mean one
+        scale = generator.gamma(4.0, 0.25, 8)  # mean square of a track, mean one
         errors = np.sqrt(scale[tracks]) * generator.normal(size=80)
         low, high = rms_interval(errors, tracks)
         covered += low <= 1.0 <= high

@@ -41,9 +41,7 @@ def test_the_bounded_search_equals_the_dense_search_on_real_relief(tiles):
         start, heading = course(nasadem, setting, seed, 1)
         track = fly(nasadem, start, heading, setting, np.random.default_rng(seed)).track
         quick, dense = (search_full(srtm, track, GRID, dense=d) for d in (False, True))
-        assert (quick.index, quick.criterion, quick.second_best) == (
-            dense.index, dense.criterion, dense.second_best
-        )  # fmt: skip
+        assert (quick.index, quick.criterion, quick.second_best) == (dense.index, dense.criterion, dense.second_best)
         assert quick.share < 0.2
 
 

@@ -34,17 +34,9 @@ from navsym.methods.trajectory.inversion import (
     steady_gain,
     windowed_filter,
 )
-from navsym.methods.trajectory.stability import (
-    gain_stability,
-    harmonic_lag,
-    stationary_covariance,
-)
-from navsym.methods.trajectory.stability import (
-    metric_scale as metric_balls,
-)
-from navsym.methods.trajectory.stability import (
-    normalised_scale as normalised_balls,
-)
+from navsym.methods.trajectory.stability import gain_stability, harmonic_lag, stationary_covariance
+from navsym.methods.trajectory.stability import metric_scale as metric_balls
+from navsym.methods.trajectory.stability import normalised_scale as normalised_balls
 from navsym.methods.trajectory.twins import adaptive_filter_slowly, one_filter, windowed_filter_slowly
 
 rng = np.random.default_rng(5)

@@ -16,8 +16,12 @@ QUESTIONS = ((1, 2), (1, 3), (2, 3))
 
 def steered(order: int, steps: int, step: float) -> tuple[np.ndarray, np.ndarray]:
     """Positions at all instants, and the state now, as linear functions of the first state and the steering."""
-    F = np.array([[step ** (j - i) / np.prod(np.arange(1, j - i + 1)) if j >= i else 0.0 for j in range(order)]
-                  for i in range(order)])
+    F = np.array(
+        [
+            [step ** (j - i) / np.prod(np.arange(1, j - i + 1)) if j >= i else 0.0 for j in range(order)]
+            for i in range(order)
+        ]
+    )
     G = np.array([step ** (order - i) / np.prod(np.arange(1, order - i + 1)) for i in range(order)])
     state = np.hstack([np.eye(order), np.zeros((order, steps))])
     rows = [state[0]]

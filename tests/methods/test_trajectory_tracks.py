@@ -126,9 +126,7 @@ def test_minimum_sum_weights_bound_the_error_of_any_noise_and_least_squares_may_
 def test_a_parabola_is_differentiated_exactly(method):
     t = np.cumsum(np.random.default_rng(1).uniform(0.2, 1.8, 60))
     position = np.column_stack([3 + 2 * t, -t + 0.05 * t**2, 0 * t])
-    found, _ = estimate(
-        flat_track(t, position), Settings(method, 3, window=12.0 if "win" in method else None)
-    )
+    found, _ = estimate(flat_track(t, position), Settings(method, 3, window=12.0 if "win" in method else None))
     assert_allclose(found.velocity[5:], np.column_stack([0 * t + 2, -1 + 0.1 * t, 0 * t])[5:], atol=2e-3)
     assert_allclose(found.acceleration[5:, 1], 0.1, atol=2e-2)
     assert set(found.flags) == {"used"}
@@ -256,9 +254,7 @@ def geographic(path):
     return np.radians(lat), np.radians(lon), np.asarray(height)
 
 
-@pytest.mark.parametrize(
-    "latitude, longitude", [(0.7, np.pi), (0.7, -np.pi), (np.pi / 2, 0.3), (-np.pi / 2, 0.0)]
-)
+@pytest.mark.parametrize("latitude, longitude", [(0.7, np.pi), (0.7, -np.pi), (np.pi / 2, 0.3), (-np.pi / 2, 0.0)])
 def test_the_date_line_and_the_poles_are_ordinary_points(latitude, longitude):
     axes = local_axes(latitude, longitude)
     t = np.arange(41.0)
@@ -308,8 +304,10 @@ def test_two_receivers_merged_in_one_track_are_one_track(method):
     t, *where = straight_drive(6)
     t = np.repeat(t, 2) + np.tile([0.0, 2e-9], len(t))
     rng = np.random.default_rng(7)
-    twice = [np.repeat(column, 2) + scale * rng.normal(size=2 * len(column))
-             for column, scale in zip(where, (1e-7, 1e-7, 1.0), strict=True)]
+    twice = [
+        np.repeat(column, 2) + scale * rng.normal(size=2 * len(column))
+        for column, scale in zip(where, (1e-7, 1e-7, 1.0), strict=True)
+    ]
     found, _ = estimate(track_of(t, *twice), Settings(method, order=2))
     assert list(gaps(track_of(t, *twice))) == []
     error = (found.velocity - [3.0, 2.0, 0.0]) / found.velocity_sd
@@ -367,9 +365,7 @@ def reference(name, columns):
     return table[:, 0], table[:, columns]
 
 
-@pytest.mark.parametrize(
-    "method, limit", [("smoother", 0.2), ("filter", 0.3), ("window", 0.25), ("differences", 0.25)]
-)
+@pytest.mark.parametrize("method, limit", [("smoother", 0.2), ("filter", 0.3), ("window", 0.25), ("differences", 0.25)])
 def test_speed_of_a_car_from_its_reference_positions(method, limit):
     from navsym.text.readers_tracks import read_track
 

@@ -37,9 +37,7 @@ from navsym.models.linear import LinearModel
 p = POLE
 lam, nu = sp.symbols("lam nu", positive=True)
 a, b = sp.symbols("a b", real=True)
-OVERLAP = LinearModel(
-    [[0, 1, 0, 0], [0, 0, 1, 0], [a, b, 0, 0], [0, 0, 1, -1]], None, [[1, 0, 0, 0], [0, 0, 0, 1]]
-)
+OVERLAP = LinearModel([[0, 1, 0, 0], [0, 0, 1, 0], [a, b, 0, 0], [0, 0, 1, -1]], None, [[1, 0, 0, 0], [0, 0, 0, 1]])
 
 
 def polynomial(matrix: sp.MatrixBase) -> sp.Expr:
@@ -95,9 +93,7 @@ def test_stability_is_decided_by_hurwitz_and_declared_signs(text, stable):
 def test_hurwitz_agrees_with_the_roots_of_random_polynomials():
     source = random.Random(3)
     for _ in range(60):
-        values = [
-            sp.Rational(source.randint(-4, 9), source.randint(1, 3)) for _ in range(source.randint(1, 5))
-        ]
+        values = [sp.Rational(source.randint(-4, 9), source.randint(1, 3)) for _ in range(source.randint(1, 5))]
         roots = np.roots([1.0, *map(float, values)])
         if np.abs(roots.real).min() < 1e-6:
             continue

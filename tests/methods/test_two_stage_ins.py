@@ -35,9 +35,7 @@ def flight():
 def test_the_flight_obeys_its_kinematics(flight):
     dtau = flight.tau[1]
     middle = slice(1, -1)
-    assert (
-        np.abs((flight.omega[2:] - flight.omega[:-2]) / (2 * dtau) - flight.omega_rate[middle]).max() < 1e-6
-    )
+    assert np.abs((flight.omega[2:] - flight.omega[:-2]) / (2 * dtau) - flight.omega_rate[middle]).max() < 1e-6
     omega = np.hstack([flight.omega, np.zeros((len(flight.tau), 1))])
     turning = -np.cross(omega, flight.u)
     assert np.abs((flight.u[2:] - flight.u[:-2]) / (2 * dtau) - turning[middle]).max() < 1e-6
@@ -50,9 +48,7 @@ def test_an_eastward_start_has_the_rates_of_the_textbook():
     flight = great_circle(latitude=np.pi / 4, heading=np.pi / 2, duration=100.0, step=10.0)
     horizontal = EARTH_RATE * np.cos(np.pi / 4) + 250.0 / EARTH_RADIUS
     assert np.allclose(flight.omega[0] * SCHULER_RATE, [0.0, horizontal], atol=1e-15)
-    assert np.allclose(
-        flight.u[0] * SCHULER_RATE, EARTH_RATE * np.array([0.0, np.sqrt(0.5), np.sqrt(0.5)]), atol=1e-15
-    )
+    assert np.allclose(flight.u[0] * SCHULER_RATE, EARTH_RATE * np.array([0.0, np.sqrt(0.5), np.sqrt(0.5)]), atol=1e-15)
 
 
 def test_gains_place_the_poles_of_every_situation(flight):

@@ -104,9 +104,7 @@ def recorded() -> dict[str, np.ndarray]:
     folder = os.environ.get("NAVSYM_DATA")
     path = Path(folder or "") / "gnss_ins" / "umn_thor_flight75.mat"
     if not folder or not path.exists():
-        pytest.skip(
-            "the recorded flight is not here: set NAVSYM_DATA to a folder with gnss_ins/umn_thor_flight75.mat"
-        )
+        pytest.skip("the recorded flight is not here: set NAVSYM_DATA to a folder with gnss_ins/umn_thor_flight75.mat")
     from scipy.io import loadmat
 
     flight = loadmat(path)["flight_data"][0, 0]

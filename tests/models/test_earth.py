@@ -15,13 +15,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 from navsym.models.earth import ellipsoid as earth
-from navsym.models.earth.geodesy import (
-    cartesian,
-    geocentric,
-    local_axes,
-    meridian_radius,
-    prime_vertical_radius,
-)
+from navsym.models.earth.geodesy import cartesian, geocentric, local_axes, meridian_radius, prime_vertical_radius
 
 latitudes = st.floats(-np.pi / 2, np.pi / 2)
 longitudes = st.floats(-np.pi, np.pi)
@@ -67,13 +61,9 @@ def test_chords_of_the_geodesic_test_set_are_shorter_than_its_geodesics():
     folder = os.environ.get("NAVSYM_DATA", "")
     path = Path(folder) / "geodesy" / "GeodTest-100.dat"
     if not folder or not path.is_file():
-        pytest.skip(
-            "the geodesic test set is not here: set NAVSYM_DATA to a folder with geodesy/GeodTest-100.dat"
-        )
+        pytest.skip("the geodesic test set is not here: set NAVSYM_DATA to a folder with geodesy/GeodTest-100.dat")
     table = np.loadtxt(path)
-    ends = [
-        cartesian(np.radians(table[:, i]), np.radians(table[:, i + 1]), np.zeros(len(table))) for i in (0, 3)
-    ]
+    ends = [cartesian(np.radians(table[:, i]), np.radians(table[:, i + 1]), np.zeros(len(table))) for i in (0, 3)]
     chord, length = np.linalg.norm(ends[1] - ends[0], axis=1), table[:, 6]
     assert (chord <= length).all()
     # Beyond half a turn of arc the bound of a sphere of the smallest radius of curvature says little.
@@ -94,9 +84,7 @@ def test_geocentric_coordinates_agree_with_the_corrected_formulas_of_the_paper(l
 
 def test_the_rates_of_the_trihedron_turn_its_axes():
     _, symbols, velocity = earth.moving_position()
-    values = dict(
-        zip(symbols.values(), map(sp.Rational, ("0.5", "1.1", "6.4", "0.03", "-0.02", "0.7")), strict=True)
-    )
+    values = dict(zip(symbols.values(), map(sp.Rational, ("0.5", "1.1", "6.4", "0.03", "-0.02", "0.7")), strict=True))
     omega = np.array(earth.angular_velocity(symbols).subs(values), dtype=float).ravel()
     r = np.array([0.0, 0.0, 6.4])
     expected = np.array(velocity.subs(values), dtype=float).ravel()

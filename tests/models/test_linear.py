@@ -5,15 +5,7 @@ import sympy as sp
 
 from navsym.errors import DomainError, DuplicateError, EmptyError, NotFiniteError, ShapeError
 from navsym.models.linear import LinearModel, observability_matrix
-from navsym.models.noise import (
-    ArbitraryCorrelation,
-    Constant,
-    Markov,
-    Noise,
-    Uncorrelated,
-    arbitrary,
-    shaping,
-)
+from navsym.models.noise import ArbitraryCorrelation, Constant, Markov, Noise, Uncorrelated, arbitrary, shaping
 
 w, t = sp.Symbol("w", positive=True), sp.Symbol("t", real=True)
 
@@ -100,7 +92,7 @@ def test_the_observability_matrix_of_a_varying_model_holds_the_derivatives_of_th
 def test_a_shaping_filter_has_the_stationary_variance_of_its_noise():
     sigma, rate = sp.symbols("sigma rate", positive=True)
     f, g = shaping(Markov(sigma, rate))
-    assert 2 * f * sigma**2 + g**2 == 0                        # d/dt of the variance
+    assert 2 * f * sigma**2 + g**2 == 0  # d/dt of the variance
     assert shaping(Constant(sigma)) == (0, 0)
     with pytest.raises(ShapeError):
         shaping(Uncorrelated(sigma))

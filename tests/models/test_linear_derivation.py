@@ -50,7 +50,7 @@ def test_regressors_of_a_motion_in_pieces_are_continuous_where_the_pieces_meet()
     assert gap == sp.zeros(2, 2)
     assert second.rows.subs(tau, 3) == sp.eye(2)
     for stretch, F in zip(derivation.stretches, derivation.system, strict=True):
-        motion = stretch.rows.diff(tau) - F * stretch.rows       # h = I here
+        motion = stretch.rows.diff(tau) - F * stretch.rows  # h = I here
         assert all(sp.expand(sp.expand_trig(sp.expand_mul(entry))) == 0 for entry in motion)
     assert sp.Ne(sp.Symbol("w", real=True), 0) in derivation.assumptions
     assert derivation.observability is None
@@ -67,10 +67,12 @@ def test_every_printed_expression_reads_back_as_itself():
 
 
 def test_a_basis_has_regressors_and_conditions_but_no_system():
-    found = model_from({
-        "basis": {"variable": "s", "H": [["1", "s", "s**2"]], "interval": ["0", "1"]},
-        "targets": {"c2": ["0", "0", "1"]},
-    })
+    found = model_from(
+        {
+            "basis": {"variable": "s", "H": [["1", "s", "s**2"]], "interval": ["0", "1"]},
+            "targets": {"c2": ["0", "0", "1"]},
+        }
+    )
     derivation = derive(found)
     assert (derivation.system, derivation.transition, derivation.observability) == ((), (), None)
     s, (x1, x2, x3) = derivation.instant, derivation.multipliers

@@ -20,7 +20,7 @@ a, b, c = sp.symbols("a b c", real=True)
 
 SCHULER = [[0, 1, 0, 0], [0, 0, -g, 0], [0, 1 / R, 0, 1], [0, 0, 0, 0]]
 FOUCAULT = [[0, 1, 0, 0], [-(w**2), 0, 0, 2 * earth], [0, 0, 0, 1], [0, -2 * earth, -(w**2), 0]]
-COUPLED_INS = [                      # velocities and tilts of two level channels, turned by the Earth
+COUPLED_INS = [  # velocities and tilts of two level channels, turned by the Earth
     [0, 2 * earth, 0, -g],
     [-2 * earth, 0, g, 0],
     [0, -1 / R, 0, earth],
@@ -48,8 +48,19 @@ EXAMPLES = {
     "double oscillator": [[0, 1, 0, 0], [-(w**2), 0, 1, 0], [0, 0, 0, 1], [0, 0, -(w**2), 0]],
     "driven oscillator": [[0, 1, 0, 0], [-(w**2), 0, 1, 0], [0, 0, 0, 1], [0, 0, -(v**2), 0]],
     "triple oscillator": sp.Matrix(
-        6, 6, lambda i, j: {(0, 1): 1, (1, 0): -(w**2), (1, 2): 1, (2, 3): 1, (3, 2): -(w**2),
-                            (3, 4): 1, (4, 5): 1, (5, 4): -(w**2)}.get((i, j), 0)),
+        6,
+        6,
+        lambda i, j: {
+            (0, 1): 1,
+            (1, 0): -(w**2),
+            (1, 2): 1,
+            (2, 3): 1,
+            (3, 2): -(w**2),
+            (3, 4): 1,
+            (4, 5): 1,
+            (5, 4): -(w**2),
+        }.get((i, j), 0),
+    ),
     "damped twice": [[0, 1, 0, 0], [-2, -2, 1, 0], [0, 0, 0, 1], [0, 0, -2, -2]],
     "foucault": FOUCAULT,
     "coupled ins": COUPLED_INS,
@@ -208,7 +219,7 @@ def test_a_repeated_factor_of_high_degree_is_refused_with_advice():
 
 def test_constants_that_hide_an_identity_never_give_a_wrong_matrix():
     s, k = sp.sin(LATITUDE), sp.cos(LATITUDE)
-    A = sp.Matrix([[s**2 + k**2, 1], [0, 1]])                    # a double eigenvalue in disguise
+    A = sp.Matrix([[s**2 + k**2, 1], [0, 1]])  # a double eigenvalue in disguise
     X = transition_matrix(A, t).matrix
     assert all(exactly_zero(entry) for entry in X.diff(t) - sp.Matrix([[1, 1], [0, 1]]) * X)
     disguised = sp.Matrix([[sp.sqrt(2) * (sp.sqrt(3) + 1), 1], [0, sp.sqrt(6) + sp.sqrt(2)]])
@@ -228,7 +239,7 @@ def test_regressors_undo_the_motion(name):
     A = sp.Matrix(EXAMPLES[name])
     model = LinearModel(A, H=[[1, *[0] * (A.rows - 1)], [*[0] * (A.rows - 1), 1]])
     H = regressors(model, T, tau).matrix
-    assert all(exactly_zero((entry).subs(T, t + tau)) for entry in H.diff(tau) - H * A)   # H' = H F along tau
+    assert all(exactly_zero((entry).subs(T, t + tau)) for entry in H.diff(tau) - H * A)  # H' = H F along tau
     assert all(exactly_zero(entry) for entry in H.subs(tau, T) - model.H)
 
 

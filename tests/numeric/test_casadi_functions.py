@@ -38,7 +38,7 @@ def test_one_minus_cosine_keeps_its_digits():
         ball = 2 * (flint.arb(small) / 2).sin() ** 2 / flint.arb(small) ** 2
         assert_allclose(float(function(small)), float(ball), rtol=4e-16)
     naive = sp.lambdify(w, (1 - sp.cos(w)) / w**2, "numpy")
-    assert naive(1e-9) == 0.0                               # the trap that this walk avoids
+    assert naive(1e-9) == 0.0  # the trap that this walk avoids
 
 
 @pytest.mark.parametrize(("f", "half"), [(sp.exp, 1.0), (sp.cosh, 5e-11)])

@@ -80,9 +80,7 @@ def test_the_support_is_the_beginning_the_middle_and_the_end():
     result = guaranteed_lp(velocity_correction(1.2, "y3"))
     assert np.flatnonzero(np.abs(result.weights) > 1e-9).tolist() == [0, 50, 100]
     quarter = 4 * np.sin(1.2 / 4) ** 2
-    assert_allclose(
-        result.weights[[0, 50, 100]] * quarter, [-1, 2 * np.cos(0.6), 1 - 2 * np.cos(0.6)], rtol=1e-9
-    )
+    assert_allclose(result.weights[[0, 50, 100]] * quarter, [-1, 2 * np.cos(0.6), 1 - 2 * np.cos(0.6)], rtol=1e-9)
 
 
 @pytest.mark.parametrize("solver", LP_SOLVERS)
@@ -90,7 +88,7 @@ def test_the_support_is_the_beginning_the_middle_and_the_end():
 def test_every_solver_brackets_the_optimum_of_a_mild_problem(solver, unknown):
     result = guaranteed_lp(velocity_correction(1.5, unknown), solver=solver)
     exact = optimum(1.5, unknown)
-    loose = 0.03 if "osqp" in solver.lower() else 1e-6          # a first-order method stops early
+    loose = 0.03 if "osqp" in solver.lower() else 1e-6  # a first-order method stops early
     assert_allclose(result.value, exact, rtol=loose)
     assert result.lower <= exact * (1 + 1e-9)
     assert_allclose(result.lower, exact, rtol=loose)
@@ -131,9 +129,9 @@ def test_where_each_solver_stops_being_trustworthy_is_found():
     assert len(table) == len(lengths) * len(LP_SOLVERS)
     limits = trusted_until(table)
     assert limits["casadi:highs"] <= 0.1
-    assert limits["casadi:osqp"] is None                         # it never reaches six digits here
+    assert limits["casadi:osqp"] is None  # it never reaches six digits here
     assert all(row.honest or row.error is None or row.error > 1e-6 for row in table)
-    assert any(not row.honest for row in table)                  # a success claimed and off
+    assert any(not row.honest for row in table)  # a success claimed and off
 
 
 def test_a_status_is_no_proof():
@@ -142,7 +140,7 @@ def test_a_status_is_no_proof():
     result = guaranteed_lp(velocity_correction(T, "y2"), solver="casadi:highs")
     assert result.claims
     assert result.value < 0.6 * optimum(T, "y2")
-    assert result.residual > 1e-6                                # and its weights are biased
+    assert result.residual > 1e-6  # and its weights are biased
 
 
 def test_a_solver_that_fails_says_so_and_gives_no_value(monkeypatch):
@@ -159,7 +157,7 @@ def test_a_solver_that_fails_says_so_and_gives_no_value(monkeypatch):
 def test_a_steep_basis_is_solved_or_shown_to_fail_but_not_called_unestimable():
     powers = np.linspace(0.0, 1.0, 101)[np.newaxis, :] ** np.arange(24)[:, np.newaxis]
     result = guaranteed_lp(GridProblem(powers, np.eye(24)[-1]))
-    exact = 2.0 ** (2 * 23 - 1)                    # leading coefficient of the Chebyshev polynomial
+    exact = 2.0 ** (2 * 23 - 1)  # leading coefficient of the Chebyshev polynomial
     assert result.value is None or result.residual > 1e-9 or abs(result.value / exact - 1) < 0.1
 
 

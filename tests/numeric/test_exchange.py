@@ -13,15 +13,7 @@ from scipy.optimize import linprog
 from navsym.numeric import tiers
 from navsym.numeric.exchange import kernels
 from navsym.numeric.exchange.maxima import local_maxima, values_on
-from navsym.numeric.exchange.search import (
-    Panels,
-    careful,
-    chebyshev_nodes,
-    find_contacts,
-    independent,
-    roads,
-    rows_at,
-)
+from navsym.numeric.exchange.search import Panels, careful, chebyshev_nodes, find_contacts, independent, roads, rows_at
 from navsym.numeric.exchange.twofold import two_product, two_sum
 from navsym.numeric.tiers import compiled
 from navsym.proof.optimality.basis import make_basis
@@ -139,9 +131,13 @@ def test_a_contact_whose_weight_is_nothing_is_a_touch_and_no_contact():
     """The value at 1 of functions one of which is 1e-9 of another: three contacts had weights of 1e-15, of any sign."""
     s = sp.Symbol("t", real=True)
     functions = (
-        sp.exp(-s) / 10**9, sp.cos(8 * s / 3), sp.tanh(3 * s - 3), s**2 * sp.exp(-6 * s), s**2 * sp.exp(-s / 4),
+        sp.exp(-s) / 10**9,
+        sp.cos(8 * s / 3),
+        sp.tanh(3 * s - 3),
+        s**2 * sp.exp(-6 * s),
+        s**2 * sp.exp(-s / 4),
         sp.exp(-2 * s),
-    )  # fmt: skip
+    )
     panel = Panel(0, functions, s, sp.S.Zero, sp.Rational(33, 10), sp.S.One)
     basis = make_basis(Problem((panel,), tuple(h.subs(s, 1) for h in functions)))
     for found in (find_contacts(basis.panels), careful(basis.panels, basis.panels.search.nodes)):

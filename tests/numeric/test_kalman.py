@@ -80,8 +80,13 @@ def test_a_covariance_whose_eigenvalues_are_positive_but_which_has_no_factor_is_
     for seed in range(40):
         a, b = np.random.default_rng(seed).uniform(0.5, 1.5, 2)
         H = np.array([[a, b], [a, b + delta]])
-        x, P, ll = kalman.correct(np.zeros((2, 2)), np.eye(2), np.ones(2), np.stack([H, np.eye(2)]),
-                           np.stack([delta**2 * np.eye(2), np.eye(2)]))
+        x, P, ll = kalman.correct(
+            np.zeros((2, 2)),
+            np.eye(2),
+            np.ones(2),
+            np.stack([H, np.eye(2)]),
+            np.stack([delta**2 * np.eye(2), np.eye(2)]),
+        )
         assert np.isfinite(x).all() and np.isfinite(P).all() and np.isfinite(ll[1]) and not np.isnan(ll[0])
 
 
@@ -91,9 +96,7 @@ def test_rotated_scalars_say_the_same_as_the_vector():
     whole = kalman.correct(np.zeros(3), P, z, H, R)
     mean, covariance, total = np.zeros(3), P, 0.0
     for value, row, variance in zip(*kalman.scalar_corrections(z, H, R), strict=True):
-        mean, covariance, part = kalman.correct(
-            mean, covariance, np.array([value]), row[None], np.array([[variance]])
-        )
+        mean, covariance, part = kalman.correct(mean, covariance, np.array([value]), row[None], np.array([[variance]]))
         total += part
     assert_allclose(mean, whole[0], rtol=1e-10)
     assert_allclose(covariance, whole[1], rtol=1e-9, atol=1e-12)

@@ -194,10 +194,10 @@ def test_the_lattice_equals_the_plain_loop_to_the_last_bit(n):
 def test_the_lattice_is_left_where_it_would_read_past_the_map():
     H, low, high = np.zeros((30, 30)), np.array([10.0]), np.array([26.0])
     assert fits(H, low, low, (7, 7), 16)
-    assert not fits(H, high, low, (7, 7), 16)                # the last column is a border of its own
+    assert not fits(H, high, low, (7, 7), 16)  # the last column is a border of its own
     assert not fits(H, low, high, (7, 7), 16)
-    assert not fits(H, np.array([2.0]), low, (7, 7), 16)     # off the map
-    assert not fits(H, np.array([20.0]), np.array([25.0]), (7, 7), 48)   # the padding would end past the array
+    assert not fits(H, np.array([2.0]), low, (7, 7), 16)  # off the map
+    assert not fits(H, np.array([20.0]), np.array([25.0]), (7, 7), 48)  # the padding would end past the array
 
 
 def test_rounded_positions_keep_their_fraction_across_powers_of_two():
@@ -267,7 +267,7 @@ def test_the_offset_free_criterion_is_the_least_over_all_offsets():
 
 def test_scores_prefer_measurements_that_tell_hypotheses_apart():
     H = np.zeros((50, 50))
-    H[:, 30:] = 100.0                                       # a step that only late measurements see
+    H[:, 30:] = 100.0  # a step that only late measurements see
     n = 20
     bx, by = np.linspace(10.0, 29.5, n), np.full(n, 25.0)
     z = np.array([height_at(H, u, w) for u, w in zip(bx, by, strict=True)])

@@ -35,8 +35,11 @@ def both(terrain, track, grid=GRID, **options):
 
 def assert_equal(quick, dense):
     assert (quick.index, quick.criterion, quick.second_best, quick.unique) == (
-        dense.index, dense.criterion, dense.second_best, dense.unique
-    )  # fmt: skip
+        dense.index,
+        dense.criterion,
+        dense.second_best,
+        dense.unique,
+    )
 
 
 @pytest.mark.parametrize("offset_free", [False, True])
@@ -108,9 +111,12 @@ def test_unique_is_never_claimed_for_a_tie_nor_a_tie_for_a_difference(kind):
         assert_equal(quick, dense)
         prepared = prepare(terrain, track, Hypotheses((1, 1), (2, 2), (1, 1), (1, 1)))
         span = [(i, j, v, w) for i in range(-2, 3) for j in range(-2, 3) for v in (-1, 0, 1) for w in (-1, 0, 1)]
-        exact = sorted(exact_criterion(prepared, index) for index in span
-                       if all(0 <= x[k] + index[0] + index[2] * k <= 39 for k in range(6))
-                       and all(0 <= y[k] + index[1] + index[3] * k <= 39 for k in range(6)))
+        exact = sorted(
+            exact_criterion(prepared, index)
+            for index in span
+            if all(0 <= x[k] + index[0] + index[2] * k <= 39 for k in range(6))
+            and all(0 <= y[k] + index[1] + index[3] * k <= 39 for k in range(6))
+        )
         if exact[0] == exact[1]:
             assert quick.unique is not True
         else:

@@ -21,8 +21,15 @@ def stack(seed, size=4, n=4, p=2, diagonal=False):
     R = C @ C.swapaxes(1, 2) + 0.1 * np.eye(p)
     R = R * np.eye(p) if diagonal else R
     F, B = rng.standard_normal((size, n, n)), rng.standard_normal((size, n, n))
-    return (rng.standard_normal((size, n)), A @ A.swapaxes(1, 2) + 0.1 * np.eye(n), F, 0.1 * B @ B.swapaxes(1, 2),
-            rng.standard_normal(p), rng.standard_normal((size, p, n)), R)
+    return (
+        rng.standard_normal((size, n)),
+        A @ A.swapaxes(1, 2) + 0.1 * np.eye(n),
+        F,
+        0.1 * B @ B.swapaxes(1, 2),
+        rng.standard_normal(p),
+        rng.standard_normal((size, p, n)),
+        R,
+    )
 
 
 @pytest.mark.parametrize("name", FACTORED)

@@ -49,8 +49,10 @@ def smoothed_exactly(t, z, r, q, spread):
             (y, P), (y1, P1, Phi) = filtered[k], ahead[k + 1]
             C = P * Phi.T * P1**-1
             found.insert(0, (y + C * (found[0][0] - y1), P + C * (found[0][1] - P1) * C.T))
-        return (np.array([[float(v) for v in y] for y, _ in found]),
-                np.array([[float(P[i, i]) for i in range(n)] for _, P in found]))
+        return (
+            np.array([[float(v) for v in y] for y, _ in found]),
+            np.array([[float(P[i, i]) for i in range(n)] for _, P in found]),
+        )
 
 
 def run_of(t, z, r, q, spread):

@@ -12,29 +12,49 @@ from typing import Any
 Row = tuple[Any, Any, Any]
 
 ROTATIONS: tuple[Row, ...] = (
-    ([["cos(a)", "-sin(a)"], ["sin(a)", "cos(a)"]], [["sin(a + pi/2)", "-sin(a)"], ["sin(a)", "sin(a + pi/2)"]],
-     [["sin(a + pi/2)", "-sin(a)"], ["sin(a)", "sin(a - pi/2)"]]),
+    (
+        [["cos(a)", "-sin(a)"], ["sin(a)", "cos(a)"]],
+        [["sin(a + pi/2)", "-sin(a)"], ["sin(a)", "sin(a + pi/2)"]],
+        [["sin(a + pi/2)", "-sin(a)"], ["sin(a)", "sin(a - pi/2)"]],
+    ),
     ("(cos(a)*cos(b))**2 + (cos(a)*sin(b))**2 + sin(a)**2", "1", "1 + sin(a)**2*sin(b)**2/1000"),
-    ("cos(b)*cos(c)*(sin(a)*sin(b)*cos(c) - cos(a)*sin(c)) + cos(b)*sin(c)*(sin(a)*sin(b)*sin(c) + cos(a)*cos(c))"
-     " - sin(b)*sin(a)*cos(b)", "0", "sin(a)*sin(b)*cos(b)/10"),
-    ("(cos(a/2)*cos(b/2)*cos(c/2) + sin(a/2)*sin(b/2)*sin(c/2))**2"
-     " + (sin(a/2)*cos(b/2)*cos(c/2) - cos(a/2)*sin(b/2)*sin(c/2))**2"
-     " + (cos(a/2)*sin(b/2)*cos(c/2) + sin(a/2)*cos(b/2)*sin(c/2))**2"
-     " + (cos(a/2)*cos(b/2)*sin(c/2) - sin(a/2)*sin(b/2)*cos(c/2))**2", "1", "1 + sin(a)*sin(b)*sin(c)/4"),
-    ("2*(cos(a/2)*cos(b/2)*cos(c/2) + sin(a/2)*sin(b/2)*sin(c/2))"
-     "*(cos(a/2)*sin(b/2)*cos(c/2) + sin(a/2)*cos(b/2)*sin(c/2))"
-     " - 2*(cos(a/2)*cos(b/2)*sin(c/2) - sin(a/2)*sin(b/2)*cos(c/2))"
-     "*(sin(a/2)*cos(b/2)*cos(c/2) - cos(a/2)*sin(b/2)*sin(c/2))", "sin(b)", "cos(b)"),
+    (
+        "cos(b)*cos(c)*(sin(a)*sin(b)*cos(c) - cos(a)*sin(c)) + cos(b)*sin(c)*(sin(a)*sin(b)*sin(c) + cos(a)*cos(c))"
+        " - sin(b)*sin(a)*cos(b)",
+        "0",
+        "sin(a)*sin(b)*cos(b)/10",
+    ),
+    (
+        "(cos(a/2)*cos(b/2)*cos(c/2) + sin(a/2)*sin(b/2)*sin(c/2))**2"
+        " + (sin(a/2)*cos(b/2)*cos(c/2) - cos(a/2)*sin(b/2)*sin(c/2))**2"
+        " + (cos(a/2)*sin(b/2)*cos(c/2) + sin(a/2)*cos(b/2)*sin(c/2))**2"
+        " + (cos(a/2)*cos(b/2)*sin(c/2) - sin(a/2)*sin(b/2)*cos(c/2))**2",
+        "1",
+        "1 + sin(a)*sin(b)*sin(c)/4",
+    ),
+    (
+        "2*(cos(a/2)*cos(b/2)*cos(c/2) + sin(a/2)*sin(b/2)*sin(c/2))"
+        "*(cos(a/2)*sin(b/2)*cos(c/2) + sin(a/2)*cos(b/2)*sin(c/2))"
+        " - 2*(cos(a/2)*cos(b/2)*sin(c/2) - sin(a/2)*sin(b/2)*cos(c/2))"
+        "*(sin(a/2)*cos(b/2)*cos(c/2) - cos(a/2)*sin(b/2)*sin(c/2))",
+        "sin(b)",
+        "cos(b)",
+    ),
     ("1 + 2*cos(a)", "1 + 2*(2*cos(a/2)**2 - 1)", "1 + 2*(2*sin(a/2)**2 - 1)"),
     ("sin(a)/a*x", "2*sin(a/2)*cos(a/2)/a*x", "2*sin(a/2)*cos(a/2)/b*x"),
     ("tan(b)*cos(b)", "sin(b)", "sin(b)**2"),
     ("sec(b)**2 - tan(b)**2", "1", "cos(b)"),
     ("(x*cos(a) + y*sin(a))**2 + (y*cos(a) - x*sin(a))**2", "x**2 + y**2", "x**2 + y**2 + x*y*sin(a)/10"),
-    ([["cos(a)", "sin(a)", "0"], ["-sin(a)", "cos(a)", "0"], ["0", "0", "1"]],
-     [["1 - 2*sin(a/2)**2", "sin(a)", "0"], ["-sin(a)", "1 - 2*sin(a/2)**2", "0"], ["0", "0", "1"]],
-     [["1 - 2*sin(a/2)**2", "sin(a)", "0"], ["sin(a)", "1 - 2*sin(a/2)**2", "0"], ["0", "0", "1"]]),
-    ("sin(a + b + c)", "sin(a)*cos(b)*cos(c) + cos(a)*sin(b)*cos(c) + cos(a)*cos(b)*sin(c) - sin(a)*sin(b)*sin(c)",
-     "sin(a)*cos(b)*cos(c) + cos(a)*sin(b)*cos(c) + cos(a)*cos(b)*sin(c) + sin(a)*sin(b)*sin(c)"),
+    (
+        [["cos(a)", "sin(a)", "0"], ["-sin(a)", "cos(a)", "0"], ["0", "0", "1"]],
+        [["1 - 2*sin(a/2)**2", "sin(a)", "0"], ["-sin(a)", "1 - 2*sin(a/2)**2", "0"], ["0", "0", "1"]],
+        [["1 - 2*sin(a/2)**2", "sin(a)", "0"], ["sin(a)", "1 - 2*sin(a/2)**2", "0"], ["0", "0", "1"]],
+    ),
+    (
+        "sin(a + b + c)",
+        "sin(a)*cos(b)*cos(c) + cos(a)*sin(b)*cos(c) + cos(a)*cos(b)*sin(c) - sin(a)*sin(b)*sin(c)",
+        "sin(a)*cos(b)*cos(c) + cos(a)*sin(b)*cos(c) + cos(a)*cos(b)*sin(c) + sin(a)*sin(b)*sin(c)",
+    ),
     ("tan(a/2)", "sin(a)/(1 + cos(a))", "sin(a)/(1 - cos(a))"),
     ("cos(abs(a))", "cos(a)", "abs(cos(a))"),
     ("sin(abs(a))", "abs(a)*sin(a)/a", "sin(a)"),
@@ -51,29 +71,41 @@ ROTATIONS: tuple[Row, ...] = (
 )
 
 QUATERNIONS: tuple[Row, ...] = (
-    ("(a*e - b*f - c*g - d*h)**2 + (a*f + b*e + c*h - d*g)**2 + (a*g - b*h + c*e + d*f)**2 + (a*h + b*g - c*f"
-     " + d*e)**2",
-     "(a**2 + b**2 + c**2 + d**2)*(e**2 + f**2 + g**2 + h**2)",
-     "(a**2 + b**2 + c**2 + d**2)*(e**2 + f**2 + g**2 - h**2)"),
-    ("(a**2 + b**2 - c**2 - d**2)**2 + 4*(b*c + a*d)**2 + 4*(b*d - a*c)**2", "(a**2 + b**2 + c**2 + d**2)**2",
-     "(a**2 + b**2 + c**2 - d**2)**2"),
-    ("(a**2 + b**2 - c**2 - d**2)*2*(b*c - a*d) + 2*(b*c + a*d)*(a**2 - b**2 + c**2 - d**2)"
-     " + 2*(b*d - a*c)*2*(c*d + a*b)",
-     "0", "a*b*c*d"),
+    (
+        "(a*e - b*f - c*g - d*h)**2 + (a*f + b*e + c*h - d*g)**2 + (a*g - b*h + c*e + d*f)**2 + (a*h + b*g - c*f"
+        " + d*e)**2",
+        "(a**2 + b**2 + c**2 + d**2)*(e**2 + f**2 + g**2 + h**2)",
+        "(a**2 + b**2 + c**2 + d**2)*(e**2 + f**2 + g**2 - h**2)",
+    ),
+    (
+        "(a**2 + b**2 - c**2 - d**2)**2 + 4*(b*c + a*d)**2 + 4*(b*d - a*c)**2",
+        "(a**2 + b**2 + c**2 + d**2)**2",
+        "(a**2 + b**2 + c**2 - d**2)**2",
+    ),
+    (
+        "(a**2 + b**2 - c**2 - d**2)*2*(b*c - a*d) + 2*(b*c + a*d)*(a**2 - b**2 + c**2 - d**2)"
+        " + 2*(b*d - a*c)*2*(c*d + a*b)",
+        "0",
+        "a*b*c*d",
+    ),
     ("4*a**2 - (a**2 + b**2 + c**2 + d**2)", "3*a**2 - b**2 - c**2 - d**2", "3*a**2 - b**2 - c**2 + d**2"),
     ("a*(e*h - f*g)", "a*e*h - a*f*g", "a*e*h - a*g*e"),
     ([["a", "-b"], ["b", "a"]], [["a + 0*b", "-b"], ["b", "(a**2 + a*b)/(a + b)"]], [["a", "b"], ["b", "a"]]),
-    ("(b*g - c*f)**2 + (c*e - a*g)**2 + (a*f - b*e)**2",
-     "(a**2 + b**2 + c**2)*(e**2 + f**2 + g**2) - (a*e + b*f + c*g)**2",
-     "(a**2 + b**2 + c**2)*(e**2 + f**2 + g**2) + (a*e + b*f + c*g)**2"),
+    (
+        "(b*g - c*f)**2 + (c*e - a*g)**2 + (a*f - b*e)**2",
+        "(a**2 + b**2 + c**2)*(e**2 + f**2 + g**2) - (a*e + b*f + c*g)**2",
+        "(a**2 + b**2 + c**2)*(e**2 + f**2 + g**2) + (a*e + b*f + c*g)**2",
+    ),
     ("a*(b*g - c*f) + b*(c*e - a*g) + c*(a*f - b*e)", "0", "a*b*c*e/10"),
 )
 
 SCHULER: tuple[Row, ...] = (
     ("sin(w*T)**2/w**2 + ((1 - cos(w*T))/w)**2", "2*(1 - cos(w*T))/w**2", "2*(1 + cos(w*T))/w**2"),
-    ([["cos(w*T)", "sin(w*T)/w"], ["-w*sin(w*T)", "cos(w*T)"]],
-     [["1 - 2*sin(w*T/2)**2", "2*sin(w*T/2)*cos(w*T/2)/w"], ["-2*w*sin(w*T/2)*cos(w*T/2)", "2*cos(w*T/2)**2 - 1"]],
-     [["1 - 2*sin(w*T/2)**2", "2*sin(w*T/2)*cos(w*T/2)/w"], ["2*w*sin(w*T/2)*cos(w*T/2)", "2*cos(w*T/2)**2 - 1"]]),
+    (
+        [["cos(w*T)", "sin(w*T)/w"], ["-w*sin(w*T)", "cos(w*T)"]],
+        [["1 - 2*sin(w*T/2)**2", "2*sin(w*T/2)*cos(w*T/2)/w"], ["-2*w*sin(w*T/2)*cos(w*T/2)", "2*cos(w*T/2)**2 - 1"]],
+        [["1 - 2*sin(w*T/2)**2", "2*sin(w*T/2)*cos(w*T/2)/w"], ["2*w*sin(w*T/2)*cos(w*T/2)", "2*cos(w*T/2)**2 - 1"]],
+    ),
     ("cos(w*T)*cos(w*T) - (sin(w*T)/w)*(-w*sin(w*T))", "1", "cos(2*w*T)"),
     ("cos(w*(T + t))", "cos(w*T)*cos(w*t) - (sin(w*T)/w)*w*sin(w*t)", "cos(w*T)*cos(w*t) - sin(w*T)*w*sin(w*t)"),
     ("sin(w*(T + t))/w", "cos(w*T)*sin(w*t)/w + sin(w*T)/w*cos(w*t)", "cos(w*T)*sin(w*t)/w - sin(w*T)/w*cos(w*t)"),
@@ -116,18 +148,36 @@ KALMAN: tuple[Row, ...] = (
     ("p/(p + r)", "(1/(1/p + 1/r))/r", "(1/(1/p + 1/r))/p"),
     ("1/(a + u*v/q)", "1/a - 1/a*u*v/a/(q + v*u/a)", "1/a + 1/a*u*v/a/(q + v*u/a)"),
     ([["a", "b"], ["b", "d"]], [["a", "(b*d + b*a)/(a + d)"], ["b", "d"]], [["a", "b"], ["-b", "d"]]),
-    ([["d/(a*d - b**2)*a - b/(a*d - b**2)*b", "d/(a*d - b**2)*b - b/(a*d - b**2)*d"],
-      ["-b/(a*d - b**2)*a + a/(a*d - b**2)*b", "-b/(a*d - b**2)*b + a/(a*d - b**2)*d"]],
-     [["1", "0"], ["0", "1"]], [["1", "0"], ["0", "-1"]]),
-    ([["(1 - a/(a + r))*a", "(1 - a/(a + r))*b"], ["b - b/(a + r)*a", "d - b/(a + r)*b"]],
-     [["(1 - a/(a + r))**2*a + (a/(a + r))**2*r", "(1 - a/(a + r))*(b - b/(a + r)*a) + a/(a + r)*b/(a + r)*r"],
-      ["(1 - a/(a + r))*(b - b/(a + r)*a) + a/(a + r)*b/(a + r)*r",
-       "d - 2*b/(a + r)*b + (b/(a + r))**2*a + (b/(a + r))**2*r"]],
-     [["(1 - a/(a + r))**2*a + (a/(a + r))**2*r", "(1 - a/(a + r))*(b - b/(a + r)*a) + a/(a + r)*b/(a + r)*r"],
-      ["(1 - a/(a + r))*(b - b/(a + r)*a) - a/(a + r)*b/(a + r)*r",
-       "d - 2*b/(a + r)*b + (b/(a + r))**2*a + (b/(a + r))**2*r"]]),
-    ("(q + sqrt(q**2 + 4*q*r))/2", "q + ((q + sqrt(q**2 + 4*q*r))/2)*r/((q + sqrt(q**2 + 4*q*r))/2 + r)",
-     "q - ((q + sqrt(q**2 + 4*q*r))/2)*r/((q + sqrt(q**2 + 4*q*r))/2 + r)"),
+    (
+        [
+            ["d/(a*d - b**2)*a - b/(a*d - b**2)*b", "d/(a*d - b**2)*b - b/(a*d - b**2)*d"],
+            ["-b/(a*d - b**2)*a + a/(a*d - b**2)*b", "-b/(a*d - b**2)*b + a/(a*d - b**2)*d"],
+        ],
+        [["1", "0"], ["0", "1"]],
+        [["1", "0"], ["0", "-1"]],
+    ),
+    (
+        [["(1 - a/(a + r))*a", "(1 - a/(a + r))*b"], ["b - b/(a + r)*a", "d - b/(a + r)*b"]],
+        [
+            ["(1 - a/(a + r))**2*a + (a/(a + r))**2*r", "(1 - a/(a + r))*(b - b/(a + r)*a) + a/(a + r)*b/(a + r)*r"],
+            [
+                "(1 - a/(a + r))*(b - b/(a + r)*a) + a/(a + r)*b/(a + r)*r",
+                "d - 2*b/(a + r)*b + (b/(a + r))**2*a + (b/(a + r))**2*r",
+            ],
+        ],
+        [
+            ["(1 - a/(a + r))**2*a + (a/(a + r))**2*r", "(1 - a/(a + r))*(b - b/(a + r)*a) + a/(a + r)*b/(a + r)*r"],
+            [
+                "(1 - a/(a + r))*(b - b/(a + r)*a) - a/(a + r)*b/(a + r)*r",
+                "d - 2*b/(a + r)*b + (b/(a + r))**2*a + (b/(a + r))**2*r",
+            ],
+        ],
+    ),
+    (
+        "(q + sqrt(q**2 + 4*q*r))/2",
+        "q + ((q + sqrt(q**2 + 4*q*r))/2)*r/((q + sqrt(q**2 + 4*q*r))/2 + r)",
+        "q - ((q + sqrt(q**2 + 4*q*r))/2)*r/((q + sqrt(q**2 + 4*q*r))/2 + r)",
+    ),
     ("sqrt(q*r)**2/r", "q", "r"),
     ("-2*a*p*0 + 2*a*(a*r + sqrt(a**2*r**2 + q*r)) + q - (a*r + sqrt(a**2*r**2 + q*r))**2/r", "0", "q/10"),
     ("(2*a - a**2 - a)/a", "1 - a", "1 + a"),
@@ -139,36 +189,62 @@ KALMAN: tuple[Row, ...] = (
     ("exp(-u**2/(2*p))/sqrt(2*pi*p)", "exp(-u**2/(2*p) - log(2*pi*p)/2)", "exp(-u**2/(2*p) + log(2*pi*p)/2)"),
     ("(u/p + v/r)/(1/p + 1/r)", "(r*u + p*v)/(p + r)", "(p*u + r*v)/(p + r)"),
     ("u**2/p + v**2/r - (u + v)**2/(p + r)", "(r*u - p*v)**2/(p*r*(p + r))", "(r*u + p*v)**2/(p*r*(p + r))"),
-    ([["q*T**3/3", "q*T**2/2"], ["q*T**2/2", "q*T"]],
-     [["q*T*(T**2/12 + T**2/4)", "q*T*T/2"], ["q*T*T/2", "q*T"]],
-     [["q*T*(T**2/12 + T**2/3)", "q*T*T/2"], ["q*T*T/2", "q*T"]]),
+    (
+        [["q*T**3/3", "q*T**2/2"], ["q*T**2/2", "q*T"]],
+        [["q*T*(T**2/12 + T**2/4)", "q*T*T/2"], ["q*T*T/2", "q*T"]],
+        [["q*T*(T**2/12 + T**2/3)", "q*T*T/2"], ["q*T*T/2", "q*T"]],
+    ),
     ("q*T**3/3*q*T - (q*T**2/2)**2", "q**2*T**4/12", "q**2*T**4/6"),
-    ([["a", "b", "c"], ["b", "d", "u"], ["c", "u", "v"]], [["a", "b", "c"], ["b", "d", "u"], ["c", "u", "v*q/q"]],
-     [["a", "b", "c"], ["b", "d", "u"], ["c", "u", "v/q"]]),
-    ("a*(d*v - u**2) - b*(b*v - u*c) + c*(b*u - d*c)", "a*d*v + 2*b*c*u - a*u**2 - d*c**2 - v*b**2",
-     "a*d*v - 2*b*c*u - a*u**2 - d*c**2 - v*b**2"),
+    (
+        [["a", "b", "c"], ["b", "d", "u"], ["c", "u", "v"]],
+        [["a", "b", "c"], ["b", "d", "u"], ["c", "u", "v*q/q"]],
+        [["a", "b", "c"], ["b", "d", "u"], ["c", "u", "v/q"]],
+    ),
+    (
+        "a*(d*v - u**2) - b*(b*v - u*c) + c*(b*u - d*c)",
+        "a*d*v + 2*b*c*u - a*u**2 - d*c**2 - v*b**2",
+        "a*d*v - 2*b*c*u - a*u**2 - d*c**2 - v*b**2",
+    ),
 )
 
 EARTH: tuple[Row, ...] = (
-    ("a*(1 - e**2)/(1 - e**2*sin(b)**2)**(3/2)", "(a/sqrt(1 - e**2*sin(b)**2))*(1 - e**2)/(1 - e**2*sin(b)**2)",
-     "(a/sqrt(1 - e**2*sin(b)**2))*(1 + e**2)/(1 - e**2*sin(b)**2)"),
-    ("(a*cos(b)/sqrt(1 - e**2*sin(b)**2))**2/a**2"
-     " + (a*(1 - e**2)*sin(b)/sqrt(1 - e**2*sin(b)**2))**2/(a**2*(1 - e**2))",
-     "1", "1 + e**2"),
+    (
+        "a*(1 - e**2)/(1 - e**2*sin(b)**2)**(3/2)",
+        "(a/sqrt(1 - e**2*sin(b)**2))*(1 - e**2)/(1 - e**2*sin(b)**2)",
+        "(a/sqrt(1 - e**2*sin(b)**2))*(1 + e**2)/(1 - e**2*sin(b)**2)",
+    ),
+    (
+        "(a*cos(b)/sqrt(1 - e**2*sin(b)**2))**2/a**2"
+        " + (a*(1 - e**2)*sin(b)/sqrt(1 - e**2*sin(b)**2))**2/(a**2*(1 - e**2))",
+        "1",
+        "1 + e**2",
+    ),
     ("1 - (a*(1 - f))**2/a**2", "f*(2 - f)", "f*(2 + f)"),
     ("(1 - f)**2", "1 - (2*f - f**2)", "1 - (2*f + f**2)"),
     ("(f*(2 - f))/(1 - f)**2", "1/(1 - f)**2 - 1", "1/(1 - f)**2 + 1"),
     ("sin(b)**2 + (1 - sin(b)**2)", "1", "cos(b)"),
-    ("sin((b - c)/2)**2 + cos(b)*cos(c)*sin(l/2)**2", "(1 - (sin(b)*sin(c) + cos(b)*cos(c)*cos(l)))/2",
-     "(1 - (sin(b)*sin(c) - cos(b)*cos(c)*cos(l)))/2"),
-    ("(cos(c)*sin(l))**2 + (cos(b)*sin(c) - sin(b)*cos(c)*cos(l))**2 + (sin(b)*sin(c) + cos(b)*cos(c)*cos(l))**2", "1",
-     "1 + sin(l)**2/10"),
+    (
+        "sin((b - c)/2)**2 + cos(b)*cos(c)*sin(l/2)**2",
+        "(1 - (sin(b)*sin(c) + cos(b)*cos(c)*cos(l)))/2",
+        "(1 - (sin(b)*sin(c) - cos(b)*cos(c)*cos(l)))/2",
+    ),
+    (
+        "(cos(c)*sin(l))**2 + (cos(b)*sin(c) - sin(b)*cos(c)*cos(l))**2 + (sin(b)*sin(c) + cos(b)*cos(c)*cos(l))**2",
+        "1",
+        "1 + sin(l)**2/10",
+    ),
     ("a*(1 + f*sin(b)**2*0) + h", "a + h", "a - h"),
-    ("(a + h)**2*(cos(b)*cos(l))**2 + (a + h)**2*(cos(b)*sin(l))**2 + (a + h)**2*sin(b)**2", "(a + h)**2",
-     "(a - h)**2"),
+    (
+        "(a + h)**2*(cos(b)*cos(l))**2 + (a + h)**2*(cos(b)*sin(l))**2 + (a + h)**2*sin(b)**2",
+        "(a + h)**2",
+        "(a - h)**2",
+    ),
     ("sqrt(cos(b)**2*cos(l)**2 + cos(b)**2*sin(l)**2)", "abs(cos(b))", "-cos(b)"),
-    ("g*(1 + u*sin(b)**2 - v*sin(2*b)**2)", "g*(1 + u*sin(b)**2 - 4*v*sin(b)**2*cos(b)**2)",
-     "g*(1 + u*sin(b)**2 - 2*v*sin(b)**2*cos(b)**2)"),
+    (
+        "g*(1 + u*sin(b)**2 - v*sin(2*b)**2)",
+        "g*(1 + u*sin(b)**2 - 4*v*sin(b)**2*cos(b)**2)",
+        "g*(1 + u*sin(b)**2 - 2*v*sin(b)**2*cos(b)**2)",
+    ),
     ("g*(1 - e)/(1 - e**2)", "g/(1 + e)", "g/(1 - e)"),
     ("sin(b)*cos(b)", "tan(b)/(1 + tan(b)**2)", "tan(b)/(1 - tan(b)**2)"),
     ("atan(tan(b))", "b", "b/2"),
@@ -202,17 +278,37 @@ EARTH: tuple[Row, ...] = (
 )
 
 MOTION: tuple[Row, ...] = (
-    ("x + s*sin(w*T)/w - v*(1 - cos(w*T))/w", "x + 2*sin(w*T/2)/w*(s*cos(w*T/2) - v*sin(w*T/2))",
-     "x + 2*sin(w*T/2)/w*(s*cos(w*T/2) + v*sin(w*T/2))"),
-    ([["1", "sin(w*T)/w", "0", "-(1 - cos(w*T))/w"], ["0", "cos(w*T)", "0", "-sin(w*T)"],
-      ["0", "(1 - cos(w*T))/w", "1", "sin(w*T)/w"], ["0", "sin(w*T)", "0", "cos(w*T)"]],
-     [["1", "sin(w*T)/w", "0", "-2*sin(w*T/2)**2/w"], ["0", "cos(w*T)", "0", "-sin(w*T)"],
-      ["0", "2*sin(w*T/2)**2/w", "1", "sin(w*T)/w"], ["0", "sin(w*T)", "0", "cos(w*T)"]],
-     [["1", "sin(w*T)/w", "0", "2*sin(w*T/2)**2/w"], ["0", "cos(w*T)", "0", "-sin(w*T)"],
-      ["0", "2*sin(w*T/2)**2/w", "1", "sin(w*T)/w"], ["0", "sin(w*T)", "0", "cos(w*T)"]]),
+    (
+        "x + s*sin(w*T)/w - v*(1 - cos(w*T))/w",
+        "x + 2*sin(w*T/2)/w*(s*cos(w*T/2) - v*sin(w*T/2))",
+        "x + 2*sin(w*T/2)/w*(s*cos(w*T/2) + v*sin(w*T/2))",
+    ),
+    (
+        [
+            ["1", "sin(w*T)/w", "0", "-(1 - cos(w*T))/w"],
+            ["0", "cos(w*T)", "0", "-sin(w*T)"],
+            ["0", "(1 - cos(w*T))/w", "1", "sin(w*T)/w"],
+            ["0", "sin(w*T)", "0", "cos(w*T)"],
+        ],
+        [
+            ["1", "sin(w*T)/w", "0", "-2*sin(w*T/2)**2/w"],
+            ["0", "cos(w*T)", "0", "-sin(w*T)"],
+            ["0", "2*sin(w*T/2)**2/w", "1", "sin(w*T)/w"],
+            ["0", "sin(w*T)", "0", "cos(w*T)"],
+        ],
+        [
+            ["1", "sin(w*T)/w", "0", "2*sin(w*T/2)**2/w"],
+            ["0", "cos(w*T)", "0", "-sin(w*T)"],
+            ["0", "2*sin(w*T/2)**2/w", "1", "sin(w*T)/w"],
+            ["0", "sin(w*T)", "0", "cos(w*T)"],
+        ],
+    ),
     ("(s*cos(w*T) - v*sin(w*T))**2 + (s*sin(w*T) + v*cos(w*T))**2", "s**2 + v**2", "s**2 + v**2 + s*v"),
-    ("(x + T*v + T**2*s/2) + t*(v + T*s) + t**2*s/2", "x + (T + t)*v + (T + t)**2*s/2",
-     "x + (T + t)*v + (T - t)**2*s/2"),
+    (
+        "(x + T*v + T**2*s/2) + t*(v + T*s) + t**2*s/2",
+        "x + (T + t)*v + (T + t)**2*s/2",
+        "x + (T + t)*v + (T - t)**2*s/2",
+    ),
     ("s*exp(-T/t)*exp(-T/t)", "s*exp(-2*T/t)", "s*exp(-T**2/t**2)"),
     ("t*(1 - exp(-T/t))", "2*t*exp(-T/(2*t))*sinh(T/(2*t))", "2*t*exp(-T/(2*t))*cosh(T/(2*t))"),
     ("(T/t - 1 + exp(-T/t))*t**2", "t*T - t**2*(1 - exp(-T/t))", "t*T + t**2*(1 - exp(-T/t))"),
@@ -259,10 +355,13 @@ NUMBERS: tuple[Row, ...] = (
     ("sin(pi/10)", "(sqrt(5) - 1)/4", "(sqrt(5) + 1)/4"),
     ("cos(pi/12)", "(sqrt(6) + sqrt(2))/4", "(sqrt(6) - sqrt(2))/4"),
     ("tan(pi/8)", "sqrt(2) - 1", "sqrt(2) + 1"),
-    ("cos(2*pi/17)", "(-1 + sqrt(17) + sqrt(34 - 2*sqrt(17)) + 2*sqrt(17 + 3*sqrt(17) - sqrt(34 - 2*sqrt(17))"
-     " - 2*sqrt(34 + 2*sqrt(17))))/16",
-     "(-1 + sqrt(17) + sqrt(34 - 2*sqrt(17)) - 2*sqrt(17 + 3*sqrt(17) - sqrt(34 - 2*sqrt(17))"
-     " - 2*sqrt(34 + 2*sqrt(17))))/16"),
+    (
+        "cos(2*pi/17)",
+        "(-1 + sqrt(17) + sqrt(34 - 2*sqrt(17)) + 2*sqrt(17 + 3*sqrt(17) - sqrt(34 - 2*sqrt(17))"
+        " - 2*sqrt(34 + 2*sqrt(17))))/16",
+        "(-1 + sqrt(17) + sqrt(34 - 2*sqrt(17)) - 2*sqrt(17 + 3*sqrt(17) - sqrt(34 - 2*sqrt(17))"
+        " - 2*sqrt(34 + 2*sqrt(17))))/16",
+    ),
     ("cos(pi/7)*cos(2*pi/7)*cos(3*pi/7)", "1/8", "1/7"),
     ("tan(pi/7)*tan(2*pi/7)*tan(3*pi/7)", "sqrt(7)", "7"),
     ("sin(pi/16)", "sqrt(2 - sqrt(2 + sqrt(2)))/2", "sqrt(2 + sqrt(2 + sqrt(2)))/2"),
@@ -281,17 +380,42 @@ SYMBOLS: dict[str, dict[str, Any]] = {
     "rotations": {"a": ["-7/5", "7/5"], "b": "real", "c": "real", "x": "real", "y": "real"},
     "quaternions": {name: "real" for name in "abcdefgh"},
     "schuler": {**dict.fromkeys(("w", "T", "t", "g", "R"), "positive"), "x": "real", "y": "real"},
-    "kalman": {**dict.fromkeys(("p", "r", "q", "T"), "positive"), "a": ["1/10", "9/10"], "b": "real", "c": "real",
-               "d": "positive", "u": "real", "v": "real", "k": "nonzero"},
-    "earth": {"a": "positive", "b": ["-3/2", "3/2"], "c": "real", "l": "real", "h": "positive", "g": "positive",
-              "e": ["0", "1/2"], "f": ["0", "1/2"], "u": "real", "v": "real", "x": "real", "m": ["0", "pi"]},
+    "kalman": {
+        **dict.fromkeys(("p", "r", "q", "T"), "positive"),
+        "a": ["1/10", "9/10"],
+        "b": "real",
+        "c": "real",
+        "d": "positive",
+        "u": "real",
+        "v": "real",
+        "k": "nonzero",
+    },
+    "earth": {
+        "a": "positive",
+        "b": ["-3/2", "3/2"],
+        "c": "real",
+        "l": "real",
+        "h": "positive",
+        "g": "positive",
+        "e": ["0", "1/2"],
+        "f": ["0", "1/2"],
+        "u": "real",
+        "v": "real",
+        "x": "real",
+        "m": ["0", "pi"],
+    },
     "motion": {**dict.fromkeys(("w", "T", "t", "q"), "positive"), "s": "real", "v": "real", "x": "real"},
     "numbers": {},
-}  # fmt: skip
+}
 
 SYMBOLS["rotations"]["a"] = "real"
 
 GROUPS: dict[str, tuple[Row, ...]] = {
-    "rotations": ROTATIONS, "quaternions": QUATERNIONS, "schuler": SCHULER, "kalman": KALMAN, "earth": EARTH,
-    "motion": MOTION, "numbers": NUMBERS,
-}  # fmt: skip
+    "rotations": ROTATIONS,
+    "quaternions": QUATERNIONS,
+    "schuler": SCHULER,
+    "kalman": KALMAN,
+    "earth": EARTH,
+    "motion": MOTION,
+    "numbers": NUMBERS,
+}

@@ -21,9 +21,13 @@ from navsym.proof.ladder import decide
 
 RELATIONS = (">=", ">=", ">=", "<=", ">", ">", "<", "!=", "!=", "=")
 HOLDS = {
-    "<": lambda s: s < 0, "<=": lambda s: s <= 0, ">": lambda s: s > 0, ">=": lambda s: s >= 0,
-    "!=": lambda s: s != 0, "=": lambda s: s == 0,
-}  # fmt: skip
+    "<": lambda s: s < 0,
+    "<=": lambda s: s <= 0,
+    ">": lambda s: s > 0,
+    ">=": lambda s: s >= 0,
+    "!=": lambda s: s != 0,
+    "=": lambda s: s == 0,
+}
 
 
 @dataclass(frozen=True)
@@ -128,10 +132,9 @@ def random_case(generator: random.Random) -> Case:
     return Case(sign * top / bottom + other, generator.choice(RELATIONS), other, x, lower, upper)
 
 
-def random_range(
-    generator: random.Random, roots: list[sp.Rational]
-) -> tuple[sp.Rational | None, sp.Rational | None]:
+def random_range(generator: random.Random, roots: list[sp.Rational]) -> tuple[sp.Rational | None, sp.Rational | None]:
     """Nothing, a half line or an interval, often with an end at or next to a root."""
+
     def end() -> sp.Rational:
         root = generator.choice(roots)
         return generator.choice((root, root, small(generator), root + tiny(generator), root - tiny(generator)))
@@ -158,11 +161,29 @@ def tiny(generator: random.Random) -> sp.Rational:
 def factor(generator: random.Random, x: sp.Symbol, roots: list[sp.Rational]) -> sp.Expr:
     """Something with known, near, irrational or no real roots."""
     a, b, e = generator.choice(roots), generator.choice(roots), tiny(generator)
-    return generator.choice((
-        x - a, x - a, (x - a) ** 2, (x - a) ** 3, (x - a) * (x - a - e), (x - a) ** 2 + e, (x - a) ** 2 - e,
-        x**2 + a * x + b, x**2 - 2, x**2 - 2 - e, x**3 - x - 1, (x**3 - x - 1) ** 2, x**5 - x + a, x**2 + x + 1, x,
-        (x**2 - 2) ** 2, (x**2 - 2) * (x - a), x**4 - a * x**2 + b**2, sp.expand((x - a) ** 2 * (x - b) ** 2) + e,
-    ))  # fmt: skip
+    return generator.choice(
+        (
+            x - a,
+            x - a,
+            (x - a) ** 2,
+            (x - a) ** 3,
+            (x - a) * (x - a - e),
+            (x - a) ** 2 + e,
+            (x - a) ** 2 - e,
+            x**2 + a * x + b,
+            x**2 - 2,
+            x**2 - 2 - e,
+            x**3 - x - 1,
+            (x**3 - x - 1) ** 2,
+            x**5 - x + a,
+            x**2 + x + 1,
+            x,
+            (x**2 - 2) ** 2,
+            (x**2 - 2) * (x - a),
+            x**4 - a * x**2 + b**2,
+            sp.expand((x - a) ** 2 * (x - b) ** 2) + e,
+        )
+    )
 
 
 def verdict_against(case: Case) -> tuple[str, bool | None, str]:
@@ -190,4 +211,3 @@ def main(seed: int, count: int) -> None:
 
 if __name__ == "__main__":
     main(int(sys.argv[1]), int(sys.argv[2]))
-

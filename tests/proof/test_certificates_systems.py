@@ -29,10 +29,16 @@ def test_the_transition_matrix_of_another_oscillator_is_refused():
         judged(exponential_certificate(OSCILLATOR, TURNING.T, t))
 
 
-@pytest.mark.parametrize("matrix", [
-    sp.Matrix([[a, b], [2 * a, 2 * b]]), sp.Matrix([[1, 0], [0, 1]]), sp.Matrix([[a, b, a + b], [b, a, a + b]]),
-    sp.Matrix([[0, 0]]), sp.Matrix([[1 / a, 1], [1, a], [b, a * b]]),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "matrix",
+    [
+        sp.Matrix([[a, b], [2 * a, 2 * b]]),
+        sp.Matrix([[1, 0], [0, 1]]),
+        sp.Matrix([[a, b, a + b], [b, a, a + b]]),
+        sp.Matrix([[0, 0]]),
+        sp.Matrix([[1 / a, 1], [1, a], [b, a * b]]),
+    ],
+)
 def test_the_rank_of_a_matrix_with_parameters_is_accepted_and_another_rank_is_not(matrix):
     item = rank_certificate(matrix)
     assert judged(item) == "rank" and item["rank"] == matrix.rank()

@@ -123,6 +123,7 @@ def test_twenty_monomials_have_exact_contacts_at_few_digits_too(digits):
     found = certify(problem([t**k for k in range(20)], [int(k == 11) for k in range(20)], 1), digits)
     assert found.certificate["kind"] == "touch" and found.reaches(digits) and found.unique is True
 
+
 def test_a_dual_that_is_constant_with_coefficients_of_no_round_numbers_is_certified():
     """``x = (1 + sqrt(2)) (1, 0, sqrt(2))`` makes f the bound on the whole interval: the cost is its square."""
     root = sp.sqrt(2)

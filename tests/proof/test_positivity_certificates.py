@@ -41,10 +41,7 @@ def test_the_checker_accepts_it_and_refuses_it_for_the_opposite(left, relation, 
         checker.check({**certificate, "expression": f"-({certificate['expression']})"})
 
 
-@pytest.mark.parametrize(
-    ("left", "relation", "right"),
-    [("sin(t)", "<=", "t"), ("abs(s)", "<", "2")],
-)
+@pytest.mark.parametrize(("left", "relation", "right"), [("sin(t)", "<=", "t"), ("abs(s)", "<", "2")])
 def test_what_is_touched_beyond_polynomials_or_bent_has_none(left, relation, right):
     verdict = decided(left, relation, right)
     assert verdict.status.holds and verdict.certificate is None

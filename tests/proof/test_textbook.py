@@ -49,7 +49,7 @@ MATRICES = {
     "oscillator starts at one": (OSCILLATOR.subs(t, 0), sp.eye(2), -sp.eye(2)),
     "determinants multiply": (sp.Matrix([(M * K).det()]), sp.Matrix([M.det() * K.det()]), sp.Matrix([M.det()])),
     "trace is cyclic": (sp.Matrix([(M * K).trace()]), sp.Matrix([(K * M).trace()]), sp.Matrix([M.trace() * K.trace()])),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("name", MATRICES)

@@ -61,10 +61,16 @@ TRIGONOMETRIC = (
     ("cot(a) - tan(a)", "2*cot(2*a)", "2*tan(2*a)"),
     ("sin(a)/(1 - cos(a))", "(1 + cos(a))/sin(a)", "(1 - cos(a))/sin(a)"),
     ("cos(a - b) - sin(a)*sin(b)", "cos(a)*cos(b)", "cos(a)*sin(b)"),
-    ("sin(a + b + c)", "sin(a)*cos(b)*cos(c) + cos(a)*sin(b)*cos(c) + cos(a)*cos(b)*sin(c) - sin(a)*sin(b)*sin(c)",
-     "sin(a)*cos(b)*cos(c) + cos(a)*sin(b)*cos(c) + cos(a)*cos(b)*sin(c) + sin(a)*sin(b)*sin(c)"),
-    ("4*sin((a + b)/2)*sin((b + c)/2)*sin((c + a)/2)", "sin(a) + sin(b) + sin(c) - sin(a + b + c)",
-     "sin(a) + sin(b) + sin(c) + sin(a + b + c)"),
+    (
+        "sin(a + b + c)",
+        "sin(a)*cos(b)*cos(c) + cos(a)*sin(b)*cos(c) + cos(a)*cos(b)*sin(c) - sin(a)*sin(b)*sin(c)",
+        "sin(a)*cos(b)*cos(c) + cos(a)*sin(b)*cos(c) + cos(a)*cos(b)*sin(c) + sin(a)*sin(b)*sin(c)",
+    ),
+    (
+        "4*sin((a + b)/2)*sin((b + c)/2)*sin((c + a)/2)",
+        "sin(a) + sin(b) + sin(c) - sin(a + b + c)",
+        "sin(a) + sin(b) + sin(c) + sin(a + b + c)",
+    ),
     ("cos(a)*cos(2*a)*cos(4*a)*8*sin(a)", "sin(8*a)", "sin(7*a)"),
     ("cos(pi/5) - cos(2*pi/5)", "1/2", "501/1000"),
     ("cos(pi/7) - cos(2*pi/7) + cos(3*pi/7)", "1/2", "499/1000"),
@@ -75,7 +81,7 @@ TRIGONOMETRIC = (
     ("cos(2*atan(x))", "(1 - x**2)/(1 + x**2)", "(x**2 - 1)/(1 + x**2)"),
     ("sin(2*atan(x))", "2*x/(1 + x**2)", "2*x/(1 - x**2)"),
     ("tan(atan(x) + atan(y))", "(x + y)/(1 - x*y)", "(x + y)/(1 + x*y)"),
-)  # fmt: skip
+)
 
 HYPERBOLIC = (
     ("cosh(a)**2 - sinh(a)**2", "1", "999/1000"),
@@ -93,7 +99,7 @@ HYPERBOLIC = (
     ("exp(a + b)", "exp(a)*exp(b)", "exp(a) + exp(b)"),
     ("exp(2*log(p))", "p**2", "2*p"),
     ("p**a*p**b", "p**(a + b)", "p**(a - b)"),
-)  # fmt: skip
+)
 
 RATIONAL = (
     ("(x + y)**2", "x**2 + 2*x*y + y**2", "x**2 + x*y + y**2"),
@@ -102,8 +108,11 @@ RATIONAL = (
     ("x**4 + 4*y**4", "(x**2 + 2*x*y + 2*y**2)*(x**2 - 2*x*y + 2*y**2)", "(x**2 + 2*y**2)**2"),
     ("1/(x*(x + 1))", "1/x - 1/(x + 1)", "1/x + 1/(x + 1)"),
     ("1/p + 1/q", "(p + q)/(p*q)", "2/(p + q)"),
-    ("x**3 + y**3 + z**3 - 3*x*y*z", "(x + y + z)*(x**2 + y**2 + z**2 - x*y - y*z - z*x)",
-     "(x + y + z)*(x**2 + y**2 + z**2 - x*y - y*z)"),
+    (
+        "x**3 + y**3 + z**3 - 3*x*y*z",
+        "(x + y + z)*(x**2 + y**2 + z**2 - x*y - y*z - z*x)",
+        "(x + y + z)*(x**2 + y**2 + z**2 - x*y - y*z)",
+    ),
     ("(x**2 + y**2)*(a**2 + b**2)", "(x*a - y*b)**2 + (x*b + y*a)**2", "(x*a - y*b)**2 + (x*b - y*a)**2"),
     ("(p*r)/(p + r)", "1/(1/p + 1/r)", "1/(1/p - 1/r)"),
     ("p - p**2/(p + r)", "p*r/(p + r)", "p**2/(p + r)"),
@@ -113,6 +122,6 @@ RATIONAL = (
     ("sqrt(5 + 2*sqrt(6))", "sqrt(2) + sqrt(3)", "sqrt(3) - sqrt(2)"),
     ("p**(1/3)*p**(2/3)", "p", "p**(1/2)"),
     ("abs(x)**2", "x**2", "abs(x)"),
-)  # fmt: skip
+)
 
 EVERYTHING = (*TRIGONOMETRIC, *HYPERBOLIC, *RATIONAL)

@@ -25,9 +25,17 @@ def beside(name: str) -> ModuleType:
 
 
 PLAIN = {
-    "title": "A formula.", "method": "normal form", "scope": "all real T", "assumptions": [], "certificate": None,
-    "counterexample": None, "difference": None, "slip": None, "reason": "", "evidence": "reduces to 0 in Q",
-}  # fmt: skip
+    "title": "A formula.",
+    "method": "normal form",
+    "scope": "all real T",
+    "assumptions": [],
+    "certificate": None,
+    "counterexample": None,
+    "difference": None,
+    "slip": None,
+    "reason": "",
+    "evidence": "reduces to 0 in Q",
+}
 
 
 def plain(number: str, status: str, printed: str, derived: str, **changes: object) -> dict[str, object]:
@@ -40,28 +48,48 @@ def records() -> list[dict[str, object]]:
     return [
         plain("1", "PROVED", "sin(2*T)", "2*sin(T)*cos(T)", certificate={"kind": "identity"}),
         plain(
-            "2", "REFUTED", "-sin(T)", "sin(T)", slip="paper", reason="the sign is lost",
-            method="exact point, ball arithmetic", scope="one point",
-            counterexample={"T": "pi/6"}, difference=["-1.0000000000000000001", "-0.9999999999999999999"],
+            "2",
+            "REFUTED",
+            "-sin(T)",
+            "sin(T)",
+            slip="paper",
+            reason="the sign is lost",
+            method="exact point, ball arithmetic",
+            scope="one point",
+            counterexample={"T": "pi/6"},
+            difference=["-1.0000000000000000001", "-0.9999999999999999999"],
         ),
         plain("2*", "PROVED", "sin(T)", "sin(T)", corrects="sample:2", title="The sine without a sign."),
         plain("3", "CERTIFIED", "4.6 +- 1/20", "23*sqrt(3)/9", method="ball arithmetic"),
         plain("short-name", "CONFIRMED", "exp(-a*t)", "exp(-a*t)", method="sampling", evidence="at 40 points"),
         plain(
-            "7", "REFUTED", "(True, True)", "(True, False)", slip="scan", reason="a dot is lost in the copy",
-            method="exact ranks", scope="all T in (0, oo), real w", assumptions=["w != 0"],
+            "7",
+            "REFUTED",
+            "(True, True)",
+            "(True, False)",
+            slip="scan",
+            reason="a dot is lost in the copy",
+            method="exact ranks",
+            scope="all T in (0, oo), real w",
+            assumptions=["w != 0"],
         ),
         plain("7*", "PROVED", "(True, True, True)", "(True, True, True)", corrects="sample:7", title="With its dot."),
         plain("4", "OPEN", "[[1, T], [0, 1]]", "[[1, T], [0, 1]]", method="none", evidence="nothing helped"),
-    ]  # fmt: skip
+    ]
 
 
 @pytest.fixture(scope="session")
 def card() -> Paper:
     return Paper(
-        "sample", "A sample", ("A. Author",), 1984, "A journal", "English", ("1", "2", "3", "4", "5", "6", "7"),
+        "sample",
+        "A sample",
+        ("A. Author",),
+        1984,
+        "A journal",
+        "English",
+        ("1", "2", "3", "4", "5", "6", "7"),
         definitions={"5": "notation"},
-    )  # fmt: skip
+    )
 
 
 @pytest.fixture(scope="session")

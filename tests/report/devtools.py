@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 NAMES = ("chromium", "chromium-browser", "google-chrome")
-PATIENCE = 60.0          # seconds for one command, whatever else the browser has to tell
+PATIENCE = 60.0  # seconds for one command, whatever else the browser has to tell
 
 
 def found() -> str | None:
@@ -27,15 +27,24 @@ class Browser:
         self.read_end, child_out = os.pipe()
         child_in, self.write_end = os.pipe()
         command = [
-            str(found()), "--headless=new", "--no-sandbox", "--disable-gpu", "--no-first-run",
-            "--disable-dev-shm-usage", "--disable-background-networking", f"--user-data-dir={profile}",
-            "--remote-debugging-pipe", "about:blank",
-        ]  # fmt: skip
+            str(found()),
+            "--headless=new",
+            "--no-sandbox",
+            "--disable-gpu",
+            "--no-first-run",
+            "--disable-dev-shm-usage",
+            "--disable-background-networking",
+            f"--user-data-dir={profile}",
+            "--remote-debugging-pipe",
+            "about:blank",
+        ]
         self.process = subprocess.Popen(
             ["bash", "-c", f'exec "$@" 3<&{child_in} 4>&{child_out}', "bash", *command],
-            pass_fds=(child_in, child_out), stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+            pass_fds=(child_in, child_out),
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
-        )  # fmt: skip
+        )
         os.close(child_in)
         os.close(child_out)
         self.buffer, self.count, self.trouble = b"", 0, []
@@ -68,7 +77,7 @@ class Browser:
             if not ready or time.monotonic() > end:
                 raise TimeoutError("the browser does not answer")
             part = os.read(self.read_end, 1 << 20)
-            if not part:                             # a closed pipe is always ready, and always empty
+            if not part:  # a closed pipe is always ready, and always empty
                 raise BrokenPipeError("the browser has gone")
             self.buffer += part
         text, _, self.buffer = self.buffer.partition(b"\0")

@@ -6,9 +6,9 @@ HOSTILE = (
     "<script>alert(1)</script>",
     "</script><script>alert(2)</script>",
     "<img src=x onerror=alert(3)>",
-    "\"><svg onload=alert(4)>",
+    '"><svg onload=alert(4)>',
     "' onmouseover='alert(5)",
-    "\" onfocus=\"alert(6)\" autofocus=\"",
+    '" onfocus="alert(6)" autofocus="',
     "javascript:alert(7)",
     "<a href=javascript:alert(8)>x</a>",
     "<iframe src=//example.org></iframe>",
@@ -49,12 +49,26 @@ HOSTILE = (
 def record(number: str, words: str, **changes: object) -> dict[str, object]:
     """A record that says the same hostile words everywhere."""
     found: dict[str, object] = {
-        "id": f"sample:{number}", "paper": "sample", "number": number, "title": words, "status": "REFUTED",
-        "expect": "REFUTED", "method": words, "scope": words, "assumptions": [words], "printed": words,
-        "derived": words, "corrects": None, "slip": "paper", "reason": words, "evidence": words,
-        "counterexample": {words: words}, "difference": [words, words],
-        "certificate": {"kind": words}, "seconds": 0.5,
-    }  # fmt: skip
+        "id": f"sample:{number}",
+        "paper": "sample",
+        "number": number,
+        "title": words,
+        "status": "REFUTED",
+        "expect": "REFUTED",
+        "method": words,
+        "scope": words,
+        "assumptions": [words],
+        "printed": words,
+        "derived": words,
+        "corrects": None,
+        "slip": "paper",
+        "reason": words,
+        "evidence": words,
+        "counterexample": {words: words},
+        "difference": [words, words],
+        "certificate": {"kind": words},
+        "seconds": 0.5,
+    }
     return found | changes
 
 
@@ -62,7 +76,5 @@ def document(records: list[dict[str, object]]) -> dict[str, object]:
     """The document of ``navsym verify`` around records of one paper."""
     statuses = [r["status"] for r in records]
     names = ("PROVED", "CERTIFIED", "CONFIRMED", "REFUTED", "OPEN")
-    paper = {
-        "module": "sample", "title": "A sample", "equations": 1, "claimed": 1, "definitions": 0, "missing": [],
-    }  # fmt: skip
+    paper = {"module": "sample", "title": "A sample", "equations": 1, "claimed": 1, "definitions": 0, "missing": []}
     return {"claims": records, "papers": [paper], "counts": {name: statuses.count(name) for name in names}}

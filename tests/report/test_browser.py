@@ -158,8 +158,9 @@ def real(tmp_path_factory):
     chosen = ("joint_correction", "trajectory")
     cut = {
         "claims": [r for r in document["claims"] if r["paper"] in chosen],
-        "papers": [p for p in document["papers"] if p["module"] in chosen], "counts": document["counts"],
-    }  # fmt: skip
+        "papers": [p for p in document["papers"] if p["module"] in chosen],
+        "counts": document["counts"],
+    }
     words = {}
     for name in chosen:
         sheet = LEDGER.parent / "errata" / f"{name}.toml"
@@ -173,9 +174,7 @@ def real(tmp_path_factory):
 
 @pytest.mark.parametrize("width", [360, 768, 1280])
 def test_the_pages_of_real_papers_fit_phone_tablet_and_desk(real, browser, width):
-    browser.call(
-        "Emulation.setDeviceMetricsOverride", width=width, height=800, deviceScaleFactor=1, mobile=width < 500
-    )
+    browser.call("Emulation.setDeviceMetricsOverride", width=width, height=800, deviceScaleFactor=1, mobile=width < 500)
     browser.trouble.clear()
     for page in sorted(real.glob("*.html")):
         browser.open(page.as_uri())

@@ -90,8 +90,9 @@ def spread(weights, estimates):
 
 (ABOVE, BELOW), SQUARED = folded((0.5, 0.5), 0.9, (0.8, 0.2))
 EARTH = 6.371e6
-FIGURES = [      # claim, the figure as the sheet has it, and what it is
-    ("multistructure:7", "0.41", SQUARED), ("multistructure:7", "1.22", (ABOVE + BELOW) / SQUARED),
+FIGURES = [  # claim, the figure as the sheet has it, and what it is
+    ("multistructure:7", "0.41", SQUARED),
+    ("multistructure:7", "1.22", (ABOVE + BELOW) / SQUARED),
     ("multistructure:13.index", "1.21", sum(spread((0.3, 0.7), (0, 1)))),
     ("multistructure:13.index", "0.894", 2 * spread((0.3, 0.7), (0, 1))[0]),
     ("multistructure:13.index", "1.526", 2 * spread((0.3, 0.7), (0, 1))[1]),
@@ -104,7 +105,8 @@ FIGURES = [      # claim, the figure as the sheet has it, and what it is
     ("terrain_search:sigma.table", "118.6", math.sqrt(21 / 19 * 9000 * math.sqrt(2))),
     ("terrain_search:table.bias", "1021", 250 * 5 * math.sqrt(2 / 3)),
     ("terrain_search:table.grid", "104", math.sqrt(2 * (50**2 + 250**2) / 12)),
-    ("terrain_search:table.percent", "1.049", 2.15 / 2.05), ("terrain_search:gain", "17.8", 40.05 / 2.25),
+    ("terrain_search:table.percent", "1.049", 2.15 / 2.05),
+    ("terrain_search:gain", "17.8", 40.05 / 2.25),
     ("joint_correction:2.scale.noise", "8.1", 1e-5 / 1.24e-3 * 1e3),
     ("guaranteed_velocity:4.6.same-instants", "0.707", 1 / (2 * math.sin(math.pi / 4))),
     ("trajectory:6.first_stage", "0.39", 1.4788 / 3.7743),
@@ -113,7 +115,7 @@ FIGURES = [      # claim, the figure as the sheet has it, and what it is
     ("trajectory:experiment.sigma_phi.2", "0.0024", math.radians(2.2e-8) * EARTH),
     ("trajectory:experiment.one_gain.straight", "3.2", 1e7 * (0.06**2 - 0.019**2) / (100**2 - 2**2)),
     ("trajectory:experiment.one_gain.yawing", "0.18", math.sqrt(0.07**2 + 3.2e-7 * (300**2 - 2**2))),
-]  # fmt: skip
+]
 
 
 @pytest.mark.parametrize(("name", "figure", "number"), FIGURES)
@@ -134,9 +136,15 @@ def test_what_covers_several_figures_becomes_a_table():
 
 @pytest.mark.parametrize(
     "text",
-    ["[a", '["1"]\nwhere = "x"', '["1"]\nwhere="x"\nprinted="y"\ncorrect="z"\nmore="!"', 'a = 1',
-     '["1"]\nwhere="x"\nprinted="$\\\\input{y}$"\ncorrect="z"', '["1"]\nwhere="x $"\nprinted="y"\ncorrect="z"'],
-)  # fmt: skip
+    [
+        "[a",
+        '["1"]\nwhere = "x"',
+        '["1"]\nwhere="x"\nprinted="y"\ncorrect="z"\nmore="!"',
+        "a = 1",
+        '["1"]\nwhere="x"\nprinted="$\\\\input{y}$"\ncorrect="z"',
+        '["1"]\nwhere="x $"\nprinted="y"\ncorrect="z"',
+    ],
+)
 def test_wording_that_is_none_is_refused_with_its_place(text):
     with pytest.raises(NavsymError, match=r"expected .*; got "):
         read_wording(text, "sheet")
@@ -145,9 +153,7 @@ def test_wording_that_is_none_is_refused_with_its_place(text):
 # -- formulas --------------------------------------------------------------------------------
 
 
-CHILDREN = {
-    "msub": 2, "msup": 2, "mfrac": 2, "munder": 2, "mover": 2, "msubsup": 3, "munderover": 3, "msqrt": 1,
-}  # fmt: skip
+CHILDREN = {"msub": 2, "msup": 2, "mfrac": 2, "munder": 2, "mover": 2, "msubsup": 3, "munderover": 3, "msqrt": 1}
 
 
 @pytest.mark.parametrize("module", MODULES)
@@ -208,8 +214,13 @@ def compiled(tex, folder, wide=False):
     (folder / "sheet.tex").write_text(tex, encoding="utf-8")
     done = subprocess.run(
         ["pdflatex", "-no-shell-escape", "-interaction=nonstopmode", "-halt-on-error", "sheet.tex"],
-        cwd=folder, capture_output=True, text=True, check=False, timeout=120, errors="replace",
-    )  # fmt: skip
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=120,
+        errors="replace",
+    )
     assert done.returncode == 0, done.stdout[-2000:]
     assert wide or "Overfull" not in done.stdout
     found = re.search(r"Output written on sheet.pdf \((\d+) page", done.stdout)
@@ -225,8 +236,9 @@ needs_latex = pytest.mark.skipif(shutil.which("pdflatex") is None, reason="no pd
 def test_the_sheet_of_every_paper_compiles_and_no_line_is_too_wide(module, tmp_path):
     document = {
         "claims": [r for r in LEDGER["claims"] if r["paper"] == module],
-        "papers": [p for p in LEDGER["papers"] if p["module"] == module], "counts": LEDGER["counts"],
-    }  # fmt: skip
+        "papers": [p for p in LEDGER["papers"] if p["module"] == module],
+        "counts": LEDGER["counts"],
+    }
     files = site(document, {}, {module: words_of(module)})
     assert 2 <= compiled(files[f"{module}.erratum.tex"], tmp_path) <= 12
 
@@ -246,8 +258,8 @@ def test_hostile_words_compile(hostile_words, records, card, tmp_path):
     ]
     document = {"claims": wild, "papers": [{"module": "sample", "title": "x"}], "counts": {}}
     tex = site(document, {"sample": card})["sample.erratum.tex"]
-    plain = "".join(c if ord(c) < 0x250 else "?" for c in tex)       # letters of fonts that are not loaded
-    compiled(plain, tmp_path, wide=True)           # one of the words has hundreds of letters
+    plain = "".join(c if ord(c) < 0x250 else "?" for c in tex)  # letters of fonts that are not loaded
+    compiled(plain, tmp_path, wide=True)  # one of the words has hundreds of letters
 
 
 def test_the_filters_of_the_templates_are_there():
@@ -264,7 +276,7 @@ def test_code_beside_a_proved_formula_computes_what_is_printed():
             names = sorted(re.search(r"\((.*)\):", snippet.text).group(1).split(", "))
             point = {name: 0.3 + 0.1 * place for place, name in enumerate(names)}
             room: dict = {}
-            exec(snippet.text, room)                        # our own text, in a test
+            exec(snippet.text, room)  # our own text, in a test
             function = next(item for key, item in room.items() if callable(item))
             try:
                 expected = value(read_formula(record["printed"]), point)

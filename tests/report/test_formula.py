@@ -60,17 +60,27 @@ def test_whatever_is_read_is_wellformed(text):
 def test_the_tree_means_what_the_text_means(a, b, c):
     point = {"a": float(a), "b": float(b), "c": float(c)}
     for text, expected in [
-        ("a - b - c", a - b - c), ("a/b*c", a / b * c), ("-a**2 + b", -(a**2) + b), ("2**c", 2.0**c),
-        ("-a*b - -c", -a * b + c), ("a - (b - c)*2", a - (b - c) * 2), ("a/b/2", a / b / 2),
-    ]:  # fmt: skip
+        ("a - b - c", a - b - c),
+        ("a/b*c", a / b * c),
+        ("-a**2 + b", -(a**2) + b),
+        ("2**c", 2.0**c),
+        ("-a*b - -c", -a * b + c),
+        ("a - (b - c)*2", a - (b - c) * 2),
+        ("a/b/2", a / b / 2),
+    ]:
         node = read_formula(text)
         assert node is not None and value(node, point) == pytest.approx(expected)
 
 
 def test_names_are_split_into_stem_and_indices():
     assert [split_name(n) for n in ("y1", "theta2_11", "zT", "sigma", "u", "omega_0")] == [
-        ("y", "1"), ("theta", "2,11"), ("z", "T"), ("sigma", ""), ("u", ""), ("omega", "0"),
-    ]  # fmt: skip
+        ("y", "1"),
+        ("theta", "2,11"),
+        ("z", "T"),
+        ("sigma", ""),
+        ("u", ""),
+        ("omega", "0"),
+    ]
 
 
 def test_words_cannot_command_latex():
@@ -86,7 +96,7 @@ def test_brackets_grow_around_fractions_only_and_functions_keep_their_distance()
 
 def test_a_quotient_inside_something_keeps_its_size_or_goes_in_one_line():
     assert mathml("a/b").count("<mfrac") == 1 and "scriptlevel" not in mathml("a/b")
-    assert mathml("(a/(b + 1))/c").count('scriptlevel="0"') == 1      # the inner one
+    assert mathml("(a/(b + 1))/c").count('scriptlevel="0"') == 1  # the inner one
     assert "<mfrac" not in mathml("sin(T/4)") and "scriptlevel" not in mathml("x**(a/(b + 1))")
 
 
@@ -96,8 +106,16 @@ def test_a_point_is_one_equation_for_each_coordinate():
     assert coordinates(None) == ()
 
 
-@pytest.mark.parametrize(("text", "expected"), [
-    ("True", True), ("(False, True, True)", True), ("[True, False]", True), ("Truth", False), ("T", False), ("", False),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("True", True),
+        ("(False, True, True)", True),
+        ("[True, False]", True),
+        ("Truth", False),
+        ("T", False),
+        ("", False),
+    ],
+)
 def test_what_only_says_yes_or_no_is_told_from_a_formula(text, expected):
     assert only_truth(text) is expected

@@ -141,7 +141,7 @@ def test_the_erratum_sheet_alone_is_enough_to_correct_the_paper(files):
         assert words in text, words
     tex = files["sample.erratum.tex"]
     assert r"\[  - \sin\left( T \right) \]" in tex and r"\[ \sin\left( T \right) \]" in tex
-    assert tex.count(r"\begin{enumerate}") == tex.count(r"\end{enumerate}") == 2      # the paper, its copy
+    assert tex.count(r"\begin{enumerate}") == tex.count(r"\end{enumerate}") == 2  # the paper, its copy
 
 
 def test_hostile_words_are_shown_as_text(hostile_files, hostile_words):
@@ -196,7 +196,7 @@ def test_the_ledger_is_enough_for_the_pages(records, card):
 def test_a_refuted_card_shows_what_should_stand_there_and_what_that_is_worth(files):
     card = re.search(r'<article class="claim refuted".*?</article>', files["sample.html"], re.S)
     assert card is not None and "should read" in card[0] and "PROVED" in card[0]
-    assert card[0].count("derived from the model") == 0         # the correction is what was derived
+    assert card[0].count("derived from the model") == 0  # the correction is what was derived
 
 
 def test_claims_of_the_ledger_for_people_stand_in_the_order_of_the_paper(records, card):

@@ -16,7 +16,9 @@ PICTURES = {
     "dual": lambda: plots.dual_polynomial(t, 8 * t**2 - 8 * t + 1, np.array([0, 0.5, 1]), np.array([1, -4, 3])),
     "phases": lambda: plots.phase_diagram(
         [{"at": t + 0.1, "value": 1 / (t + 0.1), "label": "1/T"}, {"at": t + 1.1, "value": 1 + 0 * t, "label": "1"}],
-        parameter="T", unit="s", quantity="deviation, m/s",
+        parameter="T",
+        unit="s",
+        quantity="deviation, m/s",
     ),
     "modes": lambda: plots.mode_ribbon(t, P, ("calm", "rough"), truth=(t > 0.5).astype(int)),
     "errors": lambda: plots.error_ribbon(t, 0.1 * np.sin(9 * t), 0.1 + 0 * t, quantity="velocity error", unit="m/s"),
@@ -25,7 +27,7 @@ PICTURES = {
     ),
     "conditions": lambda: plots.condition_numbers(np.arange(2, 6), 10.0 ** np.arange(2, 6), 10.0 ** np.arange(2, 6)),
     "ladder": lambda: plots.observability_ladder(("v", "p"), np.array([[1, 2, 2], [1, 2, 3]]), 3),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("name", PICTURES)

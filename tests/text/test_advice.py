@@ -11,18 +11,32 @@ from navsym.text.modelfile import read_model
 
 SYMBOLS = {name: symbol(name) for name in ("a", "T", "omega")}
 SLIPS = [
-    ("a^2", "write ** for a power"), ("a\u00b2", "write **2"), ("2a", "write products with *"),
-    ("2 sin(a)", "write a product with *"), ("0,5*a", "write a decimal point: 0.5"),
-    ("\u03c9*T", "write its name, omega, here and where it is declared"), ("\u03bb", "write its name, lam,"),
-    ("\u03a9", "write its name, Omega,"), ("2*\u03c0", "write pi"), ("ln(a)", "write log, or declare it"),
-    ("arctan(a)", "write atan, or"), ("tg(a)", "write tan, or"), ("Pi*a", "write pi, or"),
-    ("e**a", "write exp(...), or"), ("omge*T", "did you mean 'omega'?"),
-    ("a.*T", "leave the point out"), ("np.sin(a)", "write the function alone"),
-    ("sin**2(a)", "write the power behind the call: sin(x)**2"), ("9.81 m/s*T", "leave the unit out"),
-    ("sin(30 deg)", "leave the unit out"), ("sin(w*T)", "known are 'T', 'a', 'omega'"),
-    ("sin(45\u00b0)", "write *pi/180"), ("|a|", "write abs(...)"), ("a\u2212T", "write the ASCII minus -"),
+    ("a^2", "write ** for a power"),
+    ("a\u00b2", "write **2"),
+    ("2a", "write products with *"),
+    ("2 sin(a)", "write a product with *"),
+    ("0,5*a", "write a decimal point: 0.5"),
+    ("\u03c9*T", "write its name, omega, here and where it is declared"),
+    ("\u03bb", "write its name, lam,"),
+    ("\u03a9", "write its name, Omega,"),
+    ("2*\u03c0", "write pi"),
+    ("ln(a)", "write log, or declare it"),
+    ("arctan(a)", "write atan, or"),
+    ("tg(a)", "write tan, or"),
+    ("Pi*a", "write pi, or"),
+    ("e**a", "write exp(...), or"),
+    ("omge*T", "did you mean 'omega'?"),
+    ("a.*T", "leave the point out"),
+    ("np.sin(a)", "write the function alone"),
+    ("sin**2(a)", "write the power behind the call: sin(x)**2"),
+    ("9.81 m/s*T", "leave the unit out"),
+    ("sin(30 deg)", "leave the unit out"),
+    ("sin(w*T)", "known are 'T', 'a', 'omega'"),
+    ("sin(45\u00b0)", "write *pi/180"),
+    ("|a|", "write abs(...)"),
+    ("a\u2212T", "write the ASCII minus -"),
     ("a, T", "complete or remove this part"),
-]  # fmt: skip
+]
 
 
 @pytest.mark.parametrize(("text", "advice"), SLIPS)
@@ -57,11 +71,14 @@ sigma = "1"
 """
 
 
-@pytest.mark.parametrize(("right", "wrong", "advice"), [
-    ("[[measurement]]", "[measurement]", r"write \[\[measurement\]\], with two brackets"),
-    ('[["0"]]', '"[0]"', "a matrix by its rows"),
-    ('h = ["1"]', '\u03bb = "1"', "keys are ASCII"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("right", "wrong", "advice"),
+    [
+        ("[[measurement]]", "[measurement]", r"write \[\[measurement\]\], with two brackets"),
+        ('[["0"]]', '"[0]"', "a matrix by its rows"),
+        ('h = ["1"]', '\u03bb = "1"', "keys are ASCII"),
+    ],
+)
 def test_a_slip_of_a_model_file_is_answered_with_what_to_write(tmp_path, right, wrong, advice):
     path = tmp_path / "model.toml"
     path.write_text(MODEL.replace(right, wrong), encoding="utf-8")

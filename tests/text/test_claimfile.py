@@ -81,9 +81,14 @@ def test_a_mistake_in_a_claim_is_named_with_its_place(old, new, kind, place):
 
 @pytest.mark.parametrize(
     ("text", "kind"),
-    [("[symbols]", "empty"), ("claim = []", "empty"), ("[claim]", "shape"), ("claim = [1]", "shape"),
-     ("[symbols]\n" + "\n".join(f'a{i} = "real"' for i in range(65)) + '\n[[claim]]\nid="a"', "too-large")],
-)  # fmt: skip
+    [
+        ("[symbols]", "empty"),
+        ("claim = []", "empty"),
+        ("[claim]", "shape"),
+        ("claim = [1]", "shape"),
+        ("[symbols]\n" + "\n".join(f'a{i} = "real"' for i in range(65)) + '\n[[claim]]\nid="a"', "too-large"),
+    ],
+)
 def test_a_file_needs_claims(text, kind):
     with pytest.raises(NavsymError) as caught:
         read(text)

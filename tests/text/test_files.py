@@ -16,9 +16,7 @@ plain = st.recursive(
     | st.integers(-(10**9), 10**9)
     | st.floats(allow_nan=False, allow_infinity=False)
     | st.text(st.characters(exclude_categories=["Cs"]), max_size=8),
-    lambda inner: (
-        st.lists(inner, max_size=4) | st.dictionaries(st.text("abc\u0444", max_size=4), inner, max_size=4)
-    ),
+    lambda inner: st.lists(inner, max_size=4) | st.dictionaries(st.text("abc\u0444", max_size=4), inner, max_size=4),
     max_leaves=12,
 )
 
@@ -91,9 +89,7 @@ def test_toml_is_strict(text, kind, where):
 
 
 def test_brackets_and_dots_inside_text_are_text():
-    text = (
-        'a = "' + "[" * 99 + "." * 99 + '" # ' + "[" * 99 + "\nb = '''" + "{\n" * 99 + "'''\n" + 'c = "\\"[["'
-    )
+    text = 'a = "' + "[" * 99 + "." * 99 + '" # ' + "[" * 99 + "\nb = '''" + "{\n" * 99 + "'''\n" + 'c = "\\"[["'
     assert parse_toml(text)["c"] == '"[['
 
 

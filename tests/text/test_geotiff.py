@@ -34,9 +34,15 @@ def geotiff(heights, *, order="<", tile=None, rows=None, deflate=False, extra=()
     raw = [zlib.compress(b.tobytes()) if deflate else b.tobytes() for b in blocks]
     keys = [1, 1, 0, 2, 1024, 0, 1, 1, 1025, 0, 1, 2 if point else 1]
     tags = {
-        256: (4, [nx]), 257: (4, [ny]), 258: (3, [8 * heights.itemsize]), 259: (3, [8 if deflate else 1]),
-        277: (3, [1]), 339: (3, [KINDS[heights.dtype.kind]]), 33550: (12, [100.0, 50.0, 0.0]),
-        33922: (12, [0.0, 0.0, 0.0, 5e5, 4.9e6, 0.0]), 34735: (3, keys),
+        256: (4, [nx]),
+        257: (4, [ny]),
+        258: (3, [8 * heights.itemsize]),
+        259: (3, [8 if deflate else 1]),
+        277: (3, [1]),
+        339: (3, [KINDS[heights.dtype.kind]]),
+        33550: (12, [100.0, 50.0, 0.0]),
+        33922: (12, [0.0, 0.0, 0.0, 5e5, 4.9e6, 0.0]),
+        34735: (3, keys),
     }
     if tile:
         tags |= {322: (4, [tile]), 323: (4, [tile]), 324: (4, "offsets"), 325: (4, [len(r) for r in raw])}
@@ -73,9 +79,9 @@ def relief(dtype="f4", shape=(37, 41)):
 
 
 @pytest.mark.parametrize("dtype", ["u1", "i2", "u2", "i4", "f4", "f8"])
-@pytest.mark.parametrize("layout", [
-    {}, {"rows": 5}, {"tile": 16}, {"deflate": True, "rows": 7}, {"order": ">", "tile": 16},
-])
+@pytest.mark.parametrize(
+    "layout", [{}, {"rows": 5}, {"tile": 16}, {"deflate": True, "rows": 7}, {"order": ">", "tile": 16}]
+)
 def test_a_written_raster_comes_back_with_its_place(tmp_path, dtype, layout):
     heights = relief(dtype)
     (tmp_path / "m.tif").write_bytes(geotiff(heights, **layout))
@@ -91,12 +97,15 @@ def test_heights_at_points_stand_half_a_pixel_nearer_to_the_corner(tmp_path):
     assert (raster.x0, raster.y0, raster.nodata) == (5e5, 4.9e6 - 36 * 50.0, -9999.0)
 
 
-@pytest.mark.parametrize(("keys", "said"), [
-    ([3072, 0, 1, 3857], "Web Mercator"),
-    ([3076, 0, 1, 9003], "lengths in the unit of EPSG code 9003"),
-    ([2054, 0, 1, 9105], "angles in the unit of EPSG code 9105"),
-    ([4099, 0, 1, 9002], "heights in the unit of EPSG code 9002"),
-])
+@pytest.mark.parametrize(
+    ("keys", "said"),
+    [
+        ([3072, 0, 1, 3857], "Web Mercator"),
+        ([3076, 0, 1, 9003], "lengths in the unit of EPSG code 9003"),
+        ([2054, 0, 1, 9105], "angles in the unit of EPSG code 9105"),
+        ([4099, 0, 1, 9002], "heights in the unit of EPSG code 9002"),
+    ],
+)
 def test_coordinates_that_would_be_taken_for_metres_are_refused_in_words(tmp_path, keys, said):
     directory = (3, [1, 1, 0, 3, 1024, 0, 1, 1, 1025, 0, 1, 1, *keys])
     (tmp_path / "m.tif").write_bytes(geotiff(relief(), extra={34735: directory}))
@@ -118,8 +127,12 @@ def test_files_of_another_program_are_read(tmp_path, mode, compression):
     dtype = {"F": "f4", "I;16": "u2", "L": "u1", "I": "i4"}[mode]
     heights = relief(dtype)
     tags = TiffImagePlugin.ImageFileDirectory_v2()
-    for tag, kind, value in ((33550, 12, (2.0, 3.0, 0.0)), (33922, 12, (0.0, 0.0, 0.0, 10.0, 20.0, 0.0)),
-                             (34735, 3, (1, 1, 0, 1, 1024, 0, 1, 2)), (42113, 2, "0")):
+    for tag, kind, value in (
+        (33550, 12, (2.0, 3.0, 0.0)),
+        (33922, 12, (0.0, 0.0, 0.0, 10.0, 20.0, 0.0)),
+        (34735, 3, (1, 1, 0, 1, 1024, 0, 1, 2)),
+        (42113, 2, "0"),
+    ):
         tags.tagtype[tag] = kind
         tags[tag] = value
     image = Image.fromarray(heights)
@@ -130,10 +143,17 @@ def test_files_of_another_program_are_read(tmp_path, mode, compression):
     assert (raster.x0, raster.dx, raster.dy, raster.geographic, raster.nodata) == (11.0, 2.0, 3.0, True, 0.0)
 
 
-@pytest.mark.parametrize("other", [
-    {"extra": {259: (3, [5])}}, {"extra": {277: (3, [3])}}, {"extra": {317: (3, [2])}}, {"drop": (33550,)},
-    {"extra": {34264: (12, [1.0] * 16)}}, {"extra": {258: (3, [1])}},
-])
+@pytest.mark.parametrize(
+    "other",
+    [
+        {"extra": {259: (3, [5])}},
+        {"extra": {277: (3, [3])}},
+        {"extra": {317: (3, [2])}},
+        {"drop": (33550,)},
+        {"extra": {34264: (12, [1.0] * 16)}},
+        {"extra": {258: (3, [1])}},
+    ],
+)
 def test_what_is_not_plain_is_left_to_rasterio(tmp_path, other, monkeypatch):
     """Without that library it is refused by name."""
     monkeypatch.setitem(sys.modules, "rasterio", None)
@@ -161,8 +181,17 @@ def test_a_block_that_inflates_beyond_its_size_is_cut_there():
 
 def tags_of(size):
     return {
-        256: (4, [2]), 257: (4, [2]), 258: (3, [32]), 259: (3, [8]), 277: (3, [1]), 339: (3, [3]), 273: (4, "offsets"),
-        278: (4, [2]), 279: (4, [size]), 33550: (12, [1.0, 1.0, 0.0]), 33922: (12, [0.0, 0.0, 0.0, 0.0, 0.0, 0.0]),
+        256: (4, [2]),
+        257: (4, [2]),
+        258: (3, [32]),
+        259: (3, [8]),
+        277: (3, [1]),
+        339: (3, [3]),
+        273: (4, "offsets"),
+        278: (4, [2]),
+        279: (4, [size]),
+        33550: (12, [1.0, 1.0, 0.0]),
+        33922: (12, [0.0, 0.0, 0.0, 0.0, 0.0, 0.0]),
     }
 
 
@@ -187,14 +216,17 @@ def test_damaged_files_are_damaged_and_nothing_else():
     assert min(seen.values()) > 100
 
 
-@pytest.mark.parametrize(("data", "kind"), [
-    (b"", "syntax"), (b"II*\0", "syntax"), (b"II*\0\xff\xff\xff\x7f", "syntax"), (b"GIF89a..", "syntax"),
-])
+@pytest.mark.parametrize(
+    ("data", "kind"),
+    [(b"", "syntax"), (b"II*\0", "syntax"), (b"II*\0\xff\xff\xff\x7f", "syntax"), (b"GIF89a..", "syntax")],
+)
 def test_rubbish_at_the_command_line_is_one_error_document(tmp_path, capsys, data, kind):
     (tmp_path / "m.tif").write_bytes(data)
     config = {
-        "map": {"file": "m.tif"}, "track": {"t": [0, 1, 2, 3], "x": [0, 1, 2, 3], "y": [0, 1, 2, 3], "h": [1, 2, 3, 4]},
-        "position": {"step": [1, 1], "half_count": [1, 1]}, "velocity": {"step": [1, 1], "half_count": [1, 1]},
+        "map": {"file": "m.tif"},
+        "track": {"t": [0, 1, 2, 3], "x": [0, 1, 2, 3], "y": [0, 1, 2, 3], "h": [1, 2, 3, 4]},
+        "position": {"step": [1, 1], "half_count": [1, 1]},
+        "velocity": {"step": [1, 1], "half_count": [1, 1]},
     }
     (tmp_path / "c.json").write_text(json.dumps(config))
     assert run(["locate", str(tmp_path / "c.json"), "--json"]) == 2

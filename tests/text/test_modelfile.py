@@ -81,9 +81,7 @@ def test_the_basis_of_the_manual_is_read_exactly():
 
 
 def test_several_measurements_of_a_basis_have_a_bound_each():
-    basis = read(
-        BASIS.replace('["1", "s", "s**2"]', '[["1", "s", "0"], ["0", "1", 2.50]]\nsigma = ["1", "2"]')
-    )
+    basis = read(BASIS.replace('["1", "s", "s**2"]', '[["1", "s", "0"], ["0", "1", 2.50]]\nsigma = ["1", "2"]'))
     s = basis.variable
     assert ((1, s, 0), (0, 1, sp.Rational(5, 2))) == basis.H and basis.sigma == (1, 2)
 

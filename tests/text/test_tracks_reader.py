@@ -65,9 +65,7 @@ def test_rtklib_positions_bring_their_standard_deviations(tmp_path):
 
 
 def test_week_and_seconds_are_the_same_instant_as_date_and_clock(tmp_path):
-    week = POS.replace("2023/07/11 06:04:30.000", "2270 194670.000").replace(
-        "2023/07/11 06:04:31.500", "2270 194671.5"
-    )
+    week = POS.replace("2023/07/11 06:04:30.000", "2270 194670.000").replace("2023/07/11 06:04:31.500", "2270 194671.5")
     assert_allclose(read_track(write(tmp_path, week, "w.pos")).t, read_track(write(tmp_path, POS, "d.pos")).t)
 
 
@@ -91,8 +89,12 @@ BAD = [
     (GOOD.encode("utf-16"), ExpressionSyntaxError, "UTF-16", None),
     ("% x-ecef(m)\n2270 1.0 1 2 3 1 9\n", DomainError, "llh", None),
     ("%  GPST  e-baseline(m)  n-baseline(m)  u-baseline(m) Q\n2270 1.0 10.5 22.9 0.1 1 9\n", DomainError, "llh", None),
-    ("%  GPST  latitude(d'\")  longitude(d'\") height(m)  Q\n2270 1.0 55 45 00.0 37 36 36.0 150.0 1 9\n", DomainError,
-     "minutes and seconds", None),
+    (
+        "%  GPST  latitude(d'\")  longitude(d'\") height(m)  Q\n2270 1.0 55 45 00.0 37 36 36.0 150.0 1 9\n",
+        DomainError,
+        "minutes and seconds",
+        None,
+    ),
     (POS.replace("   5  20", "   0  20"), DomainError, "got 0, which is none", "line 3"),
     (POS.replace("3.4239", "nan"), NotFiniteError, "sdn, sde, sdu", "line 3"),
 ]

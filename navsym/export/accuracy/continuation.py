@@ -149,9 +149,19 @@ def proved(
     most = max((up(horner(polynomial, cell)) for cell in cells(-reach, reach)), key=float) + remainder
     above, quotient = plain_graph(part), tape(part.plain / T**part.divided)
     return Continuation(
-        power, polynomial, switch, polynomial_graph(polynomial, power), above, literals_of(above, arithmetic), quotient,
-        remainder, near, slope, least, most,
-    )  # fmt: skip
+        power,
+        polynomial,
+        switch,
+        polynomial_graph(polynomial, power),
+        above,
+        literals_of(above, arithmetic),
+        quotient,
+        remainder,
+        near,
+        slope,
+        least,
+        most,
+    )
 
 
 # -- code ---------------------------------------

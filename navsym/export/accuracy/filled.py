@@ -36,8 +36,12 @@ def filled_bounds(part: Part, a: Bounded, arithmetic: Arithmetic) -> Bounded:
     absolute, relative = (reduce(arb.max, side) for side in zip(*own, strict=True))
     if a.absolute == 0:
         return tightened(value, absolute, relative, INFINITE)
-    carried = reduce(arb.max, [*(slope_inside(known, t) for t in wide.inside),
-                               *(slope_outside(known, t) for t in wide.outside)]) * a.absolute  # fmt: skip
+    carried = (
+        reduce(
+            arb.max, [*(slope_inside(known, t) for t in wide.inside), *(slope_outside(known, t) for t in wide.outside)]
+        )
+        * a.absolute
+    )
     passed = ratio(sane(carried), value)
     if not wide.outside:
         passed = passed.min(relative_inside(known, a))

@@ -28,9 +28,7 @@ HIDES = {"div": (1,), "atan2": (0, 1), "pow": (0, 1), "max": (0, 1), "min": (0, 
 RELATIVE = frozenset({"mul", "div", "sqrt", "log", "pow", "atan2"})
 
 
-def watched(
-    graph: Graph, box: Sequence[tuple[float, float]], arithmetic: Arithmetic, literals: Sequence[Any]
-) -> Graph:
+def watched(graph: Graph, box: Sequence[tuple[float, float]], arithmetic: Arithmetic, literals: Sequence[Any]) -> Graph:
     """The graph with guards for what may overflow unseen on the box, or lose its digits by underflow."""
     hidden = {node.args[k] for node in graph.nodes for k in HIDES.get(node.op, ())} & made(graph)
     found: set[int] = set()

@@ -70,9 +70,13 @@ def sweep(function: ExportedFunction, call: Call, count: int, *, library: int = 
 def joined(a: Swept, b: Swept) -> Swept:
     """What came of two sets of points together."""
     return Swept(
-        a.points + b.points, a.by_balls + b.by_balls, a.undefined + b.undefined, a.wrong + b.wrong,
-        max(a.worst, b.worst), a.example or b.example,
-    )  # fmt: skip
+        a.points + b.points,
+        a.by_balls + b.by_balls,
+        a.undefined + b.undefined,
+        a.wrong + b.wrong,
+        max(a.worst, b.worst),
+        a.example or b.example,
+    )
 
 
 def many_points(function: ExportedFunction, count: int) -> Iterator[tuple[float, ...]]:
@@ -82,10 +86,13 @@ def many_points(function: ExportedFunction, count: int) -> Iterator[tuple[float,
     edges = [edge_values(function, k) for k in range(len(function.inputs))]
     for _ in range(2 * count if function.inputs else 0):
         corner = generator.random() < CORNERED
-        yield cast(function, [
-            generator.choice(ends) if corner and generator.random() < 0.5 else sample(i, generator)
-            for i, ends in zip(function.inputs, edges, strict=True)
-        ])  # fmt: skip
+        yield cast(
+            function,
+            [
+                generator.choice(ends) if corner and generator.random() < 0.5 else sample(i, generator)
+                for i, ends in zip(function.inputs, edges, strict=True)
+            ],
+        )
 
 
 # -- comparison ---------------------------------------

@@ -243,9 +243,12 @@ def carried_negation(a: Rounded) -> Carried:
 
 
 CARRIED: dict[str, Callable[..., Carried]] = {
-    "add": carried_sum, "sub": carried_difference, "mul": carried_product, "div": carried_quotient,
+    "add": carried_sum,
+    "sub": carried_difference,
+    "mul": carried_product,
+    "div": carried_quotient,
     "neg": carried_negation,
-}  # fmt: skip
+}
 
 
 def by_the_balls(node: Node, args: list[Rounded], arithmetic: Arithmetic) -> Rounded:

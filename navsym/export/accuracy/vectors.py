@@ -161,9 +161,7 @@ def points(function: ExportedFunction, count: int) -> Iterator[tuple[float, ...]
     middle = [(i.test_low + i.test_high) / 2 for i in function.inputs]
     for k, values in enumerate(edges):
         for value in values[: max(4, count // (4 * len(edges)))]:
-            others = (
-                [sample(i, generator) for i in function.inputs] if generator.random() < 0.7 else list(middle)
-            )
+            others = [sample(i, generator) for i in function.inputs] if generator.random() < 0.7 else list(middle)
             others[k] = value
             yield cast(function, others)
     for _ in range(count):

@@ -10,8 +10,14 @@ from navsym.export.parts import Layout
 TANGENT, SQUARE = sp.Symbol("tan_phi", real=True), sp.Symbol("r_squared", real=True)
 LENGTH = "Mm (10^6 m), or any unit in which the proved range holds"
 UNITS = {"a": LENGTH, "h": LENGTH, "radius": LENGTH, "e": "1", "phi_e": "rad", "phi": "rad", "latitude": "rad"}
-UNITS |= {"V": "Mm/s", "latitude_rate": "rad/s", "longitude_rate": "rad/s", "radius_rate": "Mm/s", "xi": "any",
-          "eta": "that of xi"}  # fmt: skip
+UNITS |= {
+    "V": "Mm/s",
+    "latitude_rate": "rad/s",
+    "longitude_rate": "rad/s",
+    "radius_rate": "Mm/s",
+    "xi": "any",
+    "eta": "that of xi",
+}
 
 GEOCENTRIC = Chain(
     title="Geocentric latitude and radius from geodetic latitude and height",

@@ -14,8 +14,15 @@ from navsym.claims import Equation
 from navsym.export.chain import Chain, Link
 from navsym.export.parts import Layout
 
-UNITS = {"x": "units of the state", "P": "their products", "z": "units of the measurement", "R": "their squares",
-         "H": "ratios of these", "next_x": "units of the state", "next_P": "their products"}  # fmt: skip
+UNITS = {
+    "x": "units of the state",
+    "P": "their products",
+    "z": "units of the measurement",
+    "R": "their squares",
+    "H": "ratios of these",
+    "next_x": "units of the state",
+    "next_P": "their products",
+}
 
 
 def real(name: str) -> sp.Symbol:
@@ -51,29 +58,49 @@ def one_measurement(k: int, n: int) -> tuple[Link, ...]:
     v, s = real(f"v{k}"), real(f"s{k}")
     pairs = list(combinations_with_replacement(range(n), 2))
     return (
-        Link(tuple(f"g{k}_{i}" for i in range(n)), "",
-             tuple(sum(entry(P, i, j) * h[j] for j in range(n)) for i in range(n))),
-        Link((f"s{k}", f"v{k}"), "", (sum(h[i] * g[i] for i in range(n)) + sp.Symbol(f"r{k}", positive=True),
-                                      real(f"z{k}") - sum(h[i] * real(f"{x}{i}") for i in range(n)))),
+        Link(
+            tuple(f"g{k}_{i}" for i in range(n)),
+            "",
+            tuple(sum(entry(P, i, j) * h[j] for j in range(n)) for i in range(n)),
+        ),
+        Link(
+            (f"s{k}", f"v{k}"),
+            "",
+            (
+                sum(h[i] * g[i] for i in range(n)) + sp.Symbol(f"r{k}", positive=True),
+                real(f"z{k}") - sum(h[i] * real(f"{x}{i}") for i in range(n)),
+            ),
+        ),
         Link((f"q{k}",), "", (1 / s,)),
         Link(tuple(f"K{k}_{i}" for i in range(n)), "", tuple(g[i] * real(f"q{k}") for i in range(n))),
         Link(tuple(f"x{k + 1}at{i}" for i in range(n)), "", tuple(real(f"{x}{i}") + gain[i] * v for i in range(n))),
-        Link(tuple(f"P{k + 1}at{i}_{j}" for i, j in pairs), "",
-             tuple(entry(P, i, j) - g[i] * gain[j] for i, j in pairs), information,
-             cites=("multistructure:8.correct",)),
-    )  # fmt: skip
+        Link(
+            tuple(f"P{k + 1}at{i}_{j}" for i, j in pairs),
+            "",
+            tuple(entry(P, i, j) - g[i] * gain[j] for i, j in pairs),
+            information,
+            cites=("multistructure:8.correct",),
+        ),
+    )
 
 
 def update(n: int, m: int) -> Chain:
     """The update of n states by m measurements with independent errors of the variances R."""
-    arrays = {"x": tuple(f"x{i}" for i in range(n)), "P": triangle("P", n), "z": tuple(f"z{k}" for k in range(m)),
-              "H": tuple(f"h{k}_{i}" for k in range(m) for i in range(n)), "R": tuple(f"r{k}" for k in range(m))}
-    tests = {name: ((2.0, 4.0) if i == j else (-0.2, 0.2)) for name, (i, j) in
-             zip(triangle("P", n), combinations_with_replacement(range(n), 2), strict=True)}
+    arrays = {
+        "x": tuple(f"x{i}" for i in range(n)),
+        "P": triangle("P", n),
+        "z": tuple(f"z{k}" for k in range(m)),
+        "H": tuple(f"h{k}_{i}" for k in range(m) for i in range(n)),
+        "R": tuple(f"r{k}" for k in range(m)),
+    }
+    tests = {
+        name: ((2.0, 4.0) if i == j else (-0.2, 0.2))
+        for name, (i, j) in zip(triangle("P", n), combinations_with_replacement(range(n), 2), strict=True)
+    }
     tests |= {"x": (-10.0, 10.0), "z": (-10.0, 10.0), "H": (-1.0, 1.0), "R": (0.1, 4.0)}
     return Chain(
         title=f"Update of {n} states by {m} independent measurements, one after the other",
         links=tuple(link for k in range(m) for link in one_measurement(k, n)),
         outputs={"next_x": tuple(f"x{m}at{i}" for i in range(n)), "next_P": triangle(f"P{m}at", n)},
         layout=Layout(arrays, ("x", "P", "z", "H", "R"), tests, UNITS),
-    )  # fmt: skip
+    )

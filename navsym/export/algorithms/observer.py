@@ -87,14 +87,33 @@ def fourth_order() -> Equation:
 
 
 WORDS = (
-    "x", "y", "x0", "y0", "Kc", "Kh", "sigma_c", "sigma_M", "mu", "u_3", "omega_1", "omega_2", "h", "lambda_c",
-    "lambda_h", "next_x", "next_y",
-)  # fmt: skip
+    "x",
+    "y",
+    "x0",
+    "y0",
+    "Kc",
+    "Kh",
+    "sigma_c",
+    "sigma_M",
+    "mu",
+    "u_3",
+    "omega_1",
+    "omega_2",
+    "h",
+    "lambda_c",
+    "lambda_h",
+    "next_x",
+    "next_y",
+)
 UNITS = dict.fromkeys(WORDS, "1 (dimensionless as in section 2 of the paper)")
 ARRAYS = {
-    "x": STATE[:6], "y": STATE[6:], "Kc": GAINS[0], "Kh": GAINS[1],
-    "sigma_c": ("sigma_c1", "sigma_c2"), "sigma_M": ("sigma_M1", "sigma_M2"),
-}  # fmt: skip
+    "x": STATE[:6],
+    "y": STATE[6:],
+    "Kc": GAINS[0],
+    "Kh": GAINS[1],
+    "sigma_c": ("sigma_c1", "sigma_c2"),
+    "sigma_M": ("sigma_M1", "sigma_M2"),
+}
 NEXT = tuple(f"next_{s}" for s in STATE)
 TESTS = {"mu": (0.01, 0.1), "u_3": (-1.0, 1.0), "omega_1": (-1.0, 1.0), "omega_2": (-1.0, 1.0), "h": (1e-4, 0.1)}
 TESTS |= {s: (-10.0, 10.0) for s in (*STATE, "sigma_c1", "sigma_c2", "sigma_M1", "sigma_M2")}
@@ -105,19 +124,34 @@ ORDER = ("x", "y", "Kc", "Kh", "mu", "u_3", "omega_1", "omega_2", "sigma_c", "si
 OBSERVER = Program(
     init=Chain(
         title="Gains for the poles -lambda_c (velocity stage) and -lambda_h (position stage), and the first estimates",
-        links=(Link((*GAINS[0], *GAINS[1]), "", gain_formulas(), poles,
-                    cites=("joint_correction:3.2.gains", "joint_correction:3.coupled.position_plain")),),
+        links=(
+            Link(
+                (*GAINS[0], *GAINS[1]),
+                "",
+                gain_formulas(),
+                poles,
+                cites=("joint_correction:3.2.gains", "joint_correction:3.coupled.position_plain"),
+            ),
+        ),
         outputs={"x": STATE[:6], "y": STATE[6:], "Kc": GAINS[0], "Kh": GAINS[1]},
         layout=Layout({"x0": STATE[:6], "y0": STATE[6:]}, ("lambda_c", "lambda_h", "x0", "y0"), TESTS, UNITS),
         box={"lambda_c": (sp.Integer(0), None), "lambda_h": (sp.Integer(0), None)},
     ),
     step=Chain(
         title="Both stages over one step h with the measurements held",
-        links=(*rates(1, ""), moved(2, h / 2), *rates(2, "b2_"), moved(3, h / 2), *rates(3, "b3_"),
-               moved(4, h), *rates(4, "b4_"), last()),
+        links=(
+            *rates(1, ""),
+            moved(2, h / 2),
+            *rates(2, "b2_"),
+            moved(3, h / 2),
+            *rates(3, "b3_"),
+            moved(4, h),
+            *rates(4, "b4_"),
+            last(),
+        ),
         outputs={"next_x": NEXT[:6], "next_y": NEXT[6:]},
         layout=Layout(ARRAYS, ORDER, TESTS, UNITS),
         box={"h": (sp.Integer(0), sp.Integer(1))},
     ),
     fields={"x": "next_x", "y": "next_y", "Kc": "", "Kh": ""},
-)  # fmt: skip
+)

@@ -92,13 +92,17 @@ def weights() -> tuple[Link, ...]:
     e, l, least = named("e_1 e_2"), named("l_1 l_2"), sp.Symbol("least", real=True)
     shares = tuple(sp.exp(least - e[k]) * p[k] / sp.sqrt(D[k]) for k in (0, 1))
     return (
-        Link(("p_1", "p_2"), "", tuple(PI[0, k] * g[0] + PI[1, k] * g[1] for k in (0, 1)),
-             cites=("multistructure:5.prediction",)),
+        Link(
+            ("p_1", "p_2"),
+            "",
+            tuple(PI[0, k] * g[0] + PI[1, k] * g[1] for k in (0, 1)),
+            cites=("multistructure:5.prediction",),
+        ),
         Link(("e_1", "e_2"), "", tuple(v[k] ** 2 / (2 * D[k]) for k in (0, 1)), cites=("multistructure:18",)),
         Link(("least",), "", (sp.Min(*e),)),
         Link(("l_1", "l_2"), "", shares),
         Link(("w_1", "w_2"), "", tuple(l[k] / (l[0] + l[1]) for k in (0, 1)), bayes, cites=("multistructure:17",)),
-    )  # fmt: skip
+    )
 
 
 def bayes() -> Equation:
@@ -122,9 +126,14 @@ def folded() -> tuple[Link, ...]:
     spread = [C[k] + (c[k] - mean) * (c[k] - mean).T for k in (0, 1)]
     return (
         Link(("mean1", "mean2"), "", tuple(w[0] * c[0] + w[1] * c[1]), cites=("multistructure:12*",)),
-        Link(("V11", "V12", "V22"), "", triangle(w[0] * spread[0] + w[1] * spread[1]), second_moment,
-             cites=("multistructure:13",)),
-    )  # fmt: skip
+        Link(
+            ("V11", "V12", "V22"),
+            "",
+            triangle(w[0] * spread[0] + w[1] * spread[1]),
+            second_moment,
+            cites=("multistructure:13",),
+        ),
+    )
 
 
 def second_moment() -> Equation:
@@ -140,8 +149,11 @@ def second_moment() -> Equation:
 
 # -- the program ---------------------------------------
 
-ARRAYS: dict[str, tuple[str, ...]] = {"mean": ("m1", "m2"), "covariance": ("P11", "P12", "P22"),
-                                      "probabilities": ("g1", "g2")}  # fmt: skip
+ARRAYS: dict[str, tuple[str, ...]] = {
+    "mean": ("m1", "m2"),
+    "covariance": ("P11", "P12", "P22"),
+    "probabilities": ("g1", "g2"),
+}
 ARRAYS |= {f"A{i}": tuple(s.name for s in A[i]) for i in MODES} | {f"Q{i}": tuple(s.name for s in Q[i]) for i in MODES}
 ARRAYS |= {f"H{i}": tuple(s.name for s in H[i]) for i in MODES} | {"transition": tuple(s.name for s in PI)}
 ORDER = ("mean", "covariance", "probabilities", "A1", "Q1", "H1", "r1", "A2", "Q2", "H2", "r2", "transition", "z")
@@ -149,11 +161,23 @@ TESTS = {"P11": (1.0, 2.0), "P12": (-0.5, 0.5), "P22": (1.0, 2.0), "g1": (0.05, 
 TESTS |= {s.name: (-1.5, 1.5) for i in MODES for s in (*A[i], *H[i])} | {s.name: (0.01, 1.0) for s in PI}
 TESTS |= {q.name: ((0.3, 1.0) if k != 1 else (-0.2, 0.2)) for i in MODES for k, q in enumerate(Q[i])}
 TESTS |= {f"r{i}": (0.1, 4.0) for i in MODES} | {"m1": (-5.0, 5.0), "m2": (-5.0, 5.0), "z": (-10.0, 10.0)}
-UNITS = {"mean": "units of the state", "covariance": "their products", "probabilities": "1", "transition": "1",
-         "z": "unit of the measurement", "r1": "(unit of the measurement)^2", "r2": "(unit of the measurement)^2",
-         "next_mean": "units of the state", "next_covariance": "their products", "next_probabilities": "1"}  # fmt: skip
-UNITS |= {f"{k}{i}": u for i in MODES for k, u in (("A", "ratios of the state's units"),
-                                                   ("Q", "their products"), ("H", "unit of z per state"))}  # fmt: skip
+UNITS = {
+    "mean": "units of the state",
+    "covariance": "their products",
+    "probabilities": "1",
+    "transition": "1",
+    "z": "unit of the measurement",
+    "r1": "(unit of the measurement)^2",
+    "r2": "(unit of the measurement)^2",
+    "next_mean": "units of the state",
+    "next_covariance": "their products",
+    "next_probabilities": "1",
+}
+UNITS |= {
+    f"{k}{i}": u
+    for i in MODES
+    for k, u in (("A", "ratios of the state's units"), ("Q", "their products"), ("H", "unit of z per state"))
+}
 LAYOUT = Layout(ARRAYS, ORDER, TESTS, UNITS)
 SHARE = (sp.Integer(0), sp.Integer(1))
 
@@ -167,10 +191,13 @@ FILTER = Program(
     step=Chain(
         title="One step of the pulsating filter: two modes (rows of the transition matrix: from), two states",
         links=(predicted(1), predicted(2), *corrected(1), *corrected(2), *weights(), *folded()),
-        outputs={"next_mean": ("mean1", "mean2"), "next_covariance": ("V11", "V12", "V22"),
-                 "next_probabilities": ("w_1", "w_2")},
+        outputs={
+            "next_mean": ("mean1", "mean2"),
+            "next_covariance": ("V11", "V12", "V22"),
+            "next_probabilities": ("w_1", "w_2"),
+        },
         layout=LAYOUT,
         box={s.name: (sp.Integer(0), None) for s in R.values()},
     ),
     fields={"mean": "next_mean", "covariance": "next_covariance", "probabilities": "next_probabilities"},
-)  # fmt: skip
+)

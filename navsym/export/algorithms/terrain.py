@@ -13,11 +13,21 @@ p, q, k = sp.symbols("p q k", real=True)
 bx, by = sp.symbols("beta_x beta_y", real=True)
 SUMS = {"G": ("G11", "G12", "G22"), "M": ("M11", "M12", "M22")}
 UNITS = {
-    "G": "1 (squared slopes)", "M": "number of measurements", "k": "number of measurements", "p": "1 (slope dh/dx)",
-    "q": "1 (slope dh/dy)", "beta_x": "1", "beta_y": "1", "t_G": "number of measurements",
-    "t_min": "number of measurements", "t_max": "number of measurements", "t_mean": "number of measurements",
-    "next_G": "1", "next_M": "number of measurements", "next_k": "number of measurements",
-}  # fmt: skip
+    "G": "1 (squared slopes)",
+    "M": "number of measurements",
+    "k": "number of measurements",
+    "p": "1 (slope dh/dx)",
+    "q": "1 (slope dh/dy)",
+    "beta_x": "1",
+    "beta_y": "1",
+    "t_G": "number of measurements",
+    "t_min": "number of measurements",
+    "t_max": "number of measurements",
+    "t_mean": "number of measurements",
+    "next_G": "1",
+    "next_M": "number of measurements",
+    "next_k": "number of measurements",
+}
 
 
 def symmetric(upper: tuple[sp.Expr, ...]) -> sp.Matrix:
@@ -28,8 +38,11 @@ def symmetric(upper: tuple[sp.Expr, ...]) -> sp.Matrix:
 def one_more() -> tuple[sp.Expr, ...]:
     """The sums of g g^T and of k g g^T with one more point; k counts from zero."""
     square = (p * p, p * q, q * q)
-    return (*(s + x for s, x in zip(G, square, strict=True)),
-            *(s + k * x for s, x in zip(M, square, strict=True)), k + 1)  # fmt: skip
+    return (
+        *(s + x for s, x in zip(G, square, strict=True)),
+        *(s + k * x for s, x in zip(M, square, strict=True)),
+        k + 1,
+    )
 
 
 def along(sums: tuple[sp.Expr, ...]) -> sp.Expr:
@@ -54,14 +67,21 @@ CROSSING = Program(
     init=kept("Sums over no points: give zeros", ("G", "M", "k"), Layout(SUMS, (), {}, UNITS)),
     step=Chain(
         title="One more point of the track with the slopes p, q of the map",
-        links=(Link(("A11", "A12", "A22", "B11", "B12", "B22", "k1"), "", one_more(), quotient,
-                    cites=("terrain_search:11*",)),),
+        links=(
+            Link(
+                ("A11", "A12", "A22", "B11", "B12", "B22", "k1"),
+                "",
+                one_more(),
+                quotient,
+                cites=("terrain_search:11*",),
+            ),
+        ),
         outputs={"next_G": ("A11", "A12", "A22"), "next_M": ("B11", "B12", "B22"), "next_k": "k1"},
         layout=Layout(SUMS, ("G", "M", "k", "p", "q"), {"k": (0.0, 1e4), "p": (-5.0, 5.0), "q": (-5.0, 5.0)}, UNITS),
         box={"k": (sp.Integer(0), None)},
     ),
     fields={"G": "next_G", "M": "next_M", "k": "next_k"},
-)  # fmt: skip
+)
 
 TESTS = {"G11": (50.0, 100.0), "G12": (-20.0, 20.0), "G22": (50.0, 100.0)}
 TESTS |= {"M11": (100.0, 1e4), "M12": (-1e3, 1e3), "M22": (100.0, 1e4), "beta_x": (-1.0, 1.0), "beta_y": (-1.0, 1.0)}
@@ -132,17 +152,39 @@ EXTREMES = Chain(
 CORRECTION = Chain(
     title="Position and velocity at the end of the track, corrected by both stages of the search",
     links=(
-        Link(("at",), "", (sp.Symbol("t_0", real=True) + sp.Symbol("t_G", real=True) * sp.Symbol("Deltat", real=True),),
-             cites=("terrain_search:6.time*",)),
+        Link(
+            ("at",),
+            "",
+            (sp.Symbol("t_0", real=True) + sp.Symbol("t_G", real=True) * sp.Symbol("Deltat", real=True),),
+            cites=("terrain_search:6.time*",),
+        ),
         Link(("x_end", "y_end"), "terrain_search:14.position", rename={"t_G": "at"}),
         Link(("Vx_end", "Vy_end"), "terrain_search:14.velocity"),
     ),
     outputs={"position": ("x_end", "y_end"), "velocity": ("Vx_end", "Vy_end")},
     layout=Layout(
-        {}, ("x", "y", "Vx", "Vy", "i", "j", "Vi", "Vj", "Deltax", "Deltay", "DeltaVx", "DeltaVy", "t_n", "t_0", "t_G"),
+        {},
+        ("x", "y", "Vx", "Vy", "i", "j", "Vi", "Vj", "Deltax", "Deltay", "DeltaVx", "DeltaVy", "t_n", "t_0", "t_G"),
         {"i": (-50.0, 50.0), "j": (-50.0, 50.0), "Vi": (-10.0, 10.0), "Vj": (-10.0, 10.0)},
-        {"x": "m", "y": "m", "Vx": "m/s", "Vy": "m/s", "i": "1", "j": "1", "Vi": "1", "Vj": "1", "Deltax": "m",
-         "Deltay": "m", "DeltaVx": "m/s", "DeltaVy": "m/s", "t_n": "s", "t_0": "s", "t_G": "number of measurements",
-         "Deltat": "s", "position": "m", "velocity": "m/s"},
+        {
+            "x": "m",
+            "y": "m",
+            "Vx": "m/s",
+            "Vy": "m/s",
+            "i": "1",
+            "j": "1",
+            "Vi": "1",
+            "Vj": "1",
+            "Deltax": "m",
+            "Deltay": "m",
+            "DeltaVx": "m/s",
+            "DeltaVy": "m/s",
+            "t_n": "s",
+            "t_0": "s",
+            "t_G": "number of measurements",
+            "Deltat": "s",
+            "position": "m",
+            "velocity": "m/s",
+        },
     ),
-)  # fmt: skip
+)

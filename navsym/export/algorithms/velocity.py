@@ -28,9 +28,14 @@ REGIMES = {
 W, AT = sp.symbols("w1:4", real=True), sp.symbols("t1:4", real=True)
 SUM, Z = sp.Symbol("sum", real=True), sp.Symbol("z", real=True)
 UNITS = {
-    "T": "1/omega_0 (Schuler time)", "instants": "1/omega_0 (Schuler time)", "weights": "1", "value": "sigma of z",
-    "estimate": "unit of z", "z": "any, say m/s", "sum": "unit of z",
-}  # fmt: skip
+    "T": "1/omega_0 (Schuler time)",
+    "instants": "1/omega_0 (Schuler time)",
+    "weights": "1",
+    "value": "sigma of z",
+    "estimate": "unit of z",
+    "z": "any, say m/s",
+    "sum": "unit of z",
+}
 
 
 def queue(material: Material) -> Material:
@@ -86,12 +91,23 @@ def three_steps() -> Equation:
 
 STEP = Chain(
     title="One measurement, taken at the first instant of the queue",
-    links=(Link(("next_sum", "v1", "v2", "v3", "s1", "s2", "s3"), "", step_formulas(), three_steps,
-                cites=("guaranteed_velocity:2.7", "guaranteed_velocity:4.14.y3")),),
+    links=(
+        Link(
+            ("next_sum", "v1", "v2", "v3", "s1", "s2", "s3"),
+            "",
+            step_formulas(),
+            three_steps,
+            cites=("guaranteed_velocity:2.7", "guaranteed_velocity:4.14.y3"),
+        ),
+    ),
     outputs={"next_sum": "next_sum", "next_weights": ("v1", "v2", "v3"), "next_instants": ("s1", "s2", "s3")},
-    layout=Layout({"weights": ("w1", "w2", "w3"), "instants": ("t1", "t2", "t3")}, ("sum", "weights", "instants", "z"),
-                  {}, UNITS | {"next_sum": "unit of z", "next_weights": "1", "next_instants": UNITS["instants"]}),
-)  # fmt: skip
+    layout=Layout(
+        {"weights": ("w1", "w2", "w3"), "instants": ("t1", "t2", "t3")},
+        ("sum", "weights", "instants", "z"),
+        {},
+        UNITS | {"next_sum": "unit of z", "next_weights": "1", "next_instants": UNITS["instants"]},
+    ),
+)
 
 
 def estimator(state: str) -> Program:

@@ -207,9 +207,7 @@ def main():
 '''
 
 
-def files(
-    functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str
-) -> dict[str, str]:
+def files(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str) -> dict[str, str]:
     """The C of all functions, the module that compiles and calls it, vectors and test."""
     functions = [f for f in functions if f.inputs]
     real = functions[0].arithmetic.name if functions else "double"
@@ -228,10 +226,15 @@ def wrapper(function: ExportedFunction) -> str:
     """Python source of the function that hands rows of points to the library."""
     rows = ", ".join(i.symbol.name for i in function.inputs).replace("\\", "/").replace('"', "'")
     results = ", ".join(f"{o.name}[{o.size}]" if o.shape else o.name for o in function.outputs)
-    return "\n".join([
-        "", f"def {function.name}(points, out=None):", f'    """Rows in: {rows}. Rows out: {results}."""',
-        f'    return _call("{function.name}", {len(function.inputs)}, {function.size}, points, out)', "",
-    ])  # fmt: skip
+    return "\n".join(
+        [
+            "",
+            f"def {function.name}(points, out=None):",
+            f'    """Rows in: {rows}. Rows out: {results}."""',
+            f'    return _call("{function.name}", {len(function.inputs)}, {function.size}, points, out)',
+            "",
+        ]
+    )
 
 
 def batch(function: ExportedFunction) -> str:
@@ -260,8 +263,11 @@ def vectorised(function: ExportedFunction) -> str:
         low = f"-{largest}" if i.low == -float("inf") else s.number(i.low)
         high = largest if i.high == float("inf") else s.number(i.high)
         lines += [f"    for (k = 0; k < n; k++) {{ bad |= !({x} >= {low}) | !({x} <= {high}); }}"]
-    lines += ["    if (bad) { return NAVSYM_DOMAIN; }", "    for (b = 0; b < n; b += NAVSYM_BLOCK) {",
-              "        const long m = ((n - b) < NAVSYM_BLOCK) ? (n - b) : NAVSYM_BLOCK;"]  # fmt: skip
+    lines += [
+        "    if (bad) { return NAVSYM_DOMAIN; }",
+        "    for (b = 0; b < n; b += NAVSYM_BLOCK) {",
+        "        const long m = ((n - b) < NAVSYM_BLOCK) ? (n - b) : NAVSYM_BLOCK;",
+    ]
     lines += [f"        {real} {name}[NAVSYM_BLOCK];" for name in (*arrays, "w")]
     for group in grouped(temporaries):
         lines += ["        for (k = 0; k < m; k++) {"]
@@ -326,4 +332,3 @@ def pointwise(function: ExportedFunction) -> str:
     lines += ["        if (status != 0) { return status; }"]
     lines += [f"        for (j = 0; j < {function.size}; j++) {{ out[(j * n) + k] = r[j]; }}", "    }"]
     return "\n".join([*lines, "    return NAVSYM_OK;", "}", ""])
-

@@ -7,13 +7,7 @@ import re
 from collections.abc import Sequence
 
 from navsym.export.accuracy.vectors import Vector
-from navsym.export.languages.helpers import (
-    Helper,
-    helper_about,
-    helper_parts,
-    helpers_used,
-    squares_if_needed,
-)
+from navsym.export.languages.helpers import Helper, helper_about, helper_parts, helpers_used, squares_if_needed
 from navsym.export.languages.printing import Spelling, assignments, calls, code_names
 from navsym.export.languages.programs import c_header, c_through_state, output_places
 from navsym.export.languages.summary import summary, unit_of
@@ -41,9 +35,7 @@ def spelling(real: str) -> Spelling:
     return Spelling(calls(suffix=suffix), f"({real})NAN", f"({real})INFINITY", suffix)
 
 
-def files(
-    functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str
-) -> dict[str, str]:
+def files(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str) -> dict[str, str]:
     """File name -> text of the whole C folder."""
     found = {"navsym_status.h": STATUS.format(license=license_)}
     for function in functions:
@@ -117,11 +109,13 @@ def header(function: ExportedFunction, license_: str) -> str:
     params = [f" * @param[in]  {text}" for text in argument_texts(function)]
     params += [f" * @param[out] {o.name}  {shape_text(o)} [{unit_of(o.unit)}]" for o in function.outputs]
     return HEADER.format(
-        license=license_, guard=f"NAVSYM_{function.name.upper()}_H", signature=signature(function),
+        license=license_,
+        guard=f"NAVSYM_{function.name.upper()}_H",
+        signature=signature(function),
         title=safe_comment(function.sources[0].title or function.name),
         summary="\n".join(safe_comment(f" * {line}") for line in (*summary(function), called(function))),
         parameters="\n".join(map(safe_comment, params)),
-    )  # fmt: skip
+    )
 
 
 def called(function: ExportedFunction) -> str:
@@ -158,14 +152,7 @@ def shape_text(output: Output) -> str:
 def source(function: ExportedFunction, license_: str) -> str:
     """Definition: domain test, the formulas of each regime, finiteness test, results."""
     s = spelling(function.arithmetic.name)
-    lines = [
-        f"/* {license_} */",
-        f'#include "{function.name}.h"',
-        "",
-        "#include <float.h>",
-        "#include <math.h>",
-        "",
-    ]
+    lines = [f"/* {license_} */", f'#include "{function.name}.h"', "", "#include <float.h>", "#include <math.h>", ""]
     for text in helper_texts(function):
         lines += [text, ""]
     lines += [signature(function), "{", *body(function, s), "}", ""]
@@ -236,30 +223,27 @@ def stores(function: ExportedFunction) -> list[str]:
 def helper_text(helper: Helper, real: str, s: Spelling, kind: str = "static") -> str:
     """One helper; ``kind`` is ``inline`` in a header of C++."""
     switch, below, above = helper_parts(helper, s)
-    return "\n".join([
-        f"/* {helper_about(helper, s)} */",
-        f"{kind} {real} navsym_{helper.name}({real} x)",
-        "{",
-        *squares_if_needed(helper, f"    const {real} y = x * x;"),
-        f"    if ({s.calls['abs'].format('x')} < {switch}) {{",
-        f"        return {below};",
-        "    }",
-        f"    return {above};",
-        "}",
-    ])  # fmt: skip
+    return "\n".join(
+        [
+            f"/* {helper_about(helper, s)} */",
+            f"{kind} {real} navsym_{helper.name}({real} x)",
+            "{",
+            *squares_if_needed(helper, f"    const {real} y = x * x;"),
+            f"    if ({s.calls['abs'].format('x')} < {switch}) {{",
+            f"        return {below};",
+            "    }",
+            f"    return {above};",
+            "}",
+        ]
+    )
 
 
 # -- vectors, test program, build ---------------------------------------
 
 
-def vectors_header(
-    functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str
-) -> str:
+def vectors_header(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str) -> str:
     """Constant arrays: arguments, status, lower and upper bounds, nearest values."""
-    lines = [
-        f"/* {license_} */",
-        "/* Bounds are rigorous enclosures widened by the derived rounding error. */",
-    ]
+    lines = [f"/* {license_} */", "/* Bounds are rigorous enclosures widened by the derived rounding error. */"]
     lines += ["#ifndef NAVSYM_TEST_VECTORS_H", "#define NAVSYM_TEST_VECTORS_H", "", "#include <math.h>", ""]
     for function in functions:
         found, n = tests[function.name], len(tests[function.name])
@@ -269,9 +253,7 @@ def vectors_header(
             lines += array_text(
                 function.arithmetic.name, f"{function.name}_in", inputs, spelling(function.arithmetic.name)
             )
-        lines.append(
-            f"static const int {function.name}_status[] = {{{', '.join(str(v.status) for v in found)}}};"
-        )
+        lines.append(f"static const int {function.name}_status[] = {{{', '.join(str(v.status) for v in found)}}};")
         for part in ("lower", "upper", "nearest"):
             values = [x for v in found for x in (getattr(v, part) or (0.0,) * function.size)]
             lines += array_text("double", f"{function.name}_{part}", values, spelling("double"))
@@ -365,9 +347,13 @@ def test_function(function: ExportedFunction) -> str:
     arguments += [f"&r[{place}]" for place in output_places(function)]
     zero = "0.0f" if real == "float" else "0.0"
     return TEST.format(
-        name=function.name, size=function.size, real=real, zero=zero, arguments=", ".join(arguments),
+        name=function.name,
+        size=function.size,
+        real=real,
+        zero=zero,
+        arguments=", ".join(arguments),
         call=f"through_{function.name}" if function.state else function.name,
-    )  # fmt: skip
+    )
 
 
 def cmake(names: Sequence[str], license_: str) -> str:

@@ -59,9 +59,7 @@ def main():
 '''
 
 
-def files(
-    functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str
-) -> dict[str, str]:
+def files(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str) -> dict[str, str]:
     """Serialised functions, their generated C, vectors and test."""
     found: dict[str, str] = {}
     index = {}

@@ -21,9 +21,7 @@ def spelling(real: str) -> Spelling:
     return Spelling(table, nan, inf, "f" if real == "float" else "")
 
 
-def files(
-    functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str
-) -> dict[str, str]:
+def files(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str) -> dict[str, str]:
     """The header, the test program with its vectors, and the build file."""
     return {
         "navsym_functions.hpp": header(functions, license_),
@@ -112,11 +110,7 @@ def parameter(argument: Argument, real: str) -> str:
 
 def member(output: Output, real: str) -> str:
     """A result as a member of the structure that is returned, zero at first."""
-    return (
-        f"std::array<{real}, {output.size}> {output.name}{{}}"
-        if output.shape
-        else f"{real} {output.name} = 0"
-    )
+    return f"std::array<{real}, {output.size}> {output.name}{{}}" if output.shape else f"{real} {output.name} = 0"
 
 
 def bound(x: float, s: Spelling, largest: str) -> str:
@@ -159,14 +153,7 @@ TEST = """static int test_{name}()
 
 def program(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str) -> str:
     """The program that ctest runs."""
-    lines = [
-        f"// {license_}",
-        '#include "navsym_functions.hpp"',
-        "",
-        "#include <cmath>",
-        "#include <cstdio>",
-        "",
-    ]
+    lines = [f"// {license_}", '#include "navsym_functions.hpp"', "", "#include <cmath>", "#include <cstdio>", ""]
     lines += [test_function(f, tests[f.name]) for f in functions]
     lines += ["int main()", "{", "    int failed = 0;"]
     lines += [f"    failed += test_{f.name}();" for f in functions]
@@ -185,14 +172,19 @@ def test_function(function: ExportedFunction, found: list[Vector]) -> str:
     cast = "static_cast<double>({})" if real == "float" else "{}"
     template = TEST if n else TEST.replace("    static const {real} in[] = {{{inputs}}};\n", "")
     return template.format(
-        name=function.name, real=real, size=function.size, count=len(found),
+        name=function.name,
+        real=real,
+        size=function.size,
+        count=len(found),
         inputs=rows([s.number(x) for v in found for x in v.inputs] or [s.number(0.0)]),
         status=", ".join(str(v.status) for v in found),
-        lower=wide("lower"), upper=wide("upper"), nearest=wide("nearest"),
+        lower=wide("lower"),
+        upper=wide("upper"),
+        nearest=wide("nearest"),
         call=cpp_through_state(function, real) if function.state else cpp_call(function, real),
         values=", ".join(cast.format(a) for a in accessors),
         epsilon="2.220446049250313e-16" if real == "double" else "1.1920928955078125e-07",
-    )  # fmt: skip
+    )
 
 
 def cpp_call(function: ExportedFunction, real: str) -> str:

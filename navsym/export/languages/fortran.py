@@ -13,13 +13,13 @@ from navsym.export.parts import ExportedFunction
 
 SPELLING = Spelling(
     calls(abs="abs({0})", pow="(({0})**({1}))", max="max({0}, {1})", min="min({0}, {1})", expm1="navsym_expm1({0})"),
-    "nan", "inf", exponent="d",
-)  # fmt: skip
+    "nan",
+    "inf",
+    exponent="d",
+)
 
 
-def files(
-    functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str
-) -> dict[str, str]:
+def files(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str) -> dict[str, str]:
     """Module and test program."""
     names = short_names(functions)
     lines = head(functions, license_)
@@ -35,8 +35,14 @@ def files(
 
 def head(functions: Sequence[ExportedFunction], license_: str) -> list[str]:
     """The head of the module, with the helpers."""
-    lines = [f"! {license_}", "module navsym_functions", "  use, intrinsic :: iso_fortran_env, only: real64",
-             "  use, intrinsic :: ieee_arithmetic, only: ieee_is_finite", "  implicit none", "contains"]  # fmt: skip
+    lines = [
+        f"! {license_}",
+        "module navsym_functions",
+        "  use, intrinsic :: iso_fortran_env, only: real64",
+        "  use, intrinsic :: ieee_arithmetic, only: ieee_is_finite",
+        "  implicit none",
+        "contains",
+    ]
     lines += [line for h in helpers_used(*functions) for line in helper_text(h)]
     operations = {op for f in functions for piece in f.pieces for op in piece.graph.operations()}
     operations |= {op for h in helpers_used(*functions) for op in h.operations}
@@ -44,19 +50,32 @@ def head(functions: Sequence[ExportedFunction], license_: str) -> list[str]:
 
 
 EXPM1 = [
-    "  pure elemental function navsym_expm1(x) result(f)", "    real(real64), intent(in) :: x",
-    "    real(real64) :: f", "    f = 2.0d0 * sinh(x / 2.0d0) * exp(x / 2.0d0)", "  end function", "",
-]  # fmt: skip
+    "  pure elemental function navsym_expm1(x) result(f)",
+    "    real(real64), intent(in) :: x",
+    "    real(real64) :: f",
+    "    f = 2.0d0 * sinh(x / 2.0d0) * exp(x / 2.0d0)",
+    "  end function",
+    "",
+]
 
 
 def helper_text(helper: Helper) -> list[str]:
     """One function against cancellation."""
     switch, below, above = helper_parts(helper, SPELLING)
     y = squares_if_needed(helper, ", y")
-    return [f"  pure elemental function navsym_{helper.name}(x) result(f)", "    real(real64), intent(in) :: x",
-            f"    real(real64) :: f{''.join(y)}", *squares_if_needed(helper, "    y = x * x"),
-            f"    if (abs(x) < {switch}) then", f"      f = {below}", "    else", f"      f = {above}", "    end if",
-            "  end function", ""]  # fmt: skip
+    return [
+        f"  pure elemental function navsym_{helper.name}(x) result(f)",
+        "    real(real64), intent(in) :: x",
+        f"    real(real64) :: f{''.join(y)}",
+        *squares_if_needed(helper, "    y = x * x"),
+        f"    if (abs(x) < {switch}) then",
+        f"      f = {below}",
+        "    else",
+        f"      f = {above}",
+        "    end if",
+        "  end function",
+        "",
+    ]
 
 
 def continued(line: str) -> list[str]:
@@ -80,10 +99,7 @@ def source(function: ExportedFunction, name: str) -> list[str]:
     arguments = ", ".join([*names, *(o.name for o in function.outputs), "status"])
     lines = [*(f"  ! {line}" for line in summary(function)), f"  pure subroutine {name}({arguments})"]
     lines += [f"    real(real64), intent(in) :: {n}" for n in names]
-    lines += [
-        f"    real(real64), intent(out) :: {o.name}{f'({o.size})' if o.shape else ''}"
-        for o in function.outputs
-    ]
+    lines += [f"    real(real64), intent(out) :: {o.name}{f'({o.size})' if o.shape else ''}" for o in function.outputs]
     lines += ["    integer, intent(out) :: status", f"    real(real64) :: nv_r({function.size})"]
     lines += [f"    real(real64) :: {local}" for local in dict.fromkeys(t for lets, _ in pieces for t, _ in lets)]
     lines += [f"    {o.name} = 0.0d0" for o in function.outputs]
@@ -154,9 +170,14 @@ def test(functions: Sequence[ExportedFunction], names: dict[str, str], license_:
         for k, f in enumerate(functions, start=1)
     ]
     text = TEST.format(
-        license=license_, total=len(functions), widest=widest, most=max(f.size for f in functions),
-        longest=max(20000, 26 * widest + 300), cases="\n".join(cases), prints="\n".join(prints),
-    )  # fmt: skip
+        license=license_,
+        total=len(functions),
+        widest=widest,
+        most=max(f.size for f in functions),
+        longest=max(20000, 26 * widest + 300),
+        cases="\n".join(cases),
+        prints="\n".join(prints),
+    )
     return "\n".join(part for line in text.splitlines() for part in continued(line)) + "\n"
 
 
@@ -167,5 +188,11 @@ def case(function: ExportedFunction, name: str, number: int) -> list[str]:
         outputs.append(f"r({k + 1}:{k + output.size})" if output.shape else f"r({k + 1})")
         k += output.size
     arguments = ", ".join([*(f"v({j + 1})" for j in range(n)), *outputs, "status"])
-    return [f'    case ("{function.name}")', f"      n = {n}", f"      m = {function.size}", f"      k = {number}",
-            "      read(line, *) name, expected, v(1:n + 3 * m)", f"      call {name}({arguments})"]  # fmt: skip
+    return [
+        f'    case ("{function.name}")',
+        f"      n = {n}",
+        f"      m = {function.size}",
+        f"      k = {number}",
+        "      read(line, *) name, expected, v(1:n + 3 * m)",
+        f"      call {name}({arguments})",
+    ]

@@ -52,8 +52,13 @@ class Helper:
 
 def helpers_used(*functions: ExportedFunction) -> list[Helper]:
     """The parts that the code needs, by name."""
-    used = {Helper(node.value, function.arithmetic.name) for function in functions for piece in function.pieces
-            for node in piece.graph.nodes if node.op == "filled"}  # fmt: skip
+    used = {
+        Helper(node.value, function.arithmetic.name)
+        for function in functions
+        for piece in function.pieces
+        for node in piece.graph.nodes
+        if node.op == "filled"
+    }
     return sorted(used, key=lambda helper: helper.name)
 
 

@@ -62,15 +62,9 @@ process.exit(failed);
 """
 
 
-def files(
-    functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str
-) -> dict[str, str]:
+def files(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str) -> dict[str, str]:
     """The module, its vectors and the program that runs them."""
-    head = [
-        f"// {license_}",
-        "// Status: 0 results are valid, 1 argument outside the proved domain, 2 not finite.",
-        "",
-    ]
+    head = [f"// {license_}", "// Status: 0 results are valid, 1 argument outside the proved domain, 2 not finite.", ""]
     helpers = [helper_text(helper) for helper in helpers_used(*functions)]
     return {
         "navsym_functions.mjs": "\n".join(
@@ -117,10 +111,12 @@ def bound(x: float) -> str:
 def helper_text(helper: Helper) -> str:
     """One function against cancellation."""
     switch, below, above = helper_parts(helper, SPELLING)
-    return "\n".join([
-        f"function navsym_{helper.name}(x) {{",
-        *squares_if_needed(helper, "  const y = x * x;"),
-        f"  return Math.abs(x) < {switch} ? {below} : {above};",
-        "}",
-        "",
-    ])  # fmt: skip
+    return "\n".join(
+        [
+            f"function navsym_{helper.name}(x) {{",
+            *squares_if_needed(helper, "  const y = x * x;"),
+            f"  return Math.abs(x) < {switch} ? {below} : {above};",
+            "}",
+            "",
+        ]
+    )

@@ -11,16 +11,21 @@ from navsym.export.languages.scripts import branch, domain, vectors_text
 from navsym.export.languages.summary import summary
 from navsym.export.parts import ExportedFunction
 
-SPELLING = Spelling(calls(abs="abs({0})", atan2="atan({0}, {1})", pow="({0})^({1})", max="max({0}, {1})",
-                       min="min({0}, {1})"), "NaN", "Inf")  # fmt: skip
+SPELLING = Spelling(
+    calls(abs="abs({0})", atan2="atan({0}, {1})", pow="({0})^({1})", max="max({0}, {1})", min="min({0}, {1})"),
+    "NaN",
+    "Inf",
+)
 
 
-def files(
-    functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str
-) -> dict[str, str]:
+def files(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str) -> dict[str, str]:
     """Module and test script."""
-    head = [f"# {license_}", "# Every function returns (status, results...); results are there when status == 0.",
-            "module NavsymFunctions", ""]  # fmt: skip
+    head = [
+        f"# {license_}",
+        "# Every function returns (status, results...); results are there when status == 0.",
+        "module NavsymFunctions",
+        "",
+    ]
     head += [line for h in helpers_used(*functions) for line in helper_text(h)]
     body = [line for f in functions for line in source(f)]
     return {
@@ -33,8 +38,13 @@ def files(
 def helper_text(helper: Helper) -> list[str]:
     """One function against cancellation."""
     switch, below, above = helper_parts(helper, SPELLING)
-    return [f"function navsym_{helper.name}(x)", *squares_if_needed(helper, "    y = x * x"),
-            f"    return abs(x) < {switch} ? {below} : {above}", "end", ""]  # fmt: skip
+    return [
+        f"function navsym_{helper.name}(x)",
+        *squares_if_needed(helper, "    y = x * x"),
+        f"    return abs(x) < {switch} ? {below} : {above}",
+        "end",
+        "",
+    ]
 
 
 def source(function: ExportedFunction) -> list[str]:

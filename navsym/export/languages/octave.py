@@ -10,13 +10,7 @@ import re
 from collections.abc import Sequence
 
 from navsym.export.accuracy.vectors import Vector
-from navsym.export.languages.helpers import (
-    Helper,
-    helper_about,
-    helper_parts,
-    helpers_used,
-    squares_if_needed,
-)
+from navsym.export.languages.helpers import Helper, helper_about, helper_parts, helpers_used, squares_if_needed
 from navsym.export.languages.printing import Spelling, assignments, calls, code_names
 from navsym.export.languages.programs import octave_program, octave_through_state
 from navsym.export.languages.scripts import branch, short_names, vectors_text
@@ -33,10 +27,13 @@ REAL = {
 }
 SPELLING = Spelling(
     calls(abs="abs({0})", max="max({0}, {1})", min="min({0}, {1})")
-    | {name: f"navsym_{name}({', '.join(f'{{{k}}}' for k in range(len(given.split(', '))))})"
-       for name, (given, _, _) in REAL.items()},
-    "NaN", "Inf",
-)  # fmt: skip
+    | {
+        name: f"navsym_{name}({', '.join(f'{{{k}}}' for k in range(len(given.split(', '))))})"
+        for name, (given, _, _) in REAL.items()
+    },
+    "NaN",
+    "Inf",
+)
 
 NUMBERS = """function good = navsym_numbers(x, n, low, high)
   % {license}
@@ -47,9 +44,7 @@ end
 """
 
 
-def files(
-    functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str
-) -> dict[str, str]:
+def files(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str) -> dict[str, str]:
     """One file for each function, each helper, each call of a program, and the test."""
     names = short_names(functions)
     found = {f"{names[f.name]}.m": source(f, names[f.name], license_) for f in functions}
@@ -67,20 +62,40 @@ def files(
 def helper_text(helper: Helper, license_: str) -> str:
     """One function against cancellation."""
     switch, below, above = helper_parts(helper, SPELLING)
-    return "\n".join([
-        f"function f = navsym_{helper.name}(x)", f"  % {license_}", f"  % {helper_about(helper, SPELLING)}",
-        *squares_if_needed(helper, "  y = x * x;"), f"  if abs(x) < {switch}", f"    f = {below};", "  else",
-        f"    f = {above};", "  end", "end", "",
-    ])  # fmt: skip
+    return "\n".join(
+        [
+            f"function f = navsym_{helper.name}(x)",
+            f"  % {license_}",
+            f"  % {helper_about(helper, SPELLING)}",
+            *squares_if_needed(helper, "  y = x * x;"),
+            f"  if abs(x) < {switch}",
+            f"    f = {below};",
+            "  else",
+            f"    f = {above};",
+            "  end",
+            "end",
+            "",
+        ]
+    )
 
 
 def real_text(name: str, license_: str) -> str:
     """A function that stays real."""
     given, condition, value = REAL[name]
-    return "\n".join([
-        f"function f = navsym_{name}({given})", f"  % {license_}", f"  % {value} where it is real, else NaN.",
-        f"  if {condition}", f"    f = {value};", "  else", "    f = NaN;", "  end", "end", "",
-    ])  # fmt: skip
+    return "\n".join(
+        [
+            f"function f = navsym_{name}({given})",
+            f"  % {license_}",
+            f"  % {value} where it is real, else NaN.",
+            f"  if {condition}",
+            f"    f = {value};",
+            "  else",
+            "    f = NaN;",
+            "  end",
+            "end",
+            "",
+        ]
+    )
 
 
 def source(function: ExportedFunction, name: str, license_: str) -> str:
@@ -90,9 +105,13 @@ def source(function: ExportedFunction, name: str, license_: str) -> str:
     lines += [f"  %{name.upper()}  {function.sources[0].title or function.name}", "  %"]
     lines += [f"  % {counted_from_one(line)}" for line in summary(function)]
     lines += [f"  % Shape    {o.name}: {shape_text(o)}" for o in function.outputs]
-    lines += ["  % Status   0: results are there; 1: an argument is outside the proved domain, or no double;",
-              "  %          2: a result would overflow or is undefined here; results are NaN unless it is 0.", "",
-              f"  % {license_}", "  status = 1;"]  # fmt: skip
+    lines += [
+        "  % Status   0: results are there; 1: an argument is outside the proved domain, or no double;",
+        "  %          2: a result would overflow or is undefined here; results are NaN unless it is 0.",
+        "",
+        f"  % {license_}",
+        "  status = 1;",
+    ]
     lines += [f"  {o.name} = NaN({', '.join(map(str, rows_and_columns(o)))});" for o in function.outputs]
     tests = " && ...\n       ".join(in_range(function, a) for a in function.called_with)
     lines += [f"  if ~({tests})", "    return", "  end"] if tests else []

@@ -14,9 +14,12 @@ from navsym.proof.wording import text_of
 LONGEST_NAME = 24
 #: What people call some of them.
 NAMES = {
-    Part(sp.sin(T), 1): "sinc", Part(expm1(T), 1): "exprel", Part(sp.sinh(T), 1): "sinhc",
-    Part(T - sp.sin(T), 0): "x_minus_sin", Part(T - sp.sin(T), 3): "sinc_defect",
-}  # fmt: skip
+    Part(sp.sin(T), 1): "sinc",
+    Part(expm1(T), 1): "exprel",
+    Part(sp.sinh(T), 1): "sinhc",
+    Part(T - sp.sin(T), 0): "x_minus_sin",
+    Part(T - sp.sin(T), 3): "sinc_defect",
+}
 
 
 def name_of(part: Part) -> str:

@@ -59,9 +59,7 @@ def calls(prefix: str = "", suffix: str = "", **special: str) -> dict[str, str]:
     return table | special
 
 
-def assignments(
-    piece: Piece, names: list[str], spelling: Spelling
-) -> tuple[list[tuple[str, str]], list[str]]:
+def assignments(piece: Piece, names: list[str], spelling: Spelling) -> tuple[list[tuple[str, str]], list[str]]:
     """([(temporary, expression), …], [expression of each result]).
 
     What the formulas name keeps its name; shared nodes and long expressions get a temporary; everything else stands
@@ -80,9 +78,7 @@ def loops_of(
     lines: list[tuple[str, str, bool]] = []
     for place, node in enumerate(graph.nodes):
         written = node_text(graph, place, text, names, piece.literals, spelling)
-        simple = node.op in ("input", "const") or (
-            node.op == "neg" and graph.nodes[node.args[0]].op == "const"
-        )
+        simple = node.op in ("input", "const") or (node.op == "neg" and graph.nodes[node.args[0]].op == "const")
         named = graph.names.get(place)
         if not simple and (named or counts[place] > 1 or len(written) > LONGEST or node.op in apart):
             name = named or f"t{len(lines)}"
@@ -137,9 +133,7 @@ def bare(text: str) -> str:
 def code_names(function: ExportedFunction, entry: str = "{0}[{1}]", first: int = 0) -> list[str]:
     """The name of every input in code: a number by itself, or an entry of its array, counted from ``first``."""
     return [
-        entry.format(a.name, first + k) if a.size else a.name
-        for a in function.called_with
-        for k in range(a.size or 1)
+        entry.format(a.name, first + k) if a.size else a.name for a in function.called_with for k in range(a.size or 1)
     ]
 
 

@@ -65,8 +65,10 @@ def c_header(function: ExportedFunction, license_: str) -> str:
     lines = [f"/* {license_} */", f"#ifndef {guard}", f"#define {guard}", ""]
     lines += [f'#include "{start.name}.h"', f'#include "{function.name}.h"', ""]
     lines += [f"/* {function.sources[0].title}: what is kept between two steps. */", "typedef struct {"]
-    lines += [f"    {real} {o.name}{f'[{o.size}]' if o.shape else ''}; /* {field_text(function, o)} */"
-              for o in field_outputs(function)]  # fmt: skip
+    lines += [
+        f"    {real} {o.name}{f'[{o.size}]' if o.shape else ''}; /* {field_text(function, o)} */"
+        for o in field_outputs(function)
+    ]
     lines += [f"}} {name}_state;", "", "/* Makes the first state; when refused, the state stays as it was. */"]
     given = "".join(f",\n    {c_parameter(a, real)}" for a in start.called_with)
     lines += [f"static inline navsym_status {name}_init(", f"    {name}_state *state{given})", "{"]

@@ -40,13 +40,13 @@ def _finite(values):
 '''
 
 #: How the test programs in Python end.
-ENDING = '''        print(f"{{name}} vectors {{len(rows)}} wrong {{wrong}} worst {{worst:.3g}}")
+ENDING = """        print(f"{{name}} vectors {{len(rows)}} wrong {{wrong}} worst {{worst:.3g}}")
         failed += wrong > 0
     return failed
 
 
 sys.exit(main())
-'''
+"""
 TEST = '''# {license}
 """Runs every function on its vectors; the exit status is the number of functions that failed."""
 
@@ -112,9 +112,7 @@ def main():
 '''
 
 
-def files(
-    functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str
-) -> dict[str, str]:
+def files(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str) -> dict[str, str]:
     """The module, its vectors and the program that runs them."""
     real = "float32" if functions[0].arithmetic.name == "float" else "float64"
     texts = [HEAD.format(license=license_, real=real), *map(helper_text, helpers_used(*functions))]
@@ -132,14 +130,16 @@ def files(
 def helper_text(helper: Helper) -> str:
     """One function against cancellation, over arrays: both forms, each where it holds."""
     switch, below, above = helper_parts(helper, SPELLING, "far")
-    return "\n".join([
-        f"def navsym_{helper.name}(x):",
-        *squares_if_needed(helper, "    y = x * x"),
-        f"    near = np.abs(x) < {switch}",
-        "    far = np.where(near, 1.0, x)",
-        f"    return np.where(near, {below}, {above})",
-        "",
-    ])  # fmt: skip
+    return "\n".join(
+        [
+            f"def navsym_{helper.name}(x):",
+            *squares_if_needed(helper, "    y = x * x"),
+            f"    near = np.abs(x) < {switch}",
+            "    far = np.where(near, 1.0, x)",
+            f"    return np.where(near, {below}, {above})",
+            "",
+        ]
+    )
 
 
 def vectors_json(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]]) -> str:
@@ -189,9 +189,7 @@ def docstring(function: ExportedFunction) -> list[str]:
 
 def checks(function: ExportedFunction) -> list[str]:
     """Lines that check every argument against its range, one for each."""
-    largest = (
-        "np.finfo(np.float32).max" if function.arithmetic.name == "float" else "np.finfo(np.float64).max"
-    )
+    largest = "np.finfo(np.float32).max" if function.arithmetic.name == "float" else "np.finfo(np.float64).max"
     lines = []
     for a in function.called_with:
         entries = function.inputs[a.first : a.first + (a.size or 1)]

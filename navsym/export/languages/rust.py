@@ -19,9 +19,7 @@ def spelling(real: str) -> Spelling:
     special = {"log": "ln", "expm1": "exp_m1", "pow": "powf"}
     one = "sin cos exp log sqrt asin acos atan sinh cosh tanh expm1 abs".split()
     table = {name: f"{kind}::{special.get(name, name)}({{0}})" for name in one}
-    table |= {
-        name: f"{kind}::{special.get(name, name)}({{0}}, {{1}})" for name in ("atan2", "pow", "max", "min")
-    }
+    table |= {name: f"{kind}::{special.get(name, name)}({{0}}, {{1}})" for name in ("atan2", "pow", "max", "min")}
     return Spelling(table, f"{kind}::NAN", f"{kind}::INFINITY", f"_{kind}")
 
 
@@ -30,14 +28,9 @@ def rust_type(real: str) -> str:
     return "f32" if real == "float" else "f64"
 
 
-def files(
-    functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str
-) -> dict[str, str]:
+def files(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str) -> dict[str, str]:
     """The module and the test program with its vectors."""
-    return {
-        "navsym_functions.rs": module(functions, license_),
-        "test_main.rs": program(functions, tests, license_),
-    }
+    return {"navsym_functions.rs": module(functions, license_), "test_main.rs": program(functions, tests, license_)}
 
 
 def module(functions: Sequence[ExportedFunction], license_: str) -> str:
@@ -101,16 +94,18 @@ def bound(x: float, s: Spelling, kind: str) -> str:
 def helper_text(helper: Helper, kind: str, s: Spelling) -> str:
     """One function against cancellation."""
     switch, below, above = helper_parts(helper, s)
-    return "\n".join([
-        f"fn navsym_{helper.name}(x: {kind}) -> {kind} {{",
-        *squares_if_needed(helper, "    let y = x * x;"),
-        f"    if {kind}::abs(x) < {switch} {{",
-        f"        return {below};",
-        "    }",
-        f"    {above}",
-        "}",
-        "",
-    ])  # fmt: skip
+    return "\n".join(
+        [
+            f"fn navsym_{helper.name}(x: {kind}) -> {kind} {{",
+            *squares_if_needed(helper, "    let y = x * x;"),
+            f"    if {kind}::abs(x) < {switch} {{",
+            f"        return {below};",
+            "    }",
+            f"    {above}",
+            "}",
+            "",
+        ]
+    )
 
 
 TEST = """fn test_{name}() -> i32 {{
@@ -146,11 +141,7 @@ TEST = """fn test_{name}() -> i32 {{
 
 def program(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str) -> str:
     """The test program."""
-    lines = [
-        f"// {license_}",
-        "#![allow(non_snake_case, unused_variables, clippy::all)]",
-        "mod navsym_functions;",
-    ]
+    lines = [f"// {license_}", "#![allow(non_snake_case, unused_variables, clippy::all)]", "mod navsym_functions;"]
     lines += ["use navsym_functions::*;", ""]
     lines += [test_function(f, tests[f.name]) for f in functions]
     lines += ["fn main() {", "    let mut failed = 0;"]
@@ -168,16 +159,22 @@ def test_function(function: ExportedFunction, found: list[Vector]) -> str:
 
     accessors = through_accessors(function)
     return TEST.format(
-        name=function.name, kind=kind, size=function.size, count=len(found), total=len(found) * function.size,
+        name=function.name,
+        kind=kind,
+        size=function.size,
+        count=len(found),
+        total=len(found) * function.size,
         inputs_size=len(found) * n,
         inputs=", ".join(s.number(x) for v in found for x in v.inputs),
         status=", ".join(str(v.status) for v in found),
-        lower=wide("lower"), upper=wide("upper"), nearest=wide("nearest"),
+        lower=wide("lower"),
+        upper=wide("upper"),
+        nearest=wide("nearest"),
         call=rust_through_state(function) if function.state else rust_call(function),
         found="(result, s)" if function.state else "result",
         values=", ".join(f"f64::from({a})" if real == "float" else a for a in accessors),
         epsilon="f64::EPSILON" if real == "double" else "f64::from(f32::EPSILON)",
-    )  # fmt: skip
+    )
 
 
 def rust_call(function: ExportedFunction) -> str:

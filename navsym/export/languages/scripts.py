@@ -33,9 +33,7 @@ def branch(function: ExportedFunction, place: int, first: str, later: str, last:
     return f"{later if place else first} ({condition})"
 
 
-def domain(
-    function: ExportedFunction, largest: str, s: Spelling, both: str = " && ", true: str = "true"
-) -> str:
+def domain(function: ExportedFunction, largest: str, s: Spelling, both: str = " && ", true: str = "true") -> str:
     """Comparisons of every argument with its range, in this language."""
     tests = []
     for i in function.inputs:

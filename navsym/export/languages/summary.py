@@ -95,9 +95,7 @@ def bound_text(function: ExportedFunction, piece: Piece) -> str:
         parts.append(name + entry_bound(piece, entries))
     limits = sizes(function)
     where = f" with {', '.join(limits)}" if limits else ""
-    library = (
-        f"u = 2^{arithmetic.u}, library functions within {arithmetic.library} or {2 * arithmetic.library} ulp"
-    )
+    library = f"u = 2^{arithmetic.u}, library functions within {arithmetic.library} or {2 * arithmetic.library} ulp"
     return f"{'; '.join(dict.fromkeys(parts))}{where} ({library})"
 
 

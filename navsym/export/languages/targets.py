@@ -73,44 +73,139 @@ def answers(path: str) -> bool:
 
 BOTH = ("double", "float")
 HEADLESS = (
-    "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
-    "--disable-background-networking", "--disable-component-update", "--disable-sync", "--virtual-time-budget=20000",
-)  # fmt: skip
+    "--headless",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--virtual-time-budget=20000",
+)
 TARGETS = {
     target.name: target
     for target in (
-        Target("c", "navsym.export.languages.c:files", "gcc",
-               (("{tool}", "-std=c99", "-O2", "-ffp-contract=off", *WARNINGS, "{c}", "-o", "{build}/run", "-lm"),
-                ("{build}/run",)), reals=BOTH),
-        Target("cpp", "navsym.export.languages.cpp:files", "g++",
-               (("{tool}", "-std=c++17", "-O1", "-ffp-contract=off", *WARNINGS, "test_main.cpp",
-                 "-o", "{build}/run"),
-                ("{build}/run",)), reals=BOTH),
-        Target("python", "navsym.export.languages.python:files", "", (("{python}", "-B", "test_vectors.py"),),
-               library=4, reals=BOTH),
+        Target(
+            "c",
+            "navsym.export.languages.c:files",
+            "gcc",
+            (
+                ("{tool}", "-std=c99", "-O2", "-ffp-contract=off", *WARNINGS, "{c}", "-o", "{build}/run", "-lm"),
+                ("{build}/run",),
+            ),
+            reals=BOTH,
+        ),
+        Target(
+            "cpp",
+            "navsym.export.languages.cpp:files",
+            "g++",
+            (
+                ("{tool}", "-std=c++17", "-O1", "-ffp-contract=off", *WARNINGS, "test_main.cpp", "-o", "{build}/run"),
+                ("{build}/run",),
+            ),
+            reals=BOTH,
+        ),
+        Target(
+            "python",
+            "navsym.export.languages.python:files",
+            "",
+            (("{python}", "-B", "test_vectors.py"),),
+            library=4,
+            reals=BOTH,
+        ),
         Target("javascript", "navsym.export.languages.javascript:files", "node", (("{tool}", "test_vectors.mjs"),)),
-        Target("rust", "navsym.export.languages.rust:files", "rustc",
-               (("{tool}", "--edition=2021", "-D", "warnings", "test_main.rs", "-o", "{build}/run"), ("{build}/run",)),
-               reals=BOTH),
-        Target("casadi", "navsym.export.languages.casadi:files", "", (("{python}", "-B", "test_vectors.py"),),
-               widen=64, modules=("casadi",)),
-        Target("batch", "navsym.export.languages.batch:files", "gcc", (("{python}", "-B", "test_vectors.py"),),
-               library=4, reals=BOTH),
-        Target("fortran", "navsym.export.languages.fortran:files", "gfortran",
-               (("{tool}", "-std=f2008", "-Wall", "-J", "{build}", "navsym_functions.f90", "test_vectors.f90",
-                 "-o", "{build}/run"), ("{build}/run",)), library=2),
-        Target("julia", "navsym.export.languages.julia:files", "julia",
-               (("{tool}", "--startup-file=no", "test_vectors.jl"),)),
-        Target("wasm", "navsym.export.languages.wasm:wasm_files", "",
-               (("{python}", "-m", "ziglang", "cc", "-target", "wasm32-wasi", "-O2", "-std=c99", "-ffp-contract=off",
-                 *WARNINGS, "{c}", "-o", "{build}/run.wasm", "-lm"),
-                ("{python}", "-B", "run_wasi.py", "{build}/run.wasm")), modules=("ziglang", "wasmtime"), reals=BOTH),
-        Target("html", "navsym.export.languages.wasm:page_files", "chromium",
-               (("{tool}", *HEADLESS, "--user-data-dir={build}/profile", "--dump-dom", "index.html"),), reals=BOTH),
-        Target("octave", "navsym.export.languages.octave:files", "octave-cli",
-               (("{tool}", "--norc", "--no-history", "--quiet", "--eval", "test_vectors"),), library=2),
+        Target(
+            "rust",
+            "navsym.export.languages.rust:files",
+            "rustc",
+            (("{tool}", "--edition=2021", "-D", "warnings", "test_main.rs", "-o", "{build}/run"), ("{build}/run",)),
+            reals=BOTH,
+        ),
+        Target(
+            "casadi",
+            "navsym.export.languages.casadi:files",
+            "",
+            (("{python}", "-B", "test_vectors.py"),),
+            widen=64,
+            modules=("casadi",),
+        ),
+        Target(
+            "batch",
+            "navsym.export.languages.batch:files",
+            "gcc",
+            (("{python}", "-B", "test_vectors.py"),),
+            library=4,
+            reals=BOTH,
+        ),
+        Target(
+            "fortran",
+            "navsym.export.languages.fortran:files",
+            "gfortran",
+            (
+                (
+                    "{tool}",
+                    "-std=f2008",
+                    "-Wall",
+                    "-J",
+                    "{build}",
+                    "navsym_functions.f90",
+                    "test_vectors.f90",
+                    "-o",
+                    "{build}/run",
+                ),
+                ("{build}/run",),
+            ),
+            library=2,
+        ),
+        Target(
+            "julia",
+            "navsym.export.languages.julia:files",
+            "julia",
+            (("{tool}", "--startup-file=no", "test_vectors.jl"),),
+        ),
+        Target(
+            "wasm",
+            "navsym.export.languages.wasm:wasm_files",
+            "",
+            (
+                (
+                    "{python}",
+                    "-m",
+                    "ziglang",
+                    "cc",
+                    "-target",
+                    "wasm32-wasi",
+                    "-O2",
+                    "-std=c99",
+                    "-ffp-contract=off",
+                    *WARNINGS,
+                    "{c}",
+                    "-o",
+                    "{build}/run.wasm",
+                    "-lm",
+                ),
+                ("{python}", "-B", "run_wasi.py", "{build}/run.wasm"),
+            ),
+            modules=("ziglang", "wasmtime"),
+            reals=BOTH,
+        ),
+        Target(
+            "html",
+            "navsym.export.languages.wasm:page_files",
+            "chromium",
+            (("{tool}", *HEADLESS, "--user-data-dir={build}/profile", "--dump-dom", "index.html"),),
+            reals=BOTH,
+        ),
+        Target(
+            "octave",
+            "navsym.export.languages.octave:files",
+            "octave-cli",
+            (("{tool}", "--norc", "--no-history", "--quiet", "--eval", "test_vectors"),),
+            library=2,
+        ),
     )
-}  # fmt: skip
+}
 ALIASES = {"js": "javascript", "numpy": "python", "c++": "cpp", "matlab": "octave"}
 
 
@@ -119,13 +214,9 @@ def chosen(names: Sequence[str], real: str) -> list[Target]:
     found = []
     for name in dict.fromkeys(ALIASES.get(n.strip().lower(), n.strip().lower()) for n in names if n.strip()):
         if name not in TARGETS:
-            raise DomainError(
-                f"expected languages among {', '.join(TARGETS)}; got {name[:40]!r}; do correct --to"
-            )
+            raise DomainError(f"expected languages among {', '.join(TARGETS)}; got {name[:40]!r}; do correct --to")
         if real not in TARGETS[name].reals:
-            raise DomainError(
-                f"expected a language with {real}; got {name}, which has only double; do leave it out"
-            )
+            raise DomainError(f"expected a language with {real}; got {name}, which has only double; do leave it out")
         found.append(TARGETS[name])
     if not found:
         raise DomainError(f"expected at least one language; got none; do name some of {', '.join(TARGETS)}")

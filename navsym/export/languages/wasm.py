@@ -44,16 +44,12 @@ except wasmtime.ExitTrap as ended:
 FLAGS = ("-target", "wasm32-wasi", "-mexec-model=reactor", "-O2", "-s", "-std=c99", "-ffp-contract=off")
 
 
-def wasm_files(
-    functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str
-) -> dict[str, str]:
+def wasm_files(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str) -> dict[str, str]:
     """The C folder with a runner for its WebAssembly."""
     return c_files(functions, tests, license_) | {"run_wasi.py": WASI.format(license=license_)}
 
 
-def page_files(
-    functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str
-) -> dict[str, str]:
+def page_files(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str) -> dict[str, str]:
     """One self-contained page: the compiled functions, their vectors, bounds and verdicts; no network."""
     module = base64.b64encode(compiled(functions, tests, license_)).decode("ascii")
     data = json.dumps([record(f, tests[f.name]) for f in functions], allow_nan=False)
@@ -85,13 +81,24 @@ def calls(functions: Sequence[ExportedFunction]) -> str:
     real = functions[0].arithmetic.name
     widest = max(len(f.inputs) + f.size for f in functions)
     lines = [f'#include "{f.name}.h"' for f in functions]
-    lines += [f"static {real} numbers[{widest}];", f"{real} *demo_numbers(void);", f"{real} *demo_numbers(void)",
-              "{", "    return numbers;", "}"]  # fmt: skip
+    lines += [
+        f"static {real} numbers[{widest}];",
+        f"{real} *demo_numbers(void);",
+        f"{real} *demo_numbers(void)",
+        "{",
+        "    return numbers;",
+        "}",
+    ]
     for f in functions:
         words = [f"{'&' if a.size else ''}numbers[{a.first}]" for a in f.called_with]
         words += [f"&numbers[{len(f.inputs) + place}]" for place in output_places(f)]
-        lines += [f"int demo_{f.name}(void);", f"int demo_{f.name}(void)", "{",
-                  f"    return (int){f.name}({', '.join(words)});", "}"]  # fmt: skip
+        lines += [
+            f"int demo_{f.name}(void);",
+            f"int demo_{f.name}(void)",
+            "{",
+            f"    return (int){f.name}({', '.join(words)});",
+            "}",
+        ]
     return "\n".join([*lines, ""])
 
 

@@ -41,9 +41,7 @@ def sources_of(place: Path) -> list[Path]:
 def case_names(root: Path, folder: str) -> list[str]:
     """Names of all cases as pytest collects them, slow ones too; those of one parameter share what they derive."""
     command = pytest_of(root, "--collect-only", "-q", *EVERY, folder)
-    told = subprocess.run(
-        command, cwd=root, capture_output=True, text=True, check=False, timeout=SECONDS_TO_COLLECT
-    )
+    told = subprocess.run(command, cwd=root, capture_output=True, text=True, check=False, timeout=SECONDS_TO_COLLECT)
     names = [line for line in told.stdout.splitlines() if "::" in line]
     if told.returncode != 0 or not names:
         raise NavsymError(f"expected cases in {folder}; got {told.stdout[-300:]} {told.stderr[-300:]}; install pytest")

@@ -160,9 +160,7 @@ def changed(value: Any, source: random.Random) -> Any:
     number = decimal(value)
     if number is None:
         return source.choice(["from", "to", "no", "between"])
-    return text_of(
-        number + source.choice([1, -1]) * Fraction(1, 10 ** source.randint(0, 12)) * source.randint(1, 9)
-    )
+    return text_of(number + source.choice([1, -1]) * Fraction(1, 10 ** source.randint(0, 12)) * source.randint(1, 9))
 
 
 def decimal(text: Any) -> Fraction | None:

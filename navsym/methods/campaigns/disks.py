@@ -28,7 +28,6 @@ from navsym.store import Store, StoreError, key_of
 SECONDS_TO_MOUNT, SECONDS_TO_VERIFY, SECONDS_TO_DIE = 30, 600, 30  # longer than any machine needs
 
 
-
 def batches() -> list[Batch]:
     """One batch for each trouble of :data:`TROUBLES`."""
     return [Batch(name, name) for name in TROUBLES]
@@ -89,7 +88,9 @@ def full_disk(folder: Path) -> list[str]:
     small.mkdir()
     mounted = subprocess.run(
         ["mount", "-t", "tmpfs", "-o", "size=1m", "tmpfs", str(small)],
-        capture_output=True, check=False, timeout=SECONDS_TO_MOUNT,
+        capture_output=True,
+        check=False,
+        timeout=SECONDS_TO_MOUNT,
     )
     if mounted.returncode != 0:
         return full_by_limit(folder)

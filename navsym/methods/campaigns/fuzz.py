@@ -81,9 +81,14 @@ def run(words: list[str], folder: str) -> subprocess.CompletedProcess[str]:
     """One round, which ends with this process and leaves no file outside the folder."""
     return subprocess.run(
         [sys.executable, "-m", "navsym.methods.campaigns.guided", *words],
-        capture_output=True, text=True, errors="replace", check=False, stdin=subprocess.DEVNULL,
-        env={**os.environ, "TMPDIR": folder}, preexec_fn=functools.partial(die_with_parent, os.getpid()),
-    )  # fmt: skip
+        capture_output=True,
+        text=True,
+        errors="replace",
+        check=False,
+        stdin=subprocess.DEVNULL,
+        env={**os.environ, "TMPDIR": folder},
+        preexec_fn=functools.partial(die_with_parent, os.getpid()),
+    )
 
 
 def found(reader: str, folder: Path, told: subprocess.CompletedProcess[str]) -> Result:

@@ -28,7 +28,6 @@ LONGEST = 0.25  # seconds until a round is killed
 SECONDS_TO_DIE = 30  # longer than any machine needs
 
 
-
 def batches(kills: int, seed: int = 0) -> list[Batch]:
     """``kills`` deaths of writers, in batches of rounds of four."""
     rounds = -(-kills // WRITERS)

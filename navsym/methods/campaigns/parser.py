@@ -26,18 +26,76 @@ MEGABYTES = 2048  # that one input may add to the memory of its process
 
 PIECES = (
     *(bytes([byte]) for byte in b"\"'[]{}()=,.-+*/#\\\n\r\0 _^09twe"),
-    b"**", b"[[", b"]]", b"1e999", b"nan", b"inf", b"true", b"null", b"\xff", b"\xd1\x85", b"\xe2\x80\xae", b"pi",
-    b"sin(", b"sqrt(", b"log(", b"1/0", b"9**9**9", b"**-1", b"__import__('os')", b"lambda:0", b'"""', b"\\ud800",
-    b"NaN", b"Infinity", b"\xef\xbb\xbf", b"((((((((", b"- - - -", b"0x10", b"1_0", b"[model]\n", b"[[claim]]\n",
-    b"PK\x03\x04", b"PK\x05\x06", b"\x93NUMPY", b"|O", b"II*\0", b",,,", b";", b"\t", b"99999999999999999999",
+    b"**",
+    b"[[",
+    b"]]",
+    b"1e999",
+    b"nan",
+    b"inf",
+    b"true",
+    b"null",
+    b"\xff",
+    b"\xd1\x85",
+    b"\xe2\x80\xae",
+    b"pi",
+    b"sin(",
+    b"sqrt(",
+    b"log(",
+    b"1/0",
+    b"9**9**9",
+    b"**-1",
+    b"__import__('os')",
+    b"lambda:0",
+    b'"""',
+    b"\\ud800",
+    b"NaN",
+    b"Infinity",
+    b"\xef\xbb\xbf",
+    b"((((((((",
+    b"- - - -",
+    b"0x10",
+    b"1_0",
+    b"[model]\n",
+    b"[[claim]]\n",
+    b"PK\x03\x04",
+    b"PK\x05\x06",
+    b"\x93NUMPY",
+    b"|O",
+    b"II*\0",
+    b",,,",
+    b";",
+    b"\t",
+    b"99999999999999999999",
     *(struct.pack("<I", n) for n in (0, 1, 0x7FFFFFFF, 0x80000000, 0xFFFFFFFF)),
-)  # fmt: skip
+)
 
 TOKEN = re.compile(rb"[0-9]+(?:\.[0-9]+)?|[A-Za-z_]+|\*\*|[-+*/<>=]+")
 NUMBERS = (
-    b"0", b"-1", b"0.5", b"1e300", b"-1e-300", b"1/0", b"3/7", b"2**62", b"90", b"-90.0001", b"360", b"1e999",
-    b"65536", b"-0", b"nan", b"1e9", b"true", b"null", b'"1"', b"[]", b"{}", b"[[1]]", b"pi", b"sqrt(2)",
-)  # fmt: skip
+    b"0",
+    b"-1",
+    b"0.5",
+    b"1e300",
+    b"-1e-300",
+    b"1/0",
+    b"3/7",
+    b"2**62",
+    b"90",
+    b"-90.0001",
+    b"360",
+    b"1e999",
+    b"65536",
+    b"-0",
+    b"nan",
+    b"1e9",
+    b"true",
+    b"null",
+    b'"1"',
+    b"[]",
+    b"{}",
+    b"[[1]]",
+    b"pi",
+    b"sqrt(2)",
+)
 
 
 def batches(inputs: int, seed: int = 0) -> list[Batch]:
@@ -46,8 +104,7 @@ def batches(inputs: int, seed: int = 0) -> list[Batch]:
     sizes = [BATCH] * (count - 1) + [inputs - BATCH * (count - 1)]
     readers = list(READERS)
     damage = [
-        Batch(f"{seed} {k} {size}", (readers[k % len(readers)], size, seed * 10**6 + k))
-        for k, size in enumerate(sizes)
+        Batch(f"{seed} {k} {size}", (readers[k % len(readers)], size, seed * 10**6 + k)) for k, size in enumerate(sizes)
     ]
     return [*damage, Batch("bombs", ("bombs", len(BOMBS), 0))]
 

@@ -148,9 +148,7 @@ def excluded(statement: Equation | Bound, printed: arb, derived: arb) -> bool:
 
 def refuting_point(statement: Assertion, change: Change, table: Sequence[Row]) -> int | None:
     """Number of the first point at which the changed statement falls, or None."""
-    test: Callable[[Any, Change, Row], bool] = (
-        optimum_falls if isinstance(statement, Optimum) else formula_falls
-    )
+    test: Callable[[Any, Change, Row], bool] = optimum_falls if isinstance(statement, Optimum) else formula_falls
     for place, row in enumerate(table):
         try:
             if test(statement, change, row):
@@ -188,9 +186,7 @@ def optimum_falls(statement: Optimum, change: Change, row: Row) -> bool:
     return primal_dual_falls(statement, row, (balls[:m], balls[m : m + n], balls[m + n : m + 2 * n], balls[-1]))
 
 
-def primal_dual_falls(
-    statement: Optimum, row: Row, parts: tuple[list[arb], list[arb], list[arb], arb]
-) -> bool:
+def primal_dual_falls(statement: Optimum, row: Row, parts: tuple[list[arb], list[arb], list[arb], arb]) -> bool:
     """True when balls of dual, support, weights and value contradict an optimum at one point.
 
     Looked at: instants inside, ``sum w_k H(t_k) = P``, the value against ``x . P`` and against ``sum |w_k|``, and

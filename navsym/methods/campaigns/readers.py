@@ -67,24 +67,41 @@ right = "2*cos(a)"
 relation = "<="
 box = {T = ["1", "2"]}
 """
-BANK = json.dumps({
-    "models": [{"F": [[1.0, 2e3], [0, -1]], "Q": [[1, 0], [0, 1]], "H": [[1, 0]], "R": [[0.5]]}] * 2,
-    "mode_transition": [[0.9, 0.1], [0.2, 0.8]],
-    "initial": {"mean": [0, 0], "covariance": [[1, 0], [0, 1]], "probabilities": [0.5, 0.5]},
-    "measurements": [[1.0], [2.5], [-1e-3]], "memoryless": True,
-}).encode()  # fmt: skip
+BANK = json.dumps(
+    {
+        "models": [{"F": [[1.0, 2e3], [0, -1]], "Q": [[1, 0], [0, 1]], "H": [[1, 0]], "R": [[0.5]]}] * 2,
+        "mode_transition": [[0.9, 0.1], [0.2, 0.8]],
+        "initial": {"mean": [0, 0], "covariance": [[1, 0], [0, 1]], "probabilities": [0.5, 0.5]},
+        "measurements": [[1.0], [2.5], [-1e-3]],
+        "memoryless": True,
+    }
+).encode()
 SWEEP = b'{"kind": "guaranteed", "jobs": 3, "seed": 5, "degree": 2, "start": "1/2", "end": "7/3"}'
-CONFIG = json.dumps({
-    "map": {"heights": [[1.0, 2, 4], [3, 5, 6], [0, 7, 8]], "x0": 0, "y0": 0, "dx": 10, "dy": 10},
-    "track": {"t": [0, 1, 2, 3], "x": [5, 6, 7, 8], "y": [5.0, 6, 8, 9], "h": [2, 3, 3.5, 4]},
-    "position": {"step": [1, 1], "half_count": [1, 1]}, "velocity": {"step": [0.5, 0.5], "half_count": [0, 1]},
-}).encode()  # fmt: skip
-CERTIFICATE = json.dumps({
-    "kind": "gap", "variable": "t", "functional": ["0", "1"], "bits": 80, "cells": 40,
-    "panels": [{"measurement": 0, "from": "0", "to": "2", "sigma": "1", "H": ["1", "t"]}],
-    "dual": ["-0.999", "0.999"], "support": [[0, "0"], [0, "1"]], "lower": "0.9989", "upper": "1.0001",
-    "parameter": "p", "from": "0", "to": "0",
-}).encode()  # fmt: skip
+CONFIG = json.dumps(
+    {
+        "map": {"heights": [[1.0, 2, 4], [3, 5, 6], [0, 7, 8]], "x0": 0, "y0": 0, "dx": 10, "dy": 10},
+        "track": {"t": [0, 1, 2, 3], "x": [5, 6, 7, 8], "y": [5.0, 6, 8, 9], "h": [2, 3, 3.5, 4]},
+        "position": {"step": [1, 1], "half_count": [1, 1]},
+        "velocity": {"step": [0.5, 0.5], "half_count": [0, 1]},
+    }
+).encode()
+CERTIFICATE = json.dumps(
+    {
+        "kind": "gap",
+        "variable": "t",
+        "functional": ["0", "1"],
+        "bits": 80,
+        "cells": 40,
+        "panels": [{"measurement": 0, "from": "0", "to": "2", "sigma": "1", "H": ["1", "t"]}],
+        "dual": ["-0.999", "0.999"],
+        "support": [[0, "0"], [0, "1"]],
+        "lower": "0.9989",
+        "upper": "1.0001",
+        "parameter": "p",
+        "from": "0",
+        "to": "0",
+    }
+).encode()
 TRACK = b"time,lat,lon,height\n" + b"".join(b"%d.5,%d.25,-72.%d,%d\n" % (k, 44, k, 100 + k) for k in range(8))
 FLAT = b"t,x,y,h\n" + b"".join(b"%d,%d.5,%d,%d\n" % (k, k, 2 * k, 100 + k) for k in range(8))
 POSITIONS = b"% (lat/lon/height=WGS84/ellipsoidal)\n%  GPST latitude(deg) longitude(deg) height(m) Q ns\n" + b"".join(
@@ -125,9 +142,17 @@ def tiff() -> bytes:
     pixels = struct.pack("<4h", 1, 2, 3, 4)
     start = 8 + 2 + 12 * 10 + 4
     entries = (
-        (256, 3, 1, 2), (257, 3, 1, 2), (258, 3, 1, 16), (259, 3, 1, 1), (262, 3, 1, 1),
-        (273, 4, 1, start + 72), (278, 3, 1, 2), (279, 4, 1, 8), (33550, 12, 3, start), (33922, 12, 6, start + 24),
-    )  # fmt: skip
+        (256, 3, 1, 2),
+        (257, 3, 1, 2),
+        (258, 3, 1, 16),
+        (259, 3, 1, 1),
+        (262, 3, 1, 1),
+        (273, 4, 1, start + 72),
+        (278, 3, 1, 2),
+        (279, 4, 1, 8),
+        (33550, 12, 3, start),
+        (33922, 12, 6, start + 24),
+    )
     table = b"".join(struct.pack("<HHII", *entry) for entry in entries)
     return b"II*\0" + struct.pack("<IH", 8, len(entries)) + table + struct.pack("<I", 0) + doubles + pixels
 
@@ -272,4 +297,4 @@ BOMBS: dict[str, tuple[str, Callable[[], bytes]]] = {
     "many jobs": ("sweep", lambda: SWEEP.replace(b'"jobs": 3', b'"jobs": 1000000000000')),
     "a bank of 10^5 measurements": ("bank", lambda: BANK.replace(b"[[1.0],", b"[" + b"[1.0]," * 10**5)),
     "a search of 10^12 hypotheses": ("config", lambda: CONFIG.replace(b"[1, 1]}", b"[1000000, 1000000]}", 1)),
-}  # fmt: skip
+}

@@ -72,9 +72,13 @@ def condition_number(rows: Rows, *, digits: int = 30, equilibrate: bool = False)
 
 
 def condition_numbers(
-    n: int, rho: Fraction | int | str, tau: Fraction | int | str, *, digits: int = 30,
+    n: int,
+    rho: Fraction | int | str,
+    tau: Fraction | int | str,
+    *,
+    digits: int = 30,
     progress: Callable[[str], None] = lambda matrix: None,
-) -> dict[str, Conditioning]:  # fmt: skip
+) -> dict[str, Conditioning]:
     """Condition numbers of N_p, N_pN, N_f, N_s (trajectory:table), certified and in double precision.
 
     n        : order of the polynomial motion model, 1 to 120
@@ -89,8 +93,11 @@ def condition_numbers(
     # both are computed from their own definitions all the same.
     exact = {}
     for name, rows, equilibrate in (
-        ("N_p", measured, False), ("N_pN", measured, True), ("N_f", powers, False), ("N_s", powers, True),
-    ):  # fmt: skip
+        ("N_p", measured, False),
+        ("N_pN", measured, True),
+        ("N_f", powers, False),
+        ("N_s", powers, True),
+    ):
         exact[name] = condition_number(rows, digits=digits, equilibrate=equilibrate)
         progress(name)
     doubles = double_values(measured, powers)

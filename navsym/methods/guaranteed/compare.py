@@ -76,9 +76,10 @@ def guaranteed_deviation(samples: Sampled, density: Array) -> float:
 
 
 def compare(
-    solution: GuaranteedSolution, solvers: Sequence[str] = LP_SOLVERS,
+    solution: GuaranteedSolution,
+    solvers: Sequence[str] = LP_SOLVERS,
     progress: Callable[[str], None] = lambda solver: None,
-) -> dict[str, Any]:  # fmt: skip
+) -> dict[str, Any]:
     """Guaranteed deviation of least squares and of the white-noise Kalman filter; every solver's answer.
 
     progress : called with the name of each solver that has answered
@@ -101,9 +102,7 @@ def grid_problem(problem: GuaranteedProblem, count: int = GRID) -> GridProblem:
     v = np.linspace(0.0, 1.0, count)
     parts = [panel_numbers(panel, v) for panel in problem.exact().panels]
     bounds = np.concatenate([np.full(count, sigma) for _, _, sigma in parts])
-    return GridProblem(
-        np.hstack([H for H, _, _ in parts]), np.array([float(p) for p in problem.functional]), bounds
-    )
+    return GridProblem(np.hstack([H for H, _, _ in parts]), np.array([float(p) for p in problem.functional]), bounds)
 
 
 def solver_row(grid: GridProblem, name: str, optimum: float) -> dict[str, Any]:
@@ -115,9 +114,13 @@ def solver_row(grid: GridProblem, name: str, optimum: float) -> dict[str, Any]:
     result = guaranteed_lp(grid, solver=name)
     error = None if result.value is None else result.value / optimum - 1.0
     return {
-        "solver": name, "status": result.status, "value": result.value, "relative_error": error,
-        "residual": result.residual, "seconds": result.seconds,
-    }  # fmt: skip
+        "solver": name,
+        "status": result.status,
+        "value": result.value,
+        "relative_error": error,
+        "residual": result.residual,
+        "seconds": result.seconds,
+    }
 
 
 # -- the worst noise -------------------------------------------------------------------------------
@@ -125,9 +128,7 @@ def solver_row(grid: GridProblem, name: str, optimum: float) -> dict[str, Any]:
 
 def worst_covariance(solution: GuaranteedSolution) -> Array:
     """Covariance of the noise at the support instants that reaches the guaranteed deviation."""
-    signed = np.array(
-        [np.sign(float(row.weight)) * bound_of(solution, row.measurement) for row in solution.support]
-    )
+    signed = np.array([np.sign(float(row.weight)) * bound_of(solution, row.measurement) for row in solution.support])
     return np.outer(signed, signed)
 
 
@@ -144,9 +145,7 @@ def realise(solution: GuaranteedSolution, runs: int, seed: int = 0) -> Array:
     """
     random = np.random.default_rng(seed)
     weights = np.array([float(w) for w in solution.weights])
-    signed = np.array(
-        [np.sign(float(r.weight)) * bound_of(solution, r.measurement) for r in solution.support]
-    )
+    signed = np.array([np.sign(float(r.weight)) * bound_of(solution, r.measurement) for r in solution.support])
     noise = random.standard_normal(runs)[:, None] * signed
     errors: Array = noise @ weights
     return errors

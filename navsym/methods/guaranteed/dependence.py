@@ -119,8 +119,10 @@ def solved_at_instants(problem: GuaranteedProblem, k: int, involved: list[int]) 
         return None
     rows = [
         [row[j].subs(problem.variable, stretch.start + (stretch.end - stretch.start) * share) for j in (*involved, k)]
-        for stretch in problem.stretches for row in stretch.rows for share in SHARES
-    ]  # fmt: skip
+        for stretch in problem.stretches
+        for row in stretch.rows
+        for share in SHARES
+    ]
     chosen = independent_rows(np.array([[float(enclose(h).mid()) for h in row] for row in rows]), len(involved))
     if chosen is None:
         return None

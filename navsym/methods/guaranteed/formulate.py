@@ -48,16 +48,15 @@ def grid_of(problem: GuaranteedProblem, count: int) -> Grid:
     parts = [panel_numbers(panel, v) for panel in panels]
     starts = [float(panel.ends.numbers(panel.values)[0]) for panel in panels]
     return Grid(
-        np.hstack([H for H, _, _ in parts]), np.array([float(p) for p in problem.functional]),
+        np.hstack([H for H, _, _ in parts]),
+        np.array([float(p) for p in problem.functional]),
         np.concatenate([np.full(count, sigma) for _, _, sigma in parts]),
         np.concatenate([length * share for _, length, _ in parts]),
         np.concatenate([start + length * v for start, (_, length, _) in zip(starts, parts, strict=True)]),
-    )  # fmt: skip
+    )
 
 
-def formulate(
-    problem: GuaranteedProblem, to: str, *, kind: str = "lp", count: int = 201, mixture: float = 1.0
-) -> str:
+def formulate(problem: GuaranteedProblem, to: str, *, kind: str = "lp", count: int = 201, mixture: float = 1.0) -> str:
     """Text of a file: a Python script for casadi or cvxpy, or free-form MPS (QUADOBJ for qp and mixed).
 
     Raises DomainError for an unknown format or kind, a grid of fewer than two instants, or a mixture
@@ -146,7 +145,10 @@ def script(grid: Grid, linear: Array, quadratic: Array, to: str) -> str:
     linear, quadratic : (N,) of the cost ``linear . (a + b) + quadratic . (a - b)^2 / 2``
     """
     head = HEAD.format(
-        times=numbers(grid.times), rows="[" + ",\n".join(numbers(row) for row in grid.regressors) + "]",
-        functional=numbers(grid.functional), linear=numbers(linear), quadratic=numbers(quadratic),
-    )  # fmt: skip
+        times=numbers(grid.times),
+        rows="[" + ",\n".join(numbers(row) for row in grid.regressors) + "]",
+        functional=numbers(grid.functional),
+        linear=numbers(linear),
+        quadratic=numbers(quadratic),
+    )
     return head + (CVXPY if to == "cvxpy" else CASADI)

@@ -43,9 +43,7 @@ def values_for_lengths(family: Family, lengths: Sequence[float]) -> NDArray[np.f
     return values
 
 
-def fill(
-    family: Family, T: NDArray[np.float64], block: NDArray[np.int64], values: NDArray[np.float64]
-) -> int:
+def fill(family: Family, T: NDArray[np.float64], block: NDArray[np.int64], values: NDArray[np.float64]) -> int:
     """Values for the first lengths of a descending block; how many were done, at least one."""
     top = Fraction(float(T[block[0]]))
     basis = make_basis(family.exact(sp.Rational(top.numerator, top.denominator)))

@@ -193,9 +193,10 @@ def decided(problem: Problem, places: Sequence[Place]) -> bool | None:
     if len(rest) <= m and independent_weights(problem, rest):
         return not twins  # the weight of a place may be shared with its twin
     several = (
-        exact_interior(values, [p.sign for p in places]) if values is not None
+        exact_interior(values, [p.sign for p in places])
+        if values is not None
         else len(places) > m and interior(problem, places, m)
-    )  # fmt: skip
+    )
     return False if several else None
 
 
@@ -244,7 +245,9 @@ def equations_hold(problem: Problem, places: Sequence[Place], rows: Sequence[int
     determinant = block.det(method="berkowitz")
     times = block.adjugate() * sp.Matrix([problem.functional[i] for i in rows])
     return all(
-        proved(sum((column[i] * w for column, w in zip(columns, times, strict=True)), sp.S.Zero)
-               - determinant * problem.functional[i])
+        proved(
+            sum((column[i] * w for column, w in zip(columns, times, strict=True)), sp.S.Zero)
+            - determinant * problem.functional[i]
+        )
         for i in others
-    )  # fmt: skip
+    )

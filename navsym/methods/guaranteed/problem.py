@@ -10,14 +10,7 @@ import sympy as sp
 from flint import arb, fmpq
 
 from navsym.errors import DomainError, EmptyError, NotFiniteError, ShapeError
-from navsym.methods.guaranteed.varying import (
-    ERROR,
-    error_bound,
-    on_rational_interval,
-    regressors_of,
-    steps_of,
-    varying,
-)
+from navsym.methods.guaranteed.varying import ERROR, error_bound, on_rational_interval, regressors_of, steps_of, varying
 from navsym.models.linear import LinearModel, exact_entry
 from navsym.models.transition.exponential import regressors, transition_matrix
 from navsym.proof.balls import enclose
@@ -63,11 +56,7 @@ class GuaranteedProblem:
 
     def __post_init__(self) -> None:
         put = object.__setattr__
-        put(
-            self,
-            "functional",
-            tuple(exact_entry("functional", 0, j, p) for j, p in enumerate(self.functional)),
-        )
+        put(self, "functional", tuple(exact_entry("functional", 0, j, p) for j, p in enumerate(self.functional)))
         put(self, "sigma", tuple(exact_entry("sigma", 0, j, s) for j, s in enumerate(self.sigma)))
         names = self.measurements or tuple(f"z{j + 1}" for j in range(len(self.sigma)))
         put(self, "measurements", tuple(names))
@@ -102,9 +91,7 @@ def need_shapes(problem: GuaranteedProblem) -> None:
     """
     m, n = len(problem.functional), len(problem.sigma)
     if m == 0 or n == 0 or not problem.stretches:
-        raise EmptyError(
-            "expected unknowns, measurements and an interval; got none; give at least one of each"
-        )
+        raise EmptyError("expected unknowns, measurements and an interval; got none; give at least one of each")
     for stretch in problem.stretches:
         sizes = {len(row) for row in stretch.rows}
         if len(stretch.rows) != n or sizes != {m}:
@@ -118,11 +105,7 @@ def need_shapes(problem: GuaranteedProblem) -> None:
 
 def need_numbers(problem: GuaranteedProblem) -> None:
     """Everything but the variable has a value; lengths and noise bounds are positive."""
-    parts = [
-        *problem.functional,
-        *problem.sigma,
-        *(h for s in problem.stretches for row in s.rows for h in row),
-    ]
+    parts = [*problem.functional, *problem.sigma, *(h for s in problem.stretches for row in s.rows for h in row)]
     parts += [e for s in problem.stretches for e in (s.start, s.end)]
     free = sorted({x.name for part in parts for x in part.free_symbols - {problem.variable, *problem.unknown}})
     if free:
@@ -133,31 +116,30 @@ def need_numbers(problem: GuaranteedProblem) -> None:
         if any(not enclose(v).is_finite() for v in values):
             raise NotFiniteError(f"{what}: expected finite numbers; got {values}; mend them")
     if any(not bool(enclose(s) > 0) for s in problem.sigma):
-        raise DomainError(
-            f"sigma: expected positive noise bounds; got {problem.sigma}; give standard deviations"
-        )
+        raise DomainError(f"sigma: expected positive noise bounds; got {problem.sigma}; give standard deviations")
     for stretch in problem.stretches:
         if not bool(enclose(stretch.end - stretch.start) > 0):
             raise DomainError(
                 f"interval: expected a positive length; got {stretch.start} to {stretch.end}; choose T > 0"
             )
     if all(p == 0 for p in problem.functional):
-        raise DomainError(
-            "functional: expected one that is not zero; got zeros; every estimator of it is free"
-        )
+        raise DomainError("functional: expected one that is not zero; got zeros; every estimator of it is free")
 
 
 def from_regressors(
-    rows: Sequence[Sequence[Any]], functional: Sequence[Any], variable: sp.Symbol, interval: tuple[Any, Any],
-    sigma: Sequence[Any] | None = None, *, target: str = "target",
-) -> GuaranteedProblem:  # fmt: skip
+    rows: Sequence[Sequence[Any]],
+    functional: Sequence[Any],
+    variable: sp.Symbol,
+    interval: tuple[Any, Any],
+    sigma: Sequence[Any] | None = None,
+    *,
+    target: str = "target",
+) -> GuaranteedProblem:
     """The problem of given regressors, one row per measurement."""
     exact = tuple(tuple(exact_entry("H", i, j, h) for j, h in enumerate(row)) for i, row in enumerate(rows))
     start, end = (exact_entry("interval", 0, k, e) for k, e in enumerate(interval))
     bounds = tuple(sigma) if sigma is not None else (1,) * len(exact)
-    return GuaranteedProblem(
-        (Stretch(start, end, exact),), tuple(functional), bounds, variable, target=target
-    )
+    return GuaranteedProblem((Stretch(start, end, exact),), tuple(functional), bounds, variable, target=target)
 
 
 def from_file(found: ModelFile | BasisFile, target: str | None = None) -> GuaranteedProblem:
@@ -174,9 +156,15 @@ def from_file(found: ModelFile | BasisFile, target: str | None = None) -> Guaran
         raise EmptyError("expected the length of the interval; got no [interval]; add T", where="interval.T")
     stretches, error = all_stretches(found)
     return GuaranteedProblem(
-        stretches, functional, tuple(m.sigma for m in found.measurements), found.time,
-        tuple(m.name for m in found.measurements), name, error, found if error else None,
-    )  # fmt: skip
+        stretches,
+        functional,
+        tuple(m.sigma for m in found.measurements),
+        found.time,
+        tuple(m.name for m in found.measurements),
+        name,
+        error,
+        found if error else None,
+    )
 
 
 def all_stretches(found: ModelFile) -> tuple[tuple[Stretch, ...], sp.Rational]:
@@ -206,9 +194,7 @@ def chosen_target(found: ModelFile | BasisFile, target: str | None) -> tuple[str
     names = list(found.targets)
     if target is None:
         if len(names) > 1:
-            raise DomainError(
-                f"expected one target; got {len(names)} in the file; choose --target {names[0]}"
-            )
+            raise DomainError(f"expected one target; got {len(names)} in the file; choose --target {names[0]}")
         target = names[0]
     if target not in found.targets:
         raise DomainError(f"expected a target of the file; got {target!r}; choose one of {', '.join(names)}")
@@ -251,6 +237,10 @@ def with_values(problem: GuaranteedProblem, values: Mapping[sp.Symbol, Any]) -> 
         for s in problem.stretches
     )
     return GuaranteedProblem(
-        stretches, tuple(map(put, problem.functional)), tuple(map(put, problem.sigma)), problem.variable,
-        problem.measurements, problem.target,
-    )  # fmt: skip
+        stretches,
+        tuple(map(put, problem.functional)),
+        tuple(map(put, problem.sigma)),
+        problem.variable,
+        problem.measurements,
+        problem.target,
+    )

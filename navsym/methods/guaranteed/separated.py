@@ -68,7 +68,6 @@ def in_other_unknowns(
     return Problem(tuple(panels), tuple(functional))
 
 
-
 def coefficients_of(h: sp.Expr, panel: Panel) -> dict[sp.Expr, fmpq] | None:
     """Products of functions of the variable with their rational coefficients; None where one is not rational."""
     found: dict[sp.Expr, fmpq] = {}

@@ -94,10 +94,14 @@ class GuaranteedSolution:
         """The answer of ``navsym solve``."""
         rows = [{"measurement": r.measurement, "at": r.at, "weight": r.weight} for r in self.support]
         return {
-            "target": self.problem.target, "status": str(self.status),
-            "value": {"lower": self.lower, "upper": self.upper}, "support": rows, "dual": list(self.dual),
-            "unique": self.unique, "certificate": dict(self.certificate),
-        } | ({"missing": self.missing()} if self.status is OPEN else {})  # fmt: skip
+            "target": self.problem.target,
+            "status": str(self.status),
+            "value": {"lower": self.lower, "upper": self.upper},
+            "support": rows,
+            "dual": list(self.dual),
+            "unique": self.unique,
+            "certificate": dict(self.certificate),
+        } | ({"missing": self.missing()} if self.status is OPEN else {})
 
     def missing(self) -> str:
         """What an OPEN answer lacks, in a sentence; empty when nothing does."""
@@ -133,9 +137,17 @@ def solve(problem: GuaranteedProblem, digits: int = 30) -> GuaranteedSolution:
         dual[k] = decimal(x, digits)
     certificate = with_error(problem, found.certificate)
     return GuaranteedSolution(
-        problem, support_rows(problem, exact, found, digits), tuple(dual), found.certificate["lower"],
-        found.certificate["upper"], unique, certificate, status, found.width, digits,
-    )  # fmt: skip
+        problem,
+        support_rows(problem, exact, found, digits),
+        tuple(dual),
+        found.certificate["lower"],
+        found.certificate["upper"],
+        unique,
+        certificate,
+        status,
+        found.width,
+        digits,
+    )
 
 
 def certified(exact: Problem, digits: int, basis: Basis) -> Certified:
@@ -159,9 +171,7 @@ def with_error(problem: GuaranteedProblem, certificate: Mapping[str, Any]) -> Ma
     return {**certificate, "kind": "sliver", "parameter": ERROR.name, "from": f"-{bound}", "to": bound}
 
 
-def support_rows(
-    problem: GuaranteedProblem, exact: Problem, found: Certified, digits: int
-) -> tuple[Support, ...]:
+def support_rows(problem: GuaranteedProblem, exact: Problem, found: Certified, digits: int) -> tuple[Support, ...]:
     """Instants and weights of a certified solution as decimal strings, by measurement and time.
 
     Places v in [0, 1] on their panels become instants ``start + (end - start) v``.

@@ -171,9 +171,13 @@ def largest_support(N: np.ndarray, P: np.ndarray) -> list[int]:
     m, n = N.shape
     room = np.eye(n)
     answer = linprog(
-        np.r_[np.zeros(n), -np.ones(n)], A_ub=np.c_[-room, room], b_ub=np.zeros(n),
-        A_eq=np.c_[N, np.zeros((m, n))], b_eq=P, bounds=[(0, None)] * n + [(0, 1e-3)] * n,
-    )  # fmt: skip
+        np.r_[np.zeros(n), -np.ones(n)],
+        A_ub=np.c_[-room, room],
+        b_ub=np.zeros(n),
+        A_eq=np.c_[N, np.zeros((m, n))],
+        b_eq=P,
+        bounds=[(0, None)] * n + [(0, 1e-3)] * n,
+    )
     return [i for i in range(n) if answer.success and answer.x[n + i] > 1e-7]
 
 
@@ -223,9 +227,13 @@ def most_inside(N: np.ndarray, P: np.ndarray) -> np.ndarray | None:
 
     m, n = N.shape
     answer = linprog(
-        np.r_[np.zeros(n), -1.0], A_ub=np.c_[-np.eye(n), np.ones(n)], b_ub=np.zeros(n),
-        A_eq=np.c_[N, np.zeros(m)], b_eq=P, bounds=[(0, None)] * n + [(0, 1.0)],
-    )  # fmt: skip
+        np.r_[np.zeros(n), -1.0],
+        A_ub=np.c_[-np.eye(n), np.ones(n)],
+        b_ub=np.zeros(n),
+        A_eq=np.c_[N, np.zeros(m)],
+        b_eq=P,
+        bounds=[(0, None)] * n + [(0, 1.0)],
+    )
     return answer.x[:n] if answer.success and answer.x[-1] > 1e-9 else None
 
 

@@ -90,9 +90,7 @@ def steps_of(found: ModelFile) -> list[Step]:
 def exact_end(end: sp.Expr | None) -> fmpq:
     """An end of the interval as a rational of flint; raises DomainError where it is none."""
     if end is None or not end.is_Rational:
-        raise DomainError(
-            f"interval: expected rational ends where F depends on the time; got {end}; give fractions"
-        )
+        raise DomainError(f"interval: expected rational ends where F depends on the time; got {end}; give fractions")
     return fmpq(int(end.p), int(end.q))
 
 
@@ -106,9 +104,7 @@ def longest(found: ModelFile, piece: Piece, Psi: Matrix, at: fmpq, size: fmpq) -
     raise DomainError(f"F: expected functions that are analytic on the interval; got a singularity near {at}")
 
 
-def taylor_step(
-    found: ModelFile, piece: Piece, Psi: Matrix, at: fmpq, size: fmpq
-) -> tuple[Step, Matrix] | None:
+def taylor_step(found: ModelFile, piece: Piece, Psi: Matrix, at: fmpq, size: fmpq) -> tuple[Step, Matrix] | None:
     """Psi on ``[at - size, at]``, or None when the remainder is too large."""
     n, h = len(Psi), arb(size)
     thin = coefficients_of(found, piece, arb(at))
@@ -171,9 +167,7 @@ def largest(values: Sequence[arb]) -> arb:
     return top
 
 
-def regressors_of(
-    found: ModelFile, step: Step, shift: sp.Expr
-) -> tuple[tuple[tuple[sp.Expr, ...], ...], arb]:
+def regressors_of(found: ModelFile, step: Step, shift: sp.Expr) -> tuple[tuple[tuple[sp.Expr, ...], ...], arb]:
     """``h_j(t) Psi(t)`` on a step moved by ``shift``, with :data:`ERROR` added, and the bound of that error."""
     n = len(found.states)
     local = sp.Rational(int(step.end.p), int(step.end.q)) + shift - found.time

@@ -73,9 +73,7 @@ class Bank:
         return stack[0 if stack.shape[0] == 1 else k - 1]
 
 
-def bank(
-    models: Sequence[Any], mode_transition: Any, mean: Any, covariance: Any, probabilities: Any
-) -> Bank:
+def bank(models: Sequence[Any], mode_transition: Any, mean: Any, covariance: Any, probabilities: Any) -> Bank:
     """Check, copy and freeze a bank.
 
     models : one mapping ``{"F", "Q", "H", "R"}`` per mode; a matrix, or a list of matrices over time
@@ -99,8 +97,9 @@ def bank(
     R = stacked(models, "R", covariance_of(p, "one row per measurement"))
     transition = transitions(mode_transition, m)
     start, spread, common = initial(mean, covariance, m, n)
-    made = Bank(F, Q, H, R, transition, arrays.probabilities("initial.probabilities", probabilities, m),
-                start, spread, common)
+    made = Bank(
+        F, Q, H, R, transition, arrays.probabilities("initial.probabilities", probabilities, m), start, spread, common
+    )
     check_lengths(made)
     return made
 
@@ -127,8 +126,10 @@ def stacked(models: Sequence[Any], key: str, gate: Any) -> Array:
             )
     length = max(len(row) for row in rows)
     if any(len(row) not in (1, length) for row in rows):
-        raise ShapeError(f"models.{key}: expected lists over time of one length; got "
-                         f"{sorted({len(row) for row in rows})}; give every step or one matrix")
+        raise ShapeError(
+            f"models.{key}: expected lists over time of one length; got "
+            f"{sorted({len(row) for row in rows})}; give every step or one matrix"
+        )
     return arrays.frozen(np.stack([np.broadcast_to(row, (length, *first)) for row in rows], axis=1))
 
 
@@ -137,9 +138,7 @@ def entry(model: Any, i: int, key: str) -> Any:
     try:
         return model[key]
     except (KeyError, TypeError, IndexError):
-        raise ShapeError(
-            f"models[{i}].{key}: expected the matrices F, Q, H and R; got no {key}; add it"
-        ) from None
+        raise ShapeError(f"models[{i}].{key}: expected the matrices F, Q, H and R; got no {key}; add it") from None
 
 
 def over_time(name: str, value: Any, gate: Any) -> Array:
@@ -210,11 +209,15 @@ def measurements_for(made: Bank, values: Any, *, missing: bool = False) -> Array
         bad &= ~np.isnan(table)
     if bad.any():
         k, j = (int(i) for i in np.argwhere(bad)[0])
-        raise NotFiniteError(f"measurements[{k}]: expected a finite number; got {table[k, j]} in entry {j}; "
-                             "mend it, or ask for missing measurements")
+        raise NotFiniteError(
+            f"measurements[{k}]: expected a finite number; got {table[k, j]} in entry {j}; "
+            "mend it, or ask for missing measurements"
+        )
     if made.horizon is not None and len(table) > made.horizon:
-        raise ShapeError(f"measurements: expected at most {made.horizon} rows, the steps for which models are "
-                         f"given; got {len(table)}; give models for every step")
+        raise ShapeError(
+            f"measurements: expected at most {made.horizon} rows, the steps for which models are "
+            f"given; got {len(table)}; give models for every step"
+        )
     return arrays.frozen(table)
 
 
@@ -229,8 +232,7 @@ def table_of(values: Any, p: int) -> Array:
     for k, row in enumerate(rows):
         entries = [row] * p if row is None else (list(row) if np.ndim(row) else [row])
         if len(entries) != p:
-            raise ShapeError(f"measurements[{k}]: expected {p} numbers, one per row of H; got {len(entries)}; "
-                             "match H")
+            raise ShapeError(f"measurements[{k}]: expected {p} numbers, one per row of H; got {len(entries)}; match H")
         table[k] = [np.nan if e is None else number(e, k) for e in entries]
     return table
 
@@ -257,6 +259,14 @@ def memoryless(made: Bank, steps: int) -> Bank:
 
 def with_transition(made: Bank, stack: Array) -> Bank:
     """The same bank with other transition probabilities (T or 1, m, m)."""
-    return Bank(made.F, made.Q, made.H, made.R, arrays.frozen(np.array(stack)), made.probabilities,
-                made.means, made.covariances, made.common)
-
+    return Bank(
+        made.F,
+        made.Q,
+        made.H,
+        made.R,
+        arrays.frozen(np.array(stack)),
+        made.probabilities,
+        made.means,
+        made.covariances,
+        made.common,
+    )

@@ -38,8 +38,10 @@ def run_batch(models: Bank, measurements: Any, method: str = "imm", *, depth: in
         place = tuple(int(i) for i in np.argwhere(~np.isfinite(z))[0])
         raise NotFiniteError(f"measurements: expected finite numbers; got {z[place]} at {place}; run gaps singly")
     if models.horizon is not None and z.shape[1] > models.horizon:
-        raise ShapeError(f"measurements: expected at most {models.horizon} steps, those for which models are given; "
-                         f"got {z.shape[1]}; give models for every step")
+        raise ShapeError(
+            f"measurements: expected at most {models.horizon} steps, those for which models are given; "
+            f"got {z.shape[1]}; give models for every step"
+        )
     rule = scheme(method, depth)
     require_room(rule, models.modes, models.states, 1 if models.common else models.modes, z.shape[1])
     if method not in IN_LANES or (method == "pulsating" and not models.common):
@@ -64,8 +66,19 @@ def in_lanes(models: Bank, z: Array, branching: int, out: Batch) -> bool:
     H, r, U, rotated = independent_scalars(models)
     with np.errstate(all="ignore"):
         fine = run_all(
-            branching, models.F, models.Q, H, r, U, rotated, models.mode_transition,
-            mixture.logs(models.probabilities), models.means, models.covariances, z, *out,
+            branching,
+            models.F,
+            models.Q,
+            H,
+            r,
+            U,
+            rotated,
+            models.mode_transition,
+            mixture.logs(models.probabilities),
+            models.means,
+            models.covariances,
+            z,
+            *out,
         )
     return bool(fine)
 

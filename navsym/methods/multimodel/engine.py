@@ -43,9 +43,7 @@ class Estimate:
     left_out: tuple[int, ...] = ()
 
 
-def run_in_numpy(
-    rule: Scheme, models: Bank, z: Array, count: int, form: Form = FORMS["joseph"]
-) -> Estimate:
+def run_in_numpy(rule: Scheme, models: Bank, z: Array, count: int, form: Form = FORMS["joseph"]) -> Estimate:
     """The readable engine: one :func:`multimodel_steps.advance` per row."""
     now = steps.start(models, rule, form)
     found: list[steps.Step] = []

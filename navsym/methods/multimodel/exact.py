@@ -174,8 +174,7 @@ def summed(grown: Sequence[tuple[int, Leaf]], modes: int, kit: Kit) -> ExactStep
     """Normalise the weights of all branches and take the moments."""
     likelihood = total([leaf for _, leaf in grown])
     leaves = tuple(
-        Leaf(tuple(leaf.weights[0] / likelihood if i == mode else 0 for i in range(modes)), leaf.mean,
-             leaf.covariance)
+        Leaf(tuple(leaf.weights[0] / likelihood if i == mode else 0 for i in range(modes)), leaf.mean, leaf.covariance)
         for mode, leaf in grown
     )
     mean, covariance = merged(leaves, kit)
@@ -235,4 +234,4 @@ def solve(S: Matrix, B: Matrix) -> tuple[Matrix, Any]:
             if j != i:
                 factor = other[i]
                 rows[j] = [x - factor * y for x, y in zip(other, rows[i], strict=True)]
-    return [row[len(S):] for row in rows], determinant
+    return [row[len(S) :] for row in rows], determinant

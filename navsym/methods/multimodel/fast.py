@@ -33,14 +33,33 @@ def run_compiled(rule: Scheme, models: Bank, z: Array, count: int) -> Estimate:
     T, m, n = len(z), models.modes, models.states
     out = (np.empty((T, m)), np.empty((T, n)), np.empty((T, n, n)), np.empty(T), np.empty(T))
     stopped = run_bank(
-        BRANCHING[rule.branching], FOLDING[rule.folding], rule.period, widest,
-        models.F, models.Q, H, r, U, rotated, models.mode_transition, mixture.logs(models.mode_transition),
-        mixture.logs(models.probabilities), models.common, models.means, models.covariances, z, *out,
+        BRANCHING[rule.branching],
+        FOLDING[rule.folding],
+        rule.period,
+        widest,
+        models.F,
+        models.Q,
+        H,
+        r,
+        U,
+        rotated,
+        models.mode_transition,
+        mixture.logs(models.mode_transition),
+        mixture.logs(models.probabilities),
+        models.common,
+        models.means,
+        models.covariances,
+        z,
+        *out,
     )
     if stopped:
         return run_in_numpy(rule, models, z, count)
     return Estimate(
-        arrays.frozen(out[0]), arrays.frozen(out[1]), arrays.frozen(out[2]), arrays.frozen(out[3]), count,
+        arrays.frozen(out[0]),
+        arrays.frozen(out[1]),
+        arrays.frozen(out[2]),
+        arrays.frozen(out[3]),
+        count,
         tuple(int(k) + 1 for k in np.flatnonzero(out[4] < UNDERFLOW)),
     )
 
@@ -60,8 +79,7 @@ def independent_scalars(models: Bank) -> tuple[Array, Array, Array, bool]:
         return np.array(models.H), np.ascontiguousarray(diagonal), eye, False
     length = max(models.H.shape[0], models.R.shape[0])
     parts: list[list[Any]] = [
-        [scalars(models.at("H", k)[i], models.at("R", k)[i]) for i in range(models.modes)]
-        for k in range(1, length + 1)
+        [scalars(models.at("H", k)[i], models.at("R", k)[i]) for i in range(models.modes)] for k in range(1, length + 1)
     ]
     H, r, U = (np.array([[mode[c] for mode in row] for row in parts]) for c in range(3))
     return H, r, U, True

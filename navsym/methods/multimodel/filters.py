@@ -58,8 +58,10 @@ def run(
     z = measurements_for(models, measurements, missing=missing)
     if forget:
         if rule.branching == "own":
-            raise DomainError("memoryless: expected a method that switches modes; got polygaussian, whose modes "
-                              "never switch; choose another method")
+            raise DomainError(
+                "memoryless: expected a method that switches modes; got polygaussian, whose modes "
+                "never switch; choose another method"
+            )
         models = memoryless(models, len(z))
     roots = 1 if models.common else models.modes
     count = require_room(rule, models.modes, models.states, roots, len(z))
@@ -115,13 +117,16 @@ def read_bank(document: Mapping[str, Any]) -> BankFile:
     Raises DomainError and ShapeError that name the key.
     """
     if not isinstance(document, Mapping):
-        raise ShapeError("expected an object with models, mode_transition, initial and measurements; got "
-                         f"{type(document).__name__}; see the interfaces")
+        raise ShapeError(
+            "expected an object with models, mode_transition, initial and measurements; got "
+            f"{type(document).__name__}; see the interfaces"
+        )
     only_keys(document, KEYS)
     for key in KEYS[:4]:
         if key not in document:
-            raise ShapeError(f"{key}: expected the keys models, mode_transition, initial and measurements; got "
-                             f"no {key}; add it")
+            raise ShapeError(
+                f"{key}: expected the keys models, mode_transition, initial and measurements; got no {key}; add it"
+            )
     start = document["initial"]
     for key in ("mean", "covariance", "probabilities"):
         if not isinstance(start, Mapping) or key not in start:
@@ -135,8 +140,9 @@ def read_bank(document: Mapping[str, Any]) -> BankFile:
             only_keys(model, KEYS_OF_MODEL, f"models[{i}]")
     for key in KEYS[:3]:
         no_truth_values(document[key], key)
-    made = bank(document["models"], document["mode_transition"], start["mean"], start["covariance"],
-                start["probabilities"])
+    made = bank(
+        document["models"], document["mode_transition"], start["mean"], start["covariance"], start["probabilities"]
+    )
     return BankFile(made, document["measurements"], switch(document, "memoryless"), switch(document, "missing"))
 
 

@@ -58,12 +58,12 @@ def pulsating_step(bank: Bank, k: int, z: Array, space: Workspace) -> float:
         space.put("partial mean", mean)
         space.put("partial P", P)
         log_weight = float(mixture.logs(prior[i]) + log_likelihood)
-        sums = mixture.accumulate(sums, log_weight, mean, P)                # multistructure:accumulate
+        sums = mixture.accumulate(sums, log_weight, mean, P)  # multistructure:accumulate
         space.put("sum of weights", sums.log_weight)
         space.put("sum of means", sums.mean)
         space.put("sum of P", sums.covariance)
         prior[i] = log_weight
-    space.put("probabilities", mixture.normalise(prior)[0])                 # multistructure:17
+    space.put("probabilities", mixture.normalise(prior)[0])  # multistructure:17
     space.put("mean", sums.mean)
     space.put("P", sums.covariance)
     return sums.log_weight

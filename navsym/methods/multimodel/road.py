@@ -126,9 +126,16 @@ def judge(road: Road, method: str = "imm", *, depth: int | None = None) -> Judge
     off = np.sqrt(((road.measurement - road.truth) ** 2).sum(axis=1))
     wrong, good = (road.flag == 0) & (off > WRONG), (road.flag == 0) & (off < GOOD)
     return Judgement(
-        confusion, float(np.trace(confusion) / confusion.sum()), rms(error[seen]),
-        rms((road.measurement - road.truth)[seen]), float(squared[seen].mean()),
-        int(wrong.sum()), int((guess[wrong] > 0).sum()), int(good.sum()), int((guess[good] == 0).sum()), estimate,
+        confusion,
+        float(np.trace(confusion) / confusion.sum()),
+        rms(error[seen]),
+        rms((road.measurement - road.truth)[seen]),
+        float(squared[seen].mean()),
+        int(wrong.sum()),
+        int((guess[wrong] > 0).sum()),
+        int(good.sum()),
+        int((guess[good] == 0).sum()),
+        estimate,
     )
 
 

@@ -75,9 +75,7 @@ def on_diagonal(log_weights: Array) -> Array:
     return table
 
 
-def advance(
-    rule: Scheme, k: int, bank: Bank, before: Hypotheses, z: Array, form: Form = FORMS["joseph"]
-) -> Step:
+def advance(rule: Scheme, k: int, bank: Bank, before: Hypotheses, z: Array, form: Form = FORMS["joseph"]) -> Step:
     """Step k of the filter: branch, predict, correct, weigh, take moments, fold."""
     branches = branch(rule, before, mixture.logs(bank.at("mode_transition", k)), form)
     means, kept, log_likelihoods = filtered(bank, k, branches, z, form)
@@ -90,7 +88,7 @@ def advance(
     if log_likelihood == -np.inf:
         weights, log_likelihood = mixture.normalise(branches.log_weights)[0], 0.0
     log_weights = branches.log_weights + log_likelihoods - log_likelihood
-    merged_mean, merged = form.merge(weights[None], means, kept)            # multistructure:12*, :13
+    merged_mean, merged = form.merge(weights[None], means, kept)  # multistructure:12*, :13
     probabilities = by_mode(weights, branches.modes, bank.modes)
     found = Hypotheses(means, kept, spread_over_modes(log_weights, branches.modes, bank.modes))
     folded = fold(rule, k, found, (merged_mean, merged), form)
@@ -102,7 +100,7 @@ def branch(rule: Scheme, before: Hypotheses, log_transition: Array, form: Form) 
 
     log_transition : (m, m), rows = from
     """
-    log_next = log_matrix_product(before.log_weights, log_transition)       # (g, m): multistructure:10
+    log_next = log_matrix_product(before.log_weights, log_transition)  # (g, m): multistructure:10
     g, m = log_next.shape
     if rule.branching == "mixed":
         return mixed(before, log_next, form)
@@ -140,15 +138,13 @@ def log_matrix_product(A: Array, B: Array) -> Array:
 def filtered(bank: Bank, k: int, branches: Branches, z: Array, form: Form) -> tuple[Array, Array, Array]:
     """Kalman filter of every branch: means, covariances and log-likelihoods of the numbers that came."""
     i = branches.modes
-    means, covariances = form.predict(
-        branches.means, branches.covariances, bank.at("F", k)[i], bank.at("Q", k)[i]
-    )
+    means, covariances = form.predict(branches.means, branches.covariances, bank.at("F", k)[i], bank.at("Q", k)[i])
     came = ~np.isnan(z)
     if not came.any():
         return means, covariances, np.zeros(len(i))
     H = bank.at("H", k)[i][:, came, :]
     R = bank.at("R", k)[i][:, came, :][:, :, came]
-    return form.correct(means, covariances, z[came], H, R)                  # multistructure:18*
+    return form.correct(means, covariances, z[came], H, R)  # multistructure:18*
 
 
 def by_mode(weights: Array, modes: NDArray[np.intp], m: int) -> Array:

@@ -133,9 +133,12 @@ def filter_all(
     if method != "exact":
         elapsed = seconds_of_long_run(models, signals, method, depth) * len(found) * steps
     return Filtered(
-        np.stack([e.mean for e in found]), np.stack([e.covariance for e in found]),
-        np.stack([e.probabilities for e in found]), np.array([e.log_likelihood[-1] for e in found]),
-        elapsed / (len(found) * steps) * 1e6, found[0].filters_run / steps,
+        np.stack([e.mean for e in found]),
+        np.stack([e.covariance for e in found]),
+        np.stack([e.probabilities for e in found]),
+        np.array([e.log_likelihood[-1] for e in found]),
+        elapsed / (len(found) * steps) * 1e6,
+        found[0].filters_run / steps,
     )
 
 
@@ -147,9 +150,7 @@ def seconds_of_long_run(models: Bank, signals: Signals, method: str, depth: int 
     return (time.perf_counter() - began) / LONG
 
 
-def score(
-    method: str, depth: int | None, found: Filtered, signals: Signals, exact: Filtered | None = None
-) -> Score:
+def score(method: str, depth: int | None, found: Filtered, signals: Signals, exact: Filtered | None = None) -> Score:
     """Score a method against the truth and, where there is one, the exact filter."""
     error = found.mean - signals.states
     squared = np.mean(error**2, axis=1)
@@ -160,8 +161,17 @@ def score(
     excess = None
     if exact is not None:
         excess = mean_of(normalised(found.mean - exact.mean, exact.covariance).mean(axis=1))
-    return Score(method, depth, rmse, mean_of(loss), mean_of(found.log_likelihood), mean_of(nees), excess,
-                 found.microseconds, found.filters_per_step)
+    return Score(
+        method,
+        depth,
+        rmse,
+        mean_of(loss),
+        mean_of(found.log_likelihood),
+        mean_of(nees),
+        excess,
+        found.microseconds,
+        found.filters_per_step,
+    )
 
 
 def root_of(mean: Mean) -> Mean:
@@ -176,7 +186,13 @@ def normalised(error: Array, covariance: Array) -> Array:
 
 
 def compare(
-    models: Bank, methods: Sequence[tuple[str, int | None]], runs: int, steps: int, seed: int, *, exact: bool,
+    models: Bank,
+    methods: Sequence[tuple[str, int | None]],
+    runs: int,
+    steps: int,
+    seed: int,
+    *,
+    exact: bool,
     progress: Callable[[int, int], None] = lambda done, of: None,
 ) -> list[Score]:
     """Score methods on the same simulated signals; with ``exact`` the full tree comes first in the list.
@@ -197,14 +213,17 @@ def compare(
 
 
 METHODS: tuple[tuple[str, int | None], ...] = (
-    ("pulsating", None), ("k-pulsating", 2), ("k-pulsating", 3), ("k-pulsating", 4), ("gpb2", None), ("imm", None),
+    ("pulsating", None),
+    ("k-pulsating", 2),
+    ("k-pulsating", 3),
+    ("k-pulsating", 4),
+    ("gpb2", None),
+    ("imm", None),
     ("polygaussian", None),
 )
 
 
-def switching_study(
-    stays: Sequence[float], runs: int, steps: int, seed: int = 1
-) -> dict[float, list[Score]]:
+def switching_study(stays: Sequence[float], runs: int, steps: int, seed: int = 1) -> dict[float, list[Score]]:
     """The Schuler channel with ever longer lasting modes: who wins as switching becomes rare.
 
     stays : probability that a mode lasts another step, the same for all modes
@@ -223,13 +242,11 @@ def schuler_bank(channel: SchulerChannel | None = None) -> Bank:
     """The Schuler channel with its three modes as a bank."""
     channel = channel or SchulerChannel()
     start = channel.start()
-    return bank(channel.models(), channel.mode_transition(), start["mean"], start["covariance"],
-                start["probabilities"])
+    return bank(channel.models(), channel.mode_transition(), start["mean"], start["covariance"], start["probabilities"])
 
 
 def experiment(
-    runs: int = 1000, seed: int = 1, steps: int = 7, *,
-    progress: Callable[[int, int], None] = lambda done, of: None,
+    runs: int = 1000, seed: int = 1, steps: int = 7, *, progress: Callable[[int, int], None] = lambda done, of: None
 ) -> dict[str, Any]:
     """`navsym simulate multistructure`: the Schuler channel, K = 1..4, GPB2, IMM, polygaussian against exact.
 
@@ -242,8 +259,13 @@ def experiment(
     require_room(scheme("exact"), models.modes, models.states, 1, steps)
     scores = compare(models, METHODS, runs, steps, seed, exact=True, progress=progress)
     return {
-        "experiment": "multistructure", "modes": list(MODES), "states": ["velocity", "tilt", "drift"],
-        "units": ["m/s", "rad", "rad/s"], "runs": runs, "steps": steps, "seed": seed,
+        "experiment": "multistructure",
+        "modes": list(MODES),
+        "states": ["velocity", "tilt", "drift"],
+        "units": ["m/s", "rad", "rad/s"],
+        "runs": runs,
+        "steps": steps,
+        "seed": seed,
         "methods": [as_row(item) for item in scores],
     }
 
@@ -255,9 +277,14 @@ def as_row(item: Score) -> dict[str, Any]:
         return None if mean is None else {"mean": mean.value, "half_width": mean.half_width}
 
     return {
-        "method": item.method, "depth": item.depth, "rmse": [pair(value) for value in item.rmse],
-        "log_loss": pair(item.log_loss), "log_likelihood": pair(item.log_likelihood), "nees": pair(item.nees),
-        "excess": pair(item.excess), "filters_per_step": item.filters_per_step,
+        "method": item.method,
+        "depth": item.depth,
+        "rmse": [pair(value) for value in item.rmse],
+        "log_loss": pair(item.log_loss),
+        "log_likelihood": pair(item.log_likelihood),
+        "nees": pair(item.nees),
+        "excess": pair(item.excess),
+        "filters_per_step": item.filters_per_step,
         "microseconds_per_step": item.microseconds,
     }
 
@@ -273,9 +300,17 @@ def as_table(document: dict[str, Any]) -> tuple[list[str], list[list[str]]]:
     hour = 180.0 / np.pi * 3600.0
     rows = []
     for row in document["methods"]:
-        rows.append([
-            row["method"], str(row["depth"] or ""), show(row["rmse"][0], 1.0), show(row["rmse"][2], hour),
-            show(row["log_loss"], 1.0), show(row["log_likelihood"], 1.0), show(row["nees"], 1.0),
-            show(row["excess"], 1.0), f"{row['microseconds_per_step']:.1f}",
-        ])
+        rows.append(
+            [
+                row["method"],
+                str(row["depth"] or ""),
+                show(row["rmse"][0], 1.0),
+                show(row["rmse"][2], hour),
+                show(row["log_loss"], 1.0),
+                show(row["log_likelihood"], 1.0),
+                show(row["nees"], 1.0),
+                show(row["excess"], 1.0),
+                f"{row['microseconds_per_step']:.1f}",
+            ]
+        )
     return heads, rows

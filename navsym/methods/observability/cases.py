@@ -215,7 +215,11 @@ def minors_on(rows: Matrix, wanted: int, system: System, ring: Ring) -> tuple[li
 
 
 def minor_on(
-    rows: Sequence[list[Poly]], wanted: int, system: System, columns: Sequence[int], ring: Ring,
+    rows: Sequence[list[Poly]],
+    wanted: int,
+    system: System,
+    columns: Sequence[int],
+    ring: Ring,
     products: int = PRODUCTS,
 ) -> tuple[Poly, bool, int]:
     """(last pivot, whether it is a minor of the wanted size, its column) of an elimination on a system.

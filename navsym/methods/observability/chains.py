@@ -188,9 +188,7 @@ def chain_of(name: str, row: list[Poly], bottom: Poly, matrix: Matrix, clock: Po
     return Chain(name, vectors[:m], bottom, clock, companion)
 
 
-def ending(
-    vectors: Matrix, dimension: int, matrix: Matrix, ring: Ring, point: Sequence[int]
-) -> list[Quotient] | None:
+def ending(vectors: Matrix, dimension: int, matrix: Matrix, ring: Ring, point: Sequence[int]) -> list[Quotient] | None:
     """The coefficients of the last vector in the others, checked; None when it does not depend on them."""
     found = chain_relation(vectors, dimension, matrix, ring, point)
     if found is not None:

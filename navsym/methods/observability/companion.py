@@ -87,8 +87,10 @@ def monic_factors(coefficients: Sequence[Poly], degree: int, ring: Ring) -> list
     """Monic divisors of the given degree of a monic polynomial in p, each as coefficients, the 1 first."""
     wider, p = with_variable(ring)
     total: Poly = sum(
-        (wider.from_dict({(*powers, place): int(c) for powers, c in coefficient.to_dict().items()})
-         for place, coefficient in enumerate(reversed(coefficients))),
+        (
+            wider.from_dict({(*powers, place): int(c) for powers, c in coefficient.to_dict().items()})
+            for place, coefficient in enumerate(reversed(coefficients))
+        ),
         wider.constant(0),
     )
     parts = [(by_power(f, p, ring), int(power)) for f, power in total.factor()[1]]

@@ -60,9 +60,7 @@ def examine(
         need_observable(found)
     two = len(found.measurements) == 2 and found.observable
     if request is not None and not two:
-        raise ShapeError(
-            f"split: expected two measurements; got {len(found.measurements)}; choose two of them"
-        )
+        raise ShapeError(f"split: expected two measurements; got {len(found.measurements)}; choose two of them")
     chosen = split(found, *(request or ())) if two else None
     drops, complete = drops_and_completeness(found)
     return Examination(
@@ -76,9 +74,7 @@ def examine(
     )
 
 
-def gains_for(
-    found: Observability, chosen: Split | None, poles: Sequence[sp.Expr], variable: sp.Symbol
-) -> StageGains:
+def gains_for(found: Observability, chosen: Split | None, poles: Sequence[sp.Expr], variable: sp.Symbol) -> StageGains:
     """Gains of one stage for one measurement, of two stages for two."""
     if chosen is not None:
         if len(poles) > 2:

@@ -14,13 +14,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from navsym.errors import TooLargeError
-from navsym.methods.observability.cases import (
-    LAST_PRODUCTS,
-    LAST_TERMS,
-    drops_by_all_minors,
-    drops_by_cases,
-    minor_on,
-)
+from navsym.methods.observability.cases import LAST_PRODUCTS, LAST_TERMS, drops_by_all_minors, drops_by_cases, minor_on
 from navsym.methods.observability.chains import Chain, Chains, Observability
 from navsym.methods.observability.interpolation import POINTS, chain_determinant, points_needed
 from navsym.methods.observability.linear import Matrix, determinant, maximal_minors

@@ -19,26 +19,16 @@ def formulas(examination: Examination) -> list[Formula]:
     listed: list[Formula] = []
     for k, measurement in enumerate(found.measurements, start=1):
         listed.append(
-            (
-                f"{measurement.name} observes {measurement.dimension} of {len(found.states)}",
-                f"A_{k}",
-                measurement.basis,
-            )
+            (f"{measurement.name} observes {measurement.dimension} of {len(found.states)}", f"A_{k}", measurement.basis)
         )
         listed.append(
-            (
-                f"{measurement.name}: companion coefficients",
-                rf"\vartheta^{{({k})}}",
-                row(measurement.companion),
-            )
+            (f"{measurement.name}: companion coefficients", rf"\vartheta^{{({k})}}", row(measurement.companion))
         )
     if found.unobservable.rows:
         listed.append(("not observed by any measurement", "N", found.unobservable))
     for drop in examination.drops:
         text = "proved complete" if drop.complete else "perhaps not complete"
-        listed.append(
-            (f"the rank of {drop.subspace} drops where all of these vanish ({text})", "d", row(drop.zeros))
-        )
+        listed.append((f"the rank of {drop.subspace} drops where all of these vanish ({text})", "d", row(drop.zeros)))
     if chosen is not None:
         listed += [
             (f"split i = {chosen.i}, j = {chosen.j}", "L", chosen.L),
@@ -82,19 +72,14 @@ def as_html(examination: Examination, title: str) -> str:
         "<!DOCTYPE html>",
         '<html lang="en"><head><meta charset="utf-8">',
         f"<title>{escape(title)}</title>",
-        "<style>body{font-family:sans-serif;max-width:60em;margin:2em "
-        "auto}math{font-size:1.1em}</style></head><body>",
+        "<style>body{font-family:sans-serif;max-width:60em;margin:2em auto}math{font-size:1.1em}</style></head><body>",
         f"<h1>{escape(title)}</h1>",
         f"<p>{len(found.states)} states ({escape(', '.join(found.states))}): {verdict}, joint dimension "
         f"{found.joint_dimension}.</p>",
     ]
     for k in range(found.unobservable.rows):
-        parts.append(
-            f"<p>Hidden direction: {escape(direction_names(found.unobservable[k, :], found.states))}</p>"
-        )
+        parts.append(f"<p>Hidden direction: {escape(direction_names(found.unobservable[k, :], found.states))}</p>")
     for caption, _, value in formulas(examination):
         parts.append(f"<h2>{escape(caption)}</h2>")
-        parts.append(
-            f'<math xmlns="http://www.w3.org/1998/Math/MathML">{mathml(value, printer="presentation")}</math>'
-        )
+        parts.append(f'<math xmlns="http://www.w3.org/1998/Math/MathML">{mathml(value, printer="presentation")}</math>')
     return "\n".join([*parts, "</body></html>", ""])

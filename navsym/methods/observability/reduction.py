@@ -117,9 +117,7 @@ def krylov_rows(starts: Sequence[tuple[list[Poly], int]], matrix: Matrix, rank: 
     return [listed[k] for k in chosen[:rank]]
 
 
-def krylov_basis(
-    starts: Sequence[tuple[list[Poly], int]], matrix: Matrix, ring: Ring
-) -> tuple[UnitBasis, Matrix]:
+def krylov_basis(starts: Sequence[tuple[list[Poly], int]], matrix: Matrix, ring: Ring) -> tuple[UnitBasis, Matrix]:
     """Regular rows of the chains and all others, which span together what the chains span at every point.
 
     Every vector is reduced before it is multiplied on: modulo the basis, which is multiplied on as well,

@@ -143,9 +143,7 @@ class Ring:
     def power(self, base: Quotient, exponent: int) -> Quotient:
         """Integer power of a quotient, also a negative one."""
         if abs(exponent) > EXPONENT:
-            raise TooLargeError(
-                f"expected exponents up to {EXPONENT}; got {exponent}; name the power as a parameter"
-            )
+            raise TooLargeError(f"expected exponents up to {EXPONENT}; got {exponent}; name the power as a parameter")
         if exponent >= 0:
             return Quotient(base.top**exponent, base.bottom**exponent)
         if base.top == 0:

@@ -87,9 +87,7 @@ def companion(coefficients: Sequence[sp.Expr]) -> sp.ImmutableMatrix:
 
 def last_row(rows: int, coefficients: Sequence[sp.Expr]) -> sp.ImmutableMatrix:
     """Zeros, and the coefficients in the last row."""
-    return sp.ImmutableMatrix(
-        rows, len(coefficients), lambda r, c: coefficients[c] if r == rows - 1 else sp.Integer(0)
-    )
+    return sp.ImmutableMatrix(rows, len(coefficients), lambda r, c: coefficients[c] if r == rows - 1 else sp.Integer(0))
 
 
 def shift(size: int) -> sp.ImmutableMatrix:
@@ -211,8 +209,7 @@ def not_a_basis(found: Observability, i: int, j: int) -> DomainError:
     rows = [f"a{k + 1}" for k in range(i)] + [f"b{k + 1}" for k in range(j)]
     feasible = ", ".join(f"{s.i},{s.j}" for s in splits(found)) or "none"
     return DomainError(
-        f"split {i},{j}: expected a basis; got det({', '.join(rows)}) = 0 for all parameters; "
-        f"choose one of {feasible}"
+        f"split {i},{j}: expected a basis; got det({', '.join(rows)}) = 0 for all parameters; choose one of {feasible}"
     )
 
 
@@ -235,9 +232,7 @@ class TwoStageBlocks:
     g_z2: sp.ImmutableMatrix
 
 
-def two_stage_blocks(
-    chosen: Split, C1: sp.MatrixBase | None = None, C2: sp.MatrixBase | None = None
-) -> TwoStageBlocks:
+def two_stage_blocks(chosen: Split, C1: sp.MatrixBase | None = None, C2: sp.MatrixBase | None = None) -> TwoStageBlocks:
     """(1.5), (1.9), (1.10) for invertible C1 (m, m) and C2 (n - m, n - m); identity by default.
 
     Raises DomainError when the split has i < m: it then has the form u, v, w.
@@ -257,9 +252,7 @@ def two_stage_blocks(
     )
 
 
-def free_matrix(
-    name: str, value: sp.MatrixBase | None, size: int
-) -> tuple[sp.ImmutableMatrix, sp.ImmutableMatrix]:
+def free_matrix(name: str, value: sp.MatrixBase | None, size: int) -> tuple[sp.ImmutableMatrix, sp.ImmutableMatrix]:
     """An invertible matrix and its inverse, by exact elimination."""
     if value is None:
         return sp.ImmutableMatrix.eye(size), sp.ImmutableMatrix.eye(size)
@@ -280,9 +273,7 @@ def inverse(name: str, matrix: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
             bottom = bottom * ring.lowest(q.bottom, bottom).top
     vectors = [[q.top * ring.lowest(bottom, q.bottom).top for q in column] for column in columns]
     if determinant(vectors, ring) == 0:
-        raise DomainError(
-            f"{name}: expected an invertible matrix; got determinant 0 for all parameters; change it"
-        )
+        raise DomainError(f"{name}: expected an invertible matrix; got determinant 0 for all parameters; change it")
     result = sp.zeros(size, size)
     for c in range(size):
         target = [bottom if r == c else ring.constant(0) for r in range(size)]
@@ -306,9 +297,7 @@ def general_blocks(model: LinearModel, found: Observability, L_z: sp.MatrixBase)
     L_x = found.measurements[0].basis
     n, m = len(found.states), L_x.rows
     if L_z.shape != (n - m, n):
-        raise ShapeError(
-            f"L_z: expected shape {(n - m, n)}, rows that complete L_x; got {L_z.shape}; mend it"
-        )
+        raise ShapeError(f"L_z: expected shape {(n - m, n)}, rows that complete L_x; got {L_z.shape}; mend it")
     L = sp.ImmutableMatrix.vstack(L_x, sp.ImmutableMatrix(L_z))
     back = inverse("L_x over L_z", L)
     G = lowest_terms(L * model.F * back)
@@ -343,10 +332,7 @@ class ThreeBlocks:
 
 
 def three_blocks(
-    chosen: Split,
-    C11: sp.MatrixBase | None = None,
-    C12: sp.MatrixBase | None = None,
-    C22: sp.MatrixBase | None = None,
+    chosen: Split, C11: sp.MatrixBase | None = None, C12: sp.MatrixBase | None = None, C22: sp.MatrixBase | None = None
 ) -> ThreeBlocks:
     """(1.14) for a split with 0 < i < m; the free matrices are the identity by default."""
     i, j, m = chosen.i, chosen.j, chosen.m

@@ -66,13 +66,16 @@ def balanced(rows: Array, functional: Array) -> Array | None:
     return weights if rest <= BALANCED * np.abs(functional).max() else None
 
 
-def with_places(
-    found: Contacts, panel: Ints, u: Array, sign: Array, chosen: Ints, weights: Array
-) -> Contacts:
+def with_places(found: Contacts, panel: Ints, u: Array, sign: Array, chosen: Ints, weights: Array) -> Contacts:
     """The same dual with other contacts; the places left over are touches."""
     left = [(int(panel[i]), float(u[i])) for i in range(panel.size) if i not in chosen]
     at = u[chosen]
     return replace(
-        found, panel=panel[chosen], u=at, inner=(np.abs(at) <= 1.0 - AT_END).astype(np.int64), sign=sign[chosen],
-        weights=weights, touching=tuple(left),
-    )  # fmt: skip
+        found,
+        panel=panel[chosen],
+        u=at,
+        inner=(np.abs(at) <= 1.0 - AT_END).astype(np.int64),
+        sign=sign[chosen],
+        weights=weights,
+        touching=tuple(left),
+    )

@@ -75,18 +75,21 @@ class Phases:
         name, heads = self.family.parameter.name, ("from", "to", "value", "instants", "verdict")
         rows = [
             (
-                displayed(latex_of(r.lower)), displayed(latex_of(r.upper)),
+                displayed(latex_of(r.lower)),
+                displayed(latex_of(r.upper)),
                 displayed(latex_of(r.closed.value)) if r.closed else "a table of enclosures",
-                displayed(latex_of(r.closed.places)) if r.closed else "", str(r.status),
+                displayed(latex_of(r.closed.places)) if r.closed else "",
+                str(r.status),
             )
             for r in self.regimes
-        ]  # fmt: skip
+        ]
         return card([html.escape(f"{self.family.target} by {name}"), table(heads, rows)])
 
     def document(self) -> dict[str, Any]:
         """The answer of ``navsym phases``."""
         return {
-            "target": self.family.target, "parameter": self.family.parameter.name,
+            "target": self.family.target,
+            "parameter": self.family.parameter.name,
             "range": [to_text(self.lower), to_text(self.upper)],
             "regimes": [regime_row(regime) for regime in self.regimes],
             "boundaries": [
@@ -94,7 +97,7 @@ class Phases:
                 for b in self.boundaries
             ],
             "uncovered": [list(pair) for pair in self.uncovered],
-        } | ({"given_up": list(self.given_up)} if self.given_up else {})  # fmt: skip
+        } | ({"given_up": list(self.given_up)} if self.given_up else {})
 
 
 def regime_row(regime: Regime) -> dict[str, Any]:
@@ -106,27 +109,24 @@ def regime_row(regime: Regime) -> dict[str, Any]:
         order = range(len(closed.places) - 1, -1, -1) if family.backward else range(len(closed.places))
         row["value"] = to_text(closed.value)
         row["support"] = [
-            {"measurement": family.measurements[closed.panels[i]], "at": to_text(family.time(closed.places[i])),
-             "weight": to_text(closed.weights[i])} for i in order
-        ]  # fmt: skip
+            {
+                "measurement": family.measurements[closed.panels[i]],
+                "at": to_text(family.time(closed.places[i])),
+                "weight": to_text(closed.weights[i]),
+            }
+            for i in order
+        ]
         dual = dict(zip(family.unknowns, closed.dual, strict=True))
         row["dual"] = [to_text(dual.get(k, sp.S.Zero)) for k in range(len(dual) + len(family.left_out))]
         row["method"] = closed.verdict.method
     else:
-        row |= {
-            "value": None,
-            "support": pattern_rows(family, regime.span),
-            "dual": None,
-            "table": list(regime.table),
-        }
+        row |= {"value": None, "support": pattern_rows(family, regime.span), "dual": None, "table": list(regime.table)}
     row["status"] = str(regime.status)
     row["unique"] = True if regime.alone else None
     if regime.alone:
         row["unique_between"] = [decimal(end, DIGITS, side) for end, side in zip(regime.alone, (1, -1), strict=True)]
     if regime.slivers:
-        row["slivers"] = [
-            dict(zip(("from", "to", "lower", "upper"), s.row(), strict=True)) for s in regime.slivers
-        ]
+        row["slivers"] = [dict(zip(("from", "to", "lower", "upper"), s.row(), strict=True)) for s in regime.slivers]
     return row
 
 

@@ -43,9 +43,13 @@ def change(
 
 
 def firm(
-    family: Family, spans: Sequence[Span], guesses: Sequence[Sequence[Closed]], changes: Sequence[Boundary], ends: Ends,
+    family: Family,
+    spans: Sequence[Span],
+    guesses: Sequence[Sequence[Closed]],
+    changes: Sequence[Boundary],
+    ends: Ends,
     limit: Limit,
-) -> tuple[list[Boundary], list[Closed | None]]:  # fmt: skip
+) -> tuple[list[Boundary], list[Closed | None]]:
     """The changes and the closed forms proved between them, each in agreement with the other.
 
     changes : located from the first guess of every span
@@ -53,8 +57,10 @@ def firm(
     """
     rest: list[Closed | None] = [g[0] if g else None for g in guesses]
     parts = pieces_of(changes, ends)
-    forms = [proved_form(family, g, part, limit.share(1 / (len(spans) - k))) for k, (g, part) in
-             enumerate(zip(guesses, parts, strict=True))]  # fmt: skip
+    forms = [
+        proved_form(family, g, part, limit.share(1 / (len(spans) - k)))
+        for k, (g, part) in enumerate(zip(guesses, parts, strict=True))
+    ]
     while not all(map(same, rest, forms)):
         changes, before = relocated(family, spans, changes, rest, forms, limit), parts
         rest, parts = forms, pieces_of(changes, ends)

@@ -55,9 +55,7 @@ class Sample:
     polished: Polished
 
 
-def samples_of(
-    family: Family, span: Span, shares: Sequence[str] = ("0.23", "0.41", "0.59", "0.83")
-) -> list[Sample]:
+def samples_of(family: Family, span: Span, shares: Sequence[str] = ("0.23", "0.41", "0.59", "0.83")) -> list[Sample]:
     """Members of a span whose pattern is that of the span."""
     found = []
     for share in shares:
@@ -113,9 +111,7 @@ def candidates(family: Family, span: Span) -> list[Closed]:
     return guesses
 
 
-def monomial_guess(
-    family: Family, span: Span, places: tuple[sp.Expr, ...], found: Sequence[Sample]
-) -> Closed | None:
+def monomial_guess(family: Family, span: Span, places: tuple[sp.Expr, ...], found: Sequence[Sample]) -> Closed | None:
     """A closed form for monomials on [0, T], not yet proved: weights from the places, the dual by powers of T.
 
     places : closed forms of the contacts. None when the samples follow no power law or the weights are not found
@@ -173,8 +169,10 @@ def duals(
 
 def conditions_at_ends(family: Family) -> list[tuple[list[sp.Expr], sp.Expr]]:
     """Rows and right sides: a dual polynomial balanced between the ends of a panel, or at its bound at one of them."""
-    ends = [([h.subs(U, a) for h in row], [h.subs(U, b) for h in row])
-            for row, (a, b) in zip(family.rows, family.panels, strict=True)]  # fmt: skip
+    ends = [
+        ([h.subs(U, a) for h in row], [h.subs(U, b) for h in row])
+        for row, (a, b) in zip(family.rows, family.panels, strict=True)
+    ]
     balanced = [([x + y for x, y in zip(a, b, strict=True)], sp.S.Zero) for a, b in ends]
     signed_ = [(e, s * sigma) for pair, sigma in zip(ends, family.sigma, strict=True) for e in pair for s in (1, -1)]
     return balanced + [(row, sp.sympify(bound, strict=True)) for row, bound in signed_]
@@ -230,9 +228,12 @@ def rank_at(family: Family, rows: Sequence[Sequence[sp.Expr]], p: sp.Rational) -
 
 
 def solved_dual(
-    family: Family, rows: Sequence[Sequence[sp.Expr]], right: Sequence[sp.Expr], columns: Sequence[int],
+    family: Family,
+    rows: Sequence[Sequence[sp.Expr]],
+    right: Sequence[sp.Expr],
+    columns: Sequence[int],
     found: Sequence[Sample],
-) -> Iterator[tuple[sp.Expr, ...]]:  # fmt: skip
+) -> Iterator[tuple[sp.Expr, ...]]:
     """The exact solution with zeros outside the columns, if it is feasible at every sample."""
     columns, m = list(columns), len(rows[0])
     numeric = numbers_at(family, rows, found[0].T)[:, columns]
@@ -308,13 +309,9 @@ def in_cotangents(expression: sp.Expr) -> sp.Expr:
     return expression.replace(inverse, lambda e: sp.cot(*e.base.args) ** -e.exp)
 
 
-def weights_of(
-    family: Family, span: Span, places: Sequence[sp.Expr], one: Sample
-) -> tuple[sp.Expr, ...] | None:
+def weights_of(family: Family, span: Span, places: Sequence[sp.Expr], one: Sample) -> tuple[sp.Expr, ...] | None:
     """Exact weights from ``sum w_i H(u_i) = P`` on independent rows."""
-    N = sp.Matrix(
-        [[h.subs(U, u) for h in family.rows[k]] for (k, _, _), u in zip(span.pattern, places, strict=True)]
-    ).T
+    N = sp.Matrix([[h.subs(U, u) for h in family.rows[k]] for (k, _, _), u in zip(span.pattern, places, strict=True)]).T
     numeric = np.array(N.subs(family.parameter, one.T).evalf(30).tolist(), dtype=float)
     rows = independent_rows(numeric)
     if len(rows) < N.cols:
@@ -329,11 +326,15 @@ def proved(family: Family, guess: Closed, lower: sp.Expr, upper: sp.Expr, second
     put = lambda e: sp.sympify(e, strict=True).subs(family.parameter, value)  # noqa: E731
     statements = [
         Optimum(
-            regressors=tuple(put(h / sigma) for h in row), functional=tuple(map(put, family.functional)), variable=U,
-            interval=tuple(map(put, ends)), dual=tuple(map(put, guess.dual)),
+            regressors=tuple(put(h / sigma) for h in row),
+            functional=tuple(map(put, family.functional)),
+            variable=U,
+            interval=tuple(map(put, ends)),
+            dual=tuple(map(put, guess.dual)),
             support=tuple(map(put, guess.places)),
             weights=tuple(put(w * family.sigma[k]) for w, k in zip(guess.weights, guess.panels, strict=True)),
-            value=put(guess.value), box={T: (start, end)},
+            value=put(guess.value),
+            box={T: (start, end)},
         )
         for row, sigma, ends in zip(family.rows, family.sigma, family.panels, strict=True)
     ]
@@ -406,13 +407,15 @@ def decide_polynomial(statement: Optimum) -> Verdict:
     sides = [sp.Poly(1 - scaled, SHARE), sp.Poly(1 + scaled, SHARE)]
     if not all(nonnegative_on_unit(side) for side in sides):
         return Verdict(OPEN, "Sturm", evidence="the dual polynomial leaves its bound")
-    unit = {
-        T: sp.S.One
-    }  # weights and places scale with powers of T: prove them at T = 1 and as identities in T
-    return combine([
-        Verdict(PROVED, "Sturm's theorem on square-free factors"),
-        constraints(statement), instants_of(statement, unit), equal_values(statement),
-    ])  # fmt: skip
+    unit = {T: sp.S.One}  # weights and places scale with powers of T: prove them at T = 1 and as identities in T
+    return combine(
+        [
+            Verdict(PROVED, "Sturm's theorem on square-free factors"),
+            constraints(statement),
+            instants_of(statement, unit),
+            equal_values(statement),
+        ]
+    )
 
 
 def nonnegative_on_unit(polynomial: sp.Poly) -> bool:

@@ -45,9 +45,15 @@ DIGITS = 34
 
 
 def phases(
-    family: Family, lower: sp.Expr, upper: sp.Expr, *, certify: bool = True, alone: bool = False,
-    seconds: float = DEFAULT_SECONDS, progress: Callable[[int, int], None] = lambda done, of: None,
-) -> Phases:  # fmt: skip
+    family: Family,
+    lower: sp.Expr,
+    upper: sp.Expr,
+    *,
+    certify: bool = True,
+    alone: bool = False,
+    seconds: float = DEFAULT_SECONDS,
+    progress: Callable[[int, int], None] = lambda done, of: None,
+) -> Phases:
     """All regimes for values of the parameter between two exact numbers.
 
     The range is split at singular values. certify : follow regimes without a closed form rigorously.
@@ -67,10 +73,15 @@ def phases(
     inner = [b for part in parts for b in part.boundaries]
     ties = {id(tie): tie for section in plan for tie in section.ties}
     return Phases(
-        plan[-1].family if plan else family, lower, upper, tuple(regime for part in parts for regime in part.regimes),
-        tuple(sorted((*changes.values(), *inner), key=lambda b: sp.Rational(b.lower))), tuple(uncovered),
-        tuple(ties.values()), tuple(limit.given_up),
-    )  # fmt: skip
+        plan[-1].family if plan else family,
+        lower,
+        upper,
+        tuple(regime for part in parts for regime in part.regimes),
+        tuple(sorted((*changes.values(), *inner), key=lambda b: sp.Rational(b.lower))),
+        tuple(uncovered),
+        tuple(ties.values()),
+        tuple(limit.given_up),
+    )
 
 
 def planned(
@@ -132,8 +143,9 @@ def stretch(section: Section, follow: Follow, steps: Steps, limit: Limit) -> Pha
     steps.found(len(spans))
     guesses = guessed(family, spans, steps, limit.share(1 / 2))
     spans, guesses = limit.share(1 / 4).within("closed forms next to others", continued, family, spans, guesses) or (
-        spans, guesses
-    )  # fmt: skip
+        spans,
+        guesses,
+    )
     first = located(family, spans, [g[0] if g else None for g in guesses], limit.share(1 / 2))
     changes, forms = firm(family, spans, guesses, first, (lower, upper), limit.share(1 / 2))
     cuts = [lower, *(middle_of(b) for b in changes), upper]

@@ -49,9 +49,7 @@ class Boundary:
     proved: bool
 
 
-def boundary(
-    family: Family, left: Span, right: Span, before: Closed | None, after: Closed | None
-) -> Boundary:
+def boundary(family: Family, left: Span, right: Span, before: Closed | None, after: Closed | None) -> Boundary:
     """The change from one span to the next, as exactly as it can be had."""
     guess = float(left.upper)
     if before is not None and after is not None and before.dual == after.dual:
@@ -137,9 +135,7 @@ def forced(family: Family, T: sp.Rational, pattern: Pattern, near: Contacts, nea
         x = old.transform.transpose() * arb_mat([[arb(float(c))] for c in near.dual])
         y = new.transform.transpose().solve(x)
     dual = np.array([float(y[i, 0].mid()) for i in range(near.dual.size)])
-    start = Contacts(
-        near.panel, near.u, near.inner, near.sign, near.weights * (old.scale / new.scale), dual, 0.0
-    )
+    start = Contacts(near.panel, near.u, near.inner, near.sign, near.weights * (old.scale / new.scale), dual, 0.0)
     return polish(family.exact(T).panels, new, start, BITS, GOAL)
 
 
@@ -271,8 +267,7 @@ def enclosed(family: Family, left: Span, right: Span, root: sp.Rational, why: st
         for places in sizes:
             delta = abs(root or sp.Integer(1)) / sp.Integer(10) ** places
             below, above = (
-                sp.Rational(round(v * 10 ** (places + 4)), 10 ** (places + 4))
-                for v in (root - delta, root + delta)
+                sp.Rational(round(v * 10 ** (places + 4)), 10 ** (places + 4)) for v in (root - delta, root + delta)
             )
             if proof(family, left, below, -1, root) and proof(family, right, above, 1, root):
                 return Boundary(None, exact_decimal(below), exact_decimal(above), why, True)

@@ -122,9 +122,7 @@ class Family:
     @cached_property
     def moving(self) -> Problem:
         """The problem with the parameter left free."""
-        panels = [
-            Panel(j % self.many, row, U, *self.panels[j], self.sigma[j]) for j, row in enumerate(self.rows)
-        ]
+        panels = [Panel(j % self.many, row, U, *self.panels[j], self.sigma[j]) for j, row in enumerate(self.rows)]
         return Problem(tuple(panels), self.functional)
 
     def real_near(self, value: Any) -> Family:
@@ -134,8 +132,9 @@ class Family:
         roots = {e for part in parts for e in part.atoms(sp.Pow) if e.exp.is_Rational and e.exp.q == 2}
         turned = {
             e: (sp.I * sp.sqrt(-e.base)) ** e.exp.p
-            for e in roots if U not in e.free_symbols and bool(enclose(self.at(e.base, value)) < 0)
-        }  # fmt: skip
+            for e in roots
+            if U not in e.free_symbols and bool(enclose(self.at(e.base, value)) < 0)
+        }
         if not turned:
             return self
         rows = tuple(tuple(sp.expand(h.xreplace(turned)) for h in row) for row in self.rows)
@@ -167,9 +166,7 @@ def declared(found: ModelFile | BasisFile, parameter: str) -> sp.Symbol:
     """The symbol of a declared parameter that has no value."""
     if parameter not in found.parameters:
         names = ", ".join(found.parameters) or "none"
-        raise DomainError(
-            f"expected a parameter of the file without a value; got {parameter}; choose one of: {names}"
-        )
+        raise DomainError(f"expected a parameter of the file without a value; got {parameter}; choose one of: {names}")
     return found.parameters[parameter].symbol
 
 
@@ -220,8 +217,10 @@ def of_model(found: ModelFile, name: str, functional: tuple[sp.Expr, ...], symbo
             "F: expected matrices without the time; got F(t), whose regressors are polynomials with an error of which "
             "only a bound is known, so that no contact is exact; solve for single values instead"
         )
-    return backward(found, name, functional, symbol) if len(found.pieces) == 1 else (
-        forward(found, name, functional, symbol)
+    return (
+        backward(found, name, functional, symbol)
+        if len(found.pieces) == 1
+        else (forward(found, name, functional, symbol))
     )
 
 

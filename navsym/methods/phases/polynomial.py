@@ -48,8 +48,9 @@ def monomial_weights(family: Family, places: Sequence[sp.Expr]) -> tuple[sp.Expr
             return None
         terms = [
             p * sum((omega[j] * c ** (j - k - 1) for j in range(k + 1, m + 1)), sp.S.Zero) / below / T**k
-            for k, p in enumerate(family.functional) if p != 0
-        ]  # fmt: skip
+            for k, p in enumerate(family.functional)
+            if p != 0
+        ]
         weights.append(sp.expand(sum(terms, sp.S.Zero)))
     return tuple(weights)
 

@@ -31,9 +31,7 @@ def fraction_of(x: fmpq) -> Fraction:
     return Fraction(int(x.p), int(x.q))
 
 
-def followed(
-    family: Family, pattern: Pattern, lower: fmpq, upper: fmpq, enough: Callable[[], bool] = never
-) -> Ranged:
+def followed(family: Family, pattern: Pattern, lower: fmpq, upper: fmpq, enough: Callable[[], bool] = never) -> Ranged:
     """Certificate pieces for the pattern between two values, as far as the tests pass and until it is enough."""
     form = echelon(family) if family.growing else None
     if form is None:
@@ -56,9 +54,7 @@ def followed(
     return Ranged((*start, *rest), tuple(documents))
 
 
-def from_middle(
-    family: Family, pattern: Pattern, lower: fmpq, upper: fmpq, enough: Callable[[], bool]
-) -> list[Piece]:
+def from_middle(family: Family, pattern: Pattern, lower: fmpq, upper: fmpq, enough: Callable[[], bool]) -> list[Piece]:
     """Pieces from the middle towards both ends; in a turned basis where the first one makes none."""
     accepts = accepted_by(partial(plain, family))
     found = follow(plain_track(family, pattern, conditioner), lower, upper, enough, accepts)
@@ -66,8 +62,7 @@ def from_middle(
 
 
 def covered(pieces: Sequence[Piece]) -> list[tuple[fmpq, fmpq]]:
-    """What pieces in order cover, neighbours made one: the pieces from zero on and those from the middle need not meet.
-    """
+    """Ranges that pieces in order cover, neighbours joined; pieces from zero and from the middle need not meet."""
     done: list[tuple[fmpq, fmpq]] = []
     for one in pieces:
         start = done.pop()[0] if done and done[-1][1] == one.lower else one.lower
@@ -121,14 +116,15 @@ def plain_track(family: Family, pattern: Pattern, basis: Callable[[Family, fmpq]
     return Track(family.moving, family.parameter, pattern, lambda p: member(family, pattern, p), moving)
 
 
-def from_zero(
-    family: Family, form: Echelon, pattern: Pattern, upper: fmpq, enough: Callable[[], bool]
-) -> list[Piece]:
+def from_zero(family: Family, form: Echelon, pattern: Pattern, upper: fmpq, enough: Callable[[], bool]) -> list[Piece]:
     """Pieces from the length zero on, scaled by powers of the length, as far as their series are sharp."""
     track = Track(
-        family.moving, family.parameter, pattern, lambda p: member(family, pattern, p),
+        family.moving,
+        family.parameter,
+        pattern,
+        lambda p: member(family, pattern, p),
         lambda a, b: scaled(family, form, a, b),
-    )  # fmt: skip
+    )
     accepts = accepted_by(lambda part: scaled_certificate(family, form, part)["of"][0])
     last = min(simple(upper * fmpq(7, 8), upper), simple(form.reach, form.reach))
     end = last
@@ -168,6 +164,3 @@ def turned(family: Family, p: fmpq) -> fmpq_mat:
     squares = sum(k * k for k in range(1, m + 1))
     mirror = [fmpq(int(i == j)) - fmpq(2 * (i + 1) * (j + 1), squares) for i in range(m) for j in range(m)]
     return fmpq_mat(m, m, mirror) * A
-
-
-

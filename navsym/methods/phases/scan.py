@@ -92,9 +92,16 @@ def ordered(found: Contacts, panels: Panels | None = None) -> Contacts:
     order = np.lexsort((found.u, found.panel))
     order = order[~idle[order]]
     return Contacts(
-        found.panel[order], found.u[order], found.inner[order], found.sign[order], found.weights[order],
-        found.dual, found.excess, (*found.touching, *touches), found.value,
-    )  # fmt: skip
+        found.panel[order],
+        found.u[order],
+        found.inner[order],
+        found.sign[order],
+        found.weights[order],
+        found.dual,
+        found.excess,
+        (*found.touching, *touches),
+        found.value,
+    )
 
 
 def scan(

@@ -50,9 +50,14 @@ Limits = tuple[fmpq, fmpq, fmpq, fmpq]
 
 
 def limits_of(
-    family: Family, lower: sp.Expr, upper: sp.Expr, low: Fraction, high: Fraction,
-    changes: Sequence[Boundary], singular: set[sp.Expr],
-) -> list[Limits]:  # fmt: skip
+    family: Family,
+    lower: sp.Expr,
+    upper: sp.Expr,
+    low: Fraction,
+    high: Fraction,
+    changes: Sequence[Boundary],
+    singular: set[sp.Expr],
+) -> list[Limits]:
     """For every regime: where it must be covered (outer) and where exact contacts are followed (inner)."""
     margin = exact_fraction(MARGIN * (high - low))
     marks = [end_marks(family, lower, -1, singular, margin)]
@@ -65,9 +70,7 @@ def limits_of(
     return done
 
 
-def end_marks(
-    family: Family, end: sp.Expr, side: int, singular: set[sp.Expr], margin: fmpq
-) -> tuple[fmpq, fmpq]:
+def end_marks(family: Family, end: sp.Expr, side: int, singular: set[sp.Expr], margin: fmpq) -> tuple[fmpq, fmpq]:
     """An end of the range as two rationals in order, the outer at or beyond it, the inner where contacts start."""
     ball = enclose(end, bits=200)
     if end.is_Rational:
@@ -80,9 +83,14 @@ def end_marks(
 
 
 def regime_of(
-    family: Family, span: Span, ends: tuple[sp.Expr, sp.Expr], limits: Limits, closed: Closed | None, follow: Follow,
+    family: Family,
+    span: Span,
+    ends: tuple[sp.Expr, sp.Expr],
+    limits: Limits,
+    closed: Closed | None,
+    follow: Follow,
     limit: Limit,
-) -> tuple[Regime, list[tuple[str, str]]]:  # fmt: skip
+) -> tuple[Regime, list[tuple[str, str]]]:
     """One regime: its proved closed form, or contacts followed for every value, slivers and holes."""
     a, b = ends
     name = f"from {end_text(a)} to {end_text(b)}"

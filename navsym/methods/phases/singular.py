@@ -155,8 +155,11 @@ def reason(family: Family, value: sp.Expr) -> str | None:
     lengths = dict.fromkeys(family.at(stop - start, value) for start, stop in family.panels)
     if any(decide(Equation(length, sp.S.Zero)).status is PROVED for length in lengths):
         return f"{family.stretch_name} has no length at {name}"
-    parts = {"a regressor": [h for row in family.rows for h in row], "the functional": family.functional,
-             "a noise bound": family.sigma}  # fmt: skip
+    parts = {
+        "a regressor": [h for row in family.rows for h in row],
+        "the functional": family.functional,
+        "a noise bound": family.sigma,
+    }
     for what, expressions in parts.items():
         if any(family.at(e, value).has(sp.zoo, sp.nan, sp.oo, -sp.oo) for e in expressions):
             return f"{what} has a pole at {name}, where the problem is solved apart"

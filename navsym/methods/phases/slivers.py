@@ -126,9 +126,12 @@ def sliver(family: Family, start: fmpq, end: fmpq) -> tuple[Sliver | None, float
     room = (most - least) / ROOM
     lower, upper = decimal(least - room, DIGITS + 6, -1), decimal(most + room, DIGITS + 6, 1)
     document = header(shown, "sliver", BITS, cells, lower, upper) | {
-        "parameter": family.parameter.name, "from": fraction(start), "to": fraction(end),
-        "dual": [decimal(c, PLACES) for c in x], "support": [[k, decimal(v, PLACES)] for k, v in support],
-    }  # fmt: skip
+        "parameter": family.parameter.name,
+        "from": fraction(start),
+        "to": fraction(end),
+        "dual": [decimal(c, PLACES) for c in x],
+        "support": [[k, decimal(v, PLACES)] for k, v in support],
+    }
     return Sliver(start, end, lower, upper, document), width
 
 

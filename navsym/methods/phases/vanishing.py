@@ -175,11 +175,19 @@ def scaled_certificate(family: Family, form: Echelon, pieces: Sequence[Piece]) -
     unit = [[str(int(i == j)) for j in range(m)] for i in range(m)]
     lower, upper = value_bounds(pieces)
     found = {
-        "kind": "range", "variable": v, "panels": panels, "functional": scaled_functional(family, form),
-        "bits": BITS, "cells": sum(p.cells for p in pieces), "parameter": T.name, "from": pieces[0].row["from"],
-        "to": pieces[-1].row["to"], "lower": lower, "upper": upper,
+        "kind": "range",
+        "variable": v,
+        "panels": panels,
+        "functional": scaled_functional(family, form),
+        "bits": BITS,
+        "cells": sum(p.cells for p in pieces),
+        "parameter": T.name,
+        "from": pieces[0].row["from"],
+        "to": pieces[-1].row["to"],
+        "lower": lower,
+        "upper": upper,
         "pieces": [p.row | {"basis": unit} for p in pieces],
-    }  # fmt: skip
+    }
     return {"kind": "all", "of": [found, *ties]}
 
 
@@ -204,8 +212,9 @@ def tied(family: Family, form: Echelon, document: dict[str, Any]) -> dict[str, A
     T, v = family.parameter, document["variable"]
     ties = [
         tie(form, i, row, text, T, v)
-        for row, panel in zip(family.rows, document["panels"], strict=True) for i, text in enumerate(panel["H"])
-    ]  # fmt: skip
+        for row, panel in zip(family.rows, document["panels"], strict=True)
+        for i, text in enumerate(panel["H"])
+    ]
     return {"kind": "all", "of": [document, *ties]}
 
 
@@ -257,9 +266,7 @@ def tie(form: Echelon, i: int, row: tuple[sp.Expr, ...], text: str, T: sp.Symbol
     place = sp.Symbol(v, real=True)
     pairs = [(exact_rational(form.basis[i, j]), h.subs(U, T * place)) for j, h in enumerate(row)]
     right = " + ".join(f"({to_text(a)})*({to_text(h)})" for a, h in pairs if a != 0)
-    return {
-        "kind": "identity", "left": f"({text})*{T.name}**{form.lows[i]}", "right": right, "symbols": [T.name, v],
-    }  # fmt: skip
+    return {"kind": "identity", "left": f"({text})*{T.name}**{form.lows[i]}", "right": right, "symbols": [T.name, v]}
 
 
 def scaled_functional(family: Family, form: Echelon) -> list[str]:
@@ -270,4 +277,3 @@ def scaled_functional(family: Family, form: Echelon) -> list[str]:
         f"({to_text(exact_rational(image[i, 0]))})*{T}**{form.shift - low}" if image[i, 0] != 0 else "0"
         for i, low in enumerate(form.lows)
     ]
-

@@ -59,9 +59,7 @@ class Sweep:
         if self.kind not in KINDS:
             raise DomainError(f"kind: expected one of {', '.join(KINDS)}; got {self.kind!r:.80}; correct it")
         if self.method not in METHODS:
-            raise DomainError(
-                f"method: expected one of {', '.join(METHODS)}; got {self.method!r:.80}; correct it"
-            )
+            raise DomainError(f"method: expected one of {', '.join(METHODS)}; got {self.method!r:.80}; correct it")
         limits = {"jobs": 10**6, "runs": 10**5, "steps": 10**5, "degree": 12, "columns": 10**6}
         for name, limit in limits.items():
             value = getattr(self, name)
@@ -101,14 +99,11 @@ def length(text: Any) -> Fraction:
 def sweep_from(document: Mapping[str, Any]) -> Sweep:
     """The study that a configuration file describes; raises DomainError that names the key."""
     if not isinstance(document, Mapping):
-        raise DomainError("expected one JSON object; got "
-                          f"{type(document).__name__}; see the keys of a sweep")
+        raise DomainError(f"expected one JSON object; got {type(document).__name__}; see the keys of a sweep")
     unknown = set(document) - set(Sweep.__dataclass_fields__)
     missing = {"kind", "jobs"} - set(document)
     if unknown or missing:
-        raise DomainError(
-            f"expected the keys of a sweep; got unknown {sorted(unknown)}, missing {sorted(missing)}"
-        )
+        raise DomainError(f"expected the keys of a sweep; got unknown {sorted(unknown)}, missing {sorted(missing)}")
     return Sweep(**document)
 
 
@@ -226,9 +221,12 @@ def two_stage_job(sweep: Sweep, index: int) -> dict[str, Any]:
 
 
 JOBS: dict[str, Callable[[Sweep, int], dict[str, Any]]] = {
-    "filter": filter_job, "terrain": terrain_job, "guaranteed": guaranteed_job, "phases": phases_job,
+    "filter": filter_job,
+    "terrain": terrain_job,
+    "guaranteed": guaranteed_job,
+    "phases": phases_job,
     "two-stage": two_stage_job,
-}  # fmt: skip
+}
 
 
 def summary(sweep: Sweep, rows: Iterable[Mapping[str, Any]]) -> dict[str, Any]:

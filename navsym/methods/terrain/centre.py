@@ -67,9 +67,9 @@ class Information:
         """(A2, A1, A0) of terrain_search:12*, from four products instead of double sums."""
         G, M = self.G, self.symmetric
         return (
-            float(M[0, 0] * G[0, 1] - M[0, 1] * G[0, 0]),          # terrain_search:12.Ax2*
-            float(M[0, 0] * G[1, 1] - M[1, 1] * G[0, 0]),          # terrain_search:12.Ax1
-            float(M[0, 1] * G[1, 1] - M[1, 1] * G[0, 1]),          # terrain_search:12.Ax0*
+            float(M[0, 0] * G[0, 1] - M[0, 1] * G[0, 0]),  # terrain_search:12.Ax2*
+            float(M[0, 0] * G[1, 1] - M[1, 1] * G[0, 0]),  # terrain_search:12.Ax1
+            float(M[0, 1] * G[1, 1] - M[1, 1] * G[0, 1]),  # terrain_search:12.Ax0*
         )
 
     @property
@@ -169,8 +169,7 @@ def demand_estimable(info: Information) -> None:
     values, vectors = np.linalg.eigh(info.G)
     if values[1] <= 0.0:
         raise NotEstimableError(
-            "terrain: expected slopes under the track; got flat ground, where no position error shows; "
-            "fly over relief"
+            "terrain: expected slopes under the track; got flat ground, where no position error shows; fly over relief"
         )
     if values[0] <= FLAT * values[1]:
         ex, ey = vectors[:, 0]

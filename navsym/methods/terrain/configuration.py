@@ -36,9 +36,7 @@ def read_search(
         raise ShapeError(f"expected a table of map, track, position; got {type(config).__name__}; write one")
     only_keys(config, KEYS)
     if config.get("interpolation", "bilinear") != "bilinear":
-        raise DomainError(
-            f"interpolation: expected bilinear; got {config['interpolation']!r:.40}; leave it out"
-        )
+        raise DomainError(f"interpolation: expected bilinear; got {config['interpolation']!r:.40}; leave it out")
     terrain = map_of(block(config, "map"), folder)
     return terrain, track_of(block(config, "track"), folder), grid_of(config, velocity_needed)
 

@@ -82,9 +82,7 @@ def errors_over(times: Array, setting: Setting, generator: np.random.Generator) 
     return shift + np.vstack([np.zeros((1, 2)), np.cumsum(moved, axis=0)]), velocity
 
 
-def fly(
-    ground: TerrainMap, start: Array, heading: float, setting: Setting, generator: np.random.Generator
-) -> Flight:
+def fly(ground: TerrainMap, start: Array, heading: float, setting: Setting, generator: np.random.Generator) -> Flight:
     """One flight over ``ground``: straight, at a constant absolute altitude.
 
     start : (2,) position in the middle of the track ; heading : of the way, radians from the x axis

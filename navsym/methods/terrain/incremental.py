@@ -37,7 +37,7 @@ def add_measurement(state: Accumulated, t: float, x: float, y: float, h: float) 
     A hypothesis that leaves the map at any measurement stays inadmissible (infinite).
     Raises OutsideMapError or NoDataError when the inertial position itself has no height.
     """
-    one = prepare(state.terrain, Track([t], [x], [y], [h]), state.grid)        # type: ignore[arg-type]
+    one = prepare(state.terrain, Track([t], [x], [y], [h]), state.grid)  # type: ignore[arg-type]
     return replace(state, values=state.values + criteria(one), measurements=state.measurements + 1)
 
 

@@ -107,9 +107,7 @@ def answer_of(found: Search, track: Track, grid: Hypotheses) -> Answer:
     i, j, Vi, Vj = found.index
     velocity = np.array([Vi * grid.velocity_step[0], Vj * grid.velocity_step[1]])
     shift = np.array([i * grid.step[0], j * grid.step[1]]) + velocity * track.elapsed[-1]
-    return Answer(
-        found.index, found.criterion, found.second_best, found.unique, shift, velocity, found.evaluated
-    )
+    return Answer(found.index, found.criterion, found.second_best, found.unique, shift, velocity, found.evaluated)
 
 
 def checked(terrain: TerrainMap, track: Track, answer: Answer) -> Answer:
@@ -130,8 +128,15 @@ def by_sequence(terrain: TerrainMap, track: Track, grid: Hypotheses, offset_free
     """Position first and then velocity, with the times t_G and the quadratic of the paper."""
     found = search_sequential(terrain, track, grid, offset_free=offset_free)
     return Answer(
-        found.index, found.criterion, found.second_best, found.unique,
-        found.shift, found.velocity, found.evaluated, found.t_G, found.quadratic,
+        found.index,
+        found.criterion,
+        found.second_best,
+        found.unique,
+        found.shift,
+        found.velocity,
+        found.evaluated,
+        found.t_G,
+        found.quadratic,
     )
 
 
@@ -142,9 +147,7 @@ def by_refinement(terrain: TerrainMap, track: Track, grid: Hypotheses, offset_fr
     position = start.shift - velocity * track.elapsed[-1]
     fine = refine(terrain, track, (position[0], position[1]), (velocity[0], velocity[1]), offset=offset_free)
     shift = fine.position + fine.velocity * track.elapsed[-1]
-    return Answer(
-        start.index, fine.criterion, start.second_best, start.unique, shift, fine.velocity, start.evaluated
-    )
+    return Answer(start.index, fine.criterion, start.second_best, start.unique, shift, fine.velocity, start.evaluated)
 
 
 SEARCHES = {"position": by_position, "full": by_full, "sequential": by_sequence, "refined": by_refinement}
@@ -216,7 +219,7 @@ def remarks(
     if alone(grid, answer):
         found.append(
             "no other hypothesis lies on known ground, so that nothing was compared: are the steps in the unit of the "
-            "map? A tile in degrees is searched in metres with \"frame\": \"local\""
+            'map? A tile in degrees is searched in metres with "frame": "local"'
         )
     elif answer.unique is not True:
         found.append("two hypotheses fit equally well, or too nearly so to tell them apart")

@@ -206,8 +206,11 @@ def found_by(prepared: Prepared, dense: bool, threads: int, centred: bool) -> Se
     usual = 1e-10 < prepared.bound < 1e15 and total > 1 and (prepared.z.size >= 4 or not centred)
     # On the lattice all criteria in double precision take less time than some of them in single.
     positions_only = prepared.counts[2:] == (1, 1)
-    if dense or not (prepared.whole and usual) or (positions_only and not prepared.plain) or (
-        prepared.on_lattice and not centred
+    if (
+        dense
+        or not (prepared.whole and usual)
+        or (positions_only and not prepared.plain)
+        or (prepared.on_lattice and not centred)
     ):
         return lowest(prepared, criteria(prepared, threads=threads, centred=centred), centred=centred)
     found = quickly(prepared, centred)

@@ -76,7 +76,7 @@ def search_sequential(
     values = velocity_stage(terrain, track, grid, start, centre, offset_free)
     Vi, Vj, criterion, second = two_lowest(values)
     velocity = np.array([Vi * grid.velocity_step[0], Vj * grid.velocity_step[1]])
-    shift = start + (track.elapsed[-1] * np.eye(2) - centre) @ velocity          # terrain_search:14
+    shift = start + (track.elapsed[-1] * np.eye(2) - centre) @ velocity  # terrain_search:14
     unique = True if second > criterion * (1.0 + 1e-9) else (None if second > criterion else False)
     evaluated = coarse.evaluated + values.size
     index, t_G = (i, j, Vi, Vj), (low, high, middle)
@@ -91,7 +91,7 @@ def velocity_stage(
     """Criteria (Mvx, Mvy) of the velocities, the track turning about ``centre`` (terrain_search:6)."""
     bx, by = terrain.cells(track.x + start[0], track.y + start[1])
     spacing = np.array([terrain.dx, terrain.dy])
-    cells = centre * spacing[None, :] / spacing[:, None]      # from map units to cells, row by row
+    cells = centre * spacing[None, :] / spacing[:, None]  # from map units to cells, row by row
     steps = (grid.velocity_step[0] / terrain.dx, grid.velocity_step[1] / terrain.dy)
     out = np.empty(grid.counts[2:])
     case = (terrain.heights, bx, by, np.array(track.h), track.elapsed, track.elapsed)

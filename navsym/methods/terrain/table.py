@@ -111,8 +111,10 @@ def judged(printed: float, value: float, interval: list[float] | None, unit: str
     inside = interval is not None and interval[0] <= printed <= interval[1]
     if inside and interval is not None and interval[1] - interval[0] <= WIDEST * printed:
         return Verdict(CONFIRMED, "simulation", scope=scope_of(row), evidence=evidence)
-    why = "the interval is too wide to say" if inside else (
-        "tracks, speed, ranges of the errors and ground of the paper are not published"
+    why = (
+        "the interval is too wide to say"
+        if inside
+        else ("tracks, speed, ranges of the errors and ground of the paper are not published")
     )
     return Verdict(OPEN, "simulation", scope=scope_of(row), evidence=f"{evidence}; {why}")
 
@@ -135,9 +137,20 @@ def plain(verdict: Verdict) -> dict[str, Any]:
 def as_table(document: dict[str, Any]) -> tuple[list[str], list[list[str]]]:
     """Headings and rows for people, beside the printed figures of table 1."""
     headings = [
-        "ground", "drift m/s", "accelerometers", "algorithm", "RMS m", "95 %", "median m", "RMS m/s", "95 %",
-        "> 500 m", "ms", "printed m", "printed m/s",
-    ]  # fmt: skip
+        "ground",
+        "drift m/s",
+        "accelerometers",
+        "algorithm",
+        "RMS m",
+        "95 %",
+        "median m",
+        "RMS m/s",
+        "95 %",
+        "> 500 m",
+        "ms",
+        "printed m",
+        "printed m/s",
+    ]
     rows = []
     for row in document["rows"]:
         printed = document["printed"].get(row["algorithm"], {})

@@ -78,9 +78,7 @@ def remarks(track: Track, found: TrackEstimate, noise: Noise, settings: Settings
 
     lines : (N,) number of the line of each row in its file
     """
-    out = [
-        f"gap of {track.t[k + 1] - track.t[k]:.3g} s after line {lines[k]}" for k in gaps(track)[:20].tolist()
-    ]
+    out = [f"gap of {track.t[k + 1] - track.t[k]:.3g} s after line {lines[k]}" for k in gaps(track)[:20].tolist()]
     for name, text in (("outlier", "left out"), ("doubtful", "believed less")):
         where = [int(lines[k]) for k, flag in enumerate(found.flags) if flag == name]
         if where:

@@ -68,15 +68,11 @@ class Settings:
 
     def __post_init__(self) -> None:
         if self.method not in METHODS:
-            raise DomainError(
-                f"expected one of {', '.join(METHODS)}; got {self.method!r}; choose one", where="method"
-            )
+            raise DomainError(f"expected one of {', '.join(METHODS)}; got {self.method!r}; choose one", where="method")
         if self.window is not None and not (math.isfinite(self.window) and self.window > 0):
             raise DomainError(f"expected a positive number of seconds; got {self.window}; omit it", where="window")
         if not (math.isfinite(self.gate) and self.gate >= 0):
-            raise DomainError(
-                f"expected a number of standard deviations; got {self.gate}; 5 is usual", where="gate"
-            )
+            raise DomainError(f"expected a number of standard deviations; got {self.gate}; 5 is usual", where="gate")
 
 
 def estimate(track: Track, settings: Settings) -> tuple[TrackEstimate, Noise]:
@@ -101,9 +97,7 @@ def estimate(track: Track, settings: Settings) -> tuple[TrackEstimate, Noise]:
 
 def marginal(track: Track, noise: Noise, settings: Settings, use: Rows) -> TrackEstimate:
     """Filter or smoother, averaged over what the noise may be; gains and flags are those of the likeliest."""
-    points = noise_points(
-        track, settings.order, use, noise, gate=settings.gate, fixed_scale=settings.fixed_scale
-    )
+    points = noise_points(track, settings.order, use, noise, gate=settings.gate, fixed_scale=settings.fixed_scale)
     found = [by_method(track, point.noise, settings, use) for point in points]
     weights = np.array([point.weight for point in points])
     speed = mixture(weights, [f.velocity for f in found], [f.velocity_sd for f in found])
@@ -250,10 +244,7 @@ def from_states(track: Track, run: FilterRun, words: tuple[str, ...]) -> TrackEs
 
 
 def turned(
-    track: Track,
-    derivatives: list[tuple[Array, Array]],
-    words: tuple[str, ...],
-    gains: dict[str, list[float]],
+    track: Track, derivatives: list[tuple[Array, Array]], words: tuple[str, ...], gains: dict[str, list[float]]
 ) -> TrackEstimate:
     """East, North, Up of each row from channels: values (3, N) and variances (3, N), speed then acceleration."""
     out, turn = [], axes_of(track, words)
@@ -369,9 +360,7 @@ def minimum_sum(dt: Array, sigma: Array, order: int, derivative: int) -> tuple[A
     return w, value
 
 
-def minimum_sum_solution(
-    dt: Array, sigma: Array, order: int, derivative: int
-) -> tuple[Array, float, list[int], Array]:
+def minimum_sum_solution(dt: Array, sigma: Array, order: int, derivative: int) -> tuple[Array, float, list[int], Array]:
     """(weights, sum, rows that carry them, dual polynomial in the time over the largest |dt|).
 
     Without a solution in the allowed number of exchanges: the weights of least squares and no rows.

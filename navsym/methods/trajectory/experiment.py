@@ -188,10 +188,17 @@ def experiment(
             progress(number * runs + k + 1, len(cases) * runs)
         mean = {key: float(np.mean([f[key] for f in found])) for key in found[0]}
         spread = {key: float(np.std([f[key] for f in found])) for key in found[0]}
-        rows.append({
-            "speed": speed, "heading": programme, "algorithm": name, "runs": runs,
-            "printed": PRINTED[speed], "obtained": mean, "spread": spread,
-        })
+        rows.append(
+            {
+                "speed": speed,
+                "heading": programme,
+                "algorithm": name,
+                "runs": runs,
+                "printed": PRINTED[speed],
+                "obtained": mean,
+                "spread": spread,
+            }
+        )
     return rows
 
 

@@ -22,13 +22,7 @@ from navsym.errors import DomainError, TooLargeError
 from navsym.models.earth.motion import check_order, pascal_rows, power_rows
 from navsym.numeric.arrays import Array, named
 from navsym.numeric.trajectory.bank import tune_by_windows
-from navsym.numeric.trajectory.kernels import (
-    CORRECTED,
-    LIKELIHOOD,
-    PREDICTED,
-    run_fixed_gain,
-    tune_one_step,
-)
+from navsym.numeric.trajectory.kernels import CORRECTED, LIKELIHOOD, PREDICTED, run_fixed_gain, tune_one_step
 
 Form = Literal["printed", "corrected"]
 Criterion = Literal["predicted", "corrected", "likelihood"]
@@ -60,8 +54,7 @@ class SteppedModel:
         put("gain_row", named("gain_row", self.gain_row, (n,), "one entry per state"))
         if not np.allclose(np.tril(self.Phi), np.eye(n), rtol=0, atol=0):
             raise DomainError(
-                "Phi: expected an upper triangle with ones on the diagonal; got another matrix; "
-                "use a polynomial motion"
+                "Phi: expected an upper triangle with ones on the diagonal; got another matrix; use a polynomial motion"
             )
 
     @property
@@ -93,9 +86,7 @@ class Tuning:
         if not (math.isfinite(self.step) and self.step > 1):
             raise DomainError(f"step: expected a factor above 1; got {self.step}; 2 is usual")
         if self.criterion not in CRITERIA:
-            raise DomainError(
-                f"criterion: expected one of {', '.join(CRITERIA)}; got {self.criterion!r}; choose one"
-            )
+            raise DomainError(f"criterion: expected one of {', '.join(CRITERIA)}; got {self.criterion!r}; choose one")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -169,9 +160,7 @@ def checked(z: Array, model: SteppedModel, start: Start) -> Array:
             f"n: expected at most {LARGEST_FIELD} states, 3^n candidates; got {model.order}; lower the order"
         )
     if start.estimate.shape != (model.order,):
-        raise DomainError(
-            f"start: expected {model.order} states; got {len(start.estimate)}; give one per state"
-        )
+        raise DomainError(f"start: expected {model.order} states; got {len(start.estimate)}; give one per state")
     return named("z", z, (None,), "one entry per step")
 
 
@@ -228,9 +217,7 @@ def windowed_filter(
         raise DomainError(f"window: expected at least one step; got {window}; 50 is usual")
     only_first = not model.gain_row[1:].any() and model.gain_row[0] > 0
     if not only_first:
-        raise DomainError(
-            "model: expected the corrected form; got a gain row with more than one entry; use it"
-        )
+        raise DomainError("model: expected the corrected form; got a gain row with more than one entry; use it")
     states, gains, diagonals, values = empty_run(len(z), model.order)
     low, high = (np.full(model.order, b) for b in bounds)
     tune_by_windows(

@@ -230,9 +230,7 @@ def harmonic_lag(gain: Sequence[Fraction], tau: Fraction, period: Fraction, stat
         angle = 2 * flint.arb.pi() * exact(tau / period)
         zeta = flint.acb(angle.cos(), angle.sin())
         balls = [flint.acb(exact(g)) for g in gain]
-        entries = [
-            (zeta if i == j else flint.acb(0)) - Phi[i][j] + balls[i] for i in range(n) for j in range(n)
-        ]
+        entries = [(zeta if i == j else flint.acb(0)) - Phi[i][j] + balls[i] for i in range(n) for j in range(n)]
         f = flint.acb_mat(n, n, entries).solve(flint.acb_mat(n, 1, [b * zeta for b in balls]))
         truth = flint.acb(0, angle) ** (state - 1) / math.factorial(state - 1)
         return abs(f[state - 1, 0] / truth - 1)

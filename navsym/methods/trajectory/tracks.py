@@ -105,9 +105,7 @@ class TrackEstimate:
     gains: dict[str, list[float]]
 
 
-def track_of(
-    t: Array, latitude: Array, longitude: Array, height: Array, sigma: Array | float | None = None
-) -> Track:
+def track_of(t: Array, latitude: Array, longitude: Array, height: Array, sigma: Array | float | None = None) -> Track:
     """A track from geodetic coordinates: radians and metres, (N,) each.
 
     sigma : standard deviations of the positions in metres, (N, 3) East, North, Up, or one number;

@@ -56,9 +56,7 @@ def adaptive_filter_slowly(z: Array, model: SteppedModel, start: Start, tuning: 
     return AdaptiveRun(np.array(states), np.array(gains), np.array(diagonals), np.array(values))
 
 
-def windowed_filter_slowly(
-    z: Array, model: SteppedModel, start: Start, tuning: Tuning, *, window: int
-) -> AdaptiveRun:
+def windowed_filter_slowly(z: Array, model: SteppedModel, start: Start, tuning: Tuning, *, window: int) -> AdaptiveRun:
     """Twin of ``windowed_filter``: every candidate is an ordinary filter over the window."""
     y, P, q = start.estimate.copy(), start.P.copy(), start.Q.copy()
     record: list[tuple[Array, Array, Array, float]] = []

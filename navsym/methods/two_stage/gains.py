@@ -148,9 +148,7 @@ class StageGains:
     stable: tuple[bool | None, bool | None]
 
 
-def gains_by_poles(
-    chosen: Split, first: sp.Expr, second: sp.Expr | None, variable: sp.Symbol = POLE
-) -> StageGains:
+def gains_by_poles(chosen: Split, first: sp.Expr, second: sp.Expr | None, variable: sp.Symbol = POLE) -> StageGains:
     """Gains of the stages from their prescribed characteristic polynomials.
 
     The first polynomial has the degree m (also for the form u, v, w, whose first stage is (u, v)),
@@ -160,13 +158,11 @@ def gains_by_poles(
     if second is None or chosen.j == 0:
         if second is not None and monic_coefficients(second, 0, variable):
             raise ShapeError(
-                "poles: expected one polynomial; got two, but the first chain is the whole space; leave "
-                "it out"
+                "poles: expected one polynomial; got two, but the first chain is the whole space; leave it out"
             )
         if second is None and chosen.j:
             raise ShapeError(
-                f"poles: expected two polynomials, of degrees {chosen.m} and {chosen.j}; got one; add "
-                f"the second"
+                f"poles: expected two polynomials, of degrees {chosen.m} and {chosen.j}; got one; add the second"
             )
         return StageGains(K_x, (), (stable_x, True))
     K_z, stable_z = stage_gains(chosen.link[chosen.i :], second, "second", variable)
@@ -264,9 +260,7 @@ def solve_exactly(augmented: sp.Matrix) -> list[sp.Expr]:
         vectors.append([q.top * ring.lowest(bottom, q.bottom).top for q in quotients])
     columns = [list(column) for column in zip(*vectors, strict=True)]
     if determinant(columns[:-1], ring) == 0:
-        raise DomainError(
-            "expected a regular linear system; got determinant 0 for all parameters; change the gains"
-        )
+        raise DomainError("expected a regular linear system; got determinant 0 for all parameters; change the gains")
     solution = relation(columns[:-1], columns[-1], ring)
     if solution is None:
         raise ArithmeticError("solve_exactly: the check of the solution failed")

@@ -110,9 +110,7 @@ def compiled() -> tuple[object, ...]:
     x, y = velocity_variables(equations), position_variables(equations)
     meaning = sp.Matrix([[sp.diff(m, s) for s in FULL] for m in (*x, y[0], y[1], y[4], y[5])])
     matrices = {"F": truth.F, "H": truth.H, "A": algorithm.F, "C": algorithm.H, "M": meaning}
-    return tuple(
-        casadi_function(name, [list(RATES)], sp.Matrix(value).subs(MU, 1)) for name, value in matrices.items()
-    )
+    return tuple(casadi_function(name, [list(RATES)], sp.Matrix(value).subs(MU, 1)) for name, value in matrices.items())
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -180,9 +178,7 @@ class Plan:
         return next((k for k, s in enumerate(self.situations) if s in with_position), None)
 
 
-def plan(
-    phases: Sequence[tuple[Situation, float]], step: float, lambda_c: float = 2.0, lambda_h: float = 3.0
-) -> Plan:
+def plan(phases: Sequence[tuple[Situation, float]], step: float, lambda_c: float = 2.0, lambda_h: float = 3.0) -> Plan:
     """Phases (situation, minutes) one after the other."""
     situations = [s for s, minutes in phases for _ in range(round(minutes * 60.0 / step))]
     return Plan(tuple(situations), lambda_c, lambda_h)
@@ -273,7 +269,7 @@ def chain_matrix(kappa: float) -> Array:
             [kappa, 0, 0, 0, -1, 0],
         ],
         dtype=float,
-    )
+    )  # fmt: skip
 
 
 def standard_deviations(steps: Steps, errors: Errors) -> Array:
@@ -326,12 +322,7 @@ def kalman_deviations(flight: Flight, chosen: Plan, errors: Errors) -> Array:
     matrices = along(flight)
     dtau = float(flight.tau[1] - flight.tau[0])
     R = errors.noise() / dtau
-    used = {
-        Situation.VELOCITY: [0, 1],
-        Situation.POSITION: [2, 3],
-        Situation.BOTH: [0, 1, 2, 3],
-        Situation.NEITHER: [],
-    }
+    used = {Situation.VELOCITY: [0, 1], Situation.POSITION: [2, 3], Situation.BOTH: [0, 1, 2, 3], Situation.NEITHER: []}
     P = errors.covariance()
     found = [np.sqrt(np.einsum("ij,jk,ik->i", matrices.M[0], P, matrices.M[0]))]
     for k, situation in enumerate(chosen.situations):
@@ -343,9 +334,7 @@ def kalman_deviations(flight: Flight, chosen: Plan, errors: Errors) -> Array:
             keep = np.eye(16) - np.outer(gain, h)
             P = keep @ P @ keep.T + np.outer(gain, gain) * R[row]
         P = (P + P.T) / 2
-        found.append(
-            np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", matrices.M[k + 1], P, matrices.M[k + 1]), 0.0))
-        )
+        found.append(np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", matrices.M[k + 1], P, matrices.M[k + 1]), 0.0)))
     return np.array(found)
 
 
@@ -392,9 +381,7 @@ def compare(
         curves[name] = standard_deviations(steps_of(flight, p, errors), errors)
         step()
     first = found["two stages"]
-    curves["two stages, link removed"] = standard_deviations(
-        steps_of(flight, first, errors, repaired=True), errors
-    )
+    curves["two stages, link removed"] = standard_deviations(steps_of(flight, first, errors, repaired=True), errors)
     step()
     curves["Kalman filter, full model"] = kalman_deviations(flight, first, errors)
     step()

@@ -51,9 +51,7 @@ class TwoStageObserver:
         }
         for name, shape in shapes.items():
             value = getattr(self, name)
-            array = (
-                frozen(np.zeros(shape)) if 0 in shape else named(name, value, shape, "blocks of the observer")
-            )
+            array = frozen(np.zeros(shape)) if 0 in shape else named(name, value, shape, "blocks of the observer")
             object.__setattr__(self, name, array)
 
     @property
@@ -63,10 +61,7 @@ class TwoStageObserver:
 
 
 def observer(
-    blocks: TwoStageBlocks,
-    K_x: Sequence[Any],
-    K_z: Sequence[Any],
-    values: Mapping[sp.Symbol, Any] | None = None,
+    blocks: TwoStageBlocks, K_x: Sequence[Any], K_z: Sequence[Any], values: Mapping[sp.Symbol, Any] | None = None
 ) -> TwoStageObserver:
     """The observer of symbolic blocks and gains with numbers for all symbols.
 
@@ -92,9 +87,7 @@ def numbers(matrix: sp.MatrixBase, values: Mapping[sp.Symbol, Any]) -> Array:
     if exact.free_symbols:
         names = ", ".join(sorted(map(str, exact.free_symbols)))
         raise DomainError(f"expected a number for every symbol; got none for {names}; give their values")
-    return np.array([[float(entry) for entry in row] for row in exact.tolist()], dtype=float).reshape(
-        exact.shape
-    )
+    return np.array([[float(entry) for entry in row] for row in exact.tolist()], dtype=float).reshape(exact.shape)
 
 
 def closed_loop(found: TwoStageObserver) -> tuple[Array, Array]:
@@ -131,11 +124,7 @@ def run_slowly(
 ) -> Array:
     """Twin of :func:`run`: the two stages one after the other, by many small steps of Runge and Kutta."""
     m, _ = found.stages
-    x, z = (
-        (np.zeros(size) for size in found.stages)
-        if start is None
-        else np.split(np.array(start, dtype=float), [m])
-    )
+    x, z = (np.zeros(size) for size in found.stages) if start is None else np.split(np.array(start, dtype=float), [m])
     back = np.linalg.inv(found.L)
     estimates, h = [], step / parts
 
@@ -239,8 +228,7 @@ def riccati_gain(G: Array, g: Array, intensity: Array, r: float) -> tuple[Array,
     stable = values.real < -1e-9 * scale
     if stable.sum() != m:
         raise DomainError(
-            f"expected a filter with a steady state; got {int(stable.sum())} of {m} decaying modes; add "
-            f"process noise"
+            f"expected a filter with a steady state; got {int(stable.sum())} of {m} decaying modes; add process noise"
         )
     basis = vectors[:, stable]
     P = np.real(np.linalg.solve(basis[:m].T, basis[m:].T).T)

@@ -74,10 +74,7 @@ def reckon(record: Mapping[str, Array]) -> Aided:
     position = np.cumsum(velocity * dt, axis=0)
     places = fixes - start
     return Aided(
-        frozen(t[places]),
-        frozen(velocity[places] - gps_velocity),
-        frozen(position[places] - gps),
-        frozen(gps),
+        frozen(t[places]), frozen(velocity[places] - gps_velocity), frozen(position[places] - gps), frozen(gps)
     )
 
 
@@ -100,9 +97,7 @@ def horizontal_force(columns: Mapping[str, Array]) -> Array:
     ax, ay, az = columns["ax"], columns["ay"], columns["az"]
     ahead = ax * np.cos(theta) + (ay * np.sin(phi) + az * np.cos(phi)) * np.sin(theta)
     aside = ay * np.cos(phi) - az * np.sin(phi)
-    return np.column_stack(
-        [ahead * np.cos(psi) - aside * np.sin(psi), ahead * np.sin(psi) + aside * np.cos(psi)]
-    )
+    return np.column_stack([ahead * np.cos(psi) - aside * np.sin(psi), ahead * np.sin(psi) + aside * np.cos(psi)])
 
 
 def metres(latitude: Array, longitude: Array) -> Array:

@@ -26,13 +26,7 @@ import numpy as np
 import sympy as sp
 
 from navsym.claims import Claim
-from navsym.methods.verification.deciding_code import (
-    DECIDING,
-    PROPOSING,
-    package_digest,
-    patches,
-    rooms_digest,
-)
+from navsym.methods.verification.deciding_code import DECIDING, PROPOSING, package_digest, patches, rooms_digest
 from navsym.methods.verification.sources import (
     INDIRECT,
     PACKAGE,

@@ -99,9 +99,7 @@ def package_sources() -> list[Path]:
 
 def package_effects() -> list[str]:
     """What the derivations do to each other and to navsym when they are imported: it counts for every claim."""
-    return [
-        f"{path.name}: {text}" for path in package_sources() for text in effects(path, path.stat().st_mtime_ns)
-    ]
+    return [f"{path.name}: {text}" for path in package_sources() for text in effects(path, path.stat().st_mtime_ns)]
 
 
 @functools.cache

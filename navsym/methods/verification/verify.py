@@ -82,11 +82,7 @@ def verify(
         records[claim.id] = record
         progress(record)
     ordered = [records[claim.id] for _, claim in claims]
-    return {
-        "claims": ordered,
-        "papers": [paper_record(module) for module in modules],
-        "counts": counts(ordered),
-    }
+    return {"claims": ordered, "papers": [paper_record(module) for module in modules], "counts": counts(ordered)}
 
 
 def warm_up() -> None:
@@ -200,9 +196,7 @@ def paper_record(module: PaperModule) -> Record:
 def counts(records: Iterable[Record]) -> dict[str, int]:
     """How many records have each status, zero included."""
     found = Counter(record["status"] for record in records)
-    return {
-        status: found.get(status, 0) for status in ("PROVED", "CERTIFIED", "CONFIRMED", "REFUTED", "OPEN")
-    }
+    return {status: found.get(status, 0) for status in ("PROVED", "CERTIFIED", "CONFIRMED", "REFUTED", "OPEN")}
 
 
 def unexpected(records: Iterable[Record]) -> list[Record]:

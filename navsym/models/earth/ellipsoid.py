@@ -65,7 +65,7 @@ def spherical_axes(latitude: Any, longitude: Any) -> sp.Matrix:
             [-sin(latitude) * cos(longitude), -sin(latitude) * sin(longitude), cos(latitude)],
             [cos(latitude) * cos(longitude), cos(latitude) * sin(longitude), sin(latitude)],
         ]
-    )
+    )  # fmt: skip
 
 
 def spherical_position(latitude: Any, longitude: Any, radius: Any) -> sp.Matrix:
@@ -103,7 +103,5 @@ def angular_velocity(symbols: dict[str, sp.Symbol]) -> sp.Matrix:
 def cross(omega: sp.Matrix, r: sp.Matrix) -> sp.Matrix:
     """sum over k, j of e_ikj omega_k r_j, (3, 1), written out with the Levi-Civita symbol."""
     return sp.Matrix(
-        3,
-        1,
-        lambda i, _: sum(sp.LeviCivita(i, k, j) * omega[k] * r[j] for k in range(3) for j in range(3)),
+        3, 1, lambda i, _: sum(sp.LeviCivita(i, k, j) * omega[k] * r[j] for k in range(3) for j in range(3))
     )

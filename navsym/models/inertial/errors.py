@@ -165,9 +165,7 @@ def position_group(equations: ErrorEquations | None = None) -> Group:
     equations = equations or dimensionless()
     meaning = position_variables(equations)
     eliminated = {1: BETA[0], 3: ALPHA[0], 4: PI[0], 5: BETA[1], 7: ALPHA[1], 8: PI[1]}
-    solve = solved_for(
-        [Y[k - 1] for k in eliminated], [meaning[k - 1] for k in eliminated], list(eliminated.values())
-    )
+    solve = solved_for([Y[k - 1] for k in eliminated], [meaning[k - 1] for k in eliminated], list(eliminated.values()))
     group = grouped(Y, meaning, solve, equations, equations.position)
     speeds = {0: Y[1], 4: Y[5]}  # y_2 and y_6 are the derivatives themselves
     rates = tuple(speeds.get(k, rate) for k, rate in enumerate(group.rates))

@@ -122,7 +122,5 @@ def count(name: str, value: Any) -> int:
     """An integer of at least 0; DomainError otherwise."""
     number = finite(name, value)
     if number != int(number) or number < 0:
-        raise DomainError(
-            f"{name}: expected an integer of at least 0; got {value!r:.60}; indices run from -N to N"
-        )
+        raise DomainError(f"{name}: expected an integer of at least 0; got {value!r:.60}; indices run from -N to N")
     return int(number)

@@ -35,16 +35,13 @@ class Track:
         steps = np.diff(self.t)
         if (steps == 0.0).any():
             k = int(np.flatnonzero(steps == 0.0)[0])
-            raise DuplicateError(
-                f"t: expected distinct times; got {self.t[k]:g} at entries {k} and {k + 1}; drop one"
-            )
+            raise DuplicateError(f"t: expected distinct times; got {self.t[k]:g} at entries {k} and {k + 1}; drop one")
         if (np.abs(steps) < SMALLEST).any():
             raise DomainError(f"t: expected times at least {SMALLEST:g} s apart; got closer ones; check the unit")
         if (steps < 0.0).any():
             k = int(np.flatnonzero(steps < 0.0)[0])
             raise DomainError(
-                f"t: expected increasing times; got {self.t[k + 1]:g} after {self.t[k]:g} "
-                f"at entry {k + 1}; sort them"
+                f"t: expected increasing times; got {self.t[k + 1]:g} after {self.t[k]:g} at entry {k + 1}; sort them"
             )
 
     @property

@@ -34,9 +34,7 @@ def shifted(ring: Ring, base: Coefficients) -> Coefficients:
     """Coefficients in u = mu - alpha of a monic quartic, alpha chosen to remove the cube."""
     alpha, result = base[3] / -4, [base[-1]]
     for c in reversed(base[:-1]):
-        result = [
-            low + alpha * high for low, high in zip([ring.zero, *result], [*result, ring.zero], strict=True)
-        ]
+        result = [low + alpha * high for low, high in zip([ring.zero, *result], [*result, ring.zero], strict=True)]
         result[0] += c
     return result
 
@@ -88,9 +86,7 @@ def exact_root(ring: Ring, b: Poly) -> Poly | None:
 Sums = tuple[tuple[Wave, ...], tuple[Wave, ...], tuple[Wave, ...], tuple[Wave, ...]]
 
 
-def product_waves(
-    frame: Frame, a: Poly, c: Poly, complex_pair: bool
-) -> tuple[str, Sums, tuple[sp.Basic, ...]]:
+def product_waves(frame: Frame, a: Poly, c: Poly, complex_pair: bool) -> tuple[str, Sums, tuple[sp.Basic, ...]]:
     """b = c^2: products of waves, with P = sqrt(2 c + a)/2 and M = sqrt(a - 2 c)/2 or sqrt(2 c - a)/2.
 
     Two frequencies P + M and P - M, P^2 - M^2 = c:
@@ -109,11 +105,15 @@ def product_waves(
     both = times(ring, times(ring, inverted(P), inverted(M)), ((ring.one, ring.one * 2), RATIONAL))
     sums = (
         (Wave(cP * cM, (ring.one, ring.one)),),
-        (wave(ring, sP * cM, direct(P), (unit, RATIONAL)),
-         wave(ring, cP * sM, direct(M), ((unit[0] * minus, c), RATIONAL))),
+        (
+            wave(ring, sP * cM, direct(P), (unit, RATIONAL)),
+            wave(ring, cP * sM, direct(M), ((unit[0] * minus, c), RATIONAL)),
+        ),
         (wave(ring, sP * sM, both),),
-        (wave(ring, sP * cM, inverted(P), ((unit[0], 2 * c), RATIONAL)),
-         wave(ring, cP * sM, inverted(M), ((-unit[0], 2 * c), RATIONAL))),
+        (
+            wave(ring, sP * cM, inverted(P), ((unit[0], 2 * c), RATIONAL)),
+            wave(ring, cP * sM, inverted(M), ((-unit[0], 2 * c), RATIONAL)),
+        ),
     )
     return "damped waves" if complex_pair else "two frequencies", sums, reality(ring, P, M)
 

@@ -34,13 +34,7 @@ from navsym.models.parameter_ring import (
     reduced,
     ring_of,
 )
-from navsym.models.polynomials import (
-    coefficients,
-    companion_inverse,
-    monic_quotient,
-    monic_remainder,
-    product,
-)
+from navsym.models.polynomials import coefficients, companion_inverse, monic_quotient, monic_remainder, product
 from navsym.models.transition.factors import form_of
 from navsym.models.transition.pieces import Form, Surd, Wave
 
@@ -70,9 +64,7 @@ class TransitionMatrix:
     factors: tuple[tuple[sp.Expr, int, str], ...] = ()
 
 
-def transition_matrix(
-    A: Any, time: Any, *, where: Mapping[sp.Symbol, Any] | None = None
-) -> TransitionMatrix:
+def transition_matrix(A: Any, time: Any, *, where: Mapping[sp.Symbol, Any] | None = None) -> TransitionMatrix:
     """exp(A time) of a constant matrix in closed form.
 
     A     : (n, n) exact entries: rational functions of parameters; other constants such as
@@ -92,9 +84,7 @@ def transition_matrix(
     ring = ring_of(system)
     B, divisor = cleared(ring, system)
     characteristic = characteristic_polynomial(ring, B)
-    forms = [
-        form_of(ring, base, times, divisor, moment) for base, times in irreducible(ring, characteristic)
-    ]
+    forms = [form_of(ring, base, times, divisor, moment) for base, times in irreducible(ring, characteristic)]
     terms = [term for form in forms for term in terms_of(ring, B, characteristic, form)]
     degenerate(ring, [term.divisor for term in terms])
     matrix, divisors = assembled(ring, system.rows, terms)
@@ -110,9 +100,7 @@ def transition_matrix(
 def refuse(system: sp.ImmutableMatrix, time: sp.Expr) -> None:
     """Systems for which no closed form is looked for."""
     if system.rows > LARGEST:
-        raise TooLargeError(
-            f"A: expected at most {LARGEST} states; got {system.rows}; split the system into blocks"
-        )
+        raise TooLargeError(f"A: expected at most {LARGEST} states; got {system.rows}; split the system into blocks")
     if time.free_symbols & system.free_symbols:
         raise DomainError(f"A: expected a constant matrix; got one that contains {time}; rename the time")
 
@@ -211,9 +199,7 @@ def matrix_product(X: Matrix, Y: Matrix) -> Matrix:
     """Product of matrices of polynomials; zeros, of which models are full, cost nothing."""
     rows = [[(j, x) for j, x in enumerate(row) if not x.is_zero()] for row in X]
     zero = X[0][0] * 0
-    return [
-        [reduce(lambda s, jx: s + jx[1] * Y[jx[0]][c], row, zero) for c in range(len(Y[0]))] for row in rows
-    ]
+    return [[reduce(lambda s, jx: s + jx[1] * Y[jx[0]][c], row, zero) for c in range(len(Y[0]))] for row in rows]
 
 
 def irreducible(ring: Ring, monic: list[Poly]) -> list[tuple[list[Poly], int]]:
@@ -268,9 +254,7 @@ def combined(ring: Ring, weights: list[Poly], matrices: list[Matrix]) -> Matrix:
     """Sum of polynomial weights times matrices of one size."""
     n = len(matrices[0])
     used = [(w, M) for w, M in zip(weights, matrices, strict=False) if not w.is_zero()]
-    return [
-        [reduced(ring, sum((w * M[i][j] for w, M in used), ring.zero)) for j in range(n)] for i in range(n)
-    ]
+    return [[reduced(ring, sum((w * M[i][j] for w, M in used), ring.zero)) for j in range(n)] for i in range(n)]
 
 
 def assembled(ring: Ring, n: int, terms: list[Term]) -> tuple[sp.ImmutableMatrix, list[Poly]]:
@@ -292,10 +276,12 @@ def entry_of(ring: Ring, terms: list[Term], i: int, j: int, divisors: dict[str, 
             group = sums.setdefault(wave.function, {})
             known = group.get(wave.surd.value)
             group[wave.surd.value] = (part if known is None else added(known[0], part)), wave.surd
-    return sp.Add(*(
-        function * sp.Add(*(constant(ring, *item, divisors) for item in group.values()))
-        for function, group in sums.items()
-    ))
+    return sp.Add(
+        *(
+            function * sp.Add(*(constant(ring, *item, divisors) for item in group.values()))
+            for function, group in sums.items()
+        )
+    )
 
 
 def constant(ring: Ring, value: Fraction, surd: Surd, divisors: dict[str, Poly]) -> sp.Expr:
@@ -327,8 +313,9 @@ def hidden_identity() -> DomainError:
 def conditions(ring: Ring, divisors: Iterable[Poly], forms: Iterable[Form]) -> tuple[sp.Basic, ...]:
     """What the formula takes to hold, without what the declared signs already grant."""
     relations = dict.fromkeys(relation for form in forms for relation in form.conditions)
-    stated = {sp.expand(side * r.lhs) for r in relations if isinstance(r, sp.core.relational.Relational)
-              for side in (1, -1)}
+    stated = {
+        sp.expand(side * r.lhs) for r in relations if isinstance(r, sp.core.relational.Relational) for side in (1, -1)
+    }
     for divisor in divisors:
         for base, _ in divisor.factor()[1]:
             expression = expanded(ring, base)

@@ -160,9 +160,13 @@ def implicit(frame: Frame, base: Coefficients, factor: sp.Expr) -> Form:
     slope = monic.diff(rho)
     pieces = tuple(
         Piece(
-            (Wave(root_sum(monic, rho, rho**k * sp.exp(rho * frame.time) / slope),
-                  (frame.ring.one, frame.d ** (n - k - 1))),),
-            base[k + 1:],
+            (
+                Wave(
+                    root_sum(monic, rho, rho**k * sp.exp(rho * frame.time) / slope),
+                    (frame.ring.one, frame.d ** (n - k - 1)),
+                ),
+            ),
+            base[k + 1 :],
         )
         for k in range(n)
     )

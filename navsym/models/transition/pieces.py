@@ -10,16 +10,7 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from navsym.models.parameter_ring import (
-    Fraction,
-    Poly,
-    Ring,
-    cancelled,
-    expanded,
-    quotient,
-    sign,
-    square_root,
-)
+from navsym.models.parameter_ring import Fraction, Poly, Ring, cancelled, expanded, quotient, sign, square_root
 from navsym.models.polynomials import Coefficients
 
 LAMBDA = sp.Symbol("lambda")
@@ -96,9 +87,9 @@ class Root:
 def in_lambda(frame: Frame, base: Coefficients) -> sp.Expr:
     """The factor as a monic polynomial in the eigenvalue lambda of A."""
     n = len(base) - 1
-    return sp.Add(*(
-        quotient(frame.ring, c, frame.d ** (n - k)) * LAMBDA**k for k, c in enumerate(base) if not c.is_zero()
-    ))
+    return sp.Add(
+        *(quotient(frame.ring, c, frame.d ** (n - k)) * LAMBDA**k for k, c in enumerate(base) if not c.is_zero())
+    )
 
 
 def root_of(frame: Frame, value: Poly, degree: int = 2) -> Root:

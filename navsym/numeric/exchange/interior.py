@@ -27,9 +27,13 @@ def interior_dual(panels: Panels, contacts: Contacts) -> Array | None:
     nodes = nodes_for(panels)
     G, room = grid_values(panels.coefficients, nodes), rooms(panels, contacts, nodes)[:, None]
     answer = linprog(
-        np.r_[np.zeros(m), -1.0], A_ub=np.block([[G, room], [-G, room]]), b_ub=np.ones(2 * G.shape[0]),
-        A_eq=np.c_[A, np.zeros(A.shape[0])], b_eq=values, bounds=[(None, None)] * m + [(0.0, 1.0)],
-    )  # fmt: skip
+        np.r_[np.zeros(m), -1.0],
+        A_ub=np.block([[G, room], [-G, room]]),
+        b_ub=np.ones(2 * G.shape[0]),
+        A_eq=np.c_[A, np.zeros(A.shape[0])],
+        b_eq=values,
+        bounds=[(None, None)] * m + [(0.0, 1.0)],
+    )
     return np.asarray(answer.x[:m], dtype=float) if answer.success and answer.x[m] > LEAST else None
 
 

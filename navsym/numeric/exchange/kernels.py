@@ -219,9 +219,8 @@ def simplex(G: Array, p: Array, basis: Ints, limit: int) -> tuple[Ints, Array, A
 
 @kernel
 def contact_system(
-    C: Array, C1: Array, C2: Array, p: Array, panel: Ints, u: Array, inner: Ints,
-    sign: Array, x: Array, weights: Array,
-) -> tuple[Array, Array]:  # fmt: skip
+    C: Array, C1: Array, C2: Array, p: Array, panel: Ints, u: Array, inner: Ints, sign: Array, x: Array, weights: Array
+) -> tuple[Array, Array]:
     """Residual and Jacobian of the optimality system in (x, inner contacts, weights).
 
     ``f(u_i) - s_i``, ``f'(u_i)`` at inner contacts, ``sum w_i q(u_i) - p``.

@@ -86,9 +86,7 @@ def follow(
     return values, places, loads
 
 
-def follow_lengths(
-    panels: Panels, ends: Array, u: Array, kind: Ints, sign: Array
-) -> tuple[Array, Array, Array]:
+def follow_lengths(panels: Panels, ends: Array, u: Array, kind: Ints, sign: Array) -> tuple[Array, Array, Array]:
     """:func:`follow` on the only panel of a problem."""
     C = panels.coefficients[0]
     C1 = chebyshev_derivative(C)

@@ -225,10 +225,16 @@ def with_places(panels: Panels, found: Contacts, more: Sequence[tuple[int, float
     panel = np.concatenate([found.panel, np.array([k for k, _ in more], dtype=np.int64)])
     u = np.concatenate([found.u, extra])
     return Contacts(
-        panel, u, np.concatenate([found.inner, (np.abs(extra) < 1.0).astype(np.int64)]),
+        panel,
+        u,
+        np.concatenate([found.inner, (np.abs(extra) < 1.0).astype(np.int64)]),
         np.sign(rows_at(panels.coefficients, panel, u) @ found.dual),
-        np.concatenate([found.weights, np.zeros(extra.size)]), found.dual, found.excess, (), found.value,
-    )  # fmt: skip
+        np.concatenate([found.weights, np.zeros(extra.size)]),
+        found.dual,
+        found.excess,
+        (),
+        found.value,
+    )
 
 
 def dual_face(G: Array, p: Array) -> tuple[Ints, Array]:

@@ -215,7 +215,7 @@ def weigh_eight(m, totals, shares, volume, ll, logs, weights, total_log):  # typ
 
 @njit(inline="always", **COMPILE)
 def keep_eight(  # type: ignore[no-untyped-def]
-    first, k, m, n, total_log, weights, now_mean, now, mean, covariance, probabilities, log_likelihood,
+    first, k, m, n, total_log, weights, now_mean, now, mean, covariance, probabilities, log_likelihood
 ):
     """The answers of step k out of the lanes; lanes beyond the last run are left."""
     for lane in range(min(8, mean.shape[0] - first)):
@@ -241,8 +241,23 @@ def restart_eight(m, n, now_mean, now, x, P):  # type: ignore[no-untyped-def]
 
 @njit(**COMPILE)
 def run_eight(  # type: ignore[no-untyped-def]
-    first, branching, F, Q, H, r, U, rotated, p_mode, log_prior, means, covariances, z,
-    mean, covariance, probabilities, log_likelihood,
+    first,
+    branching,
+    F,
+    Q,
+    H,
+    r,
+    U,
+    rotated,
+    p_mode,
+    log_prior,
+    means,
+    covariances,
+    z,
+    mean,
+    covariance,
+    probabilities,
+    log_likelihood,
 ):
     """Eight runs from ``first`` on through all steps; branching 0 pulsating, 1 IMM, 2 polygaussian.
 
@@ -283,9 +298,7 @@ def run_eight(  # type: ignore[no-untyped-def]
         if not weigh_eight(m, totals, shares, volume, ll, logs, weights, total_log):
             return False
         merge_modes(m, n, weights, 0, x, P, 0, now_mean, now, off)
-        keep_eight(
-            first, k, m, n, total_log, weights, now_mean, now, mean, covariance, probabilities, log_likelihood
-        )
+        keep_eight(first, k, m, n, total_log, weights, now_mean, now, mean, covariance, probabilities, log_likelihood)
         if branching == 0:
             restart_eight(m, n, now_mean, now, x, P)
     return True
@@ -293,13 +306,44 @@ def run_eight(  # type: ignore[no-untyped-def]
 
 @njit(error_model="numpy", nogil=True, parallel=True)
 def run_all(  # type: ignore[no-untyped-def]
-    branching, F, Q, H, r, U, rotated, p_mode, log_prior, means, covariances, z,
-    mean, covariance, probabilities, log_likelihood,
+    branching,
+    F,
+    Q,
+    H,
+    r,
+    U,
+    rotated,
+    p_mode,
+    log_prior,
+    means,
+    covariances,
+    z,
+    mean,
+    covariance,
+    probabilities,
+    log_likelihood,
 ):
     """All runs, eight at a time, on all cores; False when any of them had to stop."""
     groups = (z.shape[0] + 7) // 8
     fine = np.ones(groups, dtype=np.bool_)
     for g in numba.prange(groups):
-        fine[g] = run_eight(g * 8, branching, F, Q, H, r, U, rotated, p_mode, log_prior, means, covariances, z,
-                            mean, covariance, probabilities, log_likelihood)
+        fine[g] = run_eight(
+            g * 8,
+            branching,
+            F,
+            Q,
+            H,
+            r,
+            U,
+            rotated,
+            p_mode,
+            log_prior,
+            means,
+            covariances,
+            z,
+            mean,
+            covariance,
+            probabilities,
+            log_likelihood,
+        )
     return fine.all()

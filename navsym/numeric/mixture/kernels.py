@@ -22,7 +22,7 @@ KEEP, ALL, BY_MODE = 0, 1, 2
 
 @njit(inline="always", **COMPILE)
 def branch_modes(  # type: ignore[no-untyped-def]
-    branching, known, sources, m, k, logs, p_mode, log_p, totals, mixing, ahead, terms,
+    branching, known, sources, m, k, logs, p_mode, log_p, totals, mixing, ahead, terms
 ):
     """totals[b] <- log P[branch b] before its measurement; for IMM also the weights of the mixing."""
     if branching == OWN:
@@ -92,8 +92,28 @@ def constant(F, Q, H, r):  # type: ignore[no-untyped-def]
 
 @njit(**COMPILE)
 def run_bank(  # type: ignore[no-untyped-def]
-    branching, folding, period, widest, F, Q, H, r, U, rotated, p_mode, log_p, log_prior, common, means, covariances, z,
-    probabilities, mean, covariance, log_likelihood, best,
+    branching,
+    folding,
+    period,
+    widest,
+    F,
+    Q,
+    H,
+    r,
+    U,
+    rotated,
+    p_mode,
+    log_p,
+    log_prior,
+    common,
+    means,
+    covariances,
+    z,
+    probabilities,
+    mean,
+    covariance,
+    log_likelihood,
+    best,
 ):
     """Filter a series; fills probabilities (T, m), mean, covariance, log_likelihood (cumulative), best.
 
@@ -106,9 +126,13 @@ def run_bank(  # type: ignore[no-untyped-def]
     groups = (size + 7) // 8
     x, P = aligned(groups * n * 8), aligned(groups * n * n * 8)
     nx, nP = aligned(groups * n * 8), aligned(groups * n * n * 8)
-    lanes = (aligned(groups * n * n * 8), aligned(groups * n * n * 8), aligned(groups * p * n * 8),
-             aligned(groups * p * 8))
-    lf, lq, lh, lr = lanes       # each by its own name in the loop: a tuple there costs 5 % of a step
+    lanes = (
+        aligned(groups * n * n * 8),
+        aligned(groups * n * n * 8),
+        aligned(groups * p * n * 8),
+        aligned(groups * p * 8),
+    )
+    lf, lq, lh, lr = lanes  # each by its own name in the loop: a tuple there costs 5 % of a step
     zl, came = aligned(groups * p * 8), np.zeros(p, dtype=np.bool_)
     scratch = aligned((n * n + 3 * n + 3) * 8)
     ahead, totals = np.zeros((size, m)), aligned(groups * 8)

@@ -43,7 +43,7 @@ def merge(weights: Array, means: Array, covariances: Array) -> tuple[Array, Arra
     weights : (k,), sum one    means : (k, n)    covariances : (k, n, n)
     Twin: :func:`merge_slowly`.
     """
-    mean = weights @ means                                          # multistructure:12*
+    mean = weights @ means  # multistructure:12*
     spread = means - mean
     covariance = np.einsum("k,kij->ij", weights, covariances)
     covariance += np.einsum("k,ki,kj->ij", weights, spread, spread)  # multistructure:13

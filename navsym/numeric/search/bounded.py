@@ -37,16 +37,7 @@ from navsym.numeric.search.margins import (
     single_limit,
 )
 from navsym.numeric.search.sample import shift_of
-from navsym.numeric.search.stages import (
-    add_more,
-    evaluate,
-    keep,
-    lowest_per_velocity,
-    on_map,
-    scores,
-    settle,
-    shut_out,
-)
+from navsym.numeric.search.stages import add_more, evaluate, keep, lowest_per_velocity, on_map, scores, settle, shut_out
 
 #: Measurements summed for every hypothesis before the first comparison; a multiple of TOGETHER.
 FIRST = 32
@@ -103,7 +94,11 @@ def neighbours(index: int, counts: Counts, lag: tuple[float, float]) -> list[int
 
 
 def descend(
-    case: Case, steps: NDArray[np.float64], counts: Counts, centred: bool, start: NDArray[np.int64],
+    case: Case,
+    steps: NDArray[np.float64],
+    counts: Counts,
+    centred: bool,
+    start: NDArray[np.int64],
     allowed: Callable[[NDArray[np.int64]], NDArray[np.bool_]],
 ) -> tuple[float, float, int]:
     """Walk downhill on the grid from the best of ``start``; the two lowest values and the evaluations."""
@@ -114,9 +109,7 @@ def descend(
     def value(index: int) -> float:
         if index not in known:
             inside = bool(allowed(np.array([index]))[0])
-            known[index] = (
-                evaluate(case, shift(index, counts, steps), np.inf, centred, work) if inside else math.inf
-            )
+            known[index] = evaluate(case, shift(index, counts, steps), np.inf, centred, work) if inside else math.inf
         return known[index]
 
     wx, wy = case[4], case[5]
@@ -182,9 +175,7 @@ def best_measurements(score: NDArray[np.float64], m: int) -> NDArray[np.int64]:
     return np.argsort(-score, kind="stable")[:m]
 
 
-def first_probes(
-    total: int, allowed: Callable[[NDArray[np.int64]], NDArray[np.bool_]]
-) -> NDArray[np.int64]:
+def first_probes(total: int, allowed: Callable[[NDArray[np.int64]], NDArray[np.bool_]]) -> NDArray[np.int64]:
     """At most PROBES hypotheses on the map, evenly spread over the grid, without a list of all of them."""
     if total <= 8 * PROBES:
         return probes_among(np.flatnonzero(allowed(np.arange(total))))
@@ -261,8 +252,7 @@ def second_look(
 
 
 def search_bounded(
-    case: Case, steps: tuple[float, float], counts: Counts, bound: float, *, centred: bool = False,
-    inside: bool = False,
+    case: Case, steps: tuple[float, float], counts: Counts, bound: float, *, centred: bool = False, inside: bool = False
 ) -> BoundedResult:
     """Minimum and runner-up of the criterion over all Mx My Mvx Mvy hypotheses, exactly.
 
@@ -322,7 +312,10 @@ def search_one_velocity(
 
 
 def add_single(
-    single: NDArray[np.float32], part: Case, steps: tuple[float, float], counts: tuple[int, int],
+    single: NDArray[np.float32],
+    part: Case,
+    steps: tuple[float, float],
+    counts: tuple[int, int],
     sums: NDArray[np.float32],
 ) -> NDArray[np.float32]:
     """Add the measurements of a part to sums (1, 1, My, W); returns them as a flat copy without padding."""

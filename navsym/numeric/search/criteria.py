@@ -73,13 +73,7 @@ def place_rows(
 
 @njit(**COMPILE)
 def blend_columns(
-    H: np.ndarray,
-    low: int,
-    high: int,
-    columns: np.ndarray,
-    fraction: np.ndarray,
-    patch: np.ndarray,
-    start: int,
+    H: np.ndarray, low: int, high: int, columns: np.ndarray, fraction: np.ndarray, patch: np.ndarray, start: int
 ) -> None:
     """Interpolate rows ``low..high`` of the map at all columns, once for all Vj and j."""
     width = unsigned(columns.shape[0])

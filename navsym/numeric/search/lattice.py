@@ -32,8 +32,9 @@ def rounded(cells: Array, side: int) -> Array:
 
 
 @njit(**COMPILE)
-def add_four_lanes(h: np.ndarray, nx: int, at: Any, f: Any, g: Any, z: Any, My: int, W: int, first: int,
-                   out: np.ndarray) -> None:
+def add_four_lanes(
+    h: np.ndarray, nx: int, at: Any, f: Any, g: Any, z: Any, My: int, W: int, first: int, out: np.ndarray
+) -> None:
     """Add four measurements to the eight columns of hypotheses from ``first`` on.
 
     h : the map, flat ; at : four places of the first height ; f, g, z : four fractions each way, four heights
@@ -65,8 +66,9 @@ def add_four_lanes(h: np.ndarray, nx: int, at: Any, f: Any, g: Any, z: Any, My: 
 
 
 @njit(**COMPILE)
-def add_one_slowly(h: np.ndarray, nx: int, at: Any, f: float, g: float, z: float, Mx: int, My: int, W: int,
-                   out: np.ndarray) -> None:
+def add_one_slowly(
+    h: np.ndarray, nx: int, at: Any, f: float, g: float, z: float, Mx: int, My: int, W: int, out: np.ndarray
+) -> None:
     """One measurement: twin of :func:`add_four_lanes`, and what is left over at the end of a track."""
     for j in range(My):
         for i in range(Mx):
@@ -97,8 +99,18 @@ def lattice(H: np.ndarray, bx: np.ndarray, by: np.ndarray, z: np.ndarray, counts
             continue
         for i in range(0, W, 8):
             places = (at[0] + i, at[1] + i, at[2] + i, at[3] + i)
-            add_four_lanes(heights, nx, places, (f[0], f[1], f[2], f[3]), (g[0], g[1], g[2], g[3]),
-                           (z[k0], z[k0 + 1], z[k0 + 2], z[k0 + 3]), My, W, i, sums)
+            add_four_lanes(
+                heights,
+                nx,
+                places,
+                (f[0], f[1], f[2], f[3]),
+                (g[0], g[1], g[2], g[3]),
+                (z[k0], z[k0 + 1], z[k0 + 2], z[k0 + 3]),
+                My,
+                W,
+                i,
+                sums,
+            )
 
 
 def fits(H: Array, bx: Array, by: Array, counts: tuple[int, int], W: int) -> bool:

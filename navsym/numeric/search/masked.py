@@ -11,13 +11,7 @@ from typing import Any
 import numpy as np
 
 from navsym.numeric.compiled import njit
-from navsym.numeric.search.sample import (
-    COMPILE,
-    criterion_masked,
-    height_or_nan,
-    offset_free_masked,
-    shift_of,
-)
+from navsym.numeric.search.sample import COMPILE, criterion_masked, height_or_nan, offset_free_masked, shift_of
 
 
 @njit(**COMPILE)

@@ -7,14 +7,7 @@ from typing import Any
 import numpy as np
 
 from navsym.numeric.compiled import njit
-from navsym.numeric.search.sample import (
-    COMPILE,
-    add_square,
-    criterion_one,
-    difference,
-    offset_free_one,
-    shift_of,
-)
+from navsym.numeric.search.sample import COMPILE, add_square, criterion_one, difference, offset_free_one, shift_of
 
 
 @njit(**COMPILE)

@@ -26,15 +26,7 @@ LEAST, GREATEST = np.iinfo(np.int64).min, np.iinfo(np.int64).max
 
 
 @njit(error_model="numpy", fastmath={"contract"})
-def predict(
-    Phi: Array,
-    y: Array,
-    P: Array,
-    h: Array,
-    ahead: Array,
-    B: Array,
-    g: Array,
-) -> float:
+def predict(Phi: Array, y: Array, P: Array, h: Array, ahead: Array, B: Array, g: Array) -> float:
     """Write Phi y into ``ahead``, Phi P Phi^T into B, B h into g; return h g. Phi is upper triangular."""
     n = y.shape[0]
     for i in range(n):
@@ -66,14 +58,7 @@ def predict(
 
 
 @njit(error_model="numpy")
-def innovation_variances(
-    s0: float,
-    h: Array,
-    q: Array,
-    seen: NDArray[np.bool_],
-    step: float,
-    out: Array,
-) -> None:
+def innovation_variances(s0: float, h: Array, q: Array, seen: NDArray[np.bool_], step: float, out: Array) -> None:
     """S of all candidates: digit i of the number c, base 3, keeps, lowers or raises the i-th q that is seen.
 
     Digit 0 keeps, so that among equal candidates the first one changes least. A q_i that the measurement does
@@ -186,13 +171,7 @@ def smallest_change(
 
 
 @njit(error_model="numpy")
-def candidate(
-    q: Array,
-    seen: NDArray[np.bool_],
-    step: float,
-    index: int,
-    out: Array,
-) -> None:
+def candidate(q: Array, seen: NDArray[np.bool_], step: float, index: int, out: Array) -> None:
     """Write the diagonal of a candidate by its number into ``out``; elements that are not seen stay."""
     for i in range(q.shape[0]):
         out[i] = q[i]
@@ -205,16 +184,7 @@ def candidate(
 
 @njit(error_model="numpy", fastmath={"contract"})
 def apply(
-    B: Array,
-    g: Array,
-    h: Array,
-    q: Array,
-    S: float,
-    ahead: Array,
-    innovation: float,
-    y: Array,
-    P: Array,
-    gain: Array,
+    B: Array, g: Array, h: Array, q: Array, S: float, ahead: Array, innovation: float, y: Array, P: Array, gain: Array
 ) -> None:
     """Correct by the chosen candidate: y, P and gain are written. P = P^- - K S K^T,
     symmetric by construction."""
@@ -272,9 +242,7 @@ def tune_one_step(
             if kind == LIKELIHOOD:
                 best, values[k] = likeliest(S, innovation * innovation, around)
             else:
-                best, values[k] = smallest_change(
-                    S, g, h, q, seen, step, innovation, ahead, y, weights, kind, direct
-                )
+                best, values[k] = smallest_change(S, g, h, q, seen, step, innovation, ahead, y, weights, kind, direct)
             candidate(q, seen, step, best, chosen)
             for i in range(n):
                 q[i] = chosen[i]

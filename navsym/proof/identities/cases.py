@@ -73,9 +73,7 @@ def one_value(factor: sp.Expr) -> sp.Expr:
     return value**exponent
 
 
-def half_range(
-    limits: Mapping[sp.Symbol, Range], inside: sp.Expr, sign: int
-) -> Mapping[sp.Symbol, Range] | None:
+def half_range(limits: Mapping[sp.Symbol, Range], inside: sp.Expr, sign: int) -> Mapping[sp.Symbol, Range] | None:
     """The part of the box where a symbol has this sign (or is zero), None when there is none; the box for the rest."""
     if not isinstance(inside, sp.Symbol):
         return limits

@@ -18,12 +18,7 @@ from navsym.proof.balls import enclose, tape
 from navsym.proof.identities.cases import vanishes_in_all_cases
 from navsym.proof.identities.inverses import KINDS, Solved, principal_least, solved_for_inverses
 from navsym.proof.identities.logarithms import expand_logarithms
-from navsym.proof.identities.normal_form import (
-    OutsideLanguageError,
-    Reduction,
-    reduce_to_zero,
-    vanishes_identically,
-)
+from navsym.proof.identities.normal_form import OutsideLanguageError, Reduction, reduce_to_zero, vanishes_identically
 from navsym.proof.identities.numbers import denested, is_zero
 from navsym.proof.sampling.points import Point, points, ranges
 
@@ -215,9 +210,7 @@ def by_derivative(printed: sp.Expr, derived: sp.Expr, box: Box) -> Proof | None:
     if point is None:
         return None
     place = ", ".join(f"{symbol} = {value}" for symbol, value in point.items())
-    return Proof(
-        "derivative", f"equal derivatives, and equal at {place}", conditions_of(printed, derived)
-    )
+    return Proof("derivative", f"equal derivatives, and equal at {place}", conditions_of(printed, derived))
 
 
 def smooth_on(expression: sp.Expr, box: Box) -> bool:
@@ -244,6 +237,13 @@ def common_point(difference: sp.Expr, symbols: list[sp.Symbol], box: Box) -> Poi
 
 #: What follows from algebra alone, and what the verdict of an equation tries, in this order.
 ALGEBRAIC: tuple[Way, ...] = (
-    by_normal_form, by_number, by_logarithms, by_nested_roots, by_cases, by_resolved_signs, by_coefficients, by_squares,
-)  # fmt: skip
+    by_normal_form,
+    by_number,
+    by_logarithms,
+    by_nested_roots,
+    by_cases,
+    by_resolved_signs,
+    by_coefficients,
+    by_squares,
+)
 WAYS: tuple[Way, ...] = (*ALGEBRAIC, by_inverses, by_derivative)

@@ -61,9 +61,7 @@ def add_terms(total: dict[Monomial, Fraction], terms: Mapping[Monomial, Fraction
             total.pop(monomial, None)
 
 
-def multiply_terms(
-    left: Mapping[Monomial, Fraction], right: Mapping[Monomial, Fraction]
-) -> dict[Monomial, Fraction]:
+def multiply_terms(left: Mapping[Monomial, Fraction], right: Mapping[Monomial, Fraction]) -> dict[Monomial, Fraction]:
     product: dict[Monomial, Fraction] = {}
     for m1, c1 in left.items():
         for m2, c2 in right.items():

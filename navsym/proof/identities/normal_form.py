@@ -24,13 +24,7 @@ from navsym.proof.identities.converter import Converter, UndefinedExpressionErro
 from navsym.proof.identities.ingredients import OutsideLanguageError
 from navsym.proof.identities.monomials import Monomial
 
-__all__ = [
-    "OutsideLanguageError",
-    "Reduction",
-    "UndefinedExpressionError",
-    "reduce_to_zero",
-    "vanishes_identically",
-]
+__all__ = ["OutsideLanguageError", "Reduction", "UndefinedExpressionError", "reduce_to_zero", "vanishes_identically"]
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,9 +9,7 @@ from flint import arb, arb_mat, ctx
 from navsym.proof.balls import precision
 
 
-def krawczyk(
-    centre: Sequence[arb], radius: Sequence[arb], value: Sequence[arb], jacobian: arb_mat
-) -> list[arb] | None:
+def krawczyk(centre: Sequence[arb], radius: Sequence[arb], value: Sequence[arb], jacobian: arb_mat) -> list[arb] | None:
     """Balls around the only zero of F in ``centre +- radius``, or None when the test fails.
 
     centre   : exact midpoint of the box

@@ -136,11 +136,13 @@ def touch(problem: Problem, basis: Basis, found: Polished, digits: int, bits: in
         value = total(z[:m], problem.target())
         lower, upper = lower_end(value, digits + 4), upper_end(value, digits + 4)
         solution = {
-            "from": "0", "to": "0", "basis": [[str(int(i == j)) for i in range(m)] for j in range(m)],
+            "from": "0",
+            "to": "0",
+            "basis": [[str(int(i == j)) for i in range(m)] for j in range(m)],
             "dual": [[c] for c in middles[:m]],
             "contacts": contact_rows(found, costs(problem, found, middles, places + loss + 8)),
             "radius": with_ends(found, costs(problem, found, spread, 3, 1)),
-        }  # fmt: skip
+        }
         document = header(problem, "touch", bits, cells, lower, upper) | {"pieces": [solution]}
         return Certified(exact(lower), exact(upper), support_of(found, z), tuple(z[:m]), True, document)
 
@@ -161,9 +163,7 @@ def spreads(problem: Problem, basis: Basis, found: Polished, places: int) -> lis
     return [unit * c.mid() for c in columns] + [unit] * free + [unit * weights.mid()] * len(found.weights)
 
 
-def solution_box(
-    problem: Problem, found: Polished, centre: Sequence[arb], radius: Sequence[arb]
-) -> list[arb] | None:
+def solution_box(problem: Problem, found: Polished, centre: Sequence[arb], radius: Sequence[arb]) -> list[arb] | None:
     """Balls around the exact solution of the optimality system, by Krawczyk's test."""
     if len(found.v) == len(found.dual):
         return alternance_image(problem, found, centre, radius)
@@ -244,10 +244,13 @@ def costs(problem: Problem, found: Polished, values: Sequence[str], digits: int,
     """The weights at the end of the unknowns times their sigma: what a certificate holds."""
     head = len(values) - len(found.panel)
     panels = [problem.panels[k] for k in found.panel]
-    return [*values[:head], *(
-        w if panel.sigma == 1 else decimal(rational(panel.bound() * arb(exact(w))), digits, direction)
-        for panel, w in zip(panels, values[head:], strict=True)
-    )]  # fmt: skip
+    return [
+        *values[:head],
+        *(
+            w if panel.sigma == 1 else decimal(rational(panel.bound() * arb(exact(w))), digits, direction)
+            for panel, w in zip(panels, values[head:], strict=True)
+        ),
+    ]
 
 
 def contact_rows(found: Polished, middles: Sequence[str]) -> list[dict[str, Any]]:
@@ -290,9 +293,14 @@ def support_of(found: Polished, z: Sequence[arb]) -> tuple[tuple[int, arb, arb],
 
 
 def gap(
-    problem: Problem, basis: Basis, contacts: Contacts, found: Polished, digits: int, bits: int,
+    problem: Problem,
+    basis: Basis,
+    contacts: Contacts,
+    found: Polished,
+    digits: int,
+    bits: int,
     carriers: Contacts | None = None,
-) -> Certified:  # fmt: skip
+) -> Certified:
     """The two-sided certificate; the dual is shrunk until nothing above the bound is left.
 
     carriers : what carries the weights; by default the contacts
@@ -315,9 +323,7 @@ def gap(
             "support": [[k, decimal(v, places)] for k, v in support],
         }
         rows = tuple((k, arb(v), w) for (k, v), w in zip(support, weights, strict=True))
-        shown = tuple(
-            row for row in rows if not bool(abs(row[2]) < arb(10) ** (-digits) * abs(arb(exact(upper))))
-        )
+        shown = tuple(row for row in rows if not bool(abs(row[2]) < arb(10) ** (-digits) * abs(arb(exact(upper)))))
         return Certified(exact(lower), exact(upper), shown, tuple(arb(c) for c in x), None, document)
 
 
@@ -436,6 +442,9 @@ def header(problem: Problem, kind: str, bits: int, cells: int, lower: str, upper
 
 def panel_row(panel: Panel) -> dict[str, Any]:
     return {
-        "measurement": panel.measurement, "from": to_text(panel.start), "to": to_text(panel.end),
-        "sigma": to_text(panel.sigma), "H": [to_text(h) for h in panel.functions],
-    }  # fmt: skip
+        "measurement": panel.measurement,
+        "from": to_text(panel.start),
+        "to": to_text(panel.end),
+        "sigma": to_text(panel.sigma),
+        "H": [to_text(h) for h in panel.functions],
+    }

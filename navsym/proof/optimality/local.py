@@ -68,9 +68,7 @@ class Local:
         return done
 
 
-def local(
-    panels: Sequence[Panel], places: Sequence[int], v: Sequence[arb], inner: Sequence[bool], goal: arb
-) -> Local:
+def local(panels: Sequence[Panel], places: Sequence[int], v: Sequence[arb], inner: Sequence[bool], goal: arb) -> Local:
     """H about the places v with as many terms as reach the goal, or the most."""
     digits = -float(goal.log() / arb(10).log())
     order = min(MOST_TERMS - 1, max(2, int(digits / MOVE) + 1))

@@ -44,9 +44,14 @@ def follow(
 
 
 def march(
-    track: Track, member: Member, at: fmpq, last: fmpq, failures: int = MOST_FAILURES,
-    enough: Callable[[], bool] = never, accepts: Accepts = always,
-) -> list[Piece]:  # fmt: skip
+    track: Track,
+    member: Member,
+    at: fmpq,
+    last: fmpq,
+    failures: int = MOST_FAILURES,
+    enough: Callable[[], bool] = never,
+    accepts: Accepts = always,
+) -> list[Piece]:
     """Pieces from ``at`` to ``last``, upwards or downwards; given up after ``failures`` halvings of one step, and when
     it is enough.
 

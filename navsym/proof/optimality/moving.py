@@ -106,9 +106,7 @@ class Moving:
         n = ctx.cap
         flat = arb_mat([[number_of(part, j) for part in h for j in range(n)] for h in H])
         q = (matrix * flat).tolist()
-        return [
-            [arb_series(row[n * k : n * (k + 1)]) * scale for k in range(order + 1)] for row in q
-        ]
+        return [[arb_series(row[n * k : n * (k + 1)]) * scale for k in range(order + 1)] for row in q]
 
     def target(self, s: arb) -> list[Any]:
         """``A P`` about s."""

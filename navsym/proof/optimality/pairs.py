@@ -33,12 +33,7 @@ def decide_optimum(statement: Optimum) -> Verdict:
     """Verdict of a printed optimum; REFUTED as soon as one of the four conditions is."""
     if statement.variable in fixed_parts(statement).free_symbols:
         return Verdict(OPEN, "none", evidence=f"{statement.variable} occurs outside the regressors; name it otherwise")
-    parts = [
-        constraints(statement),
-        instants(statement),
-        feasibility(statement),
-        equal_values(statement),
-    ]
+    parts = [constraints(statement), instants(statement), feasibility(statement), equal_values(statement)]
     verdict = combine(parts)
     if verdict.status.holds:
         verdict = replace(verdict, assumptions=tuple(dict.fromkeys((*verdict.assumptions, *assumed(statement)))))
@@ -69,7 +64,11 @@ def assumed(statement: Optimum) -> tuple[str, ...]:
 def fixed_parts(statement: Optimum) -> sp.Basic:
     """What does not move with the variable: a dual that does, such as -5/t, would satisfy every bound."""
     return sp.Tuple(
-        *statement.dual, *statement.support, *statement.weights, *statement.functional, *statement.interval,
+        *statement.dual,
+        *statement.support,
+        *statement.weights,
+        *statement.functional,
+        *statement.interval,
         statement.value,
     )
 
@@ -84,10 +83,7 @@ def constraints(statement: Optimum) -> Verdict:
     """sum_j phi_j H(t_j) = P."""
     total = [
         sum(
-            (
-                w * h.subs(statement.variable, at)
-                for w, at in zip(statement.weights, statement.support, strict=True)
-            ),
+            (w * h.subs(statement.variable, at) for w, at in zip(statement.weights, statement.support, strict=True)),
             sp.Integer(0),
         )
         for h in statement.regressors
@@ -115,9 +111,7 @@ def from_signs(proofs: Sequence[SignProof], what: str) -> Verdict:
 
 def feasibility(statement: Optimum) -> Verdict:
     """1 - x.H(t) >= 0 and 1 + x.H(t) >= 0 on the interval, as products where they factor."""
-    polynomial = sum(
-        (x * h for x, h in zip(statement.dual, statement.regressors, strict=True)), sp.Integer(0)
-    )
+    polynomial = sum((x * h for x, h in zip(statement.dual, statement.regressors, strict=True)), sp.Integer(0))
     start, end = statement.interval
     if SHARE in sp.Tuple(polynomial, start, end).free_symbols:
         return Verdict(OPEN, "none", evidence="the name share is taken by the position in the interval")
@@ -125,9 +119,7 @@ def feasibility(statement: Optimum) -> Verdict:
     verdicts = []
     for side in (1 - polynomial, 1 + polynomial):
         product = as_product(side)
-        inside = (side if product is None else product).subs(
-            statement.variable, start + (end - start) * SHARE
-        )
+        inside = (side if product is None else product).subs(statement.variable, start + (end - start) * SHARE)
         verdicts.append(everywhere(decide_difference(inside, ">=", box, scope_of(inside, box))))
     return combine(verdicts)
 
@@ -142,13 +134,9 @@ def everywhere(verdict: Verdict) -> Verdict:
 
 def equal_values(statement: Optimum) -> Verdict:
     """sum |phi_j| = x . P = printed value, with the signs of the weights proved."""
-    dual_value = sum(
-        (x * p for x, p in zip(statement.dual, statement.functional, strict=True)), sp.Integer(0)
-    )
+    dual_value = sum((x * p for x, p in zip(statement.dual, statement.functional, strict=True)), sp.Integer(0))
     proved = [modulus(weight, statement.box) for weight in statement.weights]
-    sizes = [
-        sp.Abs(weight) if size is None else size for size, weight in zip(proved, statement.weights, strict=True)
-    ]
+    sizes = [sp.Abs(weight) if size is None else size for size, weight in zip(proved, statement.weights, strict=True)]
     primal_value = sum(sizes, sp.Integer(0))
     sides = Equation((statement.value, primal_value), (dual_value, dual_value), statement.box)
     return decide_equation(sides)

@@ -51,9 +51,7 @@ class Polished:
     touching: tuple[tuple[int, fmpq], ...] = ()
 
 
-def polish(
-    panels: Sequence[Panel], basis: Basis, contacts: Contacts, bits: int, goal: arb | float
-) -> Polished:
+def polish(panels: Sequence[Panel], basis: Basis, contacts: Contacts, bits: int, goal: arb | float) -> Polished:
     """Newton with a fixed Jacobian until the correction is below ``goal`` or stops shrinking.
 
     Steps that run away lead back to where they began; the answer is then called irregular.
@@ -96,9 +94,16 @@ def polish(
         weights = [a * basis.size / panels[k].bound() for a, k in zip(w, contacts.panel, strict=True)]
         touching = tuple((k, as_fraction(u)) for k, u in contacts.touching)
         return Polished(
-            tuple(int(k) for k in contacts.panel), tuple(v), tuple(inner), tuple(signs),
-            tuple(a.mid() for a in weights), tuple(dual[i, 0].mid() for i in range(m)), float(size), regular, touching,
-        )  # fmt: skip
+            tuple(int(k) for k in contacts.panel),
+            tuple(v),
+            tuple(inner),
+            tuple(signs),
+            tuple(a.mid() for a in weights),
+            tuple(dual[i, 0].mid() for i in range(m)),
+            float(size),
+            regular,
+            touching,
+        )
 
 
 def pinned(
@@ -125,9 +130,16 @@ def pinned(
 def pseudo_inverse(basis: Basis, contacts: Contacts) -> tuple[np.ndarray, bool]:
     C = basis.panels.coefficients
     _, J = contact_system(
-        C, *basis.panels.derivatives, basis.panels.functional, contacts.panel, contacts.u, contacts.inner,
-        contacts.sign, contacts.dual, contacts.weights,
-    )  # fmt: skip
+        C,
+        *basis.panels.derivatives,
+        basis.panels.functional,
+        contacts.panel,
+        contacts.u,
+        contacts.inner,
+        contacts.sign,
+        contacts.dual,
+        contacts.weights,
+    )
     if J.shape[0] == J.shape[1] and (inverse := well_conditioned(J)) is not None:
         return inverse, True
     U, s, Vt = np.linalg.svd(J)
@@ -162,9 +174,16 @@ def correction(inverse: np.ndarray, F: Sequence[arb]) -> list[arb]:
 
 
 def residual(
-    about: Local, bounds: Sequence[arb], basis: Basis, x: Sequence[arb], v: Sequence[arb],
-    w: Sequence[arb], p: Sequence[arb], signs: Sequence[int], inner: Sequence[bool],
-) -> list[arb]:  # fmt: skip
+    about: Local,
+    bounds: Sequence[arb],
+    basis: Basis,
+    x: Sequence[arb],
+    v: Sequence[arb],
+    w: Sequence[arb],
+    p: Sequence[arb],
+    signs: Sequence[int],
+    inner: Sequence[bool],
+) -> list[arb]:
     """The optimality system in high precision; slopes with respect to u = 2 v - 1.
 
     bounds : the noise bound at every contact

@@ -132,9 +132,7 @@ def at_number(curves: Sequence[Sequence[fmpq]], s: int, m: int) -> tuple[list[fm
     return values[:m], values[m : m + l], values[m + l :]
 
 
-def solution_curves(
-    moving: Moving, pattern: Pattern, start: Sequence[fmpq]
-) -> list[list[fmpq]] | None:
+def solution_curves(moving: Moving, pattern: Pattern, start: Sequence[fmpq]) -> list[list[fmpq]] | None:
     """Taylor polynomials of the solution about the middle: ``z <- z - F'(0)^-1 F(z(s))``, an order a step."""
     free = free_places(pattern, moving.size)
     found = corrected(moving, pattern, [[c] for c in start], free)
@@ -233,9 +231,7 @@ def dot(x: Sequence[Any], y: Sequence[Any]) -> Any:
     return value
 
 
-def verified(
-    track: Track, moving: Moving, curves: Sequence[Sequence[fmpq]]
-) -> tuple[dict[str, Any], int, arb] | None:
+def verified(track: Track, moving: Moving, curves: Sequence[Sequence[fmpq]]) -> tuple[dict[str, Any], int, arb] | None:
     """Krawczyk's test for all s, signs, places and the bound off the contacts; the row, cells, the value."""
     pattern, m = track.pattern, moving.size
     z = [list(map(arb, c)) for c in curves]
@@ -297,15 +293,17 @@ def enclosed_series(function: Callable[[arb], list[Any]]) -> list[list[arb]]:
         thin = function(arb(0))
     with terms(ORDER + 1):
         wide = function(EVERY)
-    return [
-        [*(number_of(a, k) for k in range(ORDER)), number_of(b, ORDER)] for a, b in zip(thin, wide, strict=True)
-    ]
+    return [[*(number_of(a, k) for k in range(ORDER)), number_of(b, ORDER)] for a, b in zip(thin, wide, strict=True)]
 
 
 def image(
-    moving: Moving, pattern: Pattern, z: Sequence[Sequence[arb]], residual: Sequence[Sequence[arb]],
-    radius: dict[int, arb], free: Sequence[int],
-) -> dict[int, arb] | None:  # fmt: skip
+    moving: Moving,
+    pattern: Pattern,
+    z: Sequence[Sequence[arb]],
+    residual: Sequence[Sequence[arb]],
+    radius: dict[int, arb],
+    free: Sequence[int],
+) -> dict[int, arb] | None:
     """Newton's step from the moving centre for all s, by the derivatives of the whole box; None when they look
     singular. The checker does the same, with balls of the same order."""
     n = len(free)
@@ -387,22 +385,19 @@ def expansion(
     return [*point, last]
 
 
-def row(
-    track: Track, moving: Moving, curves: Sequence[Sequence[fmpq]], radius: dict[int, arb]
-) -> dict[str, Any]:
+def row(track: Track, moving: Moving, curves: Sequence[Sequence[fmpq]], radius: dict[int, arb]) -> dict[str, Any]:
     """The piece as plain data. A place at an end is an unknown for the checker, too, with an equation of its own."""
     m, l, smallest = moving.size, len(track.pattern), min(radius.values(), key=rational)
     text = lambda c: [decimal(a, 60) for a in c]  # noqa: E731
     contacts = [
-        {
-            "panel": k, "at": text(curves[m + i]) if kind == "no" else [place_of(kind)],
-            "weight": text(curves[m + l + i]),
-        }
+        {"panel": k, "at": text(curves[m + i]) if kind == "no" else [place_of(kind)], "weight": text(curves[m + l + i])}
         for i, (k, kind, _) in enumerate(track.pattern)
-    ]  # fmt: skip
+    ]
     return {
-        "from": fraction(moving.middle - moving.half), "to": fraction(moving.middle + moving.half),
+        "from": fraction(moving.middle - moving.half),
+        "to": fraction(moving.middle + moving.half),
         "basis": [[fraction(moving.basis[i, j]) for j in range(m)] for i in range(m)],
-        "dual": [text(c) for c in curves[:m]], "contacts": contacts,
+        "dual": [text(c) for c in curves[:m]],
+        "contacts": contacts,
         "radius": [decimal(rational(radius.get(k, smallest)), 12, 1) for k in range(m + 2 * l)],
-    }  # fmt: skip
+    }

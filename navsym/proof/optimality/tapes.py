@@ -119,7 +119,7 @@ FLOATS: dict[str, Any] = {
 } | {
     name: (lambda f: lambda c, a, v: f(a[0]))(getattr(np, name))
     for name in ("sin", "cos", "exp", "log", "abs", "sign", "sinh", "cosh", "tanh")
-}  # fmt: skip
+}
 
 
 def product(factors: Sequence[Any]) -> Any:

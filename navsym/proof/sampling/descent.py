@@ -98,9 +98,7 @@ def compass(value: Callable[[Place], float], place: Place) -> Place:
 # -- Newton ---------------------------------------
 
 
-def polisher(
-    goal: sp.Expr, symbols: list[sp.Symbol]
-) -> Callable[[dict[sp.Symbol, Fraction]], Iterator[Guess]]:
+def polisher(goal: sp.Expr, symbols: list[sp.Symbol]) -> Callable[[dict[sp.Symbol, Fraction]], Iterator[Guess]]:
     """Newton's method towards a zero of the gradient; it yields nothing where there is no gradient."""
     gradient = [sp.diff(goal, symbol) for symbol in symbols]
     hessian = [[sp.diff(slope, symbol) for symbol in symbols] for slope in gradient]

@@ -52,9 +52,7 @@ class Look:
     exact: bool = False  # the difference is exactly zero there
     positive: Point | None = None
     negative: Point | None = None
-    touching: Point | None = (
-        None  # the difference is almost zero there, and equality would break the relation
-    )
+    touching: Point | None = None  # the difference is almost zero there, and equality would break the relation
 
 
 def second_look(

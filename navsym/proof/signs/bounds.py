@@ -55,9 +55,7 @@ ALGEBRA = (4000, 800, 200)
 FEW = 64
 
 
-def prove_sign(
-    expression: sp.Expr, box: Box, wanted: Sign = Sign.NONNEGATIVE, budget: int = 4000
-) -> SignProof:
+def prove_sign(expression: sp.Expr, box: Box, wanted: Sign = Sign.NONNEGATIVE, budget: int = 4000) -> SignProof:
     """Prove that the expression is nonnegative (or positive) on the box, or return unknown."""
     expression = sp.sympify(expression, strict=True)
     limits = ranges(sorted(expression.free_symbols, key=str), box)
@@ -151,9 +149,7 @@ def exists(expression: sp.Expr, limits: Limits, budget: int, depth: int) -> bool
     return is_defined(expression, limits, lambda inside, on, sign: attempt(inside, on, sign, budget // 4, depth + 1))
 
 
-def by_simple_taylor(
-    expression: sp.Expr, limits: Limits, wanted: Sign, budget: int, depth: int
-) -> SignProof:
+def by_simple_taylor(expression: sp.Expr, limits: Limits, wanted: Sign, budget: int, depth: int) -> SignProof:
     """Derivatives at an end; their signs by exact ways and a few balls only."""
 
     def simple(simpler: sp.Expr, on: Limits, sign: Sign) -> SignProof:
@@ -261,7 +257,5 @@ def power_sign(expression: sp.Pow, limits: Limits, budget: int, depth: int) -> S
         return UNKNOWN  # tan(x)**2 is nonnegative only where it exists
     if even:
         strict = proof.sign == Sign.POSITIVE
-        return SignProof(
-            Sign.POSITIVE if strict else Sign.NONNEGATIVE, "even power", proof.boxes, proof.exact
-        )
+        return SignProof(Sign.POSITIVE if strict else Sign.NONNEGATIVE, "even power", proof.boxes, proof.exact)
     return UNKNOWN if flipped else SignProof(proof.sign, "power of a signed base", proof.boxes, proof.exact)

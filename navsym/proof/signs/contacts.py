@@ -64,9 +64,7 @@ def contact_pieces(
         near_right = upper - width * share if orders[1] else upper
         if orders[0] and not derivative_sign(program, symbol, lower, near_left, orders[0], False):
             continue
-        if orders[1] and not derivative_sign(
-            program, symbol, near_right, upper, orders[1], orders[1] % 2 == 1
-        ):
+        if orders[1] and not derivative_sign(program, symbol, near_right, upper, orders[1], orders[1] % 2 == 1):
             continue
         inside = {symbol: Range(near_left, near_right)}
         rest = subdivide(expression, inside, Sign.POSITIVE, budget)

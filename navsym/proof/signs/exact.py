@@ -92,9 +92,7 @@ def middle_half_turn(values: list[sp.Expr]) -> int:
     return math.floor(middle / math.pi)
 
 
-def range_sign(
-    angle: sp.Expr, values: list[sp.Expr], limits: Limits, allowed: tuple[sp.Expr, sp.Expr]
-) -> SignProof:
+def range_sign(angle: sp.Expr, values: list[sp.Expr], limits: Limits, allowed: tuple[sp.Expr, sp.Expr]) -> SignProof:
     """Positive when the angle stays strictly inside the allowed range, nonnegative when it touches."""
     strict = True
     for margin in (lambda value: value - allowed[0], lambda value: allowed[1] - value):

@@ -59,9 +59,13 @@ def without_angles(expression: sp.Expr, limits: Limits) -> tuple[sp.Expr, HalfAn
 def function_of(node: sp.Expr, cosine: sp.Expr, sine: sp.Expr) -> sp.Expr:
     """The six functions by cosine and sine."""
     kinds = {
-        sp.cos: lambda: cosine, sp.sin: lambda: sine, sp.tan: lambda: sine / cosine,
-        sp.cot: lambda: cosine / sine, sp.sec: lambda: 1 / cosine, sp.csc: lambda: 1 / sine,
-    }  # fmt: skip
+        sp.cos: lambda: cosine,
+        sp.sin: lambda: sine,
+        sp.tan: lambda: sine / cosine,
+        sp.cot: lambda: cosine / sine,
+        sp.sec: lambda: 1 / cosine,
+        sp.csc: lambda: 1 / sine,
+    }
     return kinds[node.func]()
 
 

@@ -174,7 +174,6 @@ def formula(root: Place, piece: Piece) -> sp.Expr | None:
     return None if root.value is None else piece.back(root.value)
 
 
-
 # -- what the search for signs asks ---------------------------------------
 
 

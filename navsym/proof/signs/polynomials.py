@@ -133,9 +133,7 @@ def cones(polynomial: fmpq_mpoly, spans: Sequence[Span]) -> Iterator[Cone]:
         yield one_cone(polynomial, spans, dict(zip(used, chosen, strict=True)), even)
 
 
-def one_cone(
-    polynomial: fmpq_mpoly, spans: Sequence[Span], signs: dict[int, int], even: set[int]
-) -> Cone:
+def one_cone(polynomial: fmpq_mpoly, spans: Sequence[Span], signs: dict[int, int], even: set[int]) -> Cone:
     """Places 0 .. n-1 belong to the variables, n .. 2n-1 to the other ends of bounded ones, 2n makes it homogeneous."""
     n = len(spans)
     context = fmpq_mpoly_ctx.get([f"y{k}" for k in range(2 * n + 1)], Ordering.lex)
@@ -162,9 +160,7 @@ def one_cone(
     return Cone(total, tuple(alive))
 
 
-def carried(
-    span: Span, sign: int, y: fmpq_mpoly, twin: fmpq_mpoly, one: fmpq_mpoly
-) -> tuple[fmpq_mpoly, fmpq_mpoly]:
+def carried(span: Span, sign: int, y: fmpq_mpoly, twin: fmpq_mpoly, one: fmpq_mpoly) -> tuple[fmpq_mpoly, fmpq_mpoly]:
     """The variable as a quotient of two forms of nonnegative variables, the lower one positive."""
     if span.lower is not None and span.upper is not None:
         return span.lower * twin + span.upper * y, y + twin

@@ -105,9 +105,7 @@ def is_symmetric(
 ) -> bool:
     """Reflection of all angles about the middle power keeps (or negates) the coefficients."""
     for exponents, coefficient in terms.items():
-        mirrored = tuple(
-            int(2 * centre[place] - e) if place in centre else e for place, e in enumerate(exponents)
-        )
+        mirrored = tuple(int(2 * centre[place] - e) if place in centre else e for place, e in enumerate(exponents))
         if terms.get(mirrored) != parity * coefficient:
             return False
     return True

@@ -77,7 +77,4 @@ def split(
             return None
         middle = arb(piece[widest].mid())
         lower, upper = piece[widest].lower(), piece[widest].upper()
-        return [
-            {**piece, widest: arb(lower).union(middle)},
-            {**piece, widest: middle.union(arb(upper))},
-        ]
+        return [{**piece, widest: arb(lower).union(middle)}, {**piece, widest: middle.union(arb(upper))}]

@@ -25,14 +25,7 @@ from navsym.proof.sampling.points import Range
 from navsym.proof.signs.half_angles import HalfAngles, without_angles
 from navsym.proof.signs.known import Sign, constant_sign
 from navsym.proof.signs.products import monomial_expression
-from navsym.proof.signs.real_roots import (
-    MOST_DEGREE,
-    Place,
-    UndecidedError,
-    compare,
-    place_of,
-    rational_place,
-)
+from navsym.proof.signs.real_roots import MOST_DEGREE, Place, UndecidedError, compare, place_of, rational_place
 
 #: Functions that are no rational functions of one u.
 BENT = (sp.Abs, sp.sign, sp.Max, sp.Min, sp.atan2)
@@ -82,8 +75,10 @@ def carried(expressions: Sequence[sp.Expr], symbol: sp.Symbol, limit: Range) -> 
         quotients = [converter.convert(part) for part in rational.args]
     except (NavsymError, OverflowError, ZeroDivisionError):
         return None
-    return by_tangent(converter, quotients, symbol, limit, angles) if angles.tangents else (
-        by_generators(converter, quotients, symbol, limit)
+    return (
+        by_tangent(converter, quotients, symbol, limit, angles)
+        if angles.tangents
+        else (by_generators(converter, quotients, symbol, limit))
     )
 
 
@@ -142,7 +137,10 @@ def closed_ends(limit: Range) -> tuple[bool, bool]:
 
 
 def rising(
-    limit: Range, closed: tuple[bool, bool], forth: Callable[[sp.Expr], sp.Expr], back: Callable[[sp.Expr], sp.Expr],
+    limit: Range,
+    closed: tuple[bool, bool],
+    forth: Callable[[sp.Expr], sp.Expr],
+    back: Callable[[sp.Expr], sp.Expr],
     least: Place | None = None,
 ) -> Piece:
     """The piece of an u that rises with the symbol; ``least`` is its limit towards minus infinity."""
@@ -151,9 +149,7 @@ def rising(
     return Piece(lower, upper, closed, (limit.lower, limit.upper), back)
 
 
-def by_symbol(
-    converter: Converter, quotients: Sequence[Quotient], symbol: sp.Symbol, limit: Range
-) -> Carried | None:
+def by_symbol(converter: Converter, quotients: Sequence[Quotient], symbol: sp.Symbol, limit: Range) -> Carried | None:
     """u**q = x; a root is taken only of a symbol that is declared nonnegative."""
     q = converter.found.symbols[symbol]
     place = list(converter.found.symbols).index(symbol)

@@ -25,10 +25,33 @@ TOKEN = re.compile(
 LETTERS = GREEK | {"varphi": "φ", "varepsilon": "ε", "ell": "ℓ", "partial": "∂", "infty": "∞"}
 FUNCTIONS = frozenset("sin cos tan cot exp log ln max min det arctan diag tr".split())
 SIGNS = {
-    "cdot": "·", "times": "×", "le": "≤", "ge": "≥", "ne": "≠", "ll": "≪", "gg": "≫", "approx": "≈", "pm": "±",
-    "to": "→", "in": "∈", "ldots": "…", "colon": ":", "|": "‖", "circ": "∘", "sum": "∑", "int": "∫", "iint": "∬",
-    "{": "{", "}": "}", "%": "%", "top": "⊤", "mid": "∣", "forall": "∀", "dots": "…", "cdots": "⋯",
-}  # fmt: skip
+    "cdot": "·",
+    "times": "×",
+    "le": "≤",
+    "ge": "≥",
+    "ne": "≠",
+    "ll": "≪",
+    "gg": "≫",
+    "approx": "≈",
+    "pm": "±",
+    "to": "→",
+    "in": "∈",
+    "ldots": "…",
+    "colon": ":",
+    "|": "‖",
+    "circ": "∘",
+    "sum": "∑",
+    "int": "∫",
+    "iint": "∬",
+    "{": "{",
+    "}": "}",
+    "%": "%",
+    "top": "⊤",
+    "mid": "∣",
+    "forall": "∀",
+    "dots": "…",
+    "cdots": "⋯",
+}
 SPACES = {",": "0.17em", ";": "0.28em", " ": "0.25em", "quad": "1em", "qquad": "2em"}
 ACCENTS = {"dot": "˙", "ddot": "¨", "hat": "^", "tilde": "~", "bar": "¯", "overline": "¯"}
 BRACKETS = "()[]|./"
@@ -77,7 +100,7 @@ class Reader:
         while (token := self.next) is not None:
             new = bool(found[-1]) and may_break(before, token)
             part = self.scripted()
-            if new:                                  # the first sign of a row would be taken for a prefix
+            if new:  # the first sign of a row would be taken for a prefix
                 found.append(part.replace("<mo", '<mo form="infix"', 1))
             else:
                 found[-1] += part
@@ -88,7 +111,7 @@ class Reader:
         """An atom with what hangs below and above it."""
         first = self.next["word"] if self.next is not None else None
         large, gap = first in STRETCHED, '<mspace width="0.1em"></mspace>' if first in FUNCTIONS else ""
-        hanging = self.next is not None and self.next["char"] in ("_", "^")     # m/s$^2$: nothing to hang on
+        hanging = self.next is not None and self.next["char"] in ("_", "^")  # m/s$^2$: nothing to hang on
         base, below, above = "<mrow></mrow>" if hanging else self.atom(), "", ""
         while (token := self.next) is not None and token["char"] in ("_", "^"):
             self.take()

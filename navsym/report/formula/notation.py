@@ -94,14 +94,19 @@ def latex_matrix(rows: list[list[str]]) -> str:
     return r"\begin{bmatrix} " + apart.join(lines) + r" \end{bmatrix}"
 
 
-BESIDE_A_FUNCTION = "thin *"     # a product in which the name of a function would touch its neighbour
-MATHML_SIGNS = {
-    "-": "−", "*": "⁢", "<=": "≤", ">=": "≥", "!=": "≠", "+-": "±",
-}  # fmt: skip
+BESIDE_A_FUNCTION = "thin *"  # a product in which the name of a function would touch its neighbour
+MATHML_SIGNS = {"-": "−", "*": "⁢", "<=": "≤", ">=": "≥", "!=": "≠", "+-": "±"}
 LATEX_SIGNS = {
-    "*": r"\,", BESIDE_A_FUNCTION: r"\,",
-    "<=": r" \le ", ">=": r" \ge ", "!=": r" \ne ", "+-": r" \pm ", "/": "/", "·": r" \cdot ", ";": r";\quad ",
-}  # fmt: skip
+    "*": r"\,",
+    BESIDE_A_FUNCTION: r"\,",
+    "<=": r" \le ",
+    ">=": r" \ge ",
+    "!=": r" \ne ",
+    "+-": r" \pm ",
+    "/": "/",
+    "·": r" \cdot ",
+    ";": r";\quad ",
+}
 
 POWER_OF_TEN = "<mrow><mn>{}</mn><mo>·</mo><msup><mn>10</mn><mn>{}</mn></msup></mrow>"
 MATHML = Style(

@@ -60,9 +60,7 @@ def mathml(text: str, inline: bool = False) -> str | None:
     several = node.kind == "list" and node.text == ";"
     style = MATHML.above() if inline else MATHML
     bodies = [write(part, style) for part in (node.parts if several else (node,))]
-    return "".join(
-        f'<math xmlns="http://www.w3.org/1998/Math/MathML" display="block">{body}</math>' for body in bodies
-    )
+    return "".join(f'<math xmlns="http://www.w3.org/1998/Math/MathML" display="block">{body}</math>' for body in bodies)
 
 
 def latex(text: str, inline: bool = False) -> str | None:

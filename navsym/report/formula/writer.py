@@ -9,11 +9,17 @@ from navsym.report.formula.reader import Node, unwrapped
 from navsym.report.page_names import letter_of, split_name
 
 ATOM, POWER, FACTOR, PRODUCT, SUM, RELATION, LIST = 7, 6, 5, 4, 3, 2, 1
-UNNAMED = frozenset(("sqrt", "abs", "Abs", "exp"))     # functions with a sign of their own
+UNNAMED = frozenset(("sqrt", "abs", "Abs", "exp"))  # functions with a sign of their own
 LEVELS = {
-    "list": LIST, "relation": RELATION, "sum": SUM, "difference": SUM, "minus": SUM,
-    "product": PRODUCT, "quotient": FACTOR, "power": POWER,
-}  # fmt: skip
+    "list": LIST,
+    "relation": RELATION,
+    "sum": SUM,
+    "difference": SUM,
+    "minus": SUM,
+    "product": PRODUCT,
+    "quotient": FACTOR,
+    "power": POWER,
+}
 
 
 def write(node: Node, style: Style, floor: int = 0) -> str:
