@@ -9,7 +9,7 @@ import sympy as sp
 
 from navsym.errors import NavsymError
 from navsym.models.derivation import Derivation
-from navsym.text.expression import to_text
+from navsym.text.printer import to_text
 
 TRIALS = 8
 

@@ -24,8 +24,8 @@ from navsym.proof.optimality.enclosure import rational
 from navsym.text.expression import to_text
 
 #: More regressors than this with coefficients that are not rational are not solved for; longer ones are rounded.
-MOST, LONGEST = 4, 40
-NOTHING = 1e-40
+MOST, LETTERS = 4, 40
+TINY = 1e-40
 SHARES = [sp.Rational(k, 12) for k in (0, 12, 6, 3, 9, 4, 8, 2, 10, 1, 5, 7, 11)]
 DECIDING = 1200
 Relation = dict[int, sp.Expr]
@@ -76,7 +76,7 @@ def integrated_direction(problem: GuaranteedProblem, kept: Sequence[int]) -> Nul
 
 def undecided(problem: GuaranteedProblem, k: int, balls: dict[int, arb]) -> NavsymError:
     """What is known where no relation is proved: the direction along which nothing is seen to change."""
-    seen = {j: decimal(-c, 12) for j, c in balls.items() if not abs(c) < NOTHING} | {k: "1"}
+    seen = {j: decimal(-c, 12) for j, c in balls.items() if not abs(c) < TINY} | {k: "1"}
     near = [seen.get(j, "0") for j in range(len(problem.functional))]
     got = "functions that agree to 1800 digits"
     if problem.error:
@@ -91,12 +91,12 @@ def undecided(problem: GuaranteedProblem, k: int, balls: dict[int, arb]) -> Navs
 def in_words(c: sp.Expr) -> str:
     """An exact number, rounded where its text is long."""
     text = to_text(c)
-    return text if len(text) <= LONGEST else decimal(enclose(c), 15)
+    return text if len(text) <= LETTERS else decimal(enclose(c), 15)
 
 
 def proved_relation(problem: GuaranteedProblem, k: int, balls: dict[int, arb]) -> Relation | None:
     """Exact c with ``H_k = sum c_j H_j`` on all measurements at all times, or None where there is no proof."""
-    involved = [j for j, c in balls.items() if not abs(c) < NOTHING]
+    involved = [j for j, c in balls.items() if not abs(c) < TINY]
     near = {j: recognised(balls[j]) for j in involved}
     if all(c is not None for c in near.values()):
         relation: Relation | None = {j: c for j, c in near.items() if c is not None}
@@ -123,7 +123,7 @@ def solved_at_instants(problem: GuaranteedProblem, k: int, involved: list[int]) 
         for row in stretch.rows
         for share in SHARES
     ]
-    chosen = independent_rows(np.array([[float(enclose(h).mid()) for h in row] for row in rows]), len(involved))
+    chosen = rows_of_full_rank(np.array([[float(enclose(h).mid()) for h in row] for row in rows]), len(involved))
     if chosen is None:
         return None
     N = sp.Matrix([rows[i][:-1] for i in chosen])
@@ -131,7 +131,7 @@ def solved_at_instants(problem: GuaranteedProblem, k: int, involved: list[int]) 
     return dict(zip(involved, N.adjugate() * right / N.det(method="berkowitz"), strict=True))
 
 
-def independent_rows(values: np.ndarray, count: int) -> list[int] | None:
+def rows_of_full_rank(values: np.ndarray, count: int) -> list[int] | None:
     """Rows whose first ``count`` entries are independent, the best first; None when there are not enough."""
     if not np.isfinite(values).all():
         return None

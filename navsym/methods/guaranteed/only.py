@@ -41,7 +41,7 @@ from navsym.proof.optimality.fixed import flattened
 from navsym.proof.optimality.whole import bounded
 
 #: Shares of a panel with a larger denominator, or further away than this, are not guessed; more places not solved.
-LARGEST, NEAR, MOST = 720, 1e-6, 6
+LARGEST, CLOSE, MOST = 720, 1e-6, 6
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +60,7 @@ def only_optimal(problem: Problem, basis: Basis, contacts: Contacts, dual: Seque
     if 0 < len(contacts.touching) <= basis.panels.functional.size:
         sets.append(flattened(with_places(basis.panels, contacts, contacts.touching)))
     for places in sets:
-        pins = guessed(places)
+        pins = guess_pins(places)
         x = None if pins is None else interior_dual(basis.panels, places)
         if pins is not None and x is not None and touches_only(problem, basis, pins, x):
             return decided(problem, [pin.place for pin in pins])
@@ -87,14 +87,14 @@ def strictly_below(panel: Panel, dual: Sequence[arb]) -> bool:
     return bounded(replace(panel, sigma=panel.sigma * (1 - sp.Rational(1, 10**9))), dual, []) is not None
 
 
-def guessed(contacts: Contacts) -> list[Pin] | None:
+def guess_pins(contacts: Contacts) -> list[Pin] | None:
     """The contacts at shares with a small denominator; None where one has none."""
     pins = []
     for k, u, inner, sign in zip(contacts.panel, contacts.u, contacts.inner, contacts.sign, strict=True):
         share = as_fraction(float(u))
         exact = exact_rational(share)
         best = exact.limit_denominator(LARGEST)
-        if abs(best - exact) > NEAR:
+        if abs(best - exact) > CLOSE:
             return None
         pins.append(Pin(Place(int(k), fmpq(int(best.p), int(best.q)), int(sign)), bool(inner)))
     return pins

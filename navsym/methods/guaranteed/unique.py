@@ -74,7 +74,7 @@ def exact_places(problem: Problem, contacts: Contacts, x: Sequence[sp.Rational])
         if sign:
             places += [Place(k, fmpq(j, SAMPLES), sign) for j in range(SAMPLES + 1)]
             continue
-        mine = [place for place in guessed(contacts, k, panel, f) if holds(panel, f, place)]
+        mine = [place for place in guess_places(contacts, k, panel, f) if holds(panel, f, place)]
         touches = [Touch(p.at, p.sign, True, "no" if level(panel, f, p) else end_of(p.at)) for p in mine]
         with precision(BITS):
             balls = [enclose(c, bits=BITS) for c in x]
@@ -91,7 +91,7 @@ def flat_sign(panel: Panel, f: sp.Expr) -> int:
     return sign if decide(Equation(f, sign * panel.sigma)).status is PROVED else 0
 
 
-def guessed(contacts: Contacts, k: int, panel: Panel, f: sp.Expr) -> list[Place]:
+def guess_places(contacts: Contacts, k: int, panel: Panel, f: sp.Expr) -> list[Place]:
     """Contacts of a panel at shares with a small denominator."""
     at = [(int(j), float(u)) for j, u in zip(contacts.panel, contacts.u, strict=True)]
     shares = {as_fraction(u) for j, u in [*at, *contacts.touching] if j == k}

@@ -106,7 +106,7 @@ def not_yet_imported(files: Snapshot) -> Snapshot:
 
 def patches() -> list[str]:
     """Functions in a deciding module that come from a file that is not installed: put there at run time."""
-    known = ("<", *installed(), *(home(name) for name in ("navsym", *DECIDING)))
+    known = ("<", *installed(), *(folder_of(name) for name in ("navsym", *DECIDING)))
     found = []
     for name, module in sorted(sys.modules.copy().items()):
         if name.partition(".")[0] in ("navsym", *DECIDING):
@@ -127,7 +127,7 @@ def functions_of(owner: str, names: Mapping[str, Any]) -> Iterator[tuple[str, Fu
 
 
 @functools.cache
-def home(name: str) -> str:
+def folder_of(name: str) -> str:
     """The folder from which a package is imported."""
     spec = importlib.util.find_spec(name)
     return str(Path(spec.origin).parent) + os.sep if spec is not None and spec.origin else "<"

@@ -68,13 +68,13 @@ def alternance_image(
     The unknowns are x, the inner places and the weights, in this order; the contacts are as many as the x.
     Y and I - Y J need only be good for contraction: few bits first, and bounds of whole panels.
     """
-    thin = rows_at(problem, found, centre, 2)
+    thin = block_rows(problem, found, centre, 2)
     F, around = residual(problem, found, centre, thin), [r * arb(0, 1) for r in radius]
     box = [c + r for c, r in zip(centre, around, strict=True)]
     within = all(bool(at >= 0) and bool(at <= 1) for at in parted(found, box)[1].entries())
     for bits, whole in ((ctx.prec // 2 + 32, within), (ctx.prec, False)):
         with precision(bits):
-            rows = spread_rows(problem, found, thin, around) if whole else rows_at(problem, found, box, 2)
+            rows = spread_rows(problem, found, thin, around) if whole else block_rows(problem, found, box, 2)
             step = newton_step(found, F, blocks(found, rows, box), around)
         image = None if step is None else inside([c + d for c, d in zip(centre, step, strict=True)], centre, radius)
         if image is not None:
@@ -106,7 +106,7 @@ def gathered(found: Polished, parts: tuple[arb_mat, arb_mat, arb_mat]) -> list[a
     return [*x, *(at for at, inner in zip(v, found.inner, strict=True) if inner), *w]
 
 
-def rows_at(problem: Problem, found: Polished, z: Sequence[arb], order: int) -> list[arb_mat]:
+def block_rows(problem: Problem, found: Polished, z: Sequence[arb], order: int) -> list[arb_mat]:
     """Taylor coefficients 0 … order of H at the places in z."""
     free = iter(z[len(found.dual) :])
     at = [next(free) if inner else v for v, inner in zip(found.v, found.inner, strict=True)]

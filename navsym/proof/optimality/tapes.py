@@ -48,7 +48,7 @@ class Program:
 #: Where it goes, what is done, and the arguments: one (None), two, or a tuple of them (-1).
 Moving = tuple[int, Callable[..., Any], Any, int | None]
 #: Operations that are one call of an object or of two: what OPERATIONS does, without its lists.
-ONE = {name: methodcaller(name) for name in ("sin", "cos", "exp")}
+UNARY = {name: methodcaller(name) for name in ("sin", "cos", "exp")}
 TWO: dict[str, Callable[[Any, Any], Any]] = {"add": add, "mul": mul}
 
 
@@ -72,8 +72,8 @@ def prepared(tape: Program, bits: int) -> tuple[list[Any], list[tuple[int, sp.Sy
 
 def called(step: Step) -> tuple[Callable[..., Any], Any, int | None]:
     """How a step is called."""
-    if step.operation in ONE:
-        return ONE[step.operation], step.arguments[0], None
+    if step.operation in UNARY:
+        return UNARY[step.operation], step.arguments[0], None
     if step.operation in TWO and len(step.arguments) == 2:
         return TWO[step.operation], *step.arguments
     operation = OPERATIONS[step.operation]

@@ -14,7 +14,7 @@ from navsym.proof.balls import UnsupportedError, exact_ball
 from navsym.proof.identities.logarithms import factored
 from navsym.proof.sampling.points import Point, Range, points
 
-ORDINARY = 6
+PLACES = 6
 MOST_FACTORS = 8
 
 #: Functions that are zero where their argument is.
@@ -42,7 +42,7 @@ def zeros_in(base: sp.Expr, symbol: sp.Symbol, limits: Mapping[sp.Symbol, Range]
     if symbol in curve.free_symbols:
         return
     others = [other for other in limits if other is not symbol]
-    for point in points(others, ends_of(limits), ORDINARY):
+    for point in points(others, ends_of(limits), PLACES):
         numbers = [part.subs({**point, symbol: 0}) for part in (curve, slope, base)]
         try:
             found = [value for value in roots_of(*numbers) if limits[symbol].contains(value)]

@@ -17,7 +17,7 @@ from flint import fmpq_mpoly
 
 from navsym.proof.signs.known import Sign
 
-MOST_TERMS = 3000
+CONE_TERMS = 3000
 MOST_DEPTH = 24
 
 
@@ -47,7 +47,7 @@ def cone_sign(cone: Cone, effort: Effort) -> Sign:
     while pending:
         here, depth = pending.pop()
         terms = here.polynomial.to_dict()
-        if depth > MOST_DEPTH or len(terms) > MOST_TERMS or not effort.spend(len(terms)):
+        if depth > MOST_DEPTH or len(terms) > CONE_TERMS or not effort.spend(len(terms)):
             return Sign.UNKNOWN
         negative = {e: c for e, c in terms.items() if c < 0}
         if not negative:
