@@ -49,7 +49,7 @@ def write_notebooks(folder: Path) -> None:
 
 def formula(source: str, display: bool) -> str:
     """MathML of a formula; what the small converter does not know stays as its source."""
-    from navsym.errors import NavsymError
+    from navsym.core.errors import NavsymError
     from navsym.report.formula.latex import mathml
 
     try:

@@ -20,7 +20,7 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
 from navsym.report import plots  # noqa: E402
-from navsym.report.ledger import about, only_in_the_copy  # noqa: E402
+from navsym.verification.ledger import about, only_in_the_copy  # noqa: E402
 
 CHANNEL = {
     "model": {
@@ -63,9 +63,9 @@ def worst(equation: str, equations: Sequence[str], records: Sequence[Mapping[str
 
 def phases() -> Figure:
     """Guaranteed deviation of the drift by the length of the interval, every regime proved."""
-    from navsym.methods.phases.continuation import phases as solved
-    from navsym.methods.phases.family import family_of
-    from navsym.text.modelfile import model_from
+    from navsym.guaranteed.phases.driver import phases as solved
+    from navsym.guaranteed.phases.family import family_of
+    from navsym.models.modelfile import model_from
 
     family = family_of(model_from(CHANNEL), "drift", "T")
     regimes = []
@@ -104,7 +104,7 @@ def dual() -> Figure:
 
 def ladder() -> Figure:
     """Rank of the rows h, hF, hF^2, ... for each measurement of the full error model, and for all four."""
-    from navsym.models.inertial.errors import full_model
+    from navsym.models.inertial import full_model
 
     model = full_model()
     values = {s: sp.Rational(k + 3, 7) for k, s in enumerate(sorted(model.F.free_symbols, key=str))}
@@ -127,9 +127,9 @@ def ranks_of(rows: sp.Matrix, F: sp.Matrix, count: int) -> list[int]:
 
 def modes() -> Figure:
     """Mode probabilities of the pulsating filter on a simulated switching signal."""
-    from navsym.methods.multimodel import study
-    from navsym.methods.multimodel.filters import run
     from navsym.models.modes import MODES
+    from navsym.multimodel import study
+    from navsym.multimodel.filters import run
 
     models = study.schuler_bank()
     series = study.simulate(models, 1, 60, seed=9)
@@ -139,9 +139,9 @@ def modes() -> Figure:
 
 def surface() -> Figure:
     """The criterion over positions on shaded relief, the track and the fix."""
-    from navsym.methods.terrain.experiment import GRID
-    from navsym.methods.terrain.flights import Setting, course, fly, sample_terrain
-    from navsym.methods.terrain.search import criteria, prepare
+    from navsym.terrain.experiment import GRID
+    from navsym.terrain.flights import Setting, course, fly, sample_terrain
+    from navsym.terrain.search import criteria, prepare
 
     terrain = sample_terrain()
     setting = Setting(measurements=260, speed=60.0, drift=0.0)
@@ -160,8 +160,8 @@ def surface() -> Figure:
 
 def errors() -> Figure:
     """An error of the northern speed with the ribbon that the smoother claims."""
-    from navsym.methods.trajectory.estimate import Settings, estimate
-    from navsym.methods.trajectory.tracks import track_of
+    from navsym.trajectory.estimate import Settings, estimate
+    from navsym.trajectory.tracks import track_of
 
     t, radius = np.arange(0.0, 240.0, 1.0), 6_371_000.0
     random = np.random.default_rng(5)
@@ -179,7 +179,7 @@ def errors() -> Figure:
 def conditions() -> Figure:
     """Condition numbers of N_f: certified, as printed, and in double precision."""
     from derivations.trajectory import table
-    from navsym.methods.conditioning.numbers import condition_numbers
+    from navsym.trajectory.conditioning import condition_numbers
 
     orders = np.array([2, 3, 4, 5, 10, 15, 19, 20])
     found = [condition_numbers(int(n), "1/6371000", "1/5", digits=15)["N_f"] for n in orders]

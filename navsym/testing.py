@@ -26,7 +26,7 @@ from hypothesis import strategies as st
 
 from navsym.claims import CONFIRMED, Bound, Equation, Verdict
 from navsym.models.linear import LinearModel
-from navsym.proof.ladder import decide_within
+from navsym.prove.ladder import decide_within
 
 Strategy = st.SearchStrategy[Any]
 

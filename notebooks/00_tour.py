@@ -48,7 +48,7 @@ import sympy as sp
 from derivations.guaranteed_velocity import model, polynomial, system, weights
 from navsym.claims import Equation, Optimum
 from navsym.cli.main import run as navsym
-from navsym.proof.ladder import decide
+from navsym.prove.ladder import decide
 from navsym.report.notebook import explore, require, show
 
 # %% [markdown]

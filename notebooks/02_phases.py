@@ -26,13 +26,13 @@ import sympy as sp
 from ipywidgets import FloatSlider, interact
 
 from navsym.cli.main import run as navsym
-from navsym.methods.guaranteed.compare import compare, realise, search_correlations
-from navsym.methods.guaranteed.many import values_for_lengths
-from navsym.methods.guaranteed.solver import solve
-from navsym.methods.phases.continuation import phases
-from navsym.methods.phases.family import family_of
-from navsym.text.datasets import dataset, local_copy
-from navsym.text.modelfile import model_from
+from navsym.core.datasets import dataset, local_copy
+from navsym.guaranteed.baselines import compare, realise, search_correlations
+from navsym.guaranteed.lengths import values_for_lengths
+from navsym.guaranteed.phases.driver import phases
+from navsym.guaranteed.phases.family import family_of
+from navsym.guaranteed.solver import solve
+from navsym.models.modelfile import model_from
 
 CHANNEL = {
     "model": {

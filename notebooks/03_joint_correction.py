@@ -34,16 +34,16 @@ from derivations.joint_correction import section3_noise as poles
 from derivations.joint_correction import sensors
 from navsym.claims import claims_of
 from navsym.cli.main import run as navsym
-from navsym.methods.observability.chains import observe
-from navsym.methods.observability.loci import rank_drops
-from navsym.methods.observability.sensors import restore
-from navsym.methods.observability.split import splits
-from navsym.methods.two_stage import ins as experiment
-from navsym.methods.two_stage import real as aiding
-from navsym.methods.two_stage.flight import EARTH_RADIUS, SCHULER_RATE, great_circle
-from navsym.models.inertial.errors import full_model, joint_model, position_group, velocity_group
+from navsym.core.datasets import dataset, local_copy
+from navsym.models.inertial import full_model, joint_model, position_group, velocity_group
+from navsym.observability.chains import observe
+from navsym.observability.rank_drops import rank_drops
+from navsym.observability.sensors import restore
+from navsym.observability.splits import splits
+from navsym.observability.two_stage import ins as experiment
+from navsym.observability.two_stage import real as aiding
+from navsym.observability.two_stage.flight import EARTH_RADIUS, SCHULER_RATE, great_circle
 from navsym.report.notebook import require, show
-from navsym.text.datasets import dataset, local_copy
 
 BLUE, ORANGE, GREEN, RED = "#0072b2", "#e69f00", "#009e73", "#d55e00"
 

@@ -42,12 +42,13 @@ from derivations.trajectory import (
 )
 from navsym.claims import claims_of
 from navsym.cli.main import run as navsym
-from navsym.methods.conditioning.numbers import condition_numbers
-from navsym.methods.conditioning.scaling import best_scaling
-from navsym.methods.trajectory.estimate import METHODS, Settings, estimate
-from navsym.methods.trajectory.experiment import ORDER, TAU, course, measured, with_printed_gain
-from navsym.methods.trajectory.experiment import experiment as rerun
-from navsym.methods.trajectory.inversion import (
+from navsym.core.datasets import dataset, local_copy
+from navsym.report.notebook import explore, require, show
+from navsym.trajectory.conditioning import condition_numbers
+from navsym.trajectory.estimate import METHODS, Settings, estimate
+from navsym.trajectory.experiment import ORDER, TAU, course, measured, with_printed_gain
+from navsym.trajectory.experiment import experiment as rerun
+from navsym.trajectory.inversion import (
     Start,
     Tuning,
     first_stage_model,
@@ -56,11 +57,10 @@ from navsym.methods.trajectory.inversion import (
     scaled_model,
     windowed_filter,
 )
-from navsym.methods.trajectory.limits import best_ages, least_error, rule
-from navsym.methods.trajectory.tracks import track_of
-from navsym.report.notebook import explore, require, show
-from navsym.text.datasets import dataset, local_copy
-from navsym.text.readers_tracks import read_track
+from navsym.trajectory.limits import best_ages, least_error, rule
+from navsym.trajectory.reader import read_track
+from navsym.trajectory.scaling import best_scaling
+from navsym.trajectory.tracks import track_of
 
 BLUE, ORANGE, GREEN, RED = "#0072b2", "#e69f00", "#009e73", "#d55e00"
 

@@ -38,13 +38,13 @@ from derivations.multistructure import (
 )
 from navsym.claims import claims_of
 from navsym.cli.main import run as navsym
-from navsym.methods.multimodel import road, study
-from navsym.methods.multimodel.bank import bank
-from navsym.methods.multimodel.filters import run
-from navsym.methods.multimodel.schemes import filters_at, scheme
+from navsym.core.datasets import dataset, local_copy
 from navsym.models.modes import MODES
+from navsym.multimodel import road, study
+from navsym.multimodel.bank import bank
+from navsym.multimodel.filters import run
+from navsym.multimodel.steps import filters_at, scheme
 from navsym.report.notebook import require, show
-from navsym.text.datasets import dataset, local_copy
 
 BLUE, ORANGE, GREEN, RED = "#0072b2", "#e69f00", "#009e73", "#d55e00"
 

@@ -39,17 +39,17 @@ from derivations.terrain_search import (
 )
 from navsym.claims import claims_of
 from navsym.cli.main import run as navsym
-from navsym.methods.terrain.accuracy import accuracy_map
-from navsym.methods.terrain.centre import information, slopes
-from navsym.methods.terrain.experiment import GRID
-from navsym.methods.terrain.experiment import experiment as rerun
-from navsym.methods.terrain.flights import Setting, course, fly, sample_terrain, terrain_from
-from navsym.methods.terrain.refine import refine
-from navsym.methods.terrain.search import criteria, prepare, search_full, search_position
-from navsym.methods.terrain.sequential import search_sequential
-from navsym.models.terrain.track import Track
+from navsym.core.datasets import dataset, local_copy
 from navsym.report.notebook import require, show
-from navsym.text.datasets import dataset, local_copy
+from navsym.terrain.accuracy import accuracy_map
+from navsym.terrain.centre import information, slopes
+from navsym.terrain.experiment import GRID
+from navsym.terrain.experiment import experiment as rerun
+from navsym.terrain.flights import Setting, course, fly, sample_terrain, terrain_from
+from navsym.terrain.refine import refine
+from navsym.terrain.search import criteria, prepare, search_full, search_position
+from navsym.terrain.sequential import search_sequential
+from navsym.terrain.track import Track
 
 BLUE, ORANGE, GREEN, RED = "#0072b2", "#e69f00", "#009e73", "#d55e00"
 

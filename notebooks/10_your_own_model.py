@@ -29,14 +29,14 @@ import sympy as sp
 
 from navsym.claims import Optimum
 from navsym.cli.main import run
-from navsym.methods.guaranteed.problem import from_file
-from navsym.methods.guaranteed.solver import solve
-from navsym.methods.observability.chains import observe
+from navsym.guaranteed.problem import from_file
+from navsym.guaranteed.solver import solve
 from navsym.models.derivation import linear_model
-from navsym.proof.ladder import decide
+from navsym.models.modelfile import model_from
+from navsym.observability.chains import observe
+from navsym.prove.ladder import decide
 from navsym.report.notebook import explore
 from navsym.testing import ClaimFailedError, assert_claim
-from navsym.text.modelfile import model_from
 
 # %% [markdown]
 # ## 1. The model, in words that a machine reads exactly

@@ -45,7 +45,7 @@ OWNERS: dict[str, dict[str, str]] = {
         "navsym/models": "models are symbolic matrices",
         "navsym/proof": "takes expressions apart into polynomials and balls",
         "navsym/methods": "closed forms, exact conditions",
-        "navsym/numeric/casadi_functions.py": "the bridge from expressions to fast functions",
+        "navsym/core/casadi_functions.py": "the bridge from expressions to fast functions",
         "navsym/export": "printed code starts from an expression",
         "navsym/report": "formulas as LaTeX and MathML",
         "navsym/testing": "strategies of expressions",
@@ -75,8 +75,8 @@ OWNERS: dict[str, dict[str, str]] = {
         "navsym/methods": "dense linear algebra and special functions",
     },
     "casadi": {
-        "navsym/numeric/casadi_functions.py": "fast functions from expressions",
-        "navsym/numeric/convex.py": "LP and QP through conic and qpsol",
+        "navsym/core/casadi_functions.py": "fast functions from expressions",
+        "navsym/guaranteed/convex.py": "LP and QP through conic and qpsol",
         "navsym/numeric/convex_casadi.py": "LP and QP through conic and qpsol",
     },
     "cvxpy": {"navsym/numeric/convex": "convex models and cross-checks"},
@@ -84,7 +84,7 @@ OWNERS: dict[str, dict[str, str]] = {
     "clarabel": {"navsym/numeric/convex": "convex solver"},
     "highspy": {"navsym/numeric/convex": "convex solver"},
     "numba": {"navsym/numeric": "compiled loops"},
-    "llvmlite": {"navsym/numeric/mixture/lanes.py": "values of eight lanes inside compiled loops"},
+    "llvmlite": {"navsym/core/lanes.py": "values of eight lanes inside compiled loops"},
     "mpmath": {"navsym/methods": "roots to many digits, as candidates that navsym.proof decides"},
     "matplotlib": {"navsym/report": "plots"},
     "jinja2": {"navsym/report": "pages"},
@@ -94,11 +94,11 @@ OWNERS: dict[str, dict[str, str]] = {
     "msgspec": {"navsym/text": "schemas of files", "navsym/report": "the ledger", "navsym/cli": "schemas of documents"},
     "typer": {"navsym/cli": "options and arguments"},
     "rich": {"navsym/cli": "tables on a terminal"},
-    "dask": {"navsym/methods/sweeps/cluster.py": "sweeps on a cluster"},
-    "distributed": {"navsym/methods/sweeps/cluster.py": "sweeps on a cluster"},
-    "pyarrow": {"navsym/methods/sweeps/shards.py": "shards of sweeps"},
+    "dask": {"navsym/studies/cluster.py": "sweeps on a cluster"},
+    "distributed": {"navsym/studies/cluster.py": "sweeps on a cluster"},
+    "pyarrow": {"navsym/studies/run.py": "shards of sweeps"},
     "hypothesis": {"navsym/testing": "strategies for users' own tests"},
-    "atheris": {"navsym/methods/campaigns/guided.py": "inputs guided by coverage, in a process of their own"},
+    "atheris": {"navsym/studies/campaigns/guided.py": "inputs guided by coverage, in a process of their own"},
     "rasterio": {"navsym/text": "GeoTIFF maps"},
     "pooch": {"navsym/text": "data sets, cached and checked", "navsym/cli/data.py": "the verb data"},
 }
@@ -120,7 +120,7 @@ class Import:
 
 
 def room_of(dotted: str) -> str:
-    """``navsym.text.expression`` -> ``text``; ``navsym`` -> the empty string."""
+    """``navsym.language.expression`` -> ``text``; ``navsym`` -> the empty string."""
     parts = dotted.split(".")
     return parts[0] if parts[0] != "navsym" else ".".join(parts[1:2])
 
@@ -241,27 +241,27 @@ def test_every_owner_gives_a_reason() -> None:
 
 
 BROKEN = [
-    ("navsym/models/a.py", "from navsym.proof.ladder import decide", "may not see proof"),
-    ("navsym/models/a.py", "import navsym.numeric.arrays", "may not see numeric"),
+    ("navsym/models/a.py", "from navsym.prove.ladder import decide", "may not see proof"),
+    ("navsym/models/a.py", "import navsym.core.arrays", "may not see numeric"),
     ("navsym/claims/a.py", "from navsym.text import expression", "may not see text"),
     ("navsym/claims/a.py", "from navsym import text", "may not see text"),
     ("navsym/export/a.py", "from ..report import page", "may not see report"),
     ("navsym/proof/a.py", "def f():\n    from navsym.methods import guaranteed", "may not see methods"),
     ("navsym/proof/a.py", "if TYPE_CHECKING:\n    import navsym.cli.main", "may not see cli"),
-    ("navsym/errors.py", "import navsym.claims", "may not see claims"),
-    ("navsym/__init__.py", "import navsym.errors", "imports nothing"),
-    ("navsym/attic/a.py", "import navsym.errors", "attic has no floor"),
+    ("navsym/core/errors.py", "import navsym.claims", "may not see claims"),
+    ("navsym/__init__.py", "import navsym.core.errors", "imports nothing"),
+    ("navsym/attic/a.py", "import navsym.core.errors", "attic has no floor"),
     ("navsym/methods/a.py", "import derivations.trajectory", "imports derivations"),
     ("navsym/methods/a.py", "from derivations import trajectory", "imports derivations"),
     ("navsym/methods/a.py", "importlib.import_module('derivations')", "imports derivations"),
     ("navsym/methods/a.py", "import_module(f'derivations.{name}')", "imports derivations"),
     ("navsym/cli/a.py", "import derivations", "imports derivations"),
-    ("navsym/checker.py", "import navsym.errors", "the checker stands apart"),
+    ("navsym/checker.py", "import navsym.core.errors", "the checker stands apart"),
     ("navsym/checker.py", "import sympy", "the checker stands apart"),
     ("navsym/checker/balls.py", "from navsym import errors", "the checker stands apart"),
     ("derivations/a.py", "from navsym.cli.output import emit", "do not import the command line"),
     ("derivations/a.py", "import casadi", "casadi belongs to"),
-    ("navsym/numeric/search/criteria.py", "import cvxpy as cp", "cvxpy belongs to"),
+    ("navsym/terrain/kernels/criteria.py", "import cvxpy as cp", "cvxpy belongs to"),
     ("navsym/numeric/convexity.py", "import cvxpy", "cvxpy belongs to"),
     ("navsym/claims/statement.py", "import sympy as sp", "sympy belongs to"),
     ("navsym/proof/__init__.py", "import sympy", "in an __init__.py"),

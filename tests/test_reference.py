@@ -39,7 +39,7 @@ def poor(x: Array) -> float:
     return x[0]
 """
     node = ast.parse(source).body[0]
-    point = tool("entry_points").EntryPoint("navsym.numeric.arrays", node)
+    point = tool("entry_points").EntryPoint("navsym.core.arrays", node)
     lacking = [trouble.split(": ")[1] for trouble in troubles_of(point)]
     assert lacking == ["a sentence first", "raises EmptyError", "a shape"]
 

@@ -33,7 +33,7 @@ UNDECIDED_METHODS = frozenset({"simplify", "trigsimp", "nsimplify", "equals"})
 
 #: File -> reason why it may use a function of UNDECIDED as a search that something else decides.
 SEARCHES: dict[str, str] = {
-    "navsym/methods/phases/closed.py": "short forms of closed formulas; the formulas are proved afterwards"
+    "navsym/guaranteed/phases/closed_forms.py": "short forms of closed formulas; the formulas are proved afterwards"
 }
 
 

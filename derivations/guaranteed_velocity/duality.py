@@ -8,8 +8,8 @@ import sympy as sp
 
 from derivations.guaranteed_velocity.model import INSTANTS, STATED, H, T, alternating, weights
 from navsym.claims import CERTIFIED, PROVED, REFUTED, Bound, Equation, Finding, Property, claim
-from navsym.proof.identities.normal_form import vanishes_identically
-from navsym.proof.signs.bounds import Sign, prove_sign
+from navsym.prove.identities.normal_form import vanishes_identically
+from navsym.prove.signs.bounds import Sign, prove_sign
 
 sigma = sp.Symbol("sigma", positive=True)
 

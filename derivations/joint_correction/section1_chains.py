@@ -14,7 +14,7 @@ from derivations.joint_correction.section1_systems import (
     systems,
 )
 from navsym.claims import CERTIFIED, Bound, Equation, Finding, Property, claim
-from navsym.methods.observability.split import companion, inverse, unit_row
+from navsym.observability.splits import companion, inverse, unit_row
 
 SIZES = "the symbolic systems (n, m) = (2, 1), (3, 2), (4, 2), (5, 3), all parameters"
 
@@ -43,9 +43,9 @@ def chain_is_a_basis():
 
 def rank_of(rows: sp.MatrixBase) -> int:
     """Exact generic rank: pivots of a fraction-free elimination."""
-    from navsym.methods.observability.chains import numerators
-    from navsym.methods.observability.linear import reduce_rows
-    from navsym.methods.observability.ring import Ring
+    from navsym.observability.chains import numerators
+    from navsym.observability.linear import reduce_rows
+    from navsym.observability.ring import Ring
 
     ring = Ring.of(rows)
     entries, _ = numerators([rows[r, :] for r in range(rows.rows)], ring)
@@ -113,9 +113,9 @@ def companion_matrix():
 
 def coefficients(basis: sp.MatrixBase, row: sp.MatrixBase) -> list[sp.Expr]:
     """Coefficients of a row in a basis of rows, by the exact elimination of the house."""
-    from navsym.methods.observability.chains import numerators
-    from navsym.methods.observability.linear import relation
-    from navsym.methods.observability.ring import Ring
+    from navsym.observability.chains import numerators
+    from navsym.observability.linear import relation
+    from navsym.observability.ring import Ring
 
     ring = Ring.of(sp.Matrix.vstack(sp.Matrix(basis), sp.Matrix(row)))
     entries, _ = numerators([*(basis[r, :] for r in range(basis.rows)), row], ring)

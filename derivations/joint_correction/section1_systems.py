@@ -11,9 +11,9 @@ from functools import cache
 
 import sympy as sp
 
-from navsym.methods.observability.chains import Observability, observe
-from navsym.methods.observability.split import inverse
 from navsym.models.linear import LinearModel
+from navsym.observability.chains import Observability, observe
+from navsym.observability.splits import inverse
 
 p = sp.Symbol("p", real=True)
 g = sp.symbols("g1:10", real=True)

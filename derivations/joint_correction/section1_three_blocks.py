@@ -9,7 +9,7 @@ import sympy as sp
 from derivations.joint_correction.section1_chains import coefficients, theta_of
 from derivations.joint_correction.section1_systems import System, flat, free, k, overlapping, polynomial_of
 from navsym.claims import Equation, Finding, Property, claim
-from navsym.methods.observability.split import companion, corner, inverse, last_row, lowest_terms, shift, unit_row
+from navsym.observability.splits import companion, corner, inverse, last_row, lowest_terms, shift, unit_row
 
 #: Splits i, j of the overlapping system (n = 4, m = 3) that have all three parts.
 CASES = ((2, 2), (1, 3))
@@ -275,7 +275,7 @@ def choice_of_i():
 
     For the overlapping system i = j = 2, not the two-stage i = m = 3.
     """
-    from navsym.methods.observability.split import best_split
+    from navsym.observability.splits import best_split
 
     best = best_split(overlapping().found)
     return Property(

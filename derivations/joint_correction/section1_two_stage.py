@@ -17,7 +17,7 @@ from derivations.joint_correction.section1_systems import (
     systems,
 )
 from navsym.claims import REFUTED, Equation, Finding, Property, claim
-from navsym.methods.observability.split import companion, inverse, last_row, unit_row
+from navsym.observability.splits import companion, inverse, last_row, unit_row
 
 
 def phi_of(s: System) -> list[sp.Expr]:

@@ -7,7 +7,7 @@ import sympy as sp
 from derivations.joint_correction.section1_systems import flat
 from derivations.joint_correction.section1_two_stage import PAIRS, blocks
 from navsym.claims import Equation, Finding, Property, claim
-from navsym.methods.observability.split import inverse
+from navsym.observability.splits import inverse
 
 
 def general(m: int, rest: int) -> dict[str, sp.Matrix]:

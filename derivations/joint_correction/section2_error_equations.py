@@ -1,6 +1,6 @@
 """Section 2, (2.1)-(2.5): error equations and corrections from the kinematics of small rotations.
 
-The derived sides come from ``navsym.models.inertial.kinematics``: Poisson's equation linearised,
+The derived sides come from ``navsym.models.kinematics``: Poisson's equation linearised,
 Newton's equation solved for the rates, the velocity seen in platform axes. Terms of order
 mu^2 rho are dropped, and :func:`dropped_terms` says which.
 """
@@ -12,8 +12,8 @@ from functools import cache
 import sympy as sp
 
 from navsym.claims import CERTIFIED, REFUTED, Bound, Equation, Finding, Property, claim
-from navsym.models.inertial.errors import PHYSICAL_ORDERS
-from navsym.models.inertial.kinematics import (
+from navsym.models.inertial import PHYSICAL_ORDERS, truncate
+from navsym.models.kinematics import (
     ALPHA,
     BETA,
     CLIMB,
@@ -29,7 +29,6 @@ from navsym.models.inertial.kinematics import (
     ErrorEquations,
     error_equations,
 )
-from navsym.models.inertial.orders import truncate
 
 a1, a2, a3 = ALPHA
 b1, b2, b3 = BETA
@@ -154,7 +153,7 @@ def position_error_2():
 
 def turn_of_the_computed_frame() -> sp.Matrix:
     """gamma' for a frame that turns with the computed rate, with gamma = alpha - beta put in."""
-    from navsym.models.inertial.kinematics import horizontal, rotation_rate, skew
+    from navsym.models.kinematics import horizontal, rotation_rate, skew
 
     gamma = sp.Matrix(sp.symbols("gamma_1:4", real=True))
     computed = sp.Matrix([*(DELTA_P - horizontal(skew(ALPHA) * OMEGA_X)), 0])
@@ -187,7 +186,7 @@ def position_information_2():
 
 def computed_vertical() -> tuple[sp.Expr, sp.Expr]:
     """Turn gamma recovered from the third axis of Mu seen in Mx: e3 = e3 + gamma x e3."""
-    from navsym.models.inertial.kinematics import skew
+    from navsym.models.kinematics import skew
 
     tilt = skew(ALPHA - BETA) * sp.Matrix([0, 0, 1])  # (gamma_2, -gamma_1, 0)
     return -tilt[1], tilt[0]
@@ -356,7 +355,7 @@ def noise_symbols_printed():
 @claim("2.scale.noise*", corrects="2.scale.noise")
 def noise_symbols():
     """With w_i^c = w_xi^c/omega_0, scaled as sigma^c is, it enters sigma_i^c with the coefficient one."""
-    from navsym.models.inertial.errors import W_C0, dimensionless
+    from navsym.models.inertial import W_C0, dimensionless
 
     velocity = dimensionless().velocity
     return Equation([sp.Integer(1)] * 2, [sp.diff(s, w) for s, w in zip(velocity, W_C0, strict=True)])

@@ -2,7 +2,7 @@
 
 The derived sides are found by machine: the velocity information is split into its Schuler part
 and its constant part at mu = 0, the position information is differentiated, and what has the
-order mu^2 rho is dropped term by term (``navsym.models.inertial.errors``).
+order mu^2 rho is dropped term by term (``navsym.models.inertial``).
 """
 
 from __future__ import annotations
@@ -13,9 +13,7 @@ from functools import cache
 import sympy as sp
 
 from navsym.claims import REFUTED, Claim, Equation, Finding, Property, claim
-from navsym.methods.observability.chains import observe
-from navsym.methods.observability.loci import rank_drops
-from navsym.models.inertial.errors import (
+from navsym.models.inertial import (
     EARTH,
     FULL,
     MU,
@@ -30,11 +28,14 @@ from navsym.models.inertial.errors import (
     X,
     Y,
     full_model,
+    lowest_order,
     position_group,
+    truncate,
     velocity_group,
 )
-from navsym.models.inertial.kinematics import ALPHA, BETA, EPSILON
-from navsym.models.inertial.orders import lowest_order, truncate
+from navsym.models.kinematics import ALPHA, BETA, EPSILON
+from navsym.observability.chains import observe
+from navsym.observability.rank_drops import rank_drops
 
 mu = MU
 a1, a2 = ALPHA[:2]

@@ -9,9 +9,9 @@ import sympy as sp
 from derivations.joint_correction.section1_systems import p, polynomial_of
 from derivations.joint_correction.section2_groups import mu, position, row, u3, velocity, w1, w2
 from navsym.claims import REFUTED, Equation, Finding, Property, claim
-from navsym.methods.observability.chains import observe
-from navsym.models.inertial.errors import FULL, X, Y, joint_model
+from navsym.models.inertial import FULL, X, Y, joint_model
 from navsym.models.linear import LinearModel
+from navsym.observability.chains import observe
 
 
 @cache

@@ -16,8 +16,8 @@ from derivations.joint_correction.section1_systems import coefficients_of_polyno
 from derivations.joint_correction.section2_groups import mu, position, velocity, w1, w2
 from derivations.joint_correction.section3_algorithm import joint_error_matrix
 from navsym.claims import CERTIFIED, Equation, Finding, Property, claim
-from navsym.methods.observability.split import inverse, lowest_terms
-from navsym.models.inertial.errors import EARTH, MU
+from navsym.models.inertial import EARTH, MU
+from navsym.observability.splits import inverse, lowest_terms
 
 lam, lam_h = sp.symbols("lambda_c lambda_h", positive=True)
 kappa, omega = sp.symbols("kappa omega", real=True)

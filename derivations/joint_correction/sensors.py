@@ -9,10 +9,10 @@ from itertools import combinations
 import sympy as sp
 
 from navsym.claims import Finding, Property, claim
-from navsym.methods.observability.chains import proved_rank
-from navsym.methods.observability.sensors import Restoration, restore
-from navsym.models.inertial.errors import full_model, joint_model
+from navsym.models.inertial import full_model, joint_model
 from navsym.models.linear import LinearModel
+from navsym.observability.chains import proved_rank
+from navsym.observability.sensors import Restoration, restore
 
 GENERIC = "all values of mu, omega and u but those of a proper algebraic set"
 METHOD = "hidden directions that are exhibited, and minors that are not zero"

@@ -7,8 +7,8 @@ from fractions import Fraction
 import sympy as sp
 from flint import arb, ctx, fmpq
 
-from navsym.methods.multimodel.exact import ExactStep, Kit, Leaf, Model, fractions_kit, run_exactly
-from navsym.methods.multimodel.schemes import scheme
+from navsym.multimodel.exact import ExactStep, Kit, Leaf, Model, fractions_kit, run_exactly
+from navsym.multimodel.steps import scheme
 
 HALF = sp.Rational(1, 2)
 

@@ -15,8 +15,8 @@ from flint import arb, arb_series, ctx, fmpq, fmpq_poly
 from derivations.multistructure import examples
 from derivations.multistructure.pulsating import MODELS, SWITCHING, differs, leaves_by_tree
 from navsym.claims import CERTIFIED, REFUTED, Finding, Property, claim
-from navsym.methods.multimodel.exact import Kit, Leaf, Model, run_exactly
-from navsym.methods.multimodel.schemes import filters_at, scheme
+from navsym.multimodel.exact import Kit, Leaf, Model, run_exactly
+from navsym.multimodel.steps import filters_at, scheme
 
 
 @claim("count.K")

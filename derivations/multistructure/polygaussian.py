@@ -10,8 +10,8 @@ from derivations.multistructure import finite
 from derivations.multistructure.finite import Step, step
 from derivations.multistructure.recursion import UNIT
 from navsym.claims import REFUTED, Equation, Finding, Property, claim
-from navsym.methods.multimodel.exact import Leaf, Model, fractions_kit, run_exactly
-from navsym.methods.multimodel.schemes import scheme
+from navsym.multimodel.exact import Leaf, Model, fractions_kit, run_exactly
+from navsym.multimodel.steps import scheme
 
 
 def frozen_steps():

@@ -230,8 +230,8 @@ def near_moments():
 
 def memory(cases):
     """Floats that the one-pass filter keeps beyond one Kalman filter, measured for (modes, states)."""
-    from navsym.methods.multimodel.bank import bank
-    from navsym.methods.multimodel.memory import floats_in_use
+    from navsym.multimodel.bank import bank
+    from navsym.multimodel.memory import floats_in_use
 
     extra = []
     for modes, n in cases:

@@ -12,7 +12,7 @@ from itertools import product
 import sympy as sp
 
 from navsym.claims import REFUTED, Equation, Finding, Property, claim
-from navsym.models.earth.motion import dynamics, first_state, pascal_rows, transition
+from navsym.models.earth import dynamics, first_state, pascal_rows, transition
 
 N = 3
 R = sp.Symbol("R", positive=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sympy as sp
 
 from navsym.claims import REFUTED, Equation, claim
-from navsym.models.earth import ellipsoid as earth
+from navsym.models import earth
 
 a = sp.Symbol("a", positive=True)  # semi-major axis
 e = sp.Symbol("e", positive=True)  # eccentricity

@@ -9,7 +9,7 @@ import flint
 
 from derivations.trajectory.experiment import TAU, ball
 from navsym.claims import CERTIFIED, REFUTED, Finding, Property, claim
-from navsym.methods.trajectory.stability import (
+from navsym.trajectory.stability import (
     gain_stability,
     harmonic_lag,
     metric_scale,

@@ -8,8 +8,8 @@ from itertools import pairwise
 import sympy as sp
 
 from navsym.claims import CERTIFIED, REFUTED, Bound, Equation, Finding, Property, claim
-from navsym.methods.conditioning.numbers import condition_number
-from navsym.models.earth import motion
+from navsym.models import earth as motion
+from navsym.trajectory.conditioning import condition_number
 
 rho, tau, t = sp.symbols("rho tau t", positive=True)
 

@@ -8,9 +8,9 @@ import sympy as sp
 
 from derivations.trajectory.table import COLUMNS, ORDERS, PRINTED, STEPS, in_printed_format, true_value
 from navsym.claims import CERTIFIED, REFUTED, Equation, Finding, Property, claim
-from navsym.methods.conditioning.numbers import condition_number
-from navsym.methods.trajectory.experiment import scaling_changes_rounding
-from navsym.models.earth.motion import observability_rows
+from navsym.models.earth import observability_rows
+from navsym.trajectory.conditioning import condition_number
+from navsym.trajectory.experiment import scaling_changes_rounding
 
 RADIUS = Fraction(6371000)
 

@@ -8,7 +8,7 @@ from math import comb
 import sympy as sp
 
 from navsym.claims import REFUTED, Equation, Finding, Property, claim
-from navsym.models.earth import motion
+from navsym.models import earth as motion
 
 rho, tau = sp.symbols("rho tau", positive=True)
 

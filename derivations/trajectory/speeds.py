@@ -12,7 +12,7 @@ from fractions import Fraction
 import sympy as sp
 
 from navsym.claims import PROVED, REFUTED, Equation, Finding, Property, claim
-from navsym.models.earth.motion import dynamics, first_state, transition
+from navsym.models.earth import dynamics, first_state, transition
 
 N = 3
 STEPS = 3

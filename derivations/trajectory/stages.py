@@ -11,7 +11,7 @@ from itertools import pairwise
 
 from derivations.trajectory.table import COLUMNS, ORDERS, PRINTED, STEPS, true_value
 from navsym.claims import CERTIFIED, REFUTED, Finding, Property, claim
-from navsym.methods.conditioning.enclosure import Enclosure
+from navsym.trajectory.conditioning import Enclosure
 
 LARGEST = 20
 METHOD = "certified condition numbers"

@@ -10,8 +10,8 @@ from fractions import Fraction
 from functools import lru_cache
 
 from navsym.claims import CERTIFIED, REFUTED, Claim, Finding, Property
-from navsym.methods.conditioning.numbers import Enclosure, condition_number
-from navsym.models.earth.motion import observability_rows, power_rows
+from navsym.models.earth import observability_rows, power_rows
+from navsym.trajectory.conditioning import Enclosure, condition_number
 
 RHO = Fraction(1, 6371000)
 STEPS = {"tau0.2": Fraction(1, 5), "tau1": Fraction(1)}

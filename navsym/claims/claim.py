@@ -11,7 +11,7 @@ from typing import Literal
 from navsym.claims.display import card, verdict_words
 from navsym.claims.statement import Statement
 from navsym.claims.verdict import PROVED, Status
-from navsym.errors import MissingEngineError
+from navsym.core.errors import MissingEngineError
 
 Slip = Literal["paper", "scan"]
 

@@ -5,18 +5,18 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from navsym.errors import DomainError, DuplicateError, ExpressionSyntaxError
+from navsym.core.errors import DomainError, DuplicateError, ExpressionSyntaxError
 
 if TYPE_CHECKING:
     from navsym.models.linear import LinearModel
-    from navsym.text.modeltypes import ModelFile
+    from navsym.models.modelfile import ModelFile
 
 WHERE = "--candidate"
 
 
 def read_candidates(texts: Sequence[str], found: ModelFile) -> dict[str, list[Any]]:
     """``NAME = formula of the states`` each, as rows of exact coefficients; empty without any."""
-    from navsym.text.expression import parse, symbol
+    from navsym.language.expression import parse, symbol
 
     states = {name: symbol(name) for name in found.states}
     known = {name: parameter.symbol for name, parameter in found.parameters.items()} | states
@@ -45,7 +45,7 @@ def coefficients(formula: Any, states: Sequence[Any], name: str) -> list[Any]:
 
 def restoration(model: LinearModel, rows: Mapping[str, Sequence[Any]]) -> dict[str, Any]:
     """The fewest further measurements as plain data; each state is a candidate where none is given."""
-    from navsym.methods.observability.sensors import restore
+    from navsym.observability.sensors import restore
 
     found = restore(model, rows or None)
     return {

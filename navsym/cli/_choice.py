@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable
 
-from navsym.errors import DomainError
+from navsym.core.errors import DomainError
 
 
 def one_of(value: str, known: Iterable[str], where: str) -> str:

@@ -7,7 +7,7 @@ import json
 from typing import TYPE_CHECKING, Any
 
 from navsym.claims import equation_of
-from navsym.errors import DomainError
+from navsym.core.errors import DomainError
 
 if TYPE_CHECKING:
     from navsym.claims import Claim, Paper
@@ -58,7 +58,7 @@ def parts_of(wanted: str) -> list[str]:
 
 def decide(wanted: str, seconds: float = SECONDS) -> tuple[Paper, dict[str, Any]]:
     """Paper card and record of one claim, decided now in a limited child process."""
-    from navsym.methods.verification.verify import PaperModule, verify
+    from navsym.verification.decide import PaperModule, verify
 
     paper, claim = find(wanted)
     document = verify([PaperModule(paper.module, paper, (claim,))], jobs=1, seconds=seconds)

@@ -91,7 +91,7 @@ def claims() -> list[str]:
 
 def datasets() -> list[str]:
     """Words after ``navsym data``."""
-    from navsym.text.datasets import DATASETS
+    from navsym.core.datasets import DATASETS
 
     return ["list", "get", *DATASETS]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from navsym.errors import DuplicateError, ExpressionSyntaxError
+from navsym.core.errors import DuplicateError, ExpressionSyntaxError
 
 
 def values_of(settings: Sequence[str] | None) -> dict[str, str]:

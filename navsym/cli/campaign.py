@@ -29,7 +29,7 @@ NAMES = {
 #: Campaigns that are tables of cases: where they are, and how many are one batch.
 TESTED = {
     "engines": ("tests/engines", 10),
-    "identities": ("tests/proof/test_textbook.py", 40),
+    "identities": ("tests/prove/test_textbook.py", 40),
     "filters": ("tests/honesty", 30),
     "fidelity": ("tests/fidelity", 8),
     "checker-mutants": ("tests/checker/mutants.py", 24),
@@ -66,8 +66,8 @@ def command(
 
 def chosen_batches(name: str, modules: list[str], share: float, inputs: int, seed: int) -> tuple[Any, Any]:
     """The batches of a campaign and their judge."""
-    from navsym.methods.campaigns import certificates, disks, fuzz, kills, mutants, parser
-    from navsym.store import default_path
+    from navsym.core.store import default_path
+    from navsym.studies.campaigns import certificates, disks, fuzz, kills, mutants, parser
 
     if name in TESTED:
         return tested(name)
@@ -89,8 +89,8 @@ def chosen_batches(name: str, modules: list[str], share: float, inputs: int, see
 def tested(name: str) -> tuple[Any, Any]:
     """The cases of a table under tests/, and pytest as their judge."""
     from navsym.cli.verify import ledger_folder
-    from navsym.errors import NavsymError
-    from navsym.methods.campaigns import cases
+    from navsym.core.errors import NavsymError
+    from navsym.studies.campaigns import cases
 
     root, (place, size) = ledger_folder().parent, TESTED[name]
     if not (root / place).exists():
@@ -100,8 +100,8 @@ def tested(name: str) -> tuple[Any, Any]:
 
 def in_batches(name: str, batches: Any, judge: Any, *, jobs: int, seconds: float, fresh: bool) -> dict[str, Any]:
     """Judge the batches, those first that are not kept from an earlier run."""
-    from navsym.methods.campaigns.registry import run_campaign
-    from navsym.store import opened
+    from navsym.core.store import opened
+    from navsym.studies.campaigns.registry import run_campaign
 
     if fresh:
         with Progress("batches", resume="with --fresh nothing is kept: leave it out to be able to go on") as bar:
@@ -114,7 +114,7 @@ def papers(names: list[str]) -> list[Any]:
     import importlib
 
     from navsym.cli import verify
-    from navsym.methods.verification.verify import paper_module
+    from navsym.verification.decide import paper_module
 
     chosen = names or verify.names()
     return [paper_module(importlib.import_module(f"derivations.{name}")) for name in chosen]

@@ -12,8 +12,8 @@ import typer
 
 from navsym.cli._progress import Progress
 from navsym.cli.output import emit, table
-from navsym.errors import EmptyError, NavsymError
-from navsym.text.files import decode
+from navsym.core.errors import EmptyError, NavsymError
+from navsym.language.files import decode
 
 LARGEST = 50_000_000
 #: Every key that a certificate has: a file of nothing else is one, even if it lost its kind.

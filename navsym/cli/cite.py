@@ -20,7 +20,7 @@ def command(
 
     Example: navsym cite "guaranteed_velocity:4.3.u2*" >> references.bib
     """
-    from navsym.report.page_citation import bibtex
+    from navsym.report.citation import bibtex
 
     paper, found = find(claim)
     stored = stored_records()

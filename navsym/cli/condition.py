@@ -1,6 +1,6 @@
 """Certified condition numbers of a polynomial motion seen through its position.
 
-The work is done by :func:`navsym.methods.conditioning.numbers.document`; this file reads, calls and prints.
+The work is done by :func:`navsym.trajectory.conditioning.document`; this file reads, calls and prints.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ def command(
 
     Example: navsym condition --n 20 --tau 0.2 --rho 1/6371000
     """
-    from navsym.methods.conditioning.numbers import document
+    from navsym.trajectory.conditioning import document
 
     with Progress("matrices", len(MATRICES), "nothing is kept: a smaller --n or fewer --digits take less time") as bar:
         found = document(n, exact("--rho", rho), exact("--tau", tau), digits, bar.step)
@@ -40,7 +40,7 @@ def exact(name: str, text: str) -> Fraction:
     """A decimal or a fraction, read exactly; nothing else and nothing huge."""
     import re
 
-    from navsym.errors import ExpressionSyntaxError, TooLargeError
+    from navsym.core.errors import ExpressionSyntaxError, TooLargeError
 
     number = r"\d{1,60}(?:\.\d{0,60})?(?:[eE][+-]?\d{1,3})?"
     if not re.fullmatch(rf"[+-]?{number}(?:/{number})?", text.strip(), re.ASCII):

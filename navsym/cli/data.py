@@ -8,7 +8,7 @@ import typer
 
 from navsym.cli._choice import one_of
 from navsym.cli.output import emit, table
-from navsym.errors import EmptyError, ExpressionSyntaxError, NavsymError
+from navsym.core.errors import EmptyError, ExpressionSyntaxError, NavsymError
 
 
 def command(
@@ -20,7 +20,7 @@ def command(
 
     Example: navsym data get srtm        (NAVSYM_DATA names a folder that already has them)
     """
-    from navsym.text.datasets import DATASETS, dataset, fetch
+    from navsym.core.datasets import DATASETS, dataset, fetch
 
     if action == "list":
         rows = [row(data) for data in DATASETS.values()]
@@ -40,7 +40,7 @@ def command(
 
 def row(data: Any) -> dict[str, Any]:
     """One data set as plain data; ``here`` is where it lies, or null."""
-    from navsym.text.datasets import local_copy
+    from navsym.core.datasets import local_copy
 
     try:
         path, trouble = local_copy(data), None

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from navsym.cli.output import dumps, emit, write_text
-from navsym.errors import DomainError, ExpressionSyntaxError, NavsymError
+from navsym.core.errors import DomainError, ExpressionSyntaxError, NavsymError
 
 if TYPE_CHECKING:
     from navsym.models.derivation import Derivation
@@ -31,8 +31,8 @@ def command(
     Example: navsym derive examples/schuler-velocity.toml
     """
     from navsym.models.derivation import derive
-    from navsym.models.derivation_document import as_latex, as_text, document
-    from navsym.text.modelfile import read_model
+    from navsym.models.document import as_latex, as_text, document
+    from navsym.models.modelfile import read_model
 
     found = read_model(file, dict(setting(text) for text in set_ or []))
     try:
@@ -50,7 +50,7 @@ def command(
 
 def write_certificate(derivation: Derivation, path: Path) -> None:
     """The certificate as a JSON file; DomainError when nothing in the file has one."""
-    from navsym.proof.certificates_systems import derivation_certificate
+    from navsym.models.document import derivation_certificate
 
     found = derivation_certificate(derivation)
     if found is None:

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 import typer
 
 from navsym.cli.output import emit, table
-from navsym.errors import DomainError, ExpressionSyntaxError, ShapeError
+from navsym.core.errors import DomainError, ExpressionSyntaxError, ShapeError
 
 
 def command(
@@ -40,7 +40,7 @@ def kind_of(text: str) -> str:
     """What a word of the command line names; a file of another kind is refused."""
     from pathlib import Path
 
-    from navsym.text.tomlfile import read_toml
+    from navsym.language.tomlfile import read_toml
 
     if text.endswith(".toml"):
         return "a claim file" if "claim" in read_toml(Path(text)) else "a model file"
@@ -54,7 +54,7 @@ def kind_of(text: str) -> str:
 
 def read_range(text: str) -> tuple[str, tuple[Any, Any]]:
     """``"T=0,2*pi"`` as a name and two exact ends."""
-    from navsym.text.expression import parse
+    from navsym.language.expression import parse
 
     name, equals, ends = text.partition("=")
     parts = ends.split(",")

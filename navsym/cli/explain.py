@@ -27,7 +27,7 @@ def command(
 
     Example: navsym explain guaranteed_velocity:4.3.u2
     """
-    from navsym.report.page_explain import steps
+    from navsym.report.explain import steps
 
     paper, found = find(claim)
     _, record = decide(claim, seconds)
@@ -63,8 +63,8 @@ def correction_of(wanted: str) -> Claim | None:
 
 def formula_of(claim: Claim) -> str | None:
     """The formula that a claim prints; None where all is said in its title."""
-    from navsym.methods.verification.verify import sides
     from navsym.report.formula.sides import only_truth
+    from navsym.verification.decide import sides
 
     printed, _ = sides(claim.derive())
     return None if only_truth(printed) else printed

@@ -11,7 +11,7 @@ import typer
 
 from navsym.cli._progress import Progress
 from navsym.cli.output import emit, table
-from navsym.errors import DomainError, NavsymError
+from navsym.core.errors import DomainError, NavsymError
 
 if TYPE_CHECKING:
     from navsym.export.functions import ExportedFunction, Material
@@ -115,7 +115,7 @@ def from_paper(module: str, number: str, allow_confirmed: bool) -> Material:
     from navsym.claims import equation_of
     from navsym.cli.verify import load
     from navsym.export.functions import material
-    from navsym.proof.ladder import decide_within
+    from navsym.prove.ladder import decide_within
 
     (found,) = load([module])
     by_number = {claim.number: claim for claim in found.claims}
@@ -138,11 +138,10 @@ def from_paper(module: str, number: str, allow_confirmed: bool) -> Material:
 
 
 def from_file(path: Path, wanted: str, allow_confirmed: bool) -> Material:
+    from navsym.core.sandbox import Exhausted, run_limited
     from navsym.export.functions import material
-    from navsym.methods.prove import decide_claim, statement_of
-    from navsym.proof.ladder import exhausted
-    from navsym.proof.sandbox import Exhausted, run_limited
-    from navsym.text.claimfile import read_claims
+    from navsym.prove.claimfile import decide_claim, read_claims, statement_of
+    from navsym.prove.ladder import exhausted
 
     claims = {claim.id: claim for claim in read_claims(path).claims}
     if wanted not in claims:

@@ -10,7 +10,7 @@ import typer
 
 from navsym.cli._progress import Progress
 from navsym.cli.output import emit, table
-from navsym.errors import DomainError
+from navsym.core.errors import DomainError
 
 if TYPE_CHECKING:
     from navsym.export.functions import ExportedFunction

@@ -10,7 +10,7 @@ import typer
 from navsym.cli.output import emit, remark
 
 if TYPE_CHECKING:
-    from navsym.methods.multimodel.filters import Estimate
+    from navsym.multimodel.filters import Estimate
 
 
 def command(
@@ -35,9 +35,9 @@ def command(
 
     Example: navsym filter examples/switching.json --method k-pulsating --depth 2
     """
-    from navsym.errors import NavsymError
-    from navsym.methods.multimodel.filters import read_bank, run
-    from navsym.text.jsonfile import read_json
+    from navsym.core.errors import NavsymError
+    from navsym.language.jsonfile import read_json
+    from navsym.multimodel.filters import read_bank, run
 
     document = read_json(file)
     try:

@@ -9,7 +9,7 @@ import typer
 
 from navsym.cli._settings import values_of
 from navsym.cli.output import emit, put, write_text
-from navsym.errors import NavsymError
+from navsym.core.errors import NavsymError
 
 
 def command(
@@ -29,9 +29,9 @@ def command(
 
     Example: navsym formulate examples/schuler-velocity.toml --target drift --set T=1 --to mps --out drift.mps
     """
-    from navsym.methods.guaranteed.formulate import formulate
-    from navsym.methods.guaranteed.problem import from_file
-    from navsym.text.modelfile import read_model
+    from navsym.guaranteed.formulate import formulate
+    from navsym.guaranteed.problem import from_file
+    from navsym.models.modelfile import read_model
 
     found = read_model(file, values_of(set_))
     try:

@@ -1,6 +1,6 @@
 """The least error of velocity and acceleration that any algorithm can guarantee from positions.
 
-The work is done by :mod:`navsym.methods.trajectory.limits`; this file reads, calls and prints.
+The work is done by :mod:`navsym.trajectory.limits`; this file reads, calls and prints.
 """
 
 from __future__ import annotations
@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from navsym.cli.output import emit, table
-from navsym.errors import DomainError, TooLargeError
+from navsym.core.errors import DomainError, TooLargeError
 
 if TYPE_CHECKING:
-    from navsym.methods.trajectory.limits import Rule
-    from navsym.numeric.arrays import Array
+    from navsym.core.arrays import Array
+    from navsym.trajectory.limits import Rule
 
 #: Order of the derivative that is bounded -> its name and unit.
 BOUNDED = {2: ("acceleration", "m/s^2"), 3: ("jerk", "m/s^3")}
@@ -74,7 +74,7 @@ def bounded(acceleration: float | None, jerk: float | None) -> tuple[int, float]
 
 def limit(noise: float, bound: float, derivative: int, order: int) -> dict[str, Any]:
     """What no algorithm undercuts, and the rule that reaches it."""
-    from navsym.methods.trajectory.limits import best_ages, least_error, rule
+    from navsym.trajectory.limits import best_ages, least_error, rule
 
     name, unit = ASKED[derivative]
     claims = f"trajectory:limit.{name}.{BOUNDED[order][0]}"
@@ -90,7 +90,7 @@ def limit(noise: float, bound: float, derivative: int, order: int) -> dict[str, 
 
 def sampled(noise: float, bound: float, order: int, step: float | None, memory: float | None) -> dict[str, Any] | None:
     """The best rules among positions that come at a rate; None without one."""
-    from navsym.methods.trajectory.limits import best_rule
+    from navsym.trajectory.limits import best_rule
 
     if step is None:
         if memory is not None:
@@ -111,7 +111,7 @@ def available(noise: float, bound: float, order: int, step: float, memory: float
 
     import numpy as np
 
-    from navsym.methods.trajectory.limits import NEAR, best_ages
+    from navsym.trajectory.limits import NEAR, best_ages
 
     for name, value in (("--step", step), ("--memory", memory)):
         if value is not None and not (math.isfinite(value) and value > 0):

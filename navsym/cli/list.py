@@ -27,7 +27,7 @@ def command(
     Example: navsym list --status REFUTED --slip paper
     """
     from navsym.cli.verify import load
-    from navsym.report.ledger import in_order
+    from navsym.verification.ledger import in_order
 
     wanted = {one_of(s.upper(), STATUSES, "--status") for s in status or ()}
     kind = one_of(slip, SLIPS, "--slip") if slip else None

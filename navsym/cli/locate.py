@@ -1,6 +1,6 @@
 """Fix a position over a height map from a measured profile.
 
-The work is done by :func:`navsym.methods.terrain.locate.locate`; this file reads, calls and prints.
+The work is done by :func:`navsym.terrain.locate.locate`; this file reads, calls and prints.
 """
 
 from __future__ import annotations
@@ -28,9 +28,9 @@ def command(
 
     Example: navsym locate examples/flight.json --method sequential
     """
-    from navsym.errors import NavsymError
-    from navsym.methods.terrain.locate import locate
-    from navsym.text.jsonfile import read_json
+    from navsym.core.errors import NavsymError
+    from navsym.language.jsonfile import read_json
+    from navsym.terrain.locate import locate
 
     document = read_json(config)
     try:

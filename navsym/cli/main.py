@@ -23,7 +23,7 @@ from typing import Any, NoReturn
 from navsym import __version__
 from navsym.cli._progress import Ticker
 from navsym.cli.output import OutputError, dumps, put, visible, wants_colour
-from navsym.errors import ExpressionSyntaxError, MissingEngineError, NavsymError
+from navsym.core.errors import ExpressionSyntaxError, MissingEngineError, NavsymError
 
 FOLDER = Path(__file__).parent
 NOT_VERBS = frozenset({"main", "output"})

@@ -9,10 +9,10 @@ import typer
 
 from navsym.claims import Verdict, equation_of
 from navsym.cli.output import emit, write_text
-from navsym.errors import DomainError
+from navsym.core.errors import DomainError
 
 if TYPE_CHECKING:
-    from navsym.text.scaffold import NewClaim
+    from navsym.language.scaffold import NewClaim
 
 
 def command(
@@ -36,7 +36,7 @@ def command(
     Example: navsym new-claim schuler_pendulum 1 --printed "2*pi*sqrt(R/g)" --derived "2*pi/sqrt(g/R)" --positive R,g
     """
     from navsym.cli.verify import ledger_folder
-    from navsym.text.scaffold import NewClaim, check_module_name, equations_of, with_claim
+    from navsym.language.scaffold import NewClaim, check_module_name, equations_of, with_claim
 
     path = (folder or ledger_folder()) / f"{check_module_name(module)}.py"
     if not path.is_file():
@@ -82,8 +82,8 @@ def decided(source: str, asked: NewClaim) -> Verdict:
 
 def verdict_for(source: str, asked: NewClaim, positive: frozenset[str]) -> Verdict:
     from navsym.claims import Equation
-    from navsym.proof.ladder import decide_within
-    from navsym.text.scaffold import declarations, module_tree, read, read_tolerance
+    from navsym.language.scaffold import declarations, module_tree, read, read_tolerance
+    from navsym.prove.ladder import decide_within
 
     given = declarations(module_tree(source), positive)
     printed, derived = read(asked.printed, "--printed", given), read(asked.derived, "--derived", given)
@@ -93,7 +93,7 @@ def verdict_for(source: str, asked: NewClaim, positive: frozenset[str]) -> Verdi
 
 def new_names(source: str, asked: NewClaim) -> frozenset[str]:
     """Names of the two sides that neither the file nor the command declares."""
-    from navsym.text.scaffold import EXAMPLE, declarations, module_tree, read
+    from navsym.language.scaffold import EXAMPLE, declarations, module_tree, read
 
     given = declarations(module_tree(source.replace(EXAMPLE, "", 1)), asked.positive)
     sides = read(asked.printed, "--printed"), read(asked.derived, "--derived")

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from navsym.cli.output import emit, write_text
-from navsym.errors import DuplicateError
+from navsym.core.errors import DuplicateError
 
 
 def command(
@@ -27,7 +27,7 @@ def command(
     Example: navsym new-paper schuler_pendulum --author "A. Author" --year 1923 --equations "1-6"
     """
     from navsym.cli.verify import ledger_folder
-    from navsym.text.scaffold import check_module_name, equation_numbers, module_source
+    from navsym.language.scaffold import check_module_name, equation_numbers, module_source
 
     path = (folder or ledger_folder()) / f"{check_module_name(name)}.py"
     if path.exists() or path.with_suffix("").exists():

@@ -12,10 +12,10 @@ import typer
 from navsym.cli._candidates import read_candidates, restoration, restored_text
 from navsym.cli._settings import values_of
 from navsym.cli.output import emit, table, write_text
-from navsym.errors import DomainError, DuplicateError, ExpressionSyntaxError, NavsymError
+from navsym.core.errors import DomainError, DuplicateError, ExpressionSyntaxError, NavsymError
 
 if TYPE_CHECKING:
-    from navsym.text.modeltypes import ModelFile
+    from navsym.models.modelfile import ModelFile
 
 
 def command(
@@ -46,8 +46,7 @@ def command(
 
     What is missing: navsym observe model.toml --restore --candidate "gps = x"
     """
-    from navsym.methods.observability.document import document, examine
-    from navsym.methods.observability.pages import as_html, as_latex
+    from navsym.observability.document import as_html, as_latex, document, examine
 
     model_file = read(file, set_ or [])
     request = read_split(split) if split is not None else None
@@ -70,8 +69,7 @@ def command(
 
 def read(file: Path, settings: list[str]) -> ModelFile:
     """The model of a file; a file of regressors has no F to observe."""
-    from navsym.text.modelfile import read_model
-    from navsym.text.modeltypes import ModelFile
+    from navsym.models.modelfile import ModelFile, read_model
 
     found = read_model(file, values_of(settings))
     if not isinstance(found, ModelFile):
@@ -107,8 +105,8 @@ def read_split(text: str) -> tuple[int, int]:
 
 def read_poles(text: str, found: ModelFile) -> tuple[tuple[Any, ...], Any]:
     """Polynomials in p; names that the file does not declare are positive symbols of their own."""
-    from navsym.text.expression import parse, symbol
-    from navsym.text.names import RESERVED
+    from navsym.language.expression import parse, symbol
+    from navsym.language.names import RESERVED
 
     declared = {name: parameter.symbol for name, parameter in found.parameters.items()}
     if "p" in declared:

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import IO, Any
 
 from navsym.cli._progress import LINE
-from navsym.errors import NavsymError
+from navsym.core.errors import NavsymError
 
 #: Colours of the words that a reader looks for first.
 STYLES: Mapping[str, str] = {

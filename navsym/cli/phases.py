@@ -10,7 +10,7 @@ import typer
 from navsym.cli._progress import Progress
 from navsym.cli._settings import values_of
 from navsym.cli.output import dumps, emit, table, write_text
-from navsym.errors import DomainError, ExpressionSyntaxError, NavsymError
+from navsym.core.errors import DomainError, ExpressionSyntaxError, NavsymError
 
 RESUME = "nothing is kept: a shorter --range, --quick, or fewer --seconds take less time"
 
@@ -40,9 +40,9 @@ def command(
 
     Example: navsym phases examples/schuler-velocity.toml --target drift --range "0, 2*pi"
     """
-    from navsym.methods.phases.continuation import phases
-    from navsym.methods.phases.family import family_of
-    from navsym.text.modelfile import read_model
+    from navsym.guaranteed.phases.driver import phases
+    from navsym.guaranteed.phases.family import family_of
+    from navsym.models.modelfile import read_model
 
     found = read_model(file, values_of(set_))
     try:
@@ -68,7 +68,7 @@ def command(
 
 def ends_of(found: Any, parameter: str, text: str | None) -> tuple[Any, Any]:
     """The range of the option, or the one that the file declares for the parameter."""
-    from navsym.text.expression import parse
+    from navsym.language.expression import parse
 
     if text is not None:
         parts = text.split(",")

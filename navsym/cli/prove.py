@@ -24,15 +24,15 @@ def command(
 
     Example: navsym prove examples/formulas.toml
     """
-    from navsym.text.tomlfile import read_toml
+    from navsym.language.tomlfile import read_toml
 
     read_toml(file)  # a file that is none is refused before the slow import of the algebra
 
-    from navsym.text.claimfile import read_claims
+    from navsym.prove.claimfile import read_claims
 
     claims = read_claims(file, go_on=True)
 
-    from navsym.methods.prove import prove
+    from navsym.prove.claimfile import prove
 
     found: list[dict[str, Any]] = []
     try:

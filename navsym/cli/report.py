@@ -9,7 +9,7 @@ import typer
 
 from navsym.cli._progress import Progress
 from navsym.cli.output import OutputError, emit, write_text
-from navsym.errors import ShapeError
+from navsym.core.errors import ShapeError
 
 
 def command(
@@ -30,7 +30,7 @@ def command(
     Example: navsym report alpha_beta_filter --out report
     """
     from navsym.cli.verify import cards_of, decided, load, not_as_declared
-    from navsym.methods.verification.verify import unexpected
+    from navsym.verification.decide import unexpected
 
     chosen = load(modules or [])
     given = read_document(source, modules or []) if source else None
@@ -63,7 +63,7 @@ KEYS = frozenset(
 
 def read_document(path: Path, modules: list[str]) -> dict[str, Any]:
     """A document of ``navsym verify --json`` or a ledger, cut to the modules asked for."""
-    from navsym.text.jsonfile import read_json
+    from navsym.language.jsonfile import read_json
 
     document = read_json(path, limit=200_000_000)
     where = str(path)

@@ -17,10 +17,10 @@ from navsym.cli.output import emit, table
 #: Name -> "module:experiment:as_table". The experiment takes seed, progress and perhaps runs, steps, journal, and
 #: returns plain data; as_table turns that into headings and rows. Modules are imported when their name is asked for.
 EXPERIMENTS = {
-    "joint_correction": "navsym.methods.two_stage.study:study:as_table",
-    "multistructure": "navsym.methods.multimodel.study:experiment:as_table",
-    "terrain_search": "navsym.methods.terrain.experiment:study:as_table",
-    "trajectory": "navsym.methods.trajectory.study:study:as_table",
+    "joint_correction": "navsym.observability.two_stage.study:study:as_table",
+    "multistructure": "navsym.multimodel.study:experiment:as_table",
+    "terrain_search": "navsym.terrain.experiment:study:as_table",
+    "trajectory": "navsym.trajectory.study:study:as_table",
 }
 
 
@@ -40,7 +40,7 @@ def command(
 
     Example: navsym simulate multistructure --runs 200 --seed 1
     """
-    from navsym.errors import DomainError
+    from navsym.core.errors import DomainError
 
     one_of(name, EXPERIMENTS, "name")
     if seed < 0:

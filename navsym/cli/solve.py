@@ -10,7 +10,7 @@ import typer
 from navsym.cli._progress import Progress
 from navsym.cli._settings import values_of
 from navsym.cli.output import dumps, emit, table, write_text
-from navsym.errors import NavsymError
+from navsym.core.errors import NavsymError
 
 
 def command(
@@ -33,9 +33,9 @@ def command(
 
     Example: navsym solve examples/schuler-velocity.toml --target drift --set T=pi/2
     """
-    from navsym.methods.guaranteed.problem import from_file
-    from navsym.methods.guaranteed.solver import solve
-    from navsym.text.modelfile import read_model
+    from navsym.guaranteed.problem import from_file
+    from navsym.guaranteed.solver import solve
+    from navsym.models.modelfile import read_model
 
     found = read_model(file, values_of(set_))
     try:
@@ -46,8 +46,8 @@ def command(
     if out is not None:
         write_text(out, dumps(document["certificate"]) + "\n")
     if compare:
-        from navsym.methods.guaranteed.compare import LP_SOLVERS
-        from navsym.methods.guaranteed.compare import compare as beside
+        from navsym.guaranteed.baselines import LP_SOLVERS
+        from navsym.guaranteed.baselines import compare as beside
 
         with Progress("solvers", len(LP_SOLVERS), "without --compare the answer comes at once") as bar:
             document["compare"] = beside(solution, progress=bar.step)

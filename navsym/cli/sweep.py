@@ -34,9 +34,9 @@ def command(
 
     Example: navsym sweep examples/study.json --workers 2
     """
-    from navsym.methods.sweeps.plan import sweep_from
-    from navsym.methods.sweeps.run import run_sweep
-    from navsym.text.jsonfile import read_json
+    from navsym.language.jsonfile import read_json
+    from navsym.studies.plan import sweep_from
+    from navsym.studies.run import run_sweep
 
     sweep = sweep_from(read_json(config))
     resume = "finished shards are kept: the same command (without --fresh) goes on from there"

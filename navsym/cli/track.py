@@ -1,6 +1,6 @@
 """Velocity and acceleration of a track of positions, with standard deviations.
 
-The work is done by :mod:`navsym.methods.trajectory.document`; this file reads, calls and prints.
+The work is done by :mod:`navsym.trajectory.document`; this file reads, calls and prints.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from typing import Annotated, Any
 import typer
 
 from navsym.cli.output import emit, remark, table
-from navsym.errors import DomainError, NavsymError
+from navsym.core.errors import DomainError, NavsymError
 
 SHOWN = 12
 
@@ -65,10 +65,10 @@ def method_of(named: str | None, window: float | None) -> str:
 
 def answer(file: Path, policy: str, sigma: float | None, chosen: dict[str, Any]) -> dict[str, Any]:
     """The document of the estimate; ``chosen`` goes to ``Settings``, which checks it."""
-    from navsym.methods.trajectory.document import document
-    from navsym.methods.trajectory.estimate import Settings
-    from navsym.methods.trajectory.tracks import track_of
-    from navsym.text.readers_tracks import read_track
+    from navsym.trajectory.document import document
+    from navsym.trajectory.estimate import Settings
+    from navsym.trajectory.reader import read_track
+    from navsym.trajectory.tracks import track_of
 
     settings = Settings(**chosen, fixed_scale=sigma is not None)
     read = read_track(file, policy)  # type: ignore[arg-type]

@@ -18,8 +18,8 @@ from navsym.cli.output import emit, remark, table, write_text
 
 if TYPE_CHECKING:
     from navsym.claims import Paper
-    from navsym.methods.verification.deciding_code import Snapshot
-    from navsym.methods.verification.verify import PaperModule
+    from navsym.verification.decide import PaperModule
+    from navsym.verification.fingerprints import Snapshot
 
 WIDTH = 100
 
@@ -44,7 +44,7 @@ def command(
 
     Example: navsym verify guaranteed_velocity
     """
-    from navsym.methods.verification.verify import unexpected
+    from navsym.verification.decide import unexpected
 
     started = time.monotonic()
     before = sources()
@@ -73,7 +73,7 @@ def names() -> list[str]:
 
 def load(wanted: Sequence[str]) -> list[PaperModule]:
     """Import the modules asked for, or all of them."""
-    from navsym.methods.verification.verify import paper_module
+    from navsym.verification.decide import paper_module
 
     known = names()
     for name in wanted:
@@ -84,7 +84,7 @@ def load(wanted: Sequence[str]) -> list[PaperModule]:
 
 def sources() -> Snapshot:
     """What the sources of the derivations and of the deciding rooms are now."""
-    from navsym.methods.verification.deciding_code import snapshot
+    from navsym.verification.fingerprints import snapshot
 
     return snapshot(ledger_folder())
 
@@ -96,7 +96,7 @@ def decided(
 
     before : the sources before they were imported; by default what they are now
     """
-    from navsym.methods.verification.verify import verify
+    from navsym.verification.decide import verify
 
     kept = KeptVerdicts(chosen, fresh, before or sources())
     missing = len(kept.keys) - len(kept.known)
@@ -120,9 +120,8 @@ class KeptVerdicts:
     """Verdicts of earlier runs whose claims and rooms have not changed; what could not be kept is in ``lost``."""
 
     def __init__(self, chosen: Sequence[PaperModule], fresh: bool, before: Snapshot):
-        from navsym.methods.verification.deciding_code import not_yet_imported
-        from navsym.methods.verification.dependencies import fingerprints
-        from navsym.store import Store, StoreError
+        from navsym.core.store import Store, StoreError
+        from navsym.verification.fingerprints import fingerprints, not_yet_imported
 
         self.keys = fingerprints(claim for module in chosen for claim in module.claims)
         self.mixed = sources() != before
@@ -143,7 +142,7 @@ class KeptVerdicts:
 
     def keep(self, record: dict[str, Any]) -> None:
         """Keep a verdict, unless it ran out of time, which another run may not."""
-        from navsym.store import StoreError
+        from navsym.core.store import StoreError
 
         if self.store is None or record["method"] == "none":
             return  # without a store all are named as lost already
@@ -174,7 +173,7 @@ def ledger_file() -> Path:
 
 def differences(document: dict[str, Any]) -> list[str]:
     """Claims whose verdict is not the one in the ledger, or that it does not have."""
-    from navsym.report.ledger import read_ledger
+    from navsym.verification.ledger import read_ledger
 
     stored = read_ledger(ledger_file())
     return [r["id"] for r in document["claims"] if stored.get(r["id"], {}).get("status") != r["status"]]
@@ -184,7 +183,7 @@ def write_ledger(document: dict[str, Any]) -> None:
     """Update ``verdicts.json`` and ``README.md`` of the derivations."""
     import json
 
-    from navsym.report.ledger import ledger_text, merged, people_text
+    from navsym.verification.ledger import ledger_text, merged, people_text
 
     path = ledger_file()
     old = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {"claims": [], "papers": []}
@@ -201,7 +200,7 @@ def as_text(
     seconds: float,
 ) -> str:
     """A table in the order of the papers, and below it what is refuted and the counts: the end is what one sees."""
-    from navsym.report.ledger import papers_in_order
+    from navsym.verification.ledger import papers_in_order
 
     papers = papers_in_order(document, cards)
     rows = [(r["number"], r["status"], r["title"], remark_of(r)) for _, records in papers for r in records]

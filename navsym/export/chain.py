@@ -14,11 +14,11 @@ from typing import Any
 import sympy as sp
 
 from navsym.claims import PROVED, Statement, Verdict
-from navsym.errors import DomainError
+from navsym.core.errors import DomainError
 from navsym.export.functions import function_of, require_exportable
 from navsym.export.parts import ExportedFunction, Layout, Material, Output, Source, State
-from navsym.proof.ladder import decide_within
-from navsym.proof.wording import text_of
+from navsym.prove.ladder import decide_within
+from navsym.prove.wording import text_of
 
 SECONDS = 90.0
 Decided = Callable[[str], Material]

@@ -10,14 +10,14 @@ from typing import Any
 import sympy as sp
 from flint import arb
 
-from navsym.errors import NavsymError
+from navsym.core.balls import precision
+from navsym.core.errors import NavsymError
 from navsym.export.accuracy.analysis import analyse
 from navsym.export.accuracy.literals import literals_of
 from navsym.export.accuracy.rounding import BITS, LIBRARY, Arithmetic
 from navsym.export.expression_graph import Graph, build
 from navsym.export.forms import factored, safe
-from navsym.proof.balls import precision
-from navsym.proof.identities.normal_form import OutsideLanguageError, reduce_to_zero
+from navsym.prove.identities.normal_form import OutsideLanguageError, reduce_to_zero
 
 SAMPLES = 12
 

@@ -14,14 +14,14 @@ import sympy as sp
 from flint import arb
 
 from navsym.claims import REFUTED, Equation
-from navsym.errors import DomainError, EmptyError, ExpressionSyntaxError, NavsymError
-from navsym.proof.balls import enclose, hull
-from navsym.proof.ladder import decide
-from navsym.proof.sampling.points import range_of
-from navsym.proof.wording import decimal_ends, text_of
-from navsym.text.expression import parse, symbol
-from navsym.text.files import read_text
-from navsym.text.tokens import Source, tokenize
+from navsym.core.balls import enclose, hull
+from navsym.core.errors import DomainError, EmptyError, ExpressionSyntaxError, NavsymError
+from navsym.language.expression import parse, symbol
+from navsym.language.files import read_text
+from navsym.language.tokens import Source, tokenize
+from navsym.prove.ladder import decide
+from navsym.prove.sampling.points import range_of
+from navsym.prove.wording import decimal_ends, text_of
 
 POINTS = 400
 LIMIT = 20_000_000
@@ -189,7 +189,7 @@ def formulas_of(text: str, ranges: Mapping[str, tuple[Any, Any]]) -> dict[str, F
 
 def of_text(text: str, ranges: Mapping[str, tuple[Any, Any]], where: str = "") -> Formula:
     """A formula whose names are real symbols, with ranges where some are given."""
-    from navsym.text.names import RESERVED
+    from navsym.language.names import RESERVED
 
     names = {t.text for t in tokenize(Source(text, where)) if t.kind == "name"} - RESERVED
     symbols = {name: symbol(name, where=where) for name in sorted(names)}
@@ -199,11 +199,11 @@ def of_text(text: str, ranges: Mapping[str, tuple[Any, Any]], where: str = "") -
 
 def of_file(path: Path) -> dict[str, Formula]:
     """Left sides of a claim file, or the entries of a model's F and H."""
-    from navsym.text.tomlfile import read_toml
+    from navsym.language.tomlfile import read_toml
 
     document = read_toml(path)
     if "claim" in document:
-        from navsym.text.claimfile import claims_from
+        from navsym.prove.claimfile import claims_from
 
         claims = claims_from(document, str(path)).claims
         return {name: found for c in claims for name, found in entries_of(c.id, c.left, c.box).items()}
@@ -223,8 +223,7 @@ def entries_of(name: str, side: Any, box: Mapping[sp.Symbol, tuple[Any, Any]]) -
 
 def of_model(path: Path) -> dict[str, Formula]:
     """Entries of F and of the measurement rows, by their places."""
-    from navsym.text.modelfile import read_model
-    from navsym.text.modeltypes import ModelFile
+    from navsym.models.modelfile import ModelFile, read_model
 
     model = read_model(path)
     if isinstance(model, ModelFile):

@@ -19,7 +19,7 @@ from typing import Any
 
 import sympy as sp
 
-from navsym.errors import DomainError, UnknownSymbolError
+from navsym.core.errors import DomainError, UnknownSymbolError
 from navsym.export.atoms import expm1, filled, plain
 from navsym.export.forms import common_step
 from navsym.export.holes import part_of

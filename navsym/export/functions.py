@@ -13,7 +13,7 @@ from typing import Any
 import sympy as sp
 
 from navsym.claims import CONFIRMED, REFUTED, Bound, Equation, Optimum, Statement, Verdict
-from navsym.errors import NavsymError, ShapeError
+from navsym.core.errors import NavsymError, ShapeError
 from navsym.export.accuracy.literals import literals_of
 from navsym.export.accuracy.overflow import watched
 from navsym.export.accuracy.rounding import ARITHMETICS, Arithmetic, with_library
@@ -25,7 +25,7 @@ from navsym.export.inputs import arguments_of, inputs_of, with_whole_arrays
 from navsym.export.languages.names import function_name, local_names
 from navsym.export.parts import ExportedFunction, Input, Layout, Material, Output, Piece, Source, inside
 from navsym.export.regimes import common_outputs, in_order, joined_box, limit_of
-from navsym.proof.wording import text_of
+from navsym.prove.wording import text_of
 
 MOST_OUTPUTS = 400
 WORK = 40_000  # nodes times cells that the uniform bound may cost

@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from navsym.errors import ShapeError
+from navsym.core.errors import ShapeError
 from navsym.export.languages.names import LONGEST, identifier
 from navsym.export.parts import Argument, Input, Layout, inside
-from navsym.proof.sampling.points import Range, range_of
-from navsym.proof.wording import text_of
+from navsym.prove.sampling.points import Range, range_of
+from navsym.prove.wording import text_of
 
 SMALLEST = {"double": 2.0**-60, "float": 2.0**-20}  # stands for an open end at zero
 LARGE = 1000.0  # the end of a range that has none, for vectors and bounds

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from navsym import __version__
-from navsym.errors import DomainError, DuplicateError, NavsymError
+from navsym.core.errors import DomainError, DuplicateError, NavsymError
 from navsym.export.accuracy.vectors import Vector, vectors
 from navsym.export.folder import require_free, write_folder
 from navsym.export.functions import rebounded
@@ -23,7 +23,7 @@ from navsym.export.languages.summary import bound_text
 from navsym.export.languages.targets import Target
 from navsym.export.parts import ExportedFunction, Piece
 from navsym.export.roundtrip import MANIFEST, Outcome, run_target, sealed
-from navsym.proof.certificates import identity_certificate
+from navsym.prove.certificates import identity_certificate
 
 COUNT = 48
 LICENSE = "Apache-2.0"

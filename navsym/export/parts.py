@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
+from navsym.core.balls import enclose
 from navsym.export.accuracy.rounding import Arithmetic
 from navsym.export.accuracy.uniform import Uniform
 from navsym.export.expression_graph import Graph
-from navsym.proof.balls import enclose
 
 
 @dataclass(frozen=True, slots=True)

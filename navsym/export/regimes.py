@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from navsym.errors import DomainError, ShapeError
+from navsym.core.errors import DomainError, ShapeError
 from navsym.export.parts import Material, Output, inside
-from navsym.proof.identities.normal_form import vanishes_identically
+from navsym.prove.identities.normal_form import vanishes_identically
 
 
 def in_order(parts: Sequence[Material]) -> tuple[list[Material], sp.Symbol | None]:

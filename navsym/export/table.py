@@ -9,7 +9,8 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from navsym.errors import MissingEngineError
+from navsym.core.errors import MissingEngineError
+from navsym.core.sandbox import MOST_MEGABYTES, Exhausted, Failed, run_many
 from navsym.export.accuracy.sweep import Swept, sweep_c
 from navsym.export.folder import write_folder
 from navsym.export.languages.summary import bound_text
@@ -18,7 +19,6 @@ from navsym.export.package import Order, files_of
 from navsym.export.parts import ExportedFunction
 from navsym.export.roundtrip import Outcome, run_target
 from navsym.export.tools import Said, cortex_m4_sizes, ctest, misra
-from navsym.proof.sandbox import MOST_MEGABYTES, Exhausted, Failed, run_many
 
 Record = dict[str, Any]
 SECONDS = 36_000.0  # of one task; what runs code has limits of its own

@@ -1,0 +1,1 @@
+"""Dynamics and measurements: linear models, transition matrices, inertial error equations, the Earth."""

@@ -18,8 +18,9 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from navsym.errors import DomainError
+from navsym.core.errors import DomainError
 from navsym.models.linear import LinearModel, observability_matrix
+from navsym.models.modelfile import BasisFile, ModelFile
 from navsym.models.transition.exponential import (
     TransitionMatrix,
     collected,
@@ -27,7 +28,6 @@ from navsym.models.transition.exponential import (
     regressors,
     transition_matrix,
 )
-from navsym.text.modeltypes import BasisFile, ModelFile
 
 #: Names tried for the instant of a measurement and for the multipliers, until one is free.
 INSTANTS = ("tau", "s", "theta", "instant")

@@ -13,7 +13,7 @@ from typing import Any
 import sympy as sp
 
 from navsym.claims.display import displayed, latex_of, latex_words
-from navsym.errors import DomainError, DuplicateError, EmptyError, NotFiniteError, ShapeError
+from navsym.core.errors import DomainError, DuplicateError, EmptyError, NotFiniteError, ShapeError
 from navsym.models.noise import Noise
 
 #: The independent variable of a model that is not told otherwise.

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from navsym.errors import DomainError, ShapeError
+from navsym.core.errors import DomainError, ShapeError
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from navsym.claims import Paper, equation_of
+from navsym.report.explain import arithmetic, ball_words, ended
 from navsym.report.formula.sides import Formula, coordinates, formula, only_truth
-from navsym.report.page_arithmetic import arithmetic, ball_words, ended
 from navsym.report.wording import Wording, Words, pattern_of
 
 Record = Mapping[str, Any]

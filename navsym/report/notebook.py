@@ -9,8 +9,8 @@ from typing import Any
 
 from navsym.claims import Bound, Claim, Equation, Optimum, Property, Statement, Verdict
 from navsym.claims.display import SIGNS, card, latex_of, verdict_words
-from navsym.errors import NavsymError
-from navsym.proof.ladder import decide
+from navsym.core.errors import NavsymError
+from navsym.prove.ladder import decide
 
 
 class UnexpectedVerdictError(NavsymError):

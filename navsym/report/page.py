@@ -3,7 +3,7 @@
 ``site`` turns the document of ``navsym verify`` into texts by file name; writing them is the
 business of the command line. Every word that comes from data is escaped by the templates; the
 only markup that data can cause is made by :mod:`navsym.report.formula.sides` and
-:mod:`navsym.report.page_plot`, which escape what they take.
+:mod:`navsym.report.curves`, which escape what they take.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from __future__ import annotations
 import base64
 import hashlib
 import json
+import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,20 +21,83 @@ import jinja2
 from markupsafe import Markup
 
 from navsym.claims import Paper, equation_of
+from navsym.report.code import Snippet, snippets
+from navsym.report.curves import refutation_plot
 from navsym.report.erratum import Erratum, erratum_of, printed_side
+from navsym.report.explain import Step, ball_words, ended, steps
 from navsym.report.formula.latex import sentence_html, sentence_latex
 from navsym.report.formula.sides import Formula, coordinates, formula, only_truth
-from navsym.report.ledger import about, in_order, only_in_the_copy
-from navsym.report.page_arithmetic import ball_words, ended
-from navsym.report.page_code import Snippet, snippets
-from navsym.report.page_explain import Step, steps
-from navsym.report.page_files import certificate_files, certificates, slug
-from navsym.report.page_names import latex_escape
-from navsym.report.page_plot import refutation_plot
-from navsym.report.page_words import scope_words, truth_words
+from navsym.report.names import latex_escape
 from navsym.report.wording import Words
+from navsym.verification.ledger import about, in_order, only_in_the_copy
+
+# Names of the files of a report, and the certificates that it keeps as files.
+
 
 Record = Mapping[str, Any]
+
+
+def certificate_files(records: Sequence[Record]) -> dict[str, str]:
+    """Certificates as ``navsym check`` reads them."""
+    return {
+        name: json.dumps(part, ensure_ascii=False, indent=1) + "\n"
+        for record in records
+        for name, part in certificates(record)
+    }
+
+
+def certificates(record: Record) -> list[tuple[str, Any]]:
+    """File names and certificates of a record: one for each entry where a claim has several."""
+    whole = record.get("certificate")
+    if not whole:
+        return []
+    parts = whole["of"] if whole.get("kind") == "all" and isinstance(whole.get("of"), list) else [whole]
+    name = f"certificates/{slug(record['id'])}"
+    if len(parts) == 1:
+        return [(f"{name}.json", parts[0])]
+    return [(f"{name}.{place}.json", part) for place, part in enumerate(parts, start=1)]
+
+
+def slug(name: str) -> str:
+    """A name that is safe in a file name and in an address; different names stay different."""
+    plain = re.sub(r"[^A-Za-z0-9.-]", "_", name)[:80].strip(".")
+    return plain if plain == name else f"{plain}-{hashlib.sha256(name.encode('utf-8', 'replace')).hexdigest()[:6]}"
+
+
+# Scopes and truth values of records, as a page says them.
+
+
+RANGES = (
+    (re.compile(r"(\w+) in \(0, oo\)"), r"\1 > 0"),
+    (re.compile(r"(\w+) in \[0, oo\)"), r"\1 ≥ 0"),
+    (re.compile(r"(\w+) in \(-oo, 0\)"), r"\1 < 0"),
+    (re.compile(r"\boo\b"), "∞"),
+    (re.compile(r" != "), " ≠ "),
+    (re.compile(r" >= "), " ≥ "),
+    (re.compile(r" <= "), " ≤ "),
+)
+SINGLE = {"True": "it holds", "False": "it does not hold"}
+
+
+def scope_words(text: str) -> str:
+    """A scope or an assumption with the signs of mathematics: ``T in (0, oo)`` is T > 0."""
+    if text == "one point":
+        return "one point, which is enough to refute"
+    for pattern, sign in RANGES:
+        text = pattern.sub(sign, text)
+    return text
+
+
+def truth_words(text: str) -> str:
+    """One truth value or several, as a statement about what is asked."""
+    values = re.findall(r"True|False", text)
+    if len(values) == 1:
+        return SINGLE[values[0]]
+    if set(values) == {"True"}:
+        return f"it holds in all {len(values)} cases"
+    return "; ".join(f"case {place}: {SINGLE[value]}" for place, value in enumerate(values, start=1))
+
+
 TEMPLATES = Path(__file__).parent / "templates"
 MARKS = {"PROVED": "✓", "CERTIFIED": "◎", "CONFIRMED": "≈", "REFUTED": "✗", "OPEN": "?"}
 MEANINGS = {

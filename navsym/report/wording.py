@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 
-from navsym.errors import ExpressionSyntaxError, NavsymError, UnknownSymbolError
+from navsym.core.errors import ExpressionSyntaxError, NavsymError, UnknownSymbolError
 from navsym.report.formula.latex import sentence_html
 
 KEYS = ("where", "printed", "correct", "why", "check")

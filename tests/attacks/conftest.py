@@ -9,9 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from navsym.errors import NavsymError
-from navsym.text.claimfile import read_claims
-from navsym.text.modelfile import read_model
+from navsym.core.errors import NavsymError
+from navsym.models.modelfile import read_model
+from navsym.prove.claimfile import read_claims
 
 # Whatever starts code, a process or a connection, or writes a file, while a payload is being read.
 HEARD: list[str] = []

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from navsym.methods.campaigns.parser import MEGABYTES, OUTCOMES, SLOW, answer, batches, judge
-from navsym.methods.campaigns.readers import BOMBS, READERS, matlab_header
+from navsym.studies.campaigns.parser import MEGABYTES, OUTCOMES, SLOW, answer, batches, judge
+from navsym.studies.campaigns.readers import BOMBS, READERS, matlab_header
 
 REFUSED_AS_THEY_ARE = {"track.mat", "map.hgt"}  # no track of ours; a tile cut short
 

@@ -12,11 +12,11 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from navsym.errors import MissingEngineError, NavsymError
-from navsym.methods.campaigns.readers import EXPRESSION, READERS
-from navsym.text.claimfile import claims_from
-from navsym.text.expression import parse, symbol, to_text
-from navsym.text.modelfile import model_from
+from navsym.core.errors import MissingEngineError, NavsymError
+from navsym.language.expression import parse, symbol, to_text
+from navsym.models.modelfile import model_from
+from navsym.prove.claimfile import claims_from
+from navsym.studies.campaigns.readers import EXPRESSION, READERS
 
 PIECES = [
     b"",

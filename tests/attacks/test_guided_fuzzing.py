@@ -11,10 +11,10 @@ from pathlib import Path
 import pytest
 
 from navsym.cli.main import run
-from navsym.errors import MissingEngineError
-from navsym.methods.campaigns import fuzz
-from navsym.methods.campaigns.parser import OUTCOMES, answer
-from navsym.methods.campaigns.readers import READERS
+from navsym.core.errors import MissingEngineError
+from navsym.studies.campaigns import fuzz
+from navsym.studies.campaigns.parser import OUTCOMES, answer
+from navsym.studies.campaigns.readers import READERS
 
 FOUND = Path(__file__).parent / "found"
 
@@ -52,7 +52,7 @@ def wrong_of(folder, reader):
         "import runpy, sys\n"
         "from navsym.methods.campaigns import readers\n"
         f"readers.READERS['bank'] = ({reader}, b'{{}}')\n"
-        "runpy.run_module('navsym.methods.campaigns.guided', run_name='__main__')\n"
+        "runpy.run_module('navsym.studies.campaigns.guided', run_name='__main__')\n"
     )
     inside = folder / str(len(list(folder.iterdir())))
     inside.mkdir()

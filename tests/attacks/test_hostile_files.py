@@ -10,10 +10,10 @@ from pathlib import Path
 
 import pytest
 
-from navsym.errors import NavsymError
-from navsym.text.claimfile import read_claims
-from navsym.text.jsonfile import read_json
-from navsym.text.modelfile import read_model
+from navsym.core.errors import NavsymError
+from navsym.language.jsonfile import read_json
+from navsym.models.modelfile import read_model
+from navsym.prove.claimfile import read_claims
 
 MODEL = """[model]
 name = "m"

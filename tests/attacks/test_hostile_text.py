@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import pytest
 
-from navsym.text.claimfile import read_claims
-from navsym.text.modelfile import read_model
+from navsym.models.modelfile import read_model
+from navsym.prove.claimfile import read_claims
 
 MODEL = """[model]
 name = "m"

@@ -22,13 +22,13 @@ import numpy as np
 import sympy as sp
 
 from navsym.claims import Equation
+from navsym.core.casadi_functions import casadi_function
 from navsym.export.functions import function_of, material
 from navsym.export.languages import batch, c
 from navsym.export.languages.casadi import generated
 from navsym.export.parts import ExportedFunction, Material
 from navsym.export.ready import algorithm
-from navsym.numeric.casadi_functions import casadi_function
-from navsym.proof.ladder import decide
+from navsym.prove.ladder import decide
 
 t = sp.Symbol("t", real=True)
 HARMONICS = 5

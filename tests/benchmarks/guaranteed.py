@@ -18,14 +18,14 @@ import highspy
 import numpy as np
 import sympy as sp
 
-from navsym.methods.guaranteed.compare import panel_numbers
-from navsym.methods.guaranteed.many import values_for_lengths
-from navsym.methods.phases.family import Family, U
-from navsym.numeric.exchange.many import follow
-from navsym.numeric.exchange.search import compile_loops, find_contacts
-from navsym.proof.optimality.basis import kept_basis, make_basis
-from navsym.proof.optimality.enclosure import Panel, Problem
-from navsym.proof.optimality.fixed import certify
+from navsym.guaranteed.baselines import panel_numbers
+from navsym.guaranteed.certificate.basis import kept_basis, make_basis
+from navsym.guaranteed.certificate.enclosure import Panel, Problem
+from navsym.guaranteed.certificate.fixed import certify
+from navsym.guaranteed.lengths import values_for_lengths
+from navsym.guaranteed.phases.family import Family, U
+from navsym.guaranteed.search.exchange import compile_loops, find_contacts
+from navsym.guaranteed.search.lengths import follow
 
 t = sp.Symbol("t", real=True)
 

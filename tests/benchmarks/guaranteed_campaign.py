@@ -25,10 +25,10 @@ import sympy as sp
 from scipy.optimize import linprog
 
 from navsym import checker
-from navsym.errors import NavsymError
-from navsym.methods.guaranteed.compare import panel_numbers
-from navsym.methods.guaranteed.problem import from_regressors
-from navsym.methods.guaranteed.solver import solve
+from navsym.core.errors import NavsymError
+from navsym.guaranteed.baselines import panel_numbers
+from navsym.guaranteed.problem import from_regressors
+from navsym.guaranteed.solver import solve
 
 t = sp.Symbol("t", real=True)
 #: Certificates of the first problems are kept for alterations.

@@ -28,8 +28,8 @@ TOUCHED = {
 FILL = """
 import json, pathlib
 from navsym.cli.verify import load
-from navsym.methods.verification.dependencies import fingerprints
-from navsym.store import Store
+from navsym.verification.fingerprints import fingerprints
+from navsym.core.store import Store
 keys = fingerprints(claim for module in load([]) for claim in module.claims)
 store = Store()
 for record in json.loads(pathlib.Path("derivations/verdicts.json").read_text())["claims"]:

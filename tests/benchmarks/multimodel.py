@@ -16,8 +16,8 @@ from collections.abc import Callable
 import numpy as np
 from filterpy.kalman import IMMEstimator, KalmanFilter, MMAEFilterBank
 
-from navsym.methods.multimodel.bank import Bank, bank
-from navsym.methods.multimodel.filters import run
+from navsym.multimodel.bank import Bank, bank
+from navsym.multimodel.filters import run
 
 SIZES = ((3, 3), (8, 6), (16, 9))
 
@@ -105,7 +105,7 @@ def single_runs(sizes: tuple[tuple[int, int], ...], steps: int, peer_steps: int,
 
 def batches(sizes: tuple[tuple[int, int], ...], runs: int, steps: int, rounds: int) -> None:
     """Ratios of a batch of runs against numpy's stacked products."""
-    from navsym.methods.multimodel.batch import imm_in_numpy, run_batch
+    from navsym.multimodel.batch import imm_in_numpy, run_batch
 
     print(f"batch of {runs} runs, {steps} steps    ours (s)   numpy (s)   ratio   largest difference")
     for modes, states in sizes:

@@ -19,12 +19,12 @@ import time
 import sympy as sp
 from sympy.polys.matrices import DomainMatrix
 
-from navsym.methods.observability.chains import chains_of, numerators, observe, proved_rank
-from navsym.methods.observability.interpolation import chain_determinant
-from navsym.methods.observability.linear import reduce_rows
-from navsym.methods.observability.ring import Ring
-from navsym.models.inertial.errors import FULL, full_model
+from navsym.models.inertial import FULL, full_model
 from navsym.models.linear import LinearModel, observability_matrix
+from navsym.observability.chains import chains_of, numerators, observe, proved_rank
+from navsym.observability.linear import reduce_rows
+from navsym.observability.rank_drops import chain_determinant
+from navsym.observability.ring import Ring
 
 a, b, c, d, e, f = sp.symbols("a b c d e f", real=True)
 

@@ -16,10 +16,9 @@ import time
 from pathlib import Path
 from typing import Any
 
-from navsym.methods.sweeps.cluster import ALONE
-from navsym.methods.sweeps.plan import Sweep, run_job
-from navsym.methods.sweeps.run import computed, run_shard, run_sweep
-from navsym.methods.sweeps.shards import cut
+from navsym.studies.cluster import ALONE
+from navsym.studies.plan import Sweep, run_job
+from navsym.studies.run import computed, cut, run_shard, run_sweep
 
 os.environ.update({name: str(count) for name, count in ALONE.items()})  # before numba is loaded
 

@@ -16,10 +16,10 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 from numba import njit
 
-from navsym.methods.terrain.search import criteria, prepare, search_full, search_position
-from navsym.methods.terrain.sequential import search_sequential
-from navsym.models.terrain.heights import TerrainMap
-from navsym.models.terrain.track import Hypotheses, Track
+from navsym.terrain.heights import TerrainMap
+from navsym.terrain.search import criteria, prepare, search_full, search_position
+from navsym.terrain.sequential import search_sequential
+from navsym.terrain.track import Hypotheses, Track
 
 CELL = 50.0
 
@@ -177,7 +177,7 @@ def main() -> None:
     n, half, repeats, flights = (60, 3, 1, 1) if arguments.tiny else (1001, 20, 7, 5)
     terrain = relief(300 if arguments.tiny else 1500)
     if arguments.map:
-        from navsym.text.readers_maps import local_frame, read_map
+        from navsym.terrain.maps import local_frame, read_map
 
         raster = local_frame(read_map(arguments.map))
         terrain = TerrainMap(raster.heights, 0, 0, CELL, CELL, nodata=raster.nodata)

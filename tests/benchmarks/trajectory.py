@@ -19,8 +19,9 @@ from fractions import Fraction
 import mpmath
 import numpy as np
 
-from navsym.methods.conditioning.numbers import condition_number
-from navsym.methods.trajectory.inversion import (
+from navsym.models.earth import observability_rows, power_rows
+from navsym.trajectory.conditioning import condition_number
+from navsym.trajectory.inversion import (
     Start,
     SteppedModel,
     Tuning,
@@ -30,8 +31,7 @@ from navsym.methods.trajectory.inversion import (
     scaled_model,
     windowed_filter,
 )
-from navsym.methods.trajectory.twins import adaptive_filter_slowly, candidates
-from navsym.models.earth.motion import observability_rows, power_rows
+from navsym.trajectory.twins import adaptive_filter_slowly, candidates
 
 ROUNDS = 5
 

@@ -6,7 +6,7 @@ import pytest
 
 from navsym.cli._choice import one_of
 from navsym.cli.main import run
-from navsym.errors import DomainError
+from navsym.core.errors import DomainError
 
 
 @pytest.mark.parametrize(

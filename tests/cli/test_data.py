@@ -8,7 +8,7 @@ import json
 import pytest
 
 from navsym.cli.main import run
-from navsym.text import datasets
+from navsym.core import datasets
 
 
 @pytest.fixture

@@ -17,7 +17,7 @@ STATUS = {"prove": 1}  # one of its three formulas is wrong on purpose
 AFTER = {"check": "report"}  # what a verb reads, another one writes
 NOT_HERE = {
     "eval": "for a shell",
-    "campaign": "minutes; tests/campaigns runs small ones",
+    "campaign": "minutes; tests/attacks runs small ones",
     "data": "fetches; tests/cli/test_data.py has a copy at hand",
     "diff build": "two folders of the reader's own; tests/cli/test_diff.py makes some",
     "export": "a compiler; the tour of the README runs it",

@@ -47,9 +47,9 @@ def test_a_source_that_is_imported_later_must_stay_as_it_was(monkeypatch, capsys
 
 def test_a_second_run_takes_every_verdict_from_the_store(monkeypatch, capsys):
     monkeypatch.setattr(verify, "sources", tuple)  # whoever works on the sources just now does not matter here
-    monkeypatch.setattr("navsym.methods.verification.dependencies.rooms_digest", lambda: "the same")
+    monkeypatch.setattr("navsym.verification.fingerprints.rooms_digest", lambda: "the same")
     first = claims(capsys)
-    monkeypatch.setattr("navsym.methods.verification.verify.record_of", None)  # nothing is decided any more
+    monkeypatch.setattr("navsym.verification.decide.record_of", None)  # nothing is decided any more
     assert claims(capsys) == first
 
 

@@ -9,8 +9,8 @@ import pytest
 
 from navsym.cli.limits import FORMULAS
 from navsym.cli.main import run
-from navsym.methods.trajectory.limits import least_error, rule
-from navsym.text.expression import parse, symbol
+from navsym.language.expression import parse, symbol
+from navsym.trajectory.limits import least_error, rule
 
 
 def limits(capsys, *options):

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from navsym.cli.main import run
-from navsym.errors import NavsymError
-from navsym.methods.terrain.locate import METHODS, locate
+from navsym.core.errors import NavsymError
+from navsym.terrain.locate import METHODS, locate
 
 KEYS = {
     "method",

@@ -22,7 +22,7 @@ VERB = '''
     import typer
     from typing import Annotated
     from navsym.cli.output import emit
-    from navsym.errors import MissingEngineError, ShapeError
+    from navsym.core.errors import MissingEngineError, ShapeError
 
     def deeper(n):                        # without defaults: 3.13.0 forgets to count calls that use them
         return deeper(n + 1)

@@ -12,12 +12,12 @@ from hypothesis import strategies as st
 
 from navsym.claims import Equation
 from navsym.cli.main import run
-from navsym.errors import NavsymError
-from navsym.methods.verification.verify import paper_module, verify
-from navsym.proof.ladder import decide
-from navsym.proof.mutants import spoiled
-from navsym.text.python_source import exact_source, side_source
-from navsym.text.scaffold import equation_numbers, read
+from navsym.core.errors import NavsymError
+from navsym.language.python_source import exact_source, side_source
+from navsym.language.scaffold import equation_numbers, read
+from navsym.prove.ladder import decide
+from navsym.prove.mutants import spoiled
+from navsym.verification.decide import paper_module, verify
 
 
 def loaded(path):

@@ -9,8 +9,7 @@ from derivations import joint_correction
 from derivations.joint_correction import section1_systems, section3_gains
 from derivations.joint_correction.section2_groups import position, velocity
 from navsym.claims import REFUTED, claims_of, coverage
-from navsym.models.inertial.errors import ORDERS
-from navsym.models.inertial.orders import lowest_order
+from navsym.models.inertial import ORDERS, lowest_order
 
 CLAIMS = claims_of(joint_correction)
 

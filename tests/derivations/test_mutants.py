@@ -12,9 +12,9 @@ import pytest
 import sympy as sp
 
 from navsym.claims import PROVED, REFUTED, Equation, claims_of
-from navsym.proof.equations import decide_equation, entries
-from navsym.proof.mutants import mutants
-from navsym.proof.sandbox import Exhausted, run_many
+from navsym.core.sandbox import Exhausted, run_many
+from navsym.prove.equations import decide_equation, entries
+from navsym.prove.mutants import mutants
 
 #: Paper -> how many entries are changed, and in how many ways each.
 SAMPLES = {"guaranteed_velocity": (60, 4), "joint_correction": (40, 2), "trajectory": (40, 2)}

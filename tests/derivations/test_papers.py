@@ -10,7 +10,7 @@ import pytest
 from navsym.checker import Refused, check, load
 from navsym.claims import REFUTED, claims_of
 from navsym.cli.verify import ledger_folder, names
-from navsym.methods.verification.verify import paper_module, verify
+from navsym.verification.decide import paper_module, verify
 
 HOLDS = {"PROVED", "CERTIFIED"}
 

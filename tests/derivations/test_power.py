@@ -8,9 +8,9 @@ import pytest
 
 from navsym.claims import claims_of
 from navsym.cli.verify import names
-from navsym.proof.ladder import decide
-from navsym.proof.mutants import spoiled
-from navsym.proof.sandbox import Exhausted, run_many
+from navsym.core.sandbox import Exhausted, run_many
+from navsym.prove.ladder import decide
+from navsym.prove.mutants import spoiled
 
 
 def spoiled_status(claim):

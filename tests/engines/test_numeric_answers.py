@@ -7,11 +7,11 @@ import pytest
 import sympy as sp
 
 from navsym.claims import PROVED, Bound, Equation
-from navsym.methods.guaranteed.problem import from_regressors
-from navsym.methods.guaranteed.solver import solve
-from navsym.numeric import convex
-from navsym.numeric.convex import LP_SOLVERS, GridProblem, guaranteed_lp, trust_table
-from navsym.proof.ladder import decide
+from navsym.guaranteed import convex
+from navsym.guaranteed.convex import LP_SOLVERS, GridProblem, guaranteed_lp, trust_table
+from navsym.guaranteed.problem import from_regressors
+from navsym.guaranteed.solver import solve
+from navsym.prove.ladder import decide
 
 s = sp.Symbol("t", real=True)
 

@@ -10,9 +10,9 @@ import pytest
 import sympy as sp
 
 from navsym.claims import PROVED, REFUTED, Bound, Equation
+from navsym.core.balls import exact_ball
 from navsym.models.transition.exponential import transition_matrix
-from navsym.proof.balls import exact_ball
-from navsym.proof.ladder import decide
+from navsym.prove.ladder import decide
 
 x = sp.Symbol("x", real=True)
 a, t, w = sp.symbols("a t w", real=True)

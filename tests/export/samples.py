@@ -9,7 +9,7 @@ import sympy as sp
 from derivations.guaranteed_velocity import beyond, weights
 from navsym.claims import Claim, Equation, Statement
 from navsym.export.functions import ExportedFunction, Material, function_of, material
-from navsym.proof.ladder import decide
+from navsym.prove.ladder import decide
 
 w = sp.Symbol("w", real=True)
 lam = sp.Symbol("lambda", real=True)

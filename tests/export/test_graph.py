@@ -6,12 +6,12 @@ import pytest
 import sympy as sp
 from flint import arb
 
-from navsym.errors import UnknownSymbolError
+from navsym.core.balls import enclose
+from navsym.core.errors import UnknownSymbolError
 from navsym.export.atoms import plain
 from navsym.export.expression_graph import build
 from navsym.export.forms import factored, safe
-from navsym.proof.balls import enclose
-from navsym.proof.identities.normal_form import reduce_to_zero
+from navsym.prove.identities.normal_form import reduce_to_zero
 
 x, y = sp.symbols("x y", real=True)
 T = sp.Symbol("T", positive=True)

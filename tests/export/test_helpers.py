@@ -15,6 +15,7 @@ import sympy as sp
 from flint import arb, arb_series, ctx
 
 from navsym.claims import Equation
+from navsym.core.balls import enclose, precision
 from navsym.export.accuracy.analysis import analyse
 from navsym.export.accuracy.continuation import MARGIN, SWITCHES, continuation
 from navsym.export.accuracy.filled import filled_bounds, zones
@@ -27,7 +28,6 @@ from navsym.export.expression_graph import Graph, build
 from navsym.export.forms import safe
 from navsym.export.functions import function_of
 from navsym.export.holes import Part, T
-from navsym.proof.balls import enclose, precision
 
 x, a, b, tau = sp.symbols("x a b tau", real=True)
 REALS = ("double", "float")

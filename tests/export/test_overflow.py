@@ -12,13 +12,13 @@ import sympy as sp
 from flint import arb
 
 from navsym.claims import Equation
-from navsym.errors import DomainError
+from navsym.core.balls import enclose, tape
+from navsym.core.errors import DomainError
 from navsym.export.accuracy.sweep import compiled_c, sweep_c
 from navsym.export.accuracy.vectors import vectors
 from navsym.export.functions import ExportedFunction, function_of
 from navsym.export.languages.python import files as python_files
 from navsym.export.languages.targets import TARGETS
-from navsym.proof.balls import enclose, tape
 
 x, y = sp.symbols("x y", real=True)
 COMPILER = pytest.mark.skipif(TARGETS["c"].executable() is None, reason="needs a C compiler")

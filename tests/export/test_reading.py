@@ -13,7 +13,7 @@ from navsym.export.languages.c import header, source
 from navsym.export.languages.names import LOCAL, local_names
 from navsym.export.languages.programs import c_header
 from navsym.export.languages.summary import accepted, domain_lines, sizes
-from navsym.proof.ladder import decide
+from navsym.prove.ladder import decide
 
 LICENSE = "SPDX-License-Identifier: Apache-2.0"
 PROGRAMS = ("trajectory-filter", "pulsating-filter", "two-stage-observer", "terrain-crossing")

@@ -12,14 +12,14 @@ import sympy as sp
 
 from navsym.claims import CONFIRMED, OPEN, Bound, Equation, Finding, Property, Verdict
 from navsym.cli.main import run
-from navsym.errors import DomainError, NavsymError
+from navsym.core.errors import DomainError, NavsymError
 from navsym.export.folder import FolderError, write_folder
 from navsym.export.functions import RefusedError, function_of, material
 from navsym.export.languages.names import function_name, identifier
 from navsym.export.languages.targets import TARGETS, chosen
 from navsym.export.package import Order, files_of
 from navsym.export.roundtrip import check_export, hash_trouble, sealed, unsealed
-from navsym.proof.ladder import decide
+from navsym.prove.ladder import decide
 
 a = sp.Symbol("a", real=True)
 TRUE = Equation(sp.sin(2 * a), 2 * sp.sin(a) * sp.cos(a))

@@ -10,13 +10,13 @@ import pytest
 import sympy as sp
 from flint import arb
 
+from navsym.core.balls import enclose
 from navsym.export.accuracy.analysis import analyse
 from navsym.export.accuracy.rounding import DOUBLE, FLOAT
 from navsym.export.accuracy.uniform import uniform_bound
 from navsym.export.accuracy.vectors import vectors
 from navsym.export.expression_graph import build
 from navsym.export.forms import safe
-from navsym.proof.balls import enclose
 
 x, y = sp.symbols("x y", real=True)
 

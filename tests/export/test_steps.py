@@ -13,17 +13,17 @@ import sympy as sp
 from numpy.testing import assert_allclose
 
 from derivations.guaranteed_velocity.model import H, T, tau
-from navsym.errors import DomainError
+from navsym.core.errors import DomainError
 from navsym.export.algorithms import observer
 from navsym.export.chain import Chain, Link
 from navsym.export.functions import RefusedError
 from navsym.export.languages.c import files
-from navsym.methods.multimodel.bank import bank
-from navsym.methods.multimodel.filters import run
-from navsym.methods.terrain.centre import information
-from navsym.methods.two_stage.observer import held
-from navsym.models.inertial.errors import joint_model
-from navsym.numeric.kalman.steps import correct, predict
+from navsym.models.inertial import joint_model
+from navsym.multimodel.bank import bank
+from navsym.multimodel.filters import run
+from navsym.multimodel.kalman.steps import correct, predict
+from navsym.observability.two_stage.observer import held
+from navsym.terrain.centre import information
 
 PROGRAM = """#include "trajectory_filter.h"
 #include <math.h>

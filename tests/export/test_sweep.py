@@ -11,12 +11,12 @@ from flint import arb
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from navsym.core.balls import precision
 from navsym.export.accuracy import bands, sweep, twin
 from navsym.export.accuracy.rounding import BITS
 from navsym.export.accuracy.vectors import analysed, exact_values, piece_at
 from navsym.export.languages.targets import TARGETS
 from navsym.export.ready import READY
-from navsym.proof.balls import precision
 
 COMPILER = pytest.mark.skipif(TARGETS["c"].executable() is None, reason="needs a C compiler")
 NUMBER = st.floats(-1e12, 1e12).filter(lambda x: x == 0 or abs(x) > 1e-12)

@@ -20,7 +20,7 @@ from navsym.export.package import Order, files_of
 from navsym.export.parts import Layout
 from navsym.export.roundtrip import run_target
 from navsym.export.table import as_markdown, closing_table
-from navsym.proof.ladder import decide
+from navsym.prove.ladder import decide
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "report"))
 

@@ -12,7 +12,7 @@ from fractions import Fraction
 import sympy as sp
 
 from navsym.claims import Optimum
-from navsym.proof.equations import entries
+from navsym.prove.equations import entries
 
 ALIKE = (sp.Max, sp.Min)  # arguments of one unit, which is that of the value
 ONLY_ALIKE = (sp.atan2,)  # arguments of one unit, a value without

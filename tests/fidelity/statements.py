@@ -9,7 +9,7 @@ import sympy as sp
 
 from navsym.claims import Optimum, Property, claims_of
 from navsym.cli.verify import names
-from navsym.proof.equations import entries
+from navsym.prove.equations import entries
 
 PAPERS = names()
 

@@ -20,12 +20,12 @@ from plain_arithmetic import Undefined, value
 from statements import PAPERS, assertions, claims, formulas, symbols_in
 
 from navsym.claims import Bound, Equation, Optimum, Property
-from navsym.methods.verification.verify import sides
-from navsym.proof.equations import entries
-from navsym.proof.sampling.points import points
-from navsym.proof.sampling.pointwise import values_at
-from navsym.text.expression import parse, to_text
-from navsym.text.tokens import LENGTH
+from navsym.language.expression import parse, to_text
+from navsym.language.tokens import LENGTH
+from navsym.prove.equations import entries
+from navsym.prove.sampling.points import points
+from navsym.prove.sampling.pointwise import values_at
+from navsym.verification.decide import sides
 
 ROOT = Path(__file__).resolve().parents[2]
 CLOSE = mpmath.mpf(10) ** -25

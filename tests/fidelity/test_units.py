@@ -9,7 +9,7 @@ from statements import PAPERS, assertions, symbols_in
 from units import METRE, SECOND, units_of
 
 from navsym.claims import Equation, Optimum
-from navsym.proof.mutants import edited, edits, is_formula
+from navsym.prove.mutants import edited, edits, is_formula
 
 A_NUMBER = "a number stands beside a quantity without unit, so that the other side alone allows more"
 CANCELLED = "what cancels on the printed side does not occur on the derived one, or there as a product only"

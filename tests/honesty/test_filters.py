@@ -12,9 +12,9 @@ from linear_cases import CASES, STEPS, batch_least_squares, simulate
 from numpy.testing import assert_allclose
 from scipy.stats import binom, chi2
 
-from navsym.methods.multimodel.bank import bank
-from navsym.methods.multimodel.filters import run
-from navsym.numeric.kalman import steps as kalman
+from navsym.multimodel.bank import bank
+from navsym.multimodel.filters import run
+from navsym.multimodel.kalman import steps as kalman
 
 RUNS = 10_000
 METHODS = ("exact", "pulsating", "k-pulsating", "gpb2", "imm", "polygaussian")

@@ -14,8 +14,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
-from navsym.models.earth import ellipsoid as earth
-from navsym.models.earth.geodesy import cartesian, geocentric, local_axes, meridian_radius, prime_vertical_radius
+from navsym.models import earth
+from navsym.models.earth import cartesian, geocentric, local_axes, meridian_radius, prime_vertical_radius
 
 latitudes = st.floats(-np.pi / 2, np.pi / 2)
 longitudes = st.floats(-np.pi, np.pi)
@@ -73,7 +73,7 @@ def test_chords_of_the_geodesic_test_set_are_shorter_than_its_geodesics():
 
 @given(st.floats(-1.5, 1.5), heights)
 def test_geocentric_coordinates_agree_with_the_corrected_formulas_of_the_paper(latitude, height):
-    from navsym.models.earth.geodesy import ECCENTRICITY_SQUARED, SEMI_MAJOR
+    from navsym.models.earth import ECCENTRICITY_SQUARED, SEMI_MAJOR
 
     root = np.sqrt(1 - ECCENTRICITY_SQUARED * np.sin(latitude) ** 2)
     factor = 1 - SEMI_MAJOR * ECCENTRICITY_SQUARED / (SEMI_MAJOR + height * root)

@@ -10,8 +10,8 @@ import flint
 import pytest
 import sympy as sp
 
-from navsym.errors import DomainError
-from navsym.models.earth import motion
+from navsym.core.errors import DomainError
+from navsym.models import earth as motion
 
 rho, tau = sp.symbols("rho tau", positive=True)
 

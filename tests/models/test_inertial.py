@@ -6,19 +6,22 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from navsym.models.inertial import kinematics as kin
-from navsym.models.inertial.errors import (
+from navsym.models import kinematics as kin
+from navsym.models.inertial import (
     FULL,
     MU,
     ORDERS,
     derivative,
     dimensionless,
+    exactly,
     full_model,
     joint_model,
+    lowest_order,
+    order_of,
     position_group,
+    truncate,
     velocity_group,
 )
-from navsym.models.inertial.orders import exactly, lowest_order, order_of, truncate
 
 
 def rotation(vector: np.ndarray) -> np.ndarray:

@@ -3,7 +3,7 @@
 import pytest
 import sympy as sp
 
-from navsym.errors import DomainError, DuplicateError, EmptyError, NotFiniteError, ShapeError
+from navsym.core.errors import DomainError, DuplicateError, EmptyError, NotFiniteError, ShapeError
 from navsym.models.linear import LinearModel, observability_matrix
 from navsym.models.noise import ArbitraryCorrelation, Constant, Markov, Noise, Uncorrelated, arbitrary, shaping
 

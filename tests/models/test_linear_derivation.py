@@ -3,11 +3,11 @@
 import pytest
 import sympy as sp
 
-from navsym.errors import DomainError, NavsymError
+from navsym.core.errors import DomainError, NavsymError
+from navsym.language.expression import parse
 from navsym.models.derivation import derive, linear_model
-from navsym.models.derivation_document import as_latex, as_text, document
-from navsym.text.expression import parse
-from navsym.text.modelfile import model_from
+from navsym.models.document import as_latex, as_text, document
+from navsym.models.modelfile import model_from
 
 PAPER = {
     "model": {

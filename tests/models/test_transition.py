@@ -9,10 +9,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from navsym.claims import PROVED, Equation
-from navsym.errors import DomainError, NotFiniteError, ShapeError, TooLargeError
+from navsym.core.errors import DomainError, NotFiniteError, ShapeError, TooLargeError
 from navsym.models.linear import LinearModel
 from navsym.models.transition.exponential import discrete_transition, regressors, transition_matrix
-from navsym.proof.ladder import decide
+from navsym.prove.ladder import decide
 
 t, T, tau = sp.symbols("t T tau", positive=True)
 w, v, g, R, earth = sp.symbols("w v g R Omega", positive=True)

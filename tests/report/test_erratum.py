@@ -14,13 +14,13 @@ from xml.dom import minidom
 import pytest
 
 from navsym.claims import Paper, claims_of
-from navsym.errors import NavsymError
+from navsym.core.errors import NavsymError
+from navsym.report.code import snippets
+from navsym.report.curves import value
 from navsym.report.erratum import erratum_of
 from navsym.report.formula.latex import mathml, sentence_html, sentence_latex
 from navsym.report.formula.reader import read_formula
 from navsym.report.page import environment, site
-from navsym.report.page_code import snippets
-from navsym.report.page_plot import value
 from navsym.report.wording import pattern_of, read_wording
 
 DERIVATIONS = Path(__file__).parents[2] / "derivations"

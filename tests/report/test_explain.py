@@ -8,9 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from navsym.report.page_arithmetic import arithmetic, ball_words, entries_of
-from navsym.report.page_citation import bibtex
-from navsym.report.page_explain import steps
+from navsym.report.citation import bibtex
+from navsym.report.explain import arithmetic, ball_words, entries_of, steps
 
 
 def test_the_counterexample_is_worked_out_on_both_sides(records):

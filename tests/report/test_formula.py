@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from navsym.report.curves import value
 from navsym.report.formula.reader import read_formula
 from navsym.report.formula.sides import coordinates, latex, mathml, only_truth
-from navsym.report.page_names import latex_escape, split_name
-from navsym.report.page_plot import value
+from navsym.report.names import latex_escape, split_name
 
 LATEX = [
     ("a - (b - c)", "a - \\left( b - c \\right)"),

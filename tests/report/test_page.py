@@ -8,9 +8,8 @@ from xml.dom import minidom
 
 import pytest
 
-from navsym.report.ledger import about, only_in_the_copy, papers_in_order
-from navsym.report.page import site, visible
-from navsym.report.page_files import slug
+from navsym.report.page import site, slug, visible
+from navsym.verification.ledger import about, only_in_the_copy, papers_in_order
 
 
 class Reading(HTMLParser):

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from flint import arb
 
-from navsym.proof.balls import precision
+from navsym.core.balls import precision
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 Flags = np.ndarray[Any, np.dtype[np.bool_]]

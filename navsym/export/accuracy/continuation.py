@@ -20,13 +20,13 @@ from functools import lru_cache
 import sympy as sp
 from flint import arb, arb_series, fmpq
 
-from navsym.errors import DomainError
+from navsym.core.balls import Tape, precision, tape
+from navsym.core.errors import DomainError
 from navsym.export.accuracy.literals import literals_of
 from navsym.export.accuracy.rounding import ARITHMETICS, INFINITE, Arithmetic, down, followed, up
 from navsym.export.expression_graph import Builder, Graph, pruned
 from navsym.export.holes import Part, T
 from navsym.export.series import capped, taylor
-from navsym.proof.balls import Tape, precision, tape
 
 BITS = 160
 MOST_TERMS = 18  # that are not zero

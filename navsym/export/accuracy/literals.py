@@ -7,7 +7,7 @@ import math
 import numpy as np
 import sympy as sp
 
-from navsym.errors import DomainError
+from navsym.core.errors import DomainError
 from navsym.export.accuracy.rounding import Arithmetic
 from navsym.export.expression_graph import Graph
 

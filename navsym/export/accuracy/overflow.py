@@ -13,11 +13,11 @@ from typing import Any
 import sympy as sp
 from flint import arb
 
+from navsym.core.balls import precision
 from navsym.export.accuracy.analysis import analyse
 from navsym.export.accuracy.rounding import BITS, Arithmetic, Bounded, down, up
 from navsym.export.accuracy.uniform import Box, starting_cells
 from navsym.export.expression_graph import Graph, Node
-from navsym.proof.balls import precision
 
 #: Places of the arguments whose infinity (or, for extremes, NaN) a result may hide. Every other operation hands it on,
 #: or has with it the very value that it has just below (exp, atan, tanh).

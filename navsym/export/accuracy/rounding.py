@@ -17,8 +17,8 @@ from typing import Any
 
 from flint import arb
 
+from navsym.core.balls import enclose, precision
 from navsym.export.expression_graph import Graph, Node
-from navsym.proof.balls import enclose, precision
 
 BITS = 128
 

@@ -18,7 +18,7 @@ from pathlib import Path
 
 import numpy as np
 
-from navsym.errors import MissingEngineError
+from navsym.core.errors import MissingEngineError
 from navsym.export.accuracy.bands import Array, Band, Flags
 from navsym.export.accuracy.rounding import Arithmetic, with_library
 from navsym.export.accuracy.twin import SLACK, formula_values, rounding_bounds

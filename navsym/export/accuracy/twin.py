@@ -1,7 +1,7 @@
 """The fast twin of the ball analysis: exact values and rounding bounds at many points at once.
 
 Sums, products and quotients run in :mod:`navsym.export.accuracy.bands`; every other operation runs through the very
-functions of :mod:`navsym.export.accuracy.rounding` and :mod:`navsym.proof.balls`, entry by entry. Whatever two doubles
+functions of :mod:`navsym.export.accuracy.rounding` and :mod:`navsym.core.balls`, entry by entry. Whatever two doubles
 do not decide (a value that cancels below its error, a denominator that comes near its own error) is left open and
 goes to the balls. A bound that is returned differs from that of the balls by less than SLACK of itself, which the
 tests hold on every ready-made function; what is accepted with that much to spare is therefore accepted by the balls,
@@ -18,6 +18,7 @@ import numpy as np
 import sympy as sp
 from flint import arb
 
+from navsym.core.balls import OPERATIONS, Tape, enclose, precision
 from navsym.export.accuracy.bands import (
     BITS,
     UP,
@@ -41,7 +42,6 @@ from navsym.export.accuracy.rounding import Arithmetic, Bounded, factor, rounded
 from navsym.export.accuracy.vectors import tapes
 from navsym.export.expression_graph import Node
 from navsym.export.parts import Piece
-from navsym.proof.balls import OPERATIONS, Tape, enclose, precision
 
 SLACK = 2.0**-10
 KNOWN = 2.0**-40  # a value is known when its error is below this part of it

@@ -9,10 +9,10 @@ from typing import Any
 
 from flint import arb
 
+from navsym.core.balls import precision
 from navsym.export.accuracy.analysis import analyse
 from navsym.export.accuracy.rounding import BITS, Arithmetic, up
 from navsym.export.expression_graph import Graph
-from navsym.proof.balls import precision
 
 CELLS = 160
 GEOMETRIC = 40  # cells that halve their distance to zero

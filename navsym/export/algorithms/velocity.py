@@ -14,10 +14,10 @@ from typing import Any
 import sympy as sp
 
 from navsym.claims import Equation
-from navsym.errors import DomainError
+from navsym.core.balls import enclose
+from navsym.core.errors import DomainError
 from navsym.export.chain import Chain, Link, Program, Regimes
 from navsym.export.parts import Layout, Material, Output
-from navsym.proof.balls import enclose
 
 PLACES = 3
 REGIMES = {

@@ -16,13 +16,13 @@ from typing import Any
 
 import sympy as sp
 
+from navsym.core.casadi_functions import Memo, by_distance, column_function, inputs_of, translated
 from navsym.export.accuracy.continuation import continuation
 from navsym.export.accuracy.vectors import Vector
 from navsym.export.atoms import expm1, filled
 from navsym.export.holes import Part, T, part_of
 from navsym.export.languages.python import ENDING, vectors_json
 from navsym.export.parts import ExportedFunction, Piece
-from navsym.numeric.casadi_functions import Memo, by_distance, column_function, inputs_of, translated
 
 TEST = '''# {license}
 """Evaluates every casadi function on its vectors; the exit status is the number that failed."""

@@ -17,7 +17,7 @@ from navsym.export.holes import Part, T
 from navsym.export.languages.part_names import name_of
 from navsym.export.languages.printing import Spelling, bare, node_text
 from navsym.export.parts import ExportedFunction
-from navsym.proof.wording import text_of
+from navsym.prove.wording import text_of
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,7 +9,7 @@ import sympy as sp
 
 from navsym.export.atoms import expm1
 from navsym.export.holes import Part, T
-from navsym.proof.wording import text_of
+from navsym.prove.wording import text_of
 
 LONGEST_NAME = 24
 #: What people call some of them.

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from navsym.errors import MissingEngineError
+from navsym.core.errors import MissingEngineError
 from navsym.export.accuracy.vectors import Vector
 from navsym.export.languages.c import files as c_files
 from navsym.export.languages.c import output_places

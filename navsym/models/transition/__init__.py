@@ -1,1 +1,1 @@
-"""Transition matrices in closed form."""
+"""Closed forms of exp(F t)."""

@@ -20,23 +20,27 @@ from typing import Any
 
 import sympy as sp
 
-from navsym.errors import DomainError, TooLargeError
+from navsym.core.errors import DomainError, TooLargeError
 from navsym.models.linear import LinearModel, exact_entry, square
-from navsym.models.parameter_ring import (
+from navsym.models.transition.factors import form_of
+from navsym.models.transition.pieces import Form, Surd, Wave
+from navsym.models.transition.rings import (
     Fraction,
     Poly,
     Ring,
     added,
     cancelled,
+    coefficients,
+    companion_inverse,
     expanded,
     fraction,
+    monic_quotient,
+    monic_remainder,
+    product,
     quotient,
     reduced,
     ring_of,
 )
-from navsym.models.polynomials import coefficients, companion_inverse, monic_quotient, monic_remainder, product
-from navsym.models.transition.factors import form_of
-from navsym.models.transition.pieces import Form, Surd, Wave
 
 #: More states than this are refused: the number of terms grows too fast to be of use.
 LARGEST = 16

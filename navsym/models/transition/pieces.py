@@ -10,8 +10,17 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
-from navsym.models.parameter_ring import Fraction, Poly, Ring, cancelled, expanded, quotient, sign, square_root
-from navsym.models.polynomials import Coefficients
+from navsym.models.transition.rings import (
+    Coefficients,
+    Fraction,
+    Poly,
+    Ring,
+    cancelled,
+    expanded,
+    quotient,
+    sign,
+    square_root,
+)
 
 LAMBDA = sp.Symbol("lambda")
 

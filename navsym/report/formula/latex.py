@@ -13,9 +13,9 @@ from collections.abc import Callable
 
 from markupsafe import Markup
 
-from navsym.errors import ExpressionSyntaxError
+from navsym.core.errors import ExpressionSyntaxError
 from navsym.report.formula.notation import is_tall
-from navsym.report.page_names import GREEK, latex_escape
+from navsym.report.names import GREEK, latex_escape
 
 TOKEN = re.compile(
     r"\\begin\{(?P<open>[a-z]+)\}|\\end\{(?P<close>[a-z]+)\}|\\(?P<word>[A-Za-z]+|.)|"

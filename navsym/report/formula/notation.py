@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Literal
 
-from navsym.report.page_names import latex_name, mathml_name
+from navsym.report.names import latex_name, mathml_name
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from navsym.report.formula.notation import BESIDE_A_FUNCTION, Style
 from navsym.report.formula.reader import Node, unwrapped
-from navsym.report.page_names import letter_of, split_name
+from navsym.report.names import letter_of, split_name
 
 ATOM, POWER, FACTOR, PRODUCT, SUM, RELATION, LIST = 7, 6, 5, 4, 3, 2, 1
 UNNAMED = frozenset(("sqrt", "abs", "Abs", "exp"))  # functions with a sign of their own

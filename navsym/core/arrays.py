@@ -1,0 +1,143 @@
+"""Arrays at the gate: copied, checked once, read-only.
+
+Everything that comes from a caller passes through one of these functions at construction,
+so that the code behind them may trust shapes and finiteness and never has to look again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navsym.core.errors import DomainError, EmptyError, NotFiniteError, ShapeError
+
+Array = NDArray[np.float64]
+#: A shape; None stands for a size that is not prescribed.
+Shape = Sequence[int | None]
+
+#: Rounding allowed in a matrix that a caller calls symmetric, or in a sum that should be one.
+SLACK = 1e-9
+
+
+def named(name: str, value: Any, shape: Shape, why: str) -> Array:
+    """A read-only float copy of ``value``, of the given shape and without NaN or infinities.
+
+    name  : what the caller calls it; opens every error message
+    shape : expected sizes, None where any positive size will do
+    why   : what the axes are, "one entry per measurement"
+
+    Raises ShapeError, EmptyError (no entries), NotFiniteError.
+    """
+    array = numbers(name, value, why)
+    if array.size == 0:
+        raise EmptyError(f"{name}: expected shape {written(shape)}, {why}; got no entries; give at least one")
+    fits = array.ndim == len(shape) and all(
+        want is None or want == got for want, got in zip(shape, array.shape, strict=True)
+    )
+    if not fits:
+        raise ShapeError(f"{name}: expected shape {written(shape)}, {why}; got {array.shape}; give one entry for each")
+    if not np.isfinite(array).all():
+        place = tuple(int(i) for i in np.argwhere(~np.isfinite(array))[0])
+        raise NotFiniteError(f"{name}: expected finite numbers; got {array[place]} at index {place}; remove or mend it")
+    return frozen(array)
+
+
+def numbers(name: str, value: Any, why: str) -> Array:
+    """A float copy of nested sequences of numbers; ragged rows and words are a ShapeError."""
+    try:
+        raw = np.asarray(value)
+        if raw.dtype.kind not in "biufO":
+            raise TypeError(f"entries of type {raw.dtype}")
+        return np.array(raw, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        reason = "rows of different lengths" if "inhomogeneous" in str(error) else error
+        raise ShapeError(
+            f"{name}: expected numbers in rows of one length, {why}; got {reason}; give a full array"
+        ) from None
+    except OverflowError:
+        raise NotFiniteError(f"{name}: expected numbers below 1.8e308; got a larger one; rescale it") from None
+
+
+def written(shape: Shape) -> str:
+    """A shape for people: ``(3, any)``."""
+    sizes = ["any" if size is None else str(size) for size in shape]
+    return f"({', '.join(sizes)}{',' if len(sizes) == 1 else ''})"
+
+
+def frozen(array: Array) -> Array:
+    """The same array, read-only from now on."""
+    array.flags.writeable = False
+    return array
+
+
+def positive(name: str, value: Any, shape: Shape, why: str) -> Array:
+    """Like :func:`named`, and every entry above zero (DomainError otherwise)."""
+    array = named(name, value, shape, why)
+    if array.min() <= 0.0:
+        place = tuple(int(i) for i in np.argwhere(array <= 0.0)[0])
+        raise DomainError(f"{name}: expected positive numbers; got {array[place]} at index {place}; {why}")
+    return array
+
+
+def covariance(name: str, value: Any, n: int | None, *, definite: bool = False) -> Array:
+    """A covariance matrix (n, n): symmetric and positive semidefinite, made exactly symmetric.
+
+    Asymmetry and negative eigenvalues of the size of rounding (1e-9 of the largest entry) pass.
+    With ``definite`` the smallest eigenvalue must be positive, so that an inverse exists.
+
+    Raises ShapeError, NotFiniteError, EmptyError, DomainError.
+    """
+    array = named(name, value, (n, n), "a covariance, states by states")
+    if array.shape[0] != array.shape[1]:
+        raise ShapeError(f"{name}: expected a square covariance; got {array.shape}; give all rows")
+    scale = np.abs(array).max()
+    if np.abs(array - array.T).max() > SLACK * scale:
+        raise DomainError(f"{name}: expected a symmetric covariance; got {asymmetry(array)}; symmetrise it")
+    symmetric = 0.5 * array + 0.5 * array.T
+    least = float(np.linalg.eigvalsh(symmetric)[0])
+    if least < -SLACK * scale or (definite and least <= 0.0):
+        kind = "definite" if definite else "semidefinite"
+        raise DomainError(
+            f"{name}: expected a positive {kind} covariance; got the eigenvalue {least:.6g}; mend its entries"
+        )
+    return frozen(symmetric)
+
+
+def asymmetry(array: Array) -> str:
+    """The worst pair of an array that should be symmetric, in words."""
+    i, j = (int(k) for k in np.unravel_index(np.abs(array - array.T).argmax(), array.shape))
+    return f"[{i}, {j}] = {array[i, j]} against [{j}, {i}] = {array[j, i]}"
+
+
+def probabilities(name: str, value: Any, k: int | None = None) -> Array:
+    """A probability vector (k,): entries in [0, 1] that sum to one, scaled to do so exactly.
+
+    Raises DomainError for a negative entry or a sum that differs from one by more than 1e-9.
+    """
+    array = named(name, value, (k,), "one probability per mode")
+    return frozen(unit_rows(name, array[np.newaxis])[0])
+
+
+def row_stochastic(name: str, value: Any, k: int | None = None) -> Array:
+    """A matrix of transition probabilities (k, k), entry [i, j] leads from i to j; rows sum to one."""
+    array = named(name, value, (k, k), "rows = from, columns = to")
+    if array.shape[0] != array.shape[1]:
+        raise ShapeError(f"{name}: expected a square matrix; got {array.shape}; rows = from, columns = to")
+    return frozen(unit_rows(name, array))
+
+
+def unit_rows(name: str, array: Array) -> Array:
+    """Rows of probabilities divided by their sums; DomainError when they are none."""
+    if array.min() < 0.0:
+        raise DomainError(f"{name}: expected probabilities; got the negative entry {array.min()}; mend it")
+    sums = array.sum(axis=1, keepdims=True)
+    worst = int(np.abs(sums - 1.0).argmax())
+    if abs(float(sums[worst, 0]) - 1.0) > SLACK:
+        raise DomainError(
+            f"{name}: expected probabilities that sum to 1; got others: row {worst} sums to {sums[worst, 0]:.12g}; "
+            "divide it by its sum"
+        )
+    return array / sums

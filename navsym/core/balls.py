@@ -1,0 +1,379 @@
+"""Rigorous enclosures of expressions: ball arithmetic over points, boxes and Taylor series.
+
+An expression is flattened once into a tape (shared subexpressions once), and the tape is run
+over balls (`enclose`) or over truncated power series of balls (`derivatives`). Whatever is
+undefined somewhere on the box — a root of something that may be negative, a division by
+something that may vanish — comes back as a ball that is not finite, and so decides nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any
+
+import sympy as sp
+from flint import arb, arb_series, ctx, fmpq
+
+from navsym.core.errors import NavsymError
+
+DEFAULT_BITS = 96
+
+#: Roots from here on are taken by logarithms: flint counts them with a machine word.
+MOST_ROOT = 2**31
+
+
+class UnsupportedError(NavsymError):
+    """An expression outside the language that balls can enclose."""
+
+    kind = "unsupported"
+
+
+@contextmanager
+def precision(bits: int) -> Iterator[None]:
+    """Run with a working precision of ``bits``; flint's precision is global, so it is put back."""
+    before = ctx.prec
+    ctx.prec = bits
+    try:
+        yield
+    finally:
+        ctx.prec = before
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """One instruction: an operation, the places of its arguments and a constant."""
+
+    operation: str
+    arguments: tuple[int, ...] = ()
+    constant: Any = None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Tape:
+    """A flattened expression; the last step is its value."""
+
+    expression: sp.Expr
+    steps: tuple[Step, ...]
+
+    def run(self, values: Mapping[sp.Symbol, Any]) -> Any:
+        """Value of the expression; ``values`` are balls or power series of balls."""
+        done: list[Any] = []
+        for step in self.steps:
+            done.append(OPERATIONS[step.operation](step.constant, [done[i] for i in step.arguments], values))
+        return done[-1]
+
+
+def tape(expression: sp.Expr) -> Tape:
+    """Flatten an expression of the language; raises :class:`UnsupportedError` outside it."""
+    steps: list[Step] = []
+    place: dict[sp.Basic, int] = {}
+
+    def visit(node: sp.Basic) -> int:
+        if node in place:
+            return place[node]
+        operation, arguments, constant = instruction(node)
+        step = Step(operation, tuple(visit(argument) for argument in arguments), constant)
+        steps.append(step)
+        place[node] = len(steps) - 1
+        return place[node]
+
+    visit(sp.sympify(expression, strict=True))  # strict: an object of ours, never a string
+    return Tape(expression, tuple(steps))
+
+
+FUNCTIONS = {
+    sp.sin: "sin",
+    sp.cos: "cos",
+    sp.tan: "tan",
+    sp.cot: "cot",
+    sp.sec: "sec",
+    sp.csc: "csc",
+    sp.exp: "exp",
+    sp.log: "log",
+    sp.Abs: "abs",
+    sp.asin: "asin",
+    sp.acos: "acos",
+    sp.atan: "atan",
+    sp.atan2: "atan2",
+    sp.sinh: "sinh",
+    sp.cosh: "cosh",
+    sp.tanh: "tanh",
+    sp.sign: "sign",
+    sp.Max: "max",
+    sp.Min: "min",
+}
+
+
+def instruction(node: sp.Basic) -> tuple[str, Sequence[sp.Basic], Any]:
+    """Operation, arguments and constant of one node of a sympy tree."""
+    if isinstance(node, sp.Rational):
+        return "number", (), fmpq(int(node.p), int(node.q))
+    if node is sp.pi:
+        return "pi", (), None
+    if node is sp.E:
+        return "e", (), None
+    if isinstance(node, sp.Symbol):
+        return "symbol", (), node
+    if isinstance(node, sp.Add):
+        return "add", node.args, None
+    if isinstance(node, sp.Mul):
+        return "mul", node.args, None
+    if isinstance(node, sp.Pow):
+        return power_instruction(node)
+    if node.func in FUNCTIONS:
+        return FUNCTIONS[node.func], node.args, None
+    raise UnsupportedError(f"expected an expression of the language; got {node.func.__name__}; rewrite it")
+
+
+def power_instruction(node: sp.Pow) -> tuple[str, Sequence[sp.Basic], Any]:
+    if node.base is sp.E:
+        return "exp", (node.exp,), None
+    if isinstance(node.exp, sp.Integer):
+        return "power", (node.base,), int(node.exp)
+    if isinstance(node.exp, sp.Rational):
+        return "root", (node.base,), (int(node.exp.p), int(node.exp.q))
+    return "general_power", (node.base, node.exp), None
+
+
+# -- the operations, for balls and for power series of balls alike ---------------------------------------
+
+
+def constant_term(x: Any) -> arb:
+    return x[0] if isinstance(x, arb_series) else x
+
+
+def undefined(like: Any) -> Any:
+    """NaN in every coefficient: a NaN constant term alone would leave finite derivatives behind it."""
+    return arb_series([arb("nan")] * ctx.cap) if isinstance(like, arb_series) else arb("nan")
+
+
+def product(factors: Sequence[Any]) -> Any:
+    value = factors[0]
+    for factor in factors[1:]:
+        value = value * factor
+    return value
+
+
+def total(terms: Sequence[Any]) -> Any:
+    value = terms[0]
+    for term in terms[1:]:
+        value = value + term
+    return value
+
+
+def integer_power(x: Any, n: int) -> Any:
+    """x**n by squaring: a series power with a zero inside its constant term would give NaN."""
+    if n < 0:
+        return reciprocal(integer_power(x, -n))
+    if isinstance(x, arb):
+        return ball_power(x, n)
+    result: Any = arb_series([arb(1)])
+    while n:
+        if n & 1:
+            result = result * x
+        n >>= 1
+        if n:
+            x = x * x
+    return result
+
+
+def reciprocal(x: Any) -> Any:
+    if constant_term(x).contains(0):
+        return undefined(x)
+    return 1 / x
+
+
+def ball_power(x: arb, n: int) -> arb:
+    """x**n of a ball, n >= 0; flint's own is NaN where the midpoint is exactly zero, and below zero around it."""
+    around_zero = n > 0 and x.mid() == 0 and x.is_finite() and not x.is_exact()
+    power = arb(0, x.rad() ** n) if around_zero else x**n
+    return not_negative(power) if n % 2 == 0 else power
+
+
+def not_negative(x: arb) -> arb:
+    """The part of a ball that is not below zero, for what cannot be negative."""
+    return x.nonnegative_part() if x.is_finite() and not x >= 0 else x
+
+
+def rational_power(x: Any, p: int, q: int) -> Any:
+    """x**(p/q) for x >= 0, the real branch; undefined when x may be negative."""
+    head = constant_term(x)
+    if isinstance(x, arb) and q < MOST_ROOT:
+        if not head >= 0:
+            return undefined(x)
+        root = x.sqrt() if q == 2 else x.root(q)
+        return integer_power(root, p)
+    if not head > 0:
+        return undefined(x)
+    if q == 2:
+        return integer_power(x.sqrt(), p)
+    return (x.log() * (arb(p) / q)).exp()
+
+
+def general_power(base: Any, exponent: Any) -> Any:
+    return (base.log() * exponent).exp() if constant_term(base) > 0 else undefined(base)
+
+
+def logarithm(x: Any) -> Any:
+    return x.log() if constant_term(x) > 0 else undefined(x)
+
+
+def absolute(x: Any) -> Any:
+    if isinstance(x, arb):
+        return not_negative(abs(x))
+    head = constant_term(x)
+    if head > 0:
+        return x
+    return -x if head < 0 else undefined(x)
+
+
+def sign(x: Any) -> Any:
+    head = constant_term(x)
+    if head > 0:
+        return arb(1)
+    if head < 0:
+        return arb(-1)
+    if head == 0:
+        return arb(0)
+    return arb(0, 1) if head.is_finite() and isinstance(x, arb) else undefined(x)
+
+
+def inverse_sine(x: Any) -> Any:
+    return x.asin() if within_unit(x) else undefined(x)
+
+
+def inverse_cosine(x: Any) -> Any:
+    return x.acos() if within_unit(x) else undefined(x)
+
+
+def within_unit(x: Any) -> bool:
+    head = constant_term(x)
+    if isinstance(x, arb_series):
+        return bool(head > -1) and bool(head < 1)
+    return bool(head >= -1) and bool(head <= 1)
+
+
+def two_argument_arctangent(y: Any, x: Any) -> Any:
+    if isinstance(y, arb) and isinstance(x, arb):
+        return undefined(y) if y.contains(0) and x.contains(0) else arb.atan2(y, x)
+    head = constant_term(x)
+    return atan_of(y * reciprocal(x)) if head > 0 else undefined(y if isinstance(y, arb_series) else x)
+
+
+def atan_of(x: Any) -> Any:
+    return x.atan()
+
+
+def hyperbolic(name: str) -> Callable[[Any], Any]:
+    def value(x: Any) -> Any:
+        if isinstance(x, arb):
+            return getattr(x, name)()
+        up, down = x.exp(), (-x).exp()
+        if name == "sinh":
+            return (up - down) / 2
+        if name == "cosh":
+            return (up + down) / 2
+        return (up - down) * reciprocal(up + down)
+
+    return value
+
+
+def extreme(name: str) -> Callable[[Sequence[Any]], Any]:
+    def value(arguments: Sequence[Any]) -> Any:
+        if not all(isinstance(argument, arb) for argument in arguments):
+            return undefined(next(a for a in arguments if isinstance(a, arb_series)))
+        result = arguments[0]
+        for argument in arguments[1:]:
+            result = getattr(result, name)(argument)
+        return result
+
+    return value
+
+
+def unary(function: Callable[[Any], Any]) -> Callable[[Any, list[Any], Any], Any]:
+    return lambda constant, arguments, values: function(arguments[0])
+
+
+OPERATIONS: dict[str, Callable[[Any, list[Any], Any], Any]] = {
+    "number": lambda constant, arguments, values: arb(constant),
+    "pi": lambda constant, arguments, values: arb.pi(),
+    "e": lambda constant, arguments, values: arb(1).exp(),
+    "symbol": lambda constant, arguments, values: values[constant],
+    "add": lambda constant, arguments, values: total(arguments),
+    "mul": lambda constant, arguments, values: product(arguments),
+    "power": lambda constant, arguments, values: integer_power(arguments[0], constant),
+    "root": lambda constant, arguments, values: rational_power(arguments[0], *constant),
+    "general_power": lambda constant, arguments, values: general_power(*arguments),
+    "sin": unary(lambda x: x.sin()),
+    "cos": unary(lambda x: x.cos()),
+    "tan": unary(lambda x: x.sin() * reciprocal(x.cos())),
+    "cot": unary(lambda x: x.cos() * reciprocal(x.sin())),
+    "sec": unary(lambda x: reciprocal(x.cos())),
+    "csc": unary(lambda x: reciprocal(x.sin())),
+    "exp": unary(lambda x: x.exp()),
+    "log": unary(logarithm),
+    "abs": unary(absolute),
+    "sign": unary(sign),
+    "asin": unary(inverse_sine),
+    "acos": unary(inverse_cosine),
+    "atan": unary(atan_of),
+    "atan2": lambda constant, arguments, values: two_argument_arctangent(*arguments),
+    "sinh": unary(hyperbolic("sinh")),
+    "cosh": unary(hyperbolic("cosh")),
+    "tanh": unary(hyperbolic("tanh")),
+    "max": lambda constant, arguments, values: extreme("max")(arguments),
+    "min": lambda constant, arguments, values: extreme("min")(arguments),
+}
+
+
+# -- what the other rooms call ---------------------------------------
+
+
+def enclose(expression: sp.Expr | Tape, values: Mapping[sp.Symbol, arb] | None = None, bits: int = DEFAULT_BITS) -> arb:
+    """A ball that contains the expression for every value of the symbols in the given balls.
+
+    Not finite when the expression may be undefined there.
+    """
+    program = expression if isinstance(expression, Tape) else tape(expression)
+    with precision(bits):
+        return arb(program.run(values or {}))
+
+
+def exact_rational(x: fmpq) -> sp.Rational:
+    """A rational number of flint as one of sympy."""
+    return sp.Rational(int(x.p), int(x.q))
+
+
+def exact_ball(value: Any, bits: int = DEFAULT_BITS) -> arb:
+    """A ball around an exact number: a Python or sympy number, or a constant expression."""
+    return enclose(sp.sympify(value, strict=True), {}, bits)
+
+
+def hull(lower: Any, upper: Any, bits: int = DEFAULT_BITS) -> arb:
+    """The ball that contains the interval between two exact numbers; None is an end at infinity."""
+    with precision(bits):
+        if lower is None or upper is None:
+            return arb(0, "inf")  # a half line has no tighter ball than the whole line
+        return exact_ball(lower, bits).union(exact_ball(upper, bits))
+
+
+def derivatives(
+    program: Tape, values: Mapping[sp.Symbol, arb], symbol: sp.Symbol, order: int, bits: int = DEFAULT_BITS
+) -> list[arb]:
+    """Enclosures of f, f', f''/2!, … up to ``order`` in one symbol, over the given balls."""
+    with precision(bits):
+        before = ctx.cap
+        ctx.cap = order + 1
+        try:
+            inputs = dict(values)
+            inputs[symbol] = arb_series([values[symbol], arb(1)])
+            result = program.run(inputs)
+        finally:
+            ctx.cap = before
+        if isinstance(result, arb):
+            return [result] + [arb(0)] * order
+        if result.prec <= order:  # truncated earlier than asked: the missing coefficients are unknown
+            return [arb("nan")] * (order + 1)
+        return [result[k] for k in range(order + 1)]

@@ -1,0 +1,240 @@
+"""Fast numerical functions from derived expressions: sympy in, casadi out, no text in between.
+
+The expression is walked node by node, so that no name or string is ever evaluated, every number is
+rounded once, and the differences that lose all digits near zero are written in the form that does not:
+
+    k cos x - k  =  -2 k sin(x/2)^2        k cosh x - k  =  2 k sinh(x/2)^2        k exp x - k  =  k expm1(x)
+
+Without this (1 - cos w)/w^2 comes out as 0 at w = 1e-9 instead of 1/2. Other cancellations remain the
+caller's: x - sin x keeps 1e-16 absolutely, not relatively, and needs a series where x is small.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from functools import reduce
+from operator import add, mul
+from typing import Any, TypeAlias
+
+import casadi as ca
+import numpy as np
+import sympy as sp
+from numpy.typing import NDArray
+
+from navsym.core.errors import DomainError, NotFiniteError, ShapeError, UnknownSymbolError
+
+Array = NDArray[np.float64]
+Argument: TypeAlias = sp.Symbol | Sequence[sp.Symbol]
+Memo = dict[sp.Basic, Any]
+
+UNARY = {
+    sp.sin: ca.sin,
+    sp.cos: ca.cos,
+    sp.tan: ca.tan,
+    sp.asin: ca.asin,
+    sp.acos: ca.acos,
+    sp.atan: ca.atan,
+    sp.sinh: ca.sinh,
+    sp.cosh: ca.cosh,
+    sp.tanh: ca.tanh,
+    sp.exp: ca.exp,
+    sp.log: ca.log,
+    sp.Abs: ca.fabs,
+    sp.sign: ca.sign,
+    sp.cot: lambda x: ca.cos(x) / ca.sin(x),
+    sp.sec: lambda x: 1 / ca.cos(x),
+    sp.csc: lambda x: 1 / ca.sin(x),
+    sp.acot: lambda x: ca.atan(1 / x),
+}
+CONSTANTS = {sp.pi: np.pi, sp.E: np.e}
+#: f(x) - 1 without cancellation, for the functions with f(0) = 1.
+LESS_ONE = {sp.cos: lambda x: -2 * ca.sin(x / 2) ** 2, sp.cosh: lambda x: 2 * ca.sinh(x / 2) ** 2, sp.exp: ca.expm1}
+
+
+def casadi_function(
+    name: str, arguments: Sequence[Argument], expression: Any, named: Sequence[tuple[sp.Symbol, sp.Expr]] = ()
+) -> ca.Function:
+    """A casadi function of the given arguments.
+
+    name       : an identifier; it also names the function in code that casadi generates
+    arguments  : symbols, or sequences of symbols for vector arguments, in the order of the inputs
+    expression : a scalar or a matrix; its shape is the shape of the output
+    named      : values in order, which later ones and the expression may call by their symbols
+
+    Raises UnknownSymbolError (a symbol that is no argument), DomainError (a function that has no
+    counterpart, a name that is no identifier), NotFiniteError (a number beyond double precision).
+    """
+    inputs, memo = inputs_of(arguments)
+    for symbol, value in named:
+        memo[symbol] = translated(value, memo)
+    return ca.Function(identifier(name), inputs, [output_of(expression, memo)])
+
+
+def jacobian_function(name: str, arguments: Sequence[Argument], expression: Any, *, by: int = 0) -> ca.Function:
+    """The Jacobian of the expression by one of its arguments, by casadi's own differentiation.
+
+    For an (m,) column and an argument of k symbols the output is (m, k).
+    """
+    inputs, memo = inputs_of(arguments)
+    output = ca.jacobian(ca.vec(output_of(expression, memo)), inputs[by])
+    return ca.Function(identifier(name), inputs, [output])
+
+
+def on_grid(function: ca.Function, points: Any, *constants: float) -> Array:
+    """Values of a function of a scalar (and further constant arguments) at n points.
+
+    Returns (m, n) for a column of m outputs: one column per point, the shape of ``regressors``.
+    Raises ShapeError for no points at all.
+    """
+    row = np.asarray(points, dtype=float).reshape(1, -1)
+    n = row.shape[1]
+    if n == 0:
+        raise ShapeError("points: expected at least one; got none; give the grid")
+    repeated = [np.full((1, n), float(c)) for c in constants]
+    return np.array(function(row, *repeated)).reshape(-1, n)
+
+
+def column_function(name: str, inputs: Sequence[Any], outputs: Sequence[Any]) -> ca.Function:
+    """A casadi function of expressions that are translated already; its output is the column of them."""
+    return ca.Function(identifier(name), list(inputs), [ca.densify(ca.vertcat(*outputs))])
+
+
+def by_distance(x: Any, limit: float, below: Any, above: Any) -> Any:
+    """``below`` where |x| < limit, ``above`` elsewhere; what the other one comes to, NaN also, does not matter."""
+    return ca.if_else(ca.fabs(x) < limit, below, above)
+
+
+def identifier(name: str) -> str:
+    """The name, if it may stand in generated code."""
+    if not re.fullmatch(r"[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*", name):
+        raise DomainError(f"name: expected letters, digits and single underscores; got {name!r}; rename it")
+    return name
+
+
+def inputs_of(arguments: Sequence[Argument]) -> tuple[list[Any], Memo]:
+    """casadi's variables, and the first entries of the table of known subexpressions."""
+    inputs, memo = [], {}
+    for place, argument in enumerate(arguments):
+        symbols = [argument] if isinstance(argument, sp.Symbol) else list(argument)
+        if not symbols:
+            raise ShapeError(f"argument {place}: expected at least one symbol; got none; leave it out")
+        vector = ca.SX.sym(f"a{place}", len(symbols))  # names of the user never reach the engine
+        inputs.append(vector)
+        for k, symbol in enumerate(symbols):
+            if symbol in memo:
+                raise DomainError(f"argument {place}: expected different symbols; got {symbol} twice")
+            memo[symbol] = vector[k]
+    return inputs, memo
+
+
+def output_of(expression: Any, memo: Memo) -> Any:
+    """A scalar or a dense matrix of casadi expressions."""
+    if not isinstance(expression, sp.MatrixBase):
+        return ca.SX(translated(sp.sympify(expression, strict=True), memo))
+    rows = [ca.horzcat(*(translated(entry, memo) for entry in row)) for row in expression.tolist()]
+    return ca.densify(ca.vertcat(*rows))
+
+
+def translated(expression: sp.Expr, memo: Memo) -> Any:
+    """One node; common subexpressions are translated once."""
+    known = memo.get(expression)
+    if known is None:
+        known = memo[expression] = node(expression, memo)
+    return known
+
+
+def node(expression: sp.Expr, memo: Memo) -> Any:
+    """One node of the expression, its parts translated first."""
+    if isinstance(expression, sp.Rational):
+        return rounded(expression)
+    if expression in CONSTANTS:
+        return ca.SX(CONSTANTS[expression])
+    if isinstance(expression, sp.Add):
+        return sum_of(expression, memo)
+    if isinstance(expression, sp.Mul):
+        return product_of(expression, memo)
+    if isinstance(expression, sp.Pow):
+        return power_of(expression, memo)
+    if isinstance(expression, sp.atan2):
+        return ca.atan2(*(translated(part, memo) for part in expression.args))
+    if isinstance(expression, (sp.Min, sp.Max)):
+        pick = ca.fmin if isinstance(expression, sp.Min) else ca.fmax
+        return reduce(pick, [translated(part, memo) for part in expression.args])
+    function = UNARY.get(type(expression))
+    if function is not None:
+        return function(translated(expression.args[0], memo))
+    if isinstance(expression, sp.Symbol):
+        raise UnknownSymbolError(f"expression: expected only its arguments; got {expression}; name it as one")
+    raise DomainError(f"expression: expected functions of the language; got {type(expression).__name__}; rewrite it")
+
+
+def rounded(number: sp.Rational) -> Any:
+    """The nearest double of an exact number; the quotient of two integers is rounded once."""
+    try:
+        return ca.SX(int(number.p) / int(number.q))
+    except OverflowError:
+        raise NotFiniteError("expression: expected numbers below 1.8e308; got a larger one; rescale") from None
+
+
+def sum_of(expression: sp.Add, memo: Memo) -> Any:
+    """A sum, with pairs k f(x), -k joined where f(0) = 1."""
+    terms = list(expression.args)
+    parts = []
+    for term in expression.args:
+        coefficient, function = unit_function(term)
+        if function is not None and term in terms and -coefficient in terms:
+            terms.remove(term)
+            terms.remove(-coefficient)
+            less_one = LESS_ONE[type(function)](translated(function.args[0], memo))
+            parts.append(less_one if coefficient == 1 else translated(coefficient, memo) * less_one)
+    parts += [translated(term, memo) for term in terms]
+    return reduce(add, parts)
+
+
+def unit_function(term: sp.Expr) -> tuple[sp.Expr, sp.Expr | None]:
+    """The term as (k, f(x)) with one function f of the kind f(0) = 1, or (term, None)."""
+    factors = sp.Mul.make_args(term)
+    functions = [factor for factor in factors if isinstance(factor, tuple(LESS_ONE))]
+    if len(functions) != 1:
+        return term, None
+    return sp.Mul(*(factor for factor in factors if factor is not functions[0])), functions[0]
+
+
+def product_of(expression: sp.Mul, memo: Memo) -> Any:
+    """Numerator over denominator: one division, and the rational coefficient in its two parts."""
+    above, below = expression.as_numer_denom() if expression.is_commutative else (expression, sp.S.One)
+    if below == 1:
+        return (
+            reduce(mul, (translated(factor, memo) for factor in above.args))
+            if above.is_Mul
+            else (translated(above, memo))
+        )
+    return translated(above, memo) / translated(below, memo)
+
+
+def power_of(expression: sp.Pow, memo: Memo) -> Any:
+    """A power: whole exponents by multiplication, halves by the square root, others as they are."""
+    base, exponent = expression.args
+    x = translated(base, memo)
+    if exponent.is_Integer:
+        n = int(exponent)
+        return whole_power(x, n) if n > 0 else 1 / whole_power(x, -n)
+    if exponent.is_Rational and exponent.q == 2:
+        return (
+            whole_power(ca.sqrt(x), int(exponent.p))
+            if exponent.p > 0
+            else (1 / whole_power(ca.sqrt(x), -int(exponent.p)))
+        )
+    return ca.power(x, translated(exponent, memo))
+
+
+def whole_power(x: Any, n: int) -> Any:
+    """x ** n by repeated squaring."""
+    result, square = None, x
+    while n:
+        if n & 1:
+            result = square if result is None else result * square
+        n >>= 1
+        square = square * square if n else square
+    return result

@@ -1,0 +1,201 @@
+"""Real data sets: where they come from, their checksums, and a local copy that is checked before use.
+
+Nothing of them is part of the project. A file is looked for in the folder that ``NAVSYM_DATA``
+names, then in the cache of the user's machine, and only then fetched from its source at the
+commit written here. Whatever its way, a file with another checksum is refused.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from navsym.core.errors import DomainError, MissingEngineError, NavsymError
+
+
+class ChecksumError(NavsymError):
+    """A file that is not the one that was recorded."""
+
+    kind = "checksum"
+
+
+@dataclass(frozen=True, slots=True)
+class Dataset:
+    """One file: its name here, its source by repository, commit and path, and what one must know.
+
+    name       : short name, as ``navsym data get`` takes it
+    path       : place in a local copy
+    repository : owner and name of the public source repository
+    commit     : commit of that repository, as far as it is recorded
+    source     : path in that repository
+    sha256     : checksum of the file
+    """
+
+    name: str
+    path: str
+    what: str
+    repository: str
+    commit: str
+    source: str
+    sha256: str
+    licence: str
+
+    @property
+    def address(self) -> str:
+        """Where the file is fetched from: the recorded commit of its repository."""
+        return f"https://raw.githubusercontent.com/{self.repository}/{self.commit}/{self.source}"
+
+    @property
+    def citation(self) -> str:
+        """Repository, commit, file and licence in one line."""
+        return f"{self.repository} at commit {self.commit}, {self.source}; {self.licence}"
+
+
+PUBLIC_DOMAIN = "NASA and USGS, public domain"
+KINEMATIC = "examples/data/kinematic"
+SUZUKI = ("taroz/MatRTKLIB", "69bcbd3faebc")
+DATASETS: Mapping[str, Dataset] = {
+    data.name: data
+    for data in (
+        Dataset(
+            "srtm",
+            "dem/N44W072_srtm3.hgt",
+            "elevation, 1201 x 1201, 3 arc seconds, 44 to 45 N, 72 to 71 W",
+            "tkrajina/srtm.py",
+            "aac72b36d105",
+            "test_files/N44W072.hgt",
+            "893b68e241df5f8a8a89fe067c629b78591313f571c77ab610f65efe85b458fa",
+            PUBLIC_DOMAIN,
+        ),
+        Dataset(
+            "nasadem",
+            "dem/N44W072_nasadem3.hgt",
+            "the same tile from another product",
+            "JayKickliter/geoprof",
+            "4a45442c964f",
+            "data/nasadem/3arcsecond/N44W072.hgt",
+            "03548a0306d409a90d2d6fbf94ec1ca8d67d1e2e918d21637bbe40f60f9a30f2",
+            "NASA, no restriction",
+        ),
+        Dataset(
+            "nagoya-reference",
+            "gnss_ins/nagoya_reference.csv",
+            "a car in a city, reference INS at 5 Hz",
+            *SUZUKI,
+            f"{KINEMATIC}/reference.csv",
+            "e9fef1bf3f2293bc671e3cbfa3ec5ef075f8438bf2da0f1ffb7a9cc883641a99",
+            "MIT, (c) 2023 Taro Suzuki",
+        ),
+        Dataset(
+            "nagoya-rtk",
+            "gnss_ins/nagoya_rover_rtk.pos",
+            "the same run, RTK positions at 5 Hz",
+            *SUZUKI,
+            f"{KINEMATIC}/rover_rtk.pos",
+            "4cf4ce278e0c399ee26056bcf3b13b17e63543f709332859bbed8ffb32cdb83b",
+            "MIT, (c) 2023 Taro Suzuki",
+        ),
+        Dataset(
+            "nagoya-spp",
+            "gnss_ins/nagoya_rover_1Hz_spp.pos",
+            "the same run, single-point positions at 1 Hz",
+            *SUZUKI,
+            f"{KINEMATIC}/rover_1Hz_spp.pos",
+            "879c05b1c86c6352dd41b3f2857dc22b9d5bb33278429ac1dccb50ec32ffc6e8",
+            "MIT, (c) 2023 Taro Suzuki",
+        ),
+        Dataset(
+            "pyins",
+            "gnss_ins/pyins_gnss.csv",
+            "positions and velocities at 1 Hz, 800 s",
+            "nmayorov/pyins",
+            "8377edecff8e",
+            "examples/data/gnss.csv",
+            "cb3564245bc62f501e34c1ee9c616539533a1d8f3763b87687d563df5f20e7ee",
+            "MIT, (c) 2023 Nikolay Mayorov",
+        ),
+        Dataset(
+            "thor-flight75",
+            "gnss_ins/umn_thor_flight75.mat",
+            "a small aircraft, IMU at 50 Hz and GPS at 1 Hz",
+            "NorthStarUAS/insgnss_tools",
+            "0b5f6b16f009",
+            "flight_data/thor_flight75_WaypointTracker_150squareWaypointNew_2012_10_10.mat",
+            "d87340d8a5ab2bbc0121e73521bb68bfc9042786c78329d965c5aca6d0431675",
+            "MIT",
+        ),
+        Dataset(
+            "geodtest",
+            "geodesy/GeodTest-100.dat",
+            "first 100 lines of C. Karney's set of geodesics",
+            "georust/geographiclib-rs",
+            "c5e906d94a46",
+            "test_fixtures/GeodTest-100.dat",
+            "558f579c8c7322650bc87a2408b616b7fa6eecab515878758dae423540863f1b",
+            "MIT",
+        ),
+    )
+}
+
+
+def dataset(name: str) -> Dataset:
+    """The data set of a name; raises DomainError with the names that exist."""
+    if name in DATASETS:
+        return DATASETS[name]
+    raise DomainError(f"expected one of {', '.join(DATASETS)}; got {name[:40]}; name one of them", where="data")
+
+
+def local_copy(data: Dataset) -> Path | None:
+    """The checked file under ``NAVSYM_DATA`` or in the cache; None where there is none.
+
+    Raises ChecksumError when a file stands there that is not the recorded one.
+    """
+    for folder in (os.environ.get("NAVSYM_DATA"), cache_folder()):
+        if folder and (path := Path(folder) / data.path).is_file():
+            require_checksum(path, data)
+            return path
+    return None
+
+
+def cache_folder() -> Path:
+    """Where fetched files are kept: the cache folder of the system, or ``NAVSYM_CACHE``."""
+    if chosen := os.environ.get("NAVSYM_CACHE"):
+        return Path(chosen)
+    import pooch
+
+    return Path(pooch.os_cache("navsym"))
+
+
+def require_checksum(path: Path, data: Dataset) -> None:
+    """Raises ChecksumError when the sha256 of a file is not the recorded one."""
+    with path.open("rb") as file:
+        found = hashlib.file_digest(file, "sha256").hexdigest()
+    if found != data.sha256:
+        message = f"expected sha256 {data.sha256}; got {found}; remove the file, it is not the recorded one"
+        raise ChecksumError(message, where=str(path))
+
+
+def fetch(name: str) -> Path:
+    """Path of a checked data set: the local copy, or fetched once into the cache.
+
+    Raises DomainError for an unknown name, ChecksumError for another file of that name, and
+    MissingEngineError where there is neither a copy nor a network.
+    """
+    data = dataset(name)
+    if (path := local_copy(data)) is not None:
+        return path
+    import pooch
+
+    target = cache_folder() / data.path
+    try:
+        return Path(pooch.retrieve(data.address, f"sha256:{data.sha256}", target.name, target.parent))
+    except (OSError, ValueError) as error:
+        reason = "no answer" if isinstance(error, OSError) else "a file with another checksum"
+        message = (
+            f"expected {data.path} or a network; got {reason} ({type(error).__name__}); set NAVSYM_DATA to a folder "
+            f"that has {data.path}, or fetch {data.address} yourself and put it at {target}"
+        )
+        raise MissingEngineError(message, where=data.name) from error

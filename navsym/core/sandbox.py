@@ -1,0 +1,224 @@
+"""Child processes with limits on time and memory, for work that might not end.
+
+A child is forked, so that it has the parent's loaded engines and objects and only its result
+travels back. A child that exceeds its limits is killed; the parent never waits for it longer. Time is
+processor time, so that what is decided does not depend on what else the machine does.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import multiprocessing
+import os
+import resource
+import signal
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from multiprocessing.connection import Connection, wait
+from typing import Any
+
+from navsym.core.errors import DomainError, NavsymError
+
+DEFAULT_SECONDS = 60.0
+DEFAULT_MEGABYTES = 6144
+
+#: A child has this many times its seconds of processor time by the clock: a machine may be busy with other things.
+PATIENCE = 10
+
+MOST_SECONDS = 1e7
+MOST_MEGABYTES = 2**30
+
+
+@dataclass(frozen=True, slots=True)
+class Exhausted:
+    """The child gave no result, and why."""
+
+    why: str
+
+
+@dataclass(frozen=True, slots=True)
+class Failed:
+    """The child ended with an error of the user's making."""
+
+    error: NavsymError
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What came of one item: its place, a result, Exhausted or Failed, and the seconds it took."""
+
+    place: int
+    value: Any
+    seconds: float
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """What a child may use; the processor time is watched by the parent, the process whose number stands here."""
+
+    seconds: float
+    megabytes: int
+    parent: int
+
+    def apply(self) -> None:
+        """Bound memory and, should nobody watch any more, processor time; no core files."""
+        size, cpu = self.megabytes * 2**20, int(self.seconds + 1) * (os.cpu_count() or 1) + 10
+        resource.setrlimit(resource.RLIMIT_AS, (size, size))
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+        _, most = resource.getrlimit(resource.RLIMIT_CPU)
+        if most == resource.RLIM_INFINITY or cpu < most:
+            resource.setrlimit(resource.RLIMIT_CPU, (cpu, most))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Child:
+    """A running child."""
+
+    place: int
+    process: Any
+    receiver: Connection
+    started: float
+
+
+def run_limited(
+    function: Callable[..., Any],
+    arguments: tuple[Any, ...],
+    seconds: float = DEFAULT_SECONDS,
+    megabytes: int = DEFAULT_MEGABYTES,
+) -> Any:
+    """Result of ``function(*arguments)`` from a limited child, or :class:`Exhausted`.
+
+    A NavsymError of the child is raised again here; any other exception is an Exhausted with
+    its text. Raises DomainError for limits that are none.
+    """
+    (outcome,) = run_many(lambda packed: function(*packed), [arguments], 1, seconds, megabytes)
+    if isinstance(outcome.value, Failed):
+        raise outcome.value.error
+    return outcome.value
+
+
+def run_many(
+    function: Callable[[Any], Any],
+    items: Sequence[Any],
+    jobs: int,
+    seconds: float = DEFAULT_SECONDS,
+    megabytes: int = DEFAULT_MEGABYTES,
+) -> Iterator[Outcome]:
+    """Outcomes of ``function(item)``, each in a child of its own, at most ``jobs`` at once.
+
+    Outcomes come as they are ready, in no particular order. Raises DomainError for limits that are none.
+    """
+    require_limits(seconds, megabytes)
+    waiting = list(enumerate(items))[::-1]
+    running: list[Child] = []
+    try:
+        while waiting or running:
+            while waiting and len(running) < max(1, jobs):
+                place, item = waiting.pop()
+                running.append(start(place, function, item, Limits(seconds, megabytes, os.getpid())))
+            for child in ready(running, seconds):
+                running.remove(child)
+                yield finish(child, seconds)
+    finally:
+        for child in running:
+            stop(child)
+
+
+def require_limits(seconds: float, megabytes: int) -> None:
+    """Refuse a time that no child can have: nan, infinity, nothing, or more than the kernel counts."""
+    if not 0 < seconds <= MOST_SECONDS:
+        raise DomainError(f"expected seconds above 0 and at most {MOST_SECONDS:g}; got {seconds:g}; correct the limit")
+    if not 0 < megabytes <= MOST_MEGABYTES:
+        raise DomainError(f"expected megabytes above 0 and at most {MOST_MEGABYTES}; got {megabytes}; correct it")
+
+
+def start(place: int, function: Callable[[Any], Any], item: Any, limits: Limits) -> Child:
+    context = multiprocessing.get_context("fork")
+    receiver, sender = context.Pipe(duplex=False)
+    process = context.Process(target=work, args=(sender, function, item, limits), daemon=True)
+    process.start()
+    sender.close()
+    return Child(place, process, receiver, time.monotonic())
+
+
+def die_with_parent(parent: int) -> None:
+    """Ask the kernel to end this process when its parent ends, however that ends; Linux only.
+
+    parent : number of the process that made this one, which may be gone already
+    """
+    with contextlib.suppress(OSError, AttributeError):
+        ctypes.CDLL(None).prctl(1, signal.SIGKILL)  # PR_SET_PDEATHSIG
+    if os.getppid() != parent:
+        os._exit(1)
+
+
+def work(sender: Connection, function: Callable[[Any], Any], item: Any, limits: Limits) -> None:
+    """Runs in the child. Ctrl-C reaches the whole group; here the parent answers it, and kills its children."""
+    die_with_parent(limits.parent)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    os.dup2(2, 1)  # a C library that gives up writes to standard output, where the parent's document is to stand alone
+    limits.apply()
+    try:
+        sender.send(("result", function(item)))
+    except NavsymError as error:
+        sender.send(("error", alone(error)))
+    except MemoryError:
+        sender.send(("stopped", f"memory above {limits.megabytes} MB"))
+    except RecursionError:
+        sender.send(("stopped", "an expression nested too deeply"))
+    except Exception as error:
+        sender.send(("stopped", f"{type(error).__name__}: {error}"))
+    finally:
+        sender.close()
+
+
+def alone(error: NavsymError) -> NavsymError:
+    """The error without those that led to it: where tblib is at work (distributed brings it) they would be sent along,
+    and what their frames hold cannot always be."""
+    error.__cause__ = error.__context__ = None
+    return error.with_traceback(None)
+
+
+def ready(running: Sequence[Child], seconds: float) -> list[Child]:
+    """Children with a result or out of time; waits until there is one."""
+    while True:
+        late = [child for child in running if left(child, seconds) <= 0]
+        answered = wait([child.receiver for child in running], 0 if late else min(left(c, seconds) for c in running))
+        if late or answered:
+            return [child for child in running if child in late or child.receiver in answered]
+
+
+def left(child: Child, seconds: float) -> float:
+    """Seconds that a child may still go on, at the least: of processor time, and of the clock, of which it has more."""
+    gone = time.monotonic() - child.started
+    try:
+        used = time.clock_gettime((~child.process.pid << 3) | 2)  # Linux: the clock of another process
+    except OSError:
+        used = gone
+    return min(seconds - used, PATIENCE * seconds - gone)
+
+
+def finish(child: Child, seconds: float) -> Outcome:
+    spent = time.monotonic() - child.started
+    try:
+        if not child.receiver.poll(0):
+            return Outcome(child.place, Exhausted(f"more than {seconds:g} s"), spent)
+        kind, value = child.receiver.recv()
+    except EOFError:
+        child.process.join(1)
+        code = child.process.exitcode
+        return Outcome(child.place, Exhausted(f"the child ended without a result (exit {code})"), spent)
+    finally:
+        stop(child)
+    if kind == "result":
+        return Outcome(child.place, value, spent)
+    return Outcome(child.place, Failed(value) if kind == "error" else Exhausted(value), spent)
+
+
+def stop(child: Child) -> None:
+    if child.process.is_alive():
+        child.process.kill()
+    child.process.join()
+    child.receiver.close()

@@ -1,0 +1,263 @@
+"""From contacts in double precision to contacts with any number of digits.
+
+The optimality system in (x, inner contacts, weights) is solved by Newton's method with the
+Jacobian of the double solution (its pseudo-inverse when the problem is degenerate), residuals in
+high precision. In the orthonormal basis that Jacobian is well scaled, so each step gains about as
+many digits as the double solution had; nothing here is rigorous.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from flint import arb, arb_mat, fmpq
+
+from navsym.core.balls import precision
+from navsym.guaranteed.certificate.basis import Basis, as_fraction
+from navsym.guaranteed.certificate.enclosure import Panel, Problem
+from navsym.guaranteed.search.exchange import Contacts
+from navsym.guaranteed.search.interior import pinned_rows
+from navsym.guaranteed.search.kernels import contact_system
+
+# Taylor coefficients of the regressors about several places at once, and polynomials made of them.
+#
+# Newton's method moves the contacts by less and less, the first time by what a double number lacks. The functions
+# are expanded once; at moved contacts the system needs sums of a few terms.
+
+
+#: Terms of a polynomial, and how far contacts in double precision are expected to move.
+MOST_TERMS, MOVE = 9, 12
+
+
+def series_rows(
+    panels: Sequence[Panel], places: Sequence[int], v: Sequence[arb], inner: Sequence[bool], order: int
+) -> list[arb_mat]:
+    """Taylor coefficients 0 … order of H in the fraction at the places, (l, m) each; zeros beyond the first at ends.
+
+    With balls for v they hold for every centre in them.
+    """
+    rows: list[list[list[arb]]] = [[] for _ in range(order + 1)]
+    for k, at, free in zip(places, v, inner, strict=True):
+        series = panels[k].series(at, arb(1), order if free else 0)
+        still = [arb(0)] * len(series)
+        for d, row in enumerate(rows):
+            row.append([h[d] for h in series] if free or d == 0 else still)
+    return [arb_mat(row) for row in rows]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Local:
+    """H about the places ``at``: ``H_j(at_i + s) = sum_k rows[k][i, j] s**k`` up to terms that are left out."""
+
+    at: tuple[arb, ...]
+    rows: tuple[arb_mat, ...]
+
+    def reaches(self, v: Sequence[arb], goal: arb) -> bool:
+        """What is left out of slopes at the places v is below the goal, as far as the last term tells."""
+        far = max((abs(a - b) for a, b in zip(v, self.at, strict=True)), default=arb(0))
+        largest = max(map(arb.abs_upper, self.rows[-1].entries()))
+        return far == 0 or bool(len(self.rows) * far ** (len(self.rows) - 1) * max(largest, arb(1)) < goal)
+
+    def sums(self, dual: arb_mat, v: Sequence[arb]) -> tuple[list[arb], list[arb]]:
+        """``x . H`` and its slope with respect to the fraction, at every place."""
+        c = [(row * dual).entries() for row in self.rows]
+        values, slopes = c[-1], [arb(0)] * len(v)
+        moves = [a - b for a, b in zip(v, self.at, strict=True)]
+        for row in reversed(c[:-1]):
+            slopes = [s * d + f for s, d, f in zip(slopes, moves, values, strict=True)]
+            values = [f * d + a for f, d, a in zip(values, moves, row, strict=True)]
+        return values, slopes
+
+    def balance(self, w: Sequence[arb], v: Sequence[arb]) -> arb_mat:
+        """``sum w_i H(v_i)`` as a column."""
+        moves = [a - b for a, b in zip(v, self.at, strict=True)]
+        share, done = list(w), None
+        for row in self.rows:
+            part = row.transpose() * arb_mat([[s] for s in share])
+            done = part if done is None else done + part
+            share = [s * d for s, d in zip(share, moves, strict=True)]
+        assert done is not None
+        return done
+
+
+def local(panels: Sequence[Panel], places: Sequence[int], v: Sequence[arb], inner: Sequence[bool], goal: arb) -> Local:
+    """H about the places v with as many terms as reach the goal, or the most."""
+    digits = -float(goal.log() / arb(10).log())
+    order = min(MOST_TERMS - 1, max(2, int(digits / MOVE) + 1))
+    return Local(tuple(v), tuple(series_rows(panels, places, v, inner, order)))
+
+
+STEPS = 60
+#: A residual so many times the smallest one, or no number at all, says that Newton's method has run away.
+AWAY = arb(10) ** 6
+#: Corrections below this may stop shrinking: the precision is used up.
+SMALL = arb(1e-12)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Polished:
+    """Contacts to high precision, all midpoints exact.
+
+    panel, v, inner, sign : place of each contact as a fraction of its panel, whether it may move, its sign
+    weights : in the units of the problem (noise bound not divided out)
+    dual    : x in the basis of the problem
+    residual : size of the last correction, or what the next one would be, relative
+    regular : True when the optimality system is square and far from singular
+    """
+
+    panel: tuple[int, ...]
+    v: tuple[arb, ...]
+    inner: tuple[bool, ...]
+    sign: tuple[int, ...]
+    weights: tuple[arb, ...]
+    dual: tuple[arb, ...]
+    residual: float
+    regular: bool
+    touching: tuple[tuple[int, fmpq], ...] = ()
+
+
+def polish(panels: Sequence[Panel], basis: Basis, contacts: Contacts, bits: int, goal: arb | float) -> Polished:
+    """Newton with a fixed Jacobian until the correction is below ``goal`` or stops shrinking.
+
+    Steps that run away lead back to where they began; the answer is then called irregular.
+    """
+    inverse, regular = pseudo_inverse(basis, contacts)
+    m, l = contacts.dual.size, contacts.u.size
+    with precision(bits):
+        x = [arb(float(c)) for c in contacts.dual]
+        v = [arb(as_fraction(float(u))) for u in contacts.u]
+        w = [arb(float(c)) for c in contacts.weights]
+        p = [basis.functional[i, 0] / basis.size for i in range(m)]
+        signs = [int(s) for s in contacts.sign]
+        inner = [bool(i) for i in contacts.inner]
+        places, goal = contacts.panel.tolist(), arb(goal)
+        bounds = [panels[k].bound() for k in places]
+        about = local(panels, places, v, inner, goal)
+        begun, away, last = (x, v, w), arb("inf"), None
+        for _ in range(STEPS):
+            if not about.reaches(v, goal):
+                about = local(panels, places, v, inner, goal)
+            F = residual(about, bounds, basis, x, v, w, p, signs, inner)
+            size = largest(F)
+            if not size <= away:
+                (x, v, w), regular, size = begun, False, away / AWAY
+                break
+            away = min(away, AWAY * max(size, SMALL))
+            ratio = arb(0) if last is None else (size / last).mid()
+            if size < goal or (ratio > 0.5 and size < SMALL):
+                break
+            done = 0 < ratio < 1e-6 and size * ratio < goal
+            last, size = size, (size * ratio).mid()
+            step = correction(inverse, F)
+            x = [(a + s).mid() for a, s in zip(x, step[:m], strict=True)]
+            free = iter(step[m : len(step) - l])
+            v = [(a + next(free) / 2).mid() if i else a for a, i in zip(v, inner, strict=True)]
+            w = [(a + s).mid() for a, s in zip(w, step[len(step) - l :], strict=True)]
+            if done:  # with the ratio of the last two the next correction would be below the goal
+                break
+        dual = basis.transform.transpose() * arb_mat([[a] for a in x])
+        weights = [a * basis.size / panels[k].bound() for a, k in zip(w, contacts.panel, strict=True)]
+        touching = tuple((k, as_fraction(u)) for k, u in contacts.touching)
+        return Polished(
+            tuple(int(k) for k in contacts.panel),
+            tuple(v),
+            tuple(inner),
+            tuple(signs),
+            tuple(a.mid() for a in weights),
+            tuple(dual[i, 0].mid() for i in range(m)),
+            float(size),
+            regular,
+            touching,
+        )
+
+
+def pinned(
+    problem: Problem, basis: Basis, places: Contacts, v: Sequence[arb], x: np.ndarray, goal: arb | float
+) -> list[arb]:
+    """The dual next to x, in the basis of the problem, that meets its bound at the contacts and is flat at inner ones.
+
+    v : the places of the contacts to high precision; they give fewer conditions on x than unknowns
+    """
+    rows = pinned_rows(basis.panels, places)[0]
+    inverse, nothing = np.linalg.pinv(rows, rcond=1e-9), [arb(0)] * x.size
+    signs, inner = [int(s) for s in places.sign], [bool(i) for i in places.inner]
+    y, goal = [arb(float(c)) for c in x], arb(goal)
+    bounds = [problem.panels[k].bound() for k in places.panel]
+    about = local(problem.panels, places.panel.tolist(), v, inner, goal)
+    for _ in range(STEPS):
+        F = residual(about, bounds, basis, y, v, [arb(0)] * len(v), nothing, signs, inner)[: rows.shape[0]]
+        if largest(F) < goal:
+            break
+        y = [(a + s).mid() for a, s in zip(y, correction(inverse, F), strict=True)]
+    return [a.mid() for a in (basis.transform.transpose() * arb_mat([[a] for a in y])).entries()]
+
+
+def pseudo_inverse(basis: Basis, contacts: Contacts) -> tuple[np.ndarray, bool]:
+    C = basis.panels.coefficients
+    _, J = contact_system(
+        C,
+        *basis.panels.derivatives,
+        basis.panels.functional,
+        contacts.panel,
+        contacts.u,
+        contacts.inner,
+        contacts.sign,
+        contacts.dual,
+        contacts.weights,
+    )
+    if J.shape[0] == J.shape[1] and (inverse := well_conditioned(J)) is not None:
+        return inverse, True
+    U, s, Vt = np.linalg.svd(J)
+    keep = s > 1e-9 * s.max()
+    regular = J.shape[0] == J.shape[1] and bool(keep.all())
+    r = int(keep.sum())
+    return (Vt[:r].T / s[:r]) @ U[:, :r].T, regular
+
+
+def well_conditioned(J: np.ndarray) -> np.ndarray | None:
+    """The inverse, where Frobenius' norms say that no singular value is below 1e-9 of the largest."""
+    try:
+        inverse: np.ndarray = np.linalg.inv(J)
+    except np.linalg.LinAlgError:
+        return None
+    return inverse if np.linalg.norm(J) * np.linalg.norm(inverse) < 1e9 else None
+
+
+def largest(F: Sequence[arb]) -> arb:
+    """The largest modulus of numbers, exactly; no number where one of them is none."""
+    sizes = [abs(f).mid() for f in F]
+    return max(sizes) if all(size.is_finite() for size in sizes) else arb("nan")
+
+
+def correction(inverse: np.ndarray, F: Sequence[arb]) -> list[arb]:
+    """``-inverse F`` where F is divided by its largest number, so that tiny residuals keep their digits."""
+    scale = largest(F)
+    if scale == 0:
+        return [arb(0)] * inverse.shape[0]
+    small = np.array([float((f / scale).mid()) for f in F])
+    return [-arb(float(s)) * scale for s in inverse @ small]
+
+
+def residual(
+    about: Local,
+    bounds: Sequence[arb],
+    basis: Basis,
+    x: Sequence[arb],
+    v: Sequence[arb],
+    w: Sequence[arb],
+    p: Sequence[arb],
+    signs: Sequence[int],
+    inner: Sequence[bool],
+) -> list[arb]:
+    """The optimality system in high precision; slopes with respect to u = 2 v - 1.
+
+    bounds : the noise bound at every contact
+    """
+    dual = basis.transform.transpose() * arb_mat([[a] for a in x])
+    values, slopes = about.sums(dual, v)
+    heights = [f / b - s for f, b, s in zip(values, bounds, signs, strict=True)]
+    flat = [f / (2 * b) for f, b, i in zip(slopes, bounds, inner, strict=True) if i]
+    balance = basis.transform * about.balance([a / b for a, b in zip(w, bounds, strict=True)], v)
+    return [a.mid() for a in [*heights, *flat, *(b - a for a, b in zip(p, balance.entries(), strict=True))]]

@@ -1,0 +1,498 @@
+"""Exact contacts for every value of a parameter in a range: Krawczyk's test along a moving centre.
+
+In a piece of the range the solution is followed by polynomials z(s), ``p = middle + half s``. The optimality
+system at the moving centre, ``F(s) = F(z(s), p(s))``, and its derivative are enclosed as power series in s with
+a remainder over all |s| <= 1, and so is ``f(v, s) = y(s) . q(v, p(s))`` around every place v. The parameter
+may enter the regressors, the ends of the panels, the noise bounds and the functional.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import sympy as sp
+from flint import arb, arb_mat, fmpq
+
+from navsym.core.balls import precision
+from navsym.guaranteed.certificate.enclosure import (
+    Cell,
+    Expansion,
+    Problem,
+    Touch,
+    interval,
+    order_for,
+    passes,
+    rational,
+    terms,
+    total,
+)
+from navsym.guaranteed.certificate.fixed import header, place_of
+from navsym.guaranteed.certificate.moving import EVERY, Member, Moving, number_of, series_at
+from navsym.guaranteed.decimals import decimal, exact
+
+BITS = 192
+#: Order of the series in s, the last coefficient over the whole piece; and degree of the curves.
+ORDER = 2
+DEGREE = 5
+DIGITS = 32
+#: Cells for one panel: so many, and so many more for each contact on it.
+MOST_CELLS, CELLS_EACH = 24, 12
+HUGE = 10**9
+#: A box has this much more room than Newton's step in it needs.
+MARGIN = arb(5) / 4
+#: Bounds of the value are this part of it wider than what is proved here.
+ROOM = 10**6
+#: Of what the unknown that moves most needs, relative to its size, every other has this part as well.
+SHARE = arb(1) / 4
+
+Pattern = tuple[tuple[int, str, int], ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Track:
+    """What is followed: the contacts (panel, end, sign), a first solution, and the problem in a good basis.
+
+    first  : p -> Member of this pattern to start from, or None
+    moving : (a, b) -> the problem on that piece
+    """
+
+    problem: Problem
+    parameter: sp.Symbol
+    pattern: Pattern
+    first: Callable[[fmpq], Member | None]
+    moving: Callable[[fmpq, fmpq], Moving]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Piece:
+    """One verified piece: its certificate, the cells that it took, its optima, the solution at either end."""
+
+    lower: fmpq
+    upper: fmpq
+    row: dict[str, Any]
+    cells: int
+    value: arb
+    ends: tuple[Member, Member]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Ranged:
+    """What was followed, as far as it came: pieces next to each other, in order, and their certificates."""
+
+    pieces: tuple[Piece, ...]
+    documents: tuple[dict[str, Any], ...]
+
+    @property
+    def ends(self) -> tuple[fmpq, fmpq] | None:
+        """What is covered, or None."""
+        return (self.pieces[0].lower, self.pieces[-1].upper) if self.pieces else None
+
+
+def range_document(problem: Problem, parameter: str, pieces: Sequence[Piece]) -> dict[str, Any]:
+    """The certificate of pieces that lie next to each other."""
+    head = header(problem, "range", BITS, sum(p.cells for p in pieces), *value_bounds(pieces))
+    ends = {"parameter": parameter, "from": fraction(pieces[0].lower), "to": fraction(pieces[-1].upper)}
+    return head | ends | {"pieces": [p.row for p in pieces]}
+
+
+def value_bounds(pieces: Sequence[Piece]) -> tuple[str, str]:
+    """Decimals below and above the optimum of every piece, with room for a checker whose balls are wider."""
+    low, high = (min(rational(p.value.lower()) for p in pieces), max(rational(p.value.upper()) for p in pieces))
+    room = max(abs(low), abs(high)) / ROOM
+    return decimal(low - room, 9, -1), decimal(high + room, 9, 1)
+
+
+def fraction(x: fmpq) -> str:
+    """The number as text, a fraction when it is none of the integers."""
+    return str(int(x.p)) if x.q == 1 else f"{int(x.p)}/{int(x.q)}"
+
+
+# -- one piece ---------------------------------------------------------------------------------------
+
+
+def piece(track: Track, member: Member, a: fmpq, b: fmpq) -> Piece | None:
+    """The piece between two values, from a solution near it; None when a test fails."""
+    a, b = min(a, b), max(a, b)
+    with precision(BITS):
+        moving = track.moving(a, b)
+        curves = solution_curves(moving, track.pattern, moving.local_member(member))
+        found = None if curves is None else verified(track, moving, curves)
+        if curves is None or found is None:
+            return None
+        ends = tuple(moving.global_member(*at_number(curves, s, moving.size)) for s in (-1, 1))
+        return Piece(a, b, *found, ends)  # type: ignore[arg-type]
+
+
+def at_number(curves: Sequence[Sequence[fmpq]], s: int, m: int) -> tuple[list[fmpq], list[fmpq], list[fmpq]]:
+    """Dual, places and weights at s."""
+    values = [sum((c * s**k for k, c in enumerate(row)), fmpq(0)) for row in curves]
+    l = (len(curves) - m) // 2
+    return values[:m], values[m : m + l], values[m + l :]
+
+
+def solution_curves(moving: Moving, pattern: Pattern, start: Sequence[fmpq]) -> list[list[fmpq]] | None:
+    """Taylor polynomials of the solution about the middle: ``z <- z - F'(0)^-1 F(z(s))``, an order a step."""
+    free = free_places(pattern, moving.size)
+    found = corrected(moving, pattern, [[c] for c in start], free)
+    if found is None:
+        return None
+    curves, inverse = found
+    for count in (*range(2, DEGREE + 2), DEGREE + 1):
+        with terms(count):
+            F, _ = optimality_system(moving, pattern, curves, {}, arb(0))
+            steps = [(inverse * arb_mat([[number_of(f, k)] for f in F])).tolist() for k in range(count)]
+        for place, k in enumerate(free):
+            c = [*curves[k], *[fmpq(0)] * (count - len(curves[k]))]
+            curves[k] = [old - rational(steps[j][place][0]) for j, old in enumerate(c)]
+    return [shortened(c) for c in curves]
+
+
+def corrected(
+    moving: Moving, pattern: Pattern, z: list[list[fmpq]], free: Sequence[int]
+) -> tuple[list[list[fmpq]], arb_mat] | None:
+    """Newton at the middle of the piece; the solution and the inverse of the derivative there."""
+    last = None
+    for _ in range(8):
+        with terms(1):
+            F, J = optimality_system(moving, pattern, z, {}, arb(0))
+        inverse = inverse_of([[row_.get(k, arb(0)) for k in free] for row_ in J], 0)
+        if inverse is None:
+            return None
+        steps = (inverse * arb_mat([[number_of(f, 0).mid()] for f in F])).tolist()
+        size = max(float(abs(e[0]).mid()) for e in steps)
+        if not size < 1e3 or (last is not None and size > 10 * last + 1e-20):
+            return None
+        for place, k in enumerate(free):
+            z[k] = [z[k][0] - rational(steps[place][0])]
+        if size < 1e-28:
+            return z, inverse
+        last = size
+    return (z, inverse) if inverse is not None and size < 1e-15 else None
+
+
+def shortened(c: Sequence[fmpq]) -> list[fmpq]:
+    """Coefficients rounded to DIGITS digits of the largest."""
+    scale = max(abs(a) for a in c) or fmpq(1)
+    unit = fmpq(1)
+    while unit > scale / fmpq(10) ** DIGITS:
+        unit = unit / 10
+    return [unit * ((a / unit) + fmpq(1, 2)).floor() for a in c]
+
+
+def inverse_of(J: Sequence[Sequence[Any]], k: int) -> arb_mat | None:
+    """Midpoint inverse of coefficient k, or None when it is singular."""
+    middle = arb_mat([[number_of(e, k).mid() for e in row] for row in J])
+    try:
+        found = middle.inv()
+    except ZeroDivisionError:
+        return None
+    good = all(e.is_finite() for row in found.tolist() for e in row)
+    return arb_mat([[e.mid() for e in row] for row in found.tolist()]) if good else None
+
+
+def free_places(pattern: Pattern, m: int) -> list[int]:
+    """Unknowns among (y, places, weights): all but the places at ends."""
+    l = len(pattern)
+    return [k for k in range(m + 2 * l) if not m <= k < m + l or pattern[k - m][1] == "no"]
+
+
+def optimality_system(
+    moving: Moving, pattern: Pattern, z: Sequence[Sequence[Any]], radius: dict[int, arb], s: arb
+) -> tuple[list[Any], list[dict[int, Any]]]:
+    """F and its derivatives as series about s: ``f(v_i) - s_i``, ``w_i f'(v_i)``, ``sum w_i q(v_i) - A P``."""
+    m, l = moving.size, len(pattern)
+    here = [series_at(c, s) + radius.get(k, arb(0)) * EVERY for k, c in enumerate(z)]
+    y, w = here[:m], here[m + l :]
+    F: list[Any] = []
+    J: list[dict[int, Any]] = []
+    slopes: list[tuple[Any, dict[int, Any]]] = []
+    balance = [-t for t in moving.target(s)]
+    rows: list[dict[int, Any]] = [{} for _ in range(m)]
+    for i, (k, kind, sign) in enumerate(pattern):
+        q = moving.rows(k, here[m + i], arb(1), s, 2)
+        f = [dot(y, [row[d] for row in q]) for d in range(3)]
+        F.append(f[0] - sign)
+        J.append({j: q[j][0] for j in range(m)} | {m + i: f[1]})
+        if kind == "no":  # times the weight, as the checker has it: the gradient of sum w_i (f(v_i) - s_i)
+            row_ = {j: w[i] * q[j][1] for j in range(m)} | {m + i: 2 * w[i] * f[2], m + l + i: f[1]}
+            slopes.append((w[i] * f[1], row_))
+        for j in range(m):
+            balance[j] = balance[j] + w[i] * q[j][0]
+            rows[j] |= {m + i: w[i] * q[j][1], m + l + i: q[j][0]}
+    return [*F, *(f for f, _ in slopes), *balance], [*J, *(g for _, g in slopes), *rows]
+
+
+def dot(x: Sequence[Any], y: Sequence[Any]) -> Any:
+    value = x[0] * y[0]
+    for a, b in zip(x[1:], y[1:], strict=True):
+        value = value + a * b
+    return value
+
+
+def verified(track: Track, moving: Moving, curves: Sequence[Sequence[fmpq]]) -> tuple[dict[str, Any], int, arb] | None:
+    """Krawczyk's test for all s, signs, places and the bound off the contacts; the row, cells, the value."""
+    pattern, m = track.pattern, moving.size
+    z = [list(map(arb, c)) for c in curves]
+    free = free_places(pattern, m)
+    residual = enclosed_series(partial(system_values, moving, pattern, z, {}))
+    radius: dict[int, arb] = {}
+    for attempt in range(4):
+        move = image(moving, pattern, z, residual, radius, free)
+        if move is None or not all(bool(abs(d) < HUGE) for d in move.values()):
+            return None
+        if attempt and all(bool(abs(d) * MARGIN < radius[k]) for k, d in move.items()):
+            break
+        radius = {k: arb(exact(decimal(r, 3, 1))) for k, r in room_for(move, z, moving.slack).items()}
+    else:
+        return None
+    here = [at_all(c) + move.get(k, arb(0)) for k, c in enumerate(z)]
+    touches = touches_of(track, here, m)
+    if touches is None:
+        return None
+    spread = {k: abs(move[k]).upper() * moving.slack for k in range(m)}
+    cells = 0
+    for k, mine in enumerate(touches):
+        used = halved(mine, partial(expansion, moving, z[:m], spread, k))
+        if used is None:
+            return None
+        cells += used
+    return row(track, moving, curves, radius), cells, value_over(moving, z[:m], spread)
+
+
+def room_for(move: dict[int, arb], z: Sequence[Sequence[arb]], slack: int) -> dict[int, arb]:
+    """The radius of a box in which Newton's step has so many times the room that it needs."""
+    sizes = {k: size_of(z[k]) for k in move}
+    worst = max((abs(d).upper() / sizes[k] for k, d in move.items()), key=rational) + arb(10) ** (4 - DIGITS)
+    return {k: (slack * abs(d).upper() + SHARE * worst * sizes[k]).upper() for k, d in move.items()}
+
+
+def value_over(moving: Moving, y: Sequence[Sequence[arb]], spread: dict[int, arb]) -> arb:
+    """The optimum ``y . A P`` for all s."""
+
+    def product(s: arb) -> list[Any]:
+        return [dot([series_at(c, s) + spread[j] * EVERY for j, c in enumerate(y)], moving.target(s))]
+
+    return at_all(enclosed_series(product)[0])
+
+
+def size_of(c: Sequence[arb]) -> arb:
+    return max((abs(a) for a in c), key=lambda a: float(a.mid())) + arb(10) ** -20
+
+
+def system_values(
+    moving: Moving, pattern: Pattern, z: Sequence[Sequence[arb]], radius: dict[int, arb], s: arb
+) -> list[Any]:
+    return optimality_system(moving, pattern, z, radius, s)[0]
+
+
+def enclosed_series(function: Callable[[arb], list[Any]]) -> list[list[arb]]:
+    """Taylor coefficients about s = 0 of every entry; the last holds over all |s| <= 1."""
+    with terms(ORDER):
+        thin = function(arb(0))
+    with terms(ORDER + 1):
+        wide = function(EVERY)
+    return [[*(number_of(a, k) for k in range(ORDER)), number_of(b, ORDER)] for a, b in zip(thin, wide, strict=True)]
+
+
+def image(
+    moving: Moving,
+    pattern: Pattern,
+    z: Sequence[Sequence[arb]],
+    residual: Sequence[Sequence[arb]],
+    radius: dict[int, arb],
+    free: Sequence[int],
+) -> dict[int, arb] | None:
+    """Newton's step from the moving centre for all s, by the derivatives of the whole box; None when they look
+    singular. The checker does the same, with balls of the same order."""
+    n = len(free)
+
+    def entries(s: arb) -> list[Any]:
+        J = optimality_system(moving, pattern, z, radius, s)[1]
+        return [row_.get(k, arb(0)) for row_ in J for k in free]
+
+    J = arb_mat(n, n, [at_all(e) for e in enclosed_series(entries)])
+    try:
+        moved = J.solve(-arb_mat([[at_all(r)] for r in residual]), algorithm="precond").entries()
+    except ZeroDivisionError:
+        return None
+    return dict(zip(free, moved, strict=True)) if all(d.is_finite() for d in moved) else None
+
+
+def halved(touches: Sequence[Touch], expand: Expansion) -> int | None:
+    """Number of cells that prove ``|f| < 1`` off the contacts by halving [0, 1], or None; as the checker does it.
+
+    A cell nearer to the middle of a contact than its own length is tested on the interval about that
+    middle that covers it, by curvature or slope; any other by the size of f.
+    """
+    stack, used = [(fmpq(0), fmpq(1))], 0
+    marks = [(rational(t.at), t) for t in touches]
+    while stack:
+        a, b = stack.pop()
+        used += 1
+        if used > MOST_CELLS + CELLS_EACH * len(touches):
+            return None
+        if not passes(expand, cell_for(a, b, marks), arb(1), bool(touches)):
+            stack += [(a, (a + b) / 2), ((a + b) / 2, b)]
+    return used
+
+
+def cell_for(a: fmpq, b: fmpq, marks: Sequence[tuple[fmpq, Touch]]) -> Cell:
+    """The cell itself, or the interval about a contact next to it."""
+    middle = (a + b) / 2
+    at, touch = min(marks, key=lambda mark: abs(mark[0] - middle), default=(None, None))
+    if at is None or touch is None or not abs(at - middle) < b - a:
+        return Cell(a, b)
+    radius = max(at - a, b - at)
+    return Cell(at - radius, at + radius, touch)
+
+
+def at_all(c: Sequence[arb]) -> arb:
+    """A ball around the polynomial for all |s| <= 1."""
+    return c[0] + sum((a * EVERY for a in c[1:]), arb(0))
+
+
+def touches_of(track: Track, here: Sequence[arb], m: int) -> list[list[Touch]] | None:
+    """Contacts as balls over the piece, by panel; None when a sign or a place is not certain."""
+    l = len(track.pattern)
+    touches: list[list[Touch]] = [[] for _ in track.problem.panels]
+    for i, (k, kind, s) in enumerate(track.pattern):
+        v, w = here[m + i], here[m + l + i]
+        inside = kind != "no" or (bool(v > 0) and bool(v < 1))
+        if not inside or not bool(s * w > 0):
+            return None
+        touches[k].append(Touch(v, s, True, kind))
+    return touches
+
+
+def expansion(
+    moving: Moving, y: Sequence[Sequence[arb]], spread: dict[int, arb], k: int, cell: Cell, centre: fmpq, radius: fmpq
+) -> list[arb]:
+    """Taylor coefficients of f in w, place ``centre + radius w``, for all |s| <= 1; the last over the whole cell."""
+    order = order_for(moving.size)
+
+    def values(s: arb) -> list[Any]:
+        x = [series_at(c, s) + spread[j] * EVERY for j, c in enumerate(y)]
+        q = moving.rows(k, arb(centre), arb(radius), s, order - 1)
+        return [dot(x, [row_[d] for row_ in q]) for d in range(order)]
+
+    point = [at_all(c) for c in enclosed_series(values)]
+    with terms(1):
+        x = [at_all(c) + spread[j] * EVERY for j, c in enumerate(y)]
+        wide = moving.rows(k, interval(cell.lower, cell.upper), arb(radius), EVERY, order)
+        last = total(x, [number_of(row_[order], 0) for row_ in wide])
+    return [*point, last]
+
+
+def row(track: Track, moving: Moving, curves: Sequence[Sequence[fmpq]], radius: dict[int, arb]) -> dict[str, Any]:
+    """The piece as plain data. A place at an end is an unknown for the checker, too, with an equation of its own."""
+    m, l, smallest = moving.size, len(track.pattern), min(radius.values(), key=rational)
+    text = lambda c: [decimal(a, 60) for a in c]  # noqa: E731
+    contacts = [
+        {"panel": k, "at": text(curves[m + i]) if kind == "no" else [place_of(kind)], "weight": text(curves[m + l + i])}
+        for i, (k, kind, _) in enumerate(track.pattern)
+    ]
+    return {
+        "from": fraction(moving.middle - moving.half),
+        "to": fraction(moving.middle + moving.half),
+        "basis": [[fraction(moving.basis[i, j]) for j in range(m)] for i in range(m)],
+        "dual": [text(c) for c in curves[:m]],
+        "contacts": contacts,
+        "radius": [decimal(rational(radius.get(k, smallest)), 12, 1) for k in range(m + 2 * l)],
+    }
+
+
+# How far a pattern of contacts is followed: pieces of a range next to each other, as long as they pass.
+
+
+MOST_PIECES = 200
+#: Halvings of a step before the march gives up.
+MOST_FAILURES = 12
+#: Nearer to the end of a regime than this part of it, a sliver takes over.
+NEAREST = fmpq(1, 10**16)
+
+
+def never() -> bool:
+    """No limit is met."""
+    return False
+
+
+def always(piece: Piece) -> bool:
+    """Every piece is accepted."""
+    return True
+
+
+Accepts = Callable[[Piece], bool]
+
+
+def follow(
+    track: Track, lower: fmpq, upper: fmpq, enough: Callable[[], bool] = never, accepts: Accepts = always
+) -> list[Piece]:
+    """Pieces from the middle towards both ends, each as long as its tests allow and accepted, until it is enough."""
+    middle = simple((lower + upper) / 2, upper - lower)
+    member = track.first(middle)
+    if member is None:
+        return []
+    up = march(track, member, middle, upper, MOST_FAILURES, enough, accepts)
+    down = march(track, up[0].ends[0] if up else member, middle, lower, MOST_FAILURES, enough, accepts)
+    return [*reversed(down), *up]
+
+
+def march(
+    track: Track,
+    member: Member,
+    at: fmpq,
+    last: fmpq,
+    failures: int = MOST_FAILURES,
+    enough: Callable[[], bool] = never,
+    accepts: Accepts = always,
+) -> list[Piece]:
+    """Pieces from ``at`` to ``last``, upwards or downwards; given up after ``failures`` halvings of one step, and when
+    it is enough.
+
+    accepts : what else a piece has to pass
+
+    Towards the end of a regime a weight, the room of a contact or the room below the bound shrinks to nothing;
+    a piece may then be about as long as the root of what is left behind it, so steps square their distance.
+    """
+    pieces: list[Piece] = []
+    span = abs(last - at)
+    step, failed = span / 3, 0
+    while at != last and len(pieces) < MOST_PIECES and failed < failures and not enough():
+        made = None
+        for end in ends_to_try(at, last, step, span):
+            made = piece(track, member, at, end)
+            if made is not None and accepts(made):
+                break
+            made = None
+        if made is None:
+            if abs(last - at) < span * NEAREST:
+                break
+            step, failed = step / 2, failed + 1
+            continue
+        pieces.append(made)
+        step = step * (fmpq(5, 4) if failed == 0 else 1)
+        failed = 0
+        at, member = end, made.ends[1 if end > at else 0]
+    return pieces
+
+
+def ends_to_try(at: fmpq, last: fmpq, step: fmpq, span: fmpq) -> list[fmpq]:
+    """The next end; near the last one that first, then one with the distance to it raised to the power 3/2."""
+    rest, side = abs(last - at), 1 if last > at else -1
+    if step * fmpq(9, 8) < rest:
+        return [simple(at + side * step, step)]
+    near = rest * rational(arb(rest / span).sqrt()) / 2
+    if rest < span * NEAREST:
+        return [last]
+    return [last, simple(last - side * near, near), simple(at + side * rest / 2, rest)]
+
+
+def simple(x: fmpq, step: fmpq) -> fmpq:
+    """A short decimal near x, well within the step."""
+    unit = fmpq(1)
+    while unit > step / 16:
+        unit = unit / 10
+    return unit * (x / unit).floor()

@@ -1,0 +1,154 @@
+"""The guaranteed problem on a grid, written down for users who want a solver of their own.
+
+Weights are split, ``Phi = a - b`` with ``a, b >= 0``, one pair for each instant and measurement:
+
+    lp     minimise  sum sigma (a + b)
+    qp     minimise  sum (a - b)^2 sigma^2 / (2 spacing)          (white noise: least squares, the Kalman filter)
+    mixed  minimise  sum sigma (a + b) + mixture * sum (a - b)^2 sigma^2 / (2 spacing)
+
+subject to ``sum H (a - b) = P``. Files hold decimal numbers with 17 digits and nothing else.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navsym.core.errors import DomainError
+from navsym.guaranteed.baselines import panel_numbers
+from navsym.guaranteed.problem import GuaranteedProblem
+
+FORMATS = ("casadi", "cvxpy", "mps")
+KINDS = ("lp", "qp", "mixed")
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Grid:
+    """Regressors (m, n) at n instants, functional (m,), bounds (n,), spacing (n,), times (n,)."""
+
+    regressors: Array
+    functional: Array
+    bounds: Array
+    spacing: Array
+    times: Array
+
+
+def grid_of(problem: GuaranteedProblem, count: int) -> Grid:
+    """Equidistant instants with trapezoidal spacing, ``count`` for each measurement and stretch."""
+    if not 2 <= count <= 100_000:
+        raise DomainError(f"grid: expected 2 to 100000 instants; got {count}; choose a number between")
+    v = np.linspace(0.0, 1.0, count)
+    share = np.full(count, 1.0 / (count - 1))
+    share[[0, -1]] /= 2
+    panels = problem.exact().panels
+    parts = [panel_numbers(panel, v) for panel in panels]
+    starts = [float(panel.ends.numbers(panel.values)[0]) for panel in panels]
+    return Grid(
+        np.hstack([H for H, _, _ in parts]),
+        np.array([float(p) for p in problem.functional]),
+        np.concatenate([np.full(count, sigma) for _, _, sigma in parts]),
+        np.concatenate([length * share for _, length, _ in parts]),
+        np.concatenate([start + length * v for start, (_, length, _) in zip(starts, parts, strict=True)]),
+    )
+
+
+def formulate(problem: GuaranteedProblem, to: str, *, kind: str = "lp", count: int = 201, mixture: float = 1.0) -> str:
+    """Text of a file: a Python script for casadi or cvxpy, or free-form MPS (QUADOBJ for qp and mixed).
+
+    Raises DomainError for an unknown format or kind, a grid of fewer than two instants, or a mixture
+    that is not positive.
+    """
+    if to not in FORMATS or kind not in KINDS:
+        raise DomainError(
+            f"expected one of {', '.join(FORMATS)} and one of {', '.join(KINDS)}; got {to!r} and {kind!r}; "
+            "name one of each"
+        )
+    if not np.isfinite(mixture) or mixture <= 0:
+        raise DomainError(f"mixture: expected a positive number; got {mixture}; choose one")
+    grid = grid_of(problem, count)
+    linear = np.zeros_like(grid.bounds) if kind == "qp" else grid.bounds
+    factor = {"lp": 0.0, "qp": 1.0, "mixed": mixture}[kind]
+    quadratic = factor * grid.bounds**2 / grid.spacing
+    if to == "mps":
+        return mps(grid, linear, quadratic)
+    return script(grid, linear, quadratic, to)
+
+
+def numbers(values: Array) -> str:
+    """A row of numbers as a JSON list whose decimals give the same doubles when read."""
+    return json.dumps([float(x) for x in values])
+
+
+def mps(grid: Grid, linear: Array, quadratic: Array) -> str:
+    """Free-form MPS; columns a0, b0, a1, b1, …, rows u0, u1, … for the unknowns."""
+    m, n = grid.regressors.shape
+    lines = ["NAME guaranteed", "ROWS", " N cost", *(f" E u{j}" for j in range(m)), "COLUMNS"]
+    for i in range(n):
+        for name, sign in (("a", 1.0), ("b", -1.0)):
+            if linear[i]:
+                lines.append(f" {name}{i} cost {float(linear[i])!r}")
+            lines += [f" {name}{i} u{j} {float(sign * grid.regressors[j, i])!r}" for j in range(m)]
+    lines += ["RHS", *(f" RHS u{j} {float(p)!r}" for j, p in enumerate(grid.functional))]
+    if quadratic.any():
+        lines.append("QUADOBJ")
+        for i, q in enumerate(quadratic):
+            value = float(q)
+            lines += [f" a{i} a{i} {value!r}", f" a{i} b{i} {-value!r}", f" b{i} b{i} {value!r}"]
+    return "\n".join([*lines, "ENDATA", ""])
+
+
+HEAD = '''"""Guaranteed estimation on a grid of instants: weights Phi = a - b, a >= 0, b >= 0, sum H Phi = P."""
+import numpy as np
+
+times = np.array({times})
+H = np.array({rows})
+P = np.array({functional})
+linear = np.array({linear})
+quadratic = np.array({quadratic})
+'''
+
+CVXPY = """import cvxpy as cp
+
+a, b = cp.Variable(len(times), nonneg=True), cp.Variable(len(times), nonneg=True)
+cost = linear @ (a + b) + cp.sum(cp.multiply(quadratic / 2, cp.square(a - b)))
+problem = cp.Problem(cp.Minimize(cost), [H @ (a - b) == P])
+
+if __name__ == "__main__":
+    value = problem.solve(solver=cp.CLARABEL if quadratic.any() else cp.HIGHS)
+    found = zip(times.tolist(), (a.value - b.value).tolist())
+    print(float(value), [(t, w) for t, w in found if abs(w) > 1e-6])
+"""
+
+CASADI = """import casadi as ca
+
+n = len(times)
+Q = ca.diag(ca.DM(quadratic))
+h = ca.sparsify(ca.blockcat([[Q, -Q], [-Q, Q]]))
+A = ca.DM(np.hstack([H, -H]))
+solver = ca.conic("grid", "highs", {"h": h.sparsity(), "a": A.sparsity()}, {"highs": {"output_flag": False}})
+
+if __name__ == "__main__":
+    answer = solver(h=h, g=np.r_[linear, linear], a=A, lba=P, uba=P, lbx=0)
+    x = np.array(answer["x"]).ravel()
+    found = zip(times.tolist(), (x[:n] - x[n:]).tolist())
+    print(float(answer["cost"]), [(t, w) for t, w in found if abs(w) > 1e-6])
+"""
+
+
+def script(grid: Grid, linear: Array, quadratic: Array, to: str) -> str:
+    """Python source that states the problem on the grid for cvxpy or casadi and solves it.
+
+    linear, quadratic : (N,) of the cost ``linear . (a + b) + quadratic . (a - b)^2 / 2``
+    """
+    head = HEAD.format(
+        times=numbers(grid.times),
+        rows="[" + ",\n".join(numbers(row) for row in grid.regressors) + "]",
+        functional=numbers(grid.functional),
+        linear=numbers(linear),
+        quadratic=numbers(quadratic),
+    )
+    return head + (CVXPY if to == "cvxpy" else CASADI)

@@ -1,0 +1,325 @@
+"""Where one regime ends and the next begins: located from closed forms, or by Newton and two proofs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+import mpmath
+import numpy as np
+import sympy as sp
+from flint import arb, arb_mat, fmpq
+
+from navsym.claims import PROVED, Equation
+from navsym.core.balls import enclose, precision
+from navsym.guaranteed.certificate.basis import as_fraction, make_basis
+from navsym.guaranteed.certificate.enclosure import Problem, rational, total
+from navsym.guaranteed.certificate.fixed import peak, touch
+from navsym.guaranteed.certificate.polish import Polished, polish
+from navsym.guaranteed.decimals import decimal, lower_end, upper_end
+from navsym.guaranteed.phases import walk
+from navsym.guaranteed.phases.closed_forms import BITS, GOAL, Closed
+from navsym.guaranteed.phases.family import Family, U
+from navsym.guaranteed.phases.patterns import Pattern, Span, pattern_of, sample
+from navsym.guaranteed.phases.recognise import constant, number
+from navsym.guaranteed.phases.walk import walked
+from navsym.guaranteed.search.exchange import Contacts
+from navsym.prove.ladder import decide
+
+DIGITS = 34
+#: A root belongs to a change that the scan saw this near, relative.
+REACH = 2e-3
+
+
+@dataclass(frozen=True, slots=True)
+class Boundary:
+    """A length at which the pattern changes.
+
+    at           : closed form, or None
+    lower, upper : decimal strings that enclose it
+    why          : what happens there
+    proved       : True when the event in the closed forms, or the change of pattern inside the enclosure, is proved
+    """
+
+    at: sp.Expr | None
+    lower: str
+    upper: str
+    why: str
+    proved: bool
+
+
+def boundary(family: Family, left: Span, right: Span, before: Closed | None, after: Closed | None) -> Boundary:
+    """The change from one span to the next, as exactly as it can be had."""
+    guess = float(left.upper)
+    if before is not None and after is not None and before.dual == after.dual:
+        # Both are optimal on either side for a while: where the search went from one to the other says nothing.
+        reach = min(guess - float(left.lower), float(right.upper) - guess)
+    else:
+        # A guess near zero has no size of its own, and patterns next to each other are told apart only so far.
+        reach = REACH * max(abs(guess), float(right.upper - left.lower))
+    for expression, why in events(family, left, before, right, after):
+        found = exact_root(expression, family.parameter, guess, reach)
+        if found is not None:
+            with precision(200):
+                ball = enclose(found, bits=200)
+                return Boundary(found, lower_end(ball, DIGITS), upper_end(ball, DIGITS), why, True)
+    return implicit(family, left, right)
+
+
+def events(
+    family: Family, left: Span, before: Closed | None, right: Span, after: Closed | None
+) -> Iterator[tuple[sp.Expr, str]]:
+    """Expressions that vanish at the change, with words: a weight, the room of an instant, the room below the bound."""
+    yield from rooms_below(family, before, after, right)
+    yield from rooms_below(family, after, before, left)
+    for closed, span in ((before, left), (after, right)):
+        if closed is None:
+            continue
+        for i, w in enumerate(closed.weights):
+            if w.free_symbols:
+                yield w, f"the weight at {family.time(closed.places[i])} vanishes"
+        for place, (k, kind, _) in zip(closed.places, span.pattern, strict=True):
+            if kind == "no":
+                start, stop = family.panels[k]
+                why = f"the instant {family.time(place)} reaches an end of {family.stretch_name}"
+                yield stop - place, why
+                yield place - start, why
+
+
+def rooms_below(
+    family: Family, closed: Closed | None, other: Closed | None, span: Span
+) -> Iterator[tuple[sp.Expr, str]]:
+    """What one dual polynomial leaves below the bound at the instants of the other regime, as far as those are known
+    exactly: ends of the interval are without a closed form of the other."""
+    if closed is None:
+        return
+    for i, (k, kind, sign) in enumerate(span.pattern):
+        if other is None and kind == "no":
+            continue
+        u = other.places[i] if other is not None else family.panels[k][("from", "to").index(kind)]
+        if any(j == k and v == u for j, v in zip(closed.panels, closed.places, strict=True)):
+            continue
+        f = sum((x * h.subs(U, u) for x, h in zip(closed.dual, family.rows[k], strict=True)), sp.S.Zero)
+        yield family.sigma[k] - sign * f, f"the dual polynomial reaches its bound at {family.time(u)}"
+
+
+def exact_root(expression: sp.Expr, T: sp.Symbol, guess: float, reach: float) -> sp.Expr | None:
+    """A recognised root within reach of the guess, proved to be one: zero is the numerator, and not the denominator."""
+    top, bottom = sp.fraction(sp.together(expression))
+    if T not in top.free_symbols:
+        return None
+
+    def function(t: mpmath.mpf) -> mpmath.mpf:
+        return mpmath.mpf(str(sp.N(top.subs(T, sp.Float(mpmath.nstr(t, 60), 60)), 60)))
+
+    with mpmath.workdps(60):
+        try:
+            root = mpmath.findroot(function, mpmath.mpf(guess), tol=1e-50)
+            near = abs(root - guess) < reach
+        except (ValueError, ZeroDivisionError):
+            return None
+        found = constant(sp.Rational(mpmath.nstr(root, 55))) if near else None
+    if found is None or decide(Equation(top.subs(T, found), sp.S.Zero)).status is not PROVED:
+        return None
+    return None if enclose(bottom.subs(T, found), bits=200).contains(0) else found
+
+
+# -- without closed forms ---------------------------------------------------------------------------
+
+
+def forced(family: Family, T: sp.Rational, pattern: Pattern, near: Contacts, near_T: sp.Rational) -> Polished:
+    """The solution of the optimality system of a pattern at T, started from contacts at a nearby length."""
+    old, new = make_basis(family.exact(near_T)), make_basis(family.exact(T))
+    with precision(BITS):
+        x = old.transform.transpose() * arb_mat([[arb(float(c))] for c in near.dual])
+        y = new.transform.transpose().solve(x)
+    dual = np.array([float(y[i, 0].mid()) for i in range(near.dual.size)])
+    start = Contacts(near.panel, near.u, near.inner, near.sign, near.weights * (old.scale / new.scale), dual, 0.0)
+    return polish(family.exact(T).panels, new, start, BITS, GOAL)
+
+
+def anchors(family: Family, span: Span, edge: Fraction, side: int) -> Iterator[tuple[Contacts, sp.Rational]]:
+    """Contacts of the span's pattern inside it, farther and farther from the edge."""
+    width = span.upper - span.lower
+    for share in (Fraction(1, 500), Fraction(1, 100), Fraction(1, 20), Fraction(1, 5)):
+        T = (edge + side * share * width).limit_denominator(10**7)
+        _, contacts = sample(family, T, span.pattern)
+        if pattern_of(contacts) == span.pattern:
+            yield contacts, sp.Rational(T.numerator, T.denominator)
+
+
+Others = Sequence[tuple[int, float, int]]
+#: What closes: ("weight", contact), ("start" or "end", contact), ("bound", place among those of the regime beyond).
+Room = tuple[str, int]
+
+
+def rooms(found: Polished, problem: Problem, others: Others) -> dict[Room, arb]:
+    """Quantities that are positive inside a regime: sizes of the weights, distances to the ends, rooms below the
+    bound near those contacts of the regime beyond (panel, u, sign) that are none of this one."""
+    done: dict[Room, arb] = {}
+    for i, (s, w, v) in enumerate(zip(found.sign, found.weights, found.v, strict=True)):
+        done["weight", i] = s * w
+        if found.inner[i]:
+            done["start", i], done["end", i] = v, 1 - v
+    for i, (k, u, s) in enumerate(others):
+        place, panel = as_fraction(u), problem.panels[k]
+        if all(j != k or bool(abs(v - arb(place)) > 1e-3) for j, v in zip(found.panel, found.v, strict=True)):
+            f = total(found.dual, panel.rows(arb(peak(panel, found.dual, place))))
+            done["bound", i] = panel.bound() - s * f
+    return {room: size for room, size in done.items() if size.is_finite()}
+
+
+def in_words(family: Family, room: Room, others: Others) -> str:
+    """What happens where a room closes; others are the contacts of the regime beyond."""
+    kind, i = room
+    if kind == "weight":
+        return f"the weight of contact {i + 1} vanishes"
+    if kind == "bound":
+        measurement = others[i][0] % family.many + 1
+        return f"the dual polynomial reaches its bound at another instant of measurement {measurement}"
+    return f"contact {i + 1} reaches an end of {family.stretch_name}"
+
+
+def implicit(family: Family, left: Span, right: Span) -> Boundary:
+    """The length at which a room of one of the two patterns closes; enclosed by two exact-contact proofs."""
+    edge = left.upper
+    starts = [next(anchors(family, span, edge, side), None) for span, side in ((left, -1), (right, 1))]
+    guesses = []
+    for span, start, beyond in ((left, starts[0], starts[1]), (right, starts[1], starts[0])):
+        if start is None:
+            continue
+        c = None if beyond is None else beyond[0]
+        others = [] if c is None else list(zip(c.panel.tolist(), c.u.tolist(), c.sign.tolist(), strict=True))
+        found = closing(family, span.pattern, start, edge, others)
+        if found is not None:
+            guesses.append(enclosed(family, left, right, *found))
+            if guesses[-1].proved:
+                return guesses[-1]
+    return next(iter(guesses), nowhere(edge))
+
+
+def nowhere(edge: Fraction) -> Boundary:
+    """A change of which no more is known than that the search saw it at the edge."""
+    text = decimal(fmpq(edge.numerator, edge.denominator), 8)
+    return Boundary(None, text, text, "the pattern of instants changes; not located further", False)
+
+
+def closing(
+    family: Family, pattern: Pattern, start: tuple[Contacts, sp.Rational], edge: Fraction, others: Others
+) -> tuple[sp.Rational, str] | None:
+    """Where the room that closes next to the edge is zero, and what closes."""
+    contacts, T0 = start
+
+    def rooms_at(T: sp.Rational) -> dict[Room, arb]:
+        with precision(BITS):
+            return rooms(forced(family, T, pattern, contacts, T0), family.exact(T), others)
+
+    target = sp.Rational(edge.numerator, edge.denominator)
+    middle = (T0 + target) / 2
+    first, second = rooms_at(T0), rooms_at(middle)
+    room = nearest_to_close(first, second, float(T0), float(target))
+    if room is None:
+        return None
+
+    def size(T: sp.Rational) -> sp.Rational | None:
+        found = rooms_at(T).get(room)
+        return None if found is None else number(found.mid())
+
+    ends = (T0, number(first[room].mid())), (middle, number(second[room].mid()))
+    root = secant(size, *ends, target, abs(T0 - target) * 3 + sp.Rational(1, 1000))
+    return None if root is None else (root, in_words(family, room, others))
+
+
+def nearest_to_close(first: dict[Room, arb], second: dict[Room, arb], start: float, edge: float) -> Room | None:
+    """The room that, extended from its sizes at the start and half-way to the edge, closes nearest to the edge."""
+    misses: dict[Room, float] = {}
+    for room in first.keys() & second.keys():
+        drop = float((first[room] - second[room]).mid())
+        if drop != 0.0:
+            misses[room] = abs(start + float(first[room].mid()) / drop * (edge - start) / 2 - edge)
+    return min(sorted(misses), key=lambda room: misses[room], default=None)
+
+
+Point = tuple[sp.Rational, sp.Rational]
+
+
+def secant(
+    size: Callable[[sp.Rational], sp.Rational | None], one: Point, two: Point, target: sp.Rational, reach: sp.Rational
+) -> sp.Rational | None:
+    """A root by secant steps, within reach of the target; None when they run away."""
+    (p, fp), (q, fq) = one, two
+    for _ in range(14):
+        if fq == fp or abs(fq) < sp.Rational(1, 10**45):
+            break
+        step = q - fq * (q - p) / (fq - fp)
+        p, fp, q = q, fq, sp.Rational(round(step * 10**60), 10**60)
+        found = size(q) if abs(q - target) <= reach else None
+        if found is None:
+            return None
+        fq = found
+    return q
+
+
+def enclosed(family: Family, left: Span, right: Span, root: sp.Rational, why: str) -> Boundary:
+    """Exact contacts of the left pattern just below and of the right pattern just above the root."""
+    for proof, sizes in ((proves, (32, 24, 16, 10, 6)), (proves_walking, (32, 16))):
+        for places in sizes:
+            delta = abs(root or sp.Integer(1)) / sp.Integer(10) ** places
+            below, above = (
+                sp.Rational(round(v * 10 ** (places + 4)), 10 ** (places + 4)) for v in (root - delta, root + delta)
+            )
+            if proof(family, left, below, -1, root) and proof(family, right, above, 1, root):
+                return Boundary(None, exact_decimal(below), exact_decimal(above), why, True)
+    text = decimal(fmpq(int(root.p), int(root.q)), 20)
+    return Boundary(None, text, text, why + "; not enclosed by proofs", False)
+
+
+def exact_decimal(x: sp.Rational) -> str:
+    """A decimal string of a rational, to 60 digits."""
+    return decimal(fmpq(int(x.p), int(x.q)), 60)
+
+
+def proves(family: Family, span: Span, T: sp.Rational, side: int, root: sp.Rational) -> bool:
+    """True when exact contacts of the span's pattern are proved optimal at T."""
+    edge = span.upper if side < 0 else span.lower
+    problem = family.exact(T)
+    basis = make_basis(problem)
+    for start in anchors(family, span, edge, side):
+        found = forced(family, T, span.pattern, *start)
+        regular = found.residual < 1e-45 and not doubled(problem, found)
+        if regular and touch(problem, basis, found, 50, BITS) is not None:
+            return True
+    return False
+
+
+def doubled(problem: Problem, found: Polished) -> bool:
+    """True when a contact sits where two stretches meet: the end of the other touches as well, and no strict bound
+    holds there."""
+    many = 1 + max(panel.measurement for panel in problem.panels)
+    contacts = {(int(k), rational(at)) for k, at in zip(found.panel, found.v, strict=True)}
+    twins = {(k - many, 1) for k, v in contacts if v == 0} | {(k + many, 0) for k, v in contacts if v == 1}
+    with precision(BITS):
+        for k, v in twins - contacts:
+            if 0 <= k < len(problem.panels):
+                panel = problem.panels[k]
+                room = panel.bound() - abs(total(found.dual, panel.rows(arb(v))))
+                if bool(abs(room) < arb(10) ** -40 * panel.bound()):
+                    return True
+    return False
+
+
+def proves_walking(family: Family, span: Span, T: sp.Rational, side: int, root: sp.Rational) -> bool:
+    """The same where the pattern is singular at the root itself: it is followed there with many digits."""
+    if proves(family, span, T, side, root):
+        return True
+    edge = span.upper if side < 0 else span.lower
+    for contacts, begin in anchors(family, span, edge, side):
+        found = walked(family, forced(family, begin, span.pattern, contacts, begin), begin, root, T)
+        problem = family.exact(T)
+        if found is not None and not doubled(problem, found):
+            return touch(problem, make_basis(problem), found, walk.DIGITS, walk.BITS) is not None
+    return False
+
+
+__all__ = ["Boundary", "boundary", "rational"]

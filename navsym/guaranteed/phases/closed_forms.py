@@ -1,0 +1,517 @@
+"""Closed forms of a regime: found from samples with many digits, proved as identities.
+
+Places are recognised (:mod:`navsym.guaranteed.phases.recognise`), the dual and the weights then
+solve linear systems with exact entries, and the pair goes to the ladder of proof as one
+:class:`~navsym.claims.Optimum`. Recognition only proposes.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+import numpy as np
+import sympy as sp
+
+from navsym.claims import OPEN, PROVED, Equation, Optimum, Verdict
+from navsym.core.balls import enclose, exact_rational
+from navsym.core.sandbox import Exhausted, run_limited
+from navsym.guaranteed.certificate.fixed import attempts
+from navsym.guaranteed.certificate.polish import Polished, polish
+from navsym.guaranteed.phases.budget import LEAST, Limit
+from navsym.guaranteed.phases.family import Family, U
+from navsym.guaranteed.phases.patterns import Pattern, Span, pattern_of, sample
+from navsym.guaranteed.phases.recognise import middle_of_constant, number, place_or_share
+from navsym.prove.equations import combine, decide_equation
+from navsym.prove.ladder import DEFAULT_MEGABYTES, decide_within
+from navsym.prove.optimum import SHARE, constraints, equal_values, feasibility, instants
+from navsym.prove.signs.products import as_product
+
+# Closed forms for monomials on [0, T]: shares of the interval, powers of T, and Lagrange's weights.
+#
+# With contacts ``c_i T`` and ``omega(t) = prod (t - c_i)``, a rational polynomial, the weights that pick
+# coefficient k of every polynomial of the span are
+#
+#     w_i = sum_{j > k} omega_j c_i**(j-k-1) / omega'(c_i) / T**k,
+#
+# a polynomial in c_i with rational coefficients, whatever algebraic number c_i is.
+
+
+NEAR = sp.Rational(1, 10**35)
+
+
+def is_monomial(family: Family) -> bool:
+    """One measurement with the regressors 1, u, u**2, …."""
+    return len(family.rows) == 1 and family.rows[0] == tuple(U**k for k in range(len(family.rows[0])))
+
+
+def rational_near(x: sp.Expr, size: int = 10**7) -> sp.Rational | None:
+    """The rational with a small denominator within 1e-35 of a number with many digits."""
+    value = sp.Rational(str(sp.N(x, 70)))
+    best = value.limit_denominator(size)
+    return best if abs(best - value) < NEAR * max(1, abs(value)) else None
+
+
+def monomial_weights(family: Family, places: Sequence[sp.Expr]) -> tuple[sp.Expr, ...] | None:
+    """Weights of contacts ``c_i T``, as many as unknowns; None when omega is not rational."""
+    T, m = family.parameter, len(family.functional)
+    shares = [sp.expand(p / T) for p in places]
+    if len(places) != m or any(c.free_symbols for c in shares):
+        return None
+    omega = recognised_product(shares)
+    if omega is None:
+        return None
+    slope = [k * c for k, c in enumerate(omega)][1:]
+    weights = []
+    for c in shares:
+        below = rational_near(sum(a * sp.N(c, 90) ** k for k, a in enumerate(slope)))
+        if below is None:
+            return None
+        terms = [
+            p * sum((omega[j] * c ** (j - k - 1) for j in range(k + 1, m + 1)), sp.S.Zero) / below / T**k
+            for k, p in enumerate(family.functional)
+            if p != 0
+        ]
+        weights.append(sp.expand(sum(terms, sp.S.Zero)))
+    return tuple(weights)
+
+
+def recognised_product(shares: Sequence[sp.Expr]) -> list[sp.Rational] | None:
+    """Coefficients of ``prod (t - c_i)``, lowest first, when they are recognised as rational."""
+    c = [sp.Integer(1)]
+    for share in shares:
+        value = sp.Rational(str(sp.N(share, 90)))
+        shifted = [sp.S.Zero, *c]
+        c = [a - value * b for a, b in zip(shifted, [*c, sp.S.Zero], strict=True)]
+    found = [rational_near(a) for a in c]
+    return None if any(a is None for a in found) else [a for a in found if a is not None]
+
+
+def power_law_dual(
+    family: Family, duals: Sequence[Sequence[sp.Rational]], lengths: Sequence[sp.Rational]
+) -> tuple[sp.Expr, ...] | None:
+    """Dual ``x_k = d_k / T**k`` with rational d_k, agreed on by all samples."""
+    T, found = family.parameter, []
+    for k in range(len(family.functional)):
+        values = [rational_near(x[k] * t**k) for x, t in zip(duals, lengths, strict=True)]
+        if values[0] is None or any(v != values[0] for v in values):
+            return None
+        found.append(values[0] / T**k)
+    return tuple(found)
+
+
+BITS = 320
+GOAL = 1e-60
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Closed:
+    """Places in u, weights, dual and value as expressions in T, and the verdict on the pair."""
+
+    panels: tuple[int, ...]
+    places: tuple[sp.Expr, ...]
+    weights: tuple[sp.Expr, ...]
+    dual: tuple[sp.Expr, ...]
+    value: sp.Expr
+    verdict: Verdict
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Sample:
+    """One member of the family with many digits."""
+
+    T: sp.Rational
+    places: tuple[sp.Rational, ...]
+    polished: Polished
+
+
+def samples_of(family: Family, span: Span, shares: Sequence[str] = ("0.23", "0.41", "0.59", "0.83")) -> list[Sample]:
+    """Members of a span whose pattern is that of the span."""
+    found = []
+    for share in shares:
+        T = (span.lower + (span.upper - span.lower) * Fraction(share)).limit_denominator(10**6)
+        one = refined(family, T, span.pattern)
+        if one is not None:
+            found.append(one)
+    return found
+
+
+def refined(family: Family, T: Fraction, pattern: Pattern | None) -> Sample | None:
+    """The member of length T with about 90 digits, or None when its pattern is another one."""
+    basis, contacts = sample(family, T, pattern)
+    if pattern is not None and pattern_of(contacts) != pattern:
+        return None
+    value = sp.Rational(T.numerator, T.denominator)
+    done = polish(family.exact(value).panels, basis, contacts, BITS, GOAL)
+    places = []
+    for k, v in zip(done.panel, done.v, strict=True):
+        start, end = (sp.Rational(str(sp.N(e, 95))) if not e.is_Rational else e for e in family.ends(value, k))
+        places.append(start + (end - start) * number(v))
+    return Sample(value, tuple(places), done)
+
+
+# -- exact linear algebra on the contacts ---------------------------------------------------------
+
+
+def candidates(family: Family, span: Span) -> list[Closed]:
+    """Closed forms of a span as guesses, not yet proved; the dual with most zeros first."""
+    found = samples_of(family, span)
+    if len(found) < 3:
+        return []
+    lengths = [s.T for s in found]
+    columns = [[s.places[i] for s in found] for i in range(len(span.pattern))]
+    panels = tuple(k for k, _, _ in span.pattern)
+    places = [place_or_share(family, k, c, lengths) for k, c in zip(panels, columns, strict=True)]
+    places = [middle_of_constant(family, k) if p is None else p for k, p in zip(panels, places, strict=True)]
+    if any(p is None for p in places):
+        return []
+    exact = tuple(p for p in places if p is not None)
+    if is_monomial(family) and family.growing:
+        quick = monomial_guess(family, span, exact, found)
+        if quick is not None:
+            return [quick]
+    weights = weights_of(family, span, exact, found[0])
+    if weights is None:
+        return []
+    guesses = []
+    moving = itertools.islice(duals(family, span, exact, found), 3)
+    for dual in (*moving, *fixed_duals(family, span, found)):
+        value = tidy(sum((x * p for x, p in zip(dual, family.functional, strict=True)), sp.S.Zero))
+        guesses.append(Closed(panels, exact, weights, dual, value, Verdict(OPEN, "none")))
+    return guesses
+
+
+def monomial_guess(family: Family, span: Span, places: tuple[sp.Expr, ...], found: Sequence[Sample]) -> Closed | None:
+    """A closed form for monomials on [0, T], not yet proved: weights from the places, the dual by powers of T.
+
+    places : closed forms of the contacts. None when the samples follow no power law or the weights are not found
+    """
+    duals_ = [[number(x) for x in s.polished.dual] for s in found]
+    dual = power_law_dual(family, duals_, [s.T for s in found])
+    weights = monomial_weights(family, places)
+    if dual is None or weights is None:
+        return None
+    value = sum((x * p for x, p in zip(dual, family.functional, strict=True)), sp.S.Zero)
+    return Closed(tuple(k for k, _, _ in span.pattern), places, weights, dual, value, Verdict(OPEN, "none"))
+
+
+def prove(
+    family: Family, guesses: Sequence[Closed], lower: sp.Expr, upper: sp.Expr, seconds: float = 60.0
+) -> Closed | None:
+    """The first guess that the ladder proves or certifies on the whole of (lower, upper); else the first.
+
+    seconds : for all guesses together; each may take its share of what is left
+    What had to be taken for granted on the way (a divisor that may vanish inside the range) leaves a guess OPEN.
+    """
+    best: Closed | None = None
+    limit = Limit.of(seconds)
+    for k, guess in enumerate(guesses):
+        mine = limit.share(1 / (len(guesses) - k)).left()
+        if mine < LEAST:
+            break
+        verdict = proved(family, guess, lower, upper, mine)
+        if verdict.assumptions:
+            verdict = Verdict(OPEN, "none", evidence=f"not shown: {', '.join(verdict.assumptions)}")
+        done = replace(guess, verdict=verdict)
+        if verdict.status.holds:
+            return done
+        best = best or done
+    return best
+
+
+def duals(
+    family: Family, span: Span, places: Sequence[sp.Expr], found: Sequence[Sample]
+) -> Iterator[tuple[sp.Expr, ...]]:
+    """Solutions x of ``x . H(u_i) = s_i sigma`` and ``x . H'(u_i) = 0``; those with most zeros first.
+
+    Where these leave x free, further conditions are tried: ``x . H`` opposite at the ends of a measurement, or at its
+    bound at an end.
+    """
+    rows, right = contact_equations(family, span, places)
+    rank = rank_at(family, rows, found[0].T)
+    for columns in itertools.combinations(range(len(rows[0])), rank):
+        yield from solved_dual(family, rows, right, columns, found)
+    free = len(rows[0]) - rank
+    for more in itertools.combinations(conditions_at_ends(family), free) if free else ():
+        left, bounds = [row for row, _ in more], [bound for _, bound in more]
+        yield from solved_dual(family, [*rows, *left], [*right, *bounds], range(len(rows[0])), found)
+
+
+def conditions_at_ends(family: Family) -> list[tuple[list[sp.Expr], sp.Expr]]:
+    """Rows and right sides: a dual polynomial balanced between the ends of a panel, or at its bound at one of them."""
+    ends = [
+        ([h.subs(U, a) for h in row], [h.subs(U, b) for h in row])
+        for row, (a, b) in zip(family.rows, family.panels, strict=True)
+    ]
+    balanced = [([x + y for x, y in zip(a, b, strict=True)], sp.S.Zero) for a, b in ends]
+    signed_ = [(e, s * sigma) for pair, sigma in zip(ends, family.sigma, strict=True) for e in pair for s in (1, -1)]
+    return balanced + [(row, sp.sympify(bound, strict=True)) for row, bound in signed_]
+
+
+def fixed_duals(family: Family, span: Span, found: Sequence[Sample]) -> list[tuple[sp.Expr, ...]]:
+    """Duals with rational entries that do not move, where contacts are too few to determine one.
+
+    Of a growing interval what stays within the bound on the longest does so on the others: that one comes first.
+    """
+    if sum(1 if kind != "no" else 2 for _, kind, _ in span.pattern) >= len(family.functional):
+        return []
+    done: list[tuple[sp.Expr, ...]] = []
+    for T in (span.upper, span.lower, exact_fraction(found[-1].T)):
+        basis, contacts = sample(family, T, span.pattern)
+        problem = family.exact(sp.Rational(T.numerator, T.denominator))
+        refined_ = polish(problem.panels, basis, contacts, BITS, GOAL)
+        for base, _, _ in attempts(problem, basis, contacts, refined_, 14):
+            x = tuple(exact_rational(c) for c in base)
+            short = all(c.q <= 720 for c in x)
+            if short and x not in done and all(feasible(family, one, np.array(x, dtype=float)) for one in found):
+                done.append(x)
+    return done
+
+
+def exact_fraction(x: sp.Rational) -> Fraction:
+    """A rational of sympy as a fraction of Python."""
+    return Fraction(int(x.p), int(x.q))
+
+
+def contact_equations(
+    family: Family, span: Span, places: Sequence[sp.Expr]
+) -> tuple[list[list[sp.Expr]], list[sp.Expr]]:
+    """Rows and right sides of what the dual satisfies at its contacts."""
+    rows, right = [], []
+    for (k, kind, s), u in zip(span.pattern, places, strict=True):
+        rows.append([h.subs(U, u) for h in family.rows[k]])
+        right.append(sp.sympify(s * family.sigma[k], strict=True))
+        if kind == "no":
+            rows.append([h.diff(U).subs(U, u) for h in family.rows[k]])
+            right.append(sp.S.Zero)
+    return rows, right
+
+
+def numbers_at(family: Family, rows: Sequence[Sequence[sp.Expr]], p: sp.Rational) -> np.ndarray:
+    """Double values of a matrix for one value of the parameter."""
+    return np.array([[float(family.at(e, p).evalf(30)) for e in row] for row in rows])
+
+
+def rank_at(family: Family, rows: Sequence[Sequence[sp.Expr]], p: sp.Rational) -> int:
+    """Rank of a matrix, in doubles, for one value of the parameter."""
+    return int(np.linalg.matrix_rank(numbers_at(family, rows, p), tol=1e-9))
+
+
+def solved_dual(
+    family: Family,
+    rows: Sequence[Sequence[sp.Expr]],
+    right: Sequence[sp.Expr],
+    columns: Sequence[int],
+    found: Sequence[Sample],
+) -> Iterator[tuple[sp.Expr, ...]]:
+    """The exact solution with zeros outside the columns, if it is feasible at every sample."""
+    columns, m = list(columns), len(rows[0])
+    numeric = numbers_at(family, rows, found[0].T)[:, columns]
+    picked = independent_rows(numeric)
+    if len(picked) < len(columns):
+        return
+    for one in found:
+        A, b = numbers_at(family, rows, one.T)[:, columns], numbers_at(family, [right], one.T)[0]
+        x = np.zeros(m)
+        x[columns] = np.linalg.lstsq(A, b, rcond=None)[0]
+        if np.abs(A @ x[columns] - b).max() > 1e-9 or not feasible(family, one, x):
+            return
+    solved = exact_solution(sp.Matrix(rows), right, picked, columns)
+    if solved is not None:
+        full = [sp.S.Zero] * m
+        for c, value in zip(columns, solved, strict=True):
+            full[c] = value
+        yield tuple(full)
+
+
+def feasible(family: Family, one: Sample, x: np.ndarray) -> bool:
+    """|x . H| <= sigma on a grid, up to rounding."""
+    from navsym.guaranteed.baselines import panel_numbers
+
+    for panel in family.exact(one.T).panels:
+        H, _, sigma = panel_numbers(panel, np.linspace(0.0, 1.0, 801))
+        if np.abs(x @ H).max() > sigma * (1 + 1e-9):
+            return False
+    return True
+
+
+def independent_rows(A: np.ndarray) -> list[int]:
+    """Indices of rows that span the row space, greedily."""
+    picked: list[int] = []
+    for i in range(A.shape[0]):
+        if np.linalg.matrix_rank(A[[*picked, i]], tol=1e-9) > len(picked):
+            picked.append(i)
+    return picked
+
+
+def exact_solution(
+    A: sp.Matrix, right: Sequence[sp.Expr], rows: Sequence[int], columns: Sequence[int]
+) -> list[sp.Expr] | None:
+    """Cramer's rule on the chosen rows and columns, every quotient brought to a product if it has one."""
+    block = A.extract(list(rows), list(columns))
+    b = sp.Matrix([right[i] for i in rows])
+    below = sp.expand(block.det(method="berkowitz"))
+    solved = []
+    for j in range(block.cols):
+        changed = block.copy()
+        changed[:, j] = b
+        above = sp.expand(changed.det(method="berkowitz"))
+        solved.append(tidy(above / below))
+    return solved
+
+
+def tidy(expression: sp.Expr) -> sp.Expr:
+    """A short form: the product of the normal form when there is one; nothing rests on it."""
+    if not expression.free_symbols:
+        return sp.nsimplify(expression) if expression.is_Rational else sp.radsimp(expression)
+    if not expression.has(sp.sin, sp.cos, sp.exp):
+        return sp.factor(expression)
+    product = as_product(expression)
+    choices = [expression] if product is None else [product]
+    simplified = sp.simplify(choices[0])
+    choices.append(simplified)
+    return in_cotangents(min(choices, key=sp.count_ops))
+
+
+def in_cotangents(expression: sp.Expr) -> sp.Expr:
+    """``1/tan(x)`` as ``cot(x)``, which exists at the poles of the tangent as well."""
+    inverse = lambda e: e.is_Pow and isinstance(e.base, sp.tan) and e.exp.is_negative  # noqa: E731
+    return expression.replace(inverse, lambda e: sp.cot(*e.base.args) ** -e.exp)
+
+
+def weights_of(family: Family, span: Span, places: Sequence[sp.Expr], one: Sample) -> tuple[sp.Expr, ...] | None:
+    """Exact weights from ``sum w_i H(u_i) = P`` on independent rows."""
+    N = sp.Matrix([[h.subs(U, u) for h in family.rows[k]] for (k, _, _), u in zip(span.pattern, places, strict=True)]).T
+    numeric = np.array(N.subs(family.parameter, one.T).evalf(30).tolist(), dtype=float)
+    rows = independent_rows(numeric)
+    if len(rows) < N.cols:
+        return None
+    solved = exact_solution(N, family.functional, rows[: N.cols], range(N.cols))
+    return None if solved is None else tuple(solved)
+
+
+def proved(family: Family, guess: Closed, lower: sp.Expr, upper: sp.Expr, seconds: float) -> Verdict:
+    """The ladder's verdict on the pair for all values between the ends."""
+    T, value, (start, end) = signed(family.parameter, lower, upper)
+    put = lambda e: sp.sympify(e, strict=True).subs(family.parameter, value)  # noqa: E731
+    statements = [
+        Optimum(
+            regressors=tuple(put(h / sigma) for h in row),
+            functional=tuple(map(put, family.functional)),
+            variable=U,
+            interval=tuple(map(put, ends)),
+            dual=tuple(map(put, guess.dual)),
+            support=tuple(map(put, guess.places)),
+            weights=tuple(put(w * family.sigma[k]) for w, k in zip(guess.weights, guess.panels, strict=True)),
+            value=put(guess.value),
+            box={T: (start, end)},
+        )
+        for row, sigma, ends in zip(family.rows, family.sigma, family.panels, strict=True)
+    ]
+    if len(statements) > 1:
+        outcome = run_limited(decide_jointly, (statements, guess.panels), seconds, DEFAULT_MEGABYTES)
+        return Verdict(OPEN, "none", evidence="stopped") if isinstance(outcome, Exhausted) else outcome
+    if family.growing and is_polynomial(statements[0]):
+        return decide_polynomial(statements[0])
+    return decide_within(statements[0], seconds)
+
+
+def signed(p: sp.Symbol, lower: sp.Expr, upper: sp.Expr) -> tuple[sp.Symbol, sp.Expr, tuple[sp.Expr, sp.Expr]]:
+    """A symbol for the parameter, positive where the range lets it, the parameter's value in it, and its range.
+
+    At zero itself, the end of an open range, weights may be infinite: hence positive, not nonnegative. A range below
+    zero is mirrored.
+    """
+    positive = sp.Symbol(p.name, positive=True)
+    if bool(enclose(lower) >= 0):
+        return positive, positive, (lower, upper)
+    mirrored = sp.Symbol(f"minus_{p.name}", positive=True)
+    return (mirrored, -mirrored, (-upper, -lower)) if bool(enclose(upper) <= 0) else (p, p, (lower, upper))
+
+
+def decide_jointly(statements: Sequence[Optimum], panels: Sequence[int]) -> Verdict:
+    """The four conditions for several measurements, each statement with the regressors of one over its bound."""
+    first = statements[0]
+    sums = tuple(
+        sum(
+            (
+                w * statements[k].regressors[j].subs(first.variable, at)
+                for w, at, k in zip(first.weights, first.support, panels, strict=True)
+            ),
+            sp.S.Zero,
+        )
+        for j in range(len(first.functional))
+    )
+    balance = decide_equation(Equation(sums, tuple(first.functional), first.box))
+    feasible_ = [feasibility(statement) for statement in statements]
+    inside = [instants(replace(s, support=own(first.support, panels, k))) for k, s in enumerate(statements)]
+    verdict = combine([balance, *inside, *feasible_, equal_values(first)])
+    return replace(verdict, method=f"exact primal-dual pair ({verdict.method})")
+
+
+def own(places: Sequence[sp.Expr], panels: Sequence[int], k: int) -> tuple[sp.Expr, ...]:
+    """Those of the places that lie on panel k."""
+    return tuple(at for at, panel in zip(places, panels, strict=True) if panel == k)
+
+
+# -- polynomials, where the share of the interval is the only variable ----------------------------
+
+
+def is_polynomial(statement: Optimum) -> bool:
+    """True when the dual polynomial in the share v = t/T has rational coefficients and contains no other symbol."""
+    T = statement.interval[1]
+    f = sum((x * h for x, h in zip(statement.dual, statement.regressors, strict=True)), sp.S.Zero)
+    scaled = sp.expand(f.subs(statement.variable, T * SHARE))
+    return (
+        scaled.is_polynomial(SHARE)
+        and scaled.free_symbols <= {SHARE}
+        and all(c.is_Rational for c in sp.Poly(scaled, SHARE).coeffs())
+    )
+
+
+def decide_polynomial(statement: Optimum) -> Verdict:
+    """The four conditions, dual feasibility by Sturm's count on the square-free factors."""
+    T = statement.interval[1]
+    f = sum((x * h for x, h in zip(statement.dual, statement.regressors, strict=True)), sp.S.Zero)
+    scaled = sp.expand(f.subs(statement.variable, T * SHARE))
+    sides = [sp.Poly(1 - scaled, SHARE), sp.Poly(1 + scaled, SHARE)]
+    if not all(nonnegative_on_unit(side) for side in sides):
+        return Verdict(OPEN, "Sturm", evidence="the dual polynomial leaves its bound")
+    unit = {T: sp.S.One}  # weights and places scale with powers of T: prove them at T = 1 and as identities in T
+    return combine(
+        [
+            Verdict(PROVED, "Sturm's theorem on square-free factors"),
+            constraints(statement),
+            instants_of(statement, unit),
+            equal_values(statement),
+        ]
+    )
+
+
+def nonnegative_on_unit(polynomial: sp.Poly) -> bool:
+    """p >= 0 on [0, 1], exactly: factors of odd multiplicity have no root inside, and p > 0 somewhere."""
+    if polynomial.is_zero:
+        return True
+    _, factors = polynomial.sqf_list()
+    for factor, multiplicity in factors:
+        inner = factor
+        for end in (0, 1):
+            while inner.degree() > 0 and inner.eval(end) == 0:
+                inner = sp.quo(inner, sp.Poly(SHARE - end, SHARE))
+        if multiplicity % 2 and inner.degree() > 0 and inner.count_roots(0, 1):
+            return False
+    points = (sp.Rational(k, 997) for k in range(1, 997))
+    return bool(next(v for v in (polynomial.eval(p) for p in points) if v != 0) > 0)
+
+
+def instants_of(statement: Optimum, unit: Mapping[sp.Symbol, sp.Expr]) -> Verdict:
+    """Places c T with constants c between 0 and 1, by balls, ends exactly."""
+    for place in statement.support:
+        c = place.subs(unit)
+        linear = sp.expand(place - c * statement.interval[1]) == 0
+        inside = c in (0, 1) or (bool(enclose(c) > 0) and bool(enclose(1 - c) > 0))
+        if not linear or not inside:
+            return Verdict(OPEN, "balls", evidence=f"instant {place} is not shown to lie inside")
+    return Verdict(PROVED, "exact shares")

@@ -1,0 +1,524 @@
+"""The complete solution as a parameter varies: regimes, boundaries, closed forms.
+
+A regime is a range of the parameter with one pattern of instants. Where instants, weights and value have a
+closed form it is proved as a primal-dual pair for all values of the regime; elsewhere the optimum is
+certified for every value by contacts that are followed rigorously, and slivers around boundaries by
+two-sided certificates.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from itertools import groupby, pairwise
+from typing import Any
+
+import sympy as sp
+from flint import fmpq
+
+from navsym.claims import CERTIFIED, OPEN, Verdict
+from navsym.core.balls import enclose, exact_rational
+from navsym.guaranteed.certificate.enclosure import rational
+from navsym.guaranteed.certificate.range import Ranged
+from navsym.guaranteed.decimals import decimal, lower_end, upper_end
+from navsym.guaranteed.decimals import exact as exact_decimal
+from navsym.guaranteed.phases.answer import Phases, Regime, end_text
+from navsym.guaranteed.phases.boundaries import Boundary, boundary, nowhere
+from navsym.guaranteed.phases.budget import DEFAULT_SECONDS, Limit
+from navsym.guaranteed.phases.certify_range import covered, followed, fraction_of
+from navsym.guaranteed.phases.closed_forms import Closed, Sample, candidates, prove, refined
+from navsym.guaranteed.phases.family import Family
+from navsym.guaranteed.phases.narrow import slivers
+from navsym.guaranteed.phases.patterns import COUNT, Span, exact, scan
+from navsym.guaranteed.phases.recognise import number
+from navsym.guaranteed.phases.singular_values import (
+    Section,
+    begins,
+    event,
+    need_range,
+    not_looked_at,
+    real_parts,
+    sections,
+    split,
+)
+from navsym.guaranteed.solver import solve
+
+# One regime settled: its proved closed form, or contacts followed for every value, slivers, holes and a table.
+
+
+POINTS = 5
+#: Next to a singular value this part of the range is left, and named in ``uncovered``.
+MARGIN = Fraction(1, 100_000)
+DIGITS = 34
+
+
+@dataclass(frozen=True, slots=True)
+class Follow:
+    """Which regimes are followed rigorously: those without a closed form, those with one."""
+
+    implicit: bool
+    closed: bool
+
+
+def exact_fraction(x: Fraction) -> fmpq:
+    """A fraction of Python as a rational of flint."""
+    return fmpq(x.numerator, x.denominator)
+
+
+Limits = tuple[fmpq, fmpq, fmpq, fmpq]
+
+
+def limits_of(
+    family: Family,
+    lower: sp.Expr,
+    upper: sp.Expr,
+    low: Fraction,
+    high: Fraction,
+    changes: Sequence[Boundary],
+    singular: set[sp.Expr],
+) -> list[Limits]:
+    """For every regime: where it must be covered (outer) and where exact contacts are followed (inner)."""
+    margin = exact_fraction(MARGIN * (high - low))
+    marks = [end_marks(family, lower, -1, singular, margin)]
+    marks += [(exact_decimal(b.lower), exact_decimal(b.upper)) for b in changes]
+    marks.append(end_marks(family, upper, 1, singular, margin))
+    done: list[Limits] = []
+    for k, (left, right) in enumerate(pairwise(marks)):
+        outer = left[0] if k == 0 else (left[0] + left[1]) / 2
+        done.append((outer, left[1], right[0], right[1] if k == len(changes) else (right[0] + right[1]) / 2))
+    return done
+
+
+def end_marks(family: Family, end: sp.Expr, side: int, singular: set[sp.Expr], margin: fmpq) -> tuple[fmpq, fmpq]:
+    """An end of the range as two rationals in order, the outer at or beyond it, the inner where contacts start."""
+    ball = enclose(end, bits=200)
+    if end.is_Rational:
+        at = fmpq(int(end.p), int(end.q))
+    else:
+        at = exact_decimal(lower_end(ball, DIGITS) if side < 0 else upper_end(ball, DIGITS))
+    vanishing = side < 0 and end == 0 and family.growing
+    inner = at - side * margin if end in singular and not vanishing else at
+    return (at, inner) if side < 0 else (inner, at)
+
+
+def regime_of(
+    family: Family,
+    span: Span,
+    ends: tuple[sp.Expr, sp.Expr],
+    limits: Limits,
+    closed: Closed | None,
+    follow: Follow,
+    limit: Limit,
+) -> tuple[Regime, list[tuple[str, str]]]:
+    """One regime: its proved closed form, or contacts followed for every value, slivers and holes."""
+    a, b = ends
+    name = f"from {end_text(a)} to {end_text(b)}"
+    if closed is not None:
+        done = followed_within(family, span, limits, limit, name) if follow.closed else Ranged((), ())
+        held, status = (limits[1], limits[2]), closed.verdict.status
+        return Regime(family, span, a, b, closed, status, (), done.documents, (), held, longest(done)), []
+    shown = limit.share(1 / 4).within(f"the table of values {name}", table_of, family, span) or ()
+    if not follow.implicit:
+        return Regime(family, span, a, b, None, OPEN, shown), [(end_text(a, -1), end_text(b, 1))]
+    done = followed_within(family, span, limits, limit.share(3 / 4), name)
+    thin, holes = [], []
+    for left, right in rests(done, limits):
+        made, left_over = slivers(family, left, right, limit.met)
+        thin += made
+        holes += [(end_text(exact_rational(p), -1), end_text(exact_rational(q), 1)) for p, q in left_over]
+    run = longest(done)
+    status = CERTIFIED if run is not None else OPEN
+    return Regime(family, span, a, b, None, status, shown, done.documents, tuple(thin), run, run), holes
+
+
+def followed_within(family: Family, span: Span, limits: Limits, limit: Limit, name: str) -> Ranged:
+    """The contacts of a regime followed as far as the tests and the limit allow."""
+    done = followed(family, span.pattern, limits[1], limits[2], limit.met)
+    if limit.met():
+        limit.gives_up(f"following the contacts {name}")
+    return done
+
+
+def rests(done: Ranged, limits: Limits) -> list[tuple[fmpq, fmpq]]:
+    """Stretches of the regime that the followed contacts leave, before, between and behind their pieces."""
+    edges = [limits[0], *(edge for run in covered(done.pieces) for edge in run), limits[3]]
+    return [(a, b) for a, b in zip(edges[::2], edges[1::2], strict=True) if a < b]
+
+
+def longest(done: Ranged) -> tuple[fmpq, fmpq] | None:
+    """The longest stretch that the followed contacts cover without a gap."""
+    return max(covered(done.pieces), key=lambda run: run[1] - run[0], default=None)
+
+
+def table_of(family: Family, span: Span) -> tuple[dict[str, Any], ...]:
+    """Enclosures of the value, instants and weights at a few values of the parameter."""
+    rows = []
+    for k in range(POINTS):
+        T = (span.lower + (span.upper - span.lower) * Fraction(2 * k + 1, 2 * POINTS)).limit_denominator(1000)
+        found = solve(family.problem(exact(T)), 20)
+        places = [
+            {"measurement": s.measurement, "at": instant(family, T, s.at), "weight": s.weight} for s in found.support
+        ]
+        places.sort(key=lambda place: sp.Rational(place["at"]))
+        rows.append({family.parameter.name: str(T), "lower": found.lower, "upper": found.upper, "support": places})
+    return tuple(rows)
+
+
+def instant(family: Family, T: Fraction, u: str) -> str:
+    """The instant that a coordinate means at a value of the parameter, to twenty digits."""
+    end = family.at(family.stop, exact(T))
+    return decimal(rational(enclose(end - sp.Rational(u), bits=200)), 20) if family.backward else u
+
+
+# Where the pattern changes, from closed forms that are proved between the changes.
+#
+# A change is located from closed forms as they are guessed; they are proved between the changes. Where a proof fails
+# a change that rests on the guess is located again without it, and what is proved on either side is proved anew.
+
+
+Forms = Sequence[Closed | None]
+Ends = tuple[sp.Expr, sp.Expr]
+
+
+def located(
+    family: Family, spans: Sequence[Span], closed: Sequence[Closed | None], limit: Limit
+) -> tuple[Boundary, ...]:
+    """The changes from each span to the next, as exactly as they are had within the limit."""
+    found = []
+    for k, (left, right) in enumerate(pairwise(spans)):
+        part = limit.share(1 / (len(spans) - 1 - k))
+        found.append(change(family, left, right, part, closed[k], closed[k + 1]) or nowhere(left.upper))
+    return tuple(found)
+
+
+def change(
+    family: Family, left: Span, right: Span, limit: Limit, before: Closed | None = None, after: Closed | None = None
+) -> Boundary | None:
+    """The change from one span to the next; None when it is not had within the limit."""
+    return limit.within(
+        f"the change of pattern near {float(left.upper):.6g}", boundary, family, left, right, before, after
+    )  # type: ignore[no-any-return]
+
+
+def firm(
+    family: Family,
+    spans: Sequence[Span],
+    guesses: Sequence[Sequence[Closed]],
+    changes: Sequence[Boundary],
+    ends: Ends,
+    limit: Limit,
+) -> tuple[list[Boundary], list[Closed | None]]:
+    """The changes and the closed forms proved between them, each in agreement with the other.
+
+    changes : located from the first guess of every span
+    After the first round a form only stays or falls, and no change moves unless one beside it fell.
+    """
+    rest: list[Closed | None] = [g[0] if g else None for g in guesses]
+    parts = pieces_of(changes, ends)
+    forms = [
+        proved_form(family, g, part, limit.share(1 / (len(spans) - k)))
+        for k, (g, part) in enumerate(zip(guesses, parts, strict=True))
+    ]
+    while not all(map(same, rest, forms)):
+        changes, before = relocated(family, spans, changes, rest, forms, limit), parts
+        rest, parts = forms, pieces_of(changes, ends)
+        forms = [
+            form if form is None or part == old else proved_form(family, [form], part, limit.share(1 / 2))
+            for form, part, old in zip(rest, parts, before, strict=True)
+        ]
+    return list(changes), forms
+
+
+def relocated(
+    family: Family, spans: Sequence[Span], changes: Sequence[Boundary], rest: Forms, forms: Forms, limit: Limit
+) -> list[Boundary]:
+    """The changes, those located again that rest on another closed form than is proved beside them."""
+    found = []
+    for k, b in enumerate(changes):
+        if b.at is not None and not (same(rest[k], forms[k]) and same(rest[k + 1], forms[k + 1])):
+            b = change(family, spans[k], spans[k + 1], limit, forms[k], forms[k + 1]) or nowhere(spans[k].upper)
+        found.append(b)
+    return found
+
+
+def proved_form(family: Family, guesses: Sequence[Closed], ends: Ends, limit: Limit) -> Closed | None:
+    """The closed form that is proved between the ends within the limit."""
+    found = prove(family, guesses, *ends, seconds=limit.left()) if guesses and not limit.met() else None
+    if found is not None and found.verdict.status.holds:
+        return found
+    if guesses and limit.met():
+        limit.gives_up(f"the proof of a closed form from {end_text(ends[0])} to {end_text(ends[1])}")
+    return None
+
+
+def same(one: Closed | None, other: Closed | None) -> bool:
+    """True for the same estimator and dual, whatever the verdicts."""
+    if one is None or other is None:
+        return one is other
+    return (one.panels, one.places, one.weights, one.dual) == (other.panels, other.places, other.weights, other.dual)
+
+
+def pieces_of(changes: Sequence[Boundary], ends: Ends) -> list[Ends]:
+    """The range between its ends, cut at the changes."""
+    return list(pairwise([ends[0], *map(middle_of, changes), ends[1]]))
+
+
+def middle_of(b: Boundary) -> sp.Expr:
+    """The exact value of a boundary, or the middle of its bracket."""
+    return b.at if b.at is not None else (sp.Rational(b.lower) + sp.Rational(b.upper)) / 2
+
+
+# Closed forms of a regime taken over from its neighbours, where several estimators are optimal.
+#
+# Where the dual polynomial does not move with the parameter, and is its bound on a whole interval, places may be
+# chosen; those that the search found say nothing. Places and weights of the regime next to it carry the functional
+# beyond the boundary as well; if their signs are right there, the pair is optimal. A guess, to be proved.
+
+
+NEAR = sp.Rational(1, 10**30)
+LARGEST = 720
+SHARES = tuple(map(Fraction, ("0.03", "0.23", "0.59", "0.97")))
+
+
+def continued(
+    family: Family, spans: Sequence[Span], guesses: Sequence[list[Closed]]
+) -> tuple[list[Span], list[list[Closed]]]:
+    """Spans and their guesses; neighbours without any are made one when the closed form beside them holds there."""
+    runs = [list(run) for _, run in groupby(range(len(spans)), key=lambda k: k if guesses[k] else -1)]
+    kept: list[tuple[Span, list[Closed]]] = []
+    for run in runs:
+        first, last = run[0], run[-1]
+        beside = [k for k in (first - 1, last + 1) if 0 <= k < len(spans) and guesses[k]]
+        whole = Span(spans[first].lower, spans[last].upper, spans[first].pattern)
+        found = None if guesses[first] else taken_over(family, whole, beside, spans, guesses)
+        kept += [found] if found else [(spans[k], guesses[k]) for k in run]
+    return [span for span, _ in kept], [list(guess) for _, guess in kept]
+
+
+def taken_over(
+    family: Family, span: Span, beside: Sequence[int], spans: Sequence[Span], guesses: Sequence[list[Closed]]
+) -> tuple[Span, list[Closed]] | None:
+    """A span with the pattern and the closed form of one of the regimes beside it, or None."""
+    found = [one for T in inside(span) if (one := refined(family, T, None)) is not None] if beside else []
+    dual = still_dual(found)
+    if dual is None:
+        return None
+    for k in beside:
+        fits = [pair for closed in guesses[k] if (pair := with_dual(family, closed, dual, found)) is not None]
+        if fits:
+            signs = signs_at(family, fits[0], found[0])
+            pattern = tuple((p, e, sign) for (p, e, _), sign in zip(spans[k].pattern, signs, strict=True))
+            return replace(span, pattern=pattern), fits
+    return None
+
+
+def inside(span: Span) -> list[Fraction]:
+    """Values inside the span."""
+    return [(span.lower + (span.upper - span.lower) * share).limit_denominator(10**6) for share in SHARES]
+
+
+def signs_at(family: Family, closed: Closed, one: Sample) -> list[int]:
+    """Signs of the weights at a value of the parameter."""
+    return [1 if bool(enclose(family.at(w, one.T)) > 0) else -1 for w in closed.weights]
+
+
+def still_dual(found: Sequence[Sample]) -> tuple[sp.Expr, ...] | None:
+    """The dual that all samples share, when its entries are short rational numbers."""
+    if len(found) < 3:
+        return None
+    duals = [[number(x) for x in one.polished.dual] for one in found]
+    short = tuple(x.limit_denominator(LARGEST) for x in duals[0])
+    moves = any(abs(x - y) > NEAR for row in duals for x, y in zip(row, short, strict=True))
+    return None if moves else short
+
+
+def with_dual(family: Family, closed: Closed, dual: tuple[sp.Expr, ...], found: Sequence[Sample]) -> Closed | None:
+    """Places and weights of a regime with another dual, when they cost what it reaches at all samples."""
+    value = sp.expand(sum((x * p for x, p in zip(dual, family.functional, strict=True)), sp.S.Zero))
+    cost = sum((family.sigma[k] * sp.Abs(w) for k, w in zip(closed.panels, closed.weights, strict=True)), sp.S.Zero)
+    gap = [enclose(family.at(cost - value, one.T), bits=200) for one in found]
+    if not all(bool(abs(size) < 1e-30) for size in gap):
+        return None
+    return replace(closed, dual=dual, value=value, verdict=Verdict(OPEN, "none"))
+
+
+#: A span below this part of the range is given up when its neighbours are proved to meet.
+SHORT = Fraction(1, 50)
+
+
+def phases(
+    family: Family,
+    lower: sp.Expr,
+    upper: sp.Expr,
+    *,
+    certify: bool = True,
+    alone: bool = False,
+    seconds: float = DEFAULT_SECONDS,
+    progress: Callable[[int, int], None] = lambda done, of: None,
+) -> Phases:
+    """All regimes for values of the parameter between two exact numbers.
+
+    The range is split at singular values. certify : follow regimes without a closed form rigorously.
+    alone : follow the others as well, which proves that no other estimator is optimal and gives them certificates.
+    seconds : of work, after which what is known is returned: ``uncovered`` names the rest, ``given_up`` what was left
+    progress : called with (finished, all) steps of the search: each stretch is scanned, each regime settled
+    Raises DomainError for a range without length, lengths of the interval below zero, and seconds that are none.
+    """
+    need_range(family, lower, upper)
+    limit = Limit.of(seconds)
+    plan, lost, edges = planned(family, lower, upper, limit.share(1 / 4))
+    steps = Steps(progress, len(plan) * (COUNT - 1))
+    follow = Follow(certify, alone)
+    parts = [stretch(section, follow, steps, limit.share(1 / (len(plan) - k))) for k, section in enumerate(plan)]
+    uncovered = [*lost, *(pair for part in parts for pair in part.uncovered)]
+    changes = {b if b.at is None else b.at: b for b in (*changes_between(plan, lower), *edges)}
+    inner = [b for part in parts for b in part.boundaries]
+    ties = {id(tie): tie for section in plan for tie in section.ties}
+    return Phases(
+        plan[-1].family if plan else family,
+        lower,
+        upper,
+        tuple(regime for part in parts for regime in part.regimes),
+        tuple(sorted((*changes.values(), *inner), key=lambda b: sp.Rational(b.lower))),
+        tuple(uncovered),
+        tuple(ties.values()),
+        tuple(limit.given_up),
+    )
+
+
+def planned(
+    family: Family, lower: sp.Expr, upper: sp.Expr, limit: Limit
+) -> tuple[list[Section], list[tuple[str, str]], list[Boundary]]:
+    """The sections of the range, the ends of parts that have none (imaginary, or not split within the limit), and where
+    imaginary ones begin."""
+    plan: list[Section] = []
+    lost: list[tuple[str, str]] = []
+    edges: list[Boundary] = []
+    for part in sections(family, lower, upper):
+        real, imaginary = real_parts(*part)
+        lost += [(end_text(one.lower), end_text(one.upper)) for one in imaginary]
+        edges += [b for one in imaginary for b in begins(one, lower, upper, family.parameter.name)]
+        for one in real:
+            ends = end_text(one[1]), end_text(one[2])
+            found = limit.share(1 / 2).within(f"singular values from {ends[0]} to {ends[1]}", split, *one)
+            plan += found or []
+            lost += [ends] if found is None else []
+    return plan, lost, edges
+
+
+def changes_between(plan: Sequence[Section], lower: sp.Expr) -> list[Boundary]:
+    """The singular values of all sections as boundaries, and what may hide further ones."""
+    singular = {s.at: s for section in plan for s in section.singular}
+    known = [event(s) for s in singular.values() if not (s.at == lower == 0 and plan[0].family.growing)]
+    return known + [not_looked_at(s) for s in plan if s.unknown]
+
+
+class Steps:
+    """Counts the steps of a search that finds more of them on its way.
+
+    A closed form that is guessed and one that is settled are worth ten looks of a scan each.
+    """
+
+    LOOKS = 10
+
+    def __init__(self, progress: Callable[[int, int], None], of: int):
+        self.progress, self.done, self.of = progress, 0, of
+
+    def found(self, regimes: int) -> None:
+        """The scan of a stretch found so many regimes to settle."""
+        self.of += 2 * regimes * self.LOOKS
+        self.progress(self.done, self.of)
+
+    def did(self, steps: int = 1) -> None:
+        """So many steps are done."""
+        self.done += steps
+        self.progress(self.done, self.of)
+
+
+def stretch(section: Section, follow: Follow, steps: Steps, limit: Limit) -> Phases:
+    """All regimes between two values without a singular one inside."""
+    family, lower, singular = section.family, section.lower, section.names
+    low, high = inner_range(lower, section.upper, singular)
+    spans = scanned(family, low, high, steps, limit)
+    upper = section.upper if spans[-1].upper == high else exact(spans[-1].upper)
+    spans = without_accidents(family, spans, limit.share(1 / 4))
+    steps.found(len(spans))
+    guesses = guessed(family, spans, steps, limit.share(1 / 2))
+    spans, guesses = limit.share(1 / 4).within("closed forms next to others", continued, family, spans, guesses) or (
+        spans,
+        guesses,
+    )
+    first = located(family, spans, [g[0] if g else None for g in guesses], limit.share(1 / 2))
+    changes, forms = firm(family, spans, guesses, first, (lower, upper), limit.share(1 / 2))
+    cuts = [lower, *(middle_of(b) for b in changes), upper]
+    limits = limits_of(family, lower, upper, low, high, changes, singular)
+    regimes, uncovered = [], []
+    for k, span in enumerate(spans):
+        part = limit.share(1 / (len(spans) - k))
+        regime, holes = regime_of(family, span, (cuts[k], cuts[k + 1]), limits[k], forms[k], follow, part)
+        regimes.append(regime)
+        uncovered += holes
+        steps.did(Steps.LOOKS)
+    if upper != section.upper:
+        uncovered.append((end_text(upper, -1), end_text(section.upper)))
+    honest = tuple(b if b.proved else between(b, *pair) for b, pair in zip(changes, pairwise(regimes), strict=True))
+    return Phases(family, lower, upper, tuple(regimes), honest, tuple(uncovered))
+
+
+def scanned(family: Family, low: Fraction, high: Fraction, steps: Steps, limit: Limit) -> list[Span]:
+    """The spans of a section, up to where half of its time allows."""
+    half = limit.share(1 / 2)
+
+    def step() -> bool:
+        steps.did()
+        return not half.met()
+
+    spans = scan(family, low, high, step=step)
+    if spans[-1].upper != high:
+        limit.gives_up(f"the search for patterns from {float(spans[-1].upper):.6g} to {float(high):.6g}")
+    return spans
+
+
+def guessed(family: Family, spans: Sequence[Span], steps: Steps, limit: Limit) -> list[list[Closed]]:
+    """Closed forms of every span, not yet proved."""
+    found = []
+    for k, span in enumerate(spans):
+        what = f"the search for a closed form from {float(span.lower):.6g} to {float(span.upper):.6g}"
+        found.append(limit.share(1 / (len(spans) - k)).within(what, candidates, family, span) or [])
+        steps.did(Steps.LOOKS)
+    return found
+
+
+def without_accidents(family: Family, spans: list[Span], limit: Limit) -> list[Span]:
+    """Spans without short ones between neighbours that are proved to follow each other: there contacts merge, and
+    the search in double precision takes one pattern for another, or for several."""
+    short = SHORT * (spans[-1].upper - spans[0].lower)
+    kept, rest = spans[:1], spans[1:]
+    while rest:
+        beyond = next((k for k, span in enumerate(rest) if span.upper - span.lower >= short), 0)
+        found = change(family, kept[-1], rest[beyond], limit) if beyond else None
+        if found is not None and found.proved:
+            cut = fraction_of(rational(enclose(middle_of(found), bits=200)))
+            kept[-1], rest = replace(kept[-1], upper=cut), rest[beyond:]
+            rest[0] = replace(rest[0], lower=cut)
+        kept.append(rest.pop(0))
+    return kept
+
+
+def between(guess: Boundary, before: Regime, after: Regime) -> Boundary:
+    """A change that was not located lies between the last value of one proved pattern and the first of the other.
+
+    Where a pattern is proved nowhere, the bracket is that of the search, and the regime is uncovered.
+    """
+    last = before.held[1] if before.held else exact_fraction(before.span.lower)
+    first = after.held[0] if after.held else exact_fraction(after.span.upper)
+    return replace(guess, lower=decimal(last, DIGITS, -1), upper=decimal(first, DIGITS, 1))
+
+
+def inner_range(lower: sp.Expr, upper: sp.Expr, singular: set[sp.Expr]) -> tuple[Fraction, Fraction]:
+    """Rational values just inside the range, further inside at singular ends."""
+    a, b = (fraction_of(rational(enclose(e, bits=200))) for e in (lower, upper))
+    steps = [Fraction(1, 400) if e in singular else Fraction(1, 10**9) for e in (lower, upper)]
+    low, high = a + steps[0] * (b - a), b - steps[1] * (b - a)
+    return low.limit_denominator(10**12), high.limit_denominator(10**12)

@@ -1,0 +1,230 @@
+"""What lies between certified ranges: thin stretches of the parameter with a two-sided certificate each.
+
+At a change of pattern the exact contacts are singular. There the parameter is a ball, a dual and places are
+fixed, and weak duality bounds the optimum from both sides for every value in the ball.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from math import inf
+from typing import Any
+
+import numpy as np
+import sympy as sp
+from flint import arb, arb_mat, fmpq
+
+from navsym.core.balls import exact_rational, precision
+from navsym.core.errors import NavsymError
+from navsym.guaranteed.certificate.basis import Basis, DependentError, as_fraction, make_basis
+from navsym.guaranteed.certificate.enclosure import Panel, Problem, Touch, interval, rational, total
+from navsym.guaranteed.certificate.fixed import attempts, every_cell, header, near_touches, support_points
+from navsym.guaranteed.certificate.polish import Polished, polish
+from navsym.guaranteed.certificate.range import fraction, never
+from navsym.guaranteed.decimals import decimal, exact
+from navsym.guaranteed.phases.family import Family
+from navsym.guaranteed.phases.patterns import ordered
+from navsym.guaranteed.search.exchange import Contacts, find_contacts
+
+DIGITS = 14
+BITS = 400
+PLACES = 60
+#: Points on which the size of a dual polynomial is looked at, and the room it is given beyond what is seen.
+GRID = 200
+TINY = arb(10) ** -9
+#: Enclosures wider than this part of the value are not worth the name.
+WIDEST = 1e-2
+#: Contacts of one sign that come so near to each other, u in [-1, 1], carry their weights together if need be.
+NEAR = 0.2
+#: Attempts for one stretch, the shortest sliver as part of it, and into how many a failed one is cut at most.
+MOST_TRIES = 400
+SHORTEST = fmpq(1, 1 << 40)
+MOST_PARTS = 8
+#: Bounds are this part of their distance wider than what is proved here: a checker's balls are not the same.
+ROOM = 50
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Sliver:
+    """Bounds of the optimum for every value between ``start`` and ``end``."""
+
+    start: fmpq
+    end: fmpq
+    lower: str
+    upper: str
+    certificate: Mapping[str, Any]
+
+    def row(self) -> tuple[str, str, str, str]:
+        """Decimal strings of start, end, lower and upper, the first two to 60 digits."""
+        return decimal(self.start, 60), decimal(self.end, 60), self.lower, self.upper
+
+
+def slivers(
+    family: Family, start: fmpq, end: fmpq, enough: Callable[[], bool] = never
+) -> tuple[list[Sliver], list[tuple[fmpq, fmpq]]]:
+    """Slivers on a stretch, each as long as it stays narrow, and what they leave when the attempts are used up or it is
+    enough."""
+    made: list[Sliver] = []
+    left: list[tuple[fmpq, fmpq]] = []
+    stack, tries, shortest = [(start, end)], 0, (end - start) * SHORTEST
+    while stack:
+        a, b = stack.pop()
+        if tries == MOST_TRIES or b - a < shortest or enough():
+            left.append((a, b))
+            continue
+        tries += 1
+        one, width = sliver(family, a, b)
+        if one is not None:
+            made.append(one)
+            continue
+        stack += reversed(cut(a, b, width))
+    return made, joined(left)
+
+
+def cut(a: fmpq, b: fmpq, width: float) -> list[tuple[fmpq, fmpq]]:
+    """Equal parts of a stretch on which an enclosure had this width: as many as make it narrow enough."""
+    parts = 2 if width == inf else max(2, min(MOST_PARTS, int(1.2 * width / WIDEST) + 1))
+    marks = [a + (b - a) * fmpq(k, parts) for k in range(parts + 1)]
+    return list(pairwise(marks))
+
+
+def joined(stretches: list[tuple[fmpq, fmpq]]) -> list[tuple[fmpq, fmpq]]:
+    """Neighbours made one."""
+    done: list[tuple[fmpq, fmpq]] = []
+    for a, b in stretches:
+        if done and done[-1][1] == a:
+            a = done.pop()[0]
+        done.append((a, b))
+    return done
+
+
+def sliver(family: Family, start: fmpq, end: fmpq) -> tuple[Sliver | None, float]:
+    """The two-sided certificate with the parameter as a ball, None when it is too wide, and how wide it is."""
+    middle = (start + end) / 2
+    shown = ball_problem(family, interval(start, end))
+    if not all(bool(b > a) and bool(sigma > 0) for a, b, sigma in (panel.edges() for panel in shown.panels)):
+        return None, inf
+    ball = over_bounds(shown)
+    try:
+        problem = family.exact(exact_rational(middle))
+        basis = make_basis(problem)
+        contacts = find_contacts(basis.panels)
+        refined = polish(problem.panels, basis, contacts, BITS, 1e-40)
+        with precision(BITS):
+            support, most = cheapest(ball, basis, contacts, refined)
+            x, cells = within(ball, basis, contacts, refined)
+            least = rational(total([arb(c) for c in x], ball.target()).lower())
+    except (DependentError, NavsymError, ArithmeticError, ValueError):
+        return None, inf
+    width = float(arb((most - least) / most))
+    if not 0 < width < WIDEST or not least > 0:
+        return None, width if width > 0 else inf
+    room = (most - least) / ROOM
+    lower, upper = decimal(least - room, DIGITS + 6, -1), decimal(most + room, DIGITS + 6, 1)
+    document = header(shown, "sliver", BITS, cells, lower, upper) | {
+        "parameter": family.parameter.name,
+        "from": fraction(start),
+        "to": fraction(end),
+        "dual": [decimal(c, PLACES) for c in x],
+        "support": [[k, decimal(v, PLACES)] for k, v in support],
+    }
+    return Sliver(start, end, lower, upper, document), width
+
+
+Support = list[tuple[int, fmpq]]
+
+
+def cheapest(ball: Problem, basis: Basis, contacts: Contacts, refined: Polished) -> tuple[Support, fmpq]:
+    """Places and an upper bound: the contacts of the middle, or the middles of those that are about to merge.
+
+    Raises ValueError when balls as wide as these carry the functional on neither.
+    """
+    together = merged(contacts)
+    places = [exact(decimal(v, PLACES)) for v in refined.v], [as_fraction(float(u)) for u in together.u]
+    found = []
+    for carriers, at in zip((contacts, together), places, strict=True):
+        support = support_points(basis, carriers, at)
+        try:
+            found.append((rational(most_of(ball, support).upper()), support))
+        except (ZeroDivisionError, ValueError):
+            continue
+    if not found:
+        raise ValueError("no weights in balls as wide as these")
+    most, support = min(found, key=lambda pair: pair[0])
+    return support, most
+
+
+def most_of(ball: Problem, support: Support) -> arb:
+    """``sum |W|`` of the weights over their noise bounds, ``sum W H/sigma = P``: in the order of the checker, whose
+    balls are as wide as these where sigma moves."""
+    panels = [ball.panels[k] for k, _ in support]
+    columns = [[h / panel.bound() for h in panel.rows(arb(v))] for panel, (_, v) in zip(panels, support, strict=True)]
+    weights = arb_mat(columns).transpose().solve(arb_mat([[p] for p in ball.target()])).entries()
+    return sum(map(abs, weights), arb(0))
+
+
+def within(ball: Problem, basis: Basis, contacts: Contacts, refined: Polished) -> tuple[list[fmpq], int]:
+    """A dual within the bound for every value in the ball, and the cells of the proof.
+
+    Raises ValueError when none is found.
+    """
+    best: tuple[fmpq, list[fmpq], int] | None = None
+    tried: list[list[fmpq]] = []
+    for base, _, seen in attempts(ball, basis, contacts, refined, DIGITS):
+        if base in tried:
+            continue
+        tried.append(base)
+        over = excess(ball, base, near_touches(ball, seen, PLACES))
+        for more in (arb(1.05), arb(1.5), arb(4)):
+            scale = rational((1 / (1 + over * more + TINY)).mid())
+            x = [exact(decimal(c * scale, PLACES)) for c in base]
+            reached = rational(total([arb(c) for c in x], ball.target()).lower())
+            if best is not None and reached <= best[0]:
+                break
+            cells = every_cell(ball, [arb(c) for c in x], [[] for _ in ball.panels])
+            if cells is not None:
+                best = reached, [exact(decimal(c * (1 - fmpq(1, 10**9)), PLACES)) for c in x], cells
+                break
+    if best is None:
+        raise ValueError("no dual within the bound")
+    return best[1], best[2]
+
+
+def excess(ball: Problem, x: Sequence[fmpq], touches: Sequence[Sequence[Touch]]) -> arb:
+    """By how much the dual polynomial may leave its bound, at its touches and on a grid: a guess to be proved."""
+    dual, worst = [arb(c) for c in x], arb(0)
+    for panel, near in zip(ball.panels, touches, strict=True):
+        for v in (*(rational(t.at) for t in near), *(fmpq(k, GRID) for k in range(GRID + 1))):
+            worst = max(worst, (abs(total(dual, panel.rows(arb(v)))) / panel.bound()).upper() - 1)
+    return worst
+
+
+def merged(contacts: Contacts) -> Contacts:
+    """Neighbours of one sign on one panel as one contact at their mean: what that costs is of the second order."""
+    found = ordered(contacts)
+    change = (np.diff(found.panel) != 0) | (np.diff(found.sign) != 0) | (np.diff(found.u) > NEAR)
+    groups = np.split(np.arange(found.u.size), np.flatnonzero(change) + 1)
+    weights = np.array([found.weights[g].sum() for g in groups])
+    means = np.array([(found.weights[g] * found.u[g]).sum() for g in groups]) / weights
+    first = np.array([g[0] for g in groups])
+    return replace(found, panel=found.panel[first], u=means, sign=found.sign[first], weights=weights)
+
+
+def ball_problem(family: Family, ball: arb) -> Problem:
+    """The problem with a ball for the parameter."""
+    values = {family.parameter: ball}
+    panels = tuple(replace(panel, values=values) for panel in family.moving.panels)
+    return Problem(panels, family.moving.functional, values)
+
+
+def over_bounds(problem: Problem) -> Problem:
+    """Regressors over their noise bounds, one by one: where a bound moves, a checker's balls are as wide as these."""
+
+    def scaled(panel: Panel) -> Panel:
+        functions = tuple(sp.Mul(h, 1 / panel.sigma, evaluate=False) for h in panel.functions)
+        return replace(panel, functions=functions, sigma=sp.S.One)
+
+    panels = tuple(scaled(panel) if panel.sigma.free_symbols else panel for panel in problem.panels)
+    return replace(problem, panels=panels)

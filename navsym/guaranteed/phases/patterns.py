@@ -1,0 +1,231 @@
+"""Which pattern of contacts belongs to which length of the interval, in double precision.
+
+A pattern is where the optimal dual touches its bound with a weight: measurement, kind of place
+(start, inside, end) and sign, in order. Equal neighbours on a scan are taken for one regime, and
+changes are bracketed by bisection. Hints only: what is found here is proved afterwards.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from itertools import combinations, islice, pairwise
+
+import numpy as np
+import sympy as sp
+
+from navsym.core.errors import DomainError
+from navsym.guaranteed.certificate.basis import Basis, DependentError, make_basis
+from navsym.guaranteed.phases.family import Family
+from navsym.guaranteed.search.exchange import NEGLIGIBLE, Contacts, Panels, find_contacts, rows_at
+from navsym.guaranteed.search.kernels import Array, Ints
+
+# Where several estimators are optimal: the one with a given pattern, if it is among them.
+#
+# Every optimal estimator stands on the places where an optimal dual polynomial touches its bound. A pattern is
+# optimal as well when some of these places have it and carry the functional with weights of the right signs.
+
+
+Pattern = tuple[tuple[int, str, int], ...]
+MOST_CHOICES = 3000
+#: Residual of the balance, relative to the functional, up to which weights are taken for a solution.
+BALANCED = 1e-7
+AT_END = 1e-9
+
+
+def pattern_of(found: Contacts) -> Pattern:
+    """Panel, kind of place and sign of every contact."""
+    return marks(found.panel, np.where(found.inner == 1, 0.0, np.sign(found.u)), found.sign)
+
+
+def marks(panel: Ints, end: Array, sign: Array) -> Pattern:
+    """The pattern of contacts, all (l,): panel, kind of place, sign; end is -1, 1 at an end of the panel, 0 inside."""
+    kinds = {-1: "from", 0: "no", 1: "to"}
+    return tuple((int(k), kinds[int(e)], int(s)) for k, e, s in zip(panel, end, sign, strict=True))
+
+
+def alike(panels: Panels, found: Contacts, pattern: Pattern) -> Contacts | None:
+    """Contacts of the pattern with the same dual, the earliest places first; None when there are none."""
+    if not found.touching:
+        return None
+    panel, u = every_place(found)
+    rows = rows_at(panels.coefficients, panel, u)
+    sign = np.sign(rows @ found.dual)
+    here = marks(panel, np.where(np.abs(u) > 1.0 - AT_END, np.sign(u), 0.0), sign)
+    choices = combinations([i for i, mark in enumerate(here) if mark in pattern], len(pattern))
+    for choice in islice(choices, MOST_CHOICES):
+        if tuple(here[i] for i in choice) != pattern:
+            continue
+        chosen = np.array(choice)
+        weights = balanced(rows[chosen], panels.functional)
+        if weights is not None and (weights * sign[chosen] > NEGLIGIBLE * np.abs(weights).sum()).all():
+            return with_places(found, panel, u, sign, chosen, weights)
+    return None
+
+
+def every_place(found: Contacts) -> tuple[Ints, Array]:
+    """Contacts and further touches in order."""
+    panel = np.concatenate([found.panel, np.array([k for k, _ in found.touching], dtype=np.int64)])
+    u = np.concatenate([found.u, np.array([v for _, v in found.touching])])
+    order = np.lexsort((u, panel))
+    return panel[order], u[order]
+
+
+def balanced(rows: Array, functional: Array) -> Array | None:
+    """The weights that carry the functional on the rows, or None."""
+    weights: Array = np.linalg.lstsq(rows.T, functional, rcond=1e-11)[0].astype(np.float64)
+    rest = np.abs(weights @ rows - functional).max()
+    return weights if rest <= BALANCED * np.abs(functional).max() else None
+
+
+def with_places(found: Contacts, panel: Ints, u: Array, sign: Array, chosen: Ints, weights: Array) -> Contacts:
+    """The same dual with other contacts; the places left over are touches."""
+    left = [(int(panel[i]), float(u[i])) for i in range(panel.size) if i not in chosen]
+    at = u[chosen]
+    return replace(
+        found,
+        panel=panel[chosen],
+        u=at,
+        inner=(np.abs(at) <= 1.0 - AT_END).astype(np.int64),
+        sign=sign[chosen],
+        weights=weights,
+        touching=tuple(left),
+    )
+
+
+COUNT = 72
+BRACKET = 1e-7
+#: Regressors on both sides of a cut that differ by less than this part are the same.
+SAME = 1e-9
+#: A weight below this part of their sum is the rounding of zero.
+ROUNDING = 1e-13
+#: A span below this part of the range is taken for an accident of contacts that merge.
+SHORTEST = Fraction(1, 5000)
+
+
+@dataclass(frozen=True, slots=True)
+class Span:
+    """A stretch of lengths with one pattern, and the brackets of its ends."""
+
+    lower: Fraction
+    upper: Fraction
+    pattern: Pattern
+
+
+def exact(x: Fraction) -> sp.Rational:
+    """A fraction of Python as a rational of sympy."""
+    return sp.Rational(x.numerator, x.denominator)
+
+
+def sample(family: Family, T: Fraction, *wanted: Pattern | None) -> tuple[Basis, Contacts]:
+    """Basis and contacts for one length; the contacts in order.
+
+    wanted : patterns to prefer where there are several optimal estimators, the first that is optimal wins
+    """
+    try:
+        basis = make_basis(family.exact(exact(T)))
+    except DependentError:
+        raise DomainError(
+            f"{family.parameter.name}: expected a range inside which the regressors are independent; got dependent "
+            f"ones at or next to {float(T):.9g}, which was not foreseen; give a range that ends there"
+        ) from None
+    found = ordered(at_cuts(find_contacts(basis.panels), basis.panels, family.many), basis.panels)
+    for pattern in wanted:
+        if pattern is None or pattern_of(found) == pattern:
+            continue
+        other = alike(basis.panels, found, pattern)
+        if other is not None:
+            return basis, other
+    return basis, found
+
+
+def at_cuts(found: Contacts, panels: Panels, many: int) -> Contacts:
+    """The same contacts; one at the start of a stretch stands at the end of the stretch before where the regressors go
+    on without a jump: such a place belongs to both, and a pattern names it in one way."""
+    panel, u = found.panel.copy(), found.u.copy()
+    for i in np.flatnonzero((found.inner == 0) & (u < 0) & (panel >= many)):
+        here = rows_at(panels.coefficients, panel[i : i + 1], u[i : i + 1])
+        before = rows_at(panels.coefficients, panel[i : i + 1] - many, -u[i : i + 1])
+        twin = ((panel == panel[i] - many) & (u == 1.0)).any()
+        if not twin and np.abs(here - before).max() <= SAME * np.abs(here).max():
+            panel[i], u[i] = panel[i] - many, 1.0
+    return replace(found, panel=panel, u=u)
+
+
+def ordered(found: Contacts, panels: Panels | None = None) -> Contacts:
+    """The same contacts by panel and place; those whose weight is rounding, or has not the sign of the dual
+    polynomial there (with panels), are touches only."""
+    sizes = np.abs(found.weights)
+    idle = sizes <= ROUNDING * sizes.sum()
+    if panels is not None:
+        against = found.weights * (rows_at(panels.coefficients, found.panel, found.u) @ found.dual) < 0
+        idle |= against & ~against.all()
+    touches = zip(found.panel[idle].tolist(), found.u[idle].tolist(), strict=True)
+    order = np.lexsort((found.u, found.panel))
+    order = order[~idle[order]]
+    return Contacts(
+        found.panel[order],
+        found.u[order],
+        found.inner[order],
+        found.sign[order],
+        found.weights[order],
+        found.dual,
+        found.excess,
+        (*found.touching, *touches),
+        found.value,
+    )
+
+
+def scan(
+    family: Family, lower: Fraction, upper: Fraction, count: int = COUNT, step: Callable[[], bool] = lambda: True
+) -> list[Span]:
+    """Spans of equal pattern between two positive lengths, from a scan and bisections.
+
+    step : called after each of the ``count - 1`` stretches of the scan; False ends it there, before ``upper``
+    """
+
+    def at(T: Fraction, *wanted: Pattern) -> Pattern:
+        return pattern_of(sample(family, T, *wanted)[1])
+
+    width = upper - lower
+    places = [lower + width * Fraction(2 * k + 1, 2 * count) for k in range(count)]
+    pattern = at(places[0])
+    spans, edge = [], lower
+    for a, b in pairwise(places):
+        for cut, after in changes(at, a, b, pattern, at(b, pattern)):
+            spans.append(Span(edge, cut, pattern))
+            edge, pattern = cut, after
+        if not step() and b != places[-1]:
+            upper = b
+            break
+    spans.append(Span(edge, upper, pattern))
+    return joined([s for s in spans if s.upper - s.lower > SHORTEST * width])
+
+
+def changes(
+    at: Callable[..., Pattern], a: Fraction, b: Fraction, before: Pattern, after: Pattern
+) -> Iterator[tuple[Fraction, Pattern]]:
+    """All changes between a and b that bisection sees, each with the pattern after it."""
+    if before == after:
+        return
+    middle = (a + b) / 2
+    if b - a < Fraction(BRACKET):
+        yield middle, after
+        return
+    between = at(middle, before, after)
+    yield from changes(at, a, middle, before, between)
+    yield from changes(at, middle, b, between, after)
+
+
+def joined(spans: list[Span]) -> list[Span]:
+    """Neighbours with one pattern made one."""
+    done: list[Span] = []
+    for span in spans:
+        if done and done[-1].pattern == span.pattern:
+            done[-1] = Span(done[-1].lower, span.upper, span.pattern)
+        elif done:
+            done.append(Span(done[-1].upper, span.upper, span.pattern))
+        else:
+            done.append(span)
+    return done

@@ -1,0 +1,123 @@
+"""Places recognised from samples: ``a p + b``, the same over p, a share of the interval. Guesses, to be proved."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import mpmath
+import sympy as sp
+from flint import arb
+
+from navsym.core.balls import exact_rational
+from navsym.guaranteed.certificate.enclosure import rational
+from navsym.guaranteed.phases.family import Family, U
+
+NEAR = sp.Rational(1, 10**40)
+#: Integers up to this size are looked for in relations.
+SHORT = 1000
+
+
+def number(x: arb) -> sp.Rational:
+    """Midpoint of a ball as an exact rational."""
+    value = rational(x)
+    return exact_rational(value)
+
+
+def constant(x: sp.Rational) -> sp.Expr | None:
+    """A rational, a rational multiple of pi, a cosine share ``(1 - cos(pi r))/2``, a rational multiple of a root, or
+    what :func:`related` knows, within 1e-40."""
+    pi = sp.Rational(str(sp.pi.evalf(90)))
+    for unit, base in ((sp.Integer(1), sp.Integer(1)), (pi, sp.pi)):
+        best = sp.Rational(x / unit).limit_denominator(720)
+        if abs(best * unit - x) < NEAR:
+            return best * base
+    if 0 < x < 1:
+        r = sp.acos(1 - 2 * sp.Float(str(sp.N(x, 90)), 90)) / sp.Float(pi, 90)
+        best = sp.Rational(str(r)).limit_denominator(120)
+        shown = (1 - sp.cos(sp.pi * best)) / 2
+        if abs(sp.Rational(str(shown.evalf(90))) - x) < NEAR:
+            return shown
+    for q in (2, 3, 5, 6):
+        root = sp.Rational(str(sp.sqrt(q).evalf(90)))
+        best = sp.Rational(x / root).limit_denominator(720)
+        if abs(best * root - x) < NEAR:
+            return best * sp.sqrt(q)
+    return related(x)
+
+
+def related(x: sp.Rational) -> sp.Expr | None:
+    """``a + b pi``, a root of a quadratic polynomial, or a logarithm of either with short coefficients."""
+    with mpmath.workdps(50):
+        at = mpmath.mpf(int(x.p)) / int(x.q)
+        line = relation([at, mpmath.mpf(1), mpmath.pi])
+        if line is not None and line[0]:
+            return -(line[1] + line[2] * sp.pi) / sp.Integer(line[0])
+        found = quadratic(at)
+        if found is None and abs(at) < 20:
+            inner = quadratic(mpmath.exp(at))
+            found = None if inner is None else sp.log(inner)
+        return found
+
+
+def quadratic(at: mpmath.mpf) -> sp.Expr | None:
+    """The rational number or the root of a quadratic polynomial next to a number."""
+    c = relation([at * at, at, mpmath.mpf(1)])
+    if c is None:
+        return None
+    roots = sp.roots(sp.Poly(c, sp.Symbol("x"))).keys()
+    return min(roots, key=lambda root: abs(mpmath.mpmathify(sp.N(root, 40)) - at))
+
+
+def relation(values: Sequence[mpmath.mpf]) -> list[int] | None:
+    """Short integers c with ``sum c_i values_i`` next to zero."""
+    return mpmath.pslq(values, tol=mpmath.mpf(10) ** -40, maxcoeff=SHORT, maxsteps=2000)
+
+
+def place_of(values: Sequence[sp.Rational], lengths: Sequence[sp.Rational], T: sp.Symbol) -> sp.Expr | None:
+    """``a T + b`` through the first two samples, confirmed on all of them."""
+    slope = (values[1] - values[0]) / (lengths[1] - lengths[0])
+    start = values[0] - slope * lengths[0]
+    if any(abs(slope * t + start - v) > NEAR for v, t in zip(values, lengths, strict=True)):
+        return None
+    a, b = constant(slope), constant(start)
+    return None if a is None or b is None else a * T + b
+
+
+def place_from(values: Sequence[sp.Rational], parameters: Sequence[sp.Rational], p: sp.Symbol) -> sp.Expr | None:
+    """A place linear in the parameter or in its reciprocal."""
+    found = place_of(values, parameters, p)
+    if found is not None or any(v == 0 for v in parameters):
+        return found
+    scaled = place_of([v * q for v, q in zip(values, parameters, strict=True)], parameters, p)
+    return None if scaled is None else sp.expand(scaled / p)
+
+
+def place_or_share(
+    family: Family, panel: int, values: Sequence[sp.Rational], parameters: Sequence[sp.Rational]
+) -> sp.Expr | None:
+    """A place linear in the parameter or its reciprocal, else a fixed share of its panel."""
+    found = place_from(values, parameters, family.parameter)
+    return share_of(family, panel, values, parameters) if found is None else found
+
+
+def share_of(
+    family: Family, panel: int, values: Sequence[sp.Rational], parameters: Sequence[sp.Rational]
+) -> sp.Expr | None:
+    """A fixed share of the panel, to nine digits: where the dual polynomial is flat, no place is better known."""
+    shares = []
+    for value, p in zip(values, parameters, strict=True):
+        start, end = (sp.Rational(str(sp.N(e, 40))) for e in family.ends(p, panel))
+        share = (value - start) / (end - start)
+        best = share.limit_denominator(60)
+        if abs(best - share) > sp.Rational(1, 10**9):
+            return None
+        shares.append(best)
+    start, stop = family.panels[panel]
+    return start + (stop - start) * shares[0] if len(set(shares)) == 1 else None
+
+
+def middle_of_constant(family: Family, panel: int) -> sp.Expr | None:
+    """The middle of a panel whose regressors do not change on it: there one place is as good as another, and what a
+    search found says nothing. None for other panels."""
+    start, stop = family.panels[panel]
+    return None if any(h.has(U) for h in family.rows[panel]) else (start + stop) / 2

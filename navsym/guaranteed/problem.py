@@ -1,0 +1,246 @@
+"""The guaranteed estimation problem as exact data, from a model, from a basis, or by hand."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import sympy as sp
+from flint import arb, fmpq
+
+from navsym.core.balls import enclose
+from navsym.core.errors import DomainError, EmptyError, NotFiniteError, ShapeError
+from navsym.guaranteed.certificate.enclosure import Panel, Problem
+from navsym.guaranteed.time_varying import ERROR, error_bound, on_rational_interval, regressors_of, steps_of, varying
+from navsym.models.linear import LinearModel, exact_entry
+from navsym.models.modelfile import BasisFile, ModelFile
+from navsym.models.transition.exponential import regressors, transition_matrix
+
+Rows = tuple[tuple[sp.Expr, ...], ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Stretch:
+    """Part of the interval on which the regressors are analytic: one row H_j(t) per measurement."""
+
+    start: sp.Expr
+    end: sp.Expr
+    rows: Rows
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class GuaranteedProblem:
+    """Minimise ``sum_j sigma_j integral |Phi_j|`` subject to ``sum_j integral H_j Phi_j = P``.
+
+    stretches    : parts of the interval in order, with the regressors on each
+    functional   : P, one exact entry per unknown
+    sigma        : noise bound of each measurement
+    variable     : t
+    measurements : names
+    target       : name of the functional
+    error        : bound of the error of regressors that contain ERROR; zero when they are exact
+    model        : the model whose regressors were integrated, None when they are exact
+
+    Raises ShapeError, EmptyError, NotFiniteError and DomainError (no length, sigma <= 0, P = 0, free symbols).
+    """
+
+    stretches: tuple[Stretch, ...]
+    functional: tuple[sp.Expr, ...]
+    sigma: tuple[sp.Expr, ...]
+    variable: sp.Symbol
+    measurements: tuple[str, ...] = ()
+    target: str = "target"
+    error: sp.Rational = sp.S.Zero
+    model: ModelFile | None = None
+
+    def __post_init__(self) -> None:
+        put = object.__setattr__
+        put(self, "functional", tuple(exact_entry("functional", 0, j, p) for j, p in enumerate(self.functional)))
+        put(self, "sigma", tuple(exact_entry("sigma", 0, j, s) for j, s in enumerate(self.sigma)))
+        names = self.measurements or tuple(f"z{j + 1}" for j in range(len(self.sigma)))
+        put(self, "measurements", tuple(names))
+        need_shapes(self)
+        need_numbers(self)
+
+    @property
+    def interval(self) -> tuple[sp.Expr, sp.Expr]:
+        """Start of the first stretch and end of the last."""
+        return self.stretches[0].start, self.stretches[-1].end
+
+    @property
+    def unknown(self) -> dict[sp.Symbol, arb]:
+        """A ball for the error of the regressors."""
+        return {ERROR: arb(0, arb(fmpq(int(self.error.p), int(self.error.q))).upper())} if self.error else {}
+
+    def exact(self) -> Problem:
+        """The same for the proofs: one panel per stretch and measurement, empty rows left out."""
+        panels = [
+            Panel(j, row, self.variable, stretch.start, stretch.end, self.sigma[j], self.unknown)
+            for stretch in self.stretches
+            for j, row in enumerate(stretch.rows)
+        ]
+        return Problem(tuple(panels), self.functional)
+
+
+def need_shapes(problem: GuaranteedProblem) -> None:
+    """Refuse a problem whose parts do not fit.
+
+    Raises EmptyError without unknowns, measurements or stretches, and ShapeError when a stretch is not n rows of m
+    entries or the names are not n.
+    """
+    m, n = len(problem.functional), len(problem.sigma)
+    if m == 0 or n == 0 or not problem.stretches:
+        raise EmptyError("expected unknowns, measurements and an interval; got none; give at least one of each")
+    for stretch in problem.stretches:
+        sizes = {len(row) for row in stretch.rows}
+        if len(stretch.rows) != n or sizes != {m}:
+            raise ShapeError(
+                f"regressors: expected {n} rows of {m}, measurements by unknowns; got {len(stretch.rows)} rows of "
+                f"{sorted(sizes)}; complete them"
+            )
+    if len(problem.measurements) != n:
+        raise ShapeError(f"measurements: expected {n} names; got {len(problem.measurements)}; name each once")
+
+
+def need_numbers(problem: GuaranteedProblem) -> None:
+    """Everything but the variable has a value; lengths and noise bounds are positive."""
+    parts = [*problem.functional, *problem.sigma, *(h for s in problem.stretches for row in s.rows for h in row)]
+    parts += [e for s in problem.stretches for e in (s.start, s.end)]
+    free = sorted({x.name for part in parts for x in part.free_symbols - {problem.variable, *problem.unknown}})
+    if free:
+        raise DomainError(
+            f"expected a value for every parameter; got none for {', '.join(free)}; give --set {free[0]}=…"
+        )
+    for what, values in (("functional", problem.functional), ("sigma", problem.sigma)):
+        if any(not enclose(v).is_finite() for v in values):
+            raise NotFiniteError(f"{what}: expected finite numbers; got {values}; mend them")
+    if any(not bool(enclose(s) > 0) for s in problem.sigma):
+        raise DomainError(f"sigma: expected positive noise bounds; got {problem.sigma}; give standard deviations")
+    for stretch in problem.stretches:
+        if not bool(enclose(stretch.end - stretch.start) > 0):
+            raise DomainError(
+                f"interval: expected a positive length; got {stretch.start} to {stretch.end}; choose T > 0"
+            )
+    if all(p == 0 for p in problem.functional):
+        raise DomainError("functional: expected one that is not zero; got zeros; every estimator of it is free")
+
+
+def from_regressors(
+    rows: Sequence[Sequence[Any]],
+    functional: Sequence[Any],
+    variable: sp.Symbol,
+    interval: tuple[Any, Any],
+    sigma: Sequence[Any] | None = None,
+    *,
+    target: str = "target",
+) -> GuaranteedProblem:
+    """The problem of given regressors, one row per measurement."""
+    exact = tuple(tuple(exact_entry("H", i, j, h) for j, h in enumerate(row)) for i, row in enumerate(rows))
+    start, end = (exact_entry("interval", 0, k, e) for k, e in enumerate(interval))
+    bounds = tuple(sigma) if sigma is not None else (1,) * len(exact)
+    return GuaranteedProblem((Stretch(start, end, exact),), tuple(functional), bounds, variable, target=target)
+
+
+def from_file(found: ModelFile | BasisFile, target: str | None = None) -> GuaranteedProblem:
+    """The problem that a model file states for one of its targets: regressors H(t), functional, bounds sigma.
+
+    target : its name; not needed where the file has one
+    Raises DomainError for an unknown target or a parameter without a value, EmptyError without measurements.
+    """
+    name, functional = chosen_target(found, target)
+    if isinstance(found, BasisFile):
+        stretch = Stretch(*found.interval, found.H)
+        return GuaranteedProblem((stretch,), functional, found.sigma, found.variable, target=name)
+    if found.T is None:
+        raise EmptyError("expected the length of the interval; got no [interval]; add T", where="interval.T")
+    stretches, error = all_stretches(found)
+    return GuaranteedProblem(
+        stretches,
+        functional,
+        tuple(m.sigma for m in found.measurements),
+        found.time,
+        tuple(m.name for m in found.measurements),
+        name,
+        error,
+        found if error else None,
+    )
+
+
+def all_stretches(found: ModelFile) -> tuple[tuple[Stretch, ...], sp.Rational]:
+    """Regressors and the bound of their error: exact where exp(F t) has a closed form."""
+    if not varying(found):
+        stretches = stretches_of(found)
+        if not any(h.has(sp.RootSum) for stretch in stretches for row in stretch.rows for h in row):
+            return stretches, sp.S.Zero
+    return polynomial_stretches(found)
+
+
+def polynomial_stretches(found: ModelFile) -> tuple[tuple[Stretch, ...], sp.Rational]:
+    """Polynomial regressors and the bound of their error."""
+    if not found.measurements:
+        raise EmptyError("expected a measurement; got none; add a [[measurement]]", where="measurement")
+    moved, shift = on_rational_interval(found)
+    made = [(step, *regressors_of(moved, step, shift)) for step in steps_of(moved)]
+    ends = [sp.S.Zero, *(sp.Rational(str(step.end)) + shift for step, _, _ in made)]
+    stretches = tuple(
+        Stretch(start, end, rows) for start, end, (_, rows, _) in zip(ends[:-1], ends[1:], made, strict=True)
+    )
+    return stretches, sp.Rational(str(error_bound([bound for _, _, bound in made])))
+
+
+def chosen_target(found: ModelFile | BasisFile, target: str | None) -> tuple[str, tuple[sp.Expr, ...]]:
+    """Name and functional of a target; the only one when none is named. Raises DomainError."""
+    names = list(found.targets)
+    if target is None:
+        if len(names) > 1:
+            raise DomainError(f"expected one target; got {len(names)} in the file; choose --target {names[0]}")
+        target = names[0]
+    if target not in found.targets:
+        raise DomainError(f"expected a target of the file; got {target!r}; choose one of {', '.join(names)}")
+    return target, found.targets[target]
+
+
+def stretches_of(found: ModelFile) -> tuple[Stretch, ...]:
+    """H_j(tau)^T = h_j Phi(tau, T) on every piece of F, the last piece first.
+
+    Within a piece ``Phi(tau, T) = exp(F (tau - e)) Phi(e, T)`` with e its end.
+    """
+    T = found.T
+    assert T is not None
+    if not found.measurements:
+        raise EmptyError("expected a measurement; got none; add a [[measurement]]", where="measurement")
+    H = sp.ImmutableMatrix([list(m.h) for m in found.measurements])
+    if len(found.pieces) == 1:
+        model = LinearModel(found.pieces[0].F, None, H, found.states, time=found.time)
+        return (Stretch(sp.S.Zero, T, rows_of(regressors(model, T, found.time).matrix)),)
+    done: list[Stretch] = []
+    after = sp.ImmutableMatrix.eye(len(found.states))
+    for piece in reversed(found.pieces):
+        end = T if piece.end is None else piece.end
+        back = transition_matrix(-piece.F, end - found.time).matrix
+        done.append(Stretch(piece.start, end, rows_of(H * back * after)))
+        after = sp.ImmutableMatrix(transition_matrix(-piece.F, end - piece.start).matrix * after)
+    return tuple(reversed(done))
+
+
+def rows_of(matrix: sp.ImmutableMatrix) -> Rows:
+    """The rows of a matrix as tuples."""
+    return tuple(tuple(row) for row in matrix.tolist())
+
+
+def with_values(problem: GuaranteedProblem, values: Mapping[sp.Symbol, Any]) -> GuaranteedProblem:
+    """The same problem with exact numbers for some symbols."""
+    put = lambda e: e.subs(dict(values), simultaneous=True)  # noqa: E731
+    stretches = tuple(
+        Stretch(put(s.start), put(s.end), tuple(tuple(put(h) for h in row) for row in s.rows))
+        for s in problem.stretches
+    )
+    return GuaranteedProblem(
+        stretches,
+        tuple(map(put, problem.functional)),
+        tuple(map(put, problem.sigma)),
+        problem.variable,
+        problem.measurements,
+        problem.target,
+    )

@@ -1,0 +1,1 @@
+"""Where the optimum lies, in doubles: the exchange over contacts."""

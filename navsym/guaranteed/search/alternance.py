@@ -1,0 +1,288 @@
+"""The fast road of the exchange: a full alternance, as many separate contacts as unknowns, in one call.
+
+Grid simplex, contacts taken from its basis, Newton on them, weights and dual, a look at all maxima, the value in
+twofold precision. Where anything is out of the ordinary the last move is infinite, and the careful road is taken.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from navsym.core.tiers import kernel, part
+from navsym.guaranteed.search.kernels import (
+    Array,
+    Ints,
+    applied,
+    chebyshev_derivative,
+    chebyshev_rows,
+    chebyshev_sum,
+    combined,
+    inverted,
+    simplex,
+)
+
+# Where a Chebyshev sum is largest in modulus: grid, parabola through three values, two Newton steps.
+#
+# A hint like all of the exchange: balls decide later whether ``|f| <= 1``.
+
+
+#: Nodes of the fine grid for each coefficient, and their bounds.
+PER_COEFFICIENT, LEAST, MOST = 12, 128, 20_000
+
+
+def fine_count(K: int) -> int:
+    """How many nodes find the maxima of a sum of K terms."""
+    return min(MOST, max(PER_COEFFICIENT * K, LEAST)) + 1
+
+
+@kernel
+def local_maxima(sums: Array, nodes: Array) -> tuple[Ints, Array, Array]:
+    """Panel, place and ``|f|`` of the local maxima of ``|f|``, ends included; f has the coefficients (panels, K)."""
+    panels, count = sums.shape[0], nodes.shape[0]
+    slopes = chebyshev_derivative(np.ascontiguousarray(sums.T))
+    bends = chebyshev_derivative(slopes)
+    where = np.empty(panels * count, dtype=np.int64)
+    places = np.empty(panels * count)
+    heights = np.empty(panels * count)
+    found = 0
+    for k in range(panels):
+        f = np.abs(values_on(sums[k], nodes))
+        slope = np.ascontiguousarray(slopes[:, k])
+        bend = np.ascontiguousarray(bends[:, k])
+        for i in range(count):
+            if (i == 0 or f[i] >= f[i - 1]) and (i == count - 1 or f[i] > f[i + 1]):
+                top = newton_top(slope, bend, parabola_top(nodes, f, i))
+                where[found], places[found] = k, top
+                heights[found] = abs(chebyshev_sum(sums[k], top))
+                found += 1
+    return where[:found], places[:found], heights[:found]
+
+
+@part
+def values_on(c: Array, nodes: Array) -> Array:
+    """``sum c_k T_k`` on many nodes, by Clenshaw's recurrence."""
+    twice = 2.0 * nodes
+    b1, b2 = np.zeros(nodes.shape[0]), np.zeros(nodes.shape[0])
+    for k in range(c.shape[0] - 1, 0, -1):
+        b1, b2 = twice * b1 - b2 + c[k], b1
+    return nodes * b1 - b2 + c[0]
+
+
+@part
+def newton_top(slope: Array, bend: Array, u: float) -> float:
+    """Two Newton steps on f' = 0 from inside a panel, as long as they stay near."""
+    at = u
+    for _ in range(2):
+        curvature = chebyshev_sum(bend, at)
+        if abs(u) >= 1.0 or curvature == 0.0:
+            return u
+        at -= chebyshev_sum(slope, at) / curvature
+    return at if abs(at) < 1.0 and abs(at - u) < 0.05 else u
+
+
+@part
+def parabola_top(nodes: Array, f: Array, i: int) -> float:
+    """Place of the top of the parabola through three neighbouring grid values (the node at an end)."""
+    if i == 0 or i == nodes.shape[0] - 1:
+        return nodes[i]
+    left, right = nodes[i - 1] - nodes[i], nodes[i + 1] - nodes[i]
+    a = (f[i - 1] - f[i]) / left
+    b = (f[i + 1] - f[i]) / right
+    bend = (b - a) / (right - left)
+    if bend >= -1e-300:
+        return nodes[i]
+    shift = -(a - bend * left) / (2.0 * bend)
+    return nodes[i] + shift if left <= shift <= right else nodes[i]
+
+
+# The value of an exchange in twofold precision: sums of two doubles, with the error of every step kept.
+#
+# For contacts u, weights w and a dual x that are right to half of the digits, the Lagrangian
+# ``x . p - sum w_i (f(u_i) - s_i)``, with ``f = x . q``, is right to all of them: it is stationary in x, in w and
+# in the inner contacts. What remains is to compute it without loss. Knuth's sum, Dekker's product.
+
+
+@part
+def two_sum(a: float, b: float) -> tuple[float, float]:
+    """a + b as a double and what it lacks."""
+    total = a + b
+    part_of_b = total - a
+    return total, (a - (total - part_of_b)) + (b - part_of_b)
+
+
+@part
+def two_product(a: float, b: float) -> tuple[float, float]:
+    """a b as a double and what it lacks."""
+    product = a * b
+    c = 134217729.0 * a
+    a_high = c - (c - a)
+    c = 134217729.0 * b
+    b_high = c - (c - b)
+    a_low, b_low = a - a_high, b - b_high
+    return product, a_low * b_low - (((product - a_high * b_high) - a_low * b_high) - a_high * b_low)
+
+
+@part
+def twofold_dot(high: Array, low: Array, x: Array) -> tuple[float, float]:
+    """``(high + low) . x``."""
+    total, rest = 0.0, 0.0
+    for k in range(x.shape[0]):
+        product, error = two_product(high[k], x[k])
+        total, lost = two_sum(total, product)
+        rest += error + lost + low[k] * x[k]
+    return two_sum(total, rest)
+
+
+@part
+def twofold_sum(high: Array, low: Array, u: float) -> tuple[float, float]:
+    """``sum (high_k + low_k) T_k(u)`` by Clenshaw's recurrence."""
+    b1, b2, l1, l2 = 0.0, 0.0, 0.0, 0.0
+    for k in range(high.shape[0] - 1, 0, -1):
+        product, error = two_product(2.0 * u, b1)
+        total, lost = two_sum(product, -b2)
+        total, more = two_sum(total, high[k])
+        rest = 2.0 * u * l1 - l2 + low[k] + (error + lost + more)
+        b2, l2 = b1, l1
+        b1, l1 = two_sum(total, rest)
+    product, error = two_product(u, b1)
+    total, lost = two_sum(product, -b2)
+    total, more = two_sum(total, high[0])
+    return two_sum(total, u * l1 - l2 + low[0] + (error + lost + more))
+
+
+@kernel
+def lagrangian(
+    C: Array, C_low: Array, p: Array, p_low: Array, panel: Ints, u: Array, sign: Array, weights: Array, x: Array
+) -> float:
+    """``x . p - sum w_i (f(u_i) - s_i)`` to the last bit or two."""
+    panels, K, _ = C.shape
+    high, low = np.empty((panels, K)), np.empty((panels, K))
+    for j in range(panels):
+        for k in range(K):
+            high[j, k], low[j, k] = twofold_dot(C[j, k], C_low[j, k], x)
+    total, rest = twofold_dot(p, p_low, x)
+    for i in range(u.shape[0]):
+        f, f_low = twofold_sum(high[panel[i]], low[panel[i]], u[i])
+        miss = (f - sign[i]) + f_low
+        product, error = two_product(-weights[i], miss)
+        total, lost = two_sum(total, product)
+        rest += error + lost
+    return total + rest
+
+
+Road = tuple[float, Ints, Array, Array, Array, float, float, Ints, Array]
+
+#: A Newton move below this leaves contacts right to the square of it.
+SETTLED = 1e-6
+#: Places nearer than this are one.
+SAME = 1e-5
+
+
+@part
+def rows_of(C: Array, panel: Ints, u: Array) -> Array:
+    """q at the given places, (l, m)."""
+    B = np.empty((u.shape[0], C.shape[2]))
+    for k in range(u.shape[0]):
+        B[k] = chebyshev_rows(C[panel[k]], u[k])
+    return B
+
+
+@part
+def sums_of(C: Array, x: Array) -> Array:
+    """Chebyshev coefficients of ``x . q`` on every panel."""
+    sums = np.empty((C.shape[0], C.shape[1]))
+    for k in range(C.shape[0]):
+        sums[k] = applied(C[k], x)
+    return sums
+
+
+@part
+def moved(sums: Array, panel: Ints, u: Array, sign: Array) -> tuple[Array, float]:
+    """Each inner contact moved by ``-f'/f''``, and the largest move; infinite where f does not bend inwards."""
+    slopes = chebyshev_derivative(np.ascontiguousarray(sums.T))
+    bends = chebyshev_derivative(slopes)
+    slope, bend = np.ascontiguousarray(slopes.T), np.ascontiguousarray(bends.T)
+    u = u.copy()
+    most = 0.0
+    for k in range(u.shape[0]):
+        if -1.0 < u[k] < 1.0:
+            curvature = chebyshev_sum(bend[panel[k]], u[k])
+            if curvature * sign[k] >= 0.0:
+                return u, np.inf
+            step = -chebyshev_sum(slope[panel[k]], u[k]) / curvature
+            u[k] += step
+            most = max(most, abs(step))
+            if not abs(u[k]) < 1.0:
+                return u, np.inf
+    return u, most
+
+
+@part
+def remez_steps(C: Array, panel: Ints, u: Array, sign: Array, steps: int) -> tuple[Array, float]:
+    """Contacts of a full alternance: Newton on ``f(u_i) = s_i, f'(u_i) = 0``.
+
+    Solving for x with the contacts held and then moving each inner contact by ``-f'/f''`` is
+    Newton's method up to a term that vanishes with f'. Returns contacts and the last move.
+    """
+    most = np.inf
+    for _ in range(steps):
+        inverse, regular = inverted(rows_of(C, panel, u))
+        if not regular:
+            return u, np.inf
+        u, most = moved(sums_of(C, applied(inverse, sign)), panel, u, sign)
+        if most < SETTLED or most == np.inf:
+            break
+    return u, most
+
+
+@part
+def separate(basis: Ints, n: int) -> bool:
+    """True when no two grid places in order are neighbours on one panel."""
+    for k in range(basis.shape[0] - 1):
+        if basis[k + 1] - basis[k] <= 2 and basis[k] // n == basis[k + 1] // n:
+            return False
+    return True
+
+
+@part
+def others(where: Ints, places: Array, heights: Array, near: float, panel: Ints, u: Array) -> Ints:
+    """Indices of the places where ``|f|`` exceeds ``near`` that are not among the contacts."""
+    kept = np.empty(where.shape[0], dtype=np.int64)
+    count = 0
+    for i in range(where.shape[0]):
+        if heights[i] > near:
+            known = False
+            for k in range(u.shape[0]):
+                known = known or (where[i] == panel[k] and abs(places[i] - u[k]) < SAME)
+            if not known:
+                kept[count] = i
+                count += 1
+    return kept[:count]
+
+
+@kernel
+def alternance(
+    C: Array, C_low: Array, p: Array, p_low: Array, nodes: Array, G: Array, start: Ints, fine: Array, near: float
+) -> Road:
+    """(last move, panels, contacts, weights, dual, largest ``|f|``, value, panels and places of other touches)."""
+    m, n = p.shape[0], nodes.shape[0]
+    basis, weights, x, count = simplex(G, p, start, 60 * m + 200)
+    order = np.argsort(basis)
+    basis, weights = basis[order], weights[order]
+    panel, u, sign = basis // n, nodes[basis % n], np.sign(weights)
+    nowhere = (np.inf, panel, u, weights, x, np.inf, np.inf, panel, u)
+    if count < 0 or not separate(basis, n):
+        return nowhere
+    u, move = remez_steps(C, panel, u, sign, 12)
+    if not move < SETTLED or not np.abs(sign).min() > 0.0:
+        return nowhere
+    inverse, regular = inverted(rows_of(C, panel, u))
+    if not regular:
+        return nowhere
+    weights, x = combined(inverse, p), applied(inverse, sign)
+    if not (weights * sign).min() > 0.0:  # on the grid it had this sign, at the contacts it has not
+        return nowhere
+    where, places, heights = local_maxima(sums_of(C, x), fine)
+    rest = others(where, places, heights, near, panel, u)
+    value = lagrangian(C, C_low, p, p_low, panel, u, sign, weights, x)
+    return move, panel, u, weights, x, max(1.0, heights.max()), value, where[rest], places[rest]

@@ -1,0 +1,385 @@
+"""Exchange search for the guaranteed estimator: which instants, with which signs and weights.
+
+Minimise ``sum |w_i|`` subject to ``sum w_i q(u_i) = p``; dual: maximise ``p . x`` subject to
+``|x . q(u)| <= 1``. The functions q are given by Chebyshev coefficients on panels (one panel
+for each analytic piece of each measurement, noise bound divided out), orthonormal or nearly so.
+A grid simplex finds the pattern, Newton on the optimality system places the contacts. The
+answer is a hint in double precision: :mod:`navsym.guaranteed.certificate.fixed` turns it into enclosures.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
+
+import numpy as np
+
+from navsym.core.arrays import named
+from navsym.guaranteed.search.alternance import SAME, alternance, fine_count, lagrangian, local_maxima
+from navsym.guaranteed.search.kernels import (
+    Array,
+    Ints,
+    contact_system,
+    differentiation,
+    grid_values,
+    simplex,
+    spread_rows,
+)
+
+NEAR = 1e-7  # |f| above 1 - NEAR counts as touching
+NEGLIGIBLE = 1e-7  # weights below this part of their sum are not contacts
+ROUNDS = 8
+VERTICES = 6
+SNAP = 1e-8  # an inner contact this near to an end of its panel stands on the end
+MOST_TOUCHES = 600
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Search:
+    """What every search on the same functions needs, made once: places, values there, rows to start from."""
+
+    nodes: Array
+    grid: Array
+    start: Ints
+    fine: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Panels:
+    """Functions on panels and the functional.
+
+    coefficients : (panels, K, m) Chebyshev coefficients in the local variable u in [-1, 1]
+    functional   : (m,) p, in the same basis
+    coefficients_low, functional_low : what the doubles lack; zero when not given
+    """
+
+    coefficients: Array
+    functional: Array
+    coefficients_low: Array | None = None
+    functional_low: Array | None = None
+
+    def __post_init__(self) -> None:
+        panels, K, m = np.shape(self.coefficients)
+        shape = (panels, K, m)
+        for name, wanted, why in (("coefficients", shape, "panels"), ("functional", (m,), "unknowns")):
+            low = f"{name}_low"
+            given = np.zeros(wanted) if getattr(self, low) is None else getattr(self, low)
+            object.__setattr__(self, name, named(name, getattr(self, name), wanted, why))
+            object.__setattr__(self, low, named(low, given, wanted, why))
+
+    @property
+    def low(self) -> tuple[Array, Array]:
+        """The low parts of coefficients and functional."""
+        assert self.coefficients_low is not None and self.functional_low is not None
+        return self.coefficients_low, self.functional_low
+
+    @cached_property
+    def derivatives(self) -> tuple[Array, Array]:
+        """Coefficients of the first and second derivative with respect to u."""
+        D = differentiation(self.coefficients.shape[1])
+        slopes = D @ self.coefficients
+        return slopes, D @ slopes
+
+    @cached_property
+    def search(self) -> Search:
+        """Nodes, values there and rows to start from, made at the first use."""
+        nodes = nodes_for(self)
+        grid = grid_values(self.coefficients, nodes)
+        fine = chebyshev_nodes(fine_count(self.coefficients.shape[1]))
+        return Search(nodes, grid, spread_rows(grid), fine)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Contacts:
+    """Where the dual polynomial touches its bound, in double precision.
+
+    panel, u : (l,) place of each contact, u in [-1, 1]
+    inner    : (l,) 1 where the contact may move (f' = 0 there), 0 at an end of a panel
+    sign     : (l,) sign of f there, also of the weight
+    weights  : (l,)
+    dual     : (m,)
+    excess   : largest ``|f| - 1`` seen on a fine grid
+    touching : panel and u of every further place where ``|f|`` is near one, weight zero
+    value    : of the optimum, to the last bits where the functions are known beyond doubles
+    """
+
+    panel: Ints
+    u: Array
+    inner: Ints
+    sign: Array
+    weights: Array
+    dual: Array
+    excess: float
+    touching: tuple[tuple[int, float], ...] = ()
+    value: float = np.nan
+
+
+def nodes_for(panels: Panels) -> Array:
+    """Chebyshev-spaced search nodes, ends included, several for each oscillation."""
+    K = panels.coefficients.shape[1]
+    m = panels.functional.size
+    return chebyshev_nodes(int(min(4000, max(6 * K, 16 * m, 64))) + 1)
+
+
+@lru_cache(maxsize=32)
+def chebyshev_nodes(count: int) -> Array:
+    """``-cos(pi k / (count - 1))``, (count,) rising from -1 to 1, both exact; read-only, since it is shared."""
+    nodes: Array = -np.cos(np.pi * np.arange(count) / (count - 1))
+    nodes[0], nodes[-1] = -1.0, 1.0
+    nodes.flags.writeable = False
+    return nodes
+
+
+def find_contacts(panels: Panels) -> Contacts:
+    """Solve the problem to double precision; the fast road first, the careful one when it refuses."""
+    return next(roads(panels))
+
+
+def roads(panels: Panels) -> Iterator[Contacts]:
+    """The answer of the fast road, where it has one, then that of the careful one."""
+    quick = regular_contacts(panels)
+    if quick is not None:
+        yield quick
+    yield careful(panels, panels.search.nodes)
+
+
+def regular_contacts(panels: Panels) -> Contacts | None:
+    """Contacts of a full alternance, or None when there is none or the fast road does not find it."""
+    made, (C_low, p_low) = panels.search, panels.low
+    move, panel, u, weights, x, height, value, where, places = alternance(
+        panels.coefficients, C_low, panels.functional, p_low, made.nodes, made.grid, made.start, made.fine, 1.0 - NEAR
+    )
+    sizes = np.abs(weights)
+    if move == np.inf or height > 1.0 + 1e-9 or not sizes.min() > NEGLIGIBLE * sizes.sum():
+        return None
+    inner = (np.abs(u) < 1.0).astype(np.int64)
+    touching = tuple(zip(where.tolist(), places.tolist(), strict=True))[:MOST_TOUCHES]
+    return Contacts(panel, u, inner, np.sign(weights), weights, x, height - 1.0, touching, value)
+
+
+def rows_at(coefficients: Array, panel: Ints, u: Array) -> Array:
+    """q at the given places, (l, m)."""
+    K = coefficients.shape[1]
+    T = np.cos(np.arange(K) * np.arccos(np.clip(u, -1.0, 1.0))[:, None])
+    rows: Array = np.einsum("lk,lkm->lm", T, coefficients[panel])
+    return rows
+
+
+def careful(panels: Panels, nodes: Array) -> Contacts:
+    """The road for degenerate problems: vertices of the dual face, averaged; contacts merged."""
+    C, p = panels.coefficients, panels.functional
+    extra_panel = np.empty(0, dtype=np.int64)
+    extra_u = np.empty(0)
+    best: Contacts | None = None
+    for k in range(ROUNDS):
+        panel = np.concatenate([np.repeat(np.arange(C.shape[0]), nodes.size), extra_panel])
+        u = np.concatenate([np.tile(nodes, C.shape[0]), extra_u])
+        G = np.concatenate([grid_values(C, nodes), rows_at(C, extra_panel, extra_u)])
+        basis, vertices = dual_face(G, p)
+        tried = []
+        # A point inside the face; where the face is a point in truth, only the first vertex comes near it.
+        for x in (vertices.mean(axis=0), vertices[0]):
+            for reach in {1.0, 3.0**-k}:  # contacts may be nearer than nodes: later rounds keep them apart
+                tried.append(polish(panels, merged(panels, G, p, basis, panel, u, nodes, reach), x))
+            best = min(tried if best is None else [best, *tried], key=lambda c: c.excess)
+            best = best if best.excess < 1e-9 or misfits(best) else completed(panels, best)
+            if best.excess < 1e-9:
+                return best
+        more = [place for dual in (*vertices, tried[-1].dual) for place in peaks(panels, dual)]
+        extra_panel = np.concatenate([extra_panel, np.array([k for k, _ in more], dtype=np.int64)])
+        extra_u = np.concatenate([extra_u, np.array([v for _, v in more])])
+    assert best is not None
+    return best
+
+
+def completed(panels: Panels, found: Contacts) -> Contacts:
+    """The same with a dual that also touches where it nearly does, by Newton's method; if it is optimal.
+
+    Where the dual is unique and contacts without weight belong to it, the contacts with weight do not fix it.
+    """
+    C1, C2 = panels.derivatives
+    where, places, heights = local_maxima(panels.coefficients @ found.dual, panels.search.fine)
+    near = heights > 1.0 - max(NEAR, 30.0 * found.excess)
+    all_ = with_places(panels, found, apart(where[near], places[near], found.panel, found.u))
+    panel, u, inner, sign, x, weights = all_.panel, all_.u, all_.inner, all_.sign, all_.dual, all_.weights
+    free, m = int(inner.sum()), x.size
+    for _ in range(8):
+        F, J = contact_system(panels.coefficients, C1, C2, panels.functional, panel, u, inner, sign, x, weights)
+        rows = u.size + free  # what the weights must satisfy is left out
+        step = np.linalg.lstsq(J[:rows, : m + free], -F[:rows], rcond=1e-11)[0]
+        x, u = x + step[:m], u.copy()
+        u[inner == 1] = np.clip(u[inner == 1] + step[m:], -1.0, 1.0)
+    excess, touching = survey(panels, x, found.panel, found.u)
+    cost = float(np.abs(found.weights).sum())
+    if excess >= found.excess or abs(float(panels.functional @ x) - cost) > 1e-9 * cost:
+        return found  # where the two sides differ, contacts are missing that have a weight
+    return replace(found, dual=x, excess=excess, touching=touching)
+
+
+def with_places(panels: Panels, found: Contacts, more: Sequence[tuple[int, float]]) -> Contacts:
+    """The contacts and further places without weight."""
+    extra = np.array([v for _, v in more])
+    panel = np.concatenate([found.panel, np.array([k for k, _ in more], dtype=np.int64)])
+    u = np.concatenate([found.u, extra])
+    return Contacts(
+        panel,
+        u,
+        np.concatenate([found.inner, (np.abs(extra) < 1.0).astype(np.int64)]),
+        np.sign(rows_at(panels.coefficients, panel, u) @ found.dual),
+        np.concatenate([found.weights, np.zeros(extra.size)]),
+        found.dual,
+        found.excess,
+        (),
+        found.value,
+    )
+
+
+def dual_face(G: Array, p: Array) -> tuple[Ints, Array]:
+    """An optimal basis and vertices (n, m) of the face of optimal duals.
+
+    Small changes of p lead to the vertices; their mean touches the bound only where every optimal dual does.
+    """
+    random = np.random.default_rng(7)
+    size = 1e-9 * np.abs(p).max()
+    limit = 80 * p.size + 400
+    basis, _, x, _ = simplex(G, p + size * random.standard_normal(p.size), spread_rows(G), limit)
+    first, vertices = basis, [x]
+    for _ in range(VERTICES):
+        basis, _, x, _ = simplex(G, p + 100 * size * random.standard_normal(p.size), basis, limit)
+        vertices.append(x)
+    return first, np.array(vertices)
+
+
+def merged(
+    panels: Panels, G: Array, p: Array, basis: Ints, panel: Ints, u: Array, nodes: Array, reach: float
+) -> tuple[Ints, Array, Array, Array]:
+    """Contacts from basis rows: negligible ones dropped, neighbours of one sign made one."""
+    weights = np.linalg.lstsq(G[basis].T, p, rcond=1e-13)[0]
+    keep = np.abs(weights) > NEGLIGIBLE * np.abs(weights).sum()
+    basis, weights = basis[keep], weights[keep]
+    order = np.lexsort((u[basis], panel[basis]))
+    groups: list[list[int]] = []
+    for k in order:
+        if groups:
+            last = groups[-1][-1]
+            near = abs(u[basis[k]] - u[basis[last]]) <= 2.6 * reach * spacing(nodes, u[basis[k]])
+            if near and panel[basis[k]] == panel[basis[last]] and weights[k] * weights[last] > 0:
+                groups[-1].append(int(k))
+                continue
+        groups.append([int(k)])
+    at_panel = np.array([panel[basis[g[0]]] for g in groups], dtype=np.int64)
+    at_weight = np.array([weights[g].sum() for g in groups])
+    at_u = np.array([end_or_mean(u[basis[g]], weights[g]) for g in groups])
+    return at_panel, at_u, np.sign(at_weight), at_weight
+
+
+def end_or_mean(u: Array, weights: Array) -> float:
+    """The weighted mean of places u (l,) in [-1, 1], or the outermost of them when the mean is at an end."""
+    mean = float((u * weights).sum() / weights.sum())
+    return float(u[np.abs(u).argmax()]) if abs(mean) > 1.0 - 1e-9 else mean
+
+
+def spacing(nodes: Array, u: float) -> float:
+    """Distance of the two search nodes around u."""
+    k = int(np.clip(np.searchsorted(nodes, u), 1, nodes.size - 1))
+    return float(nodes[k] - nodes[k - 1])
+
+
+def polish(panels: Panels, start: tuple[Ints, Array, Array, Array], x: Array) -> Contacts:
+    """Newton in the least-squares sense on the optimality system, contacts kept inside their panels."""
+    C = panels.coefficients
+    C1, C2 = panels.derivatives
+    panel, u, sign, weights = start
+    inner = inner_flags(C1, panel, u, sign, x)
+    m, l = panels.functional.size, u.size
+    x = x.copy()
+    for _ in range(25):
+        F, J = contact_system(C, C1, C2, panels.functional, panel, u, inner, sign, x, weights)
+        step = np.linalg.lstsq(J, -F, rcond=1e-11)[0]
+        x = x + step[:m]
+        moved = u.copy()
+        moved[inner == 1] += np.clip(step[m : m + int(inner.sum())], -0.2, 0.2)
+        weights = weights + step[-l:]
+        outside = (np.abs(moved) >= 1.0 - SNAP) & (inner == 1)
+        u = np.where(outside, np.sign(moved), moved)
+        inner = np.where(outside, 0, inner)
+        if np.abs(step).max() < 1e-13 * max(1.0, float(np.abs(x).max())):
+            break
+    kept, weights = independent(rows_at(C, panel, u), weights)
+    heavy = np.abs(weights) > NEGLIGIBLE * np.abs(weights).sum()  # the others touch without a weight
+    kept, weights = kept[heavy], weights[heavy]
+    panel, u, inner, sign = panel[kept], u[kept], inner[kept], sign[kept]
+    excess, touching = survey(panels, x, panel, u)
+    (C_low, p_low), p = panels.low, panels.functional
+    value = lagrangian(C, C_low, p, p_low, panel, u, sign, weights, x)
+    found = Contacts(panel, u, inner, sign, weights, x, excess, touching, value)
+    return replace(found, excess=max(excess, 1e-3)) if misfits(found) else found
+
+
+def misfits(found: Contacts) -> bool:
+    """Some weight has not the sign of the dual polynomial at its contact."""
+    return bool((found.weights * found.sign <= 0).any())
+
+
+def independent(rows: Array, weights: Array) -> tuple[Ints, Array]:
+    """Fewer contacts with the same sum and the same cost, until their rows are independent.
+
+    Along a null vector n of the rows the cost ``sum |w|`` does not change while no weight changes
+    its sign, since ``x . row_i = sign(w_i)``; the first weight that vanishes is dropped. Carathéodory.
+    """
+    kept = np.arange(weights.size)
+    while kept.size > 1:
+        _, s, Vt = np.linalg.svd(rows[kept].T)
+        if kept.size <= s.size and s[-1] > 1e-9 * s[0]:
+            break
+        n = Vt[-1]
+        ratios = np.where(np.abs(n) > 1e-12, weights / np.where(n == 0.0, 1.0, n), np.inf)
+        forward = np.where(ratios > 0, ratios, np.inf)
+        if not np.isfinite(forward).any():
+            n, forward = -n, np.where(ratios < 0, -ratios, np.inf)
+        if not np.isfinite(forward).any():
+            break
+        drop = int(np.argmin(forward))
+        weights = np.delete(weights - forward[drop] * n, drop)
+        kept = np.delete(kept, drop)
+    return kept, weights
+
+
+def inner_flags(C1: Array, panel: Ints, u: Array, sign: Array, x: Array) -> Ints:
+    """0 for a contact on an end of its panel towards which the polynomial still grows, or is flat."""
+    flags = np.ones(u.size, dtype=np.int64)
+    for i in np.flatnonzero(np.abs(u) >= 1.0 - 1e-12):
+        slope = rows_at(C1, panel[i : i + 1], u[i : i + 1])[0] @ x
+        flags[i] = 0 if slope * sign[i] * u[i] > -1e-6 else 1
+    return flags
+
+
+def peaks(panels: Panels, x: Array) -> list[tuple[int, float]]:
+    """Local maxima of |f| above one."""
+    panel, u, height = local_maxima(panels.coefficients @ x, panels.search.fine)
+    return [(int(panel[i]), float(u[i])) for i in np.flatnonzero(height > 1.0 + 1e-12)]
+
+
+def survey(panels: Panels, x: Array, panel: Ints, u: Array) -> tuple[float, tuple[tuple[int, float], ...]]:
+    """Largest ``|f| - 1``, and the near-touching maxima that are not among the given contacts."""
+    where, v, height = local_maxima(panels.coefficients @ x, panels.search.fine)
+    near = height > 1.0 - NEAR
+    return float(height.max(initial=1.0)) - 1.0, apart(where[near], v[near], panel, u)
+
+
+def apart(where: Ints, v: Array, panel: Ints, u: Array) -> tuple[tuple[int, float], ...]:
+    """The near-touching places that are not among the given contacts."""
+    contacts = list(zip(panel.tolist(), u.tolist(), strict=True))
+    rest = [
+        (k, place)
+        for k, place in zip(where.tolist(), v.tolist(), strict=True)
+        if not any(k == j and abs(place - w) < SAME for j, w in contacts)
+    ]
+    return tuple(rest[:MOST_TOUCHES])
+
+
+def compile_loops() -> None:
+    """Compile the loops of the search now: for many problems, where waiting for the meter would cost more."""
+    for loop in (alternance, contact_system, grid_values, lagrangian, local_maxima, simplex, spread_rows):
+        loop.compiled()

@@ -1,0 +1,476 @@
+"""Whether the optimal estimator is proved not to be the only one.
+
+A dual x with exact entries is optimal when ``|x . H_j| <= sigma_j`` and some weights of the right signs, at places
+where the bound is reached exactly, satisfy ``sum w_i H(t_i) = P``. When there are more such places than unknowns
+and weights all of which differ from zero, some of them may be changed a little and the rest follows: the
+optimum is a face. Places are the whole of a panel where ``x . H = +-sigma`` identically, and exact contacts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import sympy as sp
+from flint import arb, arb_mat, fmpq, fmpq_mat
+
+from navsym.claims import PROVED, Equation
+from navsym.core.balls import enclose, exact_rational, precision
+from navsym.guaranteed.certificate.basis import Basis, as_fraction
+from navsym.guaranteed.certificate.enclosure import Panel, Problem, Touch, rational
+from navsym.guaranteed.certificate.fixed import flattened
+from navsym.guaranteed.certificate.whole import bounded
+from navsym.guaranteed.search.exchange import Contacts, with_places
+from navsym.guaranteed.search.interior import interior_dual
+from navsym.prove.ladder import decide
+
+BITS = 256
+NEAR = sp.Rational(1, 10**8)
+NOTHING = arb(2) ** -200
+SAMPLES = 12
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """An exact place where the dual polynomial is ``sign * sigma``."""
+
+    panel: int
+    at: fmpq
+    sign: int
+
+
+def several_optimal(problem: Problem, contacts: Contacts, dual: Sequence[arb]) -> bool:
+    """True when a second optimal estimator is proved to exist."""
+    x = [recognised(c) for c in dual]
+    if any(c is None for c in x):
+        return False
+    exact = [c for c in x if c is not None]
+    places = exact_places(problem, contacts, exact)
+    m = len(exact)
+    if not places:
+        return False
+    places = [places[i] for i in largest_support(*numbers_at(problem, places))]
+    if not places:
+        return False
+    rational_values = exact_values(problem, places)
+    if rational_values is not None:
+        return exact_interior(rational_values, [p.sign for p in places])
+    return len(places) > m and interior(problem, places, m)
+
+
+def recognised(x: arb) -> sp.Rational | None:
+    """The rational with a small denominator next to a ball."""
+    value = rational(x)
+    number = exact_rational(value)
+    best = number.limit_denominator(720)
+    return best if abs(best - number) <= NEAR * max(1, abs(number)) else None
+
+
+def exact_places(problem: Problem, contacts: Contacts, x: Sequence[sp.Rational]) -> list[Place] | None:
+    """Places where the bound is proved to be reached, or None when the dual is not proved feasible."""
+    places: list[Place] = []
+    for k, panel in enumerate(problem.panels):
+        f = sp.expand(sum((c * h for c, h in zip(x, panel.functions, strict=True)), sp.S.Zero))
+        sign = flat_sign(panel, f)
+        if sign:
+            places += [Place(k, fmpq(j, SAMPLES), sign) for j in range(SAMPLES + 1)]
+            continue
+        mine = [place for place in guess_places(contacts, k, panel, f) if holds(panel, f, place)]
+        touches = [Touch(p.at, p.sign, True, "no" if level(panel, f, p) else end_of(p.at)) for p in mine]
+        with precision(BITS):
+            balls = [enclose(c, bits=BITS) for c in x]
+            if bounded(panel, balls, touches) is None:
+                return None
+        places += mine
+    return places
+
+
+def flat_sign(panel: Panel, f: sp.Expr) -> int:
+    """The sign with which f is its bound on the whole panel, 0 when it is not."""
+    value = enclose(f.subs(panel.variable, (panel.start + panel.end) / 2))
+    sign = 1 if bool(value > 0) else -1
+    return sign if decide(Equation(f, sign * panel.sigma)).status is PROVED else 0
+
+
+def guess_places(contacts: Contacts, k: int, panel: Panel, f: sp.Expr) -> list[Place]:
+    """Contacts of a panel at shares with a small denominator."""
+    at = [(int(j), float(u)) for j, u in zip(contacts.panel, contacts.u, strict=True)]
+    shares = {as_fraction(u) for j, u in [*at, *contacts.touching] if j == k}
+    found = {}
+    for share in shares:
+        best = exact_rational(share).limit_denominator(60)
+        value = f.subs(panel.variable, panel.start + (panel.end - panel.start) * best)
+        found[fmpq(int(best.p), int(best.q))] = 1 if bool(enclose(value) > 0) else -1
+    return [Place(k, at_, sign) for at_, sign in found.items()]
+
+
+def holds(panel: Panel, f: sp.Expr, place: Place) -> bool:
+    """The bound is reached there exactly, with a slope of zero inside the panel."""
+    value = f.subs(panel.variable, time_of(panel, place))
+    reached = decide(Equation(value, place.sign * panel.sigma)).status is PROVED
+    return reached and (end_of(place.at) != "no" or level(panel, f, place))
+
+
+def level(panel: Panel, f: sp.Expr, place: Place) -> bool:
+    """The slope there is zero; it may also be at an end."""
+    slope = f.diff(panel.variable).subs(panel.variable, time_of(panel, place))
+    return decide(Equation(slope, sp.S.Zero)).status is PROVED
+
+
+def time_of(panel: Panel, place: Place) -> sp.Expr:
+    """The exact instant of a place, whose share of the panel is from 0 to 1."""
+    return panel.start + (panel.end - panel.start) * sp.Rational(int(place.at.p), int(place.at.q))
+
+
+def end_of(at: fmpq) -> str:
+    """The end of a panel at which a share lies: ``from`` at 0, ``to`` at 1, ``no`` inside."""
+    return "from" if at == 0 else "to" if at == 1 else "no"
+
+
+def interior(problem: Problem, places: Sequence[Place], m: int) -> bool:
+    """Weights of the right signs at all places: the last ones exact and free to move, the others from balls."""
+    N, P = numbers_at(problem, places)
+    with precision(BITS):
+        columns = [problem.panels[p.panel].rows(arb(p.at)) for p in places]
+        weights = most_inside(N, P)
+        if weights is None:
+            return False
+        order = independent_first(N, m)
+        if order is None:
+            return False
+        fixed = [fmpq(round(float(weights[i]) * 2**40), 2**40) for i in order[m:]]
+        right = problem.target()
+        for i, w in zip(order[m:], fixed, strict=True):
+            right = [r - places[i].sign * arb(w) * h for r, h in zip(right, columns[i], strict=True)]
+        block = arb_mat([columns[i] for i in order[:m]]).transpose()
+        try:
+            solved = block.solve(arb_mat([[r] for r in right]))
+        except ZeroDivisionError:
+            return False
+        signs = [places[i].sign for i in order[:m]]
+        return all(w > 0 for w in fixed) and all(bool(s * solved[j, 0] > 0) for j, s in enumerate(signs))
+
+
+def numbers_at(problem: Problem, places: Sequence[Place]) -> tuple[np.ndarray, np.ndarray]:
+    """Signed regressors at the places as columns and P, in doubles, rows scaled."""
+    with precision(BITS):
+        columns = [problem.panels[p.panel].rows(arb(p.at)) for p in places]
+        sizes = [[abs(h).mid() for h in row] for row in zip(*columns, strict=True)]
+        largest = max(map(max, sizes))
+        # A cosine that vanishes is no row to be scaled up.
+        scale = [max(row) if max(row) > NOTHING * largest else arb(1) for row in sizes]
+        signed = zip((p.sign for p in places), columns, strict=True)
+        N = [[sign * float(h / s) for h, s in zip(column, scale, strict=True)] for sign, column in signed]
+        P = [float((p / s).mid()) for p, s in zip(problem.target(), scale, strict=True)]
+    return np.array(N).T, np.array(P)
+
+
+def largest_support(N: np.ndarray, P: np.ndarray) -> list[int]:
+    """Columns that some nonnegative solution of ``N w = P`` uses."""
+    from scipy.optimize import linprog
+
+    m, n = N.shape
+    room = np.eye(n)
+    answer = linprog(
+        np.r_[np.zeros(n), -np.ones(n)],
+        A_ub=np.c_[-room, room],
+        b_ub=np.zeros(n),
+        A_eq=np.c_[N, np.zeros((m, n))],
+        b_eq=P,
+        bounds=[(0, None)] * n + [(0, 1e-3)] * n,
+    )
+    return [i for i in range(n) if answer.success and answer.x[n + i] > 1e-7]
+
+
+def exact_values(problem: Problem, places: Sequence[Place]) -> tuple[fmpq_mat, fmpq_mat] | None:
+    """The regressors at the places as columns, and P, when all of them are rational numbers."""
+    rows: list[sp.Expr] = []
+    for place in places:
+        panel = problem.panels[place.panel]
+        at = time_of(panel, place)
+        rows += [sp.sympify(h, strict=True).subs(panel.variable, at) for h in panel.functions]
+    values = [*rows, *(sp.sympify(p, strict=True) for p in problem.functional)]
+    if not all(v.is_Rational for v in values):
+        return None
+    numbers = [fmpq(int(v.p), int(v.q)) for v in values]
+    m = len(problem.functional)
+    return fmpq_mat(len(places), m, numbers[:-m]).transpose(), fmpq_mat(m, 1, numbers[-m:])
+
+
+def exact_interior(values: tuple[fmpq_mat, fmpq_mat], signs: Sequence[int]) -> bool:
+    """Weights of the right signs at all places and a null vector of their columns, in rational numbers."""
+    N, P = values
+    m, n = N.nrows(), N.ncols()
+    rank = N.rank()
+    if rank >= n:
+        return False
+    dense = np.array([[signs[j] * float(N[i, j]) for j in range(n)] for i in range(m)])
+    scale = np.abs(dense).max(axis=1) + 1e-300
+    weights = most_inside(dense / scale[:, None], np.array([float(P[i, 0]) for i in range(m)]) / scale)
+    order = None if weights is None else independent_first(dense, rank)
+    if weights is None or order is None:
+        return False
+    fixed = {i: signs[i] * fmpq(round(float(weights[i]) * 2**40), 2**40) for i in order[rank:]}
+    right = [P[i, 0] - sum((w * N[i, j] for j, w in fixed.items()), fmpq(0)) for i in range(m)]
+    augmented = fmpq_mat(m, rank + 1, [c for i in range(m) for c in [*(N[i, j] for j in order[:rank]), right[i]]])
+    reduced, found = augmented.rref()
+    if found != rank or any(reduced[i, i] != 1 for i in range(rank)):
+        return False
+    solved = [reduced[i, rank] for i in range(rank)]
+    return all(signs[j] * w > 0 for j, w in fixed.items()) and all(
+        signs[j] * w > 0 for j, w in zip(order[:rank], solved, strict=True)
+    )
+
+
+def most_inside(N: np.ndarray, P: np.ndarray) -> np.ndarray | None:
+    """Positive weights with ``N w = P`` whose smallest is as large as can be."""
+    from scipy.optimize import linprog
+
+    m, n = N.shape
+    answer = linprog(
+        np.r_[np.zeros(n), -1.0],
+        A_ub=np.c_[-np.eye(n), np.ones(n)],
+        b_ub=np.zeros(n),
+        A_eq=np.c_[N, np.zeros(m)],
+        b_eq=P,
+        bounds=[(0, None)] * n + [(0, 1.0)],
+    )
+    return answer.x[:n] if answer.success and answer.x[-1] > 1e-9 else None
+
+
+def independent_first(N: np.ndarray, m: int) -> list[int] | None:
+    """Columns ordered so that the first m are independent; None when there are no m of them."""
+    chosen: list[int] = []
+    rest = N.copy()
+    for _ in range(m):
+        sizes = np.linalg.norm(rest, axis=0)
+        best = int(np.argmax(sizes))
+        if sizes[best] < 1e-8:
+            return None
+        chosen.append(best)
+        unit = rest[:, best] / sizes[best]
+        rest = rest - np.outer(unit, unit @ rest)
+    return chosen + [i for i in range(N.shape[1]) if i not in chosen]
+
+
+# Whether the optimal estimator is the only one, where fewer contacts than unknowns carry it.
+#
+# Every optimal estimator has its weights where a dual touches that is optimal itself. So a dual with as much room as
+# there can be is looked for: it meets its bound at given exact places and stays below elsewhere, proved in balls. When
+# the regressors at these places are independent, the weights follow from ``sum w_i H(t_i) = P`` and are the only
+# ones; the equations that are more than the weights must hold exactly, and the signs must be those of the dual.
+# When they are dependent and some weights of the right signs leave room at all places, there are many.
+
+
+#: Shares of a panel with a larger denominator, or further away than this, are not guessed; more places not solved.
+LARGEST, CLOSE, MOST = 720, 1e-6, 6
+
+
+@dataclass(frozen=True, slots=True)
+class Pin:
+    """An exact place, and whether the dual is flat there."""
+
+    place: Place
+    flat: bool
+
+
+def only_optimal(problem: Problem, basis: Basis, contacts: Contacts, dual: Sequence[arb]) -> bool | None:
+    """True when the optimal estimator is proved to be the only one, False when another is, else None."""
+    if any(panel.values for panel in problem.panels):
+        return None
+    sets = [contacts, flattened(contacts)]
+    if 0 < len(contacts.touching) <= basis.panels.functional.size:
+        sets.append(flattened(with_places(basis.panels, contacts, contacts.touching)))
+    for places in sets:
+        pins = guess_pins(places)
+        x = None if pins is None else interior_dual(basis.panels, places)
+        if pins is not None and x is not None and touches_only(problem, basis, pins, x):
+            return decided(problem, [pin.place for pin in pins])
+    return by_round_dual(problem, contacts, dual)
+
+
+def by_round_dual(problem: Problem, contacts: Contacts, dual: Sequence[arb]) -> bool | None:
+    """The same from a dual of simple rational numbers and all places where it touches, when these are single ones."""
+    x = [c for c in map(recognised, dual) if c is not None]
+    places = exact_places(problem, contacts, x) if len(x) == len(dual) else None
+    if not places:
+        return None
+    with precision(BITS):
+        balls = [enclose(c, bits=BITS) for c in x]
+        for k, panel in enumerate(problem.panels):
+            here = sum(place.panel == k for place in places)
+            if here > SAMPLES or (here == 0 and not strictly_below(panel, balls)):
+                return None
+    return decided(problem, places)
+
+
+def strictly_below(panel: Panel, dual: Sequence[arb]) -> bool:
+    """The dual is proved to touch nowhere on the panel: it keeps a bound that is a little smaller."""
+    return bounded(replace(panel, sigma=panel.sigma * (1 - sp.Rational(1, 10**9))), dual, []) is not None
+
+
+def guess_pins(contacts: Contacts) -> list[Pin] | None:
+    """The contacts at shares with a small denominator; None where one has none."""
+    pins = []
+    for k, u, inner, sign in zip(contacts.panel, contacts.u, contacts.inner, contacts.sign, strict=True):
+        share = as_fraction(float(u))
+        exact = exact_rational(share)
+        best = exact.limit_denominator(LARGEST)
+        if abs(best - exact) > CLOSE:
+            return None
+        pins.append(Pin(Place(int(k), fmpq(int(best.p), int(best.q)), int(sign)), bool(inner)))
+    return pins
+
+
+def touches_only(problem: Problem, basis: Basis, pins: Sequence[Pin], x: np.ndarray) -> bool:
+    """A dual next to x meets its bound at the pins, flat where they say so, and is proved to stay below elsewhere."""
+    with precision(BITS):
+        dual = pinned_exactly(problem, basis, pins, x)
+        if dual is None:
+            return False
+        for k, panel in enumerate(problem.panels):
+            mine = [pin for pin in pins if pin.place.panel == k]
+            touches = [Touch(p.place.at, p.place.sign, True, "no" if p.flat else end_of(p.place.at)) for p in mine]
+            if not (strictly_below(panel, dual) if not touches else bounded(panel, dual, touches)):
+                return False
+    return True
+
+
+def pinned_exactly(problem: Problem, basis: Basis, pins: Sequence[Pin], x: np.ndarray) -> list[arb] | None:
+    """Balls around a dual that meets the conditions of the pins exactly: some entries rational, the others follow."""
+    rows, right = conditions(problem, pins)
+    near = (basis.transform.transpose() * arb_mat([[arb(float(c))] for c in x])).entries()
+    sizes = [max(abs(row[j]).mid() for row in rows) for j in range(len(near))]
+    least = NOTHING * max(sizes)  # a sine that vanishes is no column to be scaled up
+    dense = np.array([[float(h / s) if s > least else 0.0 for h, s in zip(row, sizes, strict=True)] for row in rows])
+    rank = int(np.linalg.matrix_rank(dense, tol=1e-9))
+    chosen, order = independent_first(dense.T, rank), independent_first(dense, rank)
+    if chosen is None or order is None or not follow(problem, pins, chosen[:rank], chosen[rank:]):
+        return None
+    free = {j: near[j].mid() for j in order[rank:]}
+    rest = [right[i] - sum((rows[i][j] * c for j, c in free.items()), arb(0)) for i in chosen[:rank]]
+    block = arb_mat([[rows[i][j] for j in order[:rank]] for i in chosen[:rank]])
+    try:
+        solved = block.solve(arb_mat([[r] for r in rest])).entries()
+    except ZeroDivisionError:
+        return None
+    found = dict(zip(order[:rank], solved, strict=True)) | free
+    return [found[j] for j in range(len(near))]
+
+
+def conditions(problem: Problem, pins: Sequence[Pin]) -> tuple[list[list[arb]], list[arb]]:
+    """Values, and slopes where flat, as rows for the dual, and what they must be."""
+    rows, right = [], []
+    for pin in pins:
+        panel = problem.panels[pin.place.panel]
+        series = panel.series(arb(pin.place.at), arb(1), int(pin.flat))
+        rows.append([h[0] for h in series])
+        right.append(pin.place.sign * panel.bound())
+        if pin.flat:
+            rows.append([h[1] for h in series])
+            right.append(arb(0))
+    return rows, right
+
+
+def follow(problem: Problem, pins: Sequence[Pin], chosen: Sequence[int], others: Sequence[int]) -> bool:
+    """The conditions left out follow from the others: each is one of them exactly (a period later), or is empty."""
+    if not others:
+        return True
+    exact = exact_conditions(problem, pins)
+    return all(zero(exact[i]) or any(same(exact[i], exact[j]) for j in chosen) for i in others)
+
+
+def exact_conditions(problem: Problem, pins: Sequence[Pin]) -> list[tuple[sp.Expr, ...]]:
+    """The rows of the conditions with their right sides, exactly; slopes are with respect to the share."""
+    rows: list[tuple[sp.Expr, ...]] = []
+    for pin in pins:
+        panel, at = problem.panels[pin.place.panel], time_of(problem.panels[pin.place.panel], pin.place)
+        rows.append((*(h.subs(panel.variable, at) for h in panel.functions), pin.place.sign * panel.sigma))
+        if pin.flat:
+            slopes = (h.diff(panel.variable) * (panel.end - panel.start) for h in panel.functions)
+            rows.append((*(h.subs(panel.variable, at) for h in slopes), sp.S.Zero))
+    return rows
+
+
+def zero(row: Sequence[sp.Expr]) -> bool:
+    """Every entry is proved to be zero."""
+    return all(entry == 0 or proved(entry) for entry in row)
+
+
+def same(row: Sequence[sp.Expr], other: Sequence[sp.Expr]) -> bool:
+    """The rows are equal but for a sign."""
+    return any(zero([a - s * b for a, b in zip(row, other, strict=True)]) for s in (1, -1))
+
+
+def proved(entry: sp.Expr) -> bool:
+    """The number is proved to be zero."""
+    return decide(Equation(sp.sympify(entry, strict=True), sp.S.Zero)).status is PROVED
+
+
+def decided(problem: Problem, places: Sequence[Place]) -> bool | None:
+    """Whether weights at these places, all of the contacts of an optimal dual, are the only ones."""
+    m, values = len(problem.functional), exact_values(problem, places)
+    twins = [k for k in range(len(places)) if any(alike(problem, places[k], other) for other in places[:k])]
+    rest = [place for k, place in enumerate(places) if k not in twins]
+    if len(rest) <= m and independent_weights(problem, rest):
+        return not twins  # the weight of a place may be shared with its twin
+    several = (
+        exact_interior(values, [p.sign for p in places])
+        if values is not None
+        else len(places) > m and interior(problem, places, m)
+    )
+    return False if several else None
+
+
+def alike(problem: Problem, place: Place, other: Place) -> bool:
+    """The regressors over the noise bound are the same at two places, and so is the sign."""
+    if place.sign != other.sign:
+        return False
+    a, b = columns_at(problem, [place, other])
+    bounds = [problem.panels[p.panel].sigma for p in (place, other)]
+    return zero([h * bounds[1] - g * bounds[0] for h, g in zip(a, b, strict=True)])
+
+
+def columns_at(problem: Problem, places: Sequence[Place]) -> list[list[sp.Expr]]:
+    """The regressors at the places, exactly."""
+    panels = [problem.panels[p.panel] for p in places]
+    return [
+        [h.subs(panel.variable, time_of(panel, p)) for h in panel.functions]
+        for panel, p in zip(panels, places, strict=True)
+    ]
+
+
+def independent_weights(problem: Problem, places: Sequence[Place]) -> bool:
+    """The regressors at the places are independent, and weights of the right signs satisfy all equations exactly."""
+    with precision(BITS):
+        N = arb_mat([problem.panels[p.panel].rows(arb(p.at)) for p in places]).transpose()
+        dense = np.array([[float(h) for h in row] for row in N.tolist()])
+        sizes = np.abs(dense).max(axis=1, keepdims=True)
+        chosen = independent_first((dense / np.where(sizes > 0, sizes, 1.0)).T, len(places))
+        if chosen is None:
+            return False
+        rows, others = chosen[: len(places)], chosen[len(places) :]
+        target, entries = problem.target(), N.tolist()
+        try:
+            weights = arb_mat([entries[i] for i in rows]).solve(arb_mat([[target[i]] for i in rows])).entries()
+        except ZeroDivisionError:
+            return False
+        if not all(bool(p.sign * w > 0) for p, w in zip(places, weights, strict=True)):
+            return False
+    return not others or (len(places) <= MOST and equations_hold(problem, places, rows, others))
+
+
+def equations_hold(problem: Problem, places: Sequence[Place], rows: Sequence[int], others: Sequence[int]) -> bool:
+    """``sum w_i H(t_i) = P`` in the other rows, exactly, when it holds in those that fix the weights."""
+    columns = columns_at(problem, places)
+    block = sp.Matrix([[column[i] for column in columns] for i in rows])
+    determinant = block.det(method="berkowitz")
+    times = block.adjugate() * sp.Matrix([problem.functional[i] for i in rows])
+    return all(
+        proved(
+            sum((column[i] * w for column, w in zip(columns, times, strict=True)), sp.S.Zero)
+            - determinant * problem.functional[i]
+        )
+        for i in others
+    )

@@ -1,0 +1,221 @@
+"""One step of exact arithmetic at a time, bounded before it is done.
+
+sympy evaluates while it builds: ``9**9**9`` would be computed, ``exp(10**9*log(2))`` turned
+into a power and computed, ``1/0`` become ``zoo``. Here the size of every power is bounded
+first, and every result must be a finite real expression.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from fractions import Fraction
+
+import sympy as sp
+from sympy.core.evalf import PrecisionExhausted
+
+from navsym.core.errors import DomainError, NavsymError, TooLargeError
+from navsym.language.tokens import EXPONENT
+
+BITS = 13_000  # size of any number, below 4000 digits
+GROWTH = 9_000  # argument of exp, sinh and cosh: exp(9000) is just below 2**BITS
+FACTORS = 128  # of one product: the algebra compares all of them
+ROOT_BITS = 700  # size of a number under a root: sympy looks for square factors in it
+
+BUILDERS: dict[str, Callable[..., sp.Expr]] = {
+    "sin": sp.sin,
+    "cos": sp.cos,
+    "tan": sp.tan,
+    "cot": sp.cot,
+    "sec": sp.sec,
+    "csc": sp.csc,
+    "exp": sp.exp,
+    "log": sp.log,
+    "sqrt": sp.sqrt,
+    "abs": sp.Abs,
+    "asin": sp.asin,
+    "acos": sp.acos,
+    "atan": sp.atan,
+    "atan2": sp.atan2,
+    "sinh": sp.sinh,
+    "cosh": sp.cosh,
+    "tanh": sp.tanh,
+}
+
+
+#: Roots are the real ones of numbers that are not negative, as in (-8)**(1/3).
+ROOT_ADVICE = "restrict the symbols, or take the sign out of an odd root: -(8**(1/3))"
+
+
+class Refusal(Exception):
+    """Why a step is not done; the parser adds the place."""
+
+    def __init__(self, error: type[NavsymError], expected: str, got: str, do: str):
+        super().__init__(expected)
+        self.error, self.expected, self.got, self.do = error, expected, got, do
+
+
+def too_large(expected: str, got: str) -> Refusal:
+    """A refusal for size."""
+    return Refusal(TooLargeError, expected, got, "rescale, or state the formula without this power")
+
+
+def undefined(got: str) -> Refusal:
+    """A refusal for a value that does not exist or is not real."""
+    return Refusal(DomainError, "a finite real value", got, "restrict or correct the expression")
+
+
+def number(text: str) -> sp.Rational:
+    """A decimal number, exactly: ``"0.1"`` is 1/10 and ``"1e-9"`` is 1/10**9."""
+    value = Fraction(text)
+    return sp.Rational(value.numerator, value.denominator)
+
+
+def add(terms: list[sp.Expr]) -> sp.Expr:
+    """The sum."""
+    return real(sp.Add(*terms)) if len(terms) > 1 else terms[0]
+
+
+def bound_factors(factors: list[sp.Expr]) -> None:
+    """Refuse a product with too many factors before all of them are read."""
+    if len(factors) > FACTORS:
+        raise too_large(f"at most {FACTORS} factors in a product", "more")
+
+
+def multiply(factors: list[sp.Expr]) -> sp.Expr:
+    """The product, with the size of its numbers bounded first."""
+    if len(factors) > 2 and sum(number_bits(factor) for factor in factors) > 4 * BITS:
+        raise too_large(f"numbers of at most {BITS} bits", "a product of many large ones")
+    return real(sp.Mul(*factors)) if len(factors) > 1 else factors[0]
+
+
+def invert(divisor: sp.Expr) -> sp.Expr:
+    """One over the divisor, which must not be a zero, open or in disguise."""
+    if sign(divisor) == 0:
+        raise Refusal(DomainError, "a nonzero divisor", "zero", "correct the denominator")
+    return real(sp.Pow(divisor, -1))
+
+
+def power(base: sp.Expr, exponent: sp.Expr) -> sp.Expr:
+    """``base**exponent`` with the size of the result bounded before it is computed."""
+    bound_exponent(base, exponent)
+    if exponent.is_extended_negative and sign(base) == 0:
+        raise Refusal(DomainError, "a nonzero base", "zero to a negative power", "correct the denominator")
+    if exponent.free_symbols and sign(base) == -1:
+        raise undefined("a negative number to a symbolic power")
+    return real(sp.Pow(base, exponent))
+
+
+def call(name: str, arguments: list[sp.Expr]) -> sp.Expr:
+    """Function of the language at exact arguments."""
+    if name == "sqrt":
+        return power(arguments[0], sp.Rational(1, 2))
+    for argument in arguments:
+        bound_constant(name, argument)
+    check_domain(name, arguments[0])
+    if name == "exp":
+        bound_logarithms(arguments[0])
+    return real(BUILDERS[name](*arguments))
+
+
+def check_domain(name: str, argument: sp.Expr) -> None:
+    """Refuse a constant outside the domain before the algebra turns ``sin(asin(2))`` into 2."""
+    if name in ("asin", "acos") and sign(1 - argument**2) == -1:
+        raise undefined("the inverse of a sine or cosine above one")
+    if name == "log" and sign(argument) == -1:
+        raise undefined("the logarithm of a negative number")
+
+
+def sign(value: sp.Expr) -> int | None:
+    """Sign of a constant: -1, 1, or 0 for zero and what 120 digits cannot tell from it; None with symbols."""
+    if value.free_symbols:
+        return None
+    if not value.is_Rational:
+        try:
+            value = value.evalf(10, maxn=120, strict=True)
+        except PrecisionExhausted:
+            return 0
+    return int(sp.sign(value)) if value.is_comparable else None
+
+
+def bound_exponent(base: sp.Expr, exponent: sp.Expr) -> None:
+    """Refuse a power whose numbers, or whose total exponent, would be too large.
+
+    Every rational part of the exponent counts, also beside symbols: ``2**(x + n)*2**(-x)`` is ``2**n``.
+    """
+    size = max((abs(part) for part in [*rational_parts(exponent), *irrational(exponent)]), default=sp.Integer(0))
+    bits = number_bits(base)
+    if size > EXPONENT:
+        raise too_large(f"an exponent of at most {EXPONENT}", "a larger one")
+    if exponent.is_Rational and exponent.q > EXPONENT:
+        raise too_large(f"a fractional exponent with a denominator of at most {EXPONENT}", "a larger one")
+    if exponent.is_Rational and total_exponent(base) * size > EXPONENT:
+        raise too_large(f"a total exponent of at most {EXPONENT}", "powers of powers beyond it")
+    if bits * size > BITS:
+        raise too_large(f"numbers of at most {BITS} bits", f"about {int(bits * size)} bits")
+    if not exponent.is_integer and bits > ROOT_BITS:
+        raise too_large(f"at most {ROOT_BITS} bits under a root", f"{bits} bits")
+
+
+def bound_constant(name: str, argument: sp.Expr) -> None:
+    """Refuse constants such as ``sin(exp(exp(99)))``: comparing them would need their whole digits."""
+    if argument.free_symbols:
+        return
+    size = abs(argument.evalf(5))
+    largest = GROWTH if name in ("exp", "sinh", "cosh") else sp.Integer(2) ** BITS
+    if size.is_Float and size > largest:
+        raise too_large(f"an argument of {name} of bounded size", "a larger constant")
+
+
+def bound_logarithms(argument: sp.Expr) -> None:
+    """``exp(n*log(a))`` is turned into ``a**n``: the caps of powers hold for it."""
+    for term in sp.Add.make_args(argument):
+        for factor in sp.Mul.make_args(term):
+            if isinstance(factor, sp.log):
+                bound_exponent(factor.args[0], term / factor)
+
+
+def rational_parts(exponent: sp.Expr) -> list[sp.Rational]:
+    """Rational coefficients of the terms of an exponent."""
+    parts = (term.as_coeff_Mul()[0] for term in sp.Add.make_args(exponent))
+    return [part for part in parts if part.is_Rational]
+
+
+def irrational(exponent: sp.Expr) -> list[sp.Expr]:
+    """The value of a constant exponent that is no fraction, to a few digits: of towers such as ``9**9**9**(1/2)`` sympy
+    would want all digits when it puts terms in order."""
+    if exponent.free_symbols or exponent.is_Rational:
+        return []
+    value = exponent.evalf(5)
+    return [value] if value.is_Float else []
+
+
+def number_bits(base: sp.Expr) -> int:
+    """Size of the numbers that a power of ``base`` would raise: its rational factors."""
+    bits = 0
+    for factor in sp.Mul.make_args(base):
+        inner = factor.base if factor.is_Pow else factor
+        if inner.is_Rational:
+            bits += int(inner.p).bit_length() * (abs(inner.p) > 1) + int(inner.q).bit_length() * (inner.q > 1)
+    return bits
+
+
+def total_exponent(base: sp.Expr) -> sp.Rational:
+    """Largest rational exponent inside ``base``, which the outer one would multiply."""
+    powers = (factor for factor in sp.Mul.make_args(base) if factor.is_Pow)
+    inside = (abs(part) for factor in powers for part in rational_parts(factor.exp))
+    return max(inside, default=sp.Integer(1))
+
+
+def real(value: sp.Expr) -> sp.Expr:
+    """The value, when it is finite and real as far as a look at its surface tells."""
+    for term in sp.Add.make_args(value):
+        for factor in sp.Mul.make_args(term):
+            if factor in (sp.nan, sp.zoo, sp.oo, -sp.oo):
+                raise undefined("an undefined or infinite value")
+            if factor is sp.I or (
+                factor.is_Pow and factor.base.is_negative and factor.exp.is_Rational and not factor.exp.is_integer
+            ):
+                raise Refusal(DomainError, "a finite real value", "a root of a negative number", ROOT_ADVICE)
+            if factor.is_Rational and number_bits(factor) > BITS:
+                raise too_large(f"numbers of at most {BITS} bits", "a larger number")
+    return value

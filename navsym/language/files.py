@@ -1,0 +1,82 @@
+"""Bytes of a file to text: what is read at all, and how a place in it is called."""
+
+from __future__ import annotations
+
+import codecs
+import os
+from pathlib import Path
+
+from navsym.core.errors import EmptyError, ExpressionSyntaxError, NavsymError, TooLargeError, printable
+
+MARKS = {
+    codecs.BOM_UTF8: "a byte order mark",
+    codecs.BOM_UTF16_LE: "UTF-16",
+    codecs.BOM_UTF16_BE: "UTF-16",
+    b"PK\x03\x04": "a zip archive",
+    b"\x1f\x8b": "a gzip archive",
+    b"\x7fELF": "a program",
+    b"%PDF": "a PDF document",
+}
+
+
+def called(path: str | os.PathLike[str]) -> str:
+    """The path as it may stand in a message."""
+    return printable(os.fspath(path))
+
+
+def read_text(path: str | os.PathLike[str], limit: int) -> str:
+    """The text of a regular UTF-8 file of at most ``limit`` bytes.
+
+    Raises NavsymError of kind ``missing-file``, TooLargeError, EmptyError or ExpressionSyntaxError.
+    """
+    return decode(read_bytes(path, limit), called(path))
+
+
+def read_bytes(path: str | os.PathLike[str], limit: int) -> bytes:
+    """The bytes of a regular file, at most ``limit`` of them; no device or pipe is opened."""
+    where = called(path)
+    try:
+        if not Path(path).is_file():
+            raise missing(where, "a directory or device" if Path(path).exists() else "nothing there")
+        with open(path, "rb") as file:
+            data = file.read(limit + 1)
+    except (OSError, ValueError) as failure:  # ValueError: a NUL in the name
+        raise missing(where, getattr(failure, "strerror", None) or "a name that no file can have") from None
+    if len(data) > limit:
+        raise TooLargeError(f"expected at most {limit} bytes; got a larger file; do split it", where=where)
+    return data
+
+
+def missing(where: str, got: str) -> NavsymError:
+    """The error for a file that cannot be read."""
+    message = f"expected a readable file; got {got}; do check the path and the permissions"
+    return NavsymError(message, where=where, kind="missing-file")
+
+
+def decode(data: bytes, where: str) -> str:
+    """UTF-8 text without a byte order mark and without NUL.
+
+    Raises ExpressionSyntaxError for other bytes, and EmptyError when nothing but white space is in it.
+    """
+    for mark, what in MARKS.items():
+        if data.startswith(mark):
+            raise not_text(f"{what} at the start", where)
+    try:
+        text = data.decode("utf-8")
+    except UnicodeDecodeError as failure:
+        row = data.count(b"\n", 0, failure.start) + 1
+        got = f"the byte 0x{data[failure.start]:02x}"
+        raise not_text(got, f"{where}: line {row}, byte {failure.start + 1}") from None
+    if "\0" in text:
+        row = text.count("\n", 0, text.index("\0")) + 1
+        raise not_text("a NUL character", f"{where}: line {row}")
+    if not text.strip():
+        raise EmptyError("expected some text; got an empty file; do fill it in", where=where)
+    return text
+
+
+def not_text(got: str, where: str) -> NavsymError:
+    """The error for bytes that are not plain UTF-8."""
+    return ExpressionSyntaxError(
+        f"expected plain UTF-8 text; got {got}; do save it as UTF-8 without a byte order mark", where=where
+    )

@@ -1,0 +1,149 @@
+"""Keys of tables in files: where one stands, and which ones a format knows.
+
+Apart from :mod:`navsym.language.schema` because files of numbers need no reader of expressions.
+"""
+
+from __future__ import annotations
+
+import difflib
+import re
+import unicodedata
+from collections.abc import Collection, Iterable, Mapping
+from typing import Any
+
+from navsym.core.errors import DuplicateError, ExpressionSyntaxError, TooLargeError, UnknownSymbolError
+
+# Names that a file may declare, and how foreign text is quoted in a message.
+
+
+#: Longest name.
+NAME_LENGTH = 64
+
+#: Functions of the language; `atan2` takes two arguments, the others one.
+FUNCTIONS = (
+    "sin",
+    "cos",
+    "tan",
+    "cot",
+    "sec",
+    "csc",
+    "exp",
+    "log",
+    "sqrt",
+    "abs",
+    "asin",
+    "acos",
+    "atan",
+    "atan2",
+    "sinh",
+    "cosh",
+    "tanh",
+)
+
+#: Names that have a meaning already.
+RESERVED = frozenset({"pi", *FUNCTIONS})
+
+NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
+
+
+def check_name(name: object, *, where: str = "") -> str:
+    """The name itself, when a file may declare it: ASCII letters, digits and underscores.
+
+    Raises ExpressionSyntaxError, TooLargeError, or DuplicateError for ``pi`` and the functions.
+    """
+    if not isinstance(name, str) or (len(name) <= NAME_LENGTH and not NAME.fullmatch(name)):
+        raise ExpressionSyntaxError(
+            f"expected a name: an ASCII letter, then ASCII letters, digits and underscores; "
+            f"got {shown(name)}; do rename it",
+            where=where,
+        )
+    if len(name) > NAME_LENGTH:
+        raise TooLargeError(
+            f"expected a name of at most {NAME_LENGTH} characters; got {len(name)} of them, {shown(name)}; "
+            "do shorten it",
+            where=where,
+        )
+    if name in RESERVED:
+        raise DuplicateError(
+            f"expected a new name; got {name!r}, which already means {meaning(name)}; do rename it", where=where
+        )
+    return name
+
+
+def meaning(name: str) -> str:
+    """What a reserved name means."""
+    return "the number pi" if name == "pi" else "a function"
+
+
+def shown(value: object, limit: int = 40) -> str:
+    """Foreign text as it may stand in a message: quoted, escaped, ASCII only, and cut."""
+    text = value if isinstance(value, str) else f"{type(value).__name__} {short_repr(value, limit)}"
+    cut = text[:limit]
+    return ascii(cut) + (f" ... ({len(text)} characters)" if len(text) > limit else "")
+
+
+def short_repr(value: object, limit: int) -> str:
+    """``repr`` of small things only: that of a huge integer or a deep list costs time or fails."""
+    if isinstance(value, int) and value.bit_length() > 200:
+        return f"of {value.bit_length()} bits"
+    if isinstance(value, (list, tuple, dict)):
+        return f"of {len(value)} entries"
+    return repr(value)[:limit]
+
+
+def character(char: str) -> str:
+    """A character with its code and its Unicode name, so that look-alikes show."""
+    code = f"U+{ord(char):04X}"
+    name = unicodedata.name(char, "")
+    return f"{char!a} ({code} {name})" if name else f"{char!a} ({code})"
+
+
+def nearest(name: str, known: Iterable[str]) -> str:
+    """``"did you mean 'omega'?"``, or the list of what there is."""
+    choices = sorted(known)
+    if not choices:
+        return "nothing is declared here"
+    close = difflib.get_close_matches(name[:NAME_LENGTH], choices[:1000], n=1, cutoff=0.6)
+    if close:
+        return f"did you mean {close[0]!r}?"
+    rest = "" if len(choices) <= 8 else f" and {len(choices) - 8} more"
+    return "known are " + ", ".join(repr(choice[:NAME_LENGTH]) for choice in choices[:8]) + rest
+
+
+Table = Mapping[str, Any]
+
+
+def inside(where: str, key: object) -> str:
+    """The place of a key: ``"file: model.F"``, ``"file: measurement[2].h"``."""
+    part = f"[{key}]" if isinstance(key, int) else shown(key)[1:-1]
+    if not where:
+        return part
+    if isinstance(key, int):
+        return f"{where}{part}"
+    return f"{where}.{part}" if ": " in where else f"{where}: {part}"
+
+
+def expect_keys(table: Table, known: Collection[str], where: str) -> None:
+    """Refuse a key that the format does not have, naming the one that was probably meant.
+
+    A key that is passed over in silence may be a misspelt one, and then the answer belongs to another question.
+    """
+    for key in table:
+        if key not in known:
+            raise ExpressionSyntaxError(unknown(key, known), where=inside(where, key))
+
+
+def only_keys(table: Table, known: Collection[str], place: str = "") -> None:
+    """The same for tables of numbers, of kind ``unknown-symbol``; whoever knows the file puts it before the place."""
+    for key in table:
+        if key not in known:
+            name = inside("", key)
+            raise UnknownSymbolError(unknown(key, known), where=f"{place}.{name}" if place else name)
+
+
+def unknown(key: object, known: Collection[str]) -> str:
+    """What to say of a key that a format does not have."""
+    return (
+        f"expected one of the keys {', '.join(known)}; got {shown(key)}; "
+        f"do remove or correct it: {nearest(str(key), known)}"
+    )

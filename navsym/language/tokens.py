@@ -1,0 +1,106 @@
+"""Expression text cut into tokens, each with its place.
+
+ASCII only, and only what the language has: a letter that merely looks like another one, a
+hexadecimal number or a digit separator is refused where it stands.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import NoReturn
+
+from navsym.core.errors import ExpressionSyntaxError, NavsymError, TooLargeError
+from navsym.language.advice import for_character
+from navsym.language.names import character, shown
+
+LENGTH = 10_000  # characters of one expression
+DIGITS = 1_000  # digits of one number
+EXPONENT = 1_000  # largest power, and largest decimal exponent
+DEPTH = 100  # nesting of parentheses, functions and towers of powers
+CALLS = 12  # nesting of functions: constants such as sin(sin(...)) are compared numerically
+
+TOKEN = re.compile(
+    r"[ \t\r\n]*(?:(?P<number>[0-9]+(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?)"
+    r"|(?P<name>[A-Za-z][A-Za-z0-9_]*)|(?P<mark>\*\*|[-+*/(),])|(?P<end>\Z))"
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Token:
+    """A piece of the text: its kind, its characters and where it starts."""
+
+    kind: str  # number, name, mark or end
+    text: str
+    start: int
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """The text with the place it came from, able to point at a column of itself."""
+
+    text: str
+    where: str
+
+    def place(self, at: int) -> str:
+        """``where`` with the line and column added."""
+        row = self.text.count("\n", 0, at)
+        column = at - (self.text.rfind("\n", 0, at) + 1) + 1
+        spot = f"column {column}" if row == 0 else f"line {row + 1}, column {column}"
+        return f"{self.where}, {spot}" if self.where else spot
+
+    def around(self, at: int) -> str:
+        """The neighbourhood of a column, quoted and escaped."""
+        low, high = max(0, at - 15), at + 25
+        dots = "..." if low else "", "..." if high < len(self.text) else ""
+        return ascii(dots[0] + self.text[low:high] + dots[1])
+
+    def fail(
+        self, at: int, expected: str, got: str, do: str, error: type[NavsymError] = ExpressionSyntaxError
+    ) -> NoReturn:
+        """Raise ``error`` at a column, with the text around it."""
+        near = f" in {self.around(at)}" if self.text.strip() else ""
+        raise error(f"expected {expected}; got {got}{near}; do {do}", where=self.place(at))
+
+
+def tokenize(source: Source) -> list[Token]:
+    """Tokens of the text, the last of kind ``"end"``."""
+    if len(source.text) > LENGTH:
+        got, do = f"{len(source.text)}", "split the expression"
+        source.fail(LENGTH, f"at most {LENGTH} characters", got, do, TooLargeError)
+    tokens: list[Token] = []
+    at = 0
+    while not tokens or tokens[-1].kind != "end":
+        match = TOKEN.match(source.text, at)
+        if match is None:
+            refuse_character(source, at + len(source.text[at:]) - len(source.text[at:].lstrip(" \t\r\n")))
+        kind = str(match.lastgroup)
+        tokens.append(Token(kind, match[kind], match.start(kind)))
+        at = match.end()
+        if kind == "number":
+            refuse_tail(source, tokens[-1], at)
+    return tokens
+
+
+def refuse_character(source: Source, at: int) -> NoReturn:
+    """Refuse a character that the language does not have, with a hint when there is one."""
+    char = source.text[at]
+    expected = "ASCII letters, digits and + - * / ** ( ) ,"
+    source.fail(at, expected, character(char), for_character(source.text, at))
+
+
+def refuse_tail(source: Source, token: Token, at: int) -> None:
+    """A number ends where its digits end; it is not too long, and its exponent is not either."""
+    following = source.text[at : at + 1]
+    if following.isalpha() or following in {"_", "."}:
+        word = re.match(r"[\w.]*", source.text[token.start :])
+        got = shown(word[0] if word else following)
+        do = "write products with * and numbers in decimal without separators: 2*x, 1000, 0.5"
+        source.fail(token.start, "a decimal number", got, do)
+    mantissa, _, exponent = token.text.lower().partition("e")
+    if len(mantissa) > DIGITS:
+        got, do = f"{len(mantissa)}", "shorten the number"
+        source.fail(token.start, f"at most {DIGITS} digits", got, do, TooLargeError)
+    if exponent and (len(exponent) > 8 or abs(int(exponent)) > EXPONENT):
+        expected = f"a decimal exponent of at most {EXPONENT}"
+        source.fail(token.start, expected, shown(exponent), "rescale the units", TooLargeError)

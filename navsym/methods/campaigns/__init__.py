@@ -1,1 +1,0 @@
-"""Attacks in batches: mutants of formulas, altered certificates, damaged files, killed writers."""

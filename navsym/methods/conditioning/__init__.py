@@ -1,1 +1,0 @@
-"""Condition numbers known with certainty."""

@@ -1,1 +1,0 @@
-"""The worst-correlation estimator of a linear model, with a certificate."""

@@ -1,1 +1,0 @@
-"""Filters for signals whose model switches, as truncations of one exact recursion."""

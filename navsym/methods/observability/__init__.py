@@ -1,1 +1,0 @@
-"""What each measurement observes, exactly and for symbols, and the splits that follow."""

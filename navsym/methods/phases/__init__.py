@@ -1,1 +1,0 @@
-"""The complete guaranteed solution as a parameter varies."""

@@ -1,1 +1,0 @@
-"""Position and velocity from a height profile over a map."""

@@ -1,1 +1,0 @@
-"""Velocity and acceleration from positions."""

@@ -1,1 +1,0 @@
-"""Estimators of two stages: gains, error dynamics, simulation, a recorded flight."""

@@ -1,1 +1,0 @@
-"""Verdicts on the claims of papers, and when a kept one may be used again."""

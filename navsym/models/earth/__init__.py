@@ -1,1 +1,0 @@
-"""The Earth as an ellipsoid, positions on it, and motion over it."""

@@ -1,1 +1,0 @@
-"""Error equations of an inertial navigation system."""

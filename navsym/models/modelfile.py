@@ -1,0 +1,354 @@
+"""Model files: a linear system with its measurements, or the regressors themselves."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from navsym.core.errors import DomainError, DuplicateError, EmptyError, ShapeError, UnknownSymbolError
+from navsym.language.arithmetic import sign
+from navsym.language.declarations import (
+    Parameter,
+    box_of,
+    brief,
+    read_parameters,
+    require_order,
+    require_positive,
+    symbols_of,
+)
+from navsym.language.expression import ONE, ZERO, Expr, Matrix, Symbol, parse, symbol
+from navsym.language.files import called
+from navsym.language.names import check_name, nearest, shown
+from navsym.language.schema import (
+    Table,
+    as_label,
+    as_list,
+    as_table,
+    as_text,
+    as_title,
+    distinct,
+    entry,
+    expect_keys,
+    inside,
+    required,
+    square,
+    vector,
+)
+from navsym.language.tomlfile import read_toml
+
+# What a model file says, as plain exact data.
+
+
+Targets = Mapping[str, tuple[Expr, ...]]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Measurement:
+    """``z = h x + r`` with a standard deviation of r of at most sigma; h has one entry per state."""
+
+    name: str
+    h: tuple[Expr, ...]
+    sigma: Expr
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Piece:
+    """``dx/dt = F x`` from ``start`` to ``end`` (None: no end is given)."""
+
+    start: Expr
+    end: Expr | None
+    F: Matrix
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ModelFile:
+    """``dx/dt = F x`` with scalar measurements on [0, T].
+
+    time         : the symbol t, which F and h may contain
+    states       : n names
+    pieces       : one piece for a constant (or continuously varying) F, otherwise one per stretch
+    T            : length of the interval, None when the file has no [interval]
+    targets      : name -> n expressions, a functional of the state at T
+    """
+
+    name: str
+    parameters: Mapping[str, Parameter]
+    states: tuple[str, ...]
+    time: Symbol
+    pieces: tuple[Piece, ...]
+    measurements: tuple[Measurement, ...]
+    T: Expr | None
+    targets: Targets
+
+    def _repr_latex_(self) -> str:
+        """The matrix of the system, for notebooks."""
+        return str(self.F._repr_latex_())
+
+    @property
+    def F(self) -> Matrix:
+        """The matrix of a model in one piece. Raises ShapeError when there are several."""
+        if len(self.pieces) != 1:
+            message = f"expected one F; got {len(self.pieces)} pieces; do use a method that takes pieces"
+            raise ShapeError(message)
+        return self.pieces[0].F
+
+    @property
+    def box(self) -> dict[Symbol, tuple[Expr, Expr]]:
+        """Symbol -> (lower, upper) for the parameters that have a range."""
+        return box_of(self.parameters)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class BasisFile:
+    """Regressors without a model: ``z_j(s) = H_j(s) q + r_j``.
+
+    H        : one row per measurement, one expression per unknown
+    sigma    : one bound per measurement
+    interval : (start, end) of the variable
+    targets  : name -> one expression per unknown
+    """
+
+    name: str
+    parameters: Mapping[str, Parameter]
+    variable: Symbol
+    H: tuple[tuple[Expr, ...], ...]
+    sigma: tuple[Expr, ...]
+    interval: tuple[Expr, Expr]
+    targets: Targets
+
+    @property
+    def box(self) -> dict[Symbol, tuple[Expr, Expr]]:
+        """Symbol -> (lower, upper) for the parameters that have a range."""
+        return box_of(self.parameters)
+
+
+# The [basis] and [targets] tables of a model file: regressors and functionals.
+
+
+Known = Mapping[str, Expr]
+
+
+def read_basis(document: Table, where: str, parameters: Mapping[str, Parameter], known: Known) -> BasisFile:
+    """The [basis] table with its targets."""
+    expect_keys(document, ("basis", "parameters", "targets"), where)
+    place = inside(where, "basis")
+    table = as_table(document["basis"], place)
+    expect_keys(table, ("name", "variable", "H", "sigma", "interval"), place)
+    variable = as_text(required(table, "variable", place), inside(place, "variable"), "a name")
+    made = symbol(variable, where=inside(place, "variable"))
+    distinct((*known, variable), inside(place, "variable"))
+    H = read_rows(required(table, "H", place), {**known, variable: made}, inside(place, "H"))
+    names = tuple(f"c{i}" for i in range(len(H[0])))
+    return BasisFile(
+        name=as_title(table.get("name", "basis"), inside(place, "name")),
+        parameters=parameters,
+        variable=made,
+        H=H,
+        sigma=read_sigmas(table, known, len(H), place),
+        interval=read_ends(required(table, "interval", place), known, inside(place, "interval")),
+        targets=read_targets(document, known, names, where),
+    )
+
+
+def read_rows(value: Any, known: Known, where: str) -> tuple[tuple[Expr, ...], ...]:
+    """One row of regressors, or a list of them, all of one length."""
+    items = as_list(value, where, "a list of expressions")
+    nested = [isinstance(item, list) for item in items]
+    if any(nested) and not all(nested):
+        message = "expected expressions or rows of expressions; got both; do write one list per measurement"
+        raise ShapeError(message, where=where)
+    rows = items if nested[0] else [items]
+    size = len(rows[0])
+    places = [inside(where, i) if nested[0] else where for i in range(len(rows))]
+    return tuple(
+        vector(row, known, here, size, "as many as in the first row") for row, here in zip(rows, places, strict=True)
+    )
+
+
+def read_sigmas(table: Table, known: Known, count: int, where: str) -> tuple[Expr, ...]:
+    """One positive bound per measurement; ones where the file gives none."""
+    place = inside(where, "sigma")
+    value = table.get("sigma", ["1"] * count)
+    if not isinstance(value, list):
+        value = [value]
+    sigmas = vector(value, known, place, count, "one per measurement")
+    for i, sigma in enumerate(sigmas):
+        require_positive(sigma, "a standard deviation", inside(place, i))
+    return sigmas
+
+
+def read_ends(value: Any, known: Known, where: str) -> tuple[Expr, Expr]:
+    """Start and end of the variable, in order."""
+    start, end = vector(value, known, where, 2, "start and end")
+    require_order(start, end, where)
+    return start, end
+
+
+def read_targets(document: Table, known: Known, names: tuple[str, ...], where: str) -> Targets:
+    """The file's functionals, or one for every unknown."""
+    n, place = len(names), inside(where, "targets")
+    if "targets" not in document:
+        return {name: tuple(ONE if i == j else ZERO for j in range(n)) for i, name in enumerate(names)}
+    targets = {}
+    for label, row in as_table(document["targets"], place).items():
+        here = inside(place, label)
+        functional = vector(row, known, here, n, "one per unknown")
+        if all(weight == 0 for weight in functional):
+            raise DomainError("expected a functional that is not zero; got zeros; do correct it", where=here)
+        targets[as_label(label, here)] = functional
+    if not targets:
+        raise EmptyError("expected at least one target; got none; do add one or drop the table", where=place)
+    return targets
+
+
+TABLES = ("model", "basis", "parameters", "measurement", "piece", "interval", "targets")
+
+
+def read_model(path: str | os.PathLike[str], values: Mapping[str, str] | None = None) -> ModelFile | BasisFile:
+    """The model or basis of a TOML file.
+
+    values : parameter -> exact value as text, put in its place everywhere (``--set T=2.5``)
+
+    Raises a NavsymError whose ``where`` names the file and the key.
+    """
+    return model_from(read_toml(path), called(path), values)
+
+
+def model_from(document: Table, where: str = "", values: Mapping[str, str] | None = None) -> ModelFile | BasisFile:
+    """Like :func:`read_model` for a document in memory, with the same errors."""
+    place = inside(where, "parameters")
+    parameters = read_parameters(as_table(document.get("parameters", {}), place), place)
+    known = dict(symbols_of(parameters)) | read_values(values or {}, parameters)
+    free = {name: parameter for name, parameter in parameters.items() if name not in (values or {})}
+    if "basis" in document:
+        return read_basis(document, where, free, known)
+    if "model" not in document:
+        expect_keys(document, TABLES, where)
+        raise EmptyError("expected a [model] or a [basis]; got neither; do add one", where=where)
+    return read_system(document, where, free, known)
+
+
+def read_values(values: Mapping[str, str], parameters: Mapping[str, Parameter]) -> dict[str, Expr]:
+    """Exact numbers that replace parameters, each inside what the file declares."""
+    given = {}
+    for name, text in values.items():
+        where = f"--set {shown(name)[1:-1]}"
+        if name not in parameters:
+            hint = nearest(name, parameters)
+            message = f"expected a declared parameter; got {shown(name)}; do correct it: {hint}"
+            raise UnknownSymbolError(message, where=where)
+        value = parse(text, {}, where=where)
+        if not admitted(value, parameters[name]):
+            message = f"expected a value in the declared range of {name}; got {shown(text)}; do correct it"
+            raise DomainError(message, where=where)
+        given[name] = value
+    return given
+
+
+def admitted(value: Expr, parameter: Parameter) -> bool:
+    """False when the value certainly contradicts the declaration."""
+    below = parameter.lower is not None and sign(value - parameter.lower) == -1
+    above = parameter.upper is not None and sign(parameter.upper - value) == -1
+    wrong = {"positive": (0, -1), "nonnegative": (-1,), "nonzero": (0,)}.get(parameter.kind, ())
+    return not below and not above and sign(value) not in wrong
+
+
+def read_system(document: Table, where: str, parameters: Mapping[str, Parameter], known: Known) -> ModelFile:
+    """The [model] with its measurements, interval and targets."""
+    expect_keys(document, tuple(key for key in TABLES if key != "basis"), where)
+    place = inside(where, "model")
+    model = as_table(document["model"], place)
+    expect_keys(model, ("name", "states", "F"), place)
+    states = read_names(required(model, "states", place), inside(place, "states"))
+    distinct((*known, "t", *states), inside(place, "states"))
+    time = symbol("t")
+    moving = {**known, "t": time}
+    T = read_interval(document, known, inside(where, "interval"))
+    return ModelFile(
+        name=as_title(model.get("name", "model"), inside(place, "name")),
+        parameters=parameters,
+        states=states,
+        time=time,
+        pieces=read_pieces(document, model, moving, len(states), T, where),
+        measurements=read_measurements(document, moving, len(states), where),
+        T=T,
+        targets=read_targets(document, known, states, where),
+    )
+
+
+def read_names(value: Any, where: str) -> tuple[str, ...]:
+    """Distinct declared names, in order."""
+    items = as_list(value, where, "a list of names")
+    names = tuple(check_name(name, where=inside(where, i)) for i, name in enumerate(items))
+    distinct(names, where)
+    return names
+
+
+def read_interval(document: Table, known: Known, where: str) -> Expr | None:
+    """T of the [interval] table, above zero; None when the file has none."""
+    if "interval" not in document:
+        return None
+    table = as_table(document["interval"], where)
+    expect_keys(table, ("T",), where)
+    T = entry(required(table, "T", where), known, inside(where, "T"))
+    require_positive(T, "a length of time T", inside(where, "T"))
+    return T
+
+
+def read_pieces(document: Table, model: Table, moving: Known, n: int, T: Expr | None, where: str) -> tuple[Piece, ...]:
+    """F of [model], or the [[piece]] blocks in order and without gaps."""
+    place, why = inside(where, "piece"), "one per state"
+    if "piece" not in document:
+        F = required(model, "F", inside(where, "model"))
+        return (Piece(ZERO, T, square(F, moving, inside(where, "model.F"), n, why)),)
+    if "F" in model:
+        raise DuplicateError("expected F or [[piece]]; got both; do remove one of them", where=place)
+    blocks = as_list(document["piece"], place, "[[piece]] blocks")
+    pieces = tuple(read_piece(block, moving, n, inside(place, i)) for i, block in enumerate(blocks))
+    ends = [ZERO, *(piece.end for piece in pieces)]
+    for i, piece in enumerate(pieces):
+        if piece.start != ends[i]:
+            message = f"expected a start at {brief(ends[i])}; got {brief(piece.start)}; do close the gap"
+            raise DomainError(message, where=inside(inside(place, i), "from"))
+    if T is not None and ends[-1] != T:
+        message = f"expected the last piece to end at T = {brief(T)}; got {brief(ends[-1])}; do correct it"
+        raise DomainError(message, where=inside(inside(place, len(pieces) - 1), "to"))
+    return pieces
+
+
+def read_piece(block: Any, moving: Known, n: int, where: str) -> Piece:
+    """One [[piece]] block."""
+    table = as_table(block, where)
+    expect_keys(table, ("from", "to", "F"), where)
+    fixed = {name: value for name, value in moving.items() if name != "t"}
+    start = entry(required(table, "from", where), fixed, inside(where, "from"))
+    end = entry(required(table, "to", where), fixed, inside(where, "to"))
+    require_order(start, end, where)
+    F = square(required(table, "F", where), moving, inside(where, "F"), n, "one per state")
+    return Piece(start, end, F)
+
+
+def read_measurements(document: Table, moving: Known, n: int, where: str) -> tuple[Measurement, ...]:
+    """The [[measurement]] blocks, with distinct names."""
+    place = inside(where, "measurement")
+    blocks = as_list(required(document, "measurement", where), place, "[[measurement]] blocks")
+    found = []
+    for i, block in enumerate(blocks):
+        here = inside(place, i)
+        table = as_table(block, here)
+        expect_keys(table, ("name", "h", "sigma"), here)
+        name = as_label(table.get("name", f"z{i + 1}"), inside(here, "name"))
+        h = vector(required(table, "h", here), moving, inside(here, "h"), n, "one per state")
+        fixed = {key: value for key, value in moving.items() if key != "t"}
+        found.append(Measurement(name, h, read_sigma(table.get("sigma", 1), fixed, inside(here, "sigma"))))
+    distinct((measurement.name for measurement in found), place)
+    return tuple(found)
+
+
+def read_sigma(value: Any, known: Known, where: str) -> Expr:
+    """A bound of a standard deviation, above zero."""
+    sigma = entry(value, known, where)
+    require_positive(sigma, "a standard deviation", where)
+    return sigma

@@ -1,1 +1,0 @@
-"""Height maps, tracks over them, and what may enter."""

@@ -1,0 +1,1 @@
+"""Filters for signals whose model switches."""

@@ -1,0 +1,272 @@
+"""A bank of models: what the multi-structure signal may be, as checked arrays.
+
+``x(k) = F_i x(k-1) + w``, ``z(k) = H_i x(k) + r``, where i = I(k) is a Markov chain. Claims (4)-(6).
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navsym.core import arrays
+from navsym.core.errors import EmptyError, NotFiniteError, ShapeError
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Bank:
+    """m models of one state x (n,) and one measurement z (p,), over time.
+
+    F, Q  : (T or 1, m, n, n)  transition matrices and covariances of the process noise
+    H     : (T or 1, m, p, n)  observation matrices
+    R     : (T or 1, m, p, p)  covariances of the measurement noise
+    mode_transition : (T or 1, m, m), entry [k, i, j] leads from mode i to mode j in step k; rows sum to one
+    probabilities   : (m,)     of the mode at step 0
+    means, covariances : (m, n), (m, n, n) of the state at step 0, given the mode at step 0
+    common          : True when all modes start from one Gaussian
+
+    Index 0 of the time axis is the step from time 0 to time 1. Build with :func:`bank`.
+    All modes explain the same p numbers: densities over different numbers cannot be compared. A mode in
+    which a sensor says nothing has a zero row in H and the spread of that sensor in R.
+    """
+
+    F: Array
+    Q: Array
+    H: Array
+    R: Array
+    mode_transition: Array
+    probabilities: Array
+    means: Array
+    covariances: Array
+    common: bool
+
+    @property
+    def modes(self) -> int:
+        """Number m of models."""
+        return int(self.F.shape[1])
+
+    @property
+    def states(self) -> int:
+        """Size n of the state."""
+        return int(self.F.shape[2])
+
+    @property
+    def channels(self) -> int:
+        """Size p of the measurement."""
+        return int(self.H.shape[2])
+
+    @property
+    def horizon(self) -> int | None:
+        """Number of steps for which models are given, or None when nothing depends on time."""
+        lengths = {a.shape[0] for a in (self.F, self.Q, self.H, self.R, self.mode_transition)} - {1}
+        return max(lengths) if lengths else None
+
+    def at(self, name: str, k: int) -> Array:
+        """F, Q, H, R (m, ...) or mode_transition (m, m) of step k = 1, 2, ..."""
+        stack: Array = getattr(self, name)
+        return stack[0 if stack.shape[0] == 1 else k - 1]
+
+
+def bank(models: Sequence[Any], mode_transition: Any, mean: Any, covariance: Any, probabilities: Any) -> Bank:
+    """Check, copy and freeze a bank.
+
+    models : one mapping ``{"F", "Q", "H", "R"}`` per mode; a matrix, or a list of matrices over time
+    mode_transition : (m, m), rows = from, or a list over time
+    mean : (n,) or one per mode (m, n);  covariance : (n, n) or one per mode (m, n, n)
+
+    Raises ShapeError, NotFiniteError, DomainError, EmptyError, each naming the entry.
+    """
+    if len(models) == 0:
+        raise EmptyError("models: expected at least one model; got none; give F, Q, H and R of each mode")
+    m = len(models)
+    F = stacked(models, "F", functools.partial(arrays.named, why="states by states"))
+    n = F.shape[2]
+    if F.shape[3] != n:
+        raise ShapeError(f"models[0].F: expected a square matrix; got {F.shape[2:]}; give n rows of n numbers")
+    H = stacked(models, "H", functools.partial(arrays.named, why="measurements by states"))
+    p = H.shape[2]
+    if H.shape[3] != n:
+        raise ShapeError(f"models[0].H: expected {n} columns, one per state; got {H.shape[3]}; match F")
+    Q = stacked(models, "Q", covariance_of(n, "one row per state"))
+    R = stacked(models, "R", covariance_of(p, "one row per measurement"))
+    transition = transitions(mode_transition, m)
+    start, spread, common = initial(mean, covariance, m, n)
+    made = Bank(
+        F, Q, H, R, transition, arrays.probabilities("initial.probabilities", probabilities, m), start, spread, common
+    )
+    check_lengths(made)
+    return made
+
+
+def covariance_of(size: int, why: str) -> Any:
+    """A gate for one covariance matrix of the given size."""
+
+    def gate(name: str, value: Any, shape: Any) -> Array:
+        arrays.named(name, value, (size, size), why)
+        return arrays.covariance(name, value, size)
+
+    return gate
+
+
+def stacked(models: Sequence[Any], key: str, gate: Any) -> Array:
+    """One matrix of every model, (T or 1, m, a, b); models that do not change are repeated."""
+    rows = [over_time(f"models[{i}].{key}", entry(model, i, key), gate) for i, model in enumerate(models)]
+    first = rows[0].shape[1:]
+    for i, row in enumerate(rows):
+        if row.shape[1:] != first:
+            raise ShapeError(
+                f"models[{i}].{key}: expected shape {first} as in models[0]; got {row.shape[1:]}; "
+                "all modes share one state and one measurement vector"
+            )
+    length = max(len(row) for row in rows)
+    if any(len(row) not in (1, length) for row in rows):
+        raise ShapeError(
+            f"models.{key}: expected lists over time of one length; got "
+            f"{sorted({len(row) for row in rows})}; give every step or one matrix"
+        )
+    return arrays.frozen(np.stack([np.broadcast_to(row, (length, *first)) for row in rows], axis=1))
+
+
+def entry(model: Any, i: int, key: str) -> Any:
+    """Entry of one model, with an error that names it when it is not there."""
+    try:
+        return model[key]
+    except (KeyError, TypeError, IndexError):
+        raise ShapeError(f"models[{i}].{key}: expected the matrices F, Q, H and R; got no {key}; add it") from None
+
+
+def over_time(name: str, value: Any, gate: Any) -> Array:
+    """A matrix, or a list of matrices over time, as (T or 1, a, b)."""
+    if depth(value) < 3:
+        return np.asarray(gate(name, value, (None, None)))[None]
+    if len(value) == 0:
+        raise EmptyError(f"{name}: expected one matrix per step; got an empty list; give a matrix")
+    parts = [np.asarray(gate(f"{name}[{k}]", part, (None, None))) for k, part in enumerate(value)]
+    if len({part.shape for part in parts}) > 1:
+        raise ShapeError(f"{name}: expected matrices of one shape over time; got several; use missing entries")
+    return np.stack(parts)
+
+
+def depth(value: Any) -> int:
+    """How deep lists are nested; arrays count their axes."""
+    if isinstance(value, np.ndarray):
+        return value.ndim
+    if isinstance(value, list | tuple):
+        return 1 + max((depth(item) for item in value), default=0)
+    return 0
+
+
+def transitions(value: Any, m: int) -> Array:
+    """Transition probabilities as (T or 1, m, m)."""
+
+    def gate(name: str, part: Any, shape: Any) -> Array:
+        return arrays.row_stochastic(name, part, m)
+
+    return arrays.frozen(over_time("mode_transition", value, gate))
+
+
+def initial(mean: Any, covariance: Any, m: int, n: int) -> tuple[Array, Array, bool]:
+    """Means (m, n) and covariances (m, n, n) at step 0, and whether they are one Gaussian."""
+    common = depth(mean) < 2 and depth(covariance) < 3
+    if depth(mean) < 2:
+        means = np.tile(arrays.named("initial.mean", mean, (n,), "one entry per state"), (m, 1))
+    else:
+        means = arrays.named("initial.mean", mean, (m, n), "one row per mode")
+    gate = covariance_of(n, "one row per state")
+    if depth(covariance) < 3:
+        spread = np.tile(gate("initial.covariance", covariance, None), (m, 1, 1))
+    elif len(covariance) != m:
+        raise ShapeError(f"initial.covariance: expected one per mode, {m}; got {len(covariance)}; give all")
+    else:
+        spread = np.stack([gate(f"initial.covariance[{i}]", c, None) for i, c in enumerate(covariance)])
+    return arrays.frozen(means), arrays.frozen(spread), common
+
+
+def check_lengths(made: Bank) -> None:
+    """All lists over time have one length."""
+    lengths = {a.shape[0] for a in (made.F, made.Q, made.H, made.R, made.mode_transition)} - {1}
+    if len(lengths) > 1:
+        raise ShapeError(f"models: expected lists over time of one length; got {sorted(lengths)}; match them")
+
+
+def measurements_for(made: Bank, values: Any, *, missing: bool = False) -> Array:
+    """Measurements (T, p), NaN where a number is missing.
+
+    With ``missing`` a None or NaN is a number that did not come; otherwise it is a NotFiniteError
+    that names the row. Infinities are always refused.
+    """
+    table = table_of(values, made.channels)
+    if len(table) == 0:
+        raise EmptyError("measurements: expected at least one row; got none; give the measurement of step 1")
+    bad = ~np.isfinite(table)
+    if missing:
+        bad &= ~np.isnan(table)
+    if bad.any():
+        k, j = (int(i) for i in np.argwhere(bad)[0])
+        raise NotFiniteError(
+            f"measurements[{k}]: expected a finite number; got {table[k, j]} in entry {j}; "
+            "mend it, or ask for missing measurements"
+        )
+    if made.horizon is not None and len(table) > made.horizon:
+        raise ShapeError(
+            f"measurements: expected at most {made.horizon} rows, the steps for which models are "
+            f"given; got {len(table)}; give models for every step"
+        )
+    return arrays.frozen(table)
+
+
+def table_of(values: Any, p: int) -> Array:
+    """Rows of p numbers as an array of floats, NaN for None."""
+    if isinstance(values, np.ndarray) and values.dtype.kind in "fiu" and values.ndim == 2:
+        if values.shape[1] != p:
+            raise ShapeError(f"measurements: expected {p} columns, one per row of H; got {values.shape[1]}; match H")
+        return np.array(values, dtype=float)
+    rows = list(values)
+    table = np.empty((len(rows), p))
+    for k, row in enumerate(rows):
+        entries = [row] * p if row is None else (list(row) if np.ndim(row) else [row])
+        if len(entries) != p:
+            raise ShapeError(f"measurements[{k}]: expected {p} numbers, one per row of H; got {len(entries)}; match H")
+        table[k] = [np.nan if e is None else number(e, k) for e in entries]
+    return table
+
+
+def number(value: Any, row: int) -> float:
+    """One number of a measurement row."""
+    if isinstance(value, bool) or not isinstance(value, int | float | np.number):
+        raise ShapeError(f"measurements[{row}]: expected numbers; got {value!r}; give a number")
+    return float(value)
+
+
+def memoryless(made: Bank, steps: int) -> Bank:
+    """The bank with transitions that forget: every row of step k is P[I(k) = i], multistructure:14*.
+
+    Printed (14)-(17): the unconditional probabilities of the chain take the place of p^ij(k).
+    """
+    row = np.array(made.probabilities)
+    stack = np.empty((max(steps, 1), made.modes, made.modes))
+    for k in range(1, len(stack) + 1):
+        row = row @ made.at("mode_transition", min(k, made.mode_transition.shape[0]))
+        stack[k - 1] = row
+    return with_transition(made, stack)
+
+
+def with_transition(made: Bank, stack: Array) -> Bank:
+    """The same bank with other transition probabilities (T or 1, m, m)."""
+    return Bank(
+        made.F,
+        made.Q,
+        made.H,
+        made.R,
+        arrays.frozen(np.array(stack)),
+        made.probabilities,
+        made.means,
+        made.covariances,
+        made.common,
+    )

@@ -1,0 +1,92 @@
+"""The compiled engine: hands a bank to the loops and falls back to the readable engine where they stop."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navsym.core import arrays
+from navsym.multimodel import moments as mixture
+from navsym.multimodel.bank import Bank
+from navsym.multimodel.engine import UNDERFLOW, Estimate, run_in_numpy
+from navsym.multimodel.kalman import steps as kalman
+from navsym.multimodel.kernels.bank import ALL, BY_MODE, CROSS, KEEP, MIXED, OWN, run_bank
+from navsym.multimodel.steps import Scheme, filters_at
+
+Array = NDArray[np.floating[Any]]
+
+BRANCHING = {"cross": CROSS, "mixed": MIXED, "own": OWN}
+FOLDING = {"none": KEEP, "all": ALL, "by mode": BY_MODE}
+#: Hypotheses above which the loops would copy more than they compute.
+WIDEST = 4096
+
+
+def run_compiled(rule: Scheme, models: Bank, z: Array, count: int) -> Estimate:
+    """The same estimate as :func:`navsym.multimodel.engine.run_in_numpy`, to rounding."""
+    widest = widest_branching(rule, models, len(z))
+    H, r, U, rotated = independent_scalars(models)
+    partly = np.isnan(z).any(axis=1) & ~np.isnan(z).all(axis=1)
+    if widest > WIDEST or (rotated and partly.any()):
+        return run_in_numpy(rule, models, z, count)
+    T, m, n = len(z), models.modes, models.states
+    out = (np.empty((T, m)), np.empty((T, n)), np.empty((T, n, n)), np.empty(T), np.empty(T))
+    stopped = run_bank(
+        BRANCHING[rule.branching],
+        FOLDING[rule.folding],
+        rule.period,
+        widest,
+        models.F,
+        models.Q,
+        H,
+        r,
+        U,
+        rotated,
+        models.mode_transition,
+        mixture.logs(models.mode_transition),
+        mixture.logs(models.probabilities),
+        models.common,
+        models.means,
+        models.covariances,
+        z,
+        *out,
+    )
+    if stopped:
+        return run_in_numpy(rule, models, z, count)
+    return Estimate(
+        arrays.frozen(out[0]),
+        arrays.frozen(out[1]),
+        arrays.frozen(out[2]),
+        arrays.frozen(out[3]),
+        count,
+        tuple(int(k) + 1 for k in np.flatnonzero(out[4] < UNDERFLOW)),
+    )
+
+
+def widest_branching(rule: Scheme, models: Bank, steps: int) -> int:
+    """Most hypotheses that any step branches into."""
+    roots = 1 if models.common else models.modes
+    horizon = range(1, min(steps, 2 * rule.period + 2 if rule.folding != "none" else steps) + 1)
+    return max((filters_at(rule, models.modes, roots, k) for k in horizon), default=models.modes)
+
+
+def independent_scalars(models: Bank) -> tuple[Array, Array, Array, bool]:
+    """H (T, m, p, n), variances (T, m, p) and rotations (T, m, p, p) that make R diagonal."""
+    diagonal = np.diagonal(models.R, axis1=-2, axis2=-1)
+    eye = np.broadcast_to(np.eye(models.channels), (1, *models.R.shape[1:])).copy()
+    if not np.any(models.R - diagonal[..., None] * np.eye(models.channels)):
+        return np.array(models.H), np.ascontiguousarray(diagonal), eye, False
+    length = max(models.H.shape[0], models.R.shape[0])
+    parts: list[list[Any]] = [
+        [scalars(models.at("H", k)[i], models.at("R", k)[i]) for i in range(models.modes)] for k in range(1, length + 1)
+    ]
+    H, r, U = (np.array([[mode[c] for mode in row] for row in parts]) for c in range(3))
+    return H, r, U, True
+
+
+def scalars(H: Array, R: Array) -> tuple[Array, Array, Array]:
+    """Rotated observation, variances and the rotation of one model."""
+    unit = np.eye(len(R))
+    rotation, rotated, variances = kalman.scalar_corrections(unit, H, R)
+    return rotated, variances, rotation.T

@@ -1,0 +1,1 @@
+"""The Kalman filter, one step at a time, in covariance and square-root forms."""

@@ -1,0 +1,349 @@
+"""Many Monte-Carlo runs of one bank at once: eight runs in the lanes, models shared by all.
+
+The loops are those of :mod:`navsym.multimodel.kernels.bank` for one Gaussian per mode (IMM, polygaussian) and
+for one Gaussian in all (pulsating), turned round: modes outside, runs inside.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numba
+import numpy as np
+
+from navsym.core.compiled import njit
+from navsym.core.lanes import load, spread, store
+from navsym.multimodel.kernels.filter import COMPILE, account, aligned
+
+
+@njit(**COMPILE)
+def predict_mode(i, n, F, Q, x, P, scratch):  # type: ignore[no-untyped-def]
+    """Predict mode i of eight runs by one model F, Q (n, n); scratch (n + n n) 8."""
+    start, square = i * n * 8, i * n * n * 8
+    for a in range(n):
+        total = spread(F[a, 0]) * load(x, start)
+        for c in range(1, n):
+            total = total + spread(F[a, c]) * load(x, start + c * 8)
+        store(scratch, a * 8, total)
+        for b in range(n):
+            total = spread(F[a, 0]) * load(P, square + b * 8)
+            for c in range(1, n):
+                total = total + spread(F[a, c]) * load(P, square + (c * n + b) * 8)
+            store(scratch, (n + a * n + b) * 8, total)
+    for a in range(n):
+        store(x, start + a * 8, load(scratch, a * 8))
+        for b in range(a + 1):
+            total = spread(Q[a, b])
+            for c in range(n):
+                total = total + spread(F[b, c]) * load(scratch, (n + a * n + c) * 8)
+            store(P, square + (a * n + b) * 8, total)
+            store(P, square + (b * n + a) * 8, total)
+
+
+@njit(**COMPILE)
+def correct_mode(i, n, p, H, r, z, x, P, scratch, log_likelihood, volume):  # type: ignore[no-untyped-def]
+    """Correct mode i of eight runs by scalars z [c] at 8 c; the same order as in ``correct_group``.
+
+    The log-likelihood is what it adds to log_likelihood less half the log of the volume, the product of the
+    variances: one logarithm later serves several of them and the prediction of the mode.
+    """
+    start, square = i * n * 8, i * n * n * 8
+    store(volume, i * 8, spread(1.0))
+    for c in range(p):
+        variance, innovation = spread(r[c]), load(z, c * 8)
+        for a in range(n):
+            v = load(P, square + a * n * 8) * spread(H[c, 0])
+            for b in range(1, n):
+                v = v + load(P, square + (a * n + b) * 8) * spread(H[c, b])
+            store(scratch, a * 8, v)
+            variance = variance + spread(H[c, a]) * v
+            innovation = innovation - spread(H[c, a]) * load(x, start + a * 8)
+        inverse = spread(1.0) / variance
+        weight = innovation * inverse
+        store(scratch, 2 * n * 8, variance)
+        store(scratch, 2 * n * 8 + 8, innovation * weight)
+        if not account(scratch, 2 * n * 8, log_likelihood, i * 8, volume, i * 8):
+            return False
+        for a in range(n):
+            v = load(scratch, a * 8)
+            store(x, start + a * 8, load(x, start + a * 8) + v * weight)
+            gain = v * inverse
+            store(scratch, (n + a) * 8, gain)
+            for b in range(n):
+                place = square + (a * n + b) * 8
+                store(P, place, load(P, place) - gain * load(scratch, b * 8))
+        for a in range(n):
+            left = spread(r[c]) * load(scratch, (n + a) * 8)
+            for b in range(n):
+                left = left - load(P, square + (a * n + b) * 8) * spread(H[c, b])
+            store(scratch, a * 8, left)
+        for a in range(n):
+            for b in range(a + 1):
+                place = square + (a * n + b) * 8
+                value = load(P, place) + load(scratch, a * 8) * load(scratch, (n + b) * 8)
+                store(P, place, value)
+                store(P, square + (b * n + a) * 8, value)
+    return True
+
+
+@njit(**COMPILE)
+def merge_modes(m, n, weights, place, x, P, target, mean, covariance, off):  # type: ignore[no-untyped-def]
+    """Merge the m modes of eight runs by weights [s] at ``(place + s) 8`` into slot ``target``; off (m n) 8."""
+    start, square = target * n * 8, target * n * n * 8
+    for a in range(n):
+        total = load(weights, place * 8) * load(x, a * 8)
+        for s in range(1, m):
+            total = total + load(weights, (place + s) * 8) * load(x, (s * n + a) * 8)
+        store(mean, start + a * 8, total)
+        for s in range(m):
+            store(off, (a * m + s) * 8, load(x, (s * n + a) * 8) - total)
+    for a in range(n):
+        for b in range(a + 1):
+            total = spread(0.0)
+            for s in range(m):
+                inner = load(P, ((s * n + a) * n + b) * 8) + load(off, (a * m + s) * 8) * load(off, (b * m + s) * 8)
+                total = total + load(weights, (place + s) * 8) * inner
+            store(covariance, square + (a * n + b) * 8, total)
+            store(covariance, square + (b * n + a) * 8, total)
+
+
+@njit(**COMPILE)
+def mode_weights(m, branching, p_mode, logs, totals, shares, mixing, raw):  # type: ignore[no-untyped-def]
+    """P[next mode] as exp(totals) shares and, for IMM, P[mode | next mode] in mixing [target, source].
+
+    One exponential per mode serves all next modes; raw (m 8) is work space. A next mode whose share would underflow is
+    done again in logarithms.
+    """
+    for lane in range(8):
+        top = -np.inf
+        for s in range(m):
+            top = max(top, logs[s * 8 + lane])
+        for s in range(m):
+            raw[s * 8 + lane] = math.exp(logs[s * 8 + lane] - top)
+            totals[s * 8 + lane] = top
+    for i in range(m):
+        total = load(raw, 0) * spread(p_mode[0, i])
+        for s in range(1, m):
+            total = total + load(raw, s * 8) * spread(p_mode[s, i])
+        store(shares, i * 8, total)
+        if branching == 1:
+            inverse = spread(1.0) / total
+            for s in range(m):
+                store(mixing, (i * m + s) * 8, load(raw, s * 8) * spread(p_mode[s, i]) * inverse)
+        for lane in range(8):
+            if shares[i * 8 + lane] < 1e-290:
+                top = totals[i * 8 + lane]
+                totals[i * 8 + lane] = slow_column(m, i, lane, top, p_mode, logs, mixing)
+                shares[i * 8 + lane] = 1.0
+
+
+@njit(**COMPILE)
+def slow_column(m, i, lane, top, p_mode, logs, mixing):  # type: ignore[no-untyped-def]
+    """One next mode in logarithms throughout, for weights that would underflow; returns its log-weight."""
+    best = -np.inf
+    for s in range(m):
+        if p_mode[s, i] > 0.0:
+            best = max(best, logs[s * 8 + lane] + math.log(p_mode[s, i]))
+    if best == -np.inf:
+        whole = 0.0
+        for s in range(m):
+            whole += math.exp(logs[s * 8 + lane] - top)
+        for s in range(m):
+            mixing[(i * m + s) * 8 + lane] = math.exp(logs[s * 8 + lane] - top) / whole
+        return best
+    total = 0.0
+    for s in range(m):
+        if p_mode[s, i] > 0.0:
+            total += math.exp(logs[s * 8 + lane] + math.log(p_mode[s, i]) - best)
+    for s in range(m):
+        share = 0.0
+        if p_mode[s, i] > 0.0:
+            share = math.exp(logs[s * 8 + lane] + math.log(p_mode[s, i]) - best) / total
+        mixing[(i * m + s) * 8 + lane] = share
+    return best + math.log(total)
+
+
+@njit(inline="always", **COMPILE)
+def begin_eight(m, n, log_prior, means, covariances, logs, x, P):  # type: ignore[no-untyped-def]
+    """The same first estimates, means (m, n), covariances (m, n, n), in every lane."""
+    for i in range(m):
+        for lane in range(8):
+            logs[i * 8 + lane] = log_prior[i]
+        for a in range(n):
+            store(x, (i * n + a) * 8, spread(means[i, a]))
+            for b in range(n):
+                store(P, ((i * n + a) * n + b) * 8, spread(covariances[i, a, b]))
+
+
+@njit(inline="always", **COMPILE)
+def lay_eight(first, k, i, rotated, u, z, zl):  # type: ignore[no-untyped-def]
+    """Measurement k of eight runs, rotated into independent scalars of mode i where R is not diagonal."""
+    runs, _, p = z.shape
+    for c in range(p):
+        for lane in range(8):
+            run = min(first + lane, runs - 1)
+            value = z[run, k, c]
+            if rotated:
+                value = 0.0
+                for a in range(p):
+                    value += u[i, a, c] * z[run, k, a]
+            zl[c * 8 + lane] = value
+
+
+@njit(inline="always", **COMPILE)
+def weigh_eight(m, totals, shares, volume, ll, logs, weights, total_log):  # type: ignore[no-untyped-def]
+    """Bayes' rule over the modes of every run; False when all modes of one are impossible."""
+    for lane in range(8):
+        top = -np.inf
+        for i in range(m):
+            share = shares[i * 8 + lane] / math.sqrt(volume[i * 8 + lane])
+            logs[i * 8 + lane] = totals[i * 8 + lane] + ll[i * 8 + lane] + math.log(share)
+            top = max(top, logs[i * 8 + lane])
+        if top == -np.inf:
+            return False
+        whole = 0.0
+        for i in range(m):
+            weights[i * 8 + lane] = math.exp(logs[i * 8 + lane] - top)
+            whole += weights[i * 8 + lane]
+        step_log = top + math.log(whole)
+        total_log[lane] += step_log
+        for i in range(m):
+            weights[i * 8 + lane] /= whole
+            logs[i * 8 + lane] -= step_log
+    return True
+
+
+@njit(inline="always", **COMPILE)
+def keep_eight(  # type: ignore[no-untyped-def]
+    first, k, m, n, total_log, weights, now_mean, now, mean, covariance, probabilities, log_likelihood
+):
+    """The answers of step k out of the lanes; lanes beyond the last run are left."""
+    for lane in range(min(8, mean.shape[0] - first)):
+        run = first + lane
+        log_likelihood[run, k] = total_log[lane]
+        for i in range(m):
+            probabilities[run, k, i] = weights[i * 8 + lane]
+        for a in range(n):
+            mean[run, k, a] = now_mean[a * 8 + lane]
+            for b in range(n):
+                covariance[run, k, a, b] = now[(a * n + b) * 8 + lane]
+
+
+@njit(inline="always", **COMPILE)
+def restart_eight(m, n, now_mean, now, x, P):  # type: ignore[no-untyped-def]
+    """Every mode goes on from the merged estimate: the pulsating filter."""
+    for i in range(m):
+        for a in range(n):
+            store(x, (i * n + a) * 8, load(now_mean, a * 8))
+            for b in range(n):
+                store(P, ((i * n + a) * n + b) * 8, load(now, (a * n + b) * 8))
+
+
+@njit(**COMPILE)
+def run_eight(  # type: ignore[no-untyped-def]
+    first,
+    branching,
+    F,
+    Q,
+    H,
+    r,
+    U,
+    rotated,
+    p_mode,
+    log_prior,
+    means,
+    covariances,
+    z,
+    mean,
+    covariance,
+    probabilities,
+    log_likelihood,
+):
+    """Eight runs from ``first`` on through all steps; branching 0 pulsating, 1 IMM, 2 polygaussian.
+
+    z (runs, T, p) without gaps; means (m, n), covariances (m, n, n) at step 0;
+    fills mean (runs, T, n), covariance (runs, T, n, n), probabilities (runs, T, m), log_likelihood (runs, T).
+    Returns False when a variance is not positive.
+    """
+    _, T, p = z.shape
+    m, n = F.shape[1], F.shape[2]
+    x, P, y, S = aligned(m * n * 8), aligned(m * n * n * 8), aligned(m * n * 8), aligned(m * n * n * 8)
+    logs, totals, weights, mixing = aligned(m * 8), aligned(m * 8), aligned(m * 8), aligned(m * m * 8)
+    ll, zl, off = aligned(m * 8), aligned(p * 8), aligned(m * n * 8)
+    shares, volume = aligned(m * 8), aligned(m * 8)
+    scratch = aligned((n * n + 2 * n + 2) * 8)
+    now_mean, now = aligned(n * 8), aligned(n * n * 8)
+    total_log = np.zeros(8)
+    begin_eight(m, n, log_prior, means, covariances, logs, x, P)
+    for k in range(T):
+        f, q = F[min(k, F.shape[0] - 1)], Q[min(k, Q.shape[0] - 1)]
+        h, v, u = H[min(k, H.shape[0] - 1)], r[min(k, r.shape[0] - 1)], U[min(k, U.shape[0] - 1)]
+        if branching == 2:
+            for j in range(m * 8):
+                totals[j] = logs[j]
+                shares[j] = 1.0
+        else:
+            mode_weights(m, branching, p_mode[min(k, p_mode.shape[0] - 1)], logs, totals, shares, mixing, weights)
+        if branching == 1:
+            for i in range(m):
+                merge_modes(m, n, mixing, i * m, x, P, i, y, S, off)
+            x, y = y, x
+            P, S = S, P
+        for i in range(m):
+            lay_eight(first, k, i, rotated, u, z, zl)
+            store(ll, i * 8, spread(0.0))
+            predict_mode(i, n, f[i], q[i], x, P, scratch)
+            if not correct_mode(i, n, p, h[i], v[i], zl, x, P, scratch, ll, volume):
+                return False
+        if not weigh_eight(m, totals, shares, volume, ll, logs, weights, total_log):
+            return False
+        merge_modes(m, n, weights, 0, x, P, 0, now_mean, now, off)
+        keep_eight(first, k, m, n, total_log, weights, now_mean, now, mean, covariance, probabilities, log_likelihood)
+        if branching == 0:
+            restart_eight(m, n, now_mean, now, x, P)
+    return True
+
+
+@njit(error_model="numpy", nogil=True, parallel=True)
+def run_all(  # type: ignore[no-untyped-def]
+    branching,
+    F,
+    Q,
+    H,
+    r,
+    U,
+    rotated,
+    p_mode,
+    log_prior,
+    means,
+    covariances,
+    z,
+    mean,
+    covariance,
+    probabilities,
+    log_likelihood,
+):
+    """All runs, eight at a time, on all cores; False when any of them had to stop."""
+    groups = (z.shape[0] + 7) // 8
+    fine = np.ones(groups, dtype=np.bool_)
+    for g in numba.prange(groups):
+        fine[g] = run_eight(
+            g * 8,
+            branching,
+            F,
+            Q,
+            H,
+            r,
+            U,
+            rotated,
+            p_mode,
+            log_prior,
+            means,
+            covariances,
+            z,
+            mean,
+            covariance,
+            probabilities,
+            log_likelihood,
+        )
+    return fine.all()

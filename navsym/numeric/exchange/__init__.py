@@ -1,1 +1,0 @@
-"""Exchange searches for the guaranteed estimator, in double and in twofold precision."""

@@ -1,1 +1,0 @@
-"""Kalman's two steps, plain and on factors of the covariance."""

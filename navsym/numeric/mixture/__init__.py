@@ -1,1 +1,0 @@
-"""Gaussian mixtures and banks of filters in compiled loops."""

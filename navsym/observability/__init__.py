@@ -1,0 +1,1 @@
+"""What a measurement observes, where that breaks, and how a system splits."""

@@ -1,0 +1,266 @@
+"""Where the rank of a polynomial matrix is smaller than its generic rank, by cases on pivots.
+
+Elimination up to the wanted rank r finds a minor D that is not the zero polynomial: off D = 0 the rank is r.
+On every component of D = 0 the question is asked again, with the equations of the component at hand: entries
+that vanish there are no pivots. Two answers end a case:
+
+* the elimination stops before r although its pivot does not vanish on the component: there the rank is
+  smaller everywhere (bordered minors, and semicontinuity of the rank on an irreducible set);
+* D is a number: no drop.
+
+Components get smaller from case to case, so that this ends; what ends a case early is counted and reported.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from navsym.core.errors import TooLargeError
+from navsym.observability.linear import Matrix, eliminate, sparsest
+from navsym.observability.reduction import System, components, remainder, vanishes
+from navsym.observability.ring import Poly, Ring, irreducible_factors
+
+#: Cases looked at, and depth of equations; beyond them the list is not called complete.
+CASES = 60
+DEPTH = 6
+#: Different minors that one case looks at: more of them leave fewer components to examine.
+MINORS = 3
+#: A variable is replaced by at most so many terms; longer solutions stay equations.
+SOLUTION = 12
+#: Products of terms for one entry on the way; beyond that a minor is not formed, and the list not called complete.
+PRODUCTS = 60_000
+#: The same when the locus is written down as the common zeros of all maximal minors; so many of them at most,
+#: and so many terms together, since nobody reads a longer condition.
+LAST_PRODUCTS, LAST_MINORS, LAST_TERMS = 16_000_000, 8, 40_000
+
+
+@dataclass(slots=True)
+class Search:
+    """What is found on the way: systems on which the rank drops, cases left, and whether all were decided."""
+
+    ring: Ring
+    found: list[System] = field(default_factory=list)
+    seen: set[str] = field(default_factory=set)
+    cases: int = 0
+    complete: bool = True
+
+
+def drops_by_cases(rows: Matrix, rank: int, ring: Ring) -> tuple[list[System], bool]:
+    """Systems of equations on which the rank of the rows is below ``rank``, and whether these are all.
+
+    rank is the generic rank of the rows. The union of the real zeros of the systems is the drop locus.
+    """
+    search = Search(ring)
+    visit(search, rows, rank, [])
+    return search.found, search.complete
+
+
+def drops_by_all_minors(rows: Matrix, rank: int, ring: Ring) -> list[System] | None:
+    """The drop locus by its definition, or None when it is too long to write down.
+
+    The rank is smaller exactly where all maximal minors of the remainder vanish; for a square one that is its
+    determinant, factored. Dense systems end here: cases on a pivot with thousands of terms do not end.
+    """
+    reduced = remainder(rows)
+    wanted = rank - reduced.regular
+    if wanted <= 0 or not reduced.rows:
+        return []
+    width = len(reduced.rows[0])
+    if math.comb(len(reduced.rows), wanted) * math.comb(width, wanted) > LAST_MINORS:
+        return None
+    minors = []
+    try:
+        for chosen in itertools.combinations(reduced.rows, wanted):
+            for columns in itertools.combinations(range(width), wanted):
+                minor, full, _ = minor_on(chosen, wanted, [], columns, ring, LAST_PRODUCTS)
+                if full:
+                    minors.append(minor)
+    except TooLargeError:
+        return None
+    if sum(map(len, minors)) > LAST_TERMS:
+        return None
+    return components(minors, ring)
+
+
+def visit(search: Search, rows: Matrix, rank: int, system: System) -> None:
+    """One case: the drops among the real zeros of a system (all points for the empty one)."""
+    name = "; ".join(sorted(map(str, system)))
+    if name in search.seen or covered(system, search.found):
+        return
+    search.seen.add(name)
+    search.cases += 1
+    if search.cases > CASES or len(system) > DEPTH:
+        search.complete = False
+        return
+    reduced = remainder(substituted(rows, system, search.ring))
+    wanted = rank - reduced.regular
+    if wanted <= 0:
+        return
+    try:
+        minors, pivot = minors_on(reduced.rows, wanted, system, search.ring)
+    except TooLargeError:
+        search.complete = False
+        return
+    if not minors and whole(search, rows, rank, system, pivot):
+        search.found.append(system)
+    elif not minors:
+        # Off pivot = 0 the rank is smaller, but not everywhere: what is listed has to be a drop as it stands.
+        search.complete = False
+        for child in components([*system, pivot], search.ring):
+            visit(search, rows, rank, child)
+    elif not any(minor.is_constant() for minor in minors):
+        for child in components([*system, *minors], search.ring):
+            visit(search, rows, rank, child)
+
+
+def whole(search: Search, rows: Matrix, rank: int, system: System, pivot: Poly) -> bool:
+    """Whether the rank is proved to be smaller on all of a system on which elimination stopped at a pivot.
+
+    Off pivot = 0 it is. An irreducible system has the rest in its closure; otherwise the part with
+    pivot = 0 is examined on its own, and must be whole again.
+    """
+    if irreducible(system) or pivot.is_constant():
+        return True
+    ring = search.ring
+    for part in components([*system, pivot], ring):
+        search.cases += 1
+        if search.cases > CASES:
+            return False
+        reduced = remainder(substituted(rows, part, ring))
+        try:
+            minors, following = minors_on(reduced.rows, rank - reduced.regular, part, ring)
+        except TooLargeError:
+            return False
+        if rank <= reduced.regular or minors or not whole(search, rows, rank, part, following):
+            return False
+    return True
+
+
+def irreducible(system: System) -> bool:
+    """Whether the zeros of a system are known not to split: all equations but one solve for a variable each.
+
+    An equation c x - g with a number c and without x in g only names x; it does not occur in the others.
+    """
+    rest = [f for f in system if solved_variable(f, system) is None]
+    return not rest or (len(rest) == 1 and irreducible_factors(rest[0]) in ([rest[0]], [-rest[0]]))
+
+
+def solved_variable(f: Poly, system: System) -> int | None:
+    """Place of a variable that stands in f once, alone, with a numerical factor, and nowhere else."""
+    for powers in f.to_dict():
+        if sum(powers) != 1:
+            continue
+        place = list(map(int, powers)).index(1)
+        alone = f.degrees()[place] == 1 and sum(1 for p in f.to_dict() if p[place]) == 1
+        if alone and all(other is f or other.degrees()[place] == 0 for other in system):
+            return place
+    return None
+
+
+def substituted(rows: Matrix, system: System, ring: Ring) -> Matrix:
+    """The rows with the variables that the system solves for replaced; rows times numbers."""
+    for f in system:
+        place = solved_variable(f, system) if len(f) <= SOLUTION else None
+        if place is not None:
+            rows = [replaced(row, f, place, ring) for row in rows]
+    return rows
+
+
+def replaced(row: list[Poly], f: Poly, place: int, ring: Ring) -> list[Poly]:
+    """x = g/c in every entry of a row, times the power of c that keeps integers; f = c x - g."""
+    unit = tuple(int(k == place) for k in range(len(ring.symbols)))
+    factor = int(f.to_dict()[unit])
+    value = factor * ring.context.gen(place) - f
+    degree = max(int(entry.degrees()[place]) if entry != 0 else 0 for entry in row)
+    if degree == 0:
+        return row
+    return [in_entry(entry, place, value, factor, degree, ring) for entry in row]
+
+
+def in_entry(entry: Poly, place: int, value: Poly, factor: int, degree: int, ring: Ring) -> Poly:
+    """c^degree times the entry at x = value/c."""
+    parts: dict[int, dict[tuple[int, ...], int]] = {}
+    for powers, coefficient in entry.to_dict().items():
+        rest = tuple(0 if k == place else int(p) for k, p in enumerate(powers))
+        parts.setdefault(int(powers[place]), {})[rest] = int(coefficient)
+    total = ring.constant(0)
+    for power, terms in parts.items():
+        total += ring.context.from_dict(terms) * value**power * factor ** (degree - power)
+    return total
+
+
+def minors_on(rows: Matrix, wanted: int, system: System, ring: Ring) -> tuple[list[Poly], Poly]:
+    """Some minors of the wanted size that do not vanish on the system, and the last pivot of the first try.
+
+    The first minor decides; further ones are taken without a column of the one before.
+    """
+    columns = list(range(len(rows[0]))) if rows else []
+    found: list[Poly] = []
+    first: Poly = ring.constant(1)
+    for attempt in range(MINORS):
+        pivot, full, used = minor_on(rows, wanted, system, columns, ring)
+        if attempt == 0:
+            first = pivot
+        if not full:
+            break
+        found.append(pivot)
+        if pivot.is_constant():
+            break
+        columns = [k for k in columns if k != used]
+    return found, first
+
+
+def minor_on(
+    rows: Sequence[list[Poly]],
+    wanted: int,
+    system: System,
+    columns: Sequence[int],
+    ring: Ring,
+    products: int = PRODUCTS,
+) -> tuple[Poly, bool, int]:
+    """(last pivot, whether it is a minor of the wanted size, its column) of an elimination on a system.
+
+    Bareiss' elimination over the polynomials, exact whatever the pivots are; pivots must not vanish on the
+    system. When only vanishing entries are left, all larger minors around the last one vanish.
+    """
+    work, free = [list(row) for row in rows], list(columns)
+    last, used = ring.constant(1), -1
+    for step in range(wanted):
+        place = pivot_on(work, step, free, system)
+        if place is None:
+            return last, False, used
+        i, used = place
+        affordable(work[step:], work[i][used], products)
+        work[step], work[i] = work[i], work[step]
+        eliminate(work, step, used, last)
+        last = work[step][used]
+        free.remove(used)
+    return last, True, used
+
+
+def affordable(rows: Matrix, pivot: Poly, products: int) -> None:
+    """Refuse an elimination step whose products are too long."""
+    longest = max(len(entry) for row in rows for entry in row)
+    if len(pivot) * longest > products:
+        raise TooLargeError(f"expected entries of at most {products} products; got more; fix some parameters")
+
+
+def pivot_on(work: Matrix, step: int, free: Sequence[int], system: System) -> tuple[int, int] | None:
+    """The sparsest entry that does not vanish on the system; entries that do are set aside."""
+    if not work:
+        return None
+    zero = 0 * work[0][0]
+    shown = [list(row) for row in work]
+    while True:
+        place = sparsest(shown, step, free)
+        if place is None or not vanishes(shown[place[0]][place[1]], system):
+            return place
+        shown[place[0]][place[1]] = zero
+
+
+def covered(system: System, found: Sequence[System]) -> bool:
+    """Whether the zeros of a system visibly lie inside a drop that is known already."""
+    return any(all(vanishes(f, system) for f in other) for other in found)

@@ -1,0 +1,303 @@
+"""Fraction-free linear algebra over Z[parameters], with proofs.
+
+``rank >= r`` is proved by one integer point: a minor that does not vanish there is not the zero
+polynomial. ``rank <= r`` is proved by the relations that express every other vector. Both
+together are the generic rank; no coefficient is ever tested for being "probably zero".
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import combinations
+
+from flint import nmod_mat
+
+from navsym.observability.ring import Poly, Quotient, Ring, divide, gcd_all
+
+Matrix = list[list[Poly]]
+
+#: Arithmetic of the integer points: a minor that differs from zero modulo this prime differs from zero.
+PRIME = 2305843009213693951
+
+
+def points(ring: Ring, count: int = 3) -> list[tuple[int, ...]]:
+    """Integer points at which minors are looked at; always the same ones."""
+    source = random.Random(20260101)
+    size = len(ring.symbols)
+    return [tuple(source.randrange(2, 1 << 40) for _ in range(size)) for _ in range(count)]
+
+
+def at_point(matrix: Sequence[Sequence[Poly]], point: Sequence[int]) -> list[list[int]]:
+    """Residues of the entries at an integer point."""
+    return [[residue(entry, point) for entry in row] for row in matrix]
+
+
+def residue(entry: Poly, point: Sequence[int]) -> int:
+    """Value of a polynomial at an integer point, modulo the prime."""
+    if entry == 0:
+        return 0
+    return int(entry(*point) if point else entry.leading_coefficient()) % PRIME
+
+
+def residue_chains(rows: Matrix, matrix: Matrix, point: Sequence[int]) -> list[list[int]]:
+    """All n vectors of every chain a, G^T a, ... at an integer point, one chain after the other."""
+    n = len(matrix)
+    residues = nmod_mat(n, n, [x for row in at_point(matrix, point) for x in row], PRIME)
+    found = []
+    for start in at_point(rows, point):
+        vector = nmod_mat(1, n, start, PRIME)
+        for _ in range(n):
+            found.append([int(x) for x in vector.entries()])
+            vector = vector * residues
+    return found
+
+
+def residue_rank(rows: list[list[int]]) -> int:
+    """Rank of a matrix of residues."""
+    return nmod_mat(len(rows), len(rows[0]), [x for row in rows for x in row], PRIME).rank() if rows else 0
+
+
+def residue_kernel(rows: list[list[int]]) -> tuple[nmod_mat, int]:
+    """Directions that the rows do not see, as the first columns of a matrix, and how many they are."""
+    n = len(rows[0])
+    kernel, count = nmod_mat(len(rows), n, [x for row in rows for x in row], PRIME).nullspace()
+    return kernel, int(count)
+
+
+def residues_on(rows: list[list[int]], kernel: nmod_mat, count: int) -> list[list[int]]:
+    """Independent vectors (k, count) that the rows make of the first columns of a kernel."""
+    seen = nmod_mat(len(rows), len(rows[0]), [x for row in rows for x in row], PRIME) * kernel
+    parts = [[int(x) for x in vector[:count]] for vector in seen.tolist()]
+    return [parts[k] for k in independent_rows(parts)]
+
+
+def independent_rows(rows: list[list[int]]) -> list[int]:
+    """Places of the rows that are not combinations of earlier ones, modulo the prime."""
+    chosen: list[int] = []
+    reduced: list[tuple[int, list[int]]] = []
+    for place, row in enumerate(rows):
+        rest = list(row)
+        for pivot, other in reduced:
+            if factor := rest[pivot]:
+                rest = [(x - factor * y) % PRIME for x, y in zip(rest, other, strict=True)]
+        first = next((k for k, x in enumerate(rest) if x), None)
+        if first is not None:
+            inverse = pow(rest[first], -1, PRIME)
+            reduced.append((first, [x * inverse % PRIME for x in rest]))
+            chosen.append(place)
+    return chosen
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Reduced:
+    """Row-reduced form without fractions: ``pivot * identity`` on the pivot columns.
+
+    The result of :func:`eliminated` is triangular there instead.
+    """
+
+    pivot: Poly
+    rows: Matrix
+    columns: tuple[int, ...]  # pivot column of each row
+    sign: int  # of the row permutation
+
+
+def reduce_rows(matrix: Matrix, ring: Ring, columns: Sequence[int] | None = None) -> Reduced:
+    """Row-reduced form without fractions, pivots taken from the given columns (all by default).
+
+    Bareiss' elimination downwards, then each free column by substitution upwards: a column that is a pivot
+    needs no arithmetic at all. Every division is exact; the last pivot is the determinant of the pivot
+    block up to the sign.
+    """
+    found = eliminated(matrix, ring, columns)
+    size = len(found.rows)
+    width = len(matrix[0]) if matrix else 0
+    zero = ring.constant(0)
+    rows = [[zero] * width for _ in range(size)]
+    for row, column in zip(rows, found.columns, strict=True):
+        row[column] = found.pivot
+    for column in (k for k in range(width) if k not in found.columns):
+        for k in range(size - 1, -1, -1):
+            upper = found.rows[k]
+            total = found.pivot * upper[column] if upper[column] != 0 else zero
+            for later in range(k + 1, size):
+                factor = upper[found.columns[later]]
+                if factor != 0 and rows[later][column] != 0:
+                    total = total - factor * rows[later][column]
+            rows[k][column] = divide(total, upper[found.columns[k]]) if total != 0 else zero
+    return Reduced(found.pivot, rows, found.columns, found.sign)
+
+
+def eliminated(matrix: Matrix, ring: Ring, columns: Sequence[int] | None = None) -> Reduced:
+    """Bareiss' triangular form: row k has zeros in the pivot columns of the earlier rows.
+
+    The pivot is the entry with the fewest terms, among equals the one whose row and column hold the fewest
+    others (Markowitz): that keeps the intermediate minors small.
+    """
+    rows = [list(row) for row in matrix]
+    free = list(range(len(rows[0]))) if columns is None and rows else list(columns or ())
+    last, sign, taken = ring.constant(1), 1, []
+    for step in range(len(rows)):
+        place = sparsest(rows, step, free)
+        if place is None:
+            rows = rows[:step]
+            break
+        i, j = place
+        if i != step:
+            rows[step], rows[i], sign = rows[i], rows[step], -sign
+        eliminate(rows, step, j, last)
+        last = rows[step][j]
+        free.remove(j)
+        taken.append(j)
+    return Reduced(last, rows, tuple(taken), sign)
+
+
+def sparsest(rows: Matrix, step: int, columns: Sequence[int]) -> tuple[int, int] | None:
+    """Place of the best pivot among the rows not yet used, None when they are zero there."""
+    sizes = [[len(row[j]) for j in columns] for row in rows[step:]]
+    filled = [sum(1 for size in row if size) for row in sizes]
+    used = [sum(1 for size in column if size) for column in zip(*sizes, strict=True)]
+    best, place = None, None
+    for i, row in enumerate(sizes):
+        for j, size in enumerate(row):
+            if size:
+                score = (size, (filled[i] - 1) * (used[j] - 1))
+                if best is None or score < best:
+                    best, place = score, (step + i, columns[j])
+                    if score == (1, 0):
+                        return place
+    return place
+
+
+def eliminate(rows: Matrix, step: int, column: int, last: Poly) -> None:
+    """One step of Bareiss: clear the column in the rows below."""
+    pivot_row = rows[step]
+    pivot = pivot_row[column]
+    one = last == 1
+    held = [(k, y) for k, y in enumerate(pivot_row) if y != 0]
+    for i in range(step + 1, len(rows)):
+        row = rows[i]
+        factor = row[column]
+        if factor == 0:
+            if pivot != last:
+                rows[i] = [x if x == 0 else pivot * x if one else divide(pivot * x, last) for x in row]
+            continue
+        cleared = [x if x == 0 else pivot * x for x in row]
+        for k, y in held:
+            cleared[k] = cleared[k] - factor * y
+        rows[i] = cleared if one else [x if x == 0 else divide(x, last) for x in cleared]
+
+
+def determinant(matrix: Matrix, ring: Ring) -> Poly:
+    """Determinant of a square matrix, by fraction-free elimination."""
+    if not matrix:
+        return ring.constant(1)
+    reduced = eliminated(matrix, ring)
+    if len(reduced.rows) < len(matrix):
+        return ring.constant(0)
+    return reduced.pivot * reduced.sign * permutation_sign(reduced.columns)
+
+
+def transposed_times(matrix: Matrix, vector: list[Poly], ring: Ring) -> list[Poly]:
+    """G^T a for sparse polynomial entries."""
+    total = [ring.constant(0)] * len(vector)
+    for row, factor in zip(matrix, vector, strict=True):
+        if factor != 0:
+            total = [t + factor * x if x != 0 else t for t, x in zip(total, row, strict=True)]
+    return total
+
+
+def permutation_sign(places: Sequence[int]) -> int:
+    """1 for an even and -1 for an odd order of the places."""
+    inversions = sum(1 for i, a in enumerate(places) for b in places[i + 1 :] if a > b)
+    return -1 if inversions % 2 else 1
+
+
+def determinant_slowly(matrix: Matrix, ring: Ring) -> Poly:
+    """Twin of :func:`determinant`: expansion along the first row."""
+    if not matrix:
+        return ring.constant(1)
+    total = ring.constant(0)
+    for j, entry in enumerate(matrix[0]):
+        if entry != 0:
+            minor = [row[:j] + row[j + 1 :] for row in matrix[1:]]
+            total = total + entry * determinant_slowly(minor, ring) * (-1) ** j
+    return total
+
+
+def relation(vectors: Matrix, target: list[Poly], ring: Ring) -> list[Quotient] | None:
+    """Coefficients c with ``target = sum c_k vectors_k`` as rational functions, or None.
+
+    The vectors are independent. The answer is checked on every component before it leaves, so
+    that it proves that the target lies in their span for all parameter values at which the
+    denominators do not vanish.
+    """
+    if not vectors:
+        return [] if all(x == 0 for x in target) else None
+    stacked = [[*column, t] for column, t in zip(zip(*vectors, strict=True), target, strict=True)]
+    size = len(vectors)
+    reduced = reduce_rows(stacked, ring, range(size))
+    if len(reduced.rows) < size:
+        raise ArithmeticError("relation: the vectors are dependent")
+    values = [ring.constant(0)] * size
+    for row, column in zip(reduced.rows, reduced.columns, strict=True):
+        values[column] = row[size]
+    for k, t in enumerate(target):
+        total = sum((c * v[k] for c, v in zip(values, vectors, strict=True)), ring.constant(0))
+        if total != reduced.pivot * t:
+            return None
+    return [ring.lowest(value, reduced.pivot) for value in values]
+
+
+def null_vectors(rows: Matrix, size: int, ring: Ring) -> Matrix:
+    """Basis of ``{x : rows x = 0}`` with polynomial entries without a common factor.
+
+    rows : independent vectors of the given length; every answer is checked by multiplication.
+    """
+    if not rows:
+        return [[ring.constant(int(i == k)) for i in range(size)] for k in range(size)]
+    reduced = reduce_rows(rows, ring)
+    basis = []
+    for free in (k for k in range(size) if k not in reduced.columns):
+        vector = [ring.constant(0)] * size
+        vector[free] = reduced.pivot
+        for row, column in zip(reduced.rows, reduced.columns, strict=True):
+            vector[column] = -row[free]
+        basis.append(primitive(vector, ring))
+    for vector in basis:
+        if any(sum((a * x for a, x in zip(row, vector, strict=True)), ring.constant(0)) != 0 for row in rows):
+            raise ArithmeticError("null_vectors: a product does not vanish")
+    return basis
+
+
+def primitive(vector: list[Poly], ring: Ring) -> list[Poly]:
+    """The vector without the common factor of its entries, first nonzero entry with a positive sign."""
+    common = gcd_all(vector, ring.constant(0))
+    if common == 0:
+        return vector
+    first = next(x for x in vector if x != 0)
+    sign = -1 if divide(first, common).leading_coefficient() < 0 else 1
+    return [divide(x, common) * sign for x in vector]
+
+
+def maximal_minors(vectors: Matrix, ring: Ring) -> list[Poly]:
+    """All r x r minors of r vectors of length n, by adding one vector at a time.
+
+    The minors of the first k vectors on every k-subset of places follow from those of k - 1, so
+    that nothing is computed twice: sum over k of C(n, k) k products.
+    """
+    minors: dict[tuple[int, ...], Poly] = {(): ring.constant(1)}
+    size = len(vectors[0])
+    for count, vector in enumerate(vectors, start=1):
+        larger = {}
+        for places in combinations(range(size), count):
+            total = ring.constant(0)
+            for index, place in enumerate(places):
+                smaller = minors.get(places[:index] + places[index + 1 :])
+                if smaller is not None and vector[place] != 0:
+                    total = total + smaller * vector[place] * (-1) ** (count - 1 - index)
+            if total != 0:
+                larger[places] = total
+        minors = larger
+    return list(minors.values())

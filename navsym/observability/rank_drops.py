@@ -1,0 +1,327 @@
+"""All parameter values at which an observable subspace shrinks.
+
+A chain of generic dimension m spans at every parameter point what its first m vectors span there, so that the
+drops are the points where these vectors, of one measurement or of all together, have a smaller rank. What is
+regular everywhere is taken out first (``observability_reduction``); the rest is decided by cases on pivots
+(``observability_cases``), factored, split into components, over the real numbers.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+
+import sympy as sp
+from flint import fmpz, fmpz_mat
+
+from navsym.core.errors import TooLargeError
+from navsym.observability.cases import LAST_PRODUCTS, LAST_TERMS, drops_by_all_minors, drops_by_cases, minor_on
+from navsym.observability.chains import Chain, Chains, Observability
+from navsym.observability.linear import Matrix, determinant, maximal_minors
+from navsym.observability.reduction import System, components, irredundant, krylov_remainder
+from navsym.observability.ring import Poly, Ring, odd
+
+# Determinants of chains by values at integer points.
+#
+# The vectors h, h G, ..., h G^(k-1) of a dense model have thousands of terms, and elimination multiplies them; their
+# determinant at a point in integers takes microseconds. Its degree in a parameter x is bounded beforehand: where G is
+# affine in x and x stands in r rows, or in r columns, of G, a unit lower triangular matrix turns row j > 1 of a chain
+# into one of degree r in x (plus that of h), so that the degree is at most r times the number of steps. With
+# G = G_0 + x B C, where C has r rows, h G^j = h G_0^j + x sum_i m_i C G_0^(j-1-i), and the series of the m_i is
+# h(z) (1 - x z Q(z))^-1: the Toeplitz matrix of the determinant of 1 - x z Q(z), of degree r in x, clears the inverse.
+# Values on the grid of all degrees determine the polynomial: nothing is left to chance.
+
+
+#: So many points at most: about ten seconds of processor time for ten states.
+POINTS = 120_000
+
+
+def degree_in(entry: Poly, place: int) -> int:
+    """Degree of a polynomial in one generator; 0 for the zero polynomial."""
+    return int(entry.degrees()[place]) if entry != 0 else 0
+
+
+def steps_of(matrix: Matrix, place: int) -> int | None:
+    """r of the module's text for one generator; None where the matrix is not affine in it."""
+    held = [[degree_in(entry, place) for entry in row] for row in matrix]
+    if max(map(max, held)) > 1:
+        return None
+    return min(sum(map(any, held)), sum(map(any, zip(*held, strict=True))))
+
+
+def degree_bound(starts: Sequence[tuple[list[Poly], int]], matrix: Matrix, place: int) -> int:
+    """Degree in one generator that the determinant of the chains (h, number of vectors) cannot exceed."""
+    first = sum(count * max(degree_in(entry, place) for entry in row) for row, count in starts)
+    highest = max(degree_in(entry, place) for row in matrix for entry in row)
+    plain = highest * sum(count * (count - 1) // 2 for _, count in starts)
+    steps = steps_of(matrix, place)
+    return first + (plain if steps is None else min(plain, steps * sum(count - 1 for _, count in starts if count)))
+
+
+def points_needed(starts: Sequence[tuple[list[Poly], int]], matrix: Matrix) -> int:
+    """Number of integer points at which the determinant of the chains is taken."""
+    starts = [(row, count) for row, count in starts if count]
+    return math.prod(degree_bound(starts, matrix, place) + 1 for place in range(generators(matrix)))
+
+
+def generators(matrix: Matrix) -> int:
+    """Number of generators of the ring of the entries."""
+    return int(matrix[0][0].context().nvars())
+
+
+def chain_determinant(starts: Sequence[tuple[list[Poly], int]], matrix: Matrix, ring: Ring) -> Poly | None:
+    """Determinant of the chains (h, number of vectors), n vectors together; None when it takes too many points."""
+    starts = [(row, count) for row, count in starts if count]
+    bounds = [degree_bound(starts, matrix, place) for place in range(generators(matrix))]
+    if math.prod(bound + 1 for bound in bounds) > POINTS:
+        return None
+    motion = Table(itertools.chain(*matrix))
+    rows = [(Table(row), count) for row, count in starts]
+    grid = itertools.product(*(range(bound + 1) for bound in bounds))
+    values = [value_at(rows, motion, len(matrix), point) for point in grid]
+    for bound in bounds:
+        values = along_first_axis(values, bound)
+    powers = itertools.product(*(range(b + 1) for b in bounds))
+    return ring.context.from_dict({power: c for power, c in zip(powers, values, strict=True) if c != 0})
+
+
+class Table:
+    """Entries to be taken at many points: numbers are converted once."""
+
+    def __init__(self, entries: Iterable[Poly]) -> None:
+        listed = list(entries)
+        self.fixed = [number(entry) for entry in listed]
+        self.varying = [(place, entry) for place, entry in enumerate(listed) if entry != 0 and not entry.is_constant()]
+
+    def at(self, point: Sequence[int]) -> list[fmpz]:
+        """Values of all entries at a point."""
+        values = self.fixed.copy()
+        for place, entry in self.varying:
+            values[place] = entry(*point)
+        return values
+
+
+def number(entry: Poly) -> fmpz:
+    """A constant polynomial as an integer; 0 for any other, whose place is filled at every point."""
+    return fmpz(int(entry.leading_coefficient())) if entry != 0 and entry.is_constant() else fmpz(0)
+
+
+def value_at(starts: Sequence[tuple[Table, int]], motion: Table, n: int, point: Sequence[int]) -> fmpz:
+    """The determinant at one point, in integers; chains are doubled with the squares of G."""
+    powers = [fmpz_mat(n, n, motion.at(point))]
+    rows: list[fmpz] = []
+    for start, count in starts:
+        chain = start.at(point)
+        step = 0
+        while len(chain) < n * count:
+            if step == len(powers):
+                powers.append(powers[-1] * powers[-1])
+            more = fmpz_mat(len(chain) // n, n, chain) * powers[step]
+            chain, step = chain + more.entries(), step + 1
+        rows += chain[: n * count]
+    return fmpz_mat(n, n, rows).det()
+
+
+def along_first_axis(values: list[fmpz], bound: int) -> list[fmpz]:
+    """From values at 0..bound to coefficients along the first axis of a grid, which becomes the last one."""
+    size = bound + 1
+    table = fmpz_mat(size, len(values) // size, values)
+    found = (newton(bound) * table).transpose().entries()
+    scale = math.factorial(bound)
+    return [value // scale for value in found]
+
+
+def newton(bound: int) -> fmpz_mat:
+    """bound! times the inverse of the matrix of powers of 0..bound: Lagrange's polynomials, in integers."""
+    columns = []
+    for own in range(bound + 1):
+        others = [other for other in range(bound + 1) if other != own]
+        product = [1]
+        for other in others:
+            product = [a - other * b for a, b in zip([0, *product], [*product, 0], strict=True)]
+        share = math.factorial(bound) // math.prod(own - other for other in others)
+        columns.append([share * c for c in product])
+    return fmpz_mat(bound + 1, bound + 1, [c for row in zip(*columns, strict=True) for c in row])
+
+
+#: So many staircases at most, when the joint locus is written down by its definition.
+MOST_STAIRCASES = 40
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RankDrop:
+    """The rank of a subspace is smaller where all the polynomials vanish together.
+
+    subspace : name of a measurement, or "joint"
+    zeros    : polynomials, irreducible over the rationals where that could be reached
+    complete : True when the drops listed for this subspace are proved to be all real ones
+    """
+
+    subspace: str
+    zeros: tuple[sp.Expr, ...]
+    complete: bool
+
+    @property
+    def condition(self) -> str:
+        """The drop as text: ``zero = 0`` for every polynomial, joined by ``and``."""
+        return " and ".join(f"{zero} = 0" for zero in self.zeros)
+
+    @property
+    def allowed(self) -> bool | None:
+        """False when what the symbols are declared to be (positive, nonzero) excludes it, else None."""
+        return False if any(excluded(zero) for zero in self.zeros) else None
+
+
+def excluded(zero: sp.Expr) -> bool:
+    """A symbol that is declared nonzero, or a sum of products of positive symbols."""
+    if zero.is_Symbol:
+        return bool(zero.is_positive or zero.is_nonzero)
+    return bool(all(term.is_positive for term in sp.Add.make_args(zero)))
+
+
+def rank_drops(found: Observability) -> tuple[RankDrop, ...]:
+    """Drops of every measurement's subspace and of the joint one, with completeness."""
+    return drops_and_completeness(found)[0]
+
+
+def drops_and_completeness(found: Observability) -> tuple[tuple[RankDrop, ...], dict[str, bool]]:
+    """The drops, and for every subspace whether its list is proved complete, also when it is empty."""
+    ring, answer = found.chains.ring, all_drops(found.chains)
+    drops = tuple(
+        RankDrop(name, tuple(ring.condition(f) for f in system), complete)
+        for name, (systems, complete) in answer.items()
+        for system in whole_angles(systems, ring)
+    )
+    return drops, {name: complete for name, (_, complete) in answer.items()}
+
+
+def whole_angles(systems: list[System], ring: Ring) -> list[System]:
+    """Two equations in half an angle that make one in the whole angle stand as that one.
+
+    sin(x/2) = 0 or cos(x/2) = 0 is sin(x) = 0; f = 0 or its mirror image (cos(x/2) with the other sign) = 0 is
+    one equation as well.
+    """
+    listed = list(systems)
+    for sine, cosine in ring.pairs():
+        S, C = ring.context.gen(sine), ring.context.gen(cosine)
+        singles = [f for (f,) in (system for system in listed if len(system) == 1) if odd(f, cosine)]
+        while singles:
+            f = singles.pop()
+            mirror = f.compose(*(-C if k == cosine else ring.context.gen(k) for k in range(len(ring.symbols))))
+            partners = {"S": [C], "C": [S]}.get("S" if f == S else "C" if f == C else "", [mirror, -mirror])
+            other = next((g for g in singles if any(g == partner for partner in partners)), None)
+            if other is not None:
+                singles.remove(other)
+                place = next(k for k, system in enumerate(listed) if system == [f])
+                listed[place] = [f * other]
+                listed.remove([other])
+    return listed
+
+
+def all_drops(chains: Chains) -> dict[str, tuple[list[System], bool]]:
+    """Drops of every chain and of all of them together, each from what is not regular everywhere."""
+    answer = {chain.name: drops_of_group(chains, (chain,), chain.dimension) for chain in chains.chains}
+    if len(chains.chains) == 1:
+        return {**answer, "joint": answer[chains.chains[0].name]}
+    return {**answer, "joint": drops_of_group(chains, chains.chains, chains.joint_dimension)}
+
+
+def drops_of_group(chains: Chains, part: tuple[Chain, ...], rank: int) -> tuple[list[System], bool]:
+    """Drops of what some chains span together: by cases, or else by the definition, written in one of three ways."""
+    ring = chains.ring
+    rest = krylov_remainder([(chain.vectors[0], chain.dimension) for chain in part], chains.matrix, ring)
+    found, complete = drops_by_cases(rest.rows, rank - rest.regular, ring)
+    if not complete:
+        for written in (
+            lambda: drops_by_staircases(chains, part, rank, by_values),
+            lambda: drops_by_all_minors(rest.rows, rank - rest.regular, ring),
+            lambda: drops_by_staircases(chains, part, rank, by_elimination),
+        ):
+            listed = written()
+            if listed is not None:
+                return irredundant(listed), True
+    return irredundant(found), complete
+
+
+#: The determinant of the first vectors of some chains, so many of each; None when it is too long to form.
+Determinant = Callable[[Chains, tuple[Chain, ...], tuple[int, ...]], Poly | None]
+
+
+def by_values(chains: Chains, part: tuple[Chain, ...], step: tuple[int, ...]) -> Poly | None:
+    """By interpolation from values at integer points."""
+    starts = [(chain.vectors[0], count) for chain, count in zip(part, step, strict=True)]
+    return chain_determinant(starts, chains.matrix, chains.ring)
+
+
+def by_elimination(chains: Chains, part: tuple[Chain, ...], step: tuple[int, ...]) -> Poly | None:
+    """By fraction-free elimination."""
+    rows = [v for chain, count in zip(part, step, strict=True) for v in chains.first(chain, count)]
+    zero = chains.ring.constant(0)
+    try:
+        minor, full, _ = minor_on(rows, len(rows), [], list(range(len(rows))), chains.ring, LAST_PRODUCTS)
+    except TooLargeError:
+        return None
+    return minor if full else zero
+
+
+def drops_by_staircases(
+    chains: Chains, part: tuple[Chain, ...], rank: int, determinant_of: Determinant
+) -> list[System] | None:
+    """The drop locus of some chains by its definition, or None when it is too long to write down.
+
+    At any point take vectors of the first chain while they are independent, then of the second, and so on: what a
+    chain adds is closed under the motion modulo the chains before it, so the vectors taken span all. The joint rank is
+    therefore n exactly where one staircase (k_1, ..., k_s) has a determinant that is not zero; that is far fewer
+    determinants than all maximal minors. Only for chains that observe everything somewhere.
+    """
+    steps = list(compositions(rank, [chain.dimension for chain in part]))
+    if rank < len(chains.matrix) or len(steps) > MOST_STAIRCASES:
+        return None
+    if determinant_of is by_values and too_many_points(chains, part, steps):
+        return None
+    minors: list[Poly] = []
+    for step in steps:
+        minor = determinant_of(chains, part, step)
+        if minor is None:
+            return None
+        if minor != 0 and minor.is_constant():
+            return []
+        minors += [minor] if minor != 0 else []
+        if sum(map(len, minors)) > LAST_TERMS:
+            return None
+    return components(minors, chains.ring)
+
+
+def too_many_points(chains: Chains, part: tuple[Chain, ...], steps: Sequence[tuple[int, ...]]) -> bool:
+    """Whether the determinants of all staircases take more values than one of them may."""
+    starts = [chain.vectors[0] for chain in part]
+    return sum(points_needed(list(zip(starts, step, strict=True)), chains.matrix) for step in steps) > POINTS
+
+
+def staircases(chains: Chains) -> list[tuple[int, ...]]:
+    """All (k_1, ..., k_s) with the joint dimension as sum and k_i at most the chain's dimension."""
+    return list(compositions(chains.joint_dimension, [chain.dimension for chain in chains.chains]))
+
+
+def compositions(total: int, caps: Sequence[int]) -> Iterator[tuple[int, ...]]:
+    """All tuples of nonnegative numbers with the given sum, each at most its cap."""
+    if not caps:
+        if total == 0:
+            yield ()
+        return
+    for first in range(min(total, caps[0]), -1, -1):
+        for rest in compositions(total - first, caps[1:]):
+            yield (first, *rest)
+
+
+def drops_by_minors(sets: Sequence[Matrix], ring: Ring) -> list[System]:
+    """Slow twin: the common zeros of all maximal minors of all sets of independent rows."""
+    minors: list[Poly] = []
+    for rows in sets:
+        value = [determinant(rows, ring)] if len(rows) == len(rows[0]) else maximal_minors(rows, ring)
+        minors += [minor for minor in value if minor != 0]
+        if any(minor.is_constant() for minor in minors):
+            return []
+    return components(minors, ring)

@@ -1,0 +1,279 @@
+"""Small matrices with the same rank: what is regular for all parameters is taken out first.
+
+Observable functionals are rows over Z[parameters]. A row with an entry that is a number different from zero is
+independent everywhere: it clears its column from all other rows and from all later vectors of the chains, which
+keeps their degrees low. What remains has few rows and columns, and its rank drops where the whole rank does.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import gcd
+from typing import Any
+
+from flint import fmpz_mpoly_vec
+
+from navsym.observability.linear import Matrix, at_point, independent_rows, points, transposed_times
+from navsym.observability.ring import Poly, Ring, divide, divides, gcd_all, irreducible_factors
+
+# Common real zeros of polynomials as a list of simple systems.
+#
+# A system is a list of polynomials that vanish together. Systems are split along factors, tidied by Groebner
+# bases where those stay small, and left out where no real point can satisfy them.
+
+
+System = list[Poly]
+
+#: Groebner bases: number of polynomials, terms of each, bits of a coefficient.
+LIMITS = (24, 120, 1000)
+BRANCHES = 40
+
+
+def components(polynomials: Sequence[Poly], ring: Ring) -> list[list[Poly]]:
+    """Real common zeros as a list of simple systems: {f = 0} or {f = 0 and g = 0 ...}.
+
+    The greatest common divisor gives the hypersurfaces; what remains is branched on its factors
+    until every branch is a system that does not factor any more.
+    """
+    common = gcd_all(polynomials, ring.constant(0))
+    found = hypersurfaces(common, ring)
+    rest = [divide(p, common) for p in polynomials]
+    if not any(p.is_constant() for p in rest):
+        found += branch(rest, ring)
+    return irredundant(found)
+
+
+def hypersurfaces(common: Poly, ring: Ring) -> list[list[Poly]]:
+    """Real zeros of one polynomial, factor by factor; a sum of squares breaks up further."""
+    found: list[list[Poly]] = []
+    for f in irreducible_factors(common):
+        for system in real_systems([f], ring):
+            found += [system] if system == [f] else branch(system, ring)
+    return found
+
+
+def branch(start: Sequence[Poly], ring: Ring) -> list[list[Poly]]:
+    """Split ``{all start = 0}`` along factors; a branch too long to split is kept as it is."""
+    open_branches, closed, steps = [list(start)], [], 0
+    while open_branches:
+        system = open_branches.pop()
+        steps += 1
+        if steps > BRANCHES:
+            closed.append(system)
+            continue
+        tidy = tidied(system, ring)
+        if tidy is None:
+            continue
+        for place, f in enumerate(tidy):
+            parts = alternatives(f, ring)
+            if parts != [[f]]:
+                open_branches += [[*tidy[:place], *part, *tidy[place + 1 :]] for part in parts]
+                break
+        else:
+            closed.append(tidy)
+    return closed
+
+
+def alternatives(f: Poly, ring: Ring) -> list[list[Poly]]:
+    """The real zeros of one polynomial as a union of systems; [[f]] when nothing is gained."""
+    factors = irreducible_factors(f)
+    if len(factors) != 1 or factors[0] != f:
+        return [[g] for g in factors]
+    return real_systems([f], ring)
+
+
+def real_systems(system: list[Poly], ring: Ring) -> list[list[Poly]]:
+    """A sum of squares of monomials vanishes over the reals only where every monomial does."""
+    f = system[0]
+    terms = f.to_dict()
+    signs = {int(c) > 0 for c in terms.values()}
+    if len(terms) < 2 or len(signs) > 1 or any(p % 2 for powers in terms for p in powers):
+        return [system]
+    if any(not any(powers) for powers in terms):
+        return []  # a positive constant beside squares
+    return [[ring.context.from_dict({tuple(min(p, 1) for p in powers): 1}) for powers in terms]]
+
+
+def tidied(system: list[Poly], ring: Ring) -> list[Poly] | None:
+    """Reduced generators of the same real zeros; None when there are none."""
+    system = [p.primitive()[1] for p in system if p != 0]
+    if any(p.is_constant() for p in system) or nowhere(system, ring):
+        return None
+    kept: list[Poly] = []
+    for p in sorted(dict.fromkeys(map(Hashed, system)), key=lambda h: (h.poly.total_degree(), len(h.poly))):
+        if not any(divides(q, p.poly) for q in kept):
+            kept.append(p.poly)
+    if len(kept) > 1:
+        generators: Any = fmpz_mpoly_vec(kept, ring.context)
+        basis, done = generators.buchberger_naive(limits=LIMITS)
+        if done:
+            reduced = [p for p in basis.autoreduction(groebner=True) if p != 0]
+            if any(p.is_constant() for p in reduced) or nowhere(reduced, ring):
+                return None
+            kept = reduced
+    return kept
+
+
+def nowhere(system: Sequence[Poly], ring: Ring) -> bool:
+    """Sine and cosine of half an angle do not vanish together."""
+    gens = [(ring.context.gen(sine), ring.context.gen(cosine)) for sine, cosine in ring.pairs()]
+    return any(all(any(f == g or f == -g for f in system) for g in pair) for pair in gens)
+
+
+@dataclass(frozen=True, slots=True)
+class Hashed:
+    """A polynomial that can stand in a set: equal texts are equal polynomials of one ring."""
+
+    poly: Poly
+
+    def __hash__(self) -> int:
+        return hash(str(self.poly))
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Hashed) and self.poly == other.poly
+
+
+def irredundant(systems: list[list[Poly]]) -> list[list[Poly]]:
+    """Without repetitions and without systems that lie inside another one."""
+    kept: list[list[Poly]] = []
+    for system in sorted(systems, key=lambda s: (len(s), [len(f) for f in s], [str(f) for f in s])):
+        if not any(all(vanishes(f, system) for f in other) for other in kept):
+            kept.append(system)
+    return kept
+
+
+def vanishes(value: Poly, system: System) -> bool:
+    """Whether a polynomial lies in the ideal of a system that is its own Groebner basis."""
+    if value == 0 or not system:
+        return bool(value == 0)
+    if any(divides(f, value) for f in system):
+        return True
+    generators: Any = fmpz_mpoly_vec(system, value.context())
+    reduced: Any = value
+    return bool(reduced.reduction_primitive_part(generators) == 0)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Remainder:
+    """rank of the whole = regular + rank(rows) for every value of the parameters."""
+
+    regular: int
+    rows: Matrix
+
+
+def is_number(entry: Poly) -> bool:
+    """A constant polynomial that is not zero."""
+    return entry != 0 and entry.is_constant()
+
+
+class UnitBasis:
+    """Rows with a number as pivot; every column of a pivot is zero in all other rows of the basis."""
+
+    def __init__(self) -> None:
+        self.rows: list[list[Poly]] = []
+        self.columns: list[int] = []
+
+    def reduced(self, row: list[Poly]) -> list[Poly]:
+        """The row without its parts along the basis, times a number."""
+        for own, column in zip(self.rows, self.columns, strict=True):
+            if (factor := row[column]) != 0:
+                row = [p * own[column] - factor * q for p, q in zip(row, own, strict=True)]
+        return lowered(row)
+
+    def take(self, row: list[Poly]) -> bool:
+        """Add a reduced row that has a number among its entries; False when it has none."""
+        column = next((k for k, entry in enumerate(row) if is_number(entry)), None)
+        if column is None:
+            return False
+        pivot = row[column]
+        for place, own in enumerate(self.rows):
+            if (factor := own[column]) != 0:
+                cleared = [p * pivot - factor * q for p, q in zip(own, row, strict=True)]
+                self.rows[place] = lowered(cleared)
+        self.rows.append(row)
+        self.columns.append(column)
+        return True
+
+
+def lowered(row: list[Poly]) -> list[Poly]:
+    """The row without a common numerical factor."""
+    contents = [int(abs(entry.content())) for entry in row if entry != 0]  # type: ignore[attr-defined]
+    if not contents or min(contents) == 1:
+        return row
+    common = gcd(*contents)
+    return row if common == 1 else [entry / common if entry != 0 else entry for entry in row]
+
+
+def remainder(rows: Sequence[list[Poly]]) -> Remainder:
+    """Take out everything regular from some rows."""
+    basis = UnitBasis()
+    waiting, passed = list(rows), True
+    while passed:
+        passed = False
+        rest = []
+        for row in sorted(waiting, key=weight):
+            row = basis.reduced(row)
+            if basis.take(row):
+                passed = True
+            elif any(entry != 0 for entry in row):
+                rest.append(row)
+        waiting = rest
+    return without_columns(basis, waiting)
+
+
+def without_columns(basis: UnitBasis, rows: Sequence[list[Poly]]) -> Remainder:
+    """Rows reduced by the basis, on the columns that it leaves free; no zeros, no repetitions."""
+    width = len(rows[0]) if rows else 0
+    free = [k for k in range(width) if k not in basis.columns]
+    kept: dict[str, list[Poly]] = {}
+    for row in rows:
+        short = [basis.reduced(row)[k] for k in free]
+        if any(entry != 0 for entry in short):
+            kept.setdefault(str(short), short)
+    return Remainder(len(basis.rows), list(kept.values()))
+
+
+def weight(row: list[Poly]) -> int:
+    """How much there is to multiply."""
+    return sum(len(entry) for entry in row)
+
+
+def krylov_remainder(starts: Sequence[tuple[list[Poly], int]], matrix: Matrix, ring: Ring) -> Remainder:
+    """Regular part and remainder of the chains h, G^T h, ...: (h, number of vectors) for each of them."""
+    basis, rest = krylov_basis(starts, matrix, ring)
+    inner = remainder(without_columns(basis, rest).rows)
+    return Remainder(len(basis.rows) + inner.regular, inner.rows)
+
+
+def krylov_rows(starts: Sequence[tuple[list[Poly], int]], matrix: Matrix, rank: int, ring: Ring) -> Matrix:
+    """``rank`` generically independent rows that span what the chains span."""
+    basis, rest = krylov_basis(starts, matrix, ring)
+    rows = [basis.reduced(row) for row in sorted(rest, key=weight)]
+    point = points(ring)
+    chosen = max((independent_rows(at_point([*basis.rows, *rows], p)) for p in point), key=len)
+    listed = [*basis.rows, *rows]
+    return [listed[k] for k in chosen[:rank]]
+
+
+def krylov_basis(starts: Sequence[tuple[list[Poly], int]], matrix: Matrix, ring: Ring) -> tuple[UnitBasis, Matrix]:
+    """Regular rows of the chains and all others, which span together what the chains span at every point.
+
+    Every vector is reduced before it is multiplied on: modulo the basis, which is multiplied on as well,
+    nothing is lost, and degrees stay low.
+    """
+    basis = UnitBasis()
+    step = [(list(row), count) for row, count in starts]
+    rest: Matrix = []
+    while step:
+        following = []
+        for row, count in step:
+            row = basis.reduced(row)
+            if all(entry == 0 for entry in row):
+                continue
+            if not basis.take(row):
+                rest.append(row)
+            if count > 1:
+                following.append((transposed_times(matrix, row, ring), count - 1))
+        step = following
+    return basis, rest

@@ -1,0 +1,383 @@
+"""Polynomials over the integers in the parameters of a model, and their quotients.
+
+The exact observability of a symbolic system needs nothing but sums, products, exact divisions
+and greatest common divisors of polynomials. This file is the only one of the methods that
+touches the polynomial engine; matrices come in as sympy and go out as sympy.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from math import comb, lcm
+from typing import Any
+
+import sympy as sp
+from flint import Ordering, fmpz_mpoly, fmpz_mpoly_ctx
+from sympy.functions.elementary.trigonometric import TrigonometricFunction
+
+from navsym.core.errors import DomainError, TooLargeError
+
+# Sines and cosines of parameters as polynomials.
+#
+# With S = sin(x/2), C = cos(x/2) the functions of an angle are quotients of forms in S and C of equal degree,
+#
+#     sin(n x) = Im (C + i S)^(2n) / (S^2 + C^2)^n,    cos(n x) = Re (C + i S)^(2n) / (S^2 + C^2)^n,
+#
+# and quotients of equal degree form a field that depends on S/C = tan(x/2) alone: Pythagoras' relation is built
+# in, nothing has to be reduced modulo it, and exact division and factors stay what they are for polynomials.
+# No angle is lost, x = pi is the point C = 0. A rational multiple r x uses the half of x/q, q the denominator.
+
+
+#: Largest multiple of an angle, counted in halves of its smallest part.
+MULTIPLE = 64
+
+
+@dataclass(frozen=True, slots=True)
+class Angle:
+    """A symbol x whose smallest part in the expressions is x/parts."""
+
+    symbol: sp.Symbol
+    parts: int
+
+    @property
+    def sine(self) -> sp.Expr:
+        """sin of half the smallest part: a generator of the ring."""
+        return sp.sin(self.symbol / (2 * self.parts))
+
+    @property
+    def cosine(self) -> sp.Expr:
+        """cos of half the smallest part: the other generator of the ring."""
+        return sp.cos(self.symbol / (2 * self.parts))
+
+
+def angles_of(expressions: Iterable[sp.Basic]) -> tuple[Angle, ...]:
+    """The angles under all trigonometric functions, by name; DomainError for other arguments."""
+    parts: dict[sp.Symbol, int] = {}
+    for expression in expressions:
+        for function in expression.atoms(TrigonometricFunction):
+            for symbol, factor in linear_parts(function.args[0])[0].items():
+                parts[symbol] = lcm(parts.get(symbol, 1), int(factor.q))
+    return tuple(Angle(symbol, parts[symbol]) for symbol in sorted(parts, key=str))
+
+
+def linear_parts(argument: sp.Expr) -> tuple[dict[sp.Symbol, sp.Rational], int]:
+    """(factors of the symbols, number of quarter turns) of an argument such as 2*a - b/3 + pi/2."""
+    factors: dict[sp.Symbol, sp.Rational] = {}
+    turns = sp.Integer(0)
+    for term in sp.Add.make_args(sp.expand(argument)):
+        factor, rest = term.as_coeff_Mul()
+        if isinstance(factor, sp.Rational) and isinstance(rest, sp.Symbol):
+            factors[rest] = factor
+        elif isinstance(factor, sp.Rational) and rest == sp.pi:
+            turns = 2 * factor
+        elif term != 0:
+            raise DomainError(
+                f"expected angles such as 2*a - b + pi/2; got {str(argument)[:60]}; name the angle as a parameter"
+            )
+    if turns.q != 1:
+        raise DomainError(
+            f"expected multiples of pi/2 beside a parameter; got {str(argument)[:60]}; name the angle as a parameter"
+        )
+    return factors, int(turns) % 4
+
+
+def free_symbols(expression: sp.Basic) -> set[sp.Basic]:
+    """Symbols and pi outside of trigonometric functions."""
+    if isinstance(expression, TrigonometricFunction):
+        return set()
+    if not expression.args:
+        return {expression} if isinstance(expression, sp.Symbol) or expression == sp.pi else set()
+    return set().union(*(free_symbols(part) for part in expression.args))
+
+
+def sine_and_cosine(argument: sp.Expr, angles: Sequence[Angle], half: Mapping[Angle, tuple[Any, Any]]) -> Any:
+    """(top of sin, top of cos, common bottom) as polynomials; half : angle -> (S, C)."""
+    factors, turns = linear_parts(argument)
+    one = next(iter(half.values()))[0] ** 0
+    sine, cosine, bottom = 0 * one, one, one
+    for angle in angles:
+        multiple = factors.get(angle.symbol, sp.Integer(0)) * angle.parts
+        if multiple == 0:
+            continue
+        s, c, b = multiple_angle(int(multiple), *half[angle])
+        sine, cosine, bottom = sine * c + cosine * s, cosine * c - sine * s, bottom * b
+    for _ in range(turns):
+        sine, cosine = cosine, -sine
+    return sine, cosine, bottom
+
+
+def multiple_angle(n: int, S: Any, C: Any) -> tuple[Any, Any, Any]:
+    """sin(n x), cos(n x) and their bottom from S = sin(x/2), C = cos(x/2)."""
+    power = 2 * abs(n)
+    if power > MULTIPLE:
+        raise TooLargeError(f"expected multiples of an angle up to {MULTIPLE // 2}; got {n}; rename the angle")
+    cosine, sine = 0 * S, 0 * S
+    for k in range(power + 1):
+        term = comb(power, k) * S**k * C ** (power - k) * (-1 if k % 4 in (2, 3) else 1)
+        if k % 2:
+            sine += term
+        else:
+            cosine += term
+    return (sine if n > 0 else -sine), cosine, (S * S + C * C) ** abs(n)
+
+
+def whole_angle(powers: tuple[int, int], S: Any, C: Any) -> Any:
+    """2^d S^k C^l for k + l = 2 d, as a polynomial in sin and cos of the doubled angle.
+
+    The letters S and C then stand for those: S^2 = (1 - c)/2, C^2 = (1 + c)/2, S C = s/2.
+    """
+    k, l = powers
+    one = S**0
+    value = (one - C) ** (k // 2) * (one + C) ** (l // 2)
+    return value * S if k % 2 else value
+
+
+Poly = fmpz_mpoly
+
+#: Largest integer exponent that is multiplied out.
+EXPONENT = 64
+
+
+@dataclass(frozen=True, slots=True)
+class Quotient:
+    """``top / bottom`` in lowest terms; the bottom is not the zero polynomial."""
+
+    top: Poly
+    bottom: Poly
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Ring:
+    """Z[symbols], graded reverse lexicographic.
+
+    angles : symbols that stand under sines and cosines; their halves are generators, see ``observability_angles``
+    """
+
+    symbols: tuple[sp.Basic, ...]
+    context: Any
+    angles: tuple[Angle, ...] = ()
+    places: dict[sp.Basic, int] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, expressions: Iterable[sp.Basic | sp.MatrixBase]) -> Ring:
+        """The ring of all symbols of the expressions, in the order of their names.
+
+        The number pi is a symbol too: it is transcendental, so no relation is lost.
+        """
+        entries: set[sp.Basic] = set()
+        for expression in expressions:
+            entries.update(expression if isinstance(expression, sp.MatrixBase) else (expression,))
+        varying = [entry for entry in entries if not isinstance(entry, sp.Number)]
+        angles = angles_of(varying)
+        found: set[sp.Basic] = set().union(*map(free_symbols, varying))
+        return cls.over(sorted(found, key=str), angles)
+
+    @classmethod
+    def over(cls, symbols: Sequence[sp.Basic], angles: tuple[Angle, ...] = ()) -> Ring:
+        """The ring of the given symbols and angles."""
+        listed = (*symbols, *(half for angle in angles for half in (angle.sine, angle.cosine)))
+        names = tuple(f"g{place}" for place in range(len(listed)))
+        context = fmpz_mpoly_ctx.get(names, Ordering.degrevlex)
+        return cls(listed, context, angles, {symbol: place for place, symbol in enumerate(listed)})
+
+    def halves(self, angle: Angle) -> tuple[Poly, Poly]:
+        """The generators sin and cos of half the smallest part of an angle."""
+        place = self.places[angle.sine]
+        return self.context.gen(place), self.context.gen(place + 1)
+
+    def pairs(self) -> list[tuple[int, int]]:
+        """Places of the generators (sin, cos) of every angle; both never vanish together."""
+        return [(self.places[angle.sine], self.places[angle.cosine]) for angle in self.angles]
+
+    def constant(self, value: int) -> Poly:
+        """An integer as a polynomial."""
+        return self.context.constant(value)
+
+    def quotient(self, expression: sp.Basic) -> Quotient:
+        """A rational function of the symbols, sines and cosines; DomainError for anything else."""
+        if isinstance(expression, sp.Rational):
+            return Quotient(self.constant(int(expression.p)), self.constant(int(expression.q)))
+        if expression in self.places and not isinstance(expression, TrigonometricFunction):
+            return Quotient(self.context.gen(self.places[expression]), self.constant(1))
+        if isinstance(expression, sp.Add):
+            return self.total([self.quotient(part) for part in expression.args])
+        if isinstance(expression, sp.Mul):
+            return self.product([self.quotient(part) for part in expression.args])
+        if isinstance(expression, sp.Pow) and isinstance(expression.exp, sp.Integer):
+            return self.power(self.quotient(expression.base), int(expression.exp))
+        if isinstance(expression, TrigonometricFunction):
+            return self.trigonometric(expression)
+        raise DomainError(
+            f"expected rational functions of the parameters and their sines and cosines; got "
+            f"{str(expression)[:60]}; name such a function as a parameter of its own"
+        )
+
+    def trigonometric(self, function: TrigonometricFunction) -> Quotient:
+        """sin, cos, tan, cot, sec or csc of an angle."""
+        half = {angle: self.halves(angle) for angle in self.angles}
+        sine, cosine, bottom = sine_and_cosine(function.args[0], self.angles, half)
+        parts = {
+            sp.sin: (sine, bottom),
+            sp.cos: (cosine, bottom),
+            sp.tan: (sine, cosine),
+            sp.cot: (cosine, sine),
+            sp.sec: (bottom, cosine),
+            sp.csc: (bottom, sine),
+        }
+        return self.lowest(*parts[function.func])
+
+    def lowest(self, top: Poly, bottom: Poly) -> Quotient:
+        """The quotient in lowest terms, with a positive leading coefficient below."""
+        if top == 0:
+            return Quotient(top, self.constant(1))
+        if bottom.leading_coefficient() < 0:
+            top, bottom = -top, -bottom
+        if bottom == 1:
+            return Quotient(top, bottom)
+        common = top.gcd(bottom)
+        return Quotient(divide(top, common), divide(bottom, common))
+
+    def total(self, parts: Sequence[Quotient]) -> Quotient:
+        """Sum of quotients."""
+        top, bottom = self.constant(0), self.constant(1)
+        for part in parts:
+            if part.bottom == bottom:
+                top = top + part.top
+            else:
+                top, bottom = top * part.bottom + part.top * bottom, bottom * part.bottom
+        return self.lowest(top, bottom)
+
+    def product(self, parts: Sequence[Quotient]) -> Quotient:
+        """Product of quotients."""
+        top, bottom = self.constant(1), self.constant(1)
+        for part in parts:
+            top, bottom = top * part.top, bottom * part.bottom
+        return self.lowest(top, bottom)
+
+    def power(self, base: Quotient, exponent: int) -> Quotient:
+        """Integer power of a quotient, also a negative one."""
+        if abs(exponent) > EXPONENT:
+            raise TooLargeError(f"expected exponents up to {EXPONENT}; got {exponent}; name the power as a parameter")
+        if exponent >= 0:
+            return Quotient(base.top**exponent, base.bottom**exponent)
+        if base.top == 0:
+            raise DomainError("expected a nonzero divisor; got 0; mend the entry")
+        return self.lowest(base.bottom**-exponent, base.top**-exponent)
+
+    def expression(self, value: Poly | Quotient) -> sp.Expr:
+        """Back to sympy, expanded above and below; whole angles wherever they suffice."""
+        if isinstance(value, Quotient):
+            top, bottom = value.top, value.bottom
+            for _, cosine in self.pairs():
+                if odd(top, cosine) and odd(bottom, cosine):
+                    top, bottom = (part * self.context.gen(cosine) for part in (top, bottom))
+            return self.expression(top) / self.expression(bottom)
+        whole, power, names = self.whole_angles(value)
+        return sp.Add(*(monomial(names, powers, int(c), power) for powers, c in whole.to_dict().items()))
+
+    def condition(self, value: Poly) -> sp.Expr:
+        """An expression that vanishes where the polynomial does, without a common numerical factor."""
+        whole, _, names = self.whole_angles(value)
+        plain = whole.primitive()[1]
+        plain = -plain if plain.leading_coefficient() < 0 else plain
+        return sp.Add(*(monomial(names, powers, int(c), 0) for powers, c in plain.to_dict().items()))
+
+    def whole_angles(self, value: Poly) -> tuple[Poly, int, list[sp.Basic]]:
+        """(numerator, k, names): the value is numerator/2^k with the generators read as the names.
+
+        Forms of even degree in the halves of an angle become polynomials in its sine and cosine, with the
+        sine to the power one at most; for forms of odd degree the halves stay.
+        """
+        names, total = list(self.symbols), 0
+        for angle, (sine, cosine) in zip(self.angles, self.pairs(), strict=True):
+            if odd(value, cosine):
+                continue
+            names[sine], names[cosine] = sp.sin(angle.symbol / angle.parts), sp.cos(angle.symbol / angle.parts)
+            value, power = self.doubled(value, sine, cosine)
+            total += power
+        return value, total, names
+
+    def doubled(self, value: Poly, sine: int, cosine: int) -> tuple[Poly, int]:
+        """A form of even degree in two generators, times 2^d, in terms of the doubled angle."""
+        groups: dict[tuple[int, int], dict[tuple[int, ...], int]] = {}
+        for powers, coefficient in value.to_dict().items():
+            rest = tuple(0 if k in (sine, cosine) else int(p) for k, p in enumerate(powers))
+            groups.setdefault((int(powers[sine]), int(powers[cosine])), {})[rest] = int(coefficient)
+        highest = max((sum(pair) // 2 for pair in groups), default=0)
+        S, C = self.context.gen(sine), self.context.gen(cosine)
+        total = self.constant(0)
+        for pair, terms in groups.items():
+            scale = 2 ** (highest - sum(pair) // 2)
+            total += self.context.from_dict(terms) * whole_angle(pair, S, C) * scale
+        return self.pythagoras(total, sine, cosine), highest
+
+    def pythagoras(self, value: Poly, sine: int, cosine: int) -> Poly:
+        """The generator ``sine`` to the power one at most, by sine^2 = 1 - cosine^2."""
+        relation = 1 - self.context.gen(cosine) ** 2
+        total = self.constant(0)
+        for powers, coefficient in value.to_dict().items():
+            count, rest = divmod(int(powers[sine]), 2)
+            lowered = tuple(rest if k == sine else int(p) for k, p in enumerate(powers))
+            total += self.context.from_dict({lowered: int(coefficient)}) * relation**count
+        return total
+
+    def factored(self, value: Poly | Quotient) -> sp.Expr:
+        """Back to sympy as a product of irreducible factors."""
+        if isinstance(value, Quotient):
+            top, bottom = value.top, value.bottom
+            for _, cosine in self.pairs():
+                if odd(top, cosine) and odd(bottom, cosine):
+                    top, bottom = (part * self.context.gen(cosine) for part in (top, bottom))
+            return self.factored(top) / self.factored(bottom)
+        if value == 0:
+            return sp.Integer(0)
+        content, factors = value.factor()
+        whole, halves = [], self.constant(1)
+        for factor, power in factors:
+            if any(odd(factor, cosine) for _, cosine in self.pairs()):
+                whole.append(self.expression(factor**2) ** (int(power) // 2))
+                halves *= factor ** (int(power) % 2)
+            else:
+                whole.append(self.expression(factor) ** int(power))
+        return sp.Mul(sp.Integer(int(content)), *whole, self.expression(halves))
+
+
+def odd(value: Poly, cosine: int) -> bool:
+    """Whether a form has odd degree in the halves of an angle, given the place of its cosine."""
+    powers = next(iter(value.to_dict()), None)
+    return powers is not None and (int(powers[cosine - 1]) + int(powers[cosine])) % 2 == 1
+
+
+def monomial(names: Sequence[sp.Basic], powers: Sequence[int], coefficient: int, halvings: int) -> sp.Expr:
+    """One term in sympy, divided by a power of two."""
+    pairs = zip(names, powers, strict=True)
+    return sp.Mul(sp.Rational(int(coefficient), 2**halvings), *(s ** int(power) for s, power in pairs if power))
+
+
+def divide(top: Poly, bottom: Poly) -> Poly:
+    """Exact quotient; a remainder is a defect of the caller."""
+    quotient, remainder = divmod(top, bottom)
+    if remainder != 0:
+        raise ArithmeticError(f"{bottom} does not divide {top}")
+    return quotient
+
+
+def divides(bottom: Poly, top: Poly) -> bool:
+    """True when the division leaves no remainder."""
+    return divmod(top, bottom)[1] == 0
+
+
+def gcd_all(values: Iterable[Poly], zero: Poly) -> Poly:
+    """Greatest common divisor; zero when all values vanish."""
+    common = zero
+    for value in values:
+        common = common.gcd(value) if common != 0 else value
+        if common == 1:
+            break
+    return common
+
+
+def irreducible_factors(value: Poly) -> list[Poly]:
+    """Different irreducible factors that are not numbers."""
+    return [factor for factor, _ in value.factor()[1]]

@@ -1,0 +1,160 @@
+"""Which further measurements make a model observable, with the fewest of them, proved.
+
+A direction x with G x = 0 and H x = 0 is a constant that no measurement ever shows. One more scalar measurement
+lowers the dimension of these directions by at most one, so that at least so many are needed, whatever they
+measure. That a set is enough is proved by one integer point at which the rank is full.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+from math import comb
+
+import sympy as sp
+
+from navsym.core.errors import EmptyError, ShapeError, TooLargeError
+from navsym.models.linear import LinearModel, exact_matrix
+from navsym.observability.chains import check, hidden_directions, numerators, proved_rank
+from navsym.observability.linear import (
+    Matrix,
+    at_point,
+    independent_rows,
+    null_vectors,
+    points,
+    residue_chains,
+    residue_kernel,
+    residue_rank,
+    residues_on,
+)
+from navsym.observability.ring import Poly, Ring
+
+#: Sets of candidates that are looked at, and sets for which a proof that they fail is written out, at most.
+SETS, DISPROVED = 200_000, 500
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Restoration:
+    """What it takes to observe every state.
+
+    hidden : dimension of what the model's own measurements never show, generically
+    needed : how many further scalar measurements are needed, whatever they measure (a proved lower bound)
+    sets   : all sets of candidates of the least size found that are enough; none when all together are not
+    proved : whether no smaller set of candidates is enough
+    """
+
+    hidden: int
+    needed: int
+    sets: tuple[tuple[str, ...], ...]
+    proved: bool
+
+    @property
+    def fewest(self) -> int | None:
+        """The size of the smallest sets, None when there is none."""
+        return len(self.sets[0]) if self.sets else None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Setting:
+    """The model and the candidates without denominators, and what is left to see at an integer point.
+
+    hidden : dimension of what the model's own measurements do not see at the point
+    chains : name -> independent vectors (k, hidden) of what a candidate sees of it, modulo the prime
+    """
+
+    ring: Ring
+    matrix: Matrix
+    own: Matrix
+    rows: dict[str, list[Poly]]
+    point: tuple[int, ...]
+    hidden: int
+    chains: dict[str, list[list[int]]]
+
+    @property
+    def size(self) -> int:
+        """n, the number of states."""
+        return len(self.matrix)
+
+    def seen_by(self, names: Sequence[str]) -> int:
+        """How much of what is hidden a set of candidates sees, at the point."""
+        return residue_rank([vector for name in names for vector in self.chains[name]])
+
+
+def restore(model: LinearModel, candidates: Mapping[str, Sequence[sp.Expr]] | None = None) -> Restoration:
+    """The smallest sets of candidates that make a constant model observable for all but special parameters.
+
+    candidates : name -> row of n exact entries; by default every state itself
+    Raises EmptyError without candidates, ShapeError for rows of another length, TooLargeError for too many sets,
+    and DomainError, EmptyError or TooLargeError for a model that has no chains.
+    """
+    check(model)
+    setting = laid_out(model, named_rows(model, candidates))
+    hidden, needed = model.size - proved_rank(model).rank, unseen_constants(setting)
+    if not hidden:
+        return Restoration(0, 0, ((),), True)
+    for size in range(max(needed, 1), len(setting.rows) + 1):
+        if found := tuple(enough(setting, size)):
+            proved = size == max(needed, 1) or all_fail(setting, size - 1)
+            return Restoration(hidden, needed, found, proved)
+    return Restoration(hidden, needed, (), all_fail(setting, len(setting.rows)))
+
+
+def named_rows(model: LinearModel, candidates: Mapping[str, Sequence[sp.Expr]] | None) -> dict[str, sp.Matrix]:
+    """Candidates as exact rows; the states themselves when none are given."""
+    if candidates is None:
+        return {name: sp.eye(model.size)[i, :] for i, name in enumerate(model.states)}
+    if not candidates:
+        raise EmptyError("candidates: expected at least one measurement; got none; name what could be measured")
+    for name, row in candidates.items():
+        if len(row) != model.size:
+            raise ShapeError(f"{name}: expected {model.size} entries, one per state; got {len(row)}; complete the row")
+    return {name: exact_matrix(name, [list(row)]) for name, row in candidates.items()}
+
+
+def laid_out(model: LinearModel, rows: Mapping[str, sp.Matrix]) -> Setting:
+    """Everything over one ring, and the chains at the point where the model's own measurements see most."""
+    ring = Ring.of([model.F, model.H, *rows.values()])
+    matrix, _ = numerators([model.F[i, :] for i in range(model.size)], ring)
+    own = [numerators([model.H[k, :]], ring)[0][0] for k in range(model.H.rows)]
+    free = {name: numerators([row], ring)[0][0] for name, row in rows.items()}
+    seen = {point: residue_chains(own, matrix, point) for point in points(ring)}
+    point = max(seen, key=lambda key: residue_rank(seen[key]))
+    kernel, hidden = residue_kernel(seen[point])
+    chains = {name: residues_on(residue_chains([row], matrix, point), kernel, hidden) for name, row in free.items()}
+    return Setting(ring, matrix, own, free, point, hidden, chains)
+
+
+def unseen_constants(setting: Setting) -> int:
+    """n - rank [G; H], exhibited as independent constants: each needs a further measurement of its own."""
+    rows = [*setting.matrix, *setting.own]
+    kept = [rows[k] for k in independent_rows(at_point(rows, setting.point))]
+    candidates = null_vectors(kept, setting.size, setting.ring)
+    zero = setting.ring.constant(0)
+    return sum(
+        all(sum((a * x for a, x in zip(row, vector, strict=True)), zero) == 0 for row in rows) for vector in candidates
+    )
+
+
+def enough(setting: Setting, size: int) -> Iterator[tuple[str, ...]]:
+    """The sets of a size at which the rank is full at the point: a minor that is not zero there is not zero."""
+    count = comb(len(setting.rows), size)
+    if count > SETS:
+        raise TooLargeError(f"candidates: expected at most {SETS} sets of {size}; got {count}; name fewer candidates")
+    for names in combinations(setting.rows, size):
+        if setting.seen_by(names) == setting.hidden:
+            yield names
+
+
+def all_fail(setting: Setting, size: int) -> bool:
+    """Whether every set of a size is proved to leave a direction hidden, with as many directions as its rank lacks."""
+    if comb(len(setting.rows), size) > DISPROVED:
+        return False
+    return all(fails(setting, names) for names in combinations(setting.rows, size))
+
+
+def fails(setting: Setting, names: Sequence[str]) -> bool:
+    """Whether hidden directions of a set are exhibited."""
+    rows = [*setting.own, *(setting.rows[name] for name in names)]
+    rank = setting.size - setting.hidden + setting.seen_by(names)
+    return rank < setting.size and bool(hidden_directions(rows, setting.matrix, setting.ring, rank, setting.point))

@@ -1,0 +1,357 @@
+"""Changes of variables that split the estimation problem by measurements.
+
+With chains a_j of sigma_1 (dimension m) and b_j of sigma_2, a basis a_1 ... a_i, b_1 ... b_j of the
+whole space gives
+
+* i = m: the two-stage split x = L_x xi, z = L_z xi, where x does not feel z
+  (joint_correction:1.5, 1.8-1.10);
+* i < m: the form u, v, w, in which v = (a_{i+1} ... a_m) xi is carried along
+  (joint_correction:1.14);
+* any rows L_z that complete L_x: the general variant of the Remark (joint_correction:1.13).
+
+Everything is exact for symbolic systems; C_1, C_2, C_11, C_12, C_22 are free invertible matrices. The splits
+are those of two scalar measurements, for any n and any dimensions m, l of what they observe; the paper defines
+none for more. For more measurements ``Observability.staircase`` gives a basis of chain vectors.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import sympy as sp
+
+from navsym.core.errors import DomainError, ShapeError
+from navsym.models.linear import LinearModel
+from navsym.observability.chains import Chain, Observability, basis_rows, need_observable
+from navsym.observability.linear import Matrix, determinant, relation
+from navsym.observability.ring import Quotient, Ring
+
+
+@dataclass(frozen=True, slots=True)
+class FeasibleSplit:
+    """a_1 ... a_i, b_1 ... b_j is a basis wherever the determinant is not zero."""
+
+    i: int
+    j: int
+    determinant: sp.Expr
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Split:
+    """The chosen basis and the companion blocks in it.
+
+    L       : (n, n) rows a_1 ... a_i, b_1 ... b_j
+    tail    : (m - i, n) rows a_{i+1} ... a_m of the vector v, without rows when i = m
+    theta   : m coefficients of a_{m+1}
+    link    : i + j coefficients of b_{j+1}: phi when i = m (1.10), delta when i < m (1.14)
+    determinant : det L
+    """
+
+    i: int
+    j: int
+    L: sp.ImmutableMatrix
+    tail: sp.ImmutableMatrix
+    theta: tuple[sp.Expr, ...]
+    link: tuple[sp.Expr, ...]
+    determinant: sp.Expr
+
+    @property
+    def m(self) -> int:
+        """Dimension of the first chain (joint_correction:1.5)."""
+        return len(self.theta)
+
+    @property
+    def Theta(self) -> sp.ImmutableMatrix:
+        """Companion matrix (m, m) of the first chain (joint_correction:1.5)."""
+        return companion(self.theta)
+
+    @property
+    def Phi_x(self) -> sp.ImmutableMatrix:
+        """(j, i): how x or u drives the second chain; last row only (joint_correction:1.10, 1.14)."""
+        return last_row(self.j, self.link[: self.i]) if self.j else sp.ImmutableMatrix.zeros(0, self.i)
+
+    @property
+    def Phi_z(self) -> sp.ImmutableMatrix:
+        """(j, j): companion matrix of the second chain (joint_correction:1.10, 1.14)."""
+        return companion(self.link[self.i :])
+
+
+def companion(coefficients: Sequence[sp.Expr]) -> sp.ImmutableMatrix:
+    """Ones above the diagonal, the coefficients in the last row."""
+    size = len(coefficients)
+    return sp.ImmutableMatrix(
+        size, size, lambda r, c: coefficients[c] if r == size - 1 else sp.Integer(int(c == r + 1))
+    )
+
+
+def last_row(rows: int, coefficients: Sequence[sp.Expr]) -> sp.ImmutableMatrix:
+    """Zeros, and the coefficients in the last row."""
+    return sp.ImmutableMatrix(rows, len(coefficients), lambda r, c: coefficients[c] if r == rows - 1 else sp.Integer(0))
+
+
+def shift(size: int) -> sp.ImmutableMatrix:
+    """F of (1.14): ones above the diagonal and nothing else."""
+    return companion([sp.Integer(0)] * size)
+
+
+def corner(rows: int, columns: int) -> sp.ImmutableMatrix:
+    """F° of (1.14): a single one at the lower left."""
+    return sp.ImmutableMatrix(rows, columns, lambda r, c: int(r == rows - 1 and c == 0))
+
+
+# Which splits there are
+
+
+def splits(found: Observability) -> tuple[FeasibleSplit, ...]:
+    """All i + j = n for which a_1 ... a_i, b_1 ... b_j is a basis, from the largest i down.
+
+    Only 0 <= i <= m and 0 <= j <= l can be feasible: a longer piece of a chain is dependent.
+    Raises UnobservableError and ShapeError (not two measurements).
+    """
+    need_two(found)
+    need_observable(found)
+    n = len(found.states)
+    first, second = (measurement.dimension for measurement in found.measurements)
+    found_splits = []
+    for i in range(min(first, n), max(0, n - second) - 1, -1):
+        value = split_determinant(found, i, n - i)
+        if value.top != 0:
+            found_splits.append(FeasibleSplit(i, n - i, found.chains.ring.factored(value)))
+    return tuple(found_splits)
+
+
+def best_split(found: Observability) -> FeasibleSplit:
+    """The split with the least max(i, j); the one with the larger i when two are equally good.
+
+    The longest chain of derivatives that must be estimated from one measurement is then shortest.
+    """
+    return min(splits(found), key=lambda split: (max(split.i, split.j), -split.i))
+
+
+def need_two(found: Observability) -> None:
+    """Refuse anything but two measurements."""
+    if len(found.measurements) != 2:
+        raise ShapeError(
+            f"expected two measurements to split by; got {len(found.measurements)}; choose two of them "
+            "(splits are defined for two)"
+        )
+
+
+def split_determinant(found: Observability, i: int, j: int) -> Quotient:
+    """det of the rows a_1 ... a_i, b_1 ... b_j."""
+    chains = found.chains
+    value = determinant(chains.staircase_vectors((i, j)), chains.ring)
+    return chains.ring.lowest(value, chains.weight((i, j)))
+
+
+def split(found: Observability, i: int | None = None, j: int | None = None) -> Split:
+    """The split with i vectors of the first and j of the second chain; by default (m, n - m).
+
+    Raises UnobservableError, ShapeError (i + j is not n) and DomainError (not a basis: the
+    message says which determinant vanishes).
+    """
+    need_two(found)
+    need_observable(found)
+    n = len(found.states)
+    i = found.measurements[0].dimension if i is None else i
+    j = n - i if j is None else j
+    if i < 0 or j < 0 or i + j != n:
+        raise ShapeError(f"split: expected i + j = {n}, the number of states; got {i} + {j}; change them")
+    value = split_determinant(found, i, j)
+    if value.top == 0:
+        raise not_a_basis(found, i, j)
+    chains = found.chains
+    first, second = chains.chains
+    ring = chains.ring
+    rows = [*basis_rows(first.vectors[:i], first, ring).tolist(), *second_rows(found, j)]
+    return Split(
+        i=i,
+        j=j,
+        L=sp.ImmutableMatrix(n, n, [x for row in rows for x in row]),
+        tail=basis_rows(first.vectors, first, ring)[i:, :],
+        theta=found.measurements[0].companion,
+        link=tuple(ring.expression(q) for q in link(found, first, second, i, j)),
+        determinant=ring.factored(value),
+    )
+
+
+def second_rows(found: Observability, j: int) -> list[list[sp.Expr]]:
+    """The first j vectors of the second chain as rows."""
+    chain = found.chains.chains[1]
+    return basis_rows(found.chains.first(chain, j), chain, found.chains.ring).tolist()
+
+
+def link(found: Observability, first: Chain, second: Chain, i: int, j: int) -> list[Quotient]:
+    """Coefficients of b_{j+1} in the basis a_1 ... a_i, b_1 ... b_j; none are needed when j = 0."""
+    if j == 0:
+        return []
+    chains = found.chains
+    vectors = chains.first(second, j + 1)
+    basis: Matrix = [*first.vectors[:i], *vectors[:j]]
+    values = relation(basis, vectors[j], chains.ring)
+    if values is None:
+        raise ArithmeticError("split: b_{j+1} lies outside of the basis")
+    return [restore(chains.ring, value, k, first, second, i, j) for k, value in enumerate(values)]
+
+
+def restore(ring: Ring, value: Quotient, k: int, first: Chain, second: Chain, i: int, j: int) -> Quotient:
+    """Put the denominators back that the chain vectors were freed of."""
+    clock = second.clock
+    top, bottom = value.top, value.bottom * clock**j
+    if k < i:
+        return ring.lowest(top * first.bottom * clock**k, bottom * second.bottom)
+    return ring.lowest(top * clock ** (k - i), bottom)
+
+
+def not_a_basis(found: Observability, i: int, j: int) -> DomainError:
+    """The error for a split whose determinant vanishes, with the splits that exist."""
+    rows = [f"a{k + 1}" for k in range(i)] + [f"b{k + 1}" for k in range(j)]
+    feasible = ", ".join(f"{s.i},{s.j}" for s in splits(found)) or "none"
+    return DomainError(
+        f"split {i},{j}: expected a basis; got det({', '.join(rows)}) = 0 for all parameters; choose one of {feasible}"
+    )
+
+
+# The blocks in coordinates x, z and u, v, w
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TwoStageBlocks:
+    """dx/dt = G_x x,  dz/dt = G_z1 x + G_z2 z,  sigma_1 = g_x x,  sigma_2 = g_z1 x + g_z2 z.
+
+    ``g_z1`` is zero for the split (1.9) and whatever it is for the variant (1.13). g are rows.
+    """
+
+    L: sp.ImmutableMatrix
+    G_x: sp.ImmutableMatrix
+    g_x: sp.ImmutableMatrix
+    G_z1: sp.ImmutableMatrix
+    G_z2: sp.ImmutableMatrix
+    g_z1: sp.ImmutableMatrix
+    g_z2: sp.ImmutableMatrix
+
+
+def two_stage_blocks(chosen: Split, C1: sp.MatrixBase | None = None, C2: sp.MatrixBase | None = None) -> TwoStageBlocks:
+    """(1.5), (1.9), (1.10) for invertible C1 (m, m) and C2 (n - m, n - m); identity by default.
+
+    Raises DomainError when the split has i < m: it then has the form u, v, w.
+    """
+    if chosen.i != chosen.m:
+        raise DomainError(f"expected a split with i = {chosen.m}; got i = {chosen.i}; use the form u, v, w")
+    one, C1_inverse = free_matrix("C1", C1, chosen.i)
+    two, C2_inverse = free_matrix("C2", C2, chosen.j)
+    return TwoStageBlocks(
+        L=sp.ImmutableMatrix.vstack(one * chosen.L[: chosen.i, :], two * chosen.L[chosen.i :, :]),
+        G_x=one * chosen.Theta * C1_inverse,  # joint_correction:1.5.Gx
+        g_x=unit_row(chosen.i) * C1_inverse,  # joint_correction:1.5.gx
+        G_z1=two * chosen.Phi_x * C1_inverse,  # joint_correction:1.10.Gz1
+        G_z2=two * chosen.Phi_z * C2_inverse,  # joint_correction:1.10.Gz2
+        g_z1=sp.ImmutableMatrix.zeros(1, chosen.i),
+        g_z2=unit_row(chosen.j) * C2_inverse,  # joint_correction:1.10.gz*
+    )
+
+
+def free_matrix(name: str, value: sp.MatrixBase | None, size: int) -> tuple[sp.ImmutableMatrix, sp.ImmutableMatrix]:
+    """An invertible matrix and its inverse, by exact elimination."""
+    if value is None:
+        return sp.ImmutableMatrix.eye(size), sp.ImmutableMatrix.eye(size)
+    if value.shape != (size, size):
+        raise ShapeError(f"{name}: expected shape {(size, size)}; got {value.shape}; one row per variable")
+    matrix = sp.ImmutableMatrix(value)
+    return matrix, inverse(name, matrix)
+
+
+def inverse(name: str, matrix: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
+    """Exact inverse of a matrix of rational functions; DomainError when the determinant vanishes."""
+    size = matrix.rows
+    ring = Ring.of(matrix)
+    columns = [[ring.quotient(matrix[r, c]) for r in range(size)] for c in range(size)]
+    bottom = ring.constant(1)
+    for column in columns:
+        for q in column:
+            bottom = bottom * ring.lowest(q.bottom, bottom).top
+    vectors = [[q.top * ring.lowest(bottom, q.bottom).top for q in column] for column in columns]
+    if determinant(vectors, ring) == 0:
+        raise DomainError(f"{name}: expected an invertible matrix; got determinant 0 for all parameters; change it")
+    result = sp.zeros(size, size)
+    for c in range(size):
+        target = [bottom if r == c else ring.constant(0) for r in range(size)]
+        for r, value in enumerate(relation(vectors, target, ring) or []):
+            result[r, c] = ring.expression(value)
+    return sp.ImmutableMatrix(result)
+
+
+def unit_row(size: int) -> sp.ImmutableMatrix:
+    """(1 0 ... 0)."""
+    return sp.ImmutableMatrix(1, size, lambda _, c: int(c == 0))
+
+
+def general_blocks(model: LinearModel, found: Observability, L_z: sp.MatrixBase) -> TwoStageBlocks:
+    """The variant of the Remark: rows L_z that complete L_x = (a_1 ... a_m) to a basis.
+
+    Raises ShapeError and DomainError (the rows complete nothing: det = 0).
+    """
+    need_two(found)
+    need_observable(found)
+    L_x = found.measurements[0].basis
+    n, m = len(found.states), L_x.rows
+    if L_z.shape != (n - m, n):
+        raise ShapeError(f"L_z: expected shape {(n - m, n)}, rows that complete L_x; got {L_z.shape}; mend it")
+    L = sp.ImmutableMatrix.vstack(L_x, sp.ImmutableMatrix(L_z))
+    back = inverse("L_x over L_z", L)
+    G = lowest_terms(L * model.F * back)
+    g = lowest_terms(model.H * back)
+    return TwoStageBlocks(L, G[:m, :m], g[0, :m], G[m:, :m], G[m:, m:], g[1, :m], g[1, m:])
+
+
+def lowest_terms(matrix: sp.MatrixBase) -> sp.ImmutableMatrix:
+    """Entries as quotients of polynomials in lowest terms."""
+    ring = Ring.of(matrix)
+    return sp.ImmutableMatrix(*matrix.shape, [ring.expression(ring.quotient(x)) for x in matrix])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ThreeBlocks:
+    """The system (1.14): u, v from the first chain, w from the second, n + m - i variables.
+
+    du/dt = G_u1 u + G_u2 v, dv/dt = G_v1 u + G_v2 v, dw/dt = G_w1 u + G_w2 w,
+    sigma_1 = g_u u, sigma_2 = g_w w, (u, w) = L xi, v = tail xi.
+    """
+
+    L: sp.ImmutableMatrix
+    tail: sp.ImmutableMatrix
+    G_u1: sp.ImmutableMatrix
+    G_u2: sp.ImmutableMatrix
+    G_v1: sp.ImmutableMatrix
+    G_v2: sp.ImmutableMatrix
+    G_w1: sp.ImmutableMatrix
+    G_w2: sp.ImmutableMatrix
+    g_u: sp.ImmutableMatrix
+    g_w: sp.ImmutableMatrix
+
+
+def three_blocks(
+    chosen: Split, C11: sp.MatrixBase | None = None, C12: sp.MatrixBase | None = None, C22: sp.MatrixBase | None = None
+) -> ThreeBlocks:
+    """(1.14) for a split with 0 < i < m; the free matrices are the identity by default."""
+    i, j, m = chosen.i, chosen.j, chosen.m
+    if not 0 < i < m:
+        raise DomainError(f"expected a split with 0 < i < {m}; got i = {i}; use the two-stage split")
+    one, one_inverse = free_matrix("C11", C11, i)
+    tail, tail_inverse = free_matrix("C12", C12, m - i)
+    two, two_inverse = free_matrix("C22", C22, j)
+    theta_u = last_row(m - i, chosen.theta[:i])
+    theta_v = companion(chosen.theta[i:])
+    return ThreeBlocks(
+        L=sp.ImmutableMatrix.vstack(one * chosen.L[:i, :], two * chosen.L[i:, :]),
+        tail=tail * chosen.tail,
+        G_u1=one * shift(i) * one_inverse,  # joint_correction:1.14.Gu1
+        G_u2=one * corner(i, m - i) * tail_inverse,  # joint_correction:1.14.Gu2
+        G_v1=tail * theta_u * one_inverse,  # joint_correction:1.14.Gv1
+        G_v2=tail * theta_v * tail_inverse,  # joint_correction:1.14.Gv2
+        G_w1=two * chosen.Phi_x * one_inverse,  # joint_correction:1.14.Gw1
+        G_w2=two * chosen.Phi_z * two_inverse,  # joint_correction:1.14.Gw2
+        g_u=unit_row(i) * one_inverse,
+        g_w=unit_row(j) * two_inverse,
+    )

@@ -1,0 +1,1 @@
+"""Estimators of two stages: gains, observers and the experiment of the paper."""

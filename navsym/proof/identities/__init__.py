@@ -1,1 +1,0 @@
-"""Is it equal? Normal form, radicals, logarithms, inverse functions, cases."""

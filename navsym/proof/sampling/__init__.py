@@ -1,1 +1,0 @@
-"""Looking for a counterexample: points, a second look, a descent."""

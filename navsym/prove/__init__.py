@@ -1,0 +1,1 @@
+"""Is it equal, is it positive, where does it fail: statements in, verdicts out."""

@@ -1,0 +1,295 @@
+"""The file of ``navsym prove``: symbols with their ranges, and claims with two sides each."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import sympy as sp
+
+from navsym.claims import OPEN, REFUTED, Bound, Equation, Statement, Verdict
+from navsym.core.errors import DomainError, EmptyError, ExpressionSyntaxError, NavsymError, ShapeError, TooLargeError
+from navsym.core.sandbox import Exhausted, Failed, run_many
+from navsym.language.advice import for_relation
+from navsym.language.arithmetic import sign
+from navsym.language.declarations import Parameter, box_of, read_parameters, read_range, symbols_of
+from navsym.language.expression import ZERO, Expr, Matrix, Parsed, Symbol
+from navsym.language.files import called
+from navsym.language.names import shown
+from navsym.language.schema import (
+    Table,
+    as_label,
+    as_list,
+    as_table,
+    as_text,
+    distinct,
+    entry_noting,
+    expect_keys,
+    inside,
+    required,
+)
+from navsym.language.tomlfile import read_toml
+from navsym.prove.assumptions import is_nonzero, is_positive
+from navsym.prove.ladder import decide
+from navsym.prove.signs.bounds import Sign, prove_sign
+from navsym.prove.wording import scope_of, text_of
+
+RELATIONS = ("=", "!=", "<", "<=", ">", ">=")
+CLAIMS = 2_000
+
+Box = dict[Symbol, tuple[Expr, Expr]]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FileClaim:
+    """One formula of the user.
+
+    left, right : expressions, or matrices of one shape (given as lists of rows)
+    relation    : one of ``= != < <= > >=``
+    box         : symbol -> (lower, upper), the file's ranges and those of the claim itself
+    divisors    : what the text divides by, also where the algebra has cancelled it since
+    radicands   : what the text takes roots of, to be nonnegative, likewise
+    arguments   : what the text takes logarithms and symbolic powers of, to be positive, likewise
+    """
+
+    id: str
+    left: Any
+    right: Any
+    relation: str
+    box: Mapping[Symbol, tuple[Expr, Expr]]
+    divisors: tuple[Expr, ...] = ()
+    radicands: tuple[Expr, ...] = ()
+    arguments: tuple[Expr, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class UndefinedClaim:
+    """A claim with a side that has no value, such as ``log(0)``; ``place`` counts the claims of the file."""
+
+    id: str
+    place: int
+    error: NavsymError
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ClaimFile:
+    """``[symbols]`` and ``[[claim]]``; ``undefined`` only where the reader was asked to go on."""
+
+    symbols: Mapping[str, Parameter]
+    claims: tuple[FileClaim, ...] = field(default=())
+    undefined: tuple[UndefinedClaim, ...] = field(default=())
+
+
+def read_claims(path: str | os.PathLike[str], *, go_on: bool = False) -> ClaimFile:
+    """The claims of a TOML file; raises a NavsymError that names the file and the key.
+
+    go_on : keep the claims of which both sides have values, as long as there is one, and note the others
+    """
+    return claims_from(read_toml(path), called(path), go_on=go_on)
+
+
+def claims_from(document: Table, where: str = "", *, go_on: bool = False) -> ClaimFile:
+    """Like :func:`read_claims` for a document in memory."""
+    expect_keys(document, ("symbols", "claim"), where)
+    place = inside(where, "symbols")
+    symbols = read_parameters(as_table(document.get("symbols", {}), place), place)
+    blocks = required(document, "claim", where)
+    place = inside(where, "claim")
+    if not isinstance(blocks, list):
+        raise ShapeError("expected [[claim]] blocks; got a single one; do write double brackets", where=place)
+    if not blocks:
+        raise EmptyError("expected at least one [[claim]]; got none; do add one", where=place)
+    if len(blocks) > CLAIMS:
+        message = f"expected at most {CLAIMS} claims; got {len(blocks)}; do split the file"
+        raise TooLargeError(message, where=place)
+    found = [claim_or_error(block, symbols, place, i) for i, block in enumerate(blocks)]
+    distinct((claim.id for claim in found), place)
+    claims = tuple(claim for claim in found if isinstance(claim, FileClaim))
+    undefined = tuple(claim for claim in found if isinstance(claim, UndefinedClaim))
+    if undefined and not (go_on and claims):
+        raise undefined[0].error
+    return ClaimFile(symbols, claims, undefined)
+
+
+def claim_or_error(block: Any, symbols: Mapping[str, Parameter], where: str, place: int) -> FileClaim | UndefinedClaim:
+    """The claim, or why a side of it has no value; everything else that is wrong with it is raised."""
+    try:
+        return read_claim(block, symbols, inside(where, place))
+    except DomainError as error:
+        sides = tuple(inside(inside(where, place), side) for side in ("left", "right"))
+        if not error.where.startswith(sides):
+            raise
+        return UndefinedClaim(as_label(block["id"], inside(inside(where, place), "id")), place, error)
+
+
+def read_claim(block: Any, symbols: Mapping[str, Parameter], where: str) -> FileClaim:
+    """One [[claim]] block."""
+    table = as_table(block, where)
+    expect_keys(table, ("id", "left", "right", "relation", "box"), where)
+    label = as_label(required(table, "id", where), inside(where, "id"))
+    relation = as_text(table.get("relation", "="), inside(where, "relation"), "a relation")
+    if relation not in RELATIONS:
+        hint = for_relation(relation, RELATIONS)
+        message = f"expected one of {' '.join(RELATIONS)}; got {shown(relation)}; do correct it: {hint}"
+        raise ExpressionSyntaxError(message, where=inside(where, "relation"))
+    known = symbols_of(symbols)
+    left, left_cells = read_side(required(table, "left", where), known, inside(where, "left"))
+    right, right_cells = read_side(required(table, "right", where), known, inside(where, "right"))
+    cells = left_cells + right_cells
+    require_comparable(left, right, relation, where)
+    box = box_of(symbols) | read_box(table.get("box", {}), symbols, inside(where, "box"))
+    noted = [
+        tuple(dict.fromkeys(part for cell in cells for part in getattr(cell, name)))
+        for name in ("divisors", "radicands", "arguments")
+    ]
+    return FileClaim(label, left, right, relation, box, *noted)
+
+
+def read_side(value: Any, known: Mapping[str, Symbol], where: str) -> tuple[Any, list[Parsed]]:
+    """An expression, a column given as a list, or a matrix given as a list of rows; with its cells."""
+    if not isinstance(value, list):
+        parsed = entry_noting(value, known, where)
+        return parsed.expression, [parsed]
+    rows = [row if isinstance(row, list) else [row] for row in as_list(value, where)]
+    cells = [
+        [entry_noting(cell, known, inside(inside(where, i), j)) for j, cell in enumerate(as_list(row, where))]
+        for i, row in enumerate(rows)
+    ]
+    if len({len(row) for row in cells}) > 1:
+        raise ShapeError("expected rows of one length; got a ragged matrix; do correct it", where=where)
+    return Matrix([[cell.expression for cell in row] for row in cells]), [c for row in cells for c in row]
+
+
+def require_comparable(left: Any, right: Any, relation: str, where: str) -> None:
+    """Refuse sides of different shapes, and an order between matrices."""
+    shapes = [getattr(side, "shape", None) for side in (left, right)]
+    if shapes[0] != shapes[1]:
+        message = f"expected two sides of one shape; got {shapes[0]} and {shapes[1]}; do correct one of them"
+        raise ShapeError(message.replace("None", "a scalar"), where=where)
+    if shapes[0] is not None and relation not in ("=", "!="):
+        message = f"expected = or != between matrices; got {relation}; do compare them entry by entry"
+        raise ShapeError(message, where=inside(where, "relation"))
+
+
+def read_box(value: Any, symbols: Mapping[str, Parameter], where: str) -> Box:
+    """The claim's own ranges; they may narrow what the file says of a symbol, not contradict it."""
+    box = {}
+    for name, ends in as_table(value, where).items():
+        place = inside(where, name)
+        if name not in symbols:
+            expect_keys({name: ends}, tuple(symbols), where)
+        lower, upper = read_range(ends, place)
+        parameter = symbols[name]
+        unnamed = ZERO if parameter.symbol.is_nonnegative else None
+        low_end = unnamed if parameter.lower is None else parameter.lower
+        if outside(lower, low_end) or outside(parameter.upper, upper):
+            message = f"expected a range inside the declaration of {name}; got a wider one; do narrow it"
+            raise DomainError(message, where=place)
+        box[parameter.symbol] = (lower, upper)
+    return box
+
+
+def outside(inner: Expr | None, outer: Expr | None) -> bool:
+    """True when ``inner < outer`` is certain; None means no end."""
+    return inner is not None and outer is not None and sign(inner - outer) == -1
+
+
+# A user's own formulas, decided one by one.
+
+
+SECONDS = 20.0
+
+
+def prove(
+    claims: ClaimFile,
+    *,
+    jobs: int = 1,
+    seconds: float = SECONDS,
+    progress: Callable[[dict[str, Any]], None] = lambda record: None,
+) -> dict[str, Any]:
+    """Decide every claim of a file; the document of ``navsym prove``.
+
+    A claim that needs more than ``seconds`` is OPEN. Order and verdicts do not depend on ``jobs``. Where a side
+    has no value, the claim is OPEN with its ``error``, and so is the document with the first of them.
+    """
+    records: dict[int, dict[str, Any]] = {}
+    for outcome in run_many(decide_claim, claims.claims, jobs, seconds):
+        verdict = outcome.value
+        if isinstance(verdict, (Exhausted, Failed)):
+            why = verdict.why if isinstance(verdict, Exhausted) else str(verdict.error)
+            verdict = Verdict(OPEN, "none", evidence=f"not decided: {why}")
+        records[outcome.place] = record_of(claims.claims[outcome.place], verdict)
+        progress(records[outcome.place])
+    done = [records[place] for place in sorted(records)]
+    for claim in claims.undefined:
+        done.insert(claim.place, undefined_record(claim))
+    first = claims.undefined[0].error.as_json() if claims.undefined else {}
+    return {**first, "claims": done}
+
+
+def undefined_record(claim: UndefinedClaim) -> dict[str, Any]:
+    """What is said of a claim of which a side has no value."""
+    verdict = Verdict(OPEN, "none", evidence=claim.error.message)
+    return {"id": claim.id, **outcome(verdict), **claim.error.as_json()}
+
+
+def decide_claim(claim: FileClaim) -> Verdict:
+    """Verdict of one claim, with what its text divides by and takes roots of among the assumptions."""
+    verdict = decide(statement_of(claim))
+    if verdict.status == REFUTED:
+        return verdict
+    assumptions = dict.fromkeys((*verdict.assumptions, *text_conditions(claim)))
+    return replace(verdict, scope=scope_of_text(claim), assumptions=tuple(assumptions))
+
+
+def scope_of_text(claim: FileClaim) -> str:
+    """All symbols of the text, also those that the algebra has cancelled since, as in a/a = 1."""
+    sides = [tuple(side) if isinstance(side, sp.MatrixBase) else side for side in (claim.left, claim.right)]
+    return scope_of(sp.Tuple(*sides, *claim.divisors, *claim.radicands, *claim.arguments), claim.box)
+
+
+def text_conditions(claim: FileClaim) -> list[str]:
+    """What the text divides by and takes roots and logarithms of, where the algebra has cancelled it since."""
+    found = [f"{text_of(d)} != 0" for d in claim.divisors if not is_nonzero(d, claim.box)]
+    at_least = (r for r in claim.radicands if not prove_sign(r, claim.box).at_least(Sign.NONNEGATIVE))
+    found += [f"{text_of(r)} >= 0" for r in at_least]
+    return found + [f"{text_of(a)} > 0" for a in claim.arguments if not is_positive(a, claim.box)]
+
+
+def existing(claim: FileClaim) -> tuple[sp.Expr, ...]:
+    """Expressions with a value exactly where the text has one, whatever the algebra has cancelled."""
+    return (
+        *(1 / divisor for divisor in claim.divisors),
+        *(sp.sqrt(radicand) for radicand in claim.radicands),
+        *(sp.log(argument) for argument in claim.arguments),
+    )
+
+
+def statement_of(claim: FileClaim) -> Statement:
+    """The file's claim as a statement of the ladder."""
+    if claim.relation == "=":
+        return Equation(claim.left, claim.right, claim.box, exists=existing(claim))
+    return Bound(claim.left, claim.relation, claim.right, claim.box, existing(claim))
+
+
+def record_of(claim: FileClaim, verdict: Verdict) -> dict[str, Any]:
+    """The id of a claim of a file with its verdict, as plain data."""
+    return {"id": claim.id, **outcome(verdict)}
+
+
+def outcome(verdict: Verdict) -> dict[str, Any]:
+    """A verdict as plain data."""
+    refuted = verdict.status == REFUTED
+    difference = verdict.difference
+    return {
+        "status": str(verdict.status),
+        "method": verdict.method,
+        "scope": verdict.scope,
+        "assumptions": list(verdict.assumptions),
+        "evidence": verdict.evidence,
+        "counterexample": dict(verdict.counterexample or {}) if refuted else None,
+        "difference": {"lower": difference[0], "upper": difference[1]} if refuted and difference else None,
+        "certificate": verdict.certificate,
+    }

@@ -1,0 +1,208 @@
+"""Equations: first try to break them, then to prove them.
+
+An exact point where a ball excludes equality refutes; the ways of ``equalities`` prove. What passes
+none of them but agrees at every sampled point is CONFIRMED, never more.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import sympy as sp
+
+from navsym.claims.statement import Equation
+from navsym.claims.verdict import CERTIFIED, CONFIRMED, OPEN, PROVED, REFUTED, Verdict
+from navsym.core.balls import UnsupportedError, enclose
+from navsym.prove.assumptions import remaining_assumptions, written_conditions
+from navsym.prove.certificates import identity_certificate
+from navsym.prove.identities.equalities import WAYS, Proof, first_proof
+from navsym.prove.identities.normal_form import OutsideLanguageError, UndefinedExpressionError, reduce_to_zero
+from navsym.prove.one_symbol import decide_by_roots
+from navsym.prove.sampling.points import Sample, search_counterexample
+from navsym.prove.sampling.second_look import BITS, Look, second_look
+from navsym.prove.signs.bounds import Sign, prove_sign
+from navsym.prove.wording import broken, decimal_ends, scope_of
+
+ENOUGH_POINTS = 32
+
+#: Functions inside an angle that make angles depend on each other: |a| and a, say.
+BENT = (sp.Abs, sp.sign, sp.Max, sp.Min)
+
+
+def decide_equation(statement: Equation) -> Verdict:
+    """Verdict of an equation between scalars, matrices or sequences, entry by entry."""
+    printed, derived = entries(statement.printed), entries(statement.derived)
+    if shape_of(statement.printed) != shape_of(statement.derived):
+        return Verdict(
+            REFUTED,
+            method="shape",
+            evidence=f"printed shape {shape_of(statement.printed)}, derived {shape_of(statement.derived)}",
+            counterexample={},
+        )
+    verdicts = [decide_entry(p, d, statement) for p, d in zip(printed, derived, strict=True)]
+    verdict = combine(verdicts)
+    if verdict.status == REFUTED:
+        return verdict
+    return replace(verdict, scope=scope_of(sp.Tuple(*printed, *derived), statement.box))
+
+
+def shape_of(side: object) -> tuple[int, ...]:
+    """Rows and columns of a matrix, the length of a sequence, nothing for a scalar."""
+    if isinstance(side, sp.MatrixBase):
+        return tuple(side.shape)
+    return (len(side),) if isinstance(side, (tuple, list)) else ()
+
+
+def entries(side: object) -> list[sp.Expr]:
+    """The scalar expressions of a side; never a string, which sympy would execute."""
+    if isinstance(side, (sp.MatrixBase, tuple, list)):
+        return [sp.sympify(entry, strict=True) for entry in side]
+    return [sp.sympify(side, strict=True)]
+
+
+STRENGTH = (REFUTED, OPEN, CONFIRMED, CERTIFIED, PROVED)
+
+
+def combine(verdicts: Sequence[Verdict]) -> Verdict:
+    """The weakest verdict of several entries; assumptions and counts are those of all."""
+    weakest = min(verdicts, key=lambda verdict: STRENGTH.index(verdict.status))
+    if len(verdicts) == 1:
+        return weakest
+    place = verdicts.index(weakest) + 1
+    assumptions = tuple(dict.fromkeys(a for verdict in verdicts for a in verdict.assumptions))
+    prefix = f"{len(verdicts)} entries, the weakest is number {place}: "
+    certificate = None
+    if all(verdict.certificate for verdict in verdicts):
+        certificate = {"kind": "all", "of": [dict(verdict.certificate or {}) for verdict in verdicts]}
+    return replace(weakest, assumptions=assumptions, evidence=prefix + weakest.evidence, certificate=certificate)
+
+
+def decide_entry(printed: sp.Expr, derived: sp.Expr, statement: Equation) -> Verdict:
+    box = statement.box
+    try:
+        if statement.tolerance is not None:
+            return decide_numeral(printed, derived, statement)
+        sample = search_counterexample(
+            printed - derived, lambda b: not b.contains(0), box, sides=finite_sides(printed, derived, statement)
+        )
+        if sample.counterexample is not None:
+            return refuted(sample)
+        return prove_equal(printed, derived, statement, sample)
+    except UndefinedExpressionError as error:
+        return Verdict(OPEN, "normal form", scope_of(printed - derived, box), evidence=str(error))
+    except (UnsupportedError, OutsideLanguageError) as error:
+        return Verdict(OPEN, "none", scope_of(printed - derived, box), evidence=str(error))
+
+
+def finite_sides(printed: sp.Expr, derived: sp.Expr, statement: Equation) -> tuple[sp.Expr, ...]:
+    """What has to have a value at a point of the statement."""
+    divisors = (sp.sympify(part, strict=True) for part in statement.nonzero)
+    return (printed, derived, *statement.exists, *(1 / part for part in divisors if part != 0))
+
+
+def refuted(sample: Sample) -> Verdict:
+    assert sample.counterexample is not None and sample.difference is not None
+    return broken(sample.counterexample, sample.difference)
+
+
+# -- numerals ---------------------------------------
+
+
+def decide_numeral(printed: sp.Expr, derived: sp.Expr, statement: Equation) -> Verdict:
+    """``|printed - derived| <= tolerance``, the meaning of a printed numeral."""
+    tolerance = sp.sympify(statement.tolerance, strict=True)
+    difference, box = printed - derived, statement.box
+    sample = search_counterexample(
+        difference,
+        lambda ball: bool(abs(ball) > enclose(tolerance)),
+        box,
+        sides=finite_sides(printed, derived, statement),
+    )
+    if sample.counterexample is not None:
+        return refuted(sample)
+    if sample.points == 0:  # what exists nowhere is near to everything
+        return sampled(sample, scope_of(difference, box), f"within {tolerance}")
+    for side in (tolerance - difference, tolerance + difference):
+        if prove_sign(side, box).at_least(Sign.NONNEGATIVE):
+            continue
+        decided = decide_by_roots(side, ">=", box, scope_of(difference, box), finite_sides(printed, derived, statement))
+        if decided is not None and decided.status == PROVED:
+            continue
+        look = second_look(
+            difference,
+            lambda ball: bool(abs(ball) > enclose(tolerance, bits=BITS)),
+            box,
+            finite_sides(printed, derived, statement),
+            goals=(tolerance - difference, tolerance + difference),
+        )
+        return decided or after_look(look, sample, scope_of(difference, box), f"within {tolerance}")
+    return Verdict(
+        CERTIFIED,
+        method="ball arithmetic",
+        scope=scope_of(sp.Tuple(printed, derived), box),
+        assumptions=assumptions_of(printed, derived, statement),
+        evidence=f"|printed - derived| <= {tolerance} everywhere on the box",
+    )
+
+
+def assumptions_of(printed: sp.Expr, derived: sp.Expr, statement: Equation) -> tuple[str, ...]:
+    """What the two sides need to exist; subtraction may have cancelled it."""
+    return remaining_assumptions(written_conditions(printed, derived), statement.box, statement.nonzero)
+
+
+# -- exact equality ---------------------------------------
+
+
+def prove_equal(printed: sp.Expr, derived: sp.Expr, statement: Equation, sample: Sample) -> Verdict:
+    if sample.points == 0:  # what exists nowhere is equal to everything
+        return sampled(sample, scope_of(printed - derived, statement.box), "equality")
+    proof = first_proof(printed, derived, statement.box, WAYS)
+    if proof is not None:
+        return proved(proof, printed, derived, statement)
+    return unproved(printed, derived, statement, sample)
+
+
+def unproved(printed: sp.Expr, derived: sp.Expr, statement: Equation, sample: Sample) -> Verdict:
+    """What no rung proves: broken by a second look, or sampled; OPEN when the normal form denies it."""
+    difference, scope = printed - derived, scope_of(printed - derived, statement.box)
+    sides = finite_sides(printed, derived, statement)
+    decided = decide_by_roots(difference, "=", statement.box, scope, sides)
+    if decided is not None:
+        return decided
+    look = second_look(difference, lambda ball: not ball.contains(0), statement.box, sides)
+    verdict = after_look(look, sample, scope, "equality")
+    if verdict.status == CONFIRMED and not difference.has(*BENT) and reduce_to_zero(difference).complete:
+        evidence = f"{verdict.evidence}, and the normal form of printed - derived is not zero"
+        return replace(verdict, status=OPEN, method="normal form", evidence=evidence)
+    if verdict.status == CONFIRMED:
+        return replace(verdict, assumptions=assumptions_of(printed, derived, statement))
+    return verdict
+
+
+def after_look(look: Look, sample: Sample, scope: str, what: str) -> Verdict:
+    """REFUTED by the point of a second look, else what the samples say."""
+    if look.counterexample is None or look.difference is None:
+        return sampled(sample, scope, what)
+    return broken(look.counterexample, look.difference, look.exact)
+
+
+def proved(proof: Proof, printed: sp.Expr, derived: sp.Expr, statement: Equation) -> Verdict:
+    return Verdict(
+        PROVED,
+        method=proof.method,
+        scope=scope_of(sp.Tuple(printed, derived), statement.box),
+        assumptions=remaining_assumptions(proof.reduction, statement.box, statement.nonzero),
+        evidence=proof.evidence,
+        certificate=identity_certificate(printed, derived) if proof.method == "normal form" else None,
+    )
+
+
+def sampled(sample: Sample, scope: str, what: str) -> Verdict:
+    """CONFIRMED with its count when enough points could be evaluated, otherwise OPEN."""
+    if sample.points == 0:
+        return Verdict(OPEN, "sampling", scope, evidence="no exact point of the box could be evaluated")
+    largest = decimal_ends(sample.largest)[1] if sample.largest is not None else "0"
+    evidence = f"{what} at {sample.points} exact points, largest residual {largest}; no proof was found"
+    enough = sample.points >= ENOUGH_POINTS
+    return Verdict(CONFIRMED if enough else OPEN, "sampling", scope, evidence=evidence)

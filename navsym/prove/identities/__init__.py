@@ -1,0 +1,1 @@
+"""Equal or not: normal forms of quotients, exponentials, angles and roots."""

@@ -1,0 +1,199 @@
+"""Bounds: printed relation derived on a whole box."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import sympy as sp
+from flint import arb
+
+from navsym.claims.statement import Bound, Box, Equation
+from navsym.claims.verdict import CERTIFIED, CONFIRMED, OPEN, PROVED, Verdict
+from navsym.core.balls import UnsupportedError, tape
+from navsym.core.errors import DomainError
+from navsym.prove.assumptions import remaining_assumptions, with_sides
+from navsym.prove.certificates import factored_certificate, positivity_certificate
+from navsym.prove.equations import after_look, decide_equation, entries, sampled, shape_of
+from navsym.prove.identities.equalities import WAYS, first_proof
+from navsym.prove.identities.normal_form import OutsideLanguageError, reduce_to_zero
+from navsym.prove.identities.numbers import is_zero
+from navsym.prove.one_symbol import decide_by_roots
+from navsym.prove.sampling.points import Point, Sample, points, ranges, search_counterexample, value_at
+from navsym.prove.sampling.second_look import Look, second_look
+from navsym.prove.signs.bounds import Sign, SignProof, prove_sign
+from navsym.prove.wording import broken, point_text, scope_of
+
+#: relation -> when a finite ball of printed - derived contradicts it.
+EXCLUDES: dict[str, Callable[[arb], bool]] = {
+    "<": lambda ball: bool(ball >= 0),
+    "<=": lambda ball: bool(ball > 0),
+    ">": lambda ball: bool(ball <= 0),
+    ">=": lambda ball: bool(ball < 0),
+    "!=": lambda ball: bool(ball == 0),
+}
+
+
+#: relation -> what is low where printed - derived comes nearest to contradicting it.
+GOALS: dict[str, Callable[[sp.Expr], tuple[sp.Expr, ...]]] = {
+    "<": lambda d: (-d,),
+    "<=": lambda d: (-d,),
+    ">": lambda d: (d,),
+    ">=": lambda d: (d,),
+    "!=": lambda d: (d**2, d, -d),
+}
+
+#: Relations that equality breaks.
+STRICT = ("<", ">", "!=")
+
+#: Sides that are nearer than this at every sampled point may be equal.
+EQUAL = 1e-20
+
+
+def decide_bound(statement: Bound) -> Verdict:
+    """Verdict of an inequality; ``=`` is handed to the equations."""
+    if statement.relation == "=":
+        return decide_equation(Equation(statement.printed, statement.derived, statement.box, exists=statement.exists))
+    if statement.relation not in EXCLUDES:
+        raise DomainError(f"expected one of = != < <= > >=; got {statement.relation!r}; correct the relation")
+    difference = difference_of(statement)
+    scope = scope_of(difference, statement.box)
+    try:
+        sides = [*entries(statement.printed), *entries(statement.derived)]
+        existing = (*sides, *statement.exists)
+        verdict = decide_difference(difference, statement.relation, statement.box, scope, existing)
+        if not verdict.status.holds and verdict.status != CONFIRMED:
+            return verdict
+        # Subtraction and the algebra may have cancelled what is not defined everywhere.
+        conditions = with_sides(reduce_to_zero(difference), *sides)
+        assumed = remaining_assumptions(conditions, statement.box)
+        return replace(verdict, assumptions=assumed)
+    except (UnsupportedError, OutsideLanguageError) as error:
+        return Verdict(OPEN, "none", scope, evidence=str(error))
+
+
+def difference_of(statement: Bound) -> sp.Expr:
+    """Printed - derived; of matrices the sum of the squares, which vanishes only where they are equal."""
+    if shape_of(statement.printed) != shape_of(statement.derived):
+        raise DomainError("expected sides of one shape; got two shapes; correct one of them")
+    pairs = zip(entries(statement.printed), entries(statement.derived), strict=True)
+    differences = [printed - derived for printed, derived in pairs]
+    if not shape_of(statement.printed):
+        return differences[0]
+    if statement.relation != "!=":
+        raise DomainError(f"expected = or != between matrices; got {statement.relation}; compare them entry by entry")
+    return sp.Add(*(difference**2 for difference in differences))
+
+
+def decide_difference(
+    difference: sp.Expr, relation: str, box: Box, scope: str, sides: Sequence[sp.Expr] = ()
+) -> Verdict:
+    """Verdict of ``difference relation 0``: break it by a point where the sides exist, or prove its sign."""
+    sample = search_counterexample(difference, lambda ball: contradicts(ball, relation), box, sides=sides)
+    if sample.points == 0:
+        return sampled(sample, scope, f"printed {relation} derived")
+    if sample.counterexample is None and relation in STRICT:
+        exact = exact_zero_point(difference, box, sides)
+        if exact is not None:
+            return broken(exact, arb(0), exact=True)
+    if sample.counterexample is not None:
+        assert sample.difference is not None
+        return broken(sample.counterexample, sample.difference)
+    decided = decide_by_roots(difference, relation, box, scope, sides)
+    if decided is not None:
+        certificate = certificate_of(difference, relation, box) if decided.status == PROVED else None
+        return replace(decided, certificate=certificate)
+    proof = prove_relation(difference, relation, box, sample)
+    if proof.sign != Sign.UNKNOWN:
+        status = PROVED if proof.exact else CERTIFIED
+        certificate = certificate_of(difference, relation, box)
+        return Verdict(status, "sign on the box", scope, evidence=proof.reason, certificate=certificate)
+    return unproved_relation(difference, relation, box, scope, sides, sample)
+
+
+def unproved_relation(
+    difference: sp.Expr, relation: str, box: Box, scope: str, sides: Sequence[sp.Expr], sample: Sample
+) -> Verdict:
+    """What has no proof of sign: broken by a second look, or sampled; never CONFIRMED across a change of sign."""
+    look = second_look(
+        difference,
+        lambda ball: contradicts(ball, relation),
+        box,
+        sides,
+        relation in STRICT,
+        GOALS[relation](difference),
+    )
+    doubt = doubt_of(look, relation)
+    if doubt:
+        return Verdict(OPEN, "sampling", scope, evidence=doubt)
+    return after_look(look, sample, scope, f"printed {relation} derived")
+
+
+def doubt_of(look: Look, relation: str) -> str:
+    """Why a relation without a counterexample must not be CONFIRMED; empty when nothing speaks against it."""
+    if look.counterexample is not None:
+        return ""
+    if relation == "!=" and look.positive and look.negative:
+        places = " and ".join(str(dict(point_text(point))) for point in (look.negative, look.positive))
+        return f"printed - derived changes its sign between {places}: a continuous difference has a zero there"
+    if look.touching is not None:
+        near = {symbol.name: f"{float(value):.12g}" for symbol, value in look.touching.items()}
+        return f"the sides come within 1e-60 of each other near {near}: equality there would break the relation"
+    return ""
+
+
+def contradicts(ball: arb, relation: str) -> bool:
+    """True for a finite ball of ``printed - derived`` that excludes the relation."""
+    return EXCLUDES[relation](ball)
+
+
+def exact_zero_point(difference: sp.Expr, box: Box, sides: Sequence[sp.Expr] = ()) -> Point | None:
+    """An exact point of the box at which the difference vanishes, proved by the normal form."""
+    program, others = tape(difference), [tape(side) for side in sides]
+    symbols = sorted(difference.free_symbols | set().union(*(s.free_symbols for s in sides)), key=str)
+    for point in points(symbols, box, 24):
+        ball = value_at(program, point)
+        if not ball.is_finite() or not ball.contains(0):
+            continue
+        if not all(value_at(other, point).is_finite() for other in others):
+            continue
+        if is_zero(difference.subs(point)):
+            return point
+    return None
+
+
+def prove_relation(difference: sp.Expr, relation: str, box: Box, sample: Sample) -> SignProof:
+    """The sign that the relation asks for, and equality where that is enough."""
+    if relation in ("<=", "<"):
+        difference = -difference
+    wanted = Sign.NONNEGATIVE if relation in ("<=", ">=") else Sign.POSITIVE
+    if wanted == Sign.NONNEGATIVE and is_equality(difference, box, sample):
+        return SignProof(Sign.NONNEGATIVE, "the two sides are equal", exact=True)
+    proof = prove_sign(difference, box, wanted)
+    if relation == "!=" and not proof.at_least(wanted):
+        proof = prove_sign(-difference, box, wanted)
+    return proof if proof.at_least(wanted) else SignProof(Sign.UNKNOWN)
+
+
+def is_equality(difference: sp.Expr, box: Box, sample: Sample) -> bool:
+    """True when the difference is proved to vanish on the whole box, with nothing left to assume."""
+    if reduce_to_zero(difference).zero:
+        return True
+    if sample.largest is None or not sample.largest < EQUAL:
+        return False
+    proof = first_proof(difference, sp.Integer(0), box, WAYS)
+    return proof is not None and not remaining_assumptions(proof.reduction, box)
+
+
+def certificate_of(difference: sp.Expr, relation: str, box: Box) -> Mapping[str, Any] | None:
+    """Positivity on a closed box, or of what is left beside squares, for the checker; None where it has none."""
+    limits = ranges(sorted(difference.free_symbols, key=str), box)
+    signs = {"<": (-1,), "<=": (-1,), "!=": (1, -1)}.get(relation, (1,))
+    found = (positivity_certificate(sign * difference, limits) for sign in signs)
+    certificate = next((item for item in found if item is not None), None)
+    if certificate is not None or len(limits) != 1:
+        return certificate
+    ((symbol, limit),) = limits.items()
+    others = (factored_certificate(sign * difference, symbol, limit, relation in STRICT) for sign in signs)
+    return next((item for item in others if item is not None), None)

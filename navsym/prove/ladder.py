@@ -1,0 +1,90 @@
+"""One door: a statement goes in, a verdict comes out.
+
+Every rung first tries to break the statement and then to prove it. What runs out of time or
+memory is OPEN, not a hang: ``decide_within`` works in a child process with limits.
+"""
+
+from __future__ import annotations
+
+from navsym.claims.statement import Bound, Equation, Finding, Optimum, Property, Statement
+from navsym.claims.verdict import OPEN, PROVED, REFUTED, Verdict
+from navsym.core.sandbox import Exhausted, run_limited
+from navsym.prove.equations import decide_equation
+from navsym.prove.inequalities import decide_bound
+from navsym.prove.optimum import decide_optimum
+
+DEFAULT_SECONDS = 20.0
+DEFAULT_MEGABYTES = 4096
+
+
+def decide(statement: Statement) -> Verdict:
+    """Verdict of a statement, in this process and without limits.
+
+    The ladder: counterexamples at exact points, exact algebra, balls on a divided box, samples; the first that
+    decides is the method of the verdict. Raises TypeError for what is no statement.
+    """
+    if isinstance(statement, Equation):
+        return decide_equation(statement)
+    if isinstance(statement, Bound):
+        return decide_bound(statement)
+    if isinstance(statement, Optimum):
+        return decide_optimum(statement)
+    if isinstance(statement, Property):
+        return decide_property(statement)
+    raise TypeError(f"expected a statement; got {type(statement).__name__}")
+
+
+def decide_within(
+    statement: Statement, seconds: float = DEFAULT_SECONDS, megabytes: int = DEFAULT_MEGABYTES
+) -> Verdict:
+    """The same in a child process; OPEN when it needs more time or memory than allowed."""
+    outcome = run_limited(decide, (statement,), seconds, megabytes)
+    return exhausted(outcome) if isinstance(outcome, Exhausted) else outcome
+
+
+def exhausted(outcome: Exhausted) -> Verdict:
+    """OPEN, with the limit that was met."""
+    return Verdict(OPEN, "none", evidence=f"stopped: {outcome.why}; nothing is known")
+
+
+def decide_property(statement: Property) -> Verdict:
+    """A printed fact beside a computed one: they are equal, or the computed one refutes it."""
+    finding = statement.derived
+    if not same_value(statement.printed, finding.value):
+        return contradicted(statement, finding)
+    return Verdict(
+        finding.status,
+        method=finding.method,
+        scope=finding.scope,
+        assumptions=finding.assumptions,
+        evidence=finding.evidence,
+        certificate=finding.certificate,
+    )
+
+
+def contradicted(statement: Property, finding: Finding) -> Verdict:
+    """REFUTED by a decided value; a value that was only sampled cannot refute."""
+    words = f"printed {statement.printed!r}, found {finding.value!r}. {finding.evidence}".strip()
+    if not finding.status.holds:
+        return Verdict(OPEN, finding.method, finding.scope, evidence=f"{words} (sampled only)")
+    return Verdict(
+        REFUTED,
+        method=finding.method,
+        scope=finding.scope,
+        evidence=words,
+        counterexample={},
+        certificate=finding.certificate,
+    )
+
+
+def same_value(printed: object, found: object) -> bool:
+    """Equality of exact values; True is not 1, and a float is never compared."""
+    if isinstance(printed, float) or isinstance(found, float):
+        raise TypeError("expected exact values in a property; got a float; use Fraction or Rational")
+    if isinstance(printed, (tuple, list)) and isinstance(found, (tuple, list)):
+        pairs = zip(printed, found, strict=False)
+        return len(printed) == len(found) and all(same_value(p, f) for p, f in pairs)
+    return isinstance(printed, bool) == isinstance(found, bool) and printed == found
+
+
+__all__ = ["DEFAULT_SECONDS", "OPEN", "PROVED", "decide", "decide_within"]

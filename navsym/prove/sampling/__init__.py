@@ -1,0 +1,1 @@
+"""Points at which a statement may fail, and a second look where none was found."""

@@ -1,0 +1,334 @@
+"""A second look before CONFIRMED: the places where a statement that passed the first points is still false.
+
+The first points are ordinary and their balls have 128 bits. Here the same points are tried with 2,048
+bits, then ends and corners of the box, diagonals (symbols that are equal), points far out or near a
+finite end, and the place to which a descent of the difference leads, with its coordinates snapped to
+simple rational numbers and multiples of pi. A REFUTED that comes out rests on one exact point, as
+ever: a ball that excludes the relation, or a difference that is exactly zero where it must not be.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import partial
+
+import sympy as sp
+from flint import arb, fmpq
+
+from navsym.claims.statement import Box
+from navsym.core.balls import UnsupportedError, enclose, exact_ball, tape
+from navsym.prove.identities.normal_form import OutsideLanguageError
+from navsym.prove.identities.numbers import is_zero
+from navsym.prove.identities.transcendental import factored
+from navsym.prove.sampling.descent import Guess, lowest
+from navsym.prove.sampling.points import AWKWARD, Point, Range, points, ranges, value_at
+
+# Exact points at which a factor of an expression vanishes: (x + y - 3)**2 > 0 fails on a whole line.
+#
+# A descent comes as near to such a line as its digits allow and never lies on it. Here a factor that is a
+# polynomial of degree one or two in some symbol is solved for it, at ordinary points of the others.
+
+
+PLACES = 6
+MOST_FACTORS = 8
+
+#: Functions that are zero where their argument is.
+VANISHING = (sp.Abs, sp.sin, sp.tan, sp.atan, sp.asin, sp.sinh, sp.tanh)
+
+
+def zeros_of_factors(difference: sp.Expr, limits: Mapping[sp.Symbol, Range]) -> Iterator[Point]:
+    """Points of the box where a factor is zero; the caller shows that the whole is, and exists there."""
+    bases = dict.fromkeys(unwrapped(factor) for factor in sp.Mul.make_args(factored(difference)))
+    for base in list(bases)[:MOST_FACTORS]:
+        for symbol in sorted(base.free_symbols, key=str):
+            yield from zeros_in(base, symbol, limits)
+
+
+def unwrapped(factor: sp.Expr) -> sp.Expr:
+    """What a power or a function like |u| vanishes with."""
+    base = factor.as_base_exp()[0]
+    return unwrapped(base.args[0]) if isinstance(base, VANISHING) else base
+
+
+def zeros_in(base: sp.Expr, symbol: sp.Symbol, limits: Mapping[sp.Symbol, Range]) -> Iterator[Point]:
+    """The roots of ``c + b symbol + a symbol**2`` at ordinary points of the other symbols."""
+    slope = sp.diff(base, symbol)
+    curve = sp.expand(sp.diff(slope, symbol) / 2)
+    if symbol in curve.free_symbols:
+        return
+    others = [other for other in limits if other is not symbol]
+    for point in points(others, ends_of(limits), PLACES):
+        numbers = [part.subs({**point, symbol: 0}) for part in (curve, slope, base)]
+        try:
+            found = [value for value in roots_of(*numbers) if limits[symbol].contains(value)]
+        except UnsupportedError:
+            continue
+        yield from ({**point, symbol: value} for value in found)
+
+
+def ends_of(limits: Mapping[sp.Symbol, Range]) -> dict[sp.Symbol, tuple[sp.Expr | None, sp.Expr | None]]:
+    """The ranges as a box."""
+    return {symbol: (limit.lower, limit.upper) for symbol, limit in limits.items()}
+
+
+def roots_of(a: sp.Expr, b: sp.Expr, c: sp.Expr) -> list[sp.Expr]:
+    """Real roots of ``a x**2 + b x + c`` with numbers; none where a ball cannot tell."""
+    if any(part.has(sp.nan, sp.zoo, sp.oo) for part in (a, b, c)):
+        return []
+    if a == 0:
+        return [] if exact_ball(b).contains(0) else [-c / b]
+    discriminant = b**2 - 4 * a * c
+    if exact_ball(a).contains(0) or not exact_ball(discriminant) > 0:
+        return []
+    root = sp.sqrt(discriminant)
+    return [(-b - root) / (2 * a), (-b + root) / (2 * a)]
+
+
+BITS = 2048
+ORDINARY = 24
+SHARP = 1e-100
+FAR = tuple(sp.Integer(10) ** k for k in (3, 12, 31))
+NEAR = tuple(sp.Rational(1, 10**k) for k in (3, 12, 31, 75, 150, 300))
+DENOMINATORS = (1, 2, 3, 4, 6, 12, 100, 10**12, 10**150)
+TOUCHING = 1e-60
+MOST_EXPONENT = 10_000
+
+#: A descent that comes so near to an end of a range is meant to reach it.
+NEARBY = 1e-3
+
+#: What a compass search in floats leaves open of a coordinate.
+SAME = Fraction(1, 10**12)
+
+
+@dataclass(frozen=True, slots=True)
+class Look:
+    """What the second look found: a counterexample, or two points between which the sign changes."""
+
+    counterexample: Point | None = None
+    difference: arb | None = None
+    exact: bool = False  # the difference is exactly zero there
+    positive: Point | None = None
+    negative: Point | None = None
+    touching: Point | None = None  # the difference is almost zero there, and equality would break the relation
+
+
+def second_look(
+    difference: sp.Expr,
+    excludes: Callable[[arb], bool],
+    box: Box,
+    sides: Sequence[sp.Expr] = (),
+    zero_breaks: bool = False,
+    goals: Sequence[sp.Expr] = (),
+) -> Look:
+    """Look again for a point that breaks ``difference relation 0``.
+
+    excludes    : true for a finite ball that contradicts the relation
+    sides       : expressions that have to be finite at the point
+    zero_breaks : an exactly vanishing difference contradicts the relation, as for < and !=
+    goals       : expressions whose lowest place is worth a try
+    """
+    symbols = sorted(difference.free_symbols | set().union(*(s.free_symbols for s in sides)), key=str)
+    limits = ranges(symbols, box)
+    places = itertools.chain(
+        points(symbols, box, ORDINARY),
+        special_points(limits),
+        zeros_of_factors(difference, limits) if zero_breaks else (),
+        *(descents(goal, limits) for goal in goals),
+    )
+    positive = negative = touching = None
+    for point in places:
+        ball = sharp_value(difference, point, sides)
+        if ball is None:
+            continue
+        if excludes(ball):
+            return Look(point, ball)
+        if zero_breaks and ball.contains(0) and is_zero_at(difference, point):
+            return Look(point, arb(0), exact=True)
+        touching = point if zero_breaks and abs(ball) < TOUCHING else touching
+        positive = point if positive is None and ball > 0 else positive
+        negative = point if negative is None and ball < 0 else negative
+    return Look(positive=positive, negative=negative, touching=touching)
+
+
+def sharp_value(difference: sp.Expr, point: Point, sides: Sequence[sp.Expr]) -> arb | None:
+    """Ball of the difference with many bits; None where a side has no value.
+
+    A ball across a jump, such as that of ``atan2(sin(T), cos(T))`` at pi, says nothing; there the exact
+    values of the functions are put in first.
+    """
+    try:
+        if not all(exists_at(side, point) for side in sides):
+            return None
+        ball = value_at(tape(difference), point, BITS)
+        if ball.is_finite() and (not ball.contains(0) or ball.rad() < SHARP):
+            return ball
+        put_in = substituted(difference, point)
+        if put_in is None:
+            return None
+        ball = enclose(tape(put_in), {}, BITS)
+    except (UnsupportedError, OutsideLanguageError):
+        return None
+    return ball if ball.is_finite() else None
+
+
+def exists_at(side: sp.Expr, point: Point) -> bool:
+    """A value by balls, or, as for a root of zero at an end of the range, with the exact numbers put in."""
+    if value_at(tape(side), point, BITS).is_finite():
+        return True
+    # every part has to exist: 1/log(0) would come out as 1/zoo = 0
+    parts = [substituted(node, point) for node in sp.preorder_traversal(side) if not node.is_Atom]
+    if any(part is None or part.has(sp.nan, sp.zoo, sp.oo, -sp.oo, sp.I) for part in parts):
+        return False
+    return all(enclose(tape(part), {}, BITS).is_finite() for part in parts)
+
+
+def substituted(expression: sp.Expr, point: Point) -> sp.Expr | None:
+    """The expression with exact numbers put in; None where that would multiply out a power with too many digits."""
+    exponents = [power.exp for power in expression.atoms(sp.Pow) if power.exp.free_symbols]
+    turned = [node.args[0] for node in expression.atoms(sp.exp) if node.has(sp.log)]  # exp(y log x) becomes x**y
+    exponents += [argument.replace(sp.log, lambda *_: sp.Integer(1)) for argument in turned]
+    sizes = (abs(value_at(tape(exponent), point)) for exponent in exponents)
+    return expression.subs(point) if all(size < MOST_EXPONENT for size in sizes) else None
+
+
+def is_zero_at(difference: sp.Expr, point: Point) -> bool:
+    try:
+        put_in = substituted(difference, point)
+        return put_in is not None and is_zero(put_in)
+    except (UnsupportedError, OutsideLanguageError):
+        return False
+
+
+# -- special points ---------------------------------------
+
+
+def special_points(limits: dict[sp.Symbol, Range]) -> Iterator[Point]:
+    """Corners, diagonals, and points far out or near an end: one symbol at a time, and all at once."""
+    if not limits:
+        return
+    ends = {symbol: edge_values(limit) for symbol, limit in limits.items()}
+    yield from diagonals(limits)
+    yield from corners(ends)
+    home = {symbol: home_value(limit) for symbol, limit in limits.items()}
+    for symbol, values in ends.items():
+        yield from ({**home, symbol: value} for value in values)
+    for step in range(max(map(len, ends.values()))):
+        yield {symbol: values[min(step, len(values) - 1)] for symbol, values in ends.items()}
+
+
+def edge_values(limit: Range) -> list[sp.Expr]:
+    """Ends of a range, and values near a finite end and far towards an infinite one."""
+    found: list[sp.Expr] = []
+    for end, inwards in ((limit.lower, 1), (limit.upper, -1)):
+        if end is None:
+            found += [-inwards * value for value in (*FAR, *NEAR)]
+        else:
+            found += [end, *(end + inwards * value for value in NEAR)]
+    return [value for value in found if limit.contains(value)] or [home_value(limit)]
+
+
+def home_value(limit: Range) -> sp.Expr:
+    """An ordinary value of the range."""
+    if limit.lower is not None and limit.upper is not None:
+        middle = (limit.lower + limit.upper) / 2
+        return middle if limit.contains(middle) else limit.lower
+    if limit.lower is not None:
+        return limit.lower + 1
+    return limit.upper - 1 if limit.upper is not None else sp.Integer(1)
+
+
+def corners(ends: dict[sp.Symbol, list[sp.Expr]]) -> Iterator[Point]:
+    """Both outermost values of every symbol, up to 64 combinations."""
+    pairs = [(values[0], values[-1]) for values in ends.values()]
+    for corner in itertools.islice(itertools.product(*pairs), 64):
+        yield dict(zip(ends, corner, strict=True))
+
+
+def diagonals(limits: dict[sp.Symbol, Range]) -> Iterator[Point]:
+    """All symbols equal, opposite, and every pair equal."""
+    symbols = list(limits)
+    home = {symbol: home_value(limit) for symbol, limit in limits.items()}
+    groups = [tuple(symbols), *(itertools.combinations(symbols, 2) if len(symbols) > 2 else ())]
+    for group, value in itertools.product(groups[:16], AWKWARD):
+        for signs in ((1,) * len(group), (1,) + (-1,) * (len(group) - 1)):
+            point = {**home, **{s: sign * value for s, sign in zip(group, signs, strict=True)}}
+            if all(limits[symbol].contains(point[symbol]) for symbol in group):
+                yield point
+
+
+# -- where the difference is lowest ---------------------------------------
+
+
+def descents(goal: sp.Expr, limits: dict[sp.Symbol, Range]) -> Iterator[Point]:
+    """The lowest places that a descent finds, with every coordinate snapped in the same way.
+
+    Then one coordinate after the other is held at a simple number and the rest descends again: what is
+    lowest along a whole line has points there that cannot be rounded at once.
+    """
+    if not limits or any(limit.integer for limit in limits.values()):
+        return
+    held: Point = {}
+    while len(held) < len(limits):
+        rest = {symbol: limit for symbol, limit in limits.items() if symbol not in held}
+        places = list(lowest(goal.subs(held), rest))
+        yield from snapped(places, held, limits)
+        ends = nearby_ends(places[0], rest) if places else {}
+        if ends and len(ends) < len(rest):  # lowest on a face: once more, inside that face
+            face = {symbol: limit for symbol, limit in rest.items() if symbol not in ends}
+            yield from snapped(list(lowest(goal.subs({**held, **ends}), face)), {**held, **ends}, limits)
+        symbol = next(iter(rest))
+        value = to_rational(DENOMINATORS[5], places[0][symbol]) if places else None
+        if value is None or not limits[symbol].contains(value):
+            return
+        held[symbol] = value
+
+
+def snapped(places: Sequence[Guess], held: Point, limits: dict[sp.Symbol, Range]) -> Iterator[Point]:
+    """The places with their coordinates rounded in every way, those that are held as they are."""
+    for place, snap in itertools.product(places, snappings()):
+        point = {**held, **{symbol: snap(value) for symbol, value in place.items()}}
+        if all(limits[symbol].contains(value) for symbol, value in point.items()):
+            yield point
+
+
+def nearby_ends(place: Guess, limits: dict[sp.Symbol, Range]) -> Point:
+    """The coordinates that lie almost at an end of their range, moved to that end."""
+    found: Point = {}
+    for symbol, value in place.items():
+        limit = limits[symbol]
+        for end in (limit.lower, limit.upper):
+            if end is None or not limit.contains(end):
+                continue
+            if abs(exact_ball(end) - fmpq(value.numerator, value.denominator)) < NEARBY:
+                found[symbol] = end
+    return found
+
+
+def snappings() -> Iterator[Callable[[Fraction], sp.Expr]]:
+    """Ways to round a coordinate to a simple exact number."""
+    yield from (partial(to_rational, denominator) for denominator in DENOMINATORS)
+    yield to_simplest
+    yield from (partial(to_turns, denominator) for denominator in (6, 24))
+
+
+def to_rational(denominator: int, value: Fraction) -> sp.Expr:
+    return rational(value.limit_denominator(denominator))
+
+
+def to_simplest(value: Fraction) -> sp.Expr:
+    """A fraction with few digits that a float cannot tell from the value."""
+    shorter = (value.limit_denominator(10**k) for k in range(1, 9))
+    return rational(next((short for short in shorter if abs(short - value) < SAME), value))
+
+
+def to_turns(denominator: int, value: Fraction) -> sp.Expr:
+    """The nearest simple multiple of pi."""
+    return sp.pi * rational((value / Fraction(math.pi)).limit_denominator(denominator))
+
+
+def rational(value: Fraction) -> sp.Rational:
+    return sp.Rational(value.numerator, value.denominator)

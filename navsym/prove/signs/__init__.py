@@ -1,0 +1,1 @@
+"""Positive or not: exact signs, cones, half angles, derivatives, divided boxes."""

@@ -1,0 +1,127 @@
+"""Sines and cosines as rational functions of t = tan(angle/2), so that polynomials decide about them.
+
+Every angle except an odd multiple of pi has its t; what is continuous and nonnegative for all t is
+nonnegative for that angle too, but need not be positive there.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from fractions import Fraction
+from math import lcm
+
+import sympy as sp
+
+from navsym.prove.identities.ingredients import PI, TRIGONOMETRIC, Monomial, linear_terms
+from navsym.prove.sampling.points import Range
+from navsym.prove.signs.exact import Limits, Sign, constant_sign, corner_values
+from navsym.prove.signs.products import monomial_expression
+
+MOST_TURNS = 12
+Pair = tuple[sp.Expr, sp.Expr]
+
+
+@dataclass(slots=True)
+class HalfAngles:
+    """One t for every angle monomial, at the common denominator of its coefficients."""
+
+    limits: Limits
+    denominators: dict[Monomial, int] = field(default_factory=dict)
+    tangents: dict[Monomial, sp.Symbol] = field(default_factory=dict)
+    ranges: dict[sp.Symbol, Range] = field(default_factory=dict)
+    pairs: dict[sp.Expr, Pair] = field(default_factory=dict)
+
+    @property
+    def endless(self) -> bool:
+        """True when some angle may reach pi, where t is infinite."""
+        return any(limit.upper is None for limit in self.ranges.values())
+
+
+def without_angles(expression: sp.Expr, limits: Limits) -> tuple[sp.Expr, HalfAngles] | None:
+    """The expression with all sines and cosines written in the t; None where an angle has another form."""
+    angles = HalfAngles(limits)
+    nodes = sorted(expression.atoms(*TRIGONOMETRIC), key=sp.default_sort_key)
+    for node in nodes:
+        if node.args[0].has(*TRIGONOMETRIC):
+            return None
+        for monomial, coefficient in linear_terms(node.args[0]).items():
+            if monomial == PI and (2 * coefficient).denominator != 1:
+                return None
+            if monomial != PI:
+                known = angles.denominators.get(monomial, 1)
+                angles.denominators[monomial] = lcm(known, coefficient.denominator)
+    values = {node: function_of(node, *pair_of(node.args[0], angles)) for node in nodes}
+    return expression.xreplace(values), angles
+
+
+def function_of(node: sp.Expr, cosine: sp.Expr, sine: sp.Expr) -> sp.Expr:
+    """The six functions by cosine and sine."""
+    kinds = {
+        sp.cos: lambda: cosine,
+        sp.sin: lambda: sine,
+        sp.tan: lambda: sine / cosine,
+        sp.cot: lambda: cosine / sine,
+        sp.sec: lambda: 1 / cosine,
+        sp.csc: lambda: 1 / sine,
+    }
+    return kinds[node.func]()
+
+
+def pair_of(angle: sp.Expr, angles: HalfAngles) -> Pair:
+    """cos and sin of a sum of multiples of the angle monomials and of pi/2."""
+    if angle not in angles.pairs:
+        pair: Pair = (sp.Integer(1), sp.Integer(0))
+        for monomial, coefficient in linear_terms(angle).items():
+            pair = turned(pair, quarter(coefficient) if monomial == PI else multiple(monomial, coefficient, angles))
+        angles.pairs[angle] = pair
+    return angles.pairs[angle]
+
+
+def quarter(coefficient: Fraction) -> Pair:
+    turns = int(2 * coefficient) % 4
+    return ((sp.Integer((1, 0, -1, 0)[turns])), sp.Integer((0, 1, 0, -1)[turns]))
+
+
+def multiple(monomial: Monomial, coefficient: Fraction, angles: HalfAngles) -> Pair:
+    """cos and sin of a whole multiple of the angle whose half has the tangent t."""
+    share = angles.denominators[monomial]
+    count = int(coefficient * share)
+    if abs(count) > MOST_TURNS:
+        raise OverflowError("an angle is taken too many times")
+    t = tangent(monomial, share, angles)
+    once: Pair = ((1 - t**2) / (1 + t**2), sp.sign(count) * 2 * t / (1 + t**2))
+    pair: Pair = (sp.Integer(1), sp.Integer(0))
+    for _ in range(abs(count)):
+        pair = turned(pair, once)
+    return pair
+
+
+def turned(first: Pair, second: Pair) -> Pair:
+    """cos and sin of a sum of two angles."""
+    return (first[0] * second[0] - first[1] * second[1], first[1] * second[0] + first[0] * second[1])
+
+
+def tangent(monomial: Monomial, share: int, angles: HalfAngles) -> sp.Symbol:
+    if monomial not in angles.tangents:
+        symbol = sp.Dummy(f"t{len(angles.tangents)}", real=True)
+        angles.tangents[monomial] = symbol
+        angles.ranges[symbol] = tangent_range(monomial_expression(monomial) / share, angles.limits)
+    return angles.tangents[monomial]
+
+
+def tangent_range(angle: sp.Expr, limits: Limits) -> Range:
+    """[0, 1], [-1, 1] or [0, oo) when the exact range of the angle allows it, else all numbers."""
+    values = corner_values(angle, limits)
+    if values is None:
+        return Range(None, None)
+
+    def within(lower: sp.Expr, upper: sp.Expr) -> bool:
+        margins = [m for value in values for m in (value - lower, upper - value)]
+        return all(constant_sign(margin).sign != Sign.UNKNOWN for margin in margins)
+
+    zero, one, half = sp.Integer(0), sp.Integer(1), sp.pi / 2
+    if within(zero, half):
+        return Range(zero, one)
+    if within(-half, half):
+        return Range(-one, one)
+    return Range(zero, None) if within(zero, sp.pi) else Range(None, None)

@@ -1,0 +1,146 @@
+"""Sums of sines and cosines as products, so that their signs can be read off exactly.
+
+``2 cos(t - T/2) - 2 cos(T/2)`` becomes ``4 sin(t/2) sin((T - t)/2)``. In the generators
+``z = exp(i angle)`` a trigonometric polynomial is an ordinary one: factor it there, and bring
+every factor back to real form about its middle power. The product is returned only when the
+normal form proves it equal to the sum, so that the factoring itself need not be trusted.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+
+import sympy as sp
+from flint import fmpq_mpoly
+
+from navsym.prove.identities.converter import Converter, vanishes_identically
+from navsym.prove.identities.ingredients import Monomial, OutsideLanguageError
+
+Exponents = tuple[int, ...]
+
+
+def as_product(expression: sp.Expr) -> sp.Expr | None:
+    """The expression as a product of real factors, or None when no factoring was found."""
+    try:
+        converter = Converter([expression])
+    except OutsideLanguageError:
+        return None
+    if converter.roots or converter.atoms or not converter.found.angles:
+        return None
+    quotient = converter.convert(expression)
+    top = real_factors(converter, quotient.numerator)
+    bottom = real_factors(converter, quotient.denominator)
+    if top is None or bottom is None or len(top) + len(bottom) < 2:
+        return None
+    product = sp.Mul(*top) / sp.Mul(*bottom)
+    # The phases left out of the factors multiply to a rational constant.
+    constant = constant_ratio(expression, product)
+    if constant is None:
+        return None
+    product = constant * product
+    return product if vanishes_identically(expression - product) else None
+
+
+def constant_ratio(expression: sp.Expr, product: sp.Expr) -> sp.Rational | None:
+    """Guess the constant from one point; the guess is proved afterwards."""
+    symbols = sorted(expression.free_symbols, key=str)
+    point = {symbol: sp.Rational(7 + 4 * k, 10 + 3 * k) for k, symbol in enumerate(symbols)}
+    value, base = complex(expression.subs(point).evalf(30)), complex(product.subs(point).evalf(30))
+    if base == 0:
+        return None
+    ratio = Fraction((value / base).real).limit_denominator(4096)
+    return sp.Rational(ratio.numerator, ratio.denominator) if ratio else None
+
+
+def real_factors(converter: Converter, polynomial: fmpq_mpoly) -> list[sp.Expr] | None:
+    """Real forms of the irreducible factors, without their phases and constants."""
+    reduced = converter.reduce_unity(polynomial)
+    if reduced.is_zero():
+        return None
+    _, factors = reduced.factor()
+    result: list[sp.Expr] = []
+    for factor, multiplicity in factors:
+        real = real_form(converter, factor)
+        if real is None:
+            return None
+        if real != 1:
+            result.append(real**multiplicity)
+    return result
+
+
+def real_form(converter: Converter, factor: fmpq_mpoly) -> sp.Expr | None:
+    """A factor divided by its middle power: a sum of cosines, or i times a sum of sines."""
+    terms = {tuple(int(e) for e in k): Fraction(int(c.p), int(c.q)) for k, c in factor.to_dict().items()}
+    if len(terms) == 1 and is_phase(converter, next(iter(terms))):
+        return sp.Integer(1)
+    if any(exponents[-1] for exponents in terms):
+        return None  # a root of unity inside the factor
+    centre = middle(converter, terms)
+    for parity in (1, -1):
+        if is_symmetric(converter, terms, centre, parity):
+            return rebuilt(converter, terms, centre, parity)
+    return None
+
+
+def angle_places(converter: Converter) -> range:
+    start = len(converter.found.symbols)
+    return range(start, start + len(converter.found.angles))
+
+
+def is_phase(converter: Converter, exponents: Exponents) -> bool:
+    """True for a monomial of modulus one: only z and the root of unity occur."""
+    phases = {*angle_places(converter), len(exponents) - 1}
+    return all(place in phases for place, e in enumerate(exponents) if e)
+
+
+def middle(converter: Converter, terms: Mapping[Exponents, Fraction]) -> dict[int, Fraction]:
+    places = angle_places(converter)
+    return {p: Fraction(min(k[p] for k in terms) + max(k[p] for k in terms), 2) for p in places}
+
+
+def is_symmetric(
+    converter: Converter, terms: Mapping[Exponents, Fraction], centre: Mapping[int, Fraction], parity: int
+) -> bool:
+    """Reflection of all angles about the middle power keeps (or negates) the coefficients."""
+    for exponents, coefficient in terms.items():
+        mirrored = tuple(int(2 * centre[place] - e) if place in centre else e for place, e in enumerate(exponents))
+        if terms.get(mirrored) != parity * coefficient:
+            return False
+    return True
+
+
+def rebuilt(
+    converter: Converter, terms: Mapping[Exponents, Fraction], centre: Mapping[int, Fraction], parity: int
+) -> sp.Expr:
+    function = sp.cos if parity == 1 else sp.sin
+    total = sp.Integer(0)
+    for exponents, coefficient in terms.items():
+        angle = sum((angle_of(converter, p, exponents[p] - centre[p]) for p in centre), sp.Integer(0))
+        amplitude = sp.Rational(coefficient.numerator, coefficient.denominator)
+        total += amplitude * real_generators(converter, exponents) * function(angle)
+    return total
+
+
+def angle_of(converter: Converter, place: int, power: Fraction) -> sp.Expr:
+    monomial, denominator = list(converter.found.angles.items())[place - len(converter.found.symbols)]
+    share = sp.Rational(power.numerator, power.denominator * denominator)
+    return share * monomial_expression(monomial)
+
+
+def monomial_expression(monomial: Monomial) -> sp.Expr:
+    """The monomial as a product of powers."""
+    factors = [sp.Pow(base, sp.Rational(e.numerator, e.denominator)) for base, e in monomial]
+    return sp.Mul(*factors)
+
+
+def real_generators(converter: Converter, exponents: Exponents) -> sp.Expr:
+    """Product of the powers of symbols and real exponentials in one term."""
+    found, value = converter.found, sp.Integer(1)
+    for place, (symbol, q) in enumerate(found.symbols.items()):
+        value *= sp.Pow(symbol, sp.Rational(exponents[place], q))
+    start = len(found.symbols) + len(found.angles)
+    for place, (monomial, denominator) in enumerate(found.exponents.items()):
+        power = sp.Rational(exponents[start + place], denominator)
+        value *= sp.exp(power * monomial_expression(monomial))
+    return value

@@ -1,0 +1,79 @@
+"""BibTeX for a paper and for a verdict on one of its statements."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import Any
+
+from navsym.claims import Paper
+from navsym.report.formula.sides import only_truth
+from navsym.report.names import latex_escape
+
+Record = Mapping[str, Any]
+SHORT = 120  # characters of a formula that a note may hold
+
+
+def bibtex(paper: Paper, record: Record, version: str, correction: Record | None = None) -> str:
+    """Two entries: the paper, and the verdict with its scope and the version that decided it.
+
+    correction : record of the claim that corrects this one, to be named with it
+    """
+    key = paper_key(paper)
+    verdict = {
+        "title": f"Verdict on {record['id']}: {record['status']}",
+        "author": "{navsym contributors}",
+        "howpublished": f"navsym {version}, claim {latex_escape(record['id'])}",
+        "note": latex_escape(" ".join([verdict_words(record), *correction_words(correction)])),
+    }
+    words = {
+        "author": " and ".join(latex_escape(author) for author in paper.authors),
+        "title": "{" + latex_escape(paper.title) + "}",
+        "year": "" if paper.year is None else str(paper.year),
+        "note": latex_escape(source_words(paper)),
+        "doi": paper.doi,
+    }
+    return block("misc", key, words) + "\n" + block("misc", f"{key}-{plain(record['number'])}", verdict)
+
+
+def source_words(paper: Paper) -> str:
+    """Where it appeared and in which language; either may be unknown."""
+    language = f"In {paper.language}" if paper.language else ""
+    return " ".join(f"{part.rstrip('.')}." for part in (paper.source, language) if part)
+
+
+def verdict_words(record: Record) -> str:
+    """What is claimed, how it was decided and for what; where it fails, an exact point."""
+    scope = "" if record["status"] == "REFUTED" else f", for {record['scope'] or 'the numbers as they stand'}"
+    words = f"{record['title']} Decided by {record['method']}{scope}."
+    if record["assumptions"]:
+        words += f" Assuming {'; '.join(record['assumptions'])}."
+    if record["counterexample"]:
+        words += " Counterexample: " + ", ".join(f"{k} = {v}" for k, v in record["counterexample"].items()) + "."
+    return words
+
+
+def correction_words(correction: Record | None) -> list[str]:
+    """Which claim stands in its place, and its formula where it is short."""
+    if correction is None:
+        return []
+    printed = correction["printed"]
+    says = f": {printed}" if len(printed) <= SHORT and not only_truth(printed) else ""
+    return [f"Corrected by {correction['id']}, {correction['status']}{says}."]
+
+
+def block(kind: str, key: str, fields: Mapping[str, str]) -> str:
+    """An entry of BibTeX; empty fields are left out."""
+    lines = [f"  {name} = {{{value}}}," for name, value in fields.items() if value]
+    return "\n".join([f"@{kind}{{{key},", *lines, "}", ""])
+
+
+def paper_key(paper: Paper) -> str:
+    """Key of a paper: last name of the first author and year."""
+    first = paper.authors[0].split()[-1] if paper.authors else paper.module
+    return plain(f"{first}{paper.year or ''}").lower()
+
+
+def plain(text: str) -> str:
+    """Letters, digits and points of a text; a star becomes ``corrected``."""
+    return re.sub(r"[^A-Za-z0-9.]", "", text.replace("*", "corrected"))

@@ -1,0 +1,283 @@
+"""Why a verdict: the record of a claim told step by step, with the arithmetic of its counterexample.
+
+Everything is read off the record of ``navsym verify``; nothing is decided here.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from decimal import Decimal, InvalidOperation
+from typing import Any
+
+from navsym.core.balls import enclose, tape
+from navsym.core.errors import NavsymError
+from navsym.language.expression import parse, symbol
+from navsym.language.names import RESERVED
+from navsym.prove.wording import decimal_ends
+
+# The arithmetic of a counterexample, done again in balls from the text of the two sides.
+#
+# So a reader sees numbers that the decision itself did not hand over.
+
+
+Record = Mapping[str, Any]
+LONGEST = 20_000
+NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
+
+
+@dataclass(frozen=True, slots=True)
+class Arithmetic:
+    """Both sides of one entry at the counterexample, as decimals that enclose them from below and above."""
+
+    entry: int
+    printed: tuple[str, str]
+    derived: tuple[str, str]
+
+    @property
+    def differs(self) -> bool:
+        """True when the two sides are not the same."""
+        return self.printed != self.derived
+
+
+def arithmetic(record: Record) -> list[Arithmetic]:
+    """Values of both sides at the counterexample, for the entries that are numbers there."""
+    point = record["counterexample"]
+    if point is None:
+        return []
+    printed = entries_of(record["printed"].split(" +- ")[0])
+    derived = entries_of(record["derived"])
+    if not derived or len(printed) != len(derived):
+        return []
+    single, found = len(printed) == 1, []
+    for place, pair in enumerate(zip(printed, derived, strict=True), start=1):
+        if pair[0] == pair[1]:
+            continue
+        try:
+            found.append(Arithmetic(0 if single else place, *(value_at(side, point) for side in pair)))
+        except (NavsymError, ValueError, ArithmeticError, TypeError):
+            continue
+    return found
+
+
+def value_at(text: str, point: Mapping[str, str]) -> tuple[str, str]:
+    """Decimals below and above the value of an expression at a point.
+
+    Raises NavsymError for text outside the language, ValueError where the value is not finite.
+    """
+    names = sorted({name for name in NAME.findall(text) if name not in RESERVED} | set(point))
+    symbols = {name: symbol(name) for name in names}
+    expression = parse(text, symbols)
+    if expression.free_symbols - {symbols[name] for name in point}:
+        raise ValueError(f"{text[:40]} is not a number there")
+    at = {symbols[name]: enclose(tape(parse(value, {}))) for name, value in point.items()}
+    ball = enclose(tape(expression), at)
+    if not ball.is_finite():
+        raise ValueError(f"{text[:40]} is not finite there")
+    return decimal_ends(ball)
+
+
+def entries_of(text: str) -> list[str]:
+    """Scalar entries of a side: those of a tuple or a matrix, or the text itself."""
+    text = text.strip()
+    if len(text) > LONGEST or not text:
+        return []
+    if text[0] not in "([" or closing_place(text) != len(text) - 1:
+        return [text]
+    parts = split_parts(text[1:-1])
+    if text[0] == "(" and len(parts) == 1:
+        return [text]
+    return [entry for part in parts for entry in entries_of(part)]
+
+
+def closing_place(text: str) -> int:
+    """Place of the bracket that closes the one at the beginning, -1 when there is none."""
+    depth = 0
+    for place, char in enumerate(text):
+        depth += (char in "([") - (char in ")]")
+        if depth == 0:
+            return place
+    return -1
+
+
+def split_parts(text: str) -> list[str]:
+    """Parts between the commas that stand in no bracket."""
+    parts, depth, start = [], 0, 0
+    for place, char in enumerate(text):
+        depth += (char in "([") - (char in ")]")
+        if char == "," and depth == 0:
+            parts.append(text[start:place])
+            start = place + 1
+    return [part for part in (*parts, text[start:]) if part.strip()]
+
+
+# -- numbers in words -------------------------------------------------------------------------
+
+
+def ended(sentence: str) -> str:
+    """The sentence with its full stop; cut digits end with an ellipsis already."""
+    return sentence if sentence.endswith(("…", ".")) else sentence + "."
+
+
+def ball_words(ends: tuple[str, str]) -> str:
+    """``0.95885…`` for ends that agree so far, ``0.995`` for ends on both sides of it; both ends otherwise."""
+    low, high = ends
+    if low == high:
+        return low.rstrip("0").rstrip(".") if "." in low else low
+    if (rounded := common_rounding(low, high)) is not None:
+        return rounded
+    same = next((i for i, (a, b) in enumerate(zip(low, high, strict=False)) if a != b), min(len(low), len(high)))
+    shared = low[:same]
+    return f"{shared[:14]}…" if "." in shared and len(shared) > 6 else f"between {low} and {high}"
+
+
+def common_rounding(low: str, high: str) -> str | None:
+    """The number of at most eight digits between two ends that are nearer than that; None where there is none."""
+    try:
+        first, second = (Decimal(end) for end in (low, high))
+        middle = Decimal(f"{(first + second) / 2:.8g}")
+    except InvalidOperation:
+        return None
+    if not first <= middle <= second or second - first > abs(middle) * Decimal("1e-12"):
+        return None
+    plain = format(middle.normalize(), "f")
+    return plain if len(plain) < 16 else format(middle.normalize(), "E")
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """One step of an explanation: a heading, a sentence, and a formula where there is one."""
+
+    heading: str
+    words: str
+    formula: str = ""
+
+
+def steps(record: Record) -> list[Step]:
+    """The whole story of one record of ``verify``, in the order in which a reader asks.
+
+    Raises ValueError for a record that is no document of a claim.
+    """
+    found = [
+        Step("What is printed", record["title"], record["printed"]),
+        derived_step(record),
+        Step("What was asked", question(record)),
+        Step("How it was decided", decision(record)),
+    ]
+    if record["assumptions"]:
+        found.append(Step("What it takes for granted", "; ".join(record["assumptions"])))
+    if record["status"] == "REFUTED":
+        found += counterexample_steps(record)
+    if record["reason"]:
+        found.append(Step("What went wrong" if record["slip"] else "Remark", slip_words(record)))
+    if record["corrects"]:
+        found.append(Step("What it corrects", f"It stands in the place of {record['corrects']}."))
+    if record.get("certificate"):
+        found.append(Step("Do not take our word", replay(record)))
+    return found
+
+
+def derived_step(record: Record) -> Step:
+    """The derived side, or that there is none."""
+    if not record["derived"]:
+        return Step("What follows from the model", "The statement itself was derived and then examined.")
+    return Step("What follows from the model", "Derived without looking at the printed side:", record["derived"])
+
+
+def question(record: Record) -> str:
+    """The quantifier in words."""
+    scope = record["scope"] or "the numbers as they stand"
+    if " +- " in record["printed"]:
+        return f"Is the derived value within the printed tolerance, for {scope}?"
+    if record["printed"].startswith("dual = "):
+        return f"Is this the optimum of the guaranteed-estimation problem, for {scope}?"
+    if not record["derived"]:
+        return f"Does the printed relation hold, for {scope}?"
+    if scope == "one point":
+        return "Are the two sides equal for all values in the stated range? One point is enough to say no."
+    return f"Are the two sides the same, for {scope}?"
+
+
+METHODS = (
+    (
+        "exact point",
+        "Exact points of the range were tried, each in ball arithmetic, which encloses every "
+        "rounding error. At one of them the balls of the two sides have no point in common.",
+    ),
+    (
+        "exact primal-dual",
+        "Weights and dual were put into four conditions: the weights are unbiased, the instants "
+        "lie inside the interval, the dual polynomial stays within its bounds, and both values are equal. Together "
+        "they prove optimality without any solver.",
+    ),
+    (
+        "normal form after signs",
+        "Absolute values and roots of squares were replaced by what they are on the range, "
+        "the signs being proved first; then the difference was reduced to its normal form.",
+    ),
+    (
+        "normal form",
+        "The difference of the sides was written as a quotient of polynomials with exact coefficients "
+        "and multiplied out. Sines and cosines become powers of exp(i x), which leaves nothing to simplify by luck: "
+        "two expressions are equal exactly when the numerator is the zero polynomial.",
+    ),
+    ("squares", "Both sides were proved to have one sign, and their squares were reduced to the same normal form."),
+    ("derivative", "The derivatives of the two sides are the same on the range, and so is one value."),
+    (
+        "ball arithmetic",
+        "The range was covered by balls, each with all rounding errors enclosed; none of them leaves room for failure.",
+    ),
+    ("sign on the box", "The sign was proved on the whole range, by factors of known sign or by halving the range."),
+    ("sampling", "No proof was found. The statement was tried at exact points, which confirms and does not prove."),
+    ("shape", "The two sides do not even have the same shape."),
+    ("none", "Nothing decided it."),
+)
+
+
+def decision(record: Record) -> str:
+    """What the method does, and what it found here."""
+    method = record["method"]
+    told = next((words for start, words in METHODS if method.startswith(start)), "")
+    if not told:
+        told = f"By an exact method of the derivation itself: {method}."
+    evidence = f" Found: {record['evidence']}" if record["evidence"] else ""
+    ending = "" if (told + evidence).endswith(".") else "."
+    return f"{told}{evidence}{ending} Hence {record['status']}."
+
+
+def counterexample_steps(record: Record) -> list[Step]:
+    """The point of the counterexample, the entries that differ there, and the enclosure of the difference."""
+    point = record["counterexample"] or {}
+    where = ", ".join(f"{name} = {value}" for name, value in point.items())
+    found = [Step("The counterexample", f"At {where}:" if where else "Nothing has to be inserted:")]
+    for line in arithmetic(record):
+        if line.differs:
+            found.append(Step("", arithmetic_words(line)))
+    if record["difference"]:
+        low, high = record["difference"]
+        value = f"is {ball_words((low, high))}" if low == high else f"lies between {low} and {high}"
+        found.append(Step("", f"The side on the left minus the other {value}: not zero."))
+    return found
+
+
+def arithmetic_words(line: Arithmetic) -> str:
+    """Both sides at the counterexample as a sentence."""
+    start = f"Entry {line.entry}: the" if line.entry else "The"
+    sides = f"printed side is {ball_words(line.printed)}, the derived side is {ball_words(line.derived)}"
+    return ended(f"{start} {sides}")
+
+
+def slip_words(record: Record) -> str:
+    """Whose slip it is, and the reason."""
+    place = {"paper": "A slip of the paper: ", "scan": "A slip of the scan, not of the authors: "}
+    return place.get(record["slip"] or "", "") + record["reason"] + "."
+
+
+def replay(record: Record) -> str:
+    """How the certificate can be checked."""
+    kind = record["certificate"].get("kind", "")
+    return (
+        f"A certificate of kind '{kind}' goes with this verdict. The report keeps it as a file; `navsym check` on that "
+        "file replays it with a program of its own that shares no code with the one that decided."
+    )

@@ -1,0 +1,1 @@
+"""Studies of many jobs on one machine or a cluster."""

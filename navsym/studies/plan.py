@@ -1,0 +1,240 @@
+"""Studies of many independent jobs: a configuration, a job by its index, a summary.
+
+Every job has a seed sequence of its own, spawned from (seed, index), so that its result does not depend
+on who computes it, in what order or beside how many others.
+
+* ``filter``: Monte Carlo of the Schuler bank; one job simulates ``runs`` series and scores one method;
+* ``terrain``: Monte Carlo of fixes over matplotlib's map; one job is one flight, matched by every algorithm;
+* ``guaranteed``: the guaranteed value of a last coefficient of ``degree`` over lengths T; one job is one T;
+* ``phases``: the guaranteed value of a constant beside cos(w t) and sin(w t), with the number of its
+  instants, over lengths T and frequencies w; one job is one pair;
+* ``two-stage``: position errors after the first fix over the decay rates of the two stages; one job is one pair.
+
+A study over two parameters has ``columns`` values of the second one for each value of the first.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import asdict, dataclass
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from navsym.core.errors import DomainError, NavsymError, NotFiniteError
+from navsym.core.store import key_of
+
+KINDS = ("filter", "terrain", "guaranteed", "phases", "two-stage")
+METHODS = ("pulsating", "imm", "polygaussian", "gpb2", "k-pulsating", "exact")
+
+
+@dataclass(frozen=True, slots=True)
+class Sweep:
+    """A study: kind, number of jobs, seed, and what the kind needs.
+
+    runs, steps, method : of ``filter``
+    degree              : of ``guaranteed``
+    start, end          : range of the first parameter, T or lambda_c; equally spaced values
+    columns             : number of values of the second parameter, w or lambda_h; it divides jobs
+    second_start, second_end : range of the second parameter
+    """
+
+    kind: str
+    jobs: int
+    seed: int = 0
+    runs: int = 16
+    steps: int = 20
+    method: str = "imm"
+    degree: int = 1
+    start: str = "1"
+    end: str = "2"
+    columns: int = 1
+    second_start: str = "1"
+    second_end: str = "2"
+
+    def __post_init__(self) -> None:
+        if self.kind not in KINDS:
+            raise DomainError(f"kind: expected one of {', '.join(KINDS)}; got {self.kind!r:.80}; correct it")
+        if self.method not in METHODS:
+            raise DomainError(f"method: expected one of {', '.join(METHODS)}; got {self.method!r:.80}; correct it")
+        limits = {"jobs": 10**6, "runs": 10**5, "steps": 10**5, "degree": 12, "columns": 10**6}
+        for name, limit in limits.items():
+            value = getattr(self, name)
+            if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= limit:
+                raise DomainError(f"{name}: expected an integer from 1 to {limit}; got {value!r:.80}; correct it")
+        if isinstance(self.seed, bool) or not isinstance(self.seed, int) or self.seed < 0:
+            raise DomainError(f"seed: expected a nonnegative integer; got {self.seed!r:.80}; correct it")
+        if self.jobs % self.columns:
+            raise DomainError(f"columns: expected a divisor of {self.jobs} jobs; got {self.columns}; correct it")
+        for low, high in ((self.start, self.end), (self.second_start, self.second_end)):
+            if not 0 < length(low) <= length(high):
+                raise DomainError(f"range: expected 0 < start <= end; got {low}, {high}; correct it")
+
+    def parameters(self, index: int) -> tuple[Fraction, Fraction]:
+        """The pair of parameters of a job."""
+        row, column = divmod(index, self.columns)
+        first = spaced(self.start, self.end, row, self.jobs // self.columns)
+        return first, spaced(self.second_start, self.second_end, column, self.columns)
+
+
+def spaced(start: str, end: str, place: int, count: int) -> Fraction:
+    """One of ``count`` equally spaced exact values."""
+    low, high = length(start), length(end)
+    return low + (high - low) * Fraction(place, max(1, count - 1))
+
+
+def length(text: Any) -> Fraction:
+    """An exact length from a text such as ``3/2``."""
+    try:
+        if not isinstance(text, str) or len(text) > 40 or "e" in text.lower():
+            raise ValueError("not a short text")
+        return Fraction(text)
+    except (ValueError, ZeroDivisionError):
+        raise DomainError(f'length: expected a number such as "3/2"; got {text!r:.80}; correct it') from None
+
+
+def sweep_from(document: Mapping[str, Any]) -> Sweep:
+    """The study that a configuration file describes; raises DomainError that names the key."""
+    if not isinstance(document, Mapping):
+        raise DomainError(f"expected one JSON object; got {type(document).__name__}; see the keys of a sweep")
+    unknown = set(document) - set(Sweep.__dataclass_fields__)
+    missing = {"kind", "jobs"} - set(document)
+    if unknown or missing:
+        raise DomainError(f"expected the keys of a sweep; got unknown {sorted(unknown)}, missing {sorted(missing)}")
+    return Sweep(**document)
+
+
+def fingerprint(sweep: Sweep) -> str:
+    """Digest of the configuration: shards of another study are never mixed in."""
+    return key_of("sweep", *(f"{name}={value}" for name, value in sorted(asdict(sweep).items())))
+
+
+def run_job(sweep: Sweep, index: int) -> dict[str, Any]:
+    """One job: a row of plain numbers that depends on the sweep and the index only.
+
+    Raises NavsymError that names the job, also where a number of the row is not finite.
+    """
+    try:
+        with np.errstate(all="ignore"):  # what overflows is seen in the row
+            row = JOBS[sweep.kind](sweep, index)
+    except NavsymError as error:
+        raise error.at(f"job {index}") from None
+    for name, value in row.items():
+        if isinstance(value, float) and not math.isfinite(value):
+            message = f"expected a finite {name}; got {value}; take another range of parameters"
+            raise NotFiniteError(message, where=f"job {index}")
+    return row
+
+
+def filter_job(sweep: Sweep, index: int) -> dict[str, Any]:
+    """Mean squared error of each state, ``mse0`` and on, over all runs and steps of the Schuler bank under one filter.
+
+    The signals are drawn with a seed of their own, from the sweep's seed and the index.
+    """
+    from navsym.multimodel.batch import run_batch
+    from navsym.multimodel.study import schuler_bank, simulate
+
+    state = np.random.SeedSequence(sweep.seed, spawn_key=(index,)).generate_state(1, np.uint64)[0]
+    bank = schuler_bank()
+    signals = simulate(bank, sweep.runs, sweep.steps, int(state))
+    errors = run_batch(bank, signals.measurements, sweep.method)[0] - signals.states
+    squares = [float(value) for value in (errors**2).mean(axis=(0, 1))]
+    return {"index": index, "runs": sweep.runs, **{f"mse{k}": value for k, value in enumerate(squares)}}
+
+
+def guaranteed_job(sweep: Sweep, index: int) -> dict[str, Any]:
+    """Guaranteed estimation of the highest coefficient of a polynomial on [0, T], noise bound one.
+
+    lower, upper : decimal strings that enclose the optimum, to 15 digits
+    """
+    import sympy as sp
+
+    from navsym.guaranteed.problem import from_regressors
+    from navsym.guaranteed.solver import solve
+
+    T, _ = sweep.parameters(index)
+    t = sp.Symbol("t", real=True)
+    end = sp.Rational(T.numerator, T.denominator)
+    target = [0] * sweep.degree + [1]
+    found = solve(from_regressors([[t**k for k in range(sweep.degree + 1)]], target, t, (0, end)), 15)
+    return {"index": index, "T": str(T), "lower": found.lower, "upper": found.upper}
+
+
+def phases_job(sweep: Sweep, index: int) -> dict[str, Any]:
+    """Guaranteed estimation of a constant beside a sine and a cosine of w t on [0, T], noise bound one.
+
+    lower, upper : decimal strings that enclose the optimum, to 15 digits ; instants : size of the support
+    """
+    import sympy as sp
+
+    from navsym.guaranteed.problem import from_regressors
+    from navsym.guaranteed.solver import solve
+
+    T, w = sweep.parameters(index)
+    t = sp.Symbol("t", real=True)
+    angle = sp.Rational(w.numerator, w.denominator) * t
+    problem = from_regressors(
+        [[sp.Integer(1), sp.cos(angle), sp.sin(angle)]], [1, 0, 0], t, (0, sp.Rational(T.numerator, T.denominator))
+    )
+    found = solve(problem, 15)
+    bounds = {"lower": found.lower, "upper": found.upper, "instants": len(found.support)}
+    return {"index": index, "T": str(T), "w": str(w), **bounds}
+
+
+def terrain_job(sweep: Sweep, index: int) -> dict[str, Any]:
+    """Errors of position and velocity of every search algorithm on one simulated flight over the sample terrain."""
+    from navsym.terrain.experiment import Setting, one_flight
+
+    terrain = matching_map()
+    flown = one_flight(terrain, terrain, Setting(), (sweep.kind, index, 0), sweep.seed)
+    errors = {f"{name} of {record.algorithm}": getattr(record, name) for record in flown for name in ERRORS}
+    return {"index": index, **errors}
+
+
+ERRORS = ("position", "velocity")
+
+
+@functools.cache
+def matching_map() -> Any:
+    """The sample terrain, read once in a process; raises MissingEngineError without matplotlib."""
+    from navsym.terrain.experiment import sample_terrain
+
+    return sample_terrain()
+
+
+def two_stage_job(sweep: Sweep, index: int) -> dict[str, Any]:
+    """Standard deviations of position in metres, 30 minutes after position is first measured, of every estimator.
+
+    The parameters are lambda_c and lambda_h, the flight a great circle of two hours.
+    """
+    from navsym.observability.two_stage.flight import great_circle
+    from navsym.observability.two_stage.ins import Errors, compare
+
+    first, second = sweep.parameters(index)
+    flight = great_circle(duration=7200.0, step=20.0)
+    found = compare(flight, Errors(), lambda_c=float(first), lambda_h=float(second))
+    last = {name: float(errors[-1]) for name, errors in found.rows.items()}
+    return {"index": index, "lambda_c": str(first), "lambda_h": str(second), **last}
+
+
+JOBS: dict[str, Callable[[Sweep, int], dict[str, Any]]] = {
+    "filter": filter_job,
+    "terrain": terrain_job,
+    "guaranteed": guaranteed_job,
+    "phases": phases_job,
+    "two-stage": two_stage_job,
+}
+
+
+def summary(sweep: Sweep, rows: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
+    """The document of ``navsym sweep``: rows in the order of their index, and means for ``filter``."""
+    ordered = sorted((dict(row) for row in rows), key=lambda row: row["index"])
+    document: dict[str, Any] = {**asdict(sweep), "fingerprint": fingerprint(sweep), "done": len(ordered)}
+    if sweep.kind == "filter" and ordered:
+        names = [name for name in ordered[0] if name.startswith("mse")]
+        document["rmse"] = [float(np.sqrt(np.mean([row[name] for row in ordered]))) for name in names]
+    document["rows"] = ordered
+    return document

@@ -1,0 +1,178 @@
+"""Running a study: in this process, in processes of this machine, or on a dask cluster.
+
+A task is one shard of consecutive jobs. Its rows depend on the configuration and the indices only, so that
+neither the number of workers nor the death of one changes a bit; what is kept is not computed again.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import tempfile
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from navsym.core.errors import DomainError, MissingEngineError, NavsymError
+from navsym.core.store import default_path, key_of
+from navsym.studies.cluster import PATIENCE, answers, cluster
+from navsym.studies.plan import Sweep, fingerprint, run_job, summary
+from navsym.verification.fingerprints import rooms_digest
+
+# Rows of a study in Parquet files, one for each shard of consecutive jobs, written whole or not at all.
+#
+# A shard that is missing, cannot be read, or holds rows of another study is computed again; what is there
+# is never computed twice. The folder belongs to one configuration and one version of the code. A shard carries a
+# seal, the digest of its study and of its rows: Parquet itself does not notice every changed byte.
+
+
+SHARDS = 256  # a study is cut into about so many, unless jobs are fewer,
+LONGEST = 100  # or so many that a shard would take long: what is not finished is lost with its process
+NAME = b"navsym"
+
+Rows = list[dict[str, Any]]
+
+
+def parquet() -> tuple[Any, Any]:
+    """pyarrow and its Parquet module, or an error that says how to get them."""
+    try:
+        import pyarrow
+        import pyarrow.parquet
+    except ModuleNotFoundError:
+        message = "expected the Python package pyarrow for shards of a sweep; got none; install navsym[cluster]"
+        raise MissingEngineError(message) from None
+    return pyarrow, pyarrow.parquet
+
+
+def default_folder(study: str) -> Path:
+    """A folder of the cache for a study, named by the digest of its configuration and of the code."""
+    return default_path().parent / "sweeps" / study[:32]
+
+
+def cut(jobs: int, size: int | None = None) -> list[range]:
+    """Consecutive indices of every shard."""
+    size = size or min(LONGEST, -(-jobs // SHARDS))
+    return [range(first, min(first + size, jobs)) for first in range(0, jobs, size)]
+
+
+@dataclass(frozen=True, slots=True)
+class Shards:
+    """The folder of a study.
+
+    study : digest of configuration and code; files of another one are not read
+    """
+
+    folder: Path
+    study: str
+
+    def path(self, shard: range) -> Path:
+        """File of a shard, named by its first index and the one after its last."""
+        return self.folder / f"jobs-{shard.start:07d}-{shard.stop:07d}.parquet"
+
+    def read(self, shard: range) -> Rows | None:
+        """The rows of a shard, or None when it is missing, damaged or of another study."""
+        _, pq = parquet()
+        if not self.path(shard).is_file():
+            return None
+        try:
+            table = pq.read_table(self.path(shard))
+            rows: Rows = table.to_pylist()
+            same = (table.schema.metadata or {}).get(NAME) == self.seal(rows)
+        except Exception:  # whatever Parquet says of a damaged file
+            return None
+        return rows if same and [row.get("index") for row in rows] == list(shard) else None
+
+    def seal(self, rows: Sequence[dict[str, Any]]) -> bytes:
+        """Digest of the study and of the rows, kept in the metadata of the file."""
+        return key_of(self.study, *(json.dumps(row, sort_keys=True) for row in rows)).encode()
+
+    def write(self, shard: range, rows: Sequence[dict[str, Any]]) -> None:
+        """Keep a shard: a temporary file beside it, synced, renamed. Raises OSError."""
+        pa, pq = parquet()
+        table = pa.Table.from_pylist(list(rows)).replace_schema_metadata({NAME: self.seal(rows)})
+        self.folder.mkdir(parents=True, exist_ok=True)
+        handle, name = tempfile.mkstemp(prefix=".shard-", dir=self.folder)
+        try:
+            with os.fdopen(handle, "wb") as file:
+                pq.write_table(table, file)
+                file.flush()
+                os.fsync(file.fileno())
+            os.replace(name, self.path(shard))
+        except BaseException:
+            Path(name).unlink(missing_ok=True)
+            raise
+
+
+def run_sweep(
+    sweep: Sweep,
+    *,
+    workers: int = 0,
+    scheduler: str | None = None,
+    folder: Path | None = None,
+    size: int | None = None,
+    fresh: bool = False,
+    patience: float = PATIENCE,
+    progress: Callable[[int, int], None] = lambda done, of: None,
+) -> dict[str, Any]:
+    """Compute the shards that are not kept, keep each as it comes, and sum up.
+
+    workers   : processes of this machine; 0 computes in this one
+    scheduler : ``tcp://host:port`` of a running dask scheduler, instead of processes of this machine
+    folder    : where the shards are; by default in the cache
+    size      : jobs in a shard
+    patience  : seconds without any worker until a scheduler is given up
+
+    The document of ``navsym sweep``: that of :func:`summary` with ``resumed`` (jobs that were kept),
+    ``folder`` and ``unsaved`` (shards that could not be kept). Raises MissingEngineError without dask,
+    pyarrow, an answer of the scheduler, or workers.
+    """
+    if not patience > 0:
+        raise DomainError(f"patience: expected seconds above 0; got {patience}; correct it")
+    study = key_of("sweep", fingerprint(sweep), rooms_digest())
+    shards = Shards(folder or default_folder(study), study)
+    parts = cut(sweep.jobs, size)
+    known = {} if fresh else {part: rows for part in parts if (rows := shards.read(part)) is not None}
+    found, unsaved = dict(known), []
+    done = sum(len(part) for part in known)
+    missing = [part for part in parts if part not in known]
+    progress(done, sweep.jobs)
+    with computed(sweep, missing, workers, scheduler, patience) as results:
+        for part, rows in results:
+            found[part] = rows
+            try:
+                shards.write(part, rows)
+            except OSError as error:
+                unsaved.append(f"{shards.path(part).name}: {error.strerror or error}")
+            done += len(part)
+            progress(done, sweep.jobs)
+    rows = [row for part in parts for row in found.get(part, [])]
+    resumed = sum(len(part) for part in known)
+    return {**summary(sweep, rows), "resumed": resumed, "folder": str(shards.folder), "unsaved": unsaved}
+
+
+def run_shard(sweep: Sweep, part: range) -> tuple[range, str, Rows]:
+    """The rows of a shard, with the digest of the code that made them."""
+    return part, rooms_digest(), [run_job(sweep, index) for index in part]
+
+
+@contextlib.contextmanager
+def computed(
+    sweep: Sweep, parts: Sequence[range], workers: int, scheduler: str | None, patience: float = PATIENCE
+) -> Iterator[Iterator[tuple[range, Rows]]]:
+    """Shards as they are ready."""
+    if not parts or (workers == 0 and scheduler is None):
+        yield ((part, run_shard(sweep, part)[2]) for part in parts)
+        return
+    with cluster(workers, scheduler) as client:
+        yield map(checked, answers(client, run_shard, [(sweep, part) for part in parts], patience))
+
+
+def checked(result: tuple[range, str, Rows]) -> tuple[range, Rows]:
+    """A worker's rows, when it has computed them with the code of this process."""
+    part, rooms, rows = result
+    if rooms != rooms_digest():
+        message = "expected workers with the code of this process; got another version; install the same one"
+        raise NavsymError(message, where="sweep")
+    return part, rows

@@ -1,0 +1,1 @@
+"""Position and velocity from a measured profile over a height map."""

@@ -1,0 +1,575 @@
+"""Height maps and tracks in files: npz without pickles, SRTM tiles, GeoTIFF, CSV.
+
+Nothing is allocated before the size that a header announces has been multiplied out and compared
+with a limit, and nothing in a file is executed.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+import os
+import re
+import struct
+import warnings
+import zipfile
+import zlib
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navsym.core.errors import (
+    DomainError,
+    DuplicateError,
+    EmptyError,
+    ExpressionSyntaxError,
+    MissingEngineError,
+    NavsymError,
+    NotFiniteError,
+    ShapeError,
+    TooLargeError,
+)
+from navsym.language.files import called, read_bytes, read_text
+
+# Plain GeoTIFF files without a library: one band of numbers in strips or tiles, uncompressed or deflated. The rest of
+# the format is left to rasterio: :func:`read_plain` returns None. Every offset and size is checked against the file and
+# the size of the raster against a limit, before anything is allocated. TIFF 6.0; OGC 19-008, GeoTIFF 1.1.
+
+#: Tags that are read, and whether a plain file may hold several values.
+WIDTH, HEIGHT, BITS, COMPRESSION, OFFSETS, SAMPLES, ROWS, COUNTS = 256, 257, 258, 259, 273, 277, 278, 279
+PLANES, PREDICTOR, TILE_WIDTH, TILE_HEIGHT, TILE_OFFSETS, TILE_COUNTS, FORMAT = 284, 317, 322, 323, 324, 325, 339
+SCALE, TIEPOINT, MATRIX, KEYS, NODATA = 33550, 33922, 34264, 34735, 42113
+#: Field types: number -> (bytes, letter of struct).
+FIELDS = {
+    1: (1, "B"),
+    2: (1, "c"),
+    3: (2, "H"),
+    4: (4, "I"),
+    5: (8, "Q"),
+    6: (1, "b"),
+    8: (2, "h"),
+    9: (4, "i"),
+    11: (4, "f"),
+    12: (8, "d"),
+}
+#: SampleFormat -> kind of a numpy type.
+KINDS = {1: "u", 2: "i", 3: "f"}
+RAW, DEFLATE, OLD_DEFLATE = 1, 8, 32946
+#: Entries of a directory, and values of one tag, that a sensible file may have.
+MOST_TAGS, MOST_VALUES = 200, 2_000_000
+#: GeoKeys: model type (2 = geographic), raster type (2 = heights stand at points, not in areas).
+MODEL_TYPE, RASTER_TYPE = 1024, 1025
+#: Units of angles, lengths and heights, and the system of coordinates; codes of the metre, the degree, Web Mercator.
+ANGLES, SYSTEM, LENGTHS, HEIGHTS = 2054, 3072, 3076, 4099
+METRE, DEGREE, WEB_MERCATOR = 9001, 9102, (3857, 3785)
+#: A grid without a word about its coordinates and with a spacing below this is one in degrees, not in metres.
+LEAST_SPACING = 0.05
+
+
+@dataclass(frozen=True, slots=True)
+class Transform:
+    """x = a column + c, y = e row + f of the corner of a pixel, north up; the names of the usual six numbers."""
+
+    a: float
+    c: float
+    e: float
+    f: float
+    b: float = 0.0
+    d: float = 0.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Plain:
+    """One band: heights (rows from the north), transform, value for none, whether in degrees, what is foreign to us."""
+
+    heights: NDArray[Any]
+    transform: Transform
+    nodata: float | None
+    geographic: bool
+    foreign: str | None = None
+
+
+class Damaged(ValueError):
+    """The file contradicts itself or ends too early."""
+
+
+def read_plain(data: bytes, most: int) -> Plain | None:
+    """The band of a plain file; None when the file is not plain.
+
+    most : largest number of heights ; raises Damaged, and OverflowError above ``most``
+    """
+    tags, order = directory(data)
+    dtype = sample_type(tags, order)
+    if dtype is None or MATRIX in tags or SCALE not in tags or TIEPOINT not in tags:
+        return None
+    shape = (whole(tags, HEIGHT), whole(tags, WIDTH))
+    if min(shape) < 1 or math.prod(shape) > most:
+        raise OverflowError(f"shape {shape}")
+    heights = assembled(data, tags, shape, dtype)
+    keys = geo_keys(tags)
+    transform = placed(tags, keys.get(RASTER_TYPE) == 2)
+    return Plain(heights, transform, void(tags), keys.get(MODEL_TYPE) == 2, foreign(keys, transform.a))
+
+
+def directory(data: bytes) -> tuple[dict[int, tuple[Any, ...]], str]:
+    """Values of all known tags of the first directory, and the byte order."""
+    order = {b"II": "<", b"MM": ">"}.get(data[:2])
+    if order is None or len(data) < 8:
+        raise Damaged("no TIFF header")
+    version, start = struct.unpack(order + "HI", data[2:8])
+    if version != 42:
+        return {}, order
+    (entries,) = struct.unpack(order + "H", part(data, start, 2))
+    if not 0 < entries <= MOST_TAGS:
+        raise Damaged(f"{entries} entries in the directory")
+    table = part(data, start + 2, 12 * entries)
+    return {tag: values for tag, values in fields(data, table, order)}, order
+
+
+def fields(data: bytes, table: bytes, order: str) -> Iterator[tuple[int, tuple[Any, ...]]]:
+    """(tag, values) of every entry of a known type."""
+    for k in range(0, len(table), 12):
+        tag, kind, count = struct.unpack(order + "HHI", table[k : k + 8])
+        if kind not in FIELDS:
+            continue
+        size, letter = FIELDS[kind]
+        if count > MOST_VALUES:
+            raise Damaged(f"{count} values of tag {tag}")
+        at = table[k + 8 : k + 12]
+        raw = at[: size * count] if size * count <= 4 else part(data, struct.unpack(order + "I", at)[0], size * count)
+        yield tag, struct.unpack(f"{order}{count}{letter}", raw)
+
+
+def part(data: bytes, start: int, size: int) -> bytes:
+    """Bytes of the file; Damaged when it ends before."""
+    if start + size > len(data):
+        raise Damaged(f"{size} bytes at {start} of {len(data)}")
+    return data[start : start + size]
+
+
+def whole(tags: dict[int, tuple[Any, ...]], tag: int, default: int | None = None) -> int:
+    """One whole number."""
+    values = tags.get(tag, () if default is None else (default,))
+    if len(values) < 1 or not isinstance(values[0], int):
+        raise Damaged(f"tag {tag} missing")
+    return values[0]
+
+
+def sample_type(tags: dict[int, tuple[Any, ...]], order: str) -> np.dtype[Any] | None:
+    """Type of one sample, or None when the file is not plain."""
+    if not tags or whole(tags, SAMPLES, 1) != 1 or whole(tags, PLANES, 1) != 1 or whole(tags, PREDICTOR, 1) != 1:
+        return None
+    bits, kind = whole(tags, BITS, 1), KINDS.get(whole(tags, FORMAT, 1), "")
+    known = (kind == "f" and bits in (32, 64)) or (kind in ("u", "i") and bits in (8, 16, 32))
+    if not known or whole(tags, COMPRESSION, 1) not in (RAW, DEFLATE, OLD_DEFLATE):
+        return None
+    return np.dtype(f"{order}{kind}{bits // 8}")
+
+
+def assembled(data: bytes, tags: dict[int, tuple[Any, ...]], shape: tuple[int, int], dtype: np.dtype[Any]) -> Any:
+    """Strips or tiles put together; what tiles have beyond the edge is cut off."""
+    ny, nx = shape
+    if TILE_OFFSETS in tags:
+        high, wide = whole(tags, TILE_HEIGHT), whole(tags, TILE_WIDTH)
+        offsets, counts = tags[TILE_OFFSETS], tags.get(TILE_COUNTS, ())
+    else:
+        high, wide = min(whole(tags, ROWS, ny), ny), nx
+        offsets, counts = tags.get(OFFSETS, ()), tags.get(COUNTS, ())
+    if high < 1 or wide < 1 or high * wide > 4 * ny * nx + 65536:
+        raise Damaged(f"blocks of {high} by {wide}")
+    across, down = -(-nx // wide), -(-ny // high)
+    if not len(offsets) == len(counts) == across * down:
+        raise Damaged(f"{len(offsets)} blocks instead of {across * down}")
+    out = np.empty(shape, dtype=dtype.newbyteorder("="))
+    for number, (start, count) in enumerate(zip(offsets, counts, strict=True)):
+        top, left = number // across * high, number % across * wide
+        rows = high if TILE_OFFSETS in tags else min(high, ny - top)
+        block = block_of(part(data, start, count), whole(tags, COMPRESSION, 1), rows * wide, dtype)
+        block = block.reshape(rows, wide)[: ny - top, : nx - left]
+        out[top : top + block.shape[0], left : left + block.shape[1]] = block
+    return out
+
+
+def block_of(raw: bytes, compression: int, samples: int, dtype: np.dtype[Any]) -> NDArray[Any]:
+    """Samples of one block; a deflated one is never inflated beyond its announced size."""
+    size = samples * dtype.itemsize
+    if compression != RAW:
+        try:
+            raw = zlib.decompressobj().decompress(raw, size)
+        except zlib.error as reason:
+            raise Damaged(str(reason)) from None
+    if len(raw) < size:
+        raise Damaged(f"a block of {len(raw)} bytes instead of {size}")
+    return np.frombuffer(raw, dtype=dtype, count=samples)
+
+
+def placed(tags: dict[int, tuple[Any, ...]], points: bool) -> Transform:
+    """Place of the pixels' corners from one tie point and the scale.
+
+    points : the tie point is where a height stands, not the corner of its pixel
+    """
+    scale, tie = tags[SCALE], tags[TIEPOINT]
+    if len(scale) < 2 or len(tie) < 6 or not all(isinstance(v, float) for v in (*scale[:2], *tie[:6])):
+        raise Damaged("scale or tie point")
+    if not all(math.isfinite(v) for v in (*scale[:2], *tie[:6])):
+        raise Damaged("scale or tie point not finite")
+    half = 0.5 if points else 0.0
+    a, e = scale[0], -scale[1]
+    return Transform(a, tie[3] - (tie[0] + half) * a, e, tie[4] - (tie[1] + half) * e)
+
+
+def geo_keys(tags: dict[int, tuple[Any, ...]]) -> dict[int, int]:
+    """Keys whose value stands in the directory of keys itself."""
+    values = tags.get(KEYS, ())
+    rows = [values[k : k + 4] for k in range(4, len(values) - 3, 4)]
+    return {row[0]: row[3] for row in rows if row[1] == 0}
+
+
+def foreign(keys: dict[int, int], spacing: float) -> str | None:
+    """What the keys say that is neither degrees nor true metres; None when all is well."""
+    if keys.get(SYSTEM) in WEB_MERCATOR:
+        return "Web Mercator, whose metres are too long away from the equator"
+    for key, known, what in ((ANGLES, DEGREE, "angles"), (LENGTHS, METRE, "lengths"), (HEIGHTS, METRE, "heights")):
+        if keys.get(key, known) != known:
+            return f"{what} in the unit of EPSG code {keys[key]}"
+    if MODEL_TYPE not in keys and spacing < LEAST_SPACING:
+        return f"no system of coordinates and a spacing of {spacing:g}"
+    return None
+
+
+def void(tags: dict[int, tuple[Any, ...]]) -> float | None:
+    """The value that means no height, written as text."""
+    text = b"".join(tags.get(NODATA, ())) if all(isinstance(c, bytes) for c in tags.get(NODATA, ())) else b""
+    text = text.strip(b"\0 ")
+    if not text:
+        return None
+    try:
+        return float(text.decode("ascii"))
+    except ValueError:
+        raise Damaged("the value for no data") from None
+
+
+#: Largest number of heights in a map file, and of bytes in a track file.
+MOST_HEIGHTS, MOST_BYTES = 200_000_000, 64_000_000
+#: Largest GeoTIFF, bytes.
+MOST_TIFF_BYTES = 8 * MOST_HEIGHTS
+#: Mean radius of the Earth, metres, for the local frame of a tile.
+EARTH = 6_371_008.8
+SRTM_VOID = -32768
+
+#: A header's announcement: shape, type.
+Header = tuple[tuple[int, ...], np.dtype[Any]]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Raster:
+    """What a map file holds: heights with row = y ascending, and where they lie.
+
+    geographic : True when x0, y0, dx, dy are degrees of longitude and latitude
+    """
+
+    heights: NDArray[Any]
+    x0: float
+    y0: float
+    dx: float
+    dy: float
+    nodata: float | None = None
+    geographic: bool = False
+
+
+def read_map(path: str | os.PathLike[str]) -> Raster:
+    """A map from ``.npz``, ``.hgt`` or ``.tif``/``.tiff``, told apart by the end of the name.
+
+    Raises NavsymError: ``missing-file``, ``syntax``, ``shape``, ``too-large``, ``domain``, ``missing``.
+    """
+    readers: dict[str, Callable[[Path], Raster]] = {
+        ".npz": read_npz,
+        ".hgt": read_hgt,
+        ".tif": read_geotiff,
+        ".tiff": read_geotiff,
+    }
+    reader = readers.get(Path(path).suffix.lower())
+    if reader is None:
+        raise DomainError(
+            f"expected {', '.join(readers)} at the end; got {called(Path(path).name)[-40:]}; convert it",
+            where=called(path),
+        )
+    return reader(Path(path))
+
+
+def local_frame(raster: Raster) -> Raster:
+    """A geographic tile in metres east and north of its south-west node, scaled at its middle latitude."""
+    if not raster.geographic:
+        return raster
+    middle = raster.y0 + 0.5 * raster.dy * (raster.heights.shape[0] - 1)
+    dx = EARTH * math.radians(raster.dx) * math.cos(math.radians(middle))
+    return Raster(raster.heights, 0.0, 0.0, dx, EARTH * math.radians(raster.dy), raster.nodata)
+
+
+# npz
+
+
+def read_npz(path: Path) -> Raster:
+    """``heights`` (row = y), ``x0, y0, dx, dy`` and perhaps ``nodata``; or the names of matplotlib's sample.
+
+    The sample has ``elevation``, ``xmin``, ``xmax``, ``ymin``, ``ymax``, ``dx``, ``dy`` in degrees and its
+    first row in the north.
+    """
+    with opened_zip(path) as archive:
+        names = member_names(archive, path)
+        get = lambda name: read_member(archive, names, name, path)  # noqa: E731
+        if "elevation" in names and "heights" not in names:
+            top, bottom = sorted((scalar(get, "ymin", path), scalar(get, "ymax", path)))[::-1]
+            heights, dy = get("elevation")[::-1], scalar(get, "dy", path)
+            # ymin and ymax are the outer edges of cells; the lowest row lies half a cell inside.
+            dx = scalar(get, "dx", path)
+            x0, y0 = scalar(get, "xmin", path) + 0.5 * dx, min(top, bottom) + 0.5 * dy
+            return Raster(heights, x0, y0, dx, dy, None, True)
+        x0, y0, dx, dy = (scalar(get, name, path) for name in ("x0", "y0", "dx", "dy"))
+        nodata = scalar(get, "nodata", path, finite=False) if "nodata" in names else None
+        return Raster(get("heights"), x0, y0, dx, dy, nodata)
+
+
+def opened_zip(path: Path) -> zipfile.ZipFile:
+    """An npz archive; raises NavsymError for a missing file, ExpressionSyntaxError for a damaged one."""
+    try:
+        if not path.is_file():
+            raise FileNotFoundError
+        return zipfile.ZipFile(path)
+    except FileNotFoundError:
+        message = "expected a readable map file; got nothing there; check the path"
+        raise NavsymError(message, where=called(path), kind="missing-file") from None
+    except Exception as reason:  # zipfile has many: BadZipFile, NotImplementedError, struct errors
+        raise damaged(path, "an npz archive", reason) from None
+
+
+def damaged(path: Path, what: str, reason: object) -> ExpressionSyntaxError:
+    """The error of a damaged file; what says what was expected in it, reason what came."""
+    message = f"expected {what}; got a damaged file ({reason!s:.80}); fetch or write it again"
+    return ExpressionSyntaxError(message, where=called(path))
+
+
+def member_names(archive: zipfile.ZipFile, path: Path) -> frozenset[str]:
+    """Names of the arrays in an archive; raises DuplicateError when one comes twice."""
+    names = [name.removesuffix(".npy") for name in archive.namelist()]
+    if len(set(names)) < len(names):
+        message = "expected every array once; got one name twice; write it again"
+        raise DuplicateError(message, where=called(path))
+    return frozenset(names)
+
+
+def read_member(archive: zipfile.ZipFile, names: frozenset[str], name: str, path: Path) -> NDArray[Any]:
+    """One array of an npz archive, its header checked before anything is allocated."""
+    where = f"{called(path)}: {name}"
+    if name not in names:
+        message = f"expected an array '{name}'; got {', '.join(sorted(names))[:120]}; add it"
+        raise EmptyError(message, where=where)
+    try:
+        with archive.open(f"{name}.npy") as file:
+            shape, fortran, dtype = npy_header(file)
+            size = checked_size((shape, dtype), where)
+            data = file.read(size + 1)
+    except NavsymError:
+        raise
+    except Exception as reason:  # zlib, zipfile and struct errors of a damaged member
+        raise damaged(path, f"the array '{name}'", reason) from None
+    if len(data) != size:
+        raise damaged(path, f"{size} bytes of '{name}'", f"{len(data)} bytes")
+    array = np.frombuffer(data, dtype=dtype).reshape(shape, order="F" if fortran else "C")
+    return np.array(array)
+
+
+def npy_header(file: Any) -> tuple[tuple[int, ...], bool, np.dtype[Any]]:
+    """Shape, whether the order is Fortran's, and type of an npy member; the file then stands at its data.
+
+    Raises ValueError for another version of the format, and numpy's errors for a header that cannot be read.
+    """
+    version = np.lib.format.read_magic(file)
+    readers = {(1, 0): np.lib.format.read_array_header_1_0, (2, 0): np.lib.format.read_array_header_2_0}
+    if version not in readers:
+        raise ValueError(f"version {version} of the npy format")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")  # numpy warns of headers that only Python 2 wrote
+        shape, fortran, dtype = readers[version](file, max_header_size=4096)
+    return shape, bool(fortran), dtype
+
+
+def checked_size(header: Header, where: str) -> int:
+    """Bytes that a header announces; refuses objects (pickles), other types and large arrays."""
+    shape, dtype = header
+    if dtype.kind not in "iuf" or dtype.hasobject:
+        raise DomainError(f"expected real numbers; got type {dtype!s:.40}; save plain numbers", where=where)
+    if any(n < 0 for n in shape) or math.prod(shape) > MOST_HEIGHTS:
+        raise TooLargeError(
+            f"expected at most {MOST_HEIGHTS} numbers; got shape {shape!s:.60}; cut the map", where=where
+        )
+    return math.prod(shape) * dtype.itemsize
+
+
+def scalar(get: Callable[[str], NDArray[Any]], name: str, path: Path, *, finite: bool = True) -> float:
+    """A single number of the archive as a float; get reads an array by name.
+
+    Raises ShapeError for more or fewer numbers, NotFiniteError for nan and infinity unless finite is False.
+    """
+    array, where = get(name), f"{called(path)}: {name}"
+    if array.size != 1:
+        raise ShapeError(f"expected one number; got shape {array.shape}; give one", where=where)
+    value = float(array.reshape(-1)[0])
+    if finite and not math.isfinite(value):
+        raise NotFiniteError(f"expected a finite number; got {value}; mend it", where=where)
+    return value
+
+
+# SRTM tiles
+
+
+def read_hgt(path: Path) -> Raster:
+    """A one-degree SRTM tile: big-endian int16, first row in the north, -32768 where there is no height.
+
+    The corner is read from the name (``N44W072…``), the number of samples (1201 or 3601) from the size.
+    """
+    name = re.match(r"([NS])(\d{2})([EW])(\d{3})", path.name.upper())
+    if name is None:
+        raise DomainError(
+            f"expected a name such as N44W072.hgt, which gives the corner; got {called(path.name)[-40:]}; rename it",
+            where=called(path),
+        )
+    data = read_bytes(path, 2 * 3601 * 3601)
+    side = {2 * n * n: n for n in (1201, 3601)}.get(len(data))
+    if side is None:
+        raise ShapeError(
+            f"expected {2 * 1201**2} or {2 * 3601**2} bytes (1201 or 3601 samples squared); got {len(data)}; "
+            "fetch it again",
+            where=called(path),
+        )
+    latitude = int(name[2]) * (1 if name[1] == "N" else -1)
+    longitude = int(name[4]) * (1 if name[3] == "E" else -1)
+    heights = np.frombuffer(data, dtype=">i2").reshape(side, side)[::-1].astype(np.int16)
+    step = 1.0 / (side - 1)
+    return Raster(heights, float(longitude), float(latitude), step, step, float(SRTM_VOID), True)
+
+
+# GeoTIFF
+
+
+def read_geotiff(path: Path) -> Raster:
+    """First band of an upright GeoTIFF: plain files by :mod:`navsym.terrain.maps`, others by rasterio if it is there.
+
+    Raises MissingEngineError for a file that needs the extra ``maps``.
+    """
+    data = read_bytes(path, MOST_TIFF_BYTES)
+    try:
+        plain = read_plain(data, MOST_HEIGHTS)
+    except OverflowError as reason:
+        raise TooLargeError(
+            f"expected at most {MOST_HEIGHTS} numbers; got {reason!s:.60}; cut the map", where=called(path)
+        ) from None
+    except (Damaged, struct.error, UnicodeDecodeError) as reason:
+        raise damaged(path, "a GeoTIFF", reason) from None
+    if plain is not None:
+        ours(plain.foreign, path)
+        return upright(plain.heights, plain.transform, plain.nodata, plain.geographic, path)
+    return by_rasterio(path)
+
+
+def by_rasterio(path: Path) -> Raster:
+    """Files that are not plain: compressed in other ways, tiled by planes, placed by a matrix."""
+    try:
+        import rasterio
+    except ModuleNotFoundError:
+        raise MissingEngineError(
+            "expected one band of numbers, uncompressed or deflated, placed by a tie point and a scale, or the Python "
+            "package rasterio; got another GeoTIFF and no rasterio; install the extra navsym[maps]",
+            where=called(path),
+        ) from None
+    try:
+        with rasterio.open(path) as source:
+            shape, transform = (source.height, source.width), source.transform
+            checked_size((shape, np.dtype(source.dtypes[0])), called(path))
+            geographic = bool(source.crs is not None and source.crs.is_geographic)
+            ours(foreign_to_us(source.crs), path)
+            return upright(source.read(1), transform, source.nodata, geographic, path)
+    except NavsymError:
+        raise
+    except Exception as reason:  # whatever GDAL says about a damaged file
+        raise damaged(path, "a GeoTIFF", reason) from None
+
+
+def ours(foreign: str | None, path: Path) -> None:
+    """Refuse coordinates that would be taken for metres, or for degrees, without being that."""
+    if foreign is not None:
+        raise DomainError(
+            f"expected places in degrees or true metres, and heights in metres; got {foreign}; warp it first",
+            where=called(path),
+        )
+
+
+def foreign_to_us(crs: Any) -> str | None:
+    """The same question to rasterio's system of coordinates."""
+    if crs is None or crs.is_geographic:
+        return None
+    if crs.to_epsg() in WEB_MERCATOR:
+        return "Web Mercator, whose metres are too long away from the equator"
+    name, metres = crs.linear_units_factor
+    return None if math.isclose(metres, 1.0, rel_tol=1e-9) else f"lengths in {name}"
+
+
+def upright(heights: NDArray[Any], transform: Any, nodata: Any, geographic: bool, path: Path) -> Raster:
+    """A north-up raster with its rows turned round; heights stand at the middle of the pixels."""
+    if transform.b or transform.d or transform.a <= 0 or transform.e >= 0:
+        raise DomainError(
+            "expected a raster with north up and no rotation; got another one; warp it first", where=called(path)
+        )
+    x0 = transform.c + 0.5 * transform.a
+    y0 = transform.f + transform.e * (heights.shape[0] - 0.5)
+    void = None if nodata is None else float(nodata)
+    return Raster(heights[::-1], x0, y0, transform.a, -transform.e, void, geographic)
+
+
+# Tracks
+
+
+def read_track(path: str | os.PathLike[str]) -> dict[str, list[float]]:
+    """Columns t, x, y, h of a CSV file with a header line; other columns are ignored.
+
+    Lines that start with # and empty lines are skipped. Raises NavsymError with the line.
+    """
+    rows = csv.reader(io.StringIO(read_text(path, MOST_BYTES)))
+    where = called(path)
+    try:
+        lines = [(rows.line_num, row) for row in rows if row and not row[0].lstrip().startswith("#")]
+    except csv.Error as reason:
+        raise damaged(Path(path), "a CSV table", reason) from None
+    if not lines:
+        raise EmptyError("expected a header line t,x,y,h; got nothing; write one", where=where)
+    header = [name.strip().lower() for name in lines[0][1]]
+    missing = [name for name in ("t", "x", "y", "h") if header.count(name) != 1]
+    if missing:
+        raise ExpressionSyntaxError(
+            f"expected the columns t, x, y, h once each; got {','.join(header)[:120]!r}; name them",
+            where=f"{where}: line {lines[0][0]}",
+        )
+    place = {name: header.index(name) for name in ("t", "x", "y", "h")}
+    table = [{name: cell(row, k, f"{where}: line {line}") for name, k in place.items()} for line, row in lines[1:]]
+    if not table:
+        raise EmptyError("expected at least one row below the header; got none; add the track", where=where)
+    return {name: [row[name] for row in table] for name in place}
+
+
+def cell(row: list[str], k: int, where: str) -> float:
+    """One number of a row."""
+    text = row[k].strip() if k < len(row) else ""
+    try:
+        if "_" in text:
+            raise ValueError
+        value = float(text)
+    except ValueError:
+        raise ExpressionSyntaxError(f"expected a number; got {text[:40]!r}; mend it", where=where) from None
+    if not math.isfinite(value):
+        raise NotFiniteError(f"expected a finite number; got {text[:40]!r}; drop the row", where=where)
+    return value

@@ -1,0 +1,108 @@
+"""The sequential search of the paper, and the form of it that loses nothing.
+
+Both first search the position alone and then the velocity, turning the track about the point that
+the first stage has found. The paper turns it about one instant t_G (terrain_search:6…14). But a
+velocity error v displaces the first fix by ``C v`` with the matrix C = G^-1 M1, not by ``t_G v``; with
+t_G the velocity comes out as ``(S + R)^-1 S v``, too small unless v is an eigenvector of C
+(terrain_search:sequential.shrinks). With C in the place of t_G the two stages together are the
+joint least-squares solution (terrain_search:sequential.exact) at the cost of six sums.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navsym.terrain.centre import Information, demand_estimable, information, slopes
+from navsym.terrain.heights import TerrainMap
+from navsym.terrain.kernels.criteria import velocity_criteria
+from navsym.terrain.search import Search, criteria, lowest, need, prepare
+from navsym.terrain.track import Hypotheses, Track
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Sequential:
+    """Result of the sequential search.
+
+    coarse      : result of the position stage
+    index       : (i, j, Vi, Vj)
+    criterion   : Q_V at the chosen velocity (terrain_search:6); second_best, unique: among velocities
+    t_G         : (min, max, mid), counted in measurements from 0 as in the paper
+    quadratic   : (A2, A1, A0) with the measurement number as time
+    shift       : (2,) correction of the position at the last time, in map units
+    velocity    : (2,) correction of the velocity
+    information : sums of the slopes over time in seconds since the first measurement
+    """
+
+    coarse: Search
+    index: tuple[int, int, int, int]
+    criterion: float
+    second_best: float
+    unique: bool | None
+    t_G: tuple[float, float, float]
+    quadratic: tuple[float, float, float]
+    shift: Array
+    velocity: Array
+    information: Information
+    evaluated: int
+
+
+def search_sequential(
+    terrain: TerrainMap, track: Track, grid: Hypotheses, *, improved: bool = False, offset_free: bool = False
+) -> Sequential:
+    """Position first, then velocity.
+
+    improved    : turn about the matrix centre C instead of the middle of [t_min, t_max]
+    offset_free : both stages and t_G without the means that a constant height error takes away
+    Raises OutsideMapError, NoDataError, NotEstimableError (fewer than four measurements, or flat).
+    """
+    need(track, 5 if offset_free else 4, "two coordinates, two velocities and the height offset if it is unknown")
+    position = prepare(terrain, track, grid.position_only)
+    coarse = lowest(position, criteria(position, centred=offset_free), centred=offset_free)
+    i, j = coarse.index[:2]
+    start = np.array([i * grid.step[0], j * grid.step[1]])
+    gx, gy = slopes(terrain, track.x + start[0], track.y + start[1])
+    numbered = information(gx, gy, np.arange(track.t.size, dtype=np.float64), centred=offset_free)
+    demand_estimable(numbered)
+    low, high = numbered.interval
+    middle = 0.5 * (low + high)
+    timed = information(gx, gy, track.elapsed, centred=offset_free)
+    instant = float(np.interp(middle, np.arange(track.t.size), track.elapsed))
+    centre = timed.centre if improved else instant * np.eye(2)
+    values = velocity_stage(terrain, track, grid, start, centre, offset_free)
+    Vi, Vj, criterion, second = two_lowest(values)
+    velocity = np.array([Vi * grid.velocity_step[0], Vj * grid.velocity_step[1]])
+    shift = start + (track.elapsed[-1] * np.eye(2) - centre) @ velocity  # terrain_search:14
+    unique = True if second > criterion * (1.0 + 1e-9) else (None if second > criterion else False)
+    evaluated = coarse.evaluated + values.size
+    index, t_G = (i, j, Vi, Vj), (low, high, middle)
+    return Sequential(
+        coarse, index, criterion, second, unique, t_G, numbered.quadratic, shift, velocity, timed, evaluated
+    )
+
+
+def velocity_stage(
+    terrain: TerrainMap, track: Track, grid: Hypotheses, start: Array, centre: Array, centred: bool
+) -> Array:
+    """Criteria (Mvx, Mvy) of the velocities, the track turning about ``centre`` (terrain_search:6)."""
+    bx, by = terrain.cells(track.x + start[0], track.y + start[1])
+    spacing = np.array([terrain.dx, terrain.dy])
+    cells = centre * spacing[None, :] / spacing[:, None]  # from map units to cells, row by row
+    steps = (grid.velocity_step[0] / terrain.dx, grid.velocity_step[1] / terrain.dy)
+    out = np.empty(grid.counts[2:])
+    case = (terrain.heights, bx, by, np.array(track.h), track.elapsed, track.elapsed)
+    velocity_criteria(case, cells, steps, grid.counts[2:], centred, out)
+    return out
+
+
+def two_lowest(values: Array) -> tuple[int, int, float, float]:
+    """(Vi, Vj) of the smallest criterion, its value, and the second smallest value."""
+    best = int(values.argmin())
+    others = np.delete(np.ravel(values), best)
+    Vi, Vj = divmod(best, values.shape[1])
+    criterion, second = float(values.flat[best]), float(others.min(initial=np.inf))
+    return Vi - values.shape[0] // 2, Vj - values.shape[1] // 2, criterion, second

@@ -1,1 +1,0 @@
-"""Text from outside: expressions, models, claims and data files, read without running anything."""

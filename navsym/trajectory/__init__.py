@@ -1,0 +1,1 @@
+"""Velocity and acceleration from measured positions, and how well posed that is."""

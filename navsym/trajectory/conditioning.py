@@ -1,0 +1,464 @@
+"""Condition numbers known with certainty, and what double precision makes of them.
+
+Two independent routes give the same enclosure: the exact characteristic polynomial with proved extreme
+roots (any rational matrix) and Perron bounds for chessboard signs (the matrices of this paper; faster).
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+import flint
+import numpy as np
+
+from navsym.core.errors import DomainError, NotEstimableError, ShapeError, TooLargeError
+from navsym.models.earth import observability_rows, power_rows
+
+# Exact rational enclosures of a positive number, and their decimal strings.
+
+
+@dataclass(frozen=True, slots=True)
+class Enclosure:
+    """Exact rational numbers with ``lower <= value <= upper``."""
+
+    lower: Fraction
+    upper: Fraction
+
+    def decimal(self, digits: int) -> tuple[str, str]:
+        """Decimal strings of about ``digits`` significant digits, rounded outwards."""
+        return decimal_down(self.lower, digits), decimal_up(self.upper, digits)
+
+    def rounded(self, digits: int) -> str | None:
+        """``d.ddde+XX`` with ``digits`` significant digits if both ends agree on it, else None."""
+        low, high = scientific(self.lower, digits), scientific(self.upper, digits)
+        return low if low == high else None
+
+
+def exponent_of(x: Fraction) -> int:
+    """The e with 10^e <= x < 10^(e + 1), for positive x."""
+    guess = len(str(x.numerator)) - len(str(x.denominator))
+    return guess if x >= Fraction(10) ** guess else guess - 1
+
+
+def decimal_down(x: Fraction, digits: int) -> str:
+    """Plain decimal string of ``digits`` significant digits, rounded down; x positive."""
+    places = digits - 1 - exponent_of(x)
+    return shifted_decimal(math.floor(x * Fraction(10) ** places), places)
+
+
+def decimal_up(x: Fraction, digits: int) -> str:
+    """Plain decimal string of ``digits`` significant digits, rounded up; x positive."""
+    places = digits - 1 - exponent_of(x)
+    return shifted_decimal(math.ceil(x * Fraction(10) ** places), places)
+
+
+def shifted_decimal(whole: int, places: int) -> str:
+    """The integer ``whole`` times ``10**-places`` as a plain decimal string; whole nonnegative."""
+    if places <= 0:
+        return str(whole * 10**-places)
+    text = str(whole).rjust(places + 1, "0")
+    return f"{text[:-places]}.{text[-places:]}"
+
+
+def scientific(x: Fraction, digits: int) -> str:
+    """``d.ddde+XX``, rounded to nearest (a tie goes up); x positive."""
+    exponent = exponent_of(x)
+    whole = math.floor(x / Fraction(10) ** (exponent - digits + 1) + Fraction(1, 2))
+    if whole == 10**digits:
+        whole, exponent = whole // 10, exponent + 1
+    text = str(whole)
+    return f"{text[0]}.{text[1:]}e{exponent:+03d}"
+
+
+def square_root(lower: Fraction, upper: Fraction, digits: int) -> Enclosure:
+    """Rational bounds of the square roots of the ends."""
+    shift = 10 ** max(digits, digits - exponent_of(lower) // 2 + 1)
+    down = Fraction(math.isqrt(math.floor(lower * shift**2)), shift)
+    up = Fraction(math.isqrt(math.ceil(upper * shift**2)) + 1, shift)
+    return Enclosure(down, up)
+
+
+# Singular values as roots of an exact polynomial: works for every matrix of rational entries.
+#
+# For a matrix N with rational entries the squared singular values are the roots of the characteristic
+# polynomial of N^T N, which has rational coefficients and only real roots. Columns scaled to unit length
+# keep that: with D = diag(column norms) the matrix D^-1 N^T N D^-1 is similar to N^T N D^-2, which is
+# rational again, although D is not.
+#
+# A floating Newton iteration proposes a bracket for each extreme root; the proof is Descartes' rule of signs,
+# which counts *exactly* for a polynomial with real roots only: the coefficients of p(x + a) change sign
+# as often as p has roots above a. Two shifts per root decide the bracket in exact arithmetic.
+
+
+Rows = Sequence[Sequence[Fraction]]
+
+
+def squared_singular_polynomial(rows: Rows, *, equilibrate: bool = False) -> flint.fmpq_poly:
+    """Characteristic polynomial of N^T N, or of N^T N D^-2 when the columns are scaled to unit length.
+
+    Its roots are the squared singular values of N, or of N D^-1.
+    """
+    matrix = rational_matrix(rows)
+    gram = matrix.transpose() * matrix
+    if equilibrate:
+        gram = gram * inverse_diagonal(gram)
+    return gram.charpoly()
+
+
+def rational_matrix(rows: Rows) -> flint.fmpq_mat:
+    """The rows as an exact matrix; ShapeError when they are ragged or empty."""
+    widths = {len(row) for row in rows}
+    if len(widths) != 1 or not next(iter(widths)):
+        raise ShapeError(f"expected rows of one positive length; got {sorted(widths)}; mend the matrix")
+    entries = [flint.fmpq(x.numerator, x.denominator) for row in rows for x in map(Fraction, row)]
+    return flint.fmpq_mat(len(rows), widths.pop(), entries)
+
+
+def inverse_diagonal(gram: flint.fmpq_mat) -> flint.fmpq_mat:
+    """The diagonal matrix D^-2 (n, n) of 1 / gram[j, j]. Raises NotEstimableError when a column of N is zero."""
+    n = gram.nrows()
+    if any(gram[j, j] == 0 for j in range(n)):
+        raise NotEstimableError("expected columns that are not zero; got a zero column; leave it out")
+    return flint.fmpq_mat(n, n, [1 / gram[i, i] if i == j else 0 for i in range(n) for j in range(n)])
+
+
+def roots_above(polynomial: flint.fmpq_poly, point: flint.fmpq) -> int:
+    """Number of roots above a point, for a polynomial all of whose roots are real.
+
+    Sign changes among the coefficients of p(x + point); Descartes' bound is attained when every root is real.
+    """
+    shifted = polynomial(flint.fmpq_poly([point, 1])).numer().coeffs()
+    signs = [c > 0 for c in shifted if c != 0]
+    return sum(a != b for a, b in itertools.pairwise(signs))
+
+
+def largest_root(polynomial: flint.fmpq_poly, digits: int) -> Enclosure:
+    """Bracket of relative width 10^-digits around the largest root, proved; all roots real, positive."""
+    for guard in (32, 96, 320, 1600):
+        bits = math.ceil(digits * 3.3220) + 4
+        middle = newton_from_above(polynomial, bits + guard)
+        if middle is None:
+            continue
+        low = middle * flint.fmpq(2**bits - 1, 2**bits)
+        high = middle * flint.fmpq(2**bits + 1, 2**bits)
+        if roots_above(polynomial, high) == 0 and roots_above(polynomial, low) >= 1:
+            return Enclosure(fraction(low), fraction(high))
+    raise TooLargeError(f"expected {digits} digits of a root; got fewer within the limits; ask for fewer")
+
+
+def newton_from_above(polynomial: flint.fmpq_poly, bits: int) -> flint.fmpq | None:
+    """A dyadic number near the largest root; only a proposal, the caller proves it.
+
+    Above its largest root a polynomial with real roots is convex, so Newton's iteration from the
+    sum of the (positive) roots descends to the largest one.
+    """
+    with flint.ctx.workprec(bits):
+        ball = flint.arb_poly(polynomial)
+        slope = ball.derivative()
+        degree = polynomial.degree()
+        x = flint.arb(-polynomial[degree - 1] / polynomial[degree])
+        for _ in range(40 * degree + 200):
+            step = (ball(x) / slope(x)).mid()
+            if not step.is_finite():
+                return None
+            x = (x - step).mid()
+            if abs(step) <= abs(x) * flint.arb(2) ** (20 - bits):
+                return dyadic(x)
+    return None
+
+
+def dyadic(x: flint.arb) -> flint.fmpq:
+    """The exact value of a ball of radius zero."""
+    mantissa, exponent = x.man_exp()
+    power = int(exponent)
+    return flint.fmpq(mantissa) * (flint.fmpq(2**power) if power >= 0 else flint.fmpq(1, 2**-power))
+
+
+def fraction(x: flint.fmpq) -> Fraction:
+    """The same rational number for the standard library."""
+    return Fraction(int(x.p), int(x.q))
+
+
+def condition_by_polynomial(rows: Rows, *, digits: int, equilibrate: bool = False) -> Enclosure:
+    """Certified 2-norm condition number, (m, n) exact numbers with m >= n.
+
+    Raises NotEstimableError when the columns are dependent: the condition number is infinite.
+    """
+    polynomial = squared_singular_polynomial(rows, equilibrate=equilibrate)
+    if polynomial[0] == 0:
+        raise NotEstimableError(
+            "expected independent columns; got a singular matrix, whose condition number is infinite; "
+            "leave out dependent columns"
+        )
+    largest = largest_root(polynomial, digits + 3)
+    reciprocal = largest_root(flint.fmpq_poly(polynomial.coeffs()[::-1]), digits + 3)
+    return square_root(largest.lower * reciprocal.lower, largest.upper * reciprocal.upper, digits + 3)
+
+
+# Singular values of a matrix whose signs are known: Collatz and Wielandt's bounds in ball arithmetic.
+#
+# The observability matrix of a polynomial motion is totally positive: its entries are positive and those
+# of its inverse alternate like a chessboard. Then the largest singular value of the matrix and of its
+# inverse are Perron roots of positive matrices B^T B, and every positive vector x encloses such a root:
+#
+#     min_i (B^T B x)_i / x_i  <=  sigma_max(B)^2  <=  max_i (B^T B x)_i / x_i.
+#
+# Sums of positive balls lose nothing, so a few dozen matrix-vector products give any number of digits. The
+# signs are checked on the exact inverse each time, nothing is taken on trust; a matrix of other signs gets
+# None and goes to the exact polynomial.
+
+
+ITERATIONS = 600
+
+
+def condition_by_signs(rows: Rows, *, digits: int, equilibrate: bool = False) -> Enclosure | None:
+    """Certified 2-norm condition number of a square matrix with chessboard signs, or None."""
+    matrix = rational_matrix(rows)
+    if matrix.nrows() != matrix.ncols() or not one_sign_pattern(matrix):
+        return None
+    try:
+        inverse = matrix.inv()
+    except ZeroDivisionError:
+        return None
+    if not one_sign_pattern(inverse):
+        return None
+    with flint.ctx.workprec(int(3.33 * digits) + 64):
+        direct, back = magnitudes(matrix), magnitudes(inverse)
+        if equilibrate:
+            direct, back = scaled(direct, back)
+        largest, reciprocal = perron_root(direct, digits + 3), perron_root(back, digits + 3)
+    if largest is None or reciprocal is None:
+        return None
+    return square_root(largest.lower * reciprocal.lower, largest.upper * reciprocal.upper, digits + 3)
+
+
+def one_sign_pattern(matrix: flint.fmpq_mat) -> bool:
+    """True when no entry is zero and the sign of entry (i, j) is s_i t_j: signs can be taken out."""
+    n = matrix.ncols()
+    entries = matrix.entries()
+    if any(x == 0 for x in entries):
+        return False
+    top = [x > 0 for x in entries[:n]]
+    for i in range(matrix.nrows()):
+        turned = (entries[i * n] > 0) != top[0]
+        if any(((x > 0) != t) != turned for x, t in zip(entries[i * n : (i + 1) * n], top, strict=True)):
+            return False
+    return True
+
+
+def magnitudes(matrix: flint.fmpq_mat) -> flint.arb_mat:
+    """Balls around the absolute values of the entries: the same singular values when signs come out."""
+    return flint.arb_mat(matrix.nrows(), matrix.ncols(), [flint.arb(abs(x)) for x in matrix.entries()])
+
+
+def scaled(direct: flint.arb_mat, back: flint.arb_mat) -> tuple[flint.arb_mat, flint.arb_mat]:
+    """N D^-1 and D N^-1, with D the column norms of N as balls."""
+    n = direct.nrows()
+    norms = [sum((direct[i, j] ** 2 for i in range(n)), flint.arb(0)).sqrt() for j in range(n)]
+    left = flint.arb_mat(n, n, [direct[i, j] / norms[j] for i in range(n) for j in range(n)])
+    right = flint.arb_mat(n, n, [back[i, j] * norms[i] for i in range(n) for j in range(n)])
+    return left, right
+
+
+def perron_root(matrix: flint.arb_mat, digits: int) -> Enclosure | None:
+    """Bracket of relative width 10^-digits around sigma_max(B)^2, B positive, (n, n); None if too slow."""
+    once = matrix.transpose() * matrix
+    # Squaring costs n products of a vector and halves the number of rounds; the proof uses `once`.
+    twice = once * once
+    x = flint.arb_mat(matrix.ncols(), 1, [1] * matrix.ncols())
+    wanted = flint.arb(10) ** (-digits)
+    for round_ in range(1, ITERATIONS + 1):
+        x = midpoints(twice * x)
+        # Quotients cost as much as a product; looking every third time is enough.
+        if round_ % 3 == 0:
+            lower, upper = quotients(once * x, x)
+            if upper - lower <= wanted * lower:
+                return Enclosure(fraction(dyadic(lower)), fraction(dyadic(upper)))
+    return None
+
+
+def quotients(image: flint.arb_mat, x: flint.arb_mat) -> tuple[flint.arb, flint.arb]:
+    """Exact lower end of the smallest and upper end of the largest image_i / x_i."""
+    ratios = [a / b for a, b in zip(image.entries(), x.entries(), strict=True)]
+    return min(r.lower() for r in ratios), max(r.upper() for r in ratios)
+
+
+def midpoints(image: flint.arb_mat) -> flint.arb_mat:
+    """An exact positive vector near the image, scaled by its first entry's power of two."""
+    entries = [y.mid() for y in image.entries()]
+    _, exponent = entries[0].man_exp()
+    scale = flint.arb(2) ** (-int(exponent))
+    return flint.arb_mat(len(entries), 1, [(y * scale).mid() for y in entries])
+
+
+#: Beyond this size the printed digits of the entries alone fill megabytes.
+LARGEST_ORDER = 120
+LARGEST_DIGITS = 2000
+
+#: A double-precision value further off than this is not to be used.
+TRUST = 0.10
+
+
+@dataclass(frozen=True, slots=True)
+class Conditioning:
+    """Certified 2-norm condition number of one matrix, with what double precision makes of it.
+
+    name      : N_p, N_pN, N_f or N_s
+    enclosure : certified bounds of the condition number
+    double    : value by singular values in double precision
+    """
+
+    name: str
+    enclosure: Enclosure
+    double: float
+
+    @property
+    def error(self) -> float:
+        """Relative error of the double-precision value."""
+        if not math.isfinite(self.double):
+            return math.inf
+        return float(Fraction(self.double) / self.enclosure.lower - 1)
+
+    @property
+    def trustworthy(self) -> bool:
+        """True when the double-precision value is within :data:`TRUST`, relative, of the certified one."""
+        return abs(self.error) <= TRUST
+
+
+def condition_number(rows: Rows, *, digits: int = 30, equilibrate: bool = False) -> Enclosure:
+    """Certified 2-norm condition number of a matrix with exact rational entries.
+
+    rows        : (m, n) exact numbers, m >= n and full column rank
+    equilibrate : scale the columns to unit length first (their norms may be irrational)
+
+    Raises DomainError and TooLargeError (digits), and NotEstimableError when the columns are dependent (the
+    condition number is infinite).
+    """
+    if digits < 1:
+        raise DomainError(f"expected 1 to {LARGEST_DIGITS}; got {digits}; ask for at least one", where="digits")
+    if digits > LARGEST_DIGITS:
+        raise TooLargeError(f"expected 1 to {LARGEST_DIGITS}; got {digits}; ask for fewer", where="digits")
+    found = condition_by_signs(rows, digits=digits, equilibrate=equilibrate)
+    return found or condition_by_polynomial(rows, digits=digits, equilibrate=equilibrate)
+
+
+def condition_numbers(
+    n: int,
+    rho: Fraction | int | str,
+    tau: Fraction | int | str,
+    *,
+    digits: int = 30,
+    progress: Callable[[str], None] = lambda matrix: None,
+) -> dict[str, Conditioning]:
+    """Condition numbers of N_p, N_pN, N_f, N_s (trajectory:table), certified and in double precision.
+
+    n        : order of the polynomial motion model, 1 to 120
+    rho, tau : exact numbers, rho nonzero (1/m), tau positive (s), text is read as a fraction or a decimal
+    progress : called with the name of each matrix that is done
+    Raises DomainError and TooLargeError for numbers outside these ranges.
+    """
+    rho, tau = Fraction(rho), Fraction(tau)
+    check_request(n, rho, tau)
+    measured, powers = observability_rows(n, rho, tau), power_rows(n)
+    # Signs of columns do not change a norm, so N_pN and N_s agree for every nonzero rho and tau;
+    # both are computed from their own definitions all the same.
+    exact = {}
+    for name, rows, equilibrate in (
+        ("N_p", measured, False),
+        ("N_pN", measured, True),
+        ("N_f", powers, False),
+        ("N_s", powers, True),
+    ):
+        exact[name] = condition_number(rows, digits=digits, equilibrate=equilibrate)
+        progress(name)
+    doubles = double_values(measured, powers)
+    return {name: Conditioning(name, exact[name], doubles[name]) for name in exact}
+
+
+def check_request(n: int, rho: Fraction, tau: Fraction) -> None:
+    """Refuse orders and steps for which the four matrices are not made.
+
+    Raises TooLargeError above :data:`LARGEST_ORDER`, and DomainError for n below 1, tau below 0, and rho or tau zero.
+    """
+    if n < 1:
+        raise DomainError(f"expected 1 to {LARGEST_ORDER}; got {n}; choose a positive order", where="n")
+    if n > LARGEST_ORDER:
+        raise TooLargeError(f"expected 1 to {LARGEST_ORDER}; got {n}; choose a smaller order", where="n")
+    if tau < 0:
+        raise DomainError(f"expected a positive step of time; got {tau}; give its length", where="tau")
+    if rho == 0 or tau == 0:
+        name = "rho" if rho == 0 else "tau"
+        raise DomainError("expected a nonzero number; got 0; the columns of N_p would vanish", where=name)
+
+
+# -- double precision beside it --------------------------------------------------------------------
+
+
+def double_values(measured: Rows, powers: Rows) -> dict[str, float]:
+    """The same four numbers by singular values in double precision."""
+    plain, whole = doubles(measured), doubles(powers)
+    return {
+        "N_p": double_condition(plain),
+        "N_pN": double_condition(plain / column_norms(plain)),
+        "N_f": double_condition(whole),
+        "N_s": double_condition(whole / column_norms(whole)),
+    }
+
+
+def doubles(rows: Rows) -> np.ndarray:
+    """Exact rows as an array (m, n) of the nearest doubles."""
+    return np.array([[float(x) for x in row] for row in rows])
+
+
+def column_norms(matrix: np.ndarray) -> np.ndarray:
+    """Norms with the largest entry taken out, so that squares neither overflow nor vanish."""
+    scale = np.abs(matrix).max(axis=0)
+    scale[scale == 0] = 1.0
+    return scale * np.linalg.norm(matrix / scale, axis=0)
+
+
+def double_condition(matrix: np.ndarray) -> float:
+    """Largest over smallest singular value of a matrix (m, n) in doubles; inf where that is no number."""
+    if not np.all(np.isfinite(matrix)):
+        return math.inf
+    values = np.linalg.svd(matrix, compute_uv=False)
+    return float(values[0] / values[-1]) if values[-1] > 0 else math.inf
+
+
+# -- document --------------------------------------------------------------------------------------
+
+
+def warnings_of(found: dict[str, Conditioning]) -> list[str]:
+    """One sentence for each double-precision value that is off by more than ten per cent."""
+    return [
+        f"{c.name}: the double-precision value {c.double:.4e} is off by {100 * c.error:+.1f} %"
+        for c in found.values()
+        if not c.trustworthy
+    ]
+
+
+def document(
+    n: int, rho: Fraction | str, tau: Fraction | str, digits: int, progress: Callable[[str], None] = lambda matrix: None
+) -> dict[str, Any]:
+    """What ``navsym condition`` prints: enclosures, double-precision values and warnings for the four matrices.
+
+    Arguments as in :func:`condition_numbers`, and the same errors; ``digits`` significant digits in the enclosures.
+    """
+    found = condition_numbers(n, rho, tau, digits=digits, progress=progress)
+    parts: dict[str, Any] = {"n": n, "rho": str(Fraction(rho)), "tau": str(Fraction(tau)), "digits": digits}
+    for name, c in found.items():
+        lower, upper = c.enclosure.decimal(digits)
+        finite = math.isfinite(c.double)
+        parts[name] = {
+            "lower": lower,
+            "upper": upper,
+            "double": c.double if finite else None,
+            "relative_error": c.error if finite else None,
+            "trustworthy": c.trustworthy,
+        }
+    return parts | {"warnings": warnings_of(found)}

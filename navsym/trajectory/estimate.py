@@ -1,0 +1,559 @@
+"""Five ways from a track to velocity and acceleration, each with standard deviations.
+
+differences : neighbours only           window     : least squares over a sliding window
+filter      : Kalman, past data only    smoother   : Rauch, Tung and Striebel, all data
+guaranteed  : least sum of absolute weights over the window, whose figure bounds the standard deviation
+              under every correlation of the errors
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import Literal
+
+import numpy as np
+
+from navsym.core.arrays import Array, frozen
+from navsym.core.errors import DomainError
+from navsym.guaranteed.search.kernels import simplex, spread_rows
+from navsym.trajectory.kernels.tracks import DOUBTED, backward, forward
+from navsym.trajectory.tracks import (
+    GAP,
+    PLAUSIBLE,
+    Fit,
+    Mask,
+    Noise,
+    Rows,
+    Track,
+    TrackEstimate,
+    check_order,
+    first_spread,
+    isolated_outliers,
+    memory,
+    noise_of,
+    usual_step,
+)
+
+# Proof that minimum-sum weights are what they claim, in exact arithmetic.
+#
+# The weights w of a derivative at zero satisfy sum w_i t_i^k = d! [k = d], k < n, with least sum |w_i| sigma_i. Both
+# bounds of that least value are exact rational numbers:
+#
+# * above: on n nodes the conditions have one solution, the derivative of Lagrange's polynomials, in integers;
+# * below: every polynomial p of degree n - 1 with |p(t_i)| <= sigma_i at all rows gives d! p_d (weak duality);
+#   a proposed p is divided by its largest |p(t_i)|/sigma_i, so that no rounding of the proposal matters.
+
+
+#: Times are read in this unit, as the windows round them.
+UNIT = 10**6
+
+
+@dataclass(frozen=True, slots=True)
+class SumCertificate:
+    """Exact bounds of the least sum |w| sigma, 1/s^d for times in seconds."""
+
+    lower: Fraction
+    upper: Fraction
+
+    @property
+    def gap(self) -> float:
+        """Relative distance of the bounds."""
+        return float((self.upper - self.lower) / self.upper)
+
+
+def minimum_sum_certificate(
+    dt: Array, sigma: Array, order: int, derivative: int, nodes: Sequence[int], dual: Sequence[float]
+) -> SumCertificate:
+    """Bounds of the least sum of absolute weights, whatever the solver did.
+
+    dt, sigma : (m,) times (whole microseconds) and standard deviations
+    nodes     : ``order`` rows that carry the weights
+    dual      : (order,) coefficients of a polynomial in the time in units of the largest |dt|, lowest first
+    """
+    times = [round(float(t) * UNIT) for t in dt]
+    deviations = [Fraction(float(s)) for s in sigma]
+    scale = Fraction(math.factorial(derivative) * UNIT**derivative)
+    total = sum(
+        abs(weight) * deviations[node]
+        for node, weight in zip(nodes, lagrange([times[node] for node in nodes], derivative), strict=True)
+    )
+    longest = max(map(abs, times)) or 1
+    value, steepest = dual_value(times, deviations, dual, longest, derivative)
+    lower = value / (steepest * longest**derivative)
+    return SumCertificate(scale * lower, scale * total)
+
+
+def lagrange(nodes: Sequence[int], derivative: int) -> list[Fraction]:
+    """Coefficients of x^derivative in Lagrange's polynomials of different integer nodes."""
+    found = []
+    for i, own in enumerate(nodes):
+        others = [node for k, node in enumerate(nodes) if k != i]
+        coefficients = [1]
+        for node in others:
+            coefficients = [a - node * b for a, b in zip([0, *coefficients], [*coefficients, 0], strict=True)]
+        found.append(Fraction(coefficients[derivative], math.prod(own - node for node in others)))
+    return found
+
+
+def dual_value(
+    times: Sequence[int], deviations: Sequence[Fraction], dual: Sequence[float], longest: int, derivative: int
+) -> tuple[Fraction, Fraction]:
+    """(|p_d|, max |p(t_i)|/sigma_i) of a polynomial in t/longest with floating coefficients, exactly."""
+    bits = 80
+    whole = [round(Fraction(float(c)) * 2**bits) for c in dual]
+    degree = len(whole) - 1
+    powers = [longest ** (degree - k) for k in range(degree + 1)]
+    steepest = Fraction(0)
+    for t, sigma in zip(times, deviations, strict=True):
+        value = 0
+        for c, power in zip(reversed(whole), reversed(powers), strict=True):
+            value = value * t + c * power
+        steepest = max(steepest, abs(Fraction(value, longest**degree)) / sigma)
+    return Fraction(abs(whole[derivative])), steepest
+
+
+# Standard deviations that know that the noise of a track was only estimated.
+#
+# The noise parameters (logarithms of scale and density) have the information ½ d²cost, cost = -2 log likelihood,
+# at their maximum-likelihood values. With weights w_i at points around them that have this covariance,
+#
+#     mean = sum w_i m_i,    variance = sum w_i (P_i + (m_i - mean)^2),
+#
+# m_i, P_i the estimate and its variance for the noise of the point: the law of total variance with Laplace's
+# posterior. Taking the most likely noise for the true one leaves the second term out and is optimistic.
+
+
+#: Step of the second differences and largest standard deviation, in powers of ten.
+STEP, WIDEST = 0.15, 0.3
+#: Distance of the outer points in standard deviations; weights are then exact for polynomials of degree three.
+REACH = 3.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class NoisePoint:
+    """Noise parameters with a weight; the weights of all points sum to one."""
+
+    weight: float
+    noise: Noise
+
+
+def noise_points(
+    track: Track, order: int, use: Rows, noise: Noise, *, gate: float = 0.0, fixed_scale: bool = False
+) -> list[NoisePoint]:
+    """Points around the most likely noise with the covariance of its estimate; the first is the noise itself.
+
+    East and North share one pair of parameters, Up has its own; point k moves both.
+    """
+    roots = [
+        covariance_root(Fit(track, order, use, channels, gate, fixed_scale), noise, channels[0])
+        for channels in ((0, 1), (2,))
+    ]
+    axes = 1 if fixed_scale else 2
+    points = [NoisePoint(1.0 - axes / REACH, noise)]
+    for axis in range(axes):
+        for sign in (-1.0, 1.0):
+            moves = [10.0 ** (sign * np.sqrt(REACH) * root[:, axis]) for root in roots]
+            factors = np.array([moves[0], moves[0], moves[1]]).T
+            moved = Noise(frozen(noise.scale * factors[0]), frozen(noise.density * factors[1]))
+            points.append(NoisePoint(1.0 / (2.0 * REACH), moved))
+    return points
+
+
+def covariance_root(fit: Fit, noise: Noise, channel: int) -> Array:
+    """(2, 2): columns whose squares sum to the covariance of (log10 scale, log10 density).
+
+    With a fixed scale the only column is the first one, along the density. Directions that the track says
+    nothing about are capped.
+    """
+    x, y = (float(np.log10(value[channel])) for value in (noise.scale, noise.density))
+    if fit.fixed_scale:
+        below, middle, above = (fit.cost(x, y + d * STEP) for d in (-1, 0, 1))
+        spread = deviation((below - 2 * middle + above) / (2 * STEP**2))
+        return np.array([[0.0, 0.0], [spread, 0.0]])
+    cost = {(i, j): fit.cost(x + i * STEP, y + j * STEP) for i in (-1, 0, 1) for j in (-1, 0, 1)}
+    both = (cost[1, 1] - cost[1, -1] - cost[-1, 1] + cost[-1, -1]) / 4
+    second = [cost[1, 0] - 2 * cost[0, 0] + cost[-1, 0], cost[0, 1] - 2 * cost[0, 0] + cost[0, -1]]
+    information = np.array([[second[0], both], [both, second[1]]]) / (2 * STEP**2)
+    values, vectors = np.linalg.eigh(information)
+    return vectors * np.array([deviation(float(value)) for value in values])
+
+
+def deviation(information: float) -> float:
+    """Standard deviation for an information, capped where there is none."""
+    return min(WIDEST, 1.0 / np.sqrt(information)) if information > 1.0 / WIDEST**2 else WIDEST
+
+
+Method = Literal["differences", "window", "filter", "smoother", "guaranteed"]
+METHODS = ("differences", "window", "filter", "smoother", "guaranteed")
+CHANNELS = ("east", "north", "up")
+#: How often the track is smoothed again without the worst positions.
+DEPARTURE_ROUNDS = 12
+#: Usual steps in a window whose length was not asked for, at most.
+LONGEST_WINDOW = 1000
+#: So many different windows of the guaranteed method are certified.
+EXAMINED = 400
+
+#: Weights and deviation of a derivative at zero: times, standard deviations, order, which derivative.
+Weights = Callable[[Array, Array, int, int], tuple[Array, float]]
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """What to do with a track.
+
+    method : one of METHODS; order : states, 2 (constant speed) to 6
+    window : seconds, for the two window methods; None takes four times the memory of the filter, at most 1000 steps
+    gate   : largest innovation in standard deviations; 0 switches the gate off
+    """
+
+    method: Method = "smoother"
+    order: int = 3
+    window: float | None = None
+    gate: float = 5.0
+    fixed_scale: bool = False
+
+    def __post_init__(self) -> None:
+        if self.method not in METHODS:
+            raise DomainError(f"expected one of {', '.join(METHODS)}; got {self.method!r}; choose one", where="method")
+        if self.window is not None and not (math.isfinite(self.window) and self.window > 0):
+            raise DomainError(f"expected a positive number of seconds; got {self.window}; omit it", where="window")
+        if not (math.isfinite(self.gate) and self.gate >= 0):
+            raise DomainError(f"expected a number of standard deviations; got {self.gate}; 5 is usual", where="gate")
+
+
+def estimate(track: Track, settings: Settings) -> tuple[TrackEstimate, Noise]:
+    """Velocity and acceleration of a track, and the noise that was found in it."""
+    check_order(track, settings.order)
+    use = np.ones(len(track.t), dtype=np.int64)
+    if settings.gate > 0:
+        use[isolated_outliers(track)] = 0
+    noise = noise_of(track, settings.order, use, gate=settings.gate, fixed_scale=settings.fixed_scale)
+    # The filter stands for what can be known at the time; the others may look at the whole track.
+    if settings.gate > 0 and settings.method != "filter":
+        for _ in range(DEPARTURE_ROUNDS):
+            found = departures(track, noise, settings, use)
+            if not found.any():
+                break
+            use[found] = 0
+        use[agreeing(track, noise, settings, use)] = 1
+    if settings.method in ("filter", "smoother"):
+        return marginal(track, noise, settings, use), noise
+    return by_method(track, noise, settings, use), noise
+
+
+def marginal(track: Track, noise: Noise, settings: Settings, use: Rows) -> TrackEstimate:
+    """Filter or smoother, averaged over what the noise may be; gains and flags are those of the likeliest."""
+    points = noise_points(track, settings.order, use, noise, gate=settings.gate, fixed_scale=settings.fixed_scale)
+    found = [by_method(track, point.noise, settings, use) for point in points]
+    weights = np.array([point.weight for point in points])
+    speed = mixture(weights, [f.velocity for f in found], [f.velocity_sd for f in found])
+    change = mixture(weights, [f.acceleration for f in found], [f.acceleration_sd for f in found])
+    return TrackEstimate(*speed, *change, found[0].flags, found[0].gains)
+
+
+def mixture(weights: Array, means: list[Array], deviations: list[Array]) -> tuple[Array, Array]:
+    """Mean and standard deviation of a mixture, element by element."""
+    values, spread = np.array(means), np.array(deviations)
+    mean = np.einsum("p,pkc->kc", weights, values)
+    return mean, np.sqrt(np.einsum("p,pkc->kc", weights, spread**2 + (values - mean) ** 2))
+
+
+def departures(track: Track, noise: Noise, settings: Settings, use: Rows) -> Mask:
+    """(N,) True where a position contradicts all others, further than its neighbours do.
+
+    Baarda's test on the linear smoother: the residual e has the variance r - P, and without its own vote the
+    position would be off by e r / (r - P). Both count: the test has to exceed the gate, and the offset what
+    a plausible acceleration does in a step, so that a manoeuvre passes. The worst of a neighbourhood goes
+    first, because it draws the track away from the others.
+    """
+    run = filtered(track, noise, replace(settings, gate=0.0), use)
+    smoothed(track, noise, run)
+    r, P = (track.variance * noise.scale).T, variance(run, 0)
+    share = np.maximum(1.0 - P / r, 1e-6)
+    residual = np.abs(track.position.T - run.states[:, :, 0])
+    test = residual / np.sqrt(r * share) / settings.gate
+    offset = residual / share / (PLAUSIBLE / 2 * usual_step(track.t) ** 2)
+    score = np.where(use, np.minimum(test, offset), 0.0).max(axis=0)
+    highest = np.lib.stride_tricks.sliding_window_view(np.pad(score, 4), 9).max(axis=1)
+    away: Mask = (score > 1.0) & (score == highest)
+    return away
+
+
+def agreeing(track: Track, noise: Noise, settings: Settings, use: Rows) -> Mask:
+    """(N,) True for rows left out that agree with the track of the others: an outlier had blamed them."""
+    run = filtered(track, noise, replace(settings, gate=0.0), use)
+    smoothed(track, noise, run)
+    deviation = np.sqrt((track.variance * noise.scale).T + variance(run, 0))
+    test = np.abs(track.position.T - run.states[:, :, 0]) / deviation
+    fits: Mask = (use == 0) & (test < settings.gate).all(axis=0)
+    return fits
+
+
+def by_method(track: Track, noise: Noise, settings: Settings, use: Rows) -> TrackEstimate:
+    """Velocity and acceleration by the method of the settings, for one noise.
+
+    use : (N,) 1 for rows that count, 0 for outliers
+    """
+    run = filtered(track, noise, settings, use)
+    words = tuple(word(use[k], run.flags[k]) for k in range(len(track.t)))
+    if settings.method in ("filter", "smoother"):
+        if settings.method == "smoother":
+            smoothed(track, noise, run)
+        return from_states(track, run, words)
+    if settings.method == "differences":
+        windows = difference_windows(track, use)
+        return from_weights(track, noise, windows, settings.order, least_squares, words)
+    span = window_of(track, noise, settings)
+    windows = sliding_windows(track, use, span, settings.order)
+    weights = minimum_sum if settings.method == "guaranteed" else least_squares
+    return from_weights(track, noise, windows, settings.order, weights, words)
+
+
+def window_of(track: Track, noise: Noise, settings: Settings) -> float:
+    """Seconds of the window: what was asked for, or four memories of the filter, at most ``LONGEST_WINDOW`` steps.
+
+    A track without manoeuvres has a memory as long as itself, and every row would then look at all others.
+    """
+    if settings.window is not None:
+        return settings.window
+    return min(4 * memory(noise, track.variance, settings.order), LONGEST_WINDOW * usual_step(track.t))
+
+
+def word(used: int, flags: Rows) -> str:
+    """What happened to a row: ``outlier`` (left out), ``doubtful`` (believed less) or ``used``."""
+    if not used:
+        return "outlier"
+    return "doubtful" if (flags == DOUBTED).any() else "used"
+
+
+# -- filter and smoother -----------------------------------------------------------------------------------
+
+
+@dataclass(slots=True, eq=False)
+class FilterRun:
+    """Arrays of a run, channel first: states, gains (3, N, n), roots of covariances (3, N, n, n), flags (N, 3), ..."""
+
+    states: Array
+    roots: Array
+    gains: Array
+    innovations: Array
+    variances: Array
+    flags: Rows
+
+
+def filtered(track: Track, noise: Noise, settings: Settings, use: Rows) -> FilterRun:
+    """Forward run of the three channels; every root is kept for the smoother."""
+    N, n = len(track.t), settings.order
+    run = FilterRun(
+        states=np.empty((3, N, n)),
+        roots=np.empty((3, N, n, n)),
+        gains=np.empty((3, N, n)),
+        innovations=np.empty((3, N)),
+        variances=np.empty((3, N)),
+        flags=np.empty((N, 3), dtype=np.int64),
+    )
+    spread = first_spread(track, n)
+    for c in range(3):
+        z, r = track.position[:, c].copy(), track.variance[:, c] * noise.scale[c]
+        out = (run.states[c], run.roots[c], run.gains[c], run.innovations[c], run.variances[c])
+        flags = np.empty(N, dtype=np.int64)
+        forward(track.t, z, r, use, noise.density[c], spread, settings.gate, *out, flags)
+        run.flags[:, c] = flags
+    return run
+
+
+def smoothed(track: Track, noise: Noise, run: FilterRun) -> None:
+    """Replace the filtered states and roots of a run by the smoothed ones."""
+    for c in range(3):
+        backward(track.t, run.states[c], run.roots[c], noise.density[c])
+
+
+def variance(run: FilterRun, i: int) -> Array:
+    """Variance of the i-th derivative of the position, (3, N)."""
+    found: Array = (run.roots[:, :, :, i] ** 2).sum(axis=2)
+    return found
+
+
+def from_states(track: Track, run: FilterRun, words: tuple[str, ...]) -> TrackEstimate:
+    """The answer of a filter or smoother run; acceleration is zero for a state of order 2.
+
+    The gains are those of the last row at which the first channel used its measurement.
+    """
+    last = int(np.flatnonzero((run.gains[0] != 0).any(axis=1))[-1])
+    gains = {name: run.gains[c, last].tolist() for c, name in enumerate(CHANNELS)}
+    n = run.states.shape[2]
+    derivatives = [(run.states[:, :, i], variance(run, i)) for i in (1, 2) if i < n]
+    if n < 3:
+        zero = np.zeros(run.states.shape[:2])
+        derivatives.append((zero, zero))
+    return turned(track, derivatives, words, gains)
+
+
+def turned(
+    track: Track, derivatives: list[tuple[Array, Array]], words: tuple[str, ...], gains: dict[str, list[float]]
+) -> TrackEstimate:
+    """East, North, Up of each row from channels: values (3, N) and variances (3, N), speed then acceleration."""
+    out, turn = [], axes_of(track, words)
+    for values, variances in derivatives:
+        out.append(np.einsum("kij,jk->ki", turn, values))
+        out.append(np.sqrt(np.einsum("kij,jk->ki", turn**2, variances)))
+    return TrackEstimate(out[0], out[1], out[2], out[3], words, gains)
+
+
+def axes_of(track: Track, words: tuple[str, ...]) -> Array:
+    """East, North, Up of each row (N, 3, 3); where a position is not believed, those of the nearest one that is.
+
+    A lost fix at latitude and longitude zero would otherwise turn a good velocity into the axes of that place.
+    """
+    believed = np.flatnonzero([word == "used" for word in words])
+    if not believed.size:
+        return track.turn
+    after = np.clip(np.searchsorted(believed, np.arange(len(words))), 0, len(believed) - 1)
+    before = np.maximum(after - 1, 0)
+    waits = [np.abs(track.t[believed[near]] - track.t) for near in (before, after)]
+    axes: Array = track.turn[believed[np.where(waits[0] < waits[1], before, after)]]
+    return axes
+
+
+# -- windows -----------------------------------------------------------------------------------------------
+
+
+def difference_windows(track: Track, use: Rows) -> list[Rows]:
+    """The row before, the row and the row after, among rows in use."""
+    return nearest_windows(track, use, 3)
+
+
+def nearest_windows(track: Track, use: Rows, count: int) -> list[Rows]:
+    """For each row the ``count`` rows in use that surround it, as evenly as the ends allow."""
+    kept = np.flatnonzero(use)
+    count = min(count, len(kept))
+    first = np.clip(np.searchsorted(kept, np.arange(len(track.t))) - count // 2, 0, len(kept) - count)
+    return [kept[f : f + count] for f in first]
+
+
+def sliding_windows(track: Track, use: Rows, span: float, order: int) -> list[Rows]:
+    """Rows in use within half a span; where they are fewer than order + 2, the nearest ones."""
+    kept = np.flatnonzero(use)
+    times = track.t[kept]
+    first = np.searchsorted(times, track.t - span / 2, side="left")
+    last = np.searchsorted(times, track.t + span / 2, side="right")
+    near = nearest_windows(track, use, order + 2)
+    ends = zip(first, last, near, strict=True)
+    return [kept[a:b] if b - a >= order + 2 else nearest for a, b, nearest in ends]
+
+
+def from_weights(
+    track: Track, noise: Noise, windows: list[Rows], order: int, weights: Weights, words: tuple[str, ...]
+) -> TrackEstimate:
+    """Derivatives as weighted sums of positions; the weights depend on times and variances only."""
+    N = len(track.t)
+    values, variances = np.zeros((2, 3, N)), np.zeros((2, 3, N))
+    same = (track.variance == track.variance[:1, :1]).all()
+    cache: dict[tuple[bytes, int], tuple[Array, float]] = {}
+    grain = grain_of(track)
+    for k, rows in enumerate(windows):
+        dt = distances(track, rows, k, grain)
+        for c in range(3):
+            sigma = np.sqrt(track.variance[rows, c])
+            for d in (1, 2):
+                if d >= min(order, len(rows)):
+                    continue
+                key = (dt.tobytes(), d)
+                if not same or key not in cache:
+                    cache[key] = weights(dt, sigma, min(order, len(rows)), d)
+                w, deviation = cache[key]
+                values[d - 1, c, k] = w @ track.position[rows, c]
+                variances[d - 1, c, k] = deviation**2 * noise.scale[c]
+        if not same:
+            cache.clear()
+    return turned(track, [(values[d], variances[d]) for d in (0, 1)], words, {})
+
+
+def grain_of(track: Track) -> float:
+    """Seconds that move no weight: a microsecond, or a millionth of a usual step where steps are short."""
+    return 1e-6 * min(1.0, usual_step(track.t))
+
+
+def distances(track: Track, rows: Rows, k: int, grain: float) -> Array:
+    """Times of rows from row k in whole grains, so that they repeat where the clock does."""
+    rounded: Array = np.round((track.t[rows] - track.t[k]) / grain) * grain
+    return rounded
+
+
+def design(dt: Array, order: int) -> tuple[Array, float]:
+    """Powers of time in a unit that keeps them near one, (m, order), and the unit in seconds."""
+    unit = float(np.abs(dt).max()) or 1.0
+    return np.vander(dt / unit, order, increasing=True), unit
+
+
+def least_squares(dt: Array, sigma: Array, order: int, derivative: int) -> tuple[Array, float]:
+    """Weights of the derivative at zero of the least-squares polynomial, and their standard deviation.
+
+    The deviation is sqrt(sum (w sigma)^2): independent errors.
+    """
+    V, unit = design(dt, order)
+    solved = np.linalg.pinv(V / sigma[:, None]) / sigma
+    w = solved[derivative] * math.factorial(derivative) / unit**derivative
+    return w, float(np.sqrt(((w * sigma) ** 2).sum()))
+
+
+def minimum_sum(dt: Array, sigma: Array, order: int, derivative: int) -> tuple[Array, float]:
+    """Weights of least sum |w| sigma that are exact for polynomials, and that sum.
+
+    The guaranteed estimator on the samples: the sum bounds the standard deviation whatever the correlation.
+    """
+    w, value, _, _ = minimum_sum_solution(dt, sigma, order, derivative)
+    return w, value
+
+
+def minimum_sum_solution(dt: Array, sigma: Array, order: int, derivative: int) -> tuple[Array, float, list[int], Array]:
+    """(weights, sum, rows that carry them, dual polynomial in the time over the largest |dt|).
+
+    Without a solution in the allowed number of exchanges: the weights of least squares and no rows.
+    """
+    V, unit = design(dt, order)
+    # Orthonormal columns, so that the exchange meets no nearly dependent rows.
+    Q, R = np.linalg.qr(V)
+    target = np.zeros(order)
+    target[derivative] = math.factorial(derivative) / unit**derivative
+    functional = np.linalg.solve(R.T, target)
+    scale = float(np.abs(functional).max())
+    rows = np.ascontiguousarray(Q / sigma[:, None])
+    basis, found, dual, count = simplex(rows, functional / scale, spread_rows(rows), 50 * order)
+    if count < 0:
+        w, _ = least_squares(dt, sigma, order, derivative)
+        return w, float(np.abs(w * sigma).sum()), [], np.zeros(order)
+    w = np.zeros(len(dt))
+    w[basis] = found * scale / sigma[basis]
+    return w, float(np.abs(w * sigma).sum()), basis.tolist(), np.linalg.solve(R, dual)
+
+
+def largest_gap(track: Track, settings: Settings, use: Rows, span: float) -> dict[str, float | int]:
+    """Certificates of the weights in use: how many were examined, and the largest relative gap of their sums.
+
+    Windows of equal times and deviations share their weights and are examined once.
+    """
+    seen: dict[tuple[bytes, bytes, int], float] = {}
+    grain = grain_of(track)
+    for k, rows in enumerate(sliding_windows(track, use, span, settings.order)):
+        dt = distances(track, rows, k, grain)
+        sigma = np.sqrt(track.variance[rows, 0])
+        for d in (1, 2):
+            key = (dt.tobytes(), sigma.tobytes(), d)
+            if d < min(settings.order, len(rows)) and key not in seen and len(seen) < EXAMINED:
+                seen[key] = certified_gap(dt, sigma, min(settings.order, len(rows)), d)
+    return {"examined": len(seen), "largest_gap": max(seen.values(), default=0.0)}
+
+
+def certified_gap(dt: Array, sigma: Array, order: int, derivative: int) -> float:
+    """Relative distance of exact bounds of the least sum; one when there is no solution to certify."""
+    _, _, nodes, dual = minimum_sum_solution(dt, sigma, order, derivative)
+    return minimum_sum_certificate(dt, sigma, order, derivative, nodes, dual.tolist()).gap if nodes else 1.0
+
+
+def gaps(track: Track) -> Rows:
+    """Rows after which the next one is late by more than GAP usual steps."""
+    return np.flatnonzero(np.diff(track.t) > GAP * usual_step(track.t))

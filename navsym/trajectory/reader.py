@@ -1,0 +1,434 @@
+"""Tracks from files: CSV of time, latitude, longitude, height, and RTKLIB positions.
+
+Two policies. ``strict``: the first row that cannot be taken as it stands is an error that names its line
+and counts the others. ``repair``: such rows are left out, known oddities of the file are mended, and every
+repair is listed with its line. Nothing is repaired silently. Angles leave this file in radians.
+"""
+
+from __future__ import annotations
+
+import csv
+import math
+import os
+import re
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navsym.core.errors import (
+    DomainError,
+    DuplicateError,
+    EmptyError,
+    ExpressionSyntaxError,
+    NavsymError,
+    NotFiniteError,
+    ShapeError,
+    TooLargeError,
+)
+from navsym.language.files import called, decode, read_bytes
+
+Array = NDArray[np.float64]
+Policy = Literal["strict", "repair"]
+
+LARGEST_FILE = 256 * 1024 * 1024
+LARGEST_ROWS = 2_000_000
+MOST_PROBLEMS = 1_000  # after so many a strict reading gives up: the file is something else
+FOOT = 0.3048
+DECIMAL = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d{1,3})?|[+-]?(nan|inf|infinity)", re.I | re.A)
+GPS_EPOCH = datetime(1980, 1, 6, tzinfo=UTC)
+
+#: Column -> names that mean it, lower case, units in brackets removed.
+NAMES = {
+    "t": ("t", "time", "gps tow", "tow", "seconds", "timestamp"),
+    "lat": ("lat", "latitude", "phi"),
+    "lon": ("lon", "lng", "long", "longitude", "lambda"),
+    "h": ("h", "height", "alt", "altitude", "ellipsoid height", "hgt", "elevation"),
+}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TrackFile:
+    """A track as read.
+
+    t                   : (N,) seconds, strictly increasing
+    latitude, longitude : (N,) radians
+    height              : (N,) metres
+    sigma               : (N, 3) standard deviations East, North, Up in metres, or None
+    lines               : (N,) line of the file for each row
+    repairs, warnings   : sentences, each naming its line where it has one
+    """
+
+    t: Array
+    latitude: Array
+    longitude: Array
+    height: Array
+    sigma: Array | None
+    lines: NDArray[np.int64]
+    repairs: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One row: line, time, degrees, metres, and standard deviations where the file has them."""
+
+    line: int
+    t: float
+    lat: float
+    lon: float
+    h: float
+    sigma: tuple[float, float, float] | None = None
+
+
+@dataclass(slots=True)
+class Log:
+    """Where problems go: raised at the end when strict, listed when repairing."""
+
+    where: str
+    policy: Policy
+    errors: list[NavsymError] = field(default_factory=list)
+    repairs: list[str] = field(default_factory=list)
+    warnings: list[str] = field(default_factory=list)
+
+    def problem(self, kind: type[NavsymError], line: int, message: str, repair: str) -> None:
+        """Note a problem of a line: an error of this kind when strict, else the repair that was made.
+
+        Raises the first error as soon as there are :data:`MOST_PROBLEMS`.
+        """
+        if self.policy == "strict":
+            self.errors.append(kind(message, where=f"{self.where}: line {line}"))
+            if len(self.errors) >= MOST_PROBLEMS:
+                self.check()
+        else:
+            self.repairs.append(f"line {line}: {repair} ({message})")
+
+    def check(self) -> None:
+        """Raise the first problem; the message counts the other rows and names their lines, each once."""
+        if not self.errors:
+            return
+        first, *rest = self.errors
+        here = line_of(first)
+        others = list(dict.fromkeys(line_of(error) for error in rest if line_of(error) != here))
+        if others:
+            lines = ", ".join(others[:8]) + (", ..." if len(others) > 8 else "")
+            count = f"{len(others)}" + (" or" if len(self.errors) >= MOST_PROBLEMS else "")
+            first.message += f"; {count} more rows have problems (lines {lines})"
+            first.args = (first.message,)
+        raise first
+
+
+def line_of(error: NavsymError) -> str:
+    """Number of the line that an error names."""
+    return error.where.rsplit(" ", 1)[-1]
+
+
+def read_track(path: str | os.PathLike[str], policy: Policy = "strict") -> TrackFile:
+    """Read a CSV or RTKLIB ``.pos`` track.
+
+    Raises NavsymError with the line: unreadable text, a missing column, a value that is not a finite
+    number, a latitude beyond 90 degrees, a time that stands still or goes back.
+    """
+    if policy not in ("strict", "repair"):
+        raise DomainError(f"expected strict or repair; got {policy!r:.40}; choose one", where="policy")
+    log = Log(called(path), policy)
+    text = text_of(read_bytes(path, LARGEST_FILE), log)
+    rows = list(rtklib_rows(text, log) if looks_like_rtklib(text) else csv_rows(text, log))
+    rows = in_order([row for row in rows if acceptable(row, log)], log)
+    log.check()
+    if not rows:
+        raise EmptyError(
+            "expected rows of time, latitude, longitude, height; got none; check the file", where=log.where
+        )
+    sanity(rows, log)
+    return assembled(rows, log)
+
+
+# -- text ----------------------------------------------------------------------------------------------
+
+
+def text_of(data: bytes, log: Log) -> str:
+    """UTF-8 text; when repairing also after a byte order mark or from latin-1."""
+    if not data.strip():
+        raise EmptyError("expected a track; got an empty file; check the export", where=log.where)
+    if log.policy == "repair":
+        if data.startswith(b"\xef\xbb\xbf"):
+            data = data[3:]
+            log.repairs.append("line 1: byte order mark removed")
+        try:
+            data.decode("utf-8")
+        except UnicodeDecodeError:
+            if not data.startswith((b"\xff\xfe", b"\xfe\xff")) and b"\0" not in data:
+                log.repairs.append("line 1: text read as latin-1, because it is not UTF-8")
+                return data.decode("latin-1")
+    return decode(data, log.where)
+
+
+def looks_like_rtklib(text: str) -> bool:
+    """True for RTKLIB's files, which begin with a comment after %."""
+    return text.lstrip().startswith("%")
+
+
+# -- RTKLIB --------------------------------------------------------------------------------------------
+
+
+def rtklib_rows(text: str, log: Log) -> Iterator[Row]:
+    """Rows of an RTKLIB solution in degrees: two time fields, lat, lon, height, Q, ns, sdn, sde, sdu, ..."""
+    understood(text, log)
+    for number, line in enumerate(lines_of(text), 1):
+        if not line.strip() or line.startswith("%"):
+            continue
+        if number > LARGEST_ROWS:
+            raise too_long(log)
+        fields = line.replace(",", " ").split()
+        if len(fields) < 5:
+            message = f"expected at least 5 fields; got {len(fields)}; mend or remove the row"
+            log.problem(ShapeError, number, message, "row left out")
+            continue
+        if fields[5:6] == ["0"]:
+            message = "Q: expected a solution, 1 to 7; got 0, which is none; remove the row"
+            log.problem(DomainError, number, message, "row left out")
+            continue
+        time = rtklib_time(fields[0], fields[1])
+        values = [time, *(number_of(x) for x in fields[2:5])]
+        sigma = rtklib_sigma(fields, number, log)
+        row = row_of(values, number, [" ".join(fields[:2]), *fields[2:5]], sigma, log)
+        if row is not None:
+            yield row
+
+
+#: What a header says when the columns are not decimal degrees: (mark, what it is, what to do).
+OTHER_COLUMNS = (
+    ("x-ecef", "x/y/z-ecef", "write the solution as llh"),
+    ("-baseline", "a baseline east, north, up", "write the solution as llh"),
+    ("latitude(d'", "degrees, minutes and seconds", "write the solution in decimal degrees"),
+)
+
+
+def understood(text: str, log: Log) -> None:
+    """Refuse files whose header names other columns than degrees and metres; say which clock it names."""
+    header = [line.lower() for line in lines_of(text[:20000]) if line.startswith("%")]
+    for mark, what, remedy in OTHER_COLUMNS:
+        if any(mark in line for line in header):
+            raise DomainError(f"expected lat/lon/height in degrees; got {what}; {remedy}", where=log.where)
+    clock = next((name for name in ("utc", "jst") for line in header if line.lstrip("% ").startswith(name)), None)
+    if clock:
+        log.warnings.append(f"times are {clock.upper()} by the header and are taken as they stand, not as GPS time")
+
+
+def rtklib_time(day: str, clock: str) -> float | None:
+    """Seconds since 1980-01-06 (GPS) of ``2023/07/11 06:04:30.000`` or of week and seconds of week."""
+    if "/" not in day:
+        week, seconds = number_of(day), number_of(clock)
+        return None if week is None or seconds is None else week * 604800.0 + seconds
+    match = re.fullmatch(r"(\d+):(\d+):(\d+(?:\.\d*)?)", clock)
+    try:
+        moment = datetime.strptime(day, "%Y/%m/%d").replace(tzinfo=UTC)
+    except ValueError:
+        return None
+    if match is None:
+        return None
+    hours, minutes, seconds = int(match[1]), int(match[2]), float(match[3])
+    return (moment - GPS_EPOCH).total_seconds() + 3600.0 * hours + 60.0 * minutes + seconds
+
+
+def rtklib_sigma(fields: Sequence[str], line: int, log: Log) -> tuple[float, float, float] | None:
+    """East, North, Up from the columns sdn, sde, sdu; None when they are missing or zero."""
+    values = [number_of(x) for x in fields[7:10]]
+    if any(v is not None and not math.isfinite(v) for v in values):
+        message = f"sdn, sde, sdu: expected finite numbers; got {' '.join(fields[7:10])}; mend or remove the row"
+        log.problem(NotFiniteError, line, message, "standard deviations not used")
+    if len(values) < 3 or any(v is None or not math.isfinite(v) or v <= 0 for v in values):
+        return None
+    north, east, up = (float(v) for v in values if v is not None)
+    return east, north, up
+
+
+# -- CSV -----------------------------------------------------------------------------------------------
+
+
+def csv_rows(text: str, log: Log) -> Iterator[Row]:
+    """Rows of a CSV; the separator is a comma, a semicolon or a tab."""
+    numbered = enumerate(lines_of(text), 1)
+    lines = [(i, line) for i, line in numbered if line.strip() and not line.startswith("#")]
+    if not lines:
+        raise EmptyError("expected a track; got no rows; check the export", where=log.where)
+    if len(lines) > LARGEST_ROWS:
+        raise too_long(log)
+    separator = separator_of(lines[0][1])
+    first = split(lines[0][1], separator)
+    columns, scale, start = dict(zip("t lat lon h".split(), range(4), strict=True)), 1.0, 0
+    if any(number_of(x) is None and decimal_comma(x) is None for x in first):
+        columns, scale = columns_of(first, log, lines[0][0])
+        start = 1
+    # A row of another length has a stray or decimal comma: its columns cannot be told.
+    width = max(len(first), 4)
+    for number, line in lines[start:]:
+        fields = split(line, separator)
+        if len(fields) != width:
+            message = f"expected {width} fields; got {len(fields)}; mend the row"
+            log.problem(ShapeError, number, message, "row left out")
+            continue
+        texts = [fields[columns[name]] for name in ("t", "lat", "lon", "h")]
+        row = row_of([value_of(x, number, log) for x in texts], number, texts, None, log)
+        if row is not None:
+            yield Row(row.line, row.t, row.lat, row.lon, row.h * scale)
+
+
+def lines_of(text: str) -> list[str]:
+    """Lines as an editor counts them; other separators of Unicode are ordinary characters."""
+    return re.split(r"\r\n|\n|\r", text)
+
+
+def separator_of(line: str) -> str:
+    """The character that separates: a semicolon or tab wins over commas, which may be decimal."""
+    return next((mark for mark in ";\t" if line.count(mark) >= 3), ",")
+
+
+def split(line: str, separator: str) -> list[str]:
+    """Fields of a line; none when the line is not a row of a table at all."""
+    try:
+        return [x.strip() for x in next(csv.reader([line], delimiter=separator), [])]
+    except csv.Error:
+        return []
+
+
+def columns_of(header: Sequence[str], log: Log, line: int) -> tuple[dict[str, int], float]:
+    """Places of the four columns, and the factor from heights to metres."""
+    plain = [re.sub(r"[\(\[].*?[\)\]]", "", x).strip().lower() for x in header]
+    found: dict[str, int] = {}
+    for name, words in NAMES.items():
+        places = [i for i, x in enumerate(plain) if x in words]
+        if not places:
+            raise ShapeError(
+                f"expected a column {name} (one of {', '.join(words)}); got {', '.join(header)[:99]}; add it",
+                where=f"{log.where}: line {line}",
+            )
+        if len(places) > 1:
+            raise DuplicateError(
+                f"expected one column for {name}; got {len(places)}; remove or rename one",
+                where=f"{log.where}: line {line}",
+            )
+        found[name] = places[0]
+    if re.search(r"[\(\[]\s*(ft|feet|foot)\b", header[found["h"]].lower()):
+        message = "expected heights in metres; got feet by the header; convert them"
+        log.problem(DomainError, line, message, "heights converted from feet")
+        return found, FOOT
+    return found, 1.0
+
+
+def value_of(text: str, line: int, log: Log) -> float | None:
+    """A number; a decimal comma is a problem of the row when strict and mended when repairing."""
+    value = number_of(text)
+    if value is not None:
+        return value
+    mended = decimal_comma(text)
+    if mended is None:
+        return None
+    message = f"expected a decimal point; got {text!r}; write points"
+    log.problem(ExpressionSyntaxError, line, message, "decimal comma read as a point")
+    return mended
+
+
+def number_of(text: str) -> float | None:
+    """A decimal number, nan or inf; None for anything else (no underscores, no hexadecimals)."""
+    return float(text) if DECIMAL.fullmatch(text.strip()) else None
+
+
+def decimal_comma(text: str) -> float | None:
+    """The number in a text with one decimal comma; None for any other text."""
+    return number_of(text.replace(",", ".")) if re.fullmatch(r"[+-]?\d+,\d+", text.strip(), re.A) else None
+
+
+def too_long(log: Log) -> NavsymError:
+    """The error of a file with more than :data:`LARGEST_ROWS` rows."""
+    return TooLargeError(f"expected at most {LARGEST_ROWS} rows; got more; split the file", where=log.where)
+
+
+# -- rows ----------------------------------------------------------------------------------------------
+
+
+def row_of(
+    values: Sequence[float | None], line: int, texts: Sequence[str], sigma: tuple[float, float, float] | None, log: Log
+) -> Row | None:
+    """A row, or None after noting what is wrong with it."""
+    for name, value, text in zip(("time", "latitude", "longitude", "height"), values, texts, strict=True):
+        if value is None:
+            message = f"{name}: expected a number; got {text[:40]!r}; mend or remove the row"
+            log.problem(ExpressionSyntaxError, line, message, "row left out")
+            return None
+        if not math.isfinite(value):
+            message = f"{name}: expected a finite number; got {text[:40]}; mend or remove the row"
+            log.problem(NotFiniteError, line, message, "row left out")
+            return None
+    t, lat, lon, h = (float(v) for v in values if v is not None)
+    return Row(line, t, lat, lon, h, sigma)
+
+
+def acceptable(row: Row, log: Log) -> bool:
+    """Whether the position can be on the Earth."""
+    limits: tuple[tuple[str, float, Callable[[float], bool], str], ...] = (
+        ("latitude", row.lat, lambda x: abs(x) <= 90, "within 90 degrees"),
+        ("longitude", row.lon, lambda x: -180 <= x <= 360, "from -180 to 360 degrees"),
+        ("height", row.h, lambda x: -20e3 <= x <= 1e8, "from -20 km to 100000 km"),
+    )
+    for name, value, fits, words in limits:
+        if not fits(value):
+            message = f"{name}: expected a value {words}; got {value:g}; check the column and its unit"
+            log.problem(DomainError, row.line, message, "row left out")
+            return False
+    return True
+
+
+def in_order(rows: list[Row], log: Log) -> list[Row]:
+    """Rows of strictly increasing time; the first of equal times stays."""
+    kept: list[Row] = []
+    for row in rows:
+        if not kept or row.t > kept[-1].t:
+            kept.append(row)
+        elif row.t == kept[-1].t:
+            message = f"time: expected a later time than {kept[-1].t:.3f}; got the same; keep one of the rows"
+            log.problem(DuplicateError, row.line, message, "row left out")
+        else:
+            message = f"time: expected a later time than {kept[-1].t:.3f}; got {row.t:.3f}; sort or remove the row"
+            log.problem(DomainError, row.line, message, "row left out")
+    return kept
+
+
+def sanity(rows: Sequence[Row], log: Log) -> None:
+    """What is possible but unlikely."""
+    heights = [row.h for row in rows]
+    if max(heights) > 9000 and slow(rows):
+        log.warnings.append(f"heights reach {max(heights):.0f} m at the speed of a car or ship: are they in feet?")
+    if all(abs(row.lat) <= math.pi / 2 and abs(row.lon) <= math.pi for row in rows) and len(rows) > 1:
+        log.warnings.append("all latitudes and longitudes are below pi/2 and pi: are they in radians?")
+
+
+def slow(rows: Sequence[Row]) -> bool:
+    """True when the ends of the track are reached at less than 60 m/s."""
+    a, b = rows[0], rows[-1]
+    metres = 111e3 * math.hypot(b.lat - a.lat, (b.lon - a.lon) * math.cos(math.radians(a.lat)))
+    return b.t > a.t and metres / (b.t - a.t) < 60
+
+
+def assembled(rows: Sequence[Row], log: Log) -> TrackFile:
+    """The track of checked rows: latitudes and longitudes in radians, arrays (N,).
+
+    Standard deviations that only some rows have are left out, with a warning.
+    """
+    known = [row.sigma for row in rows if row.sigma is not None]
+    if known and len(known) < len(rows):
+        log.warnings.append("standard deviations are missing in some rows and were not used")
+    return TrackFile(
+        t=np.array([row.t for row in rows]),
+        latitude=np.radians([row.lat for row in rows]),
+        longitude=np.radians([row.lon for row in rows]),
+        height=np.array([row.h for row in rows]),
+        sigma=np.array(known) if len(known) == len(rows) else None,
+        lines=np.array([row.line for row in rows], dtype=np.int64),
+        repairs=tuple(log.repairs),
+        warnings=tuple(log.warnings),
+    )

@@ -1,0 +1,301 @@
+"""From positions to velocity and acceleration: tracks with gaps, jitter and outliers.
+
+A track is differentiated in Cartesian axes fixed to the Earth and parallel to East, North, Up at the most central
+of its points; velocity and acceleration are then turned to East, North, Up at each row. Poles and the 180th
+meridian are ordinary points there. The noise of the positions and of the motion is found from the track
+itself by maximum likelihood, East and North together, Up for itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from navsym.core.arrays import Array, frozen, named
+from navsym.core.errors import DomainError, EmptyError, ShapeError
+from navsym.models.earth import cartesian, local_axes
+from navsym.trajectory.kernels.tracks import misfit
+
+Rows = NDArray[np.int64]
+Mask = NDArray[np.bool_]
+
+#: A step longer than this many usual steps is a gap.
+GAP = 5.0
+#: Interpolation residual, in robust standard deviations, beyond which a row is an isolated outlier.
+ISOLATED = 12.0
+#: An isolated outlier is also beyond what half of this acceleration does in one step, m/s^2.
+PLAUSIBLE = 10.0
+#: Positions are never taken to be better than a thousandth of their given standard deviation, or a millimetre.
+SMALLEST_SCALE = 1e-6
+LARGEST_ORDER = 6
+#: Steps in seconds: beyond them powers of the step, up to the eleventh, leave the range of a double.
+SHORTEST, LONGEST = 1e-9, 1e9
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Track:
+    """Positions in metres and how to turn vectors back.
+
+    t        : (N,) seconds, strictly increasing
+    position : (N, 3) East, North, Up axes of the most central row, metres
+    variance : (N, 3) variances of the positions up to a common factor, m^2
+    turn     : (N, 3, 3) from those axes to East, North, Up of each row
+    """
+
+    t: Array
+    position: Array
+    variance: Array
+    turn: Array
+
+    def __post_init__(self) -> None:
+        N = len(self.t)
+        put = partial(object.__setattr__, self)
+        put("t", named("t", self.t, (N,), "one entry per row"))
+        put("position", named("position", self.position, (N, 3), "rows by East, North, Up"))
+        put("variance", named("variance", self.variance, (N, 3), "rows by East, North, Up"))
+        put("turn", named("turn", self.turn, (N, 3, 3), "one rotation per row"))
+        if not (self.variance > 0).all():
+            least = float(self.variance.min())
+            raise DomainError(f"variance: expected positive numbers; got {least:g}; leave them out if unknown")
+        late = np.flatnonzero(np.diff(self.t) <= 0)
+        if late.size:
+            raise DomainError(
+                f"t: expected increasing times; got row {late[0] + 1} not after row {late[0]}; "
+                "sort the rows and keep one of equal times"
+            )
+        steps = np.diff(self.t)
+        if steps.size and not (steps.min() >= SHORTEST and steps.max() <= LONGEST):
+            raise DomainError(
+                f"t: expected steps of {SHORTEST:g} to {LONGEST:g} s; got {steps.min():.3g} to {steps.max():.3g}; "
+                "check the unit of the times"
+            )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Noise:
+    """Noise found from a track, East, North, Up.
+
+    scale   : (3,) factor on the given variances of the positions
+    density : (3,) density of the white noise in the derivative of order n, m^2 / s^(2n-1)
+    """
+
+    scale: Array
+    density: Array
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TrackEstimate:
+    """Velocity and acceleration of a track in East, North, Up of each row.
+
+    velocity, velocity_sd         : (N, 3) m/s
+    acceleration, acceleration_sd : (N, 3) m/s^2
+    flags  : one word per row: ``used``, ``doubtful`` or ``outlier``
+    gains  : channel -> gain of the last step in use (empty for methods without one)
+    """
+
+    velocity: Array
+    velocity_sd: Array
+    acceleration: Array
+    acceleration_sd: Array
+    flags: tuple[str, ...]
+    gains: dict[str, list[float]]
+
+
+def track_of(t: Array, latitude: Array, longitude: Array, height: Array, sigma: Array | float | None = None) -> Track:
+    """A track from geodetic coordinates: radians and metres, (N,) each.
+
+    sigma : standard deviations of the positions in metres, (N, 3) East, North, Up, or one number;
+            None: equal ones
+
+    Raises EmptyError for fewer than two rows and DomainError for angles off the Earth.
+    """
+    if np.size(t) < 2:
+        raise EmptyError(f"track: expected at least 2 rows; got {np.size(t)}; record a longer track")
+    N = np.size(t)
+    columns = {"latitude": latitude, "longitude": longitude, "height": height}
+    lat, lon, h = (named(name, value, (N,), "one entry per row") for name, value in columns.items())
+    if (np.abs(lat) > np.pi / 2 + 1e-12).any() or (np.abs(lon) > 2 * np.pi + 1e-12).any():
+        raise DomainError("latitude, longitude: expected radians on the Earth; got larger; convert degrees")
+    axes = local_axes(lat, lon)
+    point = cartesian(lat, lon, h)
+    middle = central(point)
+    return Track(
+        t=np.asarray(t, dtype=float),
+        position=(point - point[middle]) @ axes[middle].T,
+        variance=np.ones((N, 3)) if sigma is None else np.broadcast_to(np.asarray(sigma, float) ** 2, (N, 3)),
+        turn=axes @ axes[middle].T,
+    )
+
+
+def central(point: Array) -> int:
+    """The row (N, 3) nearest to the median position: a lost fix at latitude and longitude zero is never it."""
+    return int(np.argmin(((point - np.median(point, axis=0)) ** 2).sum(axis=1)))
+
+
+def usual_step(t: Array) -> float:
+    """Seconds from row to row; pairs and triples of almost equal times, as of merged receivers, do not shrink it."""
+    reach = 4 if len(t) > 8 else 1
+    return float(np.median(t[reach:] - t[:-reach])) / reach
+
+
+def check_order(track: Track, order: int) -> None:
+    """DomainError for an order that is not offered, ShapeError for a track too short for it."""
+    if not 2 <= order <= LARGEST_ORDER:
+        raise DomainError(f"order: expected 2 to {LARGEST_ORDER} states; got {order}; 3 is usual")
+    if len(track.t) < order + 1:
+        raise ShapeError(
+            f"track: expected at least {order + 1} rows for {order} states; got {len(track.t)}; "
+            "lower the order or record a longer track"
+        )
+
+
+# -- isolated outliers ---------------------------------------------------------------------------------
+
+
+def isolated_outliers(track: Track) -> Mask:
+    """(N,) True where a position departs from the cubic through its four neighbours and they do not.
+
+    The scale is the median absolute residual of the neighbourhood, so that a stop does not make
+    the motion after it look wild. Ends and rows beside gaps are not judged.
+    """
+    N = len(track.t)
+    wild: Mask = np.zeros(N, dtype=bool)
+    if N < 9:
+        return wild
+    residual = np.abs(interpolation_residuals(track))
+    if np.isnan(residual).all():
+        return wild
+    scale = np.maximum(running_median(residual, 41), np.nanmedian(residual, axis=0)) * 1.4826
+    floor = PLAUSIBLE / 2 * usual_step(track.t) ** 2 / ISOLATED
+    ratio = np.nan_to_num(residual / np.maximum(scale, floor)).max(axis=1)
+    for k in np.flatnonzero(ratio > ISOLATED):
+        wild[k] = ratio[k] == ratio[max(0, k - 2) : k + 3].max()
+    return wild
+
+
+def interpolation_residuals(track: Track) -> Array:
+    """Position minus the cubic through rows k-2, k-1, k+1, k+2, (N, 3); NaN at ends and gaps."""
+    t, x = track.t, track.position
+    residual = np.full(x.shape, np.nan)
+    inner = np.arange(2, len(t) - 2)
+    nodes = inner[:, None] + np.array([-2, -1, 1, 2])
+    weights = np.ones(nodes.shape)
+    for i in range(4):
+        for j in range(4):
+            if i != j:
+                weights[:, i] *= (t[inner] - t[nodes[:, j]]) / (t[nodes[:, i]] - t[nodes[:, j]])
+    residual[inner] = x[inner] - np.einsum("ki,kic->kc", weights, x[nodes])
+    spans = t[inner + 2] - t[inner - 2]
+    residual[inner[spans > 4 * GAP * usual_step(t)]] = np.nan
+    return residual
+
+
+def running_median(values: Array, width: int) -> Array:
+    """Median over a centred window of rows, (N, 3); NaN is left out."""
+    half = width // 2
+    padded = np.pad(values, ((half, half), (0, 0)), constant_values=np.nan)
+    windows = np.lib.stride_tricks.sliding_window_view(padded, width, axis=0)
+    filled = np.where(np.isnan(windows).all(axis=-1, keepdims=True), 0.0, windows)
+    median: Array = np.nanmedian(filled, axis=-1)
+    return median
+
+
+# -- noise by maximum likelihood -------------------------------------------------------------------------
+
+
+def first_spread(track: Track, order: int) -> Array:
+    """Standard deviations of the state before the first measurement: wide, in the scale of the track."""
+    steps = np.maximum(np.diff(track.t), usual_step(track.t))
+    speed = np.abs(np.diff(track.position, axis=0) / steps[:, None]).max()
+    return np.array([np.sqrt(track.variance.max()) * 10 + 1.0, 10 * speed + 1.0, *([50.0] * (order - 2))])
+
+
+def noise_of(track: Track, order: int, use: Rows, *, gate: float = 0.0, fixed_scale: bool = False) -> Noise:
+    """Maximum-likelihood noise of a track: one pair for East and North, one for Up.
+
+    gate        : innovations beyond so many standard deviations count as if they were at it; 0 for none
+    fixed_scale : take the given variances as they are
+    """
+    check_order(track, order)
+    pairs = [Fit(track, order, use, c, gate, fixed_scale).best() for c in ((0, 1), (2,))]
+    scale, density = (np.array([pairs[0][i], pairs[0][i], pairs[1][i]]) for i in (0, 1))
+    return Noise(frozen(scale), frozen(density))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Fit:
+    """The likelihood of some channels together, as a function of scale and density."""
+
+    track: Track
+    order: int
+    use: Rows
+    channels: tuple[int, ...]
+    gate: float
+    fixed_scale: bool
+
+    def sums(self, scale: float, density: float, gate: float) -> tuple[float, float, int]:
+        """Sums of log S and of innovation^2 / S over the channels, and the number of innovations.
+
+        scale : factor of the given variances ; density : of the process noise ; gate : as in :func:`noise_of`
+        """
+        spread = first_spread(self.track, self.order)
+        total = np.zeros(3)
+        for c in self.channels:
+            z, r = self.track.position[:, c].copy(), self.track.variance[:, c] * scale
+            total += misfit(self.track.t, z, r, self.use, density, spread, self.order, gate)
+        return float(total[0]), float(total[1]), int(total[2])
+
+    def profile(self, ratio: float) -> tuple[float, float]:
+        """Cost and best scale for a ratio density/scale, without a gate: the scale has a closed form."""
+        logs, squares, count = self.sums(1.0, ratio, 0.0)
+        scale = 1.0 if self.fixed_scale else max(squares / max(count, 1), SMALLEST_SCALE)
+        return logs + count * np.log(scale) + squares / scale, scale
+
+    def cost(self, log_scale: float, log_density: float) -> float:
+        """Minus twice the log-likelihood, but for a constant, at decimal logarithms of scale and density."""
+        logs, squares, _ = self.sums(10.0**log_scale, 10.0**log_density, self.gate)
+        return logs + squares
+
+    def best(self) -> tuple[float, float]:
+        """Coarse grid over the ratio, golden section, then turns of both logarithms under the gate."""
+        step = usual_step(self.track.t)
+        unit = float(np.log10(np.median(self.track.variance[:, self.channels[0]])))
+        unit -= (2 * self.order - 1) * np.log10(step)
+        grid = unit + np.arange(-14.0, 9.0)
+        at = grid[int(np.argmin([self.profile(10.0**g)[0] for g in grid]))]
+        at = golden(lambda g: self.profile(10.0**g)[0], at - 1.0, at + 1.0, 12)
+        x = float(np.log10(self.profile(10.0**at)[1]))
+        y = at + x
+        for _ in range(3 if self.gate > 0 else 0):
+            y = golden(lambda g, x=x: self.cost(x, g), y - 1.5, y + 1.5, 9)  # type: ignore[misc]
+            if not self.fixed_scale:
+                low = max(x - 1.5, float(np.log10(SMALLEST_SCALE)))
+                x = golden(lambda g, y=y: self.cost(g, y), low, max(x + 1.0, low + 0.5), 9)  # type: ignore[misc]
+        return 10.0**x, 10.0**y
+
+
+def golden(f: Callable[[float], float], low: float, high: float, rounds: int) -> float:
+    """Minimum of a function on an interval by golden section."""
+    ratio = (np.sqrt(5) - 1) / 2
+    a, b = high - ratio * (high - low), low + ratio * (high - low)
+    fa, fb = f(a), f(b)
+    for _ in range(rounds):
+        if fa <= fb:
+            high, b, fb = b, a, fa
+            a = high - ratio * (high - low)
+            fa = f(a)
+        else:
+            low, a, fa = a, b, fb
+            b = low + ratio * (high - low)
+            fb = f(b)
+    return float((low + high) / 2)
+
+
+def memory(noise: Noise, variance: Array, order: int) -> float:
+    """Time over which noise and motion balance, (variance/density)^(1/2n), seconds; East and North."""
+    ratio = noise.scale[0] * np.median(variance[:, 0]) / noise.density[0]
+    return float(ratio ** (1 / (2 * order)))

@@ -1,0 +1,1 @@
+"""Claims of papers decided and kept: fingerprints, verdicts, the ledger."""

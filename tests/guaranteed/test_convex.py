@@ -1,0 +1,184 @@
+"""Programmes on a grid against closed forms; the solvers' own words are never taken for the truth."""
+
+import sys
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import sympy as sp
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.testing import assert_allclose
+
+from navsym.core.casadi_functions import casadi_function
+from navsym.core.errors import DomainError, NotEstimableError, NotFiniteError, ShapeError
+from navsym.guaranteed.convex import (
+    LP_SOLVERS,
+    QP_SOLVERS,
+    GridProblem,
+    grid_problem,
+    guaranteed_lp,
+    least_squares_qp,
+    trust_table,
+    trusted_until,
+)
+from navsym.models.linear import LinearModel
+from navsym.models.transition.exponential import regressors
+
+UNKNOWNS = ("y1", "y2", "y3")
+END, INSTANT = sp.symbols("T tau", real=True)
+MODEL = LinearModel([[0, -1, 0], [0, 0, 1], [0, -1, 0]], H=[[1, 0, 0]], states=UNKNOWNS)
+DERIVED = casadi_function("H", [INSTANT, END], regressors(MODEL, END, INSTANT).matrix.T)
+
+
+def velocity_correction(T, unknown, intervals=100):
+    """z = y1 over [0, T], y1' = -y2, y2' = y3, y3' = -y2; estimate one component of y(T)."""
+    functional = np.eye(3)[UNKNOWNS.index(unknown)]
+    return grid_problem(DERIVED, functional, (0.0, T), T, intervals=intervals)
+
+
+def test_the_problem_comes_from_the_derived_regressors():
+    problem = velocity_correction(1.5, "y1", 6)
+    s = 1.5 - np.linspace(0.0, 1.5, 7)
+    assert_allclose(problem.regressors, [np.ones(7), np.sin(s), -2 * np.sin(s / 2) ** 2], rtol=1e-14)
+    assert_allclose(problem.spacing.sum(), 1.5, rtol=1e-15)
+    with pytest.raises(DomainError, match="start < end"):
+        grid_problem(DERIVED, [1.0, 0.0, 0.0], (1.0, 1.0), 1.0)
+
+
+def optimum(T, unknown):
+    """Closed forms for T <= pi/2: 1, 2 cot(T/4), cos(T/2)/sin(T/4)^2."""
+    return {"y1": 1.0, "y2": 2 / np.tan(T / 4), "y3": np.cos(T / 2) / np.sin(T / 4) ** 2}[unknown]
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.floats(0.05, np.pi / 2), st.sampled_from(UNKNOWNS))
+def test_on_a_grid_with_the_optimal_instants_the_programme_has_the_closed_value(T, unknown):
+    result = guaranteed_lp(velocity_correction(T, unknown, 60))
+    assert_allclose(result.value, optimum(T, unknown), rtol=1e-8)
+    assert result.claims
+    assert result.residual < 1e-8 * result.value
+
+
+@settings(max_examples=15, deadline=None)
+@given(st.floats(0.2, np.pi / 2), st.sampled_from(UNKNOWNS), st.sampled_from([21, 51, 101]))
+def test_off_the_optimal_instants_the_value_is_above_by_no_more_than_the_grid_error(T, unknown, odd):
+    """A dual feasible on the grid exceeds 1 between its points by h^2/8 max|f''| at most.
+
+    f = x . H has f'' = a - f with a = x1 - x3, and |a| is bounded by the guaranteed value of that functional.
+    """
+    problem = velocity_correction(T, unknown, odd)
+    steep = GridProblem(problem.regressors, [1.0, 0.0, -1.0])
+    bend = guaranteed_lp(steep).value + 1.0
+    h = T / odd
+    excess = h**2 / 8 * bend / (1 - h**2 / 8)
+    value, exact = guaranteed_lp(problem).value, optimum(T, unknown)
+    assert exact * (1 - 1e-9) <= value <= exact * (1 + excess) * (1 + 1e-9)
+
+
+def test_the_support_is_the_beginning_the_middle_and_the_end():
+    result = guaranteed_lp(velocity_correction(1.2, "y3"))
+    assert np.flatnonzero(np.abs(result.weights) > 1e-9).tolist() == [0, 50, 100]
+    quarter = 4 * np.sin(1.2 / 4) ** 2
+    assert_allclose(result.weights[[0, 50, 100]] * quarter, [-1, 2 * np.cos(0.6), 1 - 2 * np.cos(0.6)], rtol=1e-9)
+
+
+@pytest.mark.parametrize("solver", LP_SOLVERS)
+@pytest.mark.parametrize("unknown", UNKNOWNS)
+def test_every_solver_brackets_the_optimum_of_a_mild_problem(solver, unknown):
+    result = guaranteed_lp(velocity_correction(1.5, unknown), solver=solver)
+    exact = optimum(1.5, unknown)
+    loose = 0.03 if "osqp" in solver.lower() else 1e-6  # a first-order method stops early
+    assert_allclose(result.value, exact, rtol=loose)
+    assert result.lower <= exact * (1 + 1e-9)
+    assert_allclose(result.lower, exact, rtol=loose)
+    assert result.residual < 1e-4
+    assert result.status
+
+
+@pytest.mark.parametrize("solver", QP_SOLVERS)
+def test_least_squares_agrees_with_its_normal_equations(solver):
+    problem = velocity_correction(1.5, "y2")
+    H, W = problem.regressors, np.diag(problem.spacing)
+    expected = W @ H.T @ np.linalg.solve(H @ W @ H.T, problem.functional)
+    result = least_squares_qp(problem, solver=solver)
+    assert_allclose(result.weights, expected, atol=1e-5)
+    assert_allclose(result.value, np.abs(expected).sum(), rtol=1e-5)
+
+
+@settings(max_examples=10, deadline=None)
+@given(st.floats(0.3, np.pi / 2), st.sampled_from(UNKNOWNS))
+def test_least_squares_under_its_worst_correlation_is_never_better(T, unknown):
+    problem = velocity_correction(T, unknown)
+    worst = least_squares_qp(problem, solver="casadi:highs").value
+    assert worst >= optimum(T, unknown) * (1 - 1e-7)
+    if unknown != "y1":
+        assert worst > 1.2 * optimum(T, unknown)
+
+
+def test_the_weighted_problem_scales_with_its_bounds():
+    problem = velocity_correction(1.0, "y2")
+    doubled = GridProblem(problem.regressors, problem.functional, bounds=np.full(101, 2.0))
+    assert_allclose(guaranteed_lp(doubled).value, 2 * optimum(1.0, "y2"), rtol=1e-9)
+
+
+def test_where_each_solver_stops_being_trustworthy_is_found():
+    lengths = [1.5, 0.5, 0.1, 0.02]
+    problems = [(T, velocity_correction(T, "y3", 40), optimum(T, "y3")) for T in lengths]
+    table = trust_table(problems)
+    assert len(table) == len(lengths) * len(LP_SOLVERS)
+    limits = trusted_until(table)
+    assert limits["casadi:highs"] <= 0.1
+    assert limits["casadi:osqp"] is None  # it never reaches six digits here
+    assert all(row.honest or row.error is None or row.error > 1e-6 for row in table)
+    assert any(not row.honest for row in table)  # a success claimed and off
+
+
+def test_a_status_is_no_proof():
+    """At T = 1e-4 HiGHS calls a value optimal that is two fifths below the optimum."""
+    T = 1e-4
+    result = guaranteed_lp(velocity_correction(T, "y2"), solver="casadi:highs")
+    assert result.claims
+    assert result.value < 0.6 * optimum(T, "y2")
+    assert result.residual > 1e-6  # and its weights are biased
+
+
+def test_a_solver_that_fails_says_so_and_gives_no_value(monkeypatch):
+    def broken(problem, engine):
+        raise RuntimeError("licence expired\nsecond line")
+
+    monkeypatch.setattr("navsym.guaranteed.convex.lp_by_cvxpy", broken)
+    result = guaranteed_lp(velocity_correction(1.0, "y1"), solver="cvxpy:CLARABEL")
+    assert result.status == "failed: RuntimeError: licence expired"
+    assert (result.value, result.weights, result.residual, result.lower) == (None, None, None, None)
+    assert not result.claims
+
+
+def test_a_steep_basis_is_solved_or_shown_to_fail_but_not_called_unestimable():
+    powers = np.linspace(0.0, 1.0, 101)[np.newaxis, :] ** np.arange(24)[:, np.newaxis]
+    result = guaranteed_lp(GridProblem(powers, np.eye(24)[-1]))
+    exact = 2.0 ** (2 * 23 - 1)  # leading coefficient of the Chebyshev polynomial
+    assert result.value is None or result.residual > 1e-9 or abs(result.value / exact - 1) < 0.1
+
+
+def test_bad_problems_are_refused_in_words():
+    with pytest.raises(NotEstimableError, match="rank 1 of 2"):
+        guaranteed_lp(GridProblem([[1.0, 1.0], [2.0, 2.0]], [0.0, 1.0]))
+    with pytest.raises(NotEstimableError, match="rank 0 of 1"):
+        guaranteed_lp(GridProblem([[0.0, 0.0]], [1.0]))
+    with pytest.raises(DomainError, match="expected one of casadi:highs"):
+        guaranteed_lp(velocity_correction(1.0, "y1"), solver="simplex")
+    with pytest.raises(ShapeError, match=r"bounds: expected shape \(2,\)"):
+        GridProblem(np.ones((1, 2)), [1.0], bounds=[1.0])
+    with pytest.raises(DomainError, match="bounds: expected positive"):
+        GridProblem(np.ones((1, 2)), [1.0], bounds=[1.0, 0.0])
+    with pytest.raises(NotFiniteError):
+        GridProblem([[1.0, np.nan]], [1.0])
+
+
+def test_a_second_highs_library_is_reported_before_it_ends_the_process(monkeypatch, tmp_path):
+    (tmp_path / "libhighs.so.1").touch()
+    monkeypatch.setitem(sys.modules, "highspy", SimpleNamespace(__file__=str(tmp_path / "__init__.py")))
+    result = guaranteed_lp(velocity_correction(1.0, "y1"), solver="casadi:highs")
+    assert result.status.startswith("failed: MissingEngineError: casadi:highs: expected one HiGHS library")
+    assert not result.claims

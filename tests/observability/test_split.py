@@ -1,0 +1,183 @@
+"""Splits of symbolic systems with known answers."""
+
+from __future__ import annotations
+
+import pytest
+import sympy as sp
+
+from navsym.core.errors import DomainError, ShapeError, UnobservableError
+from navsym.models.inertial import joint_model, position_group, velocity_group
+from navsym.models.linear import LinearModel
+from navsym.observability.chains import observe
+from navsym.observability.splits import best_split, general_blocks, split, splits, three_blocks, two_stage_blocks
+
+a, b, c, d, w = sp.symbols("a b c d w", real=True)
+
+
+def zero(matrix: sp.MatrixBase) -> bool:
+    return all(sp.cancel(entry) == 0 for entry in matrix)
+
+
+def holds(model: LinearModel, i: int, j: int) -> None:
+    """The blocks of a split reproduce the model: L G and the outputs, for every state."""
+    found = observe(model)
+    chosen = split(found, i, j)
+    G, h1, h2 = model.F, model.H[0, :], model.H[1, :]
+    if i == found.measurements[0].dimension:
+        blocks = two_stage_blocks(chosen)
+        x, z = blocks.L[:i, :], blocks.L[i:, :]
+        assert zero(x * G - blocks.G_x * x)
+        assert zero(blocks.g_x * x - h1)
+        if j:
+            assert zero(z * G - blocks.G_z1 * x - blocks.G_z2 * z)
+            assert zero(blocks.g_z2 * z - h2)
+    elif i:
+        blocks = three_blocks(chosen)
+        u, v, rest = blocks.L[:i, :], blocks.tail, blocks.L[i:, :]
+        assert zero(u * G - blocks.G_u1 * u - blocks.G_u2 * v)
+        assert zero(v * G - blocks.G_v1 * u - blocks.G_v2 * v)
+        assert zero(rest * G - blocks.G_w1 * u - blocks.G_w2 * rest)
+        assert zero(blocks.g_u * u - h1)
+        assert zero(blocks.g_w * rest - h2)
+
+
+def similar(F: sp.Matrix, H: sp.Matrix, T: sp.Matrix) -> LinearModel:
+    return LinearModel((T.inv() * F * T).applyfunc(sp.cancel), None, H * T)
+
+
+SCRAMBLE = sp.Matrix([[1, 2, 0, 1], [0, 1, 1, 0], [1, 2, 1, 1], [0, 1, 1, 1]])
+
+#: name -> model, (n, m, l), all feasible splits, the split with the least max(i, j)
+KNOWN = {
+    "direct sum": (
+        LinearModel([[0, 1, 0, 0], [a, 0, 0, 0], [0, 0, 0, 1], [0, 0, b, 0]], None, [[1, 0, 0, 0], [0, 0, 1, 0]]),
+        (4, 2, 2),
+        [(2, 2)],
+        (2, 2),
+    ),
+    "scrambled direct sum": (
+        similar(
+            sp.Matrix([[0, 1, 0, 0], [a, 0, 0, 0], [0, 0, 0, 1], [0, 0, b, 0]]),
+            sp.Matrix([[1, 0, 0, 0], [0, 0, 1, 0]]),
+            SCRAMBLE,
+        ),
+        (4, 2, 2),
+        [(2, 2)],
+        (2, 2),
+    ),
+    "second measurement idle (m = n)": (
+        LinearModel([[0, 1, 0], [0, 0, 1], [a, b, c]], None, [[1, 0, 0], [0, 0, 1]]),
+        (3, 3, 3),
+        [(3, 0), (2, 1), (1, 2), (0, 3)],
+        (2, 1),
+    ),
+    "first observes one state": (
+        LinearModel([[a, 0, 0], [1, 0, 1], [0, b, 0]], None, [[1, 0, 0], [0, 1, 0]]),
+        (3, 1, 3),
+        [(1, 2), (0, 3)],
+        (1, 2),
+    ),
+    "overlap in two dimensions": (
+        LinearModel([[0, 1, 0, 0], [0, 0, 1, 0], [a, b, 0, 0], [0, 0, 1, d]], None, [[1, 0, 0, 0], [0, 0, 0, 1]]),
+        (4, 3, 4),
+        [(3, 1), (2, 2), (1, 3), (0, 4)],
+        (2, 2),
+    ),
+    "u, v, w needed": (
+        LinearModel([[0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1], [a, b, c, d]], None, [[1, 0, 0, 0], [0, 0, 1, 0]]),
+        (4, 4, 4),
+        [(4, 0), (2, 2), (1, 3), (0, 4)],
+        (2, 2),
+    ),
+    "oscillators of one frequency": (
+        LinearModel(
+            [[0, 1, 0, 0], [-(w**2), 0, 0, 0], [0, 0, 0, 1], [0, 0, -(w**2), 0]], None, [[1, 0, 1, 0], [0, 1, 1, 0]]
+        ),
+        (4, 2, 2),
+        [(2, 2)],
+        (2, 2),
+    ),
+    "triple integrator by its ends": (
+        LinearModel([[0, 1, 0], [0, 0, 1], [0, 0, 0]], None, [[0, 0, 1], [1, 0, 0]]),
+        (3, 1, 3),
+        [(1, 2), (0, 3)],
+        (1, 2),
+    ),
+    "velocity before position": (
+        LinearModel([[0, 1, 0], [0, 0, 1], [0, 0, 0]], None, [[0, 1, 0], [1, 0, 0]]),
+        (3, 2, 3),
+        [(2, 1), (0, 3)],
+        (2, 1),
+    ),
+    "velocity group": (velocity_group().model(("c1", "c2")), (6, 3, 3), [(3, 3)], (3, 3)),
+    "position group": (position_group().model(("m1", "m2")), (8, 6, 6), [(6, 2), (4, 4), (2, 6)], (4, 4)),
+    "two scalars": (LinearModel([[a, 0], [0, b]], None, [[1, 0], [0, 1]]), (2, 1, 1), [(1, 1)], (1, 1)),
+}
+
+
+@pytest.mark.parametrize("name", KNOWN)
+def test_systems_with_known_answers_are_answered_completely(name):
+    model, sizes, feasible, best = KNOWN[name]
+    found = observe(model)
+    assert (model.size, *(m.dimension for m in found.measurements)) == sizes
+    assert [(s.i, s.j) for s in splits(found)] == feasible
+    chosen = best_split(found)
+    assert (chosen.i, chosen.j) == best
+    for i, j in feasible:
+        holds(model, i, j)
+
+
+@pytest.mark.parametrize("name", KNOWN)
+def test_the_printed_determinant_is_that_of_L(name):
+    model, _, _, _ = KNOWN[name]
+    found = observe(model)
+    for feasible_split in splits(found):
+        chosen = split(found, feasible_split.i, feasible_split.j)
+        assert sp.cancel(chosen.L.det(method="berkowitz") - feasible_split.determinant) == 0
+        assert feasible_split.determinant != 0
+
+
+def test_a_hidden_mode_refuses_every_split_and_names_the_mode():
+    model = LinearModel([[0, 1, 0], [a, 0, 0], [0, 0, b]], None, [[1, 0, 0], [0, 1, 0]], ("x", "v", "mode"))
+    with pytest.raises(UnobservableError, match=r"rank 2 of 3.*mode"):
+        split(observe(model))
+
+
+def test_a_split_that_is_no_basis_names_the_determinant_that_vanishes():
+    found = observe(KNOWN["position group"][0])
+    with pytest.raises(DomainError, match=r"det\(a1, a2, a3, a4, a5, b1, b2, b3\) = 0 .*choose one of 6,2, 4,4, 2,6"):
+        split(found, 5, 3)
+
+
+def test_splits_of_wrong_size_are_refused():
+    found = observe(KNOWN["two scalars"][0])
+    with pytest.raises(ShapeError, match=r"i \+ j = 2"):
+        split(found, 2, 1)
+    with pytest.raises(ShapeError, match="two measurements"):
+        splits(observe(joint_model()))
+
+
+def test_free_matrices_change_coordinates_and_nothing_else():
+    model = KNOWN["overlap in two dimensions"][0]
+    chosen = split(observe(model))
+    C1 = sp.Matrix([[1, a, 0], [0, 1, 2], [b, 0, 1]])
+    blocks = two_stage_blocks(chosen, C1, sp.Matrix([[3]]))
+    x, z = blocks.L[:3, :], blocks.L[3:, :]
+    assert zero(x * model.F - blocks.G_x * x)
+    assert zero(z * model.F - blocks.G_z1 * x - blocks.G_z2 * z)
+    with pytest.raises(DomainError, match="determinant 0"):
+        two_stage_blocks(chosen, sp.zeros(3, 3))
+
+
+def test_the_general_variant_reproduces_the_model_and_refuses_rows_that_complete_nothing():
+    model = KNOWN["overlap in two dimensions"][0]
+    found = observe(model)
+    blocks = general_blocks(model, found, sp.Matrix([[1, 0, 0, c + 1]]).subs(c, 2))
+    x, z = blocks.L[:3, :], blocks.L[3:, :]
+    assert zero(x * model.F - blocks.G_x * x)
+    assert zero(z * model.F - blocks.G_z1 * x - blocks.G_z2 * z)
+    assert zero(blocks.g_z1 * x + blocks.g_z2 * z - model.H[1, :])
+    with pytest.raises(DomainError, match="determinant 0"):
+        general_blocks(model, found, sp.Matrix([[1, 1, 0, 0]]))
+    with pytest.raises(ShapeError, match="L_z"):
+        general_blocks(model, found, sp.eye(4))

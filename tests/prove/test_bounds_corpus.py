@@ -1,0 +1,49 @@
+"""Inequalities of textbooks and of the field: proved, their reverses refuted, certificates accepted by the checker."""
+
+from __future__ import annotations
+
+import pytest
+from bounds_corpus import FIELD, FIELD_SYMBOLS, TEXTBOOK, TEXTBOOK_SYMBOLS
+
+from navsym import checker
+from navsym.claims import REFUTED
+from navsym.prove.claimfile import claims_from, decide_claim
+
+ROWS = [(TEXTBOOK_SYMBOLS, row) for row in TEXTBOOK] + [(FIELD_SYMBOLS, row) for row in FIELD]
+REVERSE = {"<": ">", "<=": ">", ">": "<", ">=": "<"}
+
+#: Minutes rather than seconds on a busy machine: left to the slow tests.
+SLOW = ("sqrt(a**2 + n**2 - 2*a*n*cos(x))", "atan((1 - q)*tan(t/2))", "(x**2 + y**2 + z**2)*(u**2 + v**2 + w**2)")
+
+
+def decided(symbols, left, relation, right):
+    document = {"symbols": symbols, "claim": [{"id": "one", "left": left, "relation": relation, "right": right}]}
+    return decide_claim(claims_from(document).claims[0])
+
+
+def test_there_are_more_than_a_hundred_and_thirty_of_them():
+    assert len(ROWS) > 130
+
+
+@pytest.mark.parametrize(
+    ("symbols", "row"),
+    [
+        pytest.param(symbols, row, id=" ".join(row), marks=[pytest.mark.slow] * (row[0] in SLOW))
+        for symbols, row in ROWS
+    ],
+)
+def test_the_inequality_is_proved(symbols, row):
+    verdict = decided(symbols, *row)
+    assert verdict.status.holds, verdict
+    if verdict.certificate:
+        certificate = verdict.certificate
+        assert checker.check(certificate) == certificate["kind"]
+        parts = certificate["of"] if certificate["kind"] == "all" else [certificate]
+        squares_out, kinds = len(parts) > 1, [part["kind"] for part in parts]
+        assert kinds[0] == ("identity" if squares_out else "positivity") and set(kinds[1:]) <= {"positivity"}
+
+
+@pytest.mark.parametrize(("symbols", "row"), ROWS[::3])
+def test_its_reverse_is_refuted(symbols, row):
+    left, relation, right = row
+    assert decided(symbols, left, REVERSE[relation], right).status == REFUTED
