@@ -4,10 +4,35 @@
     >>> nav.prove("sin(2*a) = 2*sin(a)*cos(a)").status
     <Status.PROVED: 'PROVED'>
 
-Every verb of the command line is one function here, with the same words; text, sympy expressions and exact numbers go
-in, and answers are frozen objects with plain attributes that show themselves in a notebook. ``answer.document()`` is the
+Every verb of the command line is one function here, with the same words; text, sympy expressions and exact numbers
+go in; answers are frozen objects with plain attributes that show themselves in a notebook. ``answer.document()`` is the
 JSON that the verb prints. A wrong argument raises :class:`NavsymError` with its kind, its place, and a sentence of the
 form *expected …; got …; remedy*.
+
+A first session
+---------------
+
+    >>> nav.prove("sin(T) <= T", T=("0", "pi")).status
+    <Status.CERTIFIED: 'CERTIFIED'>
+    >>> model = nav.Model(states="y1 y2 y3", F=[["0", "-1", "0"], ["0", "0", "1"], ["0", "-1", "0"]],
+    ...                   H=[["1", "0", "0"]], sigma=["1"], interval="T", targets={"drift": "y3"}, T=("0", "2*pi"))
+    >>> drift = nav.solve(model, "drift", T="pi/2")
+    >>> print(drift.value)
+    4.828427124746190097603377448419
+
+Conventions
+-----------
+
+* Radians, seconds and metres; degrees and hours only in reports, printed numerals and files that say so.
+* Local axes are east, north, up (x, y, z) unless a model names others. An error is estimate minus truth; an innovation
+  is measurement minus prediction. Where a formula needs quaternions they are Hamilton's, scalar first.
+* ``dx/dt = F x``, ``z = H x + r``; Phi carries a state forward; P, Q and R are covariances.
+* Time runs from 0 to T, the length of the interval; a target is a functional of the state at T.
+* ``sigma`` bounds the standard deviation of a measurement, whatever the correlation of its errors.
+* Rows of ``mode_transition`` mean *from* and sum to one. A filter starts at step 0; its first measurement is at step 1.
+* ``heights[row, column]``: a row is a line of constant y, x runs with the columns.
+* Exact numbers are text (``"1/10"``, ``"0.1"``), integers or fractions; a float is refused where an exact number is
+  meant. A certified number is a :class:`Number` with ``lower`` and ``upper``; a plain float is a float.
 """
 
 from __future__ import annotations

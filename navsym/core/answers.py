@@ -1,4 +1,4 @@
-"""What every answer can do: show itself in one line, give the document of its verb, be checked, exported and plotted."""
+"""Answers: each shows itself in one line, gives the document of its verb, can be checked, exported and plotted."""
 
 from __future__ import annotations
 

@@ -8,7 +8,7 @@ from fractions import Fraction
 
 @dataclass(frozen=True, slots=True)
 class Number:
-    """A real number between two decimal strings, both rounded outwards, so that the number lies between them for certain.
+    """A real number between two decimal strings that are rounded outwards: it lies between them for certain.
 
     lower, upper : decimal strings
 
