@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import contextlib
 import json
 import os
 import sys
-import tempfile
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from pathlib import Path
 from typing import IO, Any
 
 from navsym.cli._progress import LINE
-from navsym.core.errors import NavsymError
+from navsym.core.errors import OutputError
+from navsym.language.files import write_bytes as write_bytes
+from navsym.language.files import write_text as write_text
 
 #: Colours of the words that a reader looks for first.
 STYLES: Mapping[str, str] = {
@@ -27,12 +26,6 @@ STYLES: Mapping[str, str] = {
     "yes": "green",
     "no": "yellow",
 }
-
-
-class OutputError(NavsymError):
-    """A file that cannot be written."""
-
-    kind = "output"
 
 
 # One document, or text
@@ -157,56 +150,3 @@ def drawn_table(columns: Sequence[str], cells: list[list[str]], title: str, righ
     with console.capture() as capture:
         console.print(drawn)
     return capture.get()
-
-
-# Files
-
-
-def write_text(path: str | os.PathLike[str], text: str, *, durable: bool = True) -> None:
-    """Write a file whole or not at all: temporary file beside it, fsync, rename.
-
-    durable : whether to wait until the disk has it; not for thousands of files that are made again in seconds
-
-    Raises OutputError when the folder is missing or cannot be written.
-    """
-    write_bytes(path, text.encode("utf-8"), durable=durable)
-
-
-def write_bytes(path: str | os.PathLike[str], data: bytes, *, durable: bool = True) -> None:
-    """Like :func:`write_text`, for bytes."""
-    target = Path(os.path.realpath(path))
-    try:
-        if target.exists() and not target.is_file():  # a pipe or /dev/stdout cannot be renamed over
-            target.write_bytes(data)
-        else:
-            replace_file(target, data, durable)
-    except OSError as error:
-        reason = error.strerror or type(error).__name__
-        message = f"expected a file that can be written; got '{reason}'; choose another --out"
-        raise OutputError(message, where=str(path)) from error
-
-
-def replace_file(target: Path, data: bytes, durable: bool) -> None:
-    """The temporary file has the mode of a new file, or that of the one it replaces."""
-    handle, name = tempfile.mkstemp(prefix=f".{target.name[:50]}.", dir=target.parent)
-    try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(data)
-            file.flush()
-            if durable:
-                os.fsync(file.fileno())
-        os.chmod(name, mode_for(target))
-        os.replace(name, target)
-    except BaseException:
-        with contextlib.suppress(OSError):
-            os.unlink(name)
-        raise
-
-
-def mode_for(target: Path) -> int:
-    """Permission bits of the file that stands there, or what the umask leaves of 0666."""
-    if target.exists():
-        return target.stat().st_mode & 0o777
-    mask = os.umask(0)
-    os.umask(mask)
-    return 0o666 & ~mask

@@ -124,3 +124,9 @@ class MissingEngineError(NavsymError):
 
     kind = "missing"
     status = 3
+
+
+class OutputError(NavsymError):
+    """A file that cannot be written."""
+
+    kind = "output"

@@ -1,12 +1,14 @@
-"""Bytes of a file to text: what is read at all, and how a place in it is called."""
+"""Files: their bytes as text, the name of a place in one, and writing one whole or not at all."""
 
 from __future__ import annotations
 
 import codecs
+import contextlib
 import os
+import tempfile
 from pathlib import Path
 
-from navsym.core.errors import EmptyError, ExpressionSyntaxError, NavsymError, TooLargeError, printable
+from navsym.core.errors import EmptyError, ExpressionSyntaxError, NavsymError, OutputError, TooLargeError, printable
 
 MARKS = {
     codecs.BOM_UTF8: "a byte order mark",
@@ -80,3 +82,53 @@ def not_text(got: str, where: str) -> NavsymError:
     return ExpressionSyntaxError(
         f"expected plain UTF-8 text; got {got}; do save it as UTF-8 without a byte order mark", where=where
     )
+
+
+def write_text(path: str | os.PathLike[str], text: str, *, durable: bool = True) -> None:
+    """Write a file whole or not at all: temporary file beside it, fsync, rename.
+
+    durable : whether to wait until the disk has it; not for thousands of files that are made again in seconds
+
+    Raises OutputError when the folder is missing or cannot be written.
+    """
+    write_bytes(path, text.encode("utf-8"), durable=durable)
+
+
+def write_bytes(path: str | os.PathLike[str], data: bytes, *, durable: bool = True) -> None:
+    """Like :func:`write_text`, for bytes."""
+    target = Path(os.path.realpath(path))
+    try:
+        if target.exists() and not target.is_file():  # a pipe or /dev/stdout cannot be renamed over
+            target.write_bytes(data)
+        else:
+            replace_file(target, data, durable)
+    except OSError as error:
+        reason = error.strerror or type(error).__name__
+        message = f"expected a file that can be written; got '{reason}'; choose another --out"
+        raise OutputError(message, where=str(path)) from error
+
+
+def replace_file(target: Path, data: bytes, durable: bool) -> None:
+    """The temporary file has the mode of a new file, or that of the one it replaces."""
+    handle, name = tempfile.mkstemp(prefix=f".{target.name[:50]}.", dir=target.parent)
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(data)
+            file.flush()
+            if durable:
+                os.fsync(file.fileno())
+        os.chmod(name, mode_for(target))
+        os.replace(name, target)
+    except BaseException:
+        with contextlib.suppress(OSError):
+            os.unlink(name)
+        raise
+
+
+def mode_for(target: Path) -> int:
+    """Permission bits of the file that stands there, or what the umask leaves of 0666."""
+    if target.exists():
+        return target.stat().st_mode & 0o777
+    mask = os.umask(0)
+    os.umask(mask)
+    return 0o666 & ~mask
