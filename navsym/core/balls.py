@@ -341,11 +341,6 @@ def enclose(expression: sp.Expr | Tape, values: Mapping[sp.Symbol, arb] | None =
         return arb(program.run(values or {}))
 
 
-def exact_rational(x: fmpq) -> sp.Rational:
-    """A rational number of flint as one of sympy."""
-    return sp.Rational(int(x.p), int(x.q))
-
-
 def exact_ball(value: Any, bits: int = DEFAULT_BITS) -> arb:
     """A ball around an exact number: a Python or sympy number, or a constant expression."""
     return enclose(sp.sympify(value, strict=True), {}, bits)

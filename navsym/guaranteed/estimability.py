@@ -14,10 +14,10 @@ import sympy as sp
 from flint import arb, arb_series, fmpq
 
 from navsym.claims import PROVED, Equation
-from navsym.core.balls import UnsupportedError, enclose, exact_rational, precision
+from navsym.core.balls import UnsupportedError, enclose, precision
 from navsym.core.errors import NavsymError, NotEstimableError
-from navsym.guaranteed.certificate.enclosure import coefficients, interval, program, rational, terms
-from navsym.guaranteed.decimals import decimal
+from navsym.core.exact import decimal, to_fmpq, to_rational
+from navsym.guaranteed.certificate.enclosure import coefficients, interval, program, terms
 from navsym.guaranteed.problem import GuaranteedProblem
 from navsym.guaranteed.time_varying import exact_end
 from navsym.language.expression import to_text
@@ -254,8 +254,8 @@ def proved_relation(problem: GuaranteedProblem, k: int, balls: dict[int, arb]) -
 
 def recognised(x: arb) -> sp.Rational | None:
     """The rational number with a small denominator next to x, or None."""
-    value = rational(x)
-    number = exact_rational(value)
+    value = to_fmpq(x)
+    number = to_rational(value)
     best = number.limit_denominator(10**9)
     return best if abs(best - number) < sp.Rational(1, 10**40) else None
 

@@ -11,10 +11,10 @@ from collections.abc import Sequence
 from fractions import Fraction
 
 import numpy as np
-import sympy as sp
 from numpy.typing import NDArray
 
 from navsym.core.errors import DomainError
+from navsym.core.exact import to_rational
 from navsym.guaranteed.certificate.basis import Basis, make_basis
 from navsym.guaranteed.phases.family import Family
 from navsym.guaranteed.phases.patterns import ordered
@@ -46,7 +46,7 @@ def values_for_lengths(family: Family, lengths: Sequence[float]) -> NDArray[np.f
 def fill(family: Family, T: NDArray[np.float64], block: NDArray[np.int64], values: NDArray[np.float64]) -> int:
     """Values for the first lengths of a descending block; how many were done, at least one."""
     top = Fraction(float(T[block[0]]))
-    basis = make_basis(family.exact(sp.Rational(top.numerator, top.denominator)))
+    basis = make_basis(family.exact(to_rational(top)))
     found = ordered(find_contacts(basis.sharp))
     values[block[0]] = found.value * basis.scale
     if block.size == 1 or not regular(basis, found):

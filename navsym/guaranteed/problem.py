@@ -7,10 +7,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import sympy as sp
-from flint import arb, fmpq
+from flint import arb
 
 from navsym.core.balls import enclose
 from navsym.core.errors import DomainError, EmptyError, NotFiniteError, ShapeError
+from navsym.core.exact import to_fmpq
 from navsym.guaranteed.certificate.enclosure import Panel, Problem
 from navsym.guaranteed.time_varying import ERROR, error_bound, on_rational_interval, regressors_of, steps_of, varying
 from navsym.models.linear import LinearModel, exact_entry
@@ -71,7 +72,7 @@ class GuaranteedProblem:
     @property
     def unknown(self) -> dict[sp.Symbol, arb]:
         """A ball for the error of the regressors."""
-        return {ERROR: arb(0, arb(fmpq(int(self.error.p), int(self.error.q))).upper())} if self.error else {}
+        return {ERROR: arb(0, arb(to_fmpq(self.error)).upper())} if self.error else {}
 
     def exact(self) -> Problem:
         """The same for the proofs: one panel per stretch and measurement, empty rows left out."""

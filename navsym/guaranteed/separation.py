@@ -14,7 +14,8 @@ from dataclasses import dataclass, replace
 import sympy as sp
 from flint import arb, fmpq, fmpq_mat
 
-from navsym.core.balls import enclose, exact_rational
+from navsym.core.balls import enclose
+from navsym.core.exact import to_fmpq, to_rational
 from navsym.guaranteed.certificate.enclosure import Panel, Problem
 
 #: Digits that cancel before the regressors are separated, places at which sizes are seen, bits for that.
@@ -62,9 +63,9 @@ def in_other_unknowns(
     panels = []
     for k, panel in enumerate(problem.panels):
         mine = [(j, atom) for j, (place, atom) in enumerate(atoms) if place == k]
-        rows = [sp.Add(*(exact_rational(R[i][j] * scale[i]) * atom for j, atom in mine)) for i in range(m)]
+        rows = [sp.Add(*(to_rational(R[i][j] * scale[i]) * atom for j, atom in mine)) for i in range(m)]
         panels.append(replace(panel, functions=tuple(rows)))
-    functional = [sp.Add(*(exact_rational(M[i, j]) * problem.functional[j] for j in range(m))) for i in range(m)]
+    functional = [sp.Add(*(to_rational(M[i, j]) * problem.functional[j] for j in range(m))) for i in range(m)]
     return Problem(tuple(panels), tuple(functional))
 
 
@@ -76,7 +77,7 @@ def coefficients_of(h: sp.Expr, panel: Panel) -> dict[sp.Expr, fmpq] | None:
         if not c.is_Rational:
             return None
         if c != 0:
-            found[atom] = found.get(atom, fmpq(0)) + fmpq(int(c.p), int(c.q))
+            found[atom] = found.get(atom, fmpq(0)) + to_fmpq(c)
     return found
 
 

@@ -19,10 +19,10 @@ from navsym.claims import CERTIFIED, OPEN, Status
 from navsym.claims.display import card, shortened, table, verdict_words
 from navsym.core.balls import precision
 from navsym.core.errors import NavsymError
+from navsym.core.exact import decimal
 from navsym.guaranteed.certificate.basis import Basis, DependentError, make_basis
 from navsym.guaranteed.certificate.enclosure import Problem
 from navsym.guaranteed.certificate.fixed import Certified, certify
-from navsym.guaranteed.decimals import decimal
 from navsym.guaranteed.estimability import drop_dependent
 from navsym.guaranteed.problem import GuaranteedProblem
 from navsym.guaranteed.search.exchange import find_contacts

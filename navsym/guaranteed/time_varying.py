@@ -18,11 +18,11 @@ from dataclasses import dataclass, replace
 import sympy as sp
 from flint import arb, arb_mat, arb_series, fmpq
 
-from navsym.core.balls import enclose, exact_rational, precision
+from navsym.core.balls import enclose, precision
 from navsym.core.errors import DomainError, TooLargeError
-from navsym.guaranteed.certificate.enclosure import interval, program, rational, terms
+from navsym.core.exact import decimal, from_decimal, to_fmpq, to_rational
+from navsym.guaranteed.certificate.enclosure import interval, program, terms
 from navsym.guaranteed.certificate.moving import number_of
-from navsym.guaranteed.decimals import decimal, exact
 from navsym.models.modelfile import ModelFile, Piece
 
 #: The error of a regressor; everything about it is its bound.
@@ -59,8 +59,8 @@ def on_rational_interval(found: ModelFile) -> tuple[ModelFile, sp.Expr]:
     assert found.T is not None
     if found.T.is_Rational or varying(found) or len(found.pieces) > 1:
         return found, sp.S.Zero
-    above = rational(enclose(found.T).upper())
-    S = exact_rational(above)
+    above = to_fmpq(enclose(found.T).upper())
+    S = to_rational(above)
     return replace(found, T=S, pieces=(replace(found.pieces[0], end=None),)), found.T - S
 
 
@@ -90,7 +90,7 @@ def exact_end(end: sp.Expr | None) -> fmpq:
     """An end of the interval as a rational of flint; raises DomainError where it is none."""
     if end is None or not end.is_Rational:
         raise DomainError(f"interval: expected rational ends where F depends on the time; got {end}; give fractions")
-    return fmpq(int(end.p), int(end.q))
+    return to_fmpq(end)
 
 
 def longest(found: ModelFile, piece: Piece, Psi: Matrix, at: fmpq, size: fmpq) -> tuple[Step, Matrix, fmpq]:
@@ -118,7 +118,7 @@ def taylor_step(found: ModelFile, piece: Piece, Psi: Matrix, at: fmpq, size: fmp
     if not bool(rest < WANTED * norm(Psi)):
         return None
     parts = expanded(thin, Psi)[:-1]
-    polynomials = [[[exact(decimal(part[i][j], DIGITS)) for part in parts] for j in range(n)] for i in range(n)]
+    polynomials = [[[from_decimal(decimal(part[i][j], DIGITS)) for part in parts] for j in range(n)] for i in range(n)]
     after = [[arb(0)] * n for _ in range(n)]
     error = arb(0)
     for i in range(n):
@@ -169,7 +169,7 @@ def largest(values: Sequence[arb]) -> arb:
 def regressors_of(found: ModelFile, step: Step, shift: sp.Expr) -> tuple[tuple[tuple[sp.Expr, ...], ...], arb]:
     """``h_j(t) Psi(t)`` on a step moved by ``shift``, with :data:`ERROR` added, and the bound of that error."""
     n = len(found.states)
-    local = sp.Rational(int(step.end.p), int(step.end.q)) + shift - found.time
+    local = to_rational(step.end) + shift - found.time
     Psi = [[horner(c, local) for c in row] for row in step.polynomials]
     rows, bound = [], arb(0)
     for measurement in found.measurements:
@@ -186,7 +186,7 @@ def horner(c: list[fmpq], at: sp.Expr) -> sp.Expr:
     """The polynomial with coefficients c, lowest power first, at an expression, in Horner's form."""
     value: sp.Expr = sp.S.Zero
     for a in reversed(c):
-        value = value * at + exact_rational(a)
+        value = value * at + to_rational(a)
     return value
 
 
@@ -205,4 +205,4 @@ def error_bound(bounds: list[arb]) -> fmpq:
     top = largest(bounds)
     if not top.is_finite():
         raise DomainError("h: expected functions that are finite on the interval; got a singular one; change it")
-    return max(exact(decimal(top, 3, 1)), fmpq(1, 10**DIGITS))
+    return max(from_decimal(decimal(top, 3, 1)), fmpq(1, 10**DIGITS))

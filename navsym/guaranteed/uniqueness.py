@@ -16,9 +16,10 @@ import sympy as sp
 from flint import arb, arb_mat, fmpq, fmpq_mat
 
 from navsym.claims import PROVED, Equation
-from navsym.core.balls import enclose, exact_rational, precision
+from navsym.core.balls import enclose, precision
+from navsym.core.exact import to_fmpq, to_rational
 from navsym.guaranteed.certificate.basis import Basis, as_fraction
-from navsym.guaranteed.certificate.enclosure import Panel, Problem, Touch, rational
+from navsym.guaranteed.certificate.enclosure import Panel, Problem, Touch
 from navsym.guaranteed.certificate.fixed import flattened
 from navsym.guaranteed.certificate.whole import bounded
 from navsym.guaranteed.search.exchange import Contacts, with_places
@@ -61,8 +62,8 @@ def several_optimal(problem: Problem, contacts: Contacts, dual: Sequence[arb]) -
 
 def recognised(x: arb) -> sp.Rational | None:
     """The rational with a small denominator next to a ball."""
-    value = rational(x)
-    number = exact_rational(value)
+    value = to_fmpq(x)
+    number = to_rational(value)
     best = number.limit_denominator(720)
     return best if abs(best - number) <= NEAR * max(1, abs(number)) else None
 
@@ -99,9 +100,9 @@ def guess_places(contacts: Contacts, k: int, panel: Panel, f: sp.Expr) -> list[P
     shares = {as_fraction(u) for j, u in [*at, *contacts.touching] if j == k}
     found = {}
     for share in shares:
-        best = exact_rational(share).limit_denominator(60)
+        best = to_rational(share).limit_denominator(60)
         value = f.subs(panel.variable, panel.start + (panel.end - panel.start) * best)
-        found[fmpq(int(best.p), int(best.q))] = 1 if bool(enclose(value) > 0) else -1
+        found[to_fmpq(best)] = 1 if bool(enclose(value) > 0) else -1
     return [Place(k, at_, sign) for at_, sign in found.items()]
 
 
@@ -120,7 +121,7 @@ def level(panel: Panel, f: sp.Expr, place: Place) -> bool:
 
 def time_of(panel: Panel, place: Place) -> sp.Expr:
     """The exact instant of a place, whose share of the panel is from 0 to 1."""
-    return panel.start + (panel.end - panel.start) * sp.Rational(int(place.at.p), int(place.at.q))
+    return panel.start + (panel.end - panel.start) * to_rational(place.at)
 
 
 def end_of(at: fmpq) -> str:
@@ -193,7 +194,7 @@ def exact_values(problem: Problem, places: Sequence[Place]) -> tuple[fmpq_mat, f
     values = [*rows, *(sp.sympify(p, strict=True) for p in problem.functional)]
     if not all(v.is_Rational for v in values):
         return None
-    numbers = [fmpq(int(v.p), int(v.q)) for v in values]
+    numbers = [to_fmpq(v) for v in values]
     m = len(problem.functional)
     return fmpq_mat(len(places), m, numbers[:-m]).transpose(), fmpq_mat(m, 1, numbers[-m:])
 
@@ -315,11 +316,11 @@ def guess_pins(contacts: Contacts) -> list[Pin] | None:
     pins = []
     for k, u, inner, sign in zip(contacts.panel, contacts.u, contacts.inner, contacts.sign, strict=True):
         share = as_fraction(float(u))
-        exact = exact_rational(share)
+        exact = to_rational(share)
         best = exact.limit_denominator(LARGEST)
         if abs(best - exact) > CLOSE:
             return None
-        pins.append(Pin(Place(int(k), fmpq(int(best.p), int(best.q)), int(sign)), bool(inner)))
+        pins.append(Pin(Place(int(k), to_fmpq(best), int(sign)), bool(inner)))
     return pins
 
 

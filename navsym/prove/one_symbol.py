@@ -15,7 +15,8 @@ from flint import arb
 
 from navsym.claims.statement import Box
 from navsym.claims.verdict import PROVED, REFUTED, Verdict
-from navsym.core.balls import UnsupportedError, exact_ball, exact_rational, tape
+from navsym.core.balls import UnsupportedError, exact_ball, tape
+from navsym.core.exact import to_rational
 from navsym.prove.assumptions import remaining_assumptions, written_conditions
 from navsym.prove.identities.normal_form import (
     OutsideLanguageError,
@@ -151,7 +152,7 @@ def refuted_at_zero(statement: Sides, zero: Zero) -> Verdict:
     if zero.at is not None:
         return broken({statement.symbol: zero.at}, arb(0), exact=True)
     assert zero.root is not None
-    ends = " and ".join(str(exact_rational(end)) for end in (zero.root.lower, zero.root.upper))
+    ends = " and ".join(str(to_rational(end)) for end in (zero.root.lower, zero.root.upper))
     words = f"the difference is exactly zero at a root that has no formula, of the polynomial {zero.root.factor}"
     words += f" between {ends}"
     return Verdict(REFUTED, "real roots", "one point", evidence=words, counterexample={}, difference=("0", "0"))

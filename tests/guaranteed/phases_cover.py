@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sympy as sp
 
-from navsym.core.balls import exact_rational
+from navsym.core.exact import to_rational
 
 #: Ends of regimes and holes are printed with 34 digits.
 PRINTED = sp.Rational(1, 10**30)
@@ -28,7 +28,7 @@ def followed_pieces(answer):
 def lost(answer):
     """Stretches of the range that no closed form, piece or sliver covers and ``uncovered`` does not name."""
     known = followed_pieces(answer)
-    known += [(exact_rational(s.start), exact_rational(s.end)) for r in answer.regimes for s in r.slivers]
+    known += [(to_rational(s.start), to_rational(s.end)) for r in answer.regimes for s in r.slivers]
     known += [(decimal(r.lower), decimal(r.upper)) for r in answer.regimes if r.closed is not None]
     known += [tuple(decimal(sp.sympify(end, rational=True)) for end in pair) for pair in answer.uncovered]
     return [(a, b) for a, b in gaps(known, decimal(answer.lower), decimal(answer.upper)) if b - a > PRINTED]

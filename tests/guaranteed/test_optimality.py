@@ -9,9 +9,9 @@ import pytest
 import sympy as sp
 
 from navsym import checker
+from navsym.core.exact import decimal, from_decimal
 from navsym.guaranteed.certificate.enclosure import Panel, Problem
 from navsym.guaranteed.certificate.fixed import certify
-from navsym.guaranteed.decimals import decimal, exact
 
 t = sp.Symbol("t", real=True)
 
@@ -109,13 +109,13 @@ def test_two_measurements_are_never_worse_than_the_better_one():
 
 @pytest.mark.parametrize("value", ["0", "1", "-12.5", "0.000123", "-98700"])
 def test_decimals_are_read_back_exactly(value):
-    assert decimal(exact(value), 12) == value
+    assert decimal(from_decimal(value), 12) == value
 
 
 def test_decimals_are_rounded_outwards():
-    third = exact("1") / 3
-    assert exact(decimal(third, 5, -1)) < third < exact(decimal(third, 5, 1))
-    assert np.isclose(float(exact(decimal(third, 5))), 1 / 3, atol=1e-5)
+    third = from_decimal("1") / 3
+    assert from_decimal(decimal(third, 5, -1)) < third < from_decimal(decimal(third, 5, 1))
+    assert np.isclose(float(from_decimal(decimal(third, 5))), 1 / 3, atol=1e-5)
 
 
 @pytest.mark.parametrize("digits", [14, 30])

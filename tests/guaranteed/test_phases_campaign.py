@@ -11,7 +11,7 @@ import sympy as sp
 
 from navsym.core.balls import enclose
 from navsym.core.errors import NavsymError
-from navsym.guaranteed.decimals import exact
+from navsym.core.exact import from_decimal
 from navsym.guaranteed.phases.answer import Phases, Regime
 from navsym.guaranteed.phases.driver import phases
 from navsym.guaranteed.phases.family import family_of
@@ -53,7 +53,7 @@ def bounds_at(answer: Phases, p: sp.Rational) -> list[tuple[sp.Rational, sp.Rati
             ball = enclose(regime.closed.value.subs(answer.family.parameter, p), bits=200)
             found.append((rational(ball.lower()), rational(ball.upper())))
         for s in regime.slivers:
-            if s.start <= exact(str(p.p)) / int(p.q) <= s.end:
+            if s.start <= from_decimal(str(p.p)) / int(p.q) <= s.end:
                 found.append((sp.Rational(s.lower), sp.Rational(s.upper)))
         found += [ends for c in regime.certificates for ends in ranges(c, p)]
     return found

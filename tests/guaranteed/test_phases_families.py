@@ -13,11 +13,12 @@ from flint import fmpq
 from navsym import checker
 from navsym.claims import OPEN, PROVED, Verdict
 from navsym.core.errors import DomainError
+from navsym.core.exact import from_decimal
 from navsym.guaranteed.phases.certify_range import covered, followed
 from navsym.guaranteed.phases.closed_forms import Closed, prove
 from navsym.guaranteed.phases.driver import phases
 from navsym.guaranteed.phases.family import family_of
-from navsym.guaranteed.phases.narrow import exact, slivers
+from navsym.guaranteed.phases.narrow import slivers
 from navsym.guaranteed.phases.patterns import sample
 from navsym.guaranteed.phases.recognise import constant
 from navsym.guaranteed.phases.singular_values import real_roots
@@ -92,7 +93,7 @@ def test_both_sides_of_a_boundary_are_tried_before_it_is_given_up():
 
 def test_slivers_where_a_noise_bound_moves_are_accepted():
     family = family_of(model_from(oscillator("0", ("1+p**2", "2-p"), "2")), "c", "p")
-    made, left = slivers(family, exact("0.506604"), exact("0.506606"))
+    made, left = slivers(family, from_decimal("0.506604"), from_decimal("0.506606"))
     assert left == [] and {checker.check(checker.load(json.dumps(dict(s.certificate)))) for s in made} == {"sliver"}
 
 

@@ -11,8 +11,8 @@ import sympy as sp
 from flint import fmpq
 
 from navsym import checker
-from navsym.core.balls import exact_rational
 from navsym.core.errors import DomainError
+from navsym.core.exact import to_rational
 from navsym.guaranteed.phases import budget as limits
 from navsym.guaranteed.phases import certify_range as range_
 from navsym.guaranteed.phases.budget import Limit
@@ -128,9 +128,9 @@ def test_between_the_pieces_from_zero_on_and_those_from_the_middle_nothing_is_lo
     answer = solved(basis(["1", "u", "exp(-u)"], ["0", "T"], ["0", "0", "1"], "T"), 0, 1, "T", seconds=seconds)
     (regime,) = answer.regimes
     pieces = followed_pieces(answer)
-    slivers = [(exact_rational(s.start), exact_rational(s.end)) for s in regime.slivers]
+    slivers = [(to_rational(s.start), to_rational(s.end)) for s in regime.slivers]
     assert gaps(pieces, 0, regime.upper) and gaps([*pieces, *slivers, *answer.uncovered], 0, 1) == []
-    assert gaps(pieces, *map(exact_rational, regime.alone)) == []
+    assert gaps(pieces, *map(to_rational, regime.alone)) == []
     assert accepted(answer) <= {"all", "range", "sliver"}
 
 

@@ -12,6 +12,7 @@ from flint import fmpq
 
 from navsym import checker
 from navsym.core.errors import DomainError
+from navsym.core.exact import from_decimal
 from navsym.guaranteed.phases import narrow as thin
 from navsym.guaranteed.phases.boundaries import anchors, doubled, forced, proves_walking
 from navsym.guaranteed.phases.driver import phases
@@ -115,7 +116,7 @@ def test_a_pattern_is_proved_next_to_the_value_where_its_contacts_merge():
 
 def test_past_a_full_period_the_ramp_is_covered_by_slivers_that_the_checker_accepts():
     family = family_of(model_from(RAMP), "r", "T")
-    start, end = thin.exact("6.2831853"), thin.exact("6.32")
+    start, end = from_decimal("6.2831853"), from_decimal("6.32")
     made, left = thin.slivers(family, start, end)
     assert left == [] and made[0].start == start and made[-1].end == end
     assert {checker.check(checker.load(json.dumps(dict(s.certificate)))) for s in made} == {"sliver"}

@@ -19,7 +19,8 @@ from numpy.typing import NDArray
 
 from navsym.core.balls import precision
 from navsym.core.errors import NotFiniteError, TooLargeError
-from navsym.guaranteed.certificate.enclosure import Panel, Problem, rational
+from navsym.core.exact import to_fmpq
+from navsym.guaranteed.certificate.enclosure import Panel, Problem
 from navsym.guaranteed.search.exchange import Panels
 
 # Chebyshev coefficients from values at Chebyshev points: in doubles for a search, in balls for the last bits of it.
@@ -161,7 +162,7 @@ def chebyshev_fractions(count: int) -> tuple[fmpq, ...]:
     """Chebyshev points of the first kind as exact dyadic fractions of [0, 1]."""
     with precision(NODE_BITS):
         cosines = [arb.cos_pi(arb(2 * k + 1) / (2 * count)) for k in range(count)]
-        return tuple((1 + rational(c)) / 2 for c in cosines)
+        return tuple((1 + to_fmpq(c)) / 2 for c in cosines)
 
 
 def samples(panels: Sequence[Panel], count: int, bits: int) -> arb_mat:
@@ -377,4 +378,4 @@ def as_fraction(u: float) -> fmpq:
     """The fraction in [0, 1] of a local coordinate in [-1, 1], exactly."""
     if u <= -1.0:
         return fmpq(0)
-    return fmpq(1) if u >= 1.0 else (1 + rational(arb(u))) / 2
+    return fmpq(1) if u >= 1.0 else (1 + to_fmpq(arb(u))) / 2

@@ -20,6 +20,7 @@ import sympy as sp
 from flint import arb, arb_mat, arb_series, ctx, fmpq, fmpz
 
 from navsym.core.balls import OPERATIONS, Step, instruction
+from navsym.core.exact import to_fmpq
 
 # Several expressions as one tape: shared parts once, constants once for each precision, run over balls and series.
 
@@ -332,7 +333,7 @@ def covered(bound: arb, touches: Sequence[Touch], limit: int, expand: Expansion)
 
 def first_cells(touches: Sequence[Touch]) -> list[Cell]:
     """[0, 1] cut between neighbouring touches; ends of the panel do not count as neighbours."""
-    ordered = sorted(touches, key=lambda t: float(rational(t.at)))
+    ordered = sorted(touches, key=lambda t: float(to_fmpq(t.at)))
     reach = [extent(t) for t in ordered]
     cells: list[Cell] = []
     edge = fmpq(0)
@@ -355,17 +356,8 @@ def first_cells(touches: Sequence[Touch]) -> list[Cell]:
 def extent(touch: Touch) -> tuple[fmpq, fmpq]:
     """Ends of the ball of the place, or the exact place twice."""
     if isinstance(touch.at, arb):
-        return rational(touch.at.lower()), rational(touch.at.upper())
-    return rational(touch.at), rational(touch.at)
-
-
-def rational(x: Any) -> fmpq:
-    """Exact midpoint of a ball, or the exact number itself."""
-    if isinstance(x, arb):
-        mantissa, exponent = x.mid().man_exp()
-        power = int(exponent)
-        return fmpq(mantissa << power) if power >= 0 else fmpq(mantissa, ONE << -power)
-    return fmpq(x)
+        return to_fmpq(touch.at.lower()), to_fmpq(touch.at.upper())
+    return to_fmpq(touch.at), to_fmpq(touch.at)
 
 
 def split(cell: Cell) -> list[Cell]:
@@ -396,7 +388,7 @@ def interval(lower: fmpq, upper: fmpq) -> arb:
 
 def passes(expand: Expansion, cell: Cell, bound: arb, strict: bool) -> bool:
     """``|f| <= bound`` on the cell (``<`` off an exact touch), from one Taylor expansion with remainder."""
-    centre = (cell.lower + cell.upper) / 2 if cell.touch is None else rational(cell.touch.at)
+    centre = (cell.lower + cell.upper) / 2 if cell.touch is None else to_fmpq(cell.touch.at)
     radius = max(centre - cell.lower, cell.upper - centre)
     taylor = expand(cell, centre, radius)
     spread = remainder(taylor, 0)
@@ -429,7 +421,7 @@ def near_touch(cell: Cell, taylor: Sequence[arb], spread: arb, bound: arb) -> bo
     bend = s * taylor[2] + remainder(taylor, 2)
     if bool(bend < 0) and bool(s * taylor[0] + taylor[1] ** 2 / (-4 * bend) <= bound):
         return True
-    centre = rational(cell.touch.at)
+    centre = to_fmpq(cell.touch.at)
     slope, change = s * taylor[1], remainder(taylor, 1)
     rising = centre == cell.upper and bool(slope > change)
     falling = centre == cell.lower and bool(-slope > change)

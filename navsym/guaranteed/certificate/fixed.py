@@ -10,18 +10,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from fractions import Fraction
 from typing import Any
 
 import numpy as np
 from flint import arb, arb_mat, ctx, fmpq
 
 from navsym.core.balls import precision
+from navsym.core.exact import decimal, from_decimal, lower_end, to_fmpq, to_fraction, upper_end
 from navsym.guaranteed.certificate.basis import Basis, as_fraction, make_basis
-from navsym.guaranteed.certificate.enclosure import Panel, Problem, Touch, combination, interval, rational, total
+from navsym.guaranteed.certificate.enclosure import Panel, Problem, Touch, combination, interval, total
 from navsym.guaranteed.certificate.polish import Polished, pinned, polish, series_rows
 from navsym.guaranteed.certificate.whole import bounded
-from navsym.guaranteed.decimals import decimal, exact, lower_end, upper_end
 from navsym.guaranteed.search.exchange import Contacts, nodes_for, roads, rows_at, with_places
 from navsym.guaranteed.search.interior import interior_dual
 from navsym.language.expression import to_text
@@ -372,7 +371,9 @@ def touch(problem: Problem, basis: Basis, found: Polished, digits: int, bits: in
     with precision(bits):
         middles = [decimal(c, places + loss + 8) for c in unknowns(found)]
         spread = [decimal(r, 3, 1) for r in spreads(problem, basis, found, places)]
-        z = solution_box(problem, found, [arb(exact(c)) for c in middles], [arb(exact(r)) for r in spread])
+        z = solution_box(
+            problem, found, [arb(from_decimal(c)) for c in middles], [arb(from_decimal(r)) for r in spread]
+        )
         if z is None or not admissible(found, z):
             return None
         m = len(found.dual)
@@ -390,7 +391,7 @@ def touch(problem: Problem, basis: Basis, found: Polished, digits: int, bits: in
             "radius": with_ends(found, costs(problem, found, spread, 3, 1)),
         }
         document = header(problem, "touch", bits, cells, lower, upper) | {"pieces": [solution]}
-        return Certified(exact(lower), exact(upper), support_of(found, z), tuple(z[:m]), True, document)
+        return Certified(from_decimal(lower), from_decimal(upper), support_of(found, z), tuple(z[:m]), True, document)
 
 
 def unknowns(found: Polished) -> list[arb]:
@@ -462,7 +463,7 @@ def exact_touches(found: Polished, z: Sequence[arb]) -> list[list[Touch]]:
     free = iter(z[len(found.dual) :])
     rows: list[list[Touch]] = [[] for _ in range(max(found.panel) + 1)]
     for i, (k, v, s, inner) in enumerate(zip(found.panel, found.v, found.sign, found.inner, strict=True)):
-        rows[k].append(Touch(next(free) if inner else rational(v), s, True, end_name(found, i)))
+        rows[k].append(Touch(next(free) if inner else to_fmpq(v), s, True, end_name(found, i)))
     return rows
 
 
@@ -493,7 +494,7 @@ def costs(problem: Problem, found: Polished, values: Sequence[str], digits: int,
     return [
         *values[:head],
         *(
-            w if panel.sigma == 1 else decimal(rational(panel.bound() * arb(exact(w))), digits, direction)
+            w if panel.sigma == 1 else decimal(to_fmpq(panel.bound() * arb(from_decimal(w))), digits, direction)
             for panel, w in zip(panels, values[head:], strict=True)
         ),
     ]
@@ -512,7 +513,7 @@ def contact_rows(found: Polished, middles: Sequence[str]) -> list[dict[str, Any]
 def with_ends(found: Polished, radius: Sequence[str]) -> list[str]:
     """Radii of all unknowns: a place at an end is one for the checker, too, with an equation of its own."""
     m, l = len(found.dual), len(found.v)
-    free, smallest = iter(radius[m : len(radius) - l]), min(radius, key=exact)
+    free, smallest = iter(radius[m : len(radius) - l]), min(radius, key=from_decimal)
     return [*radius[:m], *(next(free) if i else smallest for i in found.inner), *radius[len(radius) - l :]]
 
 
@@ -525,7 +526,7 @@ def end_name(found: Polished, i: int) -> str:
     """Which end of its panel a contact sits on: "from", "to", or "no"."""
     if found.inner[i]:
         return "no"
-    return "to" if rational(found.v[i]) == 1 else "from"
+    return "to" if to_fmpq(found.v[i]) == 1 else "from"
 
 
 def support_of(found: Polished, z: Sequence[arb]) -> tuple[tuple[int, arb, arb], ...]:
@@ -554,13 +555,13 @@ def gap(
     places = digits + basis.loss + 12
     with precision(bits):
         if carriers is None:
-            at = [exact(decimal(v, places)) for v in found.v]
+            at = [from_decimal(decimal(v, places)) for v in found.v]
             support = support_points(basis, contacts, at)
         else:
             support = support_points(basis, carriers, [as_fraction(float(u)) for u in carriers.u])
         weights = balanced(problem, support)
         upper = upper_end(cost(problem, support, weights), digits + 6)
-        x, cells, touches = best_dual(problem, basis, contacts, found, digits, exact(upper))
+        x, cells, touches = best_dual(problem, basis, contacts, found, digits, from_decimal(upper))
         lower = lower_end(total([arb(c) for c in x], problem.target()), digits + 6)
         # The checker has no touches to guide it: it halves its way towards each of them.
         plain = cells + sum(map(len, touches)) * 2 * (digits + 12)
@@ -569,8 +570,10 @@ def gap(
             "support": [[k, decimal(v, places)] for k, v in support],
         }
         rows = tuple((k, arb(v), w) for (k, v), w in zip(support, weights, strict=True))
-        shown = tuple(row for row in rows if not bool(abs(row[2]) < arb(10) ** (-digits) * abs(arb(exact(upper)))))
-        return Certified(exact(lower), exact(upper), shown, tuple(arb(c) for c in x), None, document)
+        shown = tuple(
+            row for row in rows if not bool(abs(row[2]) < arb(10) ** (-digits) * abs(arb(from_decimal(upper))))
+        )
+        return Certified(from_decimal(lower), from_decimal(upper), shown, tuple(arb(c) for c in x), None, document)
 
 
 def best_dual(
@@ -585,8 +588,8 @@ def best_dual(
     highest, share = fmpq(0), 1.0
     for base, shrink, seen in attempts(problem, basis, contacts, found, digits):
         scale, touches = 1 - fmpq(1, 10) ** shrink, near_touches(problem, seen, places)
-        x = [exact(decimal(c * scale, places + 8)) for c in base]
-        reached = rational(total([arb(c) for c in x], target))
+        x = [from_decimal(decimal(c * scale, places + 8)) for c in base]
+        reached = to_fmpq(total([arb(c) for c in x], target))
         if reached <= highest:
             continue
         cells = every_cell(problem, [arb(c) for c in x], touches, share)
@@ -606,7 +609,7 @@ def attempts(
     Where the contacts do not fix the dual, round numbers come first, then one that touches at all places where it
     nearly does, then one with room to spare off the contacts, or off all places where it touches.
     """
-    base, goal = [rational(c) for c in found.dual], goal_of(digits + basis.loss)
+    base, goal = [to_fmpq(c) for c in found.dual], goal_of(digits + basis.loss)
     few = 0 < len(contacts.touching) <= len(base)
     # More touches than unknowns are places of a dual that is near its bound along a part of a panel.
     found = found if few else replace(found, touching=())
@@ -617,12 +620,12 @@ def attempts(
             full = with_places(basis.panels, contacts, contacts.touching)
             whole = polish(problem.panels, basis, full, ctx.prec, goal)
             v = whole.v
-            yield [rational(c) for c in whole.dual], digits + 3, whole
+            yield [to_fmpq(c) for c in whole.dual], digits + 3, whole
         for places, at in ((contacts, found.v), (flattened(full), v)):
             inside = interior_dual(basis.panels, places)
             if inside is not None:
                 dual = pinned(problem, basis, places, at, inside, goal)
-                yield [rational(c) for c in dual], digits + 3, replace(found, touching=())
+                yield [to_fmpq(c) for c in dual], digits + 3, replace(found, touching=())
                 break
     fewer = {3 * digits // 4, digits // 2, 12, 9, 6, 4, 3, 2, 1}
     for k in (digits + 3, *sorted((k for k in fewer if 0 < k < digits + 3), reverse=True)):
@@ -636,8 +639,8 @@ def flattened(places: Contacts) -> Contacts:
 
 def round_number(x: fmpq) -> fmpq:
     """The rational with a small denominator that agrees with x to eight digits, or x itself: a guess to be proved."""
-    best = Fraction(int(x.p), int(x.q)).limit_denominator(720)
-    near = fmpq(best.numerator, best.denominator)
+    best = to_fraction(x).limit_denominator(720)
+    near = to_fmpq(best)
     room = max(fmpq(1), abs(x)) / 10**8
     return near if abs(near - x) < room else x
 
@@ -646,10 +649,10 @@ def near_touches(problem: Problem, found: Polished, places: int) -> list[list[To
     """Where the dual polynomial is expected at its bound: contacts and further near maxima."""
     rows: list[list[Touch]] = [[] for _ in problem.panels]
     for k, at_ball, s in zip(found.panel, found.v, found.sign, strict=True):
-        rows[k].append(Touch(exact(decimal(at_ball, places)), s))
+        rows[k].append(Touch(from_decimal(decimal(at_ball, places)), s))
     for k, v in found.touching:
         f = total(found.dual, problem.panels[k].rows(arb(v)))
-        at = exact(decimal(peak(problem.panels[k], found.dual, v), places))
+        at = from_decimal(decimal(peak(problem.panels[k], found.dual, v), places))
         if all(abs(at - t.at) > fmpq(1, 10**6) for t in rows[k]):
             rows[k].append(Touch(at, 1 if bool(f > 0) else -1))
     return rows
@@ -665,7 +668,7 @@ def peak(panel: Panel, x: Sequence[arb], v: fmpq) -> fmpq:
         if f[2].contains(0):
             return v
         at = (at - f[1] / (2 * f[2])).mid()
-    return rational(at) if bool(abs(at - arb(v)) < 1e-4) else v
+    return to_fmpq(at) if bool(abs(at - arb(v)) < 1e-4) else v
 
 
 def header(problem: Problem, kind: str, bits: int, cells: int, lower: str, upper: str) -> dict[str, Any]:

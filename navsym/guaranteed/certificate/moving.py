@@ -15,6 +15,7 @@ from typing import Any
 import sympy as sp
 from flint import arb, arb_mat, arb_series, ctx, fmpq, fmpq_mat
 
+from navsym.core.exact import to_fmpq
 from navsym.guaranteed.certificate.enclosure import Problem
 
 # Power series in two variables: a jet in w whose coefficients are series in s.
@@ -301,4 +302,4 @@ class Vanishing(Moving):
 
 def exact_functional(problem: Problem) -> list[fmpq]:
     """P as rational numbers."""
-    return [fmpq(int(sp.Rational(p).p), int(sp.Rational(p).q)) for p in problem.functional]
+    return [to_fmpq(sp.sympify(p, strict=True)) for p in problem.functional]

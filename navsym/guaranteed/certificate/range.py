@@ -17,6 +17,7 @@ import sympy as sp
 from flint import arb, arb_mat, fmpq
 
 from navsym.core.balls import precision
+from navsym.core.exact import decimal, from_decimal, to_fmpq
 from navsym.guaranteed.certificate.enclosure import (
     Cell,
     Expansion,
@@ -25,13 +26,11 @@ from navsym.guaranteed.certificate.enclosure import (
     interval,
     order_for,
     passes,
-    rational,
     terms,
     total,
 )
 from navsym.guaranteed.certificate.fixed import header, place_of
 from navsym.guaranteed.certificate.moving import EVERY, Member, Moving, number_of, series_at
-from navsym.guaranteed.decimals import decimal, exact
 
 BITS = 192
 #: Order of the series in s, the last coefficient over the whole piece; and degree of the curves.
@@ -100,7 +99,7 @@ def range_document(problem: Problem, parameter: str, pieces: Sequence[Piece]) ->
 
 def value_bounds(pieces: Sequence[Piece]) -> tuple[str, str]:
     """Decimals below and above the optimum of every piece, with room for a checker whose balls are wider."""
-    low, high = (min(rational(p.value.lower()) for p in pieces), max(rational(p.value.upper()) for p in pieces))
+    low, high = (min(to_fmpq(p.value.lower()) for p in pieces), max(to_fmpq(p.value.upper()) for p in pieces))
     room = max(abs(low), abs(high)) / ROOM
     return decimal(low - room, 9, -1), decimal(high + room, 9, 1)
 
@@ -146,7 +145,7 @@ def solution_curves(moving: Moving, pattern: Pattern, start: Sequence[fmpq]) -> 
             steps = [(inverse * arb_mat([[number_of(f, k)] for f in F])).tolist() for k in range(count)]
         for place, k in enumerate(free):
             c = [*curves[k], *[fmpq(0)] * (count - len(curves[k]))]
-            curves[k] = [old - rational(steps[j][place][0]) for j, old in enumerate(c)]
+            curves[k] = [old - to_fmpq(steps[j][place][0]) for j, old in enumerate(c)]
     return [shortened(c) for c in curves]
 
 
@@ -166,7 +165,7 @@ def corrected(
         if not size < 1e3 or (last is not None and size > 10 * last + 1e-20):
             return None
         for place, k in enumerate(free):
-            z[k] = [z[k][0] - rational(steps[place][0])]
+            z[k] = [z[k][0] - to_fmpq(steps[place][0])]
         if size < 1e-28:
             return z, inverse
         last = size
@@ -245,7 +244,7 @@ def verified(track: Track, moving: Moving, curves: Sequence[Sequence[fmpq]]) -> 
             return None
         if attempt and all(bool(abs(d) * MARGIN < radius[k]) for k, d in move.items()):
             break
-        radius = {k: arb(exact(decimal(r, 3, 1))) for k, r in room_for(move, z, moving.slack).items()}
+        radius = {k: arb(from_decimal(decimal(r, 3, 1))) for k, r in room_for(move, z, moving.slack).items()}
     else:
         return None
     here = [at_all(c) + move.get(k, arb(0)) for k, c in enumerate(z)]
@@ -265,7 +264,7 @@ def verified(track: Track, moving: Moving, curves: Sequence[Sequence[fmpq]]) -> 
 def room_for(move: dict[int, arb], z: Sequence[Sequence[arb]], slack: int) -> dict[int, arb]:
     """The radius of a box in which Newton's step has so many times the room that it needs."""
     sizes = {k: size_of(z[k]) for k in move}
-    worst = max((abs(d).upper() / sizes[k] for k, d in move.items()), key=rational) + arb(10) ** (4 - DIGITS)
+    worst = max((abs(d).upper() / sizes[k] for k, d in move.items()), key=to_fmpq) + arb(10) ** (4 - DIGITS)
     return {k: (slack * abs(d).upper() + SHARE * worst * sizes[k]).upper() for k, d in move.items()}
 
 
@@ -328,7 +327,7 @@ def halved(touches: Sequence[Touch], expand: Expansion) -> int | None:
     middle that covers it, by curvature or slope; any other by the size of f.
     """
     stack, used = [(fmpq(0), fmpq(1))], 0
-    marks = [(rational(t.at), t) for t in touches]
+    marks = [(to_fmpq(t.at), t) for t in touches]
     while stack:
         a, b = stack.pop()
         used += 1
@@ -388,7 +387,7 @@ def expansion(
 
 def row(track: Track, moving: Moving, curves: Sequence[Sequence[fmpq]], radius: dict[int, arb]) -> dict[str, Any]:
     """The piece as plain data. A place at an end is an unknown for the checker, too, with an equation of its own."""
-    m, l, smallest = moving.size, len(track.pattern), min(radius.values(), key=rational)
+    m, l, smallest = moving.size, len(track.pattern), min(radius.values(), key=to_fmpq)
     text = lambda c: [decimal(a, 60) for a in c]  # noqa: E731
     contacts = [
         {"panel": k, "at": text(curves[m + i]) if kind == "no" else [place_of(kind)], "weight": text(curves[m + l + i])}
@@ -400,7 +399,7 @@ def row(track: Track, moving: Moving, curves: Sequence[Sequence[fmpq]], radius: 
         "basis": [[fraction(moving.basis[i, j]) for j in range(m)] for i in range(m)],
         "dual": [text(c) for c in curves[:m]],
         "contacts": contacts,
-        "radius": [decimal(rational(radius.get(k, smallest)), 12, 1) for k in range(m + 2 * l)],
+        "radius": [decimal(to_fmpq(radius.get(k, smallest)), 12, 1) for k in range(m + 2 * l)],
     }
 
 
@@ -484,7 +483,7 @@ def ends_to_try(at: fmpq, last: fmpq, step: fmpq, span: fmpq) -> list[fmpq]:
     rest, side = abs(last - at), 1 if last > at else -1
     if step * fmpq(9, 8) < rest:
         return [simple(at + side * step, step)]
-    near = rest * rational(arb(rest / span).sqrt()) / 2
+    near = rest * to_fmpq(arb(rest / span).sqrt()) / 2
     if rest < span * NEAREST:
         return [last]
     return [last, simple(last - side * near, near), simple(at + side * rest / 2, rest)]

@@ -12,7 +12,7 @@ from flint import fmpq
 
 from navsym.claims import Status
 from navsym.claims.display import card, displayed, latex_of, table
-from navsym.guaranteed.decimals import decimal
+from navsym.core.exact import decimal, to_fmpq
 from navsym.guaranteed.phases.boundaries import Boundary
 from navsym.guaranteed.phases.closed_forms import Closed
 from navsym.guaranteed.phases.family import Family
@@ -133,7 +133,7 @@ def regime_row(regime: Regime) -> dict[str, Any]:
 def end_text(end: sp.Expr, side: int = 0) -> str:
     """An end in the language of files; the middle of an enclosure as a decimal of 34 digits, rounded to a side."""
     if end.is_Rational and end.q > 10**9:
-        return decimal(fmpq(int(end.p), int(end.q)), DIGITS, side)
+        return decimal(to_fmpq(end), DIGITS, side)
     return to_text(end)
 
 

@@ -9,20 +9,20 @@ from fractions import Fraction
 import mpmath
 import numpy as np
 import sympy as sp
-from flint import arb, arb_mat, fmpq
+from flint import arb, arb_mat
 
 from navsym.claims import PROVED, Equation
 from navsym.core.balls import enclose, precision
+from navsym.core.exact import decimal, lower_end, to_fmpq, to_rational, upper_end
 from navsym.guaranteed.certificate.basis import as_fraction, make_basis
-from navsym.guaranteed.certificate.enclosure import Problem, rational, total
+from navsym.guaranteed.certificate.enclosure import Problem, total
 from navsym.guaranteed.certificate.fixed import peak, touch
 from navsym.guaranteed.certificate.polish import Polished, polish
-from navsym.guaranteed.decimals import decimal, lower_end, upper_end
 from navsym.guaranteed.phases import walk
 from navsym.guaranteed.phases.closed_forms import BITS, GOAL, Closed
 from navsym.guaranteed.phases.family import Family, U
 from navsym.guaranteed.phases.patterns import Pattern, Span, pattern_of, sample
-from navsym.guaranteed.phases.recognise import constant, number
+from navsym.guaranteed.phases.recognise import constant
 from navsym.guaranteed.phases.walk import walked
 from navsym.guaranteed.search.exchange import Contacts
 from navsym.prove.ladder import decide
@@ -146,7 +146,7 @@ def anchors(family: Family, span: Span, edge: Fraction, side: int) -> Iterator[t
         T = (edge + side * share * width).limit_denominator(10**7)
         _, contacts = sample(family, T, span.pattern)
         if pattern_of(contacts) == span.pattern:
-            yield contacts, sp.Rational(T.numerator, T.denominator)
+            yield contacts, to_rational(T)
 
 
 Others = Sequence[tuple[int, float, int]]
@@ -201,7 +201,7 @@ def implicit(family: Family, left: Span, right: Span) -> Boundary:
 
 def nowhere(edge: Fraction) -> Boundary:
     """A change of which no more is known than that the search saw it at the edge."""
-    text = decimal(fmpq(edge.numerator, edge.denominator), 8)
+    text = decimal(to_fmpq(edge), 8)
     return Boundary(None, text, text, "the pattern of instants changes; not located further", False)
 
 
@@ -215,7 +215,7 @@ def closing(
         with precision(BITS):
             return rooms(forced(family, T, pattern, contacts, T0), family.exact(T), others)
 
-    target = sp.Rational(edge.numerator, edge.denominator)
+    target = to_rational(edge)
     middle = (T0 + target) / 2
     first, second = rooms_at(T0), rooms_at(middle)
     room = nearest_to_close(first, second, float(T0), float(target))
@@ -224,9 +224,9 @@ def closing(
 
     def size(T: sp.Rational) -> sp.Rational | None:
         found = rooms_at(T).get(room)
-        return None if found is None else number(found.mid())
+        return None if found is None else to_rational(found.mid())
 
-    ends = (T0, number(first[room].mid())), (middle, number(second[room].mid()))
+    ends = (T0, to_rational(first[room].mid())), (middle, to_rational(second[room].mid()))
     root = secant(size, *ends, target, abs(T0 - target) * 3 + sp.Rational(1, 1000))
     return None if root is None else (root, in_words(family, room, others))
 
@@ -271,13 +271,13 @@ def enclosed(family: Family, left: Span, right: Span, root: sp.Rational, why: st
             )
             if proof(family, left, below, -1, root) and proof(family, right, above, 1, root):
                 return Boundary(None, exact_decimal(below), exact_decimal(above), why, True)
-    text = decimal(fmpq(int(root.p), int(root.q)), 20)
+    text = decimal(to_fmpq(root), 20)
     return Boundary(None, text, text, why + "; not enclosed by proofs", False)
 
 
 def exact_decimal(x: sp.Rational) -> str:
     """A decimal string of a rational, to 60 digits."""
-    return decimal(fmpq(int(x.p), int(x.q)), 60)
+    return decimal(to_fmpq(x), 60)
 
 
 def proves(family: Family, span: Span, T: sp.Rational, side: int, root: sp.Rational) -> bool:
@@ -297,7 +297,7 @@ def doubled(problem: Problem, found: Polished) -> bool:
     """True when a contact sits where two stretches meet: the end of the other touches as well, and no strict bound
     holds there."""
     many = 1 + max(panel.measurement for panel in problem.panels)
-    contacts = {(int(k), rational(at)) for k, at in zip(found.panel, found.v, strict=True)}
+    contacts = {(int(k), to_fmpq(at)) for k, at in zip(found.panel, found.v, strict=True)}
     twins = {(k - many, 1) for k, v in contacts if v == 0} | {(k + many, 0) for k, v in contacts if v == 1}
     with precision(BITS):
         for k, v in twins - contacts:
@@ -320,6 +320,3 @@ def proves_walking(family: Family, span: Span, T: sp.Rational, side: int, root: 
         if found is not None and not doubled(problem, found):
             return touch(problem, make_basis(problem), found, walk.DIGITS, walk.BITS) is not None
     return False
-
-
-__all__ = ["Boundary", "boundary", "rational"]

@@ -69,6 +69,3 @@ class Limit:
             return self.gives_up(what)
         found = run_limited(function, arguments, seconds)
         return self.gives_up(what, found.why) if isinstance(found, Exhausted) else found
-
-
-__all__ = ["DEFAULT_SECONDS", "LEAST", "Limit", "used"]

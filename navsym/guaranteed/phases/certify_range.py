@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from fractions import Fraction
 from functools import partial
 from typing import Any
 
@@ -13,9 +12,10 @@ import sympy as sp
 from flint import arb, arb_mat, arb_series, fmpq, fmpq_mat
 
 from navsym import checker
-from navsym.core.balls import enclose, exact_rational
+from navsym.core.balls import enclose
+from navsym.core.exact import decimal, from_decimal, to_fmpq, to_fraction, to_rational
 from navsym.guaranteed.certificate.basis import make_basis
-from navsym.guaranteed.certificate.enclosure import interval, rational, terms
+from navsym.guaranteed.certificate.enclosure import interval, terms
 from navsym.guaranteed.certificate.moving import Member, Moving, Vanishing, exact_functional, number_of
 from navsym.guaranteed.certificate.range import (
     BITS,
@@ -30,7 +30,6 @@ from navsym.guaranteed.certificate.range import (
     simple,
     value_bounds,
 )
-from navsym.guaranteed.decimals import decimal, exact
 from navsym.guaranteed.phases.closed_forms import refined
 from navsym.guaranteed.phases.family import Family, U
 from navsym.guaranteed.phases.patterns import Pattern
@@ -113,7 +112,7 @@ def denominators(h: sp.Expr) -> set[sp.Expr]:
 def of_argument(f: sp.Expr) -> fmpq | None:
     """|c| of ``sin(c u)``, ``cos(c u)``, ``exp(c u)``."""
     c = sp.expand(f.args[0] / U) if f.func in (sp.sin, sp.cos, sp.exp) else sp.S.NaN
-    return abs(fmpq(int(c.p), int(c.q))) if c.is_Rational else None
+    return abs(to_fmpq(c)) if c.is_Rational else None
 
 
 def pole_rate(f: sp.Expr) -> fmpq | None:
@@ -122,7 +121,7 @@ def pole_rate(f: sp.Expr) -> fmpq | None:
     if c[-1] == 0 or not all(a.is_Rational for a in c):
         return None
     most = max(abs(a / c[-1]) for a in c) + 1
-    return fmpq(int(most.p), int(most.q))
+    return to_fmpq(most)
 
 
 def taylor_table(row: tuple[sp.Expr, ...], count: int) -> list[list[fmpq]] | None:
@@ -134,7 +133,7 @@ def taylor_table(row: tuple[sp.Expr, ...], count: int) -> list[list[fmpq]] | Non
             value = sp.expand(derivative.subs(U, 0) / sp.factorial(k))
             if not value.is_Rational:
                 return None
-            coefficients.append(fmpq(int(value.p), int(value.q)))
+            coefficients.append(to_fmpq(value))
             derivative = derivative.diff(U)
         table.append(coefficients)
     return table
@@ -218,14 +217,14 @@ def rescaled(family: Family, form: Echelon) -> Family:
     T, m = family.parameter, len(family.functional)
     rows = tuple(
         tuple(
-            sum((exact_rational(form.basis[i, j]) * h.subs(U, T * U) for j, h in enumerate(row)), sp.S.Zero)
+            sum((to_rational(form.basis[i, j]) * h.subs(U, T * U) for j, h in enumerate(row)), sp.S.Zero)
             / T ** form.lows[i]
             for i in range(m)
         )
         for row in family.rows
     )
     image = form.basis * fmpq_mat(m, 1, exact_functional(family.moving))
-    functional = tuple(exact_rational(image[i, 0]) * T ** (form.shift - low) for i, low in enumerate(form.lows))
+    functional = tuple(to_rational(image[i, 0]) * T ** (form.shift - low) for i, low in enumerate(form.lows))
     return replace(family, rows=rows, functional=functional, start=sp.S.Zero, end=sp.S.One)
 
 
@@ -244,7 +243,7 @@ def scaled_text(form: Echelon, i: int, row: tuple[sp.Expr, ...], T: str, v: str)
     """Row i of ``A H(T v) / T**k_i``, powers cancelled."""
     parts: dict[sp.Symbol, str] = {}
     K = max(form.lows) + 1
-    total = sum((exact_rational(form.basis[i, j]) * opened(h, K, T, v, parts) for j, h in enumerate(row)), sp.S.Zero)
+    total = sum((to_rational(form.basis[i, j]) * opened(h, K, T, v, parts) for j, h in enumerate(row)), sp.S.Zero)
     terms = []
     for (power,), factor in sp.Poly(sp.expand(total), U).terms():
         for monomial, c in sp.Poly(factor, *parts).terms() if parts else [((), factor)]:
@@ -266,7 +265,7 @@ def opened(h: sp.Expr, K: int, T: str, v: str, parts: dict[sp.Symbol, str]) -> s
 
     def reciprocal(f: sp.Expr) -> sp.Expr:
         (table,), symbol = taylor_table((f,), K) or ([],), sp.Symbol(f"rest[{f}]")
-        polynomial = sum((exact_rational(a) * U**k for k, a in enumerate(table)), sp.S.Zero)
+        polynomial = sum((to_rational(a) * U**k for k, a in enumerate(table)), sp.S.Zero)
         rest = sp.cancel(sp.together(f - polynomial) / U**K)
         parts[symbol] = f"({to_text(rest.subs(U, sp.Symbol(T, real=True) * sp.Symbol(v, real=True)))})"
         return polynomial + U**K * symbol
@@ -286,7 +285,7 @@ def polynomial_of(name: str, c: sp.Rational, K: int) -> sp.Expr:
 def tie(form: Echelon, i: int, row: tuple[sp.Expr, ...], text: str, T: sp.Symbol, v: str) -> dict[str, Any]:
     """``H_i T**k_i = sum_j A_ij H_j(T v)``."""
     place = sp.Symbol(v, real=True)
-    pairs = [(exact_rational(form.basis[i, j]), h.subs(U, T * place)) for j, h in enumerate(row)]
+    pairs = [(to_rational(form.basis[i, j]), h.subs(U, T * place)) for j, h in enumerate(row)]
     right = " + ".join(f"({to_text(a)})*({to_text(h)})" for a, h in pairs if a != 0)
     return {"kind": "identity", "left": f"({text})*{T.name}**{form.lows[i]}", "right": right, "symbols": [T.name, v]}
 
@@ -296,17 +295,12 @@ def scaled_functional(family: Family, form: Echelon) -> list[str]:
     image = form.basis * fmpq_mat(form.basis.nrows(), 1, exact_functional(family.moving))
     T = family.parameter.name
     return [
-        f"({to_text(exact_rational(image[i, 0]))})*{T}**{form.shift - low}" if image[i, 0] != 0 else "0"
+        f"({to_text(to_rational(image[i, 0]))})*{T}**{form.shift - low}" if image[i, 0] != 0 else "0"
         for i, low in enumerate(form.lows)
     ]
 
 
 MOST_CELLS = 10_000
-
-
-def fraction_of(x: fmpq) -> Fraction:
-    """The same rational number for Python."""
-    return Fraction(int(x.p), int(x.q))
 
 
 def followed(family: Family, pattern: Pattern, lower: fmpq, upper: fmpq, enough: Callable[[], bool] = never) -> Ranged:
@@ -419,19 +413,19 @@ def from_zero(family: Family, form: Echelon, pattern: Pattern, upper: fmpq, enou
 
 def member(family: Family, pattern: Pattern, p: fmpq) -> Member | None:
     """The solution at a value whose pattern can be told in double precision."""
-    found = refined(family, fraction_of(p), pattern)
+    found = refined(family, to_fraction(p), pattern)
     if found is None:
         return None
-    done, problem = found.polished, family.exact(exact_rational(p))
+    done, problem = found.polished, family.exact(to_rational(p))
     weights = [w * problem.panels[k].bound() for w, k in zip(done.weights, done.panel, strict=True)]
-    return Member(tuple(map(rational, done.dual)), tuple(map(rational, done.v)), tuple(map(rational, weights)))
+    return Member(tuple(map(to_fmpq, done.dual)), tuple(map(to_fmpq, done.v)), tuple(map(to_fmpq, weights)))
 
 
 def conditioner(family: Family, p: fmpq) -> fmpq_mat:
     """The orthonormalising matrix at a value, rounded to twelve digits."""
-    basis = make_basis(family.exact(exact_rational(p)))
+    basis = make_basis(family.exact(to_rational(p)))
     m = basis.transform.nrows()
-    return fmpq_mat(m, m, [exact(decimal(basis.transform[i, j], 12)) for i in range(m) for j in range(m)])
+    return fmpq_mat(m, m, [from_decimal(decimal(basis.transform[i, j], 12)) for i in range(m) for j in range(m)])
 
 
 def turned(family: Family, p: fmpq) -> fmpq_mat:

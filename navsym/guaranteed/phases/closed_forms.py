@@ -16,14 +16,15 @@ import numpy as np
 import sympy as sp
 
 from navsym.claims import OPEN, PROVED, Equation, Optimum, Verdict
-from navsym.core.balls import enclose, exact_rational
+from navsym.core.balls import enclose
+from navsym.core.exact import to_fraction, to_rational
 from navsym.core.sandbox import Exhausted, run_limited
 from navsym.guaranteed.certificate.fixed import attempts
 from navsym.guaranteed.certificate.polish import Polished, polish
 from navsym.guaranteed.phases.budget import LEAST, Limit
 from navsym.guaranteed.phases.family import Family, U
 from navsym.guaranteed.phases.patterns import Pattern, Span, pattern_of, sample
-from navsym.guaranteed.phases.recognise import middle_of_constant, number, place_or_share
+from navsym.guaranteed.phases.recognise import middle_of_constant, place_or_share
 from navsym.prove.equations import combine, decide_equation
 from navsym.prove.ladder import DEFAULT_MEGABYTES, decide_within
 from navsym.prove.optimum import SHARE, constraints, equal_values, feasibility, instants
@@ -143,12 +144,12 @@ def refined(family: Family, T: Fraction, pattern: Pattern | None) -> Sample | No
     basis, contacts = sample(family, T, pattern)
     if pattern is not None and pattern_of(contacts) != pattern:
         return None
-    value = sp.Rational(T.numerator, T.denominator)
+    value = to_rational(T)
     done = polish(family.exact(value).panels, basis, contacts, BITS, GOAL)
     places = []
     for k, v in zip(done.panel, done.v, strict=True):
         start, end = (sp.Rational(str(sp.N(e, 95))) if not e.is_Rational else e for e in family.ends(value, k))
-        places.append(start + (end - start) * number(v))
+        places.append(start + (end - start) * to_rational(v))
     return Sample(value, tuple(places), done)
 
 
@@ -188,7 +189,7 @@ def monomial_guess(family: Family, span: Span, places: tuple[sp.Expr, ...], foun
 
     places : closed forms of the contacts. None when the samples follow no power law or the weights are not found
     """
-    duals_ = [[number(x) for x in s.polished.dual] for s in found]
+    duals_ = [[to_rational(x) for x in s.polished.dual] for s in found]
     dual = power_law_dual(family, duals_, [s.T for s in found])
     weights = monomial_weights(family, places)
     if dual is None or weights is None:
@@ -258,21 +259,16 @@ def fixed_duals(family: Family, span: Span, found: Sequence[Sample]) -> list[tup
     if sum(1 if kind != "no" else 2 for _, kind, _ in span.pattern) >= len(family.functional):
         return []
     done: list[tuple[sp.Expr, ...]] = []
-    for T in (span.upper, span.lower, exact_fraction(found[-1].T)):
+    for T in (span.upper, span.lower, to_fraction(found[-1].T)):
         basis, contacts = sample(family, T, span.pattern)
-        problem = family.exact(sp.Rational(T.numerator, T.denominator))
+        problem = family.exact(to_rational(T))
         refined_ = polish(problem.panels, basis, contacts, BITS, GOAL)
         for base, _, _ in attempts(problem, basis, contacts, refined_, 14):
-            x = tuple(exact_rational(c) for c in base)
+            x = tuple(to_rational(c) for c in base)
             short = all(c.q <= 720 for c in x)
             if short and x not in done and all(feasible(family, one, np.array(x, dtype=float)) for one in found):
                 done.append(x)
     return done
-
-
-def exact_fraction(x: sp.Rational) -> Fraction:
-    """A rational of sympy as a fraction of Python."""
-    return Fraction(int(x.p), int(x.q))
 
 
 def contact_equations(

@@ -18,20 +18,17 @@ import sympy as sp
 from flint import fmpq
 
 from navsym.claims import CERTIFIED, OPEN, Verdict
-from navsym.core.balls import enclose, exact_rational
-from navsym.guaranteed.certificate.enclosure import rational
+from navsym.core.balls import enclose
+from navsym.core.exact import decimal, from_decimal, lower_end, to_fmpq, to_fraction, to_rational, upper_end
 from navsym.guaranteed.certificate.range import Ranged
-from navsym.guaranteed.decimals import decimal, lower_end, upper_end
-from navsym.guaranteed.decimals import exact as exact_decimal
 from navsym.guaranteed.phases.answer import Phases, Regime, end_text
 from navsym.guaranteed.phases.boundaries import Boundary, boundary, nowhere
 from navsym.guaranteed.phases.budget import DEFAULT_SECONDS, Limit
-from navsym.guaranteed.phases.certify_range import covered, followed, fraction_of
+from navsym.guaranteed.phases.certify_range import covered, followed
 from navsym.guaranteed.phases.closed_forms import Closed, Sample, candidates, prove, refined
 from navsym.guaranteed.phases.family import Family
 from navsym.guaranteed.phases.narrow import slivers
-from navsym.guaranteed.phases.patterns import COUNT, Span, exact, scan
-from navsym.guaranteed.phases.recognise import number
+from navsym.guaranteed.phases.patterns import COUNT, Span, scan
 from navsym.guaranteed.phases.singular_values import (
     Section,
     begins,
@@ -61,11 +58,6 @@ class Follow:
     closed: bool
 
 
-def exact_fraction(x: Fraction) -> fmpq:
-    """A fraction of Python as a rational of flint."""
-    return fmpq(x.numerator, x.denominator)
-
-
 Limits = tuple[fmpq, fmpq, fmpq, fmpq]
 
 
@@ -79,9 +71,9 @@ def limits_of(
     singular: set[sp.Expr],
 ) -> list[Limits]:
     """For every regime: where it must be covered (outer) and where exact contacts are followed (inner)."""
-    margin = exact_fraction(MARGIN * (high - low))
+    margin = to_fmpq(MARGIN * (high - low))
     marks = [end_marks(family, lower, -1, singular, margin)]
-    marks += [(exact_decimal(b.lower), exact_decimal(b.upper)) for b in changes]
+    marks += [(from_decimal(b.lower), from_decimal(b.upper)) for b in changes]
     marks.append(end_marks(family, upper, 1, singular, margin))
     done: list[Limits] = []
     for k, (left, right) in enumerate(pairwise(marks)):
@@ -94,9 +86,9 @@ def end_marks(family: Family, end: sp.Expr, side: int, singular: set[sp.Expr], m
     """An end of the range as two rationals in order, the outer at or beyond it, the inner where contacts start."""
     ball = enclose(end, bits=200)
     if end.is_Rational:
-        at = fmpq(int(end.p), int(end.q))
+        at = to_fmpq(end)
     else:
-        at = exact_decimal(lower_end(ball, DIGITS) if side < 0 else upper_end(ball, DIGITS))
+        at = from_decimal(lower_end(ball, DIGITS) if side < 0 else upper_end(ball, DIGITS))
     vanishing = side < 0 and end == 0 and family.growing
     inner = at - side * margin if end in singular and not vanishing else at
     return (at, inner) if side < 0 else (inner, at)
@@ -126,7 +118,7 @@ def regime_of(
     for left, right in rests(done, limits):
         made, left_over = slivers(family, left, right, limit.met)
         thin += made
-        holes += [(end_text(exact_rational(p), -1), end_text(exact_rational(q), 1)) for p, q in left_over]
+        holes += [(end_text(to_rational(p), -1), end_text(to_rational(q), 1)) for p, q in left_over]
     run = longest(done)
     status = CERTIFIED if run is not None else OPEN
     return Regime(family, span, a, b, None, status, shown, done.documents, tuple(thin), run, run), holes
@@ -156,7 +148,7 @@ def table_of(family: Family, span: Span) -> tuple[dict[str, Any], ...]:
     rows = []
     for k in range(POINTS):
         T = (span.lower + (span.upper - span.lower) * Fraction(2 * k + 1, 2 * POINTS)).limit_denominator(1000)
-        found = solve(family.problem(exact(T)), 20)
+        found = solve(family.problem(to_rational(T)), 20)
         places = [
             {"measurement": s.measurement, "at": instant(family, T, s.at), "weight": s.weight} for s in found.support
         ]
@@ -167,8 +159,8 @@ def table_of(family: Family, span: Span) -> tuple[dict[str, Any], ...]:
 
 def instant(family: Family, T: Fraction, u: str) -> str:
     """The instant that a coordinate means at a value of the parameter, to twenty digits."""
-    end = family.at(family.stop, exact(T))
-    return decimal(rational(enclose(end - sp.Rational(u), bits=200)), 20) if family.backward else u
+    end = family.at(family.stop, to_rational(T))
+    return decimal(to_fmpq(enclose(end - sp.Rational(u), bits=200)), 20) if family.backward else u
 
 
 # Where the pattern changes, from closed forms that are proved between the changes.
@@ -327,7 +319,7 @@ def still_dual(found: Sequence[Sample]) -> tuple[sp.Expr, ...] | None:
     """The dual that all samples share, when its entries are short rational numbers."""
     if len(found) < 3:
         return None
-    duals = [[number(x) for x in one.polished.dual] for one in found]
+    duals = [[to_rational(x) for x in one.polished.dual] for one in found]
     short = tuple(x.limit_denominator(LARGEST) for x in duals[0])
     moves = any(abs(x - y) > NEAR for row in duals for x, y in zip(row, short, strict=True))
     return None if moves else short
@@ -441,7 +433,7 @@ def stretch(section: Section, follow: Follow, steps: Steps, limit: Limit) -> Pha
     family, lower, singular = section.family, section.lower, section.names
     low, high = inner_range(lower, section.upper, singular)
     spans = scanned(family, low, high, steps, limit)
-    upper = section.upper if spans[-1].upper == high else exact(spans[-1].upper)
+    upper = section.upper if spans[-1].upper == high else to_rational(spans[-1].upper)
     spans = without_accidents(family, spans, limit.share(1 / 4))
     steps.found(len(spans))
     guesses = guessed(family, spans, steps, limit.share(1 / 2))
@@ -499,7 +491,7 @@ def without_accidents(family: Family, spans: list[Span], limit: Limit) -> list[S
         beyond = next((k for k, span in enumerate(rest) if span.upper - span.lower >= short), 0)
         found = change(family, kept[-1], rest[beyond], limit) if beyond else None
         if found is not None and found.proved:
-            cut = fraction_of(rational(enclose(middle_of(found), bits=200)))
+            cut = to_fraction(enclose(middle_of(found), bits=200))
             kept[-1], rest = replace(kept[-1], upper=cut), rest[beyond:]
             rest[0] = replace(rest[0], lower=cut)
         kept.append(rest.pop(0))
@@ -511,14 +503,14 @@ def between(guess: Boundary, before: Regime, after: Regime) -> Boundary:
 
     Where a pattern is proved nowhere, the bracket is that of the search, and the regime is uncovered.
     """
-    last = before.held[1] if before.held else exact_fraction(before.span.lower)
-    first = after.held[0] if after.held else exact_fraction(after.span.upper)
+    last = before.held[1] if before.held else to_fmpq(before.span.lower)
+    first = after.held[0] if after.held else to_fmpq(after.span.upper)
     return replace(guess, lower=decimal(last, DIGITS, -1), upper=decimal(first, DIGITS, 1))
 
 
 def inner_range(lower: sp.Expr, upper: sp.Expr, singular: set[sp.Expr]) -> tuple[Fraction, Fraction]:
     """Rational values just inside the range, further inside at singular ends."""
-    a, b = (fraction_of(rational(enclose(e, bits=200))) for e in (lower, upper))
+    a, b = (to_fraction(enclose(e, bits=200)) for e in (lower, upper))
     steps = [Fraction(1, 400) if e in singular else Fraction(1, 10**9) for e in (lower, upper)]
     low, high = a + steps[0] * (b - a), b - steps[1] * (b - a)
     return low.limit_denominator(10**12), high.limit_denominator(10**12)

@@ -16,14 +16,14 @@ import numpy as np
 import sympy as sp
 from flint import arb, arb_mat, fmpq
 
-from navsym.core.balls import exact_rational, precision
+from navsym.core.balls import precision
 from navsym.core.errors import NavsymError
+from navsym.core.exact import decimal, from_decimal, to_fmpq, to_rational
 from navsym.guaranteed.certificate.basis import Basis, DependentError, as_fraction, make_basis
-from navsym.guaranteed.certificate.enclosure import Panel, Problem, Touch, interval, rational, total
+from navsym.guaranteed.certificate.enclosure import Panel, Problem, Touch, interval, total
 from navsym.guaranteed.certificate.fixed import attempts, every_cell, header, near_touches, support_points
 from navsym.guaranteed.certificate.polish import Polished, polish
 from navsym.guaranteed.certificate.range import fraction, never
-from navsym.guaranteed.decimals import decimal, exact
 from navsym.guaranteed.phases.family import Family
 from navsym.guaranteed.phases.patterns import ordered
 from navsym.guaranteed.search.exchange import Contacts, find_contacts
@@ -108,14 +108,14 @@ def sliver(family: Family, start: fmpq, end: fmpq) -> tuple[Sliver | None, float
         return None, inf
     ball = over_bounds(shown)
     try:
-        problem = family.exact(exact_rational(middle))
+        problem = family.exact(to_rational(middle))
         basis = make_basis(problem)
         contacts = find_contacts(basis.panels)
         refined = polish(problem.panels, basis, contacts, BITS, 1e-40)
         with precision(BITS):
             support, most = cheapest(ball, basis, contacts, refined)
             x, cells = within(ball, basis, contacts, refined)
-            least = rational(total([arb(c) for c in x], ball.target()).lower())
+            least = to_fmpq(total([arb(c) for c in x], ball.target()).lower())
     except (DependentError, NavsymError, ArithmeticError, ValueError):
         return None, inf
     width = float(arb((most - least) / most))
@@ -142,12 +142,12 @@ def cheapest(ball: Problem, basis: Basis, contacts: Contacts, refined: Polished)
     Raises ValueError when balls as wide as these carry the functional on neither.
     """
     together = merged(contacts)
-    places = [exact(decimal(v, PLACES)) for v in refined.v], [as_fraction(float(u)) for u in together.u]
+    places = [from_decimal(decimal(v, PLACES)) for v in refined.v], [as_fraction(float(u)) for u in together.u]
     found = []
     for carriers, at in zip((contacts, together), places, strict=True):
         support = support_points(basis, carriers, at)
         try:
-            found.append((rational(most_of(ball, support).upper()), support))
+            found.append((to_fmpq(most_of(ball, support).upper()), support))
         except (ZeroDivisionError, ValueError):
             continue
     if not found:
@@ -178,14 +178,14 @@ def within(ball: Problem, basis: Basis, contacts: Contacts, refined: Polished) -
         tried.append(base)
         over = excess(ball, base, near_touches(ball, seen, PLACES))
         for more in (arb(1.05), arb(1.5), arb(4)):
-            scale = rational((1 / (1 + over * more + TINY)).mid())
-            x = [exact(decimal(c * scale, PLACES)) for c in base]
-            reached = rational(total([arb(c) for c in x], ball.target()).lower())
+            scale = to_fmpq((1 / (1 + over * more + TINY)).mid())
+            x = [from_decimal(decimal(c * scale, PLACES)) for c in base]
+            reached = to_fmpq(total([arb(c) for c in x], ball.target()).lower())
             if best is not None and reached <= best[0]:
                 break
             cells = every_cell(ball, [arb(c) for c in x], [[] for _ in ball.panels])
             if cells is not None:
-                best = reached, [exact(decimal(c * (1 - fmpq(1, 10**9)), PLACES)) for c in x], cells
+                best = reached, [from_decimal(decimal(c * (1 - fmpq(1, 10**9)), PLACES)) for c in x], cells
                 break
     if best is None:
         raise ValueError("no dual within the bound")
@@ -196,7 +196,7 @@ def excess(ball: Problem, x: Sequence[fmpq], touches: Sequence[Sequence[Touch]])
     """By how much the dual polynomial may leave its bound, at its touches and on a grid: a guess to be proved."""
     dual, worst = [arb(c) for c in x], arb(0)
     for panel, near in zip(ball.panels, touches, strict=True):
-        for v in (*(rational(t.at) for t in near), *(fmpq(k, GRID) for k in range(GRID + 1))):
+        for v in (*(to_fmpq(t.at) for t in near), *(fmpq(k, GRID) for k in range(GRID + 1))):
             worst = max(worst, (abs(total(dual, panel.rows(arb(v)))) / panel.bound()).upper() - 1)
     return worst
 

@@ -13,9 +13,9 @@ from fractions import Fraction
 from itertools import combinations, islice, pairwise
 
 import numpy as np
-import sympy as sp
 
 from navsym.core.errors import DomainError
+from navsym.core.exact import to_rational
 from navsym.guaranteed.certificate.basis import Basis, DependentError, make_basis
 from navsym.guaranteed.phases.family import Family
 from navsym.guaranteed.search.exchange import NEGLIGIBLE, Contacts, Panels, find_contacts, rows_at
@@ -113,18 +113,13 @@ class Span:
     pattern: Pattern
 
 
-def exact(x: Fraction) -> sp.Rational:
-    """A fraction of Python as a rational of sympy."""
-    return sp.Rational(x.numerator, x.denominator)
-
-
 def sample(family: Family, T: Fraction, *wanted: Pattern | None) -> tuple[Basis, Contacts]:
     """Basis and contacts for one length; the contacts in order.
 
     wanted : patterns to prefer where there are several optimal estimators, the first that is optimal wins
     """
     try:
-        basis = make_basis(family.exact(exact(T)))
+        basis = make_basis(family.exact(to_rational(T)))
     except DependentError:
         raise DomainError(
             f"{family.parameter.name}: expected a range inside which the regressors are independent; got dependent "

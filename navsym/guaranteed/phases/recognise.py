@@ -6,21 +6,12 @@ from collections.abc import Sequence
 
 import mpmath
 import sympy as sp
-from flint import arb
 
-from navsym.core.balls import exact_rational
-from navsym.guaranteed.certificate.enclosure import rational
 from navsym.guaranteed.phases.family import Family, U
 
 NEAR = sp.Rational(1, 10**40)
 #: Integers up to this size are looked for in relations.
 SHORT = 1000
-
-
-def number(x: arb) -> sp.Rational:
-    """Midpoint of a ball as an exact rational."""
-    value = rational(x)
-    return exact_rational(value)
 
 
 def constant(x: sp.Rational) -> sp.Expr | None:

@@ -14,14 +14,11 @@ from flint import arb
 from navsym.claims import PROVED, REFUTED, Equation
 from navsym.core.balls import enclose
 from navsym.core.errors import DomainError, NavsymError, NotEstimableError
+from navsym.core.exact import lower_end, to_fraction, to_rational, upper_end
 from navsym.guaranteed.certificate.basis import DependentError, make_basis
-from navsym.guaranteed.certificate.enclosure import rational
-from navsym.guaranteed.decimals import lower_end, upper_end
 from navsym.guaranteed.estimability import recognised
 from navsym.guaranteed.phases.boundaries import Boundary
-from navsym.guaranteed.phases.certify_range import fraction_of
 from navsym.guaranteed.phases.family import Family, U
-from navsym.guaranteed.phases.patterns import exact
 from navsym.language.expression import to_text
 from navsym.prove.ladder import decide
 
@@ -350,7 +347,7 @@ def split(family: Family, lower: sp.Expr, upper: sp.Expr) -> list[Section]:
 def inside_of(lower: sp.Expr, upper: sp.Expr) -> sp.Rational:
     """A rational value between the ends that no symmetry singles out."""
     ball = enclose(lower + (upper - lower) * sp.Rational(5, 13), bits=96)
-    return exact(fraction_of(rational(ball)).limit_denominator(10**6))
+    return to_rational(to_fraction(ball).limit_denominator(10**6))
 
 
 def event(singular: Singular) -> Boundary:

@@ -15,7 +15,8 @@ from itertools import pairwise
 import sympy as sp
 from flint import fmpq
 
-from navsym.core.balls import UnsupportedError, exact_rational
+from navsym.core.balls import UnsupportedError
+from navsym.core.exact import to_rational
 from navsym.prove.sampling.points import Range
 from navsym.prove.signs.exact import Limits, Sign, SignProof
 from navsym.prove.signs.real_roots import Place, UndecidedError, between, compare, is_root, real_roots
@@ -124,7 +125,7 @@ def survey_of_piece(branches: list[Branch], piece: Piece) -> Survey:
     known = [branch_at(branches, u) for u in cells]
     signs: dict[int, list[sp.Expr]] = {1: [], 0: [], -1: []}
     for u, branch in zip(cells, known, strict=True):
-        signs[sign_at(branch.value, u)].append(piece.back(exact_rational(u)))
+        signs[sign_at(branch.value, u)].append(piece.back(to_rational(u)))
     # |f| is continuous: at a root the branch of the interval before it has the value, at the lower end that after it.
     before = {id(root): known[k] for k, root in enumerate(inside)}
     low = [root for root in places if id(root) not in before and at_end(root, piece.lower)]

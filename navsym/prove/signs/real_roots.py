@@ -14,7 +14,8 @@ from itertools import pairwise
 import sympy as sp
 from flint import fmpq, fmpq_poly, fmpz_poly
 
-from navsym.core.balls import exact_ball, exact_rational, precision
+from navsym.core.balls import exact_ball, precision
+from navsym.core.exact import to_rational
 from navsym.prove.identities.numbers import is_zero
 from navsym.prove.sampling.descent import exact
 
@@ -73,7 +74,7 @@ class Place:
 
 def rational_place(number: fmpq) -> Place:
     """A rational number."""
-    return Place(number, number, value=exact_rational(number))
+    return Place(number, number, value=to_rational(number))
 
 
 def place_of(value: sp.Expr) -> Place:
@@ -214,7 +215,7 @@ def value_of(polynomial: fmpq_poly, at: sp.Expr) -> sp.Expr:
     """The value of a polynomial at an exact number."""
     total = sp.Integer(0)
     for c in reversed(polynomial.coeffs()):
-        total = total * at + exact_rational(c)
+        total = total * at + to_rational(c)
     return total
 
 

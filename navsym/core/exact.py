@@ -1,28 +1,54 @@
-"""Decimal strings of exact numbers and of the ends of balls, rounded the way that is asked for."""
+"""Exact numbers as each library writes them, and as decimals rounded to a side that is asked for."""
 
 from __future__ import annotations
 
+from fractions import Fraction
 from typing import Any
 
+import sympy as sp
 from flint import arb, fmpq, fmpz
 
-from navsym.guaranteed.certificate.enclosure import rational
+ONE = fmpz(1)
+
+
+def to_fmpq(x: Any) -> fmpq:
+    """A rational number of flint: the exact midpoint of a ball, or an exact number of any library.
+
+    x : arb, fmpq, fmpz, int, Fraction, or a rational of sympy
+    """
+    if isinstance(x, arb):
+        mantissa, exponent = x.mid().man_exp()
+        power = int(exponent)
+        return fmpq(mantissa << power) if power >= 0 else fmpq(mantissa, ONE << -power)
+    return x if isinstance(x, fmpq) else fmpq(int(x.numerator), int(x.denominator))
+
+
+def to_rational(x: Any) -> sp.Rational:
+    """A rational number of sympy, from whatever :func:`to_fmpq` takes."""
+    x = to_fmpq(x) if isinstance(x, arb) else x
+    return sp.Rational(int(x.numerator), int(x.denominator))
+
+
+def to_fraction(x: Any) -> Fraction:
+    """A fraction of Python, from whatever :func:`to_fmpq` takes."""
+    x = to_fmpq(x) if isinstance(x, arb) else x
+    return Fraction(int(x.numerator), int(x.denominator))
 
 
 def decimal(x: Any, digits: int, direction: int = 0) -> str:
     """``x`` with ``digits`` significant digits: to nearest (0), downwards (-1) or upwards (1).
 
-    x : a ball (its midpoint), an fmpq, or an integer
+    x : a ball (its midpoint), or an exact number
     """
-    value = rational(x)
+    value = to_fmpq(x)
     if value == 0:
         return "0"
     top, bottom = int(value.p), int(value.q)
     exponent = magnitude(top, bottom) - digits
     top, bottom = top * 10 ** max(-exponent, 0), bottom * 10 ** max(exponent, 0)
     if direction == 0:
-        return placed((2 * top + bottom) // (2 * bottom), exponent)
-    return placed(top // bottom if direction < 0 else -(-top // bottom), exponent)
+        return without_power((2 * top + bottom) // (2 * bottom), exponent)
+    return without_power(top // bottom if direction < 0 else -(-top // bottom), exponent)
 
 
 def magnitude(top: int, bottom: int) -> int:
@@ -36,7 +62,7 @@ def magnitude(top: int, bottom: int) -> int:
     return e
 
 
-def placed(whole: int, exponent: int) -> str:
+def without_power(whole: int, exponent: int) -> str:
     """``whole * 10**exponent`` written without a power of ten, trailing zeros dropped."""
     sign, text = ("-" if whole < 0 else ""), str(abs(whole))
     if exponent >= 0:
@@ -48,19 +74,18 @@ def placed(whole: int, exponent: int) -> str:
 
 def lower_end(x: arb, digits: int) -> str:
     """A decimal below every number of the ball, by a unit of its last digit, so that a checker can see it."""
-    end = rational(x.lower())
+    end = to_fmpq(x.lower())
     return decimal(end - abs(end) * fmpq(1, 10) ** digits, digits, -1)
 
 
 def upper_end(x: arb, digits: int) -> str:
     """A decimal above every number of the ball, by a unit of its last digit."""
-    end = rational(x.upper())
+    end = to_fmpq(x.upper())
     return decimal(end + abs(end) * fmpq(1, 10) ** digits, digits, 1)
 
 
-def exact(text: str) -> fmpq:
-    """The rational number that a decimal string of this module means."""
+def from_decimal(text: str) -> fmpq:
+    """The rational number that a decimal string means."""
     head, _, tail = text.partition(".")
     sign = -1 if head.startswith("-") else 1
-    whole = fmpz(head.lstrip("-") + tail)
-    return sign * fmpq(whole, fmpz(10) ** len(tail))
+    return sign * fmpq(fmpz(head.lstrip("-") + tail), fmpz(10) ** len(tail))
