@@ -45,9 +45,13 @@ __version__ = "0.1.0"
 
 #: Public name -> module that holds it. A module is imported when its name is first used, and its engines with it.
 _HOMES = {
+    "Model": "navsym.models.model",
     "NavsymError": "navsym.core.errors",
     "Number": "navsym.core.numbers",
-    **dict.fromkeys(("Verdict", "Status", "PROVED", "CERTIFIED", "CONFIRMED", "REFUTED", "OPEN"), "navsym.claims"),
+    **dict.fromkeys(
+        ("Verdict", "Verdicts", "Status", "PROVED", "CERTIFIED", "CONFIRMED", "REFUTED", "OPEN"), "navsym.claims"
+    ),
+    "prove": "navsym.prove.formulas",
 }
 
 __all__ = ["__version__", *sorted(_HOMES)]
@@ -60,8 +64,11 @@ if TYPE_CHECKING:
     from navsym.claims import REFUTED as REFUTED
     from navsym.claims import Status as Status
     from navsym.claims import Verdict as Verdict
+    from navsym.claims import Verdicts as Verdicts
     from navsym.core.errors import NavsymError as NavsymError
     from navsym.core.numbers import Number as Number
+    from navsym.models.model import Model as Model
+    from navsym.prove.formulas import prove as prove
 
 
 class _FrontDoor(ModuleType):

@@ -31,8 +31,7 @@ from navsym.claims import Optimum
 from navsym.cli.main import run
 from navsym.guaranteed.problem import from_file
 from navsym.guaranteed.solver import solve
-from navsym.models.derivation import linear_model
-from navsym.models.modelfile import model_from
+from navsym.models.modelfile import linear_model, model_from
 from navsym.observability.chains import observe
 from navsym.prove.ladder import decide
 from navsym.report.notebook import explore

@@ -104,7 +104,7 @@ def write_bytes(path: str | os.PathLike[str], data: bytes, *, durable: bool = Tr
             replace_file(target, data, durable)
     except OSError as error:
         reason = error.strerror or type(error).__name__
-        message = f"expected a file that can be written; got '{reason}'; choose another --out"
+        message = f"expected a file that can be written; got '{reason}'; choose another path"
         raise OutputError(message, where=str(path)) from error
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 import tomllib
+from collections.abc import Mapping
 from typing import Any
 
 from navsym.core.errors import DuplicateError, ExpressionSyntaxError, NavsymError, NotFiniteError, TooLargeError
@@ -114,3 +115,34 @@ def check(value: Any, where: str, path: tuple[Any, ...]) -> None:
     elif not isinstance(value, str):
         message = f"expected text or a number; got a {type(value).__name__}; do put it in quotes or remove it"
         raise ExpressionSyntaxError(message, where=place_of(where, path))
+
+
+def toml_text(document: Mapping[str, Any]) -> str:
+    """TOML text of tables of texts: ``parse_toml(toml_text(d)) == d``.
+
+    document : table -> its keys, or a list of such tables ([[table]] blocks); values are texts and nested lists of them
+    """
+    blocks = []
+    for table, content in document.items():
+        heads = [(f"[{toml_key(table)}]", content)]
+        if isinstance(content, list):
+            heads = [(f"[[{toml_key(table)}]]", block) for block in content]
+        for head, keys in heads:
+            lines = [f"{toml_key(key)} = {toml_value(value)}" for key, value in keys.items()]
+            blocks.append("\n".join([head, *lines]))
+    return "\n\n".join(blocks) + "\n"
+
+
+def toml_key(key: str) -> str:
+    """A key, in quotes where it is not bare."""
+    return key if re.fullmatch(r"[A-Za-z0-9_-]+", key) else toml_value(key)
+
+
+def toml_value(value: Any) -> str:
+    """A text in quotes, or a list; the rows of a matrix stand below each other."""
+    if isinstance(value, list) and value and isinstance(value[0], list):
+        return "[\n" + "".join(f"  {toml_value(row)},\n" for row in value) + "]"
+    if isinstance(value, list):
+        return "[" + ", ".join(toml_value(item) for item in value) + "]"
+    escaped = str(value).replace("\\", "\\\\").replace('"', '\\"')
+    return '"' + "".join(c if c.isprintable() else f"\\U{ord(c):08x}" for c in escaped) + '"'

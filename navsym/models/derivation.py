@@ -20,7 +20,7 @@ import sympy as sp
 
 from navsym.core.errors import DomainError
 from navsym.models.linear import LinearModel, observability_matrix
-from navsym.models.modelfile import BasisFile, ModelFile
+from navsym.models.modelfile import BasisFile, ModelFile, piece_model
 from navsym.models.transition.exponential import (
     TransitionMatrix,
     collected,
@@ -80,18 +80,6 @@ class Derivation:
     observability: sp.ImmutableMatrix | None
     conditions: tuple[Conditions, ...]
     assumptions: tuple[sp.Basic, ...]
-
-
-def linear_model(found: ModelFile) -> LinearModel:
-    """The model of a file in one piece; ShapeError when there are several."""
-    return piece_model(found, found.F)
-
-
-def piece_model(found: ModelFile, F: sp.ImmutableMatrix) -> LinearModel:
-    """The linear model of one stretch of the motion."""
-    rows = [list(measurement.h) for measurement in found.measurements]
-    names = tuple(measurement.name for measurement in found.measurements)
-    return LinearModel(F, None, rows or None, found.states, measurements=names, time=found.time)
 
 
 def derive(found: ModelFile | BasisFile) -> Derivation:

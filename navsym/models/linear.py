@@ -185,6 +185,17 @@ def substituted(matrix: sp.ImmutableMatrix, values: Mapping[sp.Symbol, Any]) -> 
     return matrix.subs(exact, simultaneous=True)
 
 
+def linear_row(formula: sp.Expr, states: Sequence[sp.Symbol], where: str) -> list[sp.Expr]:
+    """Coefficients of the states in a formula that is linear in them; DomainError for any other formula."""
+    expanded = formula.expand()
+    row = [expanded.coeff(state) for state in states]
+    rest = (expanded - sum(entry * state for entry, state in zip(row, states, strict=True))).expand()
+    if rest != 0 or any(entry.free_symbols & set(states) for entry in row) or not any(row):
+        message = "expected a sum of states times numbers and parameters; got another formula; make it linear"
+        raise DomainError(message, where=where)
+    return row
+
+
 def observability_matrix(model: LinearModel) -> sp.ImmutableMatrix:
     """The rows H, H F + H', (H F + H') F + ..., n blocks of p rows: (n p, n).
 

@@ -37,6 +37,7 @@ from navsym.language.schema import (
     vector,
 )
 from navsym.language.tomlfile import read_toml
+from navsym.models.linear import LinearModel
 
 # What a model file says, as plain exact data.
 
@@ -122,6 +123,18 @@ class BasisFile:
     def box(self) -> dict[Symbol, tuple[Expr, Expr]]:
         """Symbol -> (lower, upper) for the parameters that have a range."""
         return box_of(self.parameters)
+
+
+def linear_model(found: ModelFile) -> LinearModel:
+    """The model of a file in one piece; ShapeError when there are several."""
+    return piece_model(found, found.F)
+
+
+def piece_model(found: ModelFile, F: Matrix) -> LinearModel:
+    """The linear model of one piece of the motion."""
+    rows = [list(measurement.h) for measurement in found.measurements]
+    names = tuple(measurement.name for measurement in found.measurements)
+    return LinearModel(F, None, rows or None, found.states, measurements=names, time=found.time)
 
 
 # The [basis] and [targets] tables of a model file: regressors and functionals.

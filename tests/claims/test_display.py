@@ -17,8 +17,7 @@ from navsym.guaranteed.phases.driver import phases
 from navsym.guaranteed.phases.family import family_of
 from navsym.guaranteed.problem import from_file
 from navsym.guaranteed.solver import solve
-from navsym.models.derivation import linear_model
-from navsym.models.modelfile import model_from
+from navsym.models.modelfile import linear_model, model_from
 from navsym.observability.chains import observe
 from navsym.report.formula.latex import mathml
 

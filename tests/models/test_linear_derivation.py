@@ -5,9 +5,9 @@ import sympy as sp
 
 from navsym.core.errors import DomainError, NavsymError
 from navsym.language.expression import parse
-from navsym.models.derivation import derive, linear_model
+from navsym.models.derivation import derive
 from navsym.models.document import as_latex, as_text, document
-from navsym.models.modelfile import model_from
+from navsym.models.modelfile import linear_model, model_from
 
 PAPER = {
     "model": {

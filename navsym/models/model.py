@@ -1,0 +1,596 @@
+"""Models of the front door: a linear system, or regressors, with measurements, an interval and targets."""
+
+from __future__ import annotations
+
+import html
+import os
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any
+
+import sympy as sp
+
+from navsym.claims.display import card, displayed, latex_of
+from navsym.core.errors import DomainError, EmptyError, NavsymError, ShapeError
+from navsym.language.declarations import Parameter, read_parameters, symbols_of
+from navsym.language.expression import parse, symbol, to_text
+from navsym.language.files import write_text
+from navsym.language.names import inside, shown
+from navsym.language.tomlfile import read_toml, toml_text
+from navsym.language.values import declared_words, write_declaration, write_entries, write_value
+from navsym.models.linear import LinearModel, linear_row
+from navsym.models.modelfile import BasisFile, ModelFile, Piece, model_from, piece_model
+
+#: Keys of a model file -> the arguments that write them, for the place of an error.
+PLACES = (
+    (r"^Model: (model|basis|parameters)\.", "Model: "),
+    (r"^Model: measurement\[(\d+)\]\.h", r"Model: H[\1]"),
+    (r"^Model: measurement\[(\d+)\]\.sigma", r"Model: sigma[\1]"),
+    (r"^Model: measurement\[(\d+)\]\.name", r"Model: measurements[\1]"),
+    (r"^Model: measurement$", "Model: measurements"),
+    (r"^Model: piece$", "Model: pieces"),
+    (r"^--set ", "Model: values."),
+    (r"^Model: interval\.T", "Model: interval"),
+    (r"^Model: piece\[", "Model: pieces["),
+)
+
+
+@dataclass(frozen=True, init=False, repr=False, eq=False)
+class Model:
+    """A linear system ``dx/dt = F x`` with measurements ``z_j = h_j x + r_j`` on [0, T].
+
+    states       : n names, in one text or a list
+    F            : (n, n) the matrix of the system; may contain parameters and the time t
+    H            : (p, n) one row per measurement, or a formula of the states in place of a row; may contain t
+    sigma        : (p,) bounds of the standard deviations of r_j, in the units of z_j; one for all, by default "1"
+    interval     : T, the length of the interval: a number, or the name of a parameter
+    targets      : name -> n entries, or a formula of the states: functionals of x(T); by default every state
+    measurements : p names, by default z1, z2, ...
+    pieces       : (from, to, F) in order, where F differs from piece to piece
+    parameters   : name -> declaration; keywords that remain mean the same
+
+    Entries are text of the language of files, ints, Fractions, sympy expressions, or matrices and integer arrays
+    of them. A parameter is declared by a range ``("0", "2*pi")`` or by "real", "positive", "nonnegative", "nonzero";
+    an undeclared symbol of sympy has the sign that sympy knows.
+    Arguments and model files are read by the same reader, with the same limits.
+
+    Raises NavsymError; ``where`` names the argument. A float raises DomainError with its exact spelling.
+
+    >>> import navsym as nav
+    >>> model = nav.Model(states="y1 y2 y3", F=[["0", "-1", "0"], ["0", "0", "1"], ["0", "-1", "0"]],
+    ...                   H=[["1", "0", "0"]], sigma=["1"], interval="T", targets={"drift": "y3"}, T=("0", "2*pi"))
+    >>> model
+    Model(model: 3 states y1, y2, y3; 1 measurement; on [0, T]; target drift; parameter T)
+    >>> model.F
+    Matrix([
+    [0, -1, 0],
+    [0,  0, 1],
+    [0, -1, 0]])
+    >>> nav.Model(states="x v", F=[[0, 1], [0, 0]], H=["x"], interval=0.5)
+    Traceback (most recent call last):
+    navsym.core.errors.DomainError: Model: interval: expected an exact number; got the float 0.5; ...
+    """
+
+    _document: Mapping[str, Any]
+    _contents: ModelFile | BasisFile
+
+    def __init__(
+        self,
+        states: str | Sequence[str],
+        F: Any = None,
+        H: Any = None,
+        sigma: Any = 1,
+        interval: Any = None,
+        targets: Mapping[str, Any] | None = None,
+        *,
+        measurements: str | Sequence[str] | None = None,
+        pieces: Sequence[Any] | None = None,
+        name: str = "model",
+        parameters: Mapping[str, Any] | None = None,
+        **declared: Any,
+    ):
+        with places_of_arguments():
+            names = name_list(states, "Model: states")
+            formulas = (F, H, sigma, interval, targets, pieces)
+            declarations = declarations_of(parameters, declared, formulas, {*names, "t"})
+            document: dict[str, Any] = {"model": {"name": name, "states": names}}
+            if F is not None:
+                document["model"]["F"] = write_entries(F, "Model: F")
+            document["parameters"] = declarations
+            document["measurement"] = measurement_blocks(H, sigma, measurements, names, declarations)
+            if pieces is not None:
+                document["piece"] = piece_blocks(pieces)
+            if interval is not None:
+                document["interval"] = {"T": write_value(interval, "Model: interval")}
+            if targets is not None:
+                document["targets"] = target_rows(targets, names, declarations)
+            self._fill(document)
+
+    def _fill(self, document: Mapping[str, Any], where: str = "Model") -> None:
+        """Read the document; empty tables are left out of it."""
+        full = {table: content for table, content in document.items() if content or table == "targets"}
+        object.__setattr__(self, "_contents", model_from(full, where))
+        object.__setattr__(self, "_document", full)
+
+    @classmethod
+    def from_document(cls, document: Mapping[str, Any], where: str = "Model") -> Model:
+        """The model of a document: the tables of a model file as plain data.
+
+        Raises the errors of a model file; ``where`` stands before the key.
+        """
+        if not isinstance(document, Mapping):
+            got = shown(document)
+            raise ShapeError(f"expected the tables of a model file; got {got}; give a dict", where=where)
+        model = object.__new__(cls)
+        model._fill(texts(document), where)
+        return model
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Model:
+        """The model of a model file (TOML).
+
+        Raises NavsymError with the file and the key; kind ``missing-file`` where there is none.
+        """
+        with error_of_call("Model.load: path", path):
+            document = read_toml(path)
+        return cls.from_document(document, os.fspath(path))
+
+    @classmethod
+    def from_basis(
+        cls,
+        H: Any,
+        interval: Any = (0, 1),
+        sigma: Any = 1,
+        targets: Mapping[str, Any] | None = None,
+        *,
+        variable: str = "s",
+        name: str = "basis",
+        parameters: Mapping[str, Any] | None = None,
+        **declared: Any,
+    ) -> Model:
+        """Regressors without a system: ``z_j(s) = H_j(s) q + r_j``.
+
+        H        : (m,) one function of the variable per unknown, or (p, m) with one row per measurement
+        interval : start and end of the variable
+        sigma    : bounds of the standard deviations of r_j, one per measurement or one for all
+        targets  : name -> m entries, or a formula of the unknowns c0, c1, ...; by default every unknown
+
+        Raises the errors of :class:`Model`.
+
+        >>> import navsym as nav
+        >>> nav.Model.from_basis(["1", "s", "s**2"], interval=(0, 1), targets={"curvature": "2*c2"})
+        Model(basis: 3 unknowns c0, c1, c2; 1 measurement; s from 0 to 1; target curvature)
+        """
+        with places_of_arguments():
+            rows = write_entries(H, "Model: H")
+            nested = rows if isinstance(rows, list) and rows and isinstance(rows[0], list) else [rows]
+            declarations = declarations_of(parameters, declared, (H, sigma, interval, targets), {variable})
+            basis = {"name": name, "variable": variable, "H": rows}
+            basis["sigma"] = one_for_each(sigma, len(nested), "Model: sigma")
+            basis["interval"] = write_entries(interval, "Model: interval")
+            document = {"basis": basis, "parameters": declarations}
+            if targets is not None:
+                unknowns = [f"c{k}" for k in range(len(nested[0]))]
+                document["targets"] = target_rows(targets, unknowns, declarations)
+            return cls.from_document(document)
+
+    @classmethod
+    def from_linear(
+        cls,
+        linear: LinearModel,
+        sigma: Any = 1,
+        interval: Any = None,
+        targets: Mapping[str, Any] | None = None,
+        *,
+        name: str = "model",
+        parameters: Mapping[str, Any] | None = None,
+        **declared: Any,
+    ) -> Model:
+        """The model of a :class:`LinearModel` without process noise; arguments as for :class:`Model`.
+
+        Parameters that are not declared are declared as their symbols are.
+
+        Raises DomainError for process noise, and the errors of :class:`Model`.
+        """
+        if linear.G.cols:
+            got = f"G with {linear.G.cols} columns"
+            raise DomainError(f"expected a model without process noise; got {got}; drop G", where="Model: linear")
+        time = {linear.time: symbol("t")}
+        return cls(
+            linear.states,
+            linear.F.subs(time),
+            linear.H.subs(time),
+            sigma,
+            interval,
+            targets,
+            measurements=linear.measurements,
+            name=name,
+            parameters=parameters,
+            **declared,
+        )
+
+    @classmethod
+    def from_contents(cls, contents: ModelFile | BasisFile) -> Model:
+        """The model of what was read from a model file."""
+        model = object.__new__(cls)
+        object.__setattr__(model, "_contents", contents)
+        object.__setattr__(model, "_document", document_of(contents))
+        return model
+
+    def document(self) -> dict[str, Any]:
+        """The tables of a model file as plain data; every entry is text."""
+        return texts(self._document)
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write a model file (TOML) that reads back to the same model.
+
+        Raises OutputError where the file cannot be written.
+        """
+        with error_of_call("Model.save: path", path):
+            os.fspath(path)
+        write_text(path, toml_text(self._document))
+
+    def read(self, values: Mapping[str, Any] | None = None) -> ModelFile | BasisFile:
+        """The exact contents, with values put in for some parameters.
+
+        values : parameter -> exact number, inside its declaration
+
+        Raises UnknownSymbolError for a name that is no parameter, DomainError for a value outside.
+        """
+        if not values:
+            return self._contents
+        with places_of_arguments():
+            given = {name: write_value(value, inside("Model: values", name)) for name, value in values.items()}
+            return model_from(self._document, "Model", given)
+
+    def with_values(self, **values: Any) -> Model:
+        """The model with exact values in place of some parameters.
+
+        >>> import navsym as nav
+        >>> swing = nav.Model("x v", F=[["0", "1"], ["-w**2", "0"]], H=["x"], interval="T", w="positive", T="positive")
+        >>> swing.with_values(w="1/2").document()["model"]["F"]
+        [['0', '1'], ['-1/4', '0']]
+        """
+        return Model.from_contents(self.read(values)) if values else self
+
+    def linear(self, values: Mapping[str, Any] | None = None) -> LinearModel:
+        """The system as a :class:`LinearModel`.
+
+        Raises ShapeError for a system in pieces, DomainError for regressors.
+        """
+        contents = self._system(values)
+        return piece_model(contents, contents.F)
+
+    def _system(self, values: Mapping[str, Any] | None = None) -> ModelFile:
+        """The contents where they are a system; DomainError for regressors."""
+        contents = self.read(values)
+        if isinstance(contents, ModelFile):
+            return contents
+        message = "expected a model with F and H; got a basis of regressors; give the system"
+        raise DomainError(message, where="Model")
+
+    @property
+    def name(self) -> str:
+        """Name of the model."""
+        return self._contents.name
+
+    @property
+    def states(self) -> tuple[str, ...]:
+        """Names of the n states; of the unknowns c0, c1, ... where regressors are given."""
+        contents = self._contents
+        return contents.states if isinstance(contents, ModelFile) else tuple(f"c{k}" for k in range(len(contents.H[0])))
+
+    @property
+    def measurements(self) -> tuple[str, ...]:
+        """Names of the p measurements."""
+        contents = self._contents
+        if isinstance(contents, ModelFile):
+            return tuple(measurement.name for measurement in contents.measurements)
+        return tuple(f"z{j + 1}" for j in range(len(contents.H)))
+
+    @property
+    def F(self) -> sp.ImmutableMatrix:
+        """Matrix of the system (n, n). Raises ShapeError for pieces, DomainError for regressors."""
+        return self._system().F
+
+    @property
+    def H(self) -> sp.ImmutableMatrix:
+        """Rows of the measurements (p, n)."""
+        contents = self._contents
+        rows = [m.h for m in contents.measurements] if isinstance(contents, ModelFile) else contents.H
+        return sp.ImmutableMatrix(rows)
+
+    @property
+    def sigma(self) -> tuple[sp.Expr, ...]:
+        """Bounds of the standard deviations (p,), in the units of the measurements."""
+        contents = self._contents
+        return tuple(m.sigma for m in contents.measurements) if isinstance(contents, ModelFile) else contents.sigma
+
+    @property
+    def T(self) -> sp.Expr | None:
+        """Length of the interval; None where the model states none, the end of the variable for regressors."""
+        contents = self._contents
+        return contents.T if isinstance(contents, ModelFile) else contents.interval[1]
+
+    @property
+    def targets(self) -> dict[str, tuple[sp.Expr, ...]]:
+        """Name -> functional of x(T), one entry per state."""
+        return dict(self._contents.targets)
+
+    @property
+    def parameters(self) -> dict[str, Parameter]:
+        """Name -> declared parameter."""
+        return dict(self._contents.parameters)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Model) and self._document == other._document
+
+    def __hash__(self) -> int:
+        return hash(toml_text(self._document))
+
+    def __repr__(self) -> str:
+        contents = self._contents
+        kind = "states" if isinstance(contents, ModelFile) else "unknowns"
+        parts = [listed(kind, self.states), counted(len(self.measurements), "measurement")]
+        if isinstance(contents, BasisFile):
+            start, end = contents.interval
+            parts.append(f"{contents.variable} from {to_text(start)} to {to_text(end)}")
+        elif contents.T is not None:
+            parts.append(f"on [0, {to_text(contents.T)}]")
+        parts += [
+            listed(word, names) for word, names in (("target", self.targets), ("parameter", self.parameters)) if names
+        ]
+        return f"Model({contents.name}: {'; '.join(parts)})"
+
+    def _repr_latex_(self) -> str:
+        """The equations of the model, for notebooks."""
+        return displayed(r", \qquad ".join(equations_latex(self._contents)))
+
+    def _repr_html_(self) -> str:
+        """A card for notebooks: name, equations, parameters and targets."""
+        lines = [f"<b>{html.escape(self.name)}</b>: {html.escape(', '.join(self.states))}"]
+        lines += [html.escape(displayed(latex)) for latex in equations_latex(self._contents)]
+        return card([*lines, html.escape(repr(self))])
+
+
+def as_model(value: Any, where: str) -> Model:
+    """The model that an argument means: a Model, a LinearModel, contents of a model file, a document, or a path.
+
+    where : names the argument in errors
+    """
+    if isinstance(value, Model):
+        return value
+    if isinstance(value, LinearModel):
+        return Model.from_linear(value)
+    if isinstance(value, ModelFile | BasisFile):
+        return Model.from_contents(value)
+    if isinstance(value, Mapping):
+        return Model.from_document(value, where)
+    if isinstance(value, str | os.PathLike):
+        return Model.load(value)
+    raise DomainError(f"expected a Model or the path of a model file; got {shown(value)}; give one", where=where)
+
+
+# Arguments to tables of a model file
+
+
+@contextmanager
+def places_of_arguments() -> Iterator[None]:
+    """Errors of the reader name the argument in place of the key of a file."""
+    try:
+        yield
+    except NavsymError as error:
+        for pattern, argument in PLACES:
+            error.where = re.sub(pattern, argument, error.where)
+        raise
+
+
+@contextmanager
+def error_of_call(where: str, path: Any) -> Iterator[None]:
+    """A path of another type is refused in our words."""
+    if not isinstance(path, str | os.PathLike):
+        raise DomainError(f"expected the path of a file; got {shown(path)}; give text or a Path", where=where)
+    yield
+
+
+def name_list(names: Any, where: str) -> list[Any]:
+    """Names from one text with blanks or commas between them, or from a list; symbols by their names."""
+    if isinstance(names, str):
+        return names.replace(",", " ").split()
+    if not isinstance(names, list | tuple):
+        raise ShapeError(f'expected names; got {shown(names)}; write them in one text: "x v"', where=where)
+    return [item.name if isinstance(item, sp.Symbol) else item for item in names]
+
+
+def declarations_of(
+    parameters: Any, declared: Mapping[str, Any], formulas: Sequence[Any], others: set[Any]
+) -> dict[str, Any]:
+    """The [parameters] table: what the caller declares, and the assumptions of further symbols of sympy.
+
+    formulas : arguments that may hold expressions of sympy; ``others`` are the names in them that are no parameters
+    """
+    if not isinstance(parameters, Mapping | None):
+        message = f"expected name -> declaration; got {shown(parameters)}; write keywords or a dict"
+        raise ShapeError(message, where="Model: parameters")
+    given = {**(parameters or {}), **declared}
+    words = declared_words([list(f.values()) if isinstance(f, Mapping) else f for f in formulas], "Model")
+    table = {name: write_declaration(value, f"Model: {name}") for name, value in given.items()}
+    for name, word in words.items():
+        if name in table and word != "real":
+            need_sign(name, word, table[name])
+        elif name not in others:
+            table.setdefault(name, word)
+    return table
+
+
+def need_sign(name: str, word: str, declaration: Any) -> None:
+    """DomainError where sympy has simplified by a sign that the declaration does not grant."""
+    symbol = read_parameters({name: declaration}, "Model: parameters")[name].symbol
+    granted = {"positive": symbol.is_nonnegative, "nonnegative": symbol.is_nonnegative, "nonzero": symbol.is_nonzero}
+    if not granted[word]:
+        got = f"a symbol of sympy that is {word}, declared {declaration}"
+        raise DomainError(f"expected one declaration; got {got}; declare both alike", where=f"Model: {name}")
+
+
+def measurement_blocks(
+    H: Any, sigma: Any, measurements: Any, states: Sequence[str], declared: Mapping[str, Any]
+) -> list[dict[str, Any]]:
+    """The [[measurement]] blocks."""
+    if H is None:
+        raise EmptyError("expected H with one row per measurement; got none; give H=[[…]]", where="Model: H")
+    rows = write_entries(H, "Model: H")
+    rows = rows if isinstance(rows, list) else [rows]
+    sigmas = one_for_each(sigma, len(rows), "Model: sigma")
+    names = [f"z{k + 1}" for k in range(len(rows))]
+    if measurements is not None:
+        names = name_list(measurements, "Model: measurements")
+    if len(names) != len(rows):
+        message = f"expected {len(rows)} names, one per row of H; got {len(names)}; name each once"
+        raise ShapeError(message, where="Model: measurements")
+    known = {**known_symbols(declared), "t": symbol("t")}
+    return [
+        {"name": name, "h": row_of(row, states, known, f"Model: H[{k}]"), "sigma": bound}
+        for k, (name, row, bound) in enumerate(zip(names, rows, sigmas, strict=True))
+    ]
+
+
+def one_for_each(value: Any, count: int, where: str) -> list[str]:
+    """One text per measurement; a single value is that of all."""
+    values = write_entries(value, where)
+    if not isinstance(values, list):
+        return [values] * count
+    if len(values) != count:
+        raise ShapeError(
+            f"expected {count} entries, one per measurement; got {len(values)}; complete them", where=where
+        )
+    return values
+
+
+def piece_blocks(pieces: Any) -> list[dict[str, Any]]:
+    """The [[piece]] blocks."""
+    if not isinstance(pieces, list | tuple):
+        message = f"expected a list of (from, to, F); got {shown(pieces)}; give them in order"
+        raise ShapeError(message, where="Model: pieces")
+    return [piece_block(piece, f"Model: pieces[{k}]") for k, piece in enumerate(pieces)]
+
+
+def piece_block(piece: Any, where: str) -> dict[str, Any]:
+    """One [[piece]] block from (from, to, F), or from a table with these keys."""
+    if isinstance(piece, Mapping):
+        return {key: write_entries(value, inside(where, key)) for key, value in piece.items()}
+    if not isinstance(piece, list | tuple) or len(piece) != 3:
+        raise ShapeError(f"expected (from, to, F); got {shown(piece)}; give all three", where=where)
+    keys = ("from", "to", "F")
+    return {key: write_entries(value, inside(where, key)) for key, value in zip(keys, piece, strict=True)}
+
+
+def target_rows(targets: Mapping[str, Any], states: Sequence[str], declared: Mapping[str, Any]) -> dict[str, Any]:
+    """The [targets] table: rows of entries, or formulas of the states."""
+    if not isinstance(targets, Mapping):
+        message = f'expected name -> functional; got {shown(targets)}; write {{"{states[0]}": "{states[0]}"}}'
+        raise ShapeError(message, where="Model: targets")
+    known = known_symbols(declared)
+    rows = {}
+    for name, row in targets.items():
+        where = inside("Model: targets", name)
+        rows[name] = row_of(write_entries(row, where), states, known, where)
+    return rows
+
+
+def row_of(row: Any, states: Sequence[str], known: Mapping[str, sp.Symbol], where: str) -> Any:
+    """A row of texts as it is; a formula of the states as its coefficients."""
+    if not isinstance(row, str):
+        return row
+    symbols = {name: symbol(name, where=where) for name in states}
+    formula = parse(row, {**known, **symbols}, where=where)
+    return [to_text(entry) for entry in linear_row(formula, list(symbols.values()), where)]
+
+
+def known_symbols(declared: Mapping[str, Any]) -> dict[str, sp.Symbol]:
+    """The declared parameters as symbols."""
+    return symbols_of(read_parameters(dict(declared), "Model: parameters"))
+
+
+# Contents to tables of a model file
+
+
+def document_of(contents: ModelFile | BasisFile) -> dict[str, Any]:
+    """The tables of a model file that reads back to these contents."""
+    parameters = {p.name: declaration_of(p) for p in contents.parameters.values()}
+    targets = {name: [to_text(entry) for entry in row] for name, row in contents.targets.items()}
+    if isinstance(contents, BasisFile):
+        basis = {
+            "name": contents.name,
+            "variable": contents.variable.name,
+            "H": [[to_text(entry) for entry in row] for row in contents.H],
+            "sigma": [to_text(bound) for bound in contents.sigma],
+            "interval": [to_text(end) for end in contents.interval],
+        }
+        tables: dict[str, Any] = {"basis": basis, "parameters": parameters, "targets": targets}
+        return {table: content for table, content in tables.items() if content}
+    tables = {"model": {"name": contents.name, "states": list(contents.states)}, "parameters": parameters}
+    tables["measurement"] = [
+        {"name": m.name, "h": [to_text(entry) for entry in m.h], "sigma": to_text(m.sigma)}
+        for m in contents.measurements
+    ]
+    if len(contents.pieces) == 1 and contents.pieces[0].end in (None, contents.T):
+        tables["model"]["F"] = write_entries(contents.F, "F")
+    else:
+        tables["piece"] = [piece_table(piece) for piece in contents.pieces]
+    tables["interval"] = {} if contents.T is None else {"T": to_text(contents.T)}
+    tables["targets"] = targets
+    return {table: content for table, content in tables.items() if content}
+
+
+def piece_table(piece: Piece) -> dict[str, Any]:
+    """One [[piece]] block."""
+    return {"from": to_text(piece.start), "to": to_text(piece.end), "F": write_entries(piece.F, "F")}
+
+
+def declaration_of(parameter: Parameter) -> Any:
+    """A range as two texts, or the word."""
+    if parameter.lower is None or parameter.upper is None:
+        return parameter.kind
+    return [to_text(parameter.lower), to_text(parameter.upper)]
+
+
+def texts(value: Any) -> Any:
+    """Plain data of our own: tables and lists copied, numbers of TOML as text."""
+    if isinstance(value, Mapping):
+        return {key: texts(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return [texts(item) for item in value]
+    return str(value) if isinstance(value, str) or type(value) is int else value
+
+
+# Words and formulas for people
+
+
+def listed(word: str, names: Any) -> str:
+    """``target drift``, ``3 states y1, y2, y3``; long lists are cut."""
+    names = list(names)
+    text = ", ".join(names[:6]) + (", …" if len(names) > 6 else "")
+    return f"{len(names)} {word} {text}" if word.endswith("s") else f"{word}{'s' if len(names) > 1 else ''} {text}"
+
+
+def counted(count: int, word: str) -> str:
+    """``1 measurement``, ``2 measurements``."""
+    return f"{count} {word}{'' if count == 1 else 's'}"
+
+
+def equations_latex(contents: ModelFile | BasisFile) -> list[str]:
+    """Equations of the system and of its measurements in LaTeX, without dollar signs."""
+    if isinstance(contents, BasisFile):
+        rows = latex_of(sp.ImmutableMatrix(contents.H))
+        return [rf"z({latex_of(contents.variable)}) = {rows} q + r"]
+    lines = []
+    for piece in contents.pieces:
+        where = ""
+        if len(contents.pieces) > 1:
+            where = rf", \quad {latex_of(piece.start)} \le t \le {latex_of(piece.end)}"
+        lines.append(rf"\frac{{d}}{{dt}} x = {latex_of(piece.F)} x{where}")
+    H = sp.ImmutableMatrix([list(m.h) for m in contents.measurements])
+    sigma = sp.ImmutableMatrix([m.sigma for m in contents.measurements])
+    return [*lines, rf"z = {latex_of(H)} x + r", rf"\sigma = {latex_of(sigma)}"]
