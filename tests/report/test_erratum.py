@@ -20,7 +20,7 @@ from navsym.report.curves import value
 from navsym.report.erratum import erratum_of
 from navsym.report.formula.latex import mathml, sentence_html, sentence_latex
 from navsym.report.formula.reader import read_formula
-from navsym.report.page import environment, site
+from navsym.report.page import TEMPLATES, environment, site
 from navsym.report.wording import pattern_of, read_wording
 
 DERIVATIONS = Path(__file__).parents[2] / "derivations"
@@ -228,7 +228,19 @@ def compiled(tex, folder, wide=False):
     return int(found.group(1))
 
 
-needs_latex = pytest.mark.skipif(shutil.which("pdflatex") is None, reason="no pdflatex: install texlive-latex-base")
+def lacking() -> str:
+    """What setting a sheet needs and this machine has not, in a sentence; empty when all is there."""
+    if shutil.which("pdflatex") is None or shutil.which("kpsewhich") is None:
+        return "no pdflatex: install texlive-latex-base and lmodern"
+    names = re.findall(r"\\usepackage(?:\[.*\])?{(.*)}", (TEMPLATES / "erratum.tex").read_text(encoding="utf-8"))
+    styles = [f"{name}.sty" for name in ",".join(names).split(",")]
+    there = subprocess.run(["kpsewhich", *styles], capture_output=True, text=True, check=False, timeout=60).stdout
+    absent = [style for style in styles if f"/{style}\n" not in there]
+    return f"LaTeX lacks {', '.join(absent)}: install texlive-latex-base and lmodern" if absent else ""
+
+
+LACKING = lacking()
+needs_latex = pytest.mark.skipif(bool(LACKING), reason=LACKING)
 
 
 @needs_latex
