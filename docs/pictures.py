@@ -63,7 +63,7 @@ def worst(equation: str, equations: Sequence[str], records: Sequence[Mapping[str
 
 def phases() -> Figure:
     """Guaranteed deviation of the drift by the length of the interval, every regime proved."""
-    from navsym.guaranteed.phases.driver import phases as solved
+    from navsym.guaranteed.phases.driver import find_phases as solved
     from navsym.guaranteed.phases.family import family_of
     from navsym.models.modelfile import model_from
 

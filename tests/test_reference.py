@@ -1,91 +1,87 @@
-"""The reference of the documentation is complete, and what a user calls is documented to the standard."""
+"""The reference has every public name and every verb, and the docstring of each public name meets the standard."""
 
 from __future__ import annotations
 
 import ast
-import importlib.util
+import importlib
+import inspect
 import re
 import sys
+import textwrap
 from pathlib import Path
 
+import pytest
+
+import navsym as nav
+from navsym.cli.main import verbs
+
 DOCS = Path(__file__).parent.parent / "docs"
+CALLED = [name for name in dir(nav) if callable(getattr(nav, name)) and not isinstance(getattr(nav, name), nav.Status)]
 
 
-def test_the_reference_has_every_folder_and_every_entry_point(tmp_path):
-    entry_points, pages = tool("entry_points"), tool("reference_pages")
-    pages.write_reference(tmp_path)
-    first = (tmp_path / "0_entry_points.md").read_text(encoding="utf-8")
-    points = entry_points.entry_points()
-    assert len(points) > 100
-    for point in points:
-        assert f"### {point.node.name}\n" in first, point.name
-    rooms = {path.parent for path in (DOCS.parent / "navsym").rglob("*.py")}
-    names = {"_".join(path.relative_to(DOCS.parent / "navsym").parts) for path in rooms}
-    left_out = {name for name in names if not (tmp_path / f"{name}.md").exists()}
-    assert left_out <= {"", "cli"}, left_out
+@pytest.fixture(scope="module")
+def pages(tmp_path_factory):
+    """The pages of the reference, by name."""
+    sys.path.insert(0, str(DOCS))
+    try:
+        folder = tmp_path_factory.mktemp("reference")
+        importlib.import_module("reference_pages").write_reference(folder)
+    finally:
+        sys.path.remove(str(DOCS))
+    return {path.name: path.read_text(encoding="utf-8") for path in folder.glob("*.md")}
 
 
-def test_what_a_user_calls_says_what_it_computes_with_shapes_and_errors():
-    """The standard of docstrings: a sentence first, the shape of arrays, and what is raised."""
-    troubles = [trouble for point in tool("entry_points").entry_points() for trouble in troubles_of(point)]
+def test_every_public_name_is_in_the_reference(pages):
+    sections = dict(re.findall(r"^## (\w+)\n\n(.*?)(?=^## |\Z)", pages["0_python.md"], re.M | re.S))
+    assert set(sections) == {name for name in dir(nav) if not name.startswith("__")}
+
+
+def test_every_verb_and_every_option_is_in_the_reference(pages):
+    sections = dict(re.findall(r"^## ([\w-]+)\n\n(.*?)(?=^## |\Z)", pages["1_verbs.md"], re.M | re.S))
+    assert set(sections) == set(verbs())
+    for verb, text in sections.items():
+        assert f"Example: navsym {verb}" in text and "--json" in text, verb
+        silent = re.findall(r"^  (--[\w-]+|\w[\w.]*) <[^>]*>\s*$\n(?=  \S|\n|`)", text, re.M)
+        assert silent == [], f"{verb}: {silent} without a word of help"
+
+
+def test_public_docstrings_say_results_shapes_and_errors():
+    troubles = [f"{name}: {trouble}" for name in CALLED for trouble in troubles_of(getattr(nav, name))]
     assert not troubles, "\n".join(troubles)
 
 
-def test_the_standard_of_docstrings_can_fall():
-    source = """
-def poor(x: Array) -> float:
+def poor(x: list[float] | np.ndarray) -> float:  # noqa: F821
+    """mean"""
     if not len(x):
-        raise EmptyError("x")
+        raise nav.NavsymError("x")
     return x[0]
-"""
-    node = ast.parse(source).body[0]
-    point = tool("entry_points").EntryPoint("navsym.core.arrays", node)
-    lacking = [trouble.split(": ")[1] for trouble in troubles_of(point)]
-    assert lacking == ["a sentence first", "raises EmptyError", "a shape"]
 
 
-def tool(name):
-    """A module of the folder of the documentation."""
-    spec = importlib.util.spec_from_file_location(name, DOCS / f"{name}.py")
-    module = importlib.util.module_from_spec(spec)
-    sys.path.insert(0, str(DOCS))
-    try:
-        sys.modules[name] = module
-        spec.loader.exec_module(module)
-    finally:
-        sys.path.remove(str(DOCS))
-    return module
+def test_the_standard_of_docstrings_can_fall():
+    assert list(troubles_of(poor)) == ["a sentence first", "raises NavsymError", "a shape"]
 
 
-def troubles_of(point):
-    """What the docstring of an entry point lacks."""
-    doc = point.docstring
+def troubles_of(value):
+    """Parts of the standard that a docstring lacks: a sentence first, the errors, the shape of arrays."""
+    doc = inspect.getdoc(value) or ""
     if not re.match(r"\S.*[.:](\s|$)", " ".join(doc.split("\n\n")[0].split())):
-        yield f"{point.name}: a sentence first"
-    if isinstance(point.node, ast.FunctionDef):
-        raised = errors_of(point)
-        if raised and "aises" not in doc and "the same errors" not in doc:
-            yield f"{point.name}: raises {', '.join(sorted(raised))}"
-        types = [argument.annotation for argument in ast.walk(point.node.args) if isinstance(argument, ast.arg)]
-        text = " ".join(ast.unparse(kind) for kind in [*types, point.node.returns] if kind is not None)
-        if re.search("Array|ndarray", text) and not re.search(r"\(\w+(, ?\w+)*,?\)", doc):
-            yield f"{point.name}: a shape"
+        yield "a sentence first"
+    if inspect.isfunction(value):
+        raised = errors_of(value)
+        if raised and "aises" not in doc:
+            yield f"raises {', '.join(sorted(raised))}"
+        if re.search("Array|ndarray", str(inspect.signature(value))) and not re.search(r"\(\w+(, ?\w+)*,?\)", doc):
+            yield "a shape"
 
 
-def errors_of(point, deep=3):
-    """Names of the errors that a function, or a helper of its file that it calls, raises."""
-    path = DOCS.parent.joinpath(*point.module.split(".")).with_suffix(".py")
-    helpers = {n.name: n for n in ast.parse(path.read_text(encoding="utf-8")).body if isinstance(n, ast.FunctionDef)}
-    found, seen, waiting = set(), set(), [(point.node, deep)]
-    while waiting:
-        node, left = waiting.pop()
-        for part in ast.walk(node):
-            if isinstance(part, ast.Raise) and part.exc is not None:
-                what = part.exc.func if isinstance(part.exc, ast.Call) else part.exc
-                name = getattr(what, "id", getattr(what, "attr", ""))
-                found |= {name} if name.endswith("Error") else set()
-            called = getattr(getattr(part, "func", None), "id", None)
-            if left and called in helpers and called not in seen:
-                seen.add(called)
-                waiting.append((helpers[called], left - 1))
-    return found
+def errors_of(function, depth=3):
+    """Names of the errors that a function, or a helper of its module that it calls, raises."""
+    names = set()
+    for node in ast.walk(ast.parse(textwrap.dedent(inspect.getsource(function)))):
+        if isinstance(node, ast.Raise) and node.exc is not None:
+            raised = ast.unparse(node.exc.func if isinstance(node.exc, ast.Call) else node.exc)
+            names.add(raised.rpartition(".")[2])
+        helper = function.__globals__.get(getattr(getattr(node, "func", None), "id", ""))
+        if depth and inspect.isfunction(helper) and helper.__module__ == function.__module__:
+            names |= errors_of(helper, depth - 1)
+    return {name for name in names if name.endswith("Error")}
