@@ -74,7 +74,7 @@ def failure(left: Any, relation: str, right: Any, verdict: Verdict) -> str:
     """The message of a failed claim, the counterexample in its first line."""
     point = ", ".join(f"{name} = {value}" for name, value in (verdict.counterexample or {}).items())
     where = f" at {point}" if point else ""
-    difference = f"; left - right = {verdict.difference[0]}" if verdict.difference else ""
+    difference = f"; left - right = {verdict.difference.lower}" if verdict.difference else ""
     return f"{verdict.status}{where}{difference}\n  {left} {relation} {right}\n  {verdict.evidence}"
 
 

@@ -1,9 +1,10 @@
 """Statements, verdicts, claims and papers: the nouns of navsym, as plain data."""
 
 from navsym.claims.claim import Claim, claim
+from navsym.claims.formula import Formula
 from navsym.claims.paper import Coverage, Paper, claims_of, coverage, equation_of
 from navsym.claims.statement import Bound, Box, Equation, Finding, Optimum, Property, Statement
-from navsym.claims.verdict import CERTIFIED, CONFIRMED, OPEN, PROVED, REFUTED, Status, Verdict
+from navsym.claims.verdict import CERTIFIED, CONFIRMED, OPEN, PROVED, REFUTED, Status, Verdict, Verdicts
 
 __all__ = [
     "CERTIFIED",
@@ -17,12 +18,14 @@ __all__ = [
     "Coverage",
     "Equation",
     "Finding",
+    "Formula",
     "Optimum",
     "Paper",
     "Property",
     "Statement",
     "Status",
     "Verdict",
+    "Verdicts",
     "claim",
     "claims_of",
     "coverage",

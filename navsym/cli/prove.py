@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from navsym.cli._progress import Progress
 from navsym.cli.output import emit, table
+
+if TYPE_CHECKING:
+    from navsym.claims import Verdict, Verdicts
 
 
 def command(
@@ -24,46 +27,29 @@ def command(
 
     Example: navsym prove examples/formulas.toml
     """
-    from navsym.language.tomlfile import read_toml
+    import navsym as nav
 
-    read_toml(file)  # a file that is none is refused before the slow import of the algebra
-
-    from navsym.prove.claimfile import read_claims
-
-    claims = read_claims(file, go_on=True)
-
-    from navsym.prove.claimfile import prove
-
-    found: list[dict[str, Any]] = []
+    found: list[Verdict] = []
     try:
-        with Progress("formulas", len(claims.claims), "those decided follow; run it again for the rest") as bar:
+        with Progress("formulas", resume="those decided follow; run it again for the rest") as bar:
 
-            def step(record: dict[str, Any]) -> None:
-                found.append(record)
-                bar.step(record["id"])
+            def step(verdict: Verdict, total: int) -> None:
+                found.append(verdict)
+                bar.total = total
+                bar.step(verdict.id)
 
-            document = prove(claims, jobs=jobs, seconds=seconds, progress=step)
+            verdicts = nav.prove(file, jobs=jobs, seconds=seconds, progress=step)
     except KeyboardInterrupt:
-        emit({"claims": found, "interrupted": True}, as_json=json_, text=lambda: as_text({"claims": found}))
+        so_far = nav.Verdicts(tuple(found))
+        emit({**so_far.document(), "interrupted": True}, as_json=json_, text=lambda: as_text(so_far))
         raise
-    emit(document, as_json=json_, text=lambda: as_text(document))
-    if claims.undefined:
-        return claims.undefined[0].error.status
-    return 0 if all(record["status"] not in ("REFUTED", "OPEN") for record in document["claims"]) else 1
+    emit(verdicts.document(), as_json=json_, text=lambda: as_text(verdicts))
+    if verdicts.first_error:
+        return verdicts.first_error.status
+    return 1 if any(verdict.status in (nav.REFUTED, nav.OPEN) for verdict in verdicts) else 0
 
 
-def as_text(document: dict[str, Any]) -> str:
-    rows = [(r["id"], r["status"], r["method"], remark_of(r)) for r in document["claims"]]
+def as_text(verdicts: Verdicts) -> str:
+    """A table with what each verdict rests on, or why a side has no value."""
+    rows = [(v.id, v.status, v.method, str(verdicts.errors.get(v.id) or v.reason)) for v in verdicts]
     return table(("claim", "verdict", "method", "remark"), rows)
-
-
-def remark_of(record: dict[str, Any]) -> str:
-    if "error" in record:
-        return f"{record['error']['where']}: {record['error']['message']}"
-    if record["counterexample"] is not None:
-        point = ", ".join(f"{k} = {v}" for k, v in record["counterexample"].items()) or "no symbols"
-        difference = record["difference"]
-        return f"at {point}" + (f": left - right = {difference['lower']}…" if difference else "")
-    if record["assumptions"]:
-        return f"assuming {'; '.join(record['assumptions'])}"
-    return record["scope"] or record["evidence"]

@@ -79,11 +79,12 @@ def record_for(name: str, old: Formula | None, new: Formula | None) -> Record:
     if point is None or difference is None:
         return said(name, "DIFFERENT", "counterexample") | {
             "worst": dict(verdict.counterexample or {}),
-            "difference": list(verdict.difference or ()),
+            "difference": [verdict.difference.lower, verdict.difference.upper] if verdict.difference else [],
         }
+    ends = decimal_ends(difference)
     return said(name, "DIFFERENT", f"largest of {POINTS} points") | {
         "worst": {s.name: text_of(value) for s, value in point.items()},
-        "difference": list(decimal_ends(difference)),
+        "difference": [ends.lower, ends.upper],
     }
 
 

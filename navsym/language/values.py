@@ -1,89 +1,158 @@
-"""Values from Python as text of the language of files: exact numbers and formulas, never floats."""
+"""Values of Python programs as text of the language: nothing but that text goes on.
+
+A caller gives text, integers, fractions, decimals, sympy expressions or arrays of integers. All of them are written
+down and read again like a file, so that no object of the algebra gets behind the caps and checks of the reader.
+"""
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Mapping
+import numbers
+from collections.abc import Iterable, Mapping
 from decimal import Decimal
 from fractions import Fraction
 from typing import Any
 
-from navsym.core.errors import DomainError, NavsymError, NotFiniteError
+import sympy as sp
+
+from navsym.core.errors import DomainError, ExpressionSyntaxError, NavsymError, NotFiniteError
+from navsym.language.declarations import SIGNS
 from navsym.language.names import inside, shown
+from navsym.language.printer import to_text
+
+#: What a symbol of sympy without assumptions is taken for, and what stronger words include.
+STRONGER = {"positive": ("nonnegative", "nonzero", "real"), "nonnegative": ("real",), "nonzero": ("real",), "real": ()}
 
 
-def exact_text(value: Any, where: str = "") -> str:
-    """Text of the language of files for one exact value.
+def write_value(value: Any, where: str) -> str:
+    """Text of an exact value; text itself stays as it is.
 
-    value : text (returned as it is), int, Fraction, Decimal, an integer of numpy, or a sympy expression
-    where : names the argument in errors
+    Raises DomainError for a float and shows its exact spelling, ExpressionSyntaxError for any other kind of value.
 
-    Raises DomainError for a float, with its exact spelling, and for what is no formula; NotFiniteError for infinities.
-
-    >>> exact_text(Fraction(1, 3)), exact_text("cos(w*t)"), exact_text(Decimal("0.25"))
-    ('1/3', 'cos(w*t)', '1/4')
+    >>> write_value(Fraction(1, 3), ""), write_value("cos(w*t)", ""), write_value(sp.sqrt(2), "")
+    ('1/3', 'cos(w*t)', 'sqrt(2)')
     """
     if isinstance(value, str):
         return value
-    value = plain_number(value)
+    if isinstance(value, sp.Basic):
+        return write_expression(value, where)
     if isinstance(value, bool):
-        raise DomainError(f"expected an exact number or a formula; got {value}; write a number", where=where)
-    if isinstance(value, float | complex):
-        raise float_error(value, where)
-    if isinstance(value, Decimal):
-        if not value.is_finite():
-            raise NotFiniteError(f"expected a finite number; got {value}; give one", where=where)
-        value = Fraction(value)
-    if isinstance(value, int | Fraction):
-        return str(value)
-    return formula_text(value, where)
+        raise ExpressionSyntaxError(f"expected an exact number; got {value}; write 0 or 1", where=where)
+    if isinstance(value, numbers.Integral):
+        return str(int(value))
+    if isinstance(value, numbers.Rational):
+        return str(Fraction(int(value.numerator), int(value.denominator)))
+    if isinstance(value, Decimal) and value.is_finite():
+        return f"{value:f}" if abs(value.adjusted()) < 100 else str(value)
+    if isinstance(value, (numbers.Real, Decimal)):
+        raise inexact(float(value), where)
+    got = shown(value)
+    message = f"expected text, an exact number or a sympy expression; got {got}; write the formula as text"
+    raise ExpressionSyntaxError(message, where=where)
 
 
-def formula_text(value: Any, where: str) -> str:
-    """Text of a sympy expression; whoever made one has loaded sympy, so that nobody else waits for it."""
-    sympy = sys.modules.get("sympy")
-    if sympy is None or not isinstance(value, sympy.Basic):
-        got = shown(value)
-        raise DomainError(f'expected an exact number or a formula; got {got}; write it as text: "1/2"', where=where)
-    for inexact in value.atoms(sympy.Float):
-        raise float_error(float(inexact), where)
-    from navsym.language.printer import to_text
-
+def write_expression(value: sp.Basic, where: str) -> str:
+    """Text of a sympy expression without floating-point numbers."""
+    floats = sorted(value.atoms(sp.Float), key=str)
+    if floats:
+        raise inexact(float(floats[0]), where)
     try:
         return to_text(value)
     except NavsymError as error:
-        raise error.at(where) if where else error from None
+        raise error.at(where) from None
 
 
-def plain_number(value: Any) -> Any:
-    """A scalar of numpy as the number of Python that it is; anything else as it is."""
-    item = getattr(value, "item", None)
-    return item() if callable(item) and getattr(value, "shape", None) == () else value
-
-
-def float_error(value: float | complex, where: str) -> NavsymError:
-    """The error for a number that is not exact, with the spelling that is: 0.1 is "1/10" or "0.1" as text."""
-    if isinstance(value, complex):
-        return DomainError(f"expected a real exact number; got {value}; give its parts", where=where)
+def inexact(value: float, where: str) -> NavsymError:
+    """The error for a float where an exact number is meant, with the exact spelling of its shortest decimal."""
     if value != value or value in (float("inf"), float("-inf")):
-        return NotFiniteError(f"expected a finite number; got {value}; give one", where=where)
+        return NotFiniteError(f"expected an exact number; got {value}; write a finite one", where=where)
     exact = Fraction(repr(value))
-    spellings = f'"{value!r}" as text' if exact.denominator > 10_000 else f'"{exact}" or "{value!r}" as text'
-    return DomainError(f"expected an exact number; got the float {value!r}; write {spellings}", where=where)
+    spelling = f'"{exact}"' if exact.denominator == 1 else f'"{exact}" or "{value!r}"'
+    return DomainError(f"expected an exact number; got the float {value!r}; write {spelling} as text", where=where)
 
 
-def text_list(value: Any, where: str) -> Any:
-    """A list of texts from a list, tuple, array or matrix, nested as deep as it is; a single value as one text.
+def write_entries(value: Any, where: str) -> Any:
+    """Text of a value, or nested lists of texts for a list, a matrix of sympy or an array of numpy.
 
-    >>> text_list([[0, Fraction(-1, 2)], ["a", "b"]], "F")
+    >>> write_entries([[0, Fraction(-1, 2)], ["a", "b"]], "F")
     [['0', '-1/2'], ['a', 'b']]
     """
-    rows = value.tolist() if hasattr(value, "tolist") and not isinstance(value, str) else value
-    if isinstance(rows, list | tuple):
-        return [text_list(row, inside(where, k)) for k, row in enumerate(rows)]
-    return exact_text(rows, where)
+    rows = value.tolist() if hasattr(value, "tolist") else value
+    if isinstance(rows, (list, tuple)):
+        return [write_entries(row, inside(where, i)) for i, row in enumerate(rows)]
+    return write_value(rows, where)
 
 
-def text_values(values: Mapping[str, Any], where: str = "") -> dict[str, str]:
-    """Exact values of parameters as text: name -> value; ``where`` names the call in errors."""
-    return {name: exact_text(value, inside(where, name)) for name, value in values.items()}
+def write_declaration(value: Any, where: str) -> Any:
+    """A declaration as ``[symbols]`` has it: a word, or a range of two texts from a pair of exact numbers."""
+    if isinstance(value, (tuple, list)):
+        return [write_value(end, inside(where, i)) for i, end in enumerate(value)]
+    if isinstance(value, (str, Mapping)):
+        return value
+    expected = f'a range such as ("1/2", "2") or one of {", ".join(SIGNS)}'
+    raise ExpressionSyntaxError(
+        f"expected {expected}; got {shown(value)}; declare it in one of these ways", where=where
+    )
+
+
+def declared_words(values: Iterable[Any], where: str) -> dict[str, str]:
+    """Name -> word of the symbols in expressions of sympy: what their assumptions say.
+
+    Raises DomainError for two symbols of one name, and for assumptions that no declaration expresses.
+    """
+    symbols: dict[str, sp.Symbol] = {}
+    for symbol in sorted(set(free_symbols(values)), key=lambda s: (s.name, str(s.assumptions0))):
+        known = symbols.setdefault(symbol.name, symbol)
+        if known != symbol:
+            got = f"two called {symbol.name}, {word_of(known, where)} and {word_of(symbol, where)}"
+            message = f"expected one symbol of each name; got {got}; declare both alike or rename one"
+            raise DomainError(message, where=where)
+    return {name: word_of(symbol, where) for name, symbol in symbols.items()}
+
+
+def free_symbols(values: Iterable[Any]) -> Iterable[sp.Symbol]:
+    """Symbols in values of sympy, also inside lists."""
+    for value in values:
+        if isinstance(value, (sp.Basic, sp.MatrixBase)):
+            yield from value.free_symbols
+        elif isinstance(value, (list, tuple)):
+            yield from free_symbols(value)
+
+
+def word_of(symbol: sp.Symbol, where: str) -> str:
+    """The declaration that says what sympy assumes of a symbol; one without assumptions is real."""
+    if symbol == sp.Symbol(symbol.name):
+        return "real"
+    for word, assumptions in SIGNS.items():
+        if symbol == sp.Symbol(symbol.name, real=True, **assumptions):
+            return word
+    assumed = ", ".join(name for name, value in sorted(symbol._assumptions_orig.items()) if value)
+    words = " or ".join(SIGNS)
+    message = (
+        f"expected symbols that sympy takes to be {words}; got {symbol} ({assumed}); declare it in one of these ways"
+    )
+    raise DomainError(message, where=where)
+
+
+def merge_declarations(
+    words: Mapping[str, str], given: Mapping[str, Any], where: str
+) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Declarations and ranges inside them, from the symbols of sympy and from what the caller declared.
+
+    A range of a symbol that sympy takes to be positive narrows that declaration: an expression that was simplified
+    by it would be wrong outside. Raises DomainError where a word says less than the symbol.
+    """
+    declared: dict[str, Any] = dict(words)
+    box: dict[str, Any] = {}
+    for name, value in given.items():
+        word = words.get(name, "real")
+        if word == "real":
+            declared[name] = value
+        elif isinstance(value, list):
+            box[name] = value
+        elif value != word and word not in STRONGER.get(str(value), ()):
+            got = f"{name} = {value!r} for a symbol that sympy takes to be {word}"
+            message = f"expected one declaration of {name}; got {got}; declare it {word} or change the symbol"
+            raise DomainError(message, where=f"{where}: {name}")
+        else:
+            declared[name] = value
+    return declared, box

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import sympy as sp
 
-from navsym.claims import OPEN, REFUTED, Bound, Equation, Statement, Verdict
+from navsym.claims import OPEN, REFUTED, Bound, Equation, Statement, Verdict, Verdicts
+from navsym.claims.formula import Formula, Side, names_of
 from navsym.core.errors import DomainError, EmptyError, ExpressionSyntaxError, NavsymError, ShapeError, TooLargeError
 from navsym.core.sandbox import Exhausted, Failed, run_many
 from navsym.language.advice import for_relation
@@ -43,9 +44,36 @@ Box = dict[Symbol, tuple[Expr, Expr]]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Symbols:
+    """The declarations of a file, as they are written and as they are read."""
+
+    written: Table
+    parameters: Mapping[str, Parameter]
+
+    @classmethod
+    def read(cls, table: Any, where: str) -> Symbols:
+        """The declarations of a ``[symbols]`` table."""
+        return cls(table, read_parameters(as_table(table, where), where))
+
+    def formula(self, block: Table) -> Formula:
+        """A claim as it is written, with the declarations of the names in it."""
+        sides = [written_side(block[side]) for side in ("left", "right")]
+        box = block.get("box", {})
+        names = names_of(sides[0]) | names_of(sides[1]) | set(box)
+        symbols = {name: value for name, value in self.written.items() if name in names}
+        return Formula(sides[0], block.get("relation", "="), sides[1], symbols, box, block["id"])
+
+
+def written_side(value: Any) -> Side:
+    """A side of a claim as text: decimals and integers of TOML by their digits."""
+    return [written_side(part) for part in value] if isinstance(value, list) else str(value)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class FileClaim:
     """One formula of the user.
 
+    formula     : as it is written
     left, right : expressions, or matrices of one shape (given as lists of rows)
     relation    : one of ``= != < <= > >=``
     box         : symbol -> (lower, upper), the file's ranges and those of the claim itself
@@ -54,7 +82,7 @@ class FileClaim:
     arguments   : what the text takes logarithms and symbolic powers of, to be positive, likewise
     """
 
-    id: str
+    formula: Formula
     left: Any
     right: Any
     relation: str
@@ -63,14 +91,24 @@ class FileClaim:
     radicands: tuple[Expr, ...] = ()
     arguments: tuple[Expr, ...] = ()
 
+    @property
+    def id(self) -> str:
+        """The label of the claim."""
+        return self.formula.id
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class UndefinedClaim:
     """A claim with a side that has no value, such as ``log(0)``; ``place`` counts the claims of the file."""
 
-    id: str
+    formula: Formula
     place: int
     error: NavsymError
+
+    @property
+    def id(self) -> str:
+        """The label of the claim."""
+        return self.formula.id
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -78,8 +116,8 @@ class ClaimFile:
     """``[symbols]`` and ``[[claim]]``; ``undefined`` only where the reader was asked to go on."""
 
     symbols: Mapping[str, Parameter]
-    claims: tuple[FileClaim, ...] = field(default=())
-    undefined: tuple[UndefinedClaim, ...] = field(default=())
+    claims: tuple[FileClaim, ...]
+    undefined: tuple[UndefinedClaim, ...] = ()
 
 
 def read_claims(path: str | os.PathLike[str], *, go_on: bool = False) -> ClaimFile:
@@ -93,8 +131,7 @@ def read_claims(path: str | os.PathLike[str], *, go_on: bool = False) -> ClaimFi
 def claims_from(document: Table, where: str = "", *, go_on: bool = False) -> ClaimFile:
     """Like :func:`read_claims` for a document in memory."""
     expect_keys(document, ("symbols", "claim"), where)
-    place = inside(where, "symbols")
-    symbols = read_parameters(as_table(document.get("symbols", {}), place), place)
+    symbols = Symbols.read(document.get("symbols", {}), inside(where, "symbols"))
     blocks = required(document, "claim", where)
     place = inside(where, "claim")
     if not isinstance(blocks, list):
@@ -110,10 +147,10 @@ def claims_from(document: Table, where: str = "", *, go_on: bool = False) -> Cla
     undefined = tuple(claim for claim in found if isinstance(claim, UndefinedClaim))
     if undefined and not (go_on and claims):
         raise undefined[0].error
-    return ClaimFile(symbols, claims, undefined)
+    return ClaimFile(symbols.parameters, claims, undefined)
 
 
-def claim_or_error(block: Any, symbols: Mapping[str, Parameter], where: str, place: int) -> FileClaim | UndefinedClaim:
+def claim_or_error(block: Any, symbols: Symbols, where: str, place: int) -> FileClaim | UndefinedClaim:
     """The claim, or why a side of it has no value; everything else that is wrong with it is raised."""
     try:
         return read_claim(block, symbols, inside(where, place))
@@ -121,30 +158,31 @@ def claim_or_error(block: Any, symbols: Mapping[str, Parameter], where: str, pla
         sides = tuple(inside(inside(where, place), side) for side in ("left", "right"))
         if not error.where.startswith(sides):
             raise
-        return UndefinedClaim(as_label(block["id"], inside(inside(where, place), "id")), place, error)
+        as_label(block["id"], inside(inside(where, place), "id"))
+        return UndefinedClaim(symbols.formula(block), place, error)
 
 
-def read_claim(block: Any, symbols: Mapping[str, Parameter], where: str) -> FileClaim:
+def read_claim(block: Any, symbols: Symbols, where: str) -> FileClaim:
     """One [[claim]] block."""
     table = as_table(block, where)
     expect_keys(table, ("id", "left", "right", "relation", "box"), where)
-    label = as_label(required(table, "id", where), inside(where, "id"))
+    as_label(required(table, "id", where), inside(where, "id"))
     relation = as_text(table.get("relation", "="), inside(where, "relation"), "a relation")
     if relation not in RELATIONS:
         hint = for_relation(relation, RELATIONS)
         message = f"expected one of {' '.join(RELATIONS)}; got {shown(relation)}; do correct it: {hint}"
         raise ExpressionSyntaxError(message, where=inside(where, "relation"))
-    known = symbols_of(symbols)
+    known = symbols_of(symbols.parameters)
     left, left_cells = read_side(required(table, "left", where), known, inside(where, "left"))
     right, right_cells = read_side(required(table, "right", where), known, inside(where, "right"))
     cells = left_cells + right_cells
     require_comparable(left, right, relation, where)
-    box = box_of(symbols) | read_box(table.get("box", {}), symbols, inside(where, "box"))
+    box = box_of(symbols.parameters) | read_box(table.get("box", {}), symbols.parameters, inside(where, "box"))
     noted = [
         tuple(dict.fromkeys(part for cell in cells for part in getattr(cell, name)))
         for name in ("divisors", "radicands", "arguments")
     ]
-    return FileClaim(label, left, right, relation, box, *noted)
+    return FileClaim(symbols.formula(table), left, right, relation, box, *noted)
 
 
 def read_side(value: Any, known: Mapping[str, Symbol], where: str) -> tuple[Any, list[Parsed]]:
@@ -202,37 +240,31 @@ def outside(inner: Expr | None, outer: Expr | None) -> bool:
 SECONDS = 20.0
 
 
-def prove(
+def decide_claims(
     claims: ClaimFile,
     *,
     jobs: int = 1,
     seconds: float = SECONDS,
-    progress: Callable[[dict[str, Any]], None] = lambda record: None,
-) -> dict[str, Any]:
-    """Decide every claim of a file; the document of ``navsym prove``.
+    progress: Callable[[Verdict, int], None] | None = None,
+) -> Verdicts:
+    """The verdict of every claim, each decided in a child process of its own.
 
     A claim that needs more than ``seconds`` is OPEN. Order and verdicts do not depend on ``jobs``. Where a side
-    has no value, the claim is OPEN with its ``error``, and so is the document with the first of them.
+    has no value, the claim is OPEN, and its error stands beside the verdicts.
     """
-    records: dict[int, dict[str, Any]] = {}
+    verdicts: dict[int, Verdict] = {}
     for outcome in run_many(decide_claim, claims.claims, jobs, seconds):
         verdict = outcome.value
         if isinstance(verdict, (Exhausted, Failed)):
             why = verdict.why if isinstance(verdict, Exhausted) else str(verdict.error)
             verdict = Verdict(OPEN, "none", evidence=f"not decided: {why}")
-        records[outcome.place] = record_of(claims.claims[outcome.place], verdict)
-        progress(records[outcome.place])
-    done = [records[place] for place in sorted(records)]
+        verdicts[outcome.place] = replace(verdict, formula=claims.claims[outcome.place].formula)
+        if progress is not None:
+            progress(verdicts[outcome.place], len(claims.claims))
+    done = [verdicts[place] for place in sorted(verdicts)]
     for claim in claims.undefined:
-        done.insert(claim.place, undefined_record(claim))
-    first = claims.undefined[0].error.as_json() if claims.undefined else {}
-    return {**first, "claims": done}
-
-
-def undefined_record(claim: UndefinedClaim) -> dict[str, Any]:
-    """What is said of a claim of which a side has no value."""
-    verdict = Verdict(OPEN, "none", evidence=claim.error.message)
-    return {"id": claim.id, **outcome(verdict), **claim.error.as_json()}
+        done.insert(claim.place, Verdict(OPEN, "none", evidence=claim.error.message, formula=claim.formula))
+    return Verdicts(tuple(done), {claim.id: claim.error for claim in claims.undefined})
 
 
 def decide_claim(claim: FileClaim) -> Verdict:
@@ -272,24 +304,3 @@ def statement_of(claim: FileClaim) -> Statement:
     if claim.relation == "=":
         return Equation(claim.left, claim.right, claim.box, exists=existing(claim))
     return Bound(claim.left, claim.relation, claim.right, claim.box, existing(claim))
-
-
-def record_of(claim: FileClaim, verdict: Verdict) -> dict[str, Any]:
-    """The id of a claim of a file with its verdict, as plain data."""
-    return {"id": claim.id, **outcome(verdict)}
-
-
-def outcome(verdict: Verdict) -> dict[str, Any]:
-    """A verdict as plain data."""
-    refuted = verdict.status == REFUTED
-    difference = verdict.difference
-    return {
-        "status": str(verdict.status),
-        "method": verdict.method,
-        "scope": verdict.scope,
-        "assumptions": list(verdict.assumptions),
-        "evidence": verdict.evidence,
-        "counterexample": dict(verdict.counterexample or {}) if refuted else None,
-        "difference": {"lower": difference[0], "upper": difference[1]} if refuted and difference else None,
-        "certificate": verdict.certificate,
-    }

@@ -202,7 +202,7 @@ def sampled(sample: Sample, scope: str, what: str) -> Verdict:
     """CONFIRMED with its count when enough points could be evaluated, otherwise OPEN."""
     if sample.points == 0:
         return Verdict(OPEN, "sampling", scope, evidence="no exact point of the box could be evaluated")
-    largest = decimal_ends(sample.largest)[1] if sample.largest is not None else "0"
+    largest = decimal_ends(sample.largest).upper if sample.largest is not None else "0"
     evidence = f"{what} at {sample.points} exact points, largest residual {largest}; no proof was found"
     enough = sample.points >= ENOUGH_POINTS
     return Verdict(CONFIRMED if enough else OPEN, "sampling", scope, evidence=evidence)

@@ -17,6 +17,7 @@ from navsym.claims.statement import Box
 from navsym.claims.verdict import PROVED, REFUTED, Verdict
 from navsym.core.balls import UnsupportedError, exact_ball, tape
 from navsym.core.exact import to_rational
+from navsym.core.numbers import Number
 from navsym.prove.assumptions import remaining_assumptions, written_conditions
 from navsym.prove.identities.normal_form import (
     OutsideLanguageError,
@@ -155,4 +156,4 @@ def refuted_at_zero(statement: Sides, zero: Zero) -> Verdict:
     ends = " and ".join(str(to_rational(end)) for end in (zero.root.lower, zero.root.upper))
     words = f"the difference is exactly zero at a root that has no formula, of the polynomial {zero.root.factor}"
     words += f" between {ends}"
-    return Verdict(REFUTED, "real roots", "one point", evidence=words, counterexample={}, difference=("0", "0"))
+    return Verdict(REFUTED, "real roots", "one point", evidence=words, counterexample={}, difference=Number("0", "0"))

@@ -11,6 +11,7 @@ from navsym.claims.statement import Box
 from navsym.claims.verdict import REFUTED, Verdict
 from navsym.core.balls import precision
 from navsym.core.errors import NavsymError
+from navsym.core.numbers import Number
 from navsym.language.expression import to_text
 from navsym.prove.sampling.points import Point, Range, range_of
 
@@ -50,11 +51,11 @@ def range_text(symbol: sp.Symbol, limits: Range) -> str:
     return f"{symbol} in {left}{lower}, {upper}{right}" + (" whole" if limits.integer else "")
 
 
-def decimal_ends(ball: arb, digits: int = 20) -> tuple[str, str]:
+def decimal_ends(ball: arb, digits: int = 20) -> Number:
     """Decimal strings below and above every point of the ball."""
     with precision(256):
         lower, upper = ball.lower(), ball.upper()
-    return decimal(lower, digits, -1), decimal(upper, digits, 1)
+    return Number(decimal(lower, digits, -1), decimal(upper, digits, 1))
 
 
 def decimal(end: arb, digits: int, direction: int) -> str:
@@ -93,7 +94,7 @@ def rounded_shift(value: int, bits: int, direction: int) -> int:
 
 def broken(point: Point, difference: arb, exact: bool = False) -> Verdict:
     """REFUTED at one exact point."""
-    ends = ("0", "0") if exact else decimal_ends(difference)
-    evidence = "the difference is exactly zero there" if exact else f"the sides differ by {ends[0]} at an exact point"
+    ends = Number("0", "0") if exact else decimal_ends(difference)
+    words = "the difference is exactly zero there" if exact else f"the sides differ by {ends.lower} at an exact point"
     method = "exact point" if exact else "exact point, ball arithmetic"
-    return Verdict(REFUTED, method, "one point", evidence=evidence, counterexample=point_text(point), difference=ends)
+    return Verdict(REFUTED, method, "one point", evidence=words, counterexample=point_text(point), difference=ends)

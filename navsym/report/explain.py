@@ -75,7 +75,8 @@ def value_at(text: str, point: Mapping[str, str]) -> tuple[str, str]:
     ball = enclose(tape(expression), at)
     if not ball.is_finite():
         raise ValueError(f"{text[:40]} is not finite there")
-    return decimal_ends(ball)
+    ends = decimal_ends(ball)
+    return ends.lower, ends.upper
 
 
 def entries_of(text: str) -> list[str]:

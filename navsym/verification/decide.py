@@ -126,7 +126,7 @@ def record_from(paper: Paper, claim: Claim, statement: Statement | None, verdict
         "reason": claim.reason,
         "evidence": verdict.evidence,
         "counterexample": None if verdict.counterexample is None else dict(verdict.counterexample),
-        "difference": None if verdict.difference is None else list(verdict.difference),
+        "difference": None if verdict.difference is None else [verdict.difference.lower, verdict.difference.upper],
         "certificate": verdict.certificate,
         "seconds": 0.0,
     }

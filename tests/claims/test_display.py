@@ -13,7 +13,8 @@ import sympy as sp
 from derivations import alpha_beta_filter
 from navsym.claims import REFUTED, Bound, Equation, Finding, Optimum, Property, Verdict, claims_of
 from navsym.claims.display import latex_of
-from navsym.guaranteed.phases.driver import phases
+from navsym.core.numbers import Number
+from navsym.guaranteed.phases.driver import find_phases
 from navsym.guaranteed.phases.family import family_of
 from navsym.guaranteed.problem import from_file
 from navsym.guaranteed.solver import solve
@@ -72,18 +73,17 @@ def test_a_claim_shows_itself_without_being_derived():
 
 
 def test_a_verdict_shows_its_mark_counterexample_and_assumptions_and_escapes_words():
-    verdict = Verdict(
-        REFUTED, "<b>exact</b> point", "all real T", ("T != 0",), counterexample={"T": "1"}, difference=("2", "2")
-    )
+    point = {"counterexample": {"T": "1"}, "difference": Number("2", "2")}
+    verdict = Verdict(REFUTED, "<b>exact</b> point", "all real T", ("T != 0",), **point)
     shown = verdict._repr_html_()
-    assert "✗ REFUTED" in shown and "at T = 1; the difference is 2" in shown and "assuming T != 0" in shown
+    assert "✗ REFUTED" in shown and "at T = 1: left - right = 2…" in shown and "assuming T != 0" in shown
     assert "<b>exact" not in shown
 
 
 def test_solutions_show_tables(file):
     solution = solve(from_file(model_from(MODEL, values={"T": "2"})), digits=10)._repr_html_()
     assert solution.count("<tr>") == 3 and "position" in solution and "speed" in solution
-    answer = phases(family_of(file, "speed", "T"), sp.Integer(1), sp.Integer(2))._repr_html_()
+    answer = find_phases(family_of(file, "speed", "T"), sp.Integer(1), sp.Integer(2))._repr_html_()
     assert r"\frac{2}{T}" in answer and "✓ PROVED" in answer
     seen = observe(linear_model(file))._repr_html_()
     assert "<b>observable</b>: 2 of 2" in seen

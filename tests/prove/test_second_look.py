@@ -70,7 +70,7 @@ def test_a_statement_that_is_false_by_little_or_far_away_is_refuted_at_a_point(s
 def test_a_strict_relation_is_refuted_where_equality_is_attained(statement):
     verdict = decide(statement)
     assert verdict.status == REFUTED
-    assert verdict.difference == ("0", "0") or float(verdict.difference[0]) != 0
+    assert verdict.difference.lower == verdict.difference.upper == "0" or float(verdict.difference.lower) != 0
 
 
 @pytest.mark.parametrize(

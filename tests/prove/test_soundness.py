@@ -15,7 +15,7 @@ import sympy as sp
 from navsym.claims import CERTIFIED, OPEN, PROVED, REFUTED, Bound, Equation, Finding, Optimum, Property
 from navsym.core.balls import UnsupportedError
 from navsym.core.errors import DomainError
-from navsym.prove.claimfile import claims_from, prove
+from navsym.prove.claimfile import claims_from, decide_claims
 from navsym.prove.ladder import decide
 from navsym.prove.sampling.points import ranges
 from navsym.prove.signs.algebraic import algebraic_sign
@@ -247,7 +247,7 @@ def proved(left, relation, right, **symbols):
     """The record of one formula of a claim file."""
     claim = {"id": "one", "left": left, "relation": relation, "right": right}
     document = {"symbols": symbols or {"x": "real"}, "claim": [claim]}
-    return prove(claims_from(document, "f"))["claims"][0]
+    return decide_claims(claims_from(document, "f"))[0].document()
 
 
 @pytest.mark.parametrize(

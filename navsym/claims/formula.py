@@ -1,0 +1,69 @@
+"""A relation between two sides as its author wrote it, in the language of files."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from navsym.claims.display import SIGNS
+
+NAME = re.compile(r"(?<![\w.])[A-Za-z]\w*", re.ASCII)
+
+#: One side: text, or the rows of a matrix.
+Side = str | list[Any]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Formula:
+    """Both sides, the relation and the declared symbols: a claim of a claim file, as plain data.
+
+    id          : label of the claim; ``"formula"`` for one that has none
+    left, right : text in the language of files, or a list of texts, or of rows, for a matrix
+    relation    : one of ``= != < <= > >=``
+    symbols     : name -> declaration, as in ``[symbols]``: a range ``["0", "pi"]``, or a word such as ``"positive"``
+    box         : name -> range of this formula inside its declaration
+    """
+
+    left: Side
+    relation: str
+    right: Side
+    symbols: Mapping[str, Any] = field(default_factory=dict)
+    box: Mapping[str, Any] = field(default_factory=dict)
+    id: str = "formula"
+
+    def __str__(self) -> str:
+        return f"{side_text(self.left)} {self.relation} {side_text(self.right)}"
+
+    def document(self) -> dict[str, Any]:
+        """A whole claim file of this formula: ``{"symbols": …, "claim": [{"id", "left", "right", "relation"}]}``."""
+        block = {"id": self.id, "left": self.left, "right": self.right, "relation": self.relation}
+        return {"symbols": dict(self.symbols), "claim": [{**block, "box": dict(self.box)} if self.box else block]}
+
+    def _repr_latex_(self) -> str:
+        left, right = (side_latex(side, self.symbols) for side in (self.left, self.right))
+        return rf"$\displaystyle {left} {SIGNS.get(self.relation, self.relation)} {right}$"
+
+
+def names_of(side: Side) -> set[str]:
+    """Every name that stands in a side, functions included."""
+    return set(NAME.findall(side_text(side)))
+
+
+def side_text(side: Side) -> str:
+    """A side as text: a matrix by its rows, ``[[a, b], [c, d]]``."""
+    return str(side) if not isinstance(side, list) else f"[{', '.join(side_text(part) for part in side)}]"
+
+
+def side_latex(side: Side, names: Mapping[str, Any]) -> str:
+    """A side in LaTeX, as the algebra holds it; the names are letters of real numbers."""
+    import sympy as sp
+
+    from navsym.language.expression import parse, symbol
+
+    if isinstance(side, list):
+        rows = [row if isinstance(row, list) else [row] for row in side]
+        lines = r" \\ ".join(" & ".join(side_latex(cell, names) for cell in row) for row in rows)
+        return rf"\begin{{bmatrix}}{lines}\end{{bmatrix}}"
+    return str(sp.latex(parse(str(side), {name: symbol(name) for name in names})))

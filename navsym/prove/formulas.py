@@ -1,0 +1,184 @@
+"""Formulas of a caller, decided: text, sympy expressions or a claim file go in, verdicts come out."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from types import NoneType
+from typing import Any, overload
+
+from navsym.claims import Verdict, Verdicts
+from navsym.claims.formula import names_of
+from navsym.core.errors import DomainError, ExpressionSyntaxError, ShapeError, UnknownSymbolError
+from navsym.language.names import RESERVED, nearest, shown
+from navsym.language.tomlfile import read_toml
+
+SECONDS = 20.0
+RELATION = re.compile(r"!=|<=|>=|==|=<|=>|<>|~=|[=<>]|[\u2260\u2264\u2265]")
+
+#: Called after each claim of a file with its verdict and the number of claims.
+Progress = Callable[[Verdict, int], None]
+
+
+@overload
+def prove(
+    statement: os.PathLike[str], /, *, seconds: float = ..., jobs: int = ..., progress: Progress | None = ...
+) -> Verdicts: ...
+
+
+@overload
+def prove(
+    statement: Any,
+    relation: str | None = ...,
+    right: Any = ...,
+    /,
+    *,
+    box: Mapping[str, Any] | None = ...,
+    seconds: float = ...,
+    **symbols: Any,
+) -> Verdict: ...
+
+
+def prove(
+    statement: Any,
+    relation: str | None = None,
+    right: Any = None,
+    /,
+    *,
+    box: Mapping[str, Any] | None = None,
+    seconds: float = SECONDS,
+    jobs: int = 1,
+    progress: Progress | None = None,
+    **symbols: Any,
+) -> Verdict | Verdicts:
+    """Verdict of a formula, or the verdicts of a claim file.
+
+    statement : a formula as text, ``"sin(2*a) = 2*sin(a)*cos(a)"``; or its left side, followed by ``relation`` and
+                ``right``; or the path of a claim file (TOML). A side is text, an exact number, a sympy expression, or
+                a list of rows or matrix of these.
+    relation  : one of ``= != < <= > >=``
+    symbols   : declarations, ``T=("0", "2*pi")`` for a closed range, or one of ``"real"``, ``"positive"``,
+                ``"nonnegative"``, ``"nonzero"``. A symbol without one is real, or what its sympy assumptions say.
+    box       : name -> range, inside the declaration of that symbol
+    seconds   : limit for one formula, seconds of processor time; above it the verdict is OPEN
+    jobs      : claims of a file decided at the same time
+    progress  : called with each verdict of a file, and the number of its claims
+
+    The formula is written down and read again in the language of files, so that nothing but that language is decided:
+    first an exact point is sought where it fails, then a proof by exact algebra or balls. Angles are radians.
+
+    Returns a :class:`Verdict`, or :class:`Verdicts` for a file, in the order of the file. Raises NavsymError for what
+    is no formula: kinds ``syntax``, ``unknown-symbol``, ``domain`` (a float, a side without a value), ``shape``.
+
+    >>> import navsym as nav
+    >>> nav.prove("sin(2*a) = 2*sin(a)*cos(a)")
+    <PROVED: sin(2*a) = 2*sin(a)*cos(a); normal form; all real a>
+    >>> nav.prove("sin(T) <= T", T=("0", "pi")).status
+    <Status.CERTIFIED: 'CERTIFIED'>
+    >>> import sympy
+    >>> x = sympy.Symbol("x", positive=True)
+    >>> nav.prove(sympy.log(x), "<=", x - 1).holds
+    True
+    >>> nav.prove(0.5, "=", "1/2")
+    Traceback (most recent call last):
+    navsym.core.errors.DomainError: prove: left: expected an exact number; got the float 0.5; write "1/2" or "0.5"
+    """
+    require_options(box, seconds, jobs)
+    if relation is None and is_file(statement):
+        if symbols or box:
+            raise declared_in_a_file(symbols or box or {})
+        return prove_file(statement, seconds, jobs, progress)
+    sides = split_formula(statement) if relation is None else Sides(statement, relation, right)
+    return prove_formula(sides, symbols, box or {}, seconds)
+
+
+@dataclass(frozen=True, slots=True)
+class Sides:
+    """What a caller says: two sides in any accepted form, and the relation between them."""
+
+    left: Any
+    relation: str
+    right: Any
+
+
+def prove_file(path: str | os.PathLike[str], seconds: float, jobs: int, progress: Progress | None) -> Verdicts:
+    """The verdicts of a claim file."""
+    read_toml(path)  # a file that is none is refused before the slow import of the algebra
+
+    from navsym.prove.claimfile import decide_claims, read_claims
+
+    return decide_claims(read_claims(path, go_on=True), jobs=jobs, seconds=seconds, progress=progress)
+
+
+def prove_formula(sides: Sides, given: Mapping[str, Any], box: Mapping[str, Any], seconds: float) -> Verdict:
+    """The verdict of one formula."""
+    from navsym.language.values import declared_words, merge_declarations, write_declaration, write_entries
+    from navsym.prove.claimfile import ClaimFile, Symbols, decide_claims, read_claim
+
+    left, right = write_entries(sides.left, "prove: left"), write_entries(sides.right, "prove: right")
+    words = dict.fromkeys(symbols_in(left, right, given), "real") | declared_words((sides.left, sides.right), "prove")
+    declared = {name: write_declaration(value, f"prove: {name}") for name, value in given.items()}
+    for name in declared.keys() - words.keys():
+        message = f"expected a symbol of the formula; got {shown(name)}; remove or correct it: {nearest(name, words)}"
+        raise UnknownSymbolError(message, where=f"prove: {name}")
+    table, narrowed = merge_declarations(words, declared, "prove")
+    narrowed |= {name: write_declaration(ends, f"prove: box.{name}") for name, ends in box.items()}
+    block = {"id": "formula", "left": left, "relation": sides.relation, "right": right, "box": narrowed}
+    symbols = Symbols.read(table, "prove")
+    claim = read_claim(block, symbols, "prove")
+    return decide_claims(ClaimFile(symbols.parameters, (claim,)), seconds=seconds)[0]
+
+
+def require_options(box: Any, seconds: Any, jobs: Any) -> None:
+    """Refuse ranges that are no mapping and limits that are no numbers."""
+    if not isinstance(box, (Mapping, NoneType)):
+        message = f'expected ranges by name; got {shown(box)}; write box={{"T": ("0", "1")}}'
+        raise ShapeError(message, where="prove: box")
+    if not isinstance(seconds, (int, float)) or isinstance(seconds, bool):
+        raise DomainError(f"expected seconds as a number; got {shown(seconds)}; correct it", where="prove: seconds")
+    if not seconds > 0:
+        raise DomainError(f"expected seconds above 0; got {seconds:g}; correct it", where="prove: seconds")
+    if not isinstance(jobs, int) or isinstance(jobs, bool) or jobs < 1:
+        raise DomainError(
+            f"expected a whole number of jobs from 1 on; got {shown(jobs)}; correct it", where="prove: jobs"
+        )
+
+
+def is_file(statement: Any) -> bool:
+    """True for a path, and for text that ends like a claim file."""
+    return isinstance(statement, os.PathLike) or (isinstance(statement, str) and statement.endswith(".toml"))
+
+
+def declared_in_a_file(names: Mapping[str, Any]) -> DomainError:
+    """The error for declarations beside a claim file, which has its own."""
+    message = f"expected declarations in the file; got {', '.join(names)} beside it; write them below [symbols]"
+    return DomainError(message, where="prove")
+
+
+def split_formula(statement: Any) -> Sides:
+    """The two sides of a text at its one relation."""
+    if not isinstance(statement, str):
+        expected = "a formula as text, or two sides with their relation between them"
+        message = f'expected {expected}; got {shown(statement)}; write prove(left, "=", right)'
+        raise ExpressionSyntaxError(message, where="prove: statement")
+    marks = list(RELATION.finditer(statement))
+    if not marks:
+        message = f"expected a relation = != < <= > >= or a file.toml; got {shown(statement)}; write both sides"
+        raise ExpressionSyntaxError(message, where="prove: statement")
+    if len(marks) > 1:
+        message = f"expected one relation; got {len(marks)} in {shown(statement)}; prove them one by one"
+        raise ExpressionSyntaxError(message, where="prove: statement")
+    (mark,) = marks
+    return Sides(statement[: mark.start()].strip(), mark[0], statement[mark.end() :].strip())
+
+
+def symbols_in(left: Any, right: Any, given: Mapping[str, Any]) -> set[str]:
+    """Names in two sides that are symbols: no function, and not a function or number of another language.
+
+    ``e`` and ``ln`` count where the caller declares them; the reader says of the others what to write instead.
+    """
+    from navsym.language.advice import FOREIGN
+
+    return (names_of(left) | names_of(right)) - RESERVED - (FOREIGN.keys() - given.keys())

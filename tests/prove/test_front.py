@@ -1,0 +1,138 @@
+"""``nav.prove``: what goes in, what comes out, and what is refused."""
+
+from __future__ import annotations
+
+import json
+import re
+from fractions import Fraction
+from pathlib import Path
+
+import numpy as np
+import pytest
+import sympy as sp
+
+import navsym as nav
+from navsym.cli.main import run
+
+EXAMPLE = Path(__file__).parents[2] / "examples" / "formulas.toml"
+FREE, WHOLE = sp.Symbol("x"), sp.Symbol("x", integer=True)
+REAL, POSITIVE = sp.Symbol("x", real=True), sp.Symbol("x", positive=True)
+
+
+@pytest.mark.parametrize(
+    ("formula", "declared", "status"),
+    [
+        ("sin(2*a) = 2*sin(a)*cos(a)", {}, nav.PROVED),
+        ("sin(T) <= T", {"T": ("0", "pi")}, nav.CERTIFIED),
+        ("sin(2*a) = 2*sin(a)", {}, nav.REFUTED),
+        ("log(x) <= x - 1", {"x": "positive"}, nav.CERTIFIED),
+        ("x**2 > 0", {"x": "nonzero"}, nav.PROVED),
+        ("beta*E + I = I + E*beta", {"E": "real"}, nav.PROVED),
+    ],
+)
+def test_a_formula_as_text_gives_its_verdict(formula, declared, status):
+    verdict = nav.prove(formula, **declared)
+    assert verdict.status == status and verdict.holds is status.holds
+    assert str(verdict.formula) == formula
+
+
+def test_both_sides_may_be_numbers_fractions_sympy_matrices_and_arrays():
+    assert nav.prove(Fraction(1, 3), "<", sp.Rational(1, 2)).holds
+    assert nav.prove(sp.sin(REAL) ** 2, "=", "1 - cos(x)**2").holds
+    assert nav.prove(np.array([[1, 0], [0, 1]]), "=", sp.eye(2)).holds
+    assert nav.prove([[REAL, 0], [0, "x"]], "=", sp.diag(REAL, REAL)).holds
+
+
+def test_a_symbol_of_sympy_declares_itself():
+    assert nav.prove(sp.log(POSITIVE), "<=", POSITIVE - 1).scope == "all x in (0, oo)"
+    assert nav.prove(FREE**2, ">=", 0).scope == "all real x"
+
+
+def test_a_range_narrows_a_positive_symbol_and_may_not_contradict_it():
+    assert nav.prove(sp.sqrt(POSITIVE**2), "=", "x", x=("0", 2)).scope == "all x in (0, 2]"
+    with pytest.raises(nav.NavsymError, match="inside the declaration of x"):
+        nav.prove(sp.sqrt(POSITIVE**2), "=", "x", x=("-1", "1"))
+    with pytest.raises(nav.NavsymError, match="takes to be positive"):
+        nav.prove(sp.sqrt(POSITIVE**2), "=", "x", x="real")
+
+
+def test_two_symbols_of_one_name_are_an_error_that_names_both():
+    with pytest.raises(nav.NavsymError, match="two called x, positive and real"):
+        nav.prove(POSITIVE, "=", REAL)
+
+
+@pytest.mark.parametrize("value", [0.1, np.float64(0.1), sp.Float("0.1"), 0.1 * REAL])
+def test_a_float_is_refused_with_its_exact_spelling(value):
+    with pytest.raises(nav.NavsymError, match=re.escape('got the float 0.1; write "1/10" or "0.1" as text')):
+        nav.prove(value, "=", "x/10")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "declared", "kind", "where"),
+    [
+        (("sin(a)",), {}, "syntax", "prove: statement"),
+        (("a = b = c",), {}, "syntax", "prove: statement"),
+        ((3,), {}, "syntax", "prove: statement"),
+        ((sp.Eq(REAL, 1, evaluate=False),), {}, "syntax", "prove: statement"),
+        ((None, "=", "a"), {}, "syntax", "prove: left"),
+        (("a", "=", None), {}, "syntax", "prove: right"),
+        (("a", "==", "b"), {}, "syntax", "prove: relation"),
+        (("a", 3, "b"), {}, "syntax", "prove: relation"),
+        ((WHOLE, "=", 1), {}, "domain", "prove"),
+        ((True, "=", 1), {}, "syntax", "prove: left"),
+        ((sp.oo, "=", 1), {}, "syntax", "prove: left"),
+        ((sp.sin, "=", 1), {}, "syntax", "prove: left"),
+        (([["a", "b"]], "=", [["a"]]), {}, "shape", "prove"),
+        (("a = 1/0",), {}, "domain", "prove: right, column 2"),
+        (("ln(a) = b",), {}, "unknown-symbol", "prove: left, column 1"),
+        (("a = ",), {}, "empty", "prove: right"),
+        (("a = b",), {"T": "real"}, "unknown-symbol", "prove: T"),
+        (("a = b",), {"a": 0.5}, "syntax", "prove: a"),
+        (("a = b",), {"a": ("0", 0.5)}, "domain", "prove: a[1]"),
+        (("a = b",), {"a": ("2", "1")}, "domain", "prove: a"),
+        (("a = b",), {"seconds": "3"}, "domain", "prove: seconds"),
+        (("a = b",), {"seconds": float("nan")}, "domain", "prove: seconds"),
+        (("a = b",), {"jobs": 0}, "domain", "prove: jobs"),
+        (("a = b",), {"box": 3}, "shape", "prove: box"),
+        (("nothing_there.toml",), {}, "missing-file", "nothing_there.toml"),
+        ((EXAMPLE,), {"T": "real"}, "domain", "prove"),
+    ],
+)
+def test_wrong_arguments_raise_a_navsym_error_with_kind_and_place(arguments, declared, kind, where):
+    with pytest.raises(nav.NavsymError) as caught:
+        nav.prove(*arguments, **declared)
+    assert (caught.value.kind, caught.value.where) == (kind, where)
+
+
+def test_a_claim_file_gives_the_document_of_the_verb(capsys):
+    verdicts = nav.prove(EXAMPLE)
+    assert run(["prove", str(EXAMPLE), "--json"]) == 1
+    assert json.loads(capsys.readouterr().out) == json.loads(json.dumps(verdicts.document()))
+    assert [verdict.document() for verdict in verdicts] == verdicts.document()["claims"]
+    assert verdicts["half-angle"].holds and not verdicts.holds
+    with pytest.raises(nav.NavsymError, match="got 'none'"):
+        verdicts["none"]
+
+
+def test_the_formula_of_a_verdict_is_a_claim_file_of_its_own():
+    from navsym.prove.claimfile import claims_from, decide_claims
+
+    verdict = nav.prove("x + T >= T", T=("0", "1"), x="nonnegative")
+    again = decide_claims(claims_from(verdict.formula.document()))
+    assert again[0] == verdict and verdict.holds
+
+
+def test_a_time_limit_leaves_it_open():
+    slow = "*".join(f"(sin(a{i}) + cos(b{i}) + 2)" for i in range(12))
+    verdict = nav.prove(slow, ">", 0, seconds=0.05)
+    assert verdict.status == nav.OPEN and "0.05 s" in verdict.evidence
+
+
+def test_verdicts_show_themselves_in_one_line_and_escape_words():
+    verdicts = nav.prove(EXAMPLE)
+    for shown in (verdicts, *verdicts):
+        assert "\n" not in repr(shown)
+    assert "✓ PROVED" in verdicts._repr_html_() and r"\tan" in verdicts[0]._repr_html_()
+    assert verdicts[0]._repr_latex_().endswith(r"\text{PROVED}$")
+    evil = nav.Verdict(nav.OPEN, "</script><b>", assumptions=("</script>",))
+    assert "</script>" not in evil._repr_html_() and "<b>" not in evil._repr_html_().replace("<b style", "")
