@@ -145,6 +145,13 @@ class Verdicts(Answer):
 
     verdicts : one for each claim
     errors   : id -> why a side of that claim has no value
+
+    >>> import navsym as nav
+    >>> verdicts = nav.prove("examples/formulas.toml")
+    >>> verdicts
+    <3 verdicts: 1 PROVED, 1 CERTIFIED, 1 REFUTED>
+    >>> verdicts["half-angle"].holds, verdicts.holds
+    (True, False)
     """
 
     verdicts: tuple[Verdict, ...]

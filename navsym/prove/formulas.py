@@ -83,7 +83,7 @@ def prove(
     True
     >>> nav.prove(0.5, "=", "1/2")
     Traceback (most recent call last):
-    navsym.core.errors.DomainError: prove: left: expected an exact number; got the float 0.5; write "1/2" or "0.5"
+    navsym.core.errors.DomainError: prove: left: expected an exact number; got the float 0.5; write "1/2" ...
     """
     require_options(box, seconds, jobs)
     if relation is None and is_file(statement):
