@@ -92,7 +92,7 @@ def changes(node: ast.AST) -> list[str]:
     if isinstance(node, ast.Constant) and type(node.value) in (int, bool):
         return [f"{node.value} changed"]
     if isinstance(node, ast.Expr) and not isinstance(node.value, ast.Constant):
-        return ["need dropped" if "need(" in ast.unparse(node)[:5] else "statement dropped"]
+        return ["check dropped" if ast.unparse(node).startswith("require(") else "statement dropped"]
     return ["statement dropped"] if isinstance(node, ast.AugAssign) else []
 
 
@@ -173,7 +173,6 @@ def chosen_of(every: list[tuple[str, int, int]], words: list[str]) -> list[tuple
 
 def main() -> None:
     """``python tests/checker/mutants.py [PART OF | FILE]``: the score of all mutants, of a part, of those in a file."""
-    sys.path.insert(0, str(ROOT))
     import tests.checker.forgeries  # noqa: F401  once, before the children
 
     source = SOURCE.read_text(encoding="utf-8")

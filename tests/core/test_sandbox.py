@@ -74,8 +74,7 @@ def refuse_after_another(_):
 
 def test_an_error_comes_back_where_errors_are_sent_with_all_that_led_to_them():
     program = (
-        "import sys; sys.path[:0] = ['.', 'tests/prove']\n"
-        "from test_sandbox import refuse_after_another, run_limited, DomainError\n"
+        "from tests.core.test_sandbox import refuse_after_another, run_limited, DomainError\n"
         "from tblib import pickling_support; pickling_support.install()\n"
         "try: print(run_limited(refuse_after_another, (0,)))\n"
         "except DomainError as error: print('refused', error)\n"

@@ -12,13 +12,14 @@ import pytest
 
 from navsym.export.languages import batch
 from navsym.export.languages.targets import TARGETS
+from tests.export import samples
 
 pytestmark = pytest.mark.skipif(TARGETS["batch"].executable() is None, reason="needs gcc")
 LARGE = 70_001  # rows that end nowhere near a multiple of a wide store, and more bytes than CACHE
 
 
 @pytest.fixture(scope="module")
-def module(samples, tmp_path_factory: pytest.TempPathFactory) -> ModuleType:
+def module(tmp_path_factory: pytest.TempPathFactory) -> ModuleType:
     """Phi33 and a matrix of four results, compiled."""
     folder: Path = tmp_path_factory.mktemp("batch")
     functions = [samples.by_name("Phi33"), samples.by_name("rotation")]

@@ -10,6 +10,7 @@ import pytest
 from navsym.export.languages.targets import TARGETS
 from navsym.export.package import Order, files_of
 from navsym.export.ready import READY
+from tests.export import samples
 
 GOLDEN = Path(__file__).resolve().parents[1] / "golden" / "export"
 READY_GOLDEN = GOLDEN.with_name("export-ready")
@@ -18,7 +19,7 @@ VECTORS = 2
 LANGUAGES = ("c", "cpp", "python", "javascript", "rust", "fortran", "julia", "octave")
 
 
-def generated(samples) -> dict[str, str]:
+def generated() -> dict[str, str]:
     functions = [samples.by_name(name) for name in ("Phi33", "velocity_correction_y3", "versine")]
     order = Order(tuple(TARGETS[name] for name in LANGUAGES), count=6)
     files = files_of(functions, order)
@@ -35,8 +36,8 @@ def stored() -> dict[str, str]:
 
 
 @pytest.fixture(scope="module")
-def fresh(samples) -> dict[str, str]:
-    return generated(samples)
+def fresh() -> dict[str, str]:
+    return generated()
 
 
 def test_the_same_files_are_generated(fresh: dict[str, str]) -> None:
@@ -86,10 +87,8 @@ def rewrite(folder: Path, files: dict[str, str]) -> None:
 
 
 def update() -> None:
-    sys.path.insert(0, str(Path(__file__).parent))
-    import samples
 
-    rewrite(GOLDEN, generated(samples))
+    rewrite(GOLDEN, generated())
     for name in READY:
         rewrite(READY_GOLDEN / name, ready_files(name))
 

@@ -28,6 +28,7 @@ from navsym.export.expression_graph import Graph, build
 from navsym.export.forms import safe
 from navsym.export.functions import function_of
 from navsym.export.holes import Part, T
+from tests.export import samples
 
 x, a, b, tau = sp.symbols("x a b tau", real=True)
 REALS = ("double", "float")
@@ -254,7 +255,7 @@ def test_one_minus_cosine_is_a_square_without_a_switch(angle: float) -> None:
     assert done.relative / DOUBLE.unit() < 12
 
 
-def test_a_hole_that_is_none_has_vectors_at_zero_and_in_its_neighbourhood(samples) -> None:
+def test_a_hole_that_is_none_has_vectors_at_zero_and_in_its_neighbourhood() -> None:
     for real, tiny in (("double", 1e-30), ("float", None)):
         found = {v.inputs[0]: v for v in vectors(samples.by_name("holes", real), 60) if v.status == 0}
         for at in (0.0, *([tiny] if tiny else [])):
@@ -264,7 +265,7 @@ def test_a_hole_that_is_none_has_vectors_at_zero_and_in_its_neighbourhood(sample
 
 
 @pytest.mark.parametrize("real", REALS)
-def test_compiled_quotients_hold_their_enclosures_across_zero(samples, real: str) -> None:
+def test_compiled_quotients_hold_their_enclosures_across_zero(real: str) -> None:
     """All of FORMULAS at points that crowd around zero, and a vector at zero itself; none comes without a status."""
     made = []
     for k, formula in enumerate(FORMULAS):

@@ -13,6 +13,7 @@ import pytest
 
 from navsym.cli.main import run
 from navsym.export.languages.targets import TARGETS
+from tests.export import programs
 
 LANGUAGES = [n for n, tool in (("c", "gcc"), ("python", ""), ("javascript", "node")) if not tool or shutil.which(tool)]
 EVERY = [n for n in TARGETS if TARGETS[n].executable() and n != "html"]
@@ -151,7 +152,7 @@ def test_a_pole_comes_back_as_a_status_and_not_as_a_number(tmp_path: Path, capsy
 
 
 @pytest.mark.skipif(shutil.which("gcc") is None, reason="needs a C compiler")
-def test_single_precision_never_becomes_double(programs, tmp_path: Path) -> None:
+def test_single_precision_never_becomes_double(tmp_path: Path) -> None:
     from navsym.export.languages.c import files
 
     functions = [*programs.functions("pulsating-filter", "float"), *programs.functions("earth-geocentric", "float")]

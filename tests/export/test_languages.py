@@ -12,6 +12,7 @@ from navsym.export.languages.targets import TARGETS, answering
 from navsym.export.package import Order, files_of
 from navsym.export.ready import READY
 from navsym.export.roundtrip import run_target
+from tests.export import corruption, samples
 
 HERE = [name for name, target in TARGETS.items() if target.executable() is not None]
 QUICK = [name for name in HERE if name in ("c", "python", "javascript")]
@@ -27,7 +28,7 @@ def exported(functions, language: str, folder: Path, count: int = 16) -> Path:
 
 
 @pytest.mark.parametrize("language", HERE)
-def test_all_samples_stay_inside_their_enclosures(samples, language: str, tmp_path: Path) -> None:
+def test_all_samples_stay_inside_their_enclosures(language: str, tmp_path: Path) -> None:
     outcome = run_target(exported(samples.functions(), language, tmp_path), TARGETS[language])
     assert outcome.status == "verified", outcome.why
     assert all(wrong == 0 for _, wrong, _ in outcome.functions.values())
@@ -38,18 +39,18 @@ def test_all_samples_stay_inside_their_enclosures(samples, language: str, tmp_pa
     "language",
     [pytest.param(n, marks=[] if n == "c" else pytest.mark.slow) for n in HERE if "float" in TARGETS[n].reals],
 )
-def test_single_precision_stays_inside_its_enclosures(samples, language: str, tmp_path: Path) -> None:
+def test_single_precision_stays_inside_its_enclosures(language: str, tmp_path: Path) -> None:
     outcome = run_target(exported(samples.functions("float"), language, tmp_path), TARGETS[language])
     assert outcome.status == "verified", outcome.why
 
 
 @pytest.mark.skipif("c" not in HERE, reason="needs a C compiler")
-def test_sanitizers_find_nothing_in_the_c_code(samples, tmp_path: Path) -> None:
+def test_sanitizers_find_nothing_in_the_c_code(tmp_path: Path) -> None:
     outcome = run_target(exported(samples.functions(), "c", tmp_path), TARGETS["c"], sanitize=True)
     assert outcome.status == "verified", outcome.why
 
 
-def test_a_language_without_its_tool_is_not_called_verified(samples, tmp_path: Path, monkeypatch) -> None:
+def test_a_language_without_its_tool_is_not_called_verified(tmp_path: Path, monkeypatch) -> None:
     monkeypatch.setattr(shutil, "which", lambda name: None)
     outcome = run_target(exported([samples.by_name("versine")], "rust", tmp_path), TARGETS["rust"])
     assert outcome.status == "not executed"
@@ -59,7 +60,7 @@ def test_a_language_without_its_tool_is_not_called_verified(samples, tmp_path: P
 
 
 @pytest.mark.parametrize("language", QUICK)
-def test_every_corrupted_operator_is_caught(samples, corruption, language: str, tmp_path: Path) -> None:
+def test_every_corrupted_operator_is_caught(language: str, tmp_path: Path) -> None:
     for name in ("Phi33",) if language == "python" else ("Phi33", "versine"):
         tried, left = corruption.survivors(samples.by_name(name), language, tmp_path / name)
         assert tried >= 3 and not left, left
@@ -67,7 +68,7 @@ def test_every_corrupted_operator_is_caught(samples, corruption, language: str, 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("language", QUICK + SLOW)
-def test_every_corrupted_operator_of_every_sample_is_caught(samples, corruption, language: str, tmp_path: Path) -> None:
+def test_every_corrupted_operator_of_every_sample_is_caught(language: str, tmp_path: Path) -> None:
     for function in samples.functions():
         _, left = corruption.survivors(function, language, tmp_path / function.name)
         assert not left, left
@@ -75,19 +76,19 @@ def test_every_corrupted_operator_of_every_sample_is_caught(samples, corruption,
 
 @pytest.mark.slow
 @pytest.mark.parametrize("language", QUICK + SLOW)
-def test_a_corrupted_operator_of_every_ready_made_function_is_caught(corruption, language: str, tmp_path: Path) -> None:
+def test_a_corrupted_operator_of_every_ready_made_function_is_caught(language: str, tmp_path: Path) -> None:
     assert not corruption.campaign(list(READY), [language], 1, tmp_path)["left"]
 
 
 @pytest.mark.parametrize("name", ["trajectory", "earth"])
-def test_a_corrupted_operator_of_ready_made_code_is_caught(corruption, name: str, tmp_path: Path) -> None:
+def test_a_corrupted_operator_of_ready_made_code_is_caught(name: str, tmp_path: Path) -> None:
     found = corruption.campaign([name], [n for n in QUICK if n != "c"], 1, tmp_path)
     assert found["tried"] and not found["left"]
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("real", ["double", "float"])
-def test_a_hundred_thousand_points_lie_inside_their_enclosures(samples, real: str, tmp_path: Path) -> None:
+def test_a_hundred_thousand_points_lie_inside_their_enclosures(real: str, tmp_path: Path) -> None:
     function = samples.by_name("Phi33", real)
     outcome = run_target(exported([function], "c", tmp_path, 100_000), TARGETS["c"])
     assert outcome.status == "verified", outcome.why

@@ -16,6 +16,7 @@ from navsym.export.languages.octave import REAL, files
 from navsym.export.languages.targets import TARGETS
 from navsym.export.parts import ExportedFunction
 from navsym.export.roundtrip import run_target
+from tests.export import corruption, programs, samples
 
 LICENSE = "SPDX-License-Identifier: Apache-2.0"
 pytestmark = pytest.mark.skipif(TARGETS["octave"].executable() is None, reason="octave is not on this machine")
@@ -33,7 +34,7 @@ def said(folder: Path, functions: list[ExportedFunction], lines: list[str]) -> l
     return done.stdout.split("\n")[:-1]
 
 
-def test_only_one_real_double_enters_a_number(samples, tmp_path: Path) -> None:
+def test_only_one_real_double_enters_a_number(tmp_path: Path) -> None:
     """int32(1)/2 is 1, single(0.1) is another number, 1 + 2i is not below 3, [1 2] is a matrix."""
     call = samples.by_name("versine").name
     values = ["0.5", "int32(1)", "single(0.5)", "true", "0.5 + 2i", "[0.1 0.2]", "[]", "'a'", "NaN", "Inf", "{1}", "2"]
@@ -42,7 +43,7 @@ def test_only_one_real_double_enters_a_number(samples, tmp_path: Path) -> None:
     assert found == ["0 0 double", *["1 1 double"] * (len(values) - 1)]
 
 
-def test_an_array_may_be_a_row_or_a_column_but_no_matrix(programs, tmp_path: Path) -> None:
+def test_an_array_may_be_a_row_or_a_column_but_no_matrix(tmp_path: Path) -> None:
     """A 3 by 3 matrix has its entries in columns: read as a row of nine it would be its transpose."""
     call = "trajectory_filter_start"
     ways = ["[1 2 3], 1:6", "[1; 2; 3], (1:6)'", "[1 2 3], reshape(1:6, 2, 3)", "[1 2 3], 1:5", "[1 2 3], int8(1:6)"]
@@ -51,7 +52,7 @@ def test_an_array_may_be_a_row_or_a_column_but_no_matrix(programs, tmp_path: Pat
     assert found == ["0 6 1", "0 6 1", "1 6 1", "1 6 1", "1 6 1"]
 
 
-def test_a_matrix_comes_back_as_a_matrix(samples, tmp_path: Path) -> None:
+def test_a_matrix_comes_back_as_a_matrix(tmp_path: Path) -> None:
     line = f"[s, R] = {samples.by_name('rotation').name}(2, 0.3); printf('%.17g\\n', R.');"
     (found,) = [said(tmp_path, [samples.by_name("rotation")], [line])]
     c, s = np.cos(0.3), np.sin(0.3)
@@ -59,7 +60,7 @@ def test_a_matrix_comes_back_as_a_matrix(samples, tmp_path: Path) -> None:
     assert any(np.allclose(np.array(found, dtype=float), way, rtol=1e-15) for way in ways)
 
 
-def test_a_program_keeps_its_state_in_a_structure_and_a_refused_step_leaves_it(programs, tmp_path: Path) -> None:
+def test_a_program_keeps_its_state_in_a_structure_and_a_refused_step_leaves_it(tmp_path: Path) -> None:
     series = [0.5, float("nan"), -1.25, 3.0]
     lines = ["[s, state] = trajectory_filter_init([0 0 0], [4 0 0 3 0 2]);"]
     for z in series:
@@ -91,7 +92,7 @@ def test_a_program_keeps_its_state_in_a_structure_and_a_refused_step_leaves_it(p
         (sp.Max(sp.sqrt(x), 1), -1.0),
     ],
 )
-def test_what_is_not_real_is_a_status_and_never_a_complex_number(samples, formula, at: float, tmp_path: Path) -> None:
+def test_what_is_not_real_is_a_status_and_never_a_complex_number(formula, at: float, tmp_path: Path) -> None:
     """abs(sqrt(-1)) is 1 in Octave, which is no value of the formula."""
     function = function_of([samples.of_statement("real", Equation(formula, formula))])
     values = {"x": str(at), "y": "0.5"}
@@ -104,7 +105,7 @@ def test_every_function_that_leaves_the_real_numbers_is_one_of_ours() -> None:
     assert set(REAL) == {"sqrt", "log", "asin", "acos", "pow"}
 
 
-def test_names_of_matlab_become_arguments_and_functions_of_other_names(samples, tmp_path: Path) -> None:
+def test_names_of_matlab_become_arguments_and_functions_of_other_names(tmp_path: Path) -> None:
     names = [
         "arguments",
         "end",
@@ -137,7 +138,7 @@ def test_names_of_matlab_become_arguments_and_functions_of_other_names(samples, 
     assert found == f"0 {sum(k * k for k in order)}"
 
 
-def test_a_vector_that_is_refused_where_it_should_not_be_is_wrong_and_no_error(samples, corruption, tmp_path) -> None:
+def test_a_vector_that_is_refused_where_it_should_not_be_is_wrong_and_no_error(tmp_path) -> None:
     place = corruption.exported([samples.by_name("versine")], "octave", tmp_path, 8)
     path = place / f"{samples.by_name('versine').name}.m"
     path.write_text(path.read_text().replace("status = 0;", "status = 2; value = NaN;"))

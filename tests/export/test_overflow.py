@@ -19,6 +19,7 @@ from navsym.export.accuracy.vectors import vectors
 from navsym.export.functions import ExportedFunction, function_of
 from navsym.export.languages.python import files as python_files
 from navsym.export.languages.targets import TARGETS
+from tests.export import samples
 
 x, y = sp.symbols("x y", real=True)
 COMPILER = pytest.mark.skipif(TARGETS["c"].executable() is None, reason="needs a C compiler")
@@ -32,15 +33,15 @@ HIDDEN = {
 }
 
 
-def function(samples, name: str, real: str = "double") -> ExportedFunction:
+def function(name: str, real: str = "double") -> ExportedFunction:
     formula, most, _, _ = HIDDEN[name]
     return function_of([samples.of_statement(name, Equation(formula, formula, {x: (1, most)}))], real=real)
 
 
 @COMPILER
 @pytest.mark.parametrize("name", HIDDEN)
-def test_a_hidden_overflow_is_a_status_and_not_a_number(samples, name: str, tmp_path: Path) -> None:
-    made, (_, _, small, large) = function(samples, name), HIDDEN[name]
+def test_a_hidden_overflow_is_a_status_and_not_a_number(name: str, tmp_path: Path) -> None:
+    made, (_, _, small, large) = function(name), HIDDEN[name]
     (call,) = compiled_c([made], tmp_path)
     statuses, _ = call(np.array([[small, large]]))
     assert statuses.tolist() == [0, 2]
@@ -48,8 +49,8 @@ def test_a_hidden_overflow_is_a_status_and_not_a_number(samples, name: str, tmp_
     assert found.wrong == 0 and found.undefined
 
 
-def test_numpy_says_so_as_well(samples, tmp_path: Path) -> None:
-    made = function(samples, "cube")
+def test_numpy_says_so_as_well(tmp_path: Path) -> None:
+    made = function("cube")
     file = tmp_path / "navsym_functions.py"
     file.write_text(python_files([made], {made.name: vectors(made, 4)}, "")["navsym_functions.py"])
     spec = importlib.util.spec_from_file_location("navsym_functions_of_overflow", file)
@@ -64,11 +65,11 @@ def test_numpy_says_so_as_well(samples, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("real", ["double", "float"])
-def test_what_cannot_overflow_is_not_asked_for(samples, real: str) -> None:
+def test_what_cannot_overflow_is_not_asked_for(real: str) -> None:
     assert not any(piece.graph.guards for f in samples.functions(real) for piece in f.pieces)
 
 
-def test_the_bound_of_a_declared_range_holds_on_all_of_it(samples) -> None:
+def test_the_bound_of_a_declared_range_holds_on_all_of_it() -> None:
     """A finite end is where vectors and bounds end, however far it is; only a missing one is replaced."""
     made = function_of([samples.of_statement("far", Equation(x * y, y * x, {x: (0, 10**9), y: (-(10**7), 5)}))])
     assert [(i.low, i.high) for i in made.inputs] == [(i.test_low, i.test_high) for i in made.inputs]
@@ -76,7 +77,7 @@ def test_the_bound_of_a_declared_range_holds_on_all_of_it(samples) -> None:
 
 
 @pytest.mark.parametrize(("real", "size"), [("double", 400), ("float", 60)])
-def test_a_constant_that_the_type_does_not_have_is_refused(samples, real: str, size: int) -> None:
+def test_a_constant_that_the_type_does_not_have_is_refused(real: str, size: int) -> None:
     formula = sp.Integer(10) ** size * x
     with pytest.raises(DomainError, match="rescale"):
         function_of([samples.of_statement("large", Equation(formula, formula, {x: (0, 1)}))], real=real)
@@ -92,7 +93,7 @@ UNDECLARED = {
 
 @COMPILER
 @pytest.mark.parametrize("name", UNDECLARED)
-def test_far_outside_of_an_undeclared_range_there_is_a_status_and_no_wrong_number(samples, name, tmp_path) -> None:
+def test_far_outside_of_an_undeclared_range_there_is_a_status_and_no_wrong_number(name, tmp_path) -> None:
     """Bounds are stated up to a thousand there, but a call with 1e308 must not give zero for a half."""
     formula, good, bad = UNDECLARED[name]
     made = function_of([samples.of_statement(name, Equation(formula, formula))])
@@ -109,7 +110,7 @@ TINY = sp.Rational(1, 10**200)
 
 @COMPILER
 @pytest.mark.parametrize("formula", [sp.sqrt(x * y), x * y / (x * y + y**2), (x * y) ** sp.Rational(2, 3) / x])
-def test_a_product_that_loses_its_digits_by_underflow_is_a_status(samples, formula: sp.Expr, tmp_path: Path) -> None:
+def test_a_product_that_loses_its_digits_by_underflow_is_a_status(formula: sp.Expr, tmp_path: Path) -> None:
     """x y is 1e-340 at the second point, which is zero in double; the root of it is 1e-170."""
     statement = Equation(formula, formula, {x: (TINY, 1), y: (TINY, 1)})
     made = function_of([samples.of_statement("tiny", statement)])
@@ -135,7 +136,7 @@ POSITIVE = sp.symbols("x y z", positive=True)
 
 @COMPILER
 @pytest.mark.parametrize("seed", [1, *(pytest.param(k, marks=pytest.mark.slow) for k in range(2, 12))])
-def test_no_random_formula_over_four_hundred_decades_gives_a_wrong_number(samples, seed: int, tmp_path: Path) -> None:
+def test_no_random_formula_over_four_hundred_decades_gives_a_wrong_number(seed: int, tmp_path: Path) -> None:
     generator, made = random.Random(seed), []
     while len(made) < 12:
         formula = random_formula(generator, 4)

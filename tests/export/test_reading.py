@@ -14,12 +14,13 @@ from navsym.export.languages.names import LOCAL, local_names
 from navsym.export.languages.programs import c_header
 from navsym.export.languages.summary import accepted, domain_lines, sizes
 from navsym.prove.ladder import decide
+from tests.export import programs, samples
 
 LICENSE = "SPDX-License-Identifier: Apache-2.0"
 PROGRAMS = ("trajectory-filter", "pulsating-filter", "two-stage-observer", "terrain-crossing")
 
 
-def test_values_keep_the_names_of_their_formulas(programs) -> None:
+def test_values_keep_the_names_of_their_formulas() -> None:
     _, step = programs.functions("trajectory-filter")
     text = source(step, LICENSE)
     assert re.search(r"const double K1 = m11 / \w+;", text) and "r1 = g2;" in text
@@ -34,7 +35,7 @@ def test_names_of_values_differ_from_each_other_and_from_all_that_is_taken() -> 
 
 
 @pytest.mark.parametrize("name", PROGRAMS)
-def test_every_argument_result_and_field_of_a_program_has_a_unit(programs, name: str) -> None:
+def test_every_argument_result_and_field_of_a_program_has_a_unit(name: str) -> None:
     start, step = programs.functions(name)
     for text in (header(start, LICENSE), header(step, LICENSE), c_header(step, LICENSE)):
         assert "unit not stated" not in text
@@ -42,7 +43,7 @@ def test_every_argument_result_and_field_of_a_program_has_a_unit(programs, name:
     assert fields == [o.name for o in start.outputs]
 
 
-def test_every_result_of_a_step_is_one_of_its_named_values(programs) -> None:
+def test_every_result_of_a_step_is_one_of_its_named_values() -> None:
     for name in PROGRAMS:
         _, step = programs.functions(name)
         lines = [line.partition(" = ")[0] for line in step.sources[0].formula]
@@ -56,7 +57,7 @@ def test_ranges_are_said_in_words() -> None:
     assert words == ["when finite", "from 0.5 on", "up to 2.0", "from 0.5 to 2.0"]
 
 
-def test_an_array_of_like_entries_takes_one_line_and_another_one_each(programs) -> None:
+def test_an_array_of_like_entries_takes_one_line_and_another_one_each() -> None:
     _, step = programs.functions("trajectory-filter")
     lines = domain_lines(step)
     assert [line.partition(":")[0] for line in lines] == ["f[3]", "P[6]", "q[3]", "R", "z"]
@@ -70,7 +71,7 @@ def test_a_name_that_is_part_of_an_end_is_not_taken_for_the_argument() -> None:
     assert function.inputs[0].text == "-pi <= p <= pi"
 
 
-def test_the_header_lists_what_the_code_calls(samples, programs) -> None:
+def test_the_header_lists_what_the_code_calls() -> None:
     assert "Calls    expm1, fabs, sin, sinh of math.h;" in header(samples.by_name("holes"), LICENSE)
     assert "Calls    expm1f, fabsf, sinf, sinhf of math.h;" in header(samples.by_name("holes", "float"), LICENSE)
     extremes = programs.functions("terrain-t-G-extremes")[0]

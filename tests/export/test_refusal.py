@@ -20,6 +20,7 @@ from navsym.export.languages.targets import TARGETS, chosen
 from navsym.export.package import Order, files_of
 from navsym.export.roundtrip import check_export, hash_trouble, sealed, unsealed
 from navsym.prove.ladder import decide
+from tests.export import samples
 
 a = sp.Symbol("a", real=True)
 TRUE = Equation(sp.sin(2 * a), 2 * sp.sin(a) * sp.cos(a))
@@ -129,7 +130,7 @@ def test_a_changed_file_is_noticed(capsys, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("change", ["removed", "a line more"])
-def test_code_without_its_manifest_as_written_is_rejected(change: str, samples, tmp_path: Path) -> None:
+def test_code_without_its_manifest_as_written_is_rejected(change: str, tmp_path: Path) -> None:
     files = files_of([samples.by_name("versine")], Order(tuple(chosen(["python"], "double")), count=4))
     write_folder(tmp_path, files)
     manifest = tmp_path / "manifest.json"
@@ -141,7 +142,7 @@ def test_code_without_its_manifest_as_written_is_rejected(change: str, samples, 
     assert "REJECTED" in [row["status"] for row in check_export(tmp_path)]
 
 
-def test_a_byte_altered_anywhere_is_noticed(samples, tmp_path: Path) -> None:
+def test_a_byte_altered_anywhere_is_noticed(tmp_path: Path) -> None:
     """In every file of every language, and at every place of the manifest: by hash or seal, before anything runs."""
     targets = tuple(TARGETS[name] for name in TARGETS if name != "html")
     files = files_of([samples.by_name("Phi33")], Order(targets, count=4))
@@ -168,13 +169,13 @@ def altered(whole: bytes, place: int) -> bytes:
     return whole[:place] + bytes([whole[place] ^ 1]) + whole[place + 1 :]
 
 
-def test_only_what_the_manifest_lists_is_run(samples, tmp_path: Path) -> None:
+def test_only_what_the_manifest_lists_is_run(tmp_path: Path) -> None:
     write_folder(tmp_path, files_of([samples.by_name("versine")], Order(tuple(chosen(["c"], "double")), count=4)))
     (tmp_path / "c" / "planted.c").write_text("int main(void) { return 7; }\n")
     assert all(row["status"] == "ACCEPTED" for row in check_export(tmp_path))
 
 
-def test_a_manifest_cannot_make_the_check_read_elsewhere(samples, tmp_path: Path) -> None:
+def test_a_manifest_cannot_make_the_check_read_elsewhere(tmp_path: Path) -> None:
     files = files_of([samples.by_name("versine")], Order(tuple(chosen(["python"], "double")), count=4))
     write_folder(tmp_path / "e", files)
     (tmp_path / "outside").write_text("secret")
@@ -216,14 +217,14 @@ def test_what_is_replaced_stays_when_the_disk_is_full(tmp_path: Path, monkeypatc
     assert sorted((p.name, p.read_text()) for p in tmp_path.iterdir()) == [("a", "old"), ("b", "old")]
 
 
-def test_a_comment_cannot_be_closed_by_a_title(samples) -> None:
+def test_a_comment_cannot_be_closed_by_a_title() -> None:
     function = function_of([material("m:1", TRUE, decide(TRUE), title='*/ int x; /* """ ??/')])
     files = files_of([function], Order(tuple(chosen(["c", "cpp", "javascript"], "double")), count=4))
     assert "*/ int x" not in "".join(text for name, text in files.items() if not name.endswith(".json"))
 
 
 @pytest.mark.parametrize("license_", ["", "MIT\n*/", "x" * 100, "Ünicode"])
-def test_a_licence_is_an_identifier(samples, license_: str) -> None:
+def test_a_licence_is_an_identifier(license_: str) -> None:
     with pytest.raises(DomainError, match="SPDX"):
         files_of([samples.by_name("versine")], Order(tuple(chosen(["c"], "double")), license=license_, count=4))
 

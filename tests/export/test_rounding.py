@@ -17,6 +17,7 @@ from navsym.export.accuracy.uniform import uniform_bound
 from navsym.export.accuracy.vectors import vectors
 from navsym.export.expression_graph import build
 from navsym.export.forms import safe
+from tests.export import samples
 
 x, y = sp.symbols("x y", real=True)
 
@@ -101,12 +102,12 @@ def test_terms_are_kept_apart_where_the_sum_cancels() -> None:
     assert math.isinf(bound.relative[0]) and bound.scaled[0] < 6
 
 
-def test_vectors_do_not_move_from_run_to_run(samples) -> None:
+def test_vectors_do_not_move_from_run_to_run() -> None:
     function = samples.by_name("rotation")
     assert vectors(function, 20) == vectors(function, 20)
 
 
-def test_every_vector_holds_the_exact_value_of_the_claim(samples) -> None:
+def test_every_vector_holds_the_exact_value_of_the_claim() -> None:
     function = samples.by_name("Phi33")
     formula = function.pieces[0].formulas[0]
     for vector in vectors(function, 30):
@@ -115,6 +116,6 @@ def test_every_vector_holds_the_exact_value_of_the_claim(samples) -> None:
             assert arb(vector.lower[0]) < exact < arb(vector.upper[0])
 
 
-def test_arguments_outside_the_proved_domain_have_vectors_too(samples) -> None:
+def test_arguments_outside_the_proved_domain_have_vectors_too() -> None:
     statuses = [v.status for v in vectors(samples.by_name("Phi33"), 10)]
     assert statuses.count(1) == 5

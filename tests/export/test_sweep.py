@@ -17,6 +17,7 @@ from navsym.export.accuracy.rounding import BITS
 from navsym.export.accuracy.vectors import analysed, exact_values, piece_at
 from navsym.export.languages.targets import TARGETS
 from navsym.export.ready import READY
+from tests.export import samples
 
 COMPILER = pytest.mark.skipif(TARGETS["c"].executable() is None, reason="needs a C compiler")
 NUMBER = st.floats(-1e12, 1e12).filter(lambda x: x == 0 or abs(x) > 1e-12)
@@ -128,7 +129,7 @@ def agreed(piece, point, arithmetic, values, bounds) -> int:
 
 
 @pytest.mark.parametrize("real", ["double", "float"])
-def test_the_twin_is_the_ball_analysis_on_all_samples(samples, real: str) -> None:
+def test_the_twin_is_the_ball_analysis_on_all_samples(real: str) -> None:
     assert sum(held_to_the_balls(f, 60) for f in samples.functions(real)) > 0
 
 
@@ -144,7 +145,7 @@ def test_the_twin_is_the_ball_analysis_on_every_ready_made_function(name: str) -
 
 @COMPILER
 @pytest.mark.parametrize("real", ["double", "float"])
-def test_the_c_of_every_sample_holds_at_many_points(samples, real: str) -> None:
+def test_the_c_of_every_sample_holds_at_many_points(real: str) -> None:
     for name, found in sweep.sweep_c(samples.functions(real), 3000).items():
         assert found.wrong == 0, (name, found)
 
@@ -159,7 +160,7 @@ def test_the_c_of_every_ready_made_function_holds_at_two_thousand_points(name: s
 
 
 @COMPILER
-def test_a_result_beyond_its_bound_is_caught(samples, tmp_path: Path) -> None:
+def test_a_result_beyond_its_bound_is_caught(tmp_path: Path) -> None:
     function = samples.by_name("Phi33")
     (call,) = sweep.compiled_c([function], tmp_path)
 
@@ -172,7 +173,7 @@ def test_a_result_beyond_its_bound_is_caught(samples, tmp_path: Path) -> None:
 
 
 @COMPILER
-def test_a_status_that_is_not_ok_is_caught(samples, tmp_path: Path) -> None:
+def test_a_status_that_is_not_ok_is_caught(tmp_path: Path) -> None:
     function = samples.by_name("Phi33")
     (call,) = sweep.compiled_c([function], tmp_path)
     found = sweep.sweep(function, lambda columns: (call(columns)[0] + 2, call(columns)[1]), 60)

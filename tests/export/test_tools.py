@@ -5,7 +5,6 @@ from __future__ import annotations
 import importlib.util
 import json
 import shutil
-import sys
 from pathlib import Path
 
 import pytest
@@ -21,8 +20,8 @@ from navsym.export.parts import Layout
 from navsym.export.roundtrip import run_target
 from navsym.export.table import as_markdown, closing_table
 from navsym.prove.ladder import decide
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "report"))
+from tests.export import programs, samples
+from tests.report.devtools import Browser
 
 
 def written(functions, language: str, folder: Path, count: int = 6) -> Path:
@@ -33,7 +32,7 @@ def written(functions, language: str, folder: Path, count: int = 6) -> Path:
 
 
 @pytest.mark.skipif(shutil.which("cppcheck") is None, reason="needs cppcheck with its MISRA add-on")
-def test_misra_findings_are_deviations_that_are_written_down(programs, tmp_path: Path) -> None:
+def test_misra_findings_are_deviations_that_are_written_down(tmp_path: Path) -> None:
     folder = written(programs.functions("trajectory-filter"), "c", tmp_path)
     said = tools.misra(folder)
     assert said.status == "passed" and set(said.counts) <= set(tools.DEVIATIONS) and said.counts
@@ -41,7 +40,7 @@ def test_misra_findings_are_deviations_that_are_written_down(programs, tmp_path:
 
 
 @pytest.mark.skipif(shutil.which("cppcheck") is None, reason="needs cppcheck with its MISRA add-on")
-def test_a_part_with_a_hole_in_two_sources_breaks_no_other_rule(samples, tmp_path: Path) -> None:
+def test_a_part_with_a_hole_in_two_sources_breaks_no_other_rule(tmp_path: Path) -> None:
     a = sp.Symbol("a", real=True)
     quotient = sp.log(1 + a) / a
     functions = [
@@ -61,7 +60,7 @@ def test_a_broken_rule_without_a_deviation_is_a_failure(tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(shutil.which("cmake") is None, reason="needs cmake")
-def test_ctest_runs_the_vectors(programs, samples, tmp_path: Path) -> None:
+def test_ctest_runs_the_vectors(tmp_path: Path) -> None:
     functions = [samples.by_name("versine"), *programs.functions("trajectory-filter")]
     for language in ("c", "cpp"):
         folder = written(functions, language, tmp_path)
@@ -79,7 +78,7 @@ def test_a_missing_tool_is_not_executed_and_says_what_to_install(tmp_path: Path,
 
 
 @pytest.mark.skipif(importlib.util.find_spec("ziglang") is None, reason="needs ziglang (extra cross)")
-def test_the_size_on_a_cortex_m4_is_measured(samples, tmp_path: Path) -> None:
+def test_the_size_on_a_cortex_m4_is_measured(tmp_path: Path) -> None:
     said = tools.cortex_m4_sizes(written([samples.by_name("versine")], "c", tmp_path))
     assert said.status == "passed" and 40 < said.counts["sample_versine"] < 2000
     assert tools.loaded_bytes(b"no object at all") == 0
@@ -90,9 +89,7 @@ def test_the_size_on_a_cortex_m4_is_measured(samples, tmp_path: Path) -> None:
     importlib.util.find_spec("ziglang") is None or shutil.which("chromium") is None,
     reason="needs ziglang (extra cross) and chromium",
 )
-def test_the_page_computes_shows_and_stays_offline(samples, tmp_path: Path) -> None:
-    from devtools import Browser
-
+def test_the_page_computes_shows_and_stays_offline(tmp_path: Path) -> None:
     functions = [samples.by_name(name) for name in ("Phi33", "velocity_correction_y3", "rotation")]
     folder = written(functions, "html", tmp_path)
     outcome = run_target(folder, TARGETS["html"])
@@ -135,7 +132,7 @@ def test_text_of_a_claim_cannot_leave_the_script_of_the_page() -> None:
 # -- the table ---------------------------------------
 
 
-def test_the_table_says_what_ran_and_what_did_not(samples, tmp_path: Path, monkeypatch) -> None:
+def test_the_table_says_what_ran_and_what_did_not(tmp_path: Path, monkeypatch) -> None:
     targets = [TARGETS[n] for n in ("python", "julia")]
     monkeypatch.setattr("navsym.export.languages.targets.answers", lambda path: False)
     document = closing_table({"g": [samples.by_name("Phi33")]}, targets, 6)
@@ -146,7 +143,7 @@ def test_the_table_says_what_ran_and_what_did_not(samples, tmp_path: Path, monke
     assert "julia | not executed" in page and "| guaranteed_velocity_4_12_Phi33 |" in page
 
 
-def test_the_table_is_the_same_with_several_at_work(samples) -> None:
+def test_the_table_is_the_same_with_several_at_work() -> None:
     groups = {"g": [samples.by_name("Phi33")], "h": [samples.by_name("versine")]}
     said: list[str] = []
     tables = [closing_table(groups, [TARGETS["python"]], 6, said.append, points=64, jobs=jobs) for jobs in (1, 2)]

@@ -10,14 +10,14 @@ import random
 
 import mpmath
 import pytest
-from plain_arithmetic import Undefined, value
-from random_claims import random_claim
 
 from navsym.claims import CERTIFIED, PROVED, REFUTED
 from navsym.core.errors import NavsymError
 from navsym.core.sandbox import run_many
 from navsym.prove.claimfile import claims_from, decide_claim
 from navsym.verification.decide import warm_up
+from tests.fidelity.plain_arithmetic import Undefined, value
+from tests.fidelity.random_claims import random_claim
 
 DIGITS = 500  # 1 - cos(x**2) of an x of 1e-31 loses a quarter of them
 ZERO = mpmath.mpf(10) ** -150  # of the larger side: x**4 of an x of 1e-30 is not zero,

@@ -16,8 +16,6 @@ from pathlib import Path
 import mpmath
 import pytest
 import sympy as sp
-from plain_arithmetic import Undefined, value
-from statements import PAPERS, assertions, claims, formulas, symbols_in
 
 from navsym.claims import Bound, Equation, Optimum, Property
 from navsym.language.expression import parse, to_text
@@ -26,6 +24,8 @@ from navsym.prove.equations import entries
 from navsym.prove.sampling.points import points
 from navsym.prove.sampling.pointwise import values_at
 from navsym.verification.decide import sides
+from tests.fidelity.plain_arithmetic import Undefined, value
+from tests.fidelity.statements import PAPERS, assertions, claims, formulas, symbols_in
 
 ROOT = Path(__file__).resolve().parents[2]
 CLOSE = mpmath.mpf(10) ** -25

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import pytest
 import sympy as sp
-from scaling import Scaling, narrowed, pairs_of
-from statements import PAPERS, assertions, symbols_in
-from units import METRE, SECOND, units_of
 
 from navsym.claims import Equation, Optimum
 from navsym.prove.mutants import edited, edits, is_formula
+from tests.fidelity.scaling import Scaling, narrowed, pairs_of
+from tests.fidelity.statements import PAPERS, assertions, symbols_in
+from tests.fidelity.units import METRE, SECOND, units_of
 
 A_NUMBER = "a number stands beside a quantity without unit, so that the other side alone allows more"
 CANCELLED = "what cancels on the printed side does not occur on the derived one, or there as a product only"

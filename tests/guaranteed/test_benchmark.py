@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
-from pathlib import Path
-
 import numpy as np
 import pytest
 import sympy as sp
@@ -12,15 +9,7 @@ import sympy as sp
 from navsym.core.errors import DomainError
 from navsym.guaranteed.lengths import values_for_lengths
 from navsym.guaranteed.phases.family import Family, U
-
-FOLDER = Path(__file__).parent.parent / "benchmarks"
-
-
-def script(name):
-    spec = importlib.util.spec_from_file_location(name, FOLDER / f"{name}.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+from tests.benchmarks import guaranteed, guaranteed_campaign
 
 
 def velocity(state):
@@ -30,13 +19,13 @@ def velocity(state):
 
 
 def test_the_benchmark_prints_ratios(capsys):
-    script("guaranteed").main(count=100, rounds=1, lengths=10)
+    guaranteed.main(count=100, rounds=1, lengths=10)
     assert capsys.readouterr().out.count("cvxpy/this") == 22
 
 
 def test_a_small_campaign_has_no_contradiction_and_goes_on_where_it_stopped(tmp_path, capsys):
     out = tmp_path / "records.jsonl"
-    campaign = script("guaranteed_campaign").main
+    campaign = guaranteed_campaign.main
     campaign(problems=3, alterations=6, seed=5, out=out)
     first = out.read_text()
     done, forged = campaign(problems=6, alterations=12, seed=5, out=out)

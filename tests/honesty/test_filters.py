@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from linear_cases import CASES, STEPS, batch_least_squares, simulate
 from numpy.testing import assert_allclose
 from scipy.stats import binom, chi2
 
 from navsym.multimodel.bank import bank
 from navsym.multimodel.filters import run
 from navsym.multimodel.kalman import steps as kalman
+from tests.honesty.linear_cases import CASES, STEPS, batch_least_squares, simulate
 
 RUNS = 10_000
 METHODS = ("exact", "pulsating", "k-pulsating", "gpb2", "imm", "polygaussian")

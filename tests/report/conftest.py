@@ -2,27 +2,11 @@
 
 from __future__ import annotations
 
-import importlib.util
-import sys
-from pathlib import Path
-from types import ModuleType
-
 import pytest
 
 from navsym.claims import Paper
 from navsym.report.page import site
-
-
-def beside(name: str) -> ModuleType:
-    """A helper module of this folder."""
-    full = f"report_tests_{name}"
-    if full not in sys.modules:
-        spec = importlib.util.spec_from_file_location(full, Path(__file__).with_name(f"{name}.py"))
-        assert spec is not None and spec.loader is not None
-        sys.modules[full] = importlib.util.module_from_spec(spec)
-        spec.loader.exec_module(sys.modules[full])
-    return sys.modules[full]
-
+from tests.report import hostile
 
 PLAIN = {
     "title": "A formula.",
@@ -40,7 +24,7 @@ PLAIN = {
 
 def plain(number: str, status: str, printed: str, derived: str, **changes: object) -> dict[str, object]:
     base = PLAIN | {"status": status, "expect": status, "printed": printed, "derived": derived} | changes
-    return beside("hostile").record(number, "words", **base)
+    return hostile.record(number, "words", **base)
 
 
 @pytest.fixture(scope="session")
@@ -94,13 +78,12 @@ def card() -> Paper:
 
 @pytest.fixture(scope="session")
 def files(records: list[dict[str, object]], card: Paper) -> dict[str, str]:
-    return site(beside("hostile").document(records), {"sample": card})
+    return site(hostile.document(records), {"sample": card})
 
 
 @pytest.fixture(scope="session")
 def hostile_files() -> dict[str, str]:
     """Every hostile word as title, sides, scope, assumption, number, counterexample and paper title."""
-    hostile = beside("hostile")
     records = [hostile.record(f"{i}", words) for i, words in enumerate(hostile.HOSTILE)]
     records += [hostile.record(words, "plain") for words in hostile.HOSTILE]
     document = hostile.document(records)
@@ -110,4 +93,4 @@ def hostile_files() -> dict[str, str]:
 
 @pytest.fixture(scope="session")
 def hostile_words() -> tuple[str, ...]:
-    return beside("hostile").HOSTILE
+    return hostile.HOSTILE

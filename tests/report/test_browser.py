@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 import itertools
 import json
 from pathlib import Path
@@ -11,12 +10,9 @@ import pytest
 
 from navsym.report.page import site, visible
 from navsym.report.wording import read_wording
+from tests.report import devtools
 
 pytestmark = pytest.mark.browser
-SPEC = importlib.util.spec_from_file_location("report_devtools", Path(__file__).with_name("devtools.py"))
-assert SPEC is not None and SPEC.loader is not None
-devtools = importlib.util.module_from_spec(SPEC)
-SPEC.loader.exec_module(devtools)
 
 
 @pytest.fixture(scope="module")
