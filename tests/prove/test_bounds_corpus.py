@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import pytest
-from bounds_corpus import FIELD, FIELD_SYMBOLS, TEXTBOOK, TEXTBOOK_SYMBOLS
 
 from navsym import checker
 from navsym.claims import REFUTED
 from navsym.prove.claimfile import claims_from, decide_claim
+from tests.prove.bounds_corpus import FIELD, FIELD_SYMBOLS, TEXTBOOK, TEXTBOOK_SYMBOLS
 
 ROWS = [(TEXTBOOK_SYMBOLS, row) for row in TEXTBOOK] + [(FIELD_SYMBOLS, row) for row in FIELD]
 REVERSE = {"<": ">", "<=": ">", ">": "<", ">=": "<"}

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import pytest
-from navigation import GROUPS, SYMBOLS
 
 from navsym.claims import PROVED, REFUTED
 from navsym.prove.claimfile import claims_from, decide_claim
+from tests.prove.navigation import GROUPS, SYMBOLS
 
 #: True, and so far only confirmed: the tests hold that they are never called wrong.
 NOT_YET = {"2*atan(x)", "atan2(h, x)", "2*atan2(sqrt((1 - cos(m))/2), sqrt((1 + cos(m))/2))"}

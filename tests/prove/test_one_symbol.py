@@ -6,7 +6,6 @@ import random
 
 import pytest
 import sympy as sp
-from one_symbol import random_case, verdict_against
 
 from navsym.checker import check
 from navsym.claims import PROVED, REFUTED, Bound, Equation, Optimum
@@ -15,6 +14,7 @@ from navsym.prove.ladder import decide
 from navsym.prove.sampling.points import Range
 from navsym.prove.signs.bounds import Sign, prove_sign
 from navsym.prove.signs.real_roots import between, compare, place_of, real_roots
+from tests.prove.one_symbol import random_case, verdict_against
 
 x = sp.Symbol("x", real=True)
 THIN = sp.Rational(1, 10**30)

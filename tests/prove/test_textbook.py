@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 import sympy as sp
-from textbook import EVERYTHING
 
 from navsym.claims import PROVED, REFUTED, Bound, Equation
 from navsym.language.expression import parse, symbol
 from navsym.prove.ladder import decide
+from tests.prove.textbook import EVERYTHING
 
 SYMBOLS = {name: symbol(name) for name in "abcxyz"} | {name: symbol(name, positive=True) for name in "pqr"}
 
