@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from navsym.core.errors import NavsymError
@@ -25,8 +25,7 @@ plain = st.recursive(
 def test_json_without_traps_is_read_as_it_is(document):
     import json
 
-    if isinstance(document, str) and not document:
-        return
+    assume(document != "")
     assert parse_json(json.dumps(document)) == document
     assert parse_json(json.dumps(document, ensure_ascii=False).replace("\0", "").encode()) is not ...
 
@@ -53,7 +52,7 @@ def test_json_without_traps_is_read_as_it_is(document):
     ],
 )
 def test_json_that_other_readers_repair_is_refused(text, kind, where):
-    with pytest.raises(NavsymError, match=r"expected .*; got .*; do ") as caught:
+    with pytest.raises(NavsymError, match=r"expected .*; got .*; \w") as caught:
         parse_json(text, "f.json")
     assert (caught.value.kind, caught.value.where[: len(where)]) == (kind, where)
 
@@ -83,7 +82,7 @@ def test_toml_is_strict(text, kind, where):
     if kind is None:
         assert parse_toml(text) == {"a": 99}
         return
-    with pytest.raises(NavsymError, match=r"expected .*; got .*; do ") as caught:
+    with pytest.raises(NavsymError, match=r"expected .*; got .*; \w") as caught:
         parse_toml(text, "f.toml")
     assert (caught.value.kind, caught.value.where[: len(where)]) == (kind, where)
 
