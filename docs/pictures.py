@@ -39,7 +39,7 @@ def verdicts() -> Figure:
     document = json.loads((ROOT / "derivations" / "verdicts.json").read_text(encoding="utf-8"))
     papers = []
     for module in ("guaranteed_velocity", "joint_correction", "multistructure", "terrain_search", "trajectory"):
-        card = importlib.import_module(f"derivations.{module}").PAPER
+        card = importlib.import_module(f"navsym_papers.{module}").PAPER
         records = [record for record in document["claims"] if record["paper"] == module]
         cells = [(equation, worst(equation, card.equations, records)) for equation in card.equations]
         names = [author.split()[-1] for author in card.authors]
@@ -89,7 +89,7 @@ def phases() -> Figure:
 
 def dual() -> Figure:
     """The dual polynomial of the drift in its band at T = pi/2, and what the printed sign of u2 makes of it."""
-    from derivations.guaranteed_velocity import model, polynomial, weights
+    from navsym_papers.guaranteed_velocity import model, polynomial, weights
 
     end = {model.T: sp.pi / 2}
     at = np.linspace(0, np.pi / 2, 300)
@@ -127,9 +127,9 @@ def ranks_of(rows: sp.Matrix, F: sp.Matrix, count: int) -> list[int]:
 
 def modes() -> Figure:
     """Mode probabilities of the pulsating filter on a simulated switching signal."""
-    from navsym.models.modes import MODES
-    from navsym.multimodel import study
     from navsym.multimodel.filters import run
+    from navsym_papers.multistructure.experiment import study
+    from navsym_papers.multistructure.experiment.modes import MODES
 
     models = study.schuler_bank()
     series = study.simulate(models, 1, 60, seed=9)
@@ -139,9 +139,9 @@ def modes() -> Figure:
 
 def surface() -> Figure:
     """The criterion over positions on shaded relief, the track and the fix."""
-    from navsym.terrain.experiment import GRID
-    from navsym.terrain.flights import Setting, course, fly, sample_terrain
     from navsym.terrain.search import criteria, prepare
+    from navsym_papers.terrain_search.experiment.flights import Setting, course, fly, sample_terrain
+    from navsym_papers.terrain_search.experiment.study import GRID
 
     terrain = sample_terrain()
     setting = Setting(measurements=260, speed=60.0, drift=0.0)
@@ -161,7 +161,7 @@ def surface() -> Figure:
 def errors() -> Figure:
     """An error of the northern speed with the ribbon that the smoother claims."""
     from navsym.trajectory.estimate import Settings, estimate
-    from navsym.trajectory.tracks import track_of
+    from navsym.trajectory.tracks import project_positions
 
     t, radius = np.arange(0.0, 240.0, 1.0), 6_371_000.0
     random = np.random.default_rng(5)
@@ -169,7 +169,7 @@ def errors() -> Figure:
     speed = 20.0 + np.cumsum(acceleration)
     north = np.cumsum(speed) - speed / 2
     noise = random.normal(size=t.size)
-    track = track_of(t, np.radians(45) + (north + noise) / radius, 0 * t, 0 * t, 1.0)
+    track = project_positions(t, np.radians(45) + (north + noise) / radius, 0 * t, 0 * t, 1.0)
     answer, _ = estimate(track, Settings())
     scale = np.polyfit(speed, answer.velocity[:, 1], 1)[0]
     error = answer.velocity[:, 1] / scale - speed
@@ -178,8 +178,8 @@ def errors() -> Figure:
 
 def conditions() -> Figure:
     """Condition numbers of N_f: certified, as printed, and in double precision."""
-    from derivations.trajectory import table
     from navsym.trajectory.conditioning import condition_numbers
+    from navsym_papers.trajectory import table
 
     orders = np.array([2, 3, 4, 5, 10, 15, 19, 20])
     found = [condition_numbers(int(n), "1/6371000", "1/5", digits=15)["N_f"] for n in orders]

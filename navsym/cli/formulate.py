@@ -1,4 +1,4 @@
-"""Write the guaranteed problem on a grid for casadi, for cvxpy or as an MPS file."""
+"""The guaranteed problem on a grid for casadi, for cvxpy or as an MPS file."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ import typer
 
 from navsym.cli._settings import values_of
 from navsym.cli.output import emit, put, write_text
-from navsym.core.errors import NavsymError
 
 
 def command(
@@ -20,31 +19,21 @@ def command(
     set_: Annotated[
         list[str] | None, typer.Option("--set", help="value of a parameter, such as T=2.5; may be repeated")
     ] = None,
-    grid: Annotated[int, typer.Option(help="number of instants of each measurement")] = 201,
+    grid: Annotated[int, typer.Option(help="number of times of each measurement")] = 201,
     mixture: Annotated[float, typer.Option(help="factor of the quadratic term, for --kind mixed")] = 1.0,
     out: Annotated[Path | None, typer.Option(help="file to write; standard output otherwise")] = None,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> None:
-    """Write the LP or QP of the problem on a grid of instants for another program.
+    """Write the linear or quadratic programme of the problem on a grid of times.
 
     Example: navsym formulate examples/schuler-velocity.toml --target drift --set T=1 --to mps --out drift.mps
     """
-    from navsym.guaranteed.formulate import formulate
-    from navsym.guaranteed.problem import from_file
-    from navsym.models.modelfile import read_model
+    import navsym as nav
 
-    found = read_model(file, values_of(set_))
-    try:
-        text = formulate(from_file(found, target), to, kind=kind, count=grid, mixture=mixture)
-    except NavsymError as error:
-        raise error.at(str(file)) from None
+    answer = nav.formulate(file, target, to=to, kind=kind, grid=grid, mixture=mixture, values=values_of(set_))
     if out is not None:
-        write_text(out, text)
+        write_text(out, answer.text)
     if json_:
-        emit(
-            {"to": to, "kind": kind, "grid": grid, "out": None if out is None else str(out), "text": text},
-            as_json=True,
-            text="",
-        )
+        emit(answer.document() | {"out": None if out is None else str(out)}, as_json=True, text="")
     else:
-        put(text if out is None else f"{out}: {kind} for {to}, {grid} instants of each measurement\n")
+        put(answer.text if out is None else f"{out}: {kind} for {to}, {grid} times of each measurement\n")

@@ -10,99 +10,90 @@ import typer
 from navsym.cli._progress import Progress
 from navsym.cli._settings import values_of
 from navsym.cli.output import dumps, emit, table, write_text
-from navsym.core.errors import DomainError, ExpressionSyntaxError, NavsymError
+from navsym.core.errors import DuplicateError, ExpressionSyntaxError
 
-RESUME = "nothing is kept: a shorter --range, --quick, or fewer --seconds take less time"
+RESUME = "nothing is saved; a shorter --range, --quick or fewer --seconds take less time"
 
 
 def command(
     file: Annotated[Path, typer.Argument(help="model or basis file (TOML)")],
     target: Annotated[str | None, typer.Option(help="name of the target; not needed where the file has one")] = None,
-    parameter: Annotated[str, typer.Option(help="name of the parameter that is the interval's length")] = "T",
+    parameter: Annotated[str, typer.Option(help="name of the parameter that varies")] = "T",
     range_: Annotated[
         str | None, typer.Option("--range", help='its range, such as "0, 2*pi"; default: the declared one')
     ] = None,
     set_: Annotated[
         list[str] | None, typer.Option("--set", help="value of another parameter, such as w=1/2; may be repeated")
     ] = None,
-    quick: Annotated[bool, typer.Option("--quick", help="leave regimes without a closed form uncertified")] = False,
+    quick: Annotated[bool, typer.Option("--quick", help="do not certify regimes without a closed form")] = False,
     unique: Annotated[
-        bool, typer.Option("--unique", help="prove of closed forms, too, that no other estimator is optimal (slower)")
+        bool, typer.Option("--unique", help="also prove that no other estimator is optimal (slower)")
     ] = False,
     seconds: Annotated[
-        float,
-        typer.Option(help="work (processor time) after which what is known is given, and the rest named as uncovered"),
+        float, typer.Option(help="processor time after which the search stops; the rest is listed as uncovered")
     ] = 300.0,
-    out: Annotated[Path | None, typer.Option(help="write the certificates to files of this name, numbered")] = None,
+    out: Annotated[Path | None, typer.Option(help="write the certificates to numbered files of this name")] = None,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> None:
-    """Which instants, which weights and which value are optimal, on exactly which range of a parameter.
+    """Find the optimal times, weights and value for every value of a parameter.
 
     Example: navsym phases examples/schuler-velocity.toml --target drift --range "0, 2*pi"
     """
-    from navsym.guaranteed.phases.driver import phases
-    from navsym.guaranteed.phases.family import family_of
-    from navsym.models.modelfile import read_model
+    import navsym as nav
 
-    found = read_model(file, values_of(set_))
-    try:
-        lower, upper = ends_of(found, parameter, range_)
-        with Progress("steps", resume=RESUME) as bar:
-            answer = phases(
-                family_of(found, target, parameter),
-                lower,
-                upper,
-                certify=not quick,
-                alone=unique,
-                seconds=seconds,
-                progress=bar.told_by_job,
-            )
-    except NavsymError as error:
-        raise error.at(str(file)) from None
-    document = answer.document()
+    values: dict[str, Any] = dict(values_of(set_))
+    if range_ is not None:
+        if parameter in values:
+            message = f"expected a range or a value of {parameter}; got both; leave one out"
+            raise DuplicateError(message, where="--range")
+        values[parameter] = ends_of(range_)
+    with Progress("steps", resume=RESUME) as bar:
+        answer = nav.phases(
+            file,
+            target,
+            parameter=parameter,
+            quick=quick,
+            unique=unique,
+            seconds=seconds,
+            values=values,
+            progress=bar.told_by_job,
+        )
     if out is not None:
         for k, certificate in enumerate(answer.certificates()):
             write_text(out.with_name(f"{out.stem}-{k + 1}.json"), dumps(certificate) + "\n")
+    document = answer.document()
     emit(document, as_json=json_, text=lambda: as_text(document))
 
 
-def ends_of(found: Any, parameter: str, text: str | None) -> tuple[Any, Any]:
-    """The range of the option, or the one that the file declares for the parameter."""
-    from navsym.language.expression import parse
-
-    if text is not None:
-        parts = text.split(",")
-        if len(parts) != 2:
-            raise ExpressionSyntaxError(
-                f'expected two numbers; got {text[:40]!r}; write --range "0, 2*pi"', where="--range"
-            )
-        return parse(parts[0], {}, where="--range"), parse(parts[1], {}, where="--range")
-    for symbol, ends in found.box.items():
-        if symbol.name == parameter and None not in ends:
-            return ends
-    raise DomainError(f'expected a range of {parameter}; got none; give --range "0, 2*pi"')
+def ends_of(text: str) -> tuple[str, str]:
+    """The two ends that the option names."""
+    lower, comma, upper = text.partition(",")
+    if not comma or "," in upper:
+        message = f'expected two numbers; got {text[:40]!r}; write --range "0, 2*pi"'
+        raise ExpressionSyntaxError(message, where="--range")
+    return lower, upper
 
 
 def as_text(document: dict[str, Any]) -> str:
-    """Regimes with instants and weights, what happens between them, values of implicit ones, what is left out."""
+    """Regimes with times and weights, boundaries, values without a closed form, what is not covered."""
     name, (lower, upper) = document["parameter"], document["range"]
     title = f"{document['target']}, {name} from {lower} to {upper}"
-    heads = ("regime", name, "value", "instant", "weight", "measurement", "only one", "verdict")
+    heads = ("regime", name, "value", "time", "weight", "measurement", "only one", "verdict")
     rows = [row for k, regime in enumerate(document["regimes"], 1) for row in regime_rows(k, regime, name)]
     parts = [table(heads, rows, title=title)]
     if document["boundaries"]:
         changes = [(b["at"] or "no closed form", located(b), b["why"]) for b in document["boundaries"]]
-        parts.append(table((name, "decimal", "what happens there"), changes, title="Boundaries"))
+        parts.append(table((name, "decimal", "event"), changes, title="Boundaries"))
     for k, regime in enumerate(document["regimes"], 1):
         if "table" in regime:
             rows = [row for one in regime["table"] for row in value_rows(one, name)]
             title = f"Regime {k}: values at some {name}"
-            parts.append(table((name, "value", "instant", "weight", "measurement"), rows, title=title))
+            parts.append(table((name, "value", "time", "weight", "measurement"), rows, title=title))
     return "\n\n".join([*parts, "\n".join(remarks(document))])
 
 
 def regime_rows(k: int, regime: dict[str, Any], name: str) -> list[tuple[str, ...]]:
-    """One line for every instant; what holds for all of them stands on the first."""
+    """One line for every time; the first line also shows what holds for all of them."""
     only = {True: "yes", None: "not decided"}[regime["unique"]]
     known = f"{short(regime['from'])} < {name} < {short(regime['to'])}", regime["value"] or "see below"
     first, rest = (str(k), *known), ("", "", "")
@@ -119,7 +110,7 @@ def weight(row: dict[str, Any]) -> str:
 
 
 def value_rows(one: dict[str, Any], name: str) -> list[tuple[str, ...]]:
-    """The enclosed value at one value of the parameter, with instants and weights to seven digits."""
+    """The enclosed value at one value of the parameter, with times and weights to seven digits."""
     first = one[name], between(one["lower"], one["upper"])
     return [
         (*(("", "") if i else first), f"{float(row['at']):.7g}", f"{float(row['weight']):.7g}", row["measurement"])

@@ -1,4 +1,4 @@
-"""The guaranteed estimator of a model: optimal instants and weights, with a certificate."""
+"""The guaranteed estimator of a model: optimal times and weights, with a certificate."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ import typer
 from navsym.cli._progress import Progress
 from navsym.cli._settings import values_of
 from navsym.cli.output import dumps, emit, table, write_text
-from navsym.core.errors import NavsymError
 
 
 def command(
@@ -21,36 +20,29 @@ def command(
     ] = None,
     digits: Annotated[int, typer.Option(help="certified digits of the value")] = 30,
     compare: Annotated[
-        bool, typer.Option("--compare", help="put least squares, Kalman and convex solvers beside it")
+        bool, typer.Option("--compare", help="also show least squares, the Kalman filter and convex solvers")
     ] = False,
     out: Annotated[Path | None, typer.Option(help="write the certificate to this file")] = None,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> int:
-    """Minimise the guaranteed standard deviation; the value is enclosed, the certificate replayable.
+    """Find the estimator with the smallest guaranteed standard deviation, with a certificate that can be replayed.
 
-    The value is in units of sigma per unit of the target; instants are measured from the start of the interval.
-    Status 1 when fewer digits are certified than were asked for (OPEN).
+    The value is in units of the target; times run from the start of the interval.
+    The status is 1 when fewer digits are certified than were asked for (OPEN).
 
     Example: navsym solve examples/schuler-velocity.toml --target drift --set T=pi/2
     """
-    from navsym.guaranteed.problem import from_file
-    from navsym.guaranteed.solver import solve
-    from navsym.models.modelfile import read_model
+    import navsym as nav
 
-    found = read_model(file, values_of(set_))
-    try:
-        solution = solve(from_file(found, target), digits)
-    except NavsymError as error:
-        raise error.at(str(file)) from None
-    document = solution.document()
+    estimator = nav.solve(file, target, digits=digits, values=values_of(set_))
+    document = estimator.document()
     if out is not None:
         write_text(out, dumps(document["certificate"]) + "\n")
     if compare:
-        from navsym.guaranteed.baselines import LP_SOLVERS
-        from navsym.guaranteed.baselines import compare as beside
+        from navsym.guaranteed.convex import LP_SOLVERS
 
         with Progress("solvers", len(LP_SOLVERS), "without --compare the answer comes at once") as bar:
-            document["compare"] = beside(solution, progress=bar.step)
+            document["compare"] = estimator.compare(progress=bar.step).document()
     emit(document, as_json=json_, text=lambda: as_text(document))
     return 0 if document["status"] == "CERTIFIED" else 1
 

@@ -8,16 +8,20 @@ reached by the noise ``r_j(t) = sigma_j sgn(Phi_j(t)) xi`` with one standard nor
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from navsym.claims.display import table
+from navsym.core.answers import Answer
 from navsym.guaranteed.certificate.enclosure import Panel
 from navsym.guaranteed.convex import LP_SOLVERS, GridProblem, guaranteed_lp
 from navsym.guaranteed.problem import GuaranteedProblem
-from navsym.guaranteed.solver import GuaranteedSolution
+
+if TYPE_CHECKING:
+    from navsym.guaranteed.solver import Estimator
 
 Array = NDArray[np.float64]
 GRID = 201
@@ -75,26 +79,81 @@ def guaranteed_deviation(samples: Sampled, density: Array) -> float:
     return float(np.sum(samples.bounds * np.abs(density) * samples.spacing))
 
 
+@dataclass(frozen=True, slots=True, repr=False)
+class SolverAnswer:
+    """The answer of a general solver to the problem on a grid, beside the optimum on the interval.
+
+    solver         : "programme:engine"
+    status         : its own word
+    value          : ``sum sigma_i |w_i|`` of its weights, None where it gave none
+    relative_error : its value / optimum - 1
+    residual       : largest ``|sum H(t_i) w_i - P|``
+    seconds        : wall time
+    """
+
+    solver: str
+    status: str
+    value: float | None
+    relative_error: float | None
+    residual: float | None
+    seconds: float
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Comparison(Answer):
+    """Guaranteed standard deviations of other estimators, in units of the target.
+
+    least_squares      : of least squares, under its own worst correlation
+    kalman_white_noise : of the Kalman filter that takes the noise to be white, under its own worst correlation
+    optimum            : of the guaranteed estimator
+    solvers            : answers of general solvers on a grid of times
+    """
+
+    least_squares: float
+    kalman_white_noise: float
+    optimum: float
+    solvers: tuple[SolverAnswer, ...]
+
+    def document(self) -> dict[str, Any]:
+        """The value of ``compare`` in the document of ``navsym solve --compare``."""
+        return asdict(self) | {"solvers": [asdict(answer) for answer in self.solvers]}
+
+    def rows(self) -> list[tuple[str, str, float | None]]:
+        """Estimator, status and guaranteed deviation, one row each."""
+        own = [("least squares", "", self.least_squares), ("Kalman, white noise", "", self.kalman_white_noise)]
+        return [*own, *((answer.solver, answer.status, answer.value) for answer in self.solvers)]
+
+    def __repr__(self) -> str:
+        least, kalman = f"least squares {self.least_squares:.6g}", f"Kalman filter {self.kalman_white_noise:.6g}"
+        return f"Comparison(optimum {self.optimum:.6g}, {least}, {kalman}, {len(self.solvers)} solvers)"
+
+    def _repr_html_(self) -> str:
+        """The table of ``--compare``, for notebooks."""
+        rows = [("guaranteed", "", self.optimum), *self.rows()]
+        heads = ("estimator", "status", "guaranteed deviation")
+        return table(heads, [(*row[:2], "" if row[2] is None else f"{row[2]:.6g}") for row in rows])
+
+
 def compare(
-    solution: GuaranteedSolution,
-    solvers: Sequence[str] = LP_SOLVERS,
-    progress: Callable[[str], None] = lambda solver: None,
-) -> dict[str, Any]:
+    estimator: Estimator, solvers: Sequence[str] = LP_SOLVERS, progress: Callable[[str], None] = lambda solver: None
+) -> Comparison:
     """Guaranteed deviation of least squares and of the white-noise Kalman filter; every solver's answer.
 
     progress : called with the name of each solver that has answered
+
+    Raises NotEstimableError, and DomainError for an unknown solver.
     """
-    problem = solution.problem
+    problem, optimum = estimator.problem, float(estimator.value)
     samples = sampled(problem)
     P = np.array([float(p) for p in problem.functional])
     ones = np.ones_like(samples.bounds)
     least = guaranteed_deviation(samples, quadratic_estimator(samples, P, ones))
     kalman = guaranteed_deviation(samples, quadratic_estimator(samples, P, samples.bounds**-2.0))
-    rows = []
+    answers = []
     for name in solvers:
-        rows.append(solver_row(grid_problem(problem), name, solution.value))
+        answers.append(solver_answer(grid_problem(problem), name, optimum))
         progress(name)
-    return {"least_squares": least, "kalman_white_noise": kalman, "optimum": solution.value, "solvers": rows}
+    return Comparison(least, kalman, optimum, tuple(answers))
 
 
 def grid_problem(problem: GuaranteedProblem, count: int = GRID) -> GridProblem:
@@ -105,60 +164,40 @@ def grid_problem(problem: GuaranteedProblem, count: int = GRID) -> GridProblem:
     return GridProblem(np.hstack([H for H, _, _ in parts]), np.array([float(p) for p in problem.functional]), bounds)
 
 
-def solver_row(grid: GridProblem, name: str, optimum: float) -> dict[str, Any]:
-    """The answer of one solver to the problem on the grid, beside the optimum on the interval.
-
-    relative_error : its value / optimum - 1, None without a value
-    Raises NotEstimableError, and DomainError for an unknown solver.
-    """
+def solver_answer(grid: GridProblem, name: str, optimum: float) -> SolverAnswer:
+    """The answer of one solver."""
     result = guaranteed_lp(grid, solver=name)
     error = None if result.value is None else result.value / optimum - 1.0
-    return {
-        "solver": name,
-        "status": result.status,
-        "value": result.value,
-        "relative_error": error,
-        "residual": result.residual,
-        "seconds": result.seconds,
-    }
+    return SolverAnswer(name, result.status, result.value, error, result.residual, result.seconds)
 
 
-# -- the worst noise -------------------------------------------------------------------------------
+# The worst noise
 
 
-def worst_covariance(solution: GuaranteedSolution) -> Array:
-    """Covariance of the noise at the support instants that reaches the guaranteed deviation."""
-    signed = np.array([np.sign(float(row.weight)) * bound_of(solution, row.measurement) for row in solution.support])
-    return np.outer(signed, signed)
+def signed_bounds(estimator: Estimator) -> Array:
+    """``sigma sgn(weight)`` on the support: times one standard normal number, the noise that reaches the deviation."""
+    problem = estimator.problem
+    bounds = [float(problem.sigma[problem.measurements.index(point.measurement)]) for point in estimator.support]
+    return np.copysign(bounds, [float(weight) for weight in estimator.weights])
 
 
-def bound_of(solution: GuaranteedSolution, measurement: str) -> float:
-    """The noise bound sigma of a measurement, by its name."""
-    problem = solution.problem
-    return float(problem.sigma[problem.measurements.index(measurement)])
-
-
-def realise(solution: GuaranteedSolution, runs: int, seed: int = 0) -> Array:
+def realise(estimator: Estimator, runs: int, seed: int = 0) -> Array:
     """Errors (runs,) of the estimate in realisations of the worst noise, in units of the target.
 
-    The noise is normal with the covariance of :func:`worst_covariance`; the same seed gives the same errors.
+    The same seed gives the same errors.
     """
-    random = np.random.default_rng(seed)
-    weights = np.array([float(w) for w in solution.weights])
-    signed = np.array([np.sign(float(r.weight)) * bound_of(solution, r.measurement) for r in solution.support])
-    noise = random.standard_normal(runs)[:, None] * signed
-    errors: Array = noise @ weights
+    noise = np.random.default_rng(seed).standard_normal(runs)[:, None] * signed_bounds(estimator)
+    errors: Array = noise @ np.array([float(weight) for weight in estimator.weights])
     return errors
 
 
-def search_correlations(solution: GuaranteedSolution, tries: int, seed: int = 0) -> float:
+def search_correlations(estimator: Estimator, tries: int, seed: int = 0) -> float:
     """Largest standard deviation that random admissible correlations of the noise produce.
 
     A correlation matrix is ``U U^T`` with rows of unit length; the search keeps the best and shakes it.
     """
     random = np.random.default_rng(seed)
-    weights = np.array([float(w) for w in solution.weights])
-    loads = weights * np.array([bound_of(solution, row.measurement) for row in solution.support])
+    loads = np.array([float(weight) for weight in estimator.weights]) * np.abs(signed_bounds(estimator))
     best, best_U = 0.0, random.standard_normal((loads.size, loads.size))
     for k in range(tries):
         fresh = random.standard_normal(best_U.shape)

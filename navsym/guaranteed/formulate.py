@@ -12,14 +12,21 @@ subject to ``sum H (a - b) = P``. Files hold decimal numbers with 17 digits and 
 from __future__ import annotations
 
 import json
+import os
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from navsym.core.answers import Answer
 from navsym.core.errors import DomainError
 from navsym.guaranteed.baselines import panel_numbers
-from navsym.guaranteed.problem import GuaranteedProblem
+from navsym.guaranteed.problem import GuaranteedProblem, place_of, problem_of
+
+if TYPE_CHECKING:
+    from navsym.models.model import Model
 
 FORMATS = ("casadi", "cvxpy", "mps")
 KINDS = ("lp", "qp", "mixed")
@@ -56,7 +63,74 @@ def grid_of(problem: GuaranteedProblem, count: int) -> Grid:
     )
 
 
-def formulate(problem: GuaranteedProblem, to: str, *, kind: str = "lp", count: int = 201, mixture: float = 1.0) -> str:
+@dataclass(frozen=True, slots=True, repr=False)
+class Formulation(Answer):
+    """The problem on a grid as the text of a file for another program: an MPS file, or a script for casadi or cvxpy.
+
+    to   : "casadi", "cvxpy" or "mps"
+    kind : "lp", "qp" or "mixed"
+    grid : times of each measurement
+    text : contents of the file
+
+    >>> import navsym as nav
+    >>> program = nav.formulate("examples/schuler-velocity.toml", "drift", T="1", grid=5)
+    >>> program, program.text.splitlines()[0]
+    (Formulation(lp for mps, 5 times of each measurement), 'NAME guaranteed')
+    """
+
+    to: str
+    kind: str
+    grid: int
+    text: str
+
+    def document(self) -> dict[str, Any]:
+        """The JSON document of ``navsym formulate``, printed and not written to a file."""
+        return {"to": self.to, "kind": self.kind, "grid": self.grid, "out": None, "text": self.text}
+
+    def __str__(self) -> str:
+        return self.text
+
+    def __repr__(self) -> str:
+        return f"Formulation({self.kind} for {self.to}, {self.grid} times of each measurement)"
+
+
+def formulate(
+    model: Model | str | os.PathLike[str] | GuaranteedProblem,
+    target: str | None = None,
+    *,
+    to: str = "mps",
+    kind: str = "lp",
+    grid: int = 201,
+    mixture: float = 1.0,
+    values: Mapping[str, Any] | None = None,
+    **parameters: Any,
+) -> Formulation:
+    """The guaranteed problem on a grid of times as a linear or quadratic programme for another program.
+
+    ``lp`` minimises ``sum sigma |w|`` (worst correlation), ``qp`` the variance under white noise, ``mixed`` the first
+    plus ``mixture`` times the second, each subject to ``sum H w = P``.
+
+    model      : a :class:`navsym.Model`, the path of a model file, or a :class:`GuaranteedProblem`
+    target     : name of the target; not needed where the model has one
+    to         : "mps" (free form; QUADOBJ for qp and mixed), or a Python script for "casadi" or "cvxpy"
+    grid       : equidistant times of each measurement, 2 to 100000
+    parameters : values of parameters of the model; ``values`` is the same as a mapping
+
+    Raises DomainError for an unknown format or kind, a grid out of range or a mixture that is not positive, and the
+    errors of model files.
+
+    >>> import navsym as nav
+    >>> nav.formulate("examples/schuler-velocity.toml", "drift", to="cvxpy", kind="qp", T="pi/2")
+    Formulation(qp for cvxpy, 201 times of each measurement)
+    """
+    with place_of(model):
+        problem = problem_of(model, target, values, parameters, "formulate")
+        return Formulation(to, kind, grid, formulation_text(problem, to, kind=kind, count=grid, mixture=mixture))
+
+
+def formulation_text(
+    problem: GuaranteedProblem, to: str, *, kind: str = "lp", count: int = 201, mixture: float = 1.0
+) -> str:
     """Text of a file: a Python script for casadi or cvxpy, or free-form MPS (QUADOBJ for qp and mixed).
 
     Raises DomainError for an unknown format or kind, a grid of fewer than two instants, or a mixture

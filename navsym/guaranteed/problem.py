@@ -2,21 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 from flint import arb
 
 from navsym.core.balls import enclose
-from navsym.core.errors import DomainError, EmptyError, NotFiniteError, ShapeError
+from navsym.core.errors import DomainError, DuplicateError, EmptyError, NavsymError, NotFiniteError, ShapeError
 from navsym.core.exact import to_fmpq
 from navsym.guaranteed.certificate.enclosure import Panel, Problem
 from navsym.guaranteed.time_varying import ERROR, error_bound, on_rational_interval, regressors_of, steps_of, varying
+from navsym.language.files import called
+from navsym.language.names import shown
+from navsym.language.values import write_value
 from navsym.models.linear import LinearModel, exact_entry
-from navsym.models.modelfile import BasisFile, ModelFile
+from navsym.models.modelfile import BasisFile, ModelFile, read_model
 from navsym.models.transition.exponential import regressors, transition_matrix
+
+if TYPE_CHECKING:
+    from navsym.models.model import Model
 
 Rows = tuple[tuple[sp.Expr, ...], ...]
 
@@ -110,8 +118,9 @@ def need_numbers(problem: GuaranteedProblem) -> None:
     parts += [e for s in problem.stretches for e in (s.start, s.end)]
     free = sorted({x.name for part in parts for x in part.free_symbols - {problem.variable, *problem.unknown}})
     if free:
+        name = free[0]
         raise DomainError(
-            f"expected a value for every parameter; got none for {', '.join(free)}; give --set {free[0]}=…"
+            f'expected a value for every parameter; got none for {", ".join(free)}; give {name}="1" (--set {name}=1)'
         )
     for what, values in (("functional", problem.functional), ("sigma", problem.sigma)):
         if any(not enclose(v).is_finite() for v in values):
@@ -143,13 +152,74 @@ def from_regressors(
     return GuaranteedProblem((Stretch(start, end, exact),), tuple(functional), bounds, variable, target=target)
 
 
-def from_file(found: ModelFile | BasisFile, target: str | None = None) -> GuaranteedProblem:
+def problem_of(
+    model: Model | str | os.PathLike[str] | GuaranteedProblem,
+    target: str | None,
+    values: Mapping[str, Any] | None,
+    parameters: Mapping[str, Any],
+    where: str,
+) -> GuaranteedProblem:
+    """The problem that the arguments of a function of the front door mean.
+
+    values, parameters : parameter of the model -> exact value; a name stands in one of them only
+    where              : name of that function, for errors
+    """
+    if not isinstance(model, GuaranteedProblem):
+        return from_file(contents_of(model, values, parameters, where), target, where)
+    if target not in (None, model.target):
+        got = f"a problem that has {shown(model.target)}"
+        raise DomainError(f"expected its target; got {got}; leave the target out", where=f"{where}: target")
+    if values or parameters:
+        name = next(iter({**(values or {}), **parameters}))
+        message = "expected a model with parameters; got a problem, whose numbers are all given; leave the value out"
+        raise DomainError(message, where=f"{where}: {name}")
+    return model
+
+
+def contents_of(
+    model: Any, values: Mapping[str, Any] | None, parameters: Mapping[str, Any], where: str
+) -> ModelFile | BasisFile:
+    """What a model, or a model file, says with these values of its parameters."""
+    from navsym.models.model import Model
+
+    twice = next((name for name in parameters if name in (values or {})), None)
+    if twice is not None:
+        raise DuplicateError(f"expected one value; got two of {twice}; give one", where=f"{where}: {twice}")
+    given = {**(values or {}), **parameters}
+    if isinstance(model, (ModelFile, BasisFile)):
+        model = Model.from_contents(model)
+    if not isinstance(model, (Model, str, os.PathLike)):
+        message = f"expected a model, or the path of a model file; got {shown(model)}; make one with navsym.Model"
+        raise DomainError(message, where=f"{where}: model")
+    try:
+        if isinstance(model, Model):
+            return model.read(given)
+        return read_model(model, {name: write_value(value, f"--set {name}") for name, value in given.items()})
+    except NavsymError as error:
+        for start in ("Model: values.", "--set "):
+            error.where = error.where.replace(start, f"{where}: ", 1) if error.where.startswith(start) else error.where
+        raise
+
+
+@contextmanager
+def place_of(model: Any) -> Iterator[None]:
+    """Errors about a model that is given by its path name that file."""
+    try:
+        yield
+    except NavsymError as error:
+        name = called(model) if isinstance(model, (str, os.PathLike)) else ""
+        if name and not error.where.startswith(name):
+            error.at(name)
+        raise
+
+
+def from_file(found: ModelFile | BasisFile, target: str | None = None, where: str = "") -> GuaranteedProblem:
     """The problem that a model file states for one of its targets: regressors H(t), functional, bounds sigma.
 
     target : its name; not needed where the file has one
     Raises DomainError for an unknown target or a parameter without a value, EmptyError without measurements.
     """
-    name, functional = chosen_target(found, target)
+    name, functional = chosen_target(found, target, where)
     if isinstance(found, BasisFile):
         stretch = Stretch(*found.interval, found.H)
         return GuaranteedProblem((stretch,), functional, found.sigma, found.variable, target=name)
@@ -190,16 +260,17 @@ def polynomial_stretches(found: ModelFile) -> tuple[tuple[Stretch, ...], sp.Rati
     return stretches, sp.Rational(str(error_bound([bound for _, _, bound in made])))
 
 
-def chosen_target(found: ModelFile | BasisFile, target: str | None) -> tuple[str, tuple[sp.Expr, ...]]:
+def chosen_target(found: ModelFile | BasisFile, target: str | None, where: str = "") -> tuple[str, tuple[sp.Expr, ...]]:
     """Name and functional of a target; the only one when none is named. Raises DomainError."""
-    names = list(found.targets)
-    if target is None:
-        if len(names) > 1:
-            raise DomainError(f"expected one target; got {len(names)} in the file; choose --target {names[0]}")
-        target = names[0]
-    if target not in found.targets:
-        raise DomainError(f"expected a target of the file; got {target!r}; choose one of {', '.join(names)}")
-    return target, found.targets[target]
+    names, where = list(found.targets), f"{where}: target" if where else ""
+    if target is None and len(names) > 1:
+        message = f"expected one target; got {len(names)} in the model; name one of {', '.join(names)}"
+        raise DomainError(message, where=where)
+    name = names[0] if target is None else target
+    if not isinstance(name, str) or name not in found.targets:
+        message = f"expected a target of the model; got {shown(name)}; name one of {', '.join(names)}"
+        raise DomainError(message, where=where)
+    return name, found.targets[name]
 
 
 def stretches_of(found: ModelFile) -> tuple[Stretch, ...]:
@@ -228,20 +299,3 @@ def stretches_of(found: ModelFile) -> tuple[Stretch, ...]:
 def rows_of(matrix: sp.ImmutableMatrix) -> Rows:
     """The rows of a matrix as tuples."""
     return tuple(tuple(row) for row in matrix.tolist())
-
-
-def with_values(problem: GuaranteedProblem, values: Mapping[sp.Symbol, Any]) -> GuaranteedProblem:
-    """The same problem with exact numbers for some symbols."""
-    put = lambda e: e.subs(dict(values), simultaneous=True)  # noqa: E731
-    stretches = tuple(
-        Stretch(put(s.start), put(s.end), tuple(tuple(put(h) for h in row) for row in s.rows))
-        for s in problem.stretches
-    )
-    return GuaranteedProblem(
-        stretches,
-        tuple(map(put, problem.functional)),
-        tuple(map(put, problem.sigma)),
-        problem.variable,
-        problem.measurements,
-        problem.target,
-    )

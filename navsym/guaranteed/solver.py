@@ -9,141 +9,237 @@ from __future__ import annotations
 
 import html
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from typing import Any
+import os
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any
 
 from flint import arb
 
 from navsym.claims import CERTIFIED, OPEN, Status
 from navsym.claims.display import card, shortened, table, verdict_words
+from navsym.core.answers import Answer
 from navsym.core.balls import precision
-from navsym.core.errors import NavsymError
+from navsym.core.errors import DomainError
 from navsym.core.exact import decimal
+from navsym.core.numbers import Number
 from navsym.guaranteed.certificate.basis import Basis, DependentError, make_basis
 from navsym.guaranteed.certificate.enclosure import Problem
 from navsym.guaranteed.certificate.fixed import Certified, certify
 from navsym.guaranteed.estimability import drop_dependent
-from navsym.guaranteed.problem import GuaranteedProblem
+from navsym.guaranteed.problem import GuaranteedProblem, place_of, problem_of
 from navsym.guaranteed.search.exchange import find_contacts
 from navsym.guaranteed.separation import FAR, separated
 from navsym.guaranteed.time_varying import ERROR
 from navsym.guaranteed.uniqueness import only_optimal, several_optimal
 from navsym.language.expression import to_text
+from navsym.language.names import shown
+
+if TYPE_CHECKING:
+    from navsym.guaranteed.baselines import Comparison
+    from navsym.models.model import Model
 
 MOST_DIGITS = 1000
 
 
 @dataclass(frozen=True, slots=True)
-class Support:
-    """One instant of the estimator: measurement, time and weight as decimal strings."""
+class SupportPoint:
+    """One measurement that an estimator uses.
 
-    measurement: str
-    at: str
-    weight: str
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class GuaranteedSolution:
-    """An estimator with its enclosed optimum.
-
-    support      : instants and weights
-    dual         : x, decimal strings; ``x . H_j(t)`` is the dual polynomial
-    lower, upper : decimal strings that enclose the guaranteed standard deviation
-    unique       : True or False only when the estimator is proved to be, or not to be, the only optimal one
-    certificate  : plain data for ``navsym check``
-    status       : CERTIFIED when the enclosure is as narrow as was asked for, else OPEN
-    digits       : how many were asked for
+    measurement : its name
+    at          : time from the start of the interval
+    weight      : its weight, in units of the target per unit of the measurement
+    text        : time and weight as decimals, rounded to nearest
     """
 
-    problem: GuaranteedProblem
-    support: tuple[Support, ...]
+    measurement: str
+    at: Number
+    weight: Number
+    text: tuple[str, str] = field(repr=False)
+
+    def document(self) -> dict[str, str]:
+        """The row of the support in the document of the verb."""
+        return {"measurement": self.measurement, "at": self.text[0], "weight": self.text[1]}
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Estimator(Answer):
+    """The guaranteed estimator of a target, with its enclosed optimum.
+
+    value       : the guaranteed standard deviation ``min sum_j sigma_j integral |Phi_j|``, in units of the target
+    support     : where it measures and with which weights; the estimate is ``sum weight * z(at)``
+    dual        : x, one number per unknown; ``|x . H_j(t)| <= sigma_j`` everywhere, with equality on the support
+    unique      : True or False only when the estimator is proved to be, or not to be, the only optimal one
+    certificate : plain data that the independent checker replays
+    status      : CERTIFIED when the enclosure is as narrow as was asked for, else OPEN
+    problem     : what was solved
+    width       : relative width of the enclosure
+    asked       : digits that were asked for
+
+    >>> import navsym as nav
+    >>> drift = nav.solve("examples/schuler-velocity.toml", "drift", T="pi/2")
+    >>> drift
+    Estimator(drift: 4.82842712474619..., 3 measurements, CERTIFIED)
+    >>> [f"{float(w):.4f}" for w in drift.weights]
+    ['-0.7071', '2.4142', '-1.7071']
+    """
+
+    value: Number
+    support: tuple[SupportPoint, ...]
     dual: tuple[str, ...]
-    lower: str
-    upper: str
     unique: bool | None
     certificate: Mapping[str, Any]
     status: Status
+    problem: GuaranteedProblem
     width: float
-    digits: int = 30
+    asked: int = 30
 
     @property
-    def reached(self) -> int:
+    def target(self) -> str:
+        """Name of the target."""
+        return self.problem.target
+
+    @property
+    def lower(self) -> str:
+        """Decimal below the optimum."""
+        return self.value.lower
+
+    @property
+    def upper(self) -> str:
+        """Decimal above the optimum."""
+        return self.value.upper
+
+    @property
+    def weights(self) -> tuple[Number, ...]:
+        """Weights of the support, in its order."""
+        return tuple(point.weight for point in self.support)
+
+    @property
+    def digits(self) -> int:
         """Digits of the enclosure: the largest n with a relative width of at most ``10**-n``."""
-        return 0 if self.width >= 1.0 else self.digits if self.width == 0.0 else int(-math.log10(self.width))
+        return 0 if self.width >= 1.0 else self.asked if self.width == 0.0 else int(-math.log10(self.width))
 
     @property
-    def weights(self) -> tuple[str, ...]:
-        """Weights of the support as decimal strings, in its order."""
-        return tuple(row.weight for row in self.support)
-
-    @property
-    def value(self) -> float:
-        """Middle of the enclosure as a float, for plots."""
-        return (float(self.lower) + float(self.upper)) / 2
-
-    def _repr_html_(self) -> str:
-        """The estimator as a table, for notebooks."""
-        value = self.lower if self.lower == self.upper else f"{shortened(self.lower)} to {shortened(self.upper)}"
-        head = f"{html.escape(self.problem.target)}: {html.escape(value)} {verdict_words(str(self.status))}"
-        rows = [(row.measurement, shortened(row.at), shortened(row.weight)) for row in self.support]
-        return card([head, table(("measurement", "instant", "weight"), rows)], str(self.status))
-
-    def document(self) -> dict[str, Any]:
-        """The answer of ``navsym solve``."""
-        rows = [{"measurement": r.measurement, "at": r.at, "weight": r.weight} for r in self.support]
-        return {
-            "target": self.problem.target,
-            "status": str(self.status),
-            "value": {"lower": self.lower, "upper": self.upper},
-            "support": rows,
-            "dual": list(self.dual),
-            "unique": self.unique,
-            "certificate": dict(self.certificate),
-        } | ({"missing": self.missing()} if self.status is OPEN else {})
-
     def missing(self) -> str:
-        """What an OPEN answer lacks, in a sentence; empty when nothing does."""
+        """A sentence on what an OPEN answer lacks; empty for others."""
         if self.status is not OPEN:
             return ""
         if self.problem.error:
             why = f"the regressors are integrated, with an error of about {float(self.problem.error):.0e}"
         else:
             why = "no exact contacts were proved to exist, and no dual closer to its bound was proved to keep it"
-        digits = f"{self.reached} of the {self.digits} digits asked for"
+        digits = f"{self.digits} of the {self.asked} digits asked for"
         return f"the optimum lies between lower and upper for certain, but these agree to {digits} only: {why}"
 
+    def document(self) -> dict[str, Any]:
+        """The JSON document of ``navsym solve``."""
+        return {
+            "target": self.target,
+            "status": str(self.status),
+            "value": self.value.document(),
+            "support": [point.document() for point in self.support],
+            "dual": list(self.dual),
+            "unique": self.unique,
+            "certificate": dict(self.certificate),
+        } | ({"missing": self.missing} if self.missing else {})
 
-def solve(problem: GuaranteedProblem, digits: int = 30) -> GuaranteedSolution:
-    """The guaranteed estimator and an enclosure of its standard deviation to ``digits`` digits.
+    def certificates(self) -> list[Mapping[str, Any]]:
+        """The certificate in a list, for :func:`navsym.check`."""
+        return [self.certificate]
 
-    Raises NotEstimableError with a null direction when the measurements do not determine the
-    functional, TooLargeError for functions that cannot be resolved, and a NavsymError of kind
-    ``"domain"`` for digits outside 1 … 1000.
+    def compare(
+        self, solvers: Sequence[str] | None = None, progress: Callable[[str], None] = lambda solver: None
+    ) -> Comparison:
+        """Other estimators under their own worst correlation, and general solvers on a grid: ``--compare``.
+
+        solvers  : names such as "casadi:highs"; by default all that are known
+        progress : called with the name of each solver that has answered
+
+        Raises DomainError for an unknown solver.
+
+        >>> import navsym as nav
+        >>> drift = nav.solve("examples/schuler-velocity.toml", "drift", T="pi/2")
+        >>> drift.compare(solvers=[])
+        Comparison(optimum 4.82843, least squares 7.02971, Kalman filter 7.02971, 0 solvers)
+        """
+        from navsym.guaranteed.baselines import LP_SOLVERS, compare
+
+        return compare(self, LP_SOLVERS if solvers is None else solvers, progress)
+
+    def plot(self) -> Any:
+        """The dual polynomial within its bound, with the contacts: :func:`navsym.plot`."""
+        import navsym
+
+        return navsym.plot(self)
+
+    def __repr__(self) -> str:
+        count = f"{len(self.support)} measurement{'' if len(self.support) == 1 else 's'}"
+        return f"Estimator({shown(self.target)[1:-1]}: {self.value}, {count}, {self.status})"
+
+    def _repr_html_(self) -> str:
+        """The estimator as a table, for notebooks."""
+        value = self.lower if self.lower == self.upper else f"{shortened(self.lower)} to {shortened(self.upper)}"
+        head = f"{html.escape(self.target)}: {html.escape(value)} {verdict_words(str(self.status))}"
+        rows = [(p.measurement, shortened(p.text[0]), shortened(p.text[1])) for p in self.support]
+        return card([head, table(("measurement", "time", "weight"), rows)], str(self.status))
+
+
+def solve(
+    model: Model | str | os.PathLike[str] | GuaranteedProblem,
+    target: str | None = None,
+    *,
+    digits: int = 30,
+    values: Mapping[str, Any] | None = None,
+    **parameters: Any,
+) -> Estimator:
+    """The guaranteed estimator of a target, and an enclosure of its standard deviation to ``digits`` digits.
+
+    Minimises ``sum_j sigma_j integral |Phi_j|`` subject to ``sum_j integral H_j Phi_j = P``: the standard deviation
+    that no correlation of the noise exceeds (Lidov 1964; Martirosyan 2023, (2.7)). The value is in units of the
+    target; times run from the start of the interval.
+
+    model      : a :class:`navsym.Model`, the path of a model file, or a :class:`GuaranteedProblem`
+    target     : name of the target; not needed where the model has one
+    digits     : certified digits of the value, 1 to 1000
+    parameters : values of parameters of the model, such as ``T="pi/2"``: text, ints, Fractions, sympy numbers
+    values     : the same as a mapping, for parameters whose names are taken by the arguments above
+
+    Raises NotEstimableError with a null direction when the measurements do not determine the target,
+    UnknownSymbolError for a parameter that the model does not have, DomainError for a float or a value outside its
+    declared range, and TooLargeError for functions that cannot be resolved.
+
+    >>> import navsym as nav
+    >>> drift = nav.solve("examples/schuler-velocity.toml", "drift", T="pi/2", digits=20)
+    >>> drift.lower, drift.unique
+    ('4.828427124746190097603377', True)
     """
-    if not 1 <= digits <= MOST_DIGITS:
-        message = f"digits: expected 1 to {MOST_DIGITS}; got {digits}; choose a number between"
-        raise NavsymError(message, kind="domain")
+    if not isinstance(digits, int) or isinstance(digits, bool) or not 1 <= digits <= MOST_DIGITS:
+        got = shown(digits)
+        message = f"expected 1 to {MOST_DIGITS} digits; got {got}; choose a whole number between"
+        raise DomainError(message, where="solve: digits")
+    with place_of(model):
+        return solve_problem(problem_of(model, target, values, parameters, "solve"), digits)
+
+
+def solve_problem(problem: GuaranteedProblem, digits: int = 30) -> Estimator:
+    """The estimator of a problem, see :func:`solve`."""
     exact, kept, basis = independent(problem)
     found = certified(exact, digits, basis)
     unique = found.unique
     if unique is None and not problem.error:
         contacts, bound = find_contacts(basis.panels), found.dual
         unique = False if several_optimal(exact, contacts, bound) else only_optimal(exact, basis, contacts, bound)
-    status = CERTIFIED if found.reaches(digits) else OPEN
     dual = ["0"] * len(problem.functional)
     for k, x in zip(kept, found.dual, strict=True):
         dual[k] = decimal(x, digits)
-    certificate = with_error(problem, found.certificate)
-    return GuaranteedSolution(
-        problem,
-        support_rows(problem, exact, found, digits),
+    return Estimator(
+        Number(found.certificate["lower"], found.certificate["upper"]),
+        support_points(problem, exact, found, digits),
         tuple(dual),
-        found.certificate["lower"],
-        found.certificate["upper"],
         unique,
-        certificate,
-        status,
+        with_error(problem, found.certificate),
+        CERTIFIED if found.reaches(digits) else OPEN,
+        problem,
         found.width,
         digits,
     )
@@ -152,14 +248,15 @@ def solve(problem: GuaranteedProblem, digits: int = 30) -> GuaranteedSolution:
 def certified(exact: Problem, digits: int, basis: Basis) -> Certified:
     """The optimum and its certificate; of the same problem in other unknowns, where too much cancels in these."""
     other = separated(exact) if basis.loss >= FAR and not any(panel.values for panel in exact.panels) else None
-    if other is None:
-        return certify(exact, digits, basis)
-    better = make_basis(other.problem)
-    if better.loss >= basis.loss:
+    better = basis if other is None else make_basis(other.problem)
+    if other is None or better.loss >= basis.loss:
         return certify(exact, digits, basis)
     found = certify(other.problem, digits, better)
     with precision(int(3.34 * (digits + 2 * basis.loss)) + 128):
-        return replace(found, dual=other.back(found.dual))
+        found = replace(found, dual=other.back(found.dual))
+    if found.reaches(digits):
+        return found
+    return min(found, certify(exact, digits, basis), key=lambda answer: answer.width)
 
 
 def with_error(problem: GuaranteedProblem, certificate: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -170,27 +267,32 @@ def with_error(problem: GuaranteedProblem, certificate: Mapping[str, Any]) -> Ma
     return {**certificate, "kind": "sliver", "parameter": ERROR.name, "from": f"-{bound}", "to": bound}
 
 
-def support_rows(problem: GuaranteedProblem, exact: Problem, found: Certified, digits: int) -> tuple[Support, ...]:
-    """Instants and weights of a certified solution as decimal strings, by measurement and time.
+def support_points(
+    problem: GuaranteedProblem, exact: Problem, found: Certified, digits: int
+) -> tuple[SupportPoint, ...]:
+    """Times and weights of a certified solution, by measurement and time.
 
-    Places v in [0, 1] on their panels become instants ``start + (end - start) v``.
+    Places v in [0, 1] on their panels become times ``start + (end - start) v``.
     """
-    rows = []
+    points = []
     with precision(int(3.4 * digits) + 128):
-        for k, v, w in found.support:
+        for k, v, weight in found.support:
             panel = exact.panels[k]
-            name = problem.measurements[panel.measurement]
             start, end = panel.time(arb(0)), panel.time(arb(1))
-            rows.append(
-                (
-                    float(panel.time(v).mid()),
-                    Support(name, decimal(start + (end - start) * v, digits), decimal(w, digits)),
-                )
-            )
-    return tuple(row for _, row in sorted(rows, key=lambda pair: (pair[1].measurement, pair[0])))
+            at = start + (end - start) * v
+            text = decimal(at, digits), decimal(weight, digits)
+            name = problem.measurements[panel.measurement]
+            numbers = enclosing_number(at, digits + 4), enclosing_number(weight, digits + 4)
+            points.append((name, float(at.mid()), SupportPoint(name, *numbers, text)))
+    return tuple(point for _, _, point in sorted(points, key=lambda row: row[:2]))
 
 
-# -- unknowns that the measurements do not tell apart ----------------------------------------------
+def enclosing_number(x: arb, digits: int) -> Number:
+    """The ends of a ball as decimals, rounded outwards."""
+    return Number(decimal(x.lower(), digits, -1), decimal(x.upper(), digits, 1))
+
+
+# Unknowns that the measurements do not tell apart
 
 
 def independent(problem: GuaranteedProblem) -> tuple[Problem, list[int], Basis]:

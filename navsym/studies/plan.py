@@ -24,6 +24,7 @@ from typing import Any
 
 import numpy as np
 
+from navsym.claims.paper import import_paper
 from navsym.core.errors import DomainError, NavsymError, NotFiniteError
 from navsym.core.store import key_of
 
@@ -135,11 +136,11 @@ def filter_job(sweep: Sweep, index: int) -> dict[str, Any]:
     The signals are drawn with a seed of their own, from the sweep's seed and the index.
     """
     from navsym.multimodel.batch import run_batch
-    from navsym.multimodel.study import schuler_bank, simulate
 
+    study = import_paper("multistructure.experiment.study")
     state = np.random.SeedSequence(sweep.seed, spawn_key=(index,)).generate_state(1, np.uint64)[0]
-    bank = schuler_bank()
-    signals = simulate(bank, sweep.runs, sweep.steps, int(state))
+    bank = study.schuler_bank()
+    signals = study.simulate(bank, sweep.runs, sweep.steps, int(state))
     errors = run_batch(bank, signals.measurements, sweep.method)[0] - signals.states
     squares = [float(value) for value in (errors**2).mean(axis=(0, 1))]
     return {"index": index, "runs": sweep.runs, **{f"mse{k}": value for k, value in enumerate(squares)}}
@@ -159,7 +160,7 @@ def guaranteed_job(sweep: Sweep, index: int) -> dict[str, Any]:
     t = sp.Symbol("t", real=True)
     end = sp.Rational(T.numerator, T.denominator)
     target = [0] * sweep.degree + [1]
-    found = solve(from_regressors([[t**k for k in range(sweep.degree + 1)]], target, t, (0, end)), 15)
+    found = solve(from_regressors([[t**k for k in range(sweep.degree + 1)]], target, t, (0, end)), digits=15)
     return {"index": index, "T": str(T), "lower": found.lower, "upper": found.upper}
 
 
@@ -179,17 +180,15 @@ def phases_job(sweep: Sweep, index: int) -> dict[str, Any]:
     problem = from_regressors(
         [[sp.Integer(1), sp.cos(angle), sp.sin(angle)]], [1, 0, 0], t, (0, sp.Rational(T.numerator, T.denominator))
     )
-    found = solve(problem, 15)
+    found = solve(problem, digits=15)
     bounds = {"lower": found.lower, "upper": found.upper, "instants": len(found.support)}
     return {"index": index, "T": str(T), "w": str(w), **bounds}
 
 
 def terrain_job(sweep: Sweep, index: int) -> dict[str, Any]:
     """Errors of position and velocity of every search algorithm on one simulated flight over the sample terrain."""
-    from navsym.terrain.experiment import Setting, one_flight
-
-    terrain = matching_map()
-    flown = one_flight(terrain, terrain, Setting(), (sweep.kind, index, 0), sweep.seed)
+    study, terrain = import_paper("terrain_search.experiment.study"), matching_map()
+    flown = study.one_flight(terrain, terrain, study.Setting(), (sweep.kind, index, 0), sweep.seed)
     errors = {f"{name} of {record.algorithm}": getattr(record, name) for record in flown for name in ERRORS}
     return {"index": index, **errors}
 
@@ -200,9 +199,7 @@ ERRORS = ("position", "velocity")
 @functools.cache
 def matching_map() -> Any:
     """The sample terrain, read once in a process; raises MissingEngineError without matplotlib."""
-    from navsym.terrain.experiment import sample_terrain
-
-    return sample_terrain()
+    return import_paper("terrain_search.experiment.flights").sample_terrain()
 
 
 def two_stage_job(sweep: Sweep, index: int) -> dict[str, Any]:
@@ -210,12 +207,10 @@ def two_stage_job(sweep: Sweep, index: int) -> dict[str, Any]:
 
     The parameters are lambda_c and lambda_h, the flight a great circle of two hours.
     """
-    from navsym.observability.two_stage.flight import great_circle
-    from navsym.observability.two_stage.ins import Errors, compare
-
+    ins, flights = (import_paper(f"joint_correction.experiment.{part}") for part in ("ins", "flight"))
     first, second = sweep.parameters(index)
-    flight = great_circle(duration=7200.0, step=20.0)
-    found = compare(flight, Errors(), lambda_c=float(first), lambda_h=float(second))
+    flight = flights.great_circle(duration=7200.0, step=20.0)
+    found = ins.compare(flight, ins.Errors(), lambda_c=float(first), lambda_h=float(second))
     last = {name: float(errors[-1]) for name, errors in found.rows.items()}
     return {"index": index, "lambda_c": str(first), "lambda_h": str(second), **last}
 

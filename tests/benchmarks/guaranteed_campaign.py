@@ -162,7 +162,7 @@ def problem_record(seed, k, digits):
     record["T"] = str(problem.interval[1])
     start = time.perf_counter()
     try:
-        solution = solve(problem, digits)
+        solution = solve(problem, digits=digits)
     except NavsymError as error:
         return record | {"refused": error.kind}
     record |= {"seconds": time.perf_counter() - start, "width": solution.width, "kind": solution.certificate["kind"]}

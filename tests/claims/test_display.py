@@ -10,7 +10,6 @@ from pathlib import Path
 import pytest
 import sympy as sp
 
-from derivations import alpha_beta_filter
 from navsym.claims import REFUTED, Bound, Equation, Finding, Optimum, Property, Verdict, claims_of
 from navsym.claims.display import latex_of
 from navsym.core.numbers import Number
@@ -21,6 +20,7 @@ from navsym.guaranteed.solver import solve
 from navsym.models.modelfile import linear_model, model_from
 from navsym.observability.chains import observe
 from navsym.report.formula.latex import mathml
+from navsym_papers import alpha_beta_filter
 
 T, t = sp.Symbol("T", positive=True), sp.Symbol("t", real=True)
 MODEL = {

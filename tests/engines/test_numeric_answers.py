@@ -114,13 +114,13 @@ def test_a_solvers_success_is_only_a_word(solver, degree):
 @pytest.mark.parametrize("degree", [9, 19])
 def test_navsym_encloses_the_optimum_that_the_solvers_miss(degree):
     problem = from_regressors([[s**k for k in range(degree + 1)]], [0] * degree + [1], s, (0, 1))
-    found = solve(problem, 12)
+    found = solve(problem, digits=12)
     assert sp.Rational(found.lower) <= 2 ** (2 * degree - 1) <= sp.Rational(found.upper)
 
 
 def test_a_column_of_a_billionth_is_a_unit_and_nothing_else():
     tiny = sp.Rational(1, 10**9)
-    found = solve(from_regressors([[sp.Integer(1), tiny * s]], [0, tiny], s, (0, 1)), 12)
+    found = solve(from_regressors([[sp.Integer(1), tiny * s]], [0, tiny], s, (0, 1)), digits=12)
     assert sp.Rational(found.lower) <= 2 <= sp.Rational(found.upper)
 
 

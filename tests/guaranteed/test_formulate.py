@@ -11,7 +11,7 @@ import pytest
 import sympy as sp
 
 from navsym.core.errors import DomainError
-from navsym.guaranteed.formulate import FORMATS, KINDS, formulate, grid_of
+from navsym.guaranteed.formulate import FORMATS, KINDS, formulation_text, grid_of
 from navsym.guaranteed.problem import from_regressors
 
 t = sp.Symbol("t", real=True)
@@ -31,13 +31,13 @@ def value_of(path):
 
 def test_the_mps_file_has_the_optimum_of_the_parabola(tmp_path):
     path = tmp_path / "p.mps"
-    path.write_text(formulate(parabola(), "mps", count=41))
+    path.write_text(formulation_text(parabola(), "mps", count=41))
     assert value_of(path) == pytest.approx(8.0, rel=1e-7)
 
 
 def test_the_quadratic_mps_file_has_the_variance_of_least_squares(tmp_path):
     path = tmp_path / "q.mps"
-    path.write_text(formulate(parabola(), "mps", kind="qp", count=41))
+    path.write_text(formulation_text(parabola(), "mps", kind="qp", count=41))
     grid = grid_of(parabola(), 41)
     gram = (grid.regressors * grid.spacing) @ grid.regressors.T
     assert 2 * value_of(path) == pytest.approx(np.linalg.inv(gram)[2, 2], rel=1e-5)
@@ -46,7 +46,7 @@ def test_the_quadratic_mps_file_has_the_variance_of_least_squares(tmp_path):
 @pytest.mark.parametrize("to", FORMATS)
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_format_and_kind_is_written(to, kind):
-    text = formulate(parabola(), to, kind=kind, count=5)
+    text = formulation_text(parabola(), to, kind=kind, count=5)
     assert text.endswith("\n")
     if to != "mps":
         compile(text, "formulated", "exec")
@@ -56,7 +56,7 @@ def test_every_format_and_kind_is_written(to, kind):
 @pytest.mark.parametrize(("kind", "value"), [("lp", 8.0), ("qp", None)])
 def test_a_written_program_runs_and_prints_the_value_and_the_weights_as_plain_numbers(to, kind, value, tmp_path, capfd):
     path = tmp_path / "program.py"
-    path.write_text(formulate(parabola(), to, kind=kind, count=21))
+    path.write_text(formulation_text(parabola(), to, kind=kind, count=21))
     runpy.run_path(str(path), run_name="__main__")
     number, _, rows = capfd.readouterr().out.strip().splitlines()[-1].partition(" ")
     if value is None:
@@ -69,6 +69,6 @@ def test_a_written_program_runs_and_prints_the_value_and_the_weights_as_plain_nu
 
 def test_unknown_formats_and_empty_grids_are_refused():
     with pytest.raises(DomainError, match="expected one of"):
-        formulate(parabola(), "gams")
+        formulation_text(parabola(), "gams")
     with pytest.raises(DomainError, match="2 to 100000"):
-        formulate(parabola(), "mps", count=1)
+        formulation_text(parabola(), "mps", count=1)

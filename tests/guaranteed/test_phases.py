@@ -12,7 +12,7 @@ from navsym.claims import CERTIFIED
 from navsym.core.errors import DomainError, NotEstimableError
 from navsym.guaranteed.phases import boundaries as events
 from navsym.guaranteed.phases import driver as changes
-from navsym.guaranteed.phases.driver import phases
+from navsym.guaranteed.phases.driver import find_phases
 from navsym.guaranteed.phases.family import family_of
 from navsym.models.modelfile import model_from
 from tests.guaranteed.phases_cover import lost
@@ -41,7 +41,7 @@ def monomials(degree):
 
 @pytest.mark.parametrize(("state", "ends"), [("y1", []), ("y2", ["4*pi/3", "3*pi/2"]), ("y3", ["2*pi/3", "pi"])])
 def test_the_velocity_problem_is_proved_up_to_a_full_period(state, ends):
-    answer = phases(family(VELOCITY, state), sp.Integer(0), 2 * sp.pi)
+    answer = find_phases(family(VELOCITY, state), sp.Integer(0), 2 * sp.pi)
     document = answer.document()
     assert [b["at"] for b in document["boundaries"]] == ends
     assert {row["status"] for row in document["regimes"]} == {"PROVED"}
@@ -53,7 +53,7 @@ def test_the_velocity_problem_is_proved_up_to_a_full_period(state, ends):
 
 @pytest.mark.parametrize("k", [1, 2, 4])
 def test_monomials_have_one_regime_with_shifted_chebyshev_polynomials(k):
-    answer = phases(family(monomials(4), f"c{k}"), sp.Integer(0), sp.Integer(4))
+    answer = find_phases(family(monomials(4), f"c{k}"), sp.Integer(0), sp.Integer(4))
     (regime,) = answer.regimes
     s = sp.Symbol("s")
     shifted = sp.Poly(sp.chebyshevt(4, 2 * s - 1), s).coeff_monomial(s**k)
@@ -66,7 +66,7 @@ def accepted(answer):
 
 
 def test_a_regime_without_a_closed_form_is_certified_for_every_length():
-    answer = phases(family(POSITION, "y1"), sp.Integer(2), sp.Rational(5, 2))
+    answer = find_phases(family(POSITION, "y1"), sp.Integer(2), sp.Rational(5, 2))
     (regime,) = answer.regimes
     assert regime.status == "CERTIFIED" and regime.closed is None
     assert accepted(answer) == ["all"]
@@ -75,7 +75,7 @@ def test_a_regime_without_a_closed_form_is_certified_for_every_length():
 
 @pytest.mark.slow
 def test_position_alone_is_certified_for_every_length_from_zero_to_a_full_period():
-    answer = phases(family(POSITION, "y3"), sp.Integer(0), 2 * sp.pi)
+    answer = find_phases(family(POSITION, "y3"), sp.Integer(0), 2 * sp.pi)
     assert answer.uncovered == () and lost(answer) == [] and len(answer.regimes) == 5
     assert {regime.status for regime in answer.regimes} == {"CERTIFIED"}
     assert all(float(sp.Rational(b.upper) - sp.Rational(b.lower)) < 1e-30 for b in answer.boundaries)
@@ -83,7 +83,7 @@ def test_position_alone_is_certified_for_every_length_from_zero_to_a_full_period
 
 
 def test_the_range_certificate_of_another_functional_is_refused():
-    answer = phases(family(POSITION, "y1"), sp.Integer(2), sp.Rational(9, 4))
+    answer = find_phases(family(POSITION, "y1"), sp.Integer(2), sp.Rational(9, 4))
     (certificate,) = json.loads(json.dumps(answer.certificates()))
     certificate["of"][0]["functional"] = ["0", "0", "0", "1"]
     with pytest.raises(checker.Refused):
@@ -109,7 +109,7 @@ def test_the_frequency_is_a_parameter_like_any_other():
     document = json.loads(json.dumps(SCHULER))
     del document["measurement"][1], document["parameters"]["s"]
     found = model_from(document, values={"Tf": "2"})
-    answer = phases(family_of(found, "drift", "w"), sp.Rational(1, 2), sp.Integer(2))
+    answer = find_phases(family_of(found, "drift", "w"), sp.Rational(1, 2), sp.Integer(2))
     assert answer.uncovered == ()
     assert {regime.status for regime in answer.regimes} <= {"PROVED", "CERTIFIED"}
     assert set(accepted(answer)) <= {"range", "sliver"}
@@ -117,7 +117,7 @@ def test_the_frequency_is_a_parameter_like_any_other():
 
 def test_the_ratio_of_two_noise_bounds_is_a_parameter():
     found = model_from(SCHULER, values={"Tf": "2", "w": "1"})
-    answer = phases(family_of(found, "drift", "s"), sp.Rational(1, 10), sp.Integer(4))
+    answer = find_phases(family_of(found, "drift", "s"), sp.Rational(1, 10), sp.Integer(4))
     assert answer.uncovered == ()
     assert set(accepted(answer)) <= {"range", "sliver"}
 
@@ -129,7 +129,7 @@ def test_of_several_optimal_estimators_a_regime_keeps_one():
         "measurement": [{"name": "position", "h": ["1", "0"], "sigma": "1"}],
         "interval": {"T": "2"},
     }
-    answer = phases(family_of(model_from(document), "v", "w"), sp.Rational(1, 2), sp.Integer(3))
+    answer = find_phases(family_of(model_from(document), "v", "w"), sp.Rational(1, 2), sp.Integer(3))
     first, second = answer.regimes
     assert answer.uncovered == () and first.upper == sp.pi / 4
     assert second.closed.value == answer.family.parameter and second.status.holds
@@ -145,7 +145,7 @@ def test_a_measurement_of_the_target_itself_is_enough_while_it_is_the_better_one
         ],
         "interval": {"T": "2"},
     }
-    answer = phases(family_of(model_from(document), "v", "q"), sp.Rational(1, 10), sp.Integer(5))
+    answer = find_phases(family_of(model_from(document), "v", "q"), sp.Rational(1, 10), sp.Integer(5))
     first, second = answer.regimes
     assert answer.uncovered == () and first.closed.value == answer.family.parameter and second.closed.value == 1
     (edge,) = answer.boundaries
@@ -154,7 +154,7 @@ def test_a_measurement_of_the_target_itself_is_enough_while_it_is_the_better_one
 
 def test_the_length_may_have_any_name():
     found = model_from(SCHULER, values={"w": "1", "s": "5"})
-    answer = phases(family_of(found, "v", "Tf"), sp.Integer(0), sp.Integer(1))
+    answer = find_phases(family_of(found, "v", "Tf"), sp.Integer(0), sp.Integer(1))
     assert answer.family.growing and answer.uncovered == ()
 
 
@@ -164,7 +164,7 @@ def test_a_range_with_a_singular_value_is_split_there():
         "parameters": {"p": ["1", "3"]},
         "targets": {"c": ["1", "0", "0"]},
     }
-    answer = phases(family_of(model_from(document), "c", "p"), sp.Integer(1), sp.Integer(3))
+    answer = find_phases(family_of(model_from(document), "c", "p"), sp.Integer(1), sp.Integer(3))
     (split,) = [b for b in answer.boundaries if b.at == 2]
     assert "dependent" in split.why
 
@@ -175,22 +175,22 @@ def test_an_unknown_that_depends_on_the_others_is_left_out_with_a_certificate():
         "parameters": {"T": ["0", "4"]},
         "targets": {"seen": ["0", "1", "2"], "hidden": ["0", "1", "1"]},
     }
-    answer = phases(family_of(model_from(document), "seen", "T"), sp.Integer(0), sp.Integer(4))
+    answer = find_phases(family_of(model_from(document), "seen", "T"), sp.Integer(0), sp.Integer(4))
     assert {regime.status for regime in answer.regimes} == {"PROVED"} and answer.uncovered == ()
     (row,) = answer.document()["regimes"]
     assert len(row["dual"]) == 3 and row["dual"][2] == "0"
     assert accepted(answer) == ["identity", "identity"]
     with pytest.raises(NotEstimableError):
-        phases(family_of(model_from(document), "hidden", "T"), sp.Integer(0), sp.Integer(4))
+        find_phases(family_of(model_from(document), "hidden", "T"), sp.Integer(0), sp.Integer(4))
 
 
 def test_a_parameter_that_the_file_does_not_have_is_refused():
     with pytest.raises(DomainError, match="a parameter of the file"):
         family_of(model_from(VELOCITY), "y1", "w")
     with pytest.raises(DomainError, match="from < to"):
-        phases(family(VELOCITY, "y1"), sp.Integer(2), sp.Integer(1))
+        find_phases(family(VELOCITY, "y1"), sp.Integer(2), sp.Integer(1))
     with pytest.raises(DomainError, match="lengths"):
-        phases(family(VELOCITY, "y1"), sp.Integer(-1), sp.Integer(1))
+        find_phases(family(VELOCITY, "y1"), sp.Integer(-1), sp.Integer(1))
 
 
 def test_a_change_at_zero_is_found_and_the_mirrored_regime_has_its_closed_form():
@@ -201,7 +201,7 @@ def test_a_change_at_zero_is_found_and_the_mirrored_regime_has_its_closed_form()
         "interval": {"T": "1"},
         "targets": {"c": ["1", "k", "0"]},
     }
-    answer = phases(family_of(model_from(document), "c", "k"), sp.Integer(-3), sp.Integer(3))
+    answer = find_phases(family_of(model_from(document), "c", "k"), sp.Integer(-3), sp.Integer(3))
     k = answer.family.parameter
     assert [b.at for b in answer.boundaries] == [sp.Rational(-1, 3), 0] and answer.uncovered == ()
     assert sp.expand(answer.regimes[0].closed.value) == -8 * k - 1 and answer.regimes[1].status == "CERTIFIED"
@@ -212,7 +212,7 @@ def test_a_boundary_that_is_not_located_is_enclosed_by_what_is_proved_on_both_si
     monkeypatch.setattr(events, "exact_root", lambda *_: None)
     monkeypatch.setattr(events, "proves", lambda *_: False)
     monkeypatch.setattr(events, "proves_walking", lambda *_: False)
-    answer = phases(family_of(model_from(VELOCITY), "y3", "T"), sp.Rational(1), sp.Rational(3))
+    answer = find_phases(family_of(model_from(VELOCITY), "y3", "T"), sp.Rational(1), sp.Rational(3))
     (edge,) = answer.boundaries
     assert not edge.proved and "not enclosed" in edge.why
     assert sp.Rational(edge.lower) <= 2 * sp.pi / 3 <= sp.Rational(edge.upper)
@@ -230,7 +230,7 @@ def test_the_position_measured_model_is_complete_with_four_boundaries_of_thirty_
         "interval": {"T": "T"},
         "measurement": [{"name": "position", "h": ["0", "0", "0", "1"], "sigma": "1"}],
     }
-    answer = phases(family_of(model_from(document), "y3", "T"), sp.Integer(0), 2 * sp.pi)
+    answer = find_phases(family_of(model_from(document), "y3", "T"), sp.Integer(0), 2 * sp.pi)
     assert answer.uncovered == () and lost(answer) == [] and len(answer.boundaries) == 4
     widths = [sp.Rational(b.upper) - sp.Rational(b.lower) for b in answer.boundaries]
     assert all(b.proved for b in answer.boundaries) and max(widths) < sp.Rational(1, 10**29)
@@ -245,7 +245,7 @@ def test_a_numerator_that_vanishes_with_its_denominator_is_no_zero():
 
 def test_a_change_does_not_rest_on_a_closed_form_that_is_not_proved(monkeypatch):
     monkeypatch.setattr(changes, "proved_form", lambda *_: None)
-    answer = phases(family(VELOCITY, "y2"), sp.Integer(1), sp.Rational(9, 2))
+    answer = find_phases(family(VELOCITY, "y2"), sp.Integer(1), sp.Rational(9, 2))
     (change,) = answer.boundaries
     assert {r.status for r in answer.regimes} == {CERTIFIED}
     assert change.at is None and change.proved

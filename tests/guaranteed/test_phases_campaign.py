@@ -13,7 +13,7 @@ from navsym.core.balls import enclose
 from navsym.core.errors import NavsymError
 from navsym.core.exact import from_decimal
 from navsym.guaranteed.phases.answer import Phases, Regime
-from navsym.guaranteed.phases.driver import phases
+from navsym.guaranteed.phases.driver import find_phases
 from navsym.guaranteed.phases.family import family_of
 from navsym.guaranteed.solver import solve
 from navsym.models.modelfile import model_from
@@ -80,12 +80,12 @@ def contradictions(seed: int) -> Counter:
     document, lower, upper = random_family(rng)
     try:
         family = family_of(model_from(document), "c", "p")
-        answer = phases(family, lower, upper)
+        answer = find_phases(family, lower, upper)
     except NavsymError as error:
         return Counter({f"refused: {error.kind}": 1})
     for _ in range(VALUES):
         p = lower + (upper - lower) * sp.Rational(rng.randrange(1, 10**6), 10**6)
-        found = solve(family.problem(p), 12)
+        found = solve(family.problem(p), digits=12)
         low, high = sp.Rational(found.lower), sp.Rational(found.upper)
         said = bounds_at(answer, p)
         agree = all(a <= high and low <= b for a, b in said)

@@ -16,7 +16,7 @@ from navsym.core.errors import DomainError
 from navsym.core.exact import from_decimal
 from navsym.guaranteed.phases.certify_range import covered, followed
 from navsym.guaranteed.phases.closed_forms import Closed, prove
-from navsym.guaranteed.phases.driver import phases
+from navsym.guaranteed.phases.driver import find_phases
 from navsym.guaranteed.phases.family import family_of
 from navsym.guaranteed.phases.narrow import slivers
 from navsym.guaranteed.phases.patterns import sample
@@ -47,7 +47,7 @@ def oscillator(damping, sigmas, T="3"):
 
 
 def solved(document, lower, upper, target="c", **options):
-    return phases(family_of(model_from(document), target, "p"), sp.sympify(lower), sp.sympify(upper), **options)
+    return find_phases(family_of(model_from(document), target, "p"), sp.sympify(lower), sp.sympify(upper), **options)
 
 
 def regimes(answer):
@@ -146,7 +146,7 @@ def test_beyond_critical_damping_no_regressor_is_imaginary():
 
 
 def test_a_closed_form_that_is_followed_is_proved_to_be_the_only_optimum():
-    answer = solved(basis(["1", "u", "u**2"], ["0", "p"], ["0", "1", "0"]), 1, 2, alone=True)
+    answer = solved(basis(["1", "u", "u**2"], ["0", "p"], ["0", "1", "0"]), 1, 2, unique=True)
     (row,) = answer.document()["regimes"]
     assert row["status"] == "PROVED" and row["unique"] is True and row["unique_between"] == ["1", "2"]
     assert {checker.check(checker.load(json.dumps(c))) for c in answer.certificates()} <= {"all", "range"}

@@ -17,7 +17,7 @@ from navsym.guaranteed.phases import budget as limits
 from navsym.guaranteed.phases import certify_range as range_
 from navsym.guaranteed.phases.budget import Limit
 from navsym.guaranteed.phases.certify_range import covered, echelon, parts
-from navsym.guaranteed.phases.driver import phases
+from navsym.guaranteed.phases.driver import find_phases
 from navsym.guaranteed.phases.family import family_of
 from navsym.models.modelfile import model_from
 from tests.guaranteed.phases_cover import followed_pieces, gaps
@@ -33,7 +33,7 @@ def basis(H, interval, target, parameter="p", sigma=None):
 
 def solved(document, lower, upper, parameter="p", **options):
     family = family_of(model_from(document), "c", parameter)
-    return phases(family, sp.sympify(lower), sp.sympify(upper), **options)
+    return find_phases(family, sp.sympify(lower), sp.sympify(upper), **options)
 
 
 def accepted(answer):

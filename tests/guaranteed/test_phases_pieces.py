@@ -15,7 +15,7 @@ from navsym.core.errors import DomainError
 from navsym.core.exact import from_decimal
 from navsym.guaranteed.phases import narrow as thin
 from navsym.guaranteed.phases.boundaries import anchors, doubled, forced, proves_walking
-from navsym.guaranteed.phases.driver import phases
+from navsym.guaranteed.phases.driver import find_phases
 from navsym.guaranteed.phases.family import family_of
 from navsym.guaranteed.phases.patterns import Span
 from navsym.guaranteed.phases.singular_values import singular_values
@@ -59,7 +59,7 @@ def test_before_the_switch_the_family_is_that_of_the_first_piece():
 
 
 def test_a_switch_inside_the_interval_splits_the_range_and_each_part_has_its_own_closed_form():
-    answer = phases(family_of(model_from(STOPPED), "x", "T"), sp.Rational(1, 2), sp.Integer(2))
+    answer = find_phases(family_of(model_from(STOPPED), "x", "T"), sp.Rational(1, 2), sp.Integer(2))
     first, second = answer.regimes
     assert (first.upper, second.lower) == (1, 1) and first.closed.value == second.closed.value == 1
     (edge,) = answer.boundaries
@@ -69,15 +69,15 @@ def test_a_switch_inside_the_interval_splits_the_range_and_each_part_has_its_own
 
 def test_a_regime_in_pieces_agrees_with_single_values():
     family = family_of(model_from(STOPPED), "v", "T")
-    (regime,) = phases(family, sp.Rational(9, 8), sp.Rational(3, 2)).regimes
+    (regime,) = find_phases(family, sp.Rational(9, 8), sp.Rational(3, 2)).regimes
     assert regime.status.holds and regime.closed is not None
     for T in (sp.Rational(5, 4), sp.Rational(11, 8)):
-        found, value = solve(family.problem(T), 12), regime.closed.value.subs(family.parameter, T).evalf(30)
+        found, value = solve(family.problem(T), digits=12), regime.closed.value.subs(family.parameter, T).evalf(30)
         assert sp.Rational(found.lower) <= sp.Rational(str(value)) <= sp.Rational(found.upper)
 
 
 def test_a_contact_at_the_switch_stands_in_one_stretch_and_every_regime_has_its_closed_form():
-    answer = phases(family_of(model_from(STOPPED), "v", "T"), sp.Integer(0), sp.Integer(3))
+    answer = find_phases(family_of(model_from(STOPPED), "v", "T"), sp.Integer(0), sp.Integer(3))
     assert answer.uncovered == () and all(regime.status.holds for regime in answer.regimes)
     assert [b.at for b in answer.boundaries] == [1, 1 + sp.pi / 4, 1 + sp.pi / 2]
     T = answer.family.parameter
@@ -152,7 +152,7 @@ def test_one_contact_that_leaves_the_dual_free_has_a_closed_form_with_three_meas
             {"name": "acceleration", "h": ["0", "0", "1"], "sigma": "3"},
         ],
     }
-    answer = phases(family_of(model_from(document), "v", "T"), sp.Integer(0), sp.Integer(4))
+    answer = find_phases(family_of(model_from(document), "v", "T"), sp.Integer(0), sp.Integer(4))
     (regime,) = answer.regimes
     assert regime.status == "PROVED" and regime.closed.value == 2 and answer.uncovered == ()
 

@@ -12,7 +12,7 @@ t = sp.Symbol("t", real=True)
 
 
 def unique(rows, functional, interval, sigma=None):
-    return solve(from_regressors(rows, functional, t, interval, sigma), 20).unique
+    return solve(from_regressors(rows, functional, t, interval, sigma), digits=20).unique
 
 
 def test_a_mean_over_the_interval_has_many_estimators():
@@ -50,7 +50,7 @@ def test_a_dual_with_more_contacts_than_needed_but_one_estimator_is_not_called_s
     [([[1, sp.sin(t), sp.cos(t) - 1]], [1, 0, 0], 2 * sp.pi), ([[sp.cos(t)]], [1], 4 * sp.pi)],
 )
 def test_several_good_instants_cost_no_digits(rows, functional, end):
-    solution = solve(from_regressors(rows, functional, t, (0, end)), 30)
+    solution = solve(from_regressors(rows, functional, t, (0, end)), digits=30)
     assert solution.status == "CERTIFIED" and solution.width < 1e-30 and solution.unique is False
 
 

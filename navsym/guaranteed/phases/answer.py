@@ -5,33 +5,61 @@ from __future__ import annotations
 import html
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 from flint import fmpq
 
 from navsym.claims import Status
 from navsym.claims.display import card, displayed, latex_of, table
+from navsym.core.answers import Answer
+from navsym.core.balls import enclose
+from navsym.core.errors import DomainError
 from navsym.core.exact import decimal, to_fmpq
 from navsym.guaranteed.phases.boundaries import Boundary
 from navsym.guaranteed.phases.closed_forms import Closed
 from navsym.guaranteed.phases.family import Family
 from navsym.guaranteed.phases.narrow import Sliver
 from navsym.guaranteed.phases.patterns import Span
-from navsym.language.expression import to_text
+from navsym.language.expression import parse, to_text
+from navsym.language.values import write_value
+
+if TYPE_CHECKING:
+    from navsym.guaranteed.solver import Estimator
 
 DIGITS = 34
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True)
+class RegimePoint:
+    """One measurement of the optimal estimators of a regime.
+
+    measurement : its name
+    at          : its time as a formula in the parameter; None inside the interval without a closed form
+    weight      : its weight as a formula; None without a closed form
+    sign        : sign of the weight; None where the weight itself is known
+    """
+
+    measurement: str
+    at: sp.Expr | None
+    weight: sp.Expr | None = None
+    sign: int | None = None
+
+    def document(self) -> dict[str, Any]:
+        """The row of the support in the document of the verb."""
+        size = {"sign": self.sign} if self.weight is None else {"weight": to_text(self.weight)}
+        return {"measurement": self.measurement, "at": None if self.at is None else to_text(self.at)} | size
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Regime:
-    """One pattern of instants between two lengths.
+    """A range of the parameter in which the optimal estimators measure in one pattern.
 
     family       : the problems to which it belongs
-    lower, upper : ends, exact or the enclosure's middle
+    lower, upper : ends, exact or the middle of an enclosure
     closed       : closed form, or None
-    status       : PROVED, CERTIFIED or OPEN for every length in the regime
-    table        : enclosures at some lengths, for regimes without a closed form
+    status       : PROVED, CERTIFIED or OPEN for every value in the regime
+    table        : enclosures at some values, for regimes without a closed form
     certificates : of kind "range" and what belongs to it
     slivers      : two-sided certificates of what the range certificate leaves
     held         : values between which the pattern itself is proved, without its slivers
@@ -50,10 +78,93 @@ class Regime:
     held: tuple[fmpq, fmpq] | None = None
     alone: tuple[fmpq, fmpq] | None = None
 
+    @property
+    def ends(self) -> tuple[str, str]:
+        """The ends as text; the middle of an enclosure as a decimal."""
+        return end_text(self.lower), end_text(self.upper)
+
+    @property
+    def value(self) -> sp.Expr | None:
+        """The guaranteed standard deviation as a formula in the parameter; None without a closed form."""
+        return None if self.closed is None else self.closed.value
+
+    @property
+    def support(self) -> tuple[RegimePoint, ...]:
+        """Where the estimators measure, with weights where they have a closed form, else with signs."""
+        family, closed = self.family, self.closed
+        if closed is None:
+            points = []
+            for k, kind, sign in self.span.pattern:
+                start, stop = family.panels[k]
+                place = {"from": start, "to": stop}.get(kind)
+                at = None if place is None else family.time(place)
+                points.append(RegimePoint(family.measurements[k], at, sign=sign))
+        else:
+            rows = zip(closed.panels, closed.places, closed.weights, strict=True)
+            points = [RegimePoint(family.measurements[k], family.time(at), w) for k, at, w in rows]
+        return tuple(reversed(points) if family.backward else points)
+
+    @property
+    def dual(self) -> tuple[sp.Expr, ...] | None:
+        """The dual x as formulas, one per unknown; None without a closed form."""
+        if self.closed is None:
+            return None
+        known = dict(zip(self.family.unknowns, self.closed.dual, strict=True))
+        return tuple(known.get(k, sp.S.Zero) for k in range(len(known) + len(self.family.left_out)))
+
+    @property
+    def unique(self) -> bool | None:
+        """True when no other estimator is proved to be optimal on a part of the regime; None when it is not known."""
+        return True if self.alone else None
+
+    def document(self) -> dict[str, Any]:
+        """The row of the regime in the document of the verb."""
+        row: dict[str, Any] = dict(zip(("from", "to"), self.ends, strict=True))
+        row["value"] = None if self.value is None else to_text(self.value)
+        row["support"] = [point.document() for point in self.support]
+        row["dual"] = None if self.dual is None else [to_text(x) for x in self.dual]
+        row |= {"table": list(self.table)} if self.closed is None else {"method": self.closed.verdict.method}
+        row |= {"status": str(self.status), "unique": self.unique}
+        if self.alone:
+            ends = zip(self.alone, (1, -1), strict=True)
+            row["unique_between"] = [decimal(end, DIGITS, side) for end, side in ends]
+        if self.slivers:
+            row["slivers"] = [dict(zip(("from", "to", "lower", "upper"), s.row(), strict=True)) for s in self.slivers]
+        return row
+
+    def __repr__(self) -> str:
+        start, end = self.ends
+        value = "no closed form" if self.value is None else to_text(self.value)
+        return f"Regime({start} < {self.family.parameter} < {end}: {value}, {self.status})"
+
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Phases:
-    """Regimes in order, the boundaries between them, what is left uncovered, and what was given up at the limit."""
+class Question:
+    """What a front-door answer was asked, so that it can be asked again for one value: model, target, values."""
+
+    model: Any
+    target: str | None
+    values: Mapping[str, Any]
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Phases(Answer):
+    """The guaranteed optimum for every value of a parameter.
+
+    regimes      : in order; each with its formula, support and verdict
+    boundaries   : between them, located exactly or enclosed
+    uncovered    : parts of the range about which nothing is proved, as pairs of text
+    given_up     : steps that were given up at the limit of work
+    lower, upper : the range
+    family       : the problems by the parameter
+
+    >>> import navsym as nav
+    >>> drift = nav.phases("examples/schuler-velocity.toml", "drift", T=("2", "4"))
+    >>> drift
+    Phases(drift, T from 2 to 4: 3 regimes, 2 boundaries, all covered)
+    >>> [regime.ends for regime in drift.regimes]
+    [('2', '2*pi/3'), ('2*pi/3', 'pi'), ('pi', '4')]
+    """
 
     family: Family
     lower: sp.Expr
@@ -63,71 +174,87 @@ class Phases:
     uncovered: tuple[tuple[str, str], ...] = field(default=())
     ties: tuple[Mapping[str, Any], ...] = field(default=())
     given_up: tuple[str, ...] = field(default=())
+    question: Question | None = None
 
-    def certificates(self) -> list[dict[str, Any]]:
-        """Certificates of the regimes without a closed form and of slivers, for ``navsym check``."""
+    @property
+    def target(self) -> str:
+        """Name of the target."""
+        return self.family.target
+
+    @property
+    def parameter(self) -> str:
+        """Name of the parameter."""
+        return self.family.parameter.name
+
+    def at(self, **value: Any) -> Estimator:
+        """The certified estimator for one value of the parameter in the range: ``phases.at(T="1")``.
+
+        Raises DomainError for another name or a value outside the range, and the errors of :func:`navsym.solve`.
+
+        >>> import navsym as nav
+        >>> drift = nav.phases("examples/schuler-velocity.toml", "drift", T=("2", "4"))
+        >>> drift.at(T="3").value.lower[:12]
+        '1.0101086659'
+        """
+        from navsym.guaranteed.solver import solve
+
+        name, where = self.parameter, "Phases.at"
+        if list(value) != [name] or self.question is None:
+            got = ", ".join(value) or "none"
+            raise DomainError(f"expected one value of {name}; got {got}; write at({name}=…)", where=where)
+        text = write_value(value[name], f"{where}: {name}")
+        at = parse(text, {}, where=f"{where}: {name}")
+        if not (bool(enclose(at - self.lower) >= 0) and bool(enclose(self.upper - at) >= 0)):
+            ends = f"{end_text(self.lower)} to {end_text(self.upper)}"
+            raise DomainError(f"expected a value from {ends}; got {text}; choose one", where=f"{where}: {name}")
+        return solve(self.question.model, self.question.target, values={**self.question.values, name: text})
+
+    def document(self) -> dict[str, Any]:
+        """The JSON document of ``navsym phases``."""
+        return {
+            "target": self.target,
+            "parameter": self.parameter,
+            "range": [to_text(self.lower), to_text(self.upper)],
+            "regimes": [regime.document() for regime in self.regimes],
+            "boundaries": [boundary.document() for boundary in self.boundaries],
+            "uncovered": [list(pair) for pair in self.uncovered],
+        } | ({"given_up": list(self.given_up)} if self.given_up else {})
+
+    def certificates(self) -> list[Mapping[str, Any]]:
+        """Certificates of the regimes without a closed form and of slivers, for :func:`navsym.check`."""
         ranges = [dict(c) for regime in self.regimes for c in regime.certificates]
         thin = [dict(s.certificate) for regime in self.regimes for s in regime.slivers]
         return ranges + thin + [dict(tie) for tie in self.ties]
 
+    def plot(self) -> Any:
+        """Value and times by the parameter, regimes shaded: :func:`navsym.plot`."""
+        import navsym
+
+        return navsym.plot(self)
+
+    def __repr__(self) -> str:
+        range_ = f"{self.parameter} from {end_text(self.lower)} to {end_text(self.upper)}"
+        counts = [
+            f"{len(rows)} {word if len(rows) == 1 else more}"
+            for rows, word, more in ((self.regimes, "regime", "regimes"), (self.boundaries, "boundary", "boundaries"))
+        ]
+        left = f"{len(self.uncovered)} uncovered" if self.uncovered else "all covered"
+        return f"Phases({self.target}, {range_}: {', '.join([*counts, left])})"
+
     def _repr_html_(self) -> str:
         """The regimes as a table, for notebooks."""
-        name, heads = self.family.parameter.name, ("from", "to", "value", "instants", "verdict")
+        heads = ("from", "to", "value", "times", "verdict")
         rows = [
             (
                 displayed(latex_of(r.lower)),
                 displayed(latex_of(r.upper)),
-                displayed(latex_of(r.closed.value)) if r.closed else "a table of enclosures",
-                displayed(latex_of(r.closed.places)) if r.closed else "",
+                "a table of enclosures" if r.value is None else displayed(latex_of(r.value)),
+                displayed(latex_of(tuple(point.at for point in r.support))) if r.closed else "",
                 str(r.status),
             )
             for r in self.regimes
         ]
-        return card([html.escape(f"{self.family.target} by {name}"), table(heads, rows)])
-
-    def document(self) -> dict[str, Any]:
-        """The answer of ``navsym phases``."""
-        return {
-            "target": self.family.target,
-            "parameter": self.family.parameter.name,
-            "range": [to_text(self.lower), to_text(self.upper)],
-            "regimes": [regime_row(regime) for regime in self.regimes],
-            "boundaries": [
-                {"at": None if b.at is None else to_text(b.at), "lower": b.lower, "upper": b.upper, "why": b.why}
-                for b in self.boundaries
-            ],
-            "uncovered": [list(pair) for pair in self.uncovered],
-        } | ({"given_up": list(self.given_up)} if self.given_up else {})
-
-
-def regime_row(regime: Regime) -> dict[str, Any]:
-    """A regime of the document: its ends, value, instants, dual and verdict."""
-    family = regime.family
-    row: dict[str, Any] = {"from": end_text(regime.lower), "to": end_text(regime.upper)}
-    if regime.closed is not None:
-        closed = regime.closed
-        order = range(len(closed.places) - 1, -1, -1) if family.backward else range(len(closed.places))
-        row["value"] = to_text(closed.value)
-        row["support"] = [
-            {
-                "measurement": family.measurements[closed.panels[i]],
-                "at": to_text(family.time(closed.places[i])),
-                "weight": to_text(closed.weights[i]),
-            }
-            for i in order
-        ]
-        dual = dict(zip(family.unknowns, closed.dual, strict=True))
-        row["dual"] = [to_text(dual.get(k, sp.S.Zero)) for k in range(len(dual) + len(family.left_out))]
-        row["method"] = closed.verdict.method
-    else:
-        row |= {"value": None, "support": pattern_rows(family, regime.span), "dual": None, "table": list(regime.table)}
-    row["status"] = str(regime.status)
-    row["unique"] = True if regime.alone else None
-    if regime.alone:
-        row["unique_between"] = [decimal(end, DIGITS, side) for end, side in zip(regime.alone, (1, -1), strict=True)]
-    if regime.slivers:
-        row["slivers"] = [dict(zip(("from", "to", "lower", "upper"), s.row(), strict=True)) for s in regime.slivers]
-    return row
+        return card([html.escape(f"{self.target} by {self.parameter}"), table(heads, rows)])
 
 
 def end_text(end: sp.Expr, side: int = 0) -> str:
@@ -135,13 +262,3 @@ def end_text(end: sp.Expr, side: int = 0) -> str:
     if end.is_Rational and end.q > 10**9:
         return decimal(to_fmpq(end), DIGITS, side)
     return to_text(end)
-
-
-def pattern_rows(family: Family, span: Span) -> list[dict[str, Any]]:
-    """The instants of an implicit regime: which ends, how many inside, with which signs."""
-    rows = []
-    for k, kind, s in span.pattern:
-        start, stop = family.panels[k]
-        at = {"from": to_text(family.time(start)), "to": to_text(family.time(stop))}.get(kind)
-        rows.append({"measurement": family.measurements[k], "at": at, "sign": s})
-    return rows[::-1] if family.backward else rows

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import Any
 
 import mpmath
 import numpy as np
@@ -25,6 +26,7 @@ from navsym.guaranteed.phases.patterns import Pattern, Span, pattern_of, sample
 from navsym.guaranteed.phases.recognise import constant
 from navsym.guaranteed.phases.walk import walked
 from navsym.guaranteed.search.exchange import Contacts
+from navsym.language.expression import to_text
 from navsym.prove.ladder import decide
 
 DIGITS = 34
@@ -47,6 +49,11 @@ class Boundary:
     upper: str
     why: str
     proved: bool
+
+    def document(self) -> dict[str, Any]:
+        """The row of the boundary in the document of the verb."""
+        at = None if self.at is None else to_text(self.at)
+        return {"at": at, "lower": self.lower, "upper": self.upper, "why": self.why}
 
 
 def boundary(family: Family, left: Span, right: Span, before: Closed | None, after: Closed | None) -> Boundary:

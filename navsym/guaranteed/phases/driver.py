@@ -8,25 +8,27 @@ two-sided certificates.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import os
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import groupby, pairwise
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 from flint import fmpq
 
 from navsym.claims import CERTIFIED, OPEN, Verdict
 from navsym.core.balls import enclose
+from navsym.core.errors import DomainError, DuplicateError, ExpressionSyntaxError
 from navsym.core.exact import decimal, from_decimal, lower_end, to_fmpq, to_fraction, to_rational, upper_end
 from navsym.guaranteed.certificate.range import Ranged
-from navsym.guaranteed.phases.answer import Phases, Regime, end_text
+from navsym.guaranteed.phases.answer import Phases, Question, Regime, end_text
 from navsym.guaranteed.phases.boundaries import Boundary, boundary, nowhere
 from navsym.guaranteed.phases.budget import DEFAULT_SECONDS, Limit
 from navsym.guaranteed.phases.certify_range import covered, followed
 from navsym.guaranteed.phases.closed_forms import Closed, Sample, candidates, prove, refined
-from navsym.guaranteed.phases.family import Family
+from navsym.guaranteed.phases.family import Family, family_of
 from navsym.guaranteed.phases.narrow import slivers
 from navsym.guaranteed.phases.patterns import COUNT, Span, scan
 from navsym.guaranteed.phases.singular_values import (
@@ -39,7 +41,14 @@ from navsym.guaranteed.phases.singular_values import (
     sections,
     split,
 )
-from navsym.guaranteed.solver import solve
+from navsym.guaranteed.problem import GuaranteedProblem, contents_of, place_of
+from navsym.guaranteed.solver import solve_problem
+from navsym.language.expression import parse
+from navsym.language.values import write_value
+from navsym.models.modelfile import BasisFile, ModelFile
+
+if TYPE_CHECKING:
+    from navsym.models.model import Model
 
 # One regime settled: its proved closed form, or contacts followed for every value, slivers, holes and a table.
 
@@ -148,10 +157,9 @@ def table_of(family: Family, span: Span) -> tuple[dict[str, Any], ...]:
     rows = []
     for k in range(POINTS):
         T = (span.lower + (span.upper - span.lower) * Fraction(2 * k + 1, 2 * POINTS)).limit_denominator(1000)
-        found = solve(family.problem(to_rational(T)), 20)
-        places = [
-            {"measurement": s.measurement, "at": instant(family, T, s.at), "weight": s.weight} for s in found.support
-        ]
+        found = solve_problem(family.problem(to_rational(T)), 20)
+        places = [point.document() for point in found.support]
+        places = [place | {"at": instant(family, T, place["at"])} for place in places]
         places.sort(key=lambda place: sp.Rational(place["at"]))
         rows.append({family.parameter.name: str(T), "lower": found.lower, "upper": found.upper, "support": places})
     return tuple(rows)
@@ -339,20 +347,20 @@ def with_dual(family: Family, closed: Closed, dual: tuple[sp.Expr, ...], found: 
 SHORT = Fraction(1, 50)
 
 
-def phases(
+def find_phases(
     family: Family,
     lower: sp.Expr,
     upper: sp.Expr,
     *,
     certify: bool = True,
-    alone: bool = False,
+    unique: bool = False,
     seconds: float = DEFAULT_SECONDS,
     progress: Callable[[int, int], None] = lambda done, of: None,
 ) -> Phases:
     """All regimes for values of the parameter between two exact numbers.
 
     The range is split at singular values. certify : follow regimes without a closed form rigorously.
-    alone : follow the others as well, which proves that no other estimator is optimal and gives them certificates.
+    unique : follow the others as well, which proves that no other estimator is optimal and gives them certificates.
     seconds : of work, after which what is known is returned: ``uncovered`` names the rest, ``given_up`` what was left
     progress : called with (finished, all) steps of the search: each stretch is scanned, each regime settled
     Raises DomainError for a range without length, lengths of the interval below zero, and seconds that are none.
@@ -361,7 +369,7 @@ def phases(
     limit = Limit.of(seconds)
     plan, lost, edges = planned(family, lower, upper, limit.share(1 / 4))
     steps = Steps(progress, len(plan) * (COUNT - 1))
-    follow = Follow(certify, alone)
+    follow = Follow(certify, unique)
     parts = [stretch(section, follow, steps, limit.share(1 / (len(plan) - k))) for k, section in enumerate(plan)]
     uncovered = [*lost, *(pair for part in parts for pair in part.uncovered)]
     changes = {b if b.at is None else b.at: b for b in (*changes_between(plan, lower), *edges)}
@@ -514,3 +522,81 @@ def inner_range(lower: sp.Expr, upper: sp.Expr, singular: set[sp.Expr]) -> tuple
     steps = [Fraction(1, 400) if e in singular else Fraction(1, 10**9) for e in (lower, upper)]
     low, high = a + steps[0] * (b - a), b - steps[1] * (b - a)
     return low.limit_denominator(10**12), high.limit_denominator(10**12)
+
+
+def phases(
+    model: Model | str | os.PathLike[str],
+    target: str | None = None,
+    *,
+    parameter: str = "T",
+    quick: bool = False,
+    unique: bool = False,
+    seconds: float = DEFAULT_SECONDS,
+    values: Mapping[str, Any] | None = None,
+    progress: Callable[[int, int], None] = lambda done, of: None,
+    **parameters: Any,
+) -> Phases:
+    """The guaranteed optimum for every value of a parameter: regimes, boundaries, closed forms.
+
+    On each regime the optimal estimator measures in one pattern. A closed form of value, times and weights is proved
+    for every value of the parameter; elsewhere the optimum is certified for every value by enclosures.
+
+    model      : a :class:`navsym.Model`, or the path of a model file
+    target     : name of the target; not needed where the model has one
+    parameters : a pair is the range of the parameter that varies, such as ``T=("0", "2*pi")``; a single value is put
+                 in for another parameter
+    parameter  : the parameter that varies, over its declared range, where no pair is given
+    quick      : leave regimes without a closed form uncertified
+    unique     : also prove of closed forms that no other estimator is optimal (slower)
+    seconds    : processor time after which the search stops; ``uncovered`` then names what is left
+    values     : the same as ``parameters``, for names that are taken by the arguments above
+    progress   : called with (finished, all) steps
+
+    Raises DomainError for a range that is empty or missing, NotEstimableError, UnknownSymbolError for an unknown
+    parameter, and the errors of model files.
+
+    >>> import navsym as nav
+    >>> drift = nav.phases("examples/schuler-velocity.toml", "drift", T=("2", "3"))
+    >>> for regime in drift.regimes:
+    ...     print(regime)
+    Regime(2 < T < 2*pi/3: ..., PROVED)
+    Regime(2*pi/3 < T < 3: -1/cos(T), PROVED)
+    """
+    twice = next((name for name in parameters if name in (values or {})), None)
+    if twice is not None:
+        raise DuplicateError(f"expected one value; got two of {twice}; give one", where=f"phases: {twice}")
+    given = {**(values or {}), **parameters}
+    if isinstance(model, GuaranteedProblem):
+        message = "expected a model with a free parameter; got a problem, whose numbers are all given; give the model"
+        raise DomainError(message, where="phases: model")
+    pairs = {name: value for name, value in given.items() if isinstance(value, (tuple, list))}
+    if len(pairs) > 1:
+        got = ", ".join(pairs)
+        raise DomainError(f"expected one range; got those of {got}; give values to the others", where="phases")
+    fixed = {name: value for name, value in given.items() if name not in pairs}
+    with place_of(model):
+        contents = contents_of(model, None, fixed, "phases")
+        name = next(iter(pairs), parameter)
+        ends = range_of(contents, name, pairs.get(name))
+        family = family_of(contents, target, name)
+        answer = find_phases(family, *ends, certify=not quick, unique=unique, seconds=seconds, progress=progress)
+    return replace(answer, question=Question(model, target, fixed))
+
+
+def range_of(contents: ModelFile | BasisFile, name: str, pair: Sequence[Any] | None) -> Ends:
+    """The ends of a range that is given, or of the one that the model declares for the parameter.
+
+    Raises ExpressionSyntaxError for other than two ends, and DomainError where there is no range.
+    """
+    where = f"phases: {name}"
+    if pair is not None:
+        if len(pair) != 2:
+            got = f"{len(pair)}"
+            raise ExpressionSyntaxError(f'expected two ends; got {got}; write {name}=("0", "2*pi")', where=where)
+        lower, upper = (parse(write_value(end, where), {}, where=where) for end in pair)
+        return lower, upper
+    for symbol, ends in contents.box.items():
+        if symbol.name == name and None not in ends:
+            return ends
+    message = f'expected a range of {name}; got none; give {name}=("0", "2*pi") (--range "0, 2*pi")'
+    raise DomainError(message, where=where)

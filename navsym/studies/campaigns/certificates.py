@@ -52,7 +52,7 @@ def honest_certificates() -> list[dict[str, Any]]:
     optima = []
     for basis in bases:
         target = [0] * (len(basis) - 1) + [1]
-        optima.append(dict(solve(from_regressors([basis], target, s, (0, 1)), 12).certificate))
+        optima.append(dict(solve(from_regressors([basis], target, s, (0, 1)), digits=12).certificate))
     return [dict(item) for item in identities if item is not None] + optima
 
 
