@@ -46,8 +46,15 @@ __version__ = "0.1.0"
 #: Public name -> module that holds it. A module is imported when its name is first used, and its engines with it.
 _HOMES = {
     "Model": "navsym.models.model",
+    "Comparison": "navsym.guaranteed.baselines",
+    "Estimator": "navsym.guaranteed.solver",
+    "Formulation": "navsym.guaranteed.formulate",
     "NavsymError": "navsym.core.errors",
     "Number": "navsym.core.numbers",
+    "Phases": "navsym.guaranteed.phases.answer",
+    "formulate": "navsym.guaranteed.formulate",
+    "phases": "navsym.guaranteed.phases.driver",
+    "solve": "navsym.guaranteed.solver",
     **dict.fromkeys(
         ("Verdict", "Verdicts", "Status", "PROVED", "CERTIFIED", "CONFIRMED", "REFUTED", "OPEN"), "navsym.claims"
     ),
@@ -67,6 +74,13 @@ if TYPE_CHECKING:
     from navsym.claims import Verdicts as Verdicts
     from navsym.core.errors import NavsymError as NavsymError
     from navsym.core.numbers import Number as Number
+    from navsym.guaranteed.baselines import Comparison as Comparison
+    from navsym.guaranteed.formulate import Formulation as Formulation
+    from navsym.guaranteed.formulate import formulate as formulate
+    from navsym.guaranteed.phases.answer import Phases as Phases
+    from navsym.guaranteed.phases.driver import phases as phases
+    from navsym.guaranteed.solver import Estimator as Estimator
+    from navsym.guaranteed.solver import solve as solve
     from navsym.models.model import Model as Model
     from navsym.prove.formulas import prove as prove
 
