@@ -25,8 +25,27 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 
-from derivations import trajectory as paper
-from derivations.trajectory import (
+from navsym.claims import claims_of
+from navsym.cli.main import run as navsym
+from navsym.core.datasets import dataset, local_copy
+from navsym.report.notebook import explore, require, show
+from navsym.trajectory.conditioning import condition_numbers
+from navsym.trajectory.estimate import METHODS, Settings, estimate
+from navsym.trajectory.inversion import (
+    Start,
+    Tuning,
+    first_stage_model,
+    metric_scale,
+    normalised_scale,
+    scaled_model,
+    windowed_filter,
+)
+from navsym.trajectory.limits import best_ages, least_error, rule
+from navsym.trajectory.reader import read_track
+from navsym.trajectory.scaling import best_scaling
+from navsym.trajectory.tracks import project_positions
+from navsym_papers import trajectory as paper
+from navsym_papers.trajectory import (
     algorithm,
     earth,
     experiment,
@@ -40,27 +59,8 @@ from derivations.trajectory import (
     table,
     window,
 )
-from navsym.claims import claims_of
-from navsym.cli.main import run as navsym
-from navsym.core.datasets import dataset, local_copy
-from navsym.report.notebook import explore, require, show
-from navsym.trajectory.conditioning import condition_numbers
-from navsym.trajectory.estimate import METHODS, Settings, estimate
-from navsym.trajectory.experiment import ORDER, TAU, course, measured, with_printed_gain
-from navsym.trajectory.experiment import experiment as rerun
-from navsym.trajectory.inversion import (
-    Start,
-    Tuning,
-    first_stage_model,
-    metric_scale,
-    normalised_scale,
-    scaled_model,
-    windowed_filter,
-)
-from navsym.trajectory.limits import best_ages, least_error, rule
-from navsym.trajectory.reader import read_track
-from navsym.trajectory.scaling import best_scaling
-from navsym.trajectory.tracks import track_of
+from navsym_papers.trajectory.experiment.courses import ORDER, TAU, course, measured, with_printed_gain
+from navsym_papers.trajectory.experiment.courses import experiment as rerun
 
 BLUE, ORANGE, GREEN, RED = "#0072b2", "#e69f00", "#009e73", "#d55e00"
 
@@ -351,7 +351,7 @@ if positions and judge:
     reference = np.genfromtxt(judge, delimiter=",", skip_header=1)
     read = read_track(positions)
     times = read.t - 2270 * 604800
-    track = track_of(times, read.latitude, read.longitude, read.height, read.sigma)
+    track = project_positions(times, read.latitude, read.longitude, read.height, read.sigma)
     expected = np.column_stack([np.interp(times, reference[:, 0], reference[:, i]) for i in (11, 12, 13)])
     rms = {}
     for method in METHODS:

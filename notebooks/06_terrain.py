@@ -25,8 +25,18 @@ import numpy as np
 from ipywidgets import FloatSlider, IntSlider, interact
 from matplotlib.colors import LightSource
 
-from derivations import terrain_search as paper
-from derivations.terrain_search import (
+from navsym.claims import claims_of
+from navsym.cli.main import run as navsym
+from navsym.core.datasets import dataset, local_copy
+from navsym.report.notebook import require, show
+from navsym.terrain.accuracy import accuracy_map
+from navsym.terrain.centre import information, slopes
+from navsym.terrain.refine import refine
+from navsym.terrain.search import criteria, prepare, search_full, search_position
+from navsym.terrain.sequential import search_sequential
+from navsym.terrain.track import Profile
+from navsym_papers import terrain_search as paper
+from navsym_papers.terrain_search import (
     cost,
     crossing,
     degenerate,
@@ -37,19 +47,9 @@ from derivations.terrain_search import (
     reading,
     solution,
 )
-from navsym.claims import claims_of
-from navsym.cli.main import run as navsym
-from navsym.core.datasets import dataset, local_copy
-from navsym.report.notebook import require, show
-from navsym.terrain.accuracy import accuracy_map
-from navsym.terrain.centre import information, slopes
-from navsym.terrain.experiment import GRID
-from navsym.terrain.experiment import experiment as rerun
-from navsym.terrain.flights import Setting, course, fly, sample_terrain, terrain_from
-from navsym.terrain.refine import refine
-from navsym.terrain.search import criteria, prepare, search_full, search_position
-from navsym.terrain.sequential import search_sequential
-from navsym.terrain.track import Track
+from navsym_papers.terrain_search.experiment.flights import Setting, course, fly, sample_terrain, terrain_from
+from navsym_papers.terrain_search.experiment.study import GRID
+from navsym_papers.terrain_search.experiment.study import experiment as rerun
 
 BLUE, ORANGE, GREEN, RED = "#0072b2", "#e69f00", "#009e73", "#d55e00"
 
@@ -115,7 +115,7 @@ figure
 
 # %%
 still = criteria(prepare(terrain, track, GRID.position_only))[0, 0]
-moving = Track(track.t, track.x + Vi * track.elapsed, track.y + Vj * track.elapsed, track.h)
+moving = Profile(track.t, track.x + Vi * track.elapsed, track.y + Vj * track.elapsed, track.h)
 at_velocity = criteria(prepare(terrain, moving, GRID.position_only, on_map=False))[0, 0]
 figure, axes = plt.subplots(1, 2, figsize=(11, 4.5), sharey=True)
 reach = (-1025, 1025, -1025, 1025)
@@ -262,7 +262,7 @@ show(cost.table_full_time_as_printed)
 # Forty metres too high everywhere: the criterion less its mean does not notice, and the bounded search stays exact.
 
 # %%
-raised = Track(track.t, track.x, track.y, track.h + 40.0)
+raised = Profile(track.t, track.x, track.y, track.h + 40.0)
 plain, free = search_full(terrain, raised, GRID), search_full(terrain, raised, GRID, offset_free=True)
 print("criterion of the paper:", plain.index, " less its mean:", free.index, " without the error:", full.index)
 require(solution.groups_about_their_own_means)

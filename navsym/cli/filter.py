@@ -10,7 +10,7 @@ import typer
 from navsym.cli.output import emit, remark
 
 if TYPE_CHECKING:
-    from navsym.multimodel.filters import Estimate
+    from navsym.multimodel.filters import Estimates
 
 
 def command(
@@ -67,7 +67,7 @@ def stays(mode_transition: Any) -> bool:
     return bool((mode_transition == np.eye(mode_transition.shape[-1])).all())
 
 
-def as_document(estimate: Estimate) -> dict[str, Any]:
+def as_document(estimate: Estimates) -> dict[str, Any]:
     """The answer with exactly the keys of the interface."""
     return {
         "probabilities": estimate.probabilities.tolist(),
@@ -78,7 +78,7 @@ def as_document(estimate: Estimate) -> dict[str, Any]:
     }
 
 
-def remarks(estimate: Estimate) -> list[str]:
+def remarks(estimate: Estimates) -> list[str]:
     """What the user should know and the document does not say."""
     out = [
         f"step {k}: every mode gives this measurement a likelihood below 1e-323; weighed by logarithms"
@@ -89,7 +89,7 @@ def remarks(estimate: Estimate) -> list[str]:
     return out
 
 
-def as_text(estimate: Estimate) -> str:
+def as_text(estimate: Estimates) -> str:
     """A table for people: step, most probable mode, its probability, mean, standard deviations."""
     import numpy as np
 

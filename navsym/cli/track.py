@@ -68,13 +68,13 @@ def answer(file: Path, policy: str, sigma: float | None, chosen: dict[str, Any])
     from navsym.trajectory.document import document
     from navsym.trajectory.estimate import Settings
     from navsym.trajectory.reader import read_track
-    from navsym.trajectory.tracks import track_of
+    from navsym.trajectory.tracks import project_positions
 
     settings = Settings(**chosen, fixed_scale=sigma is not None)
     read = read_track(file, policy)  # type: ignore[arg-type]
     try:
         given = read.sigma if sigma is None else sigma
-        track = track_of(read.t - read.t[0], read.latitude, read.longitude, read.height, given)
+        track = project_positions(read.t - read.t[0], read.latitude, read.longitude, read.height, given)
         return document(read.t, track, settings, lines=read.lines, warnings=read.warnings, repairs=read.repairs)
     except NavsymError as error:
         raise error.at(str(file)) from None

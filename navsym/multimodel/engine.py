@@ -21,7 +21,7 @@ UNDERFLOW = -745.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Estimate:
+class Estimates:
     """What a filter says after every step k = 1 .. T.
 
     probabilities : (T, m)     of the modes, given the measurements so far
@@ -43,7 +43,7 @@ class Estimate:
     left_out: tuple[int, ...] = ()
 
 
-def run_in_numpy(rule: Scheme, models: Bank, z: Array, count: int, form: Form = FORMS["joseph"]) -> Estimate:
+def run_in_numpy(rule: Scheme, models: Bank, z: Array, count: int, form: Form = FORMS["joseph"]) -> Estimates:
     """The readable engine: one :func:`multimodel_steps.advance` per row."""
     now = steps.start(models, rule, form)
     found: list[steps.Step] = []
@@ -54,11 +54,11 @@ def run_in_numpy(rule: Scheme, models: Bank, z: Array, count: int, form: Form = 
     return collected(found, models, count)
 
 
-def collected(found: list[steps.Step], models: Bank, count: int) -> Estimate:
+def collected(found: list[steps.Step], models: Bank, count: int) -> Estimates:
     """Stack what the steps found."""
     T, m, n = len(found), models.modes, models.states
     best = [step.best for step in found]
-    return Estimate(
+    return Estimates(
         arrays.frozen(np.array([s.probabilities for s in found]).reshape(T, m)),
         arrays.frozen(np.array([s.mean for s in found]).reshape(T, n)),
         arrays.frozen(np.array([s.covariance for s in found]).reshape(T, n, n)),

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from navsym.core import arrays
 from navsym.multimodel import moments as mixture
 from navsym.multimodel.bank import Bank
-from navsym.multimodel.engine import UNDERFLOW, Estimate, run_in_numpy
+from navsym.multimodel.engine import UNDERFLOW, Estimates, run_in_numpy
 from navsym.multimodel.kalman import steps as kalman
 from navsym.multimodel.kernels.bank import ALL, BY_MODE, CROSS, KEEP, MIXED, OWN, run_bank
 from navsym.multimodel.steps import Scheme, filters_at
@@ -23,7 +23,7 @@ FOLDING = {"none": KEEP, "all": ALL, "by mode": BY_MODE}
 WIDEST = 4096
 
 
-def run_compiled(rule: Scheme, models: Bank, z: Array, count: int) -> Estimate:
+def run_compiled(rule: Scheme, models: Bank, z: Array, count: int) -> Estimates:
     """The same estimate as :func:`navsym.multimodel.engine.run_in_numpy`, to rounding."""
     widest = widest_branching(rule, models, len(z))
     H, r, U, rotated = independent_scalars(models)
@@ -54,7 +54,7 @@ def run_compiled(rule: Scheme, models: Bank, z: Array, count: int) -> Estimate:
     )
     if stopped:
         return run_in_numpy(rule, models, z, count)
-    return Estimate(
+    return Estimates(
         arrays.frozen(out[0]),
         arrays.frozen(out[1]),
         arrays.frozen(out[2]),

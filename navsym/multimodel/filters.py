@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from navsym.core.errors import DomainError, NotFiniteError, ShapeError
 from navsym.language.names import only_keys
 from navsym.multimodel.bank import Bank, bank, measurements_for, memoryless
-from navsym.multimodel.engine import Estimate, run_in_numpy
+from navsym.multimodel.engine import Estimates, run_in_numpy
 from navsym.multimodel.kalman.forms import form_of
 from navsym.multimodel.steps import require_room, scheme
 
@@ -40,7 +40,7 @@ def run(
     missing: bool = False,
     engine: Engine = "auto",
     form: str = "joseph",
-) -> Estimate:
+) -> Estimates:
     """Filter a series of measurements (T, p); the first row is at step 1.
 
     method  : exact, pulsating, k-pulsating, gpb2, imm or polygaussian
@@ -73,7 +73,7 @@ def run(
         return in_range(run_in_numpy(rule, models, z, count, kept))
 
 
-def in_range(estimate: Estimate) -> Estimate:
+def in_range(estimate: Estimates) -> Estimates:
     """The same estimate; NotFiniteError with the first step at which a number left the range of a double."""
     series = (estimate.mean, estimate.covariance, estimate.probabilities, estimate.log_likelihood)
     lost = [~np.isfinite(values.reshape(len(values), -1)).all(axis=1) for values in series]

@@ -20,7 +20,7 @@ from navsym.core.errors import DomainError
 from navsym.terrain.centre import information, slopes
 from navsym.terrain.heights import ON_MAP, TerrainMap
 from navsym.terrain.search import criteria, prepare
-from navsym.terrain.track import Hypotheses, Track
+from navsym.terrain.track import Hypotheses, Profile
 
 Array = NDArray[np.float64]
 
@@ -102,7 +102,7 @@ def at_place(
     values, vectors = np.linalg.eigh(information(*slopes(terrain, x, y), times).G)
     strong, weak = (sigma / math.sqrt(v) if v > 0.0 else math.inf for v in (values[1], values[0]))
     direction = math.atan2(vectors[1, 0], vectors[0, 0]) % math.pi
-    squares = criteria(prepare(terrain, Track(times, x, y, heights), rivals))[0, 0]
+    squares = criteria(prepare(terrain, Profile(times, x, y, heights), rivals))[0, 0]
     return strong, weak, direction, false_fix_bound(squares[~near], sigma)
 
 

@@ -14,7 +14,7 @@ from navsym.core.errors import DomainError, EmptyError, NavsymError, ShapeError
 from navsym.language.names import only_keys, shown
 from navsym.terrain.heights import TerrainMap
 from navsym.terrain.maps import local_frame, read_map, read_track
-from navsym.terrain.track import Hypotheses, Track
+from navsym.terrain.track import Hypotheses, Profile
 
 KEYS = ("map", "track", "position", "velocity", "interpolation")
 KEYS_OF_GRID = ("step", "half_count")
@@ -26,7 +26,7 @@ KEYS_OF_TRACK_FILE, KEYS_OF_TRACK = ("file",), ("t", "x", "y", "h")
 
 def read_search(
     config: Mapping[str, Any], folder: Path, *, velocity_needed: bool
-) -> tuple[TerrainMap, Track, Hypotheses]:
+) -> tuple[TerrainMap, Profile, Hypotheses]:
     """Map, track and hypotheses of a configuration; file names start in ``folder``.
 
     velocity_needed : False when a grid without velocities will do
@@ -95,12 +95,12 @@ def file_name(table: Mapping[str, Any], where: str) -> str:
     return name
 
 
-def track_of(table: Mapping[str, Any], folder: Path) -> Track:
+def track_of(table: Mapping[str, Any], folder: Path) -> Profile:
     """A track from a CSV file or from four lists."""
     only_keys(table, KEYS_OF_TRACK_FILE if "file" in table else KEYS_OF_TRACK, "track")
     try:
         columns = read_track(folder / file_name(table, "track")) if "file" in table else table
-        return Track(*(entry(columns, name, "track") for name in KEYS_OF_TRACK))
+        return Profile(*(entry(columns, name, "track") for name in KEYS_OF_TRACK))
     except NavsymError as error:
         raise error.at("track") if not error.where else error from None
 

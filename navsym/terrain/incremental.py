@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from navsym.core.errors import EmptyError
 from navsym.terrain.heights import TerrainMap
 from navsym.terrain.search import Prepared, Search, criteria, lowest, prepare
-from navsym.terrain.track import Hypotheses, Track
+from navsym.terrain.track import Hypotheses, Profile
 
 Array = NDArray[np.float64]
 
@@ -37,7 +37,7 @@ def add_measurement(state: Accumulated, t: float, x: float, y: float, h: float) 
     A hypothesis that leaves the map at any measurement stays inadmissible (infinite).
     Raises OutsideMapError or NoDataError when the inertial position itself has no height.
     """
-    one = prepare(state.terrain, Track([t], [x], [y], [h]), state.grid)  # type: ignore[arg-type]
+    one = prepare(state.terrain, Profile([t], [x], [y], [h]), state.grid)  # type: ignore[arg-type]
     return replace(state, values=state.values + criteria(one), measurements=state.measurements + 1)
 
 

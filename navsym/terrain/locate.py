@@ -19,7 +19,7 @@ from navsym.terrain.heights import ON_MAP, TerrainMap
 from navsym.terrain.refine import refine
 from navsym.terrain.search import Search, criteria, prepare, search_full, search_position
 from navsym.terrain.sequential import search_sequential
-from navsym.terrain.track import Hypotheses, Track
+from navsym.terrain.track import Hypotheses, Profile
 
 Array = NDArray[np.float64]
 
@@ -30,7 +30,7 @@ MUCH_BETTER = 0.25
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Located:
+class Fix:
     """The document of the interface, and remarks for people."""
 
     document: dict[str, Any]
@@ -38,7 +38,7 @@ class Located:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Answer:
+class Correction:
     """What every method has to say: indices, criterion and the correction at the last time."""
 
     index: tuple[int, int, int, int]
@@ -59,7 +59,7 @@ def locate(
     folder: str | os.PathLike[str] = ".",
     maps: bool = False,
     offset_free: bool = False,
-) -> Located:
+) -> Fix:
     """Fix the position of a track over a map.
 
     config : ``map``, ``track``, ``position``, ``velocity``, ``interpolation`` as the interfaces have them.
@@ -84,50 +84,50 @@ def locate(
     if maps:
         rows = criterion_map(terrain, track, grid, answer, offset_free)
         document["criterion_map"] = [[nullable(q) for q in row] for row in rows]
-    return Located(document, remarks(terrain, track, grid, answer, offset_free))
+    return Fix(document, remarks(terrain, track, grid, answer, offset_free))
 
 
 # The methods
 
 
-def by_position(terrain: TerrainMap, track: Track, grid: Hypotheses, offset_free: bool) -> Answer:
+def by_position(terrain: TerrainMap, track: Profile, grid: Hypotheses, offset_free: bool) -> Correction:
     """The best position, velocity errors taken as zero; raises NotEstimableError over flat terrain."""
     found = search_position(terrain, track, grid, offset_free=offset_free)
     return checked(terrain, track, answer_of(found, track, grid))
 
 
-def by_full(terrain: TerrainMap, track: Track, grid: Hypotheses, offset_free: bool) -> Answer:
+def by_full(terrain: TerrainMap, track: Profile, grid: Hypotheses, offset_free: bool) -> Correction:
     """The best of all hypotheses in position and velocity; raises NotEstimableError over flat terrain."""
     found = search_full(terrain, track, grid, offset_free=offset_free)
     return checked(terrain, track, answer_of(found, track, grid))
 
 
-def answer_of(found: Search, track: Track, grid: Hypotheses) -> Answer:
+def answer_of(found: Search, track: Profile, grid: Hypotheses) -> Correction:
     """The correction of a grid hypothesis at the last time."""
     i, j, Vi, Vj = found.index
     velocity = np.array([Vi * grid.velocity_step[0], Vj * grid.velocity_step[1]])
     shift = np.array([i * grid.step[0], j * grid.step[1]]) + velocity * track.elapsed[-1]
-    return Answer(found.index, found.criterion, found.second_best, found.unique, shift, velocity, found.evaluated)
+    return Correction(found.index, found.criterion, found.second_best, found.unique, shift, velocity, found.evaluated)
 
 
-def checked(terrain: TerrainMap, track: Track, answer: Answer) -> Answer:
+def checked(terrain: TerrainMap, track: Profile, answer: Correction) -> Correction:
     """The same answer; NotEstimableError when the terrain under it is flat."""
     x, y = corrected(track, answer)
     demand_estimable(one_sided(terrain, x, y))
     return answer
 
 
-def corrected(track: Track, answer: Answer) -> tuple[Array, Array]:
+def corrected(track: Profile, answer: Correction) -> tuple[Array, Array]:
     """The track under the correction found."""
     back = track.elapsed - track.elapsed[-1]
     dx, dy = (answer.shift[k] + answer.velocity[k] * back for k in (0, 1))
     return track.x + dx, track.y + dy
 
 
-def by_sequence(terrain: TerrainMap, track: Track, grid: Hypotheses, offset_free: bool) -> Answer:
+def by_sequence(terrain: TerrainMap, track: Profile, grid: Hypotheses, offset_free: bool) -> Correction:
     """Position first and then velocity, with the times t_G and the quadratic of the paper."""
     found = search_sequential(terrain, track, grid, offset_free=offset_free)
-    return Answer(
+    return Correction(
         found.index,
         found.criterion,
         found.second_best,
@@ -140,14 +140,16 @@ def by_sequence(terrain: TerrainMap, track: Track, grid: Hypotheses, offset_free
     )
 
 
-def by_refinement(terrain: TerrainMap, track: Track, grid: Hypotheses, offset_free: bool) -> Answer:
+def by_refinement(terrain: TerrainMap, track: Profile, grid: Hypotheses, offset_free: bool) -> Correction:
     """The full search, then the minimum between its grid points."""
     start = by_full(terrain, track, grid, offset_free)
     velocity = start.velocity
     position = start.shift - velocity * track.elapsed[-1]
     fine = refine(terrain, track, (position[0], position[1]), (velocity[0], velocity[1]), offset=offset_free)
     shift = fine.position + fine.velocity * track.elapsed[-1]
-    return Answer(start.index, fine.criterion, start.second_best, start.unique, shift, fine.velocity, start.evaluated)
+    return Correction(
+        start.index, fine.criterion, start.second_best, start.unique, shift, fine.velocity, start.evaluated
+    )
 
 
 SEARCHES = {"position": by_position, "full": by_full, "sequential": by_sequence, "refined": by_refinement}
@@ -161,7 +163,7 @@ def nullable(value: float) -> float | None:
     return float(value) if math.isfinite(value) else None
 
 
-def written(method: str, track: Track, grid: Hypotheses, answer: Answer) -> dict[str, Any]:
+def written(method: str, track: Profile, grid: Hypotheses, answer: Correction) -> dict[str, Any]:
     """The document of the interface: plain numbers, no infinities."""
     i, j, Vi, Vj = answer.index
     vx, vy = track.final_velocity
@@ -183,29 +185,29 @@ def written(method: str, track: Track, grid: Hypotheses, answer: Answer) -> dict
     }
 
 
-def alone(grid: Hypotheses, answer: Answer) -> bool:
+def alone(grid: Hypotheses, answer: Correction) -> bool:
     """Whether no other hypothesis could be compared with the best one, although there are others."""
     counts = (*grid.half_count, *grid.velocity_half_count)
     return math.isinf(answer.second_best) and any(n > 0 for n in counts)
 
 
-def height_offset(terrain: TerrainMap, track: Track, answer: Answer) -> float:
+def height_offset(terrain: TerrainMap, track: Profile, answer: Correction) -> float:
     """Mean of the measured less the mapped heights under the correction found."""
     return float((track.h - terrain.height(*corrected(track, answer))).mean())
 
 
 def criterion_map(
-    terrain: TerrainMap, track: Track, grid: Hypotheses, answer: Answer, offset_free: bool = False
+    terrain: TerrainMap, track: Profile, grid: Hypotheses, answer: Correction, offset_free: bool = False
 ) -> Array:
     """Criteria over positions (My, Mx) at the velocity of the coarse solution: row = j, column = i."""
     at = answer.index[2:] if answer.t_G is None else (0, 0)
     vx, vy = (v * s for v, s in zip(at, grid.velocity_step, strict=True))
-    moved = Track(track.t, track.x + vx * track.elapsed, track.y + vy * track.elapsed, track.h)
+    moved = Profile(track.t, track.x + vx * track.elapsed, track.y + vy * track.elapsed, track.h)
     return criteria(prepare(terrain, moved, grid.position_only, on_map=False), centred=offset_free)[0, 0]
 
 
 def remarks(
-    terrain: TerrainMap, track: Track, grid: Hypotheses, answer: Answer, offset_free: bool = False
+    terrain: TerrainMap, track: Profile, grid: Hypotheses, answer: Correction, offset_free: bool = False
 ) -> tuple[str, ...]:
     """Things that a person should look at: units, the edge of the grid, ties."""
     found = []

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from navsym.core.errors import NotEstimableError
 from navsym.terrain.heights import ON_MAP, TerrainMap, demand_heights
 from navsym.terrain.search import need
-from navsym.terrain.track import Track
+from navsym.terrain.track import Profile
 
 Array = NDArray[np.float64]
 
@@ -41,7 +41,7 @@ class Refined:
 
 def refine(
     terrain: TerrainMap,
-    track: Track,
+    track: Profile,
     position: tuple[float, float],
     velocity: tuple[float, float],
     *,
@@ -77,7 +77,7 @@ def refine(
     return Refined(q[:2], q[2:4], b, float(residual @ residual), covariance, iterations, settled)
 
 
-def linearised(terrain: TerrainMap, track: Track, q: Array) -> tuple[Array, Array]:
+def linearised(terrain: TerrainMap, track: Profile, q: Array) -> tuple[Array, Array]:
     """Residuals (n,) and the Jacobian (n, p) of the mapped profile; errors of the map raise."""
     x, y = moved(track, q)
     heights, flags = terrain.sample(x, y)
@@ -89,13 +89,13 @@ def linearised(terrain: TerrainMap, track: Track, q: Array) -> tuple[Array, Arra
     return track.h - heights - offset, np.stack(columns, axis=1)
 
 
-def evaluated(terrain: TerrainMap, track: Track, q: Array) -> tuple[Array, Array] | None:
+def evaluated(terrain: TerrainMap, track: Profile, q: Array) -> tuple[Array, Array] | None:
     """Like :func:`linearised`, None where the track would leave the map."""
     x, y = moved(track, q)
     return linearised(terrain, track, q) if (terrain.sample(x, y)[1] == ON_MAP).all() else None
 
 
-def moved(track: Track, q: Array) -> tuple[Array, Array]:
+def moved(track: Profile, q: Array) -> tuple[Array, Array]:
     """x and y (n,) of the track under the correction q: two of position, two of velocity; an offset is not used."""
     tau = track.elapsed
     return track.x + (q[0] + q[2] * tau), track.y + (q[1] + q[3] * tau)

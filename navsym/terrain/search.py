@@ -23,7 +23,7 @@ from navsym.terrain.kernels.bounded import BoundedResult, search_bounded, search
 from navsym.terrain.kernels.criteria import TOGETHER, dense_masked, padded, patch_rows, profile, slab
 from navsym.terrain.kernels.lattice import fits, lattice, rounded
 from navsym.terrain.kernels.margins import DOUBLE, PLAIN, parts_about_the_mean
-from navsym.terrain.track import MOST_HYPOTHESES, Hypotheses, Track
+from navsym.terrain.track import MOST_HYPOTHESES, Hypotheses, Profile
 
 Array = NDArray[np.float64]
 Index = tuple[int, int, int, int]
@@ -84,7 +84,7 @@ class Search:
     criteria: Array | None = None
 
 
-def prepare(terrain: TerrainMap, track: Track, grid: Hypotheses, *, on_map: bool = True) -> Prepared:
+def prepare(terrain: TerrainMap, track: Profile, grid: Hypotheses, *, on_map: bool = True) -> Prepared:
     """Count everything in cells.
 
     on_map : raise OutsideMapError or NoDataError when the inertial track itself has no heights
@@ -164,7 +164,7 @@ def one_slab(prepared: Prepared, Vi: int, out: Array) -> None:
 
 
 def search_position(
-    terrain: TerrainMap, track: Track, grid: Hypotheses, *, dense: bool = False, offset_free: bool = False
+    terrain: TerrainMap, track: Profile, grid: Hypotheses, *, dense: bool = False, offset_free: bool = False
 ) -> Search:
     """The best position hypothesis, velocity errors taken as zero (terrain_search:2, terrain_search:3).
 
@@ -179,7 +179,7 @@ def search_position(
 
 def search_full(
     terrain: TerrainMap,
-    track: Track,
+    track: Profile,
     grid: Hypotheses,
     *,
     dense: bool = False,
@@ -230,7 +230,7 @@ def quickly(prepared: Prepared, centred: bool) -> BoundedResult:
     return search_bounded(p.case, p.steps, p.counts, p.bound, centred=centred, inside=p.plain)
 
 
-def need(track: Track, least: int, what: str) -> None:
+def need(track: Profile, least: int, what: str) -> None:
     """NotEstimableError when the track has fewer than ``least`` measurements."""
     if track.t.size < least:
         raise NotEstimableError(

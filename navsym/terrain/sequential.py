@@ -19,7 +19,7 @@ from navsym.terrain.centre import Information, demand_estimable, information, sl
 from navsym.terrain.heights import TerrainMap
 from navsym.terrain.kernels.criteria import velocity_criteria
 from navsym.terrain.search import Search, criteria, lowest, need, prepare
-from navsym.terrain.track import Hypotheses, Track
+from navsym.terrain.track import Hypotheses, Profile
 
 Array = NDArray[np.float64]
 
@@ -52,7 +52,7 @@ class Sequential:
 
 
 def search_sequential(
-    terrain: TerrainMap, track: Track, grid: Hypotheses, *, improved: bool = False, offset_free: bool = False
+    terrain: TerrainMap, track: Profile, grid: Hypotheses, *, improved: bool = False, offset_free: bool = False
 ) -> Sequential:
     """Position first, then velocity.
 
@@ -86,7 +86,7 @@ def search_sequential(
 
 
 def velocity_stage(
-    terrain: TerrainMap, track: Track, grid: Hypotheses, start: Array, centre: Array, centred: bool
+    terrain: TerrainMap, track: Profile, grid: Hypotheses, start: Array, centre: Array, centred: bool
 ) -> Array:
     """Criteria (Mvx, Mvy) of the velocities, the track turning about ``centre`` (terrain_search:6)."""
     bx, by = terrain.cells(track.x + start[0], track.y + start[1])

@@ -15,7 +15,7 @@ MOST_HYPOTHESES = 2**26
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Track:
+class Profile:
     """What the aircraft recorded: the inertial positions and the terrain heights measured there.
 
     t    : (n,) seconds, strictly increasing

@@ -9,7 +9,7 @@ import numpy as np
 
 from navsym.core.arrays import Array
 from navsym.trajectory.estimate import Settings, estimate, filtered, gaps, largest_gap, window_of
-from navsym.trajectory.tracks import Noise, Rows, Track, TrackEstimate, memory, usual_step
+from navsym.trajectory.tracks import Noise, Positions, Rows, TrackEstimate, memory, usual_step
 
 #: Mean squared normalised innovation outside this range makes the standard deviations doubtful.
 CONSISTENT = (0.5, 2.0)
@@ -19,7 +19,7 @@ JITTER = 0.5
 
 def document(
     t: Array,
-    track: Track,
+    track: Positions,
     settings: Settings,
     *,
     lines: Rows | None = None,
@@ -56,7 +56,7 @@ def document(
     }
 
 
-def certificate(track: Track, found: TrackEstimate, noise: Noise, settings: Settings) -> dict[str, Any] | None:
+def certificate(track: Positions, found: TrackEstimate, noise: Noise, settings: Settings) -> dict[str, Any] | None:
     """Exact duality bounds of the weights of the guaranteed method; null for the other methods."""
     span = window_in_use(track, noise, settings)
     if settings.method != "guaranteed" or span is None:
@@ -66,14 +66,14 @@ def certificate(track: Track, found: TrackEstimate, noise: Noise, settings: Sett
     return {"kind": kind, **largest_gap(track, settings, use, span)}
 
 
-def window_in_use(track: Track, noise: Noise, settings: Settings) -> float | None:
+def window_in_use(track: Positions, noise: Noise, settings: Settings) -> float | None:
     """Length of the window in seconds, None for methods without one."""
     if settings.method not in ("window", "guaranteed"):
         return None
     return window_of(track, noise, settings)
 
 
-def remarks(track: Track, found: TrackEstimate, noise: Noise, settings: Settings, lines: Rows) -> list[str]:
+def remarks(track: Positions, found: TrackEstimate, noise: Noise, settings: Settings, lines: Rows) -> list[str]:
     """What a person should know of a track, in sentences: gaps, rows left out or doubted, uneven steps, doubts.
 
     lines : (N,) number of the line of each row in its file
@@ -92,7 +92,7 @@ def remarks(track: Track, found: TrackEstimate, noise: Noise, settings: Settings
     return out + doubts(track, found, noise, settings)
 
 
-def doubts(track: Track, found: TrackEstimate, noise: Noise, settings: Settings) -> list[str]:
+def doubts(track: Positions, found: TrackEstimate, noise: Noise, settings: Settings) -> list[str]:
     """Whether the standard deviations can be believed: innovations should be as large as they say."""
     use = np.array([flag != "outlier" for flag in found.flags], dtype=np.int64)
     run = filtered(track, noise, Settings("filter", settings.order, gate=0.0), use)

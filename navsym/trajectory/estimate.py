@@ -26,8 +26,8 @@ from navsym.trajectory.tracks import (
     Fit,
     Mask,
     Noise,
+    Positions,
     Rows,
-    Track,
     TrackEstimate,
     check_order,
     first_spread,
@@ -141,7 +141,7 @@ class NoisePoint:
 
 
 def noise_points(
-    track: Track, order: int, use: Rows, noise: Noise, *, gate: float = 0.0, fixed_scale: bool = False
+    track: Positions, order: int, use: Rows, noise: Noise, *, gate: float = 0.0, fixed_scale: bool = False
 ) -> list[NoisePoint]:
     """Points around the most likely noise with the covariance of its estimate; the first is the noise itself.
 
@@ -224,7 +224,7 @@ class Settings:
             raise DomainError(f"expected a number of standard deviations; got {self.gate}; 5 is usual", where="gate")
 
 
-def estimate(track: Track, settings: Settings) -> tuple[TrackEstimate, Noise]:
+def estimate(track: Positions, settings: Settings) -> tuple[TrackEstimate, Noise]:
     """Velocity and acceleration of a track, and the noise that was found in it."""
     check_order(track, settings.order)
     use = np.ones(len(track.t), dtype=np.int64)
@@ -244,7 +244,7 @@ def estimate(track: Track, settings: Settings) -> tuple[TrackEstimate, Noise]:
     return by_method(track, noise, settings, use), noise
 
 
-def marginal(track: Track, noise: Noise, settings: Settings, use: Rows) -> TrackEstimate:
+def marginal(track: Positions, noise: Noise, settings: Settings, use: Rows) -> TrackEstimate:
     """Filter or smoother, averaged over what the noise may be; gains and flags are those of the likeliest."""
     points = noise_points(track, settings.order, use, noise, gate=settings.gate, fixed_scale=settings.fixed_scale)
     found = [by_method(track, point.noise, settings, use) for point in points]
@@ -261,7 +261,7 @@ def mixture(weights: Array, means: list[Array], deviations: list[Array]) -> tupl
     return mean, np.sqrt(np.einsum("p,pkc->kc", weights, spread**2 + (values - mean) ** 2))
 
 
-def departures(track: Track, noise: Noise, settings: Settings, use: Rows) -> Mask:
+def departures(track: Positions, noise: Noise, settings: Settings, use: Rows) -> Mask:
     """(N,) True where a position contradicts all others, further than its neighbours do.
 
     Baarda's test on the linear smoother: the residual e has the variance r - P, and without its own vote the
@@ -282,7 +282,7 @@ def departures(track: Track, noise: Noise, settings: Settings, use: Rows) -> Mas
     return away
 
 
-def agreeing(track: Track, noise: Noise, settings: Settings, use: Rows) -> Mask:
+def agreeing(track: Positions, noise: Noise, settings: Settings, use: Rows) -> Mask:
     """(N,) True for rows left out that agree with the track of the others: an outlier had blamed them."""
     run = filtered(track, noise, replace(settings, gate=0.0), use)
     smoothed(track, noise, run)
@@ -292,7 +292,7 @@ def agreeing(track: Track, noise: Noise, settings: Settings, use: Rows) -> Mask:
     return fits
 
 
-def by_method(track: Track, noise: Noise, settings: Settings, use: Rows) -> TrackEstimate:
+def by_method(track: Positions, noise: Noise, settings: Settings, use: Rows) -> TrackEstimate:
     """Velocity and acceleration by the method of the settings, for one noise.
 
     use : (N,) 1 for rows that count, 0 for outliers
@@ -312,7 +312,7 @@ def by_method(track: Track, noise: Noise, settings: Settings, use: Rows) -> Trac
     return from_weights(track, noise, windows, settings.order, weights, words)
 
 
-def window_of(track: Track, noise: Noise, settings: Settings) -> float:
+def window_of(track: Positions, noise: Noise, settings: Settings) -> float:
     """Seconds of the window: what was asked for, or four memories of the filter, at most ``LONGEST_WINDOW`` steps.
 
     A track without manoeuvres has a memory as long as itself, and every row would then look at all others.
@@ -344,7 +344,7 @@ class FilterRun:
     flags: Rows
 
 
-def filtered(track: Track, noise: Noise, settings: Settings, use: Rows) -> FilterRun:
+def filtered(track: Positions, noise: Noise, settings: Settings, use: Rows) -> FilterRun:
     """Forward run of the three channels; every root is kept for the smoother."""
     N, n = len(track.t), settings.order
     run = FilterRun(
@@ -365,7 +365,7 @@ def filtered(track: Track, noise: Noise, settings: Settings, use: Rows) -> Filte
     return run
 
 
-def smoothed(track: Track, noise: Noise, run: FilterRun) -> None:
+def smoothed(track: Positions, noise: Noise, run: FilterRun) -> None:
     """Replace the filtered states and roots of a run by the smoothed ones."""
     for c in range(3):
         backward(track.t, run.states[c], run.roots[c], noise.density[c])
@@ -377,7 +377,7 @@ def variance(run: FilterRun, i: int) -> Array:
     return found
 
 
-def from_states(track: Track, run: FilterRun, words: tuple[str, ...]) -> TrackEstimate:
+def from_states(track: Positions, run: FilterRun, words: tuple[str, ...]) -> TrackEstimate:
     """The answer of a filter or smoother run; acceleration is zero for a state of order 2.
 
     The gains are those of the last row at which the first channel used its measurement.
@@ -393,7 +393,7 @@ def from_states(track: Track, run: FilterRun, words: tuple[str, ...]) -> TrackEs
 
 
 def turned(
-    track: Track, derivatives: list[tuple[Array, Array]], words: tuple[str, ...], gains: dict[str, list[float]]
+    track: Positions, derivatives: list[tuple[Array, Array]], words: tuple[str, ...], gains: dict[str, list[float]]
 ) -> TrackEstimate:
     """East, North, Up of each row from channels: values (3, N) and variances (3, N), speed then acceleration."""
     out, turn = [], axes_of(track, words)
@@ -403,7 +403,7 @@ def turned(
     return TrackEstimate(out[0], out[1], out[2], out[3], words, gains)
 
 
-def axes_of(track: Track, words: tuple[str, ...]) -> Array:
+def axes_of(track: Positions, words: tuple[str, ...]) -> Array:
     """East, North, Up of each row (N, 3, 3); where a position is not believed, those of the nearest one that is.
 
     A lost fix at latitude and longitude zero would otherwise turn a good velocity into the axes of that place.
@@ -421,12 +421,12 @@ def axes_of(track: Track, words: tuple[str, ...]) -> Array:
 # -- windows -----------------------------------------------------------------------------------------------
 
 
-def difference_windows(track: Track, use: Rows) -> list[Rows]:
+def difference_windows(track: Positions, use: Rows) -> list[Rows]:
     """The row before, the row and the row after, among rows in use."""
     return nearest_windows(track, use, 3)
 
 
-def nearest_windows(track: Track, use: Rows, count: int) -> list[Rows]:
+def nearest_windows(track: Positions, use: Rows, count: int) -> list[Rows]:
     """For each row the ``count`` rows in use that surround it, as evenly as the ends allow."""
     kept = np.flatnonzero(use)
     count = min(count, len(kept))
@@ -434,7 +434,7 @@ def nearest_windows(track: Track, use: Rows, count: int) -> list[Rows]:
     return [kept[f : f + count] for f in first]
 
 
-def sliding_windows(track: Track, use: Rows, span: float, order: int) -> list[Rows]:
+def sliding_windows(track: Positions, use: Rows, span: float, order: int) -> list[Rows]:
     """Rows in use within half a span; where they are fewer than order + 2, the nearest ones."""
     kept = np.flatnonzero(use)
     times = track.t[kept]
@@ -446,7 +446,7 @@ def sliding_windows(track: Track, use: Rows, span: float, order: int) -> list[Ro
 
 
 def from_weights(
-    track: Track, noise: Noise, windows: list[Rows], order: int, weights: Weights, words: tuple[str, ...]
+    track: Positions, noise: Noise, windows: list[Rows], order: int, weights: Weights, words: tuple[str, ...]
 ) -> TrackEstimate:
     """Derivatives as weighted sums of positions; the weights depend on times and variances only."""
     N = len(track.t)
@@ -472,12 +472,12 @@ def from_weights(
     return turned(track, [(values[d], variances[d]) for d in (0, 1)], words, {})
 
 
-def grain_of(track: Track) -> float:
+def grain_of(track: Positions) -> float:
     """Seconds that move no weight: a microsecond, or a millionth of a usual step where steps are short."""
     return 1e-6 * min(1.0, usual_step(track.t))
 
 
-def distances(track: Track, rows: Rows, k: int, grain: float) -> Array:
+def distances(track: Positions, rows: Rows, k: int, grain: float) -> Array:
     """Times of rows from row k in whole grains, so that they repeat where the clock does."""
     rounded: Array = np.round((track.t[rows] - track.t[k]) / grain) * grain
     return rounded
@@ -531,7 +531,7 @@ def minimum_sum_solution(dt: Array, sigma: Array, order: int, derivative: int) -
     return w, float(np.abs(w * sigma).sum()), basis.tolist(), np.linalg.solve(R, dual)
 
 
-def largest_gap(track: Track, settings: Settings, use: Rows, span: float) -> dict[str, float | int]:
+def largest_gap(track: Positions, settings: Settings, use: Rows, span: float) -> dict[str, float | int]:
     """Certificates of the weights in use: how many were examined, and the largest relative gap of their sums.
 
     Windows of equal times and deviations share their weights and are examined once.
@@ -554,6 +554,6 @@ def certified_gap(dt: Array, sigma: Array, order: int, derivative: int) -> float
     return minimum_sum_certificate(dt, sigma, order, derivative, nodes, dual.tolist()).gap if nodes else 1.0
 
 
-def gaps(track: Track) -> Rows:
+def gaps(track: Positions) -> Rows:
     """Rows after which the next one is late by more than GAP usual steps."""
     return np.flatnonzero(np.diff(track.t) > GAP * usual_step(track.t))

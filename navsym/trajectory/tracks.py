@@ -37,7 +37,7 @@ SHORTEST, LONGEST = 1e-9, 1e9
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Track:
+class Positions:
     """Positions in metres and how to turn vectors back.
 
     t        : (N,) seconds, strictly increasing
@@ -105,7 +105,9 @@ class TrackEstimate:
     gains: dict[str, list[float]]
 
 
-def track_of(t: Array, latitude: Array, longitude: Array, height: Array, sigma: Array | float | None = None) -> Track:
+def project_positions(
+    t: Array, latitude: Array, longitude: Array, height: Array, sigma: Array | float | None = None
+) -> Positions:
     """A track from geodetic coordinates: radians and metres, (N,) each.
 
     sigma : standard deviations of the positions in metres, (N, 3) East, North, Up, or one number;
@@ -123,7 +125,7 @@ def track_of(t: Array, latitude: Array, longitude: Array, height: Array, sigma: 
     axes = local_axes(lat, lon)
     point = cartesian(lat, lon, h)
     middle = central(point)
-    return Track(
+    return Positions(
         t=np.asarray(t, dtype=float),
         position=(point - point[middle]) @ axes[middle].T,
         variance=np.ones((N, 3)) if sigma is None else np.broadcast_to(np.asarray(sigma, float) ** 2, (N, 3)),
@@ -142,7 +144,7 @@ def usual_step(t: Array) -> float:
     return float(np.median(t[reach:] - t[:-reach])) / reach
 
 
-def check_order(track: Track, order: int) -> None:
+def check_order(track: Positions, order: int) -> None:
     """DomainError for an order that is not offered, ShapeError for a track too short for it."""
     if not 2 <= order <= LARGEST_ORDER:
         raise DomainError(f"order: expected 2 to {LARGEST_ORDER} states; got {order}; 3 is usual")
@@ -156,7 +158,7 @@ def check_order(track: Track, order: int) -> None:
 # -- isolated outliers ---------------------------------------------------------------------------------
 
 
-def isolated_outliers(track: Track) -> Mask:
+def isolated_outliers(track: Positions) -> Mask:
     """(N,) True where a position departs from the cubic through its four neighbours and they do not.
 
     The scale is the median absolute residual of the neighbourhood, so that a stop does not make
@@ -177,7 +179,7 @@ def isolated_outliers(track: Track) -> Mask:
     return wild
 
 
-def interpolation_residuals(track: Track) -> Array:
+def interpolation_residuals(track: Positions) -> Array:
     """Position minus the cubic through rows k-2, k-1, k+1, k+2, (N, 3); NaN at ends and gaps."""
     t, x = track.t, track.position
     residual = np.full(x.shape, np.nan)
@@ -207,14 +209,14 @@ def running_median(values: Array, width: int) -> Array:
 # -- noise by maximum likelihood -------------------------------------------------------------------------
 
 
-def first_spread(track: Track, order: int) -> Array:
+def first_spread(track: Positions, order: int) -> Array:
     """Standard deviations of the state before the first measurement: wide, in the scale of the track."""
     steps = np.maximum(np.diff(track.t), usual_step(track.t))
     speed = np.abs(np.diff(track.position, axis=0) / steps[:, None]).max()
     return np.array([np.sqrt(track.variance.max()) * 10 + 1.0, 10 * speed + 1.0, *([50.0] * (order - 2))])
 
 
-def noise_of(track: Track, order: int, use: Rows, *, gate: float = 0.0, fixed_scale: bool = False) -> Noise:
+def noise_of(track: Positions, order: int, use: Rows, *, gate: float = 0.0, fixed_scale: bool = False) -> Noise:
     """Maximum-likelihood noise of a track: one pair for East and North, one for Up.
 
     gate        : innovations beyond so many standard deviations count as if they were at it; 0 for none
@@ -230,7 +232,7 @@ def noise_of(track: Track, order: int, use: Rows, *, gate: float = 0.0, fixed_sc
 class Fit:
     """The likelihood of some channels together, as a function of scale and density."""
 
-    track: Track
+    track: Positions
     order: int
     use: Rows
     channels: tuple[int, ...]

@@ -19,7 +19,7 @@ from numba import njit
 from navsym.terrain.heights import TerrainMap
 from navsym.terrain.search import criteria, prepare, search_full, search_position
 from navsym.terrain.sequential import search_sequential
-from navsym.terrain.track import Hypotheses, Track
+from navsym.terrain.track import Hypotheses, Profile
 
 CELL = 50.0
 
@@ -36,14 +36,14 @@ def relief(side: int = 900, seed: int = 0) -> TerrainMap:
     return TerrainMap(400 + 180 * surface / surface.std(), 0, 0, CELL, CELL)
 
 
-def flight(terrain: TerrainMap, n: int, seed: int = 1, drifting: bool = True) -> Track:
+def flight(terrain: TerrainMap, n: int, seed: int = 1, drifting: bool = True) -> Profile:
     """A straight track at 40 m/s, 2 Hz, with errors on the grid and 12 m of noise."""
     generator = np.random.default_rng(seed)
     t = 0.5 * np.arange(n)
     x, y = 6000 + 30.0 * t, 6000 + 25.0 * t
     (i, j), (vx, vy) = generator.integers(-12, 13, 2), drifting * generator.integers(-3, 4, 2)
     h = terrain.height(x + 50 * i + vx * t, y + 50 * j + vy * t)
-    return Track(t, x, y, h + generator.normal(0, 12, n))
+    return Profile(t, x, y, h + generator.normal(0, 12, n))
 
 
 @njit(nogil=True, cache=True)
@@ -67,7 +67,7 @@ def plain_loop(  # type: ignore[no-untyped-def]
                     out[Vi, Vj, j, i] = total
 
 
-def plain(terrain: TerrainMap, track: Track, grid: Hypotheses, threads: int = 2) -> np.ndarray:
+def plain(terrain: TerrainMap, track: Profile, grid: Hypotheses, threads: int = 2) -> np.ndarray:
     p = prepare(terrain, track, grid)
     Mx, My, Mvx, Mvy = p.counts
     out = np.empty((Mvx, Mvy, My, Mx))
@@ -81,7 +81,7 @@ def plain(terrain: TerrainMap, track: Track, grid: Hypotheses, threads: int = 2)
     return out
 
 
-def by_scipy(terrain: TerrainMap, track: Track, grid: Hypotheses) -> np.ndarray:
+def by_scipy(terrain: TerrainMap, track: Profile, grid: Hypotheses) -> np.ndarray:
     """The position search with order-1 map_coordinates, one row of hypotheses at a time."""
     from scipy.ndimage import map_coordinates
 

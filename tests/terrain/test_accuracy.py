@@ -12,7 +12,7 @@ from navsym.core.errors import DomainError
 from navsym.terrain.accuracy import accuracy_map, false_fix_bound
 from navsym.terrain.heights import TerrainMap
 from navsym.terrain.search import search_position
-from navsym.terrain.track import Hypotheses, Track
+from navsym.terrain.track import Hypotheses, Profile
 
 
 def relief(rough=3.0):
@@ -55,7 +55,7 @@ def test_the_bound_covers_the_false_fixes_of_a_simulation():
     heights = terrain.height(x, y)
     generator, false = np.random.default_rng(1), 0
     for _ in range(300):
-        track = Track(np.arange(points), x, y, heights + generator.normal(0, sigma, points))
+        track = Profile(np.arange(points), x, y, heights + generator.normal(0, sigma, points))
         i, j = search_position(terrain, track, grid).index[:2]
         false += math.hypot(10 * i, 10 * j) >= 35.0
     assert 0.02 < false / 300 <= found.risk[0, 0]

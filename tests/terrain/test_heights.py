@@ -19,7 +19,7 @@ from navsym.core.errors import (
     TooLargeError,
 )
 from navsym.terrain.heights import NO_DATA, OFF_MAP, ON_MAP, TerrainMap
-from navsym.terrain.track import Hypotheses, Track
+from navsym.terrain.track import Hypotheses, Profile
 
 PLANE = TerrainMap([[0, 2, 4], [10, 12, 14], [20, 22, 24]], 100.0, 200.0, 5.0, 4.0)
 
@@ -108,7 +108,7 @@ def test_the_array_of_the_caller_stays_his():
 )
 def test_a_wrong_track_is_refused(t, error, message):
     with pytest.raises(error, match=message):
-        Track(t, [0, 1, 2], [0, 1, 2], [5, 5, 5])
+        Profile(t, [0, 1, 2], [0, 1, 2], [5, 5, 5])
 
 
 def test_a_grid_counts_its_hypotheses():

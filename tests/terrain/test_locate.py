@@ -14,7 +14,7 @@ from navsym.terrain.incremental import add_measurement, begin, fix
 from navsym.terrain.refine import refine
 from navsym.terrain.search import criteria, exact_criterion, prepare, search_full, search_position
 from navsym.terrain.sequential import search_sequential
-from navsym.terrain.track import Hypotheses, Track
+from navsym.terrain.track import Hypotheses, Profile
 
 GRID = Hypotheses((30, 30), (4, 4), (1, 1), (3, 3))
 
@@ -31,7 +31,7 @@ def flight(terrain, shift=(60.0, -30.0), velocity=(1.0, -2.0), noise=0.0, n=41, 
     t = np.arange(n, dtype=float)
     x, y = 700 + 25 * t, 600 + 15 * t
     h = terrain.height(x + shift[0] + velocity[0] * t, y + shift[1] + velocity[1] * t)
-    return Track(t, x, y, h + noise * np.random.default_rng(seed).normal(size=n))
+    return Profile(t, x, y, h + noise * np.random.default_rng(seed).normal(size=n))
 
 
 def test_the_true_hypothesis_is_found_and_unique():
@@ -76,7 +76,7 @@ def test_a_periodic_terrain_has_two_best_positions_and_says_so():
     H = np.tile(np.array([[0.0, 5.0, 1.0, 3.0], [2.0, 9.0, 4.0, 7.0], [8.0, 0.0, 6.0, 2.0]]), (8, 9))
     terrain = TerrainMap(H, 0, 0, 1, 1)
     t = np.arange(6.0)
-    track = Track(t, 10 + t, 9 + 0 * t, terrain.height(10 + t, 9 + 0 * t))
+    track = Profile(t, 10 + t, 9 + 0 * t, terrain.height(10 + t, 9 + 0 * t))
     found = search_position(terrain, track, Hypotheses((1, 1), (5, 0)))
     assert found.criterion == found.second_best == 0.0 and found.unique is False
     assert found.index[0] == -4
@@ -85,7 +85,7 @@ def test_a_periodic_terrain_has_two_best_positions_and_says_so():
 def test_hypotheses_that_leave_the_map_are_never_chosen():
     terrain = relief()
     track = flight(terrain)
-    near = Track(track.t, track.x - 690, track.y, track.h)
+    near = Profile(track.t, track.x - 690, track.y, track.h)
     found = search_position(terrain, near, GRID, dense=True)
     values = found.criteria[0, 0]
     assert np.isinf(values[:, :4]).all() and np.isfinite(values[:, 4:]).all()
@@ -110,7 +110,7 @@ def test_a_track_off_the_map_is_refused():
     terrain = relief()
     track = flight(terrain)
     with pytest.raises(OutsideMapError, match="41 of 41 off the map"):
-        search_full(terrain, Track(track.t, track.x - 1e5, track.y, track.h), GRID)
+        search_full(terrain, Profile(track.t, track.x - 1e5, track.y, track.h), GRID)
 
 
 @pytest.mark.parametrize(("search", "least"), [(search_position, 2), (search_full, 4), (search_sequential, 4)])
@@ -129,7 +129,7 @@ def test_flat_ground_is_not_estimable_and_a_ridge_names_its_direction():
         (np.add.outer(np.arange(40.0), np.arange(50.0)) ** 2, r"along \(-?0.7071, -?0.7071\)"),
     ):
         terrain = TerrainMap(H, 0, 0, 1, 1)
-        track = Track(t, 10 + t, 10 + 0.5 * t, terrain.height(10 + t, 10 + 0.5 * t))
+        track = Profile(t, 10 + t, 10 + 0.5 * t, terrain.height(10 + t, 10 + 0.5 * t))
         with pytest.raises(NotEstimableError, match=message):
             search_sequential(terrain, track, Hypotheses((1, 1), (2, 2), (0.1, 0.1), (1, 1)))
 
@@ -137,7 +137,7 @@ def test_flat_ground_is_not_estimable_and_a_ridge_names_its_direction():
 def test_a_constant_height_error_does_not_move_the_offset_free_fix():
     terrain = relief()
     track = flight(terrain, noise=1.0)
-    raised = Track(track.t, track.x, track.y, track.h + 80.0)
+    raised = Profile(track.t, track.x, track.y, track.h + 80.0)
     assert search_full(terrain, raised, GRID).index != (2, -1, 1, -2)
     assert search_full(terrain, raised, GRID, offset_free=True).index == (2, -1, 1, -2)
 
@@ -171,7 +171,7 @@ def test_an_instant_shrinks_the_velocity_and_the_matrix_centre_does_not():
     x, y = 1500 + 105 * t, 2000 + 33 * t
     for velocity in ((0.4, 0.3), (-0.3, 0.4)):
         h = terrain.height(x + 3 + velocity[0] * t, y - 4 + velocity[1] * t)
-        track = Track(t, x, y, h)
+        track = Profile(t, x, y, h)
         printed, exact = (search_sequential(terrain, track, grid, improved=how) for how in (False, True))
         assert_allclose(exact.velocity, velocity, atol=0.051)
         assert np.linalg.norm(printed.velocity) < 0.8 * np.linalg.norm(velocity)
@@ -215,7 +215,7 @@ def test_the_covariance_of_the_refinement_is_that_of_its_errors():
 def test_a_height_offset_is_estimated_on_request():
     terrain = relief()
     track = flight(terrain)
-    raised = Track(track.t, track.x, track.y, track.h + 25.0)
+    raised = Profile(track.t, track.x, track.y, track.h + 25.0)
     fine = refine(terrain, raised, (60.0, -30.0), (1.0, -2.0), offset=True)
     assert_allclose(fine.offset, 25.0, atol=1e-3)
     assert fine.covariance.shape == (5, 5)

@@ -13,7 +13,7 @@ import pytest
 from navsym.core.errors import NavsymError, NotEstimableError
 from navsym.terrain.heights import TerrainMap
 from navsym.terrain.search import exact_criterion, prepare, search_full, search_position
-from navsym.terrain.track import Hypotheses, Track
+from navsym.terrain.track import Hypotheses, Profile
 
 GRID = Hypotheses((30, 30), (3, 3), (1, 1), (2, 2))
 
@@ -26,7 +26,7 @@ def straight(terrain, n=30, shift=(30.0, -60.0), velocity=(1.0, 0.0), noise=0.0,
     t = np.arange(n, dtype=float)
     x, y = 700 + 10.0 * t, 650 + 7.0 * t
     h = terrain.height(x + shift[0] + velocity[0] * t, y + shift[1] + velocity[1] * t)
-    return Track(t, x, y, h + noise * np.random.default_rng(seed).normal(size=n))
+    return Profile(t, x, y, h + noise * np.random.default_rng(seed).normal(size=n))
 
 
 def both(terrain, track, grid=GRID, **options):
@@ -47,7 +47,7 @@ def assert_equal(quick, dense):
 def test_ground_of_one_height_is_a_tie_of_all_and_proved_so(height, offset_free):
     terrain = TerrainMap(np.full((60, 70), height), 0, 0, 30, 30)
     for measured in (height, height + 7.0):
-        track = Track(np.arange(20.0), 700 + np.arange(20.0), np.full(20, 650.0), np.full(20, measured))
+        track = Profile(np.arange(20.0), 700 + np.arange(20.0), np.full(20, 650.0), np.full(20, measured))
         quick, dense = both(terrain, track, offset_free=offset_free)
         assert_equal(quick, dense)
         assert quick.index == (-3, -3, -2, -2) and quick.criterion == quick.second_best
@@ -84,7 +84,7 @@ def test_ties_that_rounding_hides_are_settled_by_fractions():
     row = np.random.default_rng(3).normal(size=7)
     terrain = TerrainMap(np.tile(row, (60, 10)), 0, 0, 0.1, 0.1)
     t = np.arange(12, dtype=float)
-    track = Track(t, 2.03 + 0.01 * t, np.full(12, 2.0), terrain.height(2.03 + 0.01 * t, np.full(12, 2.0)))
+    track = Profile(t, 2.03 + 0.01 * t, np.full(12, 2.0), terrain.height(2.03 + 0.01 * t, np.full(12, 2.0)))
     grid = Hypotheses((0.7, 0.1), (1, 0), (0.01, 0.01), (1, 0))
     quick, dense = both(terrain, track, grid)
     assert (quick.index, quick.criterion, quick.second_best) == (dense.index, dense.criterion, dense.second_best)
@@ -106,7 +106,7 @@ def test_unique_is_never_claimed_for_a_tie_nor_a_tie_for_a_difference(kind):
         terrain = TerrainMap(H, 0, 0, 1, 1)
         t = np.arange(6, dtype=float)
         x, y = generator.integers(14, 24, 6).astype(float), generator.integers(14, 24, 6).astype(float)
-        track = Track(t, x, y, terrain.height(x + 1, y - 1))
+        track = Profile(t, x, y, terrain.height(x + 1, y - 1))
         quick, dense = both(terrain, track, Hypotheses((1, 1), (2, 2), (1, 1), (1, 1)))
         assert_equal(quick, dense)
         prepared = prepare(terrain, track, Hypotheses((1, 1), (2, 2), (1, 1), (1, 1)))
@@ -126,17 +126,17 @@ def test_unique_is_never_claimed_for_a_tie_nor_a_tie_for_a_difference(kind):
 def test_one_of_everything():
     terrain = TerrainMap(rough(shape=(2, 2)), 0, 0, 30, 30)
     t = np.arange(5, dtype=float)
-    track = Track(t, 3 + 5 * t, 20 - 3 * t, np.zeros(5))
+    track = Profile(t, 3 + 5 * t, 20 - 3 * t, np.zeros(5))
     alone = Hypotheses((30, 30), (0, 0), (1, 1), (0, 0))
     quick, dense = both(terrain, track, alone)
     assert_equal(quick, dense)
     assert quick.index == (0, 0, 0, 0) and math.isinf(quick.second_best) and quick.unique is True
     for n in (1, 2, 3):
         with pytest.raises(NotEstimableError):
-            search_full(terrain, Track(t[:n], t[:n], t[:n], t[:n]), GRID)
+            search_full(terrain, Profile(t[:n], t[:n], t[:n], t[:n]), GRID)
     with pytest.raises(NotEstimableError):
-        search_position(terrain, Track(t[:1], t[:1], t[:1], t[:1]), GRID)
-    few = Track(t[:2], t[:2] + 3, t[:2] + 3, np.zeros(2))
+        search_position(terrain, Profile(t[:1], t[:1], t[:1], t[:1]), GRID)
+    few = Profile(t[:2], t[:2] + 3, t[:2] + 3, np.zeros(2))
     assert search_position(terrain, few, GRID).index == search_position(terrain, few, GRID, dense=True).index
 
 
@@ -151,7 +151,7 @@ def test_voids_and_borders_give_the_dense_answer_and_are_never_chosen(void, offs
         terrain = TerrainMap(H, 0, 0, 30, 30, nodata=void)
         t = np.arange(20, dtype=float)
         x, y = 560 + 8.0 * t + 30 * generator.integers(-9, 9), 620 + 5.0 * t
-        track = Track(t, x, y, 100 * generator.normal(size=20))
+        track = Profile(t, x, y, 100 * generator.normal(size=20))
         try:
             quick, dense = both(terrain, track, offset_free=offset_free)
         except NavsymError as error:

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import importlib.util
 from fractions import Fraction
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,7 +11,6 @@ from numpy.testing import assert_allclose
 from scipy.linalg import solve_discrete_are, solve_discrete_lyapunov
 
 from navsym.core.errors import DomainError, NotFiniteError, ShapeError, TooLargeError
-from navsym.trajectory.experiment import PRINTED_GAIN, course, experiment, metric_model, scaling_changes_rounding
 from navsym.trajectory.inversion import (
     CRITERIA,
     Start,
@@ -32,6 +29,14 @@ from navsym.trajectory.stability import gain_stability, harmonic_lag, stationary
 from navsym.trajectory.stability import metric_scale as metric_balls
 from navsym.trajectory.stability import normalised_scale as normalised_balls
 from navsym.trajectory.twins import adaptive_filter_slowly, one_filter, windowed_filter_slowly
+from navsym_papers.trajectory.experiment.courses import (
+    PRINTED_GAIN,
+    course,
+    experiment,
+    metric_model,
+    scaling_changes_rounding,
+)
+from tests.benchmarks import trajectory as benchmark
 
 rng = np.random.default_rng(5)
 Z = np.cumsum(rng.normal(size=60)) + rng.normal(size=60)
@@ -95,7 +100,7 @@ def test_the_row_before_a_step_is_the_row_after_it_times_the_transition():
 
 
 def test_the_corrected_criterion_of_one_step_sees_only_the_first_element():
-    from derivations.trajectory.algorithm import values_with_corrected_gain
+    from navsym_papers.trajectory.algorithm import values_with_corrected_gain
 
     assert values_with_corrected_gain() == 3
 
@@ -248,9 +253,5 @@ def test_bad_requests_say_what_is_wrong():
 
 
 def test_the_benchmark_runs(capsys):
-    path = Path(__file__).parents[1] / "benchmarks" / "trajectory.py"
-    spec = importlib.util.spec_from_file_location("trajectory_benchmark", path)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    module.main(["--quick"])
+    benchmark.main(["--quick"])
     assert "mpmath" in capsys.readouterr().out

@@ -7,9 +7,9 @@ import pytest
 import sympy as sp
 from scipy.optimize import linprog
 
-from derivations.trajectory import limits
 from navsym.core.errors import DomainError
 from navsym.trajectory.limits import best_ages, best_rule, least_error, rule
+from navsym_papers.trajectory import limits
 
 QUESTIONS = ((1, 2), (1, 3), (2, 3))
 

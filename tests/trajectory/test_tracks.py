@@ -29,13 +29,13 @@ from navsym.trajectory.estimate import (
     window_of,
 )
 from navsym.trajectory.kernels.tracks import noise_root, noise_shape, transition
-from navsym.trajectory.tracks import Fit, Noise, Track, isolated_outliers, noise_of, track_of
+from navsym.trajectory.tracks import Fit, Noise, Positions, isolated_outliers, noise_of, project_positions
 
 
 def flat_track(t, position):
     """A track in fixed axes, without an Earth."""
     N = len(t)
-    return Track(t, position, np.ones((N, 3)), np.broadcast_to(np.eye(3), (N, 3, 3)))
+    return Positions(t, position, np.ones((N, 3)), np.broadcast_to(np.eye(3), (N, 3, 3)))
 
 
 def step_of(dt, q, n):
@@ -262,7 +262,7 @@ def test_the_date_line_and_the_poles_are_ordinary_points(latitude, longitude):
     speed = 10 * axes[1] + 3 * axes[0]  # towards north and east of the middle point
     path = cartesian(latitude, longitude, 20.0) + (t[:, None] - 20.3) * speed
     lat, lon, height = geographic(path)
-    found, _ = estimate(track_of(t, lat, lon, height), Settings("window", window=9.0))
+    found, _ = estimate(project_positions(t, lat, lon, height), Settings("window", window=9.0))
     expected = np.einsum("kij,j->ki", local_axes(lat, lon), speed)
     assert_allclose(found.velocity, expected, atol=1e-4)
 
@@ -270,8 +270,8 @@ def test_the_date_line_and_the_poles_are_ordinary_points(latitude, longitude):
 def test_longitudes_may_be_written_from_zero_to_a_full_turn():
     t = np.arange(30.0)
     lon = np.radians(np.linspace(-0.001, 0.001, 30))
-    one = track_of(t, np.full(30, 0.5), lon, np.zeros(30))
-    two = track_of(t, np.full(30, 0.5), lon % (2 * np.pi), np.zeros(30))
+    one = project_positions(t, np.full(30, 0.5), lon, np.zeros(30))
+    two = project_positions(t, np.full(30, 0.5), lon % (2 * np.pi), np.zeros(30))
     assert_allclose(one.position, two.position, atol=1e-8)
 
 
@@ -293,7 +293,7 @@ def test_the_velocity_of_a_lost_fix_at_zero_zero_is_that_of_its_neighbours(metho
     t, *where = straight_drive(5)
     for column in where:
         column[list(lost)] = 0.0
-    found, _ = estimate(track_of(t, *where), Settings(method, order=2))
+    found, _ = estimate(project_positions(t, *where), Settings(method, order=2))
     assert all(found.flags[k] != "used" for k in lost)
     error = (found.velocity - [3.0, 2.0, 0.0]) / found.velocity_sd
     assert np.abs(error[list(lost)]).max() < 4
@@ -309,8 +309,8 @@ def test_two_receivers_merged_in_one_track_are_one_track(method):
         np.repeat(column, 2) + scale * rng.normal(size=2 * len(column))
         for column, scale in zip(where, (1e-7, 1e-7, 1.0), strict=True)
     ]
-    found, _ = estimate(track_of(t, *twice), Settings(method, order=2))
-    assert list(gaps(track_of(t, *twice))) == []
+    found, _ = estimate(project_positions(t, *twice), Settings(method, order=2))
+    assert list(gaps(project_positions(t, *twice))) == []
     error = (found.velocity - [3.0, 2.0, 0.0]) / found.velocity_sd
     assert np.isfinite(found.velocity_sd).all() and np.abs(error[20:-20]).max() < 5
 
@@ -318,7 +318,7 @@ def test_two_receivers_merged_in_one_track_are_one_track(method):
 def test_the_window_of_a_long_straight_track_does_not_grow_with_it():
     """Its memory is as long as itself; every row once looked at all others, for hours at 20,000 rows."""
     t, *where = straight_drive(8, rows=3000)
-    track = track_of(t, *where)
+    track = project_positions(t, *where)
     quiet = Noise(np.ones(3), np.full(3, 1e-18))
     assert window_of(track, quiet, Settings("window", order=2)) == 1000.0
     assert window_of(track, quiet, Settings("window", order=2, window=2500.0)) == 2500.0
@@ -327,13 +327,13 @@ def test_the_window_of_a_long_straight_track_does_not_grow_with_it():
 def test_bad_tracks_say_what_is_wrong():
     t = np.arange(3.0)
     with pytest.raises(EmptyError, match="at least 2 rows"):
-        track_of(t[:1], t[:1], t[:1], t[:1])
+        project_positions(t[:1], t[:1], t[:1], t[:1])
     with pytest.raises(ShapeError, match="at least 4 rows for 3 states"):
-        estimate(track_of(t, t * 1e-6, t * 1e-6, t), Settings())
+        estimate(project_positions(t, t * 1e-6, t * 1e-6, t), Settings())
     with pytest.raises(DomainError, match="convert degrees"):
-        track_of(t, t + 45, t, t)
+        project_positions(t, t + 45, t, t)
     with pytest.raises(DomainError, match="increasing times"):
-        track_of(np.array([0.0, 1.0, 1.0]), t * 0, t * 0, t)
+        project_positions(np.array([0.0, 1.0, 1.0]), t * 0, t * 0, t)
     with pytest.raises(DomainError, match="method"):
         Settings("magic")
     with pytest.raises(DomainError, match="window"):
@@ -345,7 +345,7 @@ def test_bad_tracks_say_what_is_wrong():
 def test_a_track_that_stands_still_has_no_speed_and_finite_deviations():
     t = np.arange(50.0)
     for method in METHODS:
-        found, _ = estimate(track_of(t, t * 0 + 0.5, t * 0 + 1.0, t * 0 + 3.0), Settings(method))
+        found, _ = estimate(project_positions(t, t * 0 + 0.5, t * 0 + 1.0, t * 0 + 3.0), Settings(method))
         assert np.abs(found.velocity).max() < 1e-6
         assert np.isfinite(found.velocity_sd).all() and np.isfinite(found.acceleration_sd).all()
 
@@ -373,7 +373,7 @@ def test_speed_of_a_car_from_its_reference_positions(method, limit):
     t, velocity = reference("pyins_gnss.csv", [5, 4, 6])
     velocity[:, 2] *= -1
     track = read_track(real("pyins_gnss.csv"))
-    found, _ = estimate(track_of(track.t, track.latitude, track.longitude, track.height), Settings(method))
+    found, _ = estimate(project_positions(track.t, track.latitude, track.longitude, track.height), Settings(method))
     assert_allclose(track.t, t)
     assert np.sqrt(np.mean((found.velocity - velocity) ** 2, axis=0)).max() < limit
 
@@ -384,7 +384,7 @@ def test_speed_of_a_car_from_single_point_positions_with_gaps_and_outliers():
     t, velocity = reference("nagoya_reference.csv", [11, 12, 13])
     read = read_track(real("nagoya_rover_1Hz_spp.pos"))
     times = read.t - 2270 * 604800
-    track = track_of(times, read.latitude, read.longitude, read.height, read.sigma)
+    track = project_positions(times, read.latitude, read.longitude, read.height, read.sigma)
     expected = np.column_stack([np.interp(times, t, velocity[:, i]) for i in range(3)])
     rms = {}
     for method in ("smoother", "window", "guaranteed", "differences"):
