@@ -45,11 +45,11 @@ import matplotlib.pyplot as plt
 import numpy as np
 import sympy as sp
 
-from derivations.guaranteed_velocity import model, polynomial, system, weights
 from navsym.claims import Equation, Optimum
 from navsym.cli.main import run as navsym
 from navsym.prove.ladder import decide
 from navsym.report.notebook import explore, require, show
+from navsym_papers.guaranteed_velocity import model, polynomial, system, weights
 
 # %% [markdown]
 # ## The model

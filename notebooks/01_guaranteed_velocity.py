@@ -25,13 +25,13 @@ import matplotlib.pyplot as plt
 import numpy as np
 import sympy as sp
 
-from derivations import guaranteed_velocity as paper
-from derivations.guaranteed_velocity import beyond, duality, model, polynomial, system, weights
 from navsym.claims import claims_of
 from navsym.cli.main import run as navsym
 from navsym.core.casadi_functions import casadi_function, on_grid
 from navsym.guaranteed.convex import LP_SOLVERS, GridProblem, guaranteed_lp, least_squares_qp
 from navsym.report.notebook import explore, require, show, verdict_table
+from navsym_papers import guaranteed_velocity as paper
+from navsym_papers.guaranteed_velocity import beyond, duality, model, polynomial, system, weights
 
 BLUE, ORANGE, GREEN, RED = "#0072b2", "#e69f00", "#009e73", "#d55e00"
 

@@ -26,12 +26,6 @@ import matplotlib.pyplot as plt
 import numpy as np
 from ipywidgets import FloatSlider, interact
 
-from derivations import joint_correction as paper
-from derivations.joint_correction import section2_error_equations as errors_of_section_2
-from derivations.joint_correction import section2_groups as groups
-from derivations.joint_correction import section3_gains as analysis
-from derivations.joint_correction import section3_noise as poles
-from derivations.joint_correction import sensors
 from navsym.claims import claims_of
 from navsym.cli.main import run as navsym
 from navsym.core.datasets import dataset, local_copy
@@ -40,10 +34,16 @@ from navsym.observability.chains import observe
 from navsym.observability.rank_drops import rank_drops
 from navsym.observability.sensors import restore
 from navsym.observability.splits import splits
-from navsym.observability.two_stage import ins as experiment
-from navsym.observability.two_stage import real as aiding
-from navsym.observability.two_stage.flight import EARTH_RADIUS, SCHULER_RATE, great_circle
 from navsym.report.notebook import require, show
+from navsym_papers import joint_correction as paper
+from navsym_papers.joint_correction import section2_error_equations as errors_of_section_2
+from navsym_papers.joint_correction import section2_groups as groups
+from navsym_papers.joint_correction import section3_gains as analysis
+from navsym_papers.joint_correction import section3_noise as poles
+from navsym_papers.joint_correction import sensors
+from navsym_papers.joint_correction.experiment import ins as experiment
+from navsym_papers.joint_correction.experiment import real as aiding
+from navsym_papers.joint_correction.experiment.flight import EARTH_RADIUS, SCHULER_RATE, great_circle
 
 BLUE, ORANGE, GREEN, RED = "#0072b2", "#e69f00", "#009e73", "#d55e00"
 

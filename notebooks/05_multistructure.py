@@ -24,8 +24,15 @@ import matplotlib.pyplot as plt
 import numpy as np
 from ipywidgets import FloatSlider, IntSlider, interact
 
-from derivations import multistructure as paper
-from derivations.multistructure import (
+from navsym.claims import claims_of
+from navsym.cli.main import run as navsym
+from navsym.core.datasets import dataset, local_copy
+from navsym.multimodel.bank import bank
+from navsym.multimodel.filters import run
+from navsym.multimodel.steps import filters_at, scheme
+from navsym.report.notebook import require, show
+from navsym_papers import multistructure as paper
+from navsym_papers.multistructure import (
     any_number,
     forgetting,
     gaussian,
@@ -36,15 +43,8 @@ from derivations.multistructure import (
     pulsating,
     recursion,
 )
-from navsym.claims import claims_of
-from navsym.cli.main import run as navsym
-from navsym.core.datasets import dataset, local_copy
-from navsym.models.modes import MODES
-from navsym.multimodel import road, study
-from navsym.multimodel.bank import bank
-from navsym.multimodel.filters import run
-from navsym.multimodel.steps import filters_at, scheme
-from navsym.report.notebook import require, show
+from navsym_papers.multistructure.experiment import road, study
+from navsym_papers.multistructure.experiment.modes import MODES
 
 BLUE, ORANGE, GREEN, RED = "#0072b2", "#e69f00", "#009e73", "#d55e00"
 
@@ -181,7 +181,7 @@ require(gaussian.part_is_gaussian)
 # variance.
 
 # %%
-document = study.experiment(runs=250, seed=1, steps=7)
+document = study.study(runs=250, seed=1, steps=7)
 exact = document["methods"][0]
 plt.figure(figsize=(6, 4))
 for row in document["methods"][1:-1]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import importlib
-import importlib.util
 import json
 import os
 import re
@@ -17,6 +16,7 @@ from pathlib import Path
 import pytest
 
 from navsym.claims import equation_of
+from tests.report import devtools
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -87,11 +87,6 @@ def test_the_tour_runs_from_a_clean_clone_to_the_browser(tmp_path: Path) -> None
 
 def look(index: Path, folder: Path) -> None:
     """Open the index, go to a refuted equation and to its erratum sheet; the console stays quiet."""
-    path = ROOT / "tests" / "report" / "devtools.py"
-    spec = importlib.util.spec_from_file_location("readme_devtools", path)
-    assert spec is not None and spec.loader is not None
-    devtools = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(devtools)
     if devtools.found() is None:
         print("no browser on this machine: the pages were made and not looked at")
         return
@@ -138,7 +133,7 @@ PAPERS = ("guaranteed_velocity", "joint_correction", "multistructure", "terrain_
 
 def slips(module: str) -> tuple[int, int, int]:
     """Numbered equations of a paper: all, those refuted as the paper has them, those damaged only in the copy."""
-    equations = importlib.import_module(f"derivations.{module}").PAPER.equations
+    equations = importlib.import_module(f"navsym_papers.{module}").PAPER.equations
     ledger = json.loads((ROOT / "derivations" / "verdicts.json").read_text(encoding="utf-8"))["claims"]
     found: dict[str, set[str | None]] = {}
     for record in ledger:

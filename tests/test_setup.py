@@ -63,7 +63,7 @@ def test_the_help_takes_at_most_half_a_second_of_cpu() -> None:
 ROOMS = [f"navsym.{path.parent.name}" for path in sorted((ROOT / "navsym").glob("*/__init__.py"))]
 
 
-@pytest.mark.parametrize("module", ["navsym", "navsym.core.errors", "navsym.cli.main", "derivations", *ROOMS])
+@pytest.mark.parametrize("module", ["navsym", "navsym.core.errors", "navsym.cli.main", "navsym_papers", *ROOMS])
 def test_an_import_loads_no_engine(module: str) -> None:
     assert loaded_by(f"import {module}") == set()
 

@@ -11,8 +11,8 @@ from collections.abc import Callable
 
 import sympy as sp
 
-from derivations.guaranteed_velocity.model import INSTANTS, H, T, alternating, tau, weights
 from navsym.claims import REFUTED, Bound, Claim, Equation, Optimum, Statement, claim
+from navsym_papers.guaranteed_velocity.model import INSTANTS, H, T, alternating, tau, weights
 
 FULL = 2 * sp.pi
 UNITS = {"y1": (1, 0, 0), "y2": (0, 1, 0), "y3": (0, 0, 1)}

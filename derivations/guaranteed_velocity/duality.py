@@ -6,10 +6,10 @@ from itertools import product
 
 import sympy as sp
 
-from derivations.guaranteed_velocity.model import INSTANTS, STATED, H, T, alternating, weights
 from navsym.claims import CERTIFIED, PROVED, REFUTED, Bound, Equation, Finding, Property, claim
 from navsym.prove.identities.normal_form import vanishes_identically
 from navsym.prove.signs.bounds import Sign, prove_sign
+from navsym_papers.guaranteed_velocity.model import INSTANTS, STATED, H, T, alternating, weights
 
 sigma = sp.Symbol("sigma", positive=True)
 

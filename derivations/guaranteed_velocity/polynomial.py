@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import sympy as sp
 
-from derivations.guaranteed_velocity.model import INSTANTS, STATED, H, T, alternating, tau, weights
 from navsym.claims import PROVED, REFUTED, Bound, Equation, Finding, Optimum, Property, claim
 from navsym.prove.identities.normal_form import vanishes_identically
 from navsym.prove.signs.bounds import Sign, prove_sign
+from navsym_papers.guaranteed_velocity.model import INSTANTS, STATED, H, T, alternating, tau, weights
 
 U2_PRINTED = sp.sin(T / 4) ** 2 / sp.cos(T / 2)
 U3_PRINTED = sp.tan(T / 2)

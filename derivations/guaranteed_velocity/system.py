@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import sympy as sp
 
-from derivations.guaranteed_velocity.model import CHANNEL, H, T, tau
 from navsym.claims import CERTIFIED, REFUTED, Bound, Equation, claim
 from navsym.models.linear import observability_matrix
 from navsym.models.transition.exponential import transition_matrix
 from navsym.prove.identities.normal_form import vanishes_identically
+from navsym_papers.guaranteed_velocity.model import CHANNEL, H, T, tau
 
 alpha, velocity, bias, drift, azimuth = sp.symbols("alpha pi_ epsilon nu beta3", real=True)
 earth_rate = sp.Symbol("U", positive=True)

@@ -6,8 +6,8 @@ from collections.abc import Callable
 
 import sympy as sp
 
-from derivations.guaranteed_velocity.model import INSTANTS, STATED, H, N, T, alternating, sigma1, sigma2, tau, weights
 from navsym.claims import REFUTED, Bound, Claim, Equation, Optimum, Statement, claim
+from navsym_papers.guaranteed_velocity.model import INSTANTS, STATED, H, N, T, alternating, sigma1, sigma2, tau, weights
 
 # -- (4.10), (4.11) ---------------------------------------
 

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import sympy as sp
 
-from derivations.joint_correction.section1_systems import (
+from navsym.claims import CERTIFIED, Bound, Equation, Finding, Property, claim
+from navsym.observability.splits import companion, inverse, unit_row
+from navsym_papers.joint_correction.section1_systems import (
     System,
     coefficients_of_polynomial,
     coordinates,
@@ -13,8 +15,6 @@ from derivations.joint_correction.section1_systems import (
     k,
     systems,
 )
-from navsym.claims import CERTIFIED, Bound, Equation, Finding, Property, claim
-from navsym.observability.splits import companion, inverse, unit_row
 
 SIZES = "the symbolic systems (n, m) = (2, 1), (3, 2), (4, 2), (5, 3), all parameters"
 

@@ -6,10 +6,10 @@ from functools import cache
 
 import sympy as sp
 
-from derivations.joint_correction.section1_chains import coefficients, theta_of
-from derivations.joint_correction.section1_systems import System, flat, free, k, overlapping, polynomial_of
 from navsym.claims import Equation, Finding, Property, claim
 from navsym.observability.splits import companion, corner, inverse, last_row, lowest_terms, shift, unit_row
+from navsym_papers.joint_correction.section1_chains import coefficients, theta_of
+from navsym_papers.joint_correction.section1_systems import System, flat, free, k, overlapping, polynomial_of
 
 #: Splits i, j of the overlapping system (n = 4, m = 3) that have all three parts.
 CASES = ((2, 2), (1, 3))

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import sympy as sp
 
-from derivations.joint_correction.section1_chains import SIZES, coefficients, rank_of
-from derivations.joint_correction.section1_systems import (
+from navsym.claims import REFUTED, Equation, Finding, Property, claim
+from navsym.observability.splits import companion, inverse, last_row, unit_row
+from navsym_papers.joint_correction.section1_chains import SIZES, coefficients, rank_of
+from navsym_papers.joint_correction.section1_systems import (
     System,
     coefficients_of_polynomial,
     coordinates,
@@ -16,8 +18,6 @@ from derivations.joint_correction.section1_systems import (
     polynomial_of,
     systems,
 )
-from navsym.claims import REFUTED, Equation, Finding, Property, claim
-from navsym.observability.splits import companion, inverse, last_row, unit_row
 
 
 def phi_of(s: System) -> list[sp.Expr]:

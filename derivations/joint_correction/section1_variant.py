@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import sympy as sp
 
-from derivations.joint_correction.section1_systems import flat
-from derivations.joint_correction.section1_two_stage import PAIRS, blocks
 from navsym.claims import Equation, Finding, Property, claim
 from navsym.observability.splits import inverse
+from navsym_papers.joint_correction.section1_systems import flat
+from navsym_papers.joint_correction.section1_two_stage import PAIRS, blocks
 
 
 def general(m: int, rest: int) -> dict[str, sp.Matrix]:

@@ -54,7 +54,7 @@ def ratio(length: int) -> sp.Expr:
 @claim("2.8.solution")
 def measurement_before_the_end():
     """The rows used here solve the equations: velocity and position u before the end, in the variables at the end."""
-    from derivations.joint_correction.section2_groups import mu, position, velocity
+    from navsym_papers.joint_correction.section2_groups import mu, position, velocity
 
     printed, derived = [], []
     for row, group, size in ((VELOCITY, velocity(), 3), (POSITION, position(), 4)):

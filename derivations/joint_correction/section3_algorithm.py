@@ -6,12 +6,12 @@ from functools import cache
 
 import sympy as sp
 
-from derivations.joint_correction.section1_systems import p, polynomial_of
-from derivations.joint_correction.section2_groups import mu, position, row, u3, velocity, w1, w2
 from navsym.claims import REFUTED, Equation, Finding, Property, claim
 from navsym.models.inertial import FULL, X, Y, joint_model
 from navsym.models.linear import LinearModel
 from navsym.observability.chains import observe
+from navsym_papers.joint_correction.section1_systems import p, polynomial_of
+from navsym_papers.joint_correction.section2_groups import mu, position, row, u3, velocity, w1, w2
 
 
 @cache
@@ -44,7 +44,7 @@ common = tuple(
 def overlap():
     """The two groups have exactly four dimensions in common: those of (3.1)."""
     first, second = functionals(velocity().meaning), functionals(position().meaning)
-    from derivations.joint_correction.section1_chains import rank_of
+    from navsym_papers.joint_correction.section1_chains import rank_of
 
     shared = rank_of(first) + rank_of(second) - rank_of(sp.Matrix.vstack(first, second))
     return Property(

@@ -12,12 +12,12 @@ from itertools import pairwise
 
 import sympy as sp
 
-from derivations.joint_correction.section1_systems import coefficients_of_polynomial, p, polynomial_of
-from derivations.joint_correction.section2_groups import mu, position, velocity, w1, w2
-from derivations.joint_correction.section3_algorithm import joint_error_matrix
 from navsym.claims import CERTIFIED, Equation, Finding, Property, claim
 from navsym.models.inertial import EARTH, MU
 from navsym.observability.splits import inverse, lowest_terms
+from navsym_papers.joint_correction.section1_systems import coefficients_of_polynomial, p, polynomial_of
+from navsym_papers.joint_correction.section2_groups import mu, position, velocity, w1, w2
+from navsym_papers.joint_correction.section3_algorithm import joint_error_matrix
 
 lam, lam_h = sp.symbols("lambda_c lambda_h", positive=True)
 kappa, omega = sp.symbols("kappa omega", real=True)

@@ -11,9 +11,9 @@ from functools import cache
 
 import sympy as sp
 
-from derivations.joint_correction.section2_groups import mu, w2
-from derivations.joint_correction.section3_gains import VELOCITY_GAINS, lam, lam_h, position_block, velocity_block
 from navsym.claims import Equation, claim
+from navsym_papers.joint_correction.section2_groups import mu, w2
+from navsym_papers.joint_correction.section3_gains import VELOCITY_GAINS, lam, lam_h, position_block, velocity_block
 
 l, h = lam, lam_h
 

@@ -3,8 +3,8 @@
 The files follow the paper: error models (1)-(3), the jump model (4)-(6) with (14) and (19), the recursion
 (7)-(11), moments (12)-(13), the Gaussian step (15)-(18), the pulsating filters, the polygaussian filter
 (19)-(21). Recurrences for densities are total probability and Bayes' rule: they are decided on finite-state
-analogues with free symbols for every probability (:mod:`derivations.multistructure.finite`), where integrals
-are sums, for any number of modes by induction (:mod:`derivations.multistructure.any_number`), and again for Gaussian
+analogues with free symbols for every probability (:mod:`navsym_papers.multistructure.finite`), where integrals
+are sums, for any number of modes by induction (:mod:`navsym_papers.multistructure.any_number`), and again for Gaussian
 families. Words are decided by counting, by one exact example, or by an integral in balls.
 
 ``conditions`` has what stands in words between the equations; ``forgetting`` goes beyond the paper: how wrong the

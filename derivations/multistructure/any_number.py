@@ -4,7 +4,7 @@ Every right side is a quotient of sums over modes and over values of the state, 
 table of the step; both are built term by term. A claim here says that the next term adds the same to both, whatever
 stood there before (capital letters: sums so far, free), and that both are zero before the first term. That is an
 induction over the number of modes and the number of values, with no bound on either; sums that converge, and
-integrals, inherit it by linearity. :mod:`derivations.multistructure.finite` decides the same for small sizes whole.
+integrals, inherit it by linearity. :mod:`navsym_papers.multistructure.finite` decides the same for small sizes whole.
 """
 
 from __future__ import annotations

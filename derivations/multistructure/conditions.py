@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import sympy as sp
 
-from derivations.multistructure import examples
-from derivations.multistructure.moments import mixture
 from navsym.claims import REFUTED, Equation, claim
 from navsym.multimodel.exact import Kit, run_exactly
 from navsym.multimodel.steps import scheme
+from navsym_papers.multistructure import examples
+from navsym_papers.multistructure.moments import mixture
 
 #: Equal models have equal densities, and nothing else is needed of (18): any function of the residual will do.
 ANY_DENSITY = Kit(density=lambda distance, determinant, p: 1 / (determinant * (1 + distance)), tidy=sp.cancel)

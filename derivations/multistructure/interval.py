@@ -12,11 +12,11 @@ import functools
 import sympy as sp
 from flint import arb, arb_series, ctx, fmpq, fmpq_poly
 
-from derivations.multistructure import examples
-from derivations.multistructure.pulsating import MODELS, SWITCHING, differs, leaves_by_tree
 from navsym.claims import CERTIFIED, REFUTED, Finding, Property, claim
 from navsym.multimodel.exact import Kit, Leaf, Model, run_exactly
 from navsym.multimodel.steps import filters_at, scheme
+from navsym_papers.multistructure import examples
+from navsym_papers.multistructure.pulsating import MODELS, SWITCHING, differs, leaves_by_tree
 
 
 @claim("count.K")

@@ -6,8 +6,8 @@ from itertools import product
 
 import sympy as sp
 
-from derivations.multistructure.finite import distribution
 from navsym.claims import REFUTED, Equation, claim
+from navsym_papers.multistructure.finite import distribution
 
 TWO = (0, 1)
 

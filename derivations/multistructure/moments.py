@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import sympy as sp
 
-from derivations.multistructure import finite
-from derivations.multistructure.finite import Step, every_size, step
-from derivations.multistructure.recursion import UNIT
 from navsym.claims import REFUTED, Equation, claim
+from navsym_papers.multistructure import finite
+from navsym_papers.multistructure.finite import Step, every_size, step
+from navsym_papers.multistructure.recursion import UNIT
 
 
 def values(s: Step, name: str):

@@ -6,12 +6,12 @@ from fractions import Fraction
 
 import sympy as sp
 
-from derivations.multistructure import finite
-from derivations.multistructure.finite import Step, step
-from derivations.multistructure.recursion import UNIT
 from navsym.claims import REFUTED, Equation, Finding, Property, claim
 from navsym.multimodel.exact import Leaf, Model, fractions_kit, run_exactly
 from navsym.multimodel.steps import scheme
+from navsym_papers.multistructure import finite
+from navsym_papers.multistructure.finite import Step, step
+from navsym_papers.multistructure.recursion import UNIT
 
 
 def frozen_steps():

@@ -7,10 +7,10 @@ from itertools import pairwise, product
 
 import sympy as sp
 
-from derivations.multistructure import examples, finite
-from derivations.multistructure.finite import Step, step
-from derivations.multistructure.recursion import UNIT
 from navsym.claims import CERTIFIED, PROVED, REFUTED, Bound, Equation, Finding, Property, claim
+from navsym_papers.multistructure import examples, finite
+from navsym_papers.multistructure.finite import Step, step
+from navsym_papers.multistructure.recursion import UNIT
 
 
 def forgetful_steps():

@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import sympy as sp
 
-from derivations.multistructure import finite
-from derivations.multistructure.finite import Step, every_size, step
 from navsym.claims import REFUTED, Bound, Equation, claim
+from navsym_papers.multistructure import finite
+from navsym_papers.multistructure.finite import Step, every_size, step
 
 
 def total(terms):

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import sympy as sp
 
-from derivations.terrain_search.model import SIZES, crossing_time, free_motion, misfit, n, slopes, speed, step, t
 from navsym.claims import CERTIFIED, REFUTED, Bound, Equation, claim
+from navsym_papers.terrain_search.model import SIZES, crossing_time, free_motion, misfit, n, slopes, speed, step, t
 
 alpha, beta, y, dV = sp.symbols("alpha beta y deltaV", real=True)
 k, index = sp.symbols("k i", real=True)

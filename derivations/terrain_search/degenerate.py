@@ -11,8 +11,8 @@ from itertools import combinations
 
 import sympy as sp
 
-from derivations.terrain_search.model import inverse, moment, slopes
 from navsym.claims import Bound, Equation, claim
+from navsym_papers.terrain_search.model import inverse, moment, slopes
 
 s = sp.symbols("s0:6", real=True)
 times = sp.symbols("t1:5", real=True)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import sympy as sp
 
-from derivations.terrain_search.model import SIZES, beta_x, beta_y, crossing_time, moment, slopes, speed, step
 from navsym.claims import PROVED, REFUTED, Equation, Finding, Property, claim
+from navsym_papers.terrain_search.model import SIZES, beta_x, beta_y, crossing_time, moment, slopes, speed, step
 
 DIRECTION = (beta_x, beta_y)
 #: The quadratic is decided on tracks of these sizes; every printed sum runs over pairs of points, so

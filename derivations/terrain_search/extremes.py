@@ -6,9 +6,9 @@ from fractions import Fraction
 
 import sympy as sp
 
-from derivations.terrain_search.directions import quotient
-from derivations.terrain_search.model import beta_x, beta_y, crossing_time, inverse, moment, slopes, symmetric
 from navsym.claims import OPEN, PROVED, REFUTED, Bound, Equation, Finding, Property, claim
+from navsym_papers.terrain_search.directions import quotient
+from navsym_papers.terrain_search.model import beta_x, beta_y, crossing_time, inverse, moment, slopes, symmetric
 
 G, M = symmetric("G"), symmetric("M")
 a, b = sp.symbols("a b", positive=True)

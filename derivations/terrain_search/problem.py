@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import sympy as sp
 
-from derivations.terrain_search.model import SIZES, free_motion, inverse, moment, n, slopes
 from navsym.claims import REFUTED, Bound, Equation, claim
+from navsym_papers.terrain_search.model import SIZES, free_motion, inverse, moment, n, slopes
 
 i, j, Vi, Vj = sp.symbols("i j Vi Vj", real=True)
 Dx, Dy, DVx, DVy, T = sp.symbols("Deltax Deltay DeltaVx DeltaVy T", positive=True)

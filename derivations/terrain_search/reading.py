@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import sympy as sp
 
-from derivations.terrain_search.experiment import FULL, FULL_SPEED, POSITION, SEQUENTIAL, SEQUENTIAL_SPEED
 from navsym.claims import CERTIFIED, REFUTED, Bound, Equation, claim
+from navsym_papers.terrain_search.experiment_printed import FULL, FULL_SPEED, POSITION, SEQUENTIAL, SEQUENTIAL_SPEED
 
 #: Step and half range of the velocity hypotheses in m/s, step of the positions in metres, length of 1000 measurements.
 SPEED_STEP, SPEED_RANGE, PLACE_STEP, HALF_RUN = map(sp.Integer, (1, 5, 50, 500))

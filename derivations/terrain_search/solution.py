@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import sympy as sp
 
-from derivations.terrain_search.model import free_motion, inverse, slopes, symmetric
 from navsym.claims import REFUTED, Equation, claim
+from navsym_papers.terrain_search.model import free_motion, inverse, slopes, symmetric
 
 G, M1, M2 = symmetric("G"), symmetric("M"), symmetric("N")
 b0 = sp.Matrix(sp.symbols("b01 b02", real=True))

@@ -11,12 +11,12 @@ from fractions import Fraction
 
 import flint
 
-from derivations.trajectory.experiment import TAU, ball
-from derivations.trajectory.gain import PERIOD, gain_in_f, stationary_deviation
 from navsym.claims import CERTIFIED, CONFIRMED, OPEN, Finding, Property, claim
 from navsym.models.earth import pascal_rows
-from navsym.trajectory.experiment import course, with_printed_gain
 from navsym.trajectory.stability import gain_stability, harmonic_lag, stationary_covariance
+from navsym_papers.trajectory.experiment.courses import course, with_printed_gain
+from navsym_papers.trajectory.experiment_printed import TAU, ball
+from navsym_papers.trajectory.gain import PERIOD, gain_in_f, stationary_deviation
 
 #: Metric gains (per metre: 1, 1/s, 1/s^2, ...) found by a search; what they do is computed below.
 WITNESSES = {

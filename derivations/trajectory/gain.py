@@ -7,7 +7,6 @@ from fractions import Fraction
 
 import flint
 
-from derivations.trajectory.experiment import TAU, ball
 from navsym.claims import CERTIFIED, REFUTED, Finding, Property, claim
 from navsym.trajectory.stability import (
     gain_stability,
@@ -17,6 +16,7 @@ from navsym.trajectory.stability import (
     root_decimal,
     stationary_covariance,
 )
+from navsym_papers.trajectory.experiment_printed import TAU, ball
 
 PERIOD = Fraction(360)
 

@@ -6,11 +6,11 @@ from fractions import Fraction
 
 import sympy as sp
 
-from derivations.trajectory.table import COLUMNS, ORDERS, PRINTED, STEPS, in_printed_format, true_value
 from navsym.claims import CERTIFIED, REFUTED, Equation, Finding, Property, claim
 from navsym.models.earth import observability_rows
 from navsym.trajectory.conditioning import condition_number
-from navsym.trajectory.experiment import scaling_changes_rounding
+from navsym_papers.trajectory.experiment.courses import scaling_changes_rounding
+from navsym_papers.trajectory.table import COLUMNS, ORDERS, PRINTED, STEPS, in_printed_format, true_value
 
 RADIUS = Fraction(6371000)
 

@@ -9,9 +9,9 @@ from __future__ import annotations
 from functools import cache
 from itertools import pairwise
 
-from derivations.trajectory.table import COLUMNS, ORDERS, PRINTED, STEPS, true_value
 from navsym.claims import CERTIFIED, REFUTED, Finding, Property, claim
 from navsym.trajectory.conditioning import Enclosure
+from navsym_papers.trajectory.table import COLUMNS, ORDERS, PRINTED, STEPS, true_value
 
 LARGEST = 20
 METHOD = "certified condition numbers"

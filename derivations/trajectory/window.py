@@ -15,8 +15,8 @@ from math import factorial
 
 import sympy as sp
 
-from derivations.trajectory.scaling import N_f
 from navsym.claims import CERTIFIED, Claim, Equation, claim
+from navsym_papers.trajectory.scaling import N_f
 
 T, q, D = sp.symbols("T q d", positive=True)
 u = sp.Symbol("u", real=True)

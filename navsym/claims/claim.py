@@ -15,6 +15,9 @@ from navsym.core.errors import MissingEngineError
 
 Slip = Literal["paper", "scan"]
 
+#: The package of the papers; in a checkout it is the folder ``derivations/``.
+PAPERS = "navsym_papers"
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Claim:
@@ -87,9 +90,9 @@ def claim(
 
 
 def module_of(derive: Callable[[], Statement]) -> str:
-    """Name of the derivation module: the part of the dotted name after ``derivations``."""
+    """Name of the derivation module: the part of the dotted name after the package of the papers."""
     parts = derive.__module__.split(".")
-    return parts[1] if parts[0] == "derivations" and len(parts) > 1 else parts[-1]
+    return parts[1] if parts[0] == PAPERS and len(parts) > 1 else parts[-1]
 
 
 def first_line(derive: Callable[[], Statement]) -> str:

@@ -6,9 +6,10 @@ import importlib
 import pkgutil
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 from types import ModuleType
 
-from navsym.claims.claim import Claim
+from navsym.claims.claim import PAPERS, Claim
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -58,6 +59,27 @@ def coverage(paper: Paper, claims: Iterable[Claim]) -> Coverage:
     definitions = tuple(e for e in paper.equations if e in paper.definitions and e not in touched)
     missing = tuple(e for e in paper.equations if e not in touched and e not in paper.definitions)
     return Coverage(claimed, definitions, missing)
+
+
+def papers_folder() -> Path:
+    """Folder of the papers, with the ledger and the wording of erratum sheets: ``derivations/`` in a checkout."""
+    return Path(next(iter(importlib.import_module(PAPERS).__path__)))
+
+
+def paper_names() -> list[str]:
+    """Names of the derivation modules, by listing the folder."""
+    names = (entry.name for entry in pkgutil.iter_modules([str(papers_folder())]))
+    return sorted(name for name in names if not name.startswith("_"))
+
+
+def import_paper(name: str) -> ModuleType:
+    """The module of a paper, or a part of it: ``"trajectory"``, ``"trajectory.experiment.study"``."""
+    return importlib.import_module(f"{PAPERS}.{name}")
+
+
+def experiment_names() -> list[str]:
+    """Names of the papers whose numerical experiment can be run again: ``experiment/study.py`` has it."""
+    return sorted(path.parts[-3] for path in papers_folder().glob("*/experiment/study.py"))
 
 
 def claims_of(module: ModuleType) -> tuple[Claim, ...]:

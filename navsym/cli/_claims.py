@@ -67,9 +67,9 @@ def decide(wanted: str, seconds: float = SECONDS) -> tuple[Paper, dict[str, Any]
 
 def stored_records() -> dict[str, dict[str, Any]]:
     """Records of the ledger by id; empty when there is none."""
-    from navsym.cli.verify import ledger_folder
+    from navsym.claims.paper import papers_folder
 
-    path = ledger_folder() / "verdicts.json"
+    path = papers_folder() / "verdicts.json"
     if not path.exists():
         return {}
     return {record["id"]: record for record in json.loads(path.read_text(encoding="utf-8"))["claims"]}

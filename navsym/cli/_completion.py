@@ -11,9 +11,10 @@ import shlex
 from collections.abc import Callable, Iterable
 from pathlib import Path
 
+from navsym.claims.paper import experiment_names, paper_names, papers_folder
+
 SHELLS = ("bash", "zsh", "fish")
 STATUSES = ("PROVED", "CERTIFIED", "CONFIRMED", "REFUTED", "OPEN")
-DERIVATIONS = Path(__file__).parents[2] / "derivations"
 
 
 def candidates(line: str, verbs: dict[str, Path]) -> list[str]:
@@ -71,19 +72,10 @@ def option_call(annotation: ast.expr | None) -> ast.Call | None:
     return None
 
 
-def modules() -> list[str]:
-    """Derivation modules, files or folders."""
-    return sorted(
-        path.stem
-        for path in DERIVATIONS.glob("*")
-        if not path.name.startswith("_") and (path.suffix == ".py" or (path / "__init__.py").exists())
-    )
-
-
 def claims() -> list[str]:
     """Ids of all claims, from the ledger."""
     try:
-        document = json.loads((DERIVATIONS / "verdicts.json").read_text(encoding="utf-8"))
+        document = json.loads((papers_folder() / "verdicts.json").read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return []
     return [record["id"] for record in document["claims"]]
@@ -101,16 +93,16 @@ POSITIONAL: dict[str, Callable[[], Iterable[str]]] = {
     "explain": claims,
     "cite": claims,
     "export": claims,
-    "verify": modules,
-    "report": modules,
-    "new-claim": modules,
-    "simulate": lambda: ("joint_correction", "multistructure", "terrain_search", "trajectory"),
-    "campaign": lambda: ("mutants", "engines", "parser", "fuzz", "certificates", "identities", *modules()),
+    "verify": paper_names,
+    "report": paper_names,
+    "new-claim": paper_names,
+    "simulate": experiment_names,
+    "campaign": lambda: ("mutants", "engines", "parser", "fuzz", "certificates", "identities", *paper_names()),
     "data": datasets,
     "completion": lambda: SHELLS,
 }
 VALUES: dict[str, Callable[[], Iterable[str]]] = {
-    "--paper": modules,
+    "--paper": paper_names,
     "--status": lambda: STATUSES,
     "--slip": lambda: ("paper", "scan", "any"),
     "--real": lambda: ("double", "float"),

@@ -88,11 +88,11 @@ def chosen_batches(name: str, modules: list[str], share: float, inputs: int, see
 
 def tested(name: str) -> tuple[Any, Any]:
     """The cases of a table under tests/, and pytest as their judge."""
-    from navsym.cli.verify import ledger_folder
+    from navsym.claims.paper import papers_folder
     from navsym.core.errors import NavsymError
     from navsym.studies.campaigns import cases
 
-    root, (place, size) = ledger_folder().parent, TESTED[name]
+    root, (place, size) = papers_folder().parent, TESTED[name]
     if not (root / place).exists():
         raise NavsymError(f"expected {place}; got an installation without tests; run it from a checkout")
     return cases.batches(root, place, size), cases.judge
@@ -111,13 +111,10 @@ def in_batches(name: str, batches: Any, judge: Any, *, jobs: int, seconds: float
 
 
 def papers(names: list[str]) -> list[Any]:
-    import importlib
-
-    from navsym.cli import verify
+    from navsym.claims.paper import import_paper, paper_names
     from navsym.verification.decide import paper_module
 
-    chosen = names or verify.names()
-    return [paper_module(importlib.import_module(f"derivations.{name}")) for name in chosen]
+    return [paper_module(import_paper(name)) for name in names or paper_names()]
 
 
 def row(document: dict[str, Any], seconds: float) -> str:

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import inspect
 import textwrap
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from navsym.claims.paper import papers_folder
 from navsym.cli._claims import decide, find
 from navsym.cli.output import emit
 
@@ -49,8 +51,8 @@ def command(
 def place_of(derive: Any) -> str:
     """File and line of the derivation, from the folder of the derivations on."""
     code = inspect.unwrap(derive).__code__
-    file = code.co_filename.replace("\\", "/")
-    return f"{file[file.rfind('derivations/') :]}:{code.co_firstlineno}"
+    file = Path(code.co_filename).relative_to(papers_folder().parent)
+    return f"{file.as_posix()}:{code.co_firstlineno}"
 
 
 def correction_of(wanted: str) -> Claim | None:

@@ -194,7 +194,7 @@ def translated(error: Exception, arguments: Sequence[str]) -> NavsymError:
 
 def is_our_own(module: str | None) -> bool:
     """True for a module of this project: when one is missing, that is a defect, not the machine."""
-    return (module or "navsym").partition(".")[0] in ("navsym", "derivations")
+    return (module or "navsym").partition(".")[0] in ("navsym", "navsym_papers")
 
 
 def usage_error(error: Any, arguments: Sequence[str]) -> NavsymError:

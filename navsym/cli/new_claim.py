@@ -35,10 +35,10 @@ def command(
 
     Example: navsym new-claim schuler_pendulum 1 --printed "2*pi*sqrt(R/g)" --derived "2*pi/sqrt(g/R)" --positive R,g
     """
-    from navsym.cli.verify import ledger_folder
+    from navsym.claims.paper import papers_folder
     from navsym.language.scaffold import NewClaim, check_module_name, equations_of, with_claim
 
-    path = (folder or ledger_folder()) / f"{check_module_name(module)}.py"
+    path = (folder or papers_folder()) / f"{check_module_name(module)}.py"
     if not path.is_file():
         message = f"expected a module in one file; got {module}; make it with navsym new-paper"
         raise DomainError(message, where=str(path))

@@ -26,12 +26,12 @@ def command(
 
     Example: navsym new-paper schuler_pendulum --author "A. Author" --year 1923 --equations "1-6"
     """
-    from navsym.cli.verify import ledger_folder
+    from navsym.claims.paper import papers_folder
     from navsym.language.scaffold import check_module_name, equation_numbers, module_source
 
-    path = (folder or ledger_folder()) / f"{check_module_name(name)}.py"
+    path = (folder or papers_folder()) / f"{check_module_name(name)}.py"
     if path.exists() or path.with_suffix("").exists():
-        message = f"expected a new module; got {name}, which exists; do choose another name"
+        message = f"expected a new module; got {name}, which exists; choose another name"
         raise DuplicateError(message, where=str(path))
     text = module_source(name, title, author or [], year, source, language, equation_numbers(equations))
     write_text(path, text)

@@ -48,10 +48,10 @@ def command(
 
 def wordings() -> dict[str, Any]:
     """Wording of the erratum sheets by module, from the folder beside the derivations."""
-    from navsym.cli.verify import ledger_folder
+    from navsym.claims.paper import papers_folder
     from navsym.report.wording import read_wording
 
-    files = sorted((ledger_folder() / "errata").glob("*.toml"))
+    files = sorted((papers_folder() / "errata").glob("*.toml"))
     return {path.stem: read_wording(path.read_text(encoding="utf-8"), path.name) for path in files}
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 import inspect
 from collections.abc import Container
 from pathlib import Path
@@ -13,15 +12,6 @@ import typer
 from navsym.cli._choice import one_of
 from navsym.cli._progress import Progress
 from navsym.cli.output import emit, table
-
-#: Name -> "module:experiment:as_table". The experiment takes seed, progress and perhaps runs, steps, journal, and
-#: returns plain data; as_table turns that into headings and rows. Modules are imported when their name is asked for.
-EXPERIMENTS = {
-    "joint_correction": "navsym.observability.two_stage.study:study:as_table",
-    "multistructure": "navsym.multimodel.study:experiment:as_table",
-    "terrain_search": "navsym.terrain.experiment:study:as_table",
-    "trajectory": "navsym.trajectory.study:study:as_table",
-}
 
 
 def command(
@@ -40,24 +30,25 @@ def command(
 
     Example: navsym simulate multistructure --runs 200 --seed 1
     """
+    from navsym.claims.paper import experiment_names, import_paper
     from navsym.core.errors import DomainError
 
-    one_of(name, EXPERIMENTS, "name")
+    one_of(name, experiment_names(), "name")
     if seed < 0:
         raise DomainError(f"expected a seed of at least 0; got {seed}; choose another", where="--seed")
-    module_name, experiment, as_table = EXPERIMENTS[name].split(":")
-    module = importlib.import_module(module_name)
+    # A study takes seed, progress and perhaps runs, steps, journal; as_table gives headings and rows of its document.
+    module = import_paper(f"{name}.experiment.study")
     given = {"runs": runs, "steps": steps, "journal": journal}
     options: dict[str, Any] = {key: value for key, value in given.items() if value is not None}
-    accepted = inspect.signature(getattr(module, experiment)).parameters
+    accepted = inspect.signature(module.study).parameters
     for option in options:
         if option not in accepted:
             takes = ", ".join(f"--{key}" for key in ("seed", *given) if key in accepted)
             message = f"expected an option that {name} has ({takes}); got {option}; leave it out"
             raise DomainError(message, where=f"--{option}")
     with Progress("runs", resume=resume(journal, accepted)) as bar:
-        document: dict[str, Any] = getattr(module, experiment)(seed=seed, progress=bar.told_by_job, **options)
-    emit(document, as_json=json_, text=lambda: table(*getattr(module, as_table)(document)))
+        document: dict[str, Any] = module.study(seed=seed, progress=bar.told_by_job, **options)
+    emit(document, as_json=json_, text=lambda: table(*module.as_table(document)))
 
 
 def resume(journal: Path | None, accepted: Container[str]) -> str:

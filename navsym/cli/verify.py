@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
-import pkgutil
 import textwrap
 import time
 from collections.abc import Mapping, Sequence
@@ -12,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from navsym.claims.paper import import_paper, paper_names, papers_folder
 from navsym.cli._choice import one_of
 from navsym.cli._progress import Progress
 from navsym.cli.output import emit, remark, table, write_text
@@ -65,28 +64,22 @@ def cards_of(chosen: Sequence[PaperModule]) -> dict[str, Paper]:
     return {module.name: module.paper for module in chosen}
 
 
-def names() -> list[str]:
-    """Derivation modules that are installed, by listing the folder."""
-    package = importlib.import_module("derivations")
-    return sorted(entry.name for entry in pkgutil.iter_modules(package.__path__) if not entry.name.startswith("_"))
-
-
 def load(wanted: Sequence[str]) -> list[PaperModule]:
     """Import the modules asked for, or all of them."""
     from navsym.verification.decide import paper_module
 
-    known = names()
+    known = paper_names()
     for name in wanted:
         one_of(name, known, "command line")
     chosen = list(dict.fromkeys(wanted)) or known
-    return [paper_module(importlib.import_module(f"derivations.{name}")) for name in chosen]
+    return [paper_module(import_paper(name)) for name in chosen]
 
 
 def sources() -> Snapshot:
     """What the sources of the derivations and of the deciding rooms are now."""
     from navsym.verification.fingerprints import snapshot
 
-    return snapshot(ledger_folder())
+    return snapshot(papers_folder())
 
 
 def decided(
@@ -162,13 +155,8 @@ class KeptVerdicts:
             remark(f"not kept: {len(self.lost)} verdicts: {', '.join(self.lost[:12])}{' …' * (len(self.lost) > 12)}")
 
 
-def ledger_folder() -> Path:
-    """Where the ledger lives: the folder of the derivations."""
-    return Path(next(iter(importlib.import_module("derivations").__path__)))
-
-
 def ledger_file() -> Path:
-    return ledger_folder() / "verdicts.json"
+    return papers_folder() / "verdicts.json"
 
 
 def differences(document: dict[str, Any]) -> list[str]:
@@ -189,7 +177,7 @@ def write_ledger(document: dict[str, Any]) -> None:
     old = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {"claims": [], "papers": []}
     whole = merged(document, {record["id"]: record for record in old["claims"]}, old["papers"])
     write_text(path, ledger_text(whole))
-    write_text(ledger_folder() / "README.md", people_text(whole, cards_of(load([]))))
+    write_text(papers_folder() / "README.md", people_text(whole, cards_of(load([]))))
 
 
 def as_text(

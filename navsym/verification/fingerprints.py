@@ -30,13 +30,13 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from navsym.claims import Claim
+from navsym.claims.claim import PAPERS, Claim
 from navsym.core.store import key_of
 
 # The sources of derivations, read and not run: what defines a name, what it mentions, where it is imported from.
 
 
-PACKAGE = "derivations"
+PACKAGE = PAPERS
 
 #: Names by which code reaches what it does not name: what mentions one depends on every derivation.
 INDIRECT = frozenset(

@@ -49,10 +49,10 @@ def versions(tmp_path):
     folders = tmp_path / "one", tmp_path / "other"
     for folder in folders:
         shutil.copytree(ROOT / "navsym", folder / "navsym", ignore=shutil.ignore_patterns("__pycache__"))
-        (folder / "derivations").mkdir()
-        shutil.copy(ROOT / "derivations" / "__init__.py", folder / "derivations")
-        (folder / "derivations" / "tiny.py").write_text(PAPER, encoding="utf-8")
-    with (folders[1] / "navsym" / "proof" / "ladder.py").open("a", encoding="utf-8") as file:
+        (folder / "navsym_papers").mkdir()
+        shutil.copy(ROOT / "derivations" / "__init__.py", folder / "navsym_papers")
+        (folder / "navsym_papers" / "tiny.py").write_text(PAPER, encoding="utf-8")
+    with (folders[1] / "navsym" / "prove" / "ladder.py").open("a", encoding="utf-8") as file:
         file.write(OTHER)
     return folders
 

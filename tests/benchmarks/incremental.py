@@ -22,8 +22,8 @@ ROOT = Path(__file__).resolve().parents[2]
 SECONDS = 600
 #: Claim -> its file and the beginning of its last line; a name that nothing uses is bound before it.
 TOUCHED = {
-    "alpha_beta_filter:4": ("derivations/alpha_beta_filter.py", "    return Equation(printed=second**2 / (1 - first)"),
-    "terrain_search:cost.few": ("derivations/terrain_search/cost.py", "    return Bound(printed=10 * MV * MV"),
+    "alpha_beta_filter:4": ("navsym_papers/alpha_beta_filter.py", "    return Equation(printed=second**2 / (1 -"),
+    "terrain_search:cost.few": ("navsym_papers/terrain_search/cost.py", "    return Bound(printed=10 * MV * MV"),
 }
 FILL = """
 import json, pathlib
@@ -32,7 +32,7 @@ from navsym.verification.fingerprints import fingerprints
 from navsym.core.store import Store
 keys = fingerprints(claim for module in load([]) for claim in module.claims)
 store = Store()
-for record in json.loads(pathlib.Path("derivations/verdicts.json").read_text())["claims"]:
+for record in json.loads(pathlib.Path("navsym_papers/verdicts.json").read_text())["claims"]:
     if record["id"] in keys:
         store.put(keys[record["id"]], {**record, "seconds": 0.0})
 """
@@ -66,8 +66,8 @@ def touch(folder: Path, repeat: int) -> None:
 def main(repeats: int = 3) -> None:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        for part in ("navsym", "derivations"):
-            shutil.copytree(ROOT / part, folder / part)
+        for part, package in (("navsym", "navsym"), ("derivations", "navsym_papers")):
+            shutil.copytree(ROOT / part, folder / package)
         python(folder, "-c", FILL)
         python(folder, "-m", "navsym", "verify", "--json")  # sources compiled, files in memory
         for repeat in range(repeats):

@@ -7,8 +7,8 @@ import json
 import numpy as np
 import pytest
 
+from navsym.claims.paper import experiment_names
 from navsym.cli import main
-from navsym.cli.simulate import EXPERIMENTS
 
 UNIT = [[1.0]]
 
@@ -245,4 +245,4 @@ def test_simulate_is_repeatable_and_scores_every_method(capsys):
 def test_an_unknown_experiment_is_refused_with_the_known_ones(capsys):
     assert main.run(["simulate", "nothing", "--json"]) == 2
     message = json.loads(capsys.readouterr().out)["error"]["message"]
-    assert all(name in message for name in EXPERIMENTS)
+    assert all(name in message for name in experiment_names())

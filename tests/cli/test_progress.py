@@ -80,9 +80,9 @@ def told_by(study, **options):
 @pytest.mark.parametrize(
     ("module", "name", "options"),
     [
-        ("navsym.multimodel.study", "experiment", {"runs": 2, "steps": 2}),
-        ("navsym.trajectory.study", "study", {"runs": 1}),
-        ("navsym.observability.two_stage.study", "study", {}),
+        ("navsym_papers.multistructure.experiment.study", "study", {"runs": 2, "steps": 2}),
+        ("navsym_papers.trajectory.experiment.study", "study", {"runs": 1}),
+        ("navsym_papers.joint_correction.experiment.study", "study", {}),
     ],
 )
 def test_an_experiment_counts_every_step_to_the_last(module, name, options):

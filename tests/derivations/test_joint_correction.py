@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import sympy as sp
 
-from derivations import joint_correction
-from derivations.joint_correction import section1_systems, section3_gains
-from derivations.joint_correction.section2_groups import position, velocity
 from navsym.claims import REFUTED, claims_of, coverage
 from navsym.models.inertial import ORDERS, lowest_order
+from navsym_papers import joint_correction
+from navsym_papers.joint_correction import section1_systems, section3_gains
+from navsym_papers.joint_correction.section2_groups import position, velocity
 
 CLAIMS = claims_of(joint_correction)
 

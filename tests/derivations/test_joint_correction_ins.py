@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from navsym.core.errors import DomainError
-from navsym.observability.two_stage.flight import EARTH_RADIUS, EARTH_RATE, SCHULER_RATE, great_circle
-from navsym.observability.two_stage.ins import (
+from navsym_papers.joint_correction.experiment.flight import EARTH_RADIUS, EARTH_RATE, SCHULER_RATE, great_circle
+from navsym_papers.joint_correction.experiment.ins import (
     Errors,
     Situation,
     along,
@@ -122,7 +122,7 @@ def test_a_flight_that_does_not_move_is_refused():
 
 
 def test_no_situation_of_the_last_paragraph_beats_the_kalman_filter_of_the_full_model():
-    from navsym.observability.two_stage.study import SITUATIONS, situations
+    from navsym_papers.joint_correction.experiment.study import SITUATIONS, situations
 
     rows = situations(great_circle(duration=6600.0, step=20.0))
     pairs = list(zip(rows[::2], rows[1::2], strict=True))

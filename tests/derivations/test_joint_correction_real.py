@@ -11,8 +11,8 @@ import pytest
 from navsym.core.errors import DomainError, EmptyError, NotFiniteError, ShapeError, UnknownSymbolError
 from navsym.observability.chains import observe
 from navsym.observability.splits import split
-from navsym.observability.two_stage.flight import EARTH_RADIUS
-from navsym.observability.two_stage.real import (
+from navsym_papers.joint_correction.experiment.flight import EARTH_RADIUS
+from navsym_papers.joint_correction.experiment.real import (
     FIELDS,
     aiding_model,
     aiding_observer,

@@ -1,19 +1,17 @@
 """Batches, studies, the road and the benchmark: small, and held against their twins."""
 
-import importlib.util
-from pathlib import Path
-
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
 from navsym.core.errors import DomainError, NoDataError, NotFiniteError, ShapeError, TooLargeError
 from navsym.multimodel import memory as multimodel_memory
-from navsym.multimodel import road as multimodel_road
-from navsym.multimodel import study as multimodel_study
 from navsym.multimodel.bank import bank
 from navsym.multimodel.batch import imm_in_numpy, run_batch
 from navsym.multimodel.filters import run
+from navsym_papers.multistructure.experiment import road as multimodel_road
+from navsym_papers.multistructure.experiment import study as multimodel_study
+from tests.benchmarks import multimodel as benchmark
 
 
 @pytest.fixture(scope="module")
@@ -97,9 +95,9 @@ def test_the_exact_filter_is_consistent_and_the_likeliest(models):
 
 def test_a_study_that_cannot_be_is_refused():
     with pytest.raises(DomainError, match="at least 2 runs"):
-        multimodel_study.experiment(runs=1)
+        multimodel_study.study(runs=1)
     with pytest.raises(TooLargeError, match="hypotheses"):
-        multimodel_study.experiment(runs=2, steps=30)
+        multimodel_study.study(runs=2, steps=30)
 
 
 def test_the_one_pass_step_is_the_pulsating_filter(models, signals):
@@ -150,9 +148,5 @@ def test_a_road_that_is_not_there_is_named(tmp_path):
 
 
 def test_the_benchmark_runs_at_its_smallest(capsys):
-    path = Path(__file__).parents[1] / "benchmarks" / "multimodel.py"
-    spec = importlib.util.spec_from_file_location("benchmark_multimodel", path)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    module.main(["--quick"])
+    benchmark.main(["--quick"])
     assert "imm" in capsys.readouterr().out

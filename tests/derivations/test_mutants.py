@@ -23,7 +23,7 @@ SECONDS_OF_BATCH = 300
 
 
 def proven_equations(name):
-    for claim in claims_of(importlib.import_module(f"derivations.{name}")):
+    for claim in claims_of(importlib.import_module(f"navsym_papers.{name}")):
         if claim.expect == PROVED:
             statement = claim.derive()
             if isinstance(statement, Equation) and statement.tolerance is None:

@@ -9,15 +9,15 @@ import pytest
 
 from navsym.checker import Refused, check, load
 from navsym.claims import REFUTED, claims_of
-from navsym.cli.verify import ledger_folder, names
+from navsym.claims.paper import paper_names, papers_folder
 from navsym.verification.decide import paper_module, verify
 
 HOLDS = {"PROVED", "CERTIFIED"}
 
 
-@pytest.fixture(scope="module", params=names())
+@pytest.fixture(scope="module", params=paper_names())
 def document(request):
-    module = paper_module(importlib.import_module(f"derivations.{request.param}"))
+    module = paper_module(importlib.import_module(f"navsym_papers.{request.param}"))
     return verify([module], jobs=1)
 
 
@@ -52,7 +52,7 @@ def test_what_does_not_rest_on_proof_says_so(document):
 
 
 def test_the_ledger_holds_these_verdicts(document):
-    path = ledger_folder() / "verdicts.json"
+    path = papers_folder() / "verdicts.json"
     stored = {r["id"]: r["status"] for r in json.loads(path.read_text(encoding="utf-8"))["claims"]}
     paper = document["papers"][0]["module"]
     fresh = {r["id"]: r["status"] for r in document["claims"]}
@@ -81,8 +81,8 @@ def test_the_independent_checker_accepts_every_certificate(document):
     assert not refused
 
 
-@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize("name", paper_names())
 def test_titles_are_sentences_and_refuted_claims_are_declared_as_such(name):
-    for claim in claims_of(importlib.import_module(f"derivations.{name}")):
+    for claim in claims_of(importlib.import_module(f"navsym_papers.{name}")):
         assert len(claim.title) > 10, claim.id
         assert (claim.slip is None) or claim.expect == REFUTED, claim.id

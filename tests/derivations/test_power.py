@@ -7,7 +7,7 @@ import importlib
 import pytest
 
 from navsym.claims import claims_of
-from navsym.cli.verify import names
+from navsym.claims.paper import paper_names
 from navsym.core.sandbox import Exhausted, run_many
 from navsym.prove.ladder import decide
 from navsym.prove.mutants import spoiled
@@ -17,9 +17,9 @@ def spoiled_status(claim):
     return str(decide(spoiled(claim.derive())).status)
 
 
-@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize("name", paper_names())
 def test_every_spoiled_claim_falls(name):
-    claims = [c for c in claims_of(importlib.import_module(f"derivations.{name}")) if c.expect != "REFUTED"]
+    claims = [c for c in claims_of(importlib.import_module(f"navsym_papers.{name}")) if c.expect != "REFUTED"]
     held = []
     for outcome in run_many(spoiled_status, claims, jobs=1, seconds=60):
         assert not isinstance(outcome.value, Exhausted), (claims[outcome.place].id, outcome.value)

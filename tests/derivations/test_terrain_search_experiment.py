@@ -11,9 +11,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 from navsym.core.errors import DomainError
-from navsym.terrain.experiment import ALGORITHMS, experiment, grounds, read_journal, study
-from navsym.terrain.flights import Setting, course, errors_over, fly, sample_terrain
-from navsym.terrain.table import as_table, judged, rms_interval
+from navsym_papers.terrain_search.experiment.flights import Setting, course, errors_over, fly, sample_terrain
+from navsym_papers.terrain_search.experiment.study import ALGORITHMS, experiment, grounds, read_journal, study
+from navsym_papers.terrain_search.experiment.table import as_table, judged, rms_interval
 
 SMALL = Setting(measurements=120, speed=60.0, drift=1.0)
 

@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from navsym.terrain.experiment import GRID, experiment
-from navsym.terrain.flights import Setting, course, fly, terrain_from
 from navsym.terrain.search import search_full
+from navsym_papers.terrain_search.experiment.flights import Setting, course, fly, terrain_from
+from navsym_papers.terrain_search.experiment.study import GRID, experiment
 
 
 def product(name):

@@ -6,10 +6,10 @@ from functools import cache
 
 import sympy as sp
 
-from derivations.guaranteed_velocity import beyond, weights
 from navsym.claims import Claim, Equation, Statement
 from navsym.export.functions import ExportedFunction, Material, function_of, material
 from navsym.prove.ladder import decide
+from navsym_papers.guaranteed_velocity import beyond, weights
 
 w = sp.Symbol("w", real=True)
 lam = sp.Symbol("lambda", real=True)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 import shutil
 import subprocess
 from pathlib import Path
@@ -12,7 +11,6 @@ import pytest
 import sympy as sp
 from numpy.testing import assert_allclose
 
-from derivations.guaranteed_velocity.model import H, T, tau
 from navsym.core.errors import DomainError
 from navsym.export.algorithms import observer
 from navsym.export.chain import Chain, Link
@@ -24,6 +22,9 @@ from navsym.multimodel.filters import run
 from navsym.multimodel.kalman.steps import correct, predict
 from navsym.observability.two_stage.observer import held
 from navsym.terrain.centre import information
+from navsym_papers.guaranteed_velocity.model import H, T, tau
+from tests.benchmarks import export as benchmark
+from tests.export import programs
 
 PROGRAM = """#include "trajectory_filter.h"
 #include <math.h>
@@ -49,7 +50,7 @@ MEASUREMENTS = [*np.sin(np.arange(12.0)), np.nan, 0.5]
 
 
 @pytest.mark.skipif(shutil.which("gcc") is None, reason="needs a C compiler")
-def test_the_exported_filter_follows_the_textbook(programs, tmp_path: Path) -> None:
+def test_the_exported_filter_follows_the_textbook(tmp_path: Path) -> None:
     functions = programs.functions("trajectory-filter")
     for name, text in files(functions, {f.name: [] for f in functions}, programs.LICENSE).items():
         if not name.startswith("test_"):
@@ -64,7 +65,7 @@ def test_the_exported_filter_follows_the_textbook(programs, tmp_path: Path) -> N
     assert_allclose(rows, textbook(), rtol=1e-12, atol=1e-13)
 
 
-def test_a_refused_measurement_leaves_the_python_state_as_it_was(programs) -> None:
+def test_a_refused_measurement_leaves_the_python_state_as_it_was() -> None:
     made = programs.module("trajectory-filter").trajectory_filter([0.0] * 3, [4.0, 0.0, 0.0, 3.0, 0.0, 2.0])
     rows = []
     for z in MEASUREMENTS:
@@ -99,7 +100,7 @@ MODELS = [
 TRANSITION = [[0.9, 0.1], [0.25, 0.75]]
 
 
-def test_the_exported_pulsating_filter_is_the_house_filter(programs) -> None:
+def test_the_exported_pulsating_filter_is_the_house_filter() -> None:
     series = np.random.default_rng(3).normal(0.0, 3.0, 40)
     models = bank(MODELS, TRANSITION, [1.0, -1.0], [[2.0, 0.3], [0.3, 1.0]], [0.6, 0.4])
     expected = run(models, series[:, None], "pulsating")
@@ -115,7 +116,7 @@ def plainly(m: dict) -> tuple:
     return np.ravel(m["F"]), [m["Q"][0][0], m["Q"][0][1], m["Q"][1][1]], m["H"][0], m["R"][0][0]
 
 
-def test_a_measurement_far_from_both_modes_still_weighs_them(programs) -> None:
+def test_a_measurement_far_from_both_modes_still_weighs_them() -> None:
     made = programs.module("pulsating-filter").pulsating_filter([0.0, 0.0], [1.0, 0.0, 1.0], [0.5, 0.5])
     made.step(*(x for m in MODELS for x in plainly(m)), np.ravel(TRANSITION), 200.0)
     assert_allclose(np.sum(made.probabilities), 1.0, rtol=1e-14)
@@ -126,7 +127,7 @@ def test_a_measurement_far_from_both_modes_still_weighs_them(programs) -> None:
 VALUES = {"mu": 0.08, "omega_1": 0.6, "omega_2": -0.4, "u_3": 0.7}
 
 
-def test_the_exported_observer_follows_the_exact_solution_within_its_stated_error(programs) -> None:
+def test_the_exported_observer_follows_the_exact_solution_within_its_stated_error() -> None:
     made = programs.module("two-stage-observer").two_stage_observer(0.9, 0.3, np.zeros(6), np.zeros(4))
     model, h = joint_model(), 0.02
     symbols = {s.name: s for s in model.F.free_symbols | model.H.free_symbols}
@@ -168,7 +169,7 @@ def test_the_gains_belong_to_the_channels_of_the_paper() -> None:
 
 @pytest.mark.parametrize("state", ["y1", "y2", "y3"])
 @pytest.mark.parametrize("end", [0.4, 1.5, 2.5, 3.3, 4.4, 5.5, 6.2])
-def test_the_queue_estimates_without_bias_in_every_regime(programs, state: str, end: float) -> None:
+def test_the_queue_estimates_without_bias_in_every_regime(state: str, end: float) -> None:
     name = f"velocity-estimator-{state}"
     made = getattr(programs.module(name), name.replace("-", "_"))(end)
     truth, before = np.array([0.3, -1.1, 0.7]), -1.0
@@ -182,7 +183,7 @@ def test_the_queue_estimates_without_bias_in_every_regime(programs, state: str, 
     assert float(made.value) >= 1.0 - 1e-12
 
 
-def test_the_value_is_the_sum_of_the_sizes_of_the_weights(programs) -> None:
+def test_the_value_is_the_sum_of_the_sizes_of_the_weights() -> None:
     start = programs.module("velocity-estimator-y3").velocity_estimator_y3_start
     _, weights, _, value = start(np.linspace(0.1, 6.28, 200))
     assert_allclose(np.abs(weights).sum(axis=-1), value, rtol=1e-13)
@@ -191,7 +192,7 @@ def test_the_value_is_the_sum_of_the_sizes_of_the_weights(programs) -> None:
 # -- terrain, earth ---------------------------------------
 
 
-def test_sums_over_the_track_give_the_crossing_times_of_the_house(programs) -> None:
+def test_sums_over_the_track_give_the_crossing_times_of_the_house() -> None:
     generator = np.random.default_rng(5)
     p, q = generator.normal(0.0, 1.0, (2, 50))
     made = programs.module("terrain-crossing").terrain_crossing([0.0] * 3, [0.0] * 3, 0.0)
@@ -205,7 +206,7 @@ def test_sums_over_the_track_give_the_crossing_times_of_the_house(programs) -> N
     assert_allclose([found.min(), found.max(), found.mean()], [low, high, mean], rtol=1e-8)
 
 
-def test_geocentric_position_is_that_of_another_program(programs) -> None:
+def test_geocentric_position_is_that_of_another_program() -> None:
     from pyproj import Transformer
 
     turn = Transformer.from_crs("EPSG:4979", "EPSG:4978", always_xy=True)
@@ -217,7 +218,7 @@ def test_geocentric_position_is_that_of_another_program(programs) -> None:
         assert_allclose(made[1] * 1e6, np.sqrt(x * x + y * y + z * z), rtol=1e-14)
 
 
-def test_the_correction_moves_along_the_velocity_error_from_the_crossing(programs) -> None:
+def test_the_correction_moves_along_the_velocity_error_from_the_crossing() -> None:
     call = programs.module("terrain-correction").terrain_correction
     position, velocity = call(100.0, 200.0, 50.0, -20.0, 3, -4, 2, 1, 50.0, 50.0, 1.0, 1.0, 500.0, 10.0, 480.0, 0.5)
     assert_allclose(position, [100 + 150 + 2 * (500 - 250), 200 - 200 + (500 - 250)])
@@ -229,7 +230,7 @@ def test_the_correction_moves_along_the_velocity_error_from_the_crossing(program
 a, b = sp.symbols("a b", real=True)
 
 
-def test_a_link_whose_theorem_fails_is_refused(programs) -> None:
+def test_a_link_whose_theorem_fails_is_refused() -> None:
     from navsym.claims import Equation
 
     wrong = Link(("s",), "", (a + b,), lambda: Equation(a + b, a - b))
@@ -237,13 +238,13 @@ def test_a_link_whose_theorem_fails_is_refused(programs) -> None:
         Chain("wrong", (wrong,), {"s": "s"}).function("wrong", programs.decided, "double")
 
 
-def test_a_refuted_claim_in_a_chain_names_its_correction(programs) -> None:
+def test_a_refuted_claim_in_a_chain_names_its_correction() -> None:
     chain = Chain("printed", (Link(("x",), "trajectory:earth.tan_phi"),), {"x": "x"})
     with pytest.raises(RefusedError, match=r"earth\.tan_phi\*"):
         chain.function("printed", programs.decided, "double")
 
 
-def test_a_value_does_not_enter_a_claim_with_a_proved_range(programs) -> None:
+def test_a_value_does_not_enter_a_claim_with_a_proved_range() -> None:
     links = (Link(("radius",), "", (a,)), Link(("rate",), "trajectory:kinematics.phi_rate"))
     with pytest.raises(DomainError, match="proved range"):
         Chain("loose", links, {"rate": "rate"}).function("loose", programs.decided, "double")
@@ -251,10 +252,5 @@ def test_a_value_does_not_enter_a_claim_with_a_proved_range(programs) -> None:
 
 @pytest.mark.skipif(shutil.which("gcc") is None, reason="needs a C compiler")
 def test_the_benchmark_runs_at_a_tiny_size() -> None:
-    path = Path(__file__).resolve().parents[1] / "benchmarks" / "export.py"
-    spec = importlib.util.spec_from_file_location("benchmark_export", path)
-    assert spec and spec.loader
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    assert {"hand-written C", "casadi C", "lambdify(cse=True), batch"} <= set(module.measure(1000))
-    assert set(module.measure_update(50)) == {"Kalman update, hand-written C", "Kalman update, casadi C"}
+    assert {"hand-written C", "casadi C", "lambdify(cse=True), batch"} <= set(benchmark.measure(1000))
+    assert set(benchmark.measure_update(50)) == {"Kalman update, hand-written C", "Kalman update, casadi C"}

@@ -8,15 +8,15 @@ from functools import cache
 import sympy as sp
 
 from navsym.claims import Optimum, Property, claims_of
-from navsym.cli.verify import names
+from navsym.claims.paper import paper_names
 from navsym.prove.equations import entries
 
-PAPERS = names()
+PAPERS = paper_names()
 
 
 @cache
 def claims(paper):
-    return [(claim, claim.derive()) for claim in claims_of(importlib.import_module(f"derivations.{paper}"))]
+    return [(claim, claim.derive()) for claim in claims_of(importlib.import_module(f"navsym_papers.{paper}"))]
 
 
 def assertions(paper):

@@ -6,7 +6,8 @@ import sympy as sp
 from numpy.testing import assert_allclose
 
 from navsym.core.casadi_functions import casadi_function
-from navsym.models import dead_reckoning, modes
+from navsym.models import dead_reckoning
+from navsym_papers.multistructure.experiment import modes
 
 
 @pytest.mark.parametrize("point", np.random.default_rng(2).uniform(-1.2, 1.2, (5, 6)))

@@ -36,7 +36,7 @@ def words_of(module):
 
 def refuted(module):
     """Numbers of the claims that the source declares to be slips."""
-    claims = claims_of(importlib.import_module(f"derivations.{module}"))
+    claims = claims_of(importlib.import_module(f"navsym_papers.{module}"))
     return [claim.number for claim in claims if claim.expect == "REFUTED" and claim.slip]
 
 
@@ -70,7 +70,7 @@ def test_a_correction_names_a_place_changes_something_and_gives_a_reason(module)
 
 @pytest.mark.parametrize("module", MODULES)
 def test_every_correction_can_be_seen_in_numbers(module):
-    card = importlib.import_module(f"derivations.{module}").PAPER
+    card = importlib.import_module(f"navsym_papers.{module}").PAPER
     entries = erratum_of(card, [r for r in LEDGER["claims"] if r["paper"] == module], words_of(module)).entries
     assert [e.ids[0] for e in entries if not (e.check or e.rows or (e.words and e.words.check))] == []
 

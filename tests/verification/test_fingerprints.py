@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from navsym.claims import claims_of
+from navsym.claims.paper import papers_folder
 from navsym.verification import fingerprints as deciding_code
 from navsym.verification import fingerprints as sources
 from navsym.verification.fingerprints import fingerprint, fingerprints
@@ -44,15 +45,15 @@ CLAIMS = """
 @pytest.fixture
 def prints(tmp_path, monkeypatch):
     """A function from the texts of modules to the fingerprints of the claims of the first one."""
-    import derivations
+    import navsym_papers
 
-    monkeypatch.setattr(derivations, "__path__", [str(tmp_path)])
+    monkeypatch.setattr(navsym_papers, "__path__", [str(tmp_path)])
     monkeypatch.syspath_prepend(str(tmp_path))
 
     def make(**modules):
-        for module in [m for m in sys.modules if m.startswith("derivations.made_up") or m == "made_up_elsewhere"]:
+        for module in [m for m in sys.modules if m.startswith("navsym_papers.made_up") or m == "made_up_elsewhere"]:
             del sys.modules[module]
-            derivations.__dict__.pop(module.rpartition(".")[2], None)
+            navsym_papers.__dict__.pop(module.rpartition(".")[2], None)
         for name, source in modules.items():
             (tmp_path / f"made_up_{name}.py").write_text(textwrap.dedent(source))
         importlib.invalidate_caches()
@@ -60,7 +61,7 @@ def prints(tmp_path, monkeypatch):
             cached.cache_clear()
         for file in (tmp_path / "__pycache__").glob("*"):  # the time of change is the same within a second
             file.unlink()
-        return list(fingerprints(claims_of(importlib.import_module("derivations.made_up_one"))).values())
+        return list(fingerprints(claims_of(importlib.import_module("navsym_papers.made_up_one"))).values())
 
     yield make
     make(one=HEAD)
@@ -142,14 +143,14 @@ def test_values_that_a_claim_closes_over_count_by_their_whole_content(prints):
 @pytest.mark.parametrize(
     "line",
     [
-        "from derivations.made_up_two import helper",
-        "from derivations.made_up_two import *",
+        "from navsym_papers.made_up_two import helper",
+        "from navsym_papers.made_up_two import *",
         "from .made_up_two import helper",
         "from . import made_up_two\n    def helper(): return made_up_two.helper()",
-        "import derivations.made_up_two as two\n    def helper(): return two.helper()",
-        "def helper():\n        from derivations.made_up_two import helper as inner\n        return inner()",
+        "import navsym_papers.made_up_two as two\n    def helper(): return two.helper()",
+        "def helper():\n        from navsym_papers.made_up_two import helper as inner\n        return inner()",
         "from importlib import import_module\n"
-        "    def helper():\n        return import_module('derivations.made_up_two').helper()",
+        "    def helper():\n        return import_module('navsym_papers.made_up_two').helper()",
         "def helper():\n        from made_up_elsewhere import VALUE\n        return VALUE",
         "import made_up_elsewhere\n    def helper(): return made_up_elsewhere.VALUE",
     ],
@@ -159,7 +160,7 @@ def test_a_helper_in_another_module_counts_however_it_is_imported(prints, line):
     for number in (2, 5):
         two = f"import sympy as sp\n__all__ = ['helper']\nN = {number}\ndef helper(): return sp.Integer(N)"
         source = HEAD + "    " + line + CLAIMS
-        Path(importlib.import_module("derivations").__path__[0], "made_up_elsewhere.py").write_text(f"VALUE = {number}")
+        (papers_folder() / "made_up_elsewhere.py").write_text(f"VALUE = {number}")
         found.append(prints(one=source, two=two)[0])
     assert found[0] != found[1]
 
@@ -185,7 +186,7 @@ def test_a_derivation_that_patches_others_changes_every_claim(prints, patch):
 def test_a_function_put_into_a_deciding_room_at_run_time_changes_every_claim(monkeypatch):
     from navsym.prove import ladder
 
-    claims = claims_of(importlib.import_module("derivations.alpha_beta_filter"))
+    claims = claims_of(importlib.import_module("navsym_papers.alpha_beta_filter"))
     before = fingerprint(claims[0])
     monkeypatch.setattr(ladder, "decide", lambda statement: None)
     assert fingerprint(claims[0]) != before
@@ -226,7 +227,7 @@ def test_what_a_claim_reaches_is_told_alike_by_every_process():
     script = (
         "import importlib, json; from navsym.claims import claims_of; "
         "from navsym.verification.fingerprints import reached; "
-        "claims = claims_of(importlib.import_module('derivations.joint_correction')); "
+        "claims = claims_of(importlib.import_module('navsym_papers.joint_correction')); "
         "print(json.dumps([reached(claim.derive) for claim in claims]))"
     )
     told = [

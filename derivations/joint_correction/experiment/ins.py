@@ -29,7 +29,7 @@ from navsym.models.inertial import (
     position_variables,
     velocity_variables,
 )
-from navsym.observability.two_stage.flight import EARTH_RADIUS, SCHULER_RATE, Flight
+from navsym_papers.joint_correction.experiment.flight import EARTH_RADIUS, SCHULER_RATE, Flight
 
 
 class Situation(StrEnum):

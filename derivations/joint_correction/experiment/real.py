@@ -20,10 +20,10 @@ from navsym.core.errors import DomainError, EmptyError, UnknownSymbolError
 from navsym.models.linear import LinearModel
 from navsym.observability.chains import observe
 from navsym.observability.splits import split, two_stage_blocks
-from navsym.observability.two_stage.flight import EARTH_RADIUS, GRAVITY
 from navsym.observability.two_stage.gains import POLE, gains_by_poles
 from navsym.observability.two_stage.observer import TwoStageObserver, held, observer
 from navsym.observability.two_stage.observer import closed_loop as loop_of
+from navsym_papers.joint_correction.experiment.flight import EARTH_RADIUS, GRAVITY
 
 FIELDS = ("time", "ax", "ay", "az", "phi", "theta", "psi", "vn", "ve", "lat", "lon", "GPS_TOW")
 

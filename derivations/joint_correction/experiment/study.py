@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from navsym.observability.two_stage.flight import EARTH_RADIUS, SCHULER_RATE, Flight, great_circle
-from navsym.observability.two_stage.ins import (
+from navsym_papers.joint_correction.experiment.flight import EARTH_RADIUS, SCHULER_RATE, Flight, great_circle
+from navsym_papers.joint_correction.experiment.ins import (
     ESTIMATORS,
     Errors,
     Situation,

@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 
 from navsym.core.errors import NoDataError
 from navsym.multimodel.bank import Bank, bank
-from navsym.multimodel.filters import Estimate, run
+from navsym.multimodel.engine import Estimates
+from navsym.multimodel.filters import run
 
 Array = NDArray[np.floating[Any]]
 QUALITY = ("fixed", "float", "single")
@@ -64,7 +65,7 @@ class Judgement:
     caught: int
     good_fixes: int
     kept: int
-    estimate: Estimate
+    estimate: Estimates
 
 
 def read_road(folder: Path) -> Road:

@@ -16,10 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navsym.core.errors import DomainError
-from navsym.models.modes import MODES, SchulerChannel
 from navsym.multimodel.bank import Bank, bank
 from navsym.multimodel.filters import run
 from navsym.multimodel.steps import require_room, scheme
+from navsym_papers.multistructure.experiment.modes import MODES, SchulerChannel
 
 Array = NDArray[np.floating[Any]]
 #: Two-sided 95 % of a normal mean.
@@ -245,7 +245,7 @@ def schuler_bank(channel: SchulerChannel | None = None) -> Bank:
     return bank(channel.models(), channel.mode_transition(), start["mean"], start["covariance"], start["probabilities"])
 
 
-def experiment(
+def study(
     runs: int = 1000, seed: int = 1, steps: int = 7, *, progress: Callable[[int, int], None] = lambda done, of: None
 ) -> dict[str, Any]:
     """`navsym simulate multistructure`: the Schuler channel, K = 1..4, GPB2, IMM, polygaussian against exact.

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from navsym.core.errors import DomainError, MissingEngineError
 from navsym.terrain.heights import ON_MAP, TerrainMap
 from navsym.terrain.maps import local_frame, read_map
-from navsym.terrain.track import Track
+from navsym.terrain.track import Profile
 
 Array = NDArray[np.float64]
 
@@ -50,7 +50,7 @@ class Setting:
 class Flight:
     """A recorded track and the correction that would have been right at its end."""
 
-    track: Track
+    track: Profile
     shift: Array
     velocity: Array
 
@@ -96,7 +96,7 @@ def fly(ground: TerrainMap, start: Array, heading: float, setting: Setting, gene
     above = altitude - heights
     measured = altitude - above * (1.0 + setting.altimeter * generator.normal(size=t.size))
     inertial = truth - position
-    return Flight(Track(t, inertial[:, 0], inertial[:, 1], measured), position[-1], velocity[-1])
+    return Flight(Profile(t, inertial[:, 0], inertial[:, 1], measured), position[-1], velocity[-1])
 
 
 def course(ground: TerrainMap, setting: Setting, k: int, seed: int) -> tuple[Array, float]:

@@ -22,14 +22,16 @@ from numpy.typing import NDArray
 
 from navsym.core.datasets import dataset, local_copy
 from navsym.core.errors import DomainError, EmptyError
-from navsym.terrain.flights import Setting, course, fly, sample_terrain, terrain_from
 from navsym.terrain.heights import TerrainMap
 from navsym.terrain.refine import refine
 from navsym.terrain.search import search_full, search_position
 from navsym.terrain.sequential import search_sequential
-from navsym.terrain.table import PRINTED, Record, table, verdicts
-from navsym.terrain.table import as_table as as_table  # what `simulate` shows beside the document
-from navsym.terrain.track import Hypotheses, Track
+from navsym.terrain.track import Hypotheses, Profile
+from navsym_papers.terrain_search.experiment.flights import Setting, course, fly, sample_terrain, terrain_from
+from navsym_papers.terrain_search.experiment.table import PRINTED, Record, table, verdicts
+from navsym_papers.terrain_search.experiment.table import (
+    as_table as as_table,  # what `simulate` shows beside the document
+)
 
 Array = NDArray[np.float64]
 Correction = tuple[Array, Array]
@@ -42,39 +44,39 @@ TILES = ("nasadem", "srtm")
 # The algorithms: each gives the corrections of position and velocity at the last time
 
 
-def by_position(terrain: TerrainMap, track: Track) -> Correction:
+def by_position(terrain: TerrainMap, track: Profile) -> Correction:
     """The position search (terrain_search:2)."""
     i, j = search_position(terrain, track, GRID).index[:2]
     return 50.0 * np.array([i, j]), np.zeros(2)
 
 
-def by_full(terrain: TerrainMap, track: Track) -> Correction:
+def by_full(terrain: TerrainMap, track: Profile) -> Correction:
     """The joint search (terrain_search:4), by bounding."""
     i, j, Vi, Vj = search_full(terrain, track, GRID).index
     velocity = np.array([Vi, Vj], dtype=float)
     return 50.0 * np.array([i, j]) + velocity * track.elapsed[-1], velocity
 
 
-def by_sequence(terrain: TerrainMap, track: Track) -> Correction:
+def by_sequence(terrain: TerrainMap, track: Profile) -> Correction:
     """The sequential search of the paper."""
     found = search_sequential(terrain, track, GRID)
     return found.shift, found.velocity
 
 
-def by_centre(terrain: TerrainMap, track: Track) -> Correction:
+def by_centre(terrain: TerrainMap, track: Profile) -> Correction:
     """The sequential search about the matrix centre."""
     found = search_sequential(terrain, track, GRID, improved=True)
     return found.shift, found.velocity
 
 
-def by_refinement(terrain: TerrainMap, track: Track) -> Correction:
+def by_refinement(terrain: TerrainMap, track: Profile) -> Correction:
     """The joint search, then Gauss-Newton between the grid points."""
     i, j, Vi, Vj = search_full(terrain, track, GRID).index
     fine = refine(terrain, track, (50.0 * i, 50.0 * j), (float(Vi), float(Vj)))
     return fine.position + fine.velocity * track.elapsed[-1], fine.velocity
 
 
-ALGORITHMS: dict[str, Callable[[TerrainMap, Track], Correction]] = {
+ALGORITHMS: dict[str, Callable[[TerrainMap, Profile], Correction]] = {
     "position": by_position,
     "full": by_full,
     "sequential": by_sequence,

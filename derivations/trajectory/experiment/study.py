@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from navsym.trajectory.experiment import experiment
+from navsym_papers.trajectory.experiment.courses import experiment
 
 FIGURES = ("position", "speed_straight", "speed_yawing", "acceleration_straight", "acceleration_yawing")
 

@@ -1,0 +1,1 @@
+"""The numerical experiment of the paper, run again: switching signals and a recorded road, filtered by every method."""
