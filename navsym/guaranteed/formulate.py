@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from navsym.core.answers import Answer
 from navsym.core.errors import DomainError
 from navsym.guaranteed.baselines import panel_numbers
-from navsym.guaranteed.problem import GuaranteedProblem, place_of, problem_of
+from navsym.guaranteed.problem import GuaranteedProblem, problem_of
 
 if TYPE_CHECKING:
     from navsym.models.model import Model

@@ -3,28 +3,23 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import sympy as sp
 from flint import arb
 
 from navsym.core.balls import enclose
-from navsym.core.errors import DomainError, DuplicateError, EmptyError, NavsymError, NotFiniteError, ShapeError
+from navsym.core.errors import DomainError, EmptyError, NotFiniteError, ShapeError
 from navsym.core.exact import to_fmpq
 from navsym.guaranteed.certificate.enclosure import Panel, Problem
 from navsym.guaranteed.time_varying import ERROR, error_bound, on_rational_interval, regressors_of, steps_of, varying
-from navsym.language.files import called
 from navsym.language.names import shown
-from navsym.language.values import write_value
 from navsym.models.linear import LinearModel, exact_entry
-from navsym.models.modelfile import BasisFile, ModelFile, read_model
+from navsym.models.model import Model, contents_of
+from navsym.models.modelfile import BasisFile, ModelFile
 from navsym.models.transition.exponential import regressors, transition_matrix
-
-if TYPE_CHECKING:
-    from navsym.models.model import Model
 
 Rows = tuple[tuple[sp.Expr, ...], ...]
 
@@ -174,43 +169,6 @@ def problem_of(
         message = "expected a model with parameters; got a problem, whose numbers are all given; leave the value out"
         raise DomainError(message, where=f"{where}: {name}")
     return model
-
-
-def contents_of(
-    model: Any, values: Mapping[str, Any] | None, parameters: Mapping[str, Any], where: str
-) -> ModelFile | BasisFile:
-    """What a model, or a model file, says with these values of its parameters."""
-    from navsym.models.model import Model
-
-    twice = next((name for name in parameters if name in (values or {})), None)
-    if twice is not None:
-        raise DuplicateError(f"expected one value; got two of {twice}; give one", where=f"{where}: {twice}")
-    given = {**(values or {}), **parameters}
-    if isinstance(model, (ModelFile, BasisFile)):
-        model = Model.from_contents(model)
-    if not isinstance(model, (Model, str, os.PathLike)):
-        message = f"expected a model, or the path of a model file; got {shown(model)}; make one with navsym.Model"
-        raise DomainError(message, where=f"{where}: model")
-    try:
-        if isinstance(model, Model):
-            return model.read(given)
-        return read_model(model, {name: write_value(value, f"--set {name}") for name, value in given.items()})
-    except NavsymError as error:
-        for start in ("Model: values.", "--set "):
-            error.where = error.where.replace(start, f"{where}: ", 1) if error.where.startswith(start) else error.where
-        raise
-
-
-@contextmanager
-def place_of(model: Any) -> Iterator[None]:
-    """Errors about a model that is given by its path name that file."""
-    try:
-        yield
-    except NavsymError as error:
-        name = called(model) if isinstance(model, (str, os.PathLike)) else ""
-        if name and not error.where.startswith(name):
-            error.at(name)
-        raise
 
 
 def from_file(found: ModelFile | BasisFile, target: str | None = None, where: str = "") -> GuaranteedProblem:

@@ -27,7 +27,7 @@ from navsym.guaranteed.certificate.basis import Basis, DependentError, make_basi
 from navsym.guaranteed.certificate.enclosure import Problem
 from navsym.guaranteed.certificate.fixed import Certified, certify
 from navsym.guaranteed.estimability import drop_dependent
-from navsym.guaranteed.problem import GuaranteedProblem, place_of, problem_of
+from navsym.guaranteed.problem import GuaranteedProblem, problem_of
 from navsym.guaranteed.search.exchange import find_contacts
 from navsym.guaranteed.separation import FAR, separated
 from navsym.guaranteed.time_varying import ERROR

@@ -13,15 +13,15 @@ from typing import Any
 import sympy as sp
 
 from navsym.claims.display import card, displayed, latex_of
-from navsym.core.errors import DomainError, EmptyError, NavsymError, ShapeError
+from navsym.core.errors import DomainError, DuplicateError, EmptyError, NavsymError, ShapeError
 from navsym.language.declarations import Parameter, read_parameters, symbols_of
 from navsym.language.expression import parse, symbol, to_text
-from navsym.language.files import write_text
+from navsym.language.files import called, write_text
 from navsym.language.names import inside, shown
 from navsym.language.tomlfile import read_toml, toml_text
 from navsym.language.values import declared_words, write_declaration, write_entries, write_value
 from navsym.models.linear import LinearModel, linear_row
-from navsym.models.modelfile import BasisFile, ModelFile, Piece, model_from, piece_model
+from navsym.models.modelfile import BasisFile, ModelFile, Piece, model_from, piece_model, read_model
 
 #: Keys of a model file -> the arguments that write them, for the place of an error.
 PLACES = (
@@ -355,11 +355,31 @@ class Model:
         return card([*lines, html.escape(repr(self))])
 
 
-def as_model(value: Any, where: str) -> Model:
-    """The model that an argument means: a Model, a LinearModel, contents of a model file, a document, or a path.
+def contents_of(
+    model: Any, values: Mapping[str, Any] | None, parameters: Mapping[str, Any], where: str
+) -> ModelFile | BasisFile:
+    """The contents that an argument means, with values of its parameters.
 
-    where : names the argument in errors
+    model              : a Model, a LinearModel, contents of a model file, its document, or its path
+    values, parameters : parameter -> exact value; a name stands in one of them only
+    where              : name of the function of the front door, for errors
     """
+    twice = next((name for name in parameters if name in (values or {})), None)
+    if twice is not None:
+        raise DuplicateError(f"expected one value; got two of {twice}; give one", where=f"{where}: {twice}")
+    given = {**(values or {}), **parameters}
+    try:
+        if isinstance(model, str | os.PathLike):
+            return read_model(model, {name: write_value(value, f"--set {name}") for name, value in given.items()})
+        return as_model(model, f"{where}: model").read(given)
+    except NavsymError as error:
+        for start in ("Model: values.", "--set "):
+            error.where = error.where.replace(start, f"{where}: ", 1) if error.where.startswith(start) else error.where
+        raise
+
+
+def as_model(value: Any, where: str) -> Model:
+    """The model that an argument means; ``where`` names it in errors."""
     if isinstance(value, Model):
         return value
     if isinstance(value, LinearModel):
@@ -370,7 +390,20 @@ def as_model(value: Any, where: str) -> Model:
         return Model.from_document(value, where)
     if isinstance(value, str | os.PathLike):
         return Model.load(value)
-    raise DomainError(f"expected a Model or the path of a model file; got {shown(value)}; give one", where=where)
+    message = f"expected a model, or the path of a model file; got {shown(value)}; make one with navsym.Model"
+    raise DomainError(message, where=where)
+
+
+@contextmanager
+def file_in_errors(model: Any) -> Iterator[None]:
+    """Errors about a model that is given by its path name that file."""
+    try:
+        yield
+    except NavsymError as error:
+        name = called(model) if isinstance(model, str | os.PathLike) else ""
+        if name and not error.where.startswith(name):
+            error.at(name)
+        raise
 
 
 # Arguments to tables of a model file

@@ -41,10 +41,11 @@ from navsym.guaranteed.phases.singular_values import (
     sections,
     split,
 )
-from navsym.guaranteed.problem import GuaranteedProblem, contents_of, place_of
+from navsym.guaranteed.problem import GuaranteedProblem
 from navsym.guaranteed.solver import solve_problem
 from navsym.language.expression import parse
 from navsym.language.values import write_value
+from navsym.models.model import contents_of
 from navsym.models.modelfile import BasisFile, ModelFile
 
 if TYPE_CHECKING:
