@@ -24,6 +24,7 @@ from navsym.core.answers import Answer
 from navsym.core.errors import DomainError
 from navsym.guaranteed.baselines import panel_numbers
 from navsym.guaranteed.problem import GuaranteedProblem, problem_of
+from navsym.models.model import file_in_errors
 
 if TYPE_CHECKING:
     from navsym.models.model import Model
@@ -123,7 +124,7 @@ def formulate(
     >>> nav.formulate("examples/schuler-velocity.toml", "drift", to="cvxpy", kind="qp", T="pi/2")
     Formulation(qp for cvxpy, 201 times of each measurement)
     """
-    with place_of(model):
+    with file_in_errors(model):
         problem = problem_of(model, target, values, parameters, "formulate")
         return Formulation(to, kind, grid, formulation_text(problem, to, kind=kind, count=grid, mixture=mixture))
 

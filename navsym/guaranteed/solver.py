@@ -34,6 +34,7 @@ from navsym.guaranteed.time_varying import ERROR
 from navsym.guaranteed.uniqueness import only_optimal, several_optimal
 from navsym.language.expression import to_text
 from navsym.language.names import shown
+from navsym.models.model import file_in_errors
 
 if TYPE_CHECKING:
     from navsym.guaranteed.baselines import Comparison
@@ -217,7 +218,7 @@ def solve(
         got = shown(digits)
         message = f"expected 1 to {MOST_DIGITS} digits; got {got}; choose a whole number between"
         raise DomainError(message, where="solve: digits")
-    with place_of(model):
+    with file_in_errors(model):
         return solve_problem(problem_of(model, target, values, parameters, "solve"), digits)
 
 

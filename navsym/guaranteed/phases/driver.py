@@ -45,7 +45,7 @@ from navsym.guaranteed.problem import GuaranteedProblem
 from navsym.guaranteed.solver import solve_problem
 from navsym.language.expression import parse
 from navsym.language.values import write_value
-from navsym.models.model import contents_of
+from navsym.models.model import contents_of, file_in_errors
 from navsym.models.modelfile import BasisFile, ModelFile
 
 if TYPE_CHECKING:
@@ -575,7 +575,7 @@ def phases(
         got = ", ".join(pairs)
         raise DomainError(f"expected one range; got those of {got}; give values to the others", where="phases")
     fixed = {name: value for name, value in given.items() if name not in pairs}
-    with place_of(model):
+    with file_in_errors(model):
         contents = contents_of(model, None, fixed, "phases")
         name = next(iter(pairs), parameter)
         ends = range_of(contents, name, pairs.get(name))
