@@ -138,10 +138,34 @@ POWERS = [
     }
     for n in (13, 14, 15, 16)
 ]
+# What has no value anywhere on the panel, p from 0 to 0. In series of balls each of them was 0 or 1: python-flint has 0
+# for negative powers of a series without terms, and for its product with NaN.
+NOWHERE = [
+    "1/(0*t)",
+    "5*(0*t)**(-1)*log(2 + t)",
+    "1/((p - p)*t)",
+    "sin(p*t)/(p*t)",
+    "(0*t)**(-1/2)",
+    "(0*t)*(0*t)**(-1)",
+    "tan(pi/2*exp(0*t))*(t - t)",
+    "0*log(t - 5)",
+    "0*(t - 5)**(1/2)",
+    "0/(t - 1/2)",
+    "p*asin(t + 5)",
+    "(t - t)*acos(t + 2)",
+]
+AT_ZERO = {"parameter": "p", "from": "0", "to": "0"}
+UNSEEN = [
+    (item | AT_ZERO, ["panels", 0, "H"], [f"{H[0]} + {text}", *H[1:]], why)
+    for item, why in ((PARABOLA, "no value|division by zero"), (GAP, "not shown"))
+    for H in (item["panels"][0]["H"],)
+    for text in NOWHERE
+]
 # Three cells each: together they are more than the certificate announces.
 REPEATED = TOUCH | {"cells": 0, "pieces": TOUCH["pieces"] * 67}
 ONE = ["pieces", 0]
 FORGERIES = [
+    *UNSEEN,
     *((power, ["kind"], "gap", "not shown") for power in POWERS),
     (REPEATED, ["kind"], "touch", "not shown"),
     (EXPONENTIAL, ["solution"], [*EXPONENTIAL["solution"], ["0", "0"]], "square"),
@@ -163,7 +187,7 @@ FORGERIES = [
     (TOUCH, ["parameter"], "", "expected names"),
     (RANK, ["rows"], ["0"], "integer from"),
     (IDENTITY, ["right"], "2*sin(a)*cos(a)*1.0000001", "the sides differ"),
-    (IDENTITY, ["right"], "2*sin(a)*cos(b)", "KeyError"),
+    (IDENTITY, ["right"], "2*sin(a)*cos(b)", "unknown symbol b"),
     (IDENTITY, ["right"], "sin(2*a) + 0/(a - a)", "division by zero"),
     (IDENTITY, ["right"], "sin(2*a) + 0*sqrt(a - a)", "division by zero"),
     (IDENTITY, ["right"], "sin(2*a) + 0*sqrt(%s)" % (2**101), "root of a large number"),
@@ -173,19 +197,19 @@ FORGERIES = [
     (IDENTITY, ["right"], "sin(2*a) + 0*sin_x(a)", "function sin_x"),
     (IDENTITY, ["right"], "sin(2*a) + 0*log_1(a)", "function log_1"),
     (IDENTITY, ["right"], "sin(2*a) + cos(pi/5041)", "roots of a high order"),
-    (IDENTITY, ["right"], 5, "TypeError"),
+    (IDENTITY, ["right"], 5, "unexpected characters"),
     (IDENTITY, ["right"], "2*sin(a)*cos(a)#", "unexpected characters"),
-    (IDENTITY, ["right"], "2*sin(a)*cos(a", "SyntaxError"),
+    (IDENTITY, ["right"], "2*sin(a)*cos(a", "not an expression: .* never closed"),
     (IDENTITY, ["right"], "sin(2*a) % 1", "unexpected characters"),
     (IDENTITY, ["right"], "sin(2*a) // 1", "not an expression"),
     (IDENTITY, ["kind"], "unheard-of", "known kind"),
     (IDENTITY, ["kind"], 3, "known kind"),
     (IDENTITY, ["symbols"], ["a", 1], "expected names"),
     (IDENTITY, ["symbols"], "a", "expected a list"),
-    (IDENTITY, ["note"], "more", "unexpected keyword"),
-    (IDENTITY, ["left"], ..., "missing 1 required"),
+    (IDENTITY, ["note"], "more", "exactly the keys"),
+    (IDENTITY, ["left"], ..., "exactly the keys"),
     (ALL, ["of", 0, "right"], "sin(a)", "the sides differ"),
-    (ALL, ["of", 1], 7, "TypeError"),
+    (ALL, ["of", 1], 7, "known kind"),
     (ALL, ["of"], [], "entries"),
     (IDENTITY, ["symbols"], ["a", "a"], "given twice"),
     (IDENTITY, ["symbols"], ["a", "pi"], "or pi"),
@@ -198,7 +222,7 @@ FORGERIES = [
     (RANK, ["point"], {"a": "0", "b": "0"}, "may be dependent"),
     (RANK, ["point"], {"a": "1"}, "point gives every symbol"),
     (RANK, ["point"], ["a"], "point gives every symbol"),
-    (RANK, ["point", "a"], "1/0", "ZeroDivisionError"),
+    (RANK, ["point", "a"], "1/0", "division by zero"),
     (RANK, ["point", "a"], "nan", "not a number"),
     (RANK, ["rank"], 2, "entries"),
     (RANK, ["rank"], -1, "integer from"),
@@ -234,22 +258,22 @@ FORGERIES = [
     (SLIVER, ["to"], "1.2", "cost more"),
     (SLIVER, ["functional"], ["p - 1"], "lower bound is above"),
     (GAP, ["parameter"], "t", "given twice"),
-    (GAP, ["kind"], "touch", "missing 1 required"),
+    (GAP, ["kind"], "touch", "exactly the keys"),
     (GAP, ["end"], "1", "expected exactly the keys"),
     (GAP, ["upper"], ..., "expected exactly the keys"),
-    (GAP, ["bits"], ..., "missing 1 required"),
-    (GAP, ["self"], "1", "multiple values"),
-    (SLIVER, ["parameter"], 1, "TypeError"),
+    (GAP, ["bits"], ..., "exactly the keys"),
+    (GAP, ["self"], "1", "exactly the keys"),
+    (SLIVER, ["parameter"], 1, "expected names"),
     (SLIVER, ["from"], "0", "positive"),
     (TOUCH, [*LINE, "weight"], ["0.5"], "Newton"),
     (TOUCH, [*LINE, "weight"], ["0"], "Newton"),
-    (TOUCH, [*LINE, "weight"], [], "Error"),
+    (TOUCH, [*LINE, "weight"], [], "coefficients of every polynomial"),
     (TOUCH, [*LINE, "sign"], 1, "expected exactly the keys"),
     (TOUCH, [*LINE, "panel"], 1, "integer from"),
     (TOUCH, [*LINE, "panel"], -1, "integer from"),
-    (TOUCH, [*LINE, "at"], [], "TypeError"),
+    (TOUCH, [*LINE, "at"], [], "coefficients of every polynomial"),
     (TOUCH, [*LINE, "at"], ["0.0"], "Newton"),
-    (TOUCH, [*ONE, "contacts"], [], "Error"),
+    (TOUCH, [*ONE, "contacts"], [], "expected a contact"),
     (TOUCH, [*ONE, "radius"], ["0"] * 6, "Newton"),
     (TOUCH, [*ONE, "radius"], ["-1"] * 6, "singular|Newton"),
     (TOUCH, [*ONE, "radius"], ["0.000001"] * 5, "entries"),
@@ -294,7 +318,7 @@ FORGERIES = [
     (MOVING, ["panels", 0, "from"], "p/100", "Newton"),
     (MOVING, ["panels", 0, "H"], ["p + 1 + t*(p - 1)"], "not shown"),
     (MOVING, ["functional"], ["p"], "Newton"),
-    (MOVING, ["parameter"], "r", "KeyError"),
+    (MOVING, ["parameter"], "r", "unknown symbol p"),
     (MOVING, ["panels", 0, "to"], "p - 1", "positive"),
     (SLOPES, ["pieces", 0, "to"], "1.005", "leave a hole"),
     (SLOPES, ["pieces", 1, "from"], "1.005", "leave a hole"),
@@ -330,7 +354,7 @@ FORGERIES = [
     (EXACT, ["cells"], -1, "integer from"),
     (EXACT | {"cells": 5}, ["dual"], ["2"], "not shown"),
     (EXACT | {"cells": 5}, ["dual"], ["-2"], "not shown"),
-    (EXACT, ["support"], [[0, "1", "1"]], "too many values"),
+    (EXACT, ["support"], [[0, "1", "1"]], "expected 2 entries"),
     (EXACT, ["support"], [[-1, "1"]], "integer from"),
     (EDGE | {"cells": 100}, ["box", "x"], ["-0.01", "0.99"], "not shown"),
     (EDGE | {"cells": 100}, ["box", "x"], ["0.01", "1.01"], "not shown"),
@@ -339,7 +363,7 @@ FORGERIES = [
     (EDGE, ["bits"], 20001, "integer from"),
     (EDGE, ["cells"], 20001, "integer from"),
     (CELLS, ["cells"], 13, "not shown"),
-    (CELLS, ["box"], {}, "KeyError"),
+    (CELLS, ["box"], {}, "unknown symbol x"),
     (CELLS, ["expression"], "x - x", "not shown"),
     (CELLS, ["expression"], "1 + 2**1000", "a large exponent"),
     (IDENTITY, ["right"], "sin(2*a) + 0*a**1000", "a large exponent"),
@@ -381,7 +405,7 @@ def enclosed(text: str, series: Any, module: Any) -> bool:
     try:
         exact = series(arb_series(list(PARTS)))
         for parts, width in ((PARTS, 2e-6), (PARTS[:2], 2e-4)):
-            jet = [arb(c) for c in module.value(module.parse(text), {"p": module.Jet(*parts)}, arb).parts]
+            jet = [arb(c) for c in module.evaluate(module.parse(text), {"p": module.Jet(*parts)}, arb).parts]
             ends = [(at(jet, s), series(arb_series([at(parts, s)]))[0]) for s in (-1, 1)]
             near = [(c, exact[k]) for k, c in enumerate(jet)]
             if not all(x.overlaps(y) for x, y in (*ends, *near)):
