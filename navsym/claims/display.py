@@ -30,7 +30,7 @@ def latex_of(value: Any) -> str:
 
 
 def latex_words(text: str) -> str:
-    """Words inside ``\\text``: what LaTeX would obey becomes a blank."""
+    r"""Words inside ``\text``: what LaTeX would obey becomes a blank."""
     return "".join(" " if c in "\\{}$&#%_^~" or not c.isprintable() else c for c in text)
 
 

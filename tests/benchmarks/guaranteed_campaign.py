@@ -26,7 +26,6 @@ from scipy.optimize import linprog
 
 from navsym import checker
 from navsym.core.errors import NavsymError
-from navsym.guaranteed.baselines import panel_numbers
 from navsym.guaranteed.problem import from_regressors
 from navsym.guaranteed.solver import solve
 
@@ -86,9 +85,10 @@ def made(rng):
 
 def on_grid(problem, count=400):
     """The optimum on a grid by HiGHS, in orthogonal functions: in those of the problem its tolerance may hide a
-    solution that is far from one; None where doubles cannot tell."""
+    solution that is far from one; None where doubles cannot tell.
+    """
     panel = problem.exact().panels[0]
-    H, _, _ = panel_numbers(panel, np.linspace(0.0, 1.0, count))
+    _, H, _ = panel.numbers(np.linspace(0.0, 1.0, count))
     scale = np.abs(H).max(axis=1)
     Q, R = np.linalg.qr((H / scale[:, None]).T)
     if np.linalg.cond(R) > 1e9:

@@ -113,7 +113,8 @@ def alterations(item, rng):
 
 def harmless(kind, path, old, new) -> bool:
     """Changes that leave the statement true: bounds made wider, another label, a hint moved within its box, another
-    parameter that occurs nowhere."""
+    parameter that occurs nowhere.
+    """
     if kind != "range" and path[0] in ("parameter", "from", "to"):
         return True
     return old == new or path[-1] in ("lower", "upper", "variable", "kind") or "radius" in path or "null" in path

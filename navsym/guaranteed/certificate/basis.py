@@ -76,7 +76,8 @@ def tail(high: NDArray[np.float64]) -> float:
 
 def transformed(rows: list[list[arb]]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Coefficients from an even number of values, the even ones from their sums about the middle, the odd ones
-    from their differences."""
+    from their differences.
+    """
     count, half = len(rows), len(rows) // 2
     pairs = list(zip(rows[:half], reversed(rows), strict=False))
     even = arb_mat([[a + b for a, b in zip(*pair, strict=True)] for pair in pairs])

@@ -305,7 +305,8 @@ def image(
     free: Sequence[int],
 ) -> dict[int, arb] | None:
     """Newton's step from the moving centre for all s, by the derivatives of the whole box; None when they look
-    singular. The checker does the same, with balls of the same order."""
+    singular. The checker does the same, with balls of the same order.
+    """
     n = len(free)
 
     def entries(s: arb) -> list[Any]:

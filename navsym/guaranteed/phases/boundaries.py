@@ -98,7 +98,8 @@ def rooms_below(
     family: Family, closed: Closed | None, other: Closed | None, span: Span
 ) -> Iterator[tuple[sp.Expr, str]]:
     """What one dual polynomial leaves below the bound at the instants of the other regime, as far as those are known
-    exactly: ends of the interval are without a closed form of the other."""
+    exactly: ends of the interval are without a closed form of the other.
+    """
     if closed is None:
         return
     for i, (k, kind, sign) in enumerate(span.pattern):
@@ -163,7 +164,8 @@ Room = tuple[str, int]
 
 def rooms(found: Polished, problem: Problem, others: Others) -> dict[Room, arb]:
     """Quantities that are positive inside a regime: sizes of the weights, distances to the ends, rooms below the
-    bound near those contacts of the regime beyond (panel, u, sign) that are none of this one."""
+    bound near those contacts of the regime beyond (panel, u, sign) that are none of this one.
+    """
     done: dict[Room, arb] = {}
     for i, (s, w, v) in enumerate(zip(found.sign, found.weights, found.v, strict=True)):
         done["weight", i] = s * w
@@ -302,7 +304,8 @@ def proves(family: Family, span: Span, T: sp.Rational, side: int, root: sp.Ratio
 
 def doubled(problem: Problem, found: Polished) -> bool:
     """True when a contact sits where two stretches meet: the end of the other touches as well, and no strict bound
-    holds there."""
+    holds there.
+    """
     many = 1 + max(panel.measurement for panel in problem.panels)
     contacts = {(int(k), to_fmpq(at)) for k, at in zip(found.panel, found.v, strict=True)}
     twins = {(k - many, 1) for k, v in contacts if v == 0} | {(k + many, 0) for k, v in contacts if v == 1}

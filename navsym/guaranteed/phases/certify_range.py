@@ -82,7 +82,8 @@ def echelon(family: Family) -> Echelon | None:
 
 def rates_of_row(row: list[sp.Expr]) -> list[fmpq] | None:
     """|c| of every ``sin(c u)``, ``cos(c u)``, ``exp(c u)``, and a bound of 1/|z| for the zeros z of every denominator;
-    None when there is another function."""
+    None when there is another function.
+    """
     rates = []
     for f in {f for h in map(in_exponentials, row) for f in h.atoms(sp.Function, sp.exp) | denominators(h)}:
         rate = pole_rate(f) if f.is_Pow and not f.is_polynomial(U) and f.base != sp.E else of_argument(f)
@@ -255,7 +256,8 @@ def scaled_text(form: Echelon, i: int, row: tuple[sp.Expr, ...], T: str, v: str)
 
 def opened(h: sp.Expr, K: int, T: str, v: str, parts: dict[sp.Symbol, str]) -> sp.Expr:
     """h with every function written as its Taylor polynomial and ``(c u)**K`` times an entire function, and every
-    reciprocal as its Taylor polynomial and ``u**K`` times a rational function."""
+    reciprocal as its Taylor polynomial and ``u**K`` times a rational function.
+    """
 
     def function(f: sp.Expr) -> sp.Expr:
         c, name = sp.expand(f.args[0] / U), {sp.sin: "sin", sp.cos: "cos", sp.exp: "exp"}[f.func]
@@ -349,7 +351,8 @@ def plain(family: Family, pieces: Sequence[Piece]) -> dict[str, Any]:
 
 def accepted_by(document: Callable[[Sequence[Piece]], dict[str, Any]]) -> Callable[[Piece], bool]:
     """Whether the independent checker accepts the certificate of a piece alone: its balls come from texts, and are not
-    those of the proof here."""
+    those of the proof here.
+    """
 
     def accepts(one: Piece) -> bool:
         try:
@@ -430,7 +433,8 @@ def conditioner(family: Family, p: fmpq) -> fmpq_mat:
 
 def turned(family: Family, p: fmpq) -> fmpq_mat:
     """The same after a reflection along (1, ..., m): the boxes of the proof are as large as what moves in them, and an
-    unknown of the dual that is zero for all values has no size of its own."""
+    unknown of the dual that is zero for all values has no size of its own.
+    """
     A = conditioner(family, p)
     m = A.nrows()
     squares = sum(k * k for k in range(1, m + 1))

@@ -392,7 +392,8 @@ def planned(
     family: Family, lower: sp.Expr, upper: sp.Expr, limit: Limit
 ) -> tuple[list[Section], list[tuple[str, str]], list[Boundary]]:
     """The sections of the range, the ends of parts that have none (imaginary, or not split within the limit), and where
-    imaginary ones begin."""
+    imaginary ones begin.
+    """
     plan: list[Section] = []
     lost: list[tuple[str, str]] = []
     edges: list[Boundary] = []
@@ -493,7 +494,8 @@ def guessed(family: Family, spans: Sequence[Span], steps: Steps, limit: Limit) -
 
 def without_accidents(family: Family, spans: list[Span], limit: Limit) -> list[Span]:
     """Spans without short ones between neighbours that are proved to follow each other: there contacts merge, and
-    the search in double precision takes one pattern for another, or for several."""
+    the search in double precision takes one pattern for another, or for several.
+    """
     short = SHORT * (spans[-1].upper - spans[0].lower)
     kept, rest = spans[:1], spans[1:]
     while rest:

@@ -127,7 +127,8 @@ class Family:
 
     def real_near(self, value: Any) -> Family:
         """The same with square roots of what is positive at a value: ``sqrt(c) = i sqrt(-c)``, sines of ``i x`` as
-        hyperbolic sines. To be used where no radicand changes its sign."""
+        hyperbolic sines. To be used where no radicand changes its sign.
+        """
         parts = [*self.functional, *(h for row in self.rows for h in row)]
         roots = {e for part in parts for e in part.atoms(sp.Pow) if e.exp.is_Rational and e.exp.q == 2}
         turned = {

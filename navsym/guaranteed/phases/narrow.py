@@ -65,7 +65,8 @@ def slivers(
     family: Family, start: fmpq, end: fmpq, enough: Callable[[], bool] = never
 ) -> tuple[list[Sliver], list[tuple[fmpq, fmpq]]]:
     """Slivers on a stretch, each as long as it stays narrow, and what they leave when the attempts are used up or it is
-    enough."""
+    enough.
+    """
     made: list[Sliver] = []
     left: list[tuple[fmpq, fmpq]] = []
     stack, tries, shortest = [(start, end)], 0, (end - start) * SHORTEST
@@ -158,7 +159,8 @@ def cheapest(ball: Problem, basis: Basis, contacts: Contacts, refined: Polished)
 
 def most_of(ball: Problem, support: Support) -> arb:
     """``sum |W|`` of the weights over their noise bounds, ``sum W H/sigma = P``: in the order of the checker, whose
-    balls are as wide as these where sigma moves."""
+    balls are as wide as these where sigma moves.
+    """
     panels = [ball.panels[k] for k, _ in support]
     columns = [[h / panel.bound() for h in panel.rows(arb(v))] for panel, (_, v) in zip(panels, support, strict=True)]
     weights = arb_mat(columns).transpose().solve(arb_mat([[p] for p in ball.target()])).entries()

@@ -137,7 +137,8 @@ def sample(family: Family, T: Fraction, *wanted: Pattern | None) -> tuple[Basis,
 
 def at_cuts(found: Contacts, panels: Panels, many: int) -> Contacts:
     """The same contacts; one at the start of a stretch stands at the end of the stretch before where the regressors go
-    on without a jump: such a place belongs to both, and a pattern names it in one way."""
+    on without a jump: such a place belongs to both, and a pattern names it in one way.
+    """
     panel, u = found.panel.copy(), found.u.copy()
     for i in np.flatnonzero((found.inner == 0) & (u < 0) & (panel >= many)):
         here = rows_at(panels.coefficients, panel[i : i + 1], u[i : i + 1])
@@ -150,7 +151,8 @@ def at_cuts(found: Contacts, panels: Panels, many: int) -> Contacts:
 
 def ordered(found: Contacts, panels: Panels | None = None) -> Contacts:
     """The same contacts by panel and place; those whose weight is rounding, or has not the sign of the dual
-    polynomial there (with panels), are touches only."""
+    polynomial there (with panels), are touches only.
+    """
     sizes = np.abs(found.weights)
     idle = sizes <= ROUNDING * sizes.sum()
     if panels is not None:

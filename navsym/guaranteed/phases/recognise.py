@@ -16,7 +16,8 @@ SHORT = 1000
 
 def constant(x: sp.Rational) -> sp.Expr | None:
     """A rational, a rational multiple of pi, a cosine share ``(1 - cos(pi r))/2``, a rational multiple of a root, or
-    what :func:`related` knows, within 1e-40."""
+    what :func:`related` knows, within 1e-40.
+    """
     pi = sp.Rational(str(sp.pi.evalf(90)))
     for unit, base in ((sp.Integer(1), sp.Integer(1)), (pi, sp.pi)):
         best = sp.Rational(x / unit).limit_denominator(720)
@@ -109,6 +110,7 @@ def share_of(
 
 def middle_of_constant(family: Family, panel: int) -> sp.Expr | None:
     """The middle of a panel whose regressors do not change on it: there one place is as good as another, and what a
-    search found says nothing. None for other panels."""
+    search found says nothing. None for other panels.
+    """
     start, stop = family.panels[panel]
     return None if any(h.has(U) for h in family.rows[panel]) else (start + stop) / 2

@@ -136,7 +136,8 @@ def is_square_root(power: sp.Pow, parameter: sp.Symbol) -> bool:
 
 def lost_ranks(family: Family) -> Iterator[sp.Expr]:
     """Expressions that vanish where the regressors, as combinations of functions of U, lose rank: the common divisor
-    of minors of the matrix of their coefficients."""
+    of minors of the matrix of their coefficients.
+    """
     p, m = family.parameter, len(family.functional)
     columns: dict[tuple[int, sp.Expr], list[sp.Expr]] = {}
     for k, row in enumerate(family.rows):

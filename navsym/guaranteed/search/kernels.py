@@ -156,7 +156,8 @@ def picked(G: Array, basis: Ints) -> Array:
 @part
 def leaving(signs: Array, weights: Array, d: Array) -> int:
     """The row whose weight vanishes first along d; among equal steps the largest pivot, so that the basis
-    stays far from singular. -1 where none does."""
+    stays far from singular. -1 where none does.
+    """
     leave = -1
     ratio = np.inf
     pivot = 0.0

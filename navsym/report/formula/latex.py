@@ -189,7 +189,7 @@ class Reader:
         return f"<mtext>{html.escape(words)}</mtext>"
 
     def fenced(self) -> str:
-        """What stands between ``\\left`` and ``\\right``, with brackets as tall as it."""
+        r"""What stands between ``\left`` and ``\right``, with brackets as tall as it."""
         left = self.bracket()
         inner = self.row(lambda token: token["word"] == "right")
         self.take()
@@ -198,7 +198,7 @@ class Reader:
         return f"<mrow>{first}{inner}{last}</mrow>"
 
     def bracket(self) -> str:
-        """The sign after ``\\left`` or ``\\right``; nothing for a dot."""
+        r"""The sign after ``\left`` or ``\right``; nothing for a dot."""
         token = self.take()
         sign = token["char"] or {"{": "{", "}": "}", "|": "‖"}.get(token["word"] or "", "")
         if not sign:

@@ -187,7 +187,8 @@ def apply(
     B: Array, g: Array, h: Array, q: Array, S: float, ahead: Array, innovation: float, y: Array, P: Array, gain: Array
 ) -> None:
     """Correct by the chosen candidate: y, P and gain are written. P = P^- - K S K^T,
-    symmetric by construction."""
+    symmetric by construction.
+    """
     n = y.shape[0]
     inverse = 1.0 / S
     for i in range(n):
