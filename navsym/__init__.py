@@ -18,7 +18,7 @@ A first session
     ...                   H=[["1", "0", "0"]], sigma=["1"], interval="T", targets={"drift": "y3"}, T=("0", "2*pi"))
     >>> drift = nav.solve(model, "drift", T="pi/2")
     >>> print(drift.value)
-    4.828427124746190097603377448419
+    4.82842712474619009760337744841939
 
 Conventions
 -----------
@@ -46,6 +46,7 @@ __version__ = "0.1.0"
 #: Public name -> module that holds it. A module is imported when its name is first used, and its engines with it.
 _HOMES = {
     "Model": "navsym.models.model",
+    **dict.fromkeys(("Observability", "observe"), "navsym.observability.answer"),
     "Comparison": "navsym.guaranteed.baselines",
     "Estimator": "navsym.guaranteed.solver",
     "Formulation": "navsym.guaranteed.formulate",
@@ -82,6 +83,8 @@ if TYPE_CHECKING:
     from navsym.guaranteed.solver import Estimator as Estimator
     from navsym.guaranteed.solver import solve as solve
     from navsym.models.model import Model as Model
+    from navsym.observability.answer import Observability as Observability
+    from navsym.observability.answer import observe as observe
     from navsym.prove.formulas import prove as prove
 
 
