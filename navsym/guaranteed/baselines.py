@@ -16,15 +16,13 @@ from numpy.typing import NDArray
 
 from navsym.claims.display import table
 from navsym.core.answers import Answer
-from navsym.guaranteed.certificate.enclosure import Panel
-from navsym.guaranteed.convex import LP_SOLVERS, GridProblem, guaranteed_lp
+from navsym.guaranteed.convex import LP_SOLVERS, GridProblem, grid_problem, guaranteed_lp
 from navsym.guaranteed.problem import GuaranteedProblem
 
 if TYPE_CHECKING:
     from navsym.guaranteed.solver import Estimator
 
 Array = NDArray[np.float64]
-GRID = 201
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -36,25 +34,18 @@ class Sampled:
     bounds: Array
 
 
-def panel_numbers(panel: Panel, v: Array) -> tuple[Array, float, float]:
-    """H (m, n) at fractions v of a panel, its length and its noise bound, in double precision."""
-    values = {symbol: float(ball.mid()) for symbol, ball in panel.values.items()}
-    start, end, sigma = (float(x) for x in panel.ends.numbers(values))
-    inputs = {**values, panel.variable: start + (end - start) * v}
-    rows = [np.broadcast_to(np.asarray(h, dtype=float), v.shape) for h in panel.program.numbers(inputs)]
-    return np.array(rows), end - start, sigma
-
-
 def sampled(problem: GuaranteedProblem, count: int = 4000) -> Sampled:
     """Composite Gauss points, fine enough for integrals of |Phi| to six digits."""
     nodes, weights = np.polynomial.legendre.leggauss(4)
     cells = count // 4
     v = ((np.arange(cells)[:, None] + (nodes + 1) / 2) / cells).ravel()
     share = np.tile(weights / 2 / cells, cells)
-    parts = [panel_numbers(panel, v) for panel in problem.exact().panels]
+    panels = problem.exact().panels
+    parts = [panel.numbers(v) for panel in panels]
+    lengths = [float(end - start) for start, end, _ in (panel.edges() for panel in panels)]
     return Sampled(
-        np.hstack([H for H, _, _ in parts]),
-        np.concatenate([length * share for _, length, _ in parts]),
+        np.hstack([H for _, H, _ in parts]),
+        np.concatenate([length * share for length in lengths]),
         np.concatenate([np.full(v.size, sigma) for _, _, sigma in parts]),
     )
 
@@ -154,14 +145,6 @@ def compare(
         answers.append(solver_answer(grid_problem(problem), name, optimum))
         progress(name)
     return Comparison(least, kalman, optimum, tuple(answers))
-
-
-def grid_problem(problem: GuaranteedProblem, count: int = GRID) -> GridProblem:
-    """The problem on ``count`` equidistant instants per measurement and stretch, both ends included."""
-    v = np.linspace(0.0, 1.0, count)
-    parts = [panel_numbers(panel, v) for panel in problem.exact().panels]
-    bounds = np.concatenate([np.full(count, sigma) for _, _, sigma in parts])
-    return GridProblem(np.hstack([H for H, _, _ in parts]), np.array([float(p) for p in problem.functional]), bounds)
 
 
 def solver_answer(grid: GridProblem, name: str, optimum: float) -> SolverAnswer:

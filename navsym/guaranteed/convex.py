@@ -1,4 +1,4 @@
-"""The guaranteed estimator on a grid of instants, by general convex solvers.
+"""The guaranteed estimator on a grid of times, by general convex solvers.
 
 Among the unbiased linear estimators of P^T q from z_i = H(t_i)^T q + r_i, |r_i| <= sigma_i in the mean
 square and of any correlation, the guaranteed standard deviation is sum_i sigma_i |Phi_i|; its minimum
@@ -13,7 +13,7 @@ from __future__ import annotations
 import sys
 import time
 import warnings
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -22,10 +22,13 @@ import numpy as np
 
 from navsym.core.arrays import Array, frozen, named, positive
 from navsym.core.errors import DomainError, MissingEngineError, NotEstimableError
+from navsym.guaranteed.problem import GuaranteedProblem
 
 #: Programme and engine; the first that is named is the default.
 LP_SOLVERS = ("casadi:highs", "casadi:osqp", "cvxpy:HIGHS", "cvxpy:CLARABEL", "cvxpy:OSQP")
 QP_SOLVERS = ("casadi:osqp", "casadi:highs", "cvxpy:CLARABEL", "cvxpy:OSQP", "cvxpy:HIGHS")
+
+MOST_TIMES = 100_000
 
 #: What a solver says when it believes that it has succeeded.
 SUCCESS = frozenset({"Optimal", "solved", "optimal"})
@@ -34,59 +37,53 @@ SILENT = {"highs": {"highs": {"output_flag": False}}, "osqp": {"osqp": {"verbose
 
 @dataclass(frozen=True, slots=True, eq=False)
 class GridProblem:
-    """Estimate functional^T q from measurements at n instants.
+    """Estimate functional^T q from measurements at n times.
 
     regressors : (m, n) columns H(t_i)
     functional : (m,)   P
-    bounds     : (n,)   sigma_i, bounds of the standard deviations
-    spacing    : (n,)   length of time that each instant stands for; only least squares needs it
+    bounds     : (n,)   sigma_i, bounds of the standard deviations; ones by default
+    spacing    : (n,)   length of time that each time stands for, ones by default; only least squares needs it
+    times      : (n,)   t_i; by default their numbers
     """
 
     regressors: Array
     functional: Array
     bounds: Any = None  # arrays once constructed
     spacing: Any = None
+    times: Any = None
 
     def __post_init__(self) -> None:
-        regressors = named("regressors", self.regressors, (None, None), "unknowns by instants")
+        regressors = named("regressors", self.regressors, (None, None), "unknowns by times")
         m, n = regressors.shape
         ones = np.ones(n)
         put = object.__setattr__
         put(self, "regressors", regressors)
         put(self, "functional", named("functional", self.functional, (m,), "one entry per unknown"))
-        for name, why in (("bounds", "one entry per instant"), ("spacing", "one entry per instant")):
+        for name in ("bounds", "spacing"):
             value = getattr(self, name)
-            put(self, name, positive(name, ones if value is None else value, (n,), why))
+            put(self, name, positive(name, ones if value is None else value, (n,), "one entry per time"))
+        times = np.arange(n) if self.times is None else self.times
+        put(self, "times", named("times", times, (n,), "one entry per time"))
 
 
-def grid_problem(
-    regressors: Callable[..., Any],
-    functional: Any,
-    interval: tuple[float, float],
-    *constants: float,
-    intervals: int = 200,
-    sigma: float = 1.0,
-) -> GridProblem:
-    """The problem on equally spaced instants, both ends included.
+def grid_problem(problem: GuaranteedProblem, count: int = 201) -> GridProblem:
+    """The problem on ``count`` equidistant times per measurement and piece, both ends included.
 
-    regressors : casadi function H(tau, *constants) -> (m, 1), as made from a derived expression
-    constants  : its further arguments, for example T
-    intervals  : number of steps; an even one puts the middle on the grid
-
-    The spacing is that of the trapezoidal rule.
+    The spacing is that of the trapezoidal rule. Raises DomainError for fewer than two times, or too many.
     """
-    from navsym.core.casadi_functions import on_grid
-
-    start, end = interval
-    if not start < end or intervals < 1:
-        raise DomainError(
-            f"interval: expected start < end and at least one step; got {interval}, {intervals}; widen it"
-        )
-    instants = np.linspace(start, end, intervals + 1)
-    spacing = np.full(intervals + 1, (end - start) / intervals)
-    spacing[[0, -1]] /= 2
-    bounds = np.full(intervals + 1, float(sigma))
-    return GridProblem(on_grid(regressors, instants, *constants), functional, bounds, spacing)
+    if not 2 <= count <= MOST_TIMES:
+        raise DomainError(f"grid: expected 2 to {MOST_TIMES} times; got {count}; choose a number between")
+    v = np.linspace(0.0, 1.0, count)
+    share = np.full(count, 1.0 / (count - 1))
+    share[[0, -1]] /= 2
+    parts = [panel.numbers(v) for panel in problem.exact().panels]
+    return GridProblem(
+        np.hstack([H for _, H, _ in parts]),
+        np.array([float(p) for p in problem.functional]),
+        np.concatenate([np.full(count, sigma) for _, _, sigma in parts]),
+        np.concatenate([(times[-1] - times[0]) * share for times, _, _ in parts]),
+        np.concatenate([times for times, _, _ in parts]),
+    )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -143,7 +140,7 @@ def least_squares_qp(problem: GridProblem, *, solver: str = QP_SOLVERS[0]) -> Co
 
 
 def engine_of(solver: str, known: tuple[str, ...]) -> tuple[str, str]:
-    """ "programme:engine" as a pair; DomainError when it is not known."""
+    """The pair of "programme:engine"; DomainError when it is not known."""
     if solver not in known:
         raise DomainError(f"solver: expected one of {', '.join(known)}; got {solver!r}; name one of them")
     programme, engine = solver.split(":")
@@ -163,8 +160,8 @@ def need_estimable(problem: GridProblem) -> None:
     outside = np.abs(H @ weights - P).max() > 1e-6 * np.abs(P).max()
     if outside and (rank == 0 or values[rank - 1] > 1e-8 * values[0]):
         raise NotEstimableError(
-            f"functional: expected a combination of the regressors at the {H.shape[1]} instants; got one "
-            f"outside their range (rank {rank} of {H.shape[0]}); add instants or estimate fewer unknowns"
+            f"functional: expected a combination of the regressors at the {H.shape[1]} times; got one "
+            f"outside their range (rank {rank} of {H.shape[0]}); add times or estimate fewer unknowns"
         )
 
 
@@ -294,70 +291,3 @@ def solved_by_cvxpy(problem: GridProblem, objective: Any, weights: Any, engine: 
     task = cp.Problem(objective, [unbiased])
     task.solve(solver=engine, verbose=False)
     return weights.value, unbiased.dual_value, str(task.status)
-
-
-# --- where solvers stop being trustworthy ---------------------------------------------------------------
-
-
-@dataclass(frozen=True, slots=True)
-class Trust:
-    """One solver on one problem whose optimum is known.
-
-    parameter : what distinguishes the problem, for example T
-    error     : |value - expected| / expected, None when there is no value
-    honest    : False when the solver claims success and is off by more than ``tolerance``
-    """
-
-    parameter: float
-    solver: str
-    status: str
-    value: float | None
-    expected: float
-    error: float | None
-    residual: float | None
-    honest: bool
-
-
-def trust_table(
-    problems: Iterable[tuple[float, GridProblem, float]],
-    *,
-    solvers: tuple[str, ...] = LP_SOLVERS,
-    tolerance: float = 1e-6,
-) -> tuple[Trust, ...]:
-    """Every solver on every problem (parameter, problem, exact optimum), in the order given.
-
-    The exact optimum comes from a closed form; the grid must contain its support, so that the optimum on
-    the grid is the same.
-    """
-    rows = []
-    for parameter, problem, expected in problems:
-        for solver in solvers:
-            result = guaranteed_lp(problem, solver=solver)
-            error = None if result.value is None else abs(result.value - expected) / expected
-            off = error is None or error > tolerance
-            rows.append(
-                Trust(
-                    parameter,
-                    solver,
-                    result.status,
-                    result.value,
-                    expected,
-                    error,
-                    result.residual,
-                    honest=not (result.claims and off),
-                )
-            )
-    return tuple(rows)
-
-
-def trusted_until(table: Iterable[Trust], *, tolerance: float = 1e-6) -> dict[str, float | None]:
-    """For each solver the smallest parameter down to which it solved all within the tolerance."""
-    limits: dict[str, float | None] = {}
-    failed: set[str] = set()
-    for row in sorted(table, key=lambda row: -row.parameter):
-        limits.setdefault(row.solver, None)
-        if row.error is None or row.error > tolerance:
-            failed.add(row.solver)
-        elif row.solver not in failed:
-            limits[row.solver] = row.parameter
-    return limits

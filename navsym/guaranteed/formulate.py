@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from navsym.core.answers import Answer
 from navsym.core.errors import DomainError
-from navsym.guaranteed.baselines import panel_numbers
+from navsym.guaranteed.convex import GridProblem, grid_problem
 from navsym.guaranteed.problem import GuaranteedProblem, problem_of
 from navsym.models.model import file_in_errors
 
@@ -32,36 +32,6 @@ if TYPE_CHECKING:
 FORMATS = ("casadi", "cvxpy", "mps")
 KINDS = ("lp", "qp", "mixed")
 Array = NDArray[np.float64]
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Grid:
-    """Regressors (m, n) at n instants, functional (m,), bounds (n,), spacing (n,), times (n,)."""
-
-    regressors: Array
-    functional: Array
-    bounds: Array
-    spacing: Array
-    times: Array
-
-
-def grid_of(problem: GuaranteedProblem, count: int) -> Grid:
-    """Equidistant instants with trapezoidal spacing, ``count`` for each measurement and stretch."""
-    if not 2 <= count <= 100_000:
-        raise DomainError(f"grid: expected 2 to 100000 instants; got {count}; choose a number between")
-    v = np.linspace(0.0, 1.0, count)
-    share = np.full(count, 1.0 / (count - 1))
-    share[[0, -1]] /= 2
-    panels = problem.exact().panels
-    parts = [panel_numbers(panel, v) for panel in panels]
-    starts = [float(panel.ends.numbers(panel.values)[0]) for panel in panels]
-    return Grid(
-        np.hstack([H for H, _, _ in parts]),
-        np.array([float(p) for p in problem.functional]),
-        np.concatenate([np.full(count, sigma) for _, _, sigma in parts]),
-        np.concatenate([length * share for _, length, _ in parts]),
-        np.concatenate([start + length * v for start, (_, length, _) in zip(starts, parts, strict=True)]),
-    )
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -144,7 +114,7 @@ def formulation_text(
         )
     if not np.isfinite(mixture) or mixture <= 0:
         raise DomainError(f"mixture: expected a positive number; got {mixture}; choose one")
-    grid = grid_of(problem, count)
+    grid = grid_problem(problem, count)
     linear = np.zeros_like(grid.bounds) if kind == "qp" else grid.bounds
     factor = {"lp": 0.0, "qp": 1.0, "mixed": mixture}[kind]
     quadratic = factor * grid.bounds**2 / grid.spacing
@@ -158,7 +128,7 @@ def numbers(values: Array) -> str:
     return json.dumps([float(x) for x in values])
 
 
-def mps(grid: Grid, linear: Array, quadratic: Array) -> str:
+def mps(grid: GridProblem, linear: Array, quadratic: Array) -> str:
     """Free-form MPS; columns a0, b0, a1, b1, …, rows u0, u1, … for the unknowns."""
     m, n = grid.regressors.shape
     lines = ["NAME guaranteed", "ROWS", " N cost", *(f" E u{j}" for j in range(m)), "COLUMNS"]
@@ -214,7 +184,7 @@ if __name__ == "__main__":
 """
 
 
-def script(grid: Grid, linear: Array, quadratic: Array, to: str) -> str:
+def script(grid: GridProblem, linear: Array, quadratic: Array, to: str) -> str:
     """Python source that states the problem on the grid for cvxpy or casadi and solves it.
 
     linear, quadratic : (N,) of the cost ``linear . (a + b) + quadratic . (a - b)^2 / 2``

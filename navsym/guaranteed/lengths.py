@@ -1,8 +1,8 @@
 """Guaranteed deviations for many lengths of the interval, in double precision.
 
-Neighbouring lengths have neighbouring contacts, so one general search starts each stretch of equal
-pattern and compiled Newton steps do the rest. Without certificates: solve the lengths that matter
-with :func:`navsym.guaranteed.solver.solve`.
+Neighbouring lengths have neighbouring contacts: one general search starts each interval of lengths with one pattern,
+and compiled Newton steps do the rest. The functions are Chebyshev sums on the longest interval; a shorter one ends
+at u < 1 of the same panel. Without certificates: solve the lengths that matter with :func:`navsym.solve`.
 """
 
 from __future__ import annotations
@@ -11,21 +11,32 @@ from collections.abc import Sequence
 from fractions import Fraction
 
 import numpy as np
-from numpy.typing import NDArray
 
 from navsym.core.errors import DomainError
 from navsym.core.exact import to_rational
+from navsym.core.tiers import kernel
 from navsym.guaranteed.certificate.basis import Basis, make_basis
 from navsym.guaranteed.phases.family import Family
 from navsym.guaranteed.phases.patterns import ordered
 from navsym.guaranteed.search.exchange import Contacts, find_contacts
-from navsym.guaranteed.search.lengths import follow_lengths
+from navsym.guaranteed.search.kernels import (
+    Array,
+    Ints,
+    applied,
+    chebyshev_derivative,
+    chebyshev_rows,
+    chebyshev_sum,
+    combined,
+    inverted,
+)
 
 #: The search basis of a length serves lengths down to this part of it.
 REACH = 0.25
+#: Places on which a dual polynomial is looked at.
+CHECKS = 24
 
 
-def values_for_lengths(family: Family, lengths: Sequence[float]) -> NDArray[np.float64]:
+def values_for_lengths(family: Family, lengths: Sequence[float]) -> Array:
     """Guaranteed deviations (N,) for N lengths of the interval, in the order given, in double precision.
 
     Raises DomainError for a length that is not positive and finite.
@@ -39,26 +50,84 @@ def values_for_lengths(family: Family, lengths: Sequence[float]) -> NDArray[np.f
     while at < T.size:
         block = order[at:]
         block = block[T[block] >= REACH * T[block[0]]]
-        at += fill(family, T, block, values)
+        at += fill_values(family, T, block, values)
     return values
 
 
-def fill(family: Family, T: NDArray[np.float64], block: NDArray[np.int64], values: NDArray[np.float64]) -> int:
+def fill_values(family: Family, T: Array, block: Ints, values: Array) -> int:
     """Values for the first lengths of a descending block; how many were done, at least one."""
     top = Fraction(float(T[block[0]]))
     basis = make_basis(family.exact(to_rational(top)))
-    found = ordered(find_contacts(basis.sharp))
-    values[block[0]] = found.value * basis.scale
-    if block.size == 1 or not regular(basis, found):
+    contacts = ordered(find_contacts(basis.sharp))
+    values[block[0]] = contacts.value * basis.scale
+    if block.size == 1 or not is_alternance(basis, contacts):
         return 1
     ends = 2.0 * T[block[1:]] / float(top) - 1.0
-    kind = np.where(found.inner == 1, 1, np.where(found.u < 0, 0, 2)).astype(np.int64)
-    followed, _, _ = follow_lengths(basis.sharp, ends, found.u, kind, found.sign)
-    done = int(np.isfinite(followed).argmin()) if not np.isfinite(followed).all() else followed.size
-    values[block[1 : done + 1]] = followed[:done] * basis.scale
-    return 1 + done
+    kind = np.where(contacts.inner == 1, 1, np.where(contacts.u < 0, 0, 2)).astype(np.int64)
+    C = basis.sharp.coefficients[0]
+    C1 = chebyshev_derivative(C)
+    C2 = chebyshev_derivative(C1)
+    rest = follow_lengths(C, C1, C2, basis.sharp.functional, ends, contacts.u, kind, contacts.sign)
+    count = rest.size if np.isfinite(rest).all() else int(np.isfinite(rest).argmin())
+    values[block[1 : count + 1]] = rest[:count] * basis.scale
+    return 1 + count
 
 
-def regular(basis: Basis, found: Contacts) -> bool:
+def is_alternance(basis: Basis, contacts: Contacts) -> bool:
     """One panel, as many contacts as unknowns."""
-    return basis.sharp.coefficients.shape[0] == 1 and found.u.size == basis.sharp.functional.size
+    return basis.sharp.coefficients.shape[0] == 1 and contacts.u.size == basis.sharp.functional.size
+
+
+@kernel
+def follow_lengths(C: Array, C1: Array, C2: Array, p: Array, ends: Array, u: Array, kind: Ints, sign: Array) -> Array:
+    """Values for every end; NaN from the first length on where the full alternance fails.
+
+    kind : 0 at the start of the panel, 1 inside, 2 at the moving end
+    """
+    m, n = u.shape[0], ends.shape[0]
+    values = np.full(n, np.nan)
+    u = u.copy()
+    before = u[m - 1] if kind[m - 1] == 2 else 1.0
+    for i in range(n):
+        ratio = (ends[i] + 1.0) / (before + 1.0)
+        for k in range(m):
+            if kind[k] == 1:
+                u[k] = (u[k] + 1.0) * ratio - 1.0
+            elif kind[k] == 2:
+                u[k] = ends[i]
+        before = ends[i]
+        x = np.zeros(m)
+        inverse = np.eye(m)
+        move = 1.0
+        for _ in range(8):
+            B = np.empty((m, m))
+            for k in range(m):
+                B[k] = chebyshev_rows(C, u[k])
+            inverse, regular = inverted(B)
+            if not regular:
+                return values
+            x = applied(inverse, sign)
+            move = 0.0
+            slopes, bends = applied(C1, x), applied(C2, x)
+            for k in range(m):
+                if kind[k] == 1:
+                    bend = chebyshev_sum(bends, u[k])
+                    if bend * sign[k] >= 0.0:
+                        return values
+                    step = -chebyshev_sum(slopes, u[k]) / bend
+                    u[k] += step
+                    move = max(move, abs(step))
+            if move < 1e-8:
+                break
+        weights = combined(inverse, p)
+        total = 0.0
+        for k in range(m):
+            if not (weights[k] * sign[k] > 0.0 and -1.0 <= u[k] <= ends[i]):
+                return values
+            total += abs(weights[k])
+        f = applied(C, x)
+        for j in range(CHECKS):
+            if abs(chebyshev_sum(f, -1.0 + (ends[i] + 1.0) * j / (CHECKS - 1.0))) > 1.0 + 1e-7:
+                return values
+        values[i] = total
+    return values

@@ -18,14 +18,12 @@ import highspy
 import numpy as np
 import sympy as sp
 
-from navsym.guaranteed.baselines import panel_numbers
 from navsym.guaranteed.certificate.basis import kept_basis, make_basis
 from navsym.guaranteed.certificate.enclosure import Panel, Problem
 from navsym.guaranteed.certificate.fixed import certify
-from navsym.guaranteed.lengths import values_for_lengths
+from navsym.guaranteed.lengths import follow_lengths, values_for_lengths
 from navsym.guaranteed.phases.family import Family, U
 from navsym.guaranteed.search.exchange import compile_loops, find_contacts
-from navsym.guaranteed.search.lengths import follow
 
 t = sp.Symbol("t", real=True)
 
@@ -63,7 +61,7 @@ PROBLEMS = {
 
 
 def grid_arrays(case, count):
-    H, _, _ = panel_numbers(case.panels[0], np.linspace(0.0, 1.0, count))
+    _, H, _ = case.panels[0].numbers(np.linspace(0.0, 1.0, count))
     return H, np.array([float(p) for p in case.functional])
 
 
@@ -217,7 +215,7 @@ def compare_lengths(count, grid):
 def main(count=10_000, rounds=3, lengths=1000, compiled=False):
     if compiled:
         compile_loops()
-        follow.compiled()
+        follow_lengths.compiled()
     for name, case in PROBLEMS.items():
         compare_case(name, case, count, rounds)
     compare_lengths(lengths, count)

@@ -84,8 +84,9 @@ def made(rng):
 
 
 def on_grid(problem, count=400):
-    """The optimum on a grid by HiGHS, in orthogonal functions: in those of the problem its tolerance may hide a
-    solution that is far from one; None where doubles cannot tell.
+    """The optimum on a grid by HiGHS, in orthogonal functions; None where doubles cannot tell.
+
+    In the functions of the problem its tolerance may hide a solution that is far from one.
     """
     panel = problem.exact().panels[0]
     _, H, _ = panel.numbers(np.linspace(0.0, 1.0, count))

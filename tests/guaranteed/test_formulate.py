@@ -11,7 +11,8 @@ import pytest
 import sympy as sp
 
 from navsym.core.errors import DomainError
-from navsym.guaranteed.formulate import FORMATS, KINDS, formulation_text, grid_of
+from navsym.guaranteed.convex import grid_problem
+from navsym.guaranteed.formulate import FORMATS, KINDS, formulation_text
 from navsym.guaranteed.problem import from_regressors
 
 t = sp.Symbol("t", real=True)
@@ -38,7 +39,7 @@ def test_the_mps_file_has_the_optimum_of_the_parabola(tmp_path):
 def test_the_quadratic_mps_file_has_the_variance_of_least_squares(tmp_path):
     path = tmp_path / "q.mps"
     path.write_text(formulation_text(parabola(), "mps", kind="qp", count=41))
-    grid = grid_of(parabola(), 41)
+    grid = grid_problem(parabola(), 41)
     gram = (grid.regressors * grid.spacing) @ grid.regressors.T
     assert 2 * value_of(path) == pytest.approx(np.linalg.inv(gram)[2, 2], rel=1e-5)
 
@@ -60,7 +61,7 @@ def test_a_written_program_runs_and_prints_the_value_and_the_weights_as_plain_nu
     runpy.run_path(str(path), run_name="__main__")
     number, _, rows = capfd.readouterr().out.strip().splitlines()[-1].partition(" ")
     if value is None:
-        grid = grid_of(parabola(), 21)
+        grid = grid_problem(parabola(), 21)
         value = np.linalg.inv((grid.regressors * grid.spacing) @ grid.regressors.T)[2, 2] / 2
     assert float(number) == pytest.approx(value, rel=1e-6)
     weights = ast.literal_eval(rows)

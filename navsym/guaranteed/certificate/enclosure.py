@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 import sympy as sp
 from flint import arb, arb_mat, arb_series, ctx, fmpq, fmpz
+from numpy.typing import NDArray
 
 from navsym.core.balls import OPERATIONS, Step, instruction
 from navsym.core.exact import to_fmpq
@@ -208,6 +209,14 @@ class Panel:
         inputs = dict(self.values)
         inputs[self.variable] = self.time(v)
         return [arb(h) for h in self.program.run(inputs)]
+
+    def numbers(self, v: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64], float]:
+        """Times (n,) at fractions v (n,), H there (m, n) and the noise bound, in double precision."""
+        values = {symbol: float(ball.mid()) for symbol, ball in self.values.items()}
+        start, end, sigma = (float(x) for x in self.ends.numbers(values))
+        times = start + (end - start) * v
+        rows = self.program.numbers({**values, self.variable: times})
+        return times, np.array([np.broadcast_to(np.asarray(h, dtype=float), v.shape) for h in rows]), sigma
 
     def series(self, v: Any, scale: Any, order: int) -> list[list[arb]]:
         """Taylor coefficients 0 … order of every H in w, where the fraction is ``v + scale w``.
@@ -430,7 +439,8 @@ def near_touch(cell: Cell, taylor: Sequence[arb], spread: arb, bound: arb) -> bo
 
 def exact_touch(cell: Cell, taylor: Sequence[arb], spread: arb, bound: arb) -> bool:
     """``|f| < bound`` on the cell off the contact: strictly concave with f' = 0 at an inner contact; strictly
-    monotone up to a contact at an end of the panel, or concave with an outward slope there."""
+    monotone up to a contact at an end of the panel, or concave with an outward slope there.
+    """
     assert cell.touch is not None
     s, place = cell.touch.sign, arb(cell.touch.at)
     if cell.touch.end != "no" and place.rad() > 0:  # the slope below is that at one place

@@ -324,10 +324,8 @@ def solved_dual(
 
 def feasible(family: Family, one: Sample, x: np.ndarray) -> bool:
     """|x . H| <= sigma on a grid, up to rounding."""
-    from navsym.guaranteed.baselines import panel_numbers
-
     for panel in family.exact(one.T).panels:
-        H, _, sigma = panel_numbers(panel, np.linspace(0.0, 1.0, 801))
+        _, H, sigma = panel.numbers(np.linspace(0.0, 1.0, 801))
         if np.abs(x @ H).max() > sigma * (1 + 1e-9):
             return False
     return True
