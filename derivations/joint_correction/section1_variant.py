@@ -153,9 +153,9 @@ def preference_has_exceptions():
 
 
 def steady_variance(S: sp.Expr) -> sp.Expr:
-    """Steady variance of z - z° for dx/dt = q, dz/dt = x, sigma_1 = x + r_1, sigma_2 = z + r_2; K_x = K_z =
-    1.
+    """Steady variance of z - z° for dx/dt = q, dz/dt = x, sigma_1 = x + r_1, sigma_2 = z + r_2.
 
+    Both gains K_x and K_z are 1.
     Errors e of x and f of z in the old coordinates (1.13.equivalent), unit intensities:
     de/dt = -e + q - r_1, df/dt = (1 + S) e - f - r_2 + S r_1.
     """

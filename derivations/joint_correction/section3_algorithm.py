@@ -9,7 +9,7 @@ import sympy as sp
 from navsym.claims import REFUTED, Equation, Finding, Property, claim
 from navsym.models.inertial import FULL, X, Y, joint_model
 from navsym.models.linear import LinearModel
-from navsym.observability.chains import observe
+from navsym.observability.chains import observe_jointly
 from navsym_papers.joint_correction.section1_systems import p, polynomial_of
 from navsym_papers.joint_correction.section2_groups import mu, position, row, u3, velocity, w1, w2
 
@@ -62,7 +62,7 @@ def functionals(meaning: tuple[sp.Expr, ...]) -> sp.Matrix:
 @claim("3.1.remaining")
 def remaining_variables():
     """After velocity correction four variables remain for the position information: y_1, y_2, y_5, y_6."""
-    found = observe(joint())
+    found = observe_jointly(joint())
     return Property(
         (6, 4),
         Finding(
@@ -123,9 +123,7 @@ rows_32 = tuple(
 
 
 def position_row(k: int) -> sp.Expr:
-    """Homogeneous part of (2.9) with y_3, y_7 replaced by the estimates x_1, x_4 of (3.1), plus the
-    innovation.
-    """
+    """Homogeneous part of (2.9) with y_3, y_7 replaced by x_1, x_4 of (3.1), plus the innovation."""
     F, H, _ = position().linear()
     estimates = sp.Matrix([y[1], y[2], x[0], x[1], y[5], y[6], x[3], x[4]])
     channel = 0 if k < 4 else 1
@@ -212,9 +210,7 @@ def position_gains_are_zero():
 
 
 def joint_error_matrix(Kx: tuple[sp.Expr, ...] = Kc, Ky: dict[int, sp.Expr] = Kh) -> sp.Matrix:
-    """Matrix of the errors of (3.2), (3.3) in x_1 ... x_6, y_1, y_2, y_5, y_6 without the inhomogeneous
-    terms.
-    """
+    """Matrix of the errors of (3.2), (3.3) in x_1 … x_6, y_1, y_2, y_5, y_6, inhomogeneous terms left out."""
     model = joint()
     gains = sp.zeros(10, 4)
     for k in range(6):

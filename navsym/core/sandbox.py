@@ -175,8 +175,10 @@ def work(sender: Connection, function: Callable[[Any], Any], item: Any, limits: 
 
 
 def alone(error: NavsymError) -> NavsymError:
-    """The error without those that led to it: where tblib is at work (distributed brings it) they would be sent along,
-    and what their frames hold cannot always be.
+    """The error without those that led to it.
+
+    Where tblib is at work (distributed brings it), they would be sent along, and what their frames hold cannot
+    always be.
     """
     error.__cause__ = error.__context__ = None
     return error.with_traceback(None)

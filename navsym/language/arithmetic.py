@@ -49,9 +49,9 @@ ROOT_ADVICE = "restrict the symbols, or take the sign out of an odd root: -(8**(
 class Refusal(Exception):
     """Why a step is not done; the parser adds the place."""
 
-    def __init__(self, error: type[NavsymError], expected: str, got: str, do: str):
+    def __init__(self, error: type[NavsymError], expected: str, got: str, remedy: str):
         super().__init__(expected)
-        self.error, self.expected, self.got, self.do = error, expected, got, do
+        self.error, self.expected, self.got, self.remedy = error, expected, got, remedy
 
 
 def too_large(expected: str, got: str) -> Refusal:
@@ -181,8 +181,10 @@ def rational_parts(exponent: sp.Expr) -> list[sp.Rational]:
 
 
 def irrational(exponent: sp.Expr) -> list[sp.Expr]:
-    """The value of a constant exponent that is no fraction, to a few digits: of towers such as ``9**9**9**(1/2)`` sympy
-    would want all digits when it puts terms in order."""
+    """The value of a constant exponent that is no fraction, to a few digits.
+
+    Of towers such as ``9**9**9**(1/2)`` sympy would want all digits when it puts terms in order.
+    """
     if exponent.free_symbols or exponent.is_Rational:
         return []
     value = exponent.evalf(5)

@@ -20,8 +20,9 @@ d_vy, d_vx, d_heading, d_height = sp.symbols("dv_y dv_x dK dh", real=True)
 
 @dataclass(frozen=True, slots=True)
 class ErrorModel:
-    """``d/dt error = S(reckoned, readings, error, sensor_error)`` of a system that works without errors
-    when its sensors do.
+    """Equations ``d/dt error = S(reckoned, readings, error, sensor_error)`` of a system.
+
+    It works without errors when its sensors do.
 
     reckoned, readings   : what the system shows and what its sensors say
     errors, sensor_errors: reckoned minus true, reading minus true

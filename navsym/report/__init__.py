@@ -1,0 +1,1 @@
+"""Pages, erratum sheets, explanations and plots of what was decided."""

@@ -162,7 +162,7 @@ def edited(old, new):
 
 
 def table():
-    """name -> (reader, file, kind)"""
+    """Name -> (reader, file, kind)."""
     broken = {f"file: {name}": (read_model, data, kind) for name, (data, kind) in BROKEN.items()}
     edits = {f"model: {n}": (read_model, edited(old, new), kind) for n, (old, new, kind) in MODEL_EDITS.items()}
     return broken | edits | {f"json: {name}": (read_json, data, kind) for name, (data, kind) in JSON.items()}

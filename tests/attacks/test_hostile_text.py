@@ -204,7 +204,7 @@ def filled(template, honest, slot=None, value=""):
 
 
 def table():
-    """name -> (reader, file, kind)"""
+    """Name -> (reader, file, kind)."""
     cases = {}
     for name, (text, kind) in EXPRESSIONS.items():
         cases[f"F: {name}"] = (read_model, filled(MODEL, HONEST, "EXPRESSION", text), kind)

@@ -112,8 +112,9 @@ def alterations(item, rng):
 
 
 def harmless(kind, path, old, new) -> bool:
-    """Changes that leave the statement true: bounds made wider, another label, a hint moved within its box, another
-    parameter that occurs nowhere.
+    """True for changes that leave the statement true.
+
+    Bounds made wider, another label, a hint moved within its box, another parameter that occurs nowhere.
     """
     if kind != "range" and path[0] in ("parameter", "from", "to"):
         return True

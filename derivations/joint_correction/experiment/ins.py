@@ -100,8 +100,9 @@ RATES = (*OMEGA[:2], *EARTH)
 
 @cache
 def compiled() -> tuple[object, ...]:
-    """casadi functions of (omega_1, omega_2, u_1, u_2, u_3) for F, H of truth and algorithm, and the
-    meaning of its variables.
+    """Fast functions for F, H of truth and algorithm, and the meaning of their variables.
+
+    Arguments: omega_1, omega_2, u_1, u_2, u_3.
     """
     from navsym.core.casadi_functions import casadi_function
 

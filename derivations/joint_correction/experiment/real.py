@@ -18,11 +18,10 @@ import sympy as sp
 from navsym.core.arrays import Array, frozen, named
 from navsym.core.errors import DomainError, EmptyError, UnknownSymbolError
 from navsym.models.linear import LinearModel
-from navsym.observability.chains import observe
+from navsym.observability.chains import observe_jointly
 from navsym.observability.splits import split, two_stage_blocks
-from navsym.observability.two_stage.gains import POLE, gains_by_poles
-from navsym.observability.two_stage.observer import TwoStageObserver, held, observer
-from navsym.observability.two_stage.observer import closed_loop as loop_of
+from navsym.observability.two_stage import POLE, TwoStageObserver, gains_by_poles, hold_measurements, observer
+from navsym.observability.two_stage import closed_loop as loop_of
 from navsym_papers.joint_correction.experiment.flight import EARTH_RADIUS, GRAVITY
 
 FIELDS = ("time", "ax", "ay", "az", "phi", "theta", "psi", "vn", "ve", "lat", "lon", "GPS_TOW")
@@ -112,7 +111,7 @@ def metres(latitude: Array, longitude: Array) -> Array:
 def aiding_observer(rate_x: float, rate_z: float) -> TwoStageObserver:
     """Observer with the poles (p + rate_x)^2 and (p + rate_z), rates in 1/s."""
     first, second = sp.symbols("lam_x lam_z", positive=True)
-    chosen = split(observe(aiding_model()))
+    chosen = split(observe_jointly(aiding_model()))
     found = gains_by_poles(chosen, (POLE + first) ** 2, POLE + second)
     values = {first: sp.Rational(str(rate_x)), second: sp.Rational(str(rate_z))}
     return observer(two_stage_blocks(chosen), found.K_x, found.K_z, values)
@@ -141,7 +140,7 @@ def two_stage_estimates(
         if position and not used:
             state[2], used = aided.position[k - 1, axis], True
         sigma = (measured[k - 1] + measured[k]) / 2
-        Phi, Gamma = held(A if position else without, B if position else B * [1.0, 0.0], step)
+        Phi, Gamma = hold_measurements(A if position else without, B if position else B * [1.0, 0.0], step)
         state = Phi @ state + Gamma @ sigma
         estimates.append(back @ state)
     return np.array(estimates)
@@ -149,9 +148,7 @@ def two_stage_estimates(
 
 @dataclass(frozen=True, slots=True)
 class Tuning:
-    """Standard deviations of GPS velocity (m/s) and position (m), and intensities of the noise in dv/dt and
-    db/dt.
-    """
+    """Deviations of GPS velocity (m/s) and position (m), and intensities of the noise in dv/dt and db/dt."""
 
     velocity: float = 0.3
     position: float = 2.5

@@ -29,7 +29,7 @@ def schuler_matrix() -> tuple[sp.Matrix, dict[str, sp.Symbol]]:
 
 
 def schuler_transition() -> tuple[sp.Matrix, dict[str, sp.Symbol]]:
-    """exp(A tau) in closed form, with w = sqrt(g / R):
+    """The closed form of exp(A tau), with w = sqrt(g / R).
 
     v' = v cos + (g/w) phi sin + (g/w^2) eps (1 - cos),  phi' = -(v w / g) sin + phi cos + (eps / w) sin.
     """

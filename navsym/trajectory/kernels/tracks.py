@@ -127,8 +127,9 @@ def stack(U: Array, Phi: Array, root: Array, W: Array) -> None:
 
 @njit()
 def predict(dt: float, q: float, shape: Array, y: Array, U: Array, Phi: Array, root: Array, W: Array) -> None:
-    """y <- Phi y and the root of Phi P Phi^T + Q in place; shape as from noise_shape;
-    Phi, root (n, n) and W (2n, n) are scratch.
+    """y <- Phi y and the root of Phi P Phi^T + Q, in place.
+
+    The shape is that of noise_shape; Phi, root (n, n) and W (2n, n) are scratch.
     """
     n = y.shape[0]
     transition(dt, Phi)

@@ -186,9 +186,7 @@ def candidate(q: Array, seen: NDArray[np.bool_], step: float, index: int, out: A
 def apply(
     B: Array, g: Array, h: Array, q: Array, S: float, ahead: Array, innovation: float, y: Array, P: Array, gain: Array
 ) -> None:
-    """Correct by the chosen candidate: y, P and gain are written. P = P^- - K S K^T,
-    symmetric by construction.
-    """
+    """Correct by the chosen candidate: y, P and gain are written; P = P^- - K S K^T is symmetric by construction."""
     n = y.shape[0]
     inverse = 1.0 / S
     for i in range(n):
