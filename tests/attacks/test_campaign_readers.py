@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from navsym.studies.campaigns.parser import MEGABYTES, OUTCOMES, SLOW, answer, batches, judge
-from navsym.studies.campaigns.readers import BOMBS, READERS, matlab_header
+from tests.attacks.campaigns.parser import MEGABYTES, OUTCOMES, SLOW, answer, judge, make_batches
+from tests.attacks.campaigns.readers import BOMBS, READERS, matlab_header
 
 REFUSED_AS_THEY_ARE = {"track.mat", "map.hgt"}  # no track of ours; a tile cut short
 
@@ -35,7 +35,7 @@ def test_files_made_to_exhaust_do_not():
 
 
 def test_every_reader_has_its_turn_in_a_campaign():
-    assert {batch.items[0] for batch in batches(2000 * len(READERS))} == {*READERS, "bombs"}
+    assert {batch.items[0] for batch in make_batches(2000 * len(READERS))} == {*READERS, "bombs"}
 
 
 def test_a_file_of_another_program_is_refused_by_name():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import sympy as sp
 
@@ -10,14 +11,14 @@ from navsym.claims import Bound, Claim, Equation, Optimum
 from navsym.cli.main import run
 from navsym.core.store import opened
 from navsym.prove.certificates import identity_certificate
-from navsym.prove.mutants import KINDS, edited, edits
-from navsym.prove.sampling.pointwise import values_at
-from navsym.studies.campaigns import certificates as campaign_certificates
-from navsym.studies.campaigns import mutants as campaign_mutants
-from navsym.studies.campaigns import parser as campaign_parser
-from navsym.studies.campaigns.mutants import differs
-from navsym.studies.campaigns.points import changes
-from navsym.studies.campaigns.registry import Batch, run_campaign
+from tests.attacks.campaigns import certificates as campaign_certificates
+from tests.attacks.campaigns import mutants as campaign_mutants
+from tests.attacks.campaigns import parser as campaign_parser
+from tests.attacks.campaigns.batches import Batch, run_campaign
+from tests.attacks.campaigns.changes import changes
+from tests.attacks.campaigns.edited_values import values_at
+from tests.attacks.campaigns.edits import KINDS, apply_edit, list_edits
+from tests.attacks.campaigns.mutants import is_denied
 
 x, y = sp.symbols("x y", real=True)
 LINE = {
@@ -64,7 +65,7 @@ def test_a_batch_that_dies_is_named_and_not_counted():
 
 
 def test_every_mutant_of_an_identity_is_refuted_or_proved():
-    document = run_campaign("mutants", campaign_mutants.batches([claim()]), campaign_mutants.judge)
+    document = run_campaign("mutants", campaign_mutants.make_batches([claim()]), campaign_mutants.judge)
     assert document["counts"]["refuted"] >= 6 and not document["wrong"] and not document["open"]
 
 
@@ -77,9 +78,9 @@ def test_every_kind_of_change_is_made():
 def test_a_mutant_has_the_value_of_the_formula_that_sympy_builds():
     formula = (2 * x + y**3) ** 2 / sp.exp(x * y) - sp.sqrt(3 * x + y) * sp.atan2(x, y)
     values = values_at({x: sp.Rational(1, 3), y: sp.Rational(5, 7)})
-    for edit in edits(formula):
-        direct = values_at({x: sp.Rational(1, 3), y: sp.Rational(5, 7)}).of(edited(formula, edit))
-        assert values.edited(formula, edit).overlaps(direct), edit
+    for edit in list_edits(formula):
+        direct = values_at({x: sp.Rational(1, 3), y: sp.Rational(5, 7)}).of(apply_edit(formula, edit))
+        assert values.evaluate_edited(formula, edit).overlaps(direct), edit
 
 
 def test_mutants_of_inequalities_numerals_and_optima_fall():
@@ -100,13 +101,13 @@ def test_mutants_of_inequalities_numerals_and_optima_fall():
 
 
 def test_the_second_look_sees_a_false_proof():
-    assert differs(Equation(sp.sin(2 * x), 2 * sp.sin(x)))
-    assert not differs(Equation(sp.sin(2 * x), 2 * sp.sin(x) * sp.cos(x)))
-    assert differs(Bound(x, "<", 2 * x))
+    assert is_denied(Equation(sp.sin(2 * x), 2 * sp.sin(x)))
+    assert not is_denied(Equation(sp.sin(2 * x), 2 * sp.sin(x) * sp.cos(x)))
+    assert is_denied(Bound(x, "<", 2 * x))
 
 
 def test_damaged_files_are_read_or_refused():
-    document = run_campaign("parser", campaign_parser.batches(2000, 3), campaign_parser.judge)
+    document = run_campaign("parser", campaign_parser.make_batches(2000, 3), campaign_parser.judge)
     assert not document["wrong"] and sum(document["counts"].values()) > 2000
 
 
@@ -118,7 +119,7 @@ def test_a_reader_that_crashes_is_noticed(monkeypatch):
 
 def test_altered_certificates_that_are_false_are_refused():
     identity = identity_certificate(sp.sin(2 * x), 2 * sp.sin(x) * sp.cos(x))
-    batches = campaign_certificates.batches([identity, LINE], 200)
+    batches = campaign_certificates.make_batches([identity, LINE], 200)
     document = run_campaign("certificates", batches, campaign_certificates.judge)
     assert document["counts"]["refused"] > 100 and not document["wrong"]
 
@@ -133,3 +134,19 @@ def test_the_verb_prints_one_document(monkeypatch, tmp_path, capsys):
     monkeypatch.setenv("NAVSYM_CACHE", str(tmp_path))
     assert run(["campaign", "parser", "--inputs", "50", "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["campaign"] == "parser"
+
+
+def test_outside_a_checkout_the_verb_says_what_is_missing_and_how_to_get_it(monkeypatch, tmp_path, capsys):
+    monkeypatch.setattr("navsym.claims.paper.papers_folder", lambda: tmp_path / "navsym_papers")
+    monkeypatch.chdir(tmp_path)
+    assert run(["campaign", "parser", "--json"]) == 3
+    error = json.loads(capsys.readouterr().out)["error"]
+    assert error["kind"] == "missing" and "clone the repository" in error["message"]
+
+
+def test_the_current_folder_may_be_the_checkout(monkeypatch, tmp_path, capsys):
+    monkeypatch.setattr("navsym.claims.paper.papers_folder", lambda: tmp_path / "navsym_papers")
+    monkeypatch.setenv("NAVSYM_CACHE", str(tmp_path))
+    monkeypatch.chdir(Path(__file__).parents[2])
+    assert run(["campaign", "certificates", "--inputs", "7", "--fresh", "--json"]) == 0
+    assert sum(json.loads(capsys.readouterr().out)["counts"].values()) == 7

@@ -9,8 +9,8 @@ import pytest
 
 from navsym.core.errors import NavsymError
 from navsym.core.store import Store
-from navsym.studies.campaigns import cases
-from navsym.studies.campaigns.registry import run_campaign
+from tests.attacks.campaigns import cases
+from tests.attacks.campaigns.batches import run_campaign
 
 SOURCE = """
 import pytest
@@ -32,7 +32,7 @@ def table(tmp_path):
 
 
 def test_every_case_is_counted_once_and_what_fails_is_named(table):
-    batches = cases.batches(table, "test_table.py", 3)
+    batches = cases.make_batches(table, "test_table.py", 3)
     assert [len(batch.items[1]) for batch in batches] == [3, 1]
     document = run_campaign("c", batches, cases.judge)
     assert document["counts"] == {"failed": 1, "passed": 2, "skipped": 1}
@@ -41,19 +41,19 @@ def test_every_case_is_counted_once_and_what_fails_is_named(table):
 
 @pytest.mark.slow
 def test_a_stopped_campaign_goes_on_and_changed_cases_are_run_again(table, tmp_path):
-    store, batches = Store(tmp_path / "s.sqlite"), cases.batches(table, "test_table.py", 3)
+    store, batches = Store(tmp_path / "s.sqlite"), cases.make_batches(table, "test_table.py", 3)
     run_campaign("c", batches[:1], cases.judge, store=store)  # stopped after the first batch
     whole = run_campaign("c", batches, cases.judge, store=store)
     assert whole["resumed"] == 1 and sum(whole["counts"].values()) == 4
     (table / "test_table.py").write_text(SOURCE + "\n\n# harder\n")
-    again = run_campaign("c", cases.batches(table, "test_table.py", 3), cases.judge, store=store)
+    again = run_campaign("c", cases.make_batches(table, "test_table.py", 3), cases.judge, store=store)
     assert again["resumed"] == 0
 
 
 def test_a_folder_without_cases_is_said(table):
     (table / "empty").mkdir()
     with pytest.raises(NavsymError, match="expected cases in empty"):
-        cases.batches(table, "empty", 3)
+        cases.make_batches(table, "empty", 3)
 
 
 ENDLESS = """
@@ -67,7 +67,7 @@ def test_endless(request):
 @pytest.mark.slow
 def test_a_batch_that_is_given_up_leaves_nothing_running(table):
     (table / "test_table.py").write_text(ENDLESS)
-    found = run_campaign("c", cases.batches(table, "test_table.py", 3), cases.judge, seconds=30)
+    found = run_campaign("c", cases.make_batches(table, "test_table.py", 3), cases.judge, seconds=30)
     assert "more than 30 s" in found["stopped"][0]
     number = int((table / "running").read_text())
     for _ in range(50):  # until the kernel has ended it

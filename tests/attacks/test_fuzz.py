@@ -16,7 +16,7 @@ from navsym.core.errors import MissingEngineError, NavsymError
 from navsym.language.expression import parse, symbol, to_text
 from navsym.models.modelfile import model_from
 from navsym.prove.claimfile import claims_from
-from navsym.studies.campaigns.readers import EXPRESSION, READERS
+from tests.attacks.campaigns.readers import EXPRESSION, READERS
 
 PIECES = [
     b"",

@@ -12,9 +12,9 @@ import pytest
 
 from navsym.cli.main import run
 from navsym.core.errors import MissingEngineError
-from navsym.studies.campaigns import fuzz
-from navsym.studies.campaigns.parser import OUTCOMES, answer
-from navsym.studies.campaigns.readers import READERS
+from tests.attacks.campaigns import fuzz
+from tests.attacks.campaigns.parser import OUTCOMES, answer
+from tests.attacks.campaigns.readers import READERS
 
 FOUND = Path(__file__).parent / "found"
 
@@ -50,23 +50,22 @@ def wrong_of(folder, reader):
     """What a round says of a reader that is this Python text in the process that is guided."""
     program = (
         "import runpy, sys\n"
-        "from navsym.methods.campaigns import readers\n"
+        "from tests.attacks.campaigns import readers\n"
         f"readers.READERS['bank'] = ({reader}, b'{{}}')\n"
-        "runpy.run_module('navsym.studies.campaigns.guided', run_name='__main__')\n"
+        "runpy.run_module('tests.attacks.campaigns.guided', run_name='__main__')\n"
     )
     inside = folder / str(len(list(folder.iterdir())))
     inside.mkdir()
     words = ["bank", str(inside), "-runs=300", "-seed=1", f"-artifact_prefix={inside}/end-"]
-    told = subprocess.run(
-        [sys.executable, "-c", program, *words], capture_output=True, text=True, check=False, timeout=300
-    )
-    return fuzz.found("bank", inside, told)["wrong"]
+    command, root = [sys.executable, "-c", program, *words], Path(__file__).parents[2]
+    told = subprocess.run(command, cwd=root, capture_output=True, text=True, check=False, timeout=300)
+    return fuzz.read_round("bank", inside, told)["wrong"]
 
 
 def test_without_the_engine_the_campaign_says_what_to_install(monkeypatch, tmp_path):
     monkeypatch.setattr(fuzz.importlib.util, "find_spec", lambda name: None)
     with pytest.raises(MissingEngineError, match=r"navsym\[fuzz\]"):
-        fuzz.batches(100, tmp_path)
+        fuzz.make_batches(100, tmp_path)
 
 
 @pytest.mark.parametrize("path", sorted(FOUND.glob("*/*")), ids=lambda path: f"{path.parent.name}-{path.name}")

@@ -10,12 +10,12 @@ import pytest
 
 from navsym.cli.main import run
 from navsym.core.store import Store, StoreError
-from navsym.studies.campaigns import disks, kills
-from navsym.studies.campaigns.registry import Batch, run_campaign
+from tests.attacks.campaigns import disks, kills
+from tests.attacks.campaigns.batches import Batch, run_campaign
 
 
 def test_four_writers_killed_lose_nothing_that_was_acknowledged():
-    found = kills.judge((3, 5))
+    found = kills.judge(("writers", 3, 5))
     assert not found["wrong"]
     assert found["counts"]["kills"] == 12 and found["counts"]["acknowledged"] > 0  # how many, the disk decides
 
@@ -30,7 +30,7 @@ def test_a_module_that_is_imported_without_room_is_not_left_by_half_for_others(t
     monkeypatch.syspath_prepend(tmp_path)
     monkeypatch.setattr("sys.dont_write_bytecode", False)
     monkeypatch.setattr("sys.pycache_prefix", None)
-    with disks.files_of_at_most(512):
+    with disks.limit_file_size(512):
         importlib.import_module("long_module")
     assert not list(tmp_path.rglob("*.pyc"))
     monkeypatch.delitem(sys.modules, "long_module")

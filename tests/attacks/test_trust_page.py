@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from navsym.cli.campaign import NAMES
-from navsym.studies.campaigns.readers import READERS
+from tests.attacks.campaigns.readers import READERS
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = (ROOT / "TRUST.md").read_text(encoding="utf-8")

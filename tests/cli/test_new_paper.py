@@ -16,8 +16,8 @@ from navsym.core.errors import NavsymError
 from navsym.language.python_source import exact_source, side_source
 from navsym.language.scaffold import equation_numbers, read
 from navsym.prove.ladder import decide
-from navsym.prove.mutants import spoiled
 from navsym.verification.decide import paper_module, verify
+from tests.attacks.campaigns.edits import spoil
 
 
 def loaded(path):
@@ -43,7 +43,7 @@ def test_a_new_paper_passes_the_generic_tests(folder):
     document = verify([paper], jobs=1)
     assert [r["status"] for r in document["claims"]] == ["PROVED"]
     assert document["papers"][0] | {"definitions": 3, "missing": []} == document["papers"][0]
-    assert all(not decide(spoiled(claim.derive())).status.holds for claim in paper.claims)
+    assert all(not decide(spoil(claim.derive())).status.holds for claim in paper.claims)
 
 
 def test_claims_are_added_with_the_verdict_that_was_found(folder, capsys):

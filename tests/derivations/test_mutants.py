@@ -14,7 +14,7 @@ import sympy as sp
 from navsym.claims import PROVED, REFUTED, Equation, claims_of
 from navsym.core.sandbox import Exhausted, run_many
 from navsym.prove.equations import decide_equation, entries
-from navsym.prove.mutants import mutants
+from tests.attacks.campaigns.edits import list_mutants
 
 #: Paper -> how many entries are changed, and in how many ways each.
 SAMPLES = {"guaranteed_velocity": (60, 4), "joint_correction": (40, 2), "trajectory": (40, 2)}
@@ -40,7 +40,7 @@ def sides(name):
 def cases(some_sides, most, source):
     """(id, mutant, printed entry, derived entry, box) for some of the mutants of every side."""
     for identity, printed, derived, box in some_sides:
-        found = mutants(printed)
+        found = list_mutants(printed)
         for mutant in source.sample(found, min(most, len(found))):
             yield identity, mutant, printed, derived, box
 
@@ -74,6 +74,6 @@ def test_a_sample_of_the_mutants_of_a_paper_falls(name):
 
 def test_a_sign_a_number_and_a_function_are_among_the_mutants():
     x = sp.Symbol("x", real=True)
-    found = mutants(2 * sp.sin(x) ** 2 + 1)
+    found = list_mutants(2 * sp.sin(x) ** 2 + 1)
     for expected in (2 * sp.sin(x) ** 2 - 1, 3 * sp.sin(x) ** 2 + 1, 2 * sp.cos(x) ** 2 + 1, 2 * sp.sin(x) ** 3 + 1):
         assert expected in found

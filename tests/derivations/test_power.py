@@ -10,11 +10,11 @@ from navsym.claims import claims_of
 from navsym.claims.paper import paper_names
 from navsym.core.sandbox import Exhausted, run_many
 from navsym.prove.ladder import decide
-from navsym.prove.mutants import spoiled
+from tests.attacks.campaigns.edits import spoil
 
 
 def spoiled_status(claim):
-    return str(decide(spoiled(claim.derive())).status)
+    return str(decide(spoil(claim.derive())).status)
 
 
 @pytest.mark.parametrize("name", paper_names())

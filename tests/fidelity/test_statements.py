@@ -22,8 +22,8 @@ from navsym.language.expression import parse, to_text
 from navsym.language.tokens import LENGTH
 from navsym.prove.equations import entries
 from navsym.prove.sampling.points import points
-from navsym.prove.sampling.pointwise import values_at
 from navsym.verification.decide import sides
+from tests.attacks.campaigns.edited_values import values_at
 from tests.fidelity.plain_arithmetic import Undefined, value
 from tests.fidelity.statements import PAPERS, assertions, claims, formulas, symbols_in
 

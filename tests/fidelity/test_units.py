@@ -6,7 +6,7 @@ import pytest
 import sympy as sp
 
 from navsym.claims import Equation, Optimum
-from navsym.prove.mutants import edited, edits, is_formula
+from tests.attacks.campaigns.edits import apply_edit, is_formula, list_edits
 from tests.fidelity.scaling import Scaling, narrowed, pairs_of
 from tests.fidelity.statements import PAPERS, assertions, symbols_in
 from tests.fidelity.units import METRE, SECOND, units_of
@@ -95,8 +95,8 @@ def slips(paper, most, longest=300):
             continue
         for printed, derived in pairs_of(statement)[:3]:
             if len(str(printed)) + len(str(derived)) < longest:
-                kinds = [edit for edit in edits(printed) if edit.kind in CHANGING][:4]
-                mutants = [mutant for edit in kinds if is_formula(mutant := edited(printed, edit))]
+                kinds = [edit for edit in list_edits(printed) if edit.kind in CHANGING][:4]
+                mutants = [mutant for edit in kinds if is_formula(mutant := apply_edit(printed, edit))]
                 found += [(derived, mutant) for mutant in mutants if mutant != printed]
         if len(found) >= most:
             break

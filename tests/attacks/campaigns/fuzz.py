@@ -23,9 +23,9 @@ import numpy as np
 
 from navsym.core.errors import MissingEngineError
 from navsym.core.sandbox import die_with_parent
-from navsym.studies.campaigns.parser import MEGABYTES, NUMBERS, OUTCOMES, PIECES
-from navsym.studies.campaigns.readers import READERS
-from navsym.studies.campaigns.registry import Batch, Result, result
+from tests.attacks.campaigns.batches import Batch, Result, deal, result
+from tests.attacks.campaigns.parser import MEGABYTES, NUMBERS, OUTCOMES, PIECES
+from tests.attacks.campaigns.readers import READERS
 
 ROUND = 20_000
 LONGEST = 4096  # bytes of one input
@@ -35,65 +35,60 @@ SECONDS = 60  # by the clock, for one input
 REACHED = re.compile(r"cov: (\d+) ft: \d+ corp: (\d+)/.*rss: (\d+)Mb")
 
 
-def batches(inputs: int, corpus: Path, seed: int = 0) -> list[Batch]:
+def make_batches(inputs: int, corpus: Path, seed: int = 0) -> list[Batch]:
     """``inputs`` in rounds, the readers in turn.
 
     corpus : folder of what reached new lines, made when it is missing
     Raises MissingEngineError without atheris.
     """
     if importlib.util.find_spec("atheris") is None:
-        raise MissingEngineError("expected atheris; got an environment without it; do pip install 'navsym[fuzz]'")
-    readers = list(READERS)
-    count = -(-inputs // min(ROUND, max(1, inputs // len(readers))))
-    sizes = [inputs // count + (k < inputs % count) for k in range(count)]
-    return [
-        Batch(f"{seed} {k} {size}", (readers[k % len(readers)], size, seed * 10**6 + k + 1, str(corpus)))
-        for k, size in enumerate(sizes)
-    ]
+        raise MissingEngineError("expected atheris; got an environment without it; run pip install 'navsym[fuzz]'")
+    subjects = [(reader, str(corpus)) for reader in READERS]
+    return deal(subjects, inputs, min(ROUND, max(1, inputs // len(subjects))), seed)
 
 
-def judge(task: tuple[str, int, int, str]) -> Result:
+def judge(task: tuple[tuple[str, str], int, int]) -> Result:
     """Counts: read, refused, missing; wrong: as in the campaign ``parser``, and the input at which a round ended."""
-    reader, size, seed, corpus = task
+    (reader, corpus), size, seed = task
     known = Path(corpus, reader)
     known.mkdir(parents=True, exist_ok=True)
     known.joinpath("honest").write_bytes(READERS[reader][1])
     with tempfile.TemporaryDirectory(prefix="navsym-fuzz-") as folder:
         words = Path(folder, "words")
-        words.write_text("".join(f'"{quoted(word)}"\n' for word in (*PIECES, *NUMBERS)), encoding="ascii")
-        told = run([reader, folder, *options(folder, size, seed), str(known)], folder)
-        return found(reader, Path(folder), told)
+        words.write_text("".join(f'"{quote(word)}"\n' for word in (*PIECES, *NUMBERS)), encoding="ascii")
+        told = run_round([reader, folder, *make_options(folder, size, seed + 1), str(known)], folder)
+        return read_round(reader, Path(folder), told)
 
 
-def options(folder: str, size: int, seed: int) -> list[str]:
-    """What libFuzzer is told: how much, how long, and where it leaves the input that ends it."""
+def make_options(folder: str, size: int, seed: int) -> list[str]:
+    """What libFuzzer is told: how much, how long, and where it leaves the input that ends it (seed 0 is random)."""
     extent = [f"-runs={size}", f"-seed={seed}", f"-max_len={LONGEST}", "-len_control=0", "-mutate_depth=1"]
     limits = [f"-timeout={SECONDS}", f"-report_slow_units={SECONDS}", f"-rss_limit_mb={MEGABYTES}"]
     return [*extent, *limits, f"-artifact_prefix={folder}/end-", f"-dict={folder}/words"]
 
 
-def quoted(word: bytes) -> str:
+def quote(word: bytes) -> str:
     """A word of a dictionary of libFuzzer."""
     return "".join(f"\\x{byte:02x}" for byte in word)
 
 
-def run(words: list[str], folder: str) -> subprocess.CompletedProcess[str]:
+def run_round(words: list[str], folder: str) -> subprocess.CompletedProcess[str]:
     """One round, which ends with this process and leaves no file outside the folder."""
     return subprocess.run(
-        [sys.executable, "-m", "navsym.studies.campaigns.guided", *words],
+        [sys.executable, "-m", "tests.attacks.campaigns.guided", *words],
         capture_output=True,
         text=True,
         errors="replace",
         check=False,
         stdin=subprocess.DEVNULL,
-        env={**os.environ, "TMPDIR": folder},
+        env={**os.environ, "TMPDIR": folder, "PYTHONPATH": os.pathsep.join(sys.path)},
         preexec_fn=functools.partial(die_with_parent, os.getpid()),
     )
 
 
-def found(reader: str, folder: Path, told: subprocess.CompletedProcess[str]) -> Result:
+def read_round(reader: str, folder: Path, told: subprocess.CompletedProcess[str]) -> Result:
     """The record of one round, whether it came to its end or not."""
-    wrong = lines(folder / "wrong")
+    wrong = read_lines(folder / "wrong")
     for path in folder.glob("end-*"):
         wrong.append({"reader": reader, "data": path.read_bytes().decode("latin-1"), "why": path.name.split("-")[1]})
     if told.returncode != 0 and not wrong:
@@ -103,9 +98,9 @@ def found(reader: str, folder: Path, told: subprocess.CompletedProcess[str]) -> 
     reached = REACHED.findall(told.stderr) or [("0", "0", "0")]
     covered, corpus, peak = (max(int(row[k]) for row in reached) for k in range(3))
     measured = {"slowest": round(float(tally[-1]), 4), "peak": peak, "reached": covered, "corpus": corpus}
-    return result(counts, wrong, [], [{"reader": reader, **measured}])
+    return result(counts, wrong, kept=[{"reader": reader, **measured}])
 
 
-def lines(path: Path) -> list[Any]:
+def read_lines(path: Path) -> list[Any]:
     """The JSON documents of a file, one in each line; none when there is no file."""
     return [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines()] if path.exists() else []

@@ -17,9 +17,9 @@ from navsym.claims import Bound, Box, Equation, Optimum
 from navsym.core.balls import UnsupportedError
 from navsym.prove.equations import entries
 from navsym.prove.inequalities import contradicts
-from navsym.prove.mutants import Edit, edited, edits, rearranged, widened
 from navsym.prove.sampling.points import Point, points
-from navsym.prove.sampling.pointwise import Values, values_at
+from tests.attacks.campaigns.edited_values import Values, values_at
+from tests.attacks.campaigns.edits import Edit, apply_edit, list_edits, rearrange, widen
 
 POINTS = 32
 GRID = 16
@@ -55,17 +55,17 @@ def printed_parts(statement: Assertion) -> list[sp.Expr]:
 def changes(statement: Assertion) -> Iterator[Change]:
     """Every one-token change of every printed formula, every rearrangement, every wider range."""
     for part, formula in enumerate(printed_parts(statement)):
-        for edit in edits(formula):
+        for edit in list_edits(formula):
             yield Change(edit.kind, part, edit)
     if isinstance(statement, Equation):
-        for kind, order in rearranged(statement.printed):
+        for kind, order in rearrange(statement.printed):
             if any(entries(statement.printed)[k] != entries(statement.printed)[p] for k, p in enumerate(order)):
                 yield Change(kind, order=tuple(order))
-    for box in widened(statement.box):
+    for box in widen(statement.box):
         yield Change("range", box=box)
 
 
-def with_parts(statement: Assertion, parts: Sequence[sp.Expr]) -> Assertion:
+def replace_parts(statement: Assertion, parts: Sequence[sp.Expr]) -> Assertion:
     """The statement with other printed formulas."""
     if isinstance(statement, Optimum):
         fields: dict[str, Any] = {}
@@ -82,19 +82,19 @@ def with_parts(statement: Assertion, parts: Sequence[sp.Expr]) -> Assertion:
     return replace(statement, printed=tuple(parts) if several else parts[0])
 
 
-def spoilt(statement: Assertion, change: Change) -> Assertion:
+def apply_change(statement: Assertion, change: Change) -> Assertion:
     """The statement with the change made, as sympy builds it; of an equation only the entry that changed."""
     if isinstance(statement, Equation) and change.edit is not None:
         old, derived = printed_parts(statement)[change.part], derived_parts(statement)[change.part]
-        return replace(statement, printed=edited(old, change.edit), derived=derived)
+        return replace(statement, printed=apply_edit(old, change.edit), derived=derived)
     if change.box is not None:
         return replace(statement, box=change.box)
     parts = printed_parts(statement)
     if change.order is not None:
-        return with_parts(statement, [parts[place] for place in change.order])
+        return replace_parts(statement, [parts[place] for place in change.order])
     assert change.edit is not None
-    parts[change.part] = edited(parts[change.part], change.edit)
-    return with_parts(statement, parts)
+    parts[change.part] = apply_edit(parts[change.part], change.edit)
+    return replace_parts(statement, parts)
 
 
 # -- tables of values ------------------------------------------------------------------------
@@ -134,7 +134,7 @@ def free_symbols(statement: Assertion) -> list[sp.Symbol]:
     return sorted(found, key=str)
 
 
-def excluded(statement: Equation | Bound, printed: arb, derived: arb) -> bool:
+def is_excluded(statement: Equation | Bound, printed: arb, derived: arb) -> bool:
     """True when two finite balls contradict the statement."""
     if not (printed.is_finite() and derived.is_finite()):
         return False
@@ -146,19 +146,20 @@ def excluded(statement: Equation | Bound, printed: arb, derived: arb) -> bool:
     return bool(abs(printed - derived) > values_at({}).of(tolerance))
 
 
-def refuting_point(statement: Assertion, change: Change, table: Sequence[Row]) -> int | None:
+def find_refuting_point(statement: Assertion, change: Change, table: Sequence[Row]) -> int | None:
     """Number of the first point at which the changed statement falls, or None."""
-    test: Callable[[Any, Change, Row], bool] = optimum_falls if isinstance(statement, Optimum) else formula_falls
+    optimum = isinstance(statement, Optimum)
+    has_fallen: Callable[[Any, Change, Row], bool] = has_optimum_fallen if optimum else has_formula_fallen
     for place, row in enumerate(table):
         try:
-            if test(statement, change, row):
+            if has_fallen(statement, change, row):
                 return place
         except UnsupportedError:
             return None
     return None
 
 
-def formula_falls(statement: Equation | Bound, change: Change, row: Row) -> bool:
+def has_formula_fallen(statement: Equation | Bound, change: Change, row: Row) -> bool:
     """True when the changed printed side contradicts the derived one at a point: the rearranged entries, or one edited.
 
     Raises UnsupportedError outside the language of balls.
@@ -166,27 +167,27 @@ def formula_falls(statement: Equation | Bound, change: Change, row: Row) -> bool
     parts = printed_parts(statement)
     if change.order is not None:
         balls = [row.values.of(parts[place]) for place in change.order]
-        return any(excluded(statement, ball, row.derived[k]) for k, ball in enumerate(balls))
+        return any(is_excluded(statement, ball, row.derived[k]) for k, ball in enumerate(balls))
     assert change.edit is not None
-    ball = row.values.edited(parts[change.part], change.edit)
-    return excluded(statement, ball, row.derived[change.part])
+    ball = row.values.evaluate_edited(parts[change.part], change.edit)
+    return is_excluded(statement, ball, row.derived[change.part])
 
 
-def optimum_falls(statement: Optimum, change: Change, row: Row) -> bool:
+def has_optimum_fallen(statement: Optimum, change: Change, row: Row) -> bool:
     """Constraints, equal values, instants inside and the modulus of the dual polynomial, at one point."""
     assert change.edit is not None
     parts = printed_parts(statement)
     balls = [
-        row.values.edited(part, change.edit) if place == change.part else row.values.of(part)
+        row.values.evaluate_edited(part, change.edit) if place == change.part else row.values.of(part)
         for place, part in enumerate(parts)
     ]
     if not all(ball.is_finite() for ball in balls):
         return False
     m, n = len(statement.dual), len(statement.support)
-    return primal_dual_falls(statement, row, (balls[:m], balls[m : m + n], balls[m + n : m + 2 * n], balls[-1]))
+    return has_proof_fallen(statement, row, (balls[:m], balls[m : m + n], balls[m + n : m + 2 * n], balls[-1]))
 
 
-def primal_dual_falls(statement: Optimum, row: Row, parts: tuple[list[arb], list[arb], list[arb], arb]) -> bool:
+def has_proof_fallen(statement: Optimum, row: Row, parts: tuple[list[arb], list[arb], list[arb], arb]) -> bool:
     """True when balls of dual, support, weights and value contradict an optimum at one point.
 
     Looked at: instants inside, ``sum w_k H(t_k) = P``, the value against ``x . P`` and against ``sum |w_k|``, and
@@ -198,10 +199,10 @@ def primal_dual_falls(statement: Optimum, row: Row, parts: tuple[list[arb], list
         return True
     columns = [regressors_at(statement, row, at) for at in support]
     for i, wanted in enumerate(row.derived):
-        if apart(sum((w * column[i] for w, column in zip(weights, columns, strict=True)), arb(0)), wanted):
+        if are_apart(sum((w * column[i] for w, column in zip(weights, columns, strict=True)), arb(0)), wanted):
             return True
     of_dual = sum((x * p for x, p in zip(dual, row.derived, strict=True)), arb(0))
-    if apart(value, of_dual) or apart(sum((abs(w) for w in weights), arb(0)), value):
+    if are_apart(value, of_dual) or are_apart(sum((abs(w) for w in weights), arb(0)), value):
         return True
     grid = (start + (end - start) * k / GRID for k in range(GRID + 1))
     return any(bool(abs(product(dual, regressors_at(statement, row, at))) > 1) for at in grid)
@@ -218,6 +219,6 @@ def regressors_at(statement: Optimum, row: Row, at: arb) -> list[arb]:
     return [values.of(sp.sympify(h, strict=True)) for h in statement.regressors]
 
 
-def apart(left: arb, right: arb) -> bool:
+def are_apart(left: arb, right: arb) -> bool:
     """True when two balls are finite and have no number in common."""
     return bool(left.is_finite() and right.is_finite() and not (left - right).contains(0))

@@ -1,8 +1,8 @@
 """Spoiled statements and one-token mutants: what a check must be able to notice.
 
-A statement that cannot fall proves nothing. ``spoiled`` makes a statement wrong in its printed
-side; ``edits`` lists every change of one token of a formula and ``mutants`` the formulas that come
-of them, equivalent ones included; ``rearranged`` and ``widened`` change the order of entries and a range.
+A statement that cannot fall proves nothing. ``spoil`` makes a statement wrong in its printed
+side; ``list_edits`` lists every change of one token of a formula and ``list_mutants`` the formulas that come
+of them, equivalent ones included; ``rearrange`` and ``widen`` change the order of entries and a range.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ from navsym.prove.sampling.points import range_of
 OPPOSITE = {"<": ">=", "<=": ">", ">": "<=", ">=": "<", "=": "!=", "!=": "="}
 
 
-def spoiled(statement: Statement) -> Statement:
+def spoil(statement: Statement) -> Statement:
     """The statement with its printed side changed so that it should not hold any more."""
     if isinstance(statement, Equation):
         step = 1 if statement.tolerance is None else 3 * sp.sympify(statement.tolerance, strict=True)
-        return replace(statement, printed=shifted(statement.printed, step))
+        return replace(statement, printed=shift(statement.printed, step))
     if isinstance(statement, Bound):
         return replace(statement, relation=OPPOSITE[statement.relation])
     if isinstance(statement, Optimum):
@@ -31,7 +31,7 @@ def spoiled(statement: Statement) -> Statement:
     return Property(("spoiled", statement.printed), statement.derived)
 
 
-def shifted(side: Any, step: Any) -> Any:
+def shift(side: Any, step: Any) -> Any:
     """The last entry of a side moved by ``step``."""
     if isinstance(side, sp.MatrixBase):
         entries = list(side)
@@ -74,37 +74,37 @@ class Edit:
     replacement: sp.Basic
 
 
-def edits(expression: sp.Basic) -> Iterator[Edit]:
+def list_edits(expression: sp.Basic) -> Iterator[Edit]:
     """Every change of one token, in a fixed order; what equals the original node is left out."""
     symbols = sorted(expression.free_symbols, key=str)
-    yield from edits_below(expression, symbols, ())
+    yield from list_edits_below(expression, symbols, ())
 
 
-def edits_below(node: sp.Basic, symbols: list[sp.Symbol], path: Path) -> Iterator[Edit]:
-    for kind, replacement in changed_root(node, symbols):
+def list_edits_below(node: sp.Basic, symbols: list[sp.Symbol], path: Path) -> Iterator[Edit]:
+    for kind, replacement in change_root(node, symbols):
         if replacement != node:
             yield Edit(path, kind, replacement)
     for place, argument in enumerate(node.args):
-        yield from edits_below(argument, symbols, (*path, place))
+        yield from list_edits_below(argument, symbols, (*path, place))
 
 
-def edited(expression: sp.Basic, edit: Edit) -> sp.Expr:
+def apply_edit(expression: sp.Basic, edit: Edit) -> sp.Expr:
     """The formula with one token changed, as sympy builds it."""
-    return put_in(expression, edit.path, edit.replacement)
+    return replace_node(expression, edit.path, edit.replacement)
 
 
-def put_in(node: sp.Basic, path: Path, replacement: sp.Basic) -> Any:
+def replace_node(node: sp.Basic, path: Path, replacement: sp.Basic) -> Any:
     if not path:
         return replacement
     place, *rest = path
-    changed = put_in(node.args[place], tuple(rest), replacement)
+    changed = replace_node(node.args[place], tuple(rest), replacement)
     return node.func(*node.args[:place], changed, *node.args[place + 1 :])
 
 
-def mutants(expression: sp.Expr) -> list[sp.Expr]:
+def list_mutants(expression: sp.Expr) -> list[sp.Expr]:
     """All different formulas one token away, in a fixed order, without undefined and complex ones."""
     expression = sp.sympify(expression, strict=True)
-    found = (edited(expression, edit) for edit in edits(expression))
+    found = (apply_edit(expression, edit) for edit in list_edits(expression))
     return list(dict.fromkeys(mutant for mutant in found if mutant != expression and is_formula(mutant)))
 
 
@@ -113,14 +113,14 @@ def is_formula(mutant: sp.Basic) -> bool:
     return not mutant.has(sp.nan, sp.zoo, sp.oo, -sp.oo, sp.I)
 
 
-def changed_root(node: sp.Basic, symbols: list[sp.Symbol]) -> Iterator[tuple[str, sp.Basic]]:
+def change_root(node: sp.Basic, symbols: list[sp.Symbol]) -> Iterator[tuple[str, sp.Basic]]:
     if isinstance(node, sp.Rational):
         yield from (("sign", -node), ("number", node + 1), ("number", node - 1), ("factor", 2 * node))
     elif isinstance(node, sp.Symbol):
         yield from (("sign", -node), ("factor", 2 * node))
         yield from (("index", other) for other in symbols if other != node)
     elif isinstance(node, (sp.Add, sp.Mul)):
-        yield from changed_list(node)
+        yield from change_members(node)
     elif isinstance(node, sp.Pow):
         yield from (("sign", -node), ("power", node.base), ("power", sp.Pow(node.base, node.exp + 1)))
     elif node.func in SWAPS:
@@ -128,7 +128,7 @@ def changed_root(node: sp.Basic, symbols: list[sp.Symbol]) -> Iterator[tuple[str
         yield from (("sign", -node), ("function", swap(*node.args)))
 
 
-def changed_list(node: sp.Add | sp.Mul) -> Iterator[tuple[str, sp.Basic]]:
+def change_members(node: sp.Add | sp.Mul) -> Iterator[tuple[str, sp.Basic]]:
     """A sum or product with one member negated, dropped or doubled."""
     for place, member in enumerate(node.args):
         rest = [*node.args[:place], *node.args[place + 1 :]]
@@ -140,7 +140,7 @@ def changed_list(node: sp.Add | sp.Mul) -> Iterator[tuple[str, sp.Basic]]:
 # -- the order of entries, and ranges ----------------------------------------------------------
 
 
-def rearranged(side: Any) -> Iterator[tuple[str, list[int]]]:
+def rearrange(side: Any) -> Iterator[tuple[str, list[int]]]:
     """Orders of the entries of a matrix or sequence, transposed or with two neighbours exchanged."""
     if isinstance(side, sp.MatrixBase):
         rows, columns = side.shape
@@ -162,7 +162,7 @@ def exchange(place: int, k: int) -> int:
     return {k: k + 1, k + 1: k}.get(place, place)
 
 
-def widened(box: Box) -> Iterator[Box]:
+def widen(box: Box) -> Iterator[Box]:
     """The box with one end of one range moved out by the width of the range, where the symbol allows it."""
     for symbol, (lower, upper) in box.items():
         if lower is None or upper is None:

@@ -21,22 +21,17 @@ from navsym.guaranteed.problem import from_regressors
 from navsym.guaranteed.solver import solve
 from navsym.language.expression import parse, symbol, to_text
 from navsym.prove.certificates import identity_certificate
-from navsym.prove.mutants import mutants
-from navsym.studies.campaigns.registry import Batch, Result, result
+from tests.attacks.campaigns.batches import Batch, Result, deal, result
+from tests.attacks.campaigns.edits import list_mutants
 
 BATCH = 100
 BOUNDS = ("lower", "upper")
 PROOF_FIELDS = ("dual", "support", "pieces", "cells", "bits", *BOUNDS)
 
 
-def batches(honest: list[dict[str, Any]], inputs: int, seed: int = 0) -> list[Batch]:
+def make_batches(honest: list[dict[str, Any]], inputs: int, seed: int = 0) -> list[Batch]:
     """``inputs`` alterations spread over the honest certificates."""
-    count = max(1, -(-inputs // BATCH))
-    size = [BATCH] * (count - 1) + [inputs - BATCH * (count - 1)]
-    return [
-        Batch(f"{seed} {k} {size[k]} {honest[k % len(honest)]}", (honest[k % len(honest)], size[k], seed + k))
-        for k in range(count)
-    ]
+    return deal(honest, inputs, BATCH, seed)
 
 
 def honest_certificates() -> list[dict[str, Any]]:
@@ -62,16 +57,16 @@ def judge(task: tuple[dict[str, Any], int, int]) -> Result:
     source = random.Random(seed)
     counts: Counter[str] = Counter()
     wrong: list[Any] = []
-    choices = altered_identities(honest) if honest["kind"] == "identity" else None
+    choices = alter_identity(honest) if honest["kind"] == "identity" else None
     for _ in range(size):
-        item, false = source.choice(choices) if choices else altered_optimum(honest, source)
+        item, false = source.choice(choices) if choices else alter_optimum(honest, source)
         outcome = answer(item)
         if outcome == "accepted":
             outcome = "accepted, false" if false else "accepted, still true"
         counts[outcome] += 1
         if outcome not in ("refused", "accepted, still true"):
             wrong.append({"certificate": item, "why": outcome})
-    return result(counts, wrong, [], [])
+    return result(counts, wrong)
 
 
 def answer(item: dict[str, Any]) -> str:
@@ -85,21 +80,21 @@ def answer(item: dict[str, Any]) -> str:
     return "accepted"
 
 
-def altered_identities(honest: dict[str, Any]) -> list[tuple[dict[str, Any], bool]]:
+def alter_identity(honest: dict[str, Any]) -> list[tuple[dict[str, Any], bool]]:
     """Every one-token mutant of either side, with whether numbers show that it is false."""
     known = {name: symbol(name) for name in honest["symbols"]}
     sides = {side: parse(honest[side], known) for side in ("left", "right")}
     found = []
     for side, other in (("left", "right"), ("right", "left")):
-        for mutant in mutants(sides[side]):
+        for mutant in list_mutants(sides[side]):
             try:
-                found.append(({**honest, side: to_text(mutant)}, unequal(mutant - sides[other])))
+                found.append(({**honest, side: to_text(mutant)}, is_unequal(mutant - sides[other])))
             except NavsymError:
                 continue  # not in the language of files
     return found
 
 
-def unequal(difference: sp.Expr) -> bool:
+def is_unequal(difference: sp.Expr) -> bool:
     """True when the difference is a number above 1e-15 at one of three rational points, evaluated to 30 digits."""
     symbols = sorted(difference.free_symbols, key=str)
     for k in range(1, 4):
@@ -110,16 +105,16 @@ def unequal(difference: sp.Expr) -> bool:
     return False
 
 
-def altered_optimum(honest: dict[str, Any], source: random.Random) -> tuple[dict[str, Any], bool]:
+def alter_optimum(honest: dict[str, Any], source: random.Random) -> tuple[dict[str, Any], bool]:
     """One number of the proof changed; false when the bounds have lost the optimum."""
     item = copy.deepcopy(honest)
-    places = [place for field in PROOF_FIELDS if field in item for place in leaves(item[field], (field,))]
+    places = [place for field in PROOF_FIELDS if field in item for place in find_leaves(item[field], (field,))]
     place = source.choice(places)
-    put(item, place, changed(get(item, place), source))
-    return item, lost_optimum(item, honest)
+    put(item, place, change(get(item, place), source))
+    return item, has_lost_optimum(item, honest)
 
 
-def lost_optimum(item: dict[str, Any], honest: dict[str, Any]) -> bool:
+def has_lost_optimum(item: dict[str, Any], honest: dict[str, Any]) -> bool:
     """True when the bounds are no numbers or cannot hold the optimum that the honest ones enclose."""
     bounds = [decimal(source[name]) for source in (item, honest) for name in BOUNDS]
     if any(bound is None for bound in bounds):
@@ -128,12 +123,12 @@ def lost_optimum(item: dict[str, Any], honest: dict[str, Any]) -> bool:
     return low > true_high or high < true_low
 
 
-def leaves(value: Any, place: tuple[Any, ...]) -> list[tuple[Any, ...]]:
+def find_leaves(value: Any, place: tuple[Any, ...]) -> list[tuple[Any, ...]]:
     """Paths, keys and places from the outside in, to all parts of nested data that are neither dict nor list."""
     if isinstance(value, dict):
-        return [leaf for key, part in value.items() for leaf in leaves(part, (*place, key))]
+        return [leaf for key, part in value.items() for leaf in find_leaves(part, (*place, key))]
     if isinstance(value, list):
-        return [leaf for k, part in enumerate(value) for leaf in leaves(part, (*place, k))]
+        return [leaf for k, part in enumerate(value) for leaf in find_leaves(part, (*place, k))]
     return [place]
 
 
@@ -149,7 +144,7 @@ def put(item: Any, place: tuple[Any, ...], value: Any) -> None:
     get(item, place[:-1])[place[-1]] = value
 
 
-def changed(value: Any, source: random.Random) -> Any:
+def change(value: Any, source: random.Random) -> Any:
     """Another number of the same type, near or far, or something that is no number at all."""
     if source.random() < 0.1:
         return source.choice(["", "nan", None, True, -1, [], {}, "1e9", "9" * 40, "1/0"])

@@ -14,8 +14,8 @@ import sympy as sp
 from flint import arb
 
 from navsym.core.balls import OPERATIONS, exact_ball, instruction, precision
-from navsym.prove.mutants import Edit
 from navsym.prove.sampling.points import Point
+from tests.attacks.campaigns.edits import Edit
 
 BITS = 128
 
@@ -39,7 +39,7 @@ class Values:
             self.known[node] = arb(OPERATIONS[operation](constant, balls, self.point))
         return self.known[node]
 
-    def edited(self, root: sp.Basic, edit: Edit, bits: int = BITS) -> arb:
+    def evaluate_edited(self, root: sp.Basic, edit: Edit, bits: int = BITS) -> arb:
         """Ball of the formula ``root`` with one token changed."""
         above = ancestors(root, edit.path)
         replacement: sp.Basic = edit.replacement
@@ -47,9 +47,9 @@ class Values:
             power, _ = above.pop()  # a rational exponent is part of the instruction, not an argument
             replacement = sp.Pow(power.args[0], replacement)
         with precision(bits):
-            return self.carried(above, Values(self.point, Overlay(self.known)).value(replacement))
+            return self.carry_up(above, Values(self.point, Overlay(self.known)).value(replacement))
 
-    def carried(self, above: Sequence[tuple[sp.Basic, int]], ball: arb) -> arb:
+    def carry_up(self, above: Sequence[tuple[sp.Basic, int]], ball: arb) -> arb:
         """The value at the root when the argument at the end of the path has this value."""
         for node, place in reversed(above):
             operation, arguments, constant = instruction(node)

@@ -1,9 +1,9 @@
 """Inputs guided by coverage for one reader, by atheris: a process of its own, started by the campaign ``fuzz``.
 
-    python -m navsym.studies.campaigns.guided READER FOLDER [options of libFuzzer]
+    python -m tests.attacks.campaigns.guided READER FOLDER [options of libFuzzer]
 
 The readers' own lines and those of the reader of TOML beneath them are watched. Half of the inputs are changed by
-libFuzzer; a quarter are damaged as by :mod:`navsym.studies.campaigns.parser`, and a quarter are the honest file
+libFuzzer; a quarter are damaged as by :mod:`tests.attacks.campaigns.parser`, and a quarter are the honest file
 damaged so, since what reaches new lines is mostly refused early. What a reader answers is counted
 in FOLDER/tally, which outlives this process however it ends; what is wrong stands in FOLDER/wrong, a JSON document
 in each line, and the process goes on.
@@ -14,22 +14,21 @@ from __future__ import annotations
 import json
 import random
 import sys
+from importlib.util import find_spec
 from pathlib import Path
 
 import atheris
 import numpy as np
 
-PACKAGE = Path(__file__).resolve().parents[2]
-#: Compiled loops cannot be watched, and what the campaign itself does is not the reader's doing.
+PACKAGE = Path(str(find_spec("navsym").origin)).parent
+#: Compiled loops cannot be watched.
 UNWATCHED = [
-    ".".join(path.relative_to(PACKAGE.parent).with_suffix("").parts)
-    for folder in ("numeric", "methods/campaigns")
-    for path in (PACKAGE / folder).rglob("*.py")
+    ".".join(path.relative_to(PACKAGE.parent).with_suffix("").parts) for path in PACKAGE.glob("*/kernels/**/*.py")
 ]
 
 with atheris.instrument_imports(include=["navsym", "tomllib"], exclude=UNWATCHED):
-    from navsym.studies.campaigns.parser import OUTCOMES, SLOW, answer, damaged, fairly_timed
-    from navsym.studies.campaigns.readers import READERS
+    from tests.attacks.campaigns.parser import OUTCOMES, SLOW, answer, damage, time_fairly
+    from tests.attacks.campaigns.readers import READERS
 
 COLUMNS = (*OUTCOMES, "crashed", "slowest")
 MOST = 20  # kinds of errors that are written down; the others are counted
@@ -44,7 +43,7 @@ def main(arguments: list[str]) -> None:
     kinds: set[str] = set()
 
     def one(data: bytes) -> None:
-        outcome, spent = fairly_timed(read, data)
+        outcome, spent = time_fairly(read, data)
         tally[COLUMNS.index(outcome if outcome in OUTCOMES else "crashed")] += 1
         tally[-1] = max(tally[-1], spent)
         if outcome not in OUTCOMES or spent > SLOW:
@@ -62,7 +61,7 @@ def main(arguments: list[str]) -> None:
         choice = source.random()
         if choice < 0.5:
             return atheris.Mutate(data, most)
-        return damaged(data if choice < 0.75 else honest, source)[:most]
+        return damage(data if choice < 0.75 else honest, source)[:most]
 
     atheris.Setup([sys.argv[0], *options], one, custom_mutator=changed)
     atheris.Fuzz()

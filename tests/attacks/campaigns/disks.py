@@ -21,14 +21,14 @@ from pathlib import Path
 from typing import Any
 
 from navsym.core.store import Store, StoreError, key_of
-from navsym.studies.campaigns.registry import Batch, Result, result
 from navsym.studies.plan import Sweep
 from navsym.studies.run import run_sweep
+from tests.attacks.campaigns.batches import Batch, Result, result
 
 SECONDS_TO_MOUNT, SECONDS_TO_VERIFY, SECONDS_TO_DIE = 30, 600, 30  # longer than any machine needs
 
 
-def batches() -> list[Batch]:
+def make_batches() -> list[Batch]:
     """One batch for each trouble of :data:`TROUBLES`."""
     return [Batch(name, name) for name in TROUBLES]
 
@@ -39,15 +39,15 @@ def judge(name: str) -> Result:
         try:
             wrong = TROUBLES[name](Path(folder))
         except NotPermittedError as error:
-            return result(Counter(skipped=1), [], [f"{name}: {error}"], [])
-    return result(Counter(survived=int(not wrong)), [f"{name}: {item}" for item in wrong], [], [])
+            return result(Counter(skipped=1), undecided=[f"{name}: {error}"])
+    return result(Counter(survived=int(not wrong)), [f"{name}: {item}" for item in wrong])
 
 
 class NotPermittedError(Exception):
     """The trouble cannot be made by this user on this machine."""
 
 
-def old_results(path: Path, count: int = 50) -> dict[str, Any]:
+def make_old_results(path: Path, count: int = 50) -> dict[str, Any]:
     """A store with some results, as an earlier run left it."""
     store = Store(path)
     values = {key_of(str(k)): {"status": "PROVED", "k": k, "text": "x" * 200} for k in range(count)}
@@ -57,7 +57,7 @@ def old_results(path: Path, count: int = 50) -> dict[str, Any]:
     return values
 
 
-def attempted(path: Path, attempts: int = 4000) -> tuple[list[str], dict[str, Any]]:
+def attempt_writes(path: Path, attempts: int = 4000) -> tuple[list[str], dict[str, Any]]:
     """What a store says that cannot be written, or nothing; and the results that it acknowledged before."""
     acknowledged: dict[str, Any] = {}
     try:
@@ -70,14 +70,14 @@ def attempted(path: Path, attempts: int = 4000) -> tuple[list[str], dict[str, An
     return [], acknowledged
 
 
-def complaints(path: Path, old: dict[str, Any], attempt: tuple[list[str], dict[str, Any]], hint: str) -> list[str]:
+def find_complaints(path: Path, old: dict[str, Any], attempt: tuple[list[str], dict[str, Any]], hint: str) -> list[str]:
     """What went wrong: nothing said, old results changed, what was acknowledged lost."""
     said, acknowledged = attempt
     found = [] if said and hint in said[0] and str(path) in said[0] else [f"not said: {said}"]
-    return found + not_intact(path, old | acknowledged)
+    return found + find_damage(path, old | acknowledged)
 
 
-def not_intact(path: Path, results: dict[str, Any]) -> list[str]:
+def find_damage(path: Path, results: dict[str, Any]) -> list[str]:
     """A complaint when the store does not give back what it has taken."""
     return [] if Store(path).get(results) == results else ["results that were kept are not intact"]
 
@@ -95,15 +95,15 @@ def full_disk(folder: Path) -> list[str]:
     if mounted.returncode != 0:
         return full_by_limit(folder)
     try:
-        old = old_results(small / "s.sqlite")
-        found = complaints(small / "s.sqlite", old, attempted(small / "s.sqlite"), "full")
+        old = make_old_results(small / "s.sqlite")
+        found = find_complaints(small / "s.sqlite", old, attempt_writes(small / "s.sqlite"), "full")
         return found + verb_on_full_disk(small)
     finally:
         subprocess.run(["umount", "-l", str(small)], check=False, timeout=SECONDS_TO_MOUNT)
 
 
 @contextlib.contextmanager
-def files_of_at_most(size: int) -> Iterator[None]:
+def limit_file_size(size: int) -> Iterator[None]:
     """No file of this process grows above so many bytes in the block: a write fails there as on a full disk.
 
     Nor does it write the bytecode of what it imports: Python puts the half of a module in place without a look.
@@ -123,10 +123,10 @@ def files_of_at_most(size: int) -> Iterator[None]:
 def full_by_limit(folder: Path) -> list[str]:
     """Files of at most 256 kB, as a quota would have it."""
     path = folder / "s.sqlite"
-    old = old_results(path)
-    with files_of_at_most(2**18):
-        attempt = attempted(path)
-    return complaints(path, old, attempt, "expected a store that can be")
+    old = make_old_results(path)
+    with limit_file_size(2**18):
+        attempt = attempt_writes(path)
+    return find_complaints(path, old, attempt, "expected a store that can be")
 
 
 def verb_on_full_disk(folder: Path) -> list[str]:
@@ -151,7 +151,7 @@ def verb_on_full_disk(folder: Path) -> list[str]:
 def no_room_for_shards(folder: Path) -> list[str]:
     """A sweep whose shards find no room: every one is named, all rows are there, and nothing is half written."""
     study = Sweep("filter", jobs=4, runs=4, steps=6)
-    with files_of_at_most(2**9):  # a shard is larger
+    with limit_file_size(2**9):  # a shard is larger
         document = run_sweep(study, folder=folder / "shards", size=1)
     rows = run_sweep(study, folder=folder / "again", size=1)["rows"]
     fine = len(document["unsaved"]) == 4 and document["rows"] == rows and not any((folder / "shards").iterdir())
@@ -162,39 +162,39 @@ def read_only_folder(folder: Path) -> list[str]:
     """A store in a folder without permission to write; root needs a read-only mount for it."""
     place = folder / "place"
     place.mkdir()
-    old = old_results(place / "s.sqlite")
+    old = make_old_results(place / "s.sqlite")
     if os.geteuid() != 0:
         os.chmod(place / "s.sqlite", 0o400)
         os.chmod(place, 0o500)
         try:
-            attempt = attempted(place / "s.sqlite")
+            attempt = attempt_writes(place / "s.sqlite")
         finally:
             os.chmod(place, 0o700)
             os.chmod(place / "s.sqlite", 0o600)
-        return complaints(place / "s.sqlite", old, attempt, "permissions")
+        return find_complaints(place / "s.sqlite", old, attempt, "permissions")
     bind = ["mount", "--bind", str(place), str(place)]
     if subprocess.run(bind, capture_output=True, check=False, timeout=SECONDS_TO_MOUNT).returncode != 0:
         raise NotPermittedError("root writes everywhere, and nothing may be mounted here")
     try:
         remount = ["mount", "-o", "remount,ro,bind", str(place)]
         subprocess.run(remount, check=True, capture_output=True, timeout=SECONDS_TO_MOUNT)
-        attempt = attempted(place / "s.sqlite")
+        attempt = attempt_writes(place / "s.sqlite")
     finally:
         subprocess.run(["umount", "-l", str(place)], check=False, timeout=SECONDS_TO_MOUNT)
-    return complaints(place / "s.sqlite", old, attempt, "permissions")
+    return find_complaints(place / "s.sqlite", old, attempt, "permissions")
 
 
 def stale_lock(folder: Path) -> list[str]:
     """A writer that holds the lock and never ends, then one that was killed while it held it."""
     path = folder / "s.sqlite"
-    old = old_results(path)
+    old = make_old_results(path)
     holder = subprocess.Popen([sys.executable, "-c", HOLDER, str(path)], stdout=subprocess.PIPE)
     assert holder.stdout is not None
     holder.stdout.readline()
-    found = complaints(path, old, attempted(path, 1), "locked")
+    found = find_complaints(path, old, attempt_writes(path, 1), "locked")
     holder.kill()
     holder.communicate(timeout=SECONDS_TO_DIE)
-    return found + (["a dead writer's lock is still held"] if attempted(path, 1)[0] else [])
+    return found + (["a dead writer's lock is still held"] if attempt_writes(path, 1)[0] else [])
 
 
 HOLDER = """
@@ -209,14 +209,14 @@ time.sleep(600)
 def clock_set_back(folder: Path) -> list[str]:
     """Results kept, their file dated in the future, then read and written by a process with an old date."""
     path = folder / "s.sqlite"
-    old = old_results(path)
+    old = make_old_results(path)
     ahead = time.time() + 10 * 365 * 86400
     for file in folder.iterdir():
         os.utime(file, (ahead, ahead))
-    said, acknowledged = attempted(path, 20)
+    said, acknowledged = attempt_writes(path, 20)
     found = [f"a date stops it: {said}"] if said else []
     os.utime(path, (0, 0))
-    return found + not_intact(path, old | acknowledged)
+    return found + find_damage(path, old | acknowledged)
 
 
 def nothing_of_ours(folder: Path) -> list[str]:
@@ -224,7 +224,7 @@ def nothing_of_ours(folder: Path) -> list[str]:
     path = folder / "s.sqlite"
     path.write_text(json.dumps({"precious": True}) * 200)
     before = path.read_bytes()
-    said, _ = attempted(path, 1)
+    said, _ = attempt_writes(path, 1)
     return [] if said and path.read_bytes() == before else [f"touched or not said: {said}"]
 
 

@@ -32,9 +32,21 @@ class Batch:
     items: Any
 
 
-def result(counts: Counter[str], wrong: list[Any], undecided: list[Any], kept: list[Any]) -> Result:
+def deal(subjects: Sequence[Any], inputs: int, size: int, seed: int) -> list[Batch]:
+    """``inputs`` attacks in batches of at most ``size``, the subjects in turn.
+
+    A judge receives the subject, the number of attacks, and a seed of this batch alone.
+    """
+    sizes = [min(size, inputs - first) for first in range(0, inputs, size)]
+    tasks = [(subjects[k % len(subjects)], n, seed * 10**6 + k) for k, n in enumerate(sizes)]
+    return [Batch(repr(task), task) for task in tasks]
+
+
+def result(
+    counts: Counter[str], wrong: Sequence[Any] = (), undecided: Sequence[Any] = (), kept: Sequence[Any] = ()
+) -> Result:
     """The record of one batch: plain data for the store."""
-    return {"counts": dict(counts), "wrong": wrong, "open": undecided, "kept": kept}
+    return {"counts": dict(counts), "wrong": [*wrong], "open": [*undecided], "kept": [*kept]}
 
 
 def run_campaign(
@@ -61,19 +73,20 @@ def run_campaign(
     unsaved: list[str] = []
     for outcome in run_many(lambda place: judge(batches[place].items), todo, jobs, seconds):
         place = todo[outcome.place]
-        if isinstance(outcome.value, (Exhausted, Failed)):
-            stopped.append(f"{batches[place].name}: {reason(outcome.value)}")
+        name, value = batches[place].name, outcome.value
+        if isinstance(value, (Exhausted, Failed)):
+            stopped.append(f"{name}: {value.why if isinstance(value, Exhausted) else value.error}")
         else:
-            results.append(outcome.value)
-            if store is not None and not kept(store, keys[place], outcome.value):
-                unsaved.append(batches[place].name)
+            results.append(value)
+            if store is not None and not is_stored(store, keys[place], value):
+                unsaved.append(name)
         progress(len(results) + len(stopped), len(batches))
-    whole = document(campaign, len(batches), results, stopped)
-    return {**whole, "resumed": len(known), "unsaved": unsaved}
+    merged = {"campaign": campaign, "batches": len(batches), **merge_results(results)}
+    return {**merged, "stopped": sorted(stopped), "resumed": len(known), "unsaved": unsaved}
 
 
-def kept(store: Store, key: str, value: Result) -> bool:
-    """True when the store took the result."""
+def is_stored(store: Store, key: str, value: Result) -> bool:
+    """True when the store has taken the result."""
     try:
         store.put(key, value)
     except StoreError:
@@ -81,36 +94,18 @@ def kept(store: Store, key: str, value: Result) -> bool:
     return True
 
 
-def reason(value: Exhausted | Failed) -> str:
-    """Why a batch has no result: the limit that it reached, or the error that ended it."""
-    return value.why if isinstance(value, Exhausted) else str(value.error)
-
-
-def document(campaign: str, batches: int, results: Sequence[Result], stopped: list[str]) -> dict[str, Any]:
-    """The results of the batches as one: counts added up, wrong and open items one after the other.
-
-    stopped : names of batches without a result, each with the reason; sorted in the document
-
-    ``measured`` has what the batches of each reader of files measured, the largest of each.
-    """
+def merge_results(results: Sequence[Result]) -> dict[str, Any]:
+    """Counts added up; wrong and open items one after the other; what each reader of files measured, at the largest."""
     counts: Counter[str] = Counter()
-    for found in results:
-        counts.update(found["counts"])
+    measured: dict[str, dict[str, float]] = {}
+    for one in results:
+        counts.update(one["counts"])
+        for item in (item for item in one["kept"] if "reader" in item):
+            largest = measured.setdefault(item["reader"], {})
+            largest.update({name: max(n, largest.get(name, n)) for name, n in item.items() if name != "reader"})
     return {
-        "campaign": campaign,
-        "batches": batches,
         "counts": dict(sorted(counts.items())),
-        "wrong": [item for found in results for item in found["wrong"]],
-        "open": [item for found in results for item in found["open"]],
-        "stopped": sorted(stopped),
-        "measured": measured(results),
+        "wrong": [item for one in results for item in one["wrong"]],
+        "open": [item for one in results for item in one["open"]],
+        "measured": dict(sorted(measured.items())),
     }
-
-
-def measured(results: Sequence[Result]) -> dict[str, dict[str, float]]:
-    """Reader -> name -> the largest number that a batch of this reader kept under the name."""
-    found: dict[str, dict[str, float]] = {}
-    for item in (item for one in results for item in one["kept"] if "reader" in item):
-        known = found.setdefault(item["reader"], {})
-        known.update({name: max(value, known.get(name, value)) for name, value in item.items() if name != "reader"})
-    return dict(sorted(found.items()))

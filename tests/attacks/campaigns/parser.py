@@ -17,8 +17,8 @@ from collections.abc import Iterable
 from typing import Any
 
 from navsym.core.errors import MissingEngineError, NavsymError
-from navsym.studies.campaigns.readers import BOMBS, READERS, Reader, scratch
-from navsym.studies.campaigns.registry import Batch, Result, result
+from tests.attacks.campaigns.batches import Batch, Result, deal, result
+from tests.attacks.campaigns.readers import BOMBS, READERS, Reader, scratch
 
 BATCH = 2000
 SLOW = 1.0  # seconds of processor time for one input
@@ -98,15 +98,9 @@ NUMBERS = (
 )
 
 
-def batches(inputs: int, seed: int = 0) -> list[Batch]:
+def make_batches(inputs: int, seed: int = 0) -> list[Batch]:
     """``inputs`` damaged files in batches, the readers in turn; then the files made to exhaust."""
-    count = max(1, -(-inputs // BATCH))
-    sizes = [BATCH] * (count - 1) + [inputs - BATCH * (count - 1)]
-    readers = list(READERS)
-    damage = [
-        Batch(f"{seed} {k} {size}", (readers[k % len(readers)], size, seed * 10**6 + k)) for k, size in enumerate(sizes)
-    ]
-    return [*damage, Batch("bombs", ("bombs", len(BOMBS), 0))]
+    return [*deal(list(READERS), inputs, BATCH, seed), Batch("bombs", ("bombs", len(BOMBS), 0))]
 
 
 def judge(task: tuple[str, int, int]) -> Result:
@@ -117,37 +111,37 @@ def judge(task: tuple[str, int, int]) -> Result:
         inputs = ((name, make()) for name, make in BOMBS.values())
     else:
         answer(*READERS[reader])  # what is loaded or compiled at the first call is not the file's doing
-        inputs = ((reader, damaged(READERS[reader][1], source)) for _ in range(size))
+        inputs = ((reader, damage(READERS[reader][1], source)) for _ in range(size))
     try:
-        return counted(reader, inputs)
+        return count_outcomes(reader, inputs)
     finally:
         shutil.rmtree(scratch())
 
 
-def counted(reader: str, inputs: Iterable[tuple[str, bytes]]) -> Result:
+def count_outcomes(reader: str, inputs: Iterable[tuple[str, bytes]]) -> Result:
     """The record of one batch: what the readers named beside the inputs make of them."""
     counts: Counter[str] = Counter()
     wrong: list[Any] = []
     slowest = 0.0
     for name, data in inputs:
         memory = peak()
-        outcome, spent = fairly_timed(READERS[name][0], data)
+        outcome, spent = time_fairly(READERS[name][0], data)
         grown = peak() - memory
         slowest = max(slowest, spent)
         counts[outcome if outcome in OUTCOMES else "crashed"] += 1
         if outcome not in OUTCOMES or spent > SLOW or grown > MEGABYTES:
             why = f"{outcome}, {spent:.3f} s, {grown:.0f} MB more"
             wrong.append({"reader": name, "data": data[:2000].decode("latin-1"), "why": why})
-    return result(counts, wrong, [], [{"reader": reader, "slowest": round(slowest, 4), "peak": round(peak())}])
+    return result(counts, wrong, kept=[{"reader": reader, "slowest": round(slowest, 4), "peak": round(peak())}])
 
 
-def fairly_timed(reader: Reader, data: bytes) -> tuple[str, float]:
-    """As :func:`timed`, what seemed slow once more: on a shared core time goes to others too."""
-    outcome, spent = timed(reader, data)
-    return outcome, min(spent, timed(reader, data)[1]) if spent > SLOW else spent
+def time_fairly(reader: Reader, data: bytes) -> tuple[str, float]:
+    """As :func:`time_reading`, what seemed slow once more: on a shared core time goes to others too."""
+    outcome, spent = time_reading(reader, data)
+    return outcome, min(spent, time_reading(reader, data)[1]) if spent > SLOW else spent
 
 
-def timed(reader: Reader, data: bytes) -> tuple[str, float]:
+def time_reading(reader: Reader, data: bytes) -> tuple[str, float]:
     """The answer of a reader and its seconds of processor time."""
     before = time.process_time()
     return answer(reader, data), time.process_time() - before
@@ -162,8 +156,10 @@ def peak() -> float:
 
 
 def answer(read: Reader, data: bytes) -> str:
-    """What a reader does with bytes: ``read``, ``refused`` (by a NavsymError), ``missing`` (an engine that is not
-    installed), or the name and text of another exception.
+    """The reader's answer to bytes.
+
+    One of ``read``, ``refused`` (by a NavsymError), ``missing`` (an engine that is not installed), or the name and
+    text of another exception.
     """
     try:
         read(data)
@@ -176,15 +172,15 @@ def answer(read: Reader, data: bytes) -> str:
     return "read"
 
 
-def damaged(honest: bytes, source: random.Random) -> bytes:
+def damage(honest: bytes, source: random.Random) -> bytes:
     """Tokens exchanged, which reaches deep; or pieces cut and spliced in; or nothing but random bytes."""
     choice = source.random()
     if choice < 0.05:
         return source.randbytes(source.randint(0, 60))
-    return retold(honest, source) if choice < 0.5 else spliced(honest, source)
+    return exchange_tokens(honest, source) if choice < 0.5 else splice(honest, source)
 
 
-def spliced(data: bytes, source: random.Random) -> bytes:
+def splice(data: bytes, source: random.Random) -> bytes:
     """One to four cuts, each filled with an awkward piece."""
     for _ in range(source.randint(1, 4)):
         at, width = source.randint(0, len(data)), source.choice([0, 0, 1, 2, 5, 12])
@@ -193,7 +189,7 @@ def spliced(data: bytes, source: random.Random) -> bytes:
     return data
 
 
-def retold(data: bytes, source: random.Random) -> bytes:
+def exchange_tokens(data: bytes, source: random.Random) -> bytes:
     """One or two numbers or words replaced by others of the same file or by awkward ones, or left out."""
     tokens = [(match.start(), match.end()) for match in TOKEN.finditer(data)]
     for start, end in sorted(source.sample(tokens, min(len(tokens), source.randint(1, 2))), reverse=True):

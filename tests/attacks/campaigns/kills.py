@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import Any
 
 from navsym.core.store import Store, StoreError
-from navsym.studies.campaigns.registry import Batch, Result, result
+from tests.attacks.campaigns.batches import Batch, Result, deal, result
 
 WRITERS = 4
 ROUNDS_PER_BATCH = 10  # each kills all four writers
@@ -28,26 +28,24 @@ LONGEST = 0.25  # seconds until a round is killed
 SECONDS_TO_DIE = 30  # longer than any machine needs
 
 
-def batches(kills: int, seed: int = 0) -> list[Batch]:
+def make_batches(kills: int, seed: int = 0) -> list[Batch]:
     """``kills`` deaths of writers, in batches of rounds of four."""
-    rounds = -(-kills // WRITERS)
-    sizes = [min(ROUNDS_PER_BATCH, rounds - k) for k in range(0, rounds, ROUNDS_PER_BATCH)]
-    return [Batch(f"{seed} {k} {size}", (size, seed * 1000 + k)) for k, size in enumerate(sizes)]
+    return deal(["writers"], -(-kills // WRITERS), ROUNDS_PER_BATCH, seed)
 
 
-def judge(task: tuple[int, int]) -> Result:
+def judge(task: tuple[str, int, int]) -> Result:
     """Counts: kills, acknowledged, done twice; wrong: lost, unreadable, more repeats than kills."""
-    rounds, seed = task
+    _, rounds, seed = task
     source = random.Random(seed)
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         Store(folder / "s.sqlite").close()
-        deaths = sum(one_round(folder, place, source.uniform(0.02, LONGEST)) for place in range(rounds))
+        deaths = sum(run_round(folder, place, source.uniform(0.02, LONGEST)) for place in range(rounds))
         counts, wrong = balance(folder, deaths, rounds)
-    return result(counts, wrong, [], [])
+    return result(counts, wrong)
 
 
-def one_round(folder: Path, place: int, seconds: float) -> int:
+def run_round(folder: Path, place: int, seconds: float) -> int:
     """Start the writers, kill them all after some time; the number of those that were still at work."""
     children = []
     for worker in range(WRITERS):
@@ -89,8 +87,8 @@ for item in range(10**6):
 
 def balance(folder: Path, deaths: int, rounds: int) -> tuple[Counter[str], list[Any]]:
     """What was acknowledged, what is kept, and what was done more than once by each writer."""
-    acknowledged = whole_lines(folder, "acknowledged-*")
-    done = Counter(whole_lines(folder, "done-*"))
+    acknowledged = read_lines(folder, "acknowledged-*")
+    done = Counter(read_lines(folder, "done-*"))
     wrong: list[Any] = []
     try:
         kept = Store(folder / "s.sqlite").get(list(done))
@@ -106,7 +104,7 @@ def balance(folder: Path, deaths: int, rounds: int) -> tuple[Counter[str], list[
     return Counter(kills=deaths, acknowledged=len(acknowledged), repeated=repeated.total()), wrong
 
 
-def whole_lines(folder: Path, pattern: str) -> list[str]:
+def read_lines(folder: Path, pattern: str) -> list[str]:
     """Lines of all files of this name; each was written by one call."""
     text = b"".join(path.read_bytes() for path in sorted(folder.glob(pattern)))
     return text.decode().split()

@@ -18,24 +18,20 @@ from xml.etree import ElementTree
 from navsym.core.errors import NavsymError
 from navsym.core.sandbox import die_with_parent
 from navsym.core.store import key_of
-from navsym.studies.campaigns.registry import Batch, Result, result
+from tests.attacks.campaigns.batches import Batch, Result, result
 
 EVERY = ("-m", "slow or not slow")
 SECONDS_TO_COLLECT = 300
 
 
-def batches(root: Path, folder: str, size: int) -> list[Batch]:
+def make_batches(root: Path, folder: str, size: int) -> list[Batch]:
     """The cases below a folder (or in a file) of the checkout, ``size`` of them in a batch."""
     names = case_names(root, folder)
-    sources = key_of(*(path.read_text(encoding="utf-8") for path in sources_of(root / folder)))
+    place = root / folder if (root / folder).is_dir() else (root / folder).parent  # with what neighbours share
+    paths = sorted(path for path in place.rglob("*") if path.suffix in (".py", ".txt"))
+    sources = key_of(*(path.read_text(encoding="utf-8") for path in paths))
     parts = [names[first : first + size] for first in range(0, len(names), size)]
     return [Batch(key_of(sources, *part), (str(root), part)) for part in parts]
-
-
-def sources_of(place: Path) -> list[Path]:
-    """The tests, their tables of explanations, and what they share with their neighbours."""
-    folder = place if place.is_dir() else place.parent
-    return sorted(path for path in folder.rglob("*") if path.suffix in (".py", ".txt"))
 
 
 def case_names(root: Path, folder: str) -> list[str]:
@@ -67,27 +63,18 @@ def judge(task: tuple[str, Sequence[str]]) -> Result:
         told = subprocess.run(
             command, cwd=root, capture_output=True, text=True, check=False, timeout=None, preexec_fn=mortal
         )
-        found = outcomes(record)
-    if found.total() != len(names):
-        raise NavsymError(f"expected {len(names)} outcomes; got {found.total()}: {told.stdout[-300:]}")
-    said = {outcome: [name for (name, said) in found if said == outcome] for outcome in ("failed", "skipped")}
-    return result(counted(found), said["failed"], said["skipped"], [])
+        outcomes = read_outcomes(record)
+    if len(outcomes) != len(names):
+        raise NavsymError(f"expected {len(names)} outcomes; got {len(outcomes)}; read pytest: {told.stdout[-300:]}")
+    failed, skipped = ([name for name, outcome in outcomes if outcome == word] for word in ("failed", "skipped"))
+    return result(Counter(outcome for _, outcome in outcomes), failed, skipped)
 
 
-def counted(found: Counter[tuple[str, str]]) -> Counter[str]:
-    """How many had which outcome."""
-    counts: Counter[str] = Counter()
-    for (_, outcome), number in found.items():
-        counts[outcome] += number
-    return counts
-
-
-def outcomes(record: Path) -> Counter[tuple[str, str]]:
+def read_outcomes(record: Path) -> list[tuple[str, str]]:
     """(name, outcome) of the cases in pytest's own record."""
-    found: Counter[tuple[str, str]] = Counter()
-    if record.exists():
-        for case in ElementTree.parse(record).iter("testcase"):
-            tags = {child.tag for child in case}
-            outcome = "failed" if tags & {"failure", "error"} else "skipped" if "skipped" in tags else "passed"
-            found[case.get("name", "?"), outcome] += 1
-    return found
+    outcomes = []
+    for case in ElementTree.parse(record).iter("testcase") if record.exists() else ():
+        tags = {child.tag for child in case}
+        outcome = "failed" if tags & {"failure", "error"} else "skipped" if "skipped" in tags else "passed"
+        outcomes.append((case.get("name", "?"), outcome))
+    return outcomes

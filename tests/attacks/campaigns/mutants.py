@@ -19,22 +19,22 @@ import sympy as sp
 from navsym.claims import REFUTED, Bound, Claim, Equation, Optimum
 from navsym.core.errors import NavsymError
 from navsym.prove.ladder import decide
-from navsym.prove.mutants import is_formula
 from navsym.prove.sampling.points import points
 from navsym.prove.wording import point_text, text_of
-from navsym.studies.campaigns.points import (
+from navsym.verification.fingerprints import fingerprint
+from tests.attacks.campaigns.batches import Batch, Result, result
+from tests.attacks.campaigns.changes import (
     Assertion,
     Change,
+    apply_change,
     changes,
     derived_parts,
+    find_refuting_point,
     free_symbols,
     printed_parts,
-    refuting_point,
     rows,
-    spoilt,
 )
-from navsym.studies.campaigns.registry import Batch, Result, result
-from navsym.verification.fingerprints import fingerprint
+from tests.attacks.campaigns.edits import is_formula
 
 #: For one mutant that no point has refuted. A mutant of an inequality is often a weaker one that holds with
 #: room to spare, and its proof is another task than noticing a slip: it gets a short look only.
@@ -45,7 +45,7 @@ class OutOfTimeError(Exception):
     """A mutant took longer than its share of time."""
 
 
-def batches(claims: Iterable[Claim], share: float = 1.0, seed: int = 0) -> list[Batch]:
+def make_batches(claims: Iterable[Claim], share: float = 1.0, seed: int = 0) -> list[Batch]:
     """One batch for each claim that is declared to hold; a random share of its mutants, fixed by the seed."""
     held = [claim for claim in claims if claim.expect.holds]
     return [Batch(f"{claim.id} {fingerprint(claim)} {share} {seed}", (claim, share, seed)) for claim in held]
@@ -60,11 +60,11 @@ def judge(task: tuple[Claim, float, int]) -> Result:
     claim, share, seed = task
     statement = claim.derive()
     if not isinstance(statement, (Equation, Bound, Optimum)):
-        return result(Counter(), [], [], [])
-    return judged(claim.id, statement, share, random.Random(f"{claim.id} {seed}"))
+        return result(Counter())
+    return judge_statement(claim.id, statement, share, random.Random(f"{claim.id} {seed}"))
 
 
-def judged(name: str, statement: Assertion, share: float, source: random.Random) -> Result:
+def judge_statement(name: str, statement: Assertion, share: float, source: random.Random) -> Result:
     """The result of a statement: a random share of its changes, at the points of a table first and then decided.
 
     Kept: the points that refute, the number of one for every change taken (None where none does), and what deciding
@@ -79,60 +79,60 @@ def judged(name: str, statement: Assertion, share: float, source: random.Random)
     for change in changes(statement):
         if source.random() >= share:
             continue
-        place = None if change.box is not None else refuting_point(statement, change, table)
-        outcome, why = ("refuted", "") if place is not None else slowly(statement, change, slow)
+        place = None if change.box is not None else find_refuting_point(statement, change, table)
+        outcome, why = ("refuted", "") if place is not None else decide_slowly(statement, change, slow)
         counts.update((outcome, f"kind {change.kind}"))
         where.append(place)
         if outcome in ("open", "wrong"):
-            entry = {"claim": name, "change": words_of(statement, change), "why": why}
+            entry = {"claim": name, "change": describe(statement, change), "why": why}
             (wrong if outcome == "wrong" else undecided).append(entry)
     used = sorted({place for place in where if place is not None})
     kept = {"claim": name, "points": {str(k): dict(point_text(table[k].point)) for k in used}, "at": where}
     return result(counts, wrong, undecided, [kept, *({"claim": name, **item} for item in slow)])
 
 
-def slowly(statement: Assertion, change: Change, kept: list[Any]) -> tuple[str, str]:
+def decide_slowly(statement: Assertion, change: Change, kept: list[Any]) -> tuple[str, str]:
     """Outcome of a mutant that no point of the table has refuted, with the reason."""
     seconds = SECONDS_OF_BOUND if isinstance(statement, Bound) else SECONDS
     try:
-        with limited(seconds):
-            return decided(statement, change, kept)
+        with limit_time(seconds):
+            return decide_mutant(statement, change, kept)
     except OutOfTimeError:
         return "open", f"no point refutes it, and no proof within {seconds:g} s"
     except (NavsymError, RecursionError) as error:
         return "open", str(error)
 
 
-def decided(statement: Assertion, change: Change, kept: list[Any]) -> tuple[str, str]:
+def decide_mutant(statement: Assertion, change: Change, kept: list[Any]) -> tuple[str, str]:
     """Outcome of a mutant by the ladder, with the reason; the counterexample of a refutation is added to ``kept``.
 
     ``held`` where the change is none or is proved equal to the printed formula, and where the mutant is proved, unless
     numbers deny it: that is ``wrong``.
     """
-    mutant = spoilt(statement, change)
-    if same_tree(statement, mutant, change):
+    mutant = apply_change(statement, change)
+    if is_same_tree(statement, mutant, change):
         return "held", "the same formula"
     if not all(is_formula(part) for part in printed_parts(mutant)):
         return "undefined", "no real formula"
     verdict = decide(mutant)
     if verdict.status == REFUTED and verdict.counterexample is not None:
-        kept.append({"change": words_of(statement, change), "point": dict(verdict.counterexample)})
+        kept.append({"change": describe(statement, change), "point": dict(verdict.counterexample)})
         return "refuted", verdict.evidence
-    if not verdict.status.holds and same_formula(statement, mutant, change):
+    if not verdict.status.holds and is_same_formula(statement, mutant, change):
         return "held", "proved equal to what was printed"
     if verdict.status.holds:
-        return ("wrong", "proved, and numbers deny it") if differs(mutant) else ("held", verdict.evidence)
-    if valueless(mutant):
+        return ("wrong", "proved, and numbers deny it") if is_denied(mutant) else ("held", verdict.evidence)
+    if has_no_value(mutant):
         return "undefined", "no value at any point"
     return "open", f"{verdict.status}: {verdict.evidence}"
 
 
-def same_tree(statement: Assertion, mutant: Assertion, change: Change) -> bool:
+def is_same_tree(statement: Assertion, mutant: Assertion, change: Change) -> bool:
     """True when sympy has built the printed formula again."""
     return change.edit is not None and changed_formula(mutant, change) == printed_parts(statement)[change.part]
 
 
-def same_formula(statement: Assertion, mutant: Assertion, change: Change) -> bool:
+def is_same_formula(statement: Assertion, mutant: Assertion, change: Change) -> bool:
     """True when the changed formula is proved equal to the one that was printed, on the same box."""
     if change.edit is None:
         return False
@@ -145,14 +145,14 @@ def changed_formula(mutant: Assertion, change: Change) -> sp.Expr:
     return printed_parts(mutant)[0 if isinstance(mutant, Equation) else change.part]
 
 
-def valueless(mutant: Assertion) -> bool:
+def has_no_value(mutant: Assertion) -> bool:
     """True when some printed formula has no finite value at any point of the box."""
     table = rows(mutant)
     return any(not any(row.values.of(part).is_finite() for row in table) for part in printed_parts(mutant))
 
 
 @contextmanager
-def limited(seconds: float) -> Iterator[None]:
+def limit_time(seconds: float) -> Iterator[None]:
     """Raise OutOfTimeError in the block after so many seconds of this process."""
 
     def ring(*_: object) -> None:
@@ -167,7 +167,7 @@ def limited(seconds: float) -> Iterator[None]:
         signal.signal(signal.SIGALRM, before)
 
 
-def words_of(statement: Assertion, change: Change) -> str:
+def describe(statement: Assertion, change: Change) -> str:
     """The change in words, with its place in the formula."""
     if change.box is not None:
         ends = "; ".join(f"{s} in [{text_of(low)}, {text_of(high)}]" for s, (low, high) in change.box.items())
@@ -194,7 +194,7 @@ DENIES: dict[str, Callable[[sp.Expr, sp.Expr], bool]] = {
 }
 
 
-def differs(mutant: Assertion, count: int = 8, digits: int = 40) -> bool:
+def is_denied(mutant: Assertion, count: int = 8, digits: int = 40) -> bool:
     """True when both sides are numbers at a point of the box and the statement does not hold there.
 
     Of an optimum the equality of value and dual value is looked at.
@@ -204,14 +204,14 @@ def differs(mutant: Assertion, count: int = 8, digits: int = 40) -> bool:
     if isinstance(mutant, Equation) and mutant.tolerance is not None:
         least += sp.sympify(mutant.tolerance, strict=True).evalf(digits)
     for point in points(free_symbols(mutant), mutant.box, count, seed=99):
-        for difference in differences_of(mutant):
+        for difference in subtract_sides(mutant):
             value = difference.subs(point).evalf(digits)
             if value.is_Float and DENIES[relation](value, least):
                 return True
     return False
 
 
-def differences_of(mutant: Assertion) -> list[sp.Expr]:
+def subtract_sides(mutant: Assertion) -> list[sp.Expr]:
     """Printed less derived entries; of an optimum, the value less that of the dual."""
     if isinstance(mutant, Optimum):
         of_dual = sum(x * p for x, p in zip(mutant.dual, mutant.functional, strict=True))
