@@ -30,9 +30,9 @@ from navsym.claims import claims_of
 from navsym.cli.main import run as navsym
 from navsym.core.datasets import dataset, local_copy
 from navsym.models.inertial import full_model, joint_model, position_group, velocity_group
-from navsym.observability.chains import observe
+from navsym.observability.chains import observe_jointly
 from navsym.observability.rank_drops import rank_drops
-from navsym.observability.sensors import restore
+from navsym.observability.sensors import restore_observability
 from navsym.observability.splits import splits
 from navsym.report.notebook import require, show
 from navsym_papers import joint_correction as paper
@@ -97,7 +97,7 @@ show(groups.row_x6_printed)
 # ## The observability ladder
 
 # %%
-found = observe(joint_model())
+found = observe_jointly(joint_model())
 steps = np.cumsum((0, *found.staircase))
 figure, axis = plt.subplots(figsize=(7, 3))
 for k, (low, high) in enumerate(pairwise(steps)):
@@ -122,7 +122,7 @@ assert found.observable
 # of each measurement instead of six.
 
 # %%
-for feasible in splits(observe(position_group().model(("position 1", "position 2")))):
+for feasible in splits(observe_jointly(position_group().model(("position 1", "position 2")))):
     print(feasible.i, feasible.j, "det L =", feasible.determinant)
 
 # %% [markdown]
@@ -131,7 +131,7 @@ for feasible in splits(observe(position_group().model(("position 1", "position 2
 # Schuler frequency. The smallest singular value of the six chain vectors shows the loss.
 
 # %%
-for drop in rank_drops(observe(velocity_group().model(("velocity 1", "velocity 2")))):
+for drop in rank_drops(observe_jointly(velocity_group().model(("velocity 1", "velocity 2")))):
     print(drop.subspace, drop.condition, "complete list" if drop.complete else "")
 kappa = np.linspace(-1.5, 1.5, 301)
 least = [np.linalg.svd(experiment.chain_matrix(value), compute_uv=False)[-1] for value in kappa]
@@ -274,7 +274,7 @@ plt.show()
 for found in claims_of(sensors):
     require(found)
     print(f"{found.number:24s} {found.title}")
-velocities = restore(sensors.measured_by(("sigma_c1", "sigma_c2")))
+velocities = restore_observability(sensors.measured_by(("sigma_c1", "sigma_c2")))
 print("hidden by the velocities:", velocities.hidden, "- a measurement of one of these is enough:", velocities.sets)
 assert velocities.proved and velocities.fewest == 1
 

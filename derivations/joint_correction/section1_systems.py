@@ -12,7 +12,7 @@ from functools import cache
 import sympy as sp
 
 from navsym.models.linear import LinearModel
-from navsym.observability.chains import Observability, observe
+from navsym.observability.chains import JointObservability, observe_jointly
 from navsym.observability.splits import inverse
 
 p = sp.Symbol("p", real=True)
@@ -29,7 +29,7 @@ class System:
     """
 
     model: LinearModel
-    found: Observability
+    found: JointObservability
     block: sp.ImmutableMatrix
 
     @property
@@ -67,7 +67,7 @@ def scrambled(core: sp.Matrix, m: int, second: sp.Matrix) -> System:
     T = upper * lower
     first = sp.Matrix(1, n, lambda _, s: int(s == 0))
     model = LinearModel(inverse("T", sp.ImmutableMatrix(T)) * core * T, None, sp.Matrix.vstack(first * T, second * T))
-    found = observe(model)
+    found = observe_jointly(model)
     return System(model, found, sp.ImmutableMatrix(core[:m, :m]))
 
 

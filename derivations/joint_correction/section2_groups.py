@@ -34,7 +34,7 @@ from navsym.models.inertial import (
     velocity_group,
 )
 from navsym.models.kinematics import ALPHA, BETA, EPSILON
-from navsym.observability.chains import observe
+from navsym.observability.chains import observe_jointly
 from navsym.observability.rank_drops import rank_drops
 
 mu = MU
@@ -253,7 +253,7 @@ def inhomogeneous_term():
 
 
 def rank_and_drops(group: Group) -> tuple[int, tuple[str, ...]]:
-    found = observe(group.model(("first", "second")))
+    found = observe_jointly(group.model(("first", "second")))
     drops = rank_drops(found)
     conditions = tuple(d.condition for d in drops if d.subspace == "joint" and d.complete)
     return found.joint_dimension, conditions
@@ -331,4 +331,4 @@ def leading_rank(measurements: tuple[int, ...], slow: sp.Matrix) -> int:
         scale[place[symbol], place[symbol]] = mu
     F = (scale * model.F * scale.inv()).applyfunc(sp.expand).subs(mu, 0)
     H = (model.H * scale.inv()).applyfunc(sp.expand).subs(mu, 0)
-    return observe(LinearModel(F, None, sp.Matrix([H[k, :] for k in measurements]))).joint_dimension
+    return observe_jointly(LinearModel(F, None, sp.Matrix([H[k, :] for k in measurements]))).joint_dimension

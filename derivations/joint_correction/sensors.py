@@ -12,7 +12,7 @@ from navsym.claims import Finding, Property, claim
 from navsym.models.inertial import full_model, joint_model
 from navsym.models.linear import LinearModel
 from navsym.observability.chains import proved_rank
-from navsym.observability.sensors import Restoration, restore
+from navsym.observability.sensors import Restoration, restore_observability
 
 GENERIC = "all values of mu, omega and u but those of a proper algebraic set"
 METHOD = "hidden directions that are exhibited, and minors that are not zero"
@@ -55,7 +55,7 @@ def found(answer: Restoration, value: object) -> Finding:
 def one_coordinate_is_enough():
     """With velocity alone four variables are hidden; either coordinate of the position shows all four of them."""
     velocity = ("sigma_c1", "sigma_c2")
-    answer = restore(measured_by(velocity), others(velocity))
+    answer = restore_observability(measured_by(velocity), others(velocity))
     return Property(printed=(4, (("sigma_M1",), ("sigma_M2",))), derived=found(answer, (answer.hidden, answer.sets)))
 
 
@@ -79,12 +79,12 @@ def no_two_are_enough():
 @claim("sensors.position")
 def position_needs_exactly_two_variables():
     """With position alone two measurements are missing, and x_3 and x_6 are the only two variables that will do."""
-    answer = restore(measured_by(("sigma_M1", "sigma_M2")))
+    answer = restore_observability(measured_by(("sigma_M1", "sigma_M2")))
     return Property(printed=(2, (("x_3", "x_6"),)), derived=found(answer, (answer.needed, answer.sets)))
 
 
 @claim("sensors.full")
 def complete_model_needs_five():
     """With all constant errors kept, five more measurements are needed, whatever they are, and five states will do."""
-    answer = restore(full_model())
+    answer = restore_observability(full_model())
     return Property(printed=(5, 5), derived=found(answer, (answer.needed, answer.fewest)))

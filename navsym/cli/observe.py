@@ -1,21 +1,16 @@
-"""What each measurement of a model observes, where that breaks, and how the problem splits."""
+"""Exact observability of a model: what each measurement observes, where that breaks, and how the problem splits."""
 
 from __future__ import annotations
 
-import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
-from navsym.cli._candidates import read_candidates, restoration, restored_text
 from navsym.cli._settings import values_of
 from navsym.cli.output import emit, table, write_text
-from navsym.core.errors import DomainError, DuplicateError, ExpressionSyntaxError, NavsymError
-
-if TYPE_CHECKING:
-    from navsym.models.modelfile import ModelFile
+from navsym.core.errors import DuplicateError, ExpressionSyntaxError, NavsymError
 
 
 def command(
@@ -40,87 +35,41 @@ def command(
     latex: Annotated[Path | None, typer.Option(help="write the decomposition to this LaTeX file")] = None,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> None:
-    """Exact observability of a model: dimensions, rank drops, splits, gains by poles.
+    """Show the exact observability of a model: dimensions, rank drops, splits, gains by poles.
 
     Example: navsym observe examples/schuler-velocity.toml
 
-    What is missing: navsym observe model.toml --restore --candidate "gps = x"
+    Further measurements: navsym observe model.toml --restore --candidate "gps = x"
     """
-    from navsym.observability.document import as_html, as_latex, document, examine
+    import navsym as nav
 
-    model_file = read(file, set_ or [])
-    request = read_split(split) if split is not None else None
-    polynomials, variable = read_poles(poles, model_file) if poles is not None else ((), None)
-    rows = read_candidates(candidate or [], model_file) if restoring or candidate else {}
-    options = {"variable": variable} if variable is not None else {}
-    model = linear_model(model_file)
+    named = read_candidates(candidate or [])
     try:
-        examination = examine(model, request, polynomials, **options)
-        further = {"restore": restoration(model, rows)} if restoring or candidate else {}
+        answer = nav.observe(
+            file, split=split, poles=poles, restore=restoring, candidates=named, values=values_of(set_)
+        )
     except NavsymError as error:
-        raise error.at(str(file)) from None
+        error.where = error.where.replace("observe: candidates.", "--candidate ").replace("observe: ", "--")
+        raise
     if html is not None:
-        write_text(html, as_html(examination, model_file.name))
+        write_text(html, answer.page())
     if latex is not None:
-        write_text(latex, as_latex(examination))
-    data = document(examination) | further
-    emit(data, as_json=json_, text=lambda: as_text(data))
+        write_text(latex, answer.latex())
+    emit(answer.document(), as_json=json_, text=lambda: as_text(answer.document()))
 
 
-def read(file: Path, settings: list[str]) -> ModelFile:
-    """The model of a file; a file of regressors has no F to observe."""
-    from navsym.models.modelfile import ModelFile, read_model
-
-    found = read_model(file, values_of(settings))
-    if not isinstance(found, ModelFile):
-        raise DomainError(
-            "expected a [model] with F and h; got a [basis] of regressors; give the system", where=str(file)
-        )
-    return found
-
-
-def linear_model(found: ModelFile) -> Any:
-    """The model file as a linear model."""
-    from navsym.models.linear import LinearModel
-
-    return LinearModel(
-        found.F,
-        None,
-        [list(m.h) for m in found.measurements] or None,
-        found.states,
-        measurements=tuple(m.name for m in found.measurements),
-        time=found.time,
-    )
-
-
-def read_split(text: str) -> tuple[int, int]:
-    """Two numbers with a comma between them."""
-    match = re.fullmatch(r"\s*(\d{1,3})\s*,\s*(\d{1,3})\s*", text)
-    if match is None:
-        raise ExpressionSyntaxError(
-            f'expected two numbers "i,j"; got {text[:40]!r}; write --split 3,2', where="--split"
-        )
-    return int(match[1]), int(match[2])
-
-
-def read_poles(text: str, found: ModelFile) -> tuple[tuple[Any, ...], Any]:
-    """Polynomials in p; names that the file does not declare are positive symbols of their own."""
-    from navsym.language.expression import parse, symbol
-    from navsym.language.names import RESERVED
-
-    declared = {name: parameter.symbol for name, parameter in found.parameters.items()}
-    if "p" in declared:
-        raise DuplicateError(
-            "expected p to be free for the variable of the polynomials; got a parameter p; rename the parameter",
-            where="--poles",
-        )
-    names = set(re.findall(r"[A-Za-z][A-Za-z0-9_]*", text)) - RESERVED - declared.keys() - {"p"}
-    for name in sorted(names & set(found.states)):
-        raise DuplicateError(f"expected a symbol of its own; got {name}, which is a state; rename it", where="--poles")
-    variable = symbol("p")
-    known = {**declared, "p": variable, **{name: symbol(name, positive=True) for name in sorted(names)}}
-    parts = [part.strip() for part in text.split(";")]
-    return tuple(parse(part, known, where="--poles") for part in parts), variable
+def read_candidates(texts: Sequence[str]) -> dict[str, str]:
+    """``NAME = formula`` each as a mapping."""
+    formulas: dict[str, str] = {}
+    for text in texts:
+        name, equals, formula = (part.strip() for part in text.partition("="))
+        if not equals or not name:
+            message = f'expected NAME = formula of the states; got {text[:40]!r}; write "gps = x"'
+            raise ExpressionSyntaxError(message, where="--candidate")
+        if name in formulas:
+            raise DuplicateError(f"expected one formula of {name[:40]}; got two; rename one", where="--candidate")
+        formulas[name] = formula
+    return formulas
 
 
 # Text for people
@@ -145,7 +94,7 @@ def overview(data: Mapping[str, Any]) -> str:
                 ["measurement", "dimension", "companion"],
                 [[m["name"], str(m["dimension"]), ", ".join(m["companion"])] for m in data["measurements"]],
             ),
-            *(["hidden: " + "; ".join(hidden) + "\n"] if hidden else []),
+            *(["unobservable: " + "; ".join(hidden) + "\n"] if hidden else []),
         ]
     )
 
@@ -193,4 +142,19 @@ def split_text(chosen: Mapping[str, Any]) -> str:
         rows = chosen[name]
         if rows and rows[0]:
             lines += [f"{name}:", *("  [" + ", ".join(cells) + "]" for cells in rows)]
+    return "\n".join(lines) + "\n"
+
+
+def restored_text(data: Mapping[str, Any]) -> str:
+    """What is hidden, what is needed at least, and the smallest sets of candidates that are enough."""
+    if not data["hidden"]:
+        return "every state is shown already: no further measurement is needed\n"
+    lines = [f"further measurements: at least {data['needed']} needed, whatever they measure"]
+    if not data["sets"]:
+        proved = "proved" if data["proved"] else "not proved"
+        lines.append(f"not enough, all together: {', '.join(data['candidates'])} ({proved})")
+    else:
+        fewer = "proved that no fewer of them are" if data["proved"] else "not proved that no fewer of them are"
+        lines.append(f"enough ({fewer}):")
+        lines += ["  " + ", ".join(names) for names in data["sets"]]
     return "\n".join(lines) + "\n"

@@ -7,14 +7,13 @@ from a model (transition matrix, observability, regressors) are functions in the
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import sympy as sp
 
 from navsym.claims.display import displayed, latex_of, latex_words
 from navsym.core.errors import DomainError, DuplicateError, EmptyError, NotFiniteError, ShapeError
-from navsym.models.noise import Noise
 
 #: The independent variable of a model that is not told otherwise.
 TIME = sp.Symbol("t", real=True)
@@ -28,7 +27,6 @@ class LinearModel:
     G            : (n, q) how the process noise w enters; no columns when there is none
     H            : (p, n) one row per scalar measurement
     states       : n different names
-    noise        : what is known about w and r
     measurements : p different names, by default z1, z2, ...
     time         : the symbol of the independent variable
 
@@ -42,7 +40,6 @@ class LinearModel:
     G: Any = None  # sp.ImmutableMatrix once constructed
     H: Any = None
     states: tuple[str, ...] = ()
-    noise: Noise = field(default_factory=Noise)
     measurements: tuple[str, ...] = ()
     time: sp.Symbol = TIME
 
@@ -55,7 +52,6 @@ class LinearModel:
         need_shape("H", H, (H.rows, n), "measurements by states")
         states = different("states", self.states or numbered("x", n), n, "states")
         measurements = different("measurements", self.measurements or numbered("z", H.rows), H.rows, "measurements")
-        need_noise(self.noise, G.cols, H.rows)
         values = {"F": F, "G": G, "H": H, "states": states, "measurements": measurements}
         for name, value in values.items():
             object.__setattr__(self, name, value)
@@ -98,7 +94,7 @@ class LinearModel:
         This is how a degenerate case is reached: substitute first, then derive.
         """
         F, G, H = (substituted(matrix, values) for matrix in (self.F, self.G, self.H))
-        return LinearModel(F, G, H, self.states, self.noise, self.measurements, self.time)
+        return LinearModel(F, G, H, self.states, self.measurements, self.time)
 
 
 def exact_matrix(name: str, value: Any) -> sp.ImmutableMatrix:
@@ -170,13 +166,6 @@ def different(name: str, values: Iterable[Any], count: int, why: str) -> tuple[s
 def numbered(letter: str, count: int) -> tuple[str, ...]:
     """Default names: the letter with 1, 2, ..."""
     return tuple(f"{letter}{place + 1}" for place in range(count))
-
-
-def need_noise(noise: Noise, q: int, p: int) -> None:
-    """Noise is described for every component or for none."""
-    for name, kinds, count in (("process", noise.process, q), ("measurement", noise.measurement, p)):
-        if kinds and len(kinds) != count:
-            raise ShapeError(f"noise.{name}: expected {count} kinds, one per component; got {len(kinds)}")
 
 
 def substituted(matrix: sp.ImmutableMatrix, values: Mapping[sp.Symbol, Any]) -> sp.ImmutableMatrix:

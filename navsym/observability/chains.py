@@ -456,7 +456,7 @@ class MeasurementObservability:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Observability:
+class JointObservability:
     """Generic observability of a model, proved.
 
     staircase    : how many chain vectors of every measurement form a basis of the observed functionals
@@ -492,7 +492,7 @@ class Observability:
         return self.joint_dimension == len(self.states)
 
 
-def observe(model: LinearModel) -> Observability:
+def observe_jointly(model: LinearModel) -> JointObservability:
     """Chains, dimensions, companion coefficients and unobservable directions of a constant model.
 
     Raises the same errors as :func:`chains_of`.
@@ -504,7 +504,7 @@ def observe(model: LinearModel) -> Observability:
         starts = [(chain.vectors[0], chain.dimension) for chain in chains.chains]
         hidden = null_vectors(krylov_rows(starts, chains.matrix, chains.joint_dimension, ring), n, ring)
     entries = [ring.expression(x) for vector in hidden for x in vector]
-    return Observability(
+    return JointObservability(
         states=model.states,
         measurements=tuple(measured(chain, ring) for chain in chains.chains),
         staircase=chains.staircase,
@@ -549,7 +549,7 @@ def direction_names(vector: Sequence[sp.Expr], states: Sequence[str]) -> str:
     return " + ".join(parts).replace("+ -", "- ")
 
 
-def need_observable(found: Observability) -> None:
+def need_observable(found: JointObservability) -> None:
     """Raise UnobservableError with the directions that no measurement shows."""
     if not found.observable:
         hidden = found.unobservable

@@ -10,7 +10,6 @@ from __future__ import annotations
 import random
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import combinations
 
 from flint import nmod_mat
 
@@ -214,18 +213,6 @@ def permutation_sign(places: Sequence[int]) -> int:
     return -1 if inversions % 2 else 1
 
 
-def determinant_slowly(matrix: Matrix, ring: Ring) -> Poly:
-    """Twin of :func:`determinant`: expansion along the first row."""
-    if not matrix:
-        return ring.constant(1)
-    total = ring.constant(0)
-    for j, entry in enumerate(matrix[0]):
-        if entry != 0:
-            minor = [row[:j] + row[j + 1 :] for row in matrix[1:]]
-            total = total + entry * determinant_slowly(minor, ring) * (-1) ** j
-    return total
-
-
 def relation(vectors: Matrix, target: list[Poly], ring: Ring) -> list[Quotient] | None:
     """Coefficients c with ``target = sum c_k vectors_k`` as rational functions, or None.
 
@@ -279,25 +266,3 @@ def primitive(vector: list[Poly], ring: Ring) -> list[Poly]:
     first = next(x for x in vector if x != 0)
     sign = -1 if divide(first, common).leading_coefficient() < 0 else 1
     return [divide(x, common) * sign for x in vector]
-
-
-def maximal_minors(vectors: Matrix, ring: Ring) -> list[Poly]:
-    """All r x r minors of r vectors of length n, by adding one vector at a time.
-
-    The minors of the first k vectors on every k-subset of places follow from those of k - 1, so
-    that nothing is computed twice: sum over k of C(n, k) k products.
-    """
-    minors: dict[tuple[int, ...], Poly] = {(): ring.constant(1)}
-    size = len(vectors[0])
-    for count, vector in enumerate(vectors, start=1):
-        larger = {}
-        for places in combinations(range(size), count):
-            total = ring.constant(0)
-            for index, place in enumerate(places):
-                smaller = minors.get(places[:index] + places[index + 1 :])
-                if smaller is not None and vector[place] != 0:
-                    total = total + smaller * vector[place] * (-1) ** (count - 1 - index)
-            if total != 0:
-                larger[places] = total
-        minors = larger
-    return list(minors.values())

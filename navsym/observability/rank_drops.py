@@ -18,8 +18,8 @@ from flint import fmpz, fmpz_mat
 
 from navsym.core.errors import TooLargeError
 from navsym.observability.cases import LAST_PRODUCTS, LAST_TERMS, drops_by_all_minors, drops_by_cases, minor_on
-from navsym.observability.chains import Chain, Chains, Observability
-from navsym.observability.linear import Matrix, determinant, maximal_minors
+from navsym.observability.chains import Chain, Chains, JointObservability
+from navsym.observability.linear import Matrix
 from navsym.observability.reduction import System, components, irredundant, krylov_remainder
 from navsym.observability.ring import Poly, Ring, odd
 
@@ -181,12 +181,12 @@ def excluded(zero: sp.Expr) -> bool:
     return bool(all(term.is_positive for term in sp.Add.make_args(zero)))
 
 
-def rank_drops(found: Observability) -> tuple[RankDrop, ...]:
+def rank_drops(found: JointObservability) -> tuple[RankDrop, ...]:
     """Drops of every measurement's subspace and of the joint one, with completeness."""
     return drops_and_completeness(found)[0]
 
 
-def drops_and_completeness(found: Observability) -> tuple[tuple[RankDrop, ...], dict[str, bool]]:
+def drops_and_completeness(found: JointObservability) -> tuple[tuple[RankDrop, ...], dict[str, bool]]:
     """The drops, and for every subspace whether its list is proved complete, also when it is empty."""
     ring, answer = found.chains.ring, all_drops(found.chains)
     drops = tuple(
@@ -300,11 +300,6 @@ def too_many_points(chains: Chains, part: tuple[Chain, ...], steps: Sequence[tup
     return sum(points_needed(list(zip(starts, step, strict=True)), chains.matrix) for step in steps) > POINTS
 
 
-def staircases(chains: Chains) -> list[tuple[int, ...]]:
-    """All (k_1, ..., k_s) with the joint dimension as sum and k_i at most the chain's dimension."""
-    return list(compositions(chains.joint_dimension, [chain.dimension for chain in chains.chains]))
-
-
 def compositions(total: int, caps: Sequence[int]) -> Iterator[tuple[int, ...]]:
     """All tuples of nonnegative numbers with the given sum, each at most its cap."""
     if not caps:
@@ -314,14 +309,3 @@ def compositions(total: int, caps: Sequence[int]) -> Iterator[tuple[int, ...]]:
     for first in range(min(total, caps[0]), -1, -1):
         for rest in compositions(total - first, caps[1:]):
             yield (first, *rest)
-
-
-def drops_by_minors(sets: Sequence[Matrix], ring: Ring) -> list[System]:
-    """Slow twin: the common zeros of all maximal minors of all sets of independent rows."""
-    minors: list[Poly] = []
-    for rows in sets:
-        value = [determinant(rows, ring)] if len(rows) == len(rows[0]) else maximal_minors(rows, ring)
-        minors += [minor for minor in value if minor != 0]
-        if any(minor.is_constant() for minor in minors):
-            return []
-    return components(minors, ring)

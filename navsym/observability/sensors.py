@@ -81,7 +81,7 @@ class Setting:
         return residue_rank([vector for name in names for vector in self.chains[name]])
 
 
-def restore(model: LinearModel, candidates: Mapping[str, Sequence[sp.Expr]] | None = None) -> Restoration:
+def restore_observability(model: LinearModel, candidates: Mapping[str, Sequence[sp.Expr]] | None = None) -> Restoration:
     """The smallest sets of candidates that make a constant model observable for all but special parameters.
 
     candidates : name -> row of n exact entries; by default every state itself

@@ -22,8 +22,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from navsym.core.errors import DomainError, ShapeError
-from navsym.models.linear import LinearModel
-from navsym.observability.chains import Chain, Observability, basis_rows, need_observable
+from navsym.observability.chains import Chain, JointObservability, basis_rows, need_observable
 from navsym.observability.linear import Matrix, determinant, relation
 from navsym.observability.ring import Quotient, Ring
 
@@ -103,7 +102,7 @@ def corner(rows: int, columns: int) -> sp.ImmutableMatrix:
 # Which splits there are
 
 
-def splits(found: Observability) -> tuple[FeasibleSplit, ...]:
+def splits(found: JointObservability) -> tuple[FeasibleSplit, ...]:
     """All i + j = n for which a_1 ... a_i, b_1 ... b_j is a basis, from the largest i down.
 
     Only 0 <= i <= m and 0 <= j <= l can be feasible: a longer piece of a chain is dependent.
@@ -121,7 +120,7 @@ def splits(found: Observability) -> tuple[FeasibleSplit, ...]:
     return tuple(found_splits)
 
 
-def best_split(found: Observability) -> FeasibleSplit:
+def best_split(found: JointObservability) -> FeasibleSplit:
     """The split with the least max(i, j); the one with the larger i when two are equally good.
 
     The longest chain of derivatives that must be estimated from one measurement is then shortest.
@@ -129,7 +128,7 @@ def best_split(found: Observability) -> FeasibleSplit:
     return min(splits(found), key=lambda split: (max(split.i, split.j), -split.i))
 
 
-def need_two(found: Observability) -> None:
+def need_two(found: JointObservability) -> None:
     """Refuse anything but two measurements."""
     if len(found.measurements) != 2:
         raise ShapeError(
@@ -138,14 +137,14 @@ def need_two(found: Observability) -> None:
         )
 
 
-def split_determinant(found: Observability, i: int, j: int) -> Quotient:
+def split_determinant(found: JointObservability, i: int, j: int) -> Quotient:
     """det of the rows a_1 ... a_i, b_1 ... b_j."""
     chains = found.chains
     value = determinant(chains.staircase_vectors((i, j)), chains.ring)
     return chains.ring.lowest(value, chains.weight((i, j)))
 
 
-def split(found: Observability, i: int | None = None, j: int | None = None) -> Split:
+def split(found: JointObservability, i: int | None = None, j: int | None = None) -> Split:
     """The split with i vectors of the first and j of the second chain; by default (m, n - m).
 
     Raises UnobservableError, ShapeError (i + j is not n) and DomainError (not a basis: the
@@ -176,13 +175,13 @@ def split(found: Observability, i: int | None = None, j: int | None = None) -> S
     )
 
 
-def second_rows(found: Observability, j: int) -> list[list[sp.Expr]]:
+def second_rows(found: JointObservability, j: int) -> list[list[sp.Expr]]:
     """The first j vectors of the second chain as rows."""
     chain = found.chains.chains[1]
     return basis_rows(found.chains.first(chain, j), chain, found.chains.ring).tolist()
 
 
-def link(found: Observability, first: Chain, second: Chain, i: int, j: int) -> list[Quotient]:
+def link(found: JointObservability, first: Chain, second: Chain, i: int, j: int) -> list[Quotient]:
     """Coefficients of b_{j+1} in the basis a_1 ... a_i, b_1 ... b_j; none are needed when j = 0."""
     if j == 0:
         return []
@@ -204,7 +203,7 @@ def restore(ring: Ring, value: Quotient, k: int, first: Chain, second: Chain, i:
     return ring.lowest(top * clock ** (k - i), bottom)
 
 
-def not_a_basis(found: Observability, i: int, j: int) -> DomainError:
+def not_a_basis(found: JointObservability, i: int, j: int) -> DomainError:
     """The error for a split whose determinant vanishes, with the splits that exist."""
     rows = [f"a{k + 1}" for k in range(i)] + [f"b{k + 1}" for k in range(j)]
     feasible = ", ".join(f"{s.i},{s.j}" for s in splits(found)) or "none"
@@ -287,71 +286,7 @@ def unit_row(size: int) -> sp.ImmutableMatrix:
     return sp.ImmutableMatrix(1, size, lambda _, c: int(c == 0))
 
 
-def general_blocks(model: LinearModel, found: Observability, L_z: sp.MatrixBase) -> TwoStageBlocks:
-    """The variant of the Remark: rows L_z that complete L_x = (a_1 ... a_m) to a basis.
-
-    Raises ShapeError and DomainError (the rows complete nothing: det = 0).
-    """
-    need_two(found)
-    need_observable(found)
-    L_x = found.measurements[0].basis
-    n, m = len(found.states), L_x.rows
-    if L_z.shape != (n - m, n):
-        raise ShapeError(f"L_z: expected shape {(n - m, n)}, rows that complete L_x; got {L_z.shape}; mend it")
-    L = sp.ImmutableMatrix.vstack(L_x, sp.ImmutableMatrix(L_z))
-    back = inverse("L_x over L_z", L)
-    G = lowest_terms(L * model.F * back)
-    g = lowest_terms(model.H * back)
-    return TwoStageBlocks(L, G[:m, :m], g[0, :m], G[m:, :m], G[m:, m:], g[1, :m], g[1, m:])
-
-
 def lowest_terms(matrix: sp.MatrixBase) -> sp.ImmutableMatrix:
     """Entries as quotients of polynomials in lowest terms."""
     ring = Ring.of(matrix)
     return sp.ImmutableMatrix(*matrix.shape, [ring.expression(ring.quotient(x)) for x in matrix])
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class ThreeBlocks:
-    """The system (1.14): u, v from the first chain, w from the second, n + m - i variables.
-
-    du/dt = G_u1 u + G_u2 v, dv/dt = G_v1 u + G_v2 v, dw/dt = G_w1 u + G_w2 w,
-    sigma_1 = g_u u, sigma_2 = g_w w, (u, w) = L xi, v = tail xi.
-    """
-
-    L: sp.ImmutableMatrix
-    tail: sp.ImmutableMatrix
-    G_u1: sp.ImmutableMatrix
-    G_u2: sp.ImmutableMatrix
-    G_v1: sp.ImmutableMatrix
-    G_v2: sp.ImmutableMatrix
-    G_w1: sp.ImmutableMatrix
-    G_w2: sp.ImmutableMatrix
-    g_u: sp.ImmutableMatrix
-    g_w: sp.ImmutableMatrix
-
-
-def three_blocks(
-    chosen: Split, C11: sp.MatrixBase | None = None, C12: sp.MatrixBase | None = None, C22: sp.MatrixBase | None = None
-) -> ThreeBlocks:
-    """(1.14) for a split with 0 < i < m; the free matrices are the identity by default."""
-    i, j, m = chosen.i, chosen.j, chosen.m
-    if not 0 < i < m:
-        raise DomainError(f"expected a split with 0 < i < {m}; got i = {i}; use the two-stage split")
-    one, one_inverse = free_matrix("C11", C11, i)
-    tail, tail_inverse = free_matrix("C12", C12, m - i)
-    two, two_inverse = free_matrix("C22", C22, j)
-    theta_u = last_row(m - i, chosen.theta[:i])
-    theta_v = companion(chosen.theta[i:])
-    return ThreeBlocks(
-        L=sp.ImmutableMatrix.vstack(one * chosen.L[:i, :], two * chosen.L[i:, :]),
-        tail=tail * chosen.tail,
-        G_u1=one * shift(i) * one_inverse,  # joint_correction:1.14.Gu1
-        G_u2=one * corner(i, m - i) * tail_inverse,  # joint_correction:1.14.Gu2
-        G_v1=tail * theta_u * one_inverse,  # joint_correction:1.14.Gv1
-        G_v2=tail * theta_v * tail_inverse,  # joint_correction:1.14.Gv2
-        G_w1=two * chosen.Phi_x * one_inverse,  # joint_correction:1.14.Gw1
-        G_w2=two * chosen.Phi_z * two_inverse,  # joint_correction:1.14.Gw2
-        g_u=unit_row(i) * one_inverse,
-        g_w=unit_row(j) * two_inverse,
-    )

@@ -21,7 +21,7 @@ from sympy.polys.matrices import DomainMatrix
 
 from navsym.models.inertial import FULL, full_model
 from navsym.models.linear import LinearModel, observability_matrix
-from navsym.observability.chains import chains_of, numerators, observe, proved_rank
+from navsym.observability.chains import chains_of, numerators, observe_jointly, proved_rank
 from navsym.observability.linear import reduce_rows
 from navsym.observability.rank_drops import chain_determinant
 from navsym.observability.ring import Ring
@@ -96,7 +96,7 @@ def sympy_rank(model: LinearModel) -> int:
 
 def square_part(model: LinearModel) -> sp.Matrix:
     """Independent rows of the observability matrix, found beforehand: both sides reduce the same matrix."""
-    found = observe(model)
+    found = observe_jointly(model)
     rows = [m.basis.row(k) for m, count in zip(found.measurements, found.staircase, strict=True) for k in range(count)]
     return sp.Matrix([list(row) for row in rows])
 
@@ -117,7 +117,7 @@ def sympy_reduce(matrix: sp.Matrix) -> int:
 
 def ours_everything(model: LinearModel) -> int:
     """Chains, companion coefficients and hidden directions as well."""
-    return observe(model).joint_dimension
+    return observe_jointly(model).joint_dimension
 
 
 CONTESTS = {

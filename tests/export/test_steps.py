@@ -17,10 +17,10 @@ from navsym.export.chain import Chain, Link
 from navsym.export.functions import RefusedError
 from navsym.export.languages.c import files
 from navsym.models.inertial import joint_model
-from navsym.multimodel.bank import bank
-from navsym.multimodel.filters import run
+from navsym.multimodel.bank import Bank
+from navsym.multimodel.filters import run_filter
 from navsym.multimodel.kalman.steps import correct, predict
-from navsym.observability.two_stage.observer import held
+from navsym.observability.two_stage import hold_measurements
 from navsym.terrain.centre import information
 from navsym_papers.guaranteed_velocity.model import H, T, tau
 from tests.benchmarks import export as benchmark
@@ -102,8 +102,10 @@ TRANSITION = [[0.9, 0.1], [0.25, 0.75]]
 
 def test_the_exported_pulsating_filter_is_the_house_filter() -> None:
     series = np.random.default_rng(3).normal(0.0, 3.0, 40)
-    models = bank(MODELS, TRANSITION, [1.0, -1.0], [[2.0, 0.3], [0.3, 1.0]], [0.6, 0.4])
-    expected = run(models, series[:, None], "pulsating")
+    models = Bank(
+        MODELS, TRANSITION, {"mean": [1.0, -1.0], "covariance": [[2.0, 0.3], [0.3, 1.0]], "probabilities": [0.6, 0.4]}
+    )
+    expected = run_filter(models, series[:, None], "pulsating")
     made = programs.module("pulsating-filter").pulsating_filter([1.0, -1.0], [2.0, 0.3, 1.0], [0.6, 0.4])
     for k, z in enumerate(series):
         made.step(*(x for m in MODELS for x in plainly(m)), np.ravel(TRANSITION), z)
@@ -137,7 +139,7 @@ def test_the_exported_observer_follows_the_exact_solution_within_its_stated_erro
     gains[:3, 0], gains[3:6, 1] = made.Kc[:3], made.Kc[3:]
     gains[6:8, 2], gains[8:, 3] = made.Kh[:2], made.Kh[2:]
     A = F - gains @ rows
-    Phi, Gamma = held(A, gains, h)
+    Phi, Gamma = hold_measurements(A, gains, h)
     state, generator, room = np.zeros(10), np.random.default_rng(1), 0.0
     for _ in range(60):
         sigma = generator.normal(0.0, 1.0, 4)

@@ -5,7 +5,6 @@ import sympy as sp
 
 from navsym.core.errors import DomainError, DuplicateError, EmptyError, NotFiniteError, ShapeError
 from navsym.models.linear import LinearModel, observability_matrix
-from navsym.models.noise import ArbitraryCorrelation, Constant, Markov, Noise, Uncorrelated, arbitrary, shaping
 
 w, t = sp.Symbol("w", positive=True), sp.Symbol("t", real=True)
 
@@ -50,7 +49,6 @@ def test_the_callers_matrix_stays_the_callers():
         ({"F": [[0, object()], [0, 0]]}, DomainError, "expected a number"),
         ({"F": [[0, sp.oo], [0, 0]]}, NotFiniteError, r"F\[0, 1\]"),
         ({"F": [[0, sp.nan], [0, 0]]}, NotFiniteError, "finite"),
-        ({"noise": arbitrary([1, 1])}, ShapeError, r"noise\.measurement: expected 1"),
     ],
 )
 def test_what_makes_no_model_is_refused_with_its_place(changes, error, message):
@@ -87,21 +85,3 @@ def test_the_observability_matrix_of_a_varying_model_holds_the_derivatives_of_th
     z = (model.H * x)[0]
     rate = z.diff(t).subs(motion)
     assert (observability_matrix(model) * x - sp.Matrix([z, rate])).applyfunc(sp.expand) == sp.zeros(2, 1)
-
-
-def test_a_shaping_filter_has_the_stationary_variance_of_its_noise():
-    sigma, rate = sp.symbols("sigma rate", positive=True)
-    f, g = shaping(Markov(sigma, rate))
-    assert 2 * f * sigma**2 + g**2 == 0  # d/dt of the variance
-    assert shaping(Constant(sigma)) == (0, 0)
-    with pytest.raises(ShapeError):
-        shaping(Uncorrelated(sigma))
-
-
-def test_white_noise_has_no_standard_deviation_to_bound():
-    assert arbitrary([2, w]).sigmas == (2, w)
-    assert arbitrary([2]).measurement == (ArbitraryCorrelation(sp.Integer(2)),)
-    with pytest.raises(DomainError, match="infinite"):
-        Noise(measurement=(Uncorrelated(w),)).sigmas  # noqa: B018
-    with pytest.raises(DomainError, match="exact"):
-        arbitrary([0.1])

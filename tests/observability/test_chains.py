@@ -10,9 +10,10 @@ import sympy as sp
 
 from navsym.core.errors import DomainError, DuplicateError, EmptyError, TooLargeError, UnobservableError
 from navsym.models.linear import LinearModel
-from navsym.observability.chains import direction_names, need_observable, observe, proved_rank
-from navsym.observability.linear import determinant, determinant_slowly, maximal_minors
+from navsym.observability.chains import direction_names, need_observable, observe_jointly, proved_rank
+from navsym.observability.linear import determinant
 from navsym.observability.ring import Ring
+from tests.observability.twins import determinant_slowly, maximal_minors
 
 a = sp.Symbol("a")
 
@@ -71,7 +72,7 @@ def test_two_hundred_random_systems_agree_with_schoolbook_elimination(block):
     for seed in range(30 * block, 30 * block + 30):
         F, rows = random_system(seed)
         n = len(F)
-        found = observe(model_of(F, rows))
+        found = observe_jointly(model_of(F, rows))
         for measurement, h in zip(found.measurements, rows, strict=True):
             chain = krylov(F, h, n + 1)
             assert measurement.dimension == fraction_rank(chain)
@@ -93,7 +94,7 @@ def test_symbolic_dimensions_agree_with_sympys_field_of_fractions():
     a, b, c = sp.symbols("a b c")
     F = sp.Matrix([[0, 1, 0, 0], [a, 0, b, 0], [0, 0, 0, 1], [c, 0, a * b, 0]])
     H = sp.Matrix([[1, 0, 0, 0], [0, 0, 1, c]])
-    found = observe(LinearModel(F, None, H))
+    found = observe_jointly(LinearModel(F, None, H))
     field = sp.QQ.frac_field(a, b, c)
     for k, measurement in enumerate(found.measurements):
         rows = sp.Matrix.vstack(*[H[k, :] * F**j for j in range(4)])
@@ -103,7 +104,7 @@ def test_symbolic_dimensions_agree_with_sympys_field_of_fractions():
 def test_companion_coefficients_of_a_full_chain_are_those_of_the_characteristic_polynomial():
     a, b, p = sp.symbols("a b p")
     F = sp.Matrix([[a, 1, 0], [0, b, 1], [1, 0, a + b]])
-    found = observe(LinearModel(F, None, [[1, 0, 0]]))
+    found = observe_jointly(LinearModel(F, None, [[1, 0, 0]]))
     polynomial = p**3 - sum(t * p**k for k, t in enumerate(found.measurements[0].companion))
     assert sp.expand(polynomial - F.charpoly(p).as_expr()) == 0
 
@@ -112,26 +113,26 @@ def test_rational_function_entries_keep_their_denominators():
     a, b = sp.symbols("a b", nonzero=True)
     F = sp.Matrix([[1 / a, 1], [b / (a + b), 0]])
     H = sp.Matrix([[1 / b, 0]])
-    measurement = observe(LinearModel(F, None, H)).measurements[0]
+    measurement = observe_jointly(LinearModel(F, None, H)).measurements[0]
     rows = sp.Matrix.vstack(H, H * F)
     assert (measurement.basis - rows).applyfunc(sp.cancel) == sp.zeros(2, 2)
     following = sp.Matrix([list(measurement.companion)]) * rows
     assert (following - H * F**2).applyfunc(sp.cancel) == sp.zeros(1, 2)
-    assert set(observe(LinearModel(F, None, H)).assumptions) >= {b}
+    assert set(observe_jointly(LinearModel(F, None, H)).assumptions) >= {b}
 
 
 def test_a_coupling_of_1e_minus_15_is_not_zero():
     F = [[0, 1], [0, 0]]
     tiny = sp.Rational(1, 10**15)
-    assert observe(LinearModel(F, None, [[1, 0]])).observable
-    assert not observe(LinearModel(F, None, [[0, 1]])).observable
-    assert observe(LinearModel(F, None, [[tiny, 1]])).observable
-    assert observe(LinearModel([[0, tiny], [0, 0]], None, [[1, 0]])).observable
+    assert observe_jointly(LinearModel(F, None, [[1, 0]])).observable
+    assert not observe_jointly(LinearModel(F, None, [[0, 1]])).observable
+    assert observe_jointly(LinearModel(F, None, [[tiny, 1]])).observable
+    assert observe_jointly(LinearModel([[0, tiny], [0, 0]], None, [[1, 0]])).observable
 
 
 def test_a_hidden_direction_is_named_by_its_states():
     model = LinearModel([[0, 0, 0], [0, 0, 0], [0, 0, 0]], None, [[1, 0, 2]], ("tilt", "drift", "bias"))
-    found = observe(model)
+    found = observe_jointly(model)
     names = {direction_names(found.unobservable[k, :], found.states) for k in range(2)}
     assert names == {"drift", "2*tilt - bias"} or names == {"drift", "-2*tilt + bias"}
     with pytest.raises(UnobservableError, match=r"rank 1 of 3.*drift"):
@@ -140,7 +141,7 @@ def test_a_hidden_direction_is_named_by_its_states():
 
 def test_pi_is_transcendental():
     F = sp.Matrix([[0, 1], [-(sp.pi**2), 0]])
-    found = observe(LinearModel(F, None, [[sp.pi, 1]]))
+    found = observe_jointly(LinearModel(F, None, [[sp.pi, 1]]))
     assert found.observable
     assert found.measurements[0].companion == (-(sp.pi**2), 0)
 
@@ -187,10 +188,10 @@ def test_maximal_minors_are_all_square_minors():
 )
 def test_bad_models_are_refused_with_a_reason(F, H, error, message):
     with pytest.raises(error, match=message):
-        observe(LinearModel(F, None, H))
+        observe_jointly(LinearModel(F, None, H))
 
 
 def test_equal_rows_in_disguise_are_recognised():
     a = sp.Symbol("a")
     with pytest.raises(DuplicateError):
-        observe(LinearModel([[0, 1], [0, 0]], None, [[(a + 1) ** 2, 1], [a**2 + 2 * a + 1, 1]]))
+        observe_jointly(LinearModel([[0, 1], [0, 0]], None, [[(a + 1) ** 2, 1], [a**2 + 2 * a + 1, 1]]))

@@ -8,7 +8,7 @@ import pytest
 import sympy as sp
 
 from navsym.models.linear import LinearModel
-from navsym.observability.chains import numerators, observe
+from navsym.observability.chains import numerators, observe_jointly
 from navsym.observability.linear import determinant, transposed_times
 from navsym.observability.rank_drops import (
     POINTS,
@@ -93,7 +93,7 @@ def test_a_dense_system_with_parameters_in_single_entries_is_listed_completely()
     for place, symbol in enumerate((p1, p2, p3)):
         F[2 * place, 7 - place] = symbol
     model = LinearModel(F, None, sp.Matrix([[1, 2, -1, 1, 3, 1, -2, 1]]))
-    found = observe(model)
+    found = observe_jointly(model)
     drops, complete = drops_and_completeness(found)
     joint = [drop for drop in drops if drop.subspace == "joint"]
     assert complete == {"z1": True, "joint": True} and joint

@@ -10,25 +10,24 @@ import sympy as sp
 
 from navsym.core.errors import DuplicateError
 from navsym.models.linear import LinearModel
-from navsym.observability.chains import observe
+from navsym.observability.chains import observe_jointly
 from navsym.observability.rank_drops import (
     all_drops,
     by_elimination,
     by_values,
     compositions,
     drops_and_completeness,
-    drops_by_minors,
     drops_by_staircases,
     rank_drops,
-    staircases,
 )
+from tests.observability.twins import drops_by_minors, staircases
 
 a, b, c, w = sp.symbols("a b c w", real=True)
 
 
 def conditions(model: LinearModel) -> dict[str, set[frozenset[sp.Expr]]]:
     found: dict[str, set[frozenset[sp.Expr]]] = {}
-    for drop in rank_drops(observe(model)):
+    for drop in rank_drops(observe_jointly(model)):
         assert drop.complete
         found.setdefault(drop.subspace, set()).add(frozenset(sp.expand(z) for z in drop.zeros))
     return found
@@ -58,7 +57,7 @@ def test_every_listed_locus_is_a_drop_and_nothing_drops_elsewhere():
     F = sp.Matrix([[0, 1, 0, 0], [-(w**2), 0, a, 0], [0, 0, 0, 1], [0, 0, -1, 0]])
     H = sp.Matrix([[1, 0, 0, b], [0, 0, c, 0]])
     model = LinearModel(F, None, H)
-    generic = observe(model).joint_dimension
+    generic = observe_jointly(model).joint_dimension
     loci = conditions(model).get("joint", set())
     for values in itertools.product((0, 1, -1), (0, 1, 2), (0, -1), (0, 1, sp.Rational(1, 2))):
         at = dict(zip((a, b, c, w), values, strict=True))
@@ -71,14 +70,14 @@ def test_every_listed_locus_is_a_drop_and_nothing_drops_elsewhere():
 def test_the_velocity_group_breaks_at_one_value_of_the_link():
     from navsym.models.inertial import velocity_group
 
-    drops = rank_drops(observe(velocity_group().model(("c1", "c2"))))
+    drops = rank_drops(observe_jointly(velocity_group().model(("c1", "c2"))))
     assert {d.condition for d in drops} == {"mu*u_3 + 1 = 0", "mu*u_3 - 1 = 0"}
     assert {d.subspace for d in drops} == {"joint"}
 
 
 def test_declared_signs_exclude_a_locus_without_hiding_it():
     s = sp.Symbol("s", positive=True)
-    drops = rank_drops(observe(LinearModel([[0, s], [0, 0]], None, [[1, 0]])))
+    drops = rank_drops(observe_jointly(LinearModel([[0, s], [0, 0]], None, [[1, 0]])))
     assert [(str(d.zeros[0]), d.allowed) for d in drops] == [("s", False), ("s", False)]
 
 
@@ -90,7 +89,7 @@ def test_compositions_are_all_sums_within_their_caps():
 def test_the_full_error_model_of_sixteen_states_has_a_complete_list():
     from navsym.models.inertial import full_model
 
-    drops, complete = drops_and_completeness(observe(full_model()))
+    drops, complete = drops_and_completeness(observe_jointly(full_model()))
     assert all(complete.values())
     joint = {d.condition for d in drops if d.subspace == "joint"}
     assert joint == {
@@ -112,7 +111,7 @@ def random_symbolic_model(seed: int) -> LinearModel:
 @pytest.mark.parametrize("seed", range(16))
 def test_drops_by_cases_hold_at_a_point_exactly_where_the_rank_is_smaller(seed):
     model = random_symbolic_model(seed)
-    found = observe(model)
+    found = observe_jointly(model)
     drops, complete = drops_and_completeness(found)
     for values in itertools.product((0, 1, -1), (0, 1, -2), (0, 1)):
         at = dict(zip((a, b, c), values, strict=True))
@@ -131,7 +130,7 @@ def test_drops_by_cases_hold_at_a_point_exactly_where_the_rank_is_smaller(seed):
 
 @pytest.mark.parametrize("seed", range(16, 28))
 def test_drops_by_cases_are_the_common_zeros_of_all_minors(seed):
-    chains = observe(random_symbolic_model(seed)).chains
+    chains = observe_jointly(random_symbolic_model(seed)).chains
     fast, complete = all_drops(chains)["joint"]
     slow = drops_by_minors([chains.staircase_vectors(s) for s in staircases(chains)], chains.ring)
     size = len(chains.ring.symbols)
@@ -156,7 +155,7 @@ def test_dense_systems_of_several_measurements_are_listed_completely(n, count, o
     """By the determinants of the staircases; pivots alone left them open. Every listed point has to be a drop."""
     symbols = (a, b, c)[:count]
     model = dense_model(n, symbols, outputs, 4)
-    found = observe(model)
+    found = observe_jointly(model)
     drops, complete = drops_and_completeness(found)
     assert complete["joint"] and found.joint_dimension == n
     joint = [d.zeros for d in drops if d.subspace == "joint"]
@@ -172,7 +171,7 @@ def test_staircases_list_the_drops_of_a_scrambled_system():
     turn = sp.Matrix([[1, 1, 0], [0, 1, 1], [1, 1, 1]])
     core = sp.Matrix([[a, c, 0], [0, b, 0], [0, 0, b]])
     model = LinearModel(turn.inv() * core * turn, None, sp.Matrix([[1, 0, 0], [0, b, 1]]) * turn)
-    found = observe(model)
+    found = observe_jointly(model)
     for determinant_of in (by_values, by_elimination):
         listed = drops_by_staircases(found.chains, found.chains.chains, found.joint_dimension, determinant_of)
         assert found.joint_dimension == 3 and listed is not None
@@ -187,7 +186,7 @@ def test_staircases_list_the_drops_of_a_scrambled_system():
 def test_a_list_that_is_too_long_to_prove_says_so():
     symbols = sp.symbols("a b c d e f", real=True)
     F = sp.Matrix(7, 7, lambda i, j: symbols[(3 * i + j * j) % 6] + (i * j) % 4 * symbols[(i + 2 * j) % 6])
-    found = observe(LinearModel(F, None, [[1, *[0] * 6]]))
+    found = observe_jointly(LinearModel(F, None, [[1, *[0] * 6]]))
     _, complete = drops_and_completeness(found)
     assert found.joint_dimension == 7 and complete == {"z1": False, "joint": False}
 
@@ -198,7 +197,7 @@ def test_a_list_that_is_too_long_to_prove_says_so():
 def test_a_latitude_under_sines_and_cosines_is_exact():
     phi = sp.Symbol("phi", real=True)
     F = sp.Matrix([[0, w * sp.sin(phi), 0], [-w * sp.sin(phi), 0, w * sp.cos(phi)], [0, -w * sp.cos(phi), 0]])
-    found = observe(LinearModel(F, None, [[1, 0, 0]]))
+    found = observe_jointly(LinearModel(F, None, [[1, 0, 0]]))
     assert found.joint_dimension == 3
     # Cayley and Hamilton for a rotation: the squares of sine and cosine have gone.
     assert found.measurements[0].companion == (0, -(w**2), 0)
@@ -216,17 +215,17 @@ def conditions_by_name(found) -> dict[str, set[str]]:
 
 def test_a_drop_at_one_end_of_the_circle_is_found_with_half_the_angle():
     phi = sp.Symbol("phi", real=True)
-    found = observe(LinearModel([[0, 1 + sp.cos(phi)], [0, 0]], None, [[1, 0]]))
+    found = observe_jointly(LinearModel([[0, 1 + sp.cos(phi)], [0, 0]], None, [[1, 0]]))
     assert {d.condition for d in rank_drops(found)} == {"cos(phi/2) = 0"}
-    found = observe(LinearModel([[0, 2 + sp.cos(phi)], [0, 0]], None, [[1, 0]]))
+    found = observe_jointly(LinearModel([[0, 2 + sp.cos(phi)], [0, 0]], None, [[1, 0]]))
     assert all(sp.N(d.zeros[0].subs(phi, sp.Rational(k, 7))) != 0 for d in rank_drops(found) for k in range(50))
 
 
 def test_pythagoras_makes_a_row_vanish_and_two_rows_equal():
     phi = sp.Symbol("phi", real=True)
     with pytest.raises(DuplicateError):
-        observe(LinearModel([[0, 1], [0, 0]], None, [[sp.cos(2 * phi), 1], [1 - 2 * sp.sin(phi) ** 2, 1]]))
-    hidden = observe(LinearModel([[0, 0], [0, 0]], None, [[sp.cos(phi), sp.sin(phi)]])).unobservable
+        observe_jointly(LinearModel([[0, 1], [0, 0]], None, [[sp.cos(2 * phi), 1], [1 - 2 * sp.sin(phi) ** 2, 1]]))
+    hidden = observe_jointly(LinearModel([[0, 0], [0, 0]], None, [[sp.cos(phi), sp.sin(phi)]])).unobservable
     assert sp.simplify(hidden[0, 0] * sp.cos(phi) + hidden[0, 1] * sp.sin(phi)) == 0
 
 
@@ -235,7 +234,7 @@ def test_angles_agree_with_numbers_for_the_angle(seed):
     phi, source = sp.Symbol("phi", real=True), random.Random(seed)
     pool = [0, 1, sp.sin(phi), sp.cos(phi), a * sp.sin(phi), sp.tan(phi), sp.cos(2 * phi) - 1, sp.sin(phi / 2)]
     F = sp.Matrix(4, 4, lambda i, j: source.choice(pool))
-    found = observe(LinearModel(F, None, [[1, 0, 0, 0]]))
+    found = observe_jointly(LinearModel(F, None, [[1, 0, 0, 0]]))
     at = {phi: sp.Rational(source.randint(1, 9), 7), a: sp.Rational(3, 5)}
     numbers = sp.Matrix(F.subs(at)).evalf(40)
     row, rows = sp.Matrix([[1, 0, 0, 0]]), []
@@ -290,7 +289,7 @@ def krylov_modulo(F, h, p):
 def test_a_dense_system_has_all_its_drops_also_over_a_finite_field(seed):
     """One parameter runs through all p values: the rank is smaller exactly at the zeros of the conditions."""
     p, (model, symbols) = 101, dense_system(seed)
-    found = observe(model)
+    found = observe_jointly(model)
     drops, complete = drops_and_completeness(found)
     assert complete["z1"] and found.measurements[0].dimension == 8
     source = random.Random(seed)

@@ -8,7 +8,7 @@ import sympy as sp
 
 from navsym.core.errors import EmptyError, ShapeError, TooLargeError
 from navsym.models.linear import LinearModel
-from navsym.observability.sensors import restore
+from navsym.observability.sensors import restore_observability
 
 
 def rank_slowly(F: sp.Matrix, rows: sp.Matrix) -> int:
@@ -20,29 +20,29 @@ def test_two_unseen_constants_need_two_measurements_whatever_they_are() -> None:
     """Position measured; a bias of each of two other channels is never seen."""
     F = [[0, 1, 0, 0], *([[0, 0, 0, 0]] * 3)]
     model = LinearModel(F, None, [[1, 0, 0, 0]], ("x", "v", "b", "c"))
-    answer = restore(model)
+    answer = restore_observability(model)
     assert (answer.hidden, answer.needed, answer.sets, answer.proved) == (2, 2, (("b", "c"),), True)
 
 
 def test_one_measurement_shows_two_hidden_states_that_move_apart() -> None:
     a = sp.Symbol("a")
     model = LinearModel([[0, 0, 0], [0, a, 0], [0, 0, 2 * a]], None, [[1, 0, 0]], ("x", "u", "w"))
-    both = restore(model, {"sum": [0, 1, 1], "u": [0, 1, 0], "w": [0, 0, 1]})
+    both = restore_observability(model, {"sum": [0, 1, 1], "u": [0, 1, 0], "w": [0, 0, 1]})
     assert (both.hidden, both.needed, both.sets, both.proved) == (2, 0, (("sum",),), True)
-    states = restore(model)
+    states = restore_observability(model)
     assert states.sets == (("u", "w"),)
     assert states.proved
 
 
 def test_a_coupling_of_1e_15_is_seen_and_an_observable_model_needs_nothing() -> None:
     model = LinearModel([[0, sp.Rational(1, 10**15)], [0, 0]], None, [[1, 0]])
-    answer = restore(model)
+    answer = restore_observability(model)
     assert (answer.hidden, answer.fewest, answer.proved) == (0, 0, True)
 
 
 def test_candidates_that_are_all_too_little_are_called_so_with_proof() -> None:
     model = LinearModel([[0, 0, 0]] * 3, None, [[1, 0, 0]], ("x", "y", "z"))
-    answer = restore(model, {"y": [0, 1, 0], "again": [0, 2, 0], "x": [1, 0, 0]})
+    answer = restore_observability(model, {"y": [0, 1, 0], "again": [0, 2, 0], "x": [1, 0, 0]})
     assert (answer.needed, answer.fewest, answer.proved) == (2, None, True)
 
 
@@ -53,7 +53,7 @@ def test_random_systems_agree_with_every_combination_in_fractions() -> None:
         F = sp.Matrix(rng.integers(-1, 2, (n, n)) * (rng.random((n, n)) < 0.4))
         H = sp.zeros(1, n)
         H[int(rng.integers(n))] = 1
-        answer = restore(LinearModel(F, None, H))
+        answer = restore_observability(LinearModel(F, None, H))
         assert answer.hidden == n - rank_slowly(F, H)
         names = [f"x{i + 1}" for i in range(n)]
         for size in range(n + 1):
@@ -72,8 +72,10 @@ def test_random_systems_agree_with_every_combination_in_fractions() -> None:
 def test_candidates_that_cannot_be_measured_are_refused_with_a_sentence() -> None:
     model = LinearModel([[0, 1], [0, 0]], None, [[0, 1]])
     with pytest.raises(ShapeError, match=r"short: expected 2 entries.*got 1"):
-        restore(model, {"short": [1]})
+        restore_observability(model, {"short": [1]})
     with pytest.raises(EmptyError, match="got none"):
-        restore(model, {})
+        restore_observability(model, {})
     with pytest.raises(TooLargeError, match="fewer candidates"):
-        restore(LinearModel(sp.zeros(24), None, [[1] * 24]), {f"c{k}": [k**i for i in range(24)] for k in range(30)})
+        restore_observability(
+            LinearModel(sp.zeros(24), None, [[1] * 24]), {f"c{k}": [k**i for i in range(24)] for k in range(30)}
+        )

@@ -8,8 +8,8 @@ import sympy as sp
 from navsym.core.errors import DomainError, ShapeError, UnobservableError
 from navsym.models.inertial import joint_model, position_group, velocity_group
 from navsym.models.linear import LinearModel
-from navsym.observability.chains import observe
-from navsym.observability.splits import best_split, general_blocks, split, splits, three_blocks, two_stage_blocks
+from navsym.observability.chains import observe_jointly
+from navsym.observability.splits import best_split, split, splits, two_stage_blocks
 
 a, b, c, d, w = sp.symbols("a b c d w", real=True)
 
@@ -20,7 +20,7 @@ def zero(matrix: sp.MatrixBase) -> bool:
 
 def holds(model: LinearModel, i: int, j: int) -> None:
     """The blocks of a split reproduce the model: L G and the outputs, for every state."""
-    found = observe(model)
+    found = observe_jointly(model)
     chosen = split(found, i, j)
     G, h1, h2 = model.F, model.H[0, :], model.H[1, :]
     if i == found.measurements[0].dimension:
@@ -32,13 +32,12 @@ def holds(model: LinearModel, i: int, j: int) -> None:
             assert zero(z * G - blocks.G_z1 * x - blocks.G_z2 * z)
             assert zero(blocks.g_z2 * z - h2)
     elif i:
-        blocks = three_blocks(chosen)
-        u, v, rest = blocks.L[:i, :], blocks.tail, blocks.L[i:, :]
-        assert zero(u * G - blocks.G_u1 * u - blocks.G_u2 * v)
-        assert zero(v * G - blocks.G_v1 * u - blocks.G_v2 * v)
-        assert zero(rest * G - blocks.G_w1 * u - blocks.G_w2 * rest)
-        assert zero(blocks.g_u * u - h1)
-        assert zero(blocks.g_w * rest - h2)
+        u, v, rest = chosen.L[:i, :], chosen.tail, chosen.L[i:, :]  # joint_correction:1.14
+        first = sp.Matrix.vstack(u, v)
+        assert zero(first * G - chosen.Theta * first)
+        assert zero(rest * G - chosen.Phi_x * u - chosen.Phi_z * rest)
+        assert zero(u[0, :] - h1)
+        assert zero(rest[0, :] - h2)
 
 
 def similar(F: sp.Matrix, H: sp.Matrix, T: sp.Matrix) -> LinearModel:
@@ -118,7 +117,7 @@ KNOWN = {
 @pytest.mark.parametrize("name", KNOWN)
 def test_systems_with_known_answers_are_answered_completely(name):
     model, sizes, feasible, best = KNOWN[name]
-    found = observe(model)
+    found = observe_jointly(model)
     assert (model.size, *(m.dimension for m in found.measurements)) == sizes
     assert [(s.i, s.j) for s in splits(found)] == feasible
     chosen = best_split(found)
@@ -130,7 +129,7 @@ def test_systems_with_known_answers_are_answered_completely(name):
 @pytest.mark.parametrize("name", KNOWN)
 def test_the_printed_determinant_is_that_of_L(name):
     model, _, _, _ = KNOWN[name]
-    found = observe(model)
+    found = observe_jointly(model)
     for feasible_split in splits(found):
         chosen = split(found, feasible_split.i, feasible_split.j)
         assert sp.cancel(chosen.L.det(method="berkowitz") - feasible_split.determinant) == 0
@@ -140,26 +139,26 @@ def test_the_printed_determinant_is_that_of_L(name):
 def test_a_hidden_mode_refuses_every_split_and_names_the_mode():
     model = LinearModel([[0, 1, 0], [a, 0, 0], [0, 0, b]], None, [[1, 0, 0], [0, 1, 0]], ("x", "v", "mode"))
     with pytest.raises(UnobservableError, match=r"rank 2 of 3.*mode"):
-        split(observe(model))
+        split(observe_jointly(model))
 
 
 def test_a_split_that_is_no_basis_names_the_determinant_that_vanishes():
-    found = observe(KNOWN["position group"][0])
+    found = observe_jointly(KNOWN["position group"][0])
     with pytest.raises(DomainError, match=r"det\(a1, a2, a3, a4, a5, b1, b2, b3\) = 0 .*choose one of 6,2, 4,4, 2,6"):
         split(found, 5, 3)
 
 
 def test_splits_of_wrong_size_are_refused():
-    found = observe(KNOWN["two scalars"][0])
+    found = observe_jointly(KNOWN["two scalars"][0])
     with pytest.raises(ShapeError, match=r"i \+ j = 2"):
         split(found, 2, 1)
     with pytest.raises(ShapeError, match="two measurements"):
-        splits(observe(joint_model()))
+        splits(observe_jointly(joint_model()))
 
 
 def test_free_matrices_change_coordinates_and_nothing_else():
     model = KNOWN["overlap in two dimensions"][0]
-    chosen = split(observe(model))
+    chosen = split(observe_jointly(model))
     C1 = sp.Matrix([[1, a, 0], [0, 1, 2], [b, 0, 1]])
     blocks = two_stage_blocks(chosen, C1, sp.Matrix([[3]]))
     x, z = blocks.L[:3, :], blocks.L[3:, :]
@@ -167,17 +166,3 @@ def test_free_matrices_change_coordinates_and_nothing_else():
     assert zero(z * model.F - blocks.G_z1 * x - blocks.G_z2 * z)
     with pytest.raises(DomainError, match="determinant 0"):
         two_stage_blocks(chosen, sp.zeros(3, 3))
-
-
-def test_the_general_variant_reproduces_the_model_and_refuses_rows_that_complete_nothing():
-    model = KNOWN["overlap in two dimensions"][0]
-    found = observe(model)
-    blocks = general_blocks(model, found, sp.Matrix([[1, 0, 0, c + 1]]).subs(c, 2))
-    x, z = blocks.L[:3, :], blocks.L[3:, :]
-    assert zero(x * model.F - blocks.G_x * x)
-    assert zero(z * model.F - blocks.G_z1 * x - blocks.G_z2 * z)
-    assert zero(blocks.g_z1 * x + blocks.g_z2 * z - model.H[1, :])
-    with pytest.raises(DomainError, match="determinant 0"):
-        general_blocks(model, found, sp.Matrix([[1, 1, 0, 0]]))
-    with pytest.raises(ShapeError, match="L_z"):
-        general_blocks(model, found, sp.eye(4))

@@ -1,24 +1,29 @@
-"""Two-stage estimators: gains in closed form, error dynamics, steady errors, all exact.
+"""Two-stage estimators: gains in closed form, exact, and observers with numbers that run.
 
 First stage  dx°/dt = G_x x° + K_x (sigma_1 - g_x x°)                          (joint_correction:1.6)
 second stage dz°/dt = G_z1 x° + G_z2 z° + K_z (sigma_2 - g_z1 x° - g_z2 z°)    (joint_correction:1.11, 1.13)
 
 and xi° = L^-1 (x°, z°) (joint_correction:1.12). The gains follow from the prescribed
 characteristic polynomials without solving anything: in chain coordinates they are a recursion.
+The observer is linear, so that a step with a measurement held over it is a matrix product.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
+import numpy as np
 import sympy as sp
 
+from navsym.core.arrays import Array, frozen, named
 from navsym.core.errors import DomainError, ShapeError
-from navsym.observability.linear import determinant, relation
+from navsym.observability.linear import determinant
 from navsym.observability.ring import Poly, Ring
-from navsym.observability.splits import Split, TwoStageBlocks, inverse
+from navsym.observability.splits import Split, TwoStageBlocks
 
+#: Variable of characteristic polynomials.
 POLE = sp.Symbol("p", real=True)
 
 
@@ -79,9 +84,7 @@ def by_power(polynomial: Poly, place: int, ring: Ring) -> dict[int, Poly]:
 
 
 def hurwitz_minors(coefficients: Sequence[sp.Expr]) -> tuple[sp.Expr, ...]:
-    """Leading minors of Hurwitz' matrix of p^n + c_1 p^(n-1) + ... + c_n, all positive for a stable
-    polynomial.
-    """
+    """Leading minors of Hurwitz' matrix of p^n + c_1 p^(n-1) + ... + c_n; all positive for a stable polynomial."""
     n = len(coefficients)
     known = [sp.Integer(1), *coefficients]
     entry = [
@@ -183,85 +186,97 @@ def stage_gains(
     return companion_gains(theta, wanted), stable
 
 
-# Error dynamics
+# Observers with numbers
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class ErrorDynamics:
-    """d(e, f)/dt = A (e, f) + B_q (q_x, q_z) + B_r (r_1, r_2) for e = x - x°, f = z - z°.
+class TwoStageObserver:
+    """Matrices of (1.6), (1.11)-(1.13) as numbers; the variant (1.13) has g_z1 different from zero.
 
-    A is block triangular: e drives f through ``coupling``, f never drives e.
+    L : (n, n), (x, z) = L xi;  rows g are vectors; gains K_x (m,), K_z (n - m,)
     """
 
-    A: sp.ImmutableMatrix
-    noise_of_measurements: sp.ImmutableMatrix
-    stages: tuple[int, int]
+    L: Array
+    G_x: Array
+    g_x: Array
+    K_x: Array
+    G_z1: Array
+    G_z2: Array
+    g_z1: Array
+    g_z2: Array
+    K_z: Array
+
+    def __post_init__(self) -> None:
+        m, rest = np.shape(self.G_x)[0], np.shape(self.G_z2)[0]
+        shapes = {
+            "L": (m + rest, m + rest),
+            "G_x": (m, m),
+            "g_x": (m,),
+            "K_x": (m,),
+            "G_z1": (rest, m),
+            "G_z2": (rest, rest),
+            "g_z1": (m,),
+            "g_z2": (rest,),
+            "K_z": (rest,),
+        }
+        for name, shape in shapes.items():
+            value = getattr(self, name)
+            array = frozen(np.zeros(shape)) if 0 in shape else named(name, value, shape, "blocks of the observer")
+            object.__setattr__(self, name, array)
 
     @property
-    def coupling(self) -> sp.ImmutableMatrix:
-        """(n - m, m): how the error of the first stage drives that of the second."""
-        m = self.stages[0]
-        return self.A[m:, :m]
+    def stages(self) -> tuple[int, int]:
+        """Number of variables of the first and of the second stage."""
+        return len(self.K_x), len(self.K_z)
 
 
-def error_dynamics(blocks: TwoStageBlocks, K_x: Sequence[sp.Expr], K_z: Sequence[sp.Expr]) -> ErrorDynamics:
-    """Error equations of the two stages, also for the variant (1.13).
+def observer(
+    blocks: TwoStageBlocks, K_x: Sequence[Any], K_z: Sequence[Any], values: Mapping[sp.Symbol, Any] | None = None
+) -> TwoStageObserver:
+    """The observer of symbolic blocks and gains with numbers for all symbols.
 
-    A = ((G_x - K_x g_x, 0), (G_z1 - K_z g_z1, G_z2 - K_z g_z2)); q enters as it enters x and z, the
-    measurement errors through -K (joint_correction:1.11.error, 1.13.error).
+    Raises DomainError when a symbol has no value.
     """
-    m, rest = blocks.G_x.rows, blocks.G_z2.rows
-    first, second = sp.Matrix(m, 1, list(K_x)), sp.Matrix(rest, 1, list(K_z))
-    upper = sp.Matrix.hstack(blocks.G_x - first * blocks.g_x, sp.zeros(m, rest))
-    lower = sp.Matrix.hstack(blocks.G_z1 - second * blocks.g_z1, blocks.G_z2 - second * blocks.g_z2)
-    noise = sp.zeros(m + rest, 2)
-    noise[:m, 0], noise[m:, 1] = -first, -second
-    return ErrorDynamics(sp.ImmutableMatrix.vstack(upper, lower), sp.ImmutableMatrix(noise), (m, rest))
+    values = values or {}
+    return TwoStageObserver(
+        L=numbers(blocks.L, values),
+        G_x=numbers(blocks.G_x, values),
+        g_x=numbers(blocks.g_x, values)[0],
+        K_x=numbers(sp.Matrix(len(K_x), 1, list(K_x)), values)[:, 0],
+        G_z1=numbers(blocks.G_z1, values),
+        G_z2=numbers(blocks.G_z2, values),
+        g_z1=numbers(blocks.g_z1, values)[0],
+        g_z2=numbers(blocks.g_z2, values)[0],
+        K_z=numbers(sp.Matrix(len(K_z), 1, list(K_z)), values)[:, 0],
+    )
 
 
-def steady_bias(A: sp.MatrixBase, constant: sp.MatrixBase) -> sp.ImmutableMatrix:
-    """Steady error under a constant term: -A^-1 constant, exactly.
-
-    Raises DomainError when A is singular for all parameters.
-    """
-    return sp.ImmutableMatrix(-inverse("A", sp.ImmutableMatrix(A)) * constant).applyfunc(sp.cancel)
-
-
-def steady_covariance(A: sp.MatrixBase, intensity: sp.MatrixBase) -> sp.ImmutableMatrix:
-    """P with A P + P A^T + intensity = 0, exactly and with symbols.
-
-    A : (n, n) with no two eigenvalues that sum to zero, intensity : (n, n) symmetric.
-    One linear equation for each entry on and above the diagonal, solved without fractions and
-    checked. Raises DomainError when the equation is singular.
-    """
-    n = A.rows
-    places = [(r, c) for r in range(n) for c in range(r, n)]
-    number = {place: k for k, place in enumerate(places)} | {(c, r): k for k, (r, c) in enumerate(places)}
-    rows = []
-    for r, c in places:
-        row = [sp.Integer(0)] * len(places)
-        for k in range(n):
-            row[number[k, c]] += A[r, k]
-            row[number[r, k]] += A[c, k]
-        rows.append([*row, -sp.sympify(intensity[r, c], strict=True)])
-    values = solve_exactly(sp.Matrix(rows))
-    return sp.ImmutableMatrix(n, n, lambda r, c: values[number[r, c]])
+def numbers(matrix: sp.MatrixBase, values: Mapping[sp.Symbol, Any]) -> Array:
+    """Entries as floats, each rounded once from its exact value."""
+    exact = sp.Matrix(matrix).subs(dict(values))
+    if exact.free_symbols:
+        names = ", ".join(sorted(map(str, exact.free_symbols)))
+        raise DomainError(f"expected a number for every symbol; got none for {names}; give their values")
+    return np.array([[float(entry) for entry in row] for row in exact.tolist()], dtype=float).reshape(exact.shape)
 
 
-def solve_exactly(augmented: sp.Matrix) -> list[sp.Expr]:
-    """Solution of a square linear system of rational functions; the last column is the right side."""
-    ring = Ring.of(augmented)
-    vectors = []
-    for row in augmented.tolist():
-        quotients = [ring.quotient(sp.sympify(x, strict=True)) for x in row]
-        bottom = ring.constant(1)
-        for q in quotients:
-            bottom = bottom * ring.lowest(q.bottom, bottom).top
-        vectors.append([q.top * ring.lowest(bottom, q.bottom).top for q in quotients])
-    columns = [list(column) for column in zip(*vectors, strict=True)]
-    if determinant(columns[:-1], ring) == 0:
-        raise DomainError("expected a regular linear system; got determinant 0 for all parameters; change the gains")
-    solution = relation(columns[:-1], columns[-1], ring)
-    if solution is None:
-        raise ArithmeticError("solve_exactly: the check of the solution failed")
-    return [ring.expression(value) for value in solution]
+def closed_loop(found: TwoStageObserver) -> tuple[Array, Array]:
+    """(A, B) with d(x°, z°)/dt = A (x°, z°) + B (sigma_1, sigma_2); A is also the matrix of the errors."""
+    m, rest = found.stages
+    A, B = np.zeros((m + rest, m + rest)), np.zeros((m + rest, 2))
+    A[:m, :m] = found.G_x - np.outer(found.K_x, found.g_x)
+    A[m:, :m] = found.G_z1 - np.outer(found.K_z, found.g_z1)
+    A[m:, m:] = found.G_z2 - np.outer(found.K_z, found.g_z2)
+    B[:m, 0], B[m:, 1] = found.K_x, found.K_z
+    return A, B
+
+
+def hold_measurements(A: Array, B: Array, step: float) -> tuple[Array, Array]:
+    """(Phi, Gamma) of one step with constant input: the exponential of ((A, B), (0, 0)) step."""
+    from scipy.linalg import expm
+
+    n, q = A.shape[0], B.shape[1]
+    block = np.zeros((n + q, n + q))
+    block[:n, :n], block[:n, n:] = A * step, B * step
+    whole = expm(block)
+    return whole[:n, :n], whole[:n, n:]

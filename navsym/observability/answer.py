@@ -1,0 +1,284 @@
+"""Observability of a model: the answer of the front door, and reading of what may be asked beside it."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from html import escape
+from typing import Any
+
+import sympy as sp
+
+from navsym.claims.display import card, displayed, latex_of, table
+from navsym.core.answers import Answer
+from navsym.core.errors import DomainError, DuplicateError, ExpressionSyntaxError, ShapeError
+from navsym.language.expression import parse, symbol
+from navsym.language.names import RESERVED, inside, shown
+from navsym.language.values import write_entries, write_value
+from navsym.models.document import rank_certificate
+from navsym.models.linear import LinearModel, linear_row, observability_matrix
+from navsym.models.model import Model, contents_of, file_in_errors
+from navsym.models.modelfile import ModelFile, linear_model
+from navsym.observability.chains import (
+    JointObservability,
+    MeasurementObservability,
+    direction_names,
+    need_observable,
+    observe_jointly,
+)
+from navsym.observability.document import as_html, as_latex, document_of_observability
+from navsym.observability.rank_drops import RankDrop, drops_and_completeness
+from navsym.observability.sensors import Restoration, restore_observability
+from navsym.observability.splits import FeasibleSplit, Split, best_split, split, splits
+from navsym.observability.two_stage import POLE, StageGains, gains_by_poles, stage_gains
+
+#: Variable of polynomials that prescribe poles.
+VARIABLE = "p"
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Observability(Answer):
+    """Which directions of the state the measurements of a constant model determine, for generic parameters.
+
+    name                : of the model
+    joint               : chains, dimensions and the staircase of all measurements
+    rank_drops          : where a dimension drops for special parameters
+    rank_drops_complete : subspace -> whether the list of its drops is proved to hold all of them
+    splits, best_split  : two-stage splits of two measurements that observe all; empty and None elsewhere
+    split               : the chosen split, None where there is none
+    gains               : of the stages, None unless poles were asked for
+    restoration         : the fewest further measurements, None unless asked for
+    candidates          : names of what could be measured
+    """
+
+    name: str
+    model: LinearModel
+    joint: JointObservability
+    rank_drops: tuple[RankDrop, ...]
+    rank_drops_complete: Mapping[str, bool]
+    splits: tuple[FeasibleSplit, ...] = ()
+    best_split: FeasibleSplit | None = None
+    split: Split | None = None
+    gains: StageGains | None = None
+    restoration: Restoration | None = None
+    candidates: tuple[str, ...] = ()
+
+    @property
+    def states(self) -> tuple[str, ...]:
+        """Names of the n states."""
+        return self.joint.states
+
+    @property
+    def measurements(self) -> tuple[MeasurementObservability, ...]:
+        """What each measurement observes by itself: name, dimension, basis (m, n), companion coefficients."""
+        return self.joint.measurements
+
+    @property
+    def rank(self) -> int:
+        """Dimension of what all measurements observe together."""
+        return self.joint.joint_dimension
+
+    @property
+    def observable(self) -> bool:
+        """True when the measurements together determine all states, for all but special parameters."""
+        return self.joint.observable
+
+    @property
+    def unobservable(self) -> tuple[str, ...]:
+        """Directions that no measurement shows, by the states that they mix: ``"x1 - 2*x3"``."""
+        rows = self.unobservable_basis
+        return tuple(direction_names(rows[k, :], self.states) for k in range(rows.rows))
+
+    @property
+    def unobservable_basis(self) -> sp.ImmutableMatrix:
+        """Rows (n - rank, n) of the directions that no measurement shows."""
+        return self.joint.unobservable
+
+    def document(self) -> dict[str, Any]:
+        """The JSON document of ``navsym observe``; expressions are text of the language of files."""
+        return document_of_observability(self)
+
+    def certificates(self) -> list[Mapping[str, Any]]:
+        """The generic rank of the observability matrix, where a point of a few attains it."""
+        proof = rank_certificate(observability_matrix(self.model))
+        return [] if proof is None else [proof]
+
+    def latex(self) -> str:
+        """The decomposition as a fragment of LaTeX, one display for each formula."""
+        return as_latex(self)
+
+    def page(self) -> str:
+        """The decomposition as an HTML page of its own, formulas in MathML."""
+        return as_html(self, self.name)
+
+    def __repr__(self) -> str:
+        word = "observable" if self.observable else f"unobservable {', '.join(self.unobservable)}"
+        drops = f"{len(self.rank_drops)} rank drop{'' if len(self.rank_drops) == 1 else 's'}"
+        return f"Observability({self.name}: rank {self.rank} of {len(self.states)}, {word}, {drops})"
+
+    def _repr_html_(self) -> str:
+        """Dimensions and companion coefficients as a table, for notebooks."""
+        n, word = len(self.states), "observable" if self.observable else "not observable"
+        rows = [
+            (m.name, f"{m.dimension} of {n}", k, displayed(latex_of(m.companion)))
+            for m, k in zip(self.measurements, self.joint.staircase, strict=True)
+        ]
+        heads = ("measurement", "observes", "taken", "companion coefficients")
+        lines = [f"<b>{word}</b>: {self.rank} of {n} dimensions", table(heads, rows)]
+        lines += [f"unobservable: {escape('; '.join(self.unobservable))}"] if self.unobservable else []
+        zeros = (" and ".join(rf"{latex_of(zero)} = 0" for zero in drop.zeros) for drop in self.rank_drops)
+        lines += [escape(f"the rank drops where {displayed(zero)}") for zero in zeros]
+        return card(lines)
+
+    def _repr_latex_(self) -> str:
+        """Observed bases and companion coefficients, for notebooks."""
+        shows = [
+            rf"A_{{{k}}} = {latex_of(m.basis)}, \quad \vartheta^{{({k})}} = {latex_of(m.companion)}"
+            for k, m in enumerate(self.measurements, start=1)
+        ]
+        return displayed(r" \qquad ".join(shows))
+
+
+def observe(
+    model: Model | LinearModel | str | os.PathLike[str],
+    *,
+    split: tuple[int, int] | str | None = None,
+    poles: Any = None,
+    restore: bool = False,
+    candidates: Mapping[str, Any] | None = None,
+    values: Mapping[str, Any] | None = None,
+    **parameters: Any,
+) -> Observability:
+    """Exact observability of a model ``dx/dt = F x, z = H x`` with constant F and H.
+
+    Ranks are those of ``H, H F, ..., H F^(n-1)`` for generic parameters (Kalman); what each measurement observes is
+    spanned by its chain ``a_1 = h, a_(j+1) = F^T a_j`` (Kalenova et al. 1979, (1.2), (1.4)).
+
+    model      : a :class:`navsym.Model`, a LinearModel, or the path of a model file
+    split      : (i, j), vectors taken from each of two measurements; by default (m, n - m)
+    poles      : characteristic polynomials in p, one per stage: "(p + 1)**2; p + 2", or a list
+    restore    : find the fewest further measurements that show every state
+    candidates : name -> formula of the states that could be measured, for ``restore``; by default each state
+    parameters : exact values of parameters, such as ``w="1/2"``; ``values`` is the same as a mapping
+
+    Raises UnobservableError with the direction when a split or poles are asked for and the states are not observed,
+    ShapeError for the wrong number of vectors or polynomials, DomainError for entries that vary in time or are no
+    rational functions, roots that are not in the left half-plane, and regressors without F.
+
+    >>> import navsym as nav
+    >>> sensor = nav.Model("x v b", F=[[0, 1, 0], [0, 0, "g"], [0, 0, 0]], H=["x + b"], g="real")
+    >>> answer = nav.observe(sensor, restore=True)
+    >>> answer.rank, answer.observable, answer.unobservable
+    (3, True, ())
+    >>> [drop.zeros for drop in answer.rank_drops]
+    [(g,), (g,)]
+    >>> nav.observe(sensor, g=0).unobservable
+    ('-x + b',)
+    """
+    with file_in_errors(model):
+        contents = contents_of(model, values, parameters, "observe")
+        if not isinstance(contents, ModelFile):
+            message = "expected a [model] with F and h; got a [basis] of regressors; give the system"
+            raise DomainError(message, where="observe: model")
+        request = read_split(split) if split is not None else None
+        polynomials = read_poles(poles, contents) if poles is not None else ()
+        rows = read_candidates(candidates or {}, contents)
+        asked = restore or bool(candidates)
+        return observe_linear(linear_model(contents), contents.name, request, polynomials, rows if asked else None)
+
+
+def observe_linear(
+    model: LinearModel,
+    name: str = "model",
+    request: tuple[int, int] | None = None,
+    poles: Sequence[sp.Expr] = (),
+    candidates: Mapping[str, Sequence[sp.Expr]] | None = None,
+) -> Observability:
+    """Like :func:`observe` for exact data: poles in the symbol p, rows of candidates, empty for all states."""
+    joint = observe_jointly(model)
+    if request is not None or poles:
+        need_observable(joint)
+    two = len(joint.measurements) == 2 and joint.observable
+    if request is not None and not two:
+        raise ShapeError(f"split: expected two measurements; got {len(joint.measurements)}; choose two of them")
+    chosen = split(joint, *(request or ())) if two else None
+    drops, complete = drops_and_completeness(joint)
+    return Observability(
+        name=name,
+        model=model,
+        joint=joint,
+        rank_drops=drops,
+        rank_drops_complete=complete,
+        splits=splits(joint) if two else (),
+        best_split=best_split(joint) if two else None,
+        split=chosen,
+        gains=gains_for(joint, chosen, poles) if poles else None,
+        restoration=restore_observability(model, candidates or None) if candidates is not None else None,
+        candidates=tuple(candidates or model.states) if candidates is not None else (),
+    )
+
+
+def gains_for(joint: JointObservability, chosen: Split | None, poles: Sequence[sp.Expr]) -> StageGains:
+    """Gains of one stage for one measurement, of two stages for two."""
+    if chosen is not None:
+        if len(poles) > 2:
+            raise ShapeError(f"poles: expected at most two polynomials; got {len(poles)}; one per stage")
+        return gains_by_poles(chosen, poles[0], poles[1] if len(poles) == 2 else None, POLE)
+    if len(joint.measurements) != 1 or len(poles) != 1:
+        raise ShapeError(
+            "poles: expected one polynomial for one measurement or two for two; "
+            f"got {len(poles)} for {len(joint.measurements)}; change the model or the poles"
+        )
+    K_x, stable = stage_gains(joint.measurements[0].companion, poles[0], "first", POLE)
+    return StageGains(K_x, (), (stable, True))
+
+
+# Reading of arguments
+
+
+def read_split(value: Any) -> tuple[int, int]:
+    """Two whole numbers, from a pair or from a text with a comma between them."""
+    parts = re.fullmatch(r"\s*(\d{1,3})\s*,\s*(\d{1,3})\s*", value) if isinstance(value, str) else None
+    if parts is not None:
+        return int(parts[1]), int(parts[2])
+    if isinstance(value, list | tuple) and len(value) == 2 and all(type(part) is int for part in value):
+        return value[0], value[1]
+    message = f'expected two numbers "i,j"; got {shown(value)}; write 3,2'
+    raise ExpressionSyntaxError(message, where="observe: split")
+
+
+def read_poles(value: Any, contents: ModelFile) -> tuple[sp.Expr, ...]:
+    """Polynomials in p; names that the model does not declare are positive symbols of their own."""
+    where = "observe: poles"
+    declared = {name: parameter.symbol for name, parameter in contents.parameters.items()}
+    if VARIABLE in declared:
+        message = "expected p to be free for the variable of the polynomials; got a parameter p; rename the parameter"
+        raise DuplicateError(message, where=where)
+    texts = write_entries(value, where)
+    parts = [part for text in (texts if isinstance(texts, list) else [texts]) for part in text.split(";")]
+    names = {name for part in parts for name in re.findall(r"[A-Za-z][A-Za-z0-9_]*", part)}
+    names -= RESERVED | declared.keys() | {VARIABLE}
+    for name in sorted(names & set(contents.states)):
+        raise DuplicateError(f"expected a symbol of its own; got {name}, which is a state; rename it", where=where)
+    known = {**declared, VARIABLE: POLE, **{name: symbol(name, positive=True) for name in sorted(names)}}
+    return tuple(parse(part.strip(), known, where=where) for part in parts)
+
+
+def read_candidates(candidates: Mapping[str, Any], contents: ModelFile) -> dict[str, list[sp.Expr]]:
+    """Rows of exact coefficients, from formulas of the states or rows of entries."""
+    if not isinstance(candidates, Mapping):
+        message = f"expected name -> formula of the states; got {shown(candidates)}; give a dict"
+        raise ShapeError(message, where="observe: candidates")
+    states = {name: symbol(name) for name in contents.states}
+    known = {name: parameter.symbol for name, parameter in contents.parameters.items()}
+    rows: dict[str, list[sp.Expr]] = {}
+    for name, value in candidates.items():
+        where = inside("observe: candidates", name)
+        if isinstance(value, list | tuple) or hasattr(value, "tolist"):
+            rows[name] = [parse(text, known, where=where) for text in write_entries(value, where)]
+        else:
+            formula = parse(write_value(value, where), known | states, where=where)
+            rows[name] = linear_row(formula, list(states.values()), where)
+    return rows

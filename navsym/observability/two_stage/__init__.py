@@ -1,1 +1,0 @@
-"""Estimators of two stages: gains, observers and the experiment of the paper."""
