@@ -37,13 +37,12 @@ class Equation:
     box: Box = field(default_factory=dict)
     tolerance: Any = None
     nonzero: tuple[Any, ...] = ()
+    exists: tuple[Any, ...] = ()
 
     def _repr_latex_(self) -> str:
         """Both sides for notebooks, with a question mark: a statement is not yet a verdict."""
         within = "" if self.tolerance is None else rf" \pm {latex_of(self.tolerance)}"
         return displayed(rf"{latex_of(self.printed)}{within} \overset{{?}}{{=}} {latex_of(self.derived)}")
-
-    exists: tuple[Any, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -58,12 +57,11 @@ class Bound:
     relation: str
     derived: Any
     box: Box = field(default_factory=dict)
+    exists: tuple[Any, ...] = ()
 
     def _repr_latex_(self) -> str:
         sign = rf"\overset{{?}}{{{SIGNS.get(self.relation, self.relation)}}}"
         return displayed(f"{latex_of(self.printed)} {sign} {latex_of(self.derived)}")
-
-    exists: tuple[Any, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -1,11 +1,15 @@
-"""What navsym says when it cannot do what was asked.
+"""Errors that a user can cause and mend.
 
-Every error a user can cause is a :class:`NavsymError`: it has a ``kind`` (one word that
-programs test), a ``where`` (file and key or line) and a message of the form *expected …;
-got …; do …*. Nothing else may leave a public function on bad input.
+Each is a :class:`NavsymError`: it has a ``kind`` (one word that programs test), a ``where`` (argument, or file and key
+or line) and a message of the form *expected …; got …; remedy*. Nothing else may leave a public function on bad input.
 """
 
 from __future__ import annotations
+
+import re
+
+#: Foreign text inside a message: it stands in quotes and may hold anything, semicolons too.
+QUOTED = re.compile(r"(?<![^\s(\[=:])(['\"]).*?\1(?![A-Za-z])")
 
 
 def printable(text: str) -> str:
@@ -19,9 +23,18 @@ def printable(text: str) -> str:
 class NavsymError(Exception):
     """Base of all errors that are the user's to mend.
 
-    kind   : one of the words listed in the README under "Errors", such as ``"shape"``
-    where  : ``"file: key"`` or ``"file: line 3, column 7"``; empty when there is no file
-    status : exit status of the command line
+    kind     : one of the words listed in the README under "Errors", such as ``"shape"``
+    where    : ``"file: key"``, ``"file: line 3, column 7"`` or ``"prove: left"``; empty where there is no place
+    message  : ``"expected …; got …; remedy"``
+    expected, got, remedy : the three parts of the message
+    status   : exit status of the command line
+
+    >>> import navsym as nav
+    >>> try:
+    ...     nav.prove(0.1, "=", "x")
+    ... except nav.NavsymError as error:
+    ...     error.kind, error.where, error.got, error.remedy
+    ('domain', 'prove: left', 'the float 0.1', 'write "1/10" or "0.1" as text')
     """
 
     kind = "input"
@@ -36,6 +49,31 @@ class NavsymError(Exception):
 
     def __str__(self) -> str:
         return f"{self.where}: {self.message}" if self.where else self.message
+
+    @property
+    def expected(self) -> str:
+        """What was expected; empty where the message has no such part."""
+        return self.parts()[0]
+
+    @property
+    def got(self) -> str:
+        """What came instead."""
+        return self.parts()[1]
+
+    @property
+    def remedy(self) -> str:
+        """What to do about it, an imperative."""
+        return self.parts()[2]
+
+    def parts(self) -> tuple[str, str, str]:
+        """The message at its two semicolons; those inside quoted text do not count."""
+        masked = QUOTED.sub(lambda found: "-" * len(found[0]), self.message)
+        start, middle = masked.find("expected "), masked.find("; got ")
+        if start < 0 or middle < start:
+            return "", "", self.message
+        end = masked.find("; ", middle + 6)
+        end = end if end >= 0 else len(masked)
+        return self.message[start + 9 : middle], self.message[middle + 6 : end], self.message[end + 2 :]
 
     def at(self, where: str) -> NavsymError:
         """The same error with a place put in front of the one it has."""

@@ -41,7 +41,7 @@ class Parameter:
 def read_parameters(table: Table, where: str) -> dict[str, Parameter]:
     """Parameters of a ``[parameters]`` or ``[symbols]`` table, in its order."""
     if len(table) > SIDE:
-        message = f"expected at most {SIDE} names; got {len(table)}; do split the file"
+        message = f"expected at most {SIDE} names; got {len(table)}; split the file"
         raise TooLargeError(message, where=where)
     return {name: read_parameter(name, value, inside(where, name)) for name, value in table.items()}
 
@@ -64,18 +64,18 @@ def advice(value: Any, name: str) -> str:
     """What to do with a declaration that is none; a number is what people write for a constant."""
     text = value if isinstance(value, str) else "a number" if isinstance(value, int | float) else ""
     if text == "a number" or text[:1].isdigit() or text[:1] in "+-.":
-        return f"do declare a range and give the value by --set {name}=…, or write the number in place of {name}"
-    return "do correct it"
+        return f"declare a range and give the value by --set {name}=…, or write the number in place of {name}"
+    return "correct it"
 
 
 def read_range(value: Any, where: str) -> tuple[Expr, Expr]:
     """Two exact numbers, the first below the second."""
     ends = as_list(value, where, "a range of two numbers")
     if len(ends) != 2:
-        raise ShapeError(f"expected a range of two numbers; got {len(ends)}; do give both ends", where=where)
+        raise ShapeError(f"expected a range of two numbers; got {len(ends)}; give both ends", where=where)
     lower, upper = (entry(end, {}, inside(where, i)) for i, end in enumerate(ends))
     if sign(upper - lower) == 0:
-        message = f"expected two different numbers; got {brief(lower)} twice; do write a constant in place of the name"
+        message = f"expected two different numbers; got {brief(lower)} twice; write a constant in place of the name"
         raise DomainError(message, where=where)
     require_order(lower, upper, where)
     return lower, upper
@@ -85,7 +85,7 @@ def require_order(lower: Expr, upper: Expr, where: str) -> None:
     """Refuse ends that are not in order, as far as that can be decided."""
     if sign(upper - lower) in (0, -1):
         got = f"{brief(lower)} and {brief(upper)}"
-        message = f"expected the lower end below the upper one; got {got}; do swap or correct them"
+        message = f"expected the lower end below the upper one; got {got}; swap or correct them"
         raise DomainError(message, where=where)
 
 
@@ -93,7 +93,7 @@ def require_positive(value: Expr, what: str, where: str) -> None:
     """Refuse a number that is not positive, and a name that is not declared to be."""
     declared = value.is_Symbol and (value.is_positive or value.is_nonnegative)
     if not declared and (value.is_Symbol or sign(value) in (0, -1) or value.is_nonpositive):
-        message = f"expected {what} above zero; got {brief(value)}; do correct it or declare it positive"
+        message = f"expected {what} above zero; got {brief(value)}; correct it or declare it positive"
         raise DomainError(message, where=where)
 
 

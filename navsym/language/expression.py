@@ -71,12 +71,12 @@ def parse_noting(text: str, symbols: Mapping[str, sp.Symbol], *, where: str = ""
     """Like :func:`parse`, together with every symbolic divisor and radicand that the text has."""
     if not isinstance(text, str):
         raise ExpressionSyntaxError(
-            f'expected an expression as text; got {shown(text)}; do put it in quotes, such as "1/2"', where=where
+            f'expected an expression as text; got {shown(text)}; put it in quotes, such as "1/2"', where=where
         )
     for name in RESERVED & symbols.keys():
         check_name(name, where=where)
     if not text.strip():
-        raise EmptyError('expected an expression; got an empty text; do write one, such as "0"', where=where)
+        raise EmptyError('expected an expression; got an empty text; write one, such as "0"', where=where)
     source = Source(text, where)
     reader = Reader(source, tokenize(source), symbols)
     try:
@@ -144,7 +144,7 @@ class Reader:
         while mark := self.take("+", "-"):
             term = self.product()
             terms.append(term if mark.text == "+" else self.minus(mark.start, term))
-        return self.do(at, arithmetic.add, terms)
+        return self.apply(at, arithmetic.add, terms)
 
     def product(self) -> sp.Expr:
         """Factors and inverted divisors, multiplied in one step; a leading minus is a factor."""
@@ -153,14 +153,14 @@ class Reader:
         while mark := self.take("*", "/"):
             factor = self.unary()
             factors.append(factor if mark.text == "*" else self.inverse(mark.start, factor))
-            self.do(mark.start, arithmetic.bound_factors, factors)
-        return self.do(at, arithmetic.multiply, factors)
+            self.apply(mark.start, arithmetic.bound_factors, factors)
+        return self.apply(at, arithmetic.multiply, factors)
 
     def inverse(self, at: int, divisor: sp.Expr) -> sp.Expr:
         """One over a divisor, which is noted."""
         if divisor.free_symbols:
             self.divisors.append(divisor)
-        return self.do(at, arithmetic.invert, divisor)
+        return self.apply(at, arithmetic.invert, divisor)
 
     def unary(self) -> sp.Expr:
         """A power with signs before it."""
@@ -177,7 +177,7 @@ class Reader:
 
     def minus(self, at: int, value: sp.Expr) -> sp.Expr:
         """The value with the other sign."""
-        return self.do(at, arithmetic.multiply, [sp.S.NegativeOne, value])
+        return self.apply(at, arithmetic.multiply, [sp.S.NegativeOne, value])
 
     def power(self) -> sp.Expr:
         """An atom, raised or not; a base under a negative exponent is a divisor."""
@@ -189,7 +189,7 @@ class Reader:
         if exponent.is_extended_negative is not False and base.free_symbols and exponent.is_number:
             self.divisors.append(base)
         self.count_roots(mark, base, exponent)
-        return self.do(mark.start, arithmetic.power, base, exponent)
+        return self.apply(mark.start, arithmetic.power, base, exponent)
 
     def count_roots(self, mark: Token, base: sp.Expr, exponent: sp.Expr) -> None:
         """The algebra factors numbers under roots, again in every product: their total is bounded."""
@@ -198,15 +198,15 @@ class Reader:
             note = self.note_radicand if exponent.is_number else self.note_argument
             note(base)
         if self.root_bits > ROOT_TOTAL:
-            got, do = f"more, with {self.root_bits} bits", "split the expression"
-            self.source.fail(mark.start, f"at most {ROOT_TOTAL} bits under roots", got, do, TooLargeError)
+            got, remedy = f"more, with {self.root_bits} bits", "split the expression"
+            self.source.fail(mark.start, f"at most {ROOT_TOTAL} bits under roots", got, remedy, TooLargeError)
 
     def atom(self) -> sp.Expr:
         """A number, a name, a call or a sum in parentheses."""
         token = self.token
         self.position += 1
         if token.kind == "number":
-            return self.do(token.start, arithmetic.number, token.text)
+            return self.apply(token.start, arithmetic.number, token.text)
         if token.kind == "name":
             return self.name(token)
         if token.text == "(":
@@ -223,11 +223,11 @@ class Reader:
         if token.text == "pi":
             return sp.pi
         if token.text not in self.symbols:
-            got, do = shown(token.text), advice.for_name(token.text, self.symbols)
-            self.source.fail(token.start, "a declared name or a function", got, do, UnknownSymbolError)
+            got, remedy = shown(token.text), advice.for_name(token.text, self.symbols)
+            self.source.fail(token.start, "a declared name or a function", got, remedy, UnknownSymbolError)
         if self.token.kind == "mark" and self.token.text == "(":
-            do = f"write a product with *: {token.text}*(...)"
-            self.source.fail(token.start, "an operator after a name", f"{token.text}(", do)
+            remedy = f"write a product with *: {token.text}*(...)"
+            self.source.fail(token.start, "an operator after a name", f"{token.text}(", remedy)
         return self.symbols[token.text]
 
     def function(self, token: Token) -> sp.Expr:
@@ -238,12 +238,12 @@ class Reader:
             self.unexpected(f"( after {token.text}")
         if opening is None:
             got = "the end of the text" if self.token.kind == "end" else shown(self.token.text)
-            do = f"put what it is taken of in parentheses: {token.text}(...)"
-            self.source.fail(self.token.start, f"( after {token.text}", got, do)
+            remedy = f"put what it is taken of in parentheses: {token.text}(...)"
+            self.source.fail(self.token.start, f"( after {token.text}", got, remedy)
         self.calls += 1
         if self.calls > CALLS:
-            got, do = "more", "give parts a name"
-            self.source.fail(token.start, f"functions nested at most {CALLS} deep", got, do, TooLargeError)
+            got, remedy = "more", "give parts a name"
+            self.source.fail(token.start, f"functions nested at most {CALLS} deep", got, remedy, TooLargeError)
         arguments = [self.nested(opening, self.sum)]
         while len(arguments) < wanted and self.take(","):
             arguments.append(self.nested(opening, self.sum))
@@ -251,14 +251,14 @@ class Reader:
             self.unexpected(f"a comma, since {token.text} takes {wanted} arguments,")
         if self.token.text == "," and self.token.kind == "mark":
             number = "one argument" if wanted == 1 else "two arguments"
-            do = f"write a decimal point, or remove the rest: {token.text} takes {number}"
-            self.source.fail(self.token.start, f") after the last argument of {token.text}", "','", do)
+            remedy = f"write a decimal point, or remove the rest: {token.text} takes {number}"
+            self.source.fail(self.token.start, f") after the last argument of {token.text}", "','", remedy)
         self.close(opening)
         self.calls -= 1
         if token.text == "sqrt":
             self.count_roots(token, arguments[0], sp.S.Half)
         self.note_domain(token.text, arguments)
-        return self.do(token.start, arithmetic.call, token.text, arguments)
+        return self.apply(token.start, arithmetic.call, token.text, arguments)
 
     def note_domain(self, name: str, arguments: list[sp.Expr]) -> None:
         """Remember where the function exists."""
@@ -296,8 +296,8 @@ class Reader:
         """A rule one level deeper."""
         self.depth += 1
         if self.depth > DEPTH:
-            got, do = "more", "give parts a name"
-            self.source.fail(token.start, f"at most {DEPTH} levels", got, do, TooLargeError)
+            got, remedy = "more", "give parts a name"
+            self.source.fail(token.start, f"at most {DEPTH} levels", got, remedy, TooLargeError)
         value = rule()
         self.depth -= 1
         return value
@@ -309,12 +309,12 @@ class Reader:
         implicit = token.kind in ("number", "name") or token.text == "("
         self.source.fail(token.start, expected, got, advice.for_token(self.source.text, token.start, implicit))
 
-    def do(self, at: int, step: Callable[..., sp.Expr], *arguments: object) -> sp.Expr:
+    def apply(self, at: int, step: Callable[..., sp.Expr], *arguments: object) -> sp.Expr:
         """One step of arithmetic, with its refusal placed in the text."""
         try:
             return step(*arguments)
         except arithmetic.Refusal as refusal:
-            self.source.fail(at, refusal.expected, refusal.got, refusal.do, refusal.error)
+            self.source.fail(at, refusal.expected, refusal.got, refusal.remedy, refusal.error)
         except (NavsymError, RecursionError, MemoryError):
             raise
         except Exception as failure:  # sympy's own evaluation gave up on an exotic constant

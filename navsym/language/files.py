@@ -45,13 +45,13 @@ def read_bytes(path: str | os.PathLike[str], limit: int) -> bytes:
     except (OSError, ValueError) as failure:  # ValueError: a NUL in the name
         raise missing(where, getattr(failure, "strerror", None) or "a name that no file can have") from None
     if len(data) > limit:
-        raise TooLargeError(f"expected at most {limit} bytes; got a larger file; do split it", where=where)
+        raise TooLargeError(f"expected at most {limit} bytes; got a larger file; split it", where=where)
     return data
 
 
 def missing(where: str, got: str) -> NavsymError:
     """The error for a file that cannot be read."""
-    message = f"expected a readable file; got {got}; do check the path and the permissions"
+    message = f"expected a readable file; got {got}; check the path and the permissions"
     return NavsymError(message, where=where, kind="missing-file")
 
 
@@ -73,14 +73,14 @@ def decode(data: bytes, where: str) -> str:
         row = text.count("\n", 0, text.index("\0")) + 1
         raise not_text("a NUL character", f"{where}: line {row}")
     if not text.strip():
-        raise EmptyError("expected some text; got an empty file; do fill it in", where=where)
+        raise EmptyError("expected some text; got an empty file; fill it in", where=where)
     return text
 
 
 def not_text(got: str, where: str) -> NavsymError:
     """The error for bytes that are not plain UTF-8."""
     return ExpressionSyntaxError(
-        f"expected plain UTF-8 text; got {got}; do save it as UTF-8 without a byte order mark", where=where
+        f"expected plain UTF-8 text; got {got}; save it as UTF-8 without a byte order mark", where=where
     )
 
 

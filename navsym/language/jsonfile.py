@@ -29,14 +29,14 @@ def parse_json(data: bytes | str, where: str = "") -> Any:
     """Like :func:`read_json` for what is in memory already."""
     text = decode(data if isinstance(data, bytes) else data.encode("utf-8", "replace"), where)
     if text.count("[") + text.count("{") > CONTAINERS:
-        message = f"expected at most {CONTAINERS} lists and tables; got more; do split the document"
+        message = f"expected at most {CONTAINERS} lists and tables; got more; split the document"
         raise TooLargeError(message, where=where)
     try:
         document = json.loads(text, object_pairs_hook=lambda pairs: unique(pairs, where))
     except json.JSONDecodeError as failure:
         place = f"line {failure.lineno}, column {failure.colno}"
         near = shown(text[failure.pos : failure.pos + 20])
-        message = f"expected JSON ({failure.msg}); got {near}; do correct it there"
+        message = f"expected JSON ({failure.msg}); got {near}; correct it there"
         raise ExpressionSyntaxError(message, where=f"{where}: {place}" if where else place) from None
     except RecursionError:
         raise too_deep(where) from None
@@ -53,7 +53,7 @@ def unique(pairs: list[tuple[str, Any]], where: str) -> dict[str, Any]:
         seen: set[str] = set()
         twice = next(key for key, _ in pairs if key in seen or seen.add(key))  # type: ignore[func-returns-value]
         place = f"{where}: {printable(twice)}" if where else printable(twice)
-        raise DuplicateError(f"expected every key once; got {shown(twice)} again; do remove one of them", where=place)
+        raise DuplicateError(f"expected every key once; got {shown(twice)} again; remove one of them", where=place)
     return table
 
 
@@ -82,7 +82,7 @@ def check_leaf(value: Any, where: str, path: tuple[Any, ...], key: Any) -> None:
     if isinstance(value, float):
         if not math.isfinite(value):
             got = "NaN" if value != value else "an infinite number"
-            message = f"expected a finite number; got {got}; do replace or remove it"
+            message = f"expected a finite number; got {got}; replace or remove it"
             raise NotFiniteError(message, where=place_of(where, (*path, key)))
     elif isinstance(value, str):
         check_text(value, where, path, key)
@@ -93,12 +93,12 @@ def check_leaf(value: Any, where: str, path: tuple[Any, ...], key: Any) -> None:
 def check_text(value: str, where: str, path: tuple[Any, ...], key: Any) -> None:
     """Refuse lone surrogates, which no output can carry."""
     if not value.isascii() and any("\ud800" <= char <= "\udfff" for char in value):
-        message = f"expected valid Unicode; got a lone surrogate in {shown(value)}; do remove it"
+        message = f"expected valid Unicode; got a lone surrogate in {shown(value)}; remove it"
         raise ExpressionSyntaxError(message, where=place_of(where, (*path, key)))
 
 
 def place_of(where: str, path: tuple[Any, ...]) -> str:
-    """``"file: models[2].F"``"""
+    """The place in words, such as ``"file: models[2].F"``."""
     text = ""
     for key in path:
         text += f"[{key}]" if isinstance(key, int) else f".{printable(key)}" if key != "" else ""
@@ -113,9 +113,9 @@ def printable(key: str) -> str:
 
 def too_deep(where: str) -> TooLargeError:
     """The error for too many levels."""
-    return TooLargeError(f"expected at most {DEPTH} levels; got more; do flatten the document", where=where)
+    return TooLargeError(f"expected at most {DEPTH} levels; got more; flatten the document", where=where)
 
 
 def too_many_digits(where: str) -> TooLargeError:
     """The error for an integer that no double holds."""
-    return TooLargeError("expected integers below 2**1023; got a larger one; do rescale it", where=where)
+    return TooLargeError("expected integers below 2**1023; got a larger one; rescale it", where=where)

@@ -54,18 +54,17 @@ def check_name(name: object, *, where: str = "") -> str:
     if not isinstance(name, str) or (len(name) <= NAME_LENGTH and not NAME.fullmatch(name)):
         raise ExpressionSyntaxError(
             f"expected a name: an ASCII letter, then ASCII letters, digits and underscores; "
-            f"got {shown(name)}; do rename it",
+            f"got {shown(name)}; rename it",
             where=where,
         )
     if len(name) > NAME_LENGTH:
         raise TooLargeError(
-            f"expected a name of at most {NAME_LENGTH} characters; got {len(name)} of them, {shown(name)}; "
-            "do shorten it",
+            f"expected a name of at most {NAME_LENGTH} characters; got {len(name)} of them, {shown(name)}; shorten it",
             where=where,
         )
     if name in RESERVED:
         raise DuplicateError(
-            f"expected a new name; got {name!r}, which already means {meaning(name)}; do rename it", where=where
+            f"expected a new name; got {name!r}, which already means {meaning(name)}; rename it", where=where
         )
     return name
 
@@ -145,5 +144,5 @@ def unknown(key: object, known: Collection[str]) -> str:
     """What to say of a key that a format does not have."""
     return (
         f"expected one of the keys {', '.join(known)}; got {shown(key)}; "
-        f"do remove or correct it: {nearest(str(key), known)}"
+        f"remove or correct it: {nearest(str(key), known)}"
     )

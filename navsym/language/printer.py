@@ -28,7 +28,7 @@ def to_text(expression: sp.Expr) -> str:
         refuse(expression)
     except RecursionError:
         raise TooLargeError(
-            "expected an expression that can be written; got one nested too deeply; do name its parts"
+            "expected an expression that can be written; got one nested too deeply; name its parts"
         ) from None
 
 
@@ -38,7 +38,7 @@ def refuse(part: object) -> NoReturn:
     text = shown(str(part)) if not isinstance(part, str) else shown(part)
     raise ExpressionSyntaxError(
         f"expected numbers, names, + - * / **, pi and the functions of the language; got {kind} {text}; "
-        "do rewrite it exactly in these terms"
+        "rewrite it exactly in these terms"
     )
 
 
@@ -73,7 +73,7 @@ def written(e: sp.Expr) -> tuple[str, int]:
 def rational(e: sp.Rational) -> tuple[str, int]:
     """A number; a fraction binds like a quotient, a negative one like a sum."""
     if number_bits(e) > BITS:
-        raise TooLargeError(f"expected numbers of at most {BITS} bits; got a larger one; do rescale")
+        raise TooLargeError(f"expected numbers of at most {BITS} bits; got a larger one; rescale")
     if e < 0:
         return str(e), SUM
     return str(e), ATOM if e.q == 1 else PRODUCT

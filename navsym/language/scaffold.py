@@ -73,7 +73,7 @@ def check_module_name(name: str) -> str:
     if NAME.fullmatch(name) and not keyword.iskeyword(name):
         return name
     raise ExpressionSyntaxError(
-        f"expected a module name of small letters, digits and underscores; got {shown(name)}; do rename it"
+        f"expected a module name of small letters, digits and underscores; got {shown(name)}; rename it"
     )
 
 
@@ -132,7 +132,7 @@ def equation_numbers(text: str) -> tuple[str, ...]:
         elif part:
             found.append(check_number(part))
     if len(set(found)) < len(found):
-        raise DuplicateError("expected each number once; got one twice; do correct the list", where="--equations")
+        raise DuplicateError("expected each number once; got one twice; correct the list", where="--equations")
     return tuple(found)
 
 
@@ -140,9 +140,7 @@ def check_number(number: str) -> str:
     """The number of an equation; raises ExpressionSyntaxError when it has another form."""
     if NUMBER.fullmatch(number):
         return number
-    raise ExpressionSyntaxError(
-        f"expected an equation number such as 4.3 or 4.3.u2; got {shown(number)}; do correct it"
-    )
+    raise ExpressionSyntaxError(f"expected an equation number such as 4.3 or 4.3.u2; got {shown(number)}; correct it")
 
 
 def plain(text: str) -> str:
@@ -191,7 +189,7 @@ def with_claim(source: str, new: NewClaim) -> str:
     """
     check_number(new.number)
     if f'@claim("{new.number}"' in source:
-        message = f"expected a new number; got {new.number}, claimed already; do choose another or edit the file"
+        message = f"expected a new number; got {new.number}, claimed already; choose another or edit the file"
         raise DuplicateError(message)
     source = source.replace(EXAMPLE, "", 1)
     tree = module_tree(source)
@@ -199,7 +197,7 @@ def with_claim(source: str, new: NewClaim) -> str:
     sides = [read(text, where, given) for text, where in ((new.printed, "--printed"), (new.derived, "--derived"))]
     used = {s.name for side in sides for s in side.free_symbols}
     if idle := sorted(new.positive - used):
-        raise UnknownSymbolError(f"expected names of the two sides; got {idle[0]}; do leave it out", where="--positive")
+        raise UnknownSymbolError(f"expected names of the two sides; got {idle[0]}; leave it out", where="--positive")
     block = CLAIM.format(
         arguments=new.arguments,
         function=function_name(new.number, assigned(tree)),
@@ -232,7 +230,7 @@ def read_tolerance(text: str) -> sp.Rational:
     value = read(text, "--tolerance")
     if isinstance(value, sp.Rational) and value.is_positive:
         return value
-    raise DomainError(f"expected a positive number such as 0.05; got {shown(text)}; do write one", where="--tolerance")
+    raise DomainError(f"expected a positive number such as 0.05; got {shown(text)}; write one", where="--tolerance")
 
 
 def declarations(tree: ast.Module, positive: frozenset[str] = frozenset()) -> dict[str, sp.Symbol]:
@@ -246,7 +244,7 @@ def declarations(tree: ast.Module, positive: frozenset[str] = frozenset()) -> di
             found |= symbols_of(node.value)
     for name in sorted(positive):
         if name in found and not found[name].is_positive:
-            message = f"expected a new name; got {name}, which the file declares already; do change its line there"
+            message = f"expected a new name; got {name}, which the file declares already; change its line there"
             raise DuplicateError(message, where="--positive")
         found[name] = symbol(name, positive=True)
     return found
@@ -299,7 +297,7 @@ def module_tree(source: str) -> ast.Module:
     if not {"PAPER", "sp", "claim", "Equation", "Status"} <= assigned(tree):
         raise DomainError(
             "expected a module made by navsym new-paper, with PAPER, sp, claim, Equation and Status at its top; "
-            "got another; do add the imports"
+            "got another; add the imports"
         )
     return tree
 
@@ -332,6 +330,6 @@ def read(text: str, where: str, given: Mapping[str, sp.Symbol] | None = None) ->
     names = {name for name in NAMES_IN.findall(text)} - RESERVED
     bad = [name for name in names if keyword.iskeyword(name) or name == "sp"]
     if bad:
-        raise ExpressionSyntaxError(f"expected names that Python takes; got {bad[0]}; do rename it", where=where)
+        raise ExpressionSyntaxError(f"expected names that Python takes; got {bad[0]}; rename it", where=where)
     known = given or {}
     return parse(text, {name: known.get(name) or symbol(name) for name in names}, where=where)

@@ -19,7 +19,7 @@ SIDE = 64  # rows of a matrix, entries of a vector
 def required(table: Table, key: str, where: str) -> Any:
     """The value of a key that must be there."""
     if key not in table:
-        raise EmptyError(f"expected the key {key}; got none; do add it", where=inside(where, key))
+        raise EmptyError(f"expected the key {key}; got none; add it", where=inside(where, key))
     return table[key]
 
 
@@ -29,7 +29,7 @@ LIST_ADVICE = 'write it in brackets with commas: ["1", "0"], and a matrix by its
 def as_table(value: Any, where: str) -> Table:
     """The value, when it is a table."""
     if not isinstance(value, dict):
-        message = f"expected a table; got {kind_of(value)}; do write [name] and keys below it"
+        message = f"expected a table; got {kind_of(value)}; write [name] and keys below it"
         raise ShapeError(message, where=where)
     return value
 
@@ -37,12 +37,12 @@ def as_table(value: Any, where: str) -> Table:
 def as_list(value: Any, where: str, what: str = "a list") -> Sequence[Any]:
     """A list with at least one entry and at most ``SIDE``."""
     if not isinstance(value, list):
-        do = f"write [[{where.rpartition(': ')[2]}]], with two brackets" if isinstance(value, dict) else LIST_ADVICE
-        raise ShapeError(f"expected {what}; got {kind_of(value)}; do {do}", where=where)
+        remedy = f"write [[{where.rpartition(': ')[2]}]], with two brackets" if isinstance(value, dict) else LIST_ADVICE
+        raise ShapeError(f"expected {what}; got {kind_of(value)}; {remedy}", where=where)
     if not value:
-        raise EmptyError(f"expected {what}; got an empty one; do fill it in", where=where)
+        raise EmptyError(f"expected {what}; got an empty one; fill it in", where=where)
     if len(value) > SIDE:
-        message = f"expected {what} of at most {SIDE} entries; got {len(value)}; do split it"
+        message = f"expected {what} of at most {SIDE} entries; got {len(value)}; split it"
         raise TooLargeError(message, where=where)
     return value
 
@@ -50,7 +50,7 @@ def as_list(value: Any, where: str, what: str = "a list") -> Sequence[Any]:
 def as_text(value: Any, where: str, what: str) -> str:
     """The value, when it is quoted text."""
     if not isinstance(value, str) or isinstance(value, Numeral):
-        message = f"expected {what} in quotes; got {kind_of(value)}; do quote it"
+        message = f"expected {what} in quotes; got {kind_of(value)}; quote it"
         raise ExpressionSyntaxError(message, where=where)
     return value
 
@@ -59,11 +59,11 @@ def as_title(value: Any, where: str) -> str:
     """One printable line for people."""
     text = as_text(value, where, "a name")
     if not text.strip():
-        raise EmptyError("expected a name; got an empty one; do fill it in", where=where)
+        raise EmptyError("expected a name; got an empty one; fill it in", where=where)
     if len(text) > 200:
-        raise TooLargeError(f"expected at most 200 characters; got {len(text)}; do shorten it", where=where)
+        raise TooLargeError(f"expected at most 200 characters; got {len(text)}; shorten it", where=where)
     if not text.isprintable():
-        message = f"expected one printable line; got {shown(text)}; do remove the control characters"
+        message = f"expected one printable line; got {shown(text)}; remove the control characters"
         raise ExpressionSyntaxError(message, where=where)
     return text
 
@@ -72,12 +72,12 @@ def as_label(value: Any, where: str) -> str:
     """A short ASCII label: ``"velocity"``, ``"double-angle"``, ``"4.8*"``."""
     text = as_text(value, where, "a label")
     if not text:
-        raise EmptyError("expected a label; got an empty one; do fill it in", where=where)
+        raise EmptyError("expected a label; got an empty one; fill it in", where=where)
     if len(text) > NAME_LENGTH:
-        message = f"expected at most {NAME_LENGTH} characters; got {len(text)}; do shorten it"
+        message = f"expected at most {NAME_LENGTH} characters; got {len(text)}; shorten it"
         raise TooLargeError(message, where=where)
     if not LABEL.fullmatch(text):
-        message = f"expected ASCII letters, digits and _ . : * ' + -; got {shown(text)}; do rename it"
+        message = f"expected ASCII letters, digits and _ . : * ' + -; got {shown(text)}; rename it"
         raise ExpressionSyntaxError(message, where=where)
     return text
 
@@ -87,7 +87,7 @@ def distinct(names: Iterable[str], where: str) -> None:
     seen: set[str] = set()
     for name in names:
         if name in seen:
-            message = f"expected distinct names; got {shown(name)} twice; do rename one of them"
+            message = f"expected distinct names; got {shown(name)} twice; rename one of them"
             raise DuplicateError(message, where=where)
         seen.add(name)
 
@@ -103,7 +103,7 @@ def entry_noting(value: Any, symbols: Mapping[str, Expr], where: str) -> Parsed:
         value = str(value)
     if not isinstance(value, str):
         raise ExpressionSyntaxError(
-            f'expected an expression in quotes; got {kind_of(value)}; do write it as "1/2"', where=where
+            f'expected an expression in quotes; got {kind_of(value)}; write it as "1/2"', where=where
         )
     return parse_noting(str(value), symbols, where=where)
 
@@ -112,7 +112,7 @@ def vector(value: Any, symbols: Mapping[str, Expr], where: str, size: int, why: 
     """A list of ``size`` expressions."""
     items = as_list(value, where, "a list of expressions")
     if len(items) != size:
-        message = f"expected {size} entries, {why}; got {len(items)}; do correct the list"
+        message = f"expected {size} entries, {why}; got {len(items)}; correct the list"
         raise ShapeError(message, where=where)
     return tuple(entry(item, symbols, inside(where, i)) for i, item in enumerate(items))
 
@@ -121,7 +121,7 @@ def square(value: Any, symbols: Mapping[str, Expr], where: str, size: int, why: 
     """A ``size`` by ``size`` matrix from a list of rows."""
     rows = as_list(value, where, "a list of rows")
     if len(rows) != size:
-        message = f"expected {size} rows, {why}; got {len(rows)}; do correct the matrix"
+        message = f"expected {size} rows, {why}; got {len(rows)}; correct the matrix"
         raise ShapeError(message, where=where)
     return Matrix([list(vector(row, symbols, inside(where, i), size, why)) for i, row in enumerate(rows)])
 

@@ -56,18 +56,18 @@ class Source:
         return ascii(dots[0] + self.text[low:high] + dots[1])
 
     def fail(
-        self, at: int, expected: str, got: str, do: str, error: type[NavsymError] = ExpressionSyntaxError
+        self, at: int, expected: str, got: str, remedy: str, error: type[NavsymError] = ExpressionSyntaxError
     ) -> NoReturn:
         """Raise ``error`` at a column, with the text around it."""
         near = f" in {self.around(at)}" if self.text.strip() else ""
-        raise error(f"expected {expected}; got {got}{near}; do {do}", where=self.place(at))
+        raise error(f"expected {expected}; got {got}{near}; {remedy}", where=self.place(at))
 
 
 def tokenize(source: Source) -> list[Token]:
     """Tokens of the text, the last of kind ``"end"``."""
     if len(source.text) > LENGTH:
-        got, do = f"{len(source.text)}", "split the expression"
-        source.fail(LENGTH, f"at most {LENGTH} characters", got, do, TooLargeError)
+        got, remedy = f"{len(source.text)}", "split the expression"
+        source.fail(LENGTH, f"at most {LENGTH} characters", got, remedy, TooLargeError)
     tokens: list[Token] = []
     at = 0
     while not tokens or tokens[-1].kind != "end":
@@ -95,12 +95,12 @@ def refuse_tail(source: Source, token: Token, at: int) -> None:
     if following.isalpha() or following in {"_", "."}:
         word = re.match(r"[\w.]*", source.text[token.start :])
         got = shown(word[0] if word else following)
-        do = "write products with * and numbers in decimal without separators: 2*x, 1000, 0.5"
-        source.fail(token.start, "a decimal number", got, do)
+        remedy = "write products with * and numbers in decimal without separators: 2*x, 1000, 0.5"
+        source.fail(token.start, "a decimal number", got, remedy)
     mantissa, _, exponent = token.text.lower().partition("e")
     if len(mantissa) > DIGITS:
-        got, do = f"{len(mantissa)}", "shorten the number"
-        source.fail(token.start, f"at most {DIGITS} digits", got, do, TooLargeError)
+        got, remedy = f"{len(mantissa)}", "shorten the number"
+        source.fail(token.start, f"at most {DIGITS} digits", got, remedy, TooLargeError)
     if exponent and (len(exponent) > 8 or abs(int(exponent)) > EXPONENT):
         expected = f"a decimal exponent of at most {EXPONENT}"
         source.fail(token.start, expected, shown(exponent), "rescale the units", TooLargeError)

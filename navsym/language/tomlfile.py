@@ -53,7 +53,7 @@ def parse_toml(data: bytes | str, where: str = "") -> dict[str, Any]:
     except RecursionError:
         raise too_deep(where) from None
     except ValueError:  # an integer beyond the interpreter's limit of digits, an impossible date
-        message = "expected numbers below 1000 digits and real dates; got another; do correct it"
+        message = "expected numbers below 1000 digits and real dates; got another; correct it"
         raise TooLargeError(message, where=where) from None
     return document
 
@@ -71,8 +71,8 @@ def refused(message: str, where: str) -> NavsymError:
     what = shown(LINE.sub("", message).strip(), 80)[1:-1]
     if message.startswith(TWICE):
         got = f"one twice ({what})"
-        return DuplicateError(f"expected every key and table once; got {got}; do remove one", where=place)
-    advice = "do correct it there (keys are ASCII, names and formulas stand in quotation marks)"
+        return DuplicateError(f"expected every key and table once; got {got}; remove one", where=place)
+    advice = "correct it there (keys are ASCII, names and formulas stand in quotation marks)"
     return ExpressionSyntaxError(f"expected TOML; got an error ({what}); {advice}", where=place)
 
 
@@ -96,7 +96,7 @@ def bound_nesting(text: str, where: str) -> None:
 
 def too_deep(where: str) -> TooLargeError:
     """The error for too many levels."""
-    return TooLargeError(f"expected at most {DEPTH} levels; got more; do flatten the file", where=where)
+    return TooLargeError(f"expected at most {DEPTH} levels; got more; flatten the file", where=where)
 
 
 def check(value: Any, where: str, path: tuple[Any, ...]) -> None:
@@ -106,14 +106,14 @@ def check(value: Any, where: str, path: tuple[Any, ...]) -> None:
             check(item, where, (*path, key))
     elif isinstance(value, Numeral):
         if value.lstrip("+-") in ("nan", "inf"):
-            message = f"expected a finite number; got {value}; do replace it"
+            message = f"expected a finite number; got {value}; replace it"
             raise NotFiniteError(message, where=place_of(where, path))
     elif isinstance(value, int):
         if value.bit_length() > INTEGER_BITS:
-            message = f"expected at most {INTEGER_BITS} bits; got {value.bit_length()}; do rescale"
+            message = f"expected at most {INTEGER_BITS} bits; got {value.bit_length()}; rescale"
             raise TooLargeError(message, where=place_of(where, path))
     elif not isinstance(value, str):
-        message = f"expected text or a number; got a {type(value).__name__}; do put it in quotes or remove it"
+        message = f"expected text or a number; got a {type(value).__name__}; put it in quotes or remove it"
         raise ExpressionSyntaxError(message, where=place_of(where, path))
 
 

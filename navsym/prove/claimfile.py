@@ -135,11 +135,11 @@ def claims_from(document: Table, where: str = "", *, go_on: bool = False) -> Cla
     blocks = required(document, "claim", where)
     place = inside(where, "claim")
     if not isinstance(blocks, list):
-        raise ShapeError("expected [[claim]] blocks; got a single one; do write double brackets", where=place)
+        raise ShapeError("expected [[claim]] blocks; got a single one; write double brackets", where=place)
     if not blocks:
-        raise EmptyError("expected at least one [[claim]]; got none; do add one", where=place)
+        raise EmptyError("expected at least one [[claim]]; got none; add one", where=place)
     if len(blocks) > CLAIMS:
-        message = f"expected at most {CLAIMS} claims; got {len(blocks)}; do split the file"
+        message = f"expected at most {CLAIMS} claims; got {len(blocks)}; split the file"
         raise TooLargeError(message, where=place)
     found = [claim_or_error(block, symbols, place, i) for i, block in enumerate(blocks)]
     distinct((claim.id for claim in found), place)
@@ -170,7 +170,7 @@ def read_claim(block: Any, symbols: Symbols, where: str) -> FileClaim:
     relation = as_text(table.get("relation", "="), inside(where, "relation"), "a relation")
     if relation not in RELATIONS:
         hint = for_relation(relation, RELATIONS)
-        message = f"expected one of {' '.join(RELATIONS)}; got {shown(relation)}; do correct it: {hint}"
+        message = f"expected one of {' '.join(RELATIONS)}; got {shown(relation)}; correct it: {hint}"
         raise ExpressionSyntaxError(message, where=inside(where, "relation"))
     known = symbols_of(symbols.parameters)
     left, left_cells = read_side(required(table, "left", where), known, inside(where, "left"))
@@ -196,7 +196,7 @@ def read_side(value: Any, known: Mapping[str, Symbol], where: str) -> tuple[Any,
         for i, row in enumerate(rows)
     ]
     if len({len(row) for row in cells}) > 1:
-        raise ShapeError("expected rows of one length; got a ragged matrix; do correct it", where=where)
+        raise ShapeError("expected rows of one length; got a ragged matrix; correct it", where=where)
     return Matrix([[cell.expression for cell in row] for row in cells]), [c for row in cells for c in row]
 
 
@@ -204,10 +204,10 @@ def require_comparable(left: Any, right: Any, relation: str, where: str) -> None
     """Refuse sides of different shapes, and an order between matrices."""
     shapes = [getattr(side, "shape", None) for side in (left, right)]
     if shapes[0] != shapes[1]:
-        message = f"expected two sides of one shape; got {shapes[0]} and {shapes[1]}; do correct one of them"
+        message = f"expected two sides of one shape; got {shapes[0]} and {shapes[1]}; correct one of them"
         raise ShapeError(message.replace("None", "a scalar"), where=where)
     if shapes[0] is not None and relation not in ("=", "!="):
-        message = f"expected = or != between matrices; got {relation}; do compare them entry by entry"
+        message = f"expected = or != between matrices; got {relation}; compare them entry by entry"
         raise ShapeError(message, where=inside(where, "relation"))
 
 
@@ -223,7 +223,7 @@ def read_box(value: Any, symbols: Mapping[str, Parameter], where: str) -> Box:
         unnamed = ZERO if parameter.symbol.is_nonnegative else None
         low_end = unnamed if parameter.lower is None else parameter.lower
         if outside(lower, low_end) or outside(parameter.upper, upper):
-            message = f"expected a range inside the declaration of {name}; got a wider one; do narrow it"
+            message = f"expected a range inside the declaration of {name}; got a wider one; narrow it"
             raise DomainError(message, where=place)
         box[parameter.symbol] = (lower, upper)
     return box

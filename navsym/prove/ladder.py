@@ -1,17 +1,19 @@
-"""One door: a statement goes in, a verdict comes out.
+"""A statement goes in, a verdict comes out.
 
-Every rung first tries to break the statement and then to prove it. What runs out of time or
-memory is OPEN, not a hang: ``decide_within`` works in a child process with limits.
+Every rung first tries to break the statement and then to prove it. ``decide_within`` works in a child process with
+limits: a statement that needs more time or memory is OPEN.
 """
 
 from __future__ import annotations
 
 from navsym.claims.statement import Bound, Equation, Finding, Optimum, Property, Statement
-from navsym.claims.verdict import OPEN, PROVED, REFUTED, Verdict
+from navsym.claims.verdict import OPEN, REFUTED, Verdict
+from navsym.core.errors import DomainError
 from navsym.core.sandbox import Exhausted, run_limited
 from navsym.prove.equations import decide_equation
 from navsym.prove.inequalities import decide_bound
 from navsym.prove.optimum import decide_optimum
+from navsym.prove.statements import require_statement
 
 DEFAULT_SECONDS = 20.0
 DEFAULT_MEGABYTES = 4096
@@ -21,17 +23,17 @@ def decide(statement: Statement) -> Verdict:
     """Verdict of a statement, in this process and without limits.
 
     The ladder: counterexamples at exact points, exact algebra, balls on a divided box, samples; the first that
-    decides is the method of the verdict. Raises TypeError for what is no statement.
+    decides is the method of the verdict. Raises DomainError for what is no statement: a relation of
+    sympy may have been evaluated already.
     """
+    require_statement(statement)
     if isinstance(statement, Equation):
         return decide_equation(statement)
     if isinstance(statement, Bound):
         return decide_bound(statement)
     if isinstance(statement, Optimum):
         return decide_optimum(statement)
-    if isinstance(statement, Property):
-        return decide_property(statement)
-    raise TypeError(f"expected a statement; got {type(statement).__name__}")
+    return decide_property(statement)
 
 
 def decide_within(
@@ -80,11 +82,8 @@ def contradicted(statement: Property, finding: Finding) -> Verdict:
 def same_value(printed: object, found: object) -> bool:
     """Equality of exact values; True is not 1, and a float is never compared."""
     if isinstance(printed, float) or isinstance(found, float):
-        raise TypeError("expected exact values in a property; got a float; use Fraction or Rational")
+        raise DomainError("expected exact values in a property; got a float; write a Fraction or Rational")
     if isinstance(printed, (tuple, list)) and isinstance(found, (tuple, list)):
         pairs = zip(printed, found, strict=False)
         return len(printed) == len(found) and all(same_value(p, f) for p, f in pairs)
     return isinstance(printed, bool) == isinstance(found, bool) and printed == found
-
-
-__all__ = ["DEFAULT_SECONDS", "OPEN", "PROVED", "decide", "decide_within"]

@@ -73,7 +73,7 @@ def test_claims_are_read_exactly(tmp_path):
 )
 def test_a_mistake_in_a_claim_is_named_with_its_place(old, new, kind, place):
     assert old in FILE
-    with pytest.raises(NavsymError, match=r"expected .*; got .*; do ") as caught:
+    with pytest.raises(NavsymError, match=r"expected .*; got .*; \w") as caught:
         read(FILE.replace(old, new))
     assert caught.value.kind == kind
     assert place in caught.value.where

@@ -12,7 +12,9 @@ import pytest
 import sympy as sp
 
 import navsym as nav
+from navsym.claims import Bound, Equation, Property
 from navsym.cli.main import run
+from navsym.prove.ladder import decide
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "formulas.toml"
 FREE, WHOLE = sp.Symbol("x"), sp.Symbol("x", integer=True)
@@ -136,3 +138,30 @@ def test_verdicts_show_themselves_in_one_line_and_escape_words():
     assert verdicts[0]._repr_latex_().endswith(r"\text{PROVED}$")
     evil = nav.Verdict(nav.OPEN, "</script><b>", assumptions=("</script>",))
     assert "</script>" not in evil._repr_html_() and "<b>" not in evil._repr_html_().replace("<b style", "")
+
+
+A = sp.Symbol("a", real=True)
+
+
+@pytest.mark.parametrize(
+    ("statement", "where"),
+    [
+        (sp.Eq(A, 1, evaluate=False), "statement"),
+        (Equation("sin(2*a)", A), "Equation: printed"),
+        (Equation(A, None), "Equation: derived"),
+        (Equation(A, [[A]]), "Equation: derived"),
+        (Equation(A / 2, 0.5 * A), "Equation: derived"),
+        (Equation(sp.sin, A), "Equation: printed"),
+        (Equation(A, A, tolerance="0.5"), "Equation: tolerance"),
+        (Equation(A, A, {A: 3}), "Equation: box"),
+        (Equation(A, A, {A: ("0", 1)}), "Equation: box.a"),
+        (Equation(A, A, 3), "Equation: box"),
+        (Equation(A, A, nonzero=("a",)), "Equation: nonzero"),
+        (Bound(A, "<", "b"), "Bound: derived"),
+        (Property(1, 2), "Property: derived"),
+    ],
+)
+def test_what_is_no_statement_is_refused_with_its_place(statement, where):
+    with pytest.raises(nav.NavsymError) as caught:
+        decide(statement)
+    assert (caught.value.kind, caught.value.where) == ("domain", where) and caught.value.remedy

@@ -105,7 +105,7 @@ def refuse_empty(symbol: sp.Symbol, limits: Range) -> Range:
         width = exact_ball(limits.upper - limits.lower, 256)
         if width < 0 or (limits.open_lower and width <= 0):
             message = f"expected a lower end below the upper one; got {symbol} in [{limits.lower}, {limits.upper}]"
-            raise DomainError(f"{message}; do correct the range")
+            raise DomainError(f"{message}; correct the range")
     return limits
 
 
