@@ -14,7 +14,7 @@ import numpy as np
 
 from navsym.core.errors import DomainError
 from navsym.core.exact import to_rational
-from navsym.core.tiers import kernel
+from navsym.core.loops import kernel
 from navsym.guaranteed.certificate.basis import Basis, make_basis
 from navsym.guaranteed.phases.family import Family
 from navsym.guaranteed.phases.patterns import ordered

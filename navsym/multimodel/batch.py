@@ -11,12 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navsym.core.errors import DomainError, NotFiniteError, ShapeError
-from navsym.core.linalg import symmetrise
 from navsym.multimodel import filters as multimodel
 from navsym.multimodel import moments as mixture
 from navsym.multimodel.bank import Bank
 from navsym.multimodel.fast import independent_scalars
 from navsym.multimodel.kalman import steps as kalman
+from navsym.multimodel.kalman.steps import symmetrise
 from navsym.multimodel.steps import require_room, scheme
 
 Array = NDArray[np.floating[Any]]
@@ -29,7 +29,7 @@ IN_LANES = {"pulsating": 0, "imm": 1, "polygaussian": 2}
 def run_batch(models: Bank, measurements: Any, method: str = "imm", *, depth: int | None = None) -> Batch:
     """Filter ``measurements`` (runs, T, p) without gaps; any method, eight runs at a time where lanes fit.
 
-    Raises ShapeError, NotFiniteError, and the errors of :func:`navsym.multimodel.filters.run`.
+    Raises ShapeError, NotFiniteError, and the errors of :func:`navsym.multimodel.filters.run_filter`.
     """
     z = np.ascontiguousarray(measurements, dtype=float)
     if z.ndim != 3 or z.shape[2] != models.channels or 0 in z.shape:
@@ -87,7 +87,7 @@ def one_by_one(models: Bank, z: Array, method: str, depth: int | None) -> Batch:
     """Every run through the single-run engine: folding schemes, and series at which lanes stop."""
     out = empty(z, models)
     for row, series in enumerate(z):
-        estimate = multimodel.run(models, series, method, depth=depth, engine="compiled")
+        estimate = multimodel.run_filter(models, series, method, depth=depth, engine="compiled")
         for target, name in zip(out, ("mean", "covariance", "probabilities", "log_likelihood"), strict=True):
             target[row] = getattr(estimate, name)
     return out

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from navsym.core.linalg import symmetrise
+from navsym.multimodel.kalman.steps import symmetrise
 
 Array = NDArray[np.floating[Any]]
 

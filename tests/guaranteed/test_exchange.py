@@ -10,8 +10,8 @@ import sympy as sp
 from numpy.polynomial import chebyshev
 from scipy.optimize import linprog
 
-from navsym.core import tiers
-from navsym.core.tiers import compiled
+from navsym.core import loops
+from navsym.core.loops import compiled
 from navsym.guaranteed.certificate.basis import make_basis
 from navsym.guaranteed.certificate.enclosure import Panel, Problem
 from navsym.guaranteed.search import kernels
@@ -65,11 +65,11 @@ def test_chebyshev_sums_agree_with_those_of_numpy():
 
 
 def test_a_loop_is_interpreted_until_that_has_cost_as_much_as_compiling(monkeypatch):
-    monkeypatch.setattr(tiers, "compiled", lambda function: lambda *given: "compiled")
-    loop = tiers.kernel(lambda x: x)
-    monkeypatch.setattr(tiers.Meter, "spent", 0.0)
+    monkeypatch.setattr(loops, "compiled", lambda function: lambda *given: "compiled")
+    loop = loops.kernel(lambda x: x)
+    monkeypatch.setattr(loops.Meter, "spent", 0.0)
     assert loop(1) == 1
-    monkeypatch.setattr(tiers.Meter, "spent", tiers.TO_COMPILE + 1.0)
+    monkeypatch.setattr(loops.Meter, "spent", loops.TO_COMPILE + 1.0)
     assert loop(1) == "compiled"
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from navsym.core.tiers import kernel, part
+from navsym.core.loops import kernel, part
 from navsym.guaranteed.search.kernels import (
     Array,
     Ints,

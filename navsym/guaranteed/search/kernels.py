@@ -1,6 +1,6 @@
 """Loops of the exchange: Chebyshev sums, the grid simplex, the optimality system.
 
-Every function works on plain float arrays, interpreted or compiled (:mod:`navsym.core.tiers`). Nothing
+Every function works on plain float arrays, interpreted or compiled (:mod:`navsym.core.loops`). Nothing
 here is trusted: the numbers are hints that balls confirm or refuse later.
 """
 
@@ -11,7 +11,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from navsym.core.tiers import kernel, part
+from navsym.core.loops import kernel, part
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]

@@ -12,11 +12,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from navsym.core.linalg import symmetrise
-
 Array = NDArray[np.floating[Any]]
 
 LOG_TWO_PI = float(np.log(2.0 * np.pi))
+
+
+def symmetrise(P: Array) -> Array:
+    """The symmetric part ``(P + P^T) / 2``; works on stacks ``(..., n, n)``."""
+    return 0.5 * P + 0.5 * np.swapaxes(P, -1, -2)
 
 
 def predict(mean: Array, P: Array, F: Array, Q: Array) -> tuple[Array, Array]:

@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from navsym.core.compiled import njit
+from navsym.core.loops import njit
 from navsym.multimodel.kernels.filter import COMPILE, aligned, correct_group, mix_group, moments, predict_group
 
 # Probabilities of modes in compiled loops, as logarithms: prediction, mixing, and sums over branches.

@@ -11,8 +11,8 @@ import math
 import numba
 import numpy as np
 
-from navsym.core.compiled import njit
 from navsym.core.lanes import load, spread, store
+from navsym.core.loops import njit
 from navsym.multimodel.kernels.filter import COMPILE, account, aligned
 
 

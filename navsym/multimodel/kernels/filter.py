@@ -11,8 +11,8 @@ import math
 
 import numpy as np
 
-from navsym.core.compiled import njit
 from navsym.core.lanes import load, spread, store
+from navsym.core.loops import njit
 
 LOG_TWO_PI = math.log(2.0 * math.pi)
 COMPILE = {"error_model": "numpy", "nogil": True}

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from navsym.core.compiled import njit
+from navsym.core.loops import njit
 
 # One hypothesis against a height map: interpolation, differences of heights, and the two criteria.
 #

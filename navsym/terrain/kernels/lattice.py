@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from navsym.core.compiled import njit
 from navsym.core.lanes import load, spread, store
+from navsym.core.loops import njit
 from navsym.terrain.kernels.criteria import COMPILE, add_square, blend
 
 Array = NDArray[np.float64]

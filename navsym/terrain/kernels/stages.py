@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from navsym.core.compiled import njit
+from navsym.core.loops import njit
 from navsym.terrain.kernels.criteria import COMPILE, add_square, criterion_one, difference, offset_free_one, shift_of
 
 

@@ -22,7 +22,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from navsym.core.compiled import njit
+from navsym.core.loops import njit
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.int64]

@@ -5,6 +5,10 @@ single problem needs milliseconds interpreted. So the time spent interpreting is
 when all of them together have cost as much as compiling would (the rule of the skier who rents until he has
 paid the price of the skis: never more than twice what the best choice costs).
 
+Machine code is kept beside the source where it can be. It saves time and nothing else: where it cannot be written (a
+full disk, a folder that is read only) or read (a file cut short by a power failure), the loop is compiled for this
+process.
+
 Both forms do the same operations on doubles in the same order, without sums or functions of a library whose
 rounding is its own affair; so an answer does not depend on when the compiler came in.
 """
@@ -14,6 +18,7 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from functools import cache, update_wrapper
 from pathlib import Path
 from types import FunctionType
@@ -77,15 +82,14 @@ def part(function: Callable[P, R]) -> Callable[P, R]:
 @cache
 def compiled(function: FunctionType) -> Callable[..., Any]:
     """The function compiled, with every part that it calls."""
-    try:
-        from navsym.core.compiled import njit
-    except ImportError:
-        return function
     names = {name: function.__globals__.get(name) for name in function.__code__.co_names}
     parts = {name: compiled(written(g)) for name, g in names.items() if is_loop(g)}
     twin = FunctionType(function.__code__, {**function.__globals__, **parts}, function.__name__)
     twin.__qualname__, twin.__doc__ = function.__qualname__, function.__doc__
-    return njit()(twin)  # type: ignore[no-any-return]
+    try:
+        return njit()(twin)  # type: ignore[no-any-return]
+    except ImportError:  # a machine without numba
+        return function
 
 
 def is_loop(thing: Any) -> bool:
@@ -108,3 +112,43 @@ def was_compiled(function: FunctionType) -> bool:
         return any(index.stat().st_mtime >= source.stat().st_mtime for index in indices)
     except OSError:
         return False
+
+
+class CodeStore:
+    """numba's store of compiled code, without its failures."""
+
+    def __init__(self, inner: Any):
+        self.inner = inner
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.inner, name)
+
+    def load_overload(self, signature: Any, context: Any) -> Any:
+        """The kept code, or None; what a damaged file holds is forgotten, whatever its reader makes of it."""
+        try:
+            return self.inner.load_overload(signature, context)
+        except Exception:
+            with suppress(OSError):
+                self.inner.flush()
+            return None
+
+    def save_overload(self, signature: Any, code: Any) -> None:
+        """Keep the code if there is room for it."""
+        with suppress(OSError):
+            self.inner.save_overload(signature, code)
+
+
+def njit(**options: Any) -> Callable[[Callable[..., Any]], Any]:
+    """Decorator: numba's ``njit`` with these options, kept on the disk where that is possible."""
+    import numba
+
+    def decorate(function: Callable[..., Any]) -> Any:
+        loop = numba.njit(**options)(function)
+        try:
+            loop.enable_caching()
+        except RuntimeError:  # numba finds no folder that it may write to
+            return loop
+        loop._cache = CodeStore(loop._cache)
+        return loop
+
+    return decorate

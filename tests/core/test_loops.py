@@ -16,7 +16,7 @@ sys.dont_write_bytecode = True  # Python would leave the half of a module where 
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 if sys.argv[1:]:
     resource.setrlimit(resource.RLIMIT_FSIZE, (512, resource.RLIM_INFINITY))
-from navsym.core.compiled import njit
+from navsym.core.loops import njit
 import loops
 print(njit()(loops.twice)(21))
 """
