@@ -46,6 +46,7 @@ __version__ = "0.1.0"
 #: Public name -> module that holds it. A module is imported when its name is first used, and its engines with it.
 _HOMES = {
     "Model": "navsym.models.model",
+    **dict.fromkeys(("Derivation", "derive"), "navsym.models.derivation"),
     **dict.fromkeys(("Observability", "observe"), "navsym.observability.answer"),
     "Comparison": "navsym.guaranteed.baselines",
     "Estimator": "navsym.guaranteed.solver",
@@ -60,6 +61,26 @@ _HOMES = {
         ("Verdict", "Verdicts", "Status", "PROVED", "CERTIFIED", "CONFIRMED", "REFUTED", "OPEN"), "navsym.claims"
     ),
     "prove": "navsym.prove.formulas",
+    "Bank": "navsym.multimodel.bank",
+    "condition": "navsym.trajectory.conditioning",
+    "data": "navsym.core.datasets",
+    "filter": "navsym.multimodel.filters",
+    "limits": "navsym.trajectory.limits",
+    "locate": "navsym.terrain.locate",
+    "simulate": "navsym.studies.experiments",
+    "sweep": "navsym.studies.run",
+    "track": "navsym.trajectory.motion",
+    **dict.fromkeys(("show", "verify"), "navsym.verification.decide"),
+    "Ledger": "navsym.verification.ledger",
+    "check": "navsym.export.acceptance",
+    "cite": "navsym.report.citation",
+    "claims": "navsym.report.listing",
+    "diff": "navsym.export.differences",
+    "doctor": "navsym.core.machine",
+    "explain": "navsym.report.explain",
+    "export": "navsym.export.driver",
+    "plot": "navsym.report.plots",
+    "report": "navsym.report.site",
 }
 
 __all__ = ["__version__", *sorted(_HOMES)]
@@ -73,8 +94,13 @@ if TYPE_CHECKING:
     from navsym.claims import Status as Status
     from navsym.claims import Verdict as Verdict
     from navsym.claims import Verdicts as Verdicts
+    from navsym.core.datasets import data as data
     from navsym.core.errors import NavsymError as NavsymError
+    from navsym.core.machine import doctor as doctor
     from navsym.core.numbers import Number as Number
+    from navsym.export.acceptance import check as check
+    from navsym.export.differences import diff as diff
+    from navsym.export.driver import export as export
     from navsym.guaranteed.baselines import Comparison as Comparison
     from navsym.guaranteed.formulate import Formulation as Formulation
     from navsym.guaranteed.formulate import formulate as formulate
@@ -82,10 +108,28 @@ if TYPE_CHECKING:
     from navsym.guaranteed.phases.driver import phases as phases
     from navsym.guaranteed.solver import Estimator as Estimator
     from navsym.guaranteed.solver import solve as solve
+    from navsym.models.derivation import Derivation as Derivation
+    from navsym.models.derivation import derive as derive
     from navsym.models.model import Model as Model
+    from navsym.multimodel.bank import Bank as Bank
+    from navsym.multimodel.filters import filter as filter
     from navsym.observability.answer import Observability as Observability
     from navsym.observability.answer import observe as observe
     from navsym.prove.formulas import prove as prove
+    from navsym.report.citation import cite as cite
+    from navsym.report.explain import explain as explain
+    from navsym.report.listing import claims as claims
+    from navsym.report.plots import plot as plot
+    from navsym.report.site import report as report
+    from navsym.studies.experiments import simulate as simulate
+    from navsym.studies.run import sweep as sweep
+    from navsym.terrain.locate import locate as locate
+    from navsym.trajectory.conditioning import condition as condition
+    from navsym.trajectory.limits import limits as limits
+    from navsym.trajectory.motion import track as track
+    from navsym.verification.decide import show as show
+    from navsym.verification.decide import verify as verify
+    from navsym.verification.ledger import Ledger as Ledger
 
 
 class _FrontDoor(ModuleType):

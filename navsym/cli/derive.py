@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated, Any
 
 import typer
 
+from navsym.cli._settings import values_of
 from navsym.cli.output import dumps, emit, write_text
-from navsym.core.errors import DomainError, ExpressionSyntaxError, NavsymError
-
-if TYPE_CHECKING:
-    from navsym.models.derivation import Derivation
+from navsym.core.errors import DomainError
 
 
 def command(
@@ -30,37 +28,86 @@ def command(
 
     Example: navsym derive examples/schuler-velocity.toml
     """
-    from navsym.models.derivation import derive
-    from navsym.models.document import as_latex, as_text, document
-    from navsym.models.modelfile import read_model
+    import navsym as nav
 
-    found = read_model(file, dict(setting(text) for text in set_ or []))
-    try:
-        derivation = derive(found)
-        data = document(derivation, latex=latex)
-        if certificate is not None:
-            write_certificate(derivation, certificate)
-    except NavsymError as error:
-        raise error.at(str(file)) from None
-    text = as_latex(data) if latex else as_text(data)
+    derivation = nav.derive(file, values=values_of(set_))
+    if certificate is not None:
+        proofs = derivation.certificates()
+        if not proofs:
+            message = "expected a system with a transition matrix; got none; give a [model] with F"
+            raise DomainError(message, where=str(file))
+        write_text(certificate, dumps({"kind": "all", "of": proofs}) + "\n")
+    document = derivation.document(latex=latex)
+    text = derivation.latex() if latex else as_text(document)
     if out is not None:
         write_text(out, text)
-    emit(data, as_json=json_, text=text)
+    emit(document, as_json=json_, text=text)
 
 
-def write_certificate(derivation: Derivation, path: Path) -> None:
-    """The certificate as a JSON file; DomainError when nothing in the file has one."""
-    from navsym.models.document import derivation_certificate
+def as_text(data: dict[str, Any]) -> str:
+    """The derivation as a page of text; ``data`` is the document."""
+    lines = [f"{data['name']}: {len(data['states'])} unknowns {', '.join(data['states'])}", ""]
+    for place, F in enumerate(data["F"]):
+        lines += [f"F{piece_name(data, place)}", *aligned(F), ""]
+    for place, transition in enumerate(data["transition"]):
+        lines += [f"Phi({transition['time']}) = exp(F {transition['time']}){piece_name(data, place)}"]
+        lines += [*aligned(transition["matrix"])]
+        lines += [
+            f"  factor {item['factor']}, multiplicity {item['multiplicity']}: {item['form']}"
+            for item in transition["characteristic"]
+        ]
+        lines.append("")
+    for piece in data["regressors"]:
+        v = piece["variable"]
+        lines.append(f"H({v}) for {piece['from']} <= {v} <= {piece['to']}")
+        lines += [f"  {m['name']}: ({', '.join(row)})" for m, row in with_measurements(data, piece["H"])]
+        lines.append("")
+    if data["observability_matrix"]:
+        lines += ["observability matrix", *aligned(data["observability_matrix"]), ""]
+    lines += conditions_text(data)
+    if data["assumptions"]:
+        lines += ["assumed", *(f"  {relation}" for relation in data["assumptions"])]
+    return "\n".join(lines).rstrip() + "\n"
 
-    found = derivation_certificate(derivation)
-    if found is None:
-        raise DomainError("expected a system with a transition matrix; got none; give a [model] with F")
-    write_text(path, dumps(found) + "\n")
+
+def with_measurements(data: dict[str, Any], rows: list[Any]) -> list[tuple[dict[str, str], Any]]:
+    """Each measurement beside its row."""
+    return list(zip(data["measurements"], rows, strict=True))
 
 
-def setting(text: str) -> tuple[str, str]:
-    """NAME=VALUE as a pair."""
-    name, equals, value = text.partition("=")
-    if not equals:
-        raise ExpressionSyntaxError(f"expected NAME=VALUE; got {text[:40]!r}; write --set w=1/2", where="--set")
-    return name.strip(), value.strip()
+def piece_name(data: dict[str, Any], place: int) -> str:
+    """The piece that a matrix belongs to, when there are several."""
+    if len(data["F"]) == 1:
+        return ""
+    piece = data["regressors"][place]
+    return f", from {piece['from']} to {piece['to']}"
+
+
+def aligned(rows: list[list[str]]) -> list[str]:
+    """A matrix of texts in aligned columns."""
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return ["  [ " + "  ".join(c.ljust(w) for c, w in zip(row, widths, strict=True)) + " ]" for row in rows]
+
+
+def conditions_text(data: dict[str, Any]) -> list[str]:
+    """The conditions of the contacts; the dual polynomials are printed once."""
+    if not data["conditions"]:
+        return []
+    t = data["regressors"][0]["variable"]
+    lines = ["conditions of the contacts"]
+    first = data["conditions"][0]
+    for piece, duals, slopes in zip(data["regressors"], first["dual_polynomial"], first["slope"], strict=True):
+        where = f" for {piece['from']} <= {t} <= {piece['to']}" if len(data["regressors"]) > 1 else ""
+        for (m, f), slope in zip(with_measurements(data, duals), slopes, strict=True):
+            lines += [
+                f"  {m['name']}{where}: f({t}) = {f}",
+                f"    |f({t})| <= {m['sigma']}, at a contact f = +-{m['sigma']}",
+                f"    at a contact inside the interval 0 = {slope}",
+            ]
+    n = len(data["states"])
+    lines.append(f"  at most {n} contacts, weights of the sign of f, sum weight H(contact) = P")
+    lines += [
+        f"  {c['target']}: P = ({', '.join(c['functional'])}), guaranteed deviation = max {c['value']}"
+        for c in data["conditions"]
+    ]
+    return [*lines, ""]

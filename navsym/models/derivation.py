@@ -13,13 +13,19 @@ Lidov 1964; Karlin and Studden, Tchebycheff Systems, chapter 2.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import os
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from html import escape
+from typing import Any
 
 import sympy as sp
 
-from navsym.core.errors import DomainError
+from navsym.claims.display import card, displayed
+from navsym.core.answers import Answer
+from navsym.core.errors import DomainError, ShapeError
 from navsym.models.linear import LinearModel, observability_matrix
+from navsym.models.model import Model, contents_of, file_in_errors
 from navsym.models.modelfile import BasisFile, ModelFile, piece_model
 from navsym.models.transition.exponential import (
     TransitionMatrix,
@@ -29,14 +35,14 @@ from navsym.models.transition.exponential import (
     transition_matrix,
 )
 
-#: Names tried for the instant of a measurement and for the multipliers, until one is free.
-INSTANTS = ("tau", "s", "theta", "instant")
+#: Names tried for the time of a measurement and for the multipliers, until one is free.
+TIMES = ("tau", "s", "theta", "instant")
 MULTIPLIERS = ("x", "lambda_", "multiplier")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Stretch:
-    """Regressors on one stretch of the interval: rows (p, n), valid for start <= tau <= end."""
+class PieceRegressors:
+    """Regressors on one piece of the interval: rows (p, n), valid for start <= tau <= end."""
 
     start: sp.Expr
     end: sp.Expr
@@ -45,7 +51,7 @@ class Stretch:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Conditions:
-    """Optimality of one target: functional P, dual polynomials f_j and slopes f_j', one row per stretch."""
+    """Optimality of one target: functional P, dual polynomials f_j and slopes f_j', one row per piece."""
 
     target: str
     functional: tuple[sp.Expr, ...]
@@ -53,17 +59,18 @@ class Conditions:
     slope: tuple[tuple[sp.Expr, ...], ...]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Derivation:
-    """What was derived from one file.
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Derivation(Answer):
+    """What follows from a model before an estimator is chosen.
 
-    states, measurements, sigmas : names and bounds, as the file gives them
-    system        : F, one matrix per stretch; empty for a basis
-    transition    : exp(F t) per stretch; empty for a basis
-    stretches     : H_j(tau)
-    instant, end  : tau and T
+    states, measurements, sigmas : names and bounds, as the model gives them
+    system        : F (n, n), one matrix per piece; empty for regressors
+    transition    : exp(F t) per piece, with the factors of its characteristic polynomial; empty for regressors
+    pieces        : H_j(tau), rows (p, n) on each piece of the interval
+    time, end     : tau and T
     multipliers   : x, one per unknown
-    observability : rows H, H F, ...; None for a basis or several stretches
+    observability_matrix : rows H, H F, ... (n p, n); None for regressors or several pieces
+    conditions    : per target, the conditions of an optimal guaranteed estimate
     assumptions   : what the formulas take to hold
     """
 
@@ -73,21 +80,104 @@ class Derivation:
     sigmas: tuple[sp.Expr, ...]
     system: tuple[sp.ImmutableMatrix, ...]
     transition: tuple[TransitionMatrix, ...]
-    stretches: tuple[Stretch, ...]
-    instant: sp.Symbol
+    pieces: tuple[PieceRegressors, ...]
+    time: sp.Symbol
     end: sp.Expr
     multipliers: tuple[sp.Symbol, ...]
-    observability: sp.ImmutableMatrix | None
+    observability_matrix: sp.ImmutableMatrix | None
     conditions: tuple[Conditions, ...]
     assumptions: tuple[sp.Basic, ...]
 
+    @property
+    def F(self) -> sp.ImmutableMatrix:
+        """Matrix of the system (n, n). Raises ShapeError for several pieces, DomainError for regressors."""
+        return self._only("system", self.system)
 
-def derive(found: ModelFile | BasisFile) -> Derivation:
-    """Derive everything that a model or basis file determines.
+    @property
+    def Phi(self) -> sp.ImmutableMatrix:
+        """Transition matrix exp(F t) (n, n). Raises as :attr:`F`."""
+        return self._only("transition", tuple(t.matrix for t in self.transition))
 
-    Raises DomainError when F varies with the time (no closed form is looked for) or has a repeated
-    factor without one; the conditions need H(tau) and so the closed form.
+    @property
+    def H(self) -> sp.ImmutableMatrix:
+        """Measurements referred to the state at T: rows H_j(tau) (p, n). Raises ShapeError for several pieces."""
+        return self._only("pieces", tuple(piece.rows for piece in self.pieces))
+
+    def _only(self, name: str, matrices: tuple[sp.ImmutableMatrix, ...]) -> sp.ImmutableMatrix:
+        """The matrix of a model in one piece."""
+        if not matrices:
+            raise DomainError("expected a model with F; got a basis of regressors; give the system", where=self.name)
+        if len(matrices) > 1:
+            raise ShapeError(f"expected one piece; got {len(matrices)}; use {name}, one by one", where=self.name)
+        return matrices[0]
+
+    def document(self, *, latex: bool = False) -> dict[str, Any]:
+        """The JSON document of ``navsym derive``; ``latex`` adds the same formulas in LaTeX."""
+        from navsym.models.document import document_of_derivation
+
+        return document_of_derivation(self, latex=latex)
+
+    def certificates(self) -> list[Mapping[str, Any]]:
+        """Proofs of exp(F t) on each piece, and of the rank of the observability matrix."""
+        from navsym.models.document import derivation_certificates
+
+        return derivation_certificates(self)
+
+    def latex(self) -> str:
+        """All formulas as LaTeX, one display for each."""
+        from navsym.models.document import latex_displays
+
+        return "\n".join(f"\\[\n  {show}\n\\]" for show in latex_displays(self)) + "\n"
+
+    def __repr__(self) -> str:
+        factors = [kind for t in self.transition for _, _, kind in t.factors]
+        targets = ", ".join(c.target for c in self.conditions)
+        kinds = f", {', '.join(dict.fromkeys(factors))} factors" if factors else ""
+        return f"Derivation({self.name}: {len(self.states)} unknowns{kinds}; conditions for {targets})"
+
+    def _repr_html_(self) -> str:
+        """A card for notebooks: the name, and every formula on a line of its own."""
+        from navsym.models.document import latex_displays
+
+        lines = (escape(displayed(show)) for show in latex_displays(self))
+        return card([f"<b>{escape(self.name)}</b>: {escape(', '.join(self.states))}", *lines])
+
+    def _repr_latex_(self) -> str:
+        """All formulas, one below the other, for notebooks."""
+        from navsym.models.document import latex_displays
+
+        return "\n\n".join(f"$$ {show} $$" for show in latex_displays(self))
+
+
+def derive(
+    model: Model | LinearModel | str | os.PathLike[str], *, values: Mapping[str, Any] | None = None, **parameters: Any
+) -> Derivation:
+    """Transition matrix, regressors, observability matrix and conditions of optimality of a model.
+
+    With dx/dt = F x and z_j = h_j x + r_j on [0, T]: ``Phi = exp(F t)``, ``H_j(tau) = h_j exp(F (tau - T))``, and an
+    estimate of P^T x(T) is optimal when its weights sit where ``f_j = x . H_j`` touches ``+-sigma_j`` (Lidov 1964).
+
+    model      : a :class:`navsym.Model`, a LinearModel, or the path of a model file; regressors have conditions only
+    parameters : exact values of parameters, such as ``w="1/2"``; ``values`` is the same as a mapping
+
+    Raises DomainError when F varies with the time, or has a repeated factor without a closed form.
+
+    >>> import navsym as nav
+    >>> swing = nav.Model("x v", F=[[0, 1], ["-w**2", 0]], H=["x"], interval="T", w="positive", T="positive")
+    >>> derivation = nav.derive(swing)
+    >>> derivation.Phi[0, 0], derivation.H
+    (cos(t*w), Matrix([[cos(w*(T - tau)), -sin(w*(T - tau))/w]]))
+    >>> derivation.observability_matrix
+    Matrix([
+    [1, 0],
+    [0, 1]])
     """
+    with file_in_errors(model):
+        return derive_contents(contents_of(model, values, parameters, "derive"))
+
+
+def derive_contents(found: ModelFile | BasisFile) -> Derivation:
+    """Like :func:`derive` for the contents of a model file."""
     return derive_basis(found) if isinstance(found, BasisFile) else derive_model(found)
 
 
@@ -96,12 +186,12 @@ def derive_model(found: ModelFile) -> Derivation:
     models = tuple(piece_model(found, piece.F) for piece in found.pieces)
     for model in models:
         need_constant(model, matrix_only=True)
-    taken = {str(symbol) for symbol in symbols_of(found)} | set(found.states)
-    end = found.T if found.T is not None else sp.Symbol(free("T", taken), positive=True)
-    instant = sp.Symbol(next(name for name in INSTANTS if name not in taken), real=True)
-    stretches, backward = stretches_of(found, models, instant, end)
+    taken = {str(symbol) for symbol in symbols_in_model(found)} | set(found.states)
+    end = found.T if found.T is not None else sp.Symbol(free_name("T", taken), positive=True)
+    tau = sp.Symbol(next(name for name in TIMES if name not in taken), real=True)
+    pieces, backward = regressors_of_pieces(found, models, tau, end)
     transition = tuple(transition_matrix(model.F, found.time) for model in models)
-    multipliers = multipliers_of(len(found.states), taken | {str(instant)})
+    multipliers = multipliers_of(len(found.states), taken | {str(tau)})
     noted = [t.assumptions for t in (*transition, *backward)]
     return Derivation(
         name=found.name,
@@ -110,12 +200,12 @@ def derive_model(found: ModelFile) -> Derivation:
         sigmas=tuple(m.sigma for m in found.measurements),
         system=tuple(model.F for model in models),
         transition=transition,
-        stretches=stretches,
-        instant=instant,
+        pieces=pieces,
+        time=tau,
         end=end,
         multipliers=multipliers,
-        observability=observability_matrix(models[0]) if len(models) == 1 else None,
-        conditions=conditions_of(found.targets.items(), stretches, multipliers, instant),
+        observability_matrix=observability_matrix(models[0]) if len(models) == 1 else None,
+        conditions=conditions_of(found.targets.items(), pieces, multipliers, tau),
         assumptions=tuple(dict.fromkeys(relation for relations in noted for relation in relations)),
     )
 
@@ -126,7 +216,7 @@ def derive_basis(found: BasisFile) -> Derivation:
     rows = sp.ImmutableMatrix(found.H)
     taken = {str(symbol) for symbol in rows.free_symbols} | {str(found.variable)}
     multipliers = multipliers_of(unknowns, taken)
-    stretches = (Stretch(*found.interval, rows),)
+    pieces = (PieceRegressors(*found.interval, rows),)
     return Derivation(
         name=found.name,
         states=tuple(f"q{k + 1}" for k in range(unknowns)),
@@ -134,48 +224,48 @@ def derive_basis(found: BasisFile) -> Derivation:
         sigmas=found.sigma,
         system=(),
         transition=(),
-        stretches=stretches,
-        instant=found.variable,
+        pieces=pieces,
+        time=found.variable,
         end=found.interval[1],
         multipliers=multipliers,
-        observability=None,
-        conditions=conditions_of(found.targets.items(), stretches, multipliers, found.variable),
+        observability_matrix=None,
+        conditions=conditions_of(found.targets.items(), pieces, multipliers, found.variable),
         assumptions=(),
     )
 
 
-def stretches_of(
-    found: ModelFile, models: tuple[LinearModel, ...], instant: sp.Symbol, end: sp.Expr
-) -> tuple[tuple[Stretch, ...], list[TransitionMatrix]]:
-    """H on each stretch, from the last to the first: what lies behind is undone stretch by stretch."""
-    stretches: list[Stretch] = []
+def regressors_of_pieces(
+    found: ModelFile, models: tuple[LinearModel, ...], time: sp.Symbol, end: sp.Expr
+) -> tuple[tuple[PieceRegressors, ...], list[TransitionMatrix]]:
+    """H on each piece, from the last to the first: what lies behind is undone piece by piece."""
+    pieces: list[PieceRegressors] = []
     undone: list[TransitionMatrix] = []
     behind = sp.ImmutableMatrix.eye(len(found.states))
     for piece, model in reversed(list(zip(found.pieces, models, strict=True))):
         stop = end if piece.end is None else piece.end
-        here = regressors(model, stop, instant)
+        here = regressors(model, stop, time)
         rows = (here.matrix * behind).applyfunc(collected)
-        stretches.insert(0, Stretch(piece.start, stop, rows))
+        pieces.insert(0, PieceRegressors(piece.start, stop, rows))
         whole = transition_matrix(-model.F, stop - piece.start)
         undone.append(whole)
         behind = whole.matrix * behind
-    return tuple(stretches), undone
+    return tuple(pieces), undone
 
 
 def conditions_of(
     targets: Iterable[tuple[str, tuple[sp.Expr, ...]]],
-    stretches: tuple[Stretch, ...],
+    pieces: tuple[PieceRegressors, ...],
     multipliers: tuple[sp.Symbol, ...],
-    instant: sp.Symbol,
+    time: sp.Symbol,
 ) -> tuple[Conditions, ...]:
     """The conditions of every target; the dual polynomials are the same for all, the functional differs."""
     x = sp.Matrix(multipliers)
-    dual = tuple(tuple(stretch.rows * x) for stretch in stretches)
-    slope = tuple(tuple(f.diff(instant) for f in polynomials) for polynomials in dual)
+    dual = tuple(tuple(piece.rows * x) for piece in pieces)
+    slope = tuple(tuple(f.diff(time) for f in polynomials) for polynomials in dual)
     return tuple(Conditions(name, functional, dual, slope) for name, functional in targets)
 
 
-def symbols_of(found: ModelFile) -> set[sp.Symbol]:
+def symbols_in_model(found: ModelFile) -> set[sp.Symbol]:
     """Every symbol that the file uses or declares."""
     declared = {parameter.symbol for parameter in found.parameters.values()}
     matrices = [piece.F.free_symbols for piece in found.pieces]
@@ -183,7 +273,7 @@ def symbols_of(found: ModelFile) -> set[sp.Symbol]:
     return declared.union({found.time}, *matrices, *rows)
 
 
-def free(name: str, taken: set[str]) -> str:
+def free_name(name: str, taken: set[str]) -> str:
     """The name, with as many zeros behind it as it takes to be new."""
     while name in taken:
         name += "0"

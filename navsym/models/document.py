@@ -1,38 +1,38 @@
-"""A derivation as plain data for programs, as text for people, and as LaTeX."""
+"""A derivation as plain data and as LaTeX, and the certificates of its matrices."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 import sympy as sp
 
 from navsym.core.errors import NavsymError
 from navsym.language.printer import to_text
-from navsym.models.derivation import Conditions, Derivation, Stretch
+from navsym.models.derivation import Conditions, Derivation, PieceRegressors
 
 Writer = Callable[[sp.Basic], str]
 
 
-def document(derivation: Derivation, *, latex: bool = False) -> dict[str, Any]:
+def document_of_derivation(derivation: Derivation, *, latex: bool = False) -> dict[str, Any]:
     """Plain data with expressions in the language of files; ``latex`` adds the same formulas in LaTeX."""
-    data = formulas(derivation, plain)
+    data = formulas_of(derivation, formula_or_relation)
     if latex:
-        data["latex"] = formulas(derivation, sp.latex)
+        data["latex"] = formulas_of(derivation, sp.latex)
     return data
 
 
-def plain(expression: sp.Basic) -> str:
+def formula_or_relation(expression: sp.Basic) -> str:
     """An expression or relation in the language of files; sums over roots as sympy writes them."""
     if isinstance(expression, sp.core.relational.Relational):
-        return f"{plain(expression.lhs)} {expression.rel_op} {plain(expression.rhs)}"
+        return f"{formula_or_relation(expression.lhs)} {expression.rel_op} {formula_or_relation(expression.rhs)}"
     try:
         return to_text(expression)
     except NavsymError:
         return str(expression)
 
 
-def formulas(derivation: Derivation, write: Writer) -> dict[str, Any]:
+def formulas_of(derivation: Derivation, write: Writer) -> dict[str, Any]:
     """All formulas, written one by one."""
     return {
         "name": derivation.name,
@@ -41,38 +41,38 @@ def formulas(derivation: Derivation, write: Writer) -> dict[str, Any]:
             {"name": name, "sigma": write(sigma)}
             for name, sigma in zip(derivation.measurements, derivation.sigmas, strict=True)
         ],
-        "F": [written(F, write) for F in derivation.system],
+        "F": [texts_of(F, write) for F in derivation.system],
         "transition": [
             {
                 "time": write(t.time),
-                "matrix": written(t.matrix, write),
+                "matrix": texts_of(t.matrix, write),
                 "characteristic": [
                     {"factor": write(factor), "multiplicity": times, "form": kind} for factor, times, kind in t.factors
                 ],
             }
             for t in derivation.transition
         ],
-        "regressors": [stretch_data(derivation, stretch, write) for stretch in derivation.stretches],
+        "regressors": [piece_data(derivation, piece, write) for piece in derivation.pieces],
         "observability_matrix": (
-            None if derivation.observability is None else written(derivation.observability, write)
+            None if derivation.observability_matrix is None else texts_of(derivation.observability_matrix, write)
         ),
         "conditions": [condition_data(derivation, c, write) for c in derivation.conditions],
         "assumptions": [write(relation) for relation in derivation.assumptions],
     }
 
 
-def written(matrix: sp.MatrixBase, write: Writer) -> list[list[str]]:
+def texts_of(matrix: sp.MatrixBase, write: Writer) -> list[list[str]]:
     """A matrix as rows of texts."""
     return [[write(entry) for entry in row] for row in matrix.tolist()]
 
 
-def stretch_data(derivation: Derivation, stretch: Stretch, write: Writer) -> dict[str, Any]:
-    """H on one stretch, with the ends between which it holds."""
+def piece_data(derivation: Derivation, piece: PieceRegressors, write: Writer) -> dict[str, Any]:
+    """H on one piece, with the ends between which it holds."""
     return {
-        "variable": write(derivation.instant),
-        "from": write(stretch.start),
-        "to": write(stretch.end),
-        "H": written(stretch.rows, write),
+        "variable": write(derivation.time),
+        "from": write(piece.start),
+        "to": write(piece.end),
+        "H": texts_of(piece.rows, write),
     }
 
 
@@ -87,98 +87,24 @@ def condition_data(derivation: Derivation, conditions: Conditions, write: Writer
     }
 
 
-# --- text for people -------------------------------------------------------------------------------
+# LaTeX
 
 
-def as_text(data: dict[str, Any]) -> str:
-    """The derivation as a page of text; ``data`` is the document."""
-    lines = [f"{data['name']}: {len(data['states'])} unknowns {', '.join(data['states'])}", ""]
-    for place, F in enumerate(data["F"]):
-        lines += [f"F{stretch_name(data, place)}", *grid(F), ""]
-    for place, transition in enumerate(data["transition"]):
-        lines += [f"Phi({transition['time']}) = exp(F {transition['time']}){stretch_name(data, place)}"]
-        lines += [*grid(transition["matrix"])]
-        lines += [
-            f"  factor {item['factor']}, multiplicity {item['multiplicity']}: {item['form']}"
-            for item in transition["characteristic"]
-        ]
-        lines.append("")
-    for stretch in data["regressors"]:
-        v = stretch["variable"]
-        lines.append(f"H({v}) for {stretch['from']} <= {v} <= {stretch['to']}")
-        lines += [f"  {m['name']}: ({', '.join(row)})" for m, row in measured(data, stretch["H"])]
-        lines.append("")
-    if data["observability_matrix"]:
-        lines += ["observability matrix", *grid(data["observability_matrix"]), ""]
-    lines += conditions_text(data)
-    if data["assumptions"]:
-        lines += ["assumed", *(f"  {relation}" for relation in data["assumptions"])]
-    return "\n".join(lines).rstrip() + "\n"
-
-
-def measured(data: dict[str, Any], rows: list[Any]) -> list[tuple[dict[str, str], Any]]:
-    """Each measurement beside its row."""
-    return list(zip(data["measurements"], rows, strict=True))
-
-
-def stretch_name(data: dict[str, Any], place: int) -> str:
-    """Which stretch a matrix belongs to, when there are several."""
-    if len(data["F"]) == 1:
-        return ""
-    stretch = data["regressors"][place]
-    return f", from {stretch['from']} to {stretch['to']}"
-
-
-def grid(rows: list[list[str]]) -> list[str]:
-    """A matrix of texts in aligned columns."""
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    return ["  [ " + "  ".join(c.ljust(w) for c, w in zip(row, widths, strict=True)) + " ]" for row in rows]
-
-
-def conditions_text(data: dict[str, Any]) -> list[str]:
-    """The conditions of the contacts; the dual polynomials are printed once."""
-    if not data["conditions"]:
-        return []
-    t = data["regressors"][0]["variable"]
-    lines = ["conditions of the contacts"]
-    first = data["conditions"][0]
-    for stretch, duals, slopes in zip(data["regressors"], first["dual_polynomial"], first["slope"], strict=True):
-        where = f" for {stretch['from']} <= {t} <= {stretch['to']}" if len(data["regressors"]) > 1 else ""
-        for (m, f), slope in zip(measured(data, duals), slopes, strict=True):
-            lines += [
-                f"  {m['name']}{where}: f({t}) = {f}",
-                f"    |f({t})| <= {m['sigma']}, at a contact f = +-{m['sigma']}",
-                f"    at a contact inside the interval 0 = {slope}",
-            ]
-    n = len(data["states"])
-    lines.append(f"  at most {n} contacts, weights of the sign of f, sum weight H(contact) = P")
-    lines += [
-        f"  {c['target']}: P = ({', '.join(c['functional'])}), guaranteed deviation = max {c['value']}"
-        for c in data["conditions"]
-    ]
-    return [*lines, ""]
-
-
-# --- LaTeX -----------------------------------------------------------------------------------------
-
-
-def as_latex(data: dict[str, Any]) -> str:
-    """The derivation as LaTeX, one display for each formula; ``data`` is the document with its LaTeX."""
-    tex = data["latex"]
+def latex_displays(derivation: Derivation) -> list[str]:
+    """Every formula of a derivation in LaTeX, one for each display."""
+    tex = formulas_of(derivation, sp.latex)
     shows = [f"F = {pmatrix(F)}" for F in tex["F"]]
     shows += [f"\\Phi({t['time']}) = {pmatrix(t['matrix'])}" for t in tex["transition"]]
-    for stretch in tex["regressors"]:
-        v = stretch["variable"]
+    for piece in tex["regressors"]:
+        v = piece["variable"]
         shows += [
             f"H_{{{j + 1}}}({v}) = {pmatrix([[entry] for entry in row])}, "
-            f"\\quad {stretch['from']} \\le {v} \\le {stretch['to']}"
-            for j, row in enumerate(stretch["H"])
+            f"\\quad {piece['from']} \\le {v} \\le {piece['to']}"
+            for j, row in enumerate(piece["H"])
         ]
     if tex["observability_matrix"]:
         shows.append(f"\\mathcal{{O}} = {pmatrix(tex['observability_matrix'])}")
-    shows += condition_displays(tex)
-    shows += [f"{relation}" for relation in tex["assumptions"]]
-    return "\n".join(f"\\[\n  {show}\n\\]" for show in shows) + "\n"
+    return [*shows, *condition_displays(tex), *tex["assumptions"]]
 
 
 def pmatrix(rows: list[list[str]]) -> str:
@@ -191,8 +117,8 @@ def condition_displays(tex: dict[str, Any]) -> list[str]:
     if not tex["conditions"]:
         return []
     shows, first = [], tex["conditions"][0]
-    for stretch, duals, slopes in zip(tex["regressors"], first["dual_polynomial"], first["slope"], strict=True):
-        v = stretch["variable"]
+    for piece, duals, slopes in zip(tex["regressors"], first["dual_polynomial"], first["slope"], strict=True):
+        v = piece["variable"]
         for j, (m, f, slope) in enumerate(zip(tex["measurements"], duals, slopes, strict=True), start=1):
             shows += [
                 f"f_{{{j}}}({v}) = {f}, \\quad |f_{{{j}}}({v})| \\le {m['sigma']}",
@@ -212,13 +138,13 @@ def condition_displays(tex: dict[str, Any]) -> list[str]:
 TRIALS = 8
 
 
-def derivation_certificate(found: Derivation) -> dict[str, Any] | None:
-    """The transition matrix of every stretch and the rank of the observability matrix; None without a system."""
-    pairs = zip(found.system, found.transition, strict=True)
+def derivation_certificates(derivation: Derivation) -> list[Mapping[str, Any]]:
+    """Proofs of the transition matrix of every piece and of the rank of the observability matrix, as far as known."""
+    pairs = zip(derivation.system, derivation.transition, strict=True)
     parts = [exponential_certificate(F, Phi.matrix, Phi.time) for F, Phi in pairs]
-    parts += [rank_certificate(found.observability)] if found.observability is not None else []
-    known = [part for part in parts if part is not None]
-    return {"kind": "all", "of": known} if known else None
+    if derivation.observability_matrix is not None:
+        parts.append(rank_certificate(derivation.observability_matrix))
+    return [part for part in parts if part is not None]
 
 
 def exponential_certificate(F: sp.MatrixBase, Phi: sp.MatrixBase, time: sp.Symbol) -> dict[str, Any] | None:

@@ -3,10 +3,10 @@
 import pytest
 import sympy as sp
 
+from navsym.cli.derive import as_text
 from navsym.core.errors import DomainError, NavsymError
 from navsym.language.expression import parse
 from navsym.models.derivation import derive
-from navsym.models.document import as_latex, as_text, document
 from navsym.models.modelfile import linear_model, model_from
 
 PAPER = {
@@ -33,35 +33,35 @@ PIECES = {
 
 def test_the_regressors_and_the_dual_polynomial_of_the_velocity_correction():
     derivation = derive(model_from(PAPER))
-    T, tau = derivation.end, derivation.instant
-    assert derivation.stretches[0].rows == sp.ImmutableMatrix([[1, sp.sin(T - tau), sp.cos(T - tau) - 1]])
+    T, tau = derivation.end, derivation.time
+    assert derivation.pieces[0].rows == sp.ImmutableMatrix([[1, sp.sin(T - tau), sp.cos(T - tau) - 1]])
     x1, x2, x3 = derivation.multipliers
     f, slope = derivation.conditions[0].dual[0][0], derivation.conditions[0].slope[0][0]
     assert sp.expand(f - x1 - x2 * sp.sin(T - tau) - x3 * (sp.cos(T - tau) - 1)) == 0
     assert sp.expand(slope + x2 * sp.cos(T - tau) - x3 * sp.sin(T - tau)) == 0
-    assert derivation.observability.tolist() == [[1, 0, 0], [0, -1, 0], [0, 0, -1]]
+    assert derivation.observability_matrix.tolist() == [[1, 0, 0], [0, -1, 0], [0, 0, -1]]
 
 
 def test_regressors_of_a_motion_in_pieces_are_continuous_where_the_pieces_meet():
     derivation = derive(model_from(PIECES))
-    tau, (first, second) = derivation.instant, derivation.stretches
+    tau, (first, second) = derivation.time, derivation.pieces
     assert (first.end, second.start, second.end) == (1, 1, 3)
     gap = (first.rows - second.rows).subs(tau, 1).applyfunc(lambda e: sp.expand(sp.expand_trig(e)))
     assert gap == sp.zeros(2, 2)
     assert second.rows.subs(tau, 3) == sp.eye(2)
-    for stretch, F in zip(derivation.stretches, derivation.system, strict=True):
-        motion = stretch.rows.diff(tau) - F * stretch.rows  # h = I here
+    for piece, F in zip(derivation.pieces, derivation.system, strict=True):
+        motion = piece.rows.diff(tau) - F * piece.rows  # h = I here
         assert all(sp.expand(sp.expand_trig(sp.expand_mul(entry))) == 0 for entry in motion)
     assert sp.Ne(sp.Symbol("w", real=True), 0) in derivation.assumptions
-    assert derivation.observability is None
+    assert derivation.observability_matrix is None
 
 
 def test_every_printed_expression_reads_back_as_itself():
     derivation = derive(model_from(PAPER))
-    data = document(derivation)
-    names = {str(s): s for s in (derivation.end, derivation.instant, *derivation.multipliers)}
+    data = derivation.document()
+    names = {str(s): s for s in (derivation.end, derivation.time, *derivation.multipliers)}
     row = [parse(text, names) for text in data["regressors"][0]["H"][0]]
-    assert sp.ImmutableMatrix([row]) == derivation.stretches[0].rows
+    assert sp.ImmutableMatrix([row]) == derivation.pieces[0].rows
     assert parse(data["conditions"][0]["dual_polynomial"][0][0], names) == derivation.conditions[0].dual[0][0]
     assert data["measurements"] == [{"name": "z", "sigma": "2"}]
 
@@ -74,8 +74,8 @@ def test_a_basis_has_regressors_and_conditions_but_no_system():
         }
     )
     derivation = derive(found)
-    assert (derivation.system, derivation.transition, derivation.observability) == ((), (), None)
-    s, (x1, x2, x3) = derivation.instant, derivation.multipliers
+    assert (derivation.system, derivation.transition, derivation.observability_matrix) == ((), (), None)
+    s, (x1, x2, x3) = derivation.time, derivation.multipliers
     assert sp.expand(derivation.conditions[0].slope[0][0] - x2 - 2 * x3 * s) == 0
     assert sp.expand(derivation.conditions[0].dual[0][0] - x1 - x2 * s - x3 * s**2) == 0
 
@@ -83,13 +83,13 @@ def test_a_basis_has_regressors_and_conditions_but_no_system():
 def test_names_of_the_file_are_never_taken_twice():
     file = PAPER | {"parameters": {"T": "positive", "tau": "real", "x1": "real"}}
     derivation = derive(model_from(file))
-    assert str(derivation.instant) == "s"
+    assert str(derivation.time) == "s"
     assert [str(x) for x in derivation.multipliers] == ["lambda_1", "lambda_2", "lambda_3"]
 
 
 def test_text_and_latex_show_every_part():
-    data = document(derive(model_from(PAPER)), latex=True)
-    text, tex = as_text(data), as_latex(data)
+    derivation = derive(model_from(PAPER))
+    text, tex = as_text(derivation.document()), derivation.latex()
     for part in ("Phi(t)", "H(tau)", "observability matrix", "|f(tau)| <= 2", "guaranteed deviation"):
         assert part in text
     assert tex.count(r"\[") == tex.count(r"\]") == tex.count(r"\begin{pmatrix}") + 3

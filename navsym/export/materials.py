@@ -1,0 +1,267 @@
+"""Functions from claims and answers: a claim of a paper or file, a verdict, an estimator, regimes, a derivation."""
+
+from __future__ import annotations
+
+import difflib
+import re
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import sympy as sp
+
+from navsym.claims import CERTIFIED, PROVED, Claim, Equation, Record, Verdict, Verdicts, equation_of
+from navsym.core.errors import DomainError, NavsymError
+from navsym.core.sandbox import Exhausted, run_limited
+from navsym.export.functions import RefusedError, function_of, material, require_exportable
+from navsym.export.languages.names import function_name
+from navsym.export.parts import ExportedFunction, Layout, Material, Output, Source
+from navsym.export.ready import ALGORITHMS, READY, UNITS, algorithm
+from navsym.guaranteed.phases.answer import Phases, Regime
+from navsym.guaranteed.solver import Estimator
+from navsym.language.names import shown
+from navsym.models.derivation import Derivation, derive
+from navsym.models.model import Model
+from navsym.prove.claimfile import claims_from, decide_claim, read_claims, statement_of
+from navsym.prove.ladder import decide_within, exhausted
+from navsym.verification.papers import load_papers
+
+SECONDS = 90.0
+MEGABYTES = 4096
+LARGEST_DENOMINATOR = 10**9  # of an exact end; beyond it an end is the middle of an enclosure
+EXPORTABLE = "a claim id, a verdict, an Estimator, Phases, a Derivation or a Model"
+
+
+def functions_from(
+    item: Any, *, real: str = "double", allow_confirmed: bool = False, units: Mapping[str, str] | None = None
+) -> list[ExportedFunction]:
+    """The functions of whatever can be exported; raises RefusedError for what does not hold, DomainError for the rest.
+
+    item : claim id ``MODULE:NUMBER`` or ``FILE.toml:ID``, regimes ``A+B+C``, ``NAME=A``, a ready-made name; a record or
+           claim; a verdict with its formula; an estimator, phases, derivation or model
+    """
+    units = units or {}
+    if isinstance(item, (list, tuple, Verdicts)):
+        parts = [functions_from(i, real=real, allow_confirmed=allow_confirmed, units=units) for i in item]
+        return [function for part in parts for function in part]
+    if isinstance(item, str):
+        return functions_of_words(item, real, allow_confirmed, units)
+    claim = getattr(item, "claim", item)
+    if isinstance(claim, (Claim, Record)):
+        return functions_of_words(claim.id, real, allow_confirmed, units)
+    if isinstance(item, Verdict):
+        part = material_of_verdict(item, allow_confirmed)
+        return [function_of([part], real=real, name=function_name(part.claim), layout=Layout(units=units))]
+    if isinstance(item, Estimator):
+        return [function_of_estimator(item, real, units)]
+    if isinstance(item, Phases):
+        return [function_of_phases(item, real, units)]
+    if isinstance(item, Model):
+        item = derive(item)
+    if isinstance(item, Derivation):
+        return functions_of_derivation(item, real, units)
+    raise DomainError(f"expected {EXPORTABLE}; got {shown(item)}; name one of these", where="export")
+
+
+# Claims by their ids
+
+
+def functions_of_words(text: str, real: str, allow_confirmed: bool, units: Mapping[str, str]) -> list[ExportedFunction]:
+    """The functions of one word of the command line, ready-made names included."""
+    parts = READY.get(text, (text,))
+    return [f for part in parts for f in functions_of_claim(part, real, allow_confirmed, units)]
+
+
+def functions_of_claim(
+    text: str, real: str = "double", allow_confirmed: bool = False, units: Mapping[str, str] | None = None
+) -> list[ExportedFunction]:
+    """The functions of one claim or of regimes ``A+B+C``; ``name=A+B`` gives a name; a ready-made program has two."""
+    if text in ALGORITHMS:
+        return algorithm(text, lambda claim: material_of_claim(claim, allow_confirmed), real)
+    name, _, claims = text.rpartition("=") if "=" in text else ("", "", text)
+    parts = [material_of_claim(part, allow_confirmed) for part in claims.split("+")]
+    known = {**UNITS.get(claims.partition(":")[0], {}), **(units or {})}
+    return [function_of(parts, real=real, name=function_name(name) if name else None, layout=Layout(units=known))]
+
+
+def material_of_claim(text: str, allow_confirmed: bool) -> Material:
+    """A claim of a paper or of a file, decided."""
+    module, colon, number = text.rpartition(":")
+    if not colon or not module or not number:
+        message = f"expected MODULE:NUMBER or FILE.toml:ID; got {text[:80]!r}; correct it"
+        raise DomainError(message, where="claim")
+    if module.endswith(".toml"):
+        return material_from_file(Path(module), number, allow_confirmed)
+    return material_from_paper(module, number, allow_confirmed)
+
+
+def material_from_paper(module: str, number: str, allow_confirmed: bool) -> Material:
+    """A claim of a paper, decided now; raises RefusedError, with the claim that corrects it, when it is refuted."""
+    (paper,) = load_papers([module])
+    by_number = {claim.number: claim for claim in paper.claims}
+    if number not in by_number:
+        raise unknown_claim(number, list(by_number), module)
+    claim, card = by_number[number], paper.paper
+    statement = claim.derive()
+    corrections = [c.id for c in paper.claims if c.corrects == number]
+    equation = equation_of(number, card.equations)
+    return material(
+        claim.id,
+        statement,
+        decide_within(statement, SECONDS),
+        title=claim.title,
+        paper=", ".join([*card.authors, card.title, str(card.year or "")]).strip(", "),
+        equation=f"equation ({equation})" if equation else f"statement {number}",
+        correction=corrections[0] if corrections else None,
+        allow_confirmed=allow_confirmed,
+    )
+
+
+def material_from_file(path: Path, wanted: str, allow_confirmed: bool) -> Material:
+    """A claim of a claim file, decided now."""
+    claims = {claim.id: claim for claim in read_claims(path).claims}
+    if wanted not in claims:
+        raise unknown_claim(wanted, list(claims), path.name)
+    claim = claims[wanted]
+    outcome = run_limited(decide_claim, (claim,), SECONDS, MEGABYTES)
+    return material(
+        f"{path.stem}:{wanted}",
+        statement_of(claim),
+        exhausted(outcome) if isinstance(outcome, Exhausted) else outcome,
+        title=f"Claim {wanted} of a claim file",
+        equation=f"claim {wanted}",
+        paper=path.name,
+        allow_confirmed=allow_confirmed,
+    )
+
+
+def unknown_claim(name: str, known: list[str], where: str) -> NavsymError:
+    """The error for a claim that a paper or file does not have, with the closest one that it has."""
+    close = difflib.get_close_matches(name, known, n=1)
+    advice = f"did you mean {close[0]}?" if close else f"known are {', '.join(known[:8])}"
+    return DomainError(f"expected a claim of {where}; got {name[:60]}; {advice}", where="claim")
+
+
+# Answers of the front door
+
+
+def material_of_verdict(verdict: Verdict, allow_confirmed: bool) -> Material:
+    """A verdict of :func:`navsym.prove` with the formula that it is about."""
+    if verdict.formula is None:
+        message = "expected a verdict with its formula; got one without; export the claim by its id"
+        raise DomainError(message, where="export")
+    (claim,) = claims_from(verdict.formula.document()).claims
+    title, label = str(verdict.formula), verdict.id
+    return material(
+        label, statement_of(claim), verdict, title=title, equation=f"claim {label}", allow_confirmed=allow_confirmed
+    )
+
+
+def function_of_estimator(found: Estimator, real: str, units: Mapping[str, str]) -> ExportedFunction:
+    """``estimate = sum w_k z_k`` with the times, and the guaranteed standard deviation, as one function of z."""
+    if found.status != CERTIFIED:
+        raise RefusedError(f"expected a CERTIFIED estimator; got one that is {found.status}; ask for fewer digits")
+    count = range(1, len(found.support) + 1)
+    z, w = ([sp.Symbol(f"{letter}{k}", real=True) for k in count] for letter in "zw")
+    weights = [sp.Rational(point.text[1]) for point in found.support]
+    times = [sp.Rational(point.text[0]) for point in found.support]
+    value = (sp.Rational(found.lower) + sp.Rational(found.upper)) / 2
+    rows = [f"z[{k}] is {p.measurement} at {p.text[0]}, weight {p.text[1]}" for k, p in enumerate(found.support)]
+    results = [
+        (Output("estimate"), [sum((a * b for a, b in zip(w, z, strict=True)), start=sp.S.Zero)]),
+        (Output("times", (len(times),)), times),
+        (Output("value"), [value]),
+    ]
+    source = Source(
+        claim=f"estimator:{found.target}",
+        title=f"Guaranteed estimate of {found.target}",
+        paper="",
+        equation="",
+        status=str(found.status),
+        method="exact primal-dual certificate",
+        scope="weights, times and value to the digits shown",
+        assumptions=(),
+        formula=(*rows, "estimate = sum of w*z", f"value in [{found.lower}, {found.upper}]"),
+        certificate=found.certificate,
+    )
+    part = Material(source.claim, results, {}, source, tuple(zip(w, weights, strict=True)))
+    layout = Layout({"z": tuple(s.name for s in z)}, ("z",), {}, units)
+    return function_of([part], real=real, name=function_name(found.target), layout=layout)
+
+
+def function_of_phases(found: Phases, real: str, units: Mapping[str, str]) -> ExportedFunction:
+    """Value, weights and times as functions of the parameter, one piece for each regime.
+
+    Raises RefusedError where a regime has no closed form, is not proved, or ends at a number known by its digits only.
+    """
+    name, parameter = found.target, found.parameter
+    if found.uncovered:
+        gap = " to ".join(found.uncovered[0])
+        raise RefusedError(
+            f"expected regimes on the whole range; got none proved for {parameter} from {gap}; narrow it"
+        )
+    for regime in found.regimes:
+        start, end = regime.ends
+        lacking = "no closed form" if regime.closed is None else "" if regime.status == PROVED else str(regime.status)
+        if not lacking and any(e.is_Rational and e.q > LARGEST_DENOMINATOR for e in (regime.lower, regime.upper)):
+            lacking = "an end without a closed form"
+        if lacking:
+            message = f"expected proved closed forms; got {lacking} for {parameter} from {start} to {end}"
+            raise RefusedError(f"{message}; choose another range, or export phases.at({parameter}=…)")
+    parts = [material_of_regime(found, regime) for regime in found.regimes]
+    return function_of(parts, real=real, name=function_name(name), layout=Layout(units=units))
+
+
+def material_of_regime(found: Phases, regime: Regime) -> Material:
+    """Value, weights, times and the places of the measurements of one regime."""
+    assert regime.closed is not None and regime.value is not None
+    points, verdict = regime.support, regime.closed.verdict
+    names = list(dict.fromkeys(found.family.measurements))
+    columns: list[tuple[str, Sequence[Any]]] = [
+        ("weights", [point.weight for point in points]),
+        ("times", [point.at for point in points]),
+    ]
+    if len(names) > 1:
+        columns.append(("measurement", [sp.Integer(names.index(point.measurement)) for point in points]))
+    results = [(Output("value"), [regime.value])]
+    results += [(Output(name, (len(column),)), list(column)) for name, column in columns]
+    formula = formula_lines(results)
+    start, end = regime.ends
+    source = Source(
+        claim=f"phases:{found.target} for {found.parameter} from {start} to {end}",
+        title=f"Guaranteed estimator of {found.target}",
+        paper="",
+        equation="",
+        status=str(regime.status),
+        method=verdict.method,
+        scope=verdict.scope,
+        assumptions=tuple(verdict.assumptions),
+        formula=formula + tuple(f"measurement {k} is {name}" for k, name in enumerate(names) if len(names) > 1),
+        certificate=verdict.certificate,
+    )
+    return Material(source.claim, results, {found.family.parameter: (regime.lower, regime.upper)}, source)
+
+
+def functions_of_derivation(found: Derivation, real: str, units: Mapping[str, str]) -> list[ExportedFunction]:
+    """Transition matrix Phi(t) and regressors H(tau) of a model in one piece, each proved by its differential equation.
+
+    ``Phi' = F Phi`` and ``H' = H F`` are decided here. Raises RefusedError for a basis, or a model in several pieces.
+    """
+    if len(found.system) != 1:
+        came = "a basis, which has none" if not found.system else f"{len(found.system)} pieces"
+        raise RefusedError(f"expected a model with one matrix F; got {came}; export what nav.solve or nav.phases gives")
+    F, Phi, rows = found.system[0], found.transition[0].matrix, found.pieces[0].rows
+    time = next(iter(Phi.free_symbols - F.free_symbols), sp.Symbol("t", real=True))
+    label = re.sub(r"\W+", "_", found.name).strip("_") or "model"
+    pairs = (
+        ("Phi", Phi, Equation(Phi.diff(time), F * Phi), "Transition matrix, Phi' = F Phi"),
+        ("H", rows, Equation(rows.diff(found.time), rows * F), "Regressors of the state at the end, H' = H F"),
+    )
+    made = []
+    for name, matrix, statement, title in pairs:
+        verdict = decide_within(statement, SECONDS)
+        require_exportable(f"{label}:{name}", verdict, None, False)
+        part = material(f"{label}:{name}", Equation(matrix, matrix), verdict, title=title)
+        part = Material(part.claim, [(Output(name, out.shape), flat) for out, flat in part.results], {}, part.source)
+        made.append(function_of([part], real=real, name=function_name(f"{label}_{name}"), layout=Layout(units=units)))
+    return made
