@@ -12,6 +12,7 @@ import shutil
 import subprocess
 import sys
 import tomllib
+import zipfile
 from pathlib import Path
 from types import ModuleType
 
@@ -124,6 +125,17 @@ def test_the_lock_holds_the_build_backend() -> None:
 
 
 # One version everywhere
+
+
+def test_the_wheel_installs_names_of_its_own_and_every_file_of_a_paper(tmp_path: Path) -> None:
+    build = [sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", str(tmp_path)]
+    subprocess.run(build, cwd=ROOT, capture_output=True, check=True, timeout=300)
+    (wheel,) = tmp_path.glob("*.whl")
+    names = set(zipfile.ZipFile(wheel).namelist())
+    assert {name.partition("/")[0] for name in names} == {"navsym", "navsym_papers", f"{wheel.stem[:12]}.dist-info"}
+    papers = ROOT / "derivations"
+    files = [path for path in papers.rglob("*") if path.suffix in (".py", ".toml", ".json", ".md")]
+    assert {f"navsym_papers/{path.relative_to(papers).as_posix()}" for path in files} <= names
 
 
 def test_the_citation_and_the_changelog_know_the_version() -> None:
