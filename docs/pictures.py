@@ -20,7 +20,7 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
 from navsym.report import plots  # noqa: E402
-from navsym.verification.ledger import about, only_in_the_copy  # noqa: E402
+from navsym.verification.ledger import is_only_in_the_copy, records_about  # noqa: E402
 
 CHANNEL = {
     "model": {
@@ -127,13 +127,13 @@ def ranks_of(rows: sp.Matrix, F: sp.Matrix, count: int) -> list[int]:
 
 def modes() -> Figure:
     """Mode probabilities of the pulsating filter on a simulated switching signal."""
-    from navsym.multimodel.filters import run
+    from navsym.multimodel.filters import run_filter
     from navsym_papers.multistructure.experiment import study
     from navsym_papers.multistructure.experiment.modes import MODES
 
     models = study.schuler_bank()
     series = study.simulate(models, 1, 60, seed=9)
-    found = run(models, series.measurements[0], "pulsating")
+    found = run_filter(models, series.measurements[0], "pulsating")
     return plots.mode_ribbon(np.arange(1, 61), found.probabilities, MODES, truth=series.modes[0])
 
 

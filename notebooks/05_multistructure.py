@@ -27,8 +27,8 @@ from ipywidgets import FloatSlider, IntSlider, interact
 from navsym.claims import claims_of
 from navsym.cli.main import run as navsym
 from navsym.core.datasets import dataset, local_copy
-from navsym.multimodel.bank import bank
-from navsym.multimodel.filters import run
+from navsym.multimodel.bank import Bank
+from navsym.multimodel.filters import run_filter
 from navsym.multimodel.steps import filters_at, scheme
 from navsym.report.notebook import require, show
 from navsym_papers import multistructure as paper
@@ -88,7 +88,9 @@ for method, K in (("exact", None), ("k-pulsating", 3), ("gpb2", None), ("imm", N
 def two_modes(stay):
     unit = [[1.0]]
     models = [{"F": unit, "Q": [[q]], "H": unit, "R": unit} for q in (0.0, 25.0)]
-    return bank(models, [[stay, 1 - stay], [1 - stay, stay]], [0.0], unit, [0.5, 0.5])
+    return Bank(
+        models, [[stay, 1 - stay], [1 - stay, stay]], {"mean": [0.0], "covariance": unit, "probabilities": [0.5, 0.5]}
+    )
 
 
 def draw_folds(stay=0.9, first=3.0, second=1.0, depth=2):
@@ -102,7 +104,7 @@ def draw_folds(stay=0.9, first=3.0, second=1.0, depth=2):
         ("gpb2", GREEN, None),
         ("imm", BLUE, None),
     ):
-        found = run(two_modes(stay), series, method, depth=K)
+        found = run_filter(two_modes(stay), series, method, depth=K)
         for k, axis in enumerate(axes):
             mean, variance = found.mean[k, 0], found.covariance[k, 0, 0]
             name = method if K is None else f"{method} {K}"
@@ -159,7 +161,7 @@ series = study.simulate(study.schuler_bank(), 200, 30, seed=2)
 loss = {}
 for forget in (False, True):
     true = [
-        np.log(run(study.schuler_bank(), z, forget=forget).probabilities[np.arange(30), m]).mean()
+        np.log(run_filter(study.schuler_bank(), z, memoryless=forget).probabilities[np.arange(30), m]).mean()
         for z, m in zip(series.measurements[:60], series.modes[:60], strict=True)
     ]
     loss["memoryless" if forget else "Markov"] = -float(np.mean(true))
@@ -273,7 +275,11 @@ def depth_and_switching(K=2, switch=0.1, runs=40):
     """Excess of K-pulsating and of IMM over the exact estimate, in units of its variance."""
     base, stay = study.schuler_bank(), np.full((3, 3), switch / 2)
     np.fill_diagonal(stay, 1.0 - switch)
-    chosen = bank(study.SchulerChannel().models(), stay, base.means[0], base.covariances[0], np.full(3, 1 / 3))
+    chosen = Bank(
+        study.SchulerChannel().models(),
+        stay,
+        {"mean": base.means[0], "covariance": base.covariances[0], "probabilities": np.full(3, 1 / 3)},
+    )
     scores = study.compare(chosen, [("k-pulsating", K), ("imm", None)], runs, 7, 1, exact=True)
     for score in scores[1:]:
         excess = score.excess

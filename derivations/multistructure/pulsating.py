@@ -230,7 +230,7 @@ def near_moments():
 
 def memory(cases):
     """Floats that the one-pass filter keeps beyond one Kalman filter, measured for (modes, states)."""
-    from navsym.multimodel.bank import bank
+    from navsym.multimodel.bank import Bank
     from navsym.multimodel.memory import floats_in_use
 
     extra = []
@@ -238,7 +238,9 @@ def memory(cases):
         unit = [[int(a == b) for b in range(n)] for a in range(n)]
         model = {"F": unit, "Q": unit, "H": unit[:1], "R": [[1]]}
         switch = [[1 / modes] * modes] * modes
-        made = bank([model] * modes, switch, [0] * n, unit, [1 / modes] * modes)
+        made = Bank(
+            [model] * modes, switch, {"mean": [0] * n, "covariance": unit, "probabilities": [1 / modes] * modes}
+        )
         single, pulsating = floats_in_use(made, made.means[0][:1])
         extra.append(pulsating - single)
     return tuple(extra)

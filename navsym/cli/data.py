@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from navsym.cli._choice import one_of
 from navsym.cli.output import emit, table
-from navsym.core.errors import EmptyError, ExpressionSyntaxError, NavsymError
+from navsym.core.errors import EmptyError, ExpressionSyntaxError
+
+if TYPE_CHECKING:
+    from navsym.core.datasets import Datasets
 
 
 def command(
@@ -16,59 +18,32 @@ def command(
     names: Annotated[list[str] | None, typer.Argument(help="data sets to get; all for every one")] = None,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> None:
-    """Show what is known and where it lies, or fetch data sets and check them.
+    """List the data sets and their places, or fetch some and check them.
 
     Example: navsym data get srtm        (NAVSYM_DATA names a folder that already has them)
     """
-    from navsym.core.datasets import DATASETS, dataset, fetch
+    import navsym as nav
 
-    if action == "list":
-        rows = [row(data) for data in DATASETS.values()]
-        emit({"datasets": rows}, as_json=json_, text=lambda: listed(rows))
-        return
-    if action != "get":
+    if action not in ("list", "get"):
         raise ExpressionSyntaxError(f"expected list or get; got {action[:40]}; write one of them", where="data")
-    if not names:
+    if action == "get" and not names:
         raise EmptyError("expected names of data sets; got none; see navsym data list", where="data get")
-    wanted = list(DATASETS) if names == ["all"] else names
-    for name in wanted:
-        one_of(name, DATASETS, "data get")
-    got = [{"name": name, "path": str(fetch(name)), "citation": dataset(name).citation} for name in wanted]
-    text = "\n".join(f"{item['path']}\n  cite: {item['citation']}" for item in got)
-    emit({"datasets": got}, as_json=json_, text=text)
+    found = nav.data(*names) if action == "get" and names else nav.data()
+    emit(found.document(), as_json=json_, text=lambda: as_text(found))
 
 
-def row(data: Any) -> dict[str, Any]:
-    """One data set as plain data; ``here`` is where it lies, or null."""
-    from navsym.core.datasets import local_copy
-
-    try:
-        path, trouble = local_copy(data), None
-    except NavsymError as error:
-        path, trouble = None, error.message
-    return {
-        "name": data.name,
-        "what": data.what,
-        "path": data.path,
-        "repository": data.repository,
-        "commit": data.commit,
-        "source": data.source,
-        "sha256": data.sha256,
-        "licence": data.licence,
-        "here": None if path is None else str(path),
-        "trouble": trouble,
-    }
-
-
-def listed(rows: list[dict[str, Any]]) -> str:
+def as_text(found: Datasets) -> str:
+    """A table of what is known, or the paths and citations of what was fetched."""
+    if found.fetched:
+        return "\n".join(f"{row.here}\n  cite: {row.data.citation}" for row in found)
     cells = [
         (
-            r["name"],
-            "yes" if r["here"] else "damaged" if r["trouble"] else "no",
-            r["what"],
-            r["licence"],
-            f"{r['repository']} @ {r['commit']}",
+            row.data.name,
+            "yes" if row.here else "damaged" if row.trouble else "no",
+            row.data.what,
+            row.data.licence,
+            f"{row.data.repository} @ {row.data.commit}",
         )
-        for r in rows
+        for row in found
     ]
     return table(("data set", "here", "what it is", "licence", "source"), cells)

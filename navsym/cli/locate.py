@@ -1,16 +1,16 @@
-"""Fix a position over a height map from a measured profile.
-
-The work is done by :func:`navsym.terrain.locate.locate`; this file reads, calls and prints.
-"""
+"""Fix a position over a height map from a measured profile."""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from navsym.cli.output import emit, remark, table
+
+if TYPE_CHECKING:
+    from navsym.terrain.locate import Fix
 
 
 def command(
@@ -28,39 +28,32 @@ def command(
 
     Example: navsym locate examples/flight.json --method sequential
     """
-    from navsym.core.errors import NavsymError
-    from navsym.language.jsonfile import read_json
-    from navsym.terrain.locate import locate
+    import navsym as nav
 
-    document = read_json(config)
-    try:
-        found = locate(document, method, folder=config.parent, maps=maps, offset_free=offset_free)
-    except NavsymError as error:
-        raise error if error.where.startswith(str(config)) else error.at(str(config)) from None
+    found = nav.locate(config, method, maps=maps, offset_free=offset_free)
     for line in found.remarks:
         remark(f"note: {line}")
-    emit(found.document, as_json=json_, text=lambda: shown(found.document))
+    emit(found.document(), as_json=json_, text=lambda: as_text(found))
 
 
-def shown(document: dict[str, Any]) -> str:
-    """The answer for people."""
-    fix, move = document["fix"], document["correction"]
+def as_text(found: Fix) -> str:
+    """The fix and its correction, after the hypothesis that gives them."""
+    (dx, dy), (dvx, dvy) = found.correction
     rows = [
-        ("x", f"{fix['x']:.3f}", f"{move['dx']:+.3f}"),
-        ("y", f"{fix['y']:.3f}", f"{move['dy']:+.3f}"),
-        ("vx", f"{fix['vx']:.4f}", f"{move['dvx']:+.4f}"),
-        ("vy", f"{fix['vy']:.4f}", f"{move['dvy']:+.4f}"),
+        ("x", f"{found.x:.3f}", f"{dx:+.3f}"),
+        ("y", f"{found.y:.3f}", f"{dy:+.3f}"),
+        ("vx", f"{found.vx:.4f}", f"{dvx:+.4f}"),
+        ("vy", f"{found.vy:.4f}", f"{dvy:+.4f}"),
     ]
-    text = table(("", "fix", "correction"), rows, right=("fix", "correction"))
-    second = "none" if document["second_best"] is None else f"{document['second_best']:.6g}"
+    second = "none" if found.second_best is None else f"{found.second_best:.6g}"
     lines = [
-        f"method {document['method']}: hypothesis {document['position_index']}, "
-        f"{document['velocity_index']}, {document['evaluated']} evaluated",
-        f"criterion {document['criterion']:.6g}, second best {second}, unique {document['unique']}",
+        f"method {found.method}: hypothesis {list(found.position_index)}, "
+        f"{list(found.velocity_index)}, {found.evaluated} evaluated",
+        f"criterion {found.criterion:.6g}, second best {second}, unique {found.unique}",
     ]
-    if "height_offset" in document:
-        lines.append(f"height offset {document['height_offset']:.3f} m, measured minus mapped")
-    if document["t_G"]:
-        t_G = "t_G from {min:.2f} to {max:.2f}, middle {mid:.2f} (measurements)"
-        lines.append(t_G.format(**document["t_G"]))
-    return "\n".join([*lines, text])
+    if found.height_offset is not None:
+        lines.append(f"height offset {found.height_offset:.3f} m, measured minus mapped")
+    if found.t_G:
+        low, high, middle = found.t_G
+        lines.append(f"t_G from {low:.2f} to {high:.2f}, middle {middle:.2f} (measurements)")
+    return "\n".join([*lines, table(("", "fix", "correction"), rows, right=("fix", "correction"))])

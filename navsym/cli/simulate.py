@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import inspect
 from collections.abc import Container
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
-from navsym.cli._choice import one_of
+from navsym.cli._options import called_options
 from navsym.cli._progress import Progress
 from navsym.cli.output import emit, table
 
@@ -30,25 +29,12 @@ def command(
 
     Example: navsym simulate multistructure --runs 200 --seed 1
     """
-    from navsym.claims.paper import experiment_names, import_paper
-    from navsym.core.errors import DomainError
+    import navsym as nav
+    from navsym.studies.experiments import options_of
 
-    one_of(name, experiment_names(), "name")
-    if seed < 0:
-        raise DomainError(f"expected a seed of at least 0; got {seed}; choose another", where="--seed")
-    # A study takes seed, progress and perhaps runs, steps, journal; as_table gives headings and rows of its document.
-    module = import_paper(f"{name}.experiment.study")
-    given = {"runs": runs, "steps": steps, "journal": journal}
-    options: dict[str, Any] = {key: value for key, value in given.items() if value is not None}
-    accepted = inspect.signature(module.study).parameters
-    for option in options:
-        if option not in accepted:
-            takes = ", ".join(f"--{key}" for key in ("seed", *given) if key in accepted)
-            message = f"expected an option that {name} has ({takes}); got {option}; leave it out"
-            raise DomainError(message, where=f"--{option}")
-    with Progress("runs", resume=resume(journal, accepted)) as bar:
-        document: dict[str, Any] = module.study(seed=seed, progress=bar.told_by_job, **options)
-    emit(document, as_json=json_, text=lambda: table(*module.as_table(document)))
+    with called_options("simulate"), Progress("runs", resume=resume(journal, options_of(name))) as bar:
+        found = nav.simulate(name, runs=runs, steps=steps, seed=seed, journal=journal, progress=bar.follow)
+    emit(found.document(), as_json=json_, text=lambda: table(*found.rows()))
 
 
 def resume(journal: Path | None, accepted: Container[str]) -> str:

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from navsym.cli._options import called_options
 from navsym.cli._progress import Progress
 from navsym.cli.output import emit
+
+if TYPE_CHECKING:
+    from navsym.studies.run import Study
 
 
 def command(
@@ -34,31 +38,29 @@ def command(
 
     Example: navsym sweep examples/study.json --workers 2
     """
-    from navsym.language.jsonfile import read_json
-    from navsym.studies.plan import sweep_from
-    from navsym.studies.run import run_sweep
+    import navsym as nav
 
-    sweep = sweep_from(read_json(config))
     resume = "finished shards are kept: the same command (without --fresh) goes on from there"
-    with Progress("jobs", resume=resume) as bar:
-        document = run_sweep(
-            sweep,
+    with called_options("sweep"), Progress("jobs", resume=resume) as bar:
+        found = nav.sweep(
+            config,
             workers=workers,
             scheduler=scheduler,
-            folder=out,
+            out=out,
             size=size,
             fresh=fresh,
             patience=patience,
-            progress=bar.told_by_job,
+            progress=bar.follow,
         )
-    emit(document, as_json=json_, text=lambda: as_text(document))
-    return 1 if document["done"] < sweep.jobs else 3 if document["unsaved"] else 0
+    emit(found.document(), as_json=json_, text=lambda: as_text(found))
+    return 1 if found.done < found.plan.jobs else 3 if found.unsaved else 0
 
 
-def as_text(document: dict[str, Any]) -> str:
-    lines = [f"{document['kind']}: {document['done']} of {document['jobs']} jobs, {document['resumed']} resumed"]
-    if "rmse" in document:
-        lines.append("root mean square errors: " + ", ".join(f"{value:.6g}" for value in document["rmse"]))
-    lines += [f"not kept: {item}" for item in document["unsaved"]]
-    lines += [f"T = {row['T']}: {row['lower']} … {row['upper']}" for row in document["rows"] if "T" in row]
+def as_text(found: Study) -> str:
+    """Counts, errors of the filters, and what could not be kept."""
+    lines = [f"{found.plan.kind}: {found.done} of {found.plan.jobs} jobs, {found.resumed} resumed"]
+    if found.rmse:
+        lines.append("root mean square errors: " + ", ".join(f"{value:.6g}" for value in found.rmse))
+    lines += [f"not kept: {item}" for item in found.unsaved]
+    lines += [f"T = {row['T']}: {row['lower']} … {row['upper']}" for row in found.rows if "T" in row]
     return "\n".join(lines)

@@ -1,13 +1,14 @@
-"""A bank of models: what the multi-structure signal may be, as checked arrays.
+"""Banks of models, as checked arrays, and the measurements that they filter.
 
 ``x(k) = F_i x(k-1) + w``, ``z(k) = H_i x(k) + r``, where i = I(k) is a Markov chain. Claims (4)-(6).
 """
 
 from __future__ import annotations
 
+import copy
 import functools
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
@@ -15,25 +16,42 @@ from numpy.typing import NDArray
 
 from navsym.core import arrays
 from navsym.core.errors import EmptyError, NotFiniteError, ShapeError
+from navsym.language.names import only_keys
 
 Array = NDArray[np.float64]
 
+KEYS_OF_MODEL, KEYS_OF_START = ("F", "Q", "H", "R"), ("mean", "covariance", "probabilities")
 
-@dataclass(frozen=True, slots=True, eq=False)
+
+@dataclass(frozen=True, slots=True, eq=False, init=False, repr=False)
 class Bank:
-    """m models of one state x (n,) and one measurement z (p,), over time.
+    """m models of one state x (n,) and one measurement z (p,), over time: ``x' = F_i x + w``, ``z = H_i x + r``.
+
+    models          : one mapping ``{"F", "Q", "H", "R"}`` for each mode; a matrix, or a list of matrices over time
+    mode_transition : (m, m), rows = from, or a list over time; rows sum to one
+    initial         : ``{"mean": (n,) or (m, n), "covariance": (n, n) or (m, n, n), "probabilities": (m,)}`` at step 0
+
+    Afterwards the attributes are read-only arrays, index 0 of the time axis being the step from time 0 to time 1:
 
     F, Q  : (T or 1, m, n, n)  transition matrices and covariances of the process noise
     H     : (T or 1, m, p, n)  observation matrices
     R     : (T or 1, m, p, p)  covariances of the measurement noise
-    mode_transition : (T or 1, m, m), entry [k, i, j] leads from mode i to mode j in step k; rows sum to one
+    mode_transition : (T or 1, m, m), entry [k, i, j] leads from mode i to mode j in step k
     probabilities   : (m,)     of the mode at step 0
     means, covariances : (m, n), (m, n, n) of the state at step 0, given the mode at step 0
     common          : True when all modes start from one Gaussian
 
-    Index 0 of the time axis is the step from time 0 to time 1. Build with :func:`bank`.
     All modes explain the same p numbers: densities over different numbers cannot be compared. A mode in
     which a sensor says nothing has a zero row in H and the spread of that sensor in R.
+
+    Raises ShapeError, NotFiniteError, DomainError, EmptyError, each naming the entry. Source: multistructure:4 to :6.
+
+    >>> import navsym as nav
+    >>> quiet = {"F": [[1]], "Q": [[0.01]], "H": [[1]], "R": [[1]]}
+    >>> bank = nav.Bank([quiet, {**quiet, "Q": [[25]]}], [[0.9, 0.1], [0.2, 0.8]],
+    ...                 {"mean": [0], "covariance": [[1]], "probabilities": [0.5, 0.5]})
+    >>> bank
+    <Bank: 2 modes, 1 states, 1 measurements>
     """
 
     F: Array
@@ -45,6 +63,31 @@ class Bank:
     means: Array
     covariances: Array
     common: bool
+
+    def __init__(self, models: Any, mode_transition: Any, initial: Any) -> None:
+        rows = checked_models(models)
+        check_initial(initial)
+        m = len(rows)
+        F = stacked(rows, "F", functools.partial(arrays.named, why="states by states"))
+        n = F.shape[2]
+        if F.shape[3] != n:
+            raise ShapeError(f"models[0].F: expected a square matrix; got {F.shape[2:]}; give n rows of n numbers")
+        H = stacked(rows, "H", functools.partial(arrays.named, why="measurements by states"))
+        p = H.shape[2]
+        if H.shape[3] != n:
+            raise ShapeError(f"models[0].H: expected {n} columns, one per state; got {H.shape[3]}; match F")
+        Q = stacked(rows, "Q", covariance_of(n, "one row per state"))
+        R = stacked(rows, "R", covariance_of(p, "one row per measurement"))
+        transition = transitions(mode_transition, m)
+        start, spread, common = initial_moments(initial["mean"], initial["covariance"], m, n)
+        probabilities = arrays.probabilities("initial.probabilities", initial["probabilities"], m)
+        values = (F, Q, H, R, transition, probabilities, start, spread, common)
+        for field, value in zip(fields(self), values, strict=True):
+            object.__setattr__(self, field.name, value)
+        check_lengths(self)
+
+    def __repr__(self) -> str:
+        return f"<Bank: {self.modes} modes, {self.states} states, {self.channels} measurements>"
 
     @property
     def modes(self) -> int:
@@ -73,35 +116,25 @@ class Bank:
         return stack[0 if stack.shape[0] == 1 else k - 1]
 
 
-def bank(models: Sequence[Any], mode_transition: Any, mean: Any, covariance: Any, probabilities: Any) -> Bank:
-    """Check, copy and freeze a bank.
-
-    models : one mapping ``{"F", "Q", "H", "R"}`` per mode; a matrix, or a list of matrices over time
-    mode_transition : (m, m), rows = from, or a list over time
-    mean : (n,) or one per mode (m, n);  covariance : (n, n) or one per mode (m, n, n)
-
-    Raises ShapeError, NotFiniteError, DomainError, EmptyError, each naming the entry.
-    """
-    if len(models) == 0:
+def checked_models(models: Any) -> list[Any]:
+    """The models as a list of at least one mapping of known keys."""
+    if isinstance(models, str | Mapping) or not hasattr(models, "__iter__"):
+        raise ShapeError(f"models: expected a list; got {type(models).__name__}; use [ ]")
+    rows = list(models)
+    if not rows:
         raise EmptyError("models: expected at least one model; got none; give F, Q, H and R of each mode")
-    m = len(models)
-    F = stacked(models, "F", functools.partial(arrays.named, why="states by states"))
-    n = F.shape[2]
-    if F.shape[3] != n:
-        raise ShapeError(f"models[0].F: expected a square matrix; got {F.shape[2:]}; give n rows of n numbers")
-    H = stacked(models, "H", functools.partial(arrays.named, why="measurements by states"))
-    p = H.shape[2]
-    if H.shape[3] != n:
-        raise ShapeError(f"models[0].H: expected {n} columns, one per state; got {H.shape[3]}; match F")
-    Q = stacked(models, "Q", covariance_of(n, "one row per state"))
-    R = stacked(models, "R", covariance_of(p, "one row per measurement"))
-    transition = transitions(mode_transition, m)
-    start, spread, common = initial(mean, covariance, m, n)
-    made = Bank(
-        F, Q, H, R, transition, arrays.probabilities("initial.probabilities", probabilities, m), start, spread, common
-    )
-    check_lengths(made)
-    return made
+    for i, model in enumerate(rows):
+        if isinstance(model, Mapping):
+            only_keys(model, KEYS_OF_MODEL, f"models[{i}]")
+    return rows
+
+
+def check_initial(initial: Any) -> None:
+    """Refuse a start without mean, covariance and probabilities, or with anything else."""
+    for key in KEYS_OF_START:
+        if not isinstance(initial, Mapping) or key not in initial:
+            raise ShapeError(f"initial.{key}: expected mean, covariance and probabilities; got no {key}; add it")
+    only_keys(initial, KEYS_OF_START, "initial")
 
 
 def covariance_of(size: int, why: str) -> Any:
@@ -171,7 +204,7 @@ def transitions(value: Any, m: int) -> Array:
     return arrays.frozen(over_time("mode_transition", value, gate))
 
 
-def initial(mean: Any, covariance: Any, m: int, n: int) -> tuple[Array, Array, bool]:
+def initial_moments(mean: Any, covariance: Any, m: int, n: int) -> tuple[Array, Array, bool]:
     """Means (m, n) and covariances (m, n, n) at step 0, and whether they are one Gaussian."""
     common = depth(mean) < 2 and depth(covariance) < 3
     if depth(mean) < 2:
@@ -223,14 +256,18 @@ def measurements_for(made: Bank, values: Any, *, missing: bool = False) -> Array
 
 def table_of(values: Any, p: int) -> Array:
     """Rows of p numbers as an array of floats, NaN for None."""
+    if hasattr(values, "to_numpy"):  # a DataFrame or a Series
+        values = values.to_numpy()
     if isinstance(values, np.ndarray) and values.dtype.kind in "fiu" and values.ndim == 2:
         if values.shape[1] != p:
             raise ShapeError(f"measurements: expected {p} columns, one per row of H; got {values.shape[1]}; match H")
         return np.array(values, dtype=float)
+    if isinstance(values, str | bytes | Mapping) or not hasattr(values, "__iter__"):
+        raise ShapeError(f"measurements: expected rows of {p} numbers; got {type(values).__name__}; give a list")
     rows = list(values)
     table = np.empty((len(rows), p))
     for k, row in enumerate(rows):
-        entries = [row] * p if row is None else (list(row) if np.ndim(row) else [row])
+        entries = [None] * p if row is None else list(row) if isinstance(row, list | tuple | np.ndarray) else [row]
         if len(entries) != p:
             raise ShapeError(f"measurements[{k}]: expected {p} numbers, one per row of H; got {len(entries)}; match H")
         table[k] = [np.nan if e is None else number(e, k) for e in entries]
@@ -244,7 +281,7 @@ def number(value: Any, row: int) -> float:
     return float(value)
 
 
-def memoryless(made: Bank, steps: int) -> Bank:
+def forget_modes(made: Bank, steps: int) -> Bank:
     """The bank with transitions that forget: every row of step k is P[I(k) = i], multistructure:14*.
 
     Printed (14)-(17): the unconditional probabilities of the chain take the place of p^ij(k).
@@ -259,14 +296,6 @@ def memoryless(made: Bank, steps: int) -> Bank:
 
 def with_transition(made: Bank, stack: Array) -> Bank:
     """The same bank with other transition probabilities (T or 1, m, m)."""
-    return Bank(
-        made.F,
-        made.Q,
-        made.H,
-        made.R,
-        arrays.frozen(np.array(stack)),
-        made.probabilities,
-        made.means,
-        made.covariances,
-        made.common,
-    )
+    twin = copy.copy(made)
+    object.__setattr__(twin, "mode_transition", arrays.frozen(np.array(stack)))
+    return twin

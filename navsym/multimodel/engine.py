@@ -1,4 +1,4 @@
-"""The readable engine of the multiple-model filters, and what every engine returns."""
+"""The readable engine of the multiple-model filters, and the estimates that every engine returns."""
 
 from __future__ import annotations
 
@@ -8,7 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from navsym.claims.display import table
 from navsym.core import arrays
+from navsym.core.answers import Answer
 from navsym.multimodel import steps
 from navsym.multimodel.bank import Bank
 from navsym.multimodel.kalman.forms import FORMS, Form
@@ -21,8 +23,8 @@ UNDERFLOW = -745.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Estimates:
-    """What a filter says after every step k = 1 .. T.
+class Estimates(Answer):
+    """Estimates after every step k = 1 .. T; the answer of :func:`navsym.filter`.
 
     probabilities : (T, m)     of the modes, given the measurements so far
     mean          : (T, n)     of the state
@@ -32,6 +34,8 @@ class Estimates:
     impossible    : steps whose measurement has a likelihood below the smallest double under every mode; the
                     weights are right all the same, because they are kept as logarithms
     left_out      : steps whose measurement had to be left out, because even its logarithm has no number
+    engine        : ``compiled`` or ``numpy``, whichever ran
+    notes         : further sentences for people
     """
 
     probabilities: Array
@@ -41,6 +45,62 @@ class Estimates:
     filters_run: int
     impossible: tuple[int, ...] = ()
     left_out: tuple[int, ...] = ()
+    engine: str = "numpy"
+    notes: tuple[str, ...] = ()
+
+    @property
+    def modes(self) -> NDArray[np.intp]:
+        """(T,) index of the most probable mode."""
+        return np.asarray(self.probabilities.argmax(axis=1))
+
+    @property
+    def standard_deviations(self) -> Array:
+        """(T, n) of the state, in its units."""
+        return np.asarray(np.sqrt(np.diagonal(self.covariance, axis1=1, axis2=2).clip(0.0)))
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """Sentences about measurements that no mode explains."""
+        unlikely = (
+            f"step {k}: every mode gives this measurement a likelihood below 1e-323; weighed by logarithms"
+            for k in self.impossible
+            if k not in self.left_out
+        )
+        left = (f"step {k}: the measurement is impossible under every mode; left out" for k in self.left_out)
+        return (*self.notes, *unlikely, *left)
+
+    def document(self) -> dict[str, Any]:
+        """The JSON document of ``navsym filter``."""
+        return {
+            "probabilities": self.probabilities.tolist(),
+            "mean": self.mean.tolist(),
+            "covariance": self.covariance.tolist(),
+            "log_likelihood": self.log_likelihood.tolist(),
+            "filters_run": self.filters_run,
+        }
+
+    def rows(self) -> list[tuple[str, ...]]:
+        """Step, most probable mode, its probability, mean with standard deviations: words for people."""
+        lines = zip(self.modes, self.probabilities, self.mean, self.standard_deviations, strict=True)
+        return [
+            (
+                str(k),
+                str(mode),
+                f"{p.max():.6f}",
+                "  ".join(f"{v:.6g} ({s:.2g})" for v, s in zip(x, spread, strict=True)),
+            )
+            for k, (mode, p, x, spread) in enumerate(lines, start=1)
+        ]
+
+    def __repr__(self) -> str:
+        T, m, n = len(self.mean), self.probabilities.shape[1], self.mean.shape[1]
+        total = self.log_likelihood[-1] if T else 0.0
+        return f"<Estimates: {T} steps, {m} modes, {n} states, log-likelihood {total:.9g}, engine {self.engine}>"
+
+    def _repr_html_(self) -> str:
+        rows = self.rows()
+        shown = rows if len(rows) <= 20 else [*rows[:10], ("…",) * 4, *rows[-10:]]
+        return table(("step", "mode", "probability", "mean (standard deviation)"), shown)
 
 
 def run_in_numpy(rule: Scheme, models: Bank, z: Array, count: int, form: Form = FORMS["joseph"]) -> Estimates:

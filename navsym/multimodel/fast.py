@@ -61,6 +61,7 @@ def run_compiled(rule: Scheme, models: Bank, z: Array, count: int) -> Estimates:
         arrays.frozen(out[3]),
         count,
         tuple(int(k) + 1 for k in np.flatnonzero(out[4] < UNDERFLOW)),
+        engine="compiled",
     )
 
 

@@ -1,21 +1,24 @@
 """Filters for a signal whose model switches: exact, pulsating, K-pulsating, polygaussian, GPB2 and IMM.
 
-One function, :func:`run`, whatever the method; :mod:`navsym.multimodel.steps` says how the
+One function, :func:`run_filter`, whatever the method; :mod:`navsym.multimodel.steps` says how the
 methods differ. Paper: module ``multistructure``.
 """
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from navsym.core.errors import DomainError, NotFiniteError, ShapeError
+from navsym.core.errors import DomainError, NavsymError, NotFiniteError, ShapeError
+from navsym.language.files import called
+from navsym.language.jsonfile import read_json
 from navsym.language.names import only_keys
-from navsym.multimodel.bank import Bank, bank, measurements_for, memoryless
+from navsym.multimodel.bank import Bank, check_initial, forget_modes, measurements_for
 from navsym.multimodel.engine import Estimates, run_in_numpy
 from navsym.multimodel.kalman.forms import form_of
 from navsym.multimodel.steps import require_room, scheme
@@ -24,19 +27,79 @@ Array = NDArray[np.floating[Any]]
 Engine = Literal["auto", "numpy", "compiled"]
 
 KEYS = ("models", "mode_transition", "initial", "measurements", "memoryless", "missing")
-KEYS_OF_MODEL, KEYS_OF_START = ("F", "Q", "H", "R"), ("mean", "covariance", "probabilities")
 
+UNUSED = "mode_transition is not used: polygaussian takes modes that never switch, equation (19)"
 #: Below this many one-step filters the compiled loops do not pay for being loaded.
 WORTH_COMPILING = 200_000
 
 
-def run(
+def filter(
+    bank: str | os.PathLike[str] | Mapping[str, Any] | Bank,
+    z: Any = None,
+    method: str = "pulsating",
+    *,
+    depth: int | None = None,
+    memoryless: bool = False,
+    missing: bool = False,
+    form: str = "joseph",
+    engine: Engine = "auto",
+) -> Estimates:
+    """Mode probabilities, mean, covariance and log-likelihood of a signal whose model switches, after every step.
+
+    bank       : path of a bank file (JSON), its document, or a :class:`Bank`
+    z          : measurements (T, p), the first row at step 1: an array, lists, or a DataFrame; default: the file's
+    method     : ``exact``, ``pulsating``, ``k-pulsating``, ``gpb2``, ``imm`` or ``polygaussian``
+    depth      : K of k-pulsating, steps between two mergers; default 2
+    memoryless : the printed (14)-(17): the unconditional P[I(k) = i] in the place of p^ij(k)
+    missing    : NaN or None is a number that did not come, instead of an error
+    form       : of covariances: ``joseph``, or the factors ``qr``, ``potter``, ``ud``, which keep twice the digits
+    engine     : ``auto``, ``numpy`` or ``compiled``
+
+    The exact posterior is a mixture with one Gaussian for every sequence of modes. Every method branches it, weighs
+    the branches by the likelihoods of their innovations, and merges groups of them; the groups tell methods apart.
+
+    Returns :class:`Estimates`. Raises NavsymError: ``shape``, ``domain``, ``not-finite``, ``empty``, ``too-large``
+    (a tree that does not fit), ``unknown-symbol`` (a key). Source: multistructure:10 to :19.
+
+    >>> import navsym as nav
+    >>> nav.filter("examples/switching.json", method="imm")
+    <Estimates: 30 steps, 2 modes, 1 states, log-likelihood 13.5329349, engine numpy>
+    >>> model = {"F": [[1]], "Q": [[0.1]], "H": [[1]], "R": [[1]]}
+    >>> bank = nav.Bank([model, {**model, "R": [[100]]}], [[0.9, 0.1], [0.2, 0.8]],
+    ...                 {"mean": [0], "covariance": [[1]], "probabilities": [0.5, 0.5]})
+    >>> nav.filter(bank, [[0.1], [30.0]], method="gpb2").modes.tolist()
+    [0, 1]
+    """
+    place = called(bank) if isinstance(bank, str | os.PathLike) else "filter"
+    try:
+        for name, value in (("memoryless", memoryless), ("missing", missing)):
+            switch({name: value}, name)
+        if isinstance(bank, Bank):
+            given = BankFile(bank, z, memoryless, missing)
+        else:
+            document = read_json(bank) if isinstance(bank, str | os.PathLike) else bank
+            given = read_bank(document, z)
+        return run_filter(
+            given.bank,
+            given.measurements,
+            method,
+            depth=depth,
+            memoryless=memoryless or given.memoryless,
+            missing=missing or given.missing,
+            form=form,
+            engine=engine,
+        )
+    except NavsymError as error:
+        raise error if error.where.startswith(place) else error.at(place) from None
+
+
+def run_filter(
     models: Bank,
     measurements: Any,
     method: str = "pulsating",
     *,
     depth: int | None = None,
-    forget: bool = False,
+    memoryless: bool = False,
     missing: bool = False,
     engine: Engine = "auto",
     form: str = "joseph",
@@ -45,7 +108,7 @@ def run(
 
     method  : exact, pulsating, k-pulsating, gpb2, imm or polygaussian
     depth   : K of k-pulsating
-    forget  : the printed (14)-(17): the unconditional P[I(k) = i] in place of p^ij(k)
+    memoryless : the printed (14)-(17): the unconditional P[I(k) = i] in place of p^ij(k)
     missing : NaN or None is a number that did not come, instead of an error
     engine  : compiled loops, numpy, or whichever fits
     form    : how covariances are kept: joseph, or the factors qr, potter, ud (numpy only), which keep twice the
@@ -56,24 +119,30 @@ def run(
     """
     rule, kept = scheme(method, depth), form_of(form)
     z = measurements_for(models, measurements, missing=missing)
-    if forget:
+    if memoryless:
         if rule.branching == "own":
             raise DomainError(
                 "memoryless: expected a method that switches modes; got polygaussian, whose modes "
                 "never switch; choose another method"
             )
-        models = memoryless(models, len(z))
+        models = forget_modes(models, len(z))
     roots = 1 if models.common else models.modes
+    notes = (UNUSED,) if rule.branching == "own" and not never_switches(models.mode_transition) else ()
     count = require_room(rule, models.modes, models.states, roots, len(z))
     if compiled_fits(count, engine, form):
-        from navsym.multimodel import fast as multimodel_fast
+        from navsym.multimodel.fast import run_compiled
 
-        return in_range(multimodel_fast.run_compiled(rule, models, z, count))
+        return replace(require_range(run_compiled(rule, models, z, count)), notes=notes)
     with np.errstate(over="ignore", invalid="ignore"):  # what leaves the range is refused, with its step
-        return in_range(run_in_numpy(rule, models, z, count, kept))
+        return replace(require_range(run_in_numpy(rule, models, z, count, kept)), notes=notes)
 
 
-def in_range(estimate: Estimates) -> Estimates:
+def never_switches(mode_transition: Array) -> bool:
+    """Whether no mode ever leads to another."""
+    return bool((mode_transition == np.eye(mode_transition.shape[-1])).all())
+
+
+def require_range(estimate: Estimates) -> Estimates:
     """The same estimate; NotFiniteError with the first step at which a number left the range of a double."""
     series = (estimate.mean, estimate.covariance, estimate.probabilities, estimate.log_likelihood)
     lost = [~np.isfinite(values.reshape(len(values), -1)).all(axis=1) for values in series]
@@ -88,7 +157,7 @@ def in_range(estimate: Estimates) -> Estimates:
 
 def compiled_fits(count: int, engine: Engine, form: str) -> bool:
     """Whether to use the compiled loops, which know Joseph's form: asked for, or worth their start-up time."""
-    if engine not in ("auto", "numpy", "compiled"):
+    if not isinstance(engine, str) or engine not in ("auto", "numpy", "compiled"):
         raise DomainError(f"engine: expected auto, numpy or compiled; got {engine!r}; choose one")
     if form != "joseph":
         if engine == "compiled":
@@ -101,17 +170,17 @@ def compiled_fits(count: int, engine: Engine, form: str) -> bool:
 class BankFile:
     """A bank file as data.
 
-    forget  : ``"memoryless": true``, the printed (14)-(17)
-    missing : ``"missing": true``, null is a number that did not come
+    memoryless : the printed (14)-(17)
+    missing    : null is a number that did not come
     """
 
     bank: Bank
     measurements: Any
-    forget: bool
+    memoryless: bool
     missing: bool
 
 
-def read_bank(document: Mapping[str, Any]) -> BankFile:
+def read_bank(document: Mapping[str, Any], z: Any = None) -> BankFile:
     """Read the keys of a bank file: m models of n states, mode_transition (m, m) with rows = from, measurements (T, p).
 
     Raises DomainError and ShapeError that name the key.
@@ -122,28 +191,21 @@ def read_bank(document: Mapping[str, Any]) -> BankFile:
             f"{type(document).__name__}; see the interfaces"
         )
     only_keys(document, KEYS)
-    for key in KEYS[:4]:
+    needed = KEYS[:4] if z is None else KEYS[:3]
+    for key in needed:
         if key not in document:
             raise ShapeError(
                 f"{key}: expected the keys models, mode_transition, initial and measurements; got no {key}; add it"
             )
-    start = document["initial"]
-    for key in ("mean", "covariance", "probabilities"):
-        if not isinstance(start, Mapping) or key not in start:
-            raise ShapeError(f"initial.{key}: expected mean, covariance and probabilities; got no {key}; add it")
+    check_initial(document["initial"])
     for key in ("models", "measurements"):
-        if not isinstance(document[key], list):
+        if not isinstance(document.get(key, []), list | tuple | np.ndarray):
             raise ShapeError(f"{key}: expected a list; got {type(document[key]).__name__}; use [ ]")
-    only_keys(start, KEYS_OF_START, "initial")
-    for i, model in enumerate(document["models"]):
-        if isinstance(model, Mapping):
-            only_keys(model, KEYS_OF_MODEL, f"models[{i}]")
     for key in KEYS[:3]:
         no_truth_values(document[key], key)
-    made = bank(
-        document["models"], document["mode_transition"], start["mean"], start["covariance"], start["probabilities"]
-    )
-    return BankFile(made, document["measurements"], switch(document, "memoryless"), switch(document, "missing"))
+    made = Bank(document["models"], document["mode_transition"], document["initial"])
+    measurements = document["measurements"] if z is None else z
+    return BankFile(made, measurements, switch(document, "memoryless"), switch(document, "missing"))
 
 
 def no_truth_values(value: Any, place: str) -> None:

@@ -74,7 +74,7 @@ def scheme(method: str, depth: int | None = None) -> Scheme:
 
     Raises DomainError for an unknown method, a depth below one, or a depth where none belongs.
     """
-    if method not in SCHEMES:
+    if not isinstance(method, str) or method not in SCHEMES:
         raise DomainError(f"method: expected one of {', '.join(SCHEMES)}; got {method!r}; choose one")
     known = SCHEMES[method]
     if depth is None:

@@ -10,15 +10,19 @@ import contextlib
 import json
 import os
 import tempfile
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from navsym.claims.display import table
+from navsym.core.answers import Answer
 from navsym.core.errors import DomainError, MissingEngineError, NavsymError
 from navsym.core.store import default_path, key_of
+from navsym.language.jsonfile import read_json
+from navsym.language.names import shown
 from navsym.studies.cluster import PATIENCE, answers, cluster
-from navsym.studies.plan import Sweep, fingerprint, run_job, summary
+from navsym.studies.plan import Sweep, fingerprint, run_job, summary, sweep_from
 from navsym.verification.fingerprints import rooms_digest
 
 # Rows of a study in Parquet files, one for each shard of consecutive jobs, written whole or not at all.
@@ -103,6 +107,105 @@ class Shards:
         except BaseException:
             Path(name).unlink(missing_ok=True)
             raise
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Study(Answer):
+    """Rows of a study of many jobs; the answer of :func:`sweep`.
+
+    plan    : what was asked; rows : one table of plain numbers for each finished job, by its index
+    resumed : jobs that an earlier run had kept; folder : of the shards; unsaved : shards that could not be kept
+    """
+
+    plan: Sweep
+    rows: list[dict[str, Any]]
+    resumed: int
+    folder: str
+    unsaved: tuple[str, ...] = ()
+
+    @property
+    def done(self) -> int:
+        """Number of finished jobs."""
+        return len(self.rows)
+
+    @property
+    def rmse(self) -> tuple[float, ...]:
+        """Root mean square error of every state over all jobs; empty for kinds other than ``filter``."""
+        return tuple(summary(self.plan, self.rows).get("rmse", ()))
+
+    def document(self) -> dict[str, Any]:
+        """The JSON document of ``navsym sweep``."""
+        kept = {"resumed": self.resumed, "folder": self.folder, "unsaved": list(self.unsaved)}
+        return {**summary(self.plan, self.rows), **kept}
+
+    def __repr__(self) -> str:
+        return f"<Study {self.plan.kind}: {self.done} of {self.plan.jobs} jobs, {self.resumed} resumed>"
+
+    def _repr_html_(self) -> str:
+        heads = list(self.rows[0]) if self.rows else []
+        return table(heads, [[row.get(name) for name in heads] for row in self.rows[:50]])
+
+
+def sweep(
+    config: str | os.PathLike[str] | Mapping[str, Any] | Sweep,
+    *,
+    workers: int = 0,
+    scheduler: str | None = None,
+    out: str | os.PathLike[str] | None = None,
+    size: int | None = None,
+    fresh: bool = False,
+    patience: float = PATIENCE,
+    progress: Callable[[int, int], None] = lambda done, of: None,
+) -> Study:
+    """Run a Monte-Carlo or parameter study; stopped, a second call goes on where it was.
+
+    config    : path of a JSON file, its document, or a Sweep: ``{"kind": "filter", "jobs": 100, "seed": 1, …}``;
+                kinds are ``filter``, ``terrain``, ``guaranteed``, ``phases`` and ``two-stage``
+    workers   : processes of this machine; 0 computes in this one
+    scheduler : ``tcp://host:port`` of a running dask scheduler, instead of processes of this machine
+    out       : folder of the shards in Parquet; default: one in the cache
+    size      : jobs in a shard, which is kept whole; default: at most 100
+    fresh     : compute everything again; patience : seconds without any worker until a scheduler is given up
+    progress  : called with (finished, all)
+
+    Every job has its own seed sequence: the rows are the same bits whoever computes them.
+
+    Returns :class:`Study`. Raises NavsymError of the kinds ``domain`` and ``missing`` (no dask, no pyarrow, no
+    scheduler).
+
+    >>> import navsym as nav
+    >>> found = nav.sweep({"kind": "guaranteed", "jobs": 2, "degree": 1}, out="shards")
+    >>> [(row["T"], round(float(row["upper"]), 9)) for row in found.rows]
+    [('1', 2.0), ('2', 1.0)]
+    """
+    for name, value in (("workers", workers), ("size", size)):
+        if value is not None and (isinstance(value, bool) or not isinstance(value, int) or value < 0):
+            raise DomainError(f"expected a whole number; got {shown(value)}; give one", where=f"sweep: {name}")
+    if size == 0:
+        raise DomainError("expected at least one job in a shard; got 0; give more", where="sweep: size")
+    plan = config if isinstance(config, Sweep) else read_plan(config)
+    try:
+        folder = None if out is None else Path(out)
+    except TypeError:
+        raise DomainError(f"expected a folder; got {shown(out)}; give its path", where="sweep: out") from None
+    document = run_sweep(
+        plan,
+        workers=workers,
+        scheduler=scheduler,
+        folder=folder,
+        size=size,
+        fresh=fresh,
+        patience=patience,
+        progress=progress,
+    )
+    return Study(plan, document["rows"], document["resumed"], document["folder"], tuple(document["unsaved"]))
+
+
+def read_plan(config: Any) -> Sweep:
+    """The study of a configuration file, or of its document."""
+    if isinstance(config, str | os.PathLike):
+        return sweep_from(read_json(config))
+    return sweep_from(config)
 
 
 def run_sweep(

@@ -1,4 +1,4 @@
-"""From a configuration to a fix: what ``navsym locate`` does, as a function."""
+"""From a configuration to a fix."""
 
 from __future__ import annotations
 
@@ -12,7 +12,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from navsym.core.errors import DomainError
+from navsym.claims.display import table
+from navsym.core.answers import Answer
+from navsym.core.errors import DomainError, NavsymError
+from navsym.language.files import called
+from navsym.language.jsonfile import read_json
 from navsym.terrain.centre import demand_estimable, one_sided
 from navsym.terrain.configuration import read_search
 from navsym.terrain.heights import ON_MAP, TerrainMap
@@ -30,11 +34,68 @@ MUCH_BETTER = 0.25
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Fix:
-    """The document of the interface, and remarks for people."""
+class Fix(Answer):
+    """A position over a height map, from a measured profile; the answer of :func:`locate`.
 
-    document: dict[str, Any]
+    x, y, vx, vy : position and velocity at the last time, in map units and map units per second
+    correction   : of x, y (2,) and of vx, vy (2,) at the last time
+    position_index, velocity_index : (i, j), (Vi, Vj) of the best hypothesis, from -N to N
+    criterion    : its sum of squared height differences, m^2; second_best : of the best other one, None without
+    unique       : True or False where proved, else None
+    t_G          : (min, max, mid) of the sequential method, counted in measurements; quadratic : (A2, A1, A0)
+    evaluated    : hypotheses evaluated over all measurements
+    height_offset : mean of the measured less the mapped heights, m; None unless it was asked for
+    criterion_map : (My, Mx), row = j, inf off the map; None unless it was asked for
+    remarks      : sentences about units, the edge of the grid, ties
+    """
+
+    method: str
+    x: float
+    y: float
+    vx: float
+    vy: float
+    correction: tuple[Array, Array]
+    position_index: tuple[int, int]
+    velocity_index: tuple[int, int]
+    criterion: float
+    second_best: float | None
+    unique: bool | None
+    t_G: tuple[float, float, float] | None
+    quadratic: tuple[float, float, float] | None
+    evaluated: int
+    height_offset: float | None
+    criterion_map: Array | None
     remarks: tuple[str, ...]
+
+    def document(self) -> dict[str, Any]:
+        """The JSON document of ``navsym locate``: plain numbers, no infinities."""
+        moves = (float(value) for part in self.correction for value in part)
+        document: dict[str, Any] = {
+            "method": self.method,
+            "position_index": list(self.position_index),
+            "velocity_index": list(self.velocity_index),
+            "criterion": self.criterion,
+            "second_best": self.second_best,
+            "unique": self.unique,
+            "t_G": None if self.t_G is None else dict(zip(("min", "max", "mid"), self.t_G, strict=True)),
+            "quadratic": None if self.quadratic is None else list(self.quadratic),
+            "fix": {"x": self.x, "y": self.y, "vx": self.vx, "vy": self.vy},
+            "correction": dict(zip(("dx", "dy", "dvx", "dvy"), moves, strict=True)),
+            "evaluated": self.evaluated,
+        }
+        if self.height_offset is not None:
+            document["height_offset"] = self.height_offset
+        if self.criterion_map is not None:
+            document["criterion_map"] = [[finite_or_none(q) for q in row] for row in self.criterion_map]
+        return document
+
+    def __repr__(self) -> str:
+        return f"<Fix x {self.x:.6g}, y {self.y:.6g}: method {self.method}, criterion {self.criterion:.6g}>"
+
+    def _repr_html_(self) -> str:
+        moves = (float(value) for part in self.correction for value in part)
+        values = zip(("x", "y", "vx", "vy"), (self.x, self.y, self.vx, self.vy), moves, strict=True)
+        return table(("", "fix", "correction"), [(name, f"{at:.3f}", f"{move:+.3f}") for name, at, move in values])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -53,38 +114,79 @@ class Correction:
 
 
 def locate(
-    config: Mapping[str, Any],
+    config: str | os.PathLike[str] | Mapping[str, Any],
     method: str = "full",
     *,
-    folder: str | os.PathLike[str] = ".",
+    folder: str | os.PathLike[str] | None = None,
     maps: bool = False,
     offset_free: bool = False,
 ) -> Fix:
-    """Fix the position of a track over a map.
+    """Fix the position of a track over a height map, from the terrain heights measured along it.
 
-    config : ``map``, ``track``, ``position``, ``velocity``, ``interpolation`` as the interfaces have them.
+    config : path of a JSON file, or its document: ``map``, ``track``, ``position``, ``velocity``; heights and columns
+             may be arrays, the track a DataFrame with columns t, x, y, h. Metres, seconds.
              A geographic tile lies in degrees (x longitude, y latitude) unless its map block says
              ``"frame": "local"``: then in metres east and north of its south-west node.
     method : ``position``, ``full`` (t0 the first time), ``sequential`` (the paper's) or ``refined``
-    folder : where relative file names start ; maps : add the criterion over positions, row = j
-    offset_free : the criterion without its mean, for heights with an unknown constant error; the document then
-             has its estimate as ``height_offset``, measured minus mapped
+    folder : where relative file names start; default: that of the file
+    maps   : add the criterion over positions, row = j
+    offset_free : the criterion without its mean, for heights with an unknown constant error; adds its estimate
 
-    t_G and quadratic count time in measurements from 0, as the paper does. The fix holds at the
-    last time; the inertial velocity there is the difference quotient of the last two positions.
-    Raises NavsymError of the kinds in the interfaces.
+    The best hypothesis has the least ``sum (h_k - H(x_k + i Dx + Vi DVx tau_k, y_k + …))^2``, H bilinear between
+    ``heights[row, column]`` at (x0 + column dx, y0 + row dy). The fix holds at the last time, where the inertial
+    velocity is the difference quotient of the last two positions. t_G counts time in measurements from 0.
+
+    Returns :class:`Fix`. Raises NavsymError: ``shape``, ``domain``, ``outside-map``, ``nodata``, ``not-estimable``
+    (flat terrain), ``unknown-symbol`` (a key), ``too-large``, ``missing-file``. Source: terrain_search:2 to :14.
+
+    >>> import navsym as nav
+    >>> fix = nav.locate("examples/flight.json")
+    >>> fix
+    <Fix x 2000, y 1500: method full, criterion 31.7641>
+    >>> fix.position_index, fix.velocity_index
+    ((4, -2), (0, 0))
+    >>> nav.locate({"map": {}})
+    Traceback (most recent call last):
+    navsym.core.errors.EmptyError: locate: map: heights: expected a value; got none; add it
     """
-    if method not in METHODS:
-        raise DomainError(f"--method: expected one of {', '.join(METHODS)}; got {method!r:.40}; choose one")
-    terrain, track, grid = read_search(config, Path(folder), velocity_needed=method != "position")
-    answer = SEARCHES[method](terrain, track, grid, offset_free)
-    document = written(method, track, grid, answer)
-    if offset_free:
-        document["height_offset"] = height_offset(terrain, track, answer)
-    if maps:
-        rows = criterion_map(terrain, track, grid, answer, offset_free)
-        document["criterion_map"] = [[nullable(q) for q in row] for row in rows]
-    return Fix(document, remarks(terrain, track, grid, answer, offset_free))
+    if isinstance(config, str | os.PathLike):
+        document, place = read_json(config), called(config)
+        folder = Path(config).parent if folder is None else folder
+    else:
+        document, place = config, "locate"
+    try:
+        if not isinstance(method, str) or method not in METHODS:
+            message = f"--method: expected one of {', '.join(METHODS)}; got {method!r:.40}; choose one"
+            raise DomainError(message)
+        terrain, track, grid = read_search(document, Path(folder or "."), velocity_needed=method != "position")
+        return fix_of(terrain, track, grid, method, maps, offset_free)
+    except NavsymError as error:
+        raise error if error.where.startswith(place) else error.at(place) from None
+
+
+def fix_of(terrain: TerrainMap, track: Profile, grid: Hypotheses, method: str, maps: bool, offset_free: bool) -> Fix:
+    """The answer of one method."""
+    found = SEARCHES[method](terrain, track, grid, offset_free)
+    (x, y), velocity = (track.x[-1], track.y[-1]), track.final_velocity
+    return Fix(
+        method,
+        float(x) + float(found.shift[0]),
+        float(y) + float(found.shift[1]),
+        velocity[0] + float(found.velocity[0]),
+        velocity[1] + float(found.velocity[1]),
+        (found.shift, found.velocity),
+        found.index[:2],
+        found.index[2:],
+        found.criterion,
+        finite_or_none(found.second_best),
+        None if is_alone(grid, found) else found.unique,
+        found.t_G,
+        found.quadratic,
+        found.evaluated,
+        height_offset(terrain, track, found) if offset_free else None,
+        criterion_map(terrain, track, grid, found, offset_free) if maps else None,
+        remarks(terrain, track, grid, found, offset_free),
+    )
 
 
 # The methods
@@ -155,37 +257,15 @@ def by_refinement(terrain: TerrainMap, track: Profile, grid: Hypotheses, offset_
 SEARCHES = {"position": by_position, "full": by_full, "sequential": by_sequence, "refined": by_refinement}
 
 
-# The document
+# What the answer says beside the correction
 
 
-def nullable(value: float) -> float | None:
+def finite_or_none(value: float) -> float | None:
     """A finite number, or None for infinity and nan, which JSON does not have."""
     return float(value) if math.isfinite(value) else None
 
 
-def written(method: str, track: Profile, grid: Hypotheses, answer: Correction) -> dict[str, Any]:
-    """The document of the interface: plain numbers, no infinities."""
-    i, j, Vi, Vj = answer.index
-    vx, vy = track.final_velocity
-    names = ("min", "max", "mid")
-    t_G = None if answer.t_G is None else dict(zip(names, answer.t_G, strict=True))
-    dx, dy, dvx, dvy = (float(v) for v in (*answer.shift, *answer.velocity))
-    return {
-        "method": method,
-        "position_index": [i, j],
-        "velocity_index": [Vi, Vj],
-        "criterion": answer.criterion,
-        "second_best": nullable(answer.second_best),
-        "unique": None if alone(grid, answer) else answer.unique,
-        "t_G": t_G,
-        "quadratic": None if answer.quadratic is None else list(answer.quadratic),
-        "fix": {"x": float(track.x[-1]) + dx, "y": float(track.y[-1]) + dy, "vx": vx + dvx, "vy": vy + dvy},
-        "correction": {"dx": dx, "dy": dy, "dvx": dvx, "dvy": dvy},
-        "evaluated": answer.evaluated,
-    }
-
-
-def alone(grid: Hypotheses, answer: Correction) -> bool:
+def is_alone(grid: Hypotheses, answer: Correction) -> bool:
     """Whether no other hypothesis could be compared with the best one, although there are others."""
     counts = (*grid.half_count, *grid.velocity_half_count)
     return math.isinf(answer.second_best) and any(n > 0 for n in counts)
@@ -218,7 +298,7 @@ def remarks(
     ends = (*grid.half_count, *grid.velocity_half_count)
     if any(n > 0 and abs(k) == n for k, n in zip(answer.index, ends, strict=True)):
         found.append("the best hypothesis lies on the edge of the grid; widen it")
-    if alone(grid, answer):
+    if is_alone(grid, answer):
         found.append(
             "no other hypothesis lies on known ground, so that nothing was compared: are the steps in the unit of the "
             'map? A tile in degrees is searched in metres with "frame": "local"'

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Sequence
+import re
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
@@ -16,7 +17,19 @@ from typing import Any
 import flint
 import numpy as np
 
-from navsym.core.errors import DomainError, NotEstimableError, ShapeError, TooLargeError
+from navsym.claims.display import shortened, table
+from navsym.core.answers import Answer
+from navsym.core.errors import (
+    DomainError,
+    ExpressionSyntaxError,
+    NavsymError,
+    NotEstimableError,
+    ShapeError,
+    TooLargeError,
+)
+from navsym.core.exact import to_fmpq, to_fraction
+from navsym.core.numbers import Number
+from navsym.language.names import shown
 from navsym.models.earth import observability_rows, power_rows
 
 # Exact rational enclosures of a positive number, and their decimal strings.
@@ -147,7 +160,7 @@ def largest_root(polynomial: flint.fmpq_poly, digits: int) -> Enclosure:
         low = middle * flint.fmpq(2**bits - 1, 2**bits)
         high = middle * flint.fmpq(2**bits + 1, 2**bits)
         if roots_above(polynomial, high) == 0 and roots_above(polynomial, low) >= 1:
-            return Enclosure(fraction(low), fraction(high))
+            return Enclosure(to_fraction(low), to_fraction(high))
     raise TooLargeError(f"expected {digits} digits of a root; got fewer within the limits; ask for fewer")
 
 
@@ -168,20 +181,8 @@ def newton_from_above(polynomial: flint.fmpq_poly, bits: int) -> flint.fmpq | No
                 return None
             x = (x - step).mid()
             if abs(step) <= abs(x) * flint.arb(2) ** (20 - bits):
-                return dyadic(x)
+                return to_fmpq(x)
     return None
-
-
-def dyadic(x: flint.arb) -> flint.fmpq:
-    """The exact value of a ball of radius zero."""
-    mantissa, exponent = x.man_exp()
-    power = int(exponent)
-    return flint.fmpq(mantissa) * (flint.fmpq(2**power) if power >= 0 else flint.fmpq(1, 2**-power))
-
-
-def fraction(x: flint.fmpq) -> Fraction:
-    """The same rational number for the standard library."""
-    return Fraction(int(x.p), int(x.q))
 
 
 def condition_by_polynomial(rows: Rows, *, digits: int, equilibrate: bool = False) -> Enclosure:
@@ -278,7 +279,7 @@ def perron_root(matrix: flint.arb_mat, digits: int) -> Enclosure | None:
         if round_ % 3 == 0:
             lower, upper = quotients(once * x, x)
             if upper - lower <= wanted * lower:
-                return Enclosure(fraction(dyadic(lower)), fraction(dyadic(upper)))
+                return Enclosure(to_fraction(lower), to_fraction(upper))
     return None
 
 
@@ -430,35 +431,150 @@ def double_condition(matrix: np.ndarray) -> float:
     return float(values[0] / values[-1]) if values[-1] > 0 else math.inf
 
 
-# -- document --------------------------------------------------------------------------------------
+# -- the verb --------------------------------------------------------------------------------------
+
+MATRICES = ("N_p", "N_pN", "N_f", "N_s")
+#: A decimal or a fraction of two: nothing else and nothing huge.
+DECIMAL = r"\d{1,60}(?:\.\d{0,60})?(?:[eE][+-]?\d{1,3})?"
+QUOTIENT = re.compile(rf"[+-]?{DECIMAL}(?:/{DECIMAL})?", re.ASCII)
 
 
-def warnings_of(found: dict[str, Conditioning]) -> list[str]:
-    """One sentence for each double-precision value that is off by more than ten per cent."""
-    return [
-        f"{c.name}: the double-precision value {c.double:.4e} is off by {100 * c.error:+.1f} %"
-        for c in found.values()
-        if not c.trustworthy
-    ]
+@dataclass(frozen=True, slots=True)
+class MatrixCondition:
+    """Condition number of one matrix.
 
-
-def document(
-    n: int, rho: Fraction | str, tau: Fraction | str, digits: int, progress: Callable[[str], None] = lambda matrix: None
-) -> dict[str, Any]:
-    """What ``navsym condition`` prints: enclosures, double-precision values and warnings for the four matrices.
-
-    Arguments as in :func:`condition_numbers`, and the same errors; ``digits`` significant digits in the enclosures.
+    value          : :class:`navsym.Number`, certified
+    double         : what singular values in double precision give; None when they overflow
+    relative_error : double / value - 1; None without a double
+    trustworthy    : whether the double is within a tenth of the value
     """
-    found = condition_numbers(n, rho, tau, digits=digits, progress=progress)
-    parts: dict[str, Any] = {"n": n, "rho": str(Fraction(rho)), "tau": str(Fraction(tau)), "digits": digits}
-    for name, c in found.items():
-        lower, upper = c.enclosure.decimal(digits)
-        finite = math.isfinite(c.double)
-        parts[name] = {
-            "lower": lower,
-            "upper": upper,
-            "double": c.double if finite else None,
-            "relative_error": c.error if finite else None,
-            "trustworthy": c.trustworthy,
+
+    name: str
+    value: Number
+    double: float | None
+    relative_error: float | None
+    trustworthy: bool
+
+    def document(self) -> dict[str, Any]:
+        """The part of the verb's document that belongs to this matrix."""
+        return {
+            **self.value.document(),
+            "double": self.double,
+            "relative_error": self.relative_error,
+            "trustworthy": self.trustworthy,
         }
-    return parts | {"warnings": warnings_of(found)}
+
+
+@dataclass(frozen=True, slots=True)
+class Conditions(Answer):
+    """Condition numbers of the four observability matrices of a polynomial motion; the answer of :func:`condition`.
+
+    N_p, N_pN : of the measured positions, with their own and with unit columns
+    N_f, N_s  : of the powers of the step, with their own and with unit columns
+    n, tau, rho, digits : the request; tau in seconds and rho in 1/m, exact
+    """
+
+    n: int
+    tau: Fraction
+    rho: Fraction
+    digits: int
+    N_p: MatrixCondition
+    N_pN: MatrixCondition
+    N_f: MatrixCondition
+    N_s: MatrixCondition
+
+    def __iter__(self) -> Iterator[MatrixCondition]:
+        return iter((self.N_p, self.N_pN, self.N_f, self.N_s))
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """One sentence for each double-precision value that is off by more than a tenth."""
+        return tuple(
+            f"{c.name}: the double-precision value {c.double or math.inf:.4e} is off by "
+            f"{100 * (math.inf if c.relative_error is None else c.relative_error):+.1f} %"
+            for c in self
+            if not c.trustworthy
+        )
+
+    def document(self) -> dict[str, Any]:
+        """The JSON document of ``navsym condition``."""
+        head = {"n": self.n, "rho": str(self.rho), "tau": str(self.tau), "digits": self.digits}
+        return {**head, **{c.name: c.document() for c in self}, "warnings": list(self.warnings)}
+
+    def __repr__(self) -> str:
+        values = ", ".join(f"{c.name} {float(c.value):.6g}" for c in self)
+        return f"<Conditions n = {self.n}: {values}>"
+
+    def _repr_html_(self) -> str:
+        rows = [(c.name, shortened(c.value.lower, 20), c.double, c.trustworthy) for c in self]
+        return table(("matrix", "condition number", "double precision", "trustworthy"), rows)
+
+
+def condition(
+    n: int,
+    tau: str | int | Fraction = "0.2",
+    rho: str | int | Fraction = "1/6371000",
+    digits: int = 30,
+    *,
+    progress: Callable[[str], None] = lambda matrix: None,
+) -> Conditions:
+    """Certified 2-norm condition numbers of the observability matrices of a polynomial motion seen by its position.
+
+    n        : order of the motion, 1 to 120: n states, n positions
+    tau, rho : step in seconds, positive, and factor of the speed in 1/m, not zero: text, int or Fraction, read exactly
+    digits   : significant digits of the enclosures, 1 to 2000
+    progress : called with the name of each matrix that is done
+
+    The condition number is the largest over the smallest singular value. Both are roots of the characteristic
+    polynomial of ``N^T N``, enclosed in exact arithmetic; beside it stands what double precision makes of it.
+
+    Returns :class:`Conditions`. Raises NavsymError of the kinds ``domain`` (a float, a value out of range),
+    ``syntax`` (text that is no number) and ``too-large``. Source: trajectory:table.
+
+    >>> import navsym as nav
+    >>> found = nav.condition(3, tau="0.2")
+    >>> print(found.N_f.value)
+    70.92313380667867...
+    >>> found.N_f.trustworthy
+    True
+    """
+    for name, number in (("n", n), ("digits", digits)):
+        if isinstance(number, bool) or not isinstance(number, int):
+            raise DomainError(f"expected an integer; got {shown(number)}; give one", where=f"condition: {name}")
+    exact_tau, exact_rho = read_exactly(tau, "condition: tau"), read_exactly(rho, "condition: rho")
+    try:
+        found = condition_numbers(n, exact_rho, exact_tau, digits=digits, progress=progress)
+    except NavsymError as error:
+        raise error.at("condition") from None
+    parts = {name: matrix_condition(c, digits) for name, c in found.items()}
+    return Conditions(n, exact_tau, exact_rho, digits, **parts)
+
+
+def matrix_condition(found: Conditioning, digits: int) -> MatrixCondition:
+    """The answer for one matrix, its enclosure rounded outwards to ``digits`` significant digits."""
+    number, finite = Number(*found.enclosure.decimal(digits)), math.isfinite(found.double)
+    double, error = (found.double, found.error) if finite else (None, None)
+    return MatrixCondition(found.name, number, double, error, found.trustworthy)
+
+
+def read_exactly(value: Any, where: str) -> Fraction:
+    """The exact number of a decimal or a fraction, between 1e-100 and 1e100 or zero.
+
+    value : text such as ``"1/6371000"``, an int, a Fraction or a Decimal
+    """
+    if isinstance(value, str):
+        text = value.strip()
+    else:
+        from navsym.language.values import write_value
+
+        text = write_value(value, where)
+    if not QUOTIENT.fullmatch(text):
+        message = f"expected a decimal or a fraction such as 1/6371000; got {text[:60]!r}; write it so"
+        raise ExpressionSyntaxError(message, where=where)
+    above, _, below = text.partition("/")
+    if below and Fraction(below) == 0:
+        raise ExpressionSyntaxError("expected a denominator that is not zero; got 0; correct it", where=where)
+    number = Fraction(above) / (Fraction(below) if below else 1)
+    if number and not Fraction(1, 10**100) < abs(number) < 10**100:
+        raise TooLargeError("expected a number between 1e-100 and 1e100; got another; rescale it", where=where)
+    return number

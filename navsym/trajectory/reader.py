@@ -11,14 +11,15 @@ import csv
 import math
 import os
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from navsym.core.arrays import named, numbers
 from navsym.core.errors import (
     DomainError,
     DuplicateError,
@@ -126,25 +127,63 @@ def line_of(error: NavsymError) -> str:
     return error.where.rsplit(" ", 1)[-1]
 
 
-def read_track(path: str | os.PathLike[str], policy: Policy = "strict") -> TrackFile:
+def read_track(path: str | os.PathLike[str], policy: Policy | str = "strict") -> TrackFile:
     """Read a CSV or RTKLIB ``.pos`` track.
 
     Raises NavsymError with the line: unreadable text, a missing column, a value that is not a finite
     number, a latitude beyond 90 degrees, a time that stands still or goes back.
     """
+    log = new_log(called(path), policy)
+    text = text_of(read_bytes(path, LARGEST_FILE), log)
+    return checked_track(rtklib_rows(text, log) if looks_like_rtklib(text) else csv_rows(text, log), log)
+
+
+def new_log(where: str, policy: Policy | str) -> Log:
+    """Where problems of a track go; DomainError for a policy that does not exist."""
     if policy not in ("strict", "repair"):
         raise DomainError(f"expected strict or repair; got {policy!r:.40}; choose one", where="policy")
-    log = Log(called(path), policy)
-    text = text_of(read_bytes(path, LARGEST_FILE), log)
-    rows = list(rtklib_rows(text, log) if looks_like_rtklib(text) else csv_rows(text, log))
-    rows = in_order([row for row in rows if acceptable(row, log)], log)
+    return Log(where, policy)  # type: ignore[arg-type]
+
+
+def checked_track(rows: Iterable[Row], log: Log) -> TrackFile:
+    """The track of rows that pass every check, with what was repaired."""
+    kept = in_order([row for row in rows if acceptable(row, log)], log)
     log.check()
-    if not rows:
+    if not kept:
         raise EmptyError(
             "expected rows of time, latitude, longitude, height; got none; check the file", where=log.where
         )
-    sanity(rows, log)
-    return assembled(rows, log)
+    sanity(kept, log)
+    return assembled(kept, log)
+
+
+# -- columns -------------------------------------------------------------------------------------------
+
+
+def read_columns(data: Any, policy: Policy | str = "strict") -> TrackFile:
+    """A track from a DataFrame or mapping with columns as a CSV names them, or from an array (N, 4).
+
+    Seconds, degrees, metres; row k counts from 1 where a file has its line. The same checks as for a file.
+    """
+    log = new_log("track", policy)
+    if hasattr(data, "keys") and hasattr(data, "__getitem__"):
+        header = [str(name) for name in data.keys()]  # noqa: SIM118
+        places, scale = columns_of(header, log, 0)
+        names = list(data.keys())
+        columns = [data[names[places[name]]] for name in ("t", "lat", "lon", "h")]
+    else:
+        scale, table = 1.0, named("track", data, (None, 4), "rows of t, lat, lon, height")
+        columns = list(table.T)
+    values = [numbers("track", column, "one entry per row").ravel().tolist() for column in columns]
+    if len({len(column) for column in values}) > 1:
+        lengths = [len(column) for column in values]
+        raise ShapeError(f"expected columns of one length; got {lengths}; complete them", where=log.where)
+    if len(values[0]) > LARGEST_ROWS:
+        raise too_long(log)
+    rows = (row_of(row, k, [f"{x}" for x in row], None, log) for k, row in enumerate(zip(*values, strict=True), 1))
+    return checked_track(
+        (Row(row.line, row.t, row.lat, row.lon, row.h * scale) for row in rows if row is not None), log
+    )
 
 
 # -- text ----------------------------------------------------------------------------------------------

@@ -16,8 +16,8 @@ from collections.abc import Callable
 import numpy as np
 from filterpy.kalman import IMMEstimator, KalmanFilter, MMAEFilterBank
 
-from navsym.multimodel.bank import Bank, bank
-from navsym.multimodel.filters import run
+from navsym.multimodel.bank import Bank
+from navsym.multimodel.filters import run_filter
 
 SIZES = ((3, 3), (8, 6), (16, 9))
 
@@ -34,7 +34,11 @@ def random_bank(modes: int, states: int, seed: int = 0) -> Bank:
         models.append({"F": F, "Q": 0.1 * (i + 1) * np.eye(states), "H": H, "R": (i + 1.0) * np.eye(channels)})
     switch = np.full((modes, modes), 0.1 / max(modes - 1, 1))
     np.fill_diagonal(switch, 0.9)
-    return bank(models, switch, np.zeros(states), np.eye(states), np.full(modes, 1 / modes))
+    return Bank(
+        models,
+        switch,
+        {"mean": np.zeros(states), "covariance": np.eye(states), "probabilities": np.full(modes, 1 / modes)},
+    )
 
 
 def peers(models: Bank) -> list[KalmanFilter]:
@@ -91,7 +95,7 @@ def single_runs(sizes: tuple[tuple[int, int], ...], steps: int, peer_steps: int,
         for method, peer in (("imm", filterpy_imm), ("polygaussian", filterpy_bank)):
 
             def ours(method: str = method, models: Bank = models, z: np.ndarray = z) -> object:
-                return run(models, z, method, engine="compiled")
+                return run_filter(models, z, method, engine="compiled")
 
             def theirs(peer=peer, models: Bank = models, z: np.ndarray = z) -> object:
                 return peer(models, z[:peer_steps])

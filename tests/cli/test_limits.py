@@ -7,10 +7,9 @@ import json
 import numpy as np
 import pytest
 
-from navsym.cli.limits import FORMULAS
 from navsym.cli.main import run
 from navsym.language.expression import parse, symbol
-from navsym.trajectory.limits import least_error, rule
+from navsym.trajectory.limits import FORMULAS, least_error, rule
 
 
 def limits(capsys, *options):

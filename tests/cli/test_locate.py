@@ -299,7 +299,7 @@ def test_heights_that_repeat_every_second_node_are_not_flat(method):
         "position": {"step": [50, 40], "half_count": [3, 3]},
         "velocity": {"step": [1, 1], "half_count": [0, 0]},
     }
-    answer = locate(document, method).document
+    answer = locate(document, method).document()
     assert answer["criterion"] == answer["second_best"] == 0.0 and answer["unique"] is False
 
 
@@ -337,7 +337,7 @@ def test_absurd_values_anywhere_are_refused_or_harmless():
             inner = inner[key]
         inner[path[-1]] = generator.choice(ABSURD)
         try:
-            answer = locate(document, generator.choice(METHODS), maps=True).document
+            answer = locate(document, generator.choice(METHODS), maps=True).document()
         except NavsymError as error:
             assert "expected" in error.message and "got" in error.message
         else:

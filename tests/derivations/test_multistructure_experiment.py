@@ -6,9 +6,9 @@ from numpy.testing import assert_allclose
 
 from navsym.core.errors import DomainError, NoDataError, NotFiniteError, ShapeError, TooLargeError
 from navsym.multimodel import memory as multimodel_memory
-from navsym.multimodel.bank import bank
+from navsym.multimodel.bank import Bank
 from navsym.multimodel.batch import imm_in_numpy, run_batch
-from navsym.multimodel.filters import run
+from navsym.multimodel.filters import run_filter
 from navsym_papers.multistructure.experiment import road as multimodel_road
 from navsym_papers.multistructure.experiment import study as multimodel_study
 from tests.benchmarks import multimodel as benchmark
@@ -28,7 +28,7 @@ def signals(models):
 def test_a_batch_is_its_runs_one_by_one(models, signals, method):
     mean, covariance, probabilities, logs = run_batch(models, signals.measurements, method)
     for row, z in enumerate(signals.measurements):
-        alone = run(models, z, method, engine="numpy")
+        alone = run_filter(models, z, method, engine="numpy")
         scale = np.sqrt(np.diagonal(alone.covariance, axis1=1, axis2=2))
         assert_allclose(mean[row] / scale, alone.mean / scale, atol=1e-11)
         outer = scale[:, :, None] * scale[:, None, :]
@@ -40,15 +40,13 @@ def test_a_batch_is_its_runs_one_by_one(models, signals, method):
 def test_the_batch_equals_stacked_numpy():
     rng = np.random.default_rng(4)
     eye = np.eye(2)
-    made = bank(
+    made = Bank(
         [
             {"F": 0.9 * eye, "Q": (i + 1) * eye, "H": rng.standard_normal((2, 2)), "R": [[2.0, 0.5], [0.5, 1.0]]}
             for i in range(3)
         ],
         [[0.8, 0.1, 0.1], [0.2, 0.7, 0.1], [0.1, 0.1, 0.8]],
-        [0.0, 1.0],
-        eye,
-        [0.2, 0.3, 0.5],
+        {"mean": [0.0, 1.0], "covariance": eye, "probabilities": [0.2, 0.3, 0.5]},
     )
     z = 2.0 * rng.standard_normal((21, 7, 2))
     for ours, theirs in zip(run_batch(made, z, "imm"), imm_in_numpy(made, z), strict=True):
@@ -60,7 +58,7 @@ def test_a_run_beyond_all_logarithms_does_not_spoil_its_batch(models, signals):
     z[2, 3] = 1e200
     mean = run_batch(models, z, "imm")[0]
     assert np.isfinite(mean).all()
-    assert_allclose(mean[3], run(models, z[3], "imm", engine="compiled").mean, rtol=1e-9, atol=1e-15)
+    assert_allclose(mean[3], run_filter(models, z[3], "imm", engine="compiled").mean, rtol=1e-9, atol=1e-15)
 
 
 def test_bad_batches_are_refused(models, signals):
@@ -105,7 +103,7 @@ def test_the_one_pass_step_is_the_pulsating_filter(models, signals):
     space = multimodel_memory.Workspace(
         {"mean": models.means[0], "P": models.covariances[0], "probabilities": models.probabilities}
     )
-    expected = run(models, z, "pulsating", engine="numpy")
+    expected = run_filter(models, z, "pulsating", engine="numpy")
     for k, row in enumerate(z, start=1):
         multimodel_memory.pulsating_step(models, k, row, space)
         scale = np.sqrt(np.diagonal(expected.covariance[k - 1]))

@@ -11,8 +11,8 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.stats import binom, chi2
 
-from navsym.multimodel.bank import bank
-from navsym.multimodel.filters import run
+from navsym.multimodel.bank import Bank
+from navsym.multimodel.filters import run_filter
 from navsym.multimodel.kalman import steps as kalman
 from tests.honesty.linear_cases import CASES, STEPS, batch_least_squares, simulate
 
@@ -75,7 +75,7 @@ def test_a_filter_told_the_wrong_noise_is_noticed():
 def test_every_form_agrees_with_least_squares_over_the_whole_series(name, form):
     case = CASES[name]
     _, measured = simulate(case, 1, seed=3)
-    estimate = run(one_mode(case), measured[:, 0], "pulsating", form=form)
+    estimate = run_filter(one_mode(case), measured[:, 0], "pulsating", form=form)
     agree(case, measured[:, 0], estimate)
 
 
@@ -85,13 +85,15 @@ def test_every_form_agrees_with_least_squares_over_the_whole_series(name, form):
 def test_every_method_with_one_mode_agrees_with_least_squares(name, method, engine):
     case = CASES[name]
     _, measured = simulate(case, 1, seed=5)
-    estimate = run(one_mode(case), measured[:, 0], method, depth=2 if method == "k-pulsating" else None, engine=engine)
+    estimate = run_filter(
+        one_mode(case), measured[:, 0], method, depth=2 if method == "k-pulsating" else None, engine=engine
+    )
     agree(case, measured[:, 0], estimate)
 
 
 def one_mode(case):
     model = {key: list(getattr(case, key)) for key in "FQHR"}
-    return bank([model], [[1.0]], case.mean, case.P, [1.0])
+    return Bank([model], [[1.0]], {"mean": case.mean, "covariance": case.P, "probabilities": [1.0]})
 
 
 def agree(case, measurements, estimate):

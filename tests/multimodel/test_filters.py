@@ -8,9 +8,9 @@ from numpy.testing import assert_allclose
 
 from navsym.core.errors import DomainError, EmptyError, NavsymError, NotFiniteError, ShapeError, TooLargeError
 from navsym.multimodel import steps as steps_module
-from navsym.multimodel.bank import bank
+from navsym.multimodel.bank import Bank
 from navsym.multimodel.exact import Leaf, Model, fractions_kit, run_exactly
-from navsym.multimodel.filters import read_bank, run
+from navsym.multimodel.filters import read_bank, run_filter
 from navsym.multimodel.kalman import steps as kalman
 from navsym.multimodel.steps import SCHEMES, filters_at, scheme
 
@@ -45,12 +45,14 @@ def rational_bank(seed):
 
 def in_floats(models, transition, start):
     floats = [{key: np.array(value, dtype=float) for key, value in model.items()} for model in models]
-    return bank(
+    return Bank(
         floats,
         np.array(transition, dtype=float),
-        np.array(start["mean"], dtype=float),
-        np.array(start["covariance"], dtype=float),
-        np.array(start["probabilities"], dtype=float),
+        {
+            "mean": np.array(start["mean"], dtype=float),
+            "covariance": np.array(start["covariance"], dtype=float),
+            "probabilities": np.array(start["probabilities"], dtype=float),
+        },
     )
 
 
@@ -76,7 +78,7 @@ def in_fractions(method, models, transition, start, z):
 def test_fifty_random_banks_agree_with_rational_arithmetic(method, seed):
     models, transition, start, z = rational_bank(seed)
     exact = in_fractions(method, models, transition, start, z)
-    found = run(in_floats(models, transition, start), z.astype(float), method, engine="numpy")
+    found = run_filter(in_floats(models, transition, start), z.astype(float), method, engine="numpy")
     assert_allclose(found.probabilities, [[float(v) for v in s.probabilities] for s in exact], atol=1e-12)
     assert_allclose(found.mean, [[float(v) for v in s.mean] for s in exact], rtol=1e-11, atol=1e-12)
     truth = [[[float(v) for v in row] for row in s.covariance] for s in exact]
@@ -105,12 +107,10 @@ def random_bank(seed, modes=3, states=3, channels=2, **options):
     transition = rng.random((modes, modes)) + 0.1
     transition /= transition.sum(axis=1, keepdims=True)
     prior = rng.random(modes) + 0.1
-    return bank(
+    return Bank(
         models,
         options.get("transition", transition),
-        rng.standard_normal(states),
-        2 * np.eye(states),
-        prior / prior.sum(),
+        {"mean": rng.standard_normal(states), "covariance": 2 * np.eye(states), "probabilities": prior / prior.sum()},
     )
 
 
@@ -126,18 +126,24 @@ def assert_same(a, b, atol=1e-12, fields=FIELDS):
 @pytest.mark.parametrize("seed", range(4))
 def test_k_pulsating_over_the_whole_series_is_exact(seed):
     models, z = random_bank(seed), series(seed, 5)
-    assert_same(run(models, z, "k-pulsating", depth=5), run(models, z, "exact"), fields=(*FIELDS, "filters_run"))
+    assert_same(
+        run_filter(models, z, "k-pulsating", depth=5), run_filter(models, z, "exact"), fields=(*FIELDS, "filters_run")
+    )
 
 
 def test_k_pulsating_with_one_step_is_pulsating():
     models, z = random_bank(1), series(1, 12)
-    assert_same(run(models, z, "k-pulsating", depth=1), run(models, z, "pulsating"), fields=(*FIELDS, "filters_run"))
+    assert_same(
+        run_filter(models, z, "k-pulsating", depth=1),
+        run_filter(models, z, "pulsating"),
+        fields=(*FIELDS, "filters_run"),
+    )
 
 
 @pytest.mark.parametrize("method", METHODS)
 def test_one_mode_is_the_kalman_filter(method):
     models, z = random_bank(2, modes=1), series(2, 8)
-    found = run(models, z, method)
+    found = run_filter(models, z, method)
     mean, P, total = models.means[0], models.covariances[0], 0.0
     for k, row in enumerate(z):
         mean, P = kalman.predict(mean, P, models.F[0, 0], models.Q[0, 0])
@@ -150,29 +156,27 @@ def test_one_mode_is_the_kalman_filter(method):
 
 def test_without_switching_exact_imm_and_gpb2_are_polygaussian():
     models, z = random_bank(3, transition=np.eye(3)), series(3, 6)
-    reference = run(models, z, "polygaussian")
+    reference = run_filter(models, z, "polygaussian")
     for method in ("exact", "imm", "gpb2"):
-        assert_same(run(models, z, method), reference)
+        assert_same(run_filter(models, z, method), reference)
 
 
 def test_modes_that_are_equal_change_nothing():
     models, z = random_bank(4, modes=1), series(4, 6)
-    twins = bank(
+    twins = Bank(
         [{"F": models.F[0, 0], "Q": models.Q[0, 0], "H": models.H[0, 0], "R": models.R[0, 0]}] * 3,
         np.full((3, 3), 1 / 3),
-        models.means[0],
-        models.covariances[0],
-        [0.2, 0.3, 0.5],
+        {"mean": models.means[0], "covariance": models.covariances[0], "probabilities": [0.2, 0.3, 0.5]},
     )
-    single = run(models, z, "exact")
+    single = run_filter(models, z, "exact")
     for method in METHODS:
-        found = run(twins, z, method)
+        found = run_filter(twins, z, method)
         assert_same(found, single, fields=("mean", "covariance", "log_likelihood"))
 
 
 def test_memoryless_weights_are_the_printed_formula():
     models, z = random_bank(5), series(5, 4)
-    found = run(models, z, "pulsating", forget=True)
+    found = run_filter(models, z, "pulsating", memoryless=True)
     mean, P, prior = models.means[0], models.covariances[0], models.probabilities
     for k, row in enumerate(z):
         prior = prior @ models.mode_transition[0]
@@ -189,7 +193,7 @@ def test_memoryless_weights_are_the_printed_formula():
 
 def test_memoryless_and_markov_differ_from_the_second_step_on():
     models, z = random_bank(6), series(6, 3)
-    a, b = run(models, z, "pulsating"), run(models, z, "pulsating", forget=True)
+    a, b = run_filter(models, z, "pulsating"), run_filter(models, z, "pulsating", memoryless=True)
     assert_allclose(a.probabilities[0], b.probabilities[0], atol=1e-14)
     assert np.abs(a.probabilities[1] - b.probabilities[1]).max() > 1e-6
 
@@ -200,8 +204,8 @@ def test_compiled_loops_equal_their_twin(method, diagonal):
     steps = 5 if method == "exact" else 40
     models, z = random_bank(7, diagonal=diagonal), series(7, steps)
     assert_same(
-        run(models, z, method, engine="compiled"),
-        run(models, z, method, engine="numpy"),
+        run_filter(models, z, method, engine="compiled"),
+        run_filter(models, z, method, engine="numpy"),
         fields=(*FIELDS, "filters_run", "impossible"),
     )
 
@@ -218,12 +222,17 @@ def test_compiled_loops_take_gaps_and_models_over_time():
         for i in range(9)
     ]
     rows = rng.random((steps, 9, 9)) + 0.1
-    made = bank(models, rows / rows.sum(axis=2, keepdims=True), [0.0, 1.0], np.eye(2), np.full(9, 1 / 9))
+    made = Bank(
+        models,
+        rows / rows.sum(axis=2, keepdims=True),
+        {"mean": [0.0, 1.0], "covariance": np.eye(2), "probabilities": np.full(9, 1 / 9)},
+    )
     z = series(8, steps)
     z[3], z[5, 0] = np.nan, np.nan
     for method in ("imm", "pulsating", "gpb2", "polygaussian"):
         assert_same(
-            run(made, z, method, engine="compiled", missing=True), run(made, z, method, engine="numpy", missing=True)
+            run_filter(made, z, method, engine="compiled", missing=True),
+            run_filter(made, z, method, engine="numpy", missing=True),
         )
 
 
@@ -233,7 +242,7 @@ def test_a_gap_is_a_prediction(method, engine):
     models = random_bank(9)
     z = series(9, 3)
     gap = np.vstack([z[:2], np.full((1, 2), np.nan)])
-    found = run(models, gap, method, engine=engine, missing=True)
+    found = run_filter(models, gap, method, engine=engine, missing=True)
     assert_allclose(found.log_likelihood[2], found.log_likelihood[1], rtol=1e-12)
     if method != "polygaussian":
         ahead = found.probabilities[1] @ models.mode_transition[0]
@@ -244,8 +253,8 @@ def test_a_gap_is_a_prediction(method, engine):
 def test_a_likelihood_of_1e_minus_300_does_not_kill_a_mode(engine):
     one = {"F": [[1.0]], "Q": [[0.0]], "H": [[1.0]], "R": [[1.0]]}
     far = {"F": [[1.0]], "Q": [[0.0]], "H": [[1.0]], "R": [[1e4]]}
-    made = bank([one, far], np.eye(2), [0.0], [[1e-6]], [0.5, 0.5])
-    found = run(made, [[200.0], *([[0.0]] * 4400)], "polygaussian", engine=engine)
+    made = Bank([one, far], np.eye(2), {"mean": [0.0], "covariance": [[1e-6]], "probabilities": [0.5, 0.5]})
+    found = run_filter(made, [[200.0], *([[0.0]] * 4400)], "polygaussian", engine=engine)
     assert found.probabilities[0, 0] == 0.0
     # Each later zero is a hundred times likelier under the narrow mode; 1e-8680 is caught up with in the end.
     assert found.probabilities[-1, 0] == pytest.approx(1.0)
@@ -255,8 +264,8 @@ def test_a_likelihood_of_1e_minus_300_does_not_kill_a_mode(engine):
 @pytest.mark.parametrize("method", ["pulsating", "k-pulsating", "gpb2", "imm", "polygaussian"])
 def test_modes_whose_weights_underflow_and_come_back_are_the_same_in_both_engines(method, seed):
     models, z = random_bank(seed, modes=5), 200.0 * series(seed, 9)
-    assert run(models, z, method, engine="numpy").impossible
-    compiled, readable = run(models, z, method, engine="compiled"), run(models, z, method, engine="numpy")
+    assert run_filter(models, z, method, engine="numpy").impossible
+    compiled, readable = run_filter(models, z, method, engine="compiled"), run_filter(models, z, method, engine="numpy")
     assert_allclose(compiled.probabilities, readable.probabilities, atol=1e-9)
     assert_allclose(compiled.mean, readable.mean, rtol=1e-9, atol=1e-9)
     assert_allclose(compiled.log_likelihood, readable.log_likelihood, rtol=1e-11)
@@ -267,7 +276,7 @@ def test_an_impossible_measurement_is_reported_and_the_estimate_continues(engine
     models = random_bank(10)
     z = series(10, 4)
     z[1] = 1e6
-    found = run(models, z, "imm", engine=engine)
+    found = run_filter(models, z, "imm", engine=engine)
     assert found.impossible[0] == 2
     assert found.left_out == ()
     assert all(np.isfinite(getattr(found, name)).all() for name in FIELDS)
@@ -277,18 +286,18 @@ def test_an_impossible_measurement_is_reported_and_the_estimate_continues(engine
 def test_a_measurement_beyond_all_logarithms_is_left_out(engine):
     models, z = random_bank(11), series(11, 4)
     z[1] = 1e200
-    found = run(models, z, "pulsating", engine=engine)
+    found = run_filter(models, z, "pulsating", engine=engine)
     assert found.left_out == (2,)
     blank = z.copy()
     blank[1] = np.nan
-    assert_same(found, run(models, blank, "pulsating", missing=True))
+    assert_same(found, run_filter(models, blank, "pulsating", missing=True))
 
 
 def test_an_unreachable_mode_has_probability_zero_and_no_nan():
     models = random_bank(12, transition=[[0.5, 0.5, 0.0]] * 3)
     for method in ("imm", "gpb2", "pulsating", "exact"):
         for engine in ("numpy", "compiled"):
-            found = run(models, series(12, 4), method, engine=engine)
+            found = run_filter(models, series(12, 4), method, engine=engine)
             assert_allclose(found.probabilities[:, 2], 0.0)
             assert np.isfinite(found.mean).all()
 
@@ -313,7 +322,7 @@ def test_filters_run_counts_the_kalman_filters_of_every_step(method, depth, step
         return original(models, k, branches, *rest)
 
     monkeypatch.setattr(steps_module, "filtered", counted)
-    found = run(random_bank(13), series(13, steps), method, depth=depth, engine="numpy")
+    found = run_filter(random_bank(13), series(13, steps), method, depth=depth, engine="numpy")
     assert found.filters_run == sum(ran)
 
 
@@ -321,16 +330,15 @@ def test_means_of_every_mode_start_the_tree_with_one_root_each():
     rule = scheme("exact")
     assert [filters_at(rule, 3, 3, k) for k in (1, 2, 3)] == [9, 27, 81]
     models = random_bank(14)
-    apart = bank(
+    apart = Bank(
         [{k: getattr(models, k)[0, i] for k in "FQHR"} for i in range(3)],
         models.mode_transition[0],
-        np.arange(9.0).reshape(3, 3),
-        np.eye(3),
-        models.probabilities,
+        {"mean": np.arange(9.0).reshape(3, 3), "covariance": np.eye(3), "probabilities": models.probabilities},
     )
     for method in METHODS:
         assert_same(
-            run(apart, series(14, 4), method, engine="numpy"), run(apart, series(14, 4), method, engine="compiled")
+            run_filter(apart, series(14, 4), method, engine="numpy"),
+            run_filter(apart, series(14, 4), method, engine="compiled"),
         )
 
 
@@ -348,7 +356,7 @@ def document(**changes):
 
 def attempt(given, method="pulsating", **options):
     read = read_bank(given)
-    return run(read.bank, read.measurements, method, forget=read.forget, missing=read.missing, **options)
+    return run_filter(read.bank, read.measurements, method, memoryless=read.memoryless, missing=read.missing, **options)
 
 
 def with_model(**changes):
@@ -408,7 +416,7 @@ def test_a_tree_that_cannot_fit_is_refused_with_its_count():
 def test_bad_requests_are_refused(method, options, match):
     models = random_bank(0)
     with pytest.raises(DomainError, match=match):
-        run(models, series(0, 2), method, **options)
+        run_filter(models, series(0, 2), method, **options)
 
 
 def test_missing_numbers_are_taken_on_request():

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from navsym.multimodel.bank import bank
+from navsym.multimodel.bank import Bank
 from navsym.multimodel.batch import run_batch
 from navsym.multimodel.exact import Leaf, Model, fractions_kit, run_exactly
-from navsym.multimodel.filters import run
+from navsym.multimodel.filters import run_filter
 from navsym.multimodel.kalman.forms import FORMS
 from navsym.multimodel.steps import SCHEMES, scheme
 
@@ -71,10 +71,10 @@ def with_gaps(z):
 
 
 def float_bank(models, switch, start):
-    return bank(
+    return Bank(
         [{key: [floats(a) for a in model[key]] for key in model} for model in models],
         [floats(matrix) for matrix in switch],
-        *map(floats, start),
+        dict(zip(("mean", "covariance", "probabilities"), map(floats, start), strict=True)),
     )
 
 
@@ -105,9 +105,9 @@ def test_fifty_changing_banks_with_gaps_agree_with_rational_arithmetic_in_every_
         exact = exact_steps(method, models, switch, start, z, depth)
         made, series = float_bank(models, switch, start), with_gaps(z)
         for engine in ("numpy", "compiled"):
-            assert_agrees(run(made, series, method, depth=depth, missing=True, engine=engine), exact)
+            assert_agrees(run_filter(made, series, method, depth=depth, missing=True, engine=engine), exact)
         for form in FORMS if seed < 10 else ():
-            assert_agrees(run(made, series, method, depth=depth, missing=True, form=form), exact)
+            assert_agrees(run_filter(made, series, method, depth=depth, missing=True, form=form), exact)
 
 
 @pytest.mark.parametrize("method", SCHEMES)

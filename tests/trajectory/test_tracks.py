@@ -13,7 +13,6 @@ from scipy.stats import chi2
 
 from navsym.core.errors import DomainError, EmptyError, ShapeError
 from navsym.models.earth import cartesian, local_axes, meridian_radius, prime_vertical_radius
-from navsym.trajectory.document import document
 from navsym.trajectory.estimate import (
     METHODS,
     Settings,
@@ -29,7 +28,15 @@ from navsym.trajectory.estimate import (
     window_of,
 )
 from navsym.trajectory.kernels.tracks import noise_root, noise_shape, transition
+from navsym.trajectory.motion import describe_motion
+from navsym.trajectory.reader import TrackFile
 from navsym.trajectory.tracks import Fit, Noise, Positions, isolated_outliers, noise_of, project_positions
+
+
+def document(t, positions, settings, lines=None):
+    """The document of positions that stand in no file."""
+    rows = np.arange(1, len(t) + 1) if lines is None else lines
+    return describe_motion(TrackFile(t, t, t, t, None, rows), positions, settings).document()
 
 
 def flat_track(t, position):

@@ -15,9 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navsym.core.errors import NoDataError
-from navsym.multimodel.bank import Bank, bank
+from navsym.multimodel.bank import Bank
 from navsym.multimodel.engine import Estimates
-from navsym.multimodel.filters import run
+from navsym.multimodel.filters import run_filter
 
 Array = NDArray[np.floating[Any]]
 QUALITY = ("fixed", "float", "single")
@@ -112,12 +112,14 @@ def road_bank(road: Road, *, walk: float = 0.003, stay: float = 0.98) -> Bank:
     switch = np.full((3, 3), (1.0 - stay) / 2.0)
     np.fill_diagonal(switch, stay)
     first = road.measurement[~np.isnan(road.measurement).any(axis=1)][0]
-    return bank(models, switch, first, DEVIATIONS[2] ** 2 * eye, np.full(3, 1.0 / 3.0))
+    return Bank(
+        models, switch, {"mean": first, "covariance": DEVIATIONS[2] ** 2 * eye, "probabilities": np.full(3, 1.0 / 3.0)}
+    )
 
 
 def judge(road: Road, method: str = "imm", *, depth: int | None = None) -> Judgement:
     """Filter the run without its flags, and compare the most probable mode with them."""
-    estimate = run(road_bank(road), road.measurement, method, depth=depth, missing=True)
+    estimate = run_filter(road_bank(road), road.measurement, method, depth=depth, missing=True)
     seen = road.flag >= 0
     guess = estimate.probabilities.argmax(axis=1)
     confusion = np.zeros((3, 3), dtype=np.intp)

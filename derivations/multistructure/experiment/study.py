@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navsym.core.errors import DomainError
-from navsym.multimodel.bank import Bank, bank
-from navsym.multimodel.filters import run
+from navsym.multimodel.bank import Bank
+from navsym.multimodel.filters import run_filter
 from navsym.multimodel.steps import require_room, scheme
 from navsym_papers.multistructure.experiment.modes import MODES, SchulerChannel
 
@@ -122,11 +122,13 @@ def filter_all(
     models: Bank, signals: Signals, method: str, depth: int | None = None, step: Callable[[], None] = lambda: None
 ) -> Filtered:
     """One method on every series, and its time per step; ``step`` is called after each series."""
-    run(models, signals.measurements[0], method, depth=depth, engine="compiled")  # load the loops before the clock
+    run_filter(
+        models, signals.measurements[0], method, depth=depth, engine="compiled"
+    )  # load the loops before the clock
     began = time.perf_counter()
     found = []
     for z in signals.measurements:
-        found.append(run(models, z, method, depth=depth, engine="compiled"))
+        found.append(run_filter(models, z, method, depth=depth, engine="compiled"))
         step()
     elapsed = time.perf_counter() - began
     steps = signals.measurements.shape[1]
@@ -146,7 +148,7 @@ def seconds_of_long_run(models: Bank, signals: Signals, method: str, depth: int 
     """Seconds per step in one long series, where starting a run does not count."""
     z = np.resize(signals.measurements, (LONG, models.channels))
     began = time.perf_counter()
-    run(models, z, method, depth=depth, engine="compiled")
+    run_filter(models, z, method, depth=depth, engine="compiled")
     return (time.perf_counter() - began) / LONG
 
 
@@ -233,7 +235,11 @@ def switching_study(stays: Sequence[float], runs: int, steps: int, seed: int = 1
         switch = np.full((3, 3), (1.0 - stay) / 2.0)
         np.fill_diagonal(switch, stay)
         base = schuler_bank()
-        models = bank(SchulerChannel().models(), switch, base.means[0], base.covariances[0], np.full(3, 1.0 / 3.0))
+        models = Bank(
+            SchulerChannel().models(),
+            switch,
+            {"mean": base.means[0], "covariance": base.covariances[0], "probabilities": np.full(3, 1.0 / 3.0)},
+        )
         out[stay] = compare(models, METHODS[:-1], runs, steps, seed, exact=False)
     return out
 
@@ -242,7 +248,11 @@ def schuler_bank(channel: SchulerChannel | None = None) -> Bank:
     """The Schuler channel with its three modes as a bank."""
     channel = channel or SchulerChannel()
     start = channel.start()
-    return bank(channel.models(), channel.mode_transition(), start["mean"], start["covariance"], start["probabilities"])
+    return Bank(
+        channel.models(),
+        channel.mode_transition(),
+        {"mean": start["mean"], "covariance": start["covariance"], "probabilities": start["probabilities"]},
+    )
 
 
 def study(

@@ -82,6 +82,6 @@ FORMS = {
 
 def form_of(name: str) -> Form:
     """The form of a name; DomainError for another."""
-    if name not in FORMS:
+    if not isinstance(name, str) or name not in FORMS:
         raise DomainError(f"form: expected one of {', '.join(FORMS)}; got {name!r}; choose one")
     return FORMS[name]

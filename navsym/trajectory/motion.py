@@ -1,0 +1,238 @@
+"""Velocity and acceleration of measured positions, with what a person should know of them."""
+
+from __future__ import annotations
+
+import math
+import os
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from navsym.claims.display import table
+from navsym.core.answers import Answer
+from navsym.core.arrays import Array, frozen
+from navsym.core.errors import DomainError, NavsymError
+from navsym.language.files import called
+from navsym.language.names import shown
+from navsym.trajectory.estimate import Settings, estimate, filtered, gaps, largest_gap, window_of
+from navsym.trajectory.reader import TrackFile, read_columns, read_track
+from navsym.trajectory.tracks import Noise, Positions, Rows, TrackEstimate, memory, project_positions, usual_step
+
+#: Mean squared normalised innovation outside this range makes the standard deviations doubtful.
+CONSISTENT = (0.5, 2.0)
+#: Steps whose lengths differ by more than this part of the usual step are jitter worth a remark.
+JITTER = 0.5
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Track(Answer):
+    """Velocity and acceleration along a track, East, North, Up of each row; the answer of :func:`track`.
+
+    t             : (N,) times as the file has them, s
+    velocity, velocity_sd         : (N, 3) m/s
+    acceleration, acceleration_sd : (N, 3) m/s^2
+    flags         : one word per row: ``used``, ``doubtful`` or ``outlier``
+    gains         : channel -> gain of the last step in use (empty for methods without one)
+    method, order : as asked; window : its length in s, None for methods without one
+    noise         : :class:`navsym.trajectory.tracks.Noise` of the track; position_sd : (3,) m; memory : s
+    certificate   : exact bounds of the weights of the guaranteed method, else None
+    warnings, repairs : sentences, each naming its line where it has one
+    """
+
+    t: Array
+    velocity: Array
+    velocity_sd: Array
+    acceleration: Array
+    acceleration_sd: Array
+    flags: tuple[str, ...]
+    gains: dict[str, list[float]]
+    method: str
+    order: int
+    window: float | None
+    noise: Noise
+    position_sd: Array
+    memory: float
+    certificate: dict[str, Any] | None
+    warnings: tuple[str, ...]
+    repairs: tuple[str, ...]
+
+    def document(self) -> dict[str, Any]:
+        """The JSON document of ``navsym track``."""
+        return {
+            "method": self.method,
+            "order": self.order,
+            "window": self.window,
+            "rows": len(self.t),
+            "axes": ["east", "north", "up"],
+            "t": self.t.tolist(),
+            "velocity": self.velocity.tolist(),
+            "velocity_sd": self.velocity_sd.tolist(),
+            "acceleration": self.acceleration.tolist(),
+            "acceleration_sd": self.acceleration_sd.tolist(),
+            "flags": list(self.flags),
+            "gains": self.gains,
+            "certificate": self.certificate,
+            "noise": {
+                "position_sd": self.position_sd.tolist(),
+                "density": self.noise.density.tolist(),
+                "memory_seconds": self.memory,
+            },
+            "warnings": list(self.warnings),
+            "repairs": list(self.repairs),
+        }
+
+    def __repr__(self) -> str:
+        fastest = float(np.sqrt((self.velocity**2).sum(axis=1)).max())
+        used = sum(flag == "used" for flag in self.flags)
+        return f"<Track: {len(self.t)} rows, {used} used, method {self.method}, up to {fastest:.4g} m/s>"
+
+    def _repr_html_(self) -> str:
+        heads = ("t, s", "vE, m/s", "vN", "vU", "aE, m/s2", "aN", "aU", "row")
+        step = max(1, len(self.t) // 12)
+        rows = [
+            (f"{self.t[k]:.3f}", *self.quantities("velocity", k), *self.quantities("acceleration", k), self.flags[k])
+            for k in range(0, len(self.t), step)
+        ]
+        return table(heads, rows)
+
+    def quantities(self, name: str, k: int) -> list[str]:
+        """Values of a row with their standard deviations, for people; name : ``velocity`` or ``acceleration``."""
+        pairs = zip(getattr(self, name)[k], getattr(self, f"{name}_sd")[k], strict=True)
+        return [f"{value:.3f} ± {spread:.3f}" for value, spread in pairs]
+
+
+def track(
+    data: Any,
+    *,
+    window: float | None = None,
+    order: int = 3,
+    method: str | None = None,
+    sigma: float | None = None,
+    gate: float = 5.0,
+    policy: str = "strict",
+) -> Track:
+    """Velocity and acceleration of measured positions, with standard deviations.
+
+    data   : path of a CSV file (time, latitude, longitude, height) or of an RTKLIB ``.pos``; a DataFrame or mapping
+             with columns of these names; or an array (N, 4). Seconds, degrees, metres.
+    window : length of the sliding window, s; asks for the method ``window``
+    order  : states of the motion, 2 (speed) to 6; 3 adds acceleration
+    method : ``differences``, ``window``, ``filter``, ``smoother`` (default) or ``guaranteed``
+    sigma  : standard deviation of positions, m; default: the file's, else that found in the track
+    gate   : an innovation beyond so many standard deviations has less weight; 0 switches this off
+    policy : ``strict`` refuses bad rows; ``repair`` mends or leaves them out, and lists them
+
+    Positions go to axes fixed to the Earth; noise of positions and of motion are found by maximum likelihood; the
+    smoother is that of Rauch, Tung and Striebel. Standard deviations know that the noise was only estimated.
+
+    Returns :class:`Track`. Raises NavsymError: ``missing-file``, ``syntax``, ``shape``, ``not-finite``, ``domain``,
+    ``duplicate`` (equal times), ``empty``. Source: Maybeck, Stochastic Models, Estimation and Control, vol. 2, ch. 8.
+
+    >>> import navsym as nav
+    >>> nav.track("examples/drive.csv", sigma=0.5)
+    <Track: 61 rows, 59 used, method smoother, up to 15.2 m/s>
+    >>> rows = [(k, 45 + 1e-4 * k, 10.0, 100.0) for k in range(20)]
+    >>> bool(abs(nav.track(rows, order=2).velocity[10, 1] - 11.11) < 0.01)
+    True
+    """
+    settings = settings_of(method, window, order, gate, sigma)
+    read = read_track(data, policy) if isinstance(data, str | os.PathLike) else read_columns(data, policy)
+    place = called(data) if isinstance(data, str | os.PathLike) else "track"
+    try:
+        given = read.sigma if sigma is None else sigma
+        positions = project_positions(read.t - read.t[0], read.latitude, read.longitude, read.height, given)
+        return describe_motion(read, positions, settings)
+    except NavsymError as error:
+        raise error.at(place) from None
+
+
+def settings_of(method: str | None, window: float | None, order: int, gate: float, sigma: float | None) -> Settings:
+    """The settings of a call: a window asks for the sliding window, every other method has to be named."""
+    for name, value in (("window", window), ("gate", gate), ("sigma", sigma)):
+        if value is not None and (isinstance(value, bool) or not isinstance(value, int | float | np.number)):
+            raise DomainError(f"expected a number; got {shown(value)}; give one", where=f"track: {name}")
+    if isinstance(order, bool) or not isinstance(order, int):
+        raise DomainError(f"expected 2 to 6 states; got {shown(order)}; give a whole number", where="track: order")
+    chosen = method or ("window" if window is not None else "smoother")
+    if window is not None and chosen not in ("window", "guaranteed"):
+        message = f"expected method window or guaranteed with it; got {chosen}; drop one"
+        raise DomainError(message, where="track: window")
+    if sigma is not None and not 0 < sigma < math.inf:
+        message = f"expected a positive number of metres; got {sigma}; leave it out if unknown"
+        raise DomainError(message, where="track: sigma")
+    return Settings(chosen, order, window, gate, sigma is not None)  # type: ignore[arg-type]
+
+
+def describe_motion(read: TrackFile, positions: Positions, settings: Settings) -> Track:
+    """The answer for a track as read and as projected."""
+    found, noise = estimate(positions, settings)
+    return Track(
+        frozen(np.array(read.t)),
+        found.velocity,
+        found.velocity_sd,
+        found.acceleration,
+        found.acceleration_sd,
+        found.flags,
+        found.gains,
+        settings.method,
+        settings.order,
+        window_in_use(positions, noise, settings),
+        noise,
+        np.sqrt(noise.scale * np.median(positions.variance, axis=0)),
+        memory(noise, positions.variance, settings.order),
+        certificate(positions, found, noise, settings),
+        (*read.warnings, *remarks(positions, found, noise, settings, read.lines)),
+        read.repairs,
+    )
+
+
+def certificate(track: Positions, found: TrackEstimate, noise: Noise, settings: Settings) -> dict[str, Any] | None:
+    """Exact duality bounds of the weights of the guaranteed method; null for the other methods."""
+    span = window_in_use(track, noise, settings)
+    if settings.method != "guaranteed" or span is None:
+        return None
+    use = np.array([flag != "outlier" for flag in found.flags], dtype=np.int64)
+    kind = "least sum of absolute weights between exact rational bounds (linear duality)"
+    return {"kind": kind, **largest_gap(track, settings, use, span)}
+
+
+def window_in_use(track: Positions, noise: Noise, settings: Settings) -> float | None:
+    """Length of the window in seconds, None for methods without one."""
+    if settings.method not in ("window", "guaranteed"):
+        return None
+    return window_of(track, noise, settings)
+
+
+def remarks(track: Positions, found: TrackEstimate, noise: Noise, settings: Settings, lines: Rows) -> list[str]:
+    """What a person should know of a track, in sentences: gaps, rows left out or doubted, uneven steps, doubts.
+
+    lines : (N,) number of the line of each row in its file
+    """
+    out = [f"gap of {track.t[k + 1] - track.t[k]:.3g} s after line {lines[k]}" for k in gaps(track)[:20].tolist()]
+    for name, text in (("outlier", "left out"), ("doubtful", "believed less")):
+        where = [int(lines[k]) for k, flag in enumerate(found.flags) if flag == name]
+        if where:
+            listed = ", ".join(map(str, where[:20])) + (", ..." if len(where) > 20 else "")
+            out.append(f"{len(where)} rows were {text} ({name}): lines {listed}")
+    steps = np.diff(track.t)
+    usual = usual_step(track.t)
+    uneven = int(((np.abs(steps - usual) > JITTER * usual) & (steps < 5 * usual)).sum())
+    if uneven:
+        out.append(f"{uneven} steps differ from the usual {usual:.3g} s by more than half of it")
+    return out + doubts(track, found, noise, settings)
+
+
+def doubts(track: Positions, found: TrackEstimate, noise: Noise, settings: Settings) -> list[str]:
+    """Whether the standard deviations can be believed: innovations should be as large as they say."""
+    use = np.array([flag != "outlier" for flag in found.flags], dtype=np.int64)
+    run = filtered(track, noise, Settings("filter", settings.order, gate=0.0), use)
+    kept = np.flatnonzero(use)[settings.order :]
+    mean = float((run.innovations**2 / run.variances)[:, kept].mean())
+    if CONSISTENT[0] <= mean <= CONSISTENT[1] or not math.isfinite(mean):
+        return []
+    side = "optimistic" if mean > 1 else "pessimistic"
+    return [
+        f"standard deviations are {side}: squared innovations are {mean:.3g} times their predicted variance; "
+        "the motion or the noise is not the same all along the track"
+    ]
