@@ -14,9 +14,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import sympy as sp
-from flint import arb, arb_series, ctx, fmpq
+from flint import arb, arb_series, ctx
 
 from navsym.core.errors import NavsymError
+from navsym.core.exact import to_fmpq
 
 DEFAULT_BITS = 96
 
@@ -109,7 +110,7 @@ FUNCTIONS = {
 def instruction(node: sp.Basic) -> tuple[str, Sequence[sp.Basic], Any]:
     """Operation, arguments and constant of one node of a sympy tree."""
     if isinstance(node, sp.Rational):
-        return "number", (), fmpq(int(node.p), int(node.q))
+        return "number", (), to_fmpq(node)
     if node is sp.pi:
         return "pi", (), None
     if node is sp.E:

@@ -66,8 +66,7 @@ def undefined(got: str) -> Refusal:
 
 def number(text: str) -> sp.Rational:
     """A decimal number, exactly: ``"0.1"`` is 1/10 and ``"1e-9"`` is 1/10**9."""
-    value = Fraction(text)
-    return sp.Rational(value.numerator, value.denominator)
+    return sp.Rational(*Fraction(text).as_integer_ratio())
 
 
 def add(terms: list[sp.Expr]) -> sp.Expr:

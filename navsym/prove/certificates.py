@@ -11,6 +11,7 @@ from flint import arb, fmpq, fmpq_poly
 
 from navsym.core.balls import Tape, enclose, exact_ball, precision, tape
 from navsym.core.errors import NavsymError
+from navsym.core.exact import to_fmpq
 from navsym.language.expression import to_text
 from navsym.prove.sampling.points import Range
 from navsym.prove.signs.exact import Limits
@@ -132,7 +133,7 @@ def parted(curve: fmpq_poly, limit: Range, strict: bool) -> tuple[fmpq_poly, lis
     for end, closed, sign in zip((limit.lower, limit.upper), closed_ends(limit), (1, -1), strict=True):
         if not isinstance(end, sp.Rational) or (strict and closed):
             continue
-        linear = sign * (X - fmpq(int(end.p), int(end.q)))
+        linear = sign * (X - to_fmpq(end))
         if rest % linear == 0:
             ends, rest = [*ends, linear], rest / linear
     return square, ends, rest
@@ -151,7 +152,7 @@ def covers(curve: fmpq_poly, limit: Range) -> Iterator[tuple[fmpq_poly, Range]]:
     end = limit.lower if limit.lower is not None else limit.upper
     if isinstance(end, sp.Rational):
         way = X if limit.lower is not None else -X
-        shifted = curve(fmpq(int(end.p), int(end.q)) + way)
+        shifted = curve(to_fmpq(end) + way)
         yield shifted, Range(zero, one)
         yield reversed_polynomial(shifted), Range(zero, one)
     else:

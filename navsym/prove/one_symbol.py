@@ -16,7 +16,7 @@ from flint import arb
 from navsym.claims.statement import Box
 from navsym.claims.verdict import PROVED, REFUTED, Verdict
 from navsym.core.balls import UnsupportedError, exact_ball, tape
-from navsym.core.exact import to_rational
+from navsym.core.exact import to_fraction, to_rational
 from navsym.core.numbers import Number
 from navsym.prove.assumptions import remaining_assumptions, written_conditions
 from navsym.prove.identities.normal_form import (
@@ -25,7 +25,6 @@ from navsym.prove.identities.normal_form import (
     logarithms_inside,
     radicands_inside,
 )
-from navsym.prove.sampling.descent import exact
 from navsym.prove.sampling.points import Point, Range, ranges, value_at
 from navsym.prove.sampling.second_look import exists_at
 from navsym.prove.signs.one_variable import Survey, Zero, survey
@@ -131,10 +130,10 @@ def refuted_near(statement: Sides, value: sp.Expr, contradicted: tuple[int, ...]
 
 def numbers_near(value: sp.Expr) -> Iterator[sp.Expr]:
     """Rational numbers near a value, simple ones first, and the value itself."""
-    middle = exact(exact_ball(value, BITS[1]).mid())
+    middle = to_fraction(exact_ball(value, BITS[1]))
     shorter = (middle.limit_denominator(d) for d in DENOMINATORS)
     beside = (middle + sign * Fraction(1, 2**k) for k in (4, 16, 64, 256) for sign in (1, -1))
-    numbers = [sp.Rational(n.numerator, n.denominator) for n in (*shorter, *beside)]
+    numbers = [to_rational(n) for n in (*shorter, *beside)]
     yield from dict.fromkeys([value, *numbers] if value.is_Rational else [*numbers, value])
 
 

@@ -8,9 +8,10 @@ from fractions import Fraction
 from typing import Any
 
 import sympy as sp
-from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx, fmpz
+from flint import Ordering, fmpq_mpoly, fmpq_mpoly_ctx, fmpz
 
 from navsym.core.errors import NavsymError
+from navsym.core.exact import to_fmpq, to_fraction, to_rational
 from navsym.prove.identities.ingredients import (
     HYPERBOLIC,
     INVERSE,
@@ -97,8 +98,7 @@ class Converter:
     # -- conversion -------------------------------------------------------------------------
 
     def constant(self, value: Fraction | int) -> Quotient:
-        number = fmpq(Fraction(value).numerator, Fraction(value).denominator)
-        return Quotient(self.ring.constant(number), self.ring.constant(1))
+        return Quotient(self.ring.constant(to_fmpq(value)), self.ring.constant(1))
 
     def generator(self, name: str, power: int = 1) -> Quotient:
         one = self.ring.constant(1)
@@ -118,7 +118,7 @@ class Converter:
     def convert_new(self, expression: sp.Basic) -> Quotient:
         """One node of the tree; its arguments come from the cache."""
         if isinstance(expression, sp.Rational):
-            return self.constant(Fraction(int(expression.p), int(expression.q)))
+            return self.constant(to_fraction(expression))
         if isinstance(expression, sp.Symbol):
             index = list(self.found.symbols).index(expression)
             return self.generator(f"x{index}", self.found.symbols[expression])
@@ -244,7 +244,7 @@ class Converter:
             logarithm = single(monomial, (sp.log,))
             if logarithm is not None:
                 self.arguments.setdefault(logarithm.args[0])
-                rational = sp.Rational(coefficient.numerator, coefficient.denominator)
+                rational = to_rational(coefficient)
                 value = value * self.convert(sp.Pow(logarithm.args[0], rational))
                 continue
             index = list(self.found.exponents).index(monomial)

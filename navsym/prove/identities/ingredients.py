@@ -10,6 +10,7 @@ from math import lcm
 import sympy as sp
 
 from navsym.core.errors import NavsymError
+from navsym.core.exact import to_fraction, to_rational
 
 # Sums of monomials with rational coefficients: what angles and exponents are made of.
 
@@ -27,7 +28,7 @@ PI: Monomial = frozenset({(sp.pi, Fraction(1))})
 def linear_terms(expression: sp.Basic) -> dict[Monomial, Fraction]:
     """The expression expanded as a sum: monomial -> rational coefficient."""
     if isinstance(expression, sp.Rational):
-        value = Fraction(int(expression.p), int(expression.q))
+        value = to_fraction(expression)
         return {UNIT: value} if value else {}
     if isinstance(expression, sp.Add):
         total: dict[Monomial, Fraction] = {}
@@ -45,7 +46,7 @@ def linear_terms(expression: sp.Basic) -> dict[Monomial, Fraction]:
 
 
 def power_terms(expression: sp.Pow) -> dict[Monomial, Fraction]:
-    exponent = Fraction(int(expression.exp.p), int(expression.exp.q))
+    exponent = to_fraction(expression.exp)
     base = linear_terms(expression.base)
     if exponent.denominator == 1 and 0 < exponent <= 64:
         product: dict[Monomial, Fraction] = {UNIT: Fraction(1)}
@@ -215,7 +216,7 @@ def gather_exponent(exponent: sp.Basic, found: Ingredients) -> None:
     for monomial, coefficient in linear_terms(exponent).items():
         logarithm = single(monomial, (sp.log,))
         if logarithm is not None:
-            power = sp.Rational(coefficient.numerator, coefficient.denominator)
+            power = to_rational(coefficient)
             gather(sp.Pow(logarithm.args[0], power), found)
             continue
         found.exponents[monomial] = lcm(found.exponents.get(monomial, 1), coefficient.denominator)

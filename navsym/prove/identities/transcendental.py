@@ -12,6 +12,7 @@ from math import lcm
 
 import sympy as sp
 
+from navsym.core.exact import to_rational
 from navsym.prove.identities.ingredients import PI, linear_terms, single
 from navsym.prove.identities.normal_form import vanishes_identically
 
@@ -40,7 +41,7 @@ def solved_for_inverses(difference: sp.Expr) -> Iterator[Solved]:
         for monomial, atom in sorted(atoms.items(), key=lambda item: str(item[1])):
             if atom is not None:
                 coefficient = terms[monomial]
-                share = sp.Rational(coefficient.numerator, coefficient.denominator)
+                share = to_rational(coefficient)
                 value = sp.expand_mul(atom - factor / share)
                 if not isinstance(atom, sp.log) or size_of(value) <= MOST_POWERS:
                     yield definition(atom, value)
@@ -84,7 +85,7 @@ def principal_least(value: sp.Expr) -> tuple[sp.Rational, bool]:
     """A lower bound of a sum of inverse functions in half turns, and whether it is left out; or -infinity."""
     total, left_out = sp.S.Zero, False
     for monomial, coefficient in linear_terms(value).items():
-        share = sp.Rational(coefficient.numerator, coefficient.denominator)
+        share = to_rational(coefficient)
         atom = single(monomial, tuple(RANGES))
         if monomial == PI:
             total += share

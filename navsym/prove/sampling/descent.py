@@ -15,6 +15,7 @@ import sympy as sp
 from flint import arb, arb_mat, fmpq
 
 from navsym.core.balls import DEFAULT_BITS, Tape, UnsupportedError, enclose, exact_ball, precision, tape
+from navsym.core.exact import to_fmpq, to_fraction
 from navsym.prove.sampling.points import Range
 
 STARTS = 16
@@ -109,7 +110,7 @@ def polisher(goal: sp.Expr, symbols: list[sp.Symbol]) -> Callable[[dict[sp.Symbo
         return lambda rough: iter(())
 
     def polish(rough: dict[sp.Symbol, Fraction]) -> Iterator[Guess]:
-        at = {s: arb(fmpq(x.numerator, x.denominator)) for s, x in rough.items()}
+        at = {s: arb(to_fmpq(x)) for s, x in rough.items()}
         at = approached(height, slopes, curves, at)
         for _ in range(ROUNDS):
             step = newton_step(slopes, curves, at)
@@ -117,7 +118,7 @@ def polisher(goal: sp.Expr, symbols: list[sp.Symbol]) -> Callable[[dict[sp.Symbo
                 return
             with precision(BITS):
                 at = {s: arb((at[s] - d).mid()) for s, d in zip(symbols, step, strict=True)}
-        yield {s: exact(x) for s, x in at.items()}
+        yield {s: to_fraction(x) for s, x in at.items()}
 
     return polish
 
@@ -154,9 +155,3 @@ def newton_step(
     except ZeroDivisionError:
         return None
     return [solution[i, 0].mid() for i in range(size)]
-
-
-def exact(value: arb) -> Fraction:
-    """The midpoint of a ball as a fraction."""
-    mantissa, exponent = value.mid().man_exp()
-    return Fraction(int(mantissa)) * Fraction(2) ** int(exponent)

@@ -17,10 +17,11 @@ from fractions import Fraction
 from functools import partial
 
 import sympy as sp
-from flint import arb, fmpq
+from flint import arb
 
 from navsym.claims.statement import Box
 from navsym.core.balls import UnsupportedError, enclose, exact_ball, tape
+from navsym.core.exact import to_fmpq, to_rational
 from navsym.prove.identities.normal_form import OutsideLanguageError
 from navsym.prove.identities.numbers import is_zero
 from navsym.prove.identities.transcendental import factored
@@ -281,7 +282,7 @@ def descents(goal: sp.Expr, limits: dict[sp.Symbol, Range]) -> Iterator[Point]:
             face = {symbol: limit for symbol, limit in rest.items() if symbol not in ends}
             yield from snapped(list(lowest(goal.subs({**held, **ends}), face)), {**held, **ends}, limits)
         symbol = next(iter(rest))
-        value = to_rational(DENOMINATORS[5], places[0][symbol]) if places else None
+        value = round_to_fraction(DENOMINATORS[5], places[0][symbol]) if places else None
         if value is None or not limits[symbol].contains(value):
             return
         held[symbol] = value
@@ -303,32 +304,29 @@ def nearby_ends(place: Guess, limits: dict[sp.Symbol, Range]) -> Point:
         for end in (limit.lower, limit.upper):
             if end is None or not limit.contains(end):
                 continue
-            if abs(exact_ball(end) - fmpq(value.numerator, value.denominator)) < NEARBY:
+            if abs(exact_ball(end) - to_fmpq(value)) < NEARBY:
                 found[symbol] = end
     return found
 
 
 def snappings() -> Iterator[Callable[[Fraction], sp.Expr]]:
     """Ways to round a coordinate to a simple exact number."""
-    yield from (partial(to_rational, denominator) for denominator in DENOMINATORS)
-    yield to_simplest
-    yield from (partial(to_turns, denominator) for denominator in (6, 24))
+    yield from (partial(round_to_fraction, denominator) for denominator in DENOMINATORS)
+    yield round_to_simplest
+    yield from (partial(round_to_turns, denominator) for denominator in (6, 24))
 
 
-def to_rational(denominator: int, value: Fraction) -> sp.Expr:
-    return rational(value.limit_denominator(denominator))
+def round_to_fraction(denominator: int, value: Fraction) -> sp.Expr:
+    """The nearest fraction with a denominator of at most so much."""
+    return to_rational(value.limit_denominator(denominator))
 
 
-def to_simplest(value: Fraction) -> sp.Expr:
+def round_to_simplest(value: Fraction) -> sp.Expr:
     """A fraction with few digits that a float cannot tell from the value."""
     shorter = (value.limit_denominator(10**k) for k in range(1, 9))
-    return rational(next((short for short in shorter if abs(short - value) < SAME), value))
+    return to_rational(next((short for short in shorter if abs(short - value) < SAME), value))
 
 
-def to_turns(denominator: int, value: Fraction) -> sp.Expr:
+def round_to_turns(denominator: int, value: Fraction) -> sp.Expr:
     """The nearest simple multiple of pi."""
-    return sp.pi * rational((value / Fraction(math.pi)).limit_denominator(denominator))
-
-
-def rational(value: Fraction) -> sp.Rational:
-    return sp.Rational(value.numerator, value.denominator)
+    return sp.pi * to_rational((value / Fraction(math.pi)).limit_denominator(denominator))

@@ -16,6 +16,7 @@ from flint import arb, fmpq, fmpq_mpoly
 
 from navsym.core.balls import enclose, exact_ball, hull, tape
 from navsym.core.errors import NavsymError
+from navsym.core.exact import to_fmpq
 from navsym.prove.identities.cases import half_range
 from navsym.prove.identities.converter import Converter
 from navsym.prove.sampling.points import Range
@@ -139,7 +140,7 @@ def symbol_span(limit: Range, q: int) -> Span:
 def rational_end(ball: arb, exact: sp.Expr, direction: int) -> fmpq | None:
     """The number itself when it is rational, otherwise a rational number beyond it."""
     if isinstance(exact, sp.Rational):
-        return fmpq(int(exact.p), int(exact.q))
+        return to_fmpq(exact)
     return outer(ball, direction)
 
 

@@ -14,6 +14,7 @@ from fractions import Fraction
 import sympy as sp
 from flint import fmpq_mpoly
 
+from navsym.core.exact import to_fraction, to_rational
 from navsym.prove.identities.converter import Converter, vanishes_identically
 from navsym.prove.identities.ingredients import Monomial, OutsideLanguageError
 
@@ -50,7 +51,7 @@ def constant_ratio(expression: sp.Expr, product: sp.Expr) -> sp.Rational | None:
     if base == 0:
         return None
     ratio = Fraction((value / base).real).limit_denominator(4096)
-    return sp.Rational(ratio.numerator, ratio.denominator) if ratio else None
+    return to_rational(ratio) if ratio else None
 
 
 def real_factors(converter: Converter, polynomial: fmpq_mpoly) -> list[sp.Expr] | None:
@@ -71,7 +72,7 @@ def real_factors(converter: Converter, polynomial: fmpq_mpoly) -> list[sp.Expr] 
 
 def real_form(converter: Converter, factor: fmpq_mpoly) -> sp.Expr | None:
     """A factor divided by its middle power: a sum of cosines, or i times a sum of sines."""
-    terms = {tuple(int(e) for e in k): Fraction(int(c.p), int(c.q)) for k, c in factor.to_dict().items()}
+    terms = {tuple(int(e) for e in k): to_fraction(c) for k, c in factor.to_dict().items()}
     if len(terms) == 1 and is_phase(converter, next(iter(terms))):
         return sp.Integer(1)
     if any(exponents[-1] for exponents in terms):
@@ -117,7 +118,7 @@ def rebuilt(
     total = sp.Integer(0)
     for exponents, coefficient in terms.items():
         angle = sum((angle_of(converter, p, exponents[p] - centre[p]) for p in centre), sp.Integer(0))
-        amplitude = sp.Rational(coefficient.numerator, coefficient.denominator)
+        amplitude = to_rational(coefficient)
         total += amplitude * real_generators(converter, exponents) * function(angle)
     return total
 
@@ -130,7 +131,7 @@ def angle_of(converter: Converter, place: int, power: Fraction) -> sp.Expr:
 
 def monomial_expression(monomial: Monomial) -> sp.Expr:
     """The monomial as a product of powers."""
-    factors = [sp.Pow(base, sp.Rational(e.numerator, e.denominator)) for base, e in monomial]
+    factors = [sp.Pow(base, to_rational(e)) for base, e in monomial]
     return sp.Mul(*factors)
 
 

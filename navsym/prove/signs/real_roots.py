@@ -15,9 +15,8 @@ import sympy as sp
 from flint import fmpq, fmpq_poly, fmpz_poly
 
 from navsym.core.balls import exact_ball, precision
-from navsym.core.exact import to_rational
+from navsym.core.exact import to_fmpq, to_rational
 from navsym.prove.identities.numbers import is_zero
-from navsym.prove.sampling.descent import exact
 
 #: Bits of a first enclosure, and those beyond which two numbers stay undecided.
 FIRST_BITS, MOST_BITS = 64, 8192
@@ -80,21 +79,16 @@ def rational_place(number: fmpq) -> Place:
 def place_of(value: sp.Expr) -> Place:
     """An exact real number of the language. Raises UndecidedError where it has no finite ball, or is too long."""
     if isinstance(value, sp.Rational):
-        return rational_place(fmpq(int(value.p), int(value.q)))
+        return rational_place(to_fmpq(value))
 
     def enclosure(bits: int) -> tuple[fmpq, fmpq]:
         ball = exact_ball(value, bits)
         if not ball.is_finite() or abs(int(ball.mid().man_exp()[1])) > LONGEST:
             raise UndecidedError
         with precision(2 * bits):
-            return (fraction(ball.lower()), fraction(ball.upper()))
+            return (to_fmpq(ball.lower()), to_fmpq(ball.upper()))
 
     return Place(*enclosure(FIRST_BITS), value=value, sharper=enclosure)
-
-
-def fraction(ball: object) -> fmpq:
-    """The midpoint of a ball, exactly."""
-    return fmpq(*exact(ball).as_integer_ratio())  # type: ignore[arg-type]
 
 
 # -- roots ---------------------------------------
@@ -136,7 +130,7 @@ def counted_roots(factor: fmpz_poly, bits: int) -> list[tuple[fmpq, fmpq]] | Non
     """Intervals with one root each, as many as there are real roots; None where that is not shown by so many bits."""
     with precision(bits):
         found = [pair[0] for pair in factor.complex_roots()]  # type: ignore[index]
-        intervals = sorted((fraction(r.real.lower()), fraction(r.real.upper())) for r in found if r.imag == 0)
+        intervals = sorted((to_fmpq(r.real.lower()), to_fmpq(r.real.upper())) for r in found if r.imag == 0)
     others = sum(1 for root in found if not root.imag.contains(0))
     if len(intervals) + others != factor.degree():
         return None
@@ -152,7 +146,7 @@ def surd(factor: fmpz_poly, lower: fmpq, upper: fmpq) -> sp.Expr | None:
         return None
     c, b, a = (sp.Integer(int(factor[k])) for k in range(3))
     middle = sp.Rational(-b, 2 * a)
-    right = lower + upper > 2 * fmpq(int(middle.p), int(middle.q))
+    right = lower + upper > 2 * to_fmpq(middle)
     return middle + (1 if right else -1) * sp.sqrt(b**2 - 4 * a * c) / (2 * sp.Abs(a))
 
 

@@ -17,10 +17,10 @@ from flint import fmpq, fmpq_mpoly, fmpq_poly
 
 from navsym.core.balls import exact_ball
 from navsym.core.errors import NavsymError
+from navsym.core.exact import to_fmpq, to_fraction
 from navsym.prove.identities.converter import Converter, Quotient
 from navsym.prove.identities.ingredients import Monomial
 from navsym.prove.identities.transcendental import degree_bound
-from navsym.prove.sampling.descent import exact
 from navsym.prove.sampling.points import Range
 from navsym.prove.signs.exact import Sign, constant_sign
 from navsym.prove.signs.half_angles import HalfAngles, without_angles
@@ -183,7 +183,7 @@ def by_root(
         return None
     if sp.expand(radicand - start - slope * symbol) != 0:
         return None
-    a, b = (fmpq(int(n.p), int(n.q)) for n in (start, slope))
+    a, b = (to_fmpq(n) for n in (start, slope))
     x = list(converter.found.symbols).index(symbol)
     fractions = tuple(fraction_of(quotient, {x: (U**q - a) / b, place: U}) for quotient in quotients)
     ends = (limit.lower, limit.upper) if b > 0 else (limit.upper, limit.lower)
@@ -253,7 +253,7 @@ def arcs(limit: Range, speed: sp.Expr) -> Iterator[Piece]:
         lower, closed = (-turn / 2 if upper is None else upper - turn), (False, closed[1])
     if upper is None or compare(place_of(upper - lower), place_of(turn)) >= 0:
         upper, closed = lower + turn, (closed[0], True)
-    k = floor(exact(exact_ball(lower / turn + sp.S.Half, 256)))
+    k = floor(to_fraction(exact_ball(lower / turn + sp.S.Half, 256)))
     k += compare(place_of(lower), place_of(odd(k + 1, turn))) >= 0
     k -= compare(place_of(lower), place_of(odd(k, turn))) < 0
     if compare(place_of(lower), place_of(odd(k, turn))) * compare(place_of(lower), place_of(odd(k + 1, turn))) > 0:
