@@ -6,9 +6,8 @@ Every picture is computed here from models, data that come with matplotlib, or t
 from __future__ import annotations
 
 import importlib
-import json
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -19,8 +18,10 @@ from sympy.polys.matrices import DomainMatrix
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
+from navsym.claims import Record  # noqa: E402
 from navsym.report import plots  # noqa: E402
 from navsym.verification.ledger import is_only_in_the_copy, records_about  # noqa: E402
+from navsym.verification.papers import stored_records  # noqa: E402
 
 CHANNEL = {
     "model": {
@@ -36,29 +37,29 @@ CHANNEL = {
 
 def verdicts() -> Figure:
     """Every numbered equation of the papers with the worst verdict on it, from the ledger."""
-    document = json.loads((ROOT / "derivations" / "verdicts.json").read_text(encoding="utf-8"))
+    stored = stored_records().values()
     papers = []
     for module in ("guaranteed_velocity", "joint_correction", "multistructure", "terrain_search", "trajectory"):
         card = importlib.import_module(f"navsym_papers.{module}").PAPER
-        records = [record for record in document["claims"] if record["paper"] == module]
+        records = [record for record in stored if record.paper == module]
         cells = [(equation, worst(equation, card.equations, records)) for equation in card.equations]
         names = [author.split()[-1] for author in card.authors]
         author = " and ".join(names) if len(names) < 3 else f"{names[0]} et al."
-        refuted = sum(record["status"] == "REFUTED" for record in records)
+        refuted = sum(record.status == "REFUTED" for record in records)
         name = f"{author} {card.year}" if card.year else author
         papers.append((f"{name} · {len(records)} claims, {refuted} refuted", cells))
     return plots.verdict_matrix(papers)
 
 
-def worst(equation: str, equations: Sequence[str], records: Sequence[Mapping[str, str]]) -> str:
+def worst(equation: str, equations: Sequence[str], records: Sequence[Record]) -> str:
     """The worst verdict on an equation; a definition where there is none.
 
     What is refuted for the damage of a copy alone is not counted against the paper.
     """
-    found = about(equation, equations, records)
+    found = records_about(equation, equations, records)
     if not found:
         return "definition"
-    return "only in the copy" if only_in_the_copy(found[0]) else str(found[0]["status"])
+    return "only in the copy" if is_only_in_the_copy(found[0]) else str(found[0].status)
 
 
 def phases() -> Figure:

@@ -75,15 +75,15 @@ class Progress:
         """One more is done; ``doing`` names it."""
         self.to(self.count + 1, doing)
 
-    def told_by_job(self, done: int, of: int) -> None:
-        """For jobs that report both numbers; what an earlier run has left counts as done, not as fast.
+    def follow(self, done: int, of: int, doing: str = "") -> None:
+        """The callback of jobs that report both numbers; results of an earlier run count as done, not as fast.
 
         The total may grow while a job finds out what it has to do.
         """
-        if not self.total:
-            self.before = max(done - 1, 0)
+        if not self.total or done < self.count:  # the first step, or that of a second job
+            self.before, self.started = max(done - 1, 0), self.clock() if self.total else self.started
         self.total = of
-        self.to(done)
+        self.to(done, doing)
 
     def to(self, count: int, doing: str = "") -> None:
         """``count`` of them are done."""

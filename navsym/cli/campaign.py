@@ -62,7 +62,7 @@ def command(
             jobs=jobs,
             seconds=seconds,
             fresh=fresh,
-            progress=bar.told_by_job,
+            progress=bar.follow,
         )
     spent = time.monotonic() - started
     emit(document, as_json=json_, text=lambda: markdown_row(document, spent) if markdown else as_text(document))

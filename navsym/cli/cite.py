@@ -6,8 +6,6 @@ from typing import Annotated
 
 import typer
 
-from navsym import __version__
-from navsym.cli._claims import decide, find, stored_records
 from navsym.cli.output import emit
 
 
@@ -20,13 +18,7 @@ def command(
 
     Example: navsym cite "guaranteed_velocity:4.3.u2*" >> references.bib
     """
-    from navsym.report.citation import bibtex
+    import navsym as nav
 
-    paper, found = find(claim)
-    stored = stored_records()
-    record = None if fresh else stored.get(found.id)
-    if record is None:
-        paper, record = decide(claim)
-    correction = next((other for other in stored.values() if other["corrects"] == found.id), None)
-    text = bibtex(paper, record, __version__, correction)
-    emit({"id": found.id, "status": record["status"], "bibtex": text}, as_json=json_, text=text)
+    cited = nav.cite(claim, fresh=fresh)
+    emit(cited.document(), as_json=json_, text=cited.bibtex)

@@ -7,9 +7,9 @@ from typing import Annotated
 
 import typer
 
-from navsym.cli._choice import one_of
 from navsym.cli._completion import PLACES, SCRIPTS, SHELLS
 from navsym.cli.output import OutputError, emit, write_text
+from navsym.core.choice import one_of
 
 
 def command(

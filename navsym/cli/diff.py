@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from navsym.cli.output import emit, table
-from navsym.core.errors import DomainError, ExpressionSyntaxError, ShapeError
+from navsym.core.errors import ExpressionSyntaxError
+
+if TYPE_CHECKING:
+    from navsym.export.differences import Differences
 
 
 def command(
     old: Annotated[str, typer.Argument(help="a formula, a claim or model file (TOML), or an exported folder")],
-    new: Annotated[str, typer.Argument(help="what it is compared with, of the same kind")],
+    new: Annotated[str, typer.Argument(help="another one of the same kind")],
     box: Annotated[
         list[str] | None, typer.Option("--range", help='range of a symbol, such as "T=0,2*pi"; may be repeated')
     ] = None,
@@ -24,53 +27,30 @@ def command(
 
     Example: navsym diff build/old build/new
     """
-    from navsym.export.differences import compare, formulas_of
+    import navsym as nav
 
-    kinds = [kind_of(text) for text in (old, new)]
-    if kinds[0] != kinds[1]:
-        message = f"expected two things of one kind; got {kinds[0]} and {kinds[1]}; compare each with its own kind"
-        raise ShapeError(message, where=new)
-    ranges = dict(read_range(text) for text in box or [])
-    document = compare(formulas_of(old, ranges), formulas_of(new, ranges))
-    emit(document, as_json=json_, text=lambda: as_text(document))
-    return 0 if document["equal"] else 1
+    found = nav.diff(old, new, box=dict(read_range(text) for text in box or []))
+    emit(found.document(), as_json=json_, text=lambda: as_text(found))
+    return 0 if found.equal else 1
 
 
-def kind_of(text: str) -> str:
-    """What a word of the command line names; a file of another kind is refused."""
-    from pathlib import Path
-
-    from navsym.language.tomlfile import read_toml
-
-    if text.endswith(".toml"):
-        return "a claim file" if "claim" in read_toml(Path(text)) else "a model file"
-    if Path(text).is_dir():
-        return "a folder"
-    if Path(text).exists():
-        message = "expected a formula, a file named *.toml or an exported folder; got another file; name one of these"
-        raise DomainError(message, where=text)
-    return "a formula"
-
-
-def read_range(text: str) -> tuple[str, tuple[Any, Any]]:
-    """``"T=0,2*pi"`` as a name and two exact ends."""
-    from navsym.language.expression import parse
-
+def read_range(text: str) -> tuple[str, tuple[str, str]]:
+    """``"T=0,2*pi"`` as a name and the text of two ends."""
     name, equals, ends = text.partition("=")
     parts = ends.split(",")
     if not equals or len(parts) != 2:
-        raise ExpressionSyntaxError(f"expected NAME=LOWER,UPPER; got {text[:60]!r}; do correct it", where="--range")
-    lower, upper = (parse(part, {}, where="--range") for part in parts)
-    return name.strip(), (lower, upper)
+        raise ExpressionSyntaxError(f"expected NAME=LOWER,UPPER; got {text[:60]!r}; correct it", where="--range")
+    return name.strip(), (parts[0], parts[1])
 
 
-def as_text(document: dict[str, Any]) -> str:
+def as_text(found: Differences) -> str:
+    """One line for each formula: how it compares, and where it differs most."""
     rows = []
-    for record in document["differences"]:
-        point = ", ".join(f"{k} = {v}" for k, v in (record["worst"] or {}).items())
-        size = f"old - new = {record['difference'][0]}…" if record["difference"] else ""
-        words = f"{size} at {point or 'every point'}" if size else record["why"]
-        if record["assumptions"]:
-            words += f"; taken: {'; '.join(record['assumptions'])}"
-        rows.append((record["name"], record["status"], words))
+    for record in found:
+        point = ", ".join(f"{k} = {v}" for k, v in (record.worst or {}).items())
+        size = f"old - new = {record.difference.lower}…" if record.difference else ""
+        words = f"{size} at {point or 'every point'}" if size else record.why
+        if record.assumptions:
+            words += f"; taken: {'; '.join(record.assumptions)}"
+        rows.append((record.name, record.status, words))
     return table(("formula", "status", "where"), rows)

@@ -33,8 +33,8 @@ def command(
 
     Example: navsym exports --write docs/exports.md
     """
-    from navsym.cli.export import functions_for
-    from navsym.export.languages.targets import TARGETS, chosen
+    from navsym.export.languages.targets import TARGETS, find_targets
+    from navsym.export.materials import functions_of_claim
     from navsym.export.ready import READY
     from navsym.export.table import as_markdown, closing_table
 
@@ -43,12 +43,12 @@ def command(
     if unknown:
         raise DomainError(f"expected ready-made names among {', '.join(READY)}; got {unknown[0][:40]!r}; correct it")
     spoken = [n for n in to.split(",") if real in (TARGETS[n].reals if n in TARGETS else (real,))]
-    targets = chosen(spoken, real)
+    targets = find_targets(spoken, real)
     groups: dict[str, list[ExportedFunction]] = {name: [] for name in wanted}
     parts = [(name, claim) for name in wanted for claim in READY[name]]
     with Progress("parts", len(parts), RESUME) as bar:
         for name, claim in parts:
-            groups[name] += functions_for(claim, real, False)
+            groups[name] += functions_of_claim(claim, real)
             bar.step(claim)
         bar.total = len(parts) + len(groups) + sum(len(made) for made in groups.values() if points)
         document = closing_table(groups, targets, vectors, bar.step, points, jobs)

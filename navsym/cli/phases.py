@@ -56,7 +56,7 @@ def command(
             unique=unique,
             seconds=seconds,
             values=values,
-            progress=bar.told_by_job,
+            progress=bar.follow,
         )
     if out is not None:
         for k, certificate in enumerate(answer.certificates()):

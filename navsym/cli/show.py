@@ -1,46 +1,48 @@
-"""Show one claim: what is printed, what follows, and the verdict."""
+"""Show one claim: both sides and the verdict."""
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from navsym.cli._claims import decide, parts_of
 from navsym.cli.output import emit
 
-SHOWN = ("scope", "method", "evidence")
+if TYPE_CHECKING:
+    from navsym.claims import Record
 
 
 def command(
     claim: Annotated[str, typer.Argument(help="id of a claim, guaranteed_velocity:4.3.u2, or an equation, …:4.16")],
-    seconds: Annotated[float, typer.Option(help="limit, seconds; above it the verdict is OPEN")] = 90.0,
+    seconds: Annotated[float, typer.Option(help="limit in seconds; above it the verdict is OPEN")] = 90.0,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> int:
-    """Show both sides of a claim and its verdict, decided now; of an equation in several parts, all of them.
+    """Show both sides of a claim and its verdict, decided now; all parts of an equation that has several.
 
     Example: navsym show guaranteed_velocity:4.3.u2
     """
-    records = [decide(part, seconds)[1] for part in parts_of(claim)]
-    document = records[0] if len(records) == 1 else {"claims": records}
+    import navsym as nav
+
+    records = nav.show(claim, seconds=seconds)
+    entries = [record.to_json() for record in records]
+    document = entries[0] if len(entries) == 1 else {"claims": entries}
     emit(document, as_json=json_, text=lambda: "\n\n".join(map(as_text, records)))
-    return 0 if all(record["status"] == record["expect"] for record in records) else 1
+    return 0 if all(record.is_expected for record in records) else 1
 
 
-def as_text(record: dict[str, Any]) -> str:
+def as_text(record: Record) -> str:
     """A few lines, the verdict first."""
-    lines = [f"{record['id']}  {record['status']}", record["title"], f"  printed  {record['printed']}"]
-    if record["derived"]:
-        lines.append(f"  derived  {record['derived']}")
-    lines += [f"  {key:<9}{record[key]}" for key in SHOWN if record[key]]
-    if record["assumptions"]:
-        lines.append(f"  assuming {'; '.join(record['assumptions'])}")
-    if record["counterexample"]:
-        lines.append("  at       " + ", ".join(f"{k} = {v}" for k, v in record["counterexample"].items()))
-    if record["reason"]:
-        lines.append(f"  {record['slip'] or 'note':<9}{record['reason']}")
-    if record["corrects"]:
-        lines.append(f"  corrects {record['corrects']}")
-    if record["status"] != record["expect"]:
-        lines.append(f"  declared {record['expect']}")
+    lines = [f"{record.id}  {record.status}", record.title, f"  printed  {record.printed}"]
+    facts = (("derived", record.derived), ("scope", record.scope), ("method", record.method))
+    lines += [f"  {name:<9}{words}" for name, words in (*facts, ("evidence", record.evidence)) if words]
+    if record.assumptions:
+        lines.append(f"  assuming {'; '.join(record.assumptions)}")
+    if record.counterexample:
+        lines.append(f"  at       {record.point_text}")
+    if record.reason:
+        lines.append(f"  {record.slip or 'note':<9}{record.reason}")
+    if record.corrects:
+        lines.append(f"  corrects {record.corrects}")
+    if not record.is_expected:
+        lines.append(f"  declared {record.expect}")
     return "\n".join(lines)

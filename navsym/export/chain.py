@@ -127,7 +127,7 @@ class Names:
     def make(self, name: str) -> sp.Symbol:
         """A new symbol for a value; raises DomainError when the name is taken."""
         if name in self.values or name in self.inputs:
-            raise DomainError(f"expected a new name in the chain; got {name} again; do rename the result")
+            raise DomainError(f"expected a new name in the chain; got {name} again; rename the result")
         self.values[name] = sp.Symbol(name, real=True)
         return self.values[name]
 
@@ -136,9 +136,7 @@ def bound(link: Link, part: Material, names: Names) -> list[tuple[sp.Symbol, sp.
     """(name, formula) of every result that has a name, in the symbols of the chain."""
     flat = [e for _, entries in part.results for e in entries]
     if len(flat) != len(link.results):
-        raise DomainError(
-            f"expected {len(link.results)} results of {part.claim}; got {len(flat)}; do correct the chain"
-        )
+        raise DomainError(f"expected {len(link.results)} results of {part.claim}; got {len(flat)}; correct the chain")
     needed = [e for e, n in zip(flat, link.results, strict=True) if n]
     symbols = sorted({s for e in needed for s in e.free_symbols}, key=lambda s: s.name)
     table = {s: names.symbol(link.rename.get(s.name, s.name), s) for s in symbols}
@@ -231,5 +229,5 @@ class Program:
         made = step.function(f"{name}_next", decided, real)
         missing = set(self.fields) - {o.name for o in start.outputs}
         if missing:
-            raise DomainError(f"expected fields among the outputs of init; got {sorted(missing)}; do correct it")
+            raise DomainError(f"expected fields among the outputs of init; got {sorted(missing)}; correct it")
         return [start, replace(made, state=State(name, tuple(self.fields.items()), start))]

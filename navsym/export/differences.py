@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import json
+import os
 import random
 import re
-from collections.abc import Mapping, Sequence
+from collections import Counter
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -14,18 +16,22 @@ import sympy as sp
 from flint import arb
 
 from navsym.claims import REFUTED, Equation
+from navsym.claims.display import table
+from navsym.core.answers import Answer
 from navsym.core.balls import enclose, hull
-from navsym.core.errors import DomainError, EmptyError, ExpressionSyntaxError, NavsymError
+from navsym.core.errors import DomainError, EmptyError, ExpressionSyntaxError, NavsymError, ShapeError
+from navsym.core.numbers import Number
 from navsym.language.expression import parse, symbol
 from navsym.language.files import read_text
+from navsym.language.names import shown
 from navsym.language.tokens import Source, tokenize
+from navsym.language.values import write_value
 from navsym.prove.ladder import decide
 from navsym.prove.sampling.points import range_of
 from navsym.prove.wording import decimal_ends, text_of
 
 POINTS = 400
 LIMIT = 20_000_000
-Record = dict[str, Any]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -41,63 +47,146 @@ class Formula:
     outside: str = ""
 
 
-def compare(old: Mapping[str, Formula], new: Mapping[str, Formula]) -> Record:
-    """The document of ``navsym diff``.
+@dataclass(frozen=True, slots=True)
+class Difference:
+    """What came of two formulas of one name.
 
-    ``differences``: one record each, ``{"name", "status", "worst", "difference", "why", "assumptions"}`` with status
-    EQUAL (proved, on one and the same range), OVERLAP (proved equal, but the ranges differ), DIFFERENT (worst point
-    found, its difference enclosed), OPEN, ONLY-OLD or ONLY-NEW. ``equal``: true when every formula is proved equal.
-    Raises EmptyError when there is nothing to compare.
+    status      : EQUAL (proved, on one range), OVERLAP (proved equal, but the ranges differ), DIFFERENT, OPEN,
+                  ONLY-OLD or ONLY-NEW
+    worst       : for DIFFERENT, the point that was found: symbol -> exact number
+    difference  : old - new there, or None
+    why         : how it is known
+    assumptions : what the proof takes for granted
     """
+
+    name: str
+    status: str
+    why: str
+    assumptions: tuple[str, ...] = ()
+    worst: Mapping[str, str] | None = None
+    difference: Number | None = None
+
+    def document(self) -> dict[str, Any]:
+        """One entry of ``differences`` in the JSON document of ``navsym diff``."""
+        ends = self.difference and [self.difference.lower, self.difference.upper]
+        worst = None if self.worst is None else dict(self.worst)
+        head = {"name": self.name, "status": self.status, "worst": worst, "difference": ends}
+        return head | {"why": self.why, "assumptions": list(self.assumptions)}
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Differences(Answer):
+    """Formulas of two sides by their names; ``equal`` when every one is proved equal."""
+
+    differences: tuple[Difference, ...]
+
+    @property
+    def equal(self) -> bool:
+        """True when every formula is proved equal, on one and the same range."""
+        return all(found.status == "EQUAL" for found in self.differences)
+
+    def __len__(self) -> int:
+        return len(self.differences)
+
+    def __iter__(self) -> Iterator[Difference]:
+        return iter(self.differences)
+
+    def __getitem__(self, place: int) -> Difference:
+        return self.differences[place]
+
+    def document(self) -> dict[str, Any]:
+        """The JSON document of ``navsym diff``."""
+        return {"equal": self.equal, "differences": [found.document() for found in self.differences]}
+
+    def __repr__(self) -> str:
+        counts = Counter(found.status for found in self.differences)
+        return f"<{len(self)} formulas: {', '.join(f'{n} {status}' for status, n in counts.items())}>"
+
+    def _repr_html_(self) -> str:
+        return table(("formula", "status", "why"), ((d.name, d.status, d.why) for d in self.differences))
+
+
+def diff(old: Any, new: Any, *, box: Mapping[str, Any] | None = None, **ranges: Any) -> Differences:
+    """Two formulas, claim files, models or exported folders compared exactly, formula by formula.
+
+    old, new : formulas (text or sympy), paths of claim or model files (TOML), or exported folders; both of one kind
+    box      : ranges of symbols, ``{"T": ("0", "2*pi")}``; the same as ``T=("0", "2*pi")``. Others are real
+
+    Raises ShapeError for two kinds, DomainError for a file or folder of another kind, EmptyError without formulas.
+
+    >>> import navsym as nav
+    >>> nav.diff("sin(2*a)", "2*sin(a)*cos(a)").equal
+    True
+    >>> changed = nav.diff("sqrt(x**2)", "x", x=("-1", "1"))
+    >>> changed[0].status, dict(changed[0].worst)
+    ('DIFFERENT', {'x': '-1'})
+    """
+    sides = [write_side(value, name) for value, name in ((old, "old"), (new, "new"))]
+    kinds = [kind_of_text(text) for text in sides]
+    if kinds[0] != kinds[1]:
+        message = f"expected two things of one kind; got {kinds[0]} and {kinds[1]}; compare each with its own kind"
+        raise ShapeError(message, where=str(sides[1])[:200])
+    known = {name: exact_range(name, ends) for name, ends in {**(box or {}), **ranges}.items()}
+    return compare_formulas(formulas_of(sides[0], known), formulas_of(sides[1], known))
+
+
+def write_side(value: Any, where: str) -> str:
+    """A formula as text; a path as it is."""
+    return os.fspath(value) if isinstance(value, os.PathLike) else write_value(value, f"diff: {where}")
+
+
+def kind_of_text(text: str) -> str:
+    """What a text names; a file of another kind is refused."""
+    from navsym.language.tomlfile import read_toml
+
+    if text.endswith(".toml"):
+        return "a claim file" if "claim" in read_toml(Path(text)) else "a model file"
+    if Path(text).is_dir():
+        return "a folder"
+    if Path(text).exists():
+        message = "expected a formula, a file named *.toml or an exported folder; got another file; name one of these"
+        raise DomainError(message, where=text)
+    return "a formula"
+
+
+def exact_range(name: str, ends: Any) -> tuple[sp.Expr, sp.Expr]:
+    """Two exact ends of a range; raises ShapeError for what is no pair."""
+    where = f"diff: {name}"
+    if not isinstance(ends, (tuple, list)) or len(ends) != 2:
+        raise ShapeError(f'expected two ends; got {shown(ends)}; write {name}=("0", "1")', where=where)
+    lower, upper = (parse(write_value(end, where), {}, where=where) for end in ends)
+    return lower, upper
+
+
+def compare_formulas(old: Mapping[str, Formula], new: Mapping[str, Formula]) -> Differences:
+    """What came of every name on either side; raises EmptyError when there is nothing to compare."""
     if not old and not new:
-        raise EmptyError("expected formulas; got none on either side; do name files that hold some")
-    records = [record_for(name, old.get(name), new.get(name)) for name in dict.fromkeys([*old, *new])]
-    return {"equal": all(r["status"] == "EQUAL" for r in records), "differences": records}
+        raise EmptyError("expected formulas; got none on either side; name files that hold some")
+    return Differences(tuple(compare_pair(name, old.get(name), new.get(name)) for name in dict.fromkeys([*old, *new])))
 
 
-def record_for(name: str, old: Formula | None, new: Formula | None) -> Record:
-    """The record of two formulas of one name, or of one without a counterpart; statuses as in the document."""
+def compare_pair(name: str, old: Formula | None, new: Formula | None) -> Difference:
+    """What came of two formulas of one name, or of one without a counterpart."""
     if old is None or new is None:
-        status = "ONLY-NEW" if old is None else "ONLY-OLD"
-        return said(name, status, "no counterpart")
+        return Difference(name, "ONLY-NEW" if old is None else "ONLY-OLD", "no counterpart")
     if old.outside or new.outside:
-        same = old.outside == new.outside and not different_ranges(old, new)
-        return said(name, "EQUAL" if same else "OPEN", "the same text" if same else "outside the language of files")
+        if old.outside == new.outside and not different_ranges(old, new):
+            return Difference(name, "EQUAL", "the same text")
+        return Difference(name, "OPEN", "outside the language of files")
     left, right = old.expression, in_terms_of(new.expression, old)
     box = common_box(old, new)
     verdict = decide(Equation(left, right, box))
     if verdict.status.holds:
         apart = different_ranges(old, new)
-        if apart:
-            return said(
-                name, "OVERLAP", f"equal where both are stated; ranges differ: {', '.join(apart)}", verdict.assumptions
-            )
-        return said(name, "EQUAL", verdict.method, verdict.assumptions)
+        words = f"equal where both are stated; ranges differ: {', '.join(apart)}" if apart else verdict.method
+        return Difference(name, "OVERLAP" if apart else "EQUAL", words, tuple(verdict.assumptions))
     if verdict.status != REFUTED:
-        return said(name, "OPEN", verdict.evidence)
+        return Difference(name, "OPEN", verdict.evidence)
     point, difference = worst_point(left - right, box)
     if point is None or difference is None:
-        return said(name, "DIFFERENT", "counterexample") | {
-            "worst": dict(verdict.counterexample or {}),
-            "difference": [verdict.difference.lower, verdict.difference.upper] if verdict.difference else [],
-        }
-    ends = decimal_ends(difference)
-    return said(name, "DIFFERENT", f"largest of {POINTS} points") | {
-        "worst": {s.name: text_of(value) for s, value in point.items()},
-        "difference": [ends.lower, ends.upper],
-    }
-
-
-def said(name: str, status: str, why: str, assumptions: Sequence[str] = ()) -> Record:
-    """A record without a point."""
-    return {
-        "name": name,
-        "status": status,
-        "worst": None,
-        "difference": None,
-        "why": why,
-        "assumptions": list(assumptions),
-    }
+        return Difference(name, "DIFFERENT", "counterexample", (), verdict.counterexample or {}, verdict.difference)
+    exact = {s.name: text_of(value) for s, value in point.items()}
+    return Difference(name, "DIFFERENT", f"largest of {POINTS} points", (), exact, decimal_ends(difference))
 
 
 def different_ranges(old: Formula, new: Formula) -> list[str]:
@@ -262,7 +351,7 @@ def of_export(folder: Path) -> dict[str, Formula]:
     except (ValueError, KeyError, TypeError, AttributeError) as error:
         raise DomainError(
             f"expected a manifest of navsym export; got one without its keys ({type(error).__name__}: {error}); "
-            "do export again",
+            "export again",
             where=where,
         ) from None
 

@@ -201,7 +201,7 @@ class Builder:
         """Place of an expression that was not met before."""
         if isinstance(e, sp.Symbol):
             if e not in self.inputs:
-                raise UnknownSymbolError(f"expected only the inputs; got {e.name}; do list it as one")
+                raise UnknownSymbolError(f"expected only the inputs; got {e.name}; list it as one")
             return self.put("input", value=self.inputs[e])
         if e.is_number and e.is_real:
             return self.number(e)
@@ -219,7 +219,7 @@ class Builder:
             return self.put(UNARY[type(e)], self.visit(e.args[0]))
         if type(e) in BINARY:
             return reduce(lambda x, y: self.put(BINARY[type(e)], x, y), [self.visit(a) for a in e.args])
-        raise DomainError(f"expected functions that code has; got {type(e).__name__}; do rewrite the formula")
+        raise DomainError(f"expected functions that code has; got {type(e).__name__}; rewrite the formula")
 
     def number(self, e: sp.Expr) -> int:
         """A constant; a negative one is the negation of a positive one."""

@@ -65,7 +65,7 @@ def require_free(out: Path, files: Mapping[str, str], *, force: bool = False) ->
     if taken and not force:
         raise FolderError(
             f"expected new files; got {len(taken)} that are there already, {taken[0].name} among them; "
-            "do add --force or choose another --out",
+            "add --force or choose another --out",
             where=str(out),
         )
     return targets
@@ -74,7 +74,7 @@ def require_free(out: Path, files: Mapping[str, str], *, force: bool = False) ->
 def folder_for(out: Path) -> Path:
     """The folder itself, made when its parent is there; a link is refused."""
     if out.is_symlink():
-        raise FolderError("expected a folder; got a symbolic link; do name the folder itself", where=str(out))
+        raise FolderError("expected a folder; got a symbolic link; name the folder itself", where=str(out))
     try:
         out.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -93,24 +93,24 @@ def is_plain(name: str) -> bool:
 def target_for(root: Path, name: str) -> Path:
     """The path of one file; names that could leave the folder or pass a link are refused."""
     if not is_plain(name):
-        raise FolderError(f"expected a plain relative name; got {name!r}; do report this", where=str(root))
+        raise FolderError(f"expected a plain relative name; got {name!r}; report this", where=str(root))
     target = root / name
     for part in (target, *target.parents):
         if part == root:
             return target
         if part.is_symlink():
             raise FolderError(
-                f"expected files and folders; got the symbolic link {part.name}; do remove it", where=str(root)
+                f"expected files and folders; got the symbolic link {part.name}; remove it", where=str(root)
             )
         if part != target and part.exists() and not part.is_dir():
-            raise FolderError(f"expected a folder; got the file {part.name}; do remove it", where=str(root))
-    raise FolderError(f"expected a name inside the folder; got {name!r}; do report this", where=str(root))
+            raise FolderError(f"expected a folder; got the file {part.name}; remove it", where=str(root))
+    raise FolderError(f"expected a name inside the folder; got {name!r}; report this", where=str(root))
 
 
 def stage(target: Path, text: str, staged: list[tuple[Path, Path]]) -> None:
     """A temporary file beside the target, to be renamed when all are written."""
     if target.is_dir():
-        raise FolderError(f"expected a file; got the folder {target.name}; do remove it", where=str(target.parent))
+        raise FolderError(f"expected a file; got the folder {target.name}; remove it", where=str(target.parent))
     handle, name = tempfile.mkstemp(prefix=".export.", dir=target.parent)
     staged.append((Path(name), target))
     with os.fdopen(handle, "w", encoding="utf-8", newline="\n") as file:

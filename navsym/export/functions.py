@@ -82,7 +82,7 @@ def entries(side: Any, name: str) -> tuple[Output, list[sp.Expr]]:
     else:
         shape, flat = (), [sp.sympify(side, strict=True)]
     if not 0 < len(flat) <= MOST_OUTPUTS:
-        raise ShapeError(f"expected 1 to {MOST_OUTPUTS} results; got {len(flat)}; do export a part")
+        raise ShapeError(f"expected 1 to {MOST_OUTPUTS} results; got {len(flat)}; export a part")
     return Output(name, shape), flat
 
 
@@ -103,25 +103,20 @@ def material(
     """A decided claim as material for a function; raises RefusedError when it must not leave."""
     require_exportable(claim, verdict, correction, allow_confirmed)
     results = results_of(statement, claim)
-    formula = tuple(
-        f"{output.name}{'' if not output.shape else f'[{k}]'} = {text_of(e)}"
+    certificate, assumptions = verdict.certificate, tuple(verdict.assumptions)
+    said = (str(verdict.status), verdict.method, verdict.scope, assumptions)
+    source = Source(claim, title, paper, equation, *said, formula_lines(results), certificate)
+    box = statement.box if isinstance(statement, (Equation, Optimum)) else {}
+    return Material(claim, results, box, source)
+
+
+def formula_lines(results: Sequence[tuple[Output, Sequence[sp.Expr]]]) -> tuple[str, ...]:
+    """``name = formula`` of every result, ``name[k] = formula`` of every entry."""
+    return tuple(
+        f"{output.name}{f'[{k}]' if output.shape else ''} = {text_of(e)}"
         for output, flat in results
         for k, e in enumerate(flat)
     )
-    source = Source(
-        claim,
-        title,
-        paper,
-        equation,
-        str(verdict.status),
-        verdict.method,
-        verdict.scope,
-        tuple(verdict.assumptions),
-        formula,
-        verdict.certificate,
-    )
-    box = statement.box if isinstance(statement, (Equation, Optimum)) else {}
-    return Material(claim, results, box, source)
 
 
 def function_of(
@@ -195,7 +190,7 @@ def piece_of(
     tied, graph = best_graph(forms, symbols, lets, box, arithmetic)
     equals, tie = tie_to_formula(tied, formulas, dict(part.lets))
     if tie is None:
-        raise RefusedError(f"expected code equal to {part.claim}; got a graph that differs; do report this")
+        raise RefusedError(f"expected code equal to {part.claim}; got a graph that differs; report this")
     graph = replace(graph, names=local_names(graph.names, [*(i.name for i in inputs), *taken]))
     literals = literals_of(graph, arithmetic)
     bound = uniform_bound(graph, box, arithmetic, literals, cells=cells_for(graph))

@@ -77,7 +77,7 @@ def arguments_of(inputs: Sequence[Input], layout: Layout) -> tuple[Argument, ...
     while k < len(inputs):
         name, size = first.get(names[k], (inputs[k].name, 0))
         if size and tuple(names[k : k + size]) != tuple(layout.arrays[name]):
-            raise ShapeError(f"expected all {size} entries of {name} as inputs; got some; do correct the layout")
+            raise ShapeError(f"expected all {size} entries of {name} as inputs; got some; correct the layout")
         found.append(Argument(name, k, size))
         k += size or 1
     return tuple(found)

@@ -13,7 +13,7 @@ import sympy as sp
 from navsym.claims import CERTIFIED, PROVED, Claim, Equation, Record, Verdict, Verdicts, equation_of
 from navsym.core.errors import DomainError, NavsymError
 from navsym.core.sandbox import Exhausted, run_limited
-from navsym.export.functions import RefusedError, function_of, material, require_exportable
+from navsym.export.functions import RefusedError, formula_lines, function_of, material, require_exportable
 from navsym.export.languages.names import function_name
 from navsym.export.parts import ExportedFunction, Layout, Material, Output, Source
 from navsym.export.ready import ALGORITHMS, READY, UNITS, algorithm

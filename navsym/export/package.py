@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from navsym import __version__
+from navsym.core.answers import Answer
 from navsym.core.errors import DomainError, DuplicateError, NavsymError
 from navsym.export.accuracy.vectors import Vector, vectors
 from navsym.export.folder import require_free, write_folder
@@ -43,7 +44,7 @@ def files_of(functions: Sequence[ExportedFunction], order: Order) -> dict[str, s
     """Relative name -> text of everything that is exported, the manifest included."""
     names = [function.name.lower() for function in functions]
     if len(set(names)) < len(names):
-        raise DuplicateError("expected functions with different names; got one name twice; do name each claim once")
+        raise DuplicateError("expected functions with different names; got one name twice; name each claim once")
     notice = f"SPDX-License-Identifier: {license_id(order.license)}"
     found: dict[str, str] = {}
     spoken, tests = Spoken(functions), Tests(order.count)
@@ -60,7 +61,7 @@ def files_of(functions: Sequence[ExportedFunction], order: Order) -> dict[str, s
 def license_id(text: str) -> str:
     """The identifier as it is; raises DomainError when it cannot be one of SPDX."""
     if not text or len(text) > 80 or not all(c.isascii() and (c.isalnum() or c in ".-+() ") for c in text):
-        raise DomainError(f"expected an SPDX identifier such as Apache-2.0; got {text[:40]!r}; do correct --license")
+        raise DomainError(f"expected an SPDX identifier such as Apache-2.0; got {text[:40]!r}; correct --license")
     return text
 
 
@@ -182,7 +183,7 @@ def piece_record(function: ExportedFunction, piece: Piece) -> dict[str, Any]:
     }
 
 
-# -- the door ---------------------------------------
+# The whole export
 
 
 class FailedError(NavsymError):
@@ -192,7 +193,36 @@ class FailedError(NavsymError):
     status = 1
 
 
-def export(
+@dataclass(frozen=True, slots=True, repr=False, eq=False)
+class Exported(Answer):
+    """Verified code in a folder.
+
+    out       : the folder
+    functions : what was exported
+    outcomes  : for each language, how its code did on the vectors
+    files     : names of the written files
+    """
+
+    out: Path
+    functions: tuple[ExportedFunction, ...]
+    outcomes: tuple[Outcome, ...]
+    files: tuple[str, ...]
+
+    def document(self) -> dict[str, Any]:
+        """The JSON document of ``navsym export``."""
+        return {
+            "out": str(self.out),
+            "functions": [summary_record(function) for function in self.functions],
+            "languages": [outcome_record(outcome) for outcome in self.outcomes],
+            "files": len(self.files),
+        }
+
+    def __repr__(self) -> str:
+        said = ", ".join(f"{outcome.language} {outcome.status}" for outcome in self.outcomes)
+        return f"<export of {', '.join(f.name for f in self.functions)} to {self.out}: {said}>"
+
+
+def write_export(
     functions: Sequence[ExportedFunction],
     order: Order,
     out: Path,
@@ -200,12 +230,12 @@ def export(
     force: bool = False,
     execute: bool = True,
     progress: Callable[[str], None] = lambda language: None,
-) -> dict[str, Any]:
-    """Make an export, run it, and write it when it held; the document of ``navsym export``.
+) -> Exported:
+    """Make an export, run it, and write it when it held.
 
     progress : called with the name of each language that was written and run.
-    Keys: ``out``, ``functions`` (name, claims, bound), ``languages`` (status, why, vectors, worst),
-    ``files``. Raises FailedError when a language's vectors fail, FolderError when nothing may be written.
+
+    Raises FailedError when a language's vectors fail, FolderError when nothing may be written.
     """
     files = files_of(functions, order)
     require_free(out, files, force=force)
@@ -219,15 +249,10 @@ def export(
     if failed:
         raise FailedError(
             f"expected {failed[0].language} code inside its enclosures; got {failed[0].why}; "
-            "nothing was written; do leave this language out, and report the claim"
+            "nothing was written; leave this language out, and report the claim"
         )
-    written = write_folder(out, files, force=force)
-    return {
-        "out": str(out),
-        "functions": [summary_record(function) for function in functions],
-        "languages": [outcome_record(outcome) for outcome in outcomes],
-        "files": len(written),
-    }
+    write_folder(out, files, force=force)
+    return Exported(out, tuple(functions), tuple(outcomes), tuple(files))
 
 
 def run_or_not(folder: Path, target: Target, execute: bool) -> Outcome:

@@ -20,12 +20,12 @@ def in_order(parts: Sequence[Material]) -> tuple[list[Material], sp.Symbol | Non
         return list(parts), None
     symbols = {s for part in parts for s in part.box}
     if len(symbols) != 1:
-        raise DomainError(f"expected regimes in one parameter; got {len(symbols)}; do export them singly")
+        raise DomainError(f"expected regimes in one parameter; got {len(symbols)}; export them singly")
     (symbol,) = symbols
     ordered = sorted(parts, key=lambda part: inside(part.box[symbol][0], 1))
     for before, after in pairwise(ordered):
         if not same_number(before.box[symbol][1], after.box[symbol][0]):
-            raise DomainError(f"expected regimes that adjoin; got a gap before {after.claim}; do add the missing one")
+            raise DomainError(f"expected regimes that adjoin; got a gap before {after.claim}; add the missing one")
     return ordered, symbol
 
 
@@ -50,13 +50,13 @@ def common_outputs(parts: Sequence[Material]) -> tuple[tuple[Output, ...], list[
     """Outputs large enough for all regimes; shorter vectors end with zeros."""
     names = [output.name for output, _ in parts[0].results]
     if any([output.name for output, _ in part.results] != names for part in parts):
-        raise ShapeError("expected regimes with the same outputs; got different ones; do export them singly")
+        raise ShapeError("expected regimes with the same outputs; got different ones; export them singly")
     outputs, columns = [], []
     for k, name in enumerate(names):
         sizes = [part.results[k][0].shape for part in parts]
         shape = max(sizes, key=lambda s: int(np.prod(s, dtype=int)))
         if any(len(s) != len(shape) or (len(s) != 1 and s != shape) for s in sizes):
-            raise ShapeError(f"expected {name} of one shape in all regimes; got several; do export them singly")
+            raise ShapeError(f"expected {name} of one shape in all regimes; got several; export them singly")
         outputs.append(Output(name, shape))
         columns.append(
             [part.results[k][1] + [sp.S.Zero] * (outputs[k].size - len(part.results[k][1])) for part in parts]

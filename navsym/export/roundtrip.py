@@ -100,7 +100,7 @@ def check_export(folder: Path) -> list[dict[str, Any]]:
     """
     folder = Path(folder)
     if not (folder / MANIFEST).is_file():
-        lost = "expected the manifest of the code that is here; got none; do export again"
+        lost = "expected the manifest of the code that is here; got none; export again"
         return [row(folder / MANIFEST, "manifest", lost)] if any(has_code(folder / name) for name in TARGETS) else []
     try:
         manifest, trouble = unsealed((folder / MANIFEST).read_bytes())
@@ -144,11 +144,6 @@ def as_json(manifest: Any) -> str:
 def has_code(folder: Path) -> bool:
     """True for the folder of a language: it has the program or the page that runs its vectors."""
     return folder.is_dir() and any(p.name.startswith("test_") or p.name == "index.html" for p in folder.iterdir())
-
-
-def check_folder(folder: Path) -> list[dict[str, Any]]:
-    """The same, under the name by which ``navsym check`` looks for it."""
-    return check_export(folder)
 
 
 def language_row(folder: Path, name: str, files: Sequence[str]) -> dict[str, Any]:

@@ -97,7 +97,7 @@ def all_done(
         if isinstance(outcome.value, Failed):
             raise outcome.value.error
         if isinstance(outcome.value, Exhausted):
-            raise MissingEngineError(f"expected {task.name} to be run; got {outcome.value.why}; do try fewer points")
+            raise MissingEngineError(f"expected {task.name} to be run; got {outcome.value.why}; try fewer points")
         progress(f"{task.name} {'languages' if task.targets else 'points'}")
         yield key, outcome.value
 
@@ -163,7 +163,7 @@ def as_markdown(document: Record, command: str) -> str:
     """The page that is committed; produced, never edited."""
     names = [n for n, record in document["languages"].items() if record["status"] != "not executed"]
     lines = ["# Ready-made exports", ""]
-    lines += [f"Produced by `{command}`; do not edit. {document['machine']}.", ""]
+    lines += [f"Produced by `{command}`; not edit. {document['machine']}.", ""]
     lines += [INTRODUCTION.format(document["vectors"]), ""]
     head = ["function", *(SHORT.get(n, n) for n in names), "vectors", "MISRA", "M4 bytes"]
     lines += [f"| {' | '.join(head)} |", f"| --- |{' ---: |' * (len(head) - 1)}"]

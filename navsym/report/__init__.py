@@ -1,1 +1,1 @@
-"""Pages, erratum sheets, explanations and plots of what was decided."""
+"""Verdicts for people: pages, errata, explanations, citations, pictures, notebooks."""

@@ -2,16 +2,68 @@
 
 from __future__ import annotations
 
+import html
 import re
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
-from navsym.claims import Paper
+from navsym import __version__
+from navsym.claims import Paper, Record, Status
+from navsym.core.answers import Answer
 from navsym.report.formula.sides import only_truth
 from navsym.report.names import latex_escape
+from navsym.verification.decide import decide_claim_of
+from navsym.verification.papers import find_claim, stored_records
 
-Record = Mapping[str, Any]
 SHORT = 120  # characters of a formula that a note may hold
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Citation(Answer):
+    """BibTeX of a paper and of the verdict on one of its claims; ``str`` gives the text."""
+
+    id: str
+    status: Status
+    bibtex: str
+
+    def document(self) -> dict[str, Any]:
+        """The JSON document of ``navsym cite``."""
+        return {"id": self.id, "status": str(self.status), "bibtex": self.bibtex}
+
+    def __str__(self) -> str:
+        return self.bibtex
+
+    def __repr__(self) -> str:
+        return f"<citation of {self.id}: {self.status}>"
+
+    def _repr_html_(self) -> str:
+        return f"<pre>{html.escape(self.bibtex)}</pre>"
+
+
+def cite(claim: str, *, fresh: bool = False) -> Citation:
+    """BibTeX for a paper and for the verdict on one of its claims, from the ledger where it has one.
+
+    claim : id such as "guaranteed_velocity:4.3.u2"
+    fresh : decide now instead of citing the ledger
+
+    Raises DomainError, with the ids that come closest, for an id that is none.
+
+    >>> import navsym as nav
+    >>> print(nav.cite("alpha_beta_filter:8"))
+    @misc{kalata1984,
+    ...
+    @misc{kalata1984-8,
+      title = {Verdict on alpha_beta_filter:8: PROVED},
+    ...
+    """
+    module, wanted = find_claim(claim)
+    stored = stored_records()
+    record = None if fresh else stored.get(wanted.id)
+    if record is None:
+        _, record = decide_claim_of(wanted.id)
+    correction = next((other for other in stored.values() if other.corrects == wanted.id), None)
+    return Citation(wanted.id, record.status, bibtex(module.paper, record, __version__, correction))
 
 
 def bibtex(paper: Paper, record: Record, version: str, correction: Record | None = None) -> str:
@@ -21,9 +73,9 @@ def bibtex(paper: Paper, record: Record, version: str, correction: Record | None
     """
     key = paper_key(paper)
     verdict = {
-        "title": f"Verdict on {record['id']}: {record['status']}",
+        "title": f"Verdict on {record.id}: {record.status}",
         "author": "{navsym contributors}",
-        "howpublished": f"navsym {version}, claim {latex_escape(record['id'])}",
+        "howpublished": f"navsym {version}, claim {latex_escape(record.id)}",
         "note": latex_escape(" ".join([verdict_words(record), *correction_words(correction)])),
     }
     words = {
@@ -33,7 +85,7 @@ def bibtex(paper: Paper, record: Record, version: str, correction: Record | None
         "note": latex_escape(source_words(paper)),
         "doi": paper.doi,
     }
-    return block("misc", key, words) + "\n" + block("misc", f"{key}-{plain(record['number'])}", verdict)
+    return block("misc", key, words) + "\n" + block("misc", f"{key}-{citation_key(record.number)}", verdict)
 
 
 def source_words(paper: Paper) -> str:
@@ -44,12 +96,12 @@ def source_words(paper: Paper) -> str:
 
 def verdict_words(record: Record) -> str:
     """What is claimed, how it was decided and for what; where it fails, an exact point."""
-    scope = "" if record["status"] == "REFUTED" else f", for {record['scope'] or 'the numbers as they stand'}"
-    words = f"{record['title']} Decided by {record['method']}{scope}."
-    if record["assumptions"]:
-        words += f" Assuming {'; '.join(record['assumptions'])}."
-    if record["counterexample"]:
-        words += " Counterexample: " + ", ".join(f"{k} = {v}" for k, v in record["counterexample"].items()) + "."
+    scope = "" if record.status == "REFUTED" else f", for {record.scope or 'the numbers as they stand'}"
+    words = f"{record.title} Decided by {record.method}{scope}."
+    if record.assumptions:
+        words += f" Assuming {'; '.join(record.assumptions)}."
+    if record.counterexample:
+        words += f" Counterexample: {record.point_text}."
     return words
 
 
@@ -57,9 +109,9 @@ def correction_words(correction: Record | None) -> list[str]:
     """Which claim stands in its place, and its formula where it is short."""
     if correction is None:
         return []
-    printed = correction["printed"]
+    printed = correction.printed
     says = f": {printed}" if len(printed) <= SHORT and not only_truth(printed) else ""
-    return [f"Corrected by {correction['id']}, {correction['status']}{says}."]
+    return [f"Corrected by {correction.id}, {correction.status}{says}."]
 
 
 def block(kind: str, key: str, fields: Mapping[str, str]) -> str:
@@ -71,9 +123,9 @@ def block(kind: str, key: str, fields: Mapping[str, str]) -> str:
 def paper_key(paper: Paper) -> str:
     """Key of a paper: last name of the first author and year."""
     first = paper.authors[0].split()[-1] if paper.authors else paper.module
-    return plain(f"{first}{paper.year or ''}").lower()
+    return citation_key(f"{first}{paper.year or ''}").lower()
 
 
-def plain(text: str) -> str:
+def citation_key(text: str) -> str:
     """Letters, digits and points of a text; a star becomes ``corrected``."""
     return re.sub(r"[^A-Za-z0-9.]", "", text.replace("*", "corrected"))

@@ -10,14 +10,12 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
-from navsym.claims import Paper, equation_of
+from navsym.claims import Paper, Record, equation_of
 from navsym.report.explain import arithmetic, ball_words, ended
 from navsym.report.formula.sides import Formula, coordinates, formula, only_truth
 from navsym.report.wording import Wording, Words, pattern_of
 
-Record = Mapping[str, Any]
 MOST_COORDINATES = 6  # more than that nobody inserts by hand
 
 
@@ -96,8 +94,8 @@ def erratum_of(paper: Paper, records: Sequence[Record], words: Words | None = No
     Entries with wording stand in the order of the file of wordings, which is that of the paper.
     """
     words = words or {}
-    corrections = {record["corrects"]: record for record in records if record["corrects"]}
-    refuted = [r for r in records if r["status"] == "REFUTED" and r["slip"] in ("paper", "scan")]
+    corrections = {record.corrects: record for record in records if record.corrects}
+    refuted = [r for r in records if r.status == "REFUTED" and r.slip in ("paper", "scan")]
     order = {pattern: place for place, pattern in enumerate(words)}
     entries = [
         entry(paper, group, corrections, words.get(pattern or ""))
@@ -110,7 +108,7 @@ def grouped(refuted: Iterable[Record], words: Words) -> list[tuple[str | None, l
     """Records that one wording covers come together; every other record stands alone."""
     found: list[tuple[str | None, list[Record]]] = []
     for record in refuted:
-        pattern = pattern_of(record["number"], words)
+        pattern = pattern_of(record.number, words)
         known = next((group for key, group in found if key == pattern), None) if pattern else None
         if known is None:
             found.append((pattern, [record]))
@@ -122,29 +120,29 @@ def grouped(refuted: Iterable[Record], words: Words) -> list[tuple[str | None, l
 def entry(paper: Paper, group: Sequence[Record], corrections: Mapping[str, Record], words: Wording | None) -> Entry:
     """One entry of the sheet from a group of records, whose first speaks for it; a correction only if it holds."""
     record = group[0]
-    fixed = [corrections.get(r["id"]) for r in group]
+    fixed = [corrections.get(r.id) for r in group]
     correction = fixed[0]
-    holds = correction is not None and correction["status"] in ("PROVED", "CERTIFIED", "CONFIRMED")
+    holds = correction is not None and correction.status in ("PROVED", "CERTIFIED", "CONFIRMED")
     return Entry(
-        ids=tuple(r["id"] for r in group),
-        place=place_of(paper, record["number"]),
-        slip=record["slip"],
+        ids=tuple(r.id for r in group),
+        place=place_of(paper, record.number),
+        slip=record.slip or "",
         words=words,
-        what=record["title"],
+        what=record.title,
         wrong=printed_side(record),
         right=printed_side(correction) if holds and correction is not None else None,
-        right_words=correction["title"] if holds and correction is not None else "",
+        right_words=correction.title if holds and correction is not None else "",
         rows=tuple(row(*pair) for pair in zip(group, fixed, strict=True)) if len(group) > 1 else (),
-        reason=ended(capital(words.why if words and words.why else record["reason"])),
+        reason=ended(capital(words.why if words and words.why else record.reason)),
         check=check_of(record) if len(group) == 1 else None,
-        status=correction["status"] if correction is not None else "",
+        status=correction.status if correction is not None else "",
     )
 
 
 def row(record: Record, correction: Record | None) -> Row:
     """One line of a group: what it is about, as printed, and the correction."""
-    what = re.sub(r", as .*$", "", record["title"]).rstrip(".")
-    return Row(what, record["printed"], correction["printed"] if correction is not None else "none proved")
+    what = re.sub(r", as .*$", "", record.title).rstrip(".")
+    return Row(what, record.printed, correction.printed if correction is not None else "none proved")
 
 
 def capital(sentence: str) -> str:
@@ -154,10 +152,10 @@ def capital(sentence: str) -> str:
 
 def printed_side(record: Record) -> Formula:
     """The printed formula; a statement in words, which is only said to hold or not, is its title."""
-    if only_truth(record["printed"]):
-        ending = " (does not hold)" if record["printed"] == "False" else ""
-        return Formula(record["title"] + ending, None, None, words=True)
-    return formula(record["printed"])
+    if only_truth(record.printed):
+        ending = " (does not hold)" if record.printed == "False" else ""
+        return Formula(record.title + ending, None, None, words=True)
+    return formula(record.printed)
 
 
 def place_of(paper: Paper, number: str) -> str:
@@ -171,7 +169,7 @@ def place_of(paper: Paper, number: str) -> str:
 
 def check_of(record: Record) -> Check | None:
     """The first entry that differs at the counterexample, where the sides are numbers there."""
-    point = record["counterexample"] or {}
+    point = record.counterexample or {}
     line = next((line for line in arithmetic(record) if line.differs), None)
     if line is None or len(point) > MOST_COORDINATES or (not point and line.entry):
         return None

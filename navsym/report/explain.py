@@ -5,24 +5,130 @@ Everything is read off the record of ``navsym verify``; nothing is decided here.
 
 from __future__ import annotations
 
+import html
+import inspect
 import re
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass
 from decimal import Decimal, InvalidOperation
+from pathlib import Path
 from typing import Any
 
+from navsym.claims import Claim, Record
+from navsym.claims.display import card, verdict_words
+from navsym.claims.paper import papers_folder
+from navsym.core.answers import Answer
 from navsym.core.balls import enclose, tape
 from navsym.core.errors import NavsymError
 from navsym.language.expression import parse, symbol
 from navsym.language.names import RESERVED
 from navsym.prove.wording import decimal_ends
+from navsym.report.formula.sides import only_truth
+from navsym.verification.decide import SECONDS, decide_claim_of, require_workers, sides
+from navsym.verification.papers import correction_of, find_claim
+
+
+@dataclass(frozen=True, slots=True)
+class Correction:
+    """The claim that stands in the place of a refuted one: its id, what it says, and its formula where it has one."""
+
+    id: str
+    title: str
+    formula: str | None
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Explanation(Answer):
+    """Why a claim has its verdict, step by step; ``str`` gives the words.
+
+    record     : the verdict, decided now
+    paper      : title of the paper
+    source     : file and line of the derivation
+    steps      : headings, sentences and formulas
+    correction : what stands in the place of a refuted claim, or None
+    """
+
+    record: Record
+    paper: str
+    source: str
+    steps: tuple[Step, ...]
+    correction: Correction | None
+
+    def document(self) -> dict[str, Any]:
+        """The JSON document of ``navsym explain``."""
+        correction = self.correction
+        return {
+            "id": self.record.id,
+            "status": str(self.record.status),
+            "paper": self.paper,
+            "source": self.source,
+            "corrected_by": correction and correction.id,
+            "steps": [asdict(step) for step in self.steps],
+            "correction": correction and {"title": correction.title, "formula": correction.formula},
+        }
+
+    def certificates(self) -> list[Mapping[str, Any]]:
+        """The certificate of the verdict, when it has one."""
+        return [] if self.record.certificate is None else [self.record.certificate]
+
+    def __str__(self) -> str:
+        return "\n".join(f"{step.heading}: {step.words} {step.formula}".strip(": ") for step in self.steps)
+
+    def __repr__(self) -> str:
+        return f"<explanation of {self.record.id}: {self.record.status}, {len(self.steps)} steps>"
+
+    def _repr_html_(self) -> str:
+        lines = [f"<b>{html.escape(self.record.id)}</b> {verdict_words(str(self.record.status))}"]
+        for step in self.steps:
+            head = f"<b>{html.escape(step.heading)}.</b> " if step.heading else ""
+            formula = f" <code>{html.escape(step.formula)}</code>" if step.formula else ""
+            lines.append(f"{head}{html.escape(step.words)}{formula}")
+        return card(lines, str(self.record.status))
+
+
+def explain(claim: str, *, seconds: float = SECONDS) -> Explanation:
+    """Why a claim has its verdict: both sides, the question, the method, and the arithmetic of a counterexample.
+
+    The claim is decided now. Numbers at a counterexample are computed again in balls from the text of the two sides.
+
+    claim   : id such as "guaranteed_velocity:4.3.u2"
+    seconds : limit of processor time; above it the verdict is OPEN
+
+    Raises DomainError, with the ids that come closest, for an id that is none.
+
+    >>> import navsym as nav
+    >>> why = nav.explain("alpha_beta_filter:remark.critical")
+    >>> why
+    <explanation of alpha_beta_filter:remark.critical: REFUTED, 8 steps>
+    >>> why.correction.id
+    'alpha_beta_filter:remark.critical*'
+    """
+    require_workers(None, seconds)
+    module, wanted = find_claim(claim)
+    _, record = decide_claim_of(wanted.id, seconds)
+    better = correction_of(wanted.id)
+    correction = None if better is None else Correction(better.id, better.title, formula_of(better))
+    return Explanation(record, module.paper.title, place_of(wanted.derive), tuple(steps(record)), correction)
+
+
+def place_of(derive: Callable[..., Any]) -> str:
+    """File and line of a derivation, from the folder of the papers on."""
+    code = inspect.unwrap(derive).__code__
+    file = Path(code.co_filename).relative_to(papers_folder().parent)
+    return f"{file.as_posix()}:{code.co_firstlineno}"
+
+
+def formula_of(claim: Claim) -> str | None:
+    """The formula that a claim prints; None where its title says all."""
+    printed, _ = sides(claim.derive())
+    return None if only_truth(printed) else printed
+
 
 # The arithmetic of a counterexample, done again in balls from the text of the two sides.
 #
 # So a reader sees numbers that the decision itself did not hand over.
 
 
-Record = Mapping[str, Any]
 LONGEST = 20_000
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 
@@ -43,11 +149,11 @@ class Arithmetic:
 
 def arithmetic(record: Record) -> list[Arithmetic]:
     """Values of both sides at the counterexample, for the entries that are numbers there."""
-    point = record["counterexample"]
+    point = record.counterexample
     if point is None:
         return []
-    printed = entries_of(record["printed"].split(" +- ")[0])
-    derived = entries_of(record["derived"])
+    printed = entries_of(record.printed.split(" +- ")[0])
+    derived = entries_of(record.derived)
     if not derived or len(printed) != len(derived):
         return []
     single, found = len(printed) == 1, []
@@ -161,39 +267,39 @@ def steps(record: Record) -> list[Step]:
     Raises ValueError for a record that is no document of a claim.
     """
     found = [
-        Step("What is printed", record["title"], record["printed"]),
+        Step("What is printed", record.title, record.printed),
         derived_step(record),
         Step("What was asked", question(record)),
         Step("How it was decided", decision(record)),
     ]
-    if record["assumptions"]:
-        found.append(Step("What it takes for granted", "; ".join(record["assumptions"])))
-    if record["status"] == "REFUTED":
+    if record.assumptions:
+        found.append(Step("What it takes for granted", "; ".join(record.assumptions)))
+    if record.status == "REFUTED":
         found += counterexample_steps(record)
-    if record["reason"]:
-        found.append(Step("What went wrong" if record["slip"] else "Remark", slip_words(record)))
-    if record["corrects"]:
-        found.append(Step("What it corrects", f"It stands in the place of {record['corrects']}."))
-    if record.get("certificate"):
+    if record.reason:
+        found.append(Step("What went wrong" if record.slip else "Remark", slip_words(record)))
+    if record.corrects:
+        found.append(Step("What it corrects", f"It stands in the place of {record.corrects}."))
+    if record.certificate:
         found.append(Step("Do not take our word", replay(record)))
     return found
 
 
 def derived_step(record: Record) -> Step:
     """The derived side, or that there is none."""
-    if not record["derived"]:
+    if not record.derived:
         return Step("What follows from the model", "The statement itself was derived and then examined.")
-    return Step("What follows from the model", "Derived without looking at the printed side:", record["derived"])
+    return Step("What follows from the model", "Derived without looking at the printed side:", record.derived)
 
 
 def question(record: Record) -> str:
     """The quantifier in words."""
-    scope = record["scope"] or "the numbers as they stand"
-    if " +- " in record["printed"]:
+    scope = record.scope or "the numbers as they stand"
+    if " +- " in record.printed:
         return f"Is the derived value within the printed tolerance, for {scope}?"
-    if record["printed"].startswith("dual = "):
+    if record.printed.startswith("dual = "):
         return f"Is this the optimum of the guaranteed-estimation problem, for {scope}?"
-    if not record["derived"]:
+    if not record.derived:
         return f"Does the printed relation hold, for {scope}?"
     if scope == "one point":
         return "Are the two sides equal for all values in the stated range? One point is enough to say no."
@@ -238,25 +344,24 @@ METHODS = (
 
 def decision(record: Record) -> str:
     """What the method does, and what it found here."""
-    method = record["method"]
+    method = record.method
     told = next((words for start, words in METHODS if method.startswith(start)), "")
     if not told:
         told = f"By an exact method of the derivation itself: {method}."
-    evidence = f" Found: {record['evidence']}" if record["evidence"] else ""
+    evidence = f" Found: {record.evidence}" if record.evidence else ""
     ending = "" if (told + evidence).endswith(".") else "."
-    return f"{told}{evidence}{ending} Hence {record['status']}."
+    return f"{told}{evidence}{ending} Hence {record.status}."
 
 
 def counterexample_steps(record: Record) -> list[Step]:
     """The point of the counterexample, the entries that differ there, and the enclosure of the difference."""
-    point = record["counterexample"] or {}
-    where = ", ".join(f"{name} = {value}" for name, value in point.items())
+    where = record.point_text
     found = [Step("The counterexample", f"At {where}:" if where else "Nothing has to be inserted:")]
     for line in arithmetic(record):
         if line.differs:
             found.append(Step("", arithmetic_words(line)))
-    if record["difference"]:
-        low, high = record["difference"]
+    if record.difference:
+        low, high = record.difference.lower, record.difference.upper
         value = f"is {ball_words((low, high))}" if low == high else f"lies between {low} and {high}"
         found.append(Step("", f"The side on the left minus the other {value}: not zero."))
     return found
@@ -272,12 +377,12 @@ def arithmetic_words(line: Arithmetic) -> str:
 def slip_words(record: Record) -> str:
     """Whose slip it is, and the reason."""
     place = {"paper": "A slip of the paper: ", "scan": "A slip of the scan, not of the authors: "}
-    return place.get(record["slip"] or "", "") + record["reason"] + "."
+    return place.get(record.slip or "", "") + record.reason + "."
 
 
 def replay(record: Record) -> str:
     """How the certificate can be checked."""
-    kind = record["certificate"].get("kind", "")
+    kind = (record.certificate or {}).get("kind", "")
     return (
         f"A certificate of kind '{kind}' goes with this verdict. The report keeps it as a file; `navsym check` on that "
         "file replays it with a program of its own that shares no code with the one that decided."

@@ -1,9 +1,8 @@
 """The report: verdicts as a folder of plain HTML pages that need no network and no script to be read.
 
-``site`` turns the document of ``navsym verify`` into texts by file name; writing them is the
-business of the command line. Every word that comes from data is escaped by the templates; the
-only markup that data can cause is made by :mod:`navsym.report.formula.sides` and
-:mod:`navsym.report.curves`, which escape what they take.
+:func:`pages` turns a ledger into texts by file name, and :func:`report` writes them. Every word that comes from data is
+escaped by the templates; the only markup that data can cause is made by :mod:`navsym.report.formula.sides` and
+:mod:`navsym.report.plots`, which escape what they take.
 """
 
 from __future__ import annotations
@@ -20,21 +19,18 @@ from typing import Any
 import jinja2
 from markupsafe import Markup
 
-from navsym.claims import Paper, equation_of
-from navsym.report.code import Snippet, snippets
-from navsym.report.curves import refutation_plot
+from navsym.claims import Paper, Record, equation_of
 from navsym.report.erratum import Erratum, erratum_of, printed_side
 from navsym.report.explain import Step, ball_words, ended, steps
 from navsym.report.formula.latex import sentence_html, sentence_latex
 from navsym.report.formula.sides import Formula, coordinates, formula, only_truth
 from navsym.report.names import latex_escape
+from navsym.report.plots import refutation_svg
 from navsym.report.wording import Words
-from navsym.verification.ledger import about, in_order, only_in_the_copy
+from navsym.verification.ledger import Ledger, is_only_in_the_copy, records_about, sort_records
+from navsym.verification.papers import PaperSummary
 
 # Names of the files of a report, and the certificates that it keeps as files.
-
-
-Record = Mapping[str, Any]
 
 
 def certificate_files(records: Sequence[Record]) -> dict[str, str]:
@@ -48,11 +44,11 @@ def certificate_files(records: Sequence[Record]) -> dict[str, str]:
 
 def certificates(record: Record) -> list[tuple[str, Any]]:
     """File names and certificates of a record: one for each entry where a claim has several."""
-    whole = record.get("certificate")
+    whole = record.certificate
     if not whole:
         return []
     parts = whole["of"] if whole.get("kind") == "all" and isinstance(whole.get("of"), list) else [whole]
-    name = f"certificates/{slug(record['id'])}"
+    name = f"certificates/{slug(record.id)}"
     if len(parts) == 1:
         return [(f"{name}.json", parts[0])]
     return [(f"{name}.{place}.json", part) for place, part in enumerate(parts, start=1)]
@@ -121,7 +117,6 @@ class ClaimView:
     derived: Formula
     story: tuple[tuple[Step, Formula | None], ...]
     plot: Markup
-    code: tuple[Snippet, ...]
     point: tuple[Formula, ...]
     correction: ClaimLink | None
     corrects: ClaimLink | None
@@ -167,24 +162,12 @@ class PaperView:
 # -- the site --------------------------------------------------------------------------------
 
 
-def site(
-    document: Mapping[str, Any], cards: Mapping[str, Paper], words: Mapping[str, Words] | None = None
-) -> dict[str, str]:
-    """All files of the report: name -> text; see :func:`pages`."""
-    return dict(pages(document, cards, words))
-
-
 def pages(
-    document: Mapping[str, Any],
-    cards: Mapping[str, Paper],
-    words: Mapping[str, Words] | None = None,
-    *,
-    progress: Callable[[str], None] = lambda claim: None,
+    ledger: Ledger, words: Mapping[str, Words] | None = None, *, progress: Callable[[str], None] = lambda claim: None
 ) -> Iterator[tuple[str, str]]:
     """The files of the report, name and text, as they are made; the index comes last.
 
-    document : that of ``navsym verify`` (keys claims, papers, counts), or the ledger
-    cards    : papers by module; a module without one is shown without its matrix of equations
+    ledger   : the verdicts; a paper whose card is not in it is shown without its matrix of equations
     words    : wording of erratum sheets by module
     progress : called with the id of each claim that is set in type
 
@@ -193,11 +176,11 @@ def pages(
     """
     words, env, papers = words or {}, environment(), []
     shared = {"marks": MARKS, "meanings": MEANINGS, "copy_mark": COPY_MARK}
-    yield from certificate_files(document["claims"]).items()
-    yield "verdicts.json", json.dumps(document, ensure_ascii=False, allow_nan=False, indent=1) + "\n"
-    for module in (paper["module"] for paper in document["papers"]):
-        card = cards.get(module) or bare_card(module, document)
-        paper = paper_view(card, document["claims"], words.get(module), progress)
+    yield from certificate_files(ledger.claims).items()
+    yield "verdicts.json", json.dumps(ledger.document(), ensure_ascii=False, allow_nan=False, indent=1) + "\n"
+    for summary in ledger.papers:
+        card = ledger.cards.get(summary.module) or bare_card(summary)
+        paper = paper_view(card, ledger.claims, words.get(summary.module), progress)
         papers.append(paper)
         yield f"{paper.file}.html", env.get_template("paper.html").render(shared, paper=paper)
         yield f"{paper.file}.erratum.html", env.get_template("erratum.html").render(shared, paper=paper)
@@ -218,7 +201,7 @@ def environment() -> jinja2.Environment:
     )
     env.filters |= {"tex": latex_escape, "slug": slug, "sentence": sentence_html, "sentence_tex": sentence_latex}
     env.filters |= {"ended": ended, "in_words": scope_words}
-    env.filters["ends"] = lambda difference: ball_words(tuple(difference))
+    env.filters["ends"] = lambda difference: ball_words((difference.lower, difference.upper))
     script = (TEMPLATES / "filter.js").read_text(encoding="utf-8").strip()
     env.globals["style"] = Markup((TEMPLATES / "style.css").read_text(encoding="utf-8"))
     env.globals["script"] = Markup(script)
@@ -233,10 +216,9 @@ def visible(value: Any) -> Any:
     return "".join(c if c.isprintable() or c in "\n\t" else repr(c)[1:-1] for c in value)
 
 
-def bare_card(module: str, document: Mapping[str, Any]) -> Paper:
-    """A card for a paper of which only the document is known: module and title."""
-    title = next((paper["title"] for paper in document["papers"] if paper["module"] == module), module)
-    return Paper(module, title, authors=(), year=None, source="", language="", equations=())
+def bare_card(paper: PaperSummary) -> Paper:
+    """A card for a paper of which only the ledger is known: module and title."""
+    return Paper(paper.module, paper.title, authors=(), year=None, source="", language="", equations=())
 
 
 def total(papers: Sequence[PaperView]) -> dict[str, int]:
@@ -251,49 +233,49 @@ def paper_view(
     card: Paper, records: Sequence[Record], words: Words | None, progress: Callable[[str], None]
 ) -> PaperView:
     """Everything that the page of one paper shows."""
-    mine = in_order(card, [record for record in records if record["paper"] == card.module])
-    statuses = [record["status"] for record in mine]
-    numbered = [equation_of(record["number"], card.equations) for record in mine]
+    mine = sort_records(card, [record for record in records if record.paper == card.module])
+    statuses = [str(record.status) for record in mine]
+    numbered = [equation_of(record.number, card.equations) for record in mine]
     return PaperView(
         card=card,
         file=slug(card.module),
         cells=tuple(cell(card, equation, mine) for equation in card.equations),
         claims=tuple(claim_views(mine, progress)),
         counts={status: statuses.count(status) for status in MARKS},
-        damaged=sum(only_in_the_copy(record) for record in mine),
+        damaged=sum(is_only_in_the_copy(record) for record in mine),
         unnumbered=numbered.count(None),
         erratum=erratum_of(card, mine, words),
-        unexpected=tuple(record["id"] for record in mine if record["status"] != record["expect"]),
+        unexpected=tuple(record.id for record in mine if not record.is_expected),
     )
 
 
 def cell(card: Paper, equation: str, records: Sequence[Record]) -> Cell:
     """The worst verdict on an equation; ``copy`` for damage of the copy, ``definition`` or ``missing`` without any."""
-    found = about(equation, card.equations, records)
+    found = records_about(equation, card.equations, records)
     if not found:
         kind = "definition" if equation in card.definitions else "missing"
         words = card.definitions.get(equation, "neither claimed nor listed as a definition")
         return Cell(equation, kind, "·" if kind == "definition" else "!", f"{kind}: {words}", "")
     worst = found[0]
     many = f"{len(found)} claims, the worst " if len(found) > 1 else ""
-    words = f"{many}{worst['status']}: {worst['title']}"
-    if only_in_the_copy(worst):
+    words = f"{many}{worst.status}: {worst.title}"
+    if is_only_in_the_copy(worst):
         return Cell(equation, "copy", COPY_MARK, f"only in the copy that was read: {words}", anchor_of(worst))
-    return Cell(equation, worst["status"].lower(), MARKS[worst["status"]], words, anchor_of(worst))
+    return Cell(equation, worst.status.lower(), MARKS[worst.status], words, anchor_of(worst))
 
 
 def anchor_of(record: Record) -> str:
     """Anchor of a claim on the page of its paper."""
-    return f"c-{slug(record['number'])}"
+    return f"c-{slug(record.number)}"
 
 
 def claim_views(records: Sequence[Record], progress: Callable[[str], None]) -> Iterator[ClaimView]:
     """What the page of a paper shows of its claims, one after the other; progress gets the id of each."""
-    known = {record["id"]: record for record in records}
-    corrections = {record["corrects"]: record for record in records if record["corrects"]}
+    known = {record.id: record for record in records}
+    corrections = {record.corrects: record for record in records if record.corrects}
     for record in records:
-        yield claim_view(record, corrections.get(record["id"]), known.get(record["corrects"]))
-        progress(record["id"])
+        yield claim_view(record, corrections.get(record.id), known.get(record.corrects or ""))
+        progress(record.id)
 
 
 def claim_view(record: Record, correction: Record | None, corrected: Record | None) -> ClaimView:
@@ -302,13 +284,12 @@ def claim_view(record: Record, correction: Record | None, corrected: Record | No
     return ClaimView(
         record=record,
         anchor=anchor_of(record),
-        mark=MARKS[record["status"]],
-        printed=side(record["printed"]),
-        derived=side(record["derived"]),
+        mark=MARKS[record.status],
+        printed=side(record.printed),
+        derived=side(record.derived),
         story=story,
-        plot=Markup(refutation_plot(record) if record["status"] == "REFUTED" else ""),
-        code=snippets(record),
-        point=coordinates(record["counterexample"]),
+        plot=Markup(refutation_svg(record) if record.status == "REFUTED" else ""),
+        point=coordinates(record.counterexample),
         correction=link(correction),
         corrects=link(corrected),
         certificates=tuple(name for name, _ in certificates(record)),
@@ -324,4 +305,4 @@ def link(record: Record | None) -> ClaimLink | None:
     """A link to a claim, None without one."""
     if record is None:
         return None
-    return ClaimLink(record["number"], anchor_of(record), printed_side(record), record["status"])
+    return ClaimLink(record.number, anchor_of(record), printed_side(record), record.status)

@@ -6,8 +6,12 @@ Every function takes plain arrays and returns a matplotlib ``Figure`` made witho
 
 from __future__ import annotations
 
+import html
 import io
-from collections.abc import Mapping, Sequence
+import re
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -16,6 +20,21 @@ from matplotlib.axes import Axes
 from matplotlib.colors import LightSource
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
+
+from navsym.claims import Record
+from navsym.core.balls import Tape, enclose, exact_ball, tape
+from navsym.core.errors import DomainError, NavsymError
+from navsym.guaranteed.phases.answer import Phases, Regime
+from navsym.guaranteed.solver import Estimator
+from navsym.language.expression import parse, symbol
+from navsym.language.names import shown
+from navsym.multimodel.engine import Estimates
+from navsym.report.explain import entries_of
+from navsym.report.names import latex_name
+from navsym.terrain.locate import Fix
+from navsym.trajectory.conditioning import Conditions
+from navsym.trajectory.motion import Track
+from navsym.verification.ledger import Ledger, is_only_in_the_copy, records_about
 
 #: The palette of Okabe and Ito, told apart with every common colour blindness.
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#f0e442", "#000000")
@@ -248,6 +267,7 @@ SQUARES = {
     "CERTIFIED": ("#9fd3cb", "#003d33", "◎"),
     "REFUTED": ("#c8480b", "#ffffff", "✗"),
     "only in the copy": ("#fbe0d0", "#8a2d00", "✗"),
+    "CONFIRMED": ("#e3e3f5", "#2b2b70", "≈"),
     "OPEN": ("#f5e3a1", "#4d3b00", "?"),
     "definition": ("#efefef", "#595959", "·"),
 }
@@ -259,3 +279,308 @@ def square(axes: Axes, x: float, y: float, equation: str, status: str) -> None:
     axes.add_patch(Rectangle((x + 0.04, y + 0.06), 0.92, 0.84, facecolor=ground, edgecolor=ink, linewidth=0.6))
     text = f"{equation} {mark}".strip()
     axes.text(x + 0.5, y + 0.5, text, ha="center", va="center", fontsize=7.2, color=ink)
+
+
+# Pictures of answers
+
+
+def plot(answer: Any) -> Figure:
+    """A picture of an answer, as a matplotlib figure; a notebook shows it, ``savefig`` writes it.
+
+    An Estimator shows its dual polynomials within their bounds, and its weights; Phases show value and times by the
+    parameter; estimates of a filter show the probabilities of the modes; a track shows velocities with their
+    deviations; condition numbers are compared with doubles; a ledger shows its verdicts; a refuted record both sides.
+
+    Raises DomainError for an answer without a picture.
+
+    >>> import navsym as nav
+    >>> drift = nav.solve("examples/schuler-velocity.toml", "drift", T="pi/2")
+    >>> picture = nav.plot(drift)
+    >>> [axes.get_xlabel() for axes in picture.axes]
+    ['time, unit of the model', 'time, unit of the model']
+    """
+    record = getattr(answer, "record", answer)
+    if isinstance(record, Record):
+        curves = refuted_curves(record)
+        if curves is None:
+            message = "expected a refuted formula with a counterexample; got a claim without a curve; see nav.explain"
+            raise DomainError(message, where=record.id)
+        return refutation_plot(curves)
+    for kind, draw in PICTURES.items():
+        if isinstance(answer, kind):
+            drawn: Figure = draw(answer)
+            return drawn
+    expected = ", ".join(kind.__name__ for kind in PICTURES)
+    raise DomainError(f"expected one of {expected}, or a refuted claim; got {shown(answer)}; plot one of these")
+
+
+def plot_estimator(found: Estimator) -> Figure:
+    """Dual polynomials over their bounds ``x . H_j(t) / sigma_j``, and the weights of the support."""
+    made, (above, below) = panels((2, 1), 4.4)
+    above.axhspan(-1, 1, color="0.93", zorder=0)
+    dual = np.array([float(Fraction(x)) for x in found.dual])
+    v = np.linspace(0.0, 1.0, 400)
+    seen: set[str] = set()
+    for panel in found.problem.exact().panels:
+        times, rows, sigma = panel.numbers(v)
+        name = found.problem.measurements[panel.measurement]
+        colour = COLOURS[panel.measurement % len(COLOURS)]
+        label = {} if name in seen else {"label": name}
+        above.plot(times, dual @ rows / sigma, STYLES[panel.measurement % 4], color=colour, **label)
+        seen.add(name)
+    for point in found.support:
+        colour = COLOURS[found.problem.measurements.index(point.measurement) % len(COLOURS)]
+        at, weight = float(point.at), float(point.weight)
+        above.plot(at, np.sign(weight), "o", color=colour)
+        below.vlines(at, 0, weight, color=colour, linewidth=3)
+        below.plot(at, weight, "o", color=colour)
+    above.set(xlabel=f"time, {MODEL_UNIT}", ylabel="dual polynomial over its bound, 1")
+    above.legend(loc="best", frameon=False)
+    below.axhline(0, color="0.4", linewidth=1)
+    below.set(xlabel=f"time, {MODEL_UNIT}", ylabel="weight, 1")
+    return made
+
+
+def plot_phases(found: Phases) -> Figure:
+    """The optimum and the times of its measurements by the parameter; regimes without a closed form as their table."""
+    rows = [row for regime in found.regimes if (row := curve_of_regime(regime)) is not None]
+    if not rows:
+        raise DomainError("expected a regime with a value; got none; choose another range", where=found.target)
+    return phase_diagram(rows, parameter=found.parameter, unit=MODEL_UNIT, quantity=f"deviation of {found.target}, 1")
+
+
+def curve_of_regime(regime: Regime) -> Mapping[str, Any] | None:
+    """Values of the parameter with the optimum there, and with the times where they have closed forms."""
+    if regime.value is None:
+        table = [(row["at"], row["lower"]) for row in regime.table]
+        if not table:
+            return None
+        at, value = (np.array([float(Fraction(x)) for x in column]) for column in zip(*table, strict=True))
+        return {"at": at, "value": value, "label": "enclosures"}
+    low, high = (float(exact_ball(end).mid()) for end in (regime.lower, regime.upper))
+    at = np.linspace(low, high, POINTS + 1)[1:-1]
+    points = [exact_ball(Fraction(float(x))) for x in at]
+    drawn = [regime.value, *(p.at for p in regime.support if p.at is not None)]
+    parameter = regime.family.parameter
+    programs = [tape(e) for e in drawn]
+    curves = [np.array([float(enclose(p, {parameter: x}).mid()) for x in points]) for p in programs]
+    return {"at": at, "value": curves[0], "label": text_of_value(regime), "instants": np.array(curves[1:])}
+
+
+def text_of_value(regime: Regime) -> str:
+    """The formula of a regime where it is short, else its range."""
+    text = regime.document()["value"]
+    return text if len(text) <= 30 else " to ".join(regime.ends)
+
+
+def plot_filter(found: Estimates) -> Figure:
+    """Probabilities of the modes after every step."""
+    steps = np.arange(1, len(found.probabilities) + 1)
+    names = [f"mode {k + 1}" for k in range(found.probabilities.shape[1])]
+    made = mode_ribbon(steps, found.probabilities, names)
+    made.axes[0].set_xlabel("step, 1")
+    return made
+
+
+def plot_track(found: Track) -> Figure:
+    """Velocity east, north and up with three standard deviations."""
+    made, axes = figure()
+    for k, name in enumerate(("east", "north", "up")):
+        speed, spread = found.velocity[:, k], 3 * found.velocity_sd[:, k]
+        axes.fill_between(found.t, speed - spread, speed + spread, color=COLOURS[k], alpha=0.2, linewidth=0)
+        axes.plot(found.t, speed, STYLES[k], color=COLOURS[k], label=name)
+    axes.set(xlabel="time, s", ylabel="velocity, m/s")
+    axes.legend(loc="best", frameon=False)
+    return made
+
+
+def plot_conditions(found: Conditions) -> Figure:
+    """Certified condition numbers beside those of double precision, logarithmic."""
+    made, axes = figure(height=3.0)
+    names = [matrix.name for matrix in found]
+    axes.semilogy(names, [float(matrix.value) for matrix in found], "o", color=COLOURS[0], label="certified")
+    doubles = [np.nan if matrix.double is None else matrix.double for matrix in found]
+    axes.semilogy(names, doubles, "x", color=COLOURS[1], markersize=9, label="double precision")
+    axes.set(xlabel="matrix, name", ylabel="condition number, 1")
+    axes.legend(loc="best", frameon=False)
+    return made
+
+
+def plot_fix(found: Fix) -> Figure:
+    """The criterion over the hypotheses of position; needs the map of criteria, ``maps=True``."""
+    if found.criterion_map is None:
+        raise DomainError("expected a fix with its criterion map; got one without; ask locate for maps", where="plot")
+    made, axes = figure(5.0, 4.2)
+    rows, columns = found.criterion_map.shape
+    half = (columns - 1) // 2, (rows - 1) // 2
+    finite = np.where(np.isfinite(found.criterion_map), found.criterion_map, np.nan)
+    extent = (-half[0] - 0.5, half[0] + 0.5, -half[1] - 0.5, half[1] + 0.5)
+    drawn = axes.imshow(np.sqrt(finite), origin="lower", extent=extent, cmap="viridis")
+    made.colorbar(drawn, ax=axes, label="root of the criterion, m")
+    axes.plot(*found.position_index, "*", color=COLOURS[4], markeredgecolor="black", markersize=14)
+    axes.set(xlabel="hypothesis in x, index", ylabel="hypothesis in y, index")
+    return made
+
+
+def plot_ledger(found: Ledger) -> Figure:
+    """One square for each numbered equation, with its worst verdict."""
+    papers = []
+    for summary, records in found.by_paper():
+        card = found.cards.get(summary.module)
+        equations = card.equations if card else tuple(record.number for record in records)
+        cells = []
+        for equation in equations:
+            about = records_about(equation, equations, records)
+            damaged = bool(about) and is_only_in_the_copy(about[0])
+            status = "definition" if not about else "only in the copy" if damaged else str(about[0].status)
+            cells.append((equation, status))
+        papers.append((summary.module, cells))
+    return verdict_matrix(papers)
+
+
+MODEL_UNIT = "unit of the model"
+PICTURES: dict[type, Callable[[Any], Figure]] = {
+    Estimator: plot_estimator,
+    Phases: plot_phases,
+    Estimates: plot_filter,
+    Track: plot_track,
+    Conditions: plot_conditions,
+    Fix: plot_fix,
+    Ledger: plot_ledger,
+}
+
+
+# Both sides of a refuted formula
+
+POINTS = 160
+INK = "#123456"  # replaced by the colour of the page's text
+LARGEST = 1e12
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RefutedCurves:
+    """Printed and derived side along one symbol, the others at their values in the counterexample."""
+
+    along: str
+    point: Mapping[str, float]
+    x: Array
+    sides: tuple[Array, Array]
+    marks: tuple[float, float]
+
+    def words(self) -> str:
+        """What the picture shows, for those who do not see it."""
+        others = {name: number for name, number in self.point.items() if name != self.along}
+        values = ", ".join(f"{name} = {number:.4g}" for name, number in others.items())
+        held = (
+            "" if not others else f" with {values}" if len(others) <= 4 else " with the others as in the counterexample"
+        )
+        at = f"at {self.along} = {self.point[self.along]:.4g} they are {self.marks[0]:.6g} and {self.marks[1]:.6g}"
+        return f"Printed side (dashed) and derived side (solid) along {self.along}{held}; {at}. Units are the paper's."
+
+
+def refutation_svg(record: Record) -> str:
+    """Both sides of a refuted formula around its counterexample, as SVG for a page; empty where there is no curve."""
+    curves = refuted_curves(record)
+    if curves is None:
+        return ""
+    label = html.escape(f"{record.id}: {curves.words()}", quote=True)
+    drawn = svg(refutation_plot(curves)).replace(INK, "currentColor")
+    drawn = re.sub(r"<metadata>.*?</metadata>\s*", "", drawn[drawn.index("<svg") :], flags=re.DOTALL)
+    drawn = drawn.replace("<svg ", f'<svg class="plot" role="img" aria-label="{label}" ', 1)
+    return f"<figure>{drawn}<figcaption>{html.escape(curves.words())}</figcaption></figure>"
+
+
+def refutation_plot(curves: RefutedCurves) -> Figure:
+    """Solid line for the derived side, dashed for the printed one, a mark on each at the counterexample."""
+    made, axes = figure(4.8, 2.4)
+    made.patch.set_alpha(0)
+    axes.patch.set_alpha(0)
+    for name, style, colour, y, mark in zip(
+        ("printed", "derived"), ("--", "-"), COLOURS[1::-1], curves.sides, curves.marks, strict=True
+    ):
+        axes.plot(curves.x, y, style, color=colour, label=name)
+        axes.plot(
+            curves.point[curves.along], mark, "o", color=colour, fillstyle="none" if name == "printed" else "full"
+        )
+    values = np.sort(np.concatenate([y[np.isfinite(y)] for y in curves.sides]))
+    low, high = values[len(values) // 20], values[-1 - len(values) // 20]  # poles are cut off
+    low, high = min(low, *curves.marks), max(high, *curves.marks)
+    margin = 0.08 * (high - low) or 0.5
+    axes.set(xlabel=f"${latex_name(curves.along)}$", ylabel="both sides", ylim=(low - margin, high + margin))
+    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1), ncols=2, frameon=False, labelcolor=INK)
+    axes.tick_params(colors=INK)
+    for label in (axes.xaxis.label, axes.yaxis.label):
+        label.set_color(INK)
+    for spine in axes.spines.values():
+        spine.set_edgecolor(INK)
+    return made
+
+
+def refuted_curves(record: Record) -> RefutedCurves | None:
+    """Both sides along the first symbol of the counterexample that stands in them; None where there is no curve.
+
+    For tuples and matrices the first entry that differs is drawn. Values are doubles: a picture, not a decision.
+    """
+    point = {name: value_of(text) for name, text in (record.counterexample or {}).items()}
+    held = {name: number for name, number in point.items() if number is not None}
+    sides = differing_sides(record, held)
+    along = next((n for n in held if sides is not None and any(symbol(n) in s.symbols for s in sides)), None)
+    if sides is None or along is None or len(held) < len(point):
+        return None
+    centre = held[along]
+    lower, upper = sorted((0.02 * centre, 2 * centre)) if centre else (-1.0, 1.0)
+    x = np.linspace(lower, upper, POINTS + 1)
+    curves = tuple(np.array([side.at({**held, along: float(value)}) for value in x]) for side in sides)
+    marks = tuple(side.at(held) for side in sides)
+    if any(np.isfinite(y).sum() < POINTS // 4 for y in curves) or not all(np.isfinite(marks)):
+        return None
+    return RefutedCurves(along, held, x, curves, marks)  # type: ignore[arg-type]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Side:
+    """One side of a formula, ready to be evaluated."""
+
+    program: Tape
+    symbols: frozenset[Any]
+
+    def at(self, point: Mapping[str, float]) -> float:
+        """The value at a point; NaN where there is none, or one of 1e12 and more."""
+        values = {symbol(name): exact_ball(Fraction(number)) for name, number in point.items()}
+        try:
+            ball = enclose(self.program, values)
+        except (NavsymError, ArithmeticError, ValueError):
+            return float("nan")
+        value = float(ball.mid()) if ball.is_finite() else float("nan")
+        return value if abs(value) < LARGEST else float("nan")
+
+
+def differing_sides(record: Record, point: Mapping[str, float]) -> tuple[Side, Side] | None:
+    """Printed and derived side of the first entry whose values differ at the point."""
+    printed, derived = (entries_of(text.split(" +- ")[0]) for text in (record.printed, record.derived))
+    if not derived or len(printed) != len(derived):
+        return None
+    for pair in zip(printed, derived, strict=True):
+        sides = [read_side(text, point) for text in pair]
+        if sides[0] is None or sides[1] is None:
+            return None
+        a, b = sides[0].at(point), sides[1].at(point)
+        if abs(a - b) > 1e-9 * (abs(a) + abs(b)):
+            return sides[0], sides[1]
+    return None
+
+
+def read_side(text: str, names: Mapping[str, Any]) -> Side | None:
+    """A side from its text; None for what is no formula in these names."""
+    try:
+        expression = parse(text, {name: symbol(name) for name in names})
+        return Side(tape(expression), frozenset(expression.free_symbols))
+    except NavsymError:
+        return None
+
+
+def value_of(text: str) -> float | None:
+    """The number that a text is, None when it is none."""
+    side = read_side(text, {})
+    value = float("nan") if side is None else side.at({})
+    return value if np.isfinite(value) else None

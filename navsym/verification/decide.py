@@ -1,88 +1,139 @@
-"""Deciding the claims of papers: each in a limited child process, several at once.
-
-The result of one claim is a record of plain data, the same that ``navsym verify --json`` prints.
-"""
+"""Deciding the claims of papers: each in a limited child process, several at once, with the verdicts that are kept."""
 
 from __future__ import annotations
 
 import os
-from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
-from types import ModuleType
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import sympy as sp
 
-from navsym.claims import (
-    OPEN,
-    Bound,
-    Claim,
-    Equation,
-    Optimum,
-    Paper,
-    Property,
-    Statement,
-    Verdict,
-    claims_of,
-    coverage,
-)
-from navsym.core.sandbox import Exhausted, Failed, run_many
+from navsym.claims import OPEN, Bound, Claim, Equation, Optimum, Paper, Property, Record, Statement, Verdict
+from navsym.core.errors import DomainError
+from navsym.core.sandbox import Exhausted, Failed, require_limits, run_many
 from navsym.prove.ladder import decide
 from navsym.prove.wording import text_of
+from navsym.verification.ledger import Ledger
+from navsym.verification.papers import PaperModule, claim_ids, find_claim, load_papers, summarise_paper
+from navsym.verification.verdict_store import VerdictStore, sources
 
-Record = dict[str, Any]
 SECONDS = 90.0
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class PaperModule:
-    """A derivation module, its paper and its claims."""
-
-    name: str
-    paper: Paper
-    claims: tuple[Claim, ...]
-
-
-def paper_module(module: ModuleType) -> PaperModule:
-    """Collect the paper card and the claims of an imported derivation module."""
-    paper: Paper = module.PAPER
-    return PaperModule(paper.module, paper, claims_of(module))
-
-
 def verify(
+    *papers: str,
+    jobs: int | None = None,
+    seconds: float = SECONDS,
+    fresh: bool = False,
+    progress: Callable[[int, int, str], None] = lambda done, of, claim: None,
+    remark: Callable[[str], None] = lambda sentence: None,
+) -> Ledger:
+    """Verdicts on every claim of these papers, or of all of them.
+
+    Verdicts are kept: a claim whose own sources and whose deciding sources have not changed is not decided again, and
+    a run that was stopped goes on. Each claim is decided in a child process with limits of its own.
+
+    papers   : names of derivation modules, such as "guaranteed_velocity"; all when none is given
+    jobs     : claims decided at the same time; one per core when none is given
+    seconds  : limit of processor time for one claim; above it the verdict is OPEN
+    fresh    : decide everything again
+    progress : called with (claims done, claims to decide, id) after each
+    remark   : called with a sentence on what is kept
+
+    Raises DomainError for a name that is no paper, and for limits that are none.
+
+    >>> import navsym as nav
+    >>> ledger = nav.verify("alpha_beta_filter")
+    >>> ledger.counts["REFUTED"], ledger.unexpected, ledger.missing
+    (1, (), ())
+    >>> ledger.document()["papers"][0]["claimed"]
+    8
+    """
+    require_workers(jobs, seconds)
+    before = sources()
+    chosen = load_papers(papers)
+    store = VerdictStore(chosen, fresh, before, remark)
+    missing = len(store.keys) - len(store.known)
+    if store.known and missing:
+        remark(f"{len(store.known)} of {len(store.keys)} claims are as they were, {missing} are decided now")
+    done = 0
+
+    def step(record: Record) -> None:
+        nonlocal done
+        store.keep(record)
+        done += 1
+        progress(done, missing, record.id)
+
+    try:
+        ledger = decide_claims(chosen, jobs=jobs, seconds=seconds, known=store.known, progress=step)
+    finally:
+        store.close()
+    return replace(ledger, unsaved=tuple(store.lost))
+
+
+def require_workers(jobs: Any, seconds: Any) -> None:
+    """Refuse numbers of jobs and limits of time that are none; raises DomainError."""
+    if jobs is not None and (not isinstance(jobs, int) or isinstance(jobs, bool) or jobs < 1):
+        raise DomainError(f"expected a whole number of jobs from 1 on; got {jobs!r}; correct it", where="jobs")
+    if not isinstance(seconds, (int, float)) or isinstance(seconds, bool):
+        raise DomainError(f"expected seconds as a number; got {seconds!r}; correct it", where="seconds")
+    require_limits(seconds, 1)
+
+
+def decide_claim_of(wanted: str, seconds: float = SECONDS) -> tuple[Paper, Record]:
+    """Paper card and record of one claim, decided now in a limited child process."""
+    module, claim = find_claim(wanted)
+    one = PaperModule(module.name, module.paper, (claim,))
+    return module.paper, decide_claims([one], jobs=1, seconds=seconds).claims[0]
+
+
+def show(claim: str, *, seconds: float = SECONDS) -> tuple[Record, ...]:
+    """Both sides of a claim and its verdict, decided now; of an equation in several parts, one record for each.
+
+    claim   : id such as "guaranteed_velocity:4.3.u2", or an equation, "guaranteed_velocity:4.16"
+    seconds : limit of processor time for each claim; above it the verdict is OPEN
+
+    Raises DomainError, with the ids that come closest, for an id that is none.
+
+    >>> import navsym as nav
+    >>> (record,) = nav.show("alpha_beta_filter:12.stable")
+    >>> str(record.status), record.printed, record.scope
+    ('PROVED', '4*r', 'all r in (0, 1]')
+    """
+    require_workers(None, seconds)
+    return tuple(decide_claim_of(part, seconds)[1] for part in claim_ids(claim))
+
+
+def decide_claims(
     modules: Sequence[PaperModule],
     *,
     jobs: int | None = None,
     seconds: float = SECONDS,
     known: Mapping[str, Record] | None = None,
     progress: Callable[[Record], None] = lambda record: None,
-) -> dict[str, Any]:
-    """Decide every claim; the document of ``navsym verify``.
+) -> Ledger:
+    """The verdict of every claim of these papers.
 
     jobs     : claims decided at the same time, by default one per core
     seconds  : limit for one claim; above it the verdict is OPEN
     known    : records of an earlier run that are still valid, by claim id
     progress : called with each new record
-
-    Keys: ``claims`` (one record each, in the order of the sources), ``papers`` (coverage of the
-    numbered equations), ``counts`` (by status).
     """
     known = known or {}
     claims = [(module.paper, claim) for module in modules for claim in module.claims]
-    records: dict[str, Record] = {c.id: dict(known[c.id]) for _, c in claims if c.id in known}
+    records = {claim.id: known[claim.id] for _, claim in claims if claim.id in known}
     missing = [(paper, claim) for paper, claim in claims if claim.id not in records]
     warm_up()
     for outcome in run_many(lambda pair: record_of(*pair), missing, jobs or os.cpu_count() or 1, seconds):
         paper, claim = missing[outcome.place]
         record = outcome.value
         if isinstance(record, (Exhausted, Failed)):
-            record = record_from(paper, claim, None, stopped(record))
-        record["seconds"] = round(outcome.seconds, 3)
-        records[claim.id] = record
-        progress(record)
-    ordered = [records[claim.id] for _, claim in claims]
-    return {"claims": ordered, "papers": [paper_record(module) for module in modules], "counts": counts(ordered)}
+            record = make_record(paper, claim, None, open_verdict(record))
+        records[claim.id] = replace(record, seconds=round(outcome.seconds, 3))
+        progress(records[claim.id])
+    cards = {module.name: module.paper for module in modules}
+    return Ledger(tuple(records[claim.id] for _, claim in claims), tuple(map(summarise_paper, modules)), cards=cards)
 
 
 def warm_up() -> None:
@@ -91,7 +142,7 @@ def warm_up() -> None:
     decide(Equation(sp.sin(x + y), sp.sin(x) * sp.cos(y) + sp.cos(x) * sp.sin(y)))
 
 
-def stopped(outcome: Exhausted | Failed) -> Verdict:
+def open_verdict(outcome: Exhausted | Failed) -> Verdict:
     """The OPEN verdict of a claim that reached a limit or ended with an error, with the reason."""
     why = outcome.why if isinstance(outcome, Exhausted) else str(outcome.error)
     return Verdict(OPEN, "none", evidence=f"not decided: {why}")
@@ -100,39 +151,38 @@ def stopped(outcome: Exhausted | Failed) -> Verdict:
 def record_of(paper: Paper, claim: Claim) -> Record:
     """Derive and decide one claim, in this process."""
     statement = claim.derive()
-    return record_from(paper, claim, statement, decide(statement))
+    return make_record(paper, claim, statement, decide(statement))
 
 
-def record_from(paper: Paper, claim: Claim, statement: Statement | None, verdict: Verdict) -> Record:
+def make_record(paper: Paper, claim: Claim, statement: Statement | None, verdict: Verdict) -> Record:
     """The record of a claim: name, both sides as text, verdict and certificate, as plain data.
 
     statement : None when deriving it was stopped; the sides are then empty
     """
     printed, derived = ("", "") if statement is None else sides(statement)
-    return {
-        "id": claim.id,
-        "paper": paper.module,
-        "number": claim.number,
-        "title": claim.title,
-        "status": str(verdict.status),
-        "expect": str(claim.expect),
-        "method": verdict.method,
-        "scope": verdict.scope,
-        "assumptions": list(verdict.assumptions),
-        "printed": printed,
-        "derived": derived,
-        "corrects": claim.corrects_id,
-        "slip": claim.slip,
-        "reason": claim.reason,
-        "evidence": verdict.evidence,
-        "counterexample": None if verdict.counterexample is None else dict(verdict.counterexample),
-        "difference": None if verdict.difference is None else [verdict.difference.lower, verdict.difference.upper],
-        "certificate": verdict.certificate,
-        "seconds": 0.0,
-    }
+    return Record(
+        id=claim.id,
+        paper=paper.module,
+        number=claim.number,
+        title=claim.title,
+        status=verdict.status,
+        expect=claim.expect,
+        method=verdict.method,
+        scope=verdict.scope,
+        assumptions=tuple(verdict.assumptions),
+        printed=printed,
+        derived=derived,
+        corrects=claim.corrects_id,
+        slip=claim.slip,
+        reason=claim.reason,
+        evidence=verdict.evidence,
+        counterexample=verdict.counterexample,
+        difference=verdict.difference,
+        certificate=verdict.certificate,
+    )
 
 
-# -- the two sides as text -----------------------------------------------------------------
+# The two sides as text
 
 
 def sides(statement: Statement) -> tuple[str, str]:
@@ -175,30 +225,3 @@ def optimum_text(statement: Optimum) -> tuple[str, str]:
     )
     printed = "; ".join(f"{name} = {side_text(side)}" for name, side in parts)
     return printed, f"H = {side_text(statement.regressors)}, P = {side_text(statement.functional)}"
-
-
-# -- summaries -------------------------------------------------------------------------------
-
-
-def paper_record(module: PaperModule) -> Record:
-    """Coverage of a paper: how many numbered equations are claimed or definitions, and which are missing."""
-    covered = coverage(module.paper, module.claims)
-    return {
-        "module": module.name,
-        "title": module.paper.title,
-        "equations": len(module.paper.equations),
-        "claimed": len(covered.claimed),
-        "definitions": len(covered.definitions),
-        "missing": list(covered.missing),
-    }
-
-
-def counts(records: Iterable[Record]) -> dict[str, int]:
-    """How many records have each status, zero included."""
-    found = Counter(record["status"] for record in records)
-    return {status: found.get(status, 0) for status in ("PROVED", "CERTIFIED", "CONFIRMED", "REFUTED", "OPEN")}
-
-
-def unexpected(records: Iterable[Record]) -> list[Record]:
-    """Records whose verdict is not the one that the source declares."""
-    return [record for record in records if record["status"] != record["expect"]]

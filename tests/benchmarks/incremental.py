@@ -27,10 +27,10 @@ TOUCHED = {
 }
 FILL = """
 import json, pathlib
-from navsym.cli.verify import load
+from navsym.verification.papers import load_papers
 from navsym.verification.fingerprints import fingerprints
 from navsym.core.store import Store
-keys = fingerprints(claim for module in load([]) for claim in module.claims)
+keys = fingerprints(claim for module in load_papers() for claim in module.claims)
 store = Store()
 for record in json.loads(pathlib.Path("navsym_papers/verdicts.json").read_text())["claims"]:
     if record["id"] in keys:

@@ -9,17 +9,20 @@ from pathlib import Path
 
 import pytest
 
-from navsym.cli import doctor, main
-from navsym.cli.doctor import Finding
+from navsym.cli import main
+from navsym.core import machine
+from navsym.core.machine import Equipment
 
-HEALTHY = Finding("sympy", True, True, "1.14", "")
-OPTIONAL = Finding("julia", False, False, "", "for exported Julia: install julia")
-LACKING = Finding("flint", True, False, "", "install it")
+HEALTHY = Equipment("sympy", True, True, "1.14", "")
+OPTIONAL = Equipment("julia", False, False, "", "for exported Julia: install julia")
+LACKING = Equipment("flint", True, False, "", "install it")
 
 
-def answers(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], *findings: Finding) -> tuple[int, str]:
+def answers(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], *findings: Equipment
+) -> tuple[int, str]:
     """Status and output of ``navsym doctor --json`` on a machine with these findings."""
-    monkeypatch.setattr(doctor, "examine", lambda: list(findings))
+    monkeypatch.setattr(machine, "examine", lambda: list(findings))
     return main.run(["doctor", "--json"]), capsys.readouterr().out
 
 
@@ -34,7 +37,7 @@ def test_required_things_may_not(monkeypatch: pytest.MonkeyPatch, capsys: pytest
 
 
 def test_the_table_says_what_to_do(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    monkeypatch.setattr(doctor, "examine", lambda: [HEALTHY, OPTIONAL, LACKING])
+    monkeypatch.setattr(machine, "examine", lambda: [HEALTHY, OPTIONAL, LACKING])
     assert main.run(["doctor"]) == 3
     out = capsys.readouterr().out
     assert "for exported Julia: install julia" in out and "something required is missing" in out
@@ -43,12 +46,12 @@ def test_the_table_says_what_to_do(monkeypatch: pytest.MonkeyPatch, capsys: pyte
 def test_an_engine_that_crashes_on_import_is_a_finding(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     (tmp_path / "crashing.py").write_text("import os\nos.abort()\n")
     monkeypatch.setenv("PYTHONPATH", str(tmp_path))
-    found = doctor.engine("crashing", "crashing")
+    found = machine.engine("crashing", "crashing")
     assert found.required and not found.found and "bootstrap.py" in found.advice
 
 
 def test_an_engine_that_is_there_is_found() -> None:
-    found = doctor.engine("msgspec", "msgspec")
+    found = machine.engine("msgspec", "msgspec")
     assert found.found and found.version and not found.advice
 
 
@@ -58,30 +61,30 @@ def test_a_program_that_does_not_answer_is_not_there(monkeypatch: pytest.MonkeyP
     script.write_text("#!/bin/sh\nexit 1\n")
     script.chmod(0o755)
     monkeypatch.setenv("PATH", str(tmp_path))
-    assert not doctor.program("C compiler", doctor.PROGRAMS["C compiler"]).found
+    assert not machine.program("C compiler", machine.PROGRAMS["C compiler"]).found
     script.write_text("#!/bin/sh\necho cc 1.2\n")
-    assert doctor.program("C compiler", doctor.PROGRAMS["C compiler"]).version == "cc 1.2"
+    assert machine.program("C compiler", machine.PROGRAMS["C compiler"]).version == "cc 1.2"
 
 
 def test_a_data_folder_that_is_not_there_is_said(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setenv("NAVSYM_DATA", str(tmp_path / "no"))
-    assert not doctor.data_folder().found
+    assert not machine.data_folder().found
     monkeypatch.setenv("NAVSYM_DATA", str(tmp_path))
-    assert doctor.data_folder().found
+    assert machine.data_folder().found
 
 
 def test_a_file_in_place_of_the_cache_folder_is_a_fault(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file" / "cache"))
-    assert not doctor.cache_folder().found
+    assert not machine.cache_folder().found
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "not yet"))
-    assert doctor.cache_folder().found
+    assert machine.cache_folder().found
 
 
 def test_the_doctor_knows_every_engine_and_extra_of_the_project() -> None:
     root = Path(__file__).resolve().parents[2]
     project = tomllib.loads((root / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     extras = project["optional-dependencies"]
-    assert set(doctor.ENGINES.values()) <= {name.split(">")[0] for name in project["dependencies"]}
-    for distribution, extra, _ in doctor.EXTRAS.values():
+    assert set(machine.ENGINES.values()) <= {name.split(">")[0] for name in project["dependencies"]}
+    for distribution, extra, _ in machine.EXTRAS.values():
         assert any(name.startswith(distribution) for name in extras[extra])

@@ -8,8 +8,10 @@ import sqlite3
 
 import pytest
 
-from navsym.cli import verify
+from navsym.claims import Record
 from navsym.cli.main import run
+from navsym.verification import decide, verdict_store
+from navsym.verification.papers import load_papers
 
 
 @pytest.fixture(autouse=True)
@@ -23,33 +25,34 @@ def claims(capsys, *options):
 
 
 def test_verdicts_of_sources_that_changed_while_they_were_imported_are_named_and_not_kept(monkeypatch, capsys):
-    seen = iter([(("ladder.py", 1, 1),)])
-    true = verify.sources
-    monkeypatch.setattr(verify, "sources", lambda: next(seen, None) or true())
+    monkeypatch.setattr(decide, "sources", lambda: (("ladder.py", 1, 1),))
     status, document = claims(capsys)
     assert status == 3 and len(document["unsaved"]) == len(document["claims"])
 
 
-def test_a_source_that_is_imported_later_must_stay_as_it_was(monkeypatch, capsys):
-    chosen = verify.load(["alpha_beta_filter"])
-    before = (*verify.sources(), ("not_imported_yet.py", 1, 1))
-    monkeypatch.setattr(verify, "sources", lambda: before)
-    kept = verify.KeptVerdicts(chosen, False, before)
-    record = {"id": chosen[0].claims[0].id, "method": "identity"}
-    kept.keep(record)
-    assert not kept.lost
-    monkeypatch.setattr(verify, "sources", lambda: (*before[:-1], ("not_imported_yet.py", 2, 1)))
-    kept.keep(record)
-    assert kept.lost == [record["id"]]
-    kept.close()
-    assert "stay as they are" in capsys.readouterr().err
+def test_a_source_that_is_imported_later_must_stay_as_it_was(monkeypatch):
+    chosen, said = load_papers(["alpha_beta_filter"]), []
+    before = (*verdict_store.sources(), ("not_imported_yet.py", 1, 1))
+    monkeypatch.setattr(verdict_store, "sources", lambda: before)
+    store = verdict_store.VerdictStore(chosen, False, before, said.append)
+    plain = dict.fromkeys(Record.__dataclass_fields__, "") | {"status": "PROVED", "expect": "PROVED", "assumptions": []}
+    plain |= {"id": chosen[0].claims[0].id, "method": "identity", "counterexample": None, "difference": None}
+    record = Record.from_json(plain)
+    store.keep(record)
+    assert not store.lost
+    monkeypatch.setattr(verdict_store, "sources", lambda: (*before[:-1], ("not_imported_yet.py", 2, 1)))
+    store.keep(record)
+    assert store.lost == [record.id]
+    store.close()
+    assert any("stay as they are" in sentence for sentence in said)
 
 
 def test_a_second_run_takes_every_verdict_from_the_store(monkeypatch, capsys):
-    monkeypatch.setattr(verify, "sources", tuple)  # whoever works on the sources just now does not matter here
+    for module in (decide, verdict_store):
+        monkeypatch.setattr(module, "sources", tuple)  # whoever works on the sources just now does not matter here
     monkeypatch.setattr("navsym.verification.fingerprints.rooms_digest", lambda: "the same")
     first = claims(capsys)
-    monkeypatch.setattr("navsym.verification.decide.record_of", None)  # nothing is decided any more
+    monkeypatch.setattr(decide, "record_of", None)  # nothing is decided any more
     assert claims(capsys) == first
 
 

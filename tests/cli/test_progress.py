@@ -35,7 +35,7 @@ def test_durations_are_told_as_people_tell_them(seconds, words):
 def test_the_time_left_is_that_of_the_steps_done_here_and_not_of_those_kept():
     clock = Clock()
     with Progress("jobs", clock=clock) as bar:
-        bar.told_by_job(91, 100)
+        bar.follow(91, 100)
         clock.now = 10.0
         bar.to(92)
         assert bar.words(clock.now, "") == "92 of 100 jobs, about 40 s left"
@@ -64,9 +64,9 @@ def test_a_log_that_asks_for_it_gets_a_remark_every_ten_seconds(capsys, monkeypa
 def test_the_total_may_grow_while_a_job_finds_out_what_it_has_to_do():
     clock = Clock()
     with Progress("steps", clock=clock) as bar:
-        bar.told_by_job(1, 2)
+        bar.follow(1, 2)
         clock.now = 12.0
-        bar.told_by_job(3, 7)
+        bar.follow(3, 7)
         assert bar.words(clock.now, "") == "3 of 7 steps, about 16 s left"
 
 

@@ -7,6 +7,7 @@ import json
 import pytest
 
 from navsym.cli.main import run
+from navsym.report import site
 
 
 @pytest.fixture(scope="module")
@@ -69,6 +70,6 @@ def test_a_folder_that_cannot_be_made_is_named(folder, tmp_path, capsys):
 
 
 def test_a_folder_that_cannot_be_made_is_found_before_anything_is_decided(capsys, monkeypatch):
-    monkeypatch.setattr("navsym.cli.verify.decided", lambda *_: pytest.fail("decided first"))
+    monkeypatch.setattr(site, "verify", lambda *_, **__: pytest.fail("decided first"))
     assert run(["report", "alpha_beta_filter", "--out", "/dev/null", "--json"]) == 2
     assert json.loads(capsys.readouterr().out)["error"]["kind"] == "output"

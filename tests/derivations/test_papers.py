@@ -10,7 +10,8 @@ import pytest
 from navsym.checker import Refused, check, load
 from navsym.claims import REFUTED, claims_of
 from navsym.claims.paper import paper_names, papers_folder
-from navsym.verification.decide import paper_module, verify
+from navsym.verification.decide import decide_claims
+from navsym.verification.papers import paper_module
 
 HOLDS = {"PROVED", "CERTIFIED"}
 
@@ -18,7 +19,7 @@ HOLDS = {"PROVED", "CERTIFIED"}
 @pytest.fixture(scope="module", params=paper_names())
 def document(request):
     module = paper_module(importlib.import_module(f"navsym_papers.{request.param}"))
-    return verify([module], jobs=1)
+    return decide_claims([module], jobs=1).document()
 
 
 def test_every_verdict_is_the_one_that_its_source_declares(document):

@@ -132,9 +132,9 @@ def campaign(names: list[str], languages: list[str], each: int, folder: Path) ->
 
 
 def ready_functions(name: str) -> list[Any]:
-    from navsym.cli.export import expanded, functions_for
+    from navsym.export.materials import functions_from
 
-    return [f for claim in expanded([name]) for f in functions_for(claim, "double", False)]
+    return functions_from(name)
 
 
 PAGE = """# Corrupted exports

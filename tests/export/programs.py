@@ -8,8 +8,8 @@ import tempfile
 from pathlib import Path
 from types import ModuleType
 
-from navsym.cli.export import material_for
 from navsym.export.languages.python import files
+from navsym.export.materials import material_of_claim
 from navsym.export.parts import ExportedFunction
 from navsym.export.ready import algorithm
 
@@ -18,7 +18,7 @@ LICENSE = "SPDX-License-Identifier: Apache-2.0"
 
 @functools.cache
 def decided(claim: str):
-    return material_for(claim, False)
+    return material_of_claim(claim, False)
 
 
 @functools.cache

@@ -56,9 +56,9 @@ def test_generated_code_is_the_code_that_was_read(fresh: dict[str, str], languag
 
 
 def ready_functions(name: str) -> list:
-    from navsym.cli.export import expanded, functions_for
+    from navsym.export.materials import functions_from
 
-    return [f for claim in expanded([name]) for f in functions_for(claim, "double", False)]
+    return functions_from(name)
 
 
 def ready_files(name: str) -> dict[str, str]:

@@ -16,7 +16,7 @@ from navsym.core.errors import DomainError, NavsymError
 from navsym.export.folder import FolderError, write_folder
 from navsym.export.functions import RefusedError, function_of, material
 from navsym.export.languages.names import function_name, identifier
-from navsym.export.languages.targets import TARGETS, chosen
+from navsym.export.languages.targets import TARGETS, find_targets
 from navsym.export.package import Order, files_of
 from navsym.export.roundtrip import check_export, hash_trouble, sealed, unsealed
 from navsym.prove.ladder import decide
@@ -131,7 +131,7 @@ def test_a_changed_file_is_noticed(capsys, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("change", ["removed", "a line more"])
 def test_code_without_its_manifest_as_written_is_rejected(change: str, tmp_path: Path) -> None:
-    files = files_of([samples.by_name("versine")], Order(tuple(chosen(["python"], "double")), count=4))
+    files = files_of([samples.by_name("versine")], Order(tuple(find_targets(["python"], "double")), count=4))
     write_folder(tmp_path, files)
     manifest = tmp_path / "manifest.json"
     assert [row["status"] for row in check_export(tmp_path)] == ["ACCEPTED"] * 2
@@ -170,13 +170,13 @@ def altered(whole: bytes, place: int) -> bytes:
 
 
 def test_only_what_the_manifest_lists_is_run(tmp_path: Path) -> None:
-    write_folder(tmp_path, files_of([samples.by_name("versine")], Order(tuple(chosen(["c"], "double")), count=4)))
+    write_folder(tmp_path, files_of([samples.by_name("versine")], Order(tuple(find_targets(["c"], "double")), count=4)))
     (tmp_path / "c" / "planted.c").write_text("int main(void) { return 7; }\n")
     assert all(row["status"] == "ACCEPTED" for row in check_export(tmp_path))
 
 
 def test_a_manifest_cannot_make_the_check_read_elsewhere(tmp_path: Path) -> None:
-    files = files_of([samples.by_name("versine")], Order(tuple(chosen(["python"], "double")), count=4))
+    files = files_of([samples.by_name("versine")], Order(tuple(find_targets(["python"], "double")), count=4))
     write_folder(tmp_path / "e", files)
     (tmp_path / "outside").write_text("secret")
     manifest = json.loads(files["manifest.json"])
@@ -219,14 +219,14 @@ def test_what_is_replaced_stays_when_the_disk_is_full(tmp_path: Path, monkeypatc
 
 def test_a_comment_cannot_be_closed_by_a_title() -> None:
     function = function_of([material("m:1", TRUE, decide(TRUE), title='*/ int x; /* """ ??/')])
-    files = files_of([function], Order(tuple(chosen(["c", "cpp", "javascript"], "double")), count=4))
+    files = files_of([function], Order(tuple(find_targets(["c", "cpp", "javascript"], "double")), count=4))
     assert "*/ int x" not in "".join(text for name, text in files.items() if not name.endswith(".json"))
 
 
 @pytest.mark.parametrize("license_", ["", "MIT\n*/", "x" * 100, "Ünicode"])
 def test_a_licence_is_an_identifier(license_: str) -> None:
     with pytest.raises(DomainError, match="SPDX"):
-        files_of([samples.by_name("versine")], Order(tuple(chosen(["c"], "double")), license=license_, count=4))
+        files_of([samples.by_name("versine")], Order(tuple(find_targets(["c"], "double")), license=license_, count=4))
 
 
 @pytest.mark.parametrize(
@@ -239,9 +239,9 @@ def test_bad_arguments_are_bad_input(argument: str, tmp_path: Path, capsys) -> N
 
 def test_unknown_languages_are_named() -> None:
     with pytest.raises(NavsymError, match="cobol"):
-        chosen(["cobol"], "double")
+        find_targets(["cobol"], "double")
     with pytest.raises(NavsymError, match="only double"):
-        chosen(["javascript"], "float")
+        find_targets(["javascript"], "float")
 
 
 def test_a_function_is_not_called_like_one_that_a_language_has() -> None:

@@ -19,7 +19,7 @@ from navsym.export.languages.c import files
 from navsym.models.inertial import joint_model
 from navsym.multimodel.bank import Bank
 from navsym.multimodel.filters import run_filter
-from navsym.multimodel.kalman.steps import correct, predict
+from navsym.multimodel.kalman import correct, predict
 from navsym.observability.two_stage import hold_measurements
 from navsym.terrain.centre import information
 from navsym_papers.guaranteed_velocity.model import H, T, tau

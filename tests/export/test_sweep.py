@@ -82,9 +82,9 @@ def test_a_zero_stays_exact() -> None:
 
 
 def ready(name: str, real: str = "double") -> list:
-    from navsym.cli.export import expanded, functions_for
+    from navsym.export.materials import functions_from
 
-    return [f for claim in expanded([name]) for f in functions_for(claim, real, False)]
+    return functions_from(name, real=real)
 
 
 def held_to_the_balls(function, count: int = 120) -> int:

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from navsym.claims import Paper
-from navsym.report.page import site
+from navsym.claims import Paper, Record
 from tests.report import hostile
 
 PLAIN = {
@@ -22,13 +21,13 @@ PLAIN = {
 }
 
 
-def plain(number: str, status: str, printed: str, derived: str, **changes: object) -> dict[str, object]:
+def plain(number: str, status: str, printed: str, derived: str, **changes: object) -> Record:
     base = PLAIN | {"status": status, "expect": status, "printed": printed, "derived": derived} | changes
     return hostile.record(number, "words", **base)
 
 
 @pytest.fixture(scope="session")
-def records() -> list[dict[str, object]]:
+def records() -> list[Record]:
     return [
         plain("1", "PROVED", "sin(2*T)", "2*sin(T)*cos(T)", certificate={"kind": "identity"}),
         plain(
@@ -77,8 +76,8 @@ def card() -> Paper:
 
 
 @pytest.fixture(scope="session")
-def files(records: list[dict[str, object]], card: Paper) -> dict[str, str]:
-    return site(hostile.document(records), {"sample": card})
+def files(records: list[Record], card: Paper) -> dict[str, str]:
+    return hostile.site(hostile.ledger(records, card))
 
 
 @pytest.fixture(scope="session")
@@ -86,9 +85,7 @@ def hostile_files() -> dict[str, str]:
     """Every hostile word as title, sides, scope, assumption, number, counterexample and paper title."""
     records = [hostile.record(f"{i}", words) for i, words in enumerate(hostile.HOSTILE)]
     records += [hostile.record(words, "plain") for words in hostile.HOSTILE]
-    document = hostile.document(records)
-    document["papers"][0]["title"] = hostile.HOSTILE[0]
-    return site(document, {})
+    return hostile.site(hostile.ledger(records, title=hostile.HOSTILE[0]))
 
 
 @pytest.fixture(scope="session")

@@ -2,6 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
+
+from navsym.claims import Paper, Record
+from navsym.report.page import pages
+from navsym.report.wording import Words
+from navsym.verification.ledger import Ledger
+from navsym.verification.papers import PaperSummary
+
 HOSTILE = (
     "<script>alert(1)</script>",
     "</script><script>alert(2)</script>",
@@ -46,7 +54,7 @@ HOSTILE = (
 )
 
 
-def record(number: str, words: str, **changes: object) -> dict[str, object]:
+def record(number: str, words: str, **changes: object) -> Record:
     """A record that says the same hostile words everywhere."""
     found: dict[str, object] = {
         "id": f"sample:{number}",
@@ -69,12 +77,15 @@ def record(number: str, words: str, **changes: object) -> dict[str, object]:
         "certificate": {"kind": words},
         "seconds": 0.5,
     }
-    return found | changes
+    return Record.from_json(found | changes)
 
 
-def document(records: list[dict[str, object]]) -> dict[str, object]:
-    """The document of ``navsym verify`` around records of one paper."""
-    statuses = [r["status"] for r in records]
-    names = ("PROVED", "CERTIFIED", "CONFIRMED", "REFUTED", "OPEN")
-    paper = {"module": "sample", "title": "A sample", "equations": 1, "claimed": 1, "definitions": 0, "missing": []}
-    return {"claims": records, "papers": [paper], "counts": {name: statuses.count(name) for name in names}}
+def ledger(records: Iterable[Record], card: Paper | None = None, title: str = "A sample") -> Ledger:
+    """The verdicts of one paper."""
+    paper = PaperSummary("sample", title, 1, 1, 0, ())
+    return Ledger(tuple(records), (paper,), cards={} if card is None else {"sample": card})
+
+
+def site(found: Ledger, words: Mapping[str, Words] | None = None) -> dict[str, str]:
+    """All files of the report: name -> text."""
+    return dict(pages(found, words))

@@ -8,9 +8,11 @@ from pathlib import Path
 
 import pytest
 
-from navsym.report.page import site, visible
+from navsym.report.page import visible
 from navsym.report.wording import read_wording
+from navsym.verification.ledger import Ledger
 from tests.report import devtools
+from tests.report.hostile import site
 
 pytestmark = pytest.mark.browser
 
@@ -150,19 +152,14 @@ LEDGER = Path(__file__).parents[2] / "derivations" / "verdicts.json"
 @pytest.fixture(scope="module")
 def real(tmp_path_factory):
     """Pages of the paper with the widest formulas, and of the one with the longest words, from the ledger."""
-    document = json.loads(LEDGER.read_text(encoding="utf-8"))
     chosen = ("joint_correction", "trajectory")
-    cut = {
-        "claims": [r for r in document["claims"] if r["paper"] in chosen],
-        "papers": [p for p in document["papers"] if p["module"] in chosen],
-        "counts": document["counts"],
-    }
+    cut = Ledger.from_json(json.loads(LEDGER.read_text(encoding="utf-8"))).restrict(chosen)
     words = {}
     for name in chosen:
         sheet = LEDGER.parent / "errata" / f"{name}.toml"
         words[name] = read_wording(sheet.read_text(encoding="utf-8"), sheet.name)
     folder = tmp_path_factory.mktemp("real")
-    for name, text in site(cut, {}, words).items():
+    for name, text in site(cut, words).items():
         (folder / name).parent.mkdir(exist_ok=True)
         (folder / name).write_text(text, encoding="utf-8")
     return folder

@@ -8,6 +8,7 @@ import math
 import re
 import shutil
 import subprocess
+from dataclasses import replace
 from pathlib import Path
 from xml.dom import minidom
 
@@ -15,16 +16,15 @@ import pytest
 
 from navsym.claims import Paper, claims_of
 from navsym.core.errors import NavsymError
-from navsym.report.code import snippets
-from navsym.report.curves import value
 from navsym.report.erratum import erratum_of
 from navsym.report.formula.latex import mathml, sentence_html, sentence_latex
-from navsym.report.formula.reader import read_formula
-from navsym.report.page import TEMPLATES, environment, site
+from navsym.report.page import TEMPLATES, environment
 from navsym.report.wording import pattern_of, read_wording
+from navsym.verification.ledger import Ledger
+from tests.report.hostile import ledger, site
 
 DERIVATIONS = Path(__file__).parents[2] / "derivations"
-LEDGER = json.loads((DERIVATIONS / "verdicts.json").read_text(encoding="utf-8"))
+LEDGER = Ledger.from_json(json.loads((DERIVATIONS / "verdicts.json").read_text(encoding="utf-8")))
 SHEETS = sorted((DERIVATIONS / "errata").glob("*.toml"))
 MODULES = [path.stem for path in SHEETS]
 
@@ -44,7 +44,7 @@ def refuted(module):
 
 
 def test_every_paper_with_a_slip_has_a_sheet():
-    assert {r["paper"] for r in LEDGER["claims"] if r["status"] == "REFUTED" and r["slip"]} == set(MODULES)
+    assert {r.paper for r in LEDGER if r.status == "REFUTED" and r.slip} == set(MODULES)
 
 
 @pytest.mark.parametrize("module", MODULES)
@@ -71,7 +71,7 @@ def test_a_correction_names_a_place_changes_something_and_gives_a_reason(module)
 @pytest.mark.parametrize("module", MODULES)
 def test_every_correction_can_be_seen_in_numbers(module):
     card = importlib.import_module(f"navsym_papers.{module}").PAPER
-    entries = erratum_of(card, [r for r in LEDGER["claims"] if r["paper"] == module], words_of(module)).entries
+    entries = erratum_of(card, [r for r in LEDGER if r.paper == module], words_of(module)).entries
     assert [e.ids[0] for e in entries if not (e.check or e.rows or (e.words and e.words.check))] == []
 
 
@@ -126,7 +126,7 @@ def test_the_numbers_of_a_sheet_are_right_to_their_last_digit(name, figure, numb
 
 
 def test_what_covers_several_figures_becomes_a_table():
-    records = [r for r in LEDGER["claims"] if r["paper"] == "trajectory"]
+    records = [r for r in LEDGER if r.paper == "trajectory"]
     card = Paper("trajectory", "T", (), 2018, "", "", ())
     entries = erratum_of(card, records, words_of("trajectory")).entries
     (table,) = [entry for entry in entries if entry.rows]
@@ -246,68 +246,27 @@ needs_latex = pytest.mark.skipif(bool(LACKING), reason=LACKING)
 @needs_latex
 @pytest.mark.parametrize("module", MODULES)
 def test_the_sheet_of_every_paper_compiles_and_no_line_is_too_wide(module, tmp_path):
-    document = {
-        "claims": [r for r in LEDGER["claims"] if r["paper"] == module],
-        "papers": [p for p in LEDGER["papers"] if p["module"] == module],
-        "counts": LEDGER["counts"],
-    }
-    files = site(document, {}, {module: words_of(module)})
+    files = site(LEDGER.restrict([module]), {module: words_of(module)})
     assert 2 <= compiled(files[f"{module}.erratum.tex"], tmp_path) <= 12
 
 
 @needs_latex
 def test_a_sheet_without_wording_and_one_without_entries_compile(files, card, tmp_path):
     assert compiled(files["sample.erratum.tex"], tmp_path) == 1
-    tex = site({"claims": [], "papers": [{"module": "sample", "title": "x"}], "counts": {}}, {"sample": card})
+    tex = site(ledger([], card))
     assert compiled(tex["sample.erratum.tex"], tmp_path) == 1
 
 
 @needs_latex
 def test_hostile_words_compile(hostile_words, records, card, tmp_path):
     wild = [
-        dict(records[1], number=f"9.{i}", id=f"sample:9.{i}", title=words, reason=words)
+        replace(records[1], number=f"9.{i}", id=f"sample:9.{i}", title=words, reason=words)
         for i, words in enumerate(hostile_words)
     ]
-    document = {"claims": wild, "papers": [{"module": "sample", "title": "x"}], "counts": {}}
-    tex = site(document, {"sample": card})["sample.erratum.tex"]
+    tex = site(ledger(wild, card))["sample.erratum.tex"]
     plain = "".join(c if ord(c) < 0x250 else "?" for c in tex)  # letters of fonts that are not loaded
     compiled(plain, tmp_path, wide=True)  # one of the words has hundreds of letters
 
 
 def test_the_filters_of_the_templates_are_there():
     assert {"tex", "sentence", "sentence_tex", "slug"} <= set(environment().filters)
-
-
-# -- code ------------------------------------------------------------------------------------
-
-
-def test_code_beside_a_proved_formula_computes_what_is_printed():
-    tried = 0
-    for record in LEDGER["claims"]:
-        for snippet in snippets(record)[:1]:
-            names = sorted(re.search(r"\((.*)\):", snippet.text).group(1).split(", "))
-            point = {name: 0.3 + 0.1 * place for place, name in enumerate(names)}
-            room: dict = {}
-            exec(snippet.text, room)  # our own text, in a test
-            function = next(item for key, item in room.items() if callable(item))
-            try:
-                expected = value(read_formula(record["printed"]), point)
-            except (ValueError, ArithmeticError):
-                continue
-            assert math.isclose(function(**point), expected, rel_tol=1e-12, abs_tol=1e-12), record["id"]
-            tried += 1
-    assert tried > 60
-
-
-@pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
-def test_the_c_beside_proved_formulas_compiles_without_a_warning(tmp_path):
-    texts = [s.text.replace("eq_", f"f{i}_eq_", 1) for i, r in enumerate(LEDGER["claims"]) for s in snippets(r)[1:]]
-    named = [re.sub(r"double (\w+)\(", rf"double g{i}_\1(", t, count=1) for i, t in enumerate(texts)]
-    (tmp_path / "all.c").write_text("\n".join(named), encoding="utf-8")
-    command = ["cc", "-std=gnu11", "-Wall", "-Wextra", "-Werror", "-c", "all.c"]
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False, timeout=120)
-    assert done.returncode == 0, done.stderr[-2000:]
-
-
-def test_a_refuted_formula_gets_no_code(records):
-    assert snippets(records[1]) == () and snippets(records[0])[0].language == "Python"

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from navsym.report.citation import bibtex
 from navsym.report.explain import arithmetic, ball_words, entries_of, steps
+from tests.report import hostile
 
 
 def test_the_counterexample_is_worked_out_on_both_sides(records):
@@ -22,8 +23,9 @@ def test_the_counterexample_is_worked_out_on_both_sides(records):
 
 @given(st.fractions(-5, 5, max_denominator=50), st.fractions(1, 5, max_denominator=50))
 def test_the_enclosing_decimals_hold_the_exact_value(a, b):
-    record = {"printed": "a/b + 1", "derived": "a*b", "counterexample": {"a": str(a), "b": str(b)}}
-    lines = arithmetic(record)
+    lines = arithmetic(
+        hostile.record("1", "", printed="a/b + 1", derived="a*b", counterexample={"a": str(a), "b": str(b)})
+    )
     for line in lines:
         for ends, exact in ((line.printed, a / b + 1), (line.derived, a * b)):
             assert Fraction(ends[0]) <= exact <= Fraction(ends[1])
@@ -33,15 +35,15 @@ def test_the_enclosing_decimals_hold_the_exact_value(a, b):
 
 @pytest.mark.parametrize("status", ["PROVED", "CERTIFIED", "CONFIRMED", "OPEN", "REFUTED"])
 def test_every_explanation_ends_in_its_verdict(records, status):
-    record = next(r for r in records if r["status"] == status)
+    record = next(r for r in records if r.status == status)
     decided = [step.words for step in steps(record) if step.heading == "How it was decided"]
     assert len(decided) == 1 and decided[0].endswith(f"Hence {status}.")
 
 
 def test_what_is_not_a_number_at_the_point_is_left_out():
-    record = {"printed": "(x, y)", "derived": "(2*x, 2*y)", "counterexample": {"x": "1"}}
+    record = hostile.record("1", "", printed="(x, y)", derived="(2*x, 2*y)", counterexample={"x": "1"})
     assert [line.entry for line in arithmetic(record)] == [1]
-    wild = {"printed": "__import__('os')", "derived": "x", "counterexample": {"x": "1"}}
+    wild = hostile.record("1", "", printed="__import__('os')", derived="x", counterexample={"x": "1"})
     assert arithmetic(wild) == []
 
 

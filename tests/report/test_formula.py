@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
+import operator
 from xml.dom import minidom
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from navsym.report.curves import value
-from navsym.report.formula.reader import read_formula
+from navsym.report.formula.reader import read_formula, unwrapped
 from navsym.report.formula.sides import coordinates, latex, mathml, only_truth
 from navsym.report.names import latex_escape, split_name
 
@@ -70,6 +70,15 @@ def test_the_tree_means_what_the_text_means(a, b, c):
     ]:
         node = read_formula(text)
         assert node is not None and value(node, point) == pytest.approx(expected)
+
+
+def value(node, point):
+    """What a tree means, in doubles."""
+    node = unwrapped(node)
+    parts = [value(part, point) for part in node.parts]
+    leaves = {"number": lambda: float(node.text), "name": lambda: point[node.text], "minus": lambda: -parts[0]}
+    pairs = {"sum": operator.add, "difference": operator.sub, "product": operator.mul, "quotient": operator.truediv}
+    return leaves[node.kind]() if node.kind in leaves else (pairs | {"power": operator.pow})[node.kind](*parts)
 
 
 def test_names_are_split_into_stem_and_indices():

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from html.parser import HTMLParser
 from xml.dom import minidom
 
 import pytest
 
-from navsym.report.page import site, slug, visible
-from navsym.verification.ledger import about, only_in_the_copy, papers_in_order
+from navsym.report.page import slug, visible
+from navsym.verification.ledger import is_only_in_the_copy, records_about, sort_records
+from tests.report.hostile import ledger, site
 
 
 class Reading(HTMLParser):
@@ -106,11 +108,10 @@ def test_damage_of_the_copy_is_not_counted_against_the_paper(files):
 
 
 def test_a_paper_that_slips_and_whose_copy_is_damaged_counts_as_the_paper_s(records):
-    mixed = [record for record in records if record["number"] in ("2", "7")]
-    mixed = [{**record, "number": f"9.{record['number']}"} for record in mixed]
+    mixed = [replace(record, number=f"9.{record.number}") for record in records if record.number in ("2", "7")]
     for order in (mixed, mixed[::-1]):
-        assert not only_in_the_copy(about("9", ("9",), order)[0])
-    assert only_in_the_copy(about("9", ("9",), [r for r in mixed if r["slip"] == "scan"])[0])
+        assert not is_only_in_the_copy(records_about("9", ("9",), order)[0])
+    assert is_only_in_the_copy(records_about("9", ("9",), [r for r in mixed if r.slip == "scan"])[0])
 
 
 def test_scopes_assumptions_and_truth_values_are_said_in_words(files):
@@ -165,9 +166,8 @@ def test_hostile_words_make_no_element_attribute_or_file(hostile_files, hostile_
 def test_hostile_words_do_not_command_latex(hostile_files, card, records):
     tex = hostile_files["sample.erratum.tex"]
     assert r"\input" not in tex and "\x00" not in tex
-    document = {"claims": records, "papers": [{"module": "sample", "title": "x"}], "counts": {}}
-    wild = [dict(records[1], reason=r"\input{/etc/passwd} $x$ % & # _ ^ ~", title=r"\write18{ls}")]
-    tex = site(document | {"claims": wild}, {"sample": card})["sample.erratum.tex"]
+    wild = [replace(records[1], reason=r"\input{/etc/passwd} $x$ % & # _ ^ ~", title=r"\write18{ls}")]
+    tex = site(ledger(wild, card))["sample.erratum.tex"]
     assert r"\input" not in tex and r"\write18" not in tex and r"\textbackslash{}input" in tex
 
 
@@ -185,9 +185,7 @@ def test_braces_of_latex_are_balanced_whatever_the_words(files, hostile_files):
 
 
 def test_the_ledger_is_enough_for_the_pages(records, card):
-    kept = [{k: v for k, v in record.items() if k not in ("certificate", "seconds")} for record in records]
-    document = {"claims": kept, "papers": [{"module": "sample", "title": "A sample"}], "counts": {}}
-    found = site(document, {"sample": card})
+    found = site(ledger([replace(record, certificate=None, seconds=0.0) for record in records], card))
     assert found["sample.html"].count("<article") == len(records)
     assert not [name for name in found if name.startswith("certificates/")]
 
@@ -199,6 +197,4 @@ def test_a_refuted_card_shows_what_should_stand_there_and_what_that_is_worth(fil
 
 
 def test_claims_of_the_ledger_for_people_stand_in_the_order_of_the_paper(records, card):
-    shuffled = {"papers": [{"module": "sample"}], "claims": records[::-1]}
-    ((_, ordered),) = papers_in_order(shuffled, {"sample": card})
-    assert [r["number"] for r in ordered] == ["1", "2*", "2", "3", "4", "7*", "7", "short-name"]
+    assert [r.number for r in sort_records(card, records[::-1])] == ["1", "2*", "2", "3", "4", "7*", "7", "short-name"]

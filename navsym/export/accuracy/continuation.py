@@ -78,7 +78,7 @@ def continuation(part: Part, real: str) -> Continuation:
             if found is not None:
                 return found
     wanted = f"expected a formula that is smooth around zero; got {part.formula}"
-    raise DomainError(f"{wanted}; do keep zero out of the range")
+    raise DomainError(f"{wanted}; keep zero out of the range")
 
 
 # -- the polynomial and its remainder ---------------------------------------

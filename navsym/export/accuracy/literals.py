@@ -27,7 +27,7 @@ def literal(value: sp.Expr, arithmetic: Arithmetic) -> float:
         nearest = float(np.float32(nearest)) if arithmetic.name == "float" else nearest
     if not math.isfinite(nearest):
         size = f"expected constants within the range of {arithmetic.name}; got one of size 2^{size_of(value)}"
-        raise DomainError(f"{size}; do rescale the formula")
+        raise DomainError(f"{size}; rescale the formula")
     return nearest
 
 

@@ -177,7 +177,7 @@ def compiled_c(functions: Sequence[ExportedFunction], folder: Path) -> list[Call
     """The exported C as calls over columns: compiled with the flags of its own test program."""
     tool = TARGETS["c"].executable()
     if tool is None:
-        raise MissingEngineError("expected gcc, which compiles the exported C; got none; do install it")
+        raise MissingEngineError("expected gcc, which compiles the exported C; got none; install it")
     for name, text in c_files(functions, {f.name: [] for f in functions}, "").items():
         (folder / name).write_text(text, encoding="utf-8")
     head = [f'#include "{f.name}.h"' for f in functions]

@@ -70,7 +70,7 @@ def require_order(instants: list[sp.Expr], symbol: sp.Symbol, ends: tuple[Any, A
         linear = gap.is_polynomial(symbol) and sp.Poly(gap, symbol).degree() <= 1
         if not linear or any(enclose(gap.subs(symbol, end)) < 0 for end in ends):
             raise DomainError(
-                f"expected instants that keep their order in the regime; got {early} before {late}; do split it"
+                f"expected instants that keep their order in the regime; got {early} before {late}; split it"
             )
 
 

@@ -209,15 +209,15 @@ TARGETS = {
 ALIASES = {"js": "javascript", "numpy": "python", "c++": "cpp", "matlab": "octave"}
 
 
-def chosen(names: Sequence[str], real: str) -> list[Target]:
+def find_targets(names: Sequence[str], real: str) -> list[Target]:
     """Targets by name, in the order given; raises DomainError for an unknown one."""
     found = []
     for name in dict.fromkeys(ALIASES.get(n.strip().lower(), n.strip().lower()) for n in names if n.strip()):
         if name not in TARGETS:
-            raise DomainError(f"expected languages among {', '.join(TARGETS)}; got {name[:40]!r}; do correct --to")
+            raise DomainError(f"expected languages among {', '.join(TARGETS)}; got {name[:40]!r}; correct --to")
         if real not in TARGETS[name].reals:
-            raise DomainError(f"expected a language with {real}; got {name}, which has only double; do leave it out")
+            raise DomainError(f"expected a language with {real}; got {name}, which has only double; leave it out")
         found.append(TARGETS[name])
     if not found:
-        raise DomainError(f"expected at least one language; got none; do name some of {', '.join(TARGETS)}")
+        raise DomainError(f"expected at least one language; got none; name some of {', '.join(TARGETS)}")
     return found

@@ -61,7 +61,7 @@ def page_files(functions: Sequence[ExportedFunction], tests: dict[str, list[Vect
 def compiled(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str) -> bytes:
     """The module; raises MissingEngineError without ziglang."""
     if importlib.util.find_spec("ziglang") is None:
-        raise MissingEngineError("expected ziglang, which compiles to WebAssembly; got none; do: pip install ziglang")
+        raise MissingEngineError("expected ziglang, which compiles to WebAssembly; got none; run pip install ziglang")
     with tempfile.TemporaryDirectory(prefix="navsym-wasm-") as folder:
         for name, text in c_files(functions, tests, license_).items():
             if not name.startswith("test_"):
@@ -72,7 +72,7 @@ def compiled(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector
         words = [*FLAGS, *sources, *(f"-Wl,--export={name}" for name in exports), "-o", "module.wasm", "-lm"]
         status, said = run([sys.executable, "-m", "ziglang", "cc", *words], Path(folder))
         if status != 0:
-            raise MissingEngineError(f"expected a working ziglang; got {said.strip()[-160:]!r}; do install it again")
+            raise MissingEngineError(f"expected a working ziglang; got {said.strip()[-160:]!r}; install it again")
         return (Path(folder) / "module.wasm").read_bytes()
 
 

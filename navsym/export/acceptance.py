@@ -1,0 +1,197 @@
+"""Certificates replayed by the independent checker, and exported code run again on its vectors."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import asdict, dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from navsym import checker
+from navsym.claims.display import card, table
+from navsym.core.answers import Answer
+from navsym.core.errors import DomainError, EmptyError, NavsymError
+from navsym.export.roundtrip import check_export
+from navsym.language.files import decode
+from navsym.language.names import shown
+
+LARGEST = 50_000_000
+#: Every key that a certificate has: a file of nothing else is one, even if it lost its kind.
+KEYS = frozenset(
+    "kind left right symbols matrix solution variable rank point rows null expression box bits cells of panels "
+    "functional dual support lower upper contacts radius parameter from to pieces".split()
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Check:
+    """One certificate, or the code of one language: accepted, or rejected and why."""
+
+    path: str
+    kind: str | None
+    status: str
+    why: str
+
+
+@dataclass(frozen=True, slots=True, repr=False, eq=False)
+class Checks(Answer):
+    """The results of checking, in order.
+
+    checked     : a :class:`Check` for each certificate and each exported language
+    interrupted : True when Ctrl-C ended the work early
+    """
+
+    checked: tuple[Check, ...]
+    interrupted: bool = False
+
+    @property
+    def accepted(self) -> bool:
+        """True when everything was accepted."""
+        return all(row.status == "ACCEPTED" for row in self.checked)
+
+    def __len__(self) -> int:
+        return len(self.checked)
+
+    def __iter__(self) -> Iterator[Check]:
+        return iter(self.checked)
+
+    def __getitem__(self, place: int) -> Check:
+        return self.checked[place]
+
+    def __bool__(self) -> bool:
+        return self.accepted
+
+    def document(self) -> dict[str, Any]:
+        """The JSON document of ``navsym check``."""
+        rows = {"checked": [asdict(row) for row in self.checked]}
+        return {**rows, "interrupted": True} if self.interrupted else rows
+
+    def __repr__(self) -> str:
+        rejected = sum(row.status != "ACCEPTED" for row in self.checked)
+        return f"<{len(self)} checked, {f'{rejected} REJECTED' if rejected else 'all ACCEPTED'}>"
+
+    def _repr_html_(self) -> str:
+        rows = [(row.path, row.kind or "", row.status, row.why) for row in self.checked]
+        return card([table(("path", "kind", "status", "why"), rows)], "PROVED" if self.accepted else "REFUTED")
+
+
+#: A place to check, and how.
+Part = tuple[str, Callable[[], list[Check]]]
+
+
+def check(*items: Any, progress: Callable[[int, int, str], None] = lambda done, of, doing: None) -> Checks:
+    """Replay certificates in the independent checker, and run exported code on its own vectors.
+
+    items    : paths of certificates (JSON), of exported folders or of folders of either; certificates as plain data;
+               answers, of which every certificate is replayed
+    progress : called with (done, all, name) after each
+
+    Raises EmptyError where there is nothing to check, NavsymError for a path that does not exist.
+
+    >>> import navsym as nav
+    >>> drift = nav.solve("examples/schuler-velocity.toml", "drift", T="pi/2")
+    >>> nav.check(drift)
+    <1 checked, all ACCEPTED>
+    >>> forged = dict(drift.certificate, upper="4.8")
+    >>> nav.check(forged)[0].status
+    'REJECTED'
+    """
+    parts = [part for item in items for part in parts_of(item)]
+    rows: list[Check] = []
+    try:
+        for done, (name, run) in enumerate(parts, start=1):
+            rows += run()
+            progress(done, len(parts), name)
+    except KeyboardInterrupt as error:
+        error.checks = Checks(tuple(rows), interrupted=True)  # type: ignore[attr-defined]
+        raise
+    if not rows:
+        where = str(items[0])[:200] if items and isinstance(items[0], (str, os.PathLike)) else "check"
+        raise EmptyError("expected certificates; got none; name JSON files or exported folders", where=where)
+    return Checks(tuple(rows))
+
+
+def parts_of(item: Any) -> list[Part]:
+    """The work that an item brings: its files, the exported code of a folder, its certificates."""
+    if isinstance(item, Answer):
+        written = getattr(item, "out", None)
+        return parts_of(written) if isinstance(written, Path) else certificate_parts(item.certificates())
+    if isinstance(item, Mapping):
+        return certificate_parts([item])
+    if not isinstance(item, (str, os.PathLike)):
+        message = f"expected a path, an answer or a certificate; got {shown(item)}; name one of these"
+        raise DomainError(message, where="check")
+    path = Path(item)
+    if not path.exists():
+        message = "expected a file or folder that exists; got none of this name; correct it"
+        raise NavsymError(message, where=str(path), kind="missing-file")
+    if not path.is_dir():
+        return [(path.name, partial(check_one, path))]
+    files = sorted(path.rglob("*.json"))
+    return [(path.name, partial(check_code, path)), *((file.name, partial(check_in_folder, file)) for file in files)]
+
+
+def certificate_parts(certificates: list[Mapping[str, Any]]) -> list[Part]:
+    """One part for each certificate of an answer."""
+    names = [f"certificate {place}" for place in range(1, len(certificates) + 1)]
+    return [(n, partial(check_plain, n, c)) for n, c in zip(names, certificates, strict=True)]
+
+
+def check_plain(name: str, certificate: Mapping[str, Any]) -> list[Check]:
+    """A certificate as plain data, through the text that a file would hold; the parts of one that joins several."""
+    kind = certificate.get("kind")
+    if kind == "all" and isinstance(certificate.get("of"), list):
+        parts = enumerate(certificate["of"], start=1)
+        return [row for place, part in parts for row in check_plain(f"{name}.{place}", part)]
+    try:
+        return [Check(name, checker.check(checker.load(json.dumps(certificate))), "ACCEPTED", "")]
+    except (checker.Refused, TypeError, ValueError) as error:
+        return [Check(name, kind if isinstance(kind, str) else None, "REJECTED", str(error))]
+
+
+def check_one(path: Path) -> list[Check]:
+    """A certificate that was named itself."""
+    return [check_file(path)]
+
+
+def check_code(folder: Path) -> list[Check]:
+    """Exported code of a folder, run on its own vectors."""
+    return [Check(**row) for row in check_export(folder)]
+
+
+def check_in_folder(file: Path) -> list[Check]:
+    """A JSON file in a folder counts when it is a certificate; vectors and manifests do not."""
+    try:
+        document = json.loads(file.read_text("utf-8"))
+    except (OSError, ValueError):
+        return [check_file(file)]
+    certificate = isinstance(document, dict) and bool(document) and ("kind" in document or document.keys() <= KEYS)
+    return [check_file(file)] if certificate else []
+
+
+def check_file(path: Path) -> Check:
+    """A certificate in a file."""
+    try:
+        if path.stat().st_size > LARGEST:
+            raise checker.Refused("longer than 50 MB")
+        kind = checker.check(checker.load(decode(path.read_bytes(), str(path))))
+    except OSError as error:
+        return Check(str(path), None, "REJECTED", f"cannot be read: {error.strerror}")
+    except NavsymError as error:
+        return Check(str(path), None, "REJECTED", error.message)
+    except checker.Refused as error:
+        return Check(str(path), kind_of(path), "REJECTED", str(error))
+    return Check(str(path), kind, "ACCEPTED", "")
+
+
+def kind_of(path: Path) -> str | None:
+    """The kind that a file says it has."""
+    try:
+        document = json.loads(path.read_text("utf-8"))
+    except (ValueError, RecursionError):
+        return None
+    kind = document.get("kind") if isinstance(document, dict) else None
+    return kind if isinstance(kind, str) else None

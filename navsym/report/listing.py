@@ -1,0 +1,165 @@
+"""The claims of the papers with the verdicts that the ledger holds: what ``navsym list`` shows."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from navsym.claims import Claim, Record, Status
+from navsym.claims.display import table
+from navsym.core.answers import Answer
+from navsym.core.choice import one_of
+from navsym.core.errors import UnknownSymbolError
+from navsym.report.formula.sides import latex
+from navsym.verification.ledger import sort_records
+from navsym.verification.papers import load_papers, stored_records
+
+if TYPE_CHECKING:
+    from navsym.report.citation import Citation
+    from navsym.report.explain import Explanation
+
+SLIPS = ("paper", "scan", "any")
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class ListedClaim(Answer):
+    """A claim of a paper with the verdict that the ledger holds.
+
+    claim  : the :class:`navsym.claims.Claim`
+    record : what the ledger holds, or None when the claim was not decided yet
+    """
+
+    claim: Claim
+    record: Record | None
+
+    @property
+    def id(self) -> str:
+        """``module:number``."""
+        return self.claim.id
+
+    @property
+    def number(self) -> str:
+        """Equation and part; a short name for a statement without a number."""
+        return self.claim.number
+
+    @property
+    def paper(self) -> str:
+        """Name of the derivation module."""
+        return self.claim.module
+
+    @property
+    def title(self) -> str:
+        """One sentence: what is claimed."""
+        return self.claim.title
+
+    @property
+    def status(self) -> Status:
+        """The verdict of the ledger; the declared one where there is none."""
+        return self.record.status if self.record else self.claim.expect
+
+    @property
+    def latex(self) -> str | None:
+        """LaTeX of the printed side; None for a statement in words, or one that was not decided yet."""
+        return latex(self.record.printed) if self.record else None
+
+    def explain(self, *, seconds: float = 90.0) -> Explanation:
+        """Why it has its verdict: :func:`navsym.explain`."""
+        from navsym.report.explain import explain
+
+        return explain(self.id, seconds=seconds)
+
+    def cite(self) -> Citation:
+        """BibTeX of paper and verdict: :func:`navsym.cite`."""
+        from navsym.report.citation import cite
+
+        return cite(self.id)
+
+    def document(self) -> dict[str, Any]:
+        """One entry of ``claims`` in the JSON document of ``navsym list``."""
+        return {
+            "id": self.id,
+            "paper": self.paper,
+            "number": self.number,
+            "title": self.title,
+            "status": str(self.status),
+            "decided": self.record is not None,
+            "corrects": self.claim.corrects_id,
+            "slip": self.claim.slip,
+            "reason": self.claim.reason,
+        }
+
+    def __repr__(self) -> str:
+        return f"<{self.id}: {self.status}; {self.title}>"
+
+    def _repr_latex_(self) -> str | None:
+        return None if self.latex is None else rf"$\displaystyle {self.latex} \qquad \text{{{self.status}}}$"
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Listing(Answer):
+    """Claims in the order of their papers: a sequence, or by id."""
+
+    claims: tuple[ListedClaim, ...]
+
+    def __len__(self) -> int:
+        return len(self.claims)
+
+    def __iter__(self) -> Iterator[ListedClaim]:
+        return iter(self.claims)
+
+    def __getitem__(self, wanted: int | str) -> ListedClaim:
+        if isinstance(wanted, int):
+            return self.claims[wanted]
+        for claim in self.claims:
+            if claim.id == wanted:
+                return claim
+        raise UnknownSymbolError(f"expected the id of a claim in this list; got {wanted!r}; correct it")
+
+    def document(self) -> dict[str, Any]:
+        """The JSON document of ``navsym list``."""
+        return {"claims": [claim.document() for claim in self.claims], "count": len(self)}
+
+    def __repr__(self) -> str:
+        return f"<{len(self)} claims of {len({claim.paper for claim in self.claims})} papers>"
+
+    def _repr_html_(self) -> str:
+        return table(("claim", "verdict", "title"), ((c.id, str(c.status), c.title) for c in self.claims))
+
+
+def claims(*papers: str, status: str | Sequence[str] = (), slip: str | None = None, words: str = "") -> Listing:
+    r"""The claims of these papers, or of all, with the verdicts of the ledger; nothing is decided.
+
+    papers : names of derivation modules, such as "guaranteed_velocity"
+    status : verdicts that count, such as "REFUTED"; all when none is given
+    slip   : "paper" or "scan" for claims refuted by a slip there, "any" for both
+    words  : text that the id or the title contains, in small or capital letters
+
+    Raises DomainError for a paper, a verdict or a slip that is none.
+
+    >>> import navsym as nav
+    >>> refuted = nav.claims("alpha_beta_filter", status="REFUTED")
+    >>> refuted
+    <1 claims of 1 papers>
+    >>> refuted[0].id
+    'alpha_beta_filter:remark.critical'
+    >>> nav.claims()["guaranteed_velocity:4.3.u2*"].latex
+    '-\\frac{\\sin^{2}\\left( T/4 \\right)}{\\cos\\left( T/2 \\right)}'
+    """
+    given = [status] if isinstance(status, str) else status
+    statuses = {one_of(str(word).upper(), tuple(Status), "status") for word in given}
+    kind = None if slip is None else one_of(slip, SLIPS, "slip")
+    stored, wanted = stored_records(), str(words).lower()
+    listed: list[ListedClaim] = []
+    for module in load_papers(papers):
+        listed += sort_records(module.paper, [ListedClaim(claim, stored.get(claim.id)) for claim in module.claims])
+    return Listing(tuple(claim for claim in listed if fits(claim, statuses, kind, wanted)))
+
+
+def fits(claim: ListedClaim, statuses: set[str], slip: str | None, words: str) -> bool:
+    """True for a claim that passes every filter."""
+    if statuses and claim.status not in statuses:
+        return False
+    if slip and not (claim.claim.slip if slip == "any" else claim.claim.slip == slip):
+        return False
+    return words in claim.id.lower() or words in claim.title.lower()

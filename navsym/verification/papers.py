@@ -1,0 +1,114 @@
+"""Papers with their claims and their stored verdicts; a claim is found by its id."""
+
+from __future__ import annotations
+
+import difflib
+import json
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType
+
+from navsym.claims import Claim, Paper, Record, claims_of, coverage, equation_of
+from navsym.claims.paper import import_paper, paper_names, papers_folder
+from navsym.core.choice import one_of
+from navsym.core.errors import DomainError
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PaperModule:
+    """A derivation module, its paper and its claims."""
+
+    name: str
+    paper: Paper
+    claims: tuple[Claim, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class PaperSummary:
+    """How many numbered equations of a paper are claimed or definitions, and which are missing."""
+
+    module: str
+    title: str
+    equations: int
+    claimed: int
+    definitions: int
+    missing: tuple[str, ...]
+
+
+def paper_module(module: ModuleType) -> PaperModule:
+    """The paper card and the claims of an imported derivation module."""
+    paper: Paper = module.PAPER
+    return PaperModule(paper.module, paper, claims_of(module))
+
+
+def load_papers(names: Iterable[str] = ()) -> list[PaperModule]:
+    """The papers of these names, in this order, or all; raises DomainError for a name that is none."""
+    known, wanted = paper_names(), list(dict.fromkeys(names))
+    for name in wanted:
+        one_of(name, known, "paper")
+    return [paper_module(import_paper(name)) for name in wanted or known]
+
+
+def summarise_paper(module: PaperModule) -> PaperSummary:
+    """Coverage of the numbered equations of a paper."""
+    covered = coverage(module.paper, module.claims)
+    counts = (len(module.paper.equations), len(covered.claimed), len(covered.definitions))
+    return PaperSummary(module.name, module.paper.title, *counts, tuple(covered.missing))
+
+
+def ledger_file() -> Path:
+    """The file of all verdicts as they were last written: ``verdicts.json`` beside the papers."""
+    return papers_folder() / "verdicts.json"
+
+
+def stored_records() -> dict[str, Record]:
+    """Records of the ledger by claim id; empty when there is none yet."""
+    path = ledger_file()
+    if not path.exists():
+        return {}
+    document = json.loads(path.read_text(encoding="utf-8"))
+    return {record["id"]: Record.from_json(record) for record in document["claims"]}
+
+
+def find_claim(wanted: str) -> tuple[PaperModule, Claim]:
+    """Paper and claim of an id ``module:number``; raises DomainError that lists the ids that begin so."""
+    module, colon, number = str(wanted).partition(":")
+    if not colon and (known := papers_with(wanted)):
+        whole = " or ".join(f"{name}:{wanted}" for name in known)
+        message = f"expected the id of a claim, MODULE:NUMBER; got {wanted[:80]}; take {whole}"
+        raise DomainError(message, where="claim")
+    (paper,) = load_papers([module])
+    for claim in paper.claims:
+        if claim.number == number:
+            return paper, claim
+    ids = [claim.id for claim in paper.claims]
+    close = [known for known in ids if known.startswith(wanted)] if number else ids
+    if not close:
+        close = [f"{module}:{n}" for n in difflib.get_close_matches(number, [c.number for c in paper.claims])]
+    advice = f"take one of {', '.join(close[:6])}" if close else f"see navsym list --paper {module}"
+    raise DomainError(f"expected the id of a claim; got {wanted[:80]}; {advice}", where="claim")
+
+
+def papers_with(number: str) -> list[str]:
+    """Papers that have claims of this number, or of parts of it."""
+    pairs = [(name.partition(":")[0], name.partition(":")[2]) for name in stored_records()]
+    return sorted({module for module, known in pairs if known == number or known.startswith(f"{number}.")})
+
+
+def claim_ids(wanted: str) -> list[str]:
+    """Ids of all claims about a numbered equation, ``module:4.16``; of anything else, the id itself."""
+    module, colon, number = str(wanted).partition(":")
+    if not colon:
+        return [wanted]
+    (paper,) = load_papers([module])
+    numbers, equations = [claim.number for claim in paper.claims], paper.paper.equations
+    if number in numbers or number not in equations:
+        return [wanted]
+    return [f"{module}:{n}" for n in numbers if equation_of(n, equations) == number] or [wanted]
+
+
+def correction_of(wanted: str) -> Claim | None:
+    """The claim that corrects this one, or None."""
+    (paper,) = load_papers([wanted.partition(":")[0]])
+    return next((claim for claim in paper.claims if claim.corrects_id == wanted), None)
