@@ -15,8 +15,8 @@
 # Is the formula right? For which intervals? What should have been printed instead, and may I put it
 # into a flight computer?
 #
-# A model is symbols; a derivation reaches a formula by its own route; a claim holds the printed side
-# beside the derived one; a verdict says how far the claim holds and why.
+# A model is symbols, and a derivation reaches a formula by its own route. A claim holds the printed side
+# beside the derived one. A verdict says how far the claim holds, and why.
 #
 # ## Five words first
 #
@@ -26,174 +26,137 @@
 #   three errors are one channel.
 # * **Schuler unit.** Time divided by that period over 2π, about 13.4 minutes. A quarter of a
 #   swing is $\pi/2$.
-# * **Guaranteed error.** Two measurements with noise of standard deviation σ, averaged: if their noises are
-#   equal the mean is wrong by σ; if they are opposite, by nothing. Who does not know the correlation can
-#   promise σ and no less. The guaranteed error is that promise, and the best estimate is the one whose promise
-#   is smallest.
+# * **Guaranteed error.** Average two measurements with noise of standard deviation σ. If their noises are
+#   equal the mean is wrong by σ; if they are opposite, by nothing. Without the correlation one can
+#   promise σ and no less. The guaranteed error is that promise, and the best estimate has the smallest one.
 # * **Ball.** A number with a radius that holds every rounding error. Where the balls of two sides have no point
 #   in common, the sides differ.
 # * **Dual polynomial.** The witness that no estimate does better: a curve that stays in a band and touches it
-#   just at the instants at which the best estimate measures.
+#   just at the times at which the best estimate measures.
 #
 # Other words are in the glossary of the documentation.
 
 # %%
-import tempfile
-from pathlib import Path
-
-import matplotlib.pyplot as plt
-import numpy as np
-import sympy as sp
-
-from navsym.claims import Equation, Optimum
-from navsym.cli.main import run as navsym
-from navsym.prove.ladder import decide
-from navsym.report.notebook import explore, require, show
-from navsym_papers.guaranteed_velocity import model, polynomial, system, weights
+import navsym as nav
+from navsym.report.notebook import explore
 
 # %% [markdown]
 # ## The model
 # Velocity error, tilt and drift of one channel, in Schuler units; the velocity is measured.
 
 # %%
-model.CHANNEL
+channel = nav.Model(
+    name="velocity channel",
+    states="velocity tilt drift",
+    F=[[0, -1, 0], [0, 0, 1], [0, -1, 0]],
+    H=["velocity"],
+    measurements="Doppler",
+    interval="T",
+    T=(0, "2*pi"),
+)
+channel
 
 # %% [markdown]
-# The measurement at time τ, referred to the state at the end T, derived from the model:
+# The measurement at time τ, referred to the state at the end T, follows from the model:
 
 # %%
-model.H()
+nav.derive(channel)
 
 # %% [markdown]
 # ## A printed line that is wrong
 # Equation (1.9) prints the second component with a minus.
 
 # %%
-show(system.second_component)
+printed = nav.explain("guaranteed_velocity:1.9.H2")
+assert printed.record.status == nav.REFUTED
+printed
 
 # %%
-show(system.second_component_corrected)
+corrected = nav.explain("guaranteed_velocity:1.9.H2*")
+assert corrected.record.status == nav.PROVED
+corrected
 
 # %% [markdown]
 # The counterexample is an exact point at which a ball excludes equality: anyone can check it by hand.
 # Where does the minus come from? Reversing the time in (1.8) gives exactly the printed line:
 
 # %%
-show(system.reversed_argument)
+nav.explain("guaranteed_velocity:1.9.root-cause")
 
 # %% [markdown]
 # ## A printed line that is right
-# The guaranteed error of the drift estimate. It is proved optimal by a pair, an estimate and a dual polynomial
-# with the same value: one shows what can be reached, the other that nothing better can. No solver is believed;
-# the four conditions of such a pair (no bias, instants inside the interval, polynomial in its band, equal
-# values) are checked by algebra for every T of the range at once.
+# The guaranteed error of the drift estimate is proved optimal by a pair, an estimate and a dual polynomial
+# with the same value. One shows what can be reached, the other that nothing better can. No solver is believed.
+# The four conditions of such a pair are no bias, times inside the interval, a polynomial in its band, and equal
+# values. Algebra checks them for every T of the range at once.
 
 # %%
-drift = weights.OPTIMAL_ERRORS[2]
-show(drift)
-
-# %%
-for claim in (system.second_component, system.second_component_corrected, drift):
-    require(claim)
+drift = nav.explain("guaranteed_velocity:4.13.y3")
+assert drift.record.status == nav.PROVED
+drift
 
 # %% [markdown]
 # ## Now change something
 # Is the printed error still the optimum when the interval is longer than the paper says, T = 3π/4?
-# Put the statement together and ask.
 
 # %%
-printed = drift.derive()
-longer = Optimum(
-    printed.regressors,
-    printed.functional,
-    printed.variable,
-    printed.interval,
-    printed.dual,
-    printed.support,
-    printed.weights,
-    printed.value,
-    box={model.T: (0, 3 * sp.pi / 4)},
-)
-verdict = decide(longer)
-assert verdict.status == "REFUTED"
-verdict
+longer = nav.solve(channel, "drift", T="3*pi/4")
+assert longer.status == nav.CERTIFIED
+longer
 
 # %% [markdown]
-# The formulas end where a weight changes its sign: at 2π/3 for the drift.
+# The printed formula promises less there than any estimator can reach:
 
 # %%
-T = np.linspace(0.3, 2 * np.pi, 400)
-first = np.cos(T / 2) / np.sin(T / 4) ** 2
-with np.errstate(divide="ignore"):
-    second = -1 / np.cos(T)
-error = np.where(2 * np.pi / 3 >= T, first, np.where(np.pi >= T, second, 1.0))
-figure, axis = plt.subplots(figsize=(7, 3.5))
-axis.plot(T, error, color="#0072b2", label="guaranteed error of $y_3$")
-axis.axvspan(0, np.pi / 2, color="#e69f00", alpha=0.15, label="range that the paper states")
-for bound in (2 * np.pi / 3, np.pi):
-    axis.axvline(bound, color="0.6", lw=0.8)
-axis.set(xlabel="T, Schuler units", ylabel=r"$d_{opt}(y_3)\,/\,\sigma$", ylim=(0, 12), xlim=(0, 2 * np.pi))
-axis.legend()
-plt.close(figure)
-figure
+promised = nav.prove("cos(3*pi/8)/sin(3*pi/16)**2", "<", longer.lower)
+assert promised.holds
+promised
+
+# %% [markdown]
+# The printed formula ends where a weight changes its sign, at 2π/3 for the drift. The ledger has the proof up to there;
+# beyond, two times are enough.
+
+# %%
+further = nav.claims("guaranteed_velocity")["guaranteed_velocity:range.y3"]
+assert further.status == nav.PROVED and further.record.scope == "all T in (0, 2*pi/3]"
+assert [len(nav.solve(channel, "drift", T=T, digits=8).support) for T in ("2", "9/4")] == [3, 2]
+further
+
+# %% [markdown]
+# `nav.phases` finds the formula of each range of T and proves it; the notebook on regimes does that.
 
 # %% [markdown]
 # ## Your own formula
-# Any formula of the language goes through the same door.
+# Any formula of the language is decided in the same way.
 
 # %%
-a = sp.Symbol("a", real=True)
-right = decide(Equation(sp.sin(3 * a), 3 * sp.sin(a) - 4 * sp.sin(a) ** 3))
-wrong = decide(Equation(sp.sin(3 * a), 3 * sp.sin(a) - 4 * sp.cos(a) ** 3))
-assert (right.status, wrong.status) == ("PROVED", "REFUTED")
-right, wrong
+right = nav.prove("sin(3*a) = 3*sin(a) - 4*sin(a)**3")
+wrong = nav.prove("sin(3*a) = 3*sin(a) - 4*cos(a)**3")
+assert (right.status, wrong.status) == (nav.PROVED, nav.REFUTED)
+right
+
+# %%
+wrong
 
 # %% [markdown]
-# The polynomial behind the proof touches its bounds at the start, in the middle and at the end:
+# ## The polynomial behind the proof
+# It touches its bounds where the estimator measures: at the start, in the middle and at the end. Move T. Beyond 2π/3 it
+# touches them twice.
+
 
 # %%
-at = np.linspace(0, np.pi / 2, 200)
-S = sp.lambdify(model.tau, polynomial.polynomial(*polynomial.coefficients()).subs(model.T, sp.pi / 2), "numpy")
-L = float(polynomial.deviation().subs(model.T, sp.pi / 2))
-figure, axis = plt.subplots(figsize=(7, 3))
-axis.plot(at, S(at) / L, color="#0072b2")
-axis.axhline(1, color="0.6", lw=0.8)
-axis.axhline(-1, color="0.6", lw=0.8)
-axis.plot([0, np.pi / 4, np.pi / 2], [-1, 1, -1], "o", color="#d55e00")
-axis.set(xlabel=r"$\tau$, Schuler units", ylabel=r"$S_0(\tau)\,/\,L_1$", title="T = π/2")
-plt.close(figure)
-assert np.abs(S(at)).max() <= L * (1 + 1e-12)
-figure
-
-# %% [markdown]
-# Move T. Up to 2π/3 the polynomial stays in its band and touches it three times; beyond, the formulas go
-# on to be numbers but are no longer an estimator: the middle of the band is left.
-
-# %%
-general = sp.lambdify((model.tau, model.T), polynomial.polynomial(*polynomial.coefficients()), "numpy")
-bound_of = sp.lambdify(model.T, polynomial.deviation(), "numpy")
-
-
 def polynomial_for(T):
-    at = np.linspace(0, T, 200)
-    figure, axis = plt.subplots(figsize=(7, 3))
-    axis.axhspan(-1, 1, color="0.93")
-    axis.plot(at, general(at, T) / bound_of(T), color="#0072b2")
-    axis.plot([0, T / 2, T], [-1, 1, -1], "o", color="#d55e00")
-    axis.set(xlabel=r"$\tau$, Schuler units", ylabel=r"$S_0(\tau)\,/\,L_1$", title=f"T = {T:.2f}")
-    plt.close(figure)
-    return figure
+    return nav.solve(channel, "drift", T=f"{T:.2f}", digits=8).plot()
 
 
-explore(polynomial_for, T=(0.3, 2.9, 1.5))
+explore(polynomial_for, T=(0.3, 5.0, 1.5))
 
 # %% [markdown]
-# ## Out of the house
-# What is proved leaves as code, with test vectors, an error bound and a certificate that `navsym check` replays.
+# ## Code
+# A proved formula leaves as code, with test vectors, an error bound and a certificate that `nav.check` replays.
 
 # %%
-with tempfile.TemporaryDirectory() as folder:
-    words = ["export", "guaranteed_velocity:4.13.y3", "--to", "python", "--out", folder, "--vectors", "8"]
-    assert navsym(words) == 0
-    source = (Path(folder) / "python" / "navsym_functions.py").read_text(encoding="utf-8")
-print(source)
+nav.export("guaranteed_velocity:4.13.y3", to=["python"], out="build/tour", vectors=8, force=True)
+assert nav.check("build/tour").accepted
+with open("build/tour/python/navsym_functions.py", encoding="utf-8") as source:
+    print(source.read())
