@@ -33,7 +33,7 @@ from navsym.models.inertial import full_model, joint_model, position_group, velo
 from navsym.observability.chains import observe_jointly
 from navsym.observability.rank_drops import rank_drops
 from navsym.observability.sensors import restore_observability
-from navsym.observability.splits import splits
+from navsym.observability.splits import feasible_splits
 from navsym.report.notebook import require, show
 from navsym_papers import joint_correction as paper
 from navsym_papers.joint_correction import section2_error_equations as errors_of_section_2
@@ -122,7 +122,7 @@ assert found.observable
 # of each measurement instead of six.
 
 # %%
-for feasible in splits(observe_jointly(position_group().model(("position 1", "position 2")))):
+for feasible in feasible_splits(observe_jointly(position_group().model(("position 1", "position 2")))):
     print(feasible.i, feasible.j, "det L =", feasible.determinant)
 
 # %% [markdown]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sympy as sp
 
 from navsym.claims import CERTIFIED, Bound, Equation, Finding, Property, claim
-from navsym.observability.splits import companion, inverse, unit_row
+from navsym.observability.splits import companion, exact_inverse, unit_row
 from navsym_papers.joint_correction.section1_systems import (
     System,
     coefficients_of_polynomial,
@@ -83,7 +83,7 @@ def motion_of_x():
     for s in systems():
         C1 = free("x", s.m)
         L_x = C1 * s.chain(1, s.m)
-        printed += flat(C1 * companion(theta_of(s)) * inverse("C1", C1) * L_x)
+        printed += flat(C1 * companion(theta_of(s)) * exact_inverse("C1", C1) * L_x)
         derived += flat(L_x * s.G)
     return Equation(printed, derived)
 
@@ -96,7 +96,7 @@ def matrix_of_x():
         C1 = free("x", s.m)
         L, back = coordinates(s, C1, free("z", s.rest))
         block = (L * s.G * back)[: s.m, :]
-        printed += flat(C1 * companion(theta_of(s)) * inverse("C1", C1), sp.zeros(s.m, s.rest))
+        printed += flat(C1 * companion(theta_of(s)) * exact_inverse("C1", C1), sp.zeros(s.m, s.rest))
         derived += flat(block[:, : s.m], block[:, s.m :])
     return Equation(printed, derived)
 
@@ -114,12 +114,12 @@ def companion_matrix():
 def coefficients(basis: sp.MatrixBase, row: sp.MatrixBase) -> list[sp.Expr]:
     """Coefficients of a row in a basis of rows, by the exact elimination of the house."""
     from navsym.observability.chains import numerators
-    from navsym.observability.linear import relation
+    from navsym.observability.linear import linear_relation
     from navsym.observability.ring import Ring
 
     ring = Ring.of(sp.Matrix.vstack(sp.Matrix(basis), sp.Matrix(row)))
     entries, _ = numerators([*(basis[r, :] for r in range(basis.rows)), row], ring)
-    values = relation(entries[:-1], entries[-1], ring)
+    values = linear_relation(entries[:-1], entries[-1], ring)
     if values is None:
         raise ArithmeticError("the row lies outside of the span")
     return [ring.expression(value) for value in values]
@@ -131,7 +131,7 @@ def output_of_x():
     printed, derived = [], []
     for s in systems():
         C1 = free("x", s.m)
-        printed += flat(unit_row(s.m) * inverse("C1", C1) * C1 * s.chain(1, s.m))
+        printed += flat(unit_row(s.m) * exact_inverse("C1", C1) * C1 * s.chain(1, s.m))
         derived += flat(s.h(1).T)
     return Equation(printed, derived)
 
@@ -153,7 +153,7 @@ def observer(size: int) -> tuple[sp.Matrix, sp.Matrix, sp.Matrix]:
     """(G_x, K, g_x) of a general scalar observer of the given order in coordinates with C_1 = free."""
     theta = sp.symbols(f"theta1:{size + 1}", real=True)
     C1 = free("x", size)
-    back = inverse("C1", C1)
+    back = exact_inverse("C1", C1)
     return C1 * companion(theta) * back, sp.Matrix(k[:size]), unit_row(size) * back
 
 

@@ -13,7 +13,7 @@ import sympy as sp
 
 from navsym.models.linear import LinearModel
 from navsym.observability.chains import JointObservability, observe_jointly
-from navsym.observability.splits import inverse
+from navsym.observability.splits import exact_inverse
 
 p = sp.Symbol("p", real=True)
 g = sp.symbols("g1:10", real=True)
@@ -66,7 +66,9 @@ def scrambled(core: sp.Matrix, m: int, second: sp.Matrix) -> System:
     lower = sp.Matrix(n, n, lambda r, s: int(r == s) if s >= r else (2 * r + s) % 3 - 1)
     T = upper * lower
     first = sp.Matrix(1, n, lambda _, s: int(s == 0))
-    model = LinearModel(inverse("T", sp.ImmutableMatrix(T)) * core * T, None, sp.Matrix.vstack(first * T, second * T))
+    model = LinearModel(
+        exact_inverse("T", sp.ImmutableMatrix(T)) * core * T, None, sp.Matrix.vstack(first * T, second * T)
+    )
     found = observe_jointly(model)
     return System(model, found, sp.ImmutableMatrix(core[:m, :m]))
 
@@ -120,7 +122,7 @@ def flat(*matrices: sp.MatrixBase) -> list[sp.Expr]:
 def coordinates(system: System, C1: sp.MatrixBase, C2: sp.MatrixBase) -> tuple[sp.ImmutableMatrix, sp.ImmutableMatrix]:
     """L of (1.8) and its inverse."""
     L = sp.ImmutableMatrix.vstack(C1 * system.chain(1, system.m), C2 * system.chain(2, system.rest))
-    return L, inverse("L", L)
+    return L, exact_inverse("L", L)
 
 
 def polynomial_of(matrix: sp.MatrixBase) -> sp.Expr:

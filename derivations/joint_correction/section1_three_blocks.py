@@ -7,7 +7,7 @@ from functools import cache
 import sympy as sp
 
 from navsym.claims import Equation, Finding, Property, claim
-from navsym.observability.splits import companion, corner, inverse, last_row, lowest_terms, shift, unit_row
+from navsym.observability.splits import companion, corner, exact_inverse, last_row, shift, to_lowest_terms, unit_row
 from navsym_papers.joint_correction.section1_chains import coefficients, theta_of
 from navsym_papers.joint_correction.section1_systems import System, flat, free, k, overlapping, polynomial_of
 
@@ -35,7 +35,7 @@ def printed_blocks(i: int, j: int) -> dict[str, sp.ImmutableMatrix]:
     """The blocks as the paper prints them, with theta and delta of the system."""
     s, C, _ = parts(i, j)
     theta, delta = theta_of(s), delta_of(s, i, j)
-    back = {name: inverse(name, matrix) for name, matrix in C.items()}
+    back = {name: exact_inverse(name, matrix) for name, matrix in C.items()}
     return {
         "u1": C["u"] * shift(i) * back["u"],
         "u2": C["u"] * corner(i, s.m - i) * back["v"],
@@ -167,7 +167,7 @@ def delta_relation():
             changed = basis.as_mutable()
             changed[r, :] = target
             delta.append(changed.det(method="berkowitz") / det)
-        printed += list(lowest_terms(sp.Matrix([delta])) * basis)
+        printed += list(to_lowest_terms(sp.Matrix([delta])) * basis)
         derived += list(target)
     return Equation(printed, derived)
 
@@ -179,7 +179,8 @@ def outputs():
     for i, j in CASES:
         s, C, rows = parts(i, j)
         printed += flat(
-            unit_row(i) * inverse("C11", C["u"]) * rows["u"], unit_row(j) * inverse("C22", C["w"]) * rows["w"]
+            unit_row(i) * exact_inverse("C11", C["u"]) * rows["u"],
+            unit_row(j) * exact_inverse("C22", C["w"]) * rows["w"],
         )
         derived += flat(s.h(1).T, s.h(2).T)
     return Equation(printed, derived)
@@ -203,7 +204,7 @@ def u_and_w_determine_the_state():
         _, _, rows = parts(i, j)
         L = sp.ImmutableMatrix.vstack(rows["u"], rows["w"])
         printed += flat(sp.eye(4))
-        derived += flat(L * inverse("L", L))
+        derived += flat(L * exact_inverse("L", L))
     return Equation(printed, derived)
 
 
@@ -263,7 +264,7 @@ def higher_derivatives_take_longer():
     information = sp.Matrix(
         4, 4, lambda i, j: T ** (i + j + 1) / (sp.Integer(i + j + 1) * sp.factorial(i) * sp.factorial(j))
     )
-    covariance = inverse("information", sp.ImmutableMatrix(information))
+    covariance = exact_inverse("information", sp.ImmutableMatrix(information))
     at_one = covariance.subs(T, 1)
     printed = [at_one[r, r] * T ** (-(2 * r + 1)) for r in range(4)]
     return Equation(printed, [covariance[r, r] for r in range(4)])

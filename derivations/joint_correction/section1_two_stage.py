@@ -5,7 +5,7 @@ from __future__ import annotations
 import sympy as sp
 
 from navsym.claims import REFUTED, Equation, Finding, Property, claim
-from navsym.observability.splits import companion, inverse, last_row, unit_row
+from navsym.observability.splits import companion, exact_inverse, last_row, unit_row
 from navsym_papers.joint_correction.section1_chains import SIZES, coefficients, rank_of
 from navsym_papers.joint_correction.section1_systems import (
     System,
@@ -82,8 +82,8 @@ def motion_of_z():
         C1, C2 = free("x", s.m), free("z", s.rest)
         L_x, L_z = C1 * s.chain(1, s.m), C2 * s.chain(2, s.rest)
         phi = phi_of(s)
-        G_z1 = C2 * last_row(s.rest, phi[: s.m]) * inverse("C1", C1)
-        G_z2 = C2 * companion(phi[s.m :]) * inverse("C2", C2)
+        G_z1 = C2 * last_row(s.rest, phi[: s.m]) * exact_inverse("C1", C1)
+        G_z2 = C2 * companion(phi[s.m :]) * exact_inverse("C2", C2)
         printed += flat(G_z1 * L_x + G_z2 * L_z)
         derived += flat(L_z * s.G)
     return Equation(printed, derived)
@@ -107,7 +107,7 @@ def drive_of_z():
     for s in systems():
         C1, C2 = free("x", s.m), free("z", s.rest)
         L, back = coordinates(s, C1, C2)
-        printed += flat(C2 * last_row(s.rest, phi_of(s)[: s.m]) * inverse("C1", C1))
+        printed += flat(C2 * last_row(s.rest, phi_of(s)[: s.m]) * exact_inverse("C1", C1))
         derived += flat((L * s.G * back)[s.m :, : s.m])
     return Equation(printed, derived)
 
@@ -119,7 +119,7 @@ def matrix_of_z():
     for s in systems():
         C2 = free("z", s.rest)
         L, back = coordinates(s, free("x", s.m), C2)
-        printed += flat(C2 * companion(phi_of(s)[s.m :]) * inverse("C2", C2))
+        printed += flat(C2 * companion(phi_of(s)[s.m :]) * exact_inverse("C2", C2))
         derived += flat((L * s.G * back)[s.m :, s.m :])
     return Equation(printed, derived)
 
@@ -160,7 +160,7 @@ def output_row_of_z():
     for s in systems():
         C2 = free("z", s.rest)
         _, back = coordinates(s, free("x", s.m), C2)
-        printed += list(unit_row(s.rest) * inverse("C2", C2))
+        printed += list(unit_row(s.rest) * exact_inverse("C2", C2))
         derived += list((s.h(2).T * back)[:, s.m :])
     return Equation(printed, derived)
 
@@ -249,9 +249,11 @@ def second_gain_is_unique():
     for size in (1, 2, 3):
         phi = sp.symbols(f"phi1:{size + 1}", real=True)
         C2 = free("z", size)
-        G = C2 * companion(phi) * inverse("C2", C2)
+        G = C2 * companion(phi) * exact_inverse("C2", C2)
         K = sp.Matrix(k[:size])
-        jacobian = sp.Matrix(coefficients_of_polynomial(G - K * unit_row(size) * inverse("C2", C2))[1:]).jacobian(K)
+        jacobian = sp.Matrix(coefficients_of_polynomial(G - K * unit_row(size) * exact_inverse("C2", C2))[1:]).jacobian(
+            K
+        )
         found = found and rank_of(jacobian) == size and not any(jacobian.has(symbol) for symbol in K)
     return Property(
         True,

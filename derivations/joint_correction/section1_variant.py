@@ -5,7 +5,7 @@ from __future__ import annotations
 import sympy as sp
 
 from navsym.claims import Equation, Finding, Property, claim
-from navsym.observability.splits import inverse
+from navsym.observability.splits import exact_inverse
 from navsym_papers.joint_correction.section1_systems import flat
 from navsym_papers.joint_correction.section1_two_stage import PAIRS, blocks
 
@@ -20,7 +20,7 @@ def general(m: int, rest: int) -> dict[str, sp.Matrix]:
         lambda r, s: sp.Symbol(f"t{r}", positive=True) if r == s else sp.Symbol(f"t{r}{s}", real=True) if s < r else 0,
     )
     L = sp.Matrix(sp.BlockMatrix([[sp.eye(m), sp.zeros(m, rest)], [S, T]]))
-    back = sp.Matrix(inverse("L", sp.ImmutableMatrix(L)))
+    back = sp.Matrix(exact_inverse("L", sp.ImmutableMatrix(L)))
     G = sp.Matrix(sp.BlockMatrix([[b["Gx"], sp.zeros(m, rest)], [b["Gz1"], b["Gz2"]]]))
     turned = (L * G * back).applyfunc(sp.together)
     row = sp.Matrix.hstack(sp.zeros(1, m), b["gz"]) * back
@@ -90,7 +90,7 @@ def general_variant_in_the_old_coordinates():
     printed, derived = [], []
     for m, rest in PAIRS[:4]:
         b, raw = general(m, rest), blocks(m, rest)
-        T_inverse = sp.Matrix(inverse("T", sp.ImmutableMatrix(b["T"])))
+        T_inverse = sp.Matrix(exact_inverse("T", sp.ImmutableMatrix(b["T"])))
         coupling = b["Gz1"] - b["T"] * raw["Kz"] * b["g1"]
         itself = b["Gz2"] - b["T"] * raw["Kz"] * b["g2"]
         first = raw["Gx"] - raw["Kx"] * raw["gx"]

@@ -14,7 +14,7 @@ import sympy as sp
 
 from navsym.claims import CERTIFIED, Equation, Finding, Property, claim
 from navsym.models.inertial import EARTH, MU
-from navsym.observability.splits import inverse, lowest_terms
+from navsym.observability.splits import exact_inverse, to_lowest_terms
 from navsym_papers.joint_correction.section1_systems import coefficients_of_polynomial, p, polynomial_of
 from navsym_papers.joint_correction.section2_groups import mu, position, velocity, w1, w2
 from navsym_papers.joint_correction.section3_algorithm import joint_error_matrix
@@ -262,12 +262,14 @@ def link_removed_by_the_split():
     H = H.subs(EARTH[2], kappa / MU)
     L = sp.ImmutableMatrix.vstack(*(H[row, :] * F**power for row in (0, 1) for power in (0, 1, 2)))
     L_0 = L.subs(kappa, 0)
-    back, back_0 = inverse("L", L), inverse("L_0", L_0)
+    back, back_0 = exact_inverse("L", L), exact_inverse("L_0", L_0)
     K = sp.zeros(6, 2)
     K[:3, 0] = K[3:, 1] = sp.Matrix(VELOCITY_GAINS)
     free = F - K * H.subs(kappa, 0)
-    repaired = L * (F - lowest_terms(back * L_0 * K) * H) * back
-    return Equation([(p + lam) ** 6, *(L_0 * free * back_0)], [polynomial_of(free), *lowest_terms(sp.Matrix(repaired))])
+    repaired = L * (F - to_lowest_terms(back * L_0 * K) * H) * back
+    return Equation(
+        [(p + lam) ** 6, *(L_0 * free * back_0)], [polynomial_of(free), *to_lowest_terms(sp.Matrix(repaired))]
+    )
 
 
 # The coupled position stage

@@ -11,7 +11,7 @@ import sympy as sp
 from navsym.claims import Finding, Property, claim
 from navsym.models.inertial import full_model, joint_model
 from navsym.models.linear import LinearModel
-from navsym.observability.chains import proved_rank
+from navsym.observability.chains import prove_rank
 from navsym.observability.sensors import Restoration, restore_observability
 
 GENERIC = "all values of mu, omega and u but those of a proper algebraic set"
@@ -35,7 +35,7 @@ def measured_by(names: Sequence[str]) -> LinearModel:
 
 def hidden(names: Sequence[str]) -> int:
     """How many dimensions some of the measurements never show."""
-    return joint().size - proved_rank(measured_by(names)).rank
+    return joint().size - prove_rank(measured_by(names)).rank
 
 
 def others(names: Sequence[str]) -> dict[str, list[sp.Expr]]:

@@ -12,7 +12,7 @@ from itertools import product
 import sympy as sp
 
 from navsym.claims import REFUTED, Equation, Finding, Property, claim
-from navsym.models.earth import dynamics, first_state, pascal_rows, transition
+from navsym.models.earth import dynamics, first_state, nilpotent_exponential, pascal_rows
 
 N = 3
 R = sp.Symbol("R", positive=True)
@@ -213,7 +213,7 @@ def criterion_prefers_standing_still():
     x1, x2, nu = sp.symbols("x1 x2 nu", real=True)
     K2, K3 = sp.symbols("K2 K3", real=True)
     gain = sp.Matrix([sp.Symbol("K1", real=True), K2, K3, *sp.symbols("K4 K5", real=True)])
-    Phi, estimate = transition(dynamics(5, rho), tau), sp.Matrix([x1, x2, 0, 0, 0])
+    Phi, estimate = nilpotent_exponential(dynamics(5, rho), tau), sp.Matrix([x1, x2, 0, 0, 0])
     ahead = Phi * estimate
     measured = ahead[0] + nu
     change = ahead + gain * (measured - ahead[0]) - estimate

@@ -46,7 +46,7 @@ def degree_of_the_speed():
     """The speed is a polynomial of degree n - 2."""
 
     def degree(n: int) -> int:
-        speed = (motion.transition(motion.dynamics(n, rho), t) * sp.Matrix(STATE[:n]))[1]
+        speed = (motion.nilpotent_exponential(motion.dynamics(n, rho), t) * sp.Matrix(STATE[:n]))[1]
         return int(sp.Poly(speed, t).degree())
 
     orders = range(2, ORDER + 1)
@@ -206,7 +206,9 @@ def transition_matrix():
 @claim("4.Phi.series")
 def transition_matrix_is_the_finite_series():
     """The transition matrix is the series of exp(A tau), which ends because A is nilpotent; n = 8."""
-    return Equation(printed=printed_transition(ORDER), derived=motion.transition(motion.dynamics(ORDER, rho), tau))
+    return Equation(
+        printed=printed_transition(ORDER), derived=motion.nilpotent_exponential(motion.dynamics(ORDER, rho), tau)
+    )
 
 
 @claim("4.exact")

@@ -12,12 +12,12 @@ from fractions import Fraction
 import sympy as sp
 
 from navsym.claims import PROVED, REFUTED, Equation, Finding, Property, claim
-from navsym.models.earth import dynamics, first_state, transition
+from navsym.models.earth import dynamics, first_state, nilpotent_exponential
 
 N = 3
 STEPS = 3
 rho, tau, V = sp.symbols("rho tau V", positive=True)
-PHI = transition(dynamics(N, rho), tau)
+PHI = nilpotent_exponential(dynamics(N, rho), tau)
 H = first_state(N)
 
 

@@ -29,9 +29,9 @@ from navsym.models.model import Model, contents_of, file_in_errors
 from navsym.models.modelfile import BasisFile, ModelFile, piece_model
 from navsym.models.transition.exponential import (
     TransitionMatrix,
-    collected,
     need_constant,
     regressors,
+    spread_products,
     transition_matrix,
 )
 
@@ -205,7 +205,7 @@ def derive_model(found: ModelFile) -> Derivation:
         end=end,
         multipliers=multipliers,
         observability_matrix=observability_matrix(models[0]) if len(models) == 1 else None,
-        conditions=conditions_of(found.targets.items(), pieces, multipliers, tau),
+        conditions=optimality_conditions(found.targets.items(), pieces, multipliers, tau),
         assumptions=tuple(dict.fromkeys(relation for relations in noted for relation in relations)),
     )
 
@@ -229,7 +229,7 @@ def derive_basis(found: BasisFile) -> Derivation:
         end=found.interval[1],
         multipliers=multipliers,
         observability_matrix=None,
-        conditions=conditions_of(found.targets.items(), pieces, multipliers, found.variable),
+        conditions=optimality_conditions(found.targets.items(), pieces, multipliers, found.variable),
         assumptions=(),
     )
 
@@ -244,7 +244,7 @@ def regressors_of_pieces(
     for piece, model in reversed(list(zip(found.pieces, models, strict=True))):
         stop = end if piece.end is None else piece.end
         here = regressors(model, stop, time)
-        rows = (here.matrix * behind).applyfunc(collected)
+        rows = (here.matrix * behind).applyfunc(spread_products)
         pieces.insert(0, PieceRegressors(piece.start, stop, rows))
         whole = transition_matrix(-model.F, stop - piece.start)
         undone.append(whole)
@@ -252,7 +252,7 @@ def regressors_of_pieces(
     return tuple(pieces), undone
 
 
-def conditions_of(
+def optimality_conditions(
     targets: Iterable[tuple[str, tuple[sp.Expr, ...]]],
     pieces: tuple[PieceRegressors, ...],
     multipliers: tuple[sp.Symbol, ...],

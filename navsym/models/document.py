@@ -16,9 +16,9 @@ Writer = Callable[[sp.Basic], str]
 
 def document_of_derivation(derivation: Derivation, *, latex: bool = False) -> dict[str, Any]:
     """Plain data with expressions in the language of files; ``latex`` adds the same formulas in LaTeX."""
-    data = formulas_of(derivation, formula_or_relation)
+    data = write_formulas(derivation, formula_or_relation)
     if latex:
-        data["latex"] = formulas_of(derivation, sp.latex)
+        data["latex"] = write_formulas(derivation, sp.latex)
     return data
 
 
@@ -32,7 +32,7 @@ def formula_or_relation(expression: sp.Basic) -> str:
         return str(expression)
 
 
-def formulas_of(derivation: Derivation, write: Writer) -> dict[str, Any]:
+def write_formulas(derivation: Derivation, write: Writer) -> dict[str, Any]:
     """All formulas, written one by one."""
     return {
         "name": derivation.name,
@@ -41,11 +41,11 @@ def formulas_of(derivation: Derivation, write: Writer) -> dict[str, Any]:
             {"name": name, "sigma": write(sigma)}
             for name, sigma in zip(derivation.measurements, derivation.sigmas, strict=True)
         ],
-        "F": [texts_of(F, write) for F in derivation.system],
+        "F": [write_rows(F, write) for F in derivation.system],
         "transition": [
             {
                 "time": write(t.time),
-                "matrix": texts_of(t.matrix, write),
+                "matrix": write_rows(t.matrix, write),
                 "characteristic": [
                     {"factor": write(factor), "multiplicity": times, "form": kind} for factor, times, kind in t.factors
                 ],
@@ -54,14 +54,14 @@ def formulas_of(derivation: Derivation, write: Writer) -> dict[str, Any]:
         ],
         "regressors": [piece_data(derivation, piece, write) for piece in derivation.pieces],
         "observability_matrix": (
-            None if derivation.observability_matrix is None else texts_of(derivation.observability_matrix, write)
+            None if derivation.observability_matrix is None else write_rows(derivation.observability_matrix, write)
         ),
         "conditions": [condition_data(derivation, c, write) for c in derivation.conditions],
         "assumptions": [write(relation) for relation in derivation.assumptions],
     }
 
 
-def texts_of(matrix: sp.MatrixBase, write: Writer) -> list[list[str]]:
+def write_rows(matrix: sp.MatrixBase, write: Writer) -> list[list[str]]:
     """A matrix as rows of texts."""
     return [[write(entry) for entry in row] for row in matrix.tolist()]
 
@@ -72,7 +72,7 @@ def piece_data(derivation: Derivation, piece: PieceRegressors, write: Writer) ->
         "variable": write(derivation.time),
         "from": write(piece.start),
         "to": write(piece.end),
-        "H": texts_of(piece.rows, write),
+        "H": write_rows(piece.rows, write),
     }
 
 
@@ -92,22 +92,22 @@ def condition_data(derivation: Derivation, conditions: Conditions, write: Writer
 
 def latex_displays(derivation: Derivation) -> list[str]:
     """Every formula of a derivation in LaTeX, one for each display."""
-    tex = formulas_of(derivation, sp.latex)
-    shows = [f"F = {pmatrix(F)}" for F in tex["F"]]
-    shows += [f"\\Phi({t['time']}) = {pmatrix(t['matrix'])}" for t in tex["transition"]]
+    tex = write_formulas(derivation, sp.latex)
+    shows = [f"F = {matrix_in_parentheses(F)}" for F in tex["F"]]
+    shows += [f"\\Phi({t['time']}) = {matrix_in_parentheses(t['matrix'])}" for t in tex["transition"]]
     for piece in tex["regressors"]:
         v = piece["variable"]
         shows += [
-            f"H_{{{j + 1}}}({v}) = {pmatrix([[entry] for entry in row])}, "
+            f"H_{{{j + 1}}}({v}) = {matrix_in_parentheses([[entry] for entry in row])}, "
             f"\\quad {piece['from']} \\le {v} \\le {piece['to']}"
             for j, row in enumerate(piece["H"])
         ]
     if tex["observability_matrix"]:
-        shows.append(f"\\mathcal{{O}} = {pmatrix(tex['observability_matrix'])}")
+        shows.append(f"\\mathcal{{O}} = {matrix_in_parentheses(tex['observability_matrix'])}")
     return [*shows, *condition_displays(tex), *tex["assumptions"]]
 
 
-def pmatrix(rows: list[list[str]]) -> str:
+def matrix_in_parentheses(rows: list[list[str]]) -> str:
     """Rows of LaTeX as a matrix in parentheses."""
     return "\\begin{pmatrix} " + " \\\\ ".join(" & ".join(row) for row in rows) + " \\end{pmatrix}"
 
@@ -127,7 +127,7 @@ def condition_displays(tex: dict[str, Any]) -> list[str]:
     v = tex["regressors"][0]["variable"]
     shows.append(f"\\sum_k \\varphi_k H({v}_k) = P, \\quad \\varphi_k f({v}_k) \\ge 0")
     return shows + [
-        f"P = {pmatrix([[entry] for entry in c['functional']])}, \\quad \\max\\, {c['value']}"
+        f"P = {matrix_in_parentheses([[entry] for entry in c['functional']])}, \\quad \\max\\, {c['value']}"
         for c in tex["conditions"]
     ]
 
@@ -156,8 +156,8 @@ def exponential_certificate(F: sp.MatrixBase, Phi: sp.MatrixBase, time: sp.Symbo
     try:
         return {
             "kind": "exponential",
-            "matrix": texts(F),
-            "solution": texts(Phi),
+            "matrix": matrix_texts(F),
+            "solution": matrix_texts(Phi),
             "variable": time.name,
             "symbols": symbols,
         }
@@ -173,13 +173,13 @@ def rank_certificate(M: sp.MatrixBase) -> dict[str, Any] | None:
     """
     null = M.nullspace()
     rank = M.cols - len(null)
-    for point in points(sorted(M.free_symbols, key=str)):
+    for point in trial_points(sorted(M.free_symbols, key=str)):
         here = M.subs(point)
         rows = here.T.rref()[1] if all(x.is_Rational for x in here) else ()
         if len(rows) == rank and sp.Matrix([*(here.row(k) for k in rows), *(v.subs(point).T for v in null)]).det() != 0:
             return {
                 "kind": "rank",
-                "matrix": texts(M),
+                "matrix": matrix_texts(M),
                 "symbols": sorted(s.name for s in M.free_symbols),
                 "rank": rank,
                 "point": {s.name: to_text(value) for s, value in point.items()},
@@ -189,11 +189,11 @@ def rank_certificate(M: sp.MatrixBase) -> dict[str, Any] | None:
     return None
 
 
-def points(symbols: Sequence[sp.Symbol]) -> Iterator[dict[sp.Symbol, sp.Rational]]:
+def trial_points(symbols: Sequence[sp.Symbol]) -> Iterator[dict[sp.Symbol, sp.Rational]]:
     """A few rational points with unlike coordinates."""
     for k in range(1, TRIALS + 1):
         yield {s: sp.Rational(sp.prime(2 * i + k + 3), i + k + 1) for i, s in enumerate(symbols)}
 
 
-def texts(M: sp.MatrixBase) -> list[list[str]]:
+def matrix_texts(M: sp.MatrixBase) -> list[list[str]]:
     return [[to_text(entry) for entry in M.row(i)] for i in range(M.rows)]

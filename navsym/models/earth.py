@@ -176,7 +176,7 @@ def dynamics(n: int, rho: Any) -> sp.Matrix:
     """A of trajectory:3, (n, n): rho at the first place above the diagonal, ones at the others."""
     import sympy as sp
 
-    check_order(n)
+    need_order(n)
     return sp.Matrix(n, n, lambda i, j: (rho if i == 0 else 1) if j == i + 1 else 0)
 
 
@@ -187,7 +187,7 @@ def first_state(n: int) -> sp.Matrix:
     return sp.Matrix(1, n, lambda _, j: 1 if j == 0 else 0)
 
 
-def transition(A: sp.Matrix, tau: Any) -> sp.Matrix:
+def nilpotent_exponential(A: sp.Matrix, tau: Any) -> sp.Matrix:
     """exp(A tau) of a nilpotent A, (n, n): the series sum (A tau)^k / k! ends after n terms."""
     import sympy as sp
 
@@ -201,7 +201,7 @@ def transition(A: sp.Matrix, tau: Any) -> sp.Matrix:
     return total
 
 
-def observability(h: sp.Matrix, Phi: sp.Matrix) -> sp.Matrix:
+def stepped_rows(h: sp.Matrix, Phi: sp.Matrix) -> sp.Matrix:
     """Rows h, h Phi, ..., h Phi^(n-1), (n, n)."""
     import sympy as sp
 
@@ -211,7 +211,7 @@ def observability(h: sp.Matrix, Phi: sp.Matrix) -> sp.Matrix:
     return sp.Matrix.vstack(*rows)
 
 
-def column_norms(matrix: sp.Matrix) -> list[sp.Expr]:
+def norms_of_columns(matrix: sp.Matrix) -> list[sp.Expr]:
     """Euclidean norms of the columns (symbols of the matrix are taken as declared)."""
     import sympy as sp
 
@@ -225,7 +225,7 @@ def row_scaling(h: sp.Matrix) -> sp.Matrix:
     return sp.diag(*h)
 
 
-def check_order(n: int) -> None:
+def need_order(n: int) -> None:
     """DomainError below order one."""
     if n < 1:
         raise DomainError(f"n: expected an order of 1 or more; got {n}; choose a larger one")
@@ -236,18 +236,18 @@ def check_order(n: int) -> None:
 
 def observability_rows(n: int, rho: Fraction, tau: Fraction) -> list[list[Fraction]]:
     """N_p as exact numbers: row i is h Phi^i = (1, rho i tau, ..., rho (i tau)^(n-1) / (n-1)!), i = 1..n."""
-    check_order(n)
+    need_order(n)
     scales = [rho * tau**j / math.factorial(j) for j in range(1, n)]
     return [[Fraction(1), *(s * i**j for j, s in enumerate(scales, 1))] for i in range(1, n + 1)]
 
 
 def power_rows(n: int) -> list[list[Fraction]]:
     """N_f as exact numbers: entry i^(j-1), i, j = 1..n; the same for every rho and tau."""
-    check_order(n)
+    need_order(n)
     return [[Fraction(i) ** j for j in range(n)] for i in range(1, n + 1)]
 
 
 def pascal_rows(n: int) -> list[list[int]]:
     """Phi_f as exact numbers: the binomial coefficient (j-1 over i-1), i, j = 1..n."""
-    check_order(n)
+    need_order(n)
     return [[math.comb(j, i) for j in range(n)] for i in range(n)]

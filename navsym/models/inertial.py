@@ -41,7 +41,7 @@ class Truncated:
     dropped: tuple[Dropped, ...]
 
 
-def order_of(term: sp.Expr, orders: Mapping[sp.Symbol, int]) -> int:
+def monomial_order(term: sp.Expr, orders: Mapping[sp.Symbol, int]) -> int:
     """Power of mu of one monomial; symbols that are not declared count zero."""
     total = 0
     for base, exponent in term.as_powers_dict().items():
@@ -53,20 +53,20 @@ def order_of(term: sp.Expr, orders: Mapping[sp.Symbol, int]) -> int:
 def truncate(expression: sp.Expr, orders: Mapping[sp.Symbol, int], limit: int) -> Truncated:
     """Keep the monomials of order below ``limit``."""
     terms = sp.Add.make_args(sp.expand(expression))
-    dropped = [Dropped(t, order_of(t, orders)) for t in terms if t != 0 and order_of(t, orders) >= limit]
-    kept = sp.Add(*(t for t in terms if order_of(t, orders) < limit))
+    dropped = [Dropped(t, monomial_order(t, orders)) for t in terms if t != 0 and monomial_order(t, orders) >= limit]
+    kept = sp.Add(*(t for t in terms if monomial_order(t, orders) < limit))
     return Truncated(kept, tuple(dropped))
 
 
-def exactly(expression: sp.Expr, orders: Mapping[sp.Symbol, int], order: int) -> sp.Expr:
+def pick_order(expression: sp.Expr, orders: Mapping[sp.Symbol, int], order: int) -> sp.Expr:
     """The monomials of one order."""
-    return sp.Add(*(t for t in sp.Add.make_args(sp.expand(expression)) if order_of(t, orders) == order))
+    return sp.Add(*(t for t in sp.Add.make_args(sp.expand(expression)) if monomial_order(t, orders) == order))
 
 
 def lowest_order(expression: sp.Expr, orders: Mapping[sp.Symbol, int]) -> int | None:
     """The smallest order of a monomial; None for zero."""
     terms = [t for t in sp.Add.make_args(sp.expand(expression)) if t != 0]
-    return min((order_of(t, orders) for t in terms), default=None)
+    return min((monomial_order(t, orders) for t in terms), default=None)
 
 
 MU = sp.Symbol("mu", positive=True)
@@ -132,7 +132,7 @@ def derivative(expression: sp.Expr, rates: Mapping[sp.Symbol, sp.Expr]) -> sp.Ex
 def leading_rates(equations: ErrorEquations) -> dict[sp.Symbol, sp.Expr]:
     """The motion at mu = 0: Schuler oscillations, while beta, omega and u stand still."""
     moving = [*ALPHA[:2], *PI]
-    return {s: exactly(equations.rates[s], ORDERS, 0) for s in moving}
+    return {s: pick_order(equations.rates[s], ORDERS, 0) for s in moving}
 
 
 def velocity_variables(equations: ErrorEquations) -> tuple[sp.Expr, ...]:
@@ -145,7 +145,7 @@ def velocity_variables(equations: ErrorEquations) -> tuple[sp.Expr, ...]:
     found: list[sp.Expr] = []
     for sigma in equations.velocity:
         second = derivative(derivative(sigma, rates), rates)
-        momentum = exactly(-second, ORDERS, 0)
+        momentum = pick_order(-second, ORDERS, 0)
         found += [-derivative(momentum, rates), momentum, sp.expand(sigma + second)]
     return tuple(found)
 
@@ -156,7 +156,7 @@ def position_variables(equations: ErrorEquations) -> tuple[sp.Expr, ...]:
     found: list[sp.Expr] = []
     for sigma in equations.position:
         speed = derivative(sigma, equations.rates)
-        force = exactly(-derivative(speed, equations.rates), ORDERS, 0)
+        force = pick_order(-derivative(speed, equations.rates), ORDERS, 0)
         found += [sigma, speed, force, derivative(force, rates)]
     return tuple(found)
 
@@ -202,8 +202,8 @@ def velocity_group(equations: ErrorEquations | None = None) -> Group:
     """
     equations = equations or dimensionless()
     meaning = velocity_variables(equations)
-    solve = solved_for(X, meaning, [ALPHA[0], PI[0], W_C0[0], ALPHA[1], PI[1], W_C0[1]])
-    return grouped(X, meaning, solve, equations, equations.velocity)
+    solve = solve_for(X, meaning, [ALPHA[0], PI[0], W_C0[0], ALPHA[1], PI[1], W_C0[1]])
+    return form_group(X, meaning, solve, equations, equations.velocity)
 
 
 def position_group(equations: ErrorEquations | None = None) -> Group:
@@ -214,14 +214,14 @@ def position_group(equations: ErrorEquations | None = None) -> Group:
     equations = equations or dimensionless()
     meaning = position_variables(equations)
     eliminated = {1: BETA[0], 3: ALPHA[0], 4: PI[0], 5: BETA[1], 7: ALPHA[1], 8: PI[1]}
-    solve = solved_for([Y[k - 1] for k in eliminated], [meaning[k - 1] for k in eliminated], list(eliminated.values()))
-    group = grouped(Y, meaning, solve, equations, equations.position)
+    solve = solve_for([Y[k - 1] for k in eliminated], [meaning[k - 1] for k in eliminated], list(eliminated.values()))
+    group = form_group(Y, meaning, solve, equations, equations.position)
     speeds = {0: Y[1], 4: Y[5]}  # y_2 and y_6 are the derivatives themselves
     rates = tuple(speeds.get(k, rate) for k, rate in enumerate(group.rates))
     return Group(group.variables, meaning, rates, group.outputs, group.dropped, group.dropped_outputs)
 
 
-def solved_for(
+def solve_for(
     symbols: Sequence[sp.Symbol], meaning: Sequence[sp.Expr], unknowns: Sequence[sp.Symbol]
 ) -> dict[sp.Symbol, sp.Expr]:
     """Error variables in the symbols of a group; the system is triangular, each step is linear."""
@@ -242,7 +242,7 @@ def solved_for(
     return values
 
 
-def grouped(
+def form_group(
     variables: Sequence[sp.Symbol],
     meaning: Sequence[sp.Expr],
     solve: Mapping[sp.Symbol, sp.Expr],
@@ -300,12 +300,12 @@ def full_model(order: int | None = None) -> LinearModel:
     equations = dimensionless()
     rates = [equations.rates.get(s, sp.Integer(0)) for s in FULL]
     outputs = [*equations.velocity, *equations.position]
-    F, H = (coefficients(part, order) for part in (rates, outputs))
+    F, H = (state_coefficients(part, order) for part in (rates, outputs))
     names = ("sigma_c1", "sigma_c2", "sigma_M1", "sigma_M2")
     return LinearModel(F, None, H, tuple(map(str, FULL)), measurements=names)
 
 
-def coefficients(expressions: Sequence[sp.Expr], order: int | None) -> sp.Matrix:
+def state_coefficients(expressions: Sequence[sp.Expr], order: int | None) -> sp.Matrix:
     """Coefficients of the full state; powers of mu from ``order`` on are left out."""
 
     def entry(expression: sp.Expr, state: sp.Symbol) -> sp.Expr:

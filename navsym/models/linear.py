@@ -44,14 +44,16 @@ class LinearModel:
     time: sp.Symbol = TIME
 
     def __post_init__(self) -> None:
-        F = square("F", self.F)
+        F = need_square("F", self.F)
         n = F.rows
         G = sp.ImmutableMatrix.zeros(n, 0) if self.G is None else exact_matrix("G", self.G)
         H = sp.ImmutableMatrix.zeros(0, n) if self.H is None else exact_matrix("H", self.H)
         need_shape("G", G, (n, G.cols), "states by process noises")
         need_shape("H", H, (H.rows, n), "measurements by states")
-        states = different("states", self.states or numbered("x", n), n, "states")
-        measurements = different("measurements", self.measurements or numbered("z", H.rows), H.rows, "measurements")
+        states = need_different("states", self.states or number_names("x", n), n, "states")
+        measurements = need_different(
+            "measurements", self.measurements or number_names("z", H.rows), H.rows, "measurements"
+        )
         values = {"F": F, "G": G, "H": H, "states": states, "measurements": measurements}
         for name, value in values.items():
             object.__setattr__(self, name, value)
@@ -93,7 +95,7 @@ class LinearModel:
 
         This is how a degenerate case is reached: substitute first, then derive.
         """
-        F, G, H = (substituted(matrix, values) for matrix in (self.F, self.G, self.H))
+        F, G, H = (substitute_exactly(matrix, values) for matrix in (self.F, self.G, self.H))
         return LinearModel(F, G, H, self.states, self.measurements, self.time)
 
 
@@ -137,7 +139,7 @@ def exact_entry(name: str, i: int, j: int, entry: Any) -> sp.Expr:
     return expression
 
 
-def square(name: str, value: Any) -> sp.ImmutableMatrix:
+def need_square(name: str, value: Any) -> sp.ImmutableMatrix:
     """An exact matrix with as many rows as columns, at least one."""
     matrix = exact_matrix(name, value)
     if matrix.rows == 0:
@@ -152,7 +154,7 @@ def need_shape(name: str, matrix: sp.ImmutableMatrix, shape: tuple[int, int], wh
         raise ShapeError(f"{name}: expected shape {shape}, {why}; got {matrix.shape}; complete it")
 
 
-def different(name: str, values: Iterable[Any], count: int, why: str) -> tuple[str, ...]:
+def need_different(name: str, values: Iterable[Any], count: int, why: str) -> tuple[str, ...]:
     """Names as strings, as many as needed and no two alike."""
     names = tuple(str(value) for value in values)
     if len(names) != count:
@@ -163,12 +165,12 @@ def different(name: str, values: Iterable[Any], count: int, why: str) -> tuple[s
     return names
 
 
-def numbered(letter: str, count: int) -> tuple[str, ...]:
+def number_names(letter: str, count: int) -> tuple[str, ...]:
     """Default names: the letter with 1, 2, ..."""
     return tuple(f"{letter}{place + 1}" for place in range(count))
 
 
-def substituted(matrix: sp.ImmutableMatrix, values: Mapping[sp.Symbol, Any]) -> sp.ImmutableMatrix:
+def substitute_exactly(matrix: sp.ImmutableMatrix, values: Mapping[sp.Symbol, Any]) -> sp.ImmutableMatrix:
     """Simultaneous exact substitution; a pole shows itself as NotFiniteError at construction."""
     exact = {symbol: exact_entry("value of", 0, 0, value) for symbol, value in values.items()}
     return matrix.subs(exact, simultaneous=True)

@@ -124,7 +124,7 @@ class Model:
             got = shown(document)
             raise ShapeError(f"expected the tables of a model file; got {got}; give a dict", where=where)
         model = object.__new__(cls)
-        model._fill(texts(document), where)
+        model._fill(copy_as_texts(document), where)
         return model
 
     @classmethod
@@ -221,7 +221,7 @@ class Model:
 
     def document(self) -> dict[str, Any]:
         """The tables of a model file as plain data; every entry is text."""
-        return texts(self._document)
+        return copy_as_texts(self._document)
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write a model file (TOML) that reads back to the same model.
@@ -333,14 +333,16 @@ class Model:
     def __repr__(self) -> str:
         contents = self._contents
         kind = "states" if isinstance(contents, ModelFile) else "unknowns"
-        parts = [listed(kind, self.states), counted(len(self.measurements), "measurement")]
+        parts = [list_names(kind, self.states), count_in_words(len(self.measurements), "measurement")]
         if isinstance(contents, BasisFile):
             start, end = contents.interval
             parts.append(f"{contents.variable} from {to_text(start)} to {to_text(end)}")
         elif contents.T is not None:
             parts.append(f"on [0, {to_text(contents.T)}]")
         parts += [
-            listed(word, names) for word, names in (("target", self.targets), ("parameter", self.parameters)) if names
+            list_names(word, names)
+            for word, names in (("target", self.targets), ("parameter", self.parameters))
+            if names
         ]
         return f"Model({contents.name}: {'; '.join(parts)})"
 
@@ -484,7 +486,7 @@ def measurement_blocks(
         raise ShapeError(message, where="Model: measurements")
     known = {**known_symbols(declared), "t": symbol("t")}
     return [
-        {"name": name, "h": row_of(row, states, known, f"Model: H[{k}]"), "sigma": bound}
+        {"name": name, "h": read_row(row, states, known, f"Model: H[{k}]"), "sigma": bound}
         for k, (name, row, bound) in enumerate(zip(names, rows, sigmas, strict=True))
     ]
 
@@ -528,11 +530,11 @@ def target_rows(targets: Mapping[str, Any], states: Sequence[str], declared: Map
     rows = {}
     for name, row in targets.items():
         where = inside("Model: targets", name)
-        rows[name] = row_of(write_entries(row, where), states, known, where)
+        rows[name] = read_row(write_entries(row, where), states, known, where)
     return rows
 
 
-def row_of(row: Any, states: Sequence[str], known: Mapping[str, sp.Symbol], where: str) -> Any:
+def read_row(row: Any, states: Sequence[str], known: Mapping[str, sp.Symbol], where: str) -> Any:
     """A row of texts as it is; a formula of the states as its coefficients."""
     if not isinstance(row, str):
         return row
@@ -589,26 +591,26 @@ def declaration_of(parameter: Parameter) -> Any:
     return [to_text(parameter.lower), to_text(parameter.upper)]
 
 
-def texts(value: Any) -> Any:
+def copy_as_texts(value: Any) -> Any:
     """Plain data of our own: tables and lists copied, numbers of TOML as text."""
     if isinstance(value, Mapping):
-        return {key: texts(item) for key, item in value.items()}
+        return {key: copy_as_texts(item) for key, item in value.items()}
     if isinstance(value, list):
-        return [texts(item) for item in value]
+        return [copy_as_texts(item) for item in value]
     return str(value) if isinstance(value, str) or type(value) is int else value
 
 
 # Words and formulas for people
 
 
-def listed(word: str, names: Any) -> str:
+def list_names(word: str, names: Any) -> str:
     """``target drift``, ``3 states y1, y2, y3``; long lists are cut."""
     names = list(names)
     text = ", ".join(names[:6]) + (", …" if len(names) > 6 else "")
     return f"{len(names)} {word} {text}" if word.endswith("s") else f"{word}{'s' if len(names) > 1 else ''} {text}"
 
 
-def counted(count: int, word: str) -> str:
+def count_in_words(count: int, word: str) -> str:
     """``1 measurement``, ``2 measurements``."""
     return f"{count} {word}{'' if count == 1 else 's'}"
 

@@ -31,7 +31,7 @@ from navsym.observability.chains import (
 from navsym.observability.document import as_html, as_latex, document_of_observability
 from navsym.observability.rank_drops import RankDrop, drops_and_completeness
 from navsym.observability.sensors import Restoration, restore_observability
-from navsym.observability.splits import FeasibleSplit, Split, best_split, split, splits
+from navsym.observability.splits import FeasibleSplit, Split, best_split, choose_split, feasible_splits
 from navsym.observability.two_stage import POLE, StageGains, gains_by_poles, stage_gains
 
 #: Variable of polynomials that prescribe poles.
@@ -184,7 +184,7 @@ def observe(
             raise DomainError(message, where="observe: model")
         request = read_split(split) if split is not None else None
         polynomials = read_poles(poles, contents) if poles is not None else ()
-        rows = read_candidates(candidates or {}, contents)
+        rows = read_candidate_rows(candidates or {}, contents)
         asked = restore or bool(candidates)
         return observe_linear(linear_model(contents), contents.name, request, polynomials, rows if asked else None)
 
@@ -203,7 +203,7 @@ def observe_linear(
     two = len(joint.measurements) == 2 and joint.observable
     if request is not None and not two:
         raise ShapeError(f"split: expected two measurements; got {len(joint.measurements)}; choose two of them")
-    chosen = split(joint, *(request or ())) if two else None
+    chosen = choose_split(joint, *(request or ())) if two else None
     drops, complete = drops_and_completeness(joint)
     return Observability(
         name=name,
@@ -211,7 +211,7 @@ def observe_linear(
         joint=joint,
         rank_drops=drops,
         rank_drops_complete=complete,
-        splits=splits(joint) if two else (),
+        splits=feasible_splits(joint) if two else (),
         best_split=best_split(joint) if two else None,
         split=chosen,
         gains=gains_for(joint, chosen, poles) if poles else None,
@@ -266,7 +266,7 @@ def read_poles(value: Any, contents: ModelFile) -> tuple[sp.Expr, ...]:
     return tuple(parse(part.strip(), known, where=where) for part in parts)
 
 
-def read_candidates(candidates: Mapping[str, Any], contents: ModelFile) -> dict[str, list[sp.Expr]]:
+def read_candidate_rows(candidates: Mapping[str, Any], contents: ModelFile) -> dict[str, list[sp.Expr]]:
     """Rows of exact coefficients, from formulas of the states or rows of entries."""
     if not isinstance(candidates, Mapping):
         message = f"expected name -> formula of the states; got {shown(candidates)}; give a dict"

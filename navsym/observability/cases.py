@@ -19,8 +19,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from navsym.core.errors import TooLargeError
-from navsym.observability.linear import Matrix, eliminate, sparsest
-from navsym.observability.reduction import System, components, remainder, vanishes
+from navsym.observability.linear import Matrix, clear_column, sparsest
+from navsym.observability.reduction import System, components, lies_in_ideal, take_out_regular
 from navsym.observability.ring import Poly, Ring, irreducible_factors
 
 #: Cases looked at, and depth of equations; beyond them the list is not called complete.
@@ -64,7 +64,7 @@ def drops_by_all_minors(rows: Matrix, rank: int, ring: Ring) -> list[System] | N
     The rank is smaller exactly where all maximal minors of the remainder vanish; for a square one that is its
     determinant, factored. Dense systems end here: cases on a pivot with thousands of terms do not end.
     """
-    reduced = remainder(rows)
+    reduced = take_out_regular(rows)
     wanted = rank - reduced.regular
     if wanted <= 0 or not reduced.rows:
         return []
@@ -88,14 +88,14 @@ def drops_by_all_minors(rows: Matrix, rank: int, ring: Ring) -> list[System] | N
 def visit(search: Search, rows: Matrix, rank: int, system: System) -> None:
     """One case: the drops among the real zeros of a system (all points for the empty one)."""
     name = "; ".join(sorted(map(str, system)))
-    if name in search.seen or covered(system, search.found):
+    if name in search.seen or is_covered(system, search.found):
         return
     search.seen.add(name)
     search.cases += 1
     if search.cases > CASES or len(system) > DEPTH:
         search.complete = False
         return
-    reduced = remainder(substituted(rows, system, search.ring))
+    reduced = take_out_regular(substitute_rows(rows, system, search.ring))
     wanted = rank - reduced.regular
     if wanted <= 0:
         return
@@ -104,7 +104,7 @@ def visit(search: Search, rows: Matrix, rank: int, system: System) -> None:
     except TooLargeError:
         search.complete = False
         return
-    if not minors and whole(search, rows, rank, system, pivot):
+    if not minors and is_whole(search, rows, rank, system, pivot):
         search.found.append(system)
     elif not minors:
         # Off pivot = 0 the rank is smaller, but not everywhere: what is listed has to be a drop as it stands.
@@ -116,30 +116,30 @@ def visit(search: Search, rows: Matrix, rank: int, system: System) -> None:
             visit(search, rows, rank, child)
 
 
-def whole(search: Search, rows: Matrix, rank: int, system: System, pivot: Poly) -> bool:
+def is_whole(search: Search, rows: Matrix, rank: int, system: System, pivot: Poly) -> bool:
     """Whether the rank is proved to be smaller on all of a system on which elimination stopped at a pivot.
 
     Off pivot = 0 it is. An irreducible system has the rest in its closure; otherwise the part with
     pivot = 0 is examined on its own, and must be whole again.
     """
-    if irreducible(system) or pivot.is_constant():
+    if is_irreducible(system) or pivot.is_constant():
         return True
     ring = search.ring
     for part in components([*system, pivot], ring):
         search.cases += 1
         if search.cases > CASES:
             return False
-        reduced = remainder(substituted(rows, part, ring))
+        reduced = take_out_regular(substitute_rows(rows, part, ring))
         try:
             minors, following = minors_on(reduced.rows, rank - reduced.regular, part, ring)
         except TooLargeError:
             return False
-        if rank <= reduced.regular or minors or not whole(search, rows, rank, part, following):
+        if rank <= reduced.regular or minors or not is_whole(search, rows, rank, part, following):
             return False
     return True
 
 
-def irreducible(system: System) -> bool:
+def is_irreducible(system: System) -> bool:
     """Whether the zeros of a system are known not to split: all equations but one solve for a variable each.
 
     An equation c x - g with a number c and without x in g only names x; it does not occur in the others.
@@ -160,16 +160,16 @@ def solved_variable(f: Poly, system: System) -> int | None:
     return None
 
 
-def substituted(rows: Matrix, system: System, ring: Ring) -> Matrix:
+def substitute_rows(rows: Matrix, system: System, ring: Ring) -> Matrix:
     """The rows with the variables that the system solves for replaced; rows times numbers."""
     for f in system:
         place = solved_variable(f, system) if len(f) <= SOLUTION else None
         if place is not None:
-            rows = [replaced(row, f, place, ring) for row in rows]
+            rows = [replace_in_row(row, f, place, ring) for row in rows]
     return rows
 
 
-def replaced(row: list[Poly], f: Poly, place: int, ring: Ring) -> list[Poly]:
+def replace_in_row(row: list[Poly], f: Poly, place: int, ring: Ring) -> list[Poly]:
     """x = g/c in every entry of a row, times the power of c that keeps integers; f = c x - g."""
     unit = tuple(int(k == place) for k in range(len(ring.symbols)))
     factor = int(f.to_dict()[unit])
@@ -177,10 +177,10 @@ def replaced(row: list[Poly], f: Poly, place: int, ring: Ring) -> list[Poly]:
     degree = max(int(entry.degrees()[place]) if entry != 0 else 0 for entry in row)
     if degree == 0:
         return row
-    return [in_entry(entry, place, value, factor, degree, ring) for entry in row]
+    return [replace_in_entry(entry, place, value, factor, degree, ring) for entry in row]
 
 
-def in_entry(entry: Poly, place: int, value: Poly, factor: int, degree: int, ring: Ring) -> Poly:
+def replace_in_entry(entry: Poly, place: int, value: Poly, factor: int, degree: int, ring: Ring) -> Poly:
     """c^degree times the entry at x = value/c."""
     parts: dict[int, dict[tuple[int, ...], int]] = {}
     for powers, coefficient in entry.to_dict().items():
@@ -233,15 +233,15 @@ def minor_on(
         if place is None:
             return last, False, used
         i, used = place
-        affordable(work[step:], work[i][used], products)
+        need_affordable(work[step:], work[i][used], products)
         work[step], work[i] = work[i], work[step]
-        eliminate(work, step, used, last)
+        clear_column(work, step, used, last)
         last = work[step][used]
         free.remove(used)
     return last, True, used
 
 
-def affordable(rows: Matrix, pivot: Poly, products: int) -> None:
+def need_affordable(rows: Matrix, pivot: Poly, products: int) -> None:
     """Refuse an elimination step whose products are too long."""
     longest = max(len(entry) for row in rows for entry in row)
     if len(pivot) * longest > products:
@@ -256,11 +256,11 @@ def pivot_on(work: Matrix, step: int, free: Sequence[int], system: System) -> tu
     shown = [list(row) for row in work]
     while True:
         place = sparsest(shown, step, free)
-        if place is None or not vanishes(shown[place[0]][place[1]], system):
+        if place is None or not lies_in_ideal(shown[place[0]][place[1]], system):
             return place
         shown[place[0]][place[1]] = zero
 
 
-def covered(system: System, found: Sequence[System]) -> bool:
+def is_covered(system: System, found: Sequence[System]) -> bool:
     """Whether the zeros of a system visibly lie inside a drop that is known already."""
-    return any(all(vanishes(f, system) for f in other) for other in found)
+    return any(all(lies_in_ideal(f, system) for f in other) for other in found)

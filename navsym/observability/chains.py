@@ -25,15 +25,15 @@ from navsym.observability.linear import (
     PRIME,
     Matrix,
     at_point,
-    eliminated,
-    independent_rows,
+    independent_places,
+    integer_points,
+    linear_relation,
     null_vectors,
-    points,
-    relation,
     residue,
     residue_chains,
     residue_rank,
     transposed_times,
+    triangular_form,
 )
 from navsym.observability.reduction import krylov_remainder, krylov_rows
 from navsym.observability.ring import Poly, Quotient, Ring
@@ -52,7 +52,7 @@ CHOICES = 4096
 TERMS = 4000
 
 
-def characteristic(matrix: Matrix, ring: Ring) -> list[Poly]:
+def characteristic_coefficients(matrix: Matrix, ring: Ring) -> list[Poly]:
     """Coefficients of det(pE - matrix), the leading 1 first, without divisions (Samuelson and Berkowitz)."""
     zero, one = ring.constant(0), ring.constant(1)
     found = [one]
@@ -60,8 +60,8 @@ def characteristic(matrix: Matrix, ring: Ring) -> list[Poly]:
         column = [matrix[r][size] for r in range(size)]
         toeplitz = [one, -matrix[size][size]]
         for _ in range(size):
-            toeplitz.append(-dot(matrix[size][:size], column, zero))
-            column = [dot(matrix[r][:size], column, zero) for r in range(size)]
+            toeplitz.append(-scalar_product(matrix[size][:size], column, zero))
+            column = [scalar_product(matrix[r][:size], column, zero) for r in range(size)]
         found = [
             sum((toeplitz[i - j] * found[j] for j in range(max(0, i - size - 1), min(i, size) + 1)), zero)
             for i in range(size + 2)
@@ -69,7 +69,7 @@ def characteristic(matrix: Matrix, ring: Ring) -> list[Poly]:
     return found
 
 
-def dot(row: Sequence[Poly], column: Sequence[Poly], zero: Poly) -> Poly:
+def scalar_product(row: Sequence[Poly], column: Sequence[Poly], zero: Poly) -> Poly:
     """Scalar product of polynomial vectors."""
     return sum((a * b for a, b in zip(row, column, strict=True) if a != 0 and b != 0), zero)
 
@@ -79,7 +79,7 @@ def chain_relation(vectors: Matrix, m: int, matrix: Matrix, ring: Ring, point: S
 
     vectors : a_1 ... a_{m+1};  point : integers at which a_1 ... a_m are independent modulo the prime
     """
-    whole = characteristic(matrix, ring)
+    whole = characteristic_coefficients(matrix, ring)
     if m == len(matrix):
         return [-c for c in whole[:0:-1]]
     if sum(map(len, whole)) > TERMS:
@@ -108,7 +108,8 @@ def annihilates(theta: Sequence[Poly], vectors: Matrix, ring: Ring) -> bool:
     zero = ring.constant(0)
     size = len(theta)
     return all(
-        dot(theta, [vectors[j][k] for j in range(size)], zero) == vectors[size][k] for k in range(len(vectors[0]))
+        scalar_product(theta, [vectors[j][k] for j in range(size)], zero) == vectors[size][k]
+        for k in range(len(vectors[0]))
     )
 
 
@@ -122,7 +123,7 @@ def monic_factors(coefficients: Sequence[Poly], degree: int, ring: Ring) -> list
         ),
         wider.constant(0),
     )
-    parts = [(by_power(f, p, ring), int(power)) for f, power in total.factor()[1]]
+    parts = [(monic_by_power(f, p, ring), int(power)) for f, power in total.factor()[1]]
     found = []
     for count, powers in enumerate(product(*(range(power + 1) for _, power in parts))):
         if count > CHOICES:
@@ -131,7 +132,7 @@ def monic_factors(coefficients: Sequence[Poly], degree: int, ring: Ring) -> list
             value = [ring.constant(1)]
             for k, (f, _) in zip(powers, parts, strict=True):
                 for _ in range(k):
-                    value = multiplied(value, f, ring)
+                    value = multiply_coefficients(value, f, ring)
             found.append(value)
     return found
 
@@ -144,7 +145,7 @@ def with_variable(ring: Ring) -> tuple[Any, int]:
     return wider.context, len(ring.symbols)
 
 
-def by_power(f: Poly, place: int, ring: Ring) -> list[Poly]:
+def monic_by_power(f: Poly, place: int, ring: Ring) -> list[Poly]:
     """Coefficients of a monic polynomial by the powers of one generator, the leading 1 first."""
     degree = int(f.degrees()[place])
     parts: list[dict[tuple[int, ...], int]] = [{} for _ in range(degree + 1)]
@@ -154,7 +155,7 @@ def by_power(f: Poly, place: int, ring: Ring) -> list[Poly]:
     return [-c for c in found] if found[0] == -1 else found
 
 
-def multiplied(left: Sequence[Poly], right: Sequence[Poly], ring: Ring) -> list[Poly]:
+def multiply_coefficients(left: Sequence[Poly], right: Sequence[Poly], ring: Ring) -> list[Poly]:
     """Product of two polynomials given by coefficients."""
     result = [ring.constant(0)] * (len(left) + len(right) - 1)
     for i, a in enumerate(left):
@@ -240,9 +241,9 @@ def chains_of(model: LinearModel) -> Chains:
     Raises DomainError (time-varying model, zero row h, entries that are no rational functions),
     EmptyError (no measurement), DuplicateError (two measurements with equal rows), TooLargeError.
     """
-    check(model)
+    need_chains(model)
     ring = Ring.of([model.F, model.H])
-    own_rows(model, ring)
+    need_own_rows(model, ring)
     n = model.size
     matrix, clock = numerators([model.F[i, :] for i in range(n)], ring)
     rows = [numerators([model.H[k, :]], ring) for k in range(model.H.rows)]
@@ -254,7 +255,7 @@ def chains_of(model: LinearModel) -> Chains:
     return Chains(ring, model.states, matrix, clock, chains, staircase)
 
 
-def check(model: LinearModel) -> None:
+def need_chains(model: LinearModel) -> None:
     """Refuse what has no chains: time-varying or too large models, and models without a measurement."""
     if not model.constant:
         raise DomainError(
@@ -266,7 +267,7 @@ def check(model: LinearModel) -> None:
         raise EmptyError("expected at least one measurement; got none; add a row h")
 
 
-def own_rows(model: LinearModel, ring: Ring) -> None:
+def need_own_rows(model: LinearModel, ring: Ring) -> None:
     """Refuse rows h that are zero or equal, also in disguise: (a + 1)^2 and a^2 + 2 a + 1 are one number."""
     seen: dict[tuple[str, ...], str] = {}
     for k, name in enumerate(model.measurements):
@@ -306,7 +307,7 @@ def chain_of(name: str, row: list[Poly], bottom: Poly, matrix: Matrix, clock: Po
     while True:
         while len(vectors) <= dimension:
             vectors.append(transposed_times(matrix, vectors[-1], ring))
-        coefficients = ending(vectors, dimension, matrix, ring, point)
+        coefficients = end_relation(vectors, dimension, matrix, ring, point)
         if coefficients is not None:
             break
         dimension += 1  # the points were unlucky: the relation, not they, decides
@@ -317,12 +318,14 @@ def chain_of(name: str, row: list[Poly], bottom: Poly, matrix: Matrix, clock: Po
     return Chain(name, vectors[:m], bottom, clock, companion)
 
 
-def ending(vectors: Matrix, dimension: int, matrix: Matrix, ring: Ring, point: Sequence[int]) -> list[Quotient] | None:
+def end_relation(
+    vectors: Matrix, dimension: int, matrix: Matrix, ring: Ring, point: Sequence[int]
+) -> list[Quotient] | None:
     """The coefficients of the last vector in the others, checked; None when it does not depend on them."""
     found = chain_relation(vectors, dimension, matrix, ring, point)
     if found is not None:
         return [Quotient(theta, ring.constant(1)) for theta in found]
-    return relation(vectors[:dimension], vectors[dimension], ring)
+    return linear_relation(vectors[:dimension], vectors[dimension], ring)
 
 
 def generic_rank(rows: Matrix, matrix: Matrix, ring: Ring) -> tuple[int, tuple[int, ...]]:
@@ -330,7 +333,7 @@ def generic_rank(rows: Matrix, matrix: Matrix, ring: Ring) -> tuple[int, tuple[i
 
     The chains run in residues, so that this takes microseconds even for many symbols.
     """
-    ranks = {point: residue_rank(residue_chains(rows, matrix, point)) for point in points(ring)}
+    ranks = {point: residue_rank(residue_chains(rows, matrix, point)) for point in integer_points(ring)}
     best = max(ranks, key=lambda point: ranks[point])
     return ranks[best], best
 
@@ -341,18 +344,18 @@ def joint_staircase(chains: tuple[Chain, ...], matrix: Matrix, ring: Ring, n: in
     The counts at a point are a proved lower bound of the rank; elimination of what is not regular everywhere
     proves the upper one. Where they differ the points were unlucky, and relations decide.
     """
-    tries = [staircase_at(chains, point) for point in points(ring)]
+    tries = [staircase_at(chains, point) for point in integer_points(ring)]
     counts = max(tries, key=sum)
     starts = [(chain.vectors[0], chain.dimension) for chain in chains]
     rest = krylov_remainder(starts, matrix, ring)
-    upper = n if sum(counts) == n else rest.regular + len(eliminated(rest.rows, ring).rows)
+    upper = n if sum(counts) == n else rest.regular + len(triangular_form(rest.rows, ring).rows)
     return counts if sum(counts) == upper else staircase_by_relations(chains, ring, n)
 
 
 def staircase_at(chains: tuple[Chain, ...], point: Sequence[int]) -> tuple[int, ...]:
     """The counts at a point, modulo the prime."""
     rows = at_point([vector for chain in chains for vector in chain.vectors], point)
-    chosen = set(independent_rows(rows))
+    chosen = set(independent_places(rows))
     counts, first = [], 0
     for chain in chains:
         counts.append(sum(1 for k in range(first, first + chain.dimension) if k in chosen))
@@ -367,7 +370,7 @@ def staircase_by_relations(chains: tuple[Chain, ...], ring: Ring, n: int) -> tup
     for chain in chains:
         count = 0
         while len(basis) + count < n and count < chain.dimension:
-            if relation([*basis, *chain.vectors[:count]], chain.vectors[count], ring) is not None:
+            if linear_relation([*basis, *chain.vectors[:count]], chain.vectors[count], ring) is not None:
                 break
             count += 1
         basis = [*basis, *chain.vectors[:count]]
@@ -388,28 +391,28 @@ class ProvedRank:
     upper: str
 
 
-def proved_rank(model: LinearModel) -> ProvedRank:
+def prove_rank(model: LinearModel) -> ProvedRank:
     """Generic rank of everything that the measurements observe together, and nothing else.
 
     Below: a minor that is not zero at a point. Above: either there are no more states, or as many
     hidden directions N are exhibited, with h N = 0 for every measurement and G N inside the span of N.
     """
-    check(model)
+    need_chains(model)
     ring = Ring.of([model.F, model.H])
-    own_rows(model, ring)
+    need_own_rows(model, ring)
     matrix, _ = numerators([model.F[i, :] for i in range(model.size)], ring)
     rows = [numerators([model.H[k, :]], ring)[0][0] for k in range(model.H.rows)]
-    ranks = {point: residue_rank(residue_chains(rows, matrix, point)) for point in points(ring)}
+    ranks = {point: residue_rank(residue_chains(rows, matrix, point)) for point in integer_points(ring)}
     point = max(ranks, key=lambda key: ranks[key])
     if ranks[point] == model.size:
         return ProvedRank(model.size, point, "the number of states")
-    if hidden_directions(rows, matrix, ring, ranks[point], point) is not None:
+    if exhibit_unobservable(rows, matrix, ring, ranks[point], point) is not None:
         count = model.size - ranks[point]
         return ProvedRank(ranks[point], point, f"{count} hidden directions, invariant and seen by no measurement")
     return ProvedRank(chains_of(model).joint_dimension, point, "relations close the staircase")
 
 
-def hidden_directions(rows: Matrix, matrix: Matrix, ring: Ring, rank: int, point: Sequence[int]) -> Matrix | None:
+def exhibit_unobservable(rows: Matrix, matrix: Matrix, ring: Ring, rank: int, point: Sequence[int]) -> Matrix | None:
     """n - rank directions that no measurement ever shows, or None when the rank was too small.
 
     The basis takes the chains step by step, all measurements in turn, which keeps the degrees low.
@@ -428,7 +431,7 @@ def hidden_directions(rows: Matrix, matrix: Matrix, ring: Ring, rank: int, point
     zero = ring.constant(0)
     for vector in hidden:
         moved = [sum((g * x for g, x in zip(row, vector, strict=True) if g != 0), zero) for row in matrix]
-        seen = [dot(row, vector, zero) for row in rows] + [dot(row, moved, zero) for row in basis]
+        seen = [scalar_product(row, vector, zero) for row in rows] + [scalar_product(row, moved, zero) for row in basis]
         if any(value != 0 for value in seen):
             return None
     return hidden
@@ -506,15 +509,15 @@ def observe_jointly(model: LinearModel) -> JointObservability:
     entries = [ring.expression(x) for vector in hidden for x in vector]
     return JointObservability(
         states=model.states,
-        measurements=tuple(measured(chain, ring) for chain in chains.chains),
+        measurements=tuple(measurement_of(chain, ring) for chain in chains.chains),
         staircase=chains.staircase,
         unobservable=sp.ImmutableMatrix(len(hidden), n, entries),
-        assumptions=denominators(chains),
+        assumptions=model_denominators(chains),
         chains=chains,
     )
 
 
-def measured(chain: Chain, ring: Ring) -> MeasurementObservability:
+def measurement_of(chain: Chain, ring: Ring) -> MeasurementObservability:
     """The chain of one measurement in sympy."""
     rows = basis_rows(chain.vectors, chain, ring)
     companion = tuple(ring.expression(c) for c in chain.companion)
@@ -530,7 +533,7 @@ def basis_rows(vectors: Matrix, chain: Chain, ring: Ring) -> sp.ImmutableMatrix:
     return sp.ImmutableMatrix(len(vectors), len(chain.vectors[0]), entries)
 
 
-def denominators(chains: Chains) -> tuple[sp.Expr, ...]:
+def model_denominators(chains: Chains) -> tuple[sp.Expr, ...]:
     """What must not vanish for the model itself to make sense."""
     ring = chains.ring
     bottoms = [chains.clock, *(chain.bottom for chain in chains.chains)]

@@ -128,13 +128,15 @@ def captioned_formulas(answer: Observability) -> list[Formula]:
             )
         )
         listed.append(
-            (f"{measurement.name}: companion coefficients", rf"\vartheta^{{({k})}}", row(measurement.companion))
+            (f"{measurement.name}: companion coefficients", rf"\vartheta^{{({k})}}", row_matrix(measurement.companion))
         )
     if answer.unobservable_basis.rows:
         listed.append(("not observed by any measurement", "N", answer.unobservable_basis))
     for drop in answer.rank_drops:
         text = "proved complete" if drop.complete else "perhaps not complete"
-        listed.append((f"the rank of {drop.subspace} drops where all of these vanish ({text})", "d", row(drop.zeros)))
+        listed.append(
+            (f"the rank of {drop.subspace} drops where all of these vanish ({text})", "d", row_matrix(drop.zeros))
+        )
     if chosen is not None:
         listed += [
             (f"split i = {chosen.i}, j = {chosen.j}", "L", chosen.L),
@@ -144,13 +146,13 @@ def captioned_formulas(answer: Observability) -> list[Formula]:
             ("second stage", r"\Phi_z", chosen.Phi_z),
         ]
     if gains is not None:
-        listed.append(("gain of the first stage", "K_x", row(gains.K_x).T))
+        listed.append(("gain of the first stage", "K_x", row_matrix(gains.K_x).T))
         if gains.K_z:
-            listed.append(("gain of the second stage", "K_z", row(gains.K_z).T))
+            listed.append(("gain of the second stage", "K_z", row_matrix(gains.K_z).T))
     return [item for item in listed if not (isinstance(item[2], sp.MatrixBase) and 0 in item[2].shape)]
 
 
-def row(values: tuple[sp.Expr, ...]) -> sp.ImmutableMatrix:
+def row_matrix(values: tuple[sp.Expr, ...]) -> sp.ImmutableMatrix:
     """Values as a matrix of one row."""
     return sp.ImmutableMatrix(1, len(values), list(values))
 
@@ -159,11 +161,11 @@ def as_latex(answer: Observability) -> str:
     r"""A document fragment: one ``\[ \]`` display for every formula."""
     lines = [f"% states: {', '.join(answer.states)}"]
     for caption, name, value in captioned_formulas(answer):
-        lines += [rf"\paragraph{{{plain(caption)}}}", rf"\[ {name} = {sp.latex(value)} \]"]
+        lines += [rf"\paragraph{{{latex_literal(caption)}}}", rf"\[ {name} = {sp.latex(value)} \]"]
     return "\n".join(lines) + "\n"
 
 
-def plain(text: str) -> str:
+def latex_literal(text: str) -> str:
     """Text that LaTeX takes literally."""
     return "".join("\\" + c if c in "_%&#$" else c for c in text)
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 from flint import nmod_mat
 
-from navsym.observability.ring import Poly, Quotient, Ring, divide, gcd_all
+from navsym.observability.ring import Poly, Quotient, Ring, divide_exactly, gcd_all
 
 Matrix = list[list[Poly]]
 
@@ -21,7 +21,7 @@ Matrix = list[list[Poly]]
 PRIME = 2305843009213693951
 
 
-def points(ring: Ring, count: int = 3) -> list[tuple[int, ...]]:
+def integer_points(ring: Ring, count: int = 3) -> list[tuple[int, ...]]:
     """Integer points at which minors are looked at; always the same ones."""
     source = random.Random(20260101)
     size = len(ring.symbols)
@@ -69,10 +69,10 @@ def residues_on(rows: list[list[int]], kernel: nmod_mat, count: int) -> list[lis
     """Independent vectors (k, count) that the rows make of the first columns of a kernel."""
     seen = nmod_mat(len(rows), len(rows[0]), [x for row in rows for x in row], PRIME) * kernel
     parts = [[int(x) for x in vector[:count]] for vector in seen.tolist()]
-    return [parts[k] for k in independent_rows(parts)]
+    return [parts[k] for k in independent_places(parts)]
 
 
-def independent_rows(rows: list[list[int]]) -> list[int]:
+def independent_places(rows: list[list[int]]) -> list[int]:
     """Places of the rows that are not combinations of earlier ones, modulo the prime."""
     chosen: list[int] = []
     reduced: list[tuple[int, list[int]]] = []
@@ -93,7 +93,7 @@ def independent_rows(rows: list[list[int]]) -> list[int]:
 class Reduced:
     """Row-reduced form without fractions: ``pivot * identity`` on the pivot columns.
 
-    The result of :func:`eliminated` is triangular there instead.
+    The result of :func:`triangular_form` is triangular there instead.
     """
 
     pivot: Poly
@@ -109,7 +109,7 @@ def reduce_rows(matrix: Matrix, ring: Ring, columns: Sequence[int] | None = None
     needs no arithmetic at all. Every division is exact; the last pivot is the determinant of the pivot
     block up to the sign.
     """
-    found = eliminated(matrix, ring, columns)
+    found = triangular_form(matrix, ring, columns)
     size = len(found.rows)
     width = len(matrix[0]) if matrix else 0
     zero = ring.constant(0)
@@ -124,11 +124,11 @@ def reduce_rows(matrix: Matrix, ring: Ring, columns: Sequence[int] | None = None
                 factor = upper[found.columns[later]]
                 if factor != 0 and rows[later][column] != 0:
                     total = total - factor * rows[later][column]
-            rows[k][column] = divide(total, upper[found.columns[k]]) if total != 0 else zero
+            rows[k][column] = divide_exactly(total, upper[found.columns[k]]) if total != 0 else zero
     return Reduced(found.pivot, rows, found.columns, found.sign)
 
 
-def eliminated(matrix: Matrix, ring: Ring, columns: Sequence[int] | None = None) -> Reduced:
+def triangular_form(matrix: Matrix, ring: Ring, columns: Sequence[int] | None = None) -> Reduced:
     """Bareiss' triangular form: row k has zeros in the pivot columns of the earlier rows.
 
     The pivot is the entry with the fewest terms, among equals the one whose row and column hold the fewest
@@ -145,7 +145,7 @@ def eliminated(matrix: Matrix, ring: Ring, columns: Sequence[int] | None = None)
         i, j = place
         if i != step:
             rows[step], rows[i], sign = rows[i], rows[step], -sign
-        eliminate(rows, step, j, last)
+        clear_column(rows, step, j, last)
         last = rows[step][j]
         free.remove(j)
         taken.append(j)
@@ -169,7 +169,7 @@ def sparsest(rows: Matrix, step: int, columns: Sequence[int]) -> tuple[int, int]
     return place
 
 
-def eliminate(rows: Matrix, step: int, column: int, last: Poly) -> None:
+def clear_column(rows: Matrix, step: int, column: int, last: Poly) -> None:
     """One step of Bareiss: clear the column in the rows below."""
     pivot_row = rows[step]
     pivot = pivot_row[column]
@@ -180,19 +180,19 @@ def eliminate(rows: Matrix, step: int, column: int, last: Poly) -> None:
         factor = row[column]
         if factor == 0:
             if pivot != last:
-                rows[i] = [x if x == 0 else pivot * x if one else divide(pivot * x, last) for x in row]
+                rows[i] = [x if x == 0 else pivot * x if one else divide_exactly(pivot * x, last) for x in row]
             continue
         cleared = [x if x == 0 else pivot * x for x in row]
         for k, y in held:
             cleared[k] = cleared[k] - factor * y
-        rows[i] = cleared if one else [x if x == 0 else divide(x, last) for x in cleared]
+        rows[i] = cleared if one else [x if x == 0 else divide_exactly(x, last) for x in cleared]
 
 
 def determinant(matrix: Matrix, ring: Ring) -> Poly:
     """Determinant of a square matrix, by fraction-free elimination."""
     if not matrix:
         return ring.constant(1)
-    reduced = eliminated(matrix, ring)
+    reduced = triangular_form(matrix, ring)
     if len(reduced.rows) < len(matrix):
         return ring.constant(0)
     return reduced.pivot * reduced.sign * permutation_sign(reduced.columns)
@@ -213,7 +213,7 @@ def permutation_sign(places: Sequence[int]) -> int:
     return -1 if inversions % 2 else 1
 
 
-def relation(vectors: Matrix, target: list[Poly], ring: Ring) -> list[Quotient] | None:
+def linear_relation(vectors: Matrix, target: list[Poly], ring: Ring) -> list[Quotient] | None:
     """Coefficients c with ``target = sum c_k vectors_k`` as rational functions, or None.
 
     The vectors are independent. The answer is checked on every component before it leaves, so
@@ -251,18 +251,18 @@ def null_vectors(rows: Matrix, size: int, ring: Ring) -> Matrix:
         vector[free] = reduced.pivot
         for row, column in zip(reduced.rows, reduced.columns, strict=True):
             vector[column] = -row[free]
-        basis.append(primitive(vector, ring))
+        basis.append(primitive_vector(vector, ring))
     for vector in basis:
         if any(sum((a * x for a, x in zip(row, vector, strict=True)), ring.constant(0)) != 0 for row in rows):
             raise ArithmeticError("null_vectors: a product does not vanish")
     return basis
 
 
-def primitive(vector: list[Poly], ring: Ring) -> list[Poly]:
+def primitive_vector(vector: list[Poly], ring: Ring) -> list[Poly]:
     """The vector without the common factor of its entries, first nonzero entry with a positive sign."""
     common = gcd_all(vector, ring.constant(0))
     if common == 0:
         return vector
     first = next(x for x in vector if x != 0)
-    sign = -1 if divide(first, common).leading_coefficient() < 0 else 1
-    return [divide(x, common) * sign for x in vector]
+    sign = -1 if divide_exactly(first, common).leading_coefficient() < 0 else 1
+    return [divide_exactly(x, common) * sign for x in vector]

@@ -21,7 +21,7 @@ from navsym.observability.cases import LAST_PRODUCTS, LAST_TERMS, drops_by_all_m
 from navsym.observability.chains import Chain, Chains, JointObservability
 from navsym.observability.linear import Matrix
 from navsym.observability.reduction import System, components, irredundant, krylov_remainder
-from navsym.observability.ring import Poly, Ring, odd
+from navsym.observability.ring import Poly, Ring, is_odd
 
 # Determinants of chains by values at integer points.
 #
@@ -43,7 +43,7 @@ def degree_in(entry: Poly, place: int) -> int:
     return int(entry.degrees()[place]) if entry != 0 else 0
 
 
-def steps_of(matrix: Matrix, place: int) -> int | None:
+def affine_steps(matrix: Matrix, place: int) -> int | None:
     """r of the module's text for one generator; None where the matrix is not affine in it."""
     held = [[degree_in(entry, place) for entry in row] for row in matrix]
     if max(map(max, held)) > 1:
@@ -51,22 +51,22 @@ def steps_of(matrix: Matrix, place: int) -> int | None:
     return min(sum(map(any, held)), sum(map(any, zip(*held, strict=True))))
 
 
-def degree_bound(starts: Sequence[tuple[list[Poly], int]], matrix: Matrix, place: int) -> int:
+def generator_degree_bound(starts: Sequence[tuple[list[Poly], int]], matrix: Matrix, place: int) -> int:
     """Degree in one generator that the determinant of the chains (h, number of vectors) cannot exceed."""
     first = sum(count * max(degree_in(entry, place) for entry in row) for row, count in starts)
     highest = max(degree_in(entry, place) for row in matrix for entry in row)
     plain = highest * sum(count * (count - 1) // 2 for _, count in starts)
-    steps = steps_of(matrix, place)
+    steps = affine_steps(matrix, place)
     return first + (plain if steps is None else min(plain, steps * sum(count - 1 for _, count in starts if count)))
 
 
 def points_needed(starts: Sequence[tuple[list[Poly], int]], matrix: Matrix) -> int:
     """Number of integer points at which the determinant of the chains is taken."""
     starts = [(row, count) for row, count in starts if count]
-    return math.prod(degree_bound(starts, matrix, place) + 1 for place in range(generators(matrix)))
+    return math.prod(generator_degree_bound(starts, matrix, place) + 1 for place in range(count_generators(matrix)))
 
 
-def generators(matrix: Matrix) -> int:
+def count_generators(matrix: Matrix) -> int:
     """Number of generators of the ring of the entries."""
     return int(matrix[0][0].context().nvars())
 
@@ -74,13 +74,13 @@ def generators(matrix: Matrix) -> int:
 def chain_determinant(starts: Sequence[tuple[list[Poly], int]], matrix: Matrix, ring: Ring) -> Poly | None:
     """Determinant of the chains (h, number of vectors), n vectors together; None when it takes too many points."""
     starts = [(row, count) for row, count in starts if count]
-    bounds = [degree_bound(starts, matrix, place) for place in range(generators(matrix))]
+    bounds = [generator_degree_bound(starts, matrix, place) for place in range(count_generators(matrix))]
     if math.prod(bound + 1 for bound in bounds) > POINTS:
         return None
     motion = Table(itertools.chain(*matrix))
     rows = [(Table(row), count) for row, count in starts]
     grid = itertools.product(*(range(bound + 1) for bound in bounds))
-    values = [value_at(rows, motion, len(matrix), point) for point in grid]
+    values = [determinant_at(rows, motion, len(matrix), point) for point in grid]
     for bound in bounds:
         values = along_first_axis(values, bound)
     powers = itertools.product(*(range(b + 1) for b in bounds))
@@ -92,7 +92,7 @@ class Table:
 
     def __init__(self, entries: Iterable[Poly]) -> None:
         listed = list(entries)
-        self.fixed = [number(entry) for entry in listed]
+        self.fixed = [constant_of(entry) for entry in listed]
         self.varying = [(place, entry) for place, entry in enumerate(listed) if entry != 0 and not entry.is_constant()]
 
     def at(self, point: Sequence[int]) -> list[fmpz]:
@@ -103,12 +103,12 @@ class Table:
         return values
 
 
-def number(entry: Poly) -> fmpz:
+def constant_of(entry: Poly) -> fmpz:
     """A constant polynomial as an integer; 0 for any other, whose place is filled at every point."""
     return fmpz(int(entry.leading_coefficient())) if entry != 0 and entry.is_constant() else fmpz(0)
 
 
-def value_at(starts: Sequence[tuple[Table, int]], motion: Table, n: int, point: Sequence[int]) -> fmpz:
+def determinant_at(starts: Sequence[tuple[Table, int]], motion: Table, n: int, point: Sequence[int]) -> fmpz:
     """The determinant at one point, in integers; chains are doubled with the squares of G."""
     powers = [fmpz_mat(n, n, motion.at(point))]
     rows: list[fmpz] = []
@@ -171,10 +171,10 @@ class RankDrop:
     @property
     def allowed(self) -> bool | None:
         """False when what the symbols are declared to be (positive, nonzero) excludes it, else None."""
-        return False if any(excluded(zero) for zero in self.zeros) else None
+        return False if any(is_excluded(zero) for zero in self.zeros) else None
 
 
-def excluded(zero: sp.Expr) -> bool:
+def is_excluded(zero: sp.Expr) -> bool:
     """A symbol that is declared nonzero, or a sum of products of positive symbols."""
     if zero.is_Symbol:
         return bool(zero.is_positive or zero.is_nonzero)
@@ -192,12 +192,12 @@ def drops_and_completeness(found: JointObservability) -> tuple[tuple[RankDrop, .
     drops = tuple(
         RankDrop(name, tuple(ring.condition(f) for f in system), complete)
         for name, (systems, complete) in answer.items()
-        for system in whole_angles(systems, ring)
+        for system in join_half_angles(systems, ring)
     )
     return drops, {name: complete for name, (_, complete) in answer.items()}
 
 
-def whole_angles(systems: list[System], ring: Ring) -> list[System]:
+def join_half_angles(systems: list[System], ring: Ring) -> list[System]:
     """Two equations in half an angle that make one in the whole angle stand as that one.
 
     sin(x/2) = 0 or cos(x/2) = 0 is sin(x) = 0; f = 0 or its mirror image (cos(x/2) with the other sign) = 0 is
@@ -206,7 +206,7 @@ def whole_angles(systems: list[System], ring: Ring) -> list[System]:
     listed = list(systems)
     for sine, cosine in ring.pairs():
         S, C = ring.context.gen(sine), ring.context.gen(cosine)
-        singles = [f for (f,) in (system for system in listed if len(system) == 1) if odd(f, cosine)]
+        singles = [f for (f,) in (system for system in listed if len(system) == 1) if is_odd(f, cosine)]
         while singles:
             f = singles.pop()
             mirror = f.compose(*(-C if k == cosine else ring.context.gen(k) for k in range(len(ring.symbols))))
@@ -235,9 +235,9 @@ def drops_of_group(chains: Chains, part: tuple[Chain, ...], rank: int) -> tuple[
     found, complete = drops_by_cases(rest.rows, rank - rest.regular, ring)
     if not complete:
         for written in (
-            lambda: drops_by_staircases(chains, part, rank, by_values),
+            lambda: drops_by_staircases(chains, part, rank, determinant_by_values),
             lambda: drops_by_all_minors(rest.rows, rank - rest.regular, ring),
-            lambda: drops_by_staircases(chains, part, rank, by_elimination),
+            lambda: drops_by_staircases(chains, part, rank, determinant_by_elimination),
         ):
             listed = written()
             if listed is not None:
@@ -249,13 +249,13 @@ def drops_of_group(chains: Chains, part: tuple[Chain, ...], rank: int) -> tuple[
 Determinant = Callable[[Chains, tuple[Chain, ...], tuple[int, ...]], Poly | None]
 
 
-def by_values(chains: Chains, part: tuple[Chain, ...], step: tuple[int, ...]) -> Poly | None:
+def determinant_by_values(chains: Chains, part: tuple[Chain, ...], step: tuple[int, ...]) -> Poly | None:
     """By interpolation from values at integer points."""
     starts = [(chain.vectors[0], count) for chain, count in zip(part, step, strict=True)]
     return chain_determinant(starts, chains.matrix, chains.ring)
 
 
-def by_elimination(chains: Chains, part: tuple[Chain, ...], step: tuple[int, ...]) -> Poly | None:
+def determinant_by_elimination(chains: Chains, part: tuple[Chain, ...], step: tuple[int, ...]) -> Poly | None:
     """By fraction-free elimination."""
     rows = [v for chain, count in zip(part, step, strict=True) for v in chains.first(chain, count)]
     zero = chains.ring.constant(0)
@@ -279,7 +279,7 @@ def drops_by_staircases(
     steps = list(compositions(rank, [chain.dimension for chain in part]))
     if rank < len(chains.matrix) or len(steps) > MOST_STAIRCASES:
         return None
-    if determinant_of is by_values and too_many_points(chains, part, steps):
+    if determinant_of is determinant_by_values and too_many_points(chains, part, steps):
         return None
     minors: list[Poly] = []
     for step in steps:

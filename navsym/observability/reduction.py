@@ -14,8 +14,8 @@ from typing import Any
 
 from flint import fmpz_mpoly_vec
 
-from navsym.observability.linear import Matrix, at_point, independent_rows, points, transposed_times
-from navsym.observability.ring import Poly, Ring, divide, divides, gcd_all, irreducible_factors
+from navsym.observability.linear import Matrix, at_point, independent_places, integer_points, transposed_times
+from navsym.observability.ring import Poly, Ring, divide_exactly, gcd_all, irreducible_factors, is_divisor
 
 # Common real zeros of polynomials as a list of simple systems.
 #
@@ -38,9 +38,9 @@ def components(polynomials: Sequence[Poly], ring: Ring) -> list[list[Poly]]:
     """
     common = gcd_all(polynomials, ring.constant(0))
     found = hypersurfaces(common, ring)
-    rest = [divide(p, common) for p in polynomials]
+    rest = [divide_exactly(p, common) for p in polynomials]
     if not any(p.is_constant() for p in rest):
-        found += branch(rest, ring)
+        found += split_system(rest, ring)
     return irredundant(found)
 
 
@@ -49,11 +49,11 @@ def hypersurfaces(common: Poly, ring: Ring) -> list[list[Poly]]:
     found: list[list[Poly]] = []
     for f in irreducible_factors(common):
         for system in real_systems([f], ring):
-            found += [system] if system == [f] else branch(system, ring)
+            found += [system] if system == [f] else split_system(system, ring)
     return found
 
 
-def branch(start: Sequence[Poly], ring: Ring) -> list[list[Poly]]:
+def split_system(start: Sequence[Poly], ring: Ring) -> list[list[Poly]]:
     """Split ``{all start = 0}`` along factors; a branch too long to split is kept as it is."""
     open_branches, closed, steps = [list(start)], [], 0
     while open_branches:
@@ -62,7 +62,7 @@ def branch(start: Sequence[Poly], ring: Ring) -> list[list[Poly]]:
         if steps > BRANCHES:
             closed.append(system)
             continue
-        tidy = tidied(system, ring)
+        tidy = reduce_generators(system, ring)
         if tidy is None:
             continue
         for place, f in enumerate(tidy):
@@ -95,27 +95,27 @@ def real_systems(system: list[Poly], ring: Ring) -> list[list[Poly]]:
     return [[ring.context.from_dict({tuple(min(p, 1) for p in powers): 1}) for powers in terms]]
 
 
-def tidied(system: list[Poly], ring: Ring) -> list[Poly] | None:
+def reduce_generators(system: list[Poly], ring: Ring) -> list[Poly] | None:
     """Reduced generators of the same real zeros; None when there are none."""
     system = [p.primitive()[1] for p in system if p != 0]
-    if any(p.is_constant() for p in system) or nowhere(system, ring):
+    if any(p.is_constant() for p in system) or is_nowhere(system, ring):
         return None
     kept: list[Poly] = []
     for p in sorted(dict.fromkeys(map(Hashed, system)), key=lambda h: (h.poly.total_degree(), len(h.poly))):
-        if not any(divides(q, p.poly) for q in kept):
+        if not any(is_divisor(q, p.poly) for q in kept):
             kept.append(p.poly)
     if len(kept) > 1:
         generators: Any = fmpz_mpoly_vec(kept, ring.context)
         basis, done = generators.buchberger_naive(limits=LIMITS)
         if done:
             reduced = [p for p in basis.autoreduction(groebner=True) if p != 0]
-            if any(p.is_constant() for p in reduced) or nowhere(reduced, ring):
+            if any(p.is_constant() for p in reduced) or is_nowhere(reduced, ring):
                 return None
             kept = reduced
     return kept
 
 
-def nowhere(system: Sequence[Poly], ring: Ring) -> bool:
+def is_nowhere(system: Sequence[Poly], ring: Ring) -> bool:
     """Sine and cosine of half an angle do not vanish together."""
     gens = [(ring.context.gen(sine), ring.context.gen(cosine)) for sine, cosine in ring.pairs()]
     return any(all(any(f == g or f == -g for f in system) for g in pair) for pair in gens)
@@ -138,16 +138,16 @@ def irredundant(systems: list[list[Poly]]) -> list[list[Poly]]:
     """Without repetitions and without systems that lie inside another one."""
     kept: list[list[Poly]] = []
     for system in sorted(systems, key=lambda s: (len(s), [len(f) for f in s], [str(f) for f in s])):
-        if not any(all(vanishes(f, system) for f in other) for other in kept):
+        if not any(all(lies_in_ideal(f, system) for f in other) for other in kept):
             kept.append(system)
     return kept
 
 
-def vanishes(value: Poly, system: System) -> bool:
+def lies_in_ideal(value: Poly, system: System) -> bool:
     """Whether a polynomial lies in the ideal of a system that is its own Groebner basis."""
     if value == 0 or not system:
         return bool(value == 0)
-    if any(divides(f, value) for f in system):
+    if any(is_divisor(f, value) for f in system):
         return True
     generators: Any = fmpz_mpoly_vec(system, value.context())
     reduced: Any = value
@@ -179,7 +179,7 @@ class UnitBasis:
         for own, column in zip(self.rows, self.columns, strict=True):
             if (factor := row[column]) != 0:
                 row = [p * own[column] - factor * q for p, q in zip(row, own, strict=True)]
-        return lowered(row)
+        return lower_row(row)
 
     def take(self, row: list[Poly]) -> bool:
         """Add a reduced row that has a number among its entries; False when it has none."""
@@ -190,13 +190,13 @@ class UnitBasis:
         for place, own in enumerate(self.rows):
             if (factor := own[column]) != 0:
                 cleared = [p * pivot - factor * q for p, q in zip(own, row, strict=True)]
-                self.rows[place] = lowered(cleared)
+                self.rows[place] = lower_row(cleared)
         self.rows.append(row)
         self.columns.append(column)
         return True
 
 
-def lowered(row: list[Poly]) -> list[Poly]:
+def lower_row(row: list[Poly]) -> list[Poly]:
     """The row without a common numerical factor."""
     contents = [int(abs(entry.content())) for entry in row if entry != 0]  # type: ignore[attr-defined]
     if not contents or min(contents) == 1:
@@ -205,14 +205,14 @@ def lowered(row: list[Poly]) -> list[Poly]:
     return row if common == 1 else [entry / common if entry != 0 else entry for entry in row]
 
 
-def remainder(rows: Sequence[list[Poly]]) -> Remainder:
+def take_out_regular(rows: Sequence[list[Poly]]) -> Remainder:
     """Take out everything regular from some rows."""
     basis = UnitBasis()
     waiting, passed = list(rows), True
     while passed:
         passed = False
         rest = []
-        for row in sorted(waiting, key=weight):
+        for row in sorted(waiting, key=row_weight):
             row = basis.reduced(row)
             if basis.take(row):
                 passed = True
@@ -234,7 +234,7 @@ def without_columns(basis: UnitBasis, rows: Sequence[list[Poly]]) -> Remainder:
     return Remainder(len(basis.rows), list(kept.values()))
 
 
-def weight(row: list[Poly]) -> int:
+def row_weight(row: list[Poly]) -> int:
     """How much there is to multiply."""
     return sum(len(entry) for entry in row)
 
@@ -242,16 +242,16 @@ def weight(row: list[Poly]) -> int:
 def krylov_remainder(starts: Sequence[tuple[list[Poly], int]], matrix: Matrix, ring: Ring) -> Remainder:
     """Regular part and remainder of the chains h, G^T h, ...: (h, number of vectors) for each of them."""
     basis, rest = krylov_basis(starts, matrix, ring)
-    inner = remainder(without_columns(basis, rest).rows)
+    inner = take_out_regular(without_columns(basis, rest).rows)
     return Remainder(len(basis.rows) + inner.regular, inner.rows)
 
 
 def krylov_rows(starts: Sequence[tuple[list[Poly], int]], matrix: Matrix, rank: int, ring: Ring) -> Matrix:
     """``rank`` generically independent rows that span what the chains span."""
     basis, rest = krylov_basis(starts, matrix, ring)
-    rows = [basis.reduced(row) for row in sorted(rest, key=weight)]
-    point = points(ring)
-    chosen = max((independent_rows(at_point([*basis.rows, *rows], p)) for p in point), key=len)
+    rows = [basis.reduced(row) for row in sorted(rest, key=row_weight)]
+    point = integer_points(ring)
+    chosen = max((independent_places(at_point([*basis.rows, *rows], p)) for p in point), key=len)
     listed = [*basis.rows, *rows]
     return [listed[k] for k in chosen[:rank]]
 

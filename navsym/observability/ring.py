@@ -82,13 +82,13 @@ def linear_parts(argument: sp.Expr) -> tuple[dict[sp.Symbol, sp.Rational], int]:
     return factors, int(turns) % 4
 
 
-def free_symbols(expression: sp.Basic) -> set[sp.Basic]:
+def symbols_outside_angles(expression: sp.Basic) -> set[sp.Basic]:
     """Symbols and pi outside of trigonometric functions."""
     if isinstance(expression, TrigonometricFunction):
         return set()
     if not expression.args:
         return {expression} if isinstance(expression, sp.Symbol) or expression == sp.pi else set()
-    return set().union(*(free_symbols(part) for part in expression.args))
+    return set().union(*(symbols_outside_angles(part) for part in expression.args))
 
 
 def sine_and_cosine(argument: sp.Expr, angles: Sequence[Angle], half: Mapping[Angle, tuple[Any, Any]]) -> Any:
@@ -170,7 +170,7 @@ class Ring:
             entries.update(expression if isinstance(expression, sp.MatrixBase) else (expression,))
         varying = [entry for entry in entries if not isinstance(entry, sp.Number)]
         angles = angles_of(varying)
-        found: set[sp.Basic] = set().union(*map(free_symbols, varying))
+        found: set[sp.Basic] = set().union(*map(symbols_outside_angles, varying))
         return cls.over(sorted(found, key=str), angles)
 
     @classmethod
@@ -236,7 +236,7 @@ class Ring:
         if bottom == 1:
             return Quotient(top, bottom)
         common = top.gcd(bottom)
-        return Quotient(divide(top, common), divide(bottom, common))
+        return Quotient(divide_exactly(top, common), divide_exactly(bottom, common))
 
     def total(self, parts: Sequence[Quotient]) -> Quotient:
         """Sum of quotients."""
@@ -270,7 +270,7 @@ class Ring:
         if isinstance(value, Quotient):
             top, bottom = value.top, value.bottom
             for _, cosine in self.pairs():
-                if odd(top, cosine) and odd(bottom, cosine):
+                if is_odd(top, cosine) and is_odd(bottom, cosine):
                     top, bottom = (part * self.context.gen(cosine) for part in (top, bottom))
             return self.expression(top) / self.expression(bottom)
         whole, power, names = self.whole_angles(value)
@@ -291,7 +291,7 @@ class Ring:
         """
         names, total = list(self.symbols), 0
         for angle, (sine, cosine) in zip(self.angles, self.pairs(), strict=True):
-            if odd(value, cosine):
+            if is_odd(value, cosine):
                 continue
             names[sine], names[cosine] = sp.sin(angle.symbol / angle.parts), sp.cos(angle.symbol / angle.parts)
             value, power = self.doubled(value, sine, cosine)
@@ -327,7 +327,7 @@ class Ring:
         if isinstance(value, Quotient):
             top, bottom = value.top, value.bottom
             for _, cosine in self.pairs():
-                if odd(top, cosine) and odd(bottom, cosine):
+                if is_odd(top, cosine) and is_odd(bottom, cosine):
                     top, bottom = (part * self.context.gen(cosine) for part in (top, bottom))
             return self.factored(top) / self.factored(bottom)
         if value == 0:
@@ -335,7 +335,7 @@ class Ring:
         content, factors = value.factor()
         whole, halves = [], self.constant(1)
         for factor, power in factors:
-            if any(odd(factor, cosine) for _, cosine in self.pairs()):
+            if any(is_odd(factor, cosine) for _, cosine in self.pairs()):
                 whole.append(self.expression(factor**2) ** (int(power) // 2))
                 halves *= factor ** (int(power) % 2)
             else:
@@ -343,7 +343,7 @@ class Ring:
         return sp.Mul(sp.Integer(int(content)), *whole, self.expression(halves))
 
 
-def odd(value: Poly, cosine: int) -> bool:
+def is_odd(value: Poly, cosine: int) -> bool:
     """Whether a form has odd degree in the halves of an angle, given the place of its cosine."""
     powers = next(iter(value.to_dict()), None)
     return powers is not None and (int(powers[cosine - 1]) + int(powers[cosine])) % 2 == 1
@@ -355,7 +355,7 @@ def monomial(names: Sequence[sp.Basic], powers: Sequence[int], coefficient: int,
     return sp.Mul(sp.Rational(int(coefficient), 2**halvings), *(s ** int(power) for s, power in pairs if power))
 
 
-def divide(top: Poly, bottom: Poly) -> Poly:
+def divide_exactly(top: Poly, bottom: Poly) -> Poly:
     """Exact quotient; a remainder is a defect of the caller."""
     quotient, remainder = divmod(top, bottom)
     if remainder != 0:
@@ -363,7 +363,7 @@ def divide(top: Poly, bottom: Poly) -> Poly:
     return quotient
 
 
-def divides(bottom: Poly, top: Poly) -> bool:
+def is_divisor(bottom: Poly, top: Poly) -> bool:
     """True when the division leaves no remainder."""
     return divmod(top, bottom)[1] == 0
 

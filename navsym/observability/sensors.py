@@ -16,13 +16,13 @@ import sympy as sp
 
 from navsym.core.errors import EmptyError, ShapeError, TooLargeError
 from navsym.models.linear import LinearModel, exact_matrix
-from navsym.observability.chains import check, hidden_directions, numerators, proved_rank
+from navsym.observability.chains import exhibit_unobservable, need_chains, numerators, prove_rank
 from navsym.observability.linear import (
     Matrix,
     at_point,
-    independent_rows,
+    independent_places,
+    integer_points,
     null_vectors,
-    points,
     residue_chains,
     residue_kernel,
     residue_rank,
@@ -88,19 +88,19 @@ def restore_observability(model: LinearModel, candidates: Mapping[str, Sequence[
     Raises EmptyError without candidates, ShapeError for rows of another length, TooLargeError for too many sets,
     and DomainError, EmptyError or TooLargeError for a model that has no chains.
     """
-    check(model)
-    setting = laid_out(model, named_rows(model, candidates))
-    hidden, needed = model.size - proved_rank(model).rank, unseen_constants(setting)
+    need_chains(model)
+    setting = lay_out(model, candidate_rows(model, candidates))
+    hidden, needed = model.size - prove_rank(model).rank, unseen_constants(setting)
     if not hidden:
         return Restoration(0, 0, ((),), True)
     for size in range(max(needed, 1), len(setting.rows) + 1):
-        if found := tuple(enough(setting, size)):
-            proved = size == max(needed, 1) or all_fail(setting, size - 1)
+        if found := tuple(enough_sets(setting, size)):
+            proved = size == max(needed, 1) or all_sets_fail(setting, size - 1)
             return Restoration(hidden, needed, found, proved)
-    return Restoration(hidden, needed, (), all_fail(setting, len(setting.rows)))
+    return Restoration(hidden, needed, (), all_sets_fail(setting, len(setting.rows)))
 
 
-def named_rows(model: LinearModel, candidates: Mapping[str, Sequence[sp.Expr]] | None) -> dict[str, sp.Matrix]:
+def candidate_rows(model: LinearModel, candidates: Mapping[str, Sequence[sp.Expr]] | None) -> dict[str, sp.Matrix]:
     """Candidates as exact rows; the states themselves when none are given."""
     if candidates is None:
         return {name: sp.eye(model.size)[i, :] for i, name in enumerate(model.states)}
@@ -112,13 +112,13 @@ def named_rows(model: LinearModel, candidates: Mapping[str, Sequence[sp.Expr]] |
     return {name: exact_matrix(name, [list(row)]) for name, row in candidates.items()}
 
 
-def laid_out(model: LinearModel, rows: Mapping[str, sp.Matrix]) -> Setting:
+def lay_out(model: LinearModel, rows: Mapping[str, sp.Matrix]) -> Setting:
     """Everything over one ring, and the chains at the point where the model's own measurements see most."""
     ring = Ring.of([model.F, model.H, *rows.values()])
     matrix, _ = numerators([model.F[i, :] for i in range(model.size)], ring)
     own = [numerators([model.H[k, :]], ring)[0][0] for k in range(model.H.rows)]
     free = {name: numerators([row], ring)[0][0] for name, row in rows.items()}
-    seen = {point: residue_chains(own, matrix, point) for point in points(ring)}
+    seen = {point: residue_chains(own, matrix, point) for point in integer_points(ring)}
     point = max(seen, key=lambda key: residue_rank(seen[key]))
     kernel, hidden = residue_kernel(seen[point])
     chains = {name: residues_on(residue_chains([row], matrix, point), kernel, hidden) for name, row in free.items()}
@@ -128,7 +128,7 @@ def laid_out(model: LinearModel, rows: Mapping[str, sp.Matrix]) -> Setting:
 def unseen_constants(setting: Setting) -> int:
     """n - rank [G; H], exhibited as independent constants: each needs a further measurement of its own."""
     rows = [*setting.matrix, *setting.own]
-    kept = [rows[k] for k in independent_rows(at_point(rows, setting.point))]
+    kept = [rows[k] for k in independent_places(at_point(rows, setting.point))]
     candidates = null_vectors(kept, setting.size, setting.ring)
     zero = setting.ring.constant(0)
     return sum(
@@ -136,7 +136,7 @@ def unseen_constants(setting: Setting) -> int:
     )
 
 
-def enough(setting: Setting, size: int) -> Iterator[tuple[str, ...]]:
+def enough_sets(setting: Setting, size: int) -> Iterator[tuple[str, ...]]:
     """The sets of a size at which the rank is full at the point: a minor that is not zero there is not zero."""
     count = comb(len(setting.rows), size)
     if count > SETS:
@@ -146,15 +146,15 @@ def enough(setting: Setting, size: int) -> Iterator[tuple[str, ...]]:
             yield names
 
 
-def all_fail(setting: Setting, size: int) -> bool:
+def all_sets_fail(setting: Setting, size: int) -> bool:
     """Whether every set of a size is proved to leave a direction hidden, with as many directions as its rank lacks."""
     if comb(len(setting.rows), size) > DISPROVED:
         return False
-    return all(fails(setting, names) for names in combinations(setting.rows, size))
+    return all(is_insufficient(setting, names) for names in combinations(setting.rows, size))
 
 
-def fails(setting: Setting, names: Sequence[str]) -> bool:
+def is_insufficient(setting: Setting, names: Sequence[str]) -> bool:
     """Whether hidden directions of a set are exhibited."""
     rows = [*setting.own, *(setting.rows[name] for name in names)]
     rank = setting.size - setting.hidden + setting.seen_by(names)
-    return rank < setting.size and bool(hidden_directions(rows, setting.matrix, setting.ring, rank, setting.point))
+    return rank < setting.size and bool(exhibit_unobservable(rows, setting.matrix, setting.ring, rank, setting.point))

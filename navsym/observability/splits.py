@@ -23,7 +23,7 @@ import sympy as sp
 
 from navsym.core.errors import DomainError, ShapeError
 from navsym.observability.chains import Chain, JointObservability, basis_rows, need_observable
-from navsym.observability.linear import Matrix, determinant, relation
+from navsym.observability.linear import Matrix, determinant, linear_relation
 from navsym.observability.ring import Quotient, Ring
 
 
@@ -102,7 +102,7 @@ def corner(rows: int, columns: int) -> sp.ImmutableMatrix:
 # Which splits there are
 
 
-def splits(found: JointObservability) -> tuple[FeasibleSplit, ...]:
+def feasible_splits(found: JointObservability) -> tuple[FeasibleSplit, ...]:
     """All i + j = n for which a_1 ... a_i, b_1 ... b_j is a basis, from the largest i down.
 
     Only 0 <= i <= m and 0 <= j <= l can be feasible: a longer piece of a chain is dependent.
@@ -125,7 +125,7 @@ def best_split(found: JointObservability) -> FeasibleSplit:
 
     The longest chain of derivatives that must be estimated from one measurement is then shortest.
     """
-    return min(splits(found), key=lambda split: (max(split.i, split.j), -split.i))
+    return min(feasible_splits(found), key=lambda split: (max(split.i, split.j), -split.i))
 
 
 def need_two(found: JointObservability) -> None:
@@ -144,7 +144,7 @@ def split_determinant(found: JointObservability, i: int, j: int) -> Quotient:
     return chains.ring.lowest(value, chains.weight((i, j)))
 
 
-def split(found: JointObservability, i: int | None = None, j: int | None = None) -> Split:
+def choose_split(found: JointObservability, i: int | None = None, j: int | None = None) -> Split:
     """The split with i vectors of the first and j of the second chain; by default (m, n - m).
 
     Raises UnobservableError, ShapeError (i + j is not n) and DomainError (not a basis: the
@@ -170,7 +170,7 @@ def split(found: JointObservability, i: int | None = None, j: int | None = None)
         L=sp.ImmutableMatrix(n, n, [x for row in rows for x in row]),
         tail=basis_rows(first.vectors, first, ring)[i:, :],
         theta=found.measurements[0].companion,
-        link=tuple(ring.expression(q) for q in link(found, first, second, i, j)),
+        link=tuple(ring.expression(q) for q in link_coefficients(found, first, second, i, j)),
         determinant=ring.factored(value),
     )
 
@@ -181,20 +181,20 @@ def second_rows(found: JointObservability, j: int) -> list[list[sp.Expr]]:
     return basis_rows(found.chains.first(chain, j), chain, found.chains.ring).tolist()
 
 
-def link(found: JointObservability, first: Chain, second: Chain, i: int, j: int) -> list[Quotient]:
+def link_coefficients(found: JointObservability, first: Chain, second: Chain, i: int, j: int) -> list[Quotient]:
     """Coefficients of b_{j+1} in the basis a_1 ... a_i, b_1 ... b_j; none are needed when j = 0."""
     if j == 0:
         return []
     chains = found.chains
     vectors = chains.first(second, j + 1)
     basis: Matrix = [*first.vectors[:i], *vectors[:j]]
-    values = relation(basis, vectors[j], chains.ring)
+    values = linear_relation(basis, vectors[j], chains.ring)
     if values is None:
         raise ArithmeticError("split: b_{j+1} lies outside of the basis")
-    return [restore(chains.ring, value, k, first, second, i, j) for k, value in enumerate(values)]
+    return [restore_denominators(chains.ring, value, k, first, second, i, j) for k, value in enumerate(values)]
 
 
-def restore(ring: Ring, value: Quotient, k: int, first: Chain, second: Chain, i: int, j: int) -> Quotient:
+def restore_denominators(ring: Ring, value: Quotient, k: int, first: Chain, second: Chain, i: int, j: int) -> Quotient:
     """Put the denominators back that the chain vectors were freed of."""
     clock = second.clock
     top, bottom = value.top, value.bottom * clock**j
@@ -206,7 +206,7 @@ def restore(ring: Ring, value: Quotient, k: int, first: Chain, second: Chain, i:
 def not_a_basis(found: JointObservability, i: int, j: int) -> DomainError:
     """The error for a split whose determinant vanishes, with the splits that exist."""
     rows = [f"a{k + 1}" for k in range(i)] + [f"b{k + 1}" for k in range(j)]
-    feasible = ", ".join(f"{s.i},{s.j}" for s in splits(found)) or "none"
+    feasible = ", ".join(f"{s.i},{s.j}" for s in feasible_splits(found)) or "none"
     return DomainError(
         f"split {i},{j}: expected a basis; got det({', '.join(rows)}) = 0 for all parameters; choose one of {feasible}"
     )
@@ -258,10 +258,10 @@ def free_matrix(name: str, value: sp.MatrixBase | None, size: int) -> tuple[sp.I
     if value.shape != (size, size):
         raise ShapeError(f"{name}: expected shape {(size, size)}; got {value.shape}; one row per variable")
     matrix = sp.ImmutableMatrix(value)
-    return matrix, inverse(name, matrix)
+    return matrix, exact_inverse(name, matrix)
 
 
-def inverse(name: str, matrix: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
+def exact_inverse(name: str, matrix: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
     """Exact inverse of a matrix of rational functions; DomainError when the determinant vanishes."""
     size = matrix.rows
     ring = Ring.of(matrix)
@@ -276,7 +276,7 @@ def inverse(name: str, matrix: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
     result = sp.zeros(size, size)
     for c in range(size):
         target = [bottom if r == c else ring.constant(0) for r in range(size)]
-        for r, value in enumerate(relation(vectors, target, ring) or []):
+        for r, value in enumerate(linear_relation(vectors, target, ring) or []):
             result[r, c] = ring.expression(value)
     return sp.ImmutableMatrix(result)
 
@@ -286,7 +286,7 @@ def unit_row(size: int) -> sp.ImmutableMatrix:
     return sp.ImmutableMatrix(1, size, lambda _, c: int(c == 0))
 
 
-def lowest_terms(matrix: sp.MatrixBase) -> sp.ImmutableMatrix:
+def to_lowest_terms(matrix: sp.MatrixBase) -> sp.ImmutableMatrix:
     """Entries as quotients of polynomials in lowest terms."""
     ring = Ring.of(matrix)
     return sp.ImmutableMatrix(*matrix.shape, [ring.expression(ring.quotient(x)) for x in matrix])

@@ -62,7 +62,7 @@ def monic_coefficients(polynomial: sp.Expr, degree: int, variable: sp.Symbol = P
     place = ring.symbols.index(variable)
     if quotient.bottom.degrees()[place]:
         raise DomainError(f"poles: expected a polynomial in {variable}; got {polynomial}; remove the divisor")
-    parts = by_power(quotient.top, place, ring)
+    parts = coefficients_by_power(quotient.top, place, ring)
     found = max(parts, default=0)
     if found != degree:
         raise ShapeError(
@@ -74,7 +74,7 @@ def monic_coefficients(polynomial: sp.Expr, degree: int, variable: sp.Symbol = P
     return tuple(ring.expression(value) for value in values)
 
 
-def by_power(polynomial: Poly, place: int, ring: Ring) -> dict[int, Poly]:
+def coefficients_by_power(polynomial: Poly, place: int, ring: Ring) -> dict[int, Poly]:
     """Coefficients of a polynomial by the power of one symbol."""
     parts: dict[int, dict[tuple[int, ...], int]] = {}
     for powers, coefficient in polynomial.to_dict().items():
@@ -107,13 +107,13 @@ def stability(coefficients: Sequence[sp.Expr]) -> bool | None:
 
     Symbols count with what they are declared to be; nothing else is guessed.
     """
-    signs = [sign_of(value) for value in hurwitz_minors(coefficients)]
+    signs = [sign_by_declarations(value) for value in hurwitz_minors(coefficients)]
     if any(sign is not None and sign <= 0 for sign in signs):
         return False
     return True if all(sign == 1 for sign in signs) else None
 
 
-def sign_of(value: sp.Expr) -> int | None:
+def sign_by_declarations(value: sp.Expr) -> int | None:
     """Sign of a product of sums of monomials in symbols that are declared positive; None when not seen."""
     total = 1
     for factor in sp.Mul.make_args(value):
@@ -230,7 +230,7 @@ class TwoStageObserver:
         return len(self.K_x), len(self.K_z)
 
 
-def observer(
+def observer_of(
     blocks: TwoStageBlocks, K_x: Sequence[Any], K_z: Sequence[Any], values: Mapping[sp.Symbol, Any] | None = None
 ) -> TwoStageObserver:
     """The observer of symbolic blocks and gains with numbers for all symbols.
@@ -239,19 +239,19 @@ def observer(
     """
     values = values or {}
     return TwoStageObserver(
-        L=numbers(blocks.L, values),
-        G_x=numbers(blocks.G_x, values),
-        g_x=numbers(blocks.g_x, values)[0],
-        K_x=numbers(sp.Matrix(len(K_x), 1, list(K_x)), values)[:, 0],
-        G_z1=numbers(blocks.G_z1, values),
-        G_z2=numbers(blocks.G_z2, values),
-        g_z1=numbers(blocks.g_z1, values)[0],
-        g_z2=numbers(blocks.g_z2, values)[0],
-        K_z=numbers(sp.Matrix(len(K_z), 1, list(K_z)), values)[:, 0],
+        L=rounded_entries(blocks.L, values),
+        G_x=rounded_entries(blocks.G_x, values),
+        g_x=rounded_entries(blocks.g_x, values)[0],
+        K_x=rounded_entries(sp.Matrix(len(K_x), 1, list(K_x)), values)[:, 0],
+        G_z1=rounded_entries(blocks.G_z1, values),
+        G_z2=rounded_entries(blocks.G_z2, values),
+        g_z1=rounded_entries(blocks.g_z1, values)[0],
+        g_z2=rounded_entries(blocks.g_z2, values)[0],
+        K_z=rounded_entries(sp.Matrix(len(K_z), 1, list(K_z)), values)[:, 0],
     )
 
 
-def numbers(matrix: sp.MatrixBase, values: Mapping[sp.Symbol, Any]) -> Array:
+def rounded_entries(matrix: sp.MatrixBase, values: Mapping[sp.Symbol, Any]) -> Array:
     """Entries as floats, each rounded once from its exact value."""
     exact = sp.Matrix(matrix).subs(dict(values))
     if exact.free_symbols:
@@ -260,7 +260,7 @@ def numbers(matrix: sp.MatrixBase, values: Mapping[sp.Symbol, Any]) -> Array:
     return np.array([[float(entry) for entry in row] for row in exact.tolist()], dtype=float).reshape(exact.shape)
 
 
-def closed_loop(found: TwoStageObserver) -> tuple[Array, Array]:
+def observer_loop(found: TwoStageObserver) -> tuple[Array, Array]:
     """(A, B) with d(x°, z°)/dt = A (x°, z°) + B (sigma_1, sigma_2); A is also the matrix of the errors."""
     m, rest = found.stages
     A, B = np.zeros((m + rest, m + rest)), np.zeros((m + rest, 2))

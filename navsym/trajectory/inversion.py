@@ -20,7 +20,7 @@ import numpy as np
 
 from navsym.core.arrays import Array, named
 from navsym.core.errors import DomainError, TooLargeError
-from navsym.models.earth import check_order, pascal_rows, power_rows
+from navsym.models.earth import need_order, pascal_rows, power_rows
 from navsym.trajectory.kernels.bank import tune_by_windows
 from navsym.trajectory.kernels.transforms import CORRECTED, LIKELIHOOD, PREDICTED, run_fixed_gain, tune_one_step
 
@@ -126,7 +126,7 @@ class AdaptiveRun:
 
 def first_stage_model(n: int, form: Form = "corrected") -> SteppedModel:
     """Variables f = D_f x: Pascal's triangle, a row of ones; f_1 in the units of z (trajectory:6.Phif)."""
-    check_order(n)
+    need_order(n)
     Phi = np.array(pascal_rows(n), dtype=float)
     return SteppedModel(Phi, np.ones(n), np.ones(n) if form == "printed" else np.eye(n)[0])
 
@@ -172,7 +172,7 @@ def empty_run(N: int, n: int) -> tuple[Array, Array, Array, Array]:
 def adaptive_filter(z: Array, model: SteppedModel, start: Start, tuning: Tuning) -> AdaptiveRun:
     """Tune Q anew at every step over its 3^n neighbours by a criterion of that step.
 
-    z : (N,) measurements at steps 1..N. Twin: ``trajectory_twins.adaptive_filter_slowly``.
+    z : (N,) measurements at steps 1..N.
     """
     z = checked(z, model, start)
     states, gains, diagonals, values = empty_run(len(z), model.order)
@@ -210,7 +210,6 @@ def windowed_filter(
 
     z : (N,) measurements; window : steps; bounds : range of each element of Q
     Raises DomainError and TooLargeError for windows below one step, starts of another size, and too many candidates.
-    Twin: ``trajectory_twins.windowed_filter_slowly``.
     """
     z = checked(z, model, start)
     if window < 1:

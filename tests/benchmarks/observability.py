@@ -21,7 +21,7 @@ from sympy.polys.matrices import DomainMatrix
 
 from navsym.models.inertial import FULL, full_model
 from navsym.models.linear import LinearModel, observability_matrix
-from navsym.observability.chains import chains_of, numerators, observe_jointly, proved_rank
+from navsym.observability.chains import chains_of, numerators, observe_jointly, prove_rank
 from navsym.observability.linear import reduce_rows
 from navsym.observability.rank_drops import chain_determinant
 from navsym.observability.ring import Ring
@@ -86,7 +86,7 @@ def sympy_determinant(model: LinearModel) -> int:
 
 def ours_rank(model: LinearModel) -> int:
     """Rank with proof: a nonzero minor from below, the number of states or relations from above."""
-    return proved_rank(model).rank
+    return prove_rank(model).rank
 
 
 def sympy_rank(model: LinearModel) -> int:

@@ -10,7 +10,7 @@ import pytest
 
 from navsym.core.errors import DomainError, EmptyError, NotFiniteError, ShapeError, UnknownSymbolError
 from navsym.observability.chains import observe_jointly
-from navsym.observability.splits import split
+from navsym.observability.splits import choose_split
 from navsym_papers.joint_correction.experiment.flight import EARTH_RADIUS
 from navsym_papers.joint_correction.experiment.real import (
     FIELDS,
@@ -46,7 +46,7 @@ def made_record(seconds: int = 240, bias: float = 0.02) -> dict[str, np.ndarray]
 
 
 def test_the_split_of_the_aiding_model_is_that_of_the_paper():
-    chosen = split(observe_jointly(aiding_model()))
+    chosen = choose_split(observe_jointly(aiding_model()))
     assert (chosen.i, chosen.j) == (2, 1)
     poles = np.linalg.eigvals(
         aiding_observer(0.2, 0.5).G_x - np.outer(aiding_observer(0.2, 0.5).K_x, aiding_observer(0.2, 0.5).g_x)

@@ -10,7 +10,7 @@ import sympy as sp
 
 from navsym.core.errors import DomainError, DuplicateError, EmptyError, TooLargeError, UnobservableError
 from navsym.models.linear import LinearModel
-from navsym.observability.chains import direction_names, need_observable, observe_jointly, proved_rank
+from navsym.observability.chains import direction_names, need_observable, observe_jointly, prove_rank
 from navsym.observability.linear import determinant
 from navsym.observability.ring import Ring
 from tests.observability.twins import determinant_slowly, maximal_minors
@@ -82,7 +82,7 @@ def test_two_hundred_random_systems_agree_with_schoolbook_elimination(block):
             combined = [sum(t * chain[j][c] for j, t in enumerate(theta)) for c in range(n)]
             assert combined == chain[m]
         both = [row for h in rows for row in krylov(F, h, n)]
-        assert found.joint_dimension == fraction_rank(both) == proved_rank(model_of(F, rows)).rank
+        assert found.joint_dimension == fraction_rank(both) == prove_rank(model_of(F, rows)).rank
         assert found.unobservable.rows == n - found.joint_dimension
         for k in range(found.unobservable.rows):
             hidden = [Fraction(int(x.p), int(x.q)) for x in found.unobservable.row(k)]

@@ -12,12 +12,12 @@ from navsym.observability.chains import numerators, observe_jointly
 from navsym.observability.linear import determinant, transposed_times
 from navsym.observability.rank_drops import (
     POINTS,
+    affine_steps,
     chain_determinant,
-    degree_bound,
     drops_and_completeness,
+    generator_degree_bound,
     newton,
     points_needed,
-    steps_of,
 )
 from navsym.observability.ring import Ring
 
@@ -58,7 +58,7 @@ def test_values_and_elimination_give_one_determinant(seed):
     assert chain_determinant(starts, matrix, ring) == expected
     if expected != 0:
         for place, degree in enumerate(expected.degrees()):
-            assert degree <= degree_bound(starts, matrix, place)
+            assert degree <= generator_degree_bound(starts, matrix, place)
 
 
 def test_a_parameter_in_one_entry_has_the_degree_of_the_number_of_steps():
@@ -67,7 +67,7 @@ def test_a_parameter_in_one_entry_has_the_degree_of_the_number_of_steps():
     F = sp.Matrix(6, 6, lambda i, j: source.choice([-3, -2, -1, 1, 2, 3]))
     F[2, 4] = p1
     ring, matrix, (row,) = prepared(F, sp.Matrix([[1, 2, 0, 1, 1, 3]]))
-    assert steps_of(matrix, 0) == 1 and degree_bound([(row, 6)], matrix, 0) == 5
+    assert affine_steps(matrix, 0) == 1 and generator_degree_bound([(row, 6)], matrix, 0) == 5
     assert 0 < chain_determinant([(row, 6)], matrix, ring).degrees()[0] <= 5
 
 

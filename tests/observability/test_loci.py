@@ -13,9 +13,9 @@ from navsym.models.linear import LinearModel
 from navsym.observability.chains import observe_jointly
 from navsym.observability.rank_drops import (
     all_drops,
-    by_elimination,
-    by_values,
     compositions,
+    determinant_by_elimination,
+    determinant_by_values,
     drops_and_completeness,
     drops_by_staircases,
     rank_drops,
@@ -172,7 +172,7 @@ def test_staircases_list_the_drops_of_a_scrambled_system():
     core = sp.Matrix([[a, c, 0], [0, b, 0], [0, 0, b]])
     model = LinearModel(turn.inv() * core * turn, None, sp.Matrix([[1, 0, 0], [0, b, 1]]) * turn)
     found = observe_jointly(model)
-    for determinant_of in (by_values, by_elimination):
+    for determinant_of in (determinant_by_values, determinant_by_elimination):
         listed = drops_by_staircases(found.chains, found.chains.chains, found.joint_dimension, determinant_of)
         assert found.joint_dimension == 3 and listed is not None
         for values in itertools.product(range(-2, 3), repeat=3):

@@ -9,7 +9,7 @@ from navsym.core.errors import DomainError, ShapeError, UnobservableError
 from navsym.models.inertial import joint_model, position_group, velocity_group
 from navsym.models.linear import LinearModel
 from navsym.observability.chains import observe_jointly
-from navsym.observability.splits import best_split, split, splits, two_stage_blocks
+from navsym.observability.splits import best_split, choose_split, feasible_splits, two_stage_blocks
 
 a, b, c, d, w = sp.symbols("a b c d w", real=True)
 
@@ -21,7 +21,7 @@ def zero(matrix: sp.MatrixBase) -> bool:
 def holds(model: LinearModel, i: int, j: int) -> None:
     """The blocks of a split reproduce the model: L G and the outputs, for every state."""
     found = observe_jointly(model)
-    chosen = split(found, i, j)
+    chosen = choose_split(found, i, j)
     G, h1, h2 = model.F, model.H[0, :], model.H[1, :]
     if i == found.measurements[0].dimension:
         blocks = two_stage_blocks(chosen)
@@ -119,7 +119,7 @@ def test_systems_with_known_answers_are_answered_completely(name):
     model, sizes, feasible, best = KNOWN[name]
     found = observe_jointly(model)
     assert (model.size, *(m.dimension for m in found.measurements)) == sizes
-    assert [(s.i, s.j) for s in splits(found)] == feasible
+    assert [(s.i, s.j) for s in feasible_splits(found)] == feasible
     chosen = best_split(found)
     assert (chosen.i, chosen.j) == best
     for i, j in feasible:
@@ -130,8 +130,8 @@ def test_systems_with_known_answers_are_answered_completely(name):
 def test_the_printed_determinant_is_that_of_L(name):
     model, _, _, _ = KNOWN[name]
     found = observe_jointly(model)
-    for feasible_split in splits(found):
-        chosen = split(found, feasible_split.i, feasible_split.j)
+    for feasible_split in feasible_splits(found):
+        chosen = choose_split(found, feasible_split.i, feasible_split.j)
         assert sp.cancel(chosen.L.det(method="berkowitz") - feasible_split.determinant) == 0
         assert feasible_split.determinant != 0
 
@@ -139,26 +139,26 @@ def test_the_printed_determinant_is_that_of_L(name):
 def test_a_hidden_mode_refuses_every_split_and_names_the_mode():
     model = LinearModel([[0, 1, 0], [a, 0, 0], [0, 0, b]], None, [[1, 0, 0], [0, 1, 0]], ("x", "v", "mode"))
     with pytest.raises(UnobservableError, match=r"rank 2 of 3.*mode"):
-        split(observe_jointly(model))
+        choose_split(observe_jointly(model))
 
 
 def test_a_split_that_is_no_basis_names_the_determinant_that_vanishes():
     found = observe_jointly(KNOWN["position group"][0])
     with pytest.raises(DomainError, match=r"det\(a1, a2, a3, a4, a5, b1, b2, b3\) = 0 .*choose one of 6,2, 4,4, 2,6"):
-        split(found, 5, 3)
+        choose_split(found, 5, 3)
 
 
 def test_splits_of_wrong_size_are_refused():
     found = observe_jointly(KNOWN["two scalars"][0])
     with pytest.raises(ShapeError, match=r"i \+ j = 2"):
-        split(found, 2, 1)
+        choose_split(found, 2, 1)
     with pytest.raises(ShapeError, match="two measurements"):
-        splits(observe_jointly(joint_model()))
+        feasible_splits(observe_jointly(joint_model()))
 
 
 def test_free_matrices_change_coordinates_and_nothing_else():
     model = KNOWN["overlap in two dimensions"][0]
-    chosen = split(observe_jointly(model))
+    chosen = choose_split(observe_jointly(model))
     C1 = sp.Matrix([[1, a, 0], [0, 1, 2], [b, 0, 1]])
     blocks = two_stage_blocks(chosen, C1, sp.Matrix([[3]]))
     x, z = blocks.L[:3, :], blocks.L[3:, :]

@@ -11,16 +11,16 @@ import sympy as sp
 from navsym.core.errors import DomainError, ShapeError
 from navsym.models.linear import LinearModel
 from navsym.observability.chains import observe_jointly
-from navsym.observability.splits import companion, split, two_stage_blocks, unit_row
+from navsym.observability.splits import choose_split, companion, two_stage_blocks, unit_row
 from navsym.observability.two_stage import (
     POLE,
-    closed_loop,
     companion_gains,
     gains_by_poles,
     hold_measurements,
     hurwitz_minors,
     monic_coefficients,
-    observer,
+    observer_loop,
+    observer_of,
     stability,
 )
 
@@ -43,7 +43,7 @@ def test_gains_by_recursion_give_the_wanted_polynomial_for_every_theta(m):
 
 
 def test_both_stages_get_their_polynomials_and_the_whole_their_product():
-    chosen = split(observe_jointly(OVERLAP))
+    chosen = choose_split(observe_jointly(OVERLAP))
     found = gains_by_poles(chosen, (p + lam) ** 3, p + nu)
     assert found.stable == (True, True)
     blocks = two_stage_blocks(chosen)
@@ -52,7 +52,7 @@ def test_both_stages_get_their_polynomials_and_the_whole_their_product():
 
 
 def test_errors_of_the_running_observer_decay_as_prescribed_and_a_held_step_is_exact():
-    A, B = closed_loop(running())
+    A, B = observer_loop(running())
     roots = np.sort(np.linalg.eigvals(A).real)
     assert np.abs(roots - np.sort([-2.0, -2.0, -2.0, -3.0])).max() < 1e-4
     Phi, Gamma = hold_measurements(A, B, 0.2)
@@ -101,7 +101,7 @@ def test_minors_of_a_cubic_are_the_classical_ones():
 
 
 def test_wrong_poles_are_refused():
-    chosen = split(observe_jointly(OVERLAP))
+    chosen = choose_split(observe_jointly(OVERLAP))
     with pytest.raises(ShapeError, match="degree 3"):
         gains_by_poles(chosen, (p + lam) ** 2, p + nu)
     with pytest.raises(DomainError, match="left half-plane"):
@@ -116,13 +116,13 @@ VALUES = {a: -1, b: sp.Rational(-1, 2), lam: 2, nu: 3}
 
 
 def running() -> object:
-    chosen = split(observe_jointly(OVERLAP))
+    chosen = choose_split(observe_jointly(OVERLAP))
     found = gains_by_poles(chosen, (p + lam) ** 3, p + nu)
-    return observer(two_stage_blocks(chosen), found.K_x, found.K_z, VALUES)
+    return observer_of(two_stage_blocks(chosen), found.K_x, found.K_z, VALUES)
 
 
 def test_a_symbol_without_a_value_is_named():
-    chosen = split(observe_jointly(OVERLAP))
+    chosen = choose_split(observe_jointly(OVERLAP))
     found = gains_by_poles(chosen, (p + lam) ** 3, p + nu)
     with pytest.raises(DomainError, match="nu"):
-        observer(two_stage_blocks(chosen), found.K_x, found.K_z, {a: 1, b: 1, lam: 1})
+        observer_of(two_stage_blocks(chosen), found.K_x, found.K_z, {a: 1, b: 1, lam: 1})

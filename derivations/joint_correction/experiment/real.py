@@ -19,9 +19,9 @@ from navsym.core.arrays import Array, frozen, named
 from navsym.core.errors import DomainError, EmptyError, UnknownSymbolError
 from navsym.models.linear import LinearModel
 from navsym.observability.chains import observe_jointly
-from navsym.observability.splits import split, two_stage_blocks
-from navsym.observability.two_stage import POLE, TwoStageObserver, gains_by_poles, hold_measurements, observer
-from navsym.observability.two_stage import closed_loop as loop_of
+from navsym.observability.splits import choose_split, two_stage_blocks
+from navsym.observability.two_stage import POLE, TwoStageObserver, gains_by_poles, hold_measurements, observer_of
+from navsym.observability.two_stage import observer_loop as loop_of
 from navsym_papers.joint_correction.experiment.flight import EARTH_RADIUS, GRAVITY
 
 FIELDS = ("time", "ax", "ay", "az", "phi", "theta", "psi", "vn", "ve", "lat", "lon", "GPS_TOW")
@@ -111,10 +111,10 @@ def metres(latitude: Array, longitude: Array) -> Array:
 def aiding_observer(rate_x: float, rate_z: float) -> TwoStageObserver:
     """Observer with the poles (p + rate_x)^2 and (p + rate_z), rates in 1/s."""
     first, second = sp.symbols("lam_x lam_z", positive=True)
-    chosen = split(observe_jointly(aiding_model()))
+    chosen = choose_split(observe_jointly(aiding_model()))
     found = gains_by_poles(chosen, (POLE + first) ** 2, POLE + second)
     values = {first: sp.Rational(str(rate_x)), second: sp.Rational(str(rate_z))}
-    return observer(two_stage_blocks(chosen), found.K_x, found.K_z, values)
+    return observer_of(two_stage_blocks(chosen), found.K_x, found.K_z, values)
 
 
 def two_stage_estimates(

@@ -21,25 +21,25 @@ from typing import Any
 import sympy as sp
 
 from navsym.core.errors import DomainError, TooLargeError
-from navsym.models.linear import LinearModel, exact_entry, square
-from navsym.models.transition.factors import form_of
+from navsym.models.linear import LinearModel, exact_entry, need_square
+from navsym.models.transition.factors import closed_form
 from navsym.models.transition.pieces import Form, Surd, Wave
 from navsym.models.transition.rings import (
     Fraction,
     Poly,
     Ring,
-    added,
-    cancelled,
-    coefficients,
+    add_fractions,
+    cancel_fraction,
     companion_inverse,
-    expanded,
-    fraction,
+    expand_polynomial,
     monic_quotient,
     monic_remainder,
-    product,
-    quotient,
-    reduced,
+    mu_coefficients,
+    multiply_monic,
+    reduce_squares,
+    ring_fraction,
     ring_of,
+    write_quotient,
 )
 
 #: More states than this are refused: the number of terms grows too fast to be of use.
@@ -80,28 +80,30 @@ def transition_matrix(A: Any, time: Any, *, where: Mapping[sp.Symbol, Any] | Non
     Raises ShapeError, DomainError (A depends on the time, or is degenerate for every value of its
     parameters, or has a repeated factor without closed form), TooLargeError (more than 16 states).
     """
-    system = square("A", A)
+    system = need_square("A", A)
     if where:
-        system = square("A", system.subs(dict(where), simultaneous=True))
+        system = need_square("A", system.subs(dict(where), simultaneous=True))
     moment = exact_entry("time", 0, 0, time)
-    refuse(system, moment)
+    refuse_system(system, moment)
     ring = ring_of(system)
-    B, divisor = cleared(ring, system)
+    B, divisor = clear_denominators(ring, system)
     characteristic = characteristic_polynomial(ring, B)
-    forms = [form_of(ring, base, times, divisor, moment) for base, times in irreducible(ring, characteristic)]
+    forms = [
+        closed_form(ring, base, times, divisor, moment) for base, times in irreducible_divisors(ring, characteristic)
+    ]
     terms = [term for form in forms for term in terms_of(ring, B, characteristic, form)]
-    degenerate(ring, [term.divisor for term in terms])
-    matrix, divisors = assembled(ring, system.rows, terms)
+    refuse_degenerate(ring, [term.divisor for term in terms])
+    matrix, divisors = assemble_matrix(ring, system.rows, terms)
     return TransitionMatrix(
         matrix=matrix,
         time=moment,
-        assumptions=conditions(ring, [divisor, *divisors], forms),
+        assumptions=list_conditions(ring, [divisor, *divisors], forms),
         system=system,
         factors=tuple((form.factor, form.times, form.kind) for form in forms),
     )
 
 
-def refuse(system: sp.ImmutableMatrix, time: sp.Expr) -> None:
+def refuse_system(system: sp.ImmutableMatrix, time: sp.Expr) -> None:
     """Systems for which no closed form is looked for."""
     if system.rows > LARGEST:
         raise TooLargeError(f"A: expected at most {LARGEST} states; got {system.rows}; split the system into blocks")
@@ -142,7 +144,7 @@ def regressors(model: LinearModel, end: Any, time: Any) -> Regressors:
     end, time = (exact_entry(name, 0, 0, value) for name, value in (("T", end), ("tau", time)))
     backward = transition_matrix(-model.F, end - time)
     rows = model.H.subs(model.time, time) * backward.matrix
-    return Regressors(rows.applyfunc(collected), end, time, backward.assumptions)
+    return Regressors(rows.applyfunc(spread_products), end, time, backward.assumptions)
 
 
 def need_constant(model: LinearModel, *, matrix_only: bool = False) -> None:
@@ -155,7 +157,7 @@ def need_constant(model: LinearModel, *, matrix_only: bool = False) -> None:
         )
 
 
-def collected(entry: sp.Expr) -> sp.Expr:
+def spread_products(entry: sp.Expr) -> sp.Expr:
     """A sum with its products spread out, unless that makes it longer; arguments stay as they are."""
     spread = sp.Add(*(sp.expand_mul(term, deep=False) for term in sp.Add.make_args(entry)))
     return spread if spread.count_ops() <= entry.count_ops() else entry
@@ -164,9 +166,9 @@ def collected(entry: sp.Expr) -> sp.Expr:
 # --- from A to polynomials ---------------------------------------------------------------------
 
 
-def cleared(ring: Ring, system: sp.ImmutableMatrix) -> tuple[Matrix, Poly]:
+def clear_denominators(ring: Ring, system: sp.ImmutableMatrix) -> tuple[Matrix, Poly]:
     """B and d with A = B / d: polynomials, and their least common denominator."""
-    entries = [[cancelled(*fraction(ring, entry)) for entry in row] for row in system.tolist()]
+    entries = [[cancel_fraction(*ring_fraction(ring, entry)) for entry in row] for row in system.tolist()]
     divisor = ring.one
     for row in entries:
         for _, below in row:
@@ -185,7 +187,7 @@ def characteristic_polynomial(ring: Ring, B: Matrix) -> list[Poly]:
         for i in range(n):
             M[i][i] += result[n - k + 1]
         trace = sum((B[i][j] * M[j][i] for i in range(n) for j in range(n)), ring.zero)
-        result[n - k] = reduced(ring, trace / -k)
+        result[n - k] = reduce_squares(ring, trace / -k)
     return result
 
 
@@ -206,12 +208,12 @@ def matrix_product(X: Matrix, Y: Matrix) -> Matrix:
     return [[reduce(lambda s, jx: s + jx[1] * Y[jx[0]][c], row, zero) for c in range(len(Y[0]))] for row in rows]
 
 
-def irreducible(ring: Ring, monic: list[Poly]) -> list[tuple[list[Poly], int]]:
+def irreducible_divisors(ring: Ring, monic: list[Poly]) -> list[tuple[list[Poly], int]]:
     """Irreducible monic factors with multiplicities, the zero eigenvalue first, then by degree."""
     whole = sum((c * ring.mu**k for k, c in enumerate(monic)), ring.zero)
     found = []
     for base, times in whole.factor()[1]:
-        parts = coefficients(ring, base)
+        parts = mu_coefficients(ring, base)
         found.append(([part / parts[-1] for part in parts], int(times)))
     return sorted(found, key=lambda item: (len(item[0]), not item[0][0].is_zero(), str(item[0])))
 
@@ -230,20 +232,20 @@ class Term:
 
 def terms_of(ring: Ring, B: Matrix, characteristic: list[Poly], form: Form) -> list[Term]:
     """E_i(B) r_i(B, t) of one factor, one term for each piece of its form."""
-    power = reduce(lambda x, _: product(ring, x, form.base), range(form.times), [ring.one])
+    power = reduce(lambda x, _: multiply_monic(ring, x, form.base), range(form.times), [ring.one])
     cofactor = monic_quotient(ring, characteristic, power)
     inverse, resultant = companion_inverse(ring, monic_remainder(ring, cofactor, power), power)
-    projected = [evaluated(ring, cofactor, B)]
+    projected = [matrix_polynomial(ring, cofactor, B)]
     for _ in range(len(power) - 2):
         projected.append(matrix_product(projected[-1], B))
     return [
-        Term(piece.waves, combined(ring, weights, projected), resultant)
+        Term(piece.waves, combine_matrices(ring, weights, projected), resultant)
         for piece in form.pieces
-        for weights in [monic_remainder(ring, product(ring, piece.poly, inverse), power)]
+        for weights in [monic_remainder(ring, multiply_monic(ring, piece.poly, inverse), power)]
     ]
 
 
-def evaluated(ring: Ring, poly: list[Poly], B: Matrix) -> Matrix:
+def matrix_polynomial(ring: Ring, poly: list[Poly], B: Matrix) -> Matrix:
     """poly(B) by Horner's rule."""
     n = len(B)
     result = [[poly[-1] if i == j else ring.zero for j in range(n)] for i in range(n)]
@@ -254,14 +256,14 @@ def evaluated(ring: Ring, poly: list[Poly], B: Matrix) -> Matrix:
     return result
 
 
-def combined(ring: Ring, weights: list[Poly], matrices: list[Matrix]) -> Matrix:
+def combine_matrices(ring: Ring, weights: list[Poly], matrices: list[Matrix]) -> Matrix:
     """Sum of polynomial weights times matrices of one size."""
     n = len(matrices[0])
     used = [(w, M) for w, M in zip(weights, matrices, strict=False) if not w.is_zero()]
-    return [[reduced(ring, sum((w * M[i][j] for w, M in used), ring.zero)) for j in range(n)] for i in range(n)]
+    return [[reduce_squares(ring, sum((w * M[i][j] for w, M in used), ring.zero)) for j in range(n)] for i in range(n)]
 
 
-def assembled(ring: Ring, n: int, terms: list[Term]) -> tuple[sp.ImmutableMatrix, list[Poly]]:
+def assemble_matrix(ring: Ring, n: int, terms: list[Term]) -> tuple[sp.ImmutableMatrix, list[Poly]]:
     """The matrix as sympy expressions, and the denominators that remain in it."""
     divisors: dict[str, Poly] = {}
     entries = [[entry_of(ring, terms, i, j, divisors) for j in range(n)] for i in range(n)]
@@ -276,37 +278,37 @@ def entry_of(ring: Ring, terms: list[Term], i: int, j: int, divisors: dict[str, 
             continue
         for wave in term.waves:
             above, below = wave.weight
-            part = cancelled(above * term.M[i][j], below * term.divisor)
+            part = cancel_fraction(above * term.M[i][j], below * term.divisor)
             group = sums.setdefault(wave.function, {})
             known = group.get(wave.surd.value)
-            group[wave.surd.value] = (part if known is None else added(known[0], part)), wave.surd
+            group[wave.surd.value] = (part if known is None else add_fractions(known[0], part)), wave.surd
     return sp.Add(
         *(
-            function * sp.Add(*(constant(ring, *item, divisors) for item in group.values()))
+            function * sp.Add(*(write_constant(ring, *item, divisors) for item in group.values()))
             for function, group in sums.items()
         )
     )
 
 
-def constant(ring: Ring, value: Fraction, surd: Surd, divisors: dict[str, Poly]) -> sp.Expr:
+def write_constant(ring: Ring, value: Fraction, surd: Surd, divisors: dict[str, Poly]) -> sp.Expr:
     """value * surd; sqrt(r) / r is written 1 / sqrt(r). The denominator is noted as an assumption."""
-    above, below = cancelled(reduced(ring, value[0]), reduced(ring, value[1]))
+    above, below = cancel_fraction(reduce_squares(ring, value[0]), reduce_squares(ring, value[1]))
     divisors.setdefault(str(below), below)
     if surd.radicand is not None and not above.is_zero():
         common = below.gcd(surd.radicand)
         if common.total_degree() == surd.radicand.total_degree():
-            above, below = cancelled(above * surd.radicand, below)
-            return quotient(ring, above, below) / surd.value
-    return quotient(ring, above, below) * surd.value
+            above, below = cancel_fraction(above * surd.radicand, below)
+            return write_quotient(ring, above, below) / surd.value
+    return write_quotient(ring, above, below) * surd.value
 
 
-def degenerate(ring: Ring, divisors: Iterable[Poly]) -> None:
+def refuse_degenerate(ring: Ring, divisors: Iterable[Poly]) -> None:
     """Refuse divisors that vanish by a relation among the constants, such as sin^2 + cos^2 = 1."""
-    if any(reduced(ring, divisor).is_zero() for divisor in divisors):
-        raise hidden_identity()
+    if any(reduce_squares(ring, divisor).is_zero() for divisor in divisors):
+        raise dependence_error()
 
 
-def hidden_identity() -> DomainError:
+def dependence_error() -> DomainError:
     """The error for constants that are not independent, where the formula would divide by zero."""
     return DomainError(
         "A: expected a matrix whose formula has no zero divisor; got one with an identity hidden "
@@ -314,7 +316,7 @@ def hidden_identity() -> DomainError:
     )
 
 
-def conditions(ring: Ring, divisors: Iterable[Poly], forms: Iterable[Form]) -> tuple[sp.Basic, ...]:
+def list_conditions(ring: Ring, divisors: Iterable[Poly], forms: Iterable[Form]) -> tuple[sp.Basic, ...]:
     """What the formula takes to hold, without what the declared signs already grant."""
     relations = dict.fromkeys(relation for form in forms for relation in form.conditions)
     stated = {
@@ -322,9 +324,9 @@ def conditions(ring: Ring, divisors: Iterable[Poly], forms: Iterable[Form]) -> t
     }
     for divisor in divisors:
         for base, _ in divisor.factor()[1]:
-            expression = expanded(ring, base)
+            expression = expand_polynomial(ring, base)
             if expression not in stated:
                 relations.setdefault(sp.Ne(expression, 0))
     if sp.false in relations:
-        raise hidden_identity()
+        raise dependence_error()
     return tuple(relation for relation in relations if relation is not sp.true)

@@ -30,16 +30,25 @@ from navsym.models.transition.pieces import (
     Root,
     Surd,
     Wave,
-    direct,
+    direct_root,
     in_lambda,
-    inverted,
-    reality,
-    root_of,
-    scaled,
-    times,
+    inverted_root,
+    multiply_constants,
+    reality_conditions,
+    root_of_quotient,
+    scale_piece,
     wave,
 )
-from navsym.models.transition.rings import Coefficients, Poly, Ring, cancelled, expanded, product, quotient, sign
+from navsym.models.transition.rings import (
+    Coefficients,
+    Poly,
+    Ring,
+    cancel_fraction,
+    declared_sign,
+    expand_polynomial,
+    multiply_monic,
+    write_quotient,
+)
 
 # exp(x t) modulo a quartic that is a quadratic in the square of u = x - alpha.
 #
@@ -47,7 +56,7 @@ from navsym.models.transition.rings import Coefficients, Poly, Ring, cancelled, 
 # or two exponents, in closed form.
 
 
-def shifted(ring: Ring, base: Coefficients) -> Coefficients:
+def shift_quartic(ring: Ring, base: Coefficients) -> Coefficients:
     """Coefficients in u = mu - alpha of a monic quartic, alpha chosen to remove the cube."""
     alpha, result = base[3] / -4, [base[-1]]
     for c in reversed(base[:-1]):
@@ -67,27 +76,27 @@ def biquadratic(frame: Frame, base: Coefficients, depressed: Coefficients, facto
     if not linear.is_zero():
         return None
     alpha = base[3] / -4
-    root = exact_root(ring, b)
-    complex_pair = sign(ring, a * a - 4 * b) < 0
-    if root is not None and (complex_pair or sign(ring, a) >= 0):
+    root = polynomial_root(ring, b)
+    complex_pair = declared_sign(ring, a * a - 4 * b) < 0
+    if root is not None and (complex_pair or declared_sign(ring, a) >= 0):
         kind, sums, conditions = product_waves(frame, a, root, complex_pair)
     elif complex_pair:
         return None
     else:
         kind, sums, conditions = nested_waves(frame, a, b)
     ring, d, u = frame.ring, frame.d, [-alpha, frame.ring.one]
-    square = product(ring, u, u)
+    square = multiply_monic(ring, u, u)
     square[0] += a / 2
-    polys = [([ring.one], ring.one), (u, d), (square, d**2), (product(ring, square, u), d**3)]
+    polys = [([ring.one], ring.one), (u, d), (square, d**2), (multiply_monic(ring, square, u), d**3)]
     pieces = (
         Piece(tuple(replace(w, weight=(w.weight[0], w.weight[1] * divisor)) for w in waves), poly)
         for waves, (poly, divisor) in zip(sums, polys, strict=True)
     )
     growth = frame.growth(alpha)
-    return Form(base, 1, kind, factor, tuple(scaled(piece, growth) for piece in pieces), conditions)
+    return Form(base, 1, kind, factor, tuple(scale_piece(piece, growth) for piece in pieces), conditions)
 
 
-def exact_root(ring: Ring, b: Poly) -> Poly | None:
+def polynomial_root(ring: Ring, b: Poly) -> Poly | None:
     """The polynomial square root of b, of positive sign if signs are declared, or None."""
     content, factors = b.factor()
     root = sp.sqrt(sp.Rational(int(content.p), int(content.q)))
@@ -96,7 +105,7 @@ def exact_root(ring: Ring, b: Poly) -> Poly | None:
     result = ring.one * int(root.p) / int(root.q)
     for base, power in factors:
         result *= base ** (int(power) // 2)
-    return -result if sign(ring, result) < 0 else result
+    return -result if declared_sign(ring, result) < 0 else result
 
 
 #: (C1 + C2)/2, (S1 + S2)/2, (C1 - C2)/(s1 - s2), (S1 - S2)/(s1 - s2), each a sum of waves.
@@ -114,35 +123,40 @@ def product_waves(frame: Frame, a: Poly, c: Poly, complex_pair: bool) -> tuple[s
     for M imaginary (complex_pair) cosh M and sinh M, P^2 + M^2 = c, and the sign in the second changes.
     """
     ring, t = frame.ring, frame.time
-    P, M = root_of(frame, (2 * c + a) / 4), root_of(frame, (2 * c - a if complex_pair else a - 2 * c) / 4)
+    P, M = (
+        root_of_quotient(frame, (2 * c + a) / 4),
+        root_of_quotient(frame, (2 * c - a if complex_pair else a - 2 * c) / 4),
+    )
     even, odd = (sp.cosh, sp.sinh) if complex_pair else (sp.cos, sp.sin)
     cP, sP, cM, sM = sp.cos(P.value * t), sp.sin(P.value * t), even(M.value * t), odd(M.value * t)
     unit = frame.d**2, c
     minus = 1 if complex_pair else -1
-    both = times(ring, times(ring, inverted(P), inverted(M)), ((ring.one, ring.one * 2), RATIONAL))
+    both = multiply_constants(
+        ring, multiply_constants(ring, inverted_root(P), inverted_root(M)), ((ring.one, ring.one * 2), RATIONAL)
+    )
     sums = (
         (Wave(cP * cM, (ring.one, ring.one)),),
         (
-            wave(ring, sP * cM, direct(P), (unit, RATIONAL)),
-            wave(ring, cP * sM, direct(M), ((unit[0] * minus, c), RATIONAL)),
+            wave(ring, sP * cM, direct_root(P), (unit, RATIONAL)),
+            wave(ring, cP * sM, direct_root(M), ((unit[0] * minus, c), RATIONAL)),
         ),
         (wave(ring, sP * sM, both),),
         (
-            wave(ring, sP * cM, inverted(P), ((unit[0], 2 * c), RATIONAL)),
-            wave(ring, cP * sM, inverted(M), ((-unit[0], 2 * c), RATIONAL)),
+            wave(ring, sP * cM, inverted_root(P), ((unit[0], 2 * c), RATIONAL)),
+            wave(ring, cP * sM, inverted_root(M), ((-unit[0], 2 * c), RATIONAL)),
         ),
     )
-    return "damped waves" if complex_pair else "two frequencies", sums, reality(ring, P, M)
+    return "damped waves" if complex_pair else "two frequencies", sums, reality_conditions(ring, P, M)
 
 
 def nested_waves(frame: Frame, a: Poly, b: Poly) -> tuple[str, Sums, tuple[sp.Basic, ...]]:
     """s = (-a +- sqrt(a^2 - 4 b)) / 2, roots within roots."""
     ring, t = frame.ring, frame.time
-    delta = root_of(frame, a * a - 4 * b, 4)
-    middle = quotient(ring, a, frame.d**2)
-    signs = sign(ring, a), sign(ring, b)
+    delta = root_of_quotient(frame, a * a - 4 * b, 4)
+    middle = write_quotient(ring, a, frame.d**2)
+    signs = declared_sign(ring, a), declared_sign(ring, b)
     grows = signs[1] < 0 or signs == (-1, 1), signs == (-1, 1)
-    half, over = ((ring.one, ring.one * 2), RATIONAL), inverted(delta)
+    half, over = ((ring.one, ring.one * 2), RATIONAL), inverted_root(delta)
     negative = (-over[0][0], over[0][1]), over[1]
     pairs = []
     for direction, grow in zip((1, -1), grows, strict=True):
@@ -157,9 +171,9 @@ def nested_waves(frame: Frame, a: Poly, b: Poly) -> tuple[str, Sums, tuple[sp.Ba
         (wave(ring, C1, over), wave(ring, C2, negative)),
         (nested_wave(*S1, over), nested_wave(*S2, negative)),
     )
-    conditions = [*reality(ring, delta), sp.Ne(expanded(ring, b), 0)]
+    conditions = [*reality_conditions(ring, delta), sp.Ne(expand_polynomial(ring, b), 0)]
     if signs[1] == 0 or (signs[1] > 0 and signs[0] == 0):
-        conditions += [sp.Gt(expanded(ring, a), 0), sp.Gt(expanded(ring, b), 0)]
+        conditions += [sp.Gt(expand_polynomial(ring, a), 0), sp.Gt(expand_polynomial(ring, b), 0)]
     return ("two frequencies", "exponents and waves", "two exponents")[sum(grows)], sums, tuple(conditions)
 
 
@@ -171,35 +185,35 @@ def nested_wave(function: sp.Expr, scale: sp.Expr, factor: Factor) -> Wave:
 HALF = sp.Rational(1, 2)
 
 
-def form_of(ring: Ring, base: Coefficients, times: int, d: Poly, time: sp.Expr) -> Form:
+def closed_form(ring: Ring, base: Coefficients, times: int, d: Poly, time: sp.Expr) -> Form:
     """The closed form of exp(x t) modulo base^times; DomainError when there is none."""
     frame = Frame(ring, d, time)
     factor = in_lambda(frame, base)
     if len(base) == 2:
-        return linear(frame, base, times, factor)
+        return linear_form(frame, base, times, factor)
     if len(base) == 3:
-        return quadratic(frame, base, times, factor)
+        return quadratic_form(frame, base, times, factor)
     if times > 1:
         raise DomainError(
             f"A: expected no repeated factor of degree above two; got ({factor})^{times} in the "
             "characteristic polynomial, which has no closed form here; put in numbers or split the system"
         )
-    depressed = shifted(ring, base) if len(base) == 5 else None
+    depressed = shift_quartic(ring, base) if len(base) == 5 else None
     form = None if depressed is None else biquadratic(frame, base, depressed, factor)
-    return form or implicit(frame, base, factor)
+    return form or implicit_form(frame, base, factor)
 
 
 # --- linear --------------------------------------------------------------------------------------
 
 
-def linear(frame: Frame, base: Coefficients, times: int, factor: sp.Expr) -> Form:
+def linear_form(frame: Frame, base: Coefficients, times: int, factor: sp.Expr) -> Form:
     """exp(alpha t) * sum_j t^j (x - alpha)^j / j!."""
     ring, growth = frame.ring, frame.growth(-base[0])
     pieces, power = [], [ring.one]
     for j in range(times):
         weight = ring.one, frame.d**j * int(sp.factorial(j))
         pieces.append(Piece((Wave(frame.time**j * growth, weight),), power))
-        power = product(ring, power, base)
+        power = multiply_monic(ring, power, base)
     kind = "constant" if base[0].is_zero() and times == 1 else "exponential"
     return Form(base, times, "polynomial" if base[0].is_zero() and times > 1 else kind, factor, tuple(pieces))
 
@@ -207,7 +221,7 @@ def linear(frame: Frame, base: Coefficients, times: int, factor: sp.Expr) -> For
 # --- quadratic -----------------------------------------------------------------------------------
 
 
-def quadratic(frame: Frame, base: Coefficients, times: int, factor: sp.Expr) -> Form:
+def quadratic_form(frame: Frame, base: Coefficients, times: int, factor: sp.Expr) -> Form:
     """exp(alpha t) * sum_j q^j (C_j + u S_j), u = x - alpha, u^2 = D + q.
 
     C_j and S_j are the Taylor coefficients in D of cosh(sqrt(D) t) and sinh(sqrt(D) t) / sqrt(D).
@@ -215,36 +229,36 @@ def quadratic(frame: Frame, base: Coefficients, times: int, factor: sp.Expr) -> 
     ring = frame.ring
     alpha = base[1] / -2
     D = alpha * alpha - base[0]
-    oscillates = sign(ring, D) <= 0
-    root = root_of(frame, -D if oscillates else D)
+    oscillates = declared_sign(ring, D) <= 0
+    root = root_of_quotient(frame, -D if oscillates else D)
     cosine, sine = (sp.cos, sp.sin) if oscillates else (sp.cosh, sp.sinh)
     waves = {"C": cosine(root.value * frame.time), "S": sine(root.value * frame.time)}
     u = [-alpha, ring.one]
     pieces, power = [], [ring.one]
-    for j, (even, odd) in enumerate(taylor(times)):
-        for terms, poly, degree in ((even, power, 2 * j), (odd, product(ring, power, u), 2 * j + 1)):
+    for j, (even, odd) in enumerate(taylor_coefficients(times)):
+        for terms, poly, degree in ((even, power, 2 * j), (odd, multiply_monic(ring, power, u), 2 * j + 1)):
             combined = tuple(taylor_wave(frame, item, waves, root, D, degree) for item in terms.items())
             pieces.append(Piece(combined, poly))
-        power = product(ring, power, base)
+        power = multiply_monic(ring, power, base)
     kind = "trigonometric" if oscillates else "hyperbolic"
-    grown = tuple(scaled(piece, frame.growth(alpha)) for piece in pieces)
-    return Form(base, times, kind, factor, grown, reality(ring, root))
+    grown = tuple(scale_piece(piece, frame.growth(alpha)) for piece in pieces)
+    return Form(base, times, kind, factor, grown, reality_conditions(ring, root))
 
 
 #: Term t^k D^-e times C or S, with its coefficient.
 Taylor = dict[tuple[int, int, str], sp.Rational]
 
 
-def taylor(count: int) -> Iterator[tuple[Taylor, Taylor]]:
+def taylor_coefficients(count: int) -> Iterator[tuple[Taylor, Taylor]]:
     """Coefficients C_j, S_j for j < count, by dC/dD = t S / 2 and dS/dD = (t C - S) / (2 D)."""
     even: Taylor = {(0, 0, "C"): sp.S.One}
     odd: Taylor = {(0, 0, "S"): sp.S.One}
     for j in range(count):
         yield even, odd
-        even, odd = (differentiated(terms, sp.Rational(1, j + 1)) for terms in (even, odd))
+        even, odd = (differentiate_terms(terms, sp.Rational(1, j + 1)) for terms in (even, odd))
 
 
-def differentiated(terms: Taylor, factor: sp.Rational) -> Taylor:
+def differentiate_terms(terms: Taylor, factor: sp.Rational) -> Taylor:
     """factor * d/dD of a sum of terms."""
     result: Taylor = {}
 
@@ -276,13 +290,13 @@ def taylor_wave(
     if wave == "S":
         (top, bottom), surd = root.inverse, root.surd
         above, below = above * top, below * bottom
-    return Wave(frame.time**k * waves[wave], cancelled(above, below), surd)
+    return Wave(frame.time**k * waves[wave], cancel_fraction(above, below), surd)
 
 
 # --- other -------------------------------------------------------------------------------------------
 
 
-def implicit(frame: Frame, base: Coefficients, factor: sp.Expr) -> Form:
+def implicit_form(frame: Frame, base: Coefficients, factor: sp.Expr) -> Form:
     """exp(x t) = sum_l R_l(t) sum_k q_{k+l+1} x^k, R_l(t) = sum over roots of rho^l exp(rho t) / q'(rho).
 
     R_{l+1} is the derivative of R_l; at t = 0 all but the last vanish, and the last is one.

@@ -15,11 +15,11 @@ from navsym.models.transition.rings import (
     Fraction,
     Poly,
     Ring,
-    cancelled,
-    expanded,
-    quotient,
-    sign,
-    square_root,
+    cancel_fraction,
+    declared_sign,
+    expand_polynomial,
+    split_square_root,
+    write_quotient,
 )
 
 LAMBDA = sp.Symbol("lambda")
@@ -75,7 +75,7 @@ class Frame:
 
     def growth(self, alpha: Poly) -> sp.Expr:
         """exp(alpha t / d)."""
-        return sp.exp(quotient(self.ring, alpha, self.d) * self.time)
+        return sp.exp(write_quotient(self.ring, alpha, self.d) * self.time)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -97,24 +97,24 @@ def in_lambda(frame: Frame, base: Coefficients) -> sp.Expr:
     """The factor as a monic polynomial in the eigenvalue lambda of A."""
     n = len(base) - 1
     return sp.Add(
-        *(quotient(frame.ring, c, frame.d ** (n - k)) * LAMBDA**k for k, c in enumerate(base) if not c.is_zero())
+        *(write_quotient(frame.ring, c, frame.d ** (n - k)) * LAMBDA**k for k, c in enumerate(base) if not c.is_zero())
     )
 
 
-def root_of(frame: Frame, value: Poly, degree: int = 2) -> Root:
+def root_of_quotient(frame: Frame, value: Poly, degree: int = 2) -> Root:
     """sqrt(value / d^degree), with what can be taken out of the root taken out."""
     ring = frame.ring
-    rational, radicand, surd = square_root(ring, value, frame.d**degree)
-    return Root(rational, RATIONAL if surd == 1 else Surd(surd, radicand), quotient(ring, *rational) * surd)
+    rational, radicand, surd = split_square_root(ring, value, frame.d**degree)
+    return Root(rational, RATIONAL if surd == 1 else Surd(surd, radicand), write_quotient(ring, *rational) * surd)
 
 
-def reality(ring: Ring, *roots: Root) -> tuple[sp.Basic, ...]:
+def reality_conditions(ring: Ring, *roots: Root) -> tuple[sp.Basic, ...]:
     """Radicands that must be positive for the roots to be real, unless the declared signs make them so."""
     radicands = [root.surd.radicand for root in roots if root.surd.radicand is not None]
-    return tuple(sp.Gt(expanded(ring, r), 0) for r in radicands if sign(ring, r) == 0)
+    return tuple(sp.Gt(expand_polynomial(ring, r), 0) for r in radicands if declared_sign(ring, r) == 0)
 
 
-def scaled(piece: Piece, growth: sp.Expr) -> Piece:
+def scale_piece(piece: Piece, growth: sp.Expr) -> Piece:
     """The piece with every function of time multiplied by one more."""
     return replace(piece, waves=tuple(replace(wave, function=wave.function * growth) for wave in piece.waves))
 
@@ -122,25 +122,25 @@ def scaled(piece: Piece, growth: sp.Expr) -> Piece:
 Factor = tuple[Fraction, Surd]
 
 
-def direct(root: Root) -> Factor:
+def direct_root(root: Root) -> Factor:
     """The root itself as a constant factor."""
     return root.rational, root.surd
 
 
-def inverted(root: Root) -> Factor:
+def inverted_root(root: Root) -> Factor:
     """1 / root as a constant factor."""
     return root.inverse, root.surd
 
 
-def times(ring: Ring, *factors: Factor) -> Factor:
+def multiply_constants(ring: Ring, *factors: Factor) -> Factor:
     """Product of constants, rational and irrational parts apart."""
     above, below, value, radicand = ring.one, ring.one, sp.S.One, ring.one
     for (top, bottom), surd in factors:
         above, below, value = above * top, below * bottom, value * surd.value
         radicand = radicand if surd.radicand is None else radicand * surd.radicand
-    return cancelled(above, below), RATIONAL if value == 1 else Surd(value, radicand)
+    return cancel_fraction(above, below), RATIONAL if value == 1 else Surd(value, radicand)
 
 
 def wave(ring: Ring, function: sp.Expr, *factors: Factor) -> Wave:
     """A wave with the product of some constant factors."""
-    return Wave(function, *times(ring, *factors))
+    return Wave(function, *multiply_constants(ring, *factors))

@@ -18,6 +18,7 @@ import sympy as sp
 from flint import fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
 from navsym.core.errors import DomainError
+from navsym.core.exact import to_rational
 
 Poly = fmpq_mpoly
 Fraction = tuple[Poly, Poly]
@@ -60,7 +61,7 @@ def ring_of(entries: Iterable[sp.Expr]) -> Ring:
     """The smallest ring of this kind in which all entries are rational functions."""
     roots: dict[sp.Expr, int] = {}
     for entry in entries:
-        collect(entry, roots)
+        collect_generators(entry, roots)
     bases = sorted(roots, key=lambda base: (not base.is_Symbol, str(base)))
     context = fmpq_mpoly_ctx.get([*(f"g{k}" for k in range(len(bases))), "mu"], "degrevlex")
     generators = tuple(base ** sp.Rational(1, roots[base]) for base in bases)
@@ -73,31 +74,31 @@ def ring_of(entries: Iterable[sp.Expr]) -> Ring:
     return ring
 
 
-def collect(expression: sp.Expr, roots: dict[sp.Expr, int]) -> None:
+def collect_generators(expression: sp.Expr, roots: dict[sp.Expr, int]) -> None:
     """Gather the generators that an expression needs, with the order of the root taken of each."""
     if expression.is_Rational:
         return
     if isinstance(expression, sp.Add | sp.Mul):
         for part in expression.args:
-            collect(part, roots)
+            collect_generators(part, roots)
     elif isinstance(expression, sp.Pow) and expression.exp.is_Rational:
         base, order = expression.base, expression.exp.q
         if order == 1:
-            collect(base, roots)
+            collect_generators(base, roots)
         else:
-            note(base, order, roots)
+            note_root(base, order, roots)
             if not base.is_Symbol:
-                collect(base, roots)
+                collect_generators(base, roots)
     elif isinstance(expression, sp.sin | sp.cos | sp.tan | sp.cot | sp.sec | sp.csc):
-        note(sp.sin(expression.args[0]), 1, roots)
-        note(sp.cos(expression.args[0]), 1, roots)
+        note_root(sp.sin(expression.args[0]), 1, roots)
+        note_root(sp.cos(expression.args[0]), 1, roots)
     elif expression.is_Atom and expression.is_number and expression is not sp.pi and expression is not sp.E:
         raise DomainError(f"matrix: expected real exact entries; got {expression}; write real numbers")
     else:
-        note(expression, 1, roots)
+        note_root(expression, 1, roots)
 
 
-def note(base: sp.Expr, order: int, roots: dict[sp.Expr, int]) -> None:
+def note_root(base: sp.Expr, order: int, roots: dict[sp.Expr, int]) -> None:
     """Remember that a root of this order of the base is needed."""
     roots[base] = lcm(order, roots.get(base, 1))
 
@@ -105,35 +106,35 @@ def note(base: sp.Expr, order: int, roots: dict[sp.Expr, int]) -> None:
 def square_of(ring: Ring, generator: sp.Expr) -> Poly | None:
     """What the square of a sine or of a square root is, as a polynomial in the others."""
     if isinstance(generator, sp.sin):
-        cosine = fraction(ring, sp.cos(generator.args[0]))[0]
+        cosine = ring_fraction(ring, sp.cos(generator.args[0]))[0]
         return ring.one - cosine * cosine
     if isinstance(generator, sp.Pow) and generator.exp == sp.Rational(1, 2) and not generator.base.is_Symbol:
-        number, divisor = fraction(ring, generator.base)
+        number, divisor = ring_fraction(ring, generator.base)
         return number if divisor == ring.one else None
     return None
 
 
-def fraction(ring: Ring, expression: sp.Expr) -> Fraction:
+def ring_fraction(ring: Ring, expression: sp.Expr) -> Fraction:
     """An expression as numerator and denominator, not yet cancelled."""
     if expression.is_Rational:
         return ring.context.constant(fmpq(int(expression.p), int(expression.q))), ring.one
     if isinstance(expression, sp.Add):
-        return reduce(added, (fraction(ring, part) for part in expression.args))
+        return reduce(add_fractions, (ring_fraction(ring, part) for part in expression.args))
     if isinstance(expression, sp.Mul):
-        return reduce(multiplied, (fraction(ring, part) for part in expression.args))
+        return reduce(multiply_fractions, (ring_fraction(ring, part) for part in expression.args))
     if isinstance(expression, sp.Pow) and expression.exp.is_Rational:
         return power_fraction(ring, expression.base, expression.exp)
     quotient = QUOTIENTS.get(type(expression))
     if quotient is not None:
-        above, below = (ring.one if f is None else variable(ring, f(expression.args[0])) for f in quotient)
+        above, below = (ring.one if f is None else generator_of(ring, f(expression.args[0])) for f in quotient)
         return above, below
-    return variable(ring, expression), ring.one
+    return generator_of(ring, expression), ring.one
 
 
 def power_fraction(ring: Ring, base: sp.Expr, exponent: sp.Rational) -> Fraction:
     """base ** exponent with an integer exponent, or as a power of the generator that is its root."""
     if exponent.q == 1 and base not in ring.powers:
-        number, divisor = fraction(ring, base)
+        number, divisor = ring_fraction(ring, base)
         times = int(exponent)
     else:
         place, order = ring.powers[base]
@@ -142,23 +143,23 @@ def power_fraction(ring: Ring, base: sp.Expr, exponent: sp.Rational) -> Fraction
     return (number**times, divisor**times) if times >= 0 else (divisor**-times, number**-times)
 
 
-def variable(ring: Ring, base: sp.Expr) -> Poly:
+def generator_of(ring: Ring, base: sp.Expr) -> Poly:
     """The polynomial that stands for a generator."""
     place, order = ring.powers[base]
     return ring.context.gens()[place] ** order
 
 
-def added(a: Fraction, b: Fraction) -> Fraction:
+def add_fractions(a: Fraction, b: Fraction) -> Fraction:
     """Sum of two fractions in lowest terms."""
-    return cancelled(a[0] * b[1] + b[0] * a[1], a[1] * b[1])
+    return cancel_fraction(a[0] * b[1] + b[0] * a[1], a[1] * b[1])
 
 
-def multiplied(a: Fraction, b: Fraction) -> Fraction:
+def multiply_fractions(a: Fraction, b: Fraction) -> Fraction:
     """Product of two fractions in lowest terms."""
-    return cancelled(a[0] * b[0], a[1] * b[1])
+    return cancel_fraction(a[0] * b[0], a[1] * b[1])
 
 
-def cancelled(number: Poly, divisor: Poly) -> Fraction:
+def cancel_fraction(number: Poly, divisor: Poly) -> Fraction:
     """The same fraction in lowest terms, with a primitive denominator whose leading coefficient is 1."""
     if number.is_zero():
         return number, divisor.context().constant(1)
@@ -170,15 +171,15 @@ def cancelled(number: Poly, divisor: Poly) -> Fraction:
     return number, divisor
 
 
-def reduced(ring: Ring, poly: Poly) -> Poly:
+def reduce_squares(ring: Ring, poly: Poly) -> Poly:
     """The polynomial with every square of a sine or square root replaced by what it equals."""
     for place, square in ring.relations.items():
         if poly.degrees()[place] > 1:
-            poly = halved(ring, poly, place, square)
+            poly = replace_square(ring, poly, place, square)
     return poly
 
 
-def halved(ring: Ring, poly: Poly, place: int, square: Poly) -> Poly:
+def replace_square(ring: Ring, poly: Poly, place: int, square: Poly) -> Poly:
     """Replace the square of one variable by its polynomial."""
     total, generator = ring.zero, ring.context.gens()[place]
     for exponents, coefficient in poly.to_dict().items():
@@ -190,43 +191,42 @@ def halved(ring: Ring, poly: Poly, place: int, square: Poly) -> Poly:
     return total
 
 
-def number(value: fmpq) -> sp.Rational:
-    """A rational number of the ring as one of sympy."""
-    return sp.Rational(int(value.p), int(value.q))
-
-
 def constant_value(poly: Poly) -> sp.Rational:
     """A polynomial without variables as a number."""
-    return sp.S.Zero if poly.is_zero() else number(poly.leading_coefficient())
+    return sp.S.Zero if poly.is_zero() else to_rational(poly.leading_coefficient())
 
 
-def expanded(ring: Ring, poly: Poly) -> sp.Expr:
+def expand_polynomial(ring: Ring, poly: Poly) -> sp.Expr:
     """A polynomial without mu as a sympy sum of monomials."""
     return sp.Add(
         *(
-            sp.Mul(number(coefficient), *(g**e for g, e in zip(ring.generators, exponents, strict=False) if e))
+            sp.Mul(to_rational(coefficient), *(g**e for g, e in zip(ring.generators, exponents, strict=False) if e))
             for exponents, coefficient in poly.to_dict().items()
         )
     )
 
 
-def factored(ring: Ring, poly: Poly) -> sp.Expr:
+def factor_polynomial(ring: Ring, poly: Poly) -> sp.Expr:
     """A polynomial as a sympy product of its irreducible factors."""
     if len(poly) <= 1:
-        return expanded(ring, poly)
+        return expand_polynomial(ring, poly)
     content, factors = poly.factor()
-    return sp.Mul(number(content), *(expanded(ring, base) ** int(times) for base, times in factors))
+    return sp.Mul(to_rational(content), *(expand_polynomial(ring, base) ** int(times) for base, times in factors))
 
 
-def quotient(ring: Ring, above: Poly, divisor: Poly) -> sp.Expr:
+def write_quotient(ring: Ring, above: Poly, divisor: Poly) -> sp.Expr:
     """A rational function as a sympy expression in factored form."""
     if divisor.is_one() and above.is_constant():
         return constant_value(above)
-    top, bottom = cancelled(above, divisor)
-    return factored(ring, top) if bottom.is_one() else factored(ring, top) / factored(ring, bottom)
+    top, bottom = cancel_fraction(above, divisor)
+    return (
+        factor_polynomial(ring, top)
+        if bottom.is_one()
+        else factor_polynomial(ring, top) / factor_polynomial(ring, bottom)
+    )
 
 
-def sign(ring: Ring, poly: Poly) -> int:
+def declared_sign(ring: Ring, poly: Poly) -> int:
     """+1 or -1 when the declared signs of the parameters decide it term by term, else 0."""
     if poly.is_zero():
         return 0
@@ -256,7 +256,7 @@ def sign_of_term(ring: Ring, exponents: tuple[int, ...], coefficient: fmpq) -> i
     return result
 
 
-def square_root(ring: Ring, number_: Poly, divisor: Poly) -> tuple[Fraction, Poly, sp.Expr]:
+def split_square_root(ring: Ring, number_: Poly, divisor: Poly) -> tuple[Fraction, Poly, sp.Expr]:
     """sqrt(number / divisor) = (rational function) * sqrt(radicand), as (fraction, radicand, sqrt(radicand)).
 
     Squares are taken out without absolute values: the callers use even functions of the root only,
@@ -269,10 +269,10 @@ def square_root(ring: Ring, number_: Poly, divisor: Poly) -> tuple[Fraction, Pol
         inner *= base ** (int(times) % 2)
     if content < 0:
         inner, content = -inner, -content
-    whole, surd = sp.sqrt(number(content)).as_coeff_Mul()
+    whole, surd = sp.sqrt(to_rational(content)).as_coeff_Mul()
     outer *= fmpq(int(whole.p), int(whole.q))
-    radicand = inner * fraction(ring, surd**2)[0]
-    return cancelled(outer, divisor), radicand, surd * sp.sqrt(expanded(ring, inner))
+    radicand = inner * ring_fraction(ring, surd**2)[0]
+    return cancel_fraction(outer, divisor), radicand, surd * sp.sqrt(expand_polynomial(ring, inner))
 
 
 # Polynomials in one variable whose coefficients are polynomials in the parameters.
@@ -283,7 +283,7 @@ def square_root(ring: Ring, number_: Poly, divisor: Poly) -> tuple[Fraction, Pol
 Coefficients = list[Poly]
 
 
-def coefficients(ring: Ring, poly: Poly) -> Coefficients:
+def mu_coefficients(ring: Ring, poly: Poly) -> Coefficients:
     """Coefficients of a polynomial of the ring in powers of its last variable mu."""
     parts: list[dict[tuple[int, ...], object]] = [{} for _ in range(poly.degrees()[-1] + 1)]
     for exponents, coefficient in poly.to_dict().items():
@@ -291,7 +291,7 @@ def coefficients(ring: Ring, poly: Poly) -> Coefficients:
     return [ring.context.from_dict(part) for part in parts]
 
 
-def product(ring: Ring, a: Coefficients, b: Coefficients) -> Coefficients:
+def multiply_monic(ring: Ring, a: Coefficients, b: Coefficients) -> Coefficients:
     """Product of two polynomials."""
     result = [ring.zero] * (len(a) + len(b) - 1)
     for i, x in enumerate(a):
@@ -330,15 +330,15 @@ def companion_inverse(ring: Ring, a: Coefficients, q: Coefficients) -> tuple[Coe
     """
     n = len(q) - 1
     if all(c.is_zero() for c in a[1:]):  # a constant, as for the only factor of q
-        return lowest_terms([ring.one], a[0])
+        return cancel_common([ring.one], a[0])
     columns = [a]
     for _ in range(n - 1):
         columns.append(monic_remainder(ring, [ring.zero, *columns[-1]], q))
     rows = [[columns[k][i] for k in range(n)] + [ring.one if i == 0 else ring.zero] for i in range(n)]
-    return lowest_terms(*solved(ring, rows))
+    return cancel_common(*solve_square(ring, rows))
 
 
-def solved(ring: Ring, rows: list[Coefficients]) -> tuple[Coefficients, Poly]:
+def solve_square(ring: Ring, rows: list[Coefficients]) -> tuple[Coefficients, Poly]:
     """Solution of a square system as numerators and their common denominator, without fractions (Bareiss)."""
     n, last = len(rows), ring.one
     for k in range(n):
@@ -352,7 +352,7 @@ def solved(ring: Ring, rows: list[Coefficients]) -> tuple[Coefficients, Poly]:
     return [row[-1] for row in rows], last
 
 
-def lowest_terms(numerators: Coefficients, divisor: Poly) -> tuple[Coefficients, Poly]:
+def cancel_common(numerators: Coefficients, divisor: Poly) -> tuple[Coefficients, Poly]:
     """Numerators and divisor without their common factor."""
     common = divisor
     for numerator in numerators:
