@@ -17,11 +17,14 @@ import sympy as sp
 from navsym.core.errors import DomainError, DuplicateError, ExpressionSyntaxError, UnknownSymbolError
 from navsym.language.expression import parse, symbol
 from navsym.language.names import RESERVED, shown
-from navsym.language.python_source import side_source
+from navsym.language.printer import Printer, to_python
 
 NAME = re.compile(r"[a-z][a-z0-9_]{1,40}")
 NUMBER = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,60}\*?")
 NAMES_IN = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
+
+#: A side that is longer is written with one term on each line.
+WIDE = 92
 
 NOT_YET = '"not looked at yet"'
 
@@ -146,6 +149,18 @@ def check_number(number: str) -> str:
 def plain(text: str) -> str:
     """A sentence that may stand in a docstring."""
     return " ".join(text.replace("\\", "/").replace('"', "'").split())
+
+
+def side_source(expression: sp.Expr) -> str:
+    """Source of a side of a claim: a sympy value even for a bare number, a long sum with one term on each line."""
+    if isinstance(expression, sp.Integer):
+        return f"sp.Integer({int(expression)})"
+    text = to_python(expression)
+    if len(text) <= WIDE or not isinstance(expression, sp.Add):
+        return text
+    return (
+        "(\n" + "".join(f"            {part}\n" for part in Printer(python=True).signed_terms(expression)) + "        )"
+    )
 
 
 # -- claims ----------------------------------------------------------------------------------

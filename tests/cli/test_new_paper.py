@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 from navsym.claims import Equation
 from navsym.cli.main import run
 from navsym.core.errors import NavsymError
-from navsym.language.python_source import exact_source, side_source
-from navsym.language.scaffold import equation_numbers, read
+from navsym.language.printer import to_python
+from navsym.language.scaffold import equation_numbers, read, side_source
 from navsym.prove.ladder import decide
 from navsym.verification.decide import decide_claims
 from navsym.verification.papers import paper_module
@@ -133,7 +133,7 @@ def test_lists_of_equation_numbers():
     ],
 )
 def test_source_of_a_formula_is_written_as_a_person_would(text, source):
-    assert exact_source(read(text, "")) == source
+    assert to_python(read(text, "")) == source
 
 
 def test_a_bare_number_is_exact_and_a_long_sum_has_a_line_for_each_term():
@@ -174,7 +174,7 @@ def test_source_of_a_formula_keeps_it_exact(text):
     import sympy
 
     expression = read(text, "")
-    source = exact_source(expression)
+    source = to_python(expression)
     # The source is ours, made from a parsed formula; the test runs it as the new module would.
     again = eval(source, {"sp": sympy, "a": sympy.Symbol("a", real=True)})
     assert again == expression and not again.atoms(sympy.Float)
