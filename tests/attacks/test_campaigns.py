@@ -7,7 +7,7 @@ from pathlib import Path
 
 import sympy as sp
 
-from navsym.claims import Bound, Claim, Equation, Optimum
+from navsym.claims import Bound, Claim, Equation, Optimum, paper
 from navsym.cli.main import run
 from navsym.core.store import opened
 from navsym.prove.certificates import identity_certificate
@@ -137,7 +137,7 @@ def test_the_verb_prints_one_document(monkeypatch, tmp_path, capsys):
 
 
 def test_outside_a_checkout_the_verb_says_what_is_missing_and_how_to_get_it(monkeypatch, tmp_path, capsys):
-    monkeypatch.setattr("navsym.claims.paper.papers_folder", lambda: tmp_path / "navsym_papers")
+    monkeypatch.setattr(paper, "papers_folder", lambda: tmp_path / "navsym_papers")
     monkeypatch.chdir(tmp_path)
     assert run(["campaign", "parser", "--json"]) == 3
     error = json.loads(capsys.readouterr().out)["error"]
@@ -145,7 +145,7 @@ def test_outside_a_checkout_the_verb_says_what_is_missing_and_how_to_get_it(monk
 
 
 def test_the_current_folder_may_be_the_checkout(monkeypatch, tmp_path, capsys):
-    monkeypatch.setattr("navsym.claims.paper.papers_folder", lambda: tmp_path / "navsym_papers")
+    monkeypatch.setattr(paper, "papers_folder", lambda: tmp_path / "navsym_papers")
     monkeypatch.setenv("NAVSYM_CACHE", str(tmp_path))
     monkeypatch.chdir(Path(__file__).parents[2])
     assert run(["campaign", "certificates", "--inputs", "7", "--fresh", "--json"]) == 0
