@@ -29,7 +29,7 @@ from navsym.claims import claims_of
 from navsym.cli.main import run as navsym
 from navsym.core.datasets import dataset, local_copy
 from navsym.report.notebook import explore, require, show
-from navsym.trajectory.conditioning import condition_numbers
+from navsym.trajectory.conditioning import best_scaling, condition_numbers
 from navsym.trajectory.estimate import METHODS, Settings, estimate
 from navsym.trajectory.inversion import (
     Start,
@@ -42,7 +42,6 @@ from navsym.trajectory.inversion import (
 )
 from navsym.trajectory.limits import best_ages, least_error, rule
 from navsym.trajectory.reader import read_track
-from navsym.trajectory.scaling import best_scaling
 from navsym.trajectory.tracks import project_positions
 from navsym_papers import trajectory as paper
 from navsym_papers.trajectory import (

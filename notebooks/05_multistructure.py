@@ -29,7 +29,7 @@ from navsym.cli.main import run as navsym
 from navsym.core.datasets import dataset, local_copy
 from navsym.multimodel.bank import Bank
 from navsym.multimodel.filters import run_filter
-from navsym.multimodel.steps import filters_at, scheme
+from navsym.multimodel.schemes import filters_at, scheme
 from navsym.report.notebook import require, show
 from navsym_papers import multistructure as paper
 from navsym_papers.multistructure import (

@@ -6,7 +6,7 @@ import sympy as sp
 
 from navsym.claims import REFUTED, Equation, claim
 from navsym.multimodel.exact import Kit, run_exactly
-from navsym.multimodel.steps import scheme
+from navsym.multimodel.schemes import scheme
 from navsym_papers.multistructure import examples
 from navsym_papers.multistructure.moments import mixture
 

@@ -8,7 +8,7 @@ import sympy as sp
 from flint import arb, ctx, fmpq
 
 from navsym.multimodel.exact import ExactStep, Kit, Leaf, Model, fractions_kit, run_exactly
-from navsym.multimodel.steps import scheme
+from navsym.multimodel.schemes import scheme
 
 HALF = sp.Rational(1, 2)
 

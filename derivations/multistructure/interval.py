@@ -14,7 +14,7 @@ from flint import arb, arb_series, ctx, fmpq, fmpq_poly
 
 from navsym.claims import CERTIFIED, REFUTED, Finding, Property, claim
 from navsym.multimodel.exact import Kit, Leaf, Model, run_exactly
-from navsym.multimodel.steps import filters_at, scheme
+from navsym.multimodel.schemes import filters_at, scheme
 from navsym_papers.multistructure import examples
 from navsym_papers.multistructure.pulsating import MODELS, SWITCHING, differs, leaves_by_tree
 

@@ -8,7 +8,7 @@ import sympy as sp
 
 from navsym.claims import REFUTED, Equation, Finding, Property, claim
 from navsym.multimodel.exact import Leaf, Model, fractions_kit, run_exactly
-from navsym.multimodel.steps import scheme
+from navsym.multimodel.schemes import scheme
 from navsym_papers.multistructure import finite
 from navsym_papers.multistructure.finite import Step, step
 from navsym_papers.multistructure.recursion import UNIT

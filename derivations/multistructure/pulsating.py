@@ -231,7 +231,7 @@ def near_moments():
 def memory(cases):
     """Floats that the one-pass filter keeps beyond one Kalman filter, measured for (modes, states)."""
     from navsym.multimodel.bank import Bank
-    from navsym.multimodel.memory import floats_in_use
+    from navsym_papers.multistructure.experiment.memory import floats_in_use
 
     extra = []
     for modes, n in cases:

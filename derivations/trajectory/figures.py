@@ -13,8 +13,8 @@ import flint
 
 from navsym.claims import CERTIFIED, CONFIRMED, OPEN, Finding, Property, claim
 from navsym.models.earth import pascal_rows
-from navsym.trajectory.stability import gain_stability, harmonic_lag, stationary_covariance
 from navsym_papers.trajectory.experiment.courses import course, with_printed_gain
+from navsym_papers.trajectory.experiment.stability import gain_stability, harmonic_lag, stationary_covariance
 from navsym_papers.trajectory.experiment_printed import TAU, ball
 from navsym_papers.trajectory.gain import PERIOD, gain_in_f, stationary_deviation
 

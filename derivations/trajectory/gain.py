@@ -8,7 +8,7 @@ from fractions import Fraction
 import flint
 
 from navsym.claims import CERTIFIED, REFUTED, Finding, Property, claim
-from navsym.trajectory.stability import (
+from navsym_papers.trajectory.experiment.stability import (
     gain_stability,
     harmonic_lag,
     metric_scale,

@@ -1,7 +1,4 @@
-"""Monte-Carlo batches: many series of measurements through one bank.
-
-:func:`run_batch` is compiled; :func:`imm_in_numpy` is its readable twin, all runs stacked.
-"""
+"""Monte-Carlo batches: many series of measurements through one bank."""
 
 from __future__ import annotations
 
@@ -10,14 +7,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from navsym.core.errors import DomainError, NotFiniteError, ShapeError
-from navsym.multimodel import filters as multimodel
-from navsym.multimodel import moments as mixture
+from navsym.core.errors import NotFiniteError, ShapeError
 from navsym.multimodel.bank import Bank
-from navsym.multimodel.fast import independent_scalars
-from navsym.multimodel.kalman import steps as kalman
-from navsym.multimodel.kalman.steps import symmetrise
-from navsym.multimodel.steps import require_room, scheme
+from navsym.multimodel.compiled import independent_scalars
+from navsym.multimodel.filters import run_filter
+from navsym.multimodel.kalman import logs
+from navsym.multimodel.schemes import require_room, scheme
 
 Array = NDArray[np.floating[Any]]
 #: mean (runs, T, n), covariance (runs, T, n, n), probabilities (runs, T, m), cumulative log-likelihood (runs, T)
@@ -74,7 +69,7 @@ def in_lanes(models: Bank, z: Array, branching: int, out: Batch) -> bool:
             U,
             rotated,
             models.mode_transition,
-            mixture.logs(models.probabilities),
+            logs(models.probabilities),
             models.means,
             models.covariances,
             z,
@@ -87,57 +82,7 @@ def one_by_one(models: Bank, z: Array, method: str, depth: int | None) -> Batch:
     """Every run through the single-run engine: folding schemes, and series at which lanes stop."""
     out = empty(z, models)
     for row, series in enumerate(z):
-        estimate = multimodel.run_filter(models, series, method, depth=depth, engine="compiled")
+        estimate = run_filter(models, series, method, depth=depth, engine="compiled")
         for target, name in zip(out, ("mean", "covariance", "probabilities", "log_likelihood"), strict=True):
             target[row] = getattr(estimate, name)
     return out
-
-
-def imm_in_numpy(models: Bank, measurements: Array) -> Batch:
-    """Twin of :func:`run_batch` for IMM: stacks (runs, modes, ...) through numpy's products.
-
-    Weights in logarithms, Joseph's form; every mode must stay possible (no zero column of transitions).
-    """
-    if (models.mode_transition.sum(axis=1) <= 0.0).any():
-        raise DomainError("mode_transition: expected every mode to be reachable; got a zero column; use run_batch")
-    out = empty(measurements, models)
-    runs = len(measurements)
-    log_w: Array = np.tile(mixture.logs(models.probabilities), (runs, 1))
-    x: Array = np.tile(models.means, (runs, 1, 1))
-    P: Array = np.tile(models.covariances, (runs, 1, 1, 1))
-    total = np.zeros(runs)
-    for k in range(measurements.shape[1]):
-        x, P, log_next = mixed(log_w, models.at("mode_transition", k + 1), x, P)
-        x, P = kalman.predict(x, P, models.at("F", k + 1), models.at("Q", k + 1))
-        z = measurements[:, k, None, :]
-        x, P, ll = kalman.correct(x, P, z, models.at("H", k + 1), models.at("R", k + 1))
-        joint = log_next + ll
-        top = joint.max(axis=1, keepdims=True)
-        step = top[:, 0] + np.log(np.exp(joint - top).sum(axis=1))
-        total = total + step
-        log_w = joint - step[:, None]
-        weights = np.exp(log_w)
-        mean, covariance = merged(weights[:, None, :], x, P)
-        for target, value in zip(out, (mean[:, 0], covariance[:, 0], weights, total), strict=True):
-            target[:, k] = value
-    return out
-
-
-def mixed(log_w: Array, transition: Array, x: Array, P: Array) -> tuple[Array, Array, Array]:
-    """The interaction of IMM for all runs: means, covariances and log P[next mode]."""
-    top = log_w.max(axis=1, keepdims=True)
-    joint = np.exp(log_w - top)[:, :, None] * transition
-    total = joint.sum(axis=1)
-    weights = np.swapaxes(joint / total[:, None, :], 1, 2)
-    mean, covariance = merged(weights, x, P)
-    return mean, covariance, top + mixture.logs(total)
-
-
-def merged(weights: Array, x: Array, P: Array) -> tuple[Array, Array]:
-    """Mixtures of all runs: weights (runs, g, m), x (runs, m, n), P (runs, m, n, n)."""
-    mean = weights @ x
-    spread = x[:, None] - mean[:, :, None]
-    runs, m, n = x.shape
-    covariance = (weights @ P.reshape(runs, m, n * n)).reshape(runs, -1, n, n)
-    covariance += np.swapaxes(spread * weights[..., None], -1, -2) @ spread
-    return mean, np.asarray(symmetrise(covariance))

@@ -1,4 +1,9 @@
-"""The readable engine of the multiple-model filters, and the estimates that every engine returns."""
+"""The readable engine of the multiple-model filters: one step, a line per idea, over stacks of hypotheses.
+
+It is the twin of the compiled loops, and the engine for banks that change their measurements, for trees and for
+anything small. Weights are logarithms throughout. Covariances are kept in a form of :mod:`navsym.multimodel.kalman`;
+only :class:`Step` shows them as they are.
+"""
 
 from __future__ import annotations
 
@@ -11,12 +16,164 @@ from numpy.typing import NDArray
 from navsym.claims.display import table
 from navsym.core import arrays
 from navsym.core.answers import Answer
-from navsym.multimodel import steps
 from navsym.multimodel.bank import Bank
-from navsym.multimodel.kalman.forms import FORMS, Form
-from navsym.multimodel.steps import Scheme
+from navsym.multimodel.kalman import FORMS, Form, logs, normalise
+from navsym.multimodel.schemes import Scheme
 
 Array = NDArray[np.floating[Any]]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Hypotheses:
+    """A mixture of g Gaussians together with what is known about the last mode.
+
+    means (g, n), covariances (g, n, n) as the form keeps them
+    log_weights (g, m) : log P[this hypothesis, last mode = j | measurements]; they sum to one
+    """
+
+    means: Array
+    covariances: Array
+    log_weights: Array
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Branches:
+    """Hypotheses about the next step: b Gaussians before prediction, each with its next mode.
+
+    log_weights (b,) : log P[branch | measurements so far]
+    """
+
+    means: Array
+    covariances: Array
+    modes: NDArray[np.intp]
+    log_weights: Array
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Step:
+    """What one step found: hypotheses, moments, mode probabilities, and how likely the measurement was."""
+
+    hypotheses: Hypotheses
+    probabilities: Array
+    mean: Array
+    covariance: Array
+    log_likelihood: float
+    best: float
+
+
+def first_hypotheses(bank: Bank, rule: Scheme, form: Form = FORMS["joseph"]) -> Hypotheses:
+    """The hypotheses at step 0: one Gaussian when all modes share it, else one per mode."""
+    kept = form.keep(bank.covariances)
+    log_prior = logs(bank.probabilities)
+    if bank.common and rule.branching != "own":
+        return Hypotheses(bank.means[:1], kept[:1], log_prior[None])
+    return Hypotheses(bank.means, kept, on_diagonal(log_prior))
+
+
+def on_diagonal(log_weights: Array) -> Array:
+    """Weights of hypotheses that know their last mode: (m, m) with -inf off the diagonal."""
+    table = np.full((len(log_weights), len(log_weights)), -np.inf)
+    np.fill_diagonal(table, log_weights)
+    return table
+
+
+def advance(rule: Scheme, k: int, bank: Bank, before: Hypotheses, z: Array, form: Form = FORMS["joseph"]) -> Step:
+    """Step k of the filter: branch, predict, correct, weigh, take moments, fold."""
+    branches = branch_hypotheses(rule, before, logs(bank.at("mode_transition", k)), form)
+    means, kept, log_likelihoods = filter_branches(bank, k, branches, z, form)
+    best = float(log_likelihoods.max())
+    if best == -np.inf:
+        # No mode can have produced this measurement: leave it out, say so, and go on.
+        step = advance(rule, k, bank, before, np.full_like(z, np.nan), form)
+        return Step(step.hypotheses, step.probabilities, step.mean, step.covariance, 0.0, best)
+    weights, log_likelihood = normalise(branches.log_weights + log_likelihoods)
+    if log_likelihood == -np.inf:
+        weights, log_likelihood = normalise(branches.log_weights)[0], 0.0
+    log_weights = branches.log_weights + log_likelihoods - log_likelihood
+    merged_mean, merged = form.merge(weights[None], means, kept)  # multistructure:12*, :13
+    probabilities = sum_by_mode(weights, branches.modes, bank.modes)
+    found = Hypotheses(means, kept, spread_over_modes(log_weights, branches.modes, bank.modes))
+    folded = fold_hypotheses(rule, k, found, (merged_mean, merged), form)
+    return Step(folded, probabilities, merged_mean[0], form.show(merged[0]), log_likelihood, best)
+
+
+def branch_hypotheses(rule: Scheme, before: Hypotheses, log_transition: Array, form: Form) -> Branches:
+    """Hypotheses about the next mode.
+
+    log_transition : (m, m), rows = from
+    """
+    log_next = log_matrix_product(before.log_weights, log_transition)  # (g, m): multistructure:10
+    g, m = log_next.shape
+    if rule.branching == "mixed":
+        return mix_hypotheses(before, log_next, form)
+    if rule.branching == "own":
+        return Branches(before.means, before.covariances, np.arange(m), np.diagonal(before.log_weights))
+    source, mode = np.divmod(np.arange(g * m), m)
+    return Branches(before.means[source], before.covariances[source], mode, log_next.ravel())
+
+
+def mix_hypotheses(before: Hypotheses, log_next: Array, form: Form) -> Branches:
+    """The interaction of IMM: for every next mode one Gaussian, merged from all by P[source | next mode]."""
+    totals = np.array([normalise(column)[1] for column in log_next.T])
+    weights = np.stack([shares(column, log_next) for column in log_next.T])
+    means, covariances = form.merge(weights, before.means, before.covariances)
+    return Branches(means, covariances, np.arange(len(totals)), totals)
+
+
+def shares(column: Array, table: Array) -> Array:
+    """Normalised weights of one group; an impossible group takes those of all, to keep numbers finite."""
+    weights, total = normalise(column)
+    if total > -np.inf:
+        return weights
+    everything = np.exp(table - table.max()).sum(axis=1)
+    return np.asarray(everything / everything.sum())
+
+
+def log_matrix_product(A: Array, B: Array) -> Array:
+    """``log(exp(A) @ exp(B))`` without leaving logarithms."""
+    terms = A[:, :, None] + B[None, :, :]
+    top = terms.max(axis=1, keepdims=True)
+    safe = np.where(np.isfinite(top), top, 0.0)
+    return logs(np.exp(terms - safe).sum(axis=1)) + safe[:, 0, :]
+
+
+def filter_branches(bank: Bank, k: int, branches: Branches, z: Array, form: Form) -> tuple[Array, Array, Array]:
+    """Kalman filter of every branch: means, covariances and log-likelihoods of the numbers that came."""
+    i = branches.modes
+    means, covariances = form.predict(branches.means, branches.covariances, bank.at("F", k)[i], bank.at("Q", k)[i])
+    came = ~np.isnan(z)
+    if not came.any():
+        return means, covariances, np.zeros(len(i))
+    H = bank.at("H", k)[i][:, came, :]
+    R = bank.at("R", k)[i][:, came, :][:, :, came]
+    return form.correct(means, covariances, z[came], H, R)  # multistructure:18*
+
+
+def sum_by_mode(weights: Array, modes: NDArray[np.intp], m: int) -> Array:
+    """Probability of each last mode."""
+    return np.bincount(modes, weights=weights, minlength=m).astype(float)
+
+
+def spread_over_modes(log_weights: Array, modes: NDArray[np.intp], m: int) -> Array:
+    """Weights (b, m) of branches that know their last mode."""
+    table = np.full((len(modes), m), -np.inf)
+    table[np.arange(len(modes)), modes] = log_weights
+    return table
+
+
+def fold_hypotheses(rule: Scheme, k: int, found: Hypotheses, whole: tuple[Array, Array], form: Form) -> Hypotheses:
+    """Replace groups of Gaussians by one each, as the scheme says; ``whole`` is all of them in one."""
+    if rule.folding == "none" or k % rule.period:
+        return found
+    modes = [normalise(column)[1] for column in found.log_weights.T]
+    if rule.folding == "all":
+        return Hypotheses(*whole, np.array(modes)[None])
+    if found.means.shape[0] == len(modes):
+        return found
+    weights = np.stack([shares(column, found.log_weights) for column in found.log_weights.T])
+    means, covariances = form.merge(weights, found.means, found.covariances)
+    return Hypotheses(means, covariances, on_diagonal(np.array(modes)))
+
 
 #: Log-likelihood below which every likelihood is zero in double precision.
 UNDERFLOW = -745.0
@@ -104,17 +261,17 @@ class Estimates(Answer):
 
 
 def run_in_numpy(rule: Scheme, models: Bank, z: Array, count: int, form: Form = FORMS["joseph"]) -> Estimates:
-    """The readable engine: one :func:`multimodel_steps.advance` per row."""
-    now = steps.start(models, rule, form)
-    found: list[steps.Step] = []
+    """The readable engine: one :func:`advance` per row."""
+    now = first_hypotheses(models, rule, form)
+    found: list[Step] = []
     for k, row in enumerate(z, start=1):
-        step = steps.advance(rule, k, models, now, row, form)
+        step = advance(rule, k, models, now, row, form)
         now = step.hypotheses
         found.append(step)
-    return collected(found, models, count)
+    return stack_steps(found, models, count)
 
 
-def collected(found: list[steps.Step], models: Bank, count: int) -> Estimates:
+def stack_steps(found: list[Step], models: Bank, count: int) -> Estimates:
     """Stack what the steps found."""
     T, m, n = len(found), models.modes, models.states
     best = [step.best for step in found]

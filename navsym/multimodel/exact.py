@@ -15,7 +15,7 @@ from fractions import Fraction
 from itertools import groupby
 from typing import Any
 
-from navsym.multimodel.steps import Scheme
+from navsym.multimodel.schemes import Scheme
 
 Matrix = list[list[Any]]
 Vector = list[Any]
@@ -104,15 +104,15 @@ def run_exactly(
     leaves = list(roots)
     found = []
     for k, z in enumerate(measurements, start=1):
-        branches = branch(rule, leaves, transitions[k - 1], kit)
-        grown = [filtered(leaf, models[k - 1][i], i, z, kit) for i, leaf in branches]
-        step = summed(grown, len(models[k - 1]), kit)
+        branches = branch_leaves(rule, leaves, transitions[k - 1], kit)
+        grown = [filter_leaf(leaf, models[k - 1][i], i, z, kit) for i, leaf in branches]
+        step = weigh_leaves(grown, len(models[k - 1]), kit)
         found.append(step)
-        leaves = fold(rule, k, step, kit)
+        leaves = fold_leaves(rule, k, step, kit)
     return found
 
 
-def branch(rule: Scheme, leaves: list[Leaf], transition: Matrix, kit: Kit) -> list[tuple[int, Leaf]]:
+def branch_leaves(rule: Scheme, leaves: list[Leaf], transition: Matrix, kit: Kit) -> list[tuple[int, Leaf]]:
     """(next mode, hypothesis with its prior weight as the only entry), before prediction."""
     modes = range(len(transition))
     if rule.branching == "own":
@@ -125,7 +125,7 @@ def branch(rule: Scheme, leaves: list[Leaf], transition: Matrix, kit: Kit) -> li
     if rule.branching == "cross":
         return ahead
     groups = [[leaf for i, leaf in ahead if i == mode] for mode in modes]
-    return [(i, Leaf((total(group),), *merged(group, kit))) for i, group in enumerate(groups)]
+    return [(i, Leaf((total(group),), *merge_leaves(group, kit))) for i, group in enumerate(groups)]
 
 
 def total(leaves: Sequence[Leaf]) -> Any:
@@ -133,7 +133,7 @@ def total(leaves: Sequence[Leaf]) -> Any:
     return sum(sum(leaf.weights) for leaf in leaves)
 
 
-def merged(leaves: Sequence[Leaf], kit: Kit) -> tuple[Vector, Matrix]:
+def merge_leaves(leaves: Sequence[Leaf], kit: Kit) -> tuple[Vector, Matrix]:
     """Mean and covariance of a group: multistructure:12* and :13, entry by entry."""
     whole = total(leaves)
     shares = [sum(leaf.weights) / whole for leaf in leaves]
@@ -149,35 +149,35 @@ def merged(leaves: Sequence[Leaf], kit: Kit) -> tuple[Vector, Matrix]:
     return mean, [[kit.tidy(entry(a, b)) for b in n] for a in n]
 
 
-def filtered(leaf: Leaf, model: Model, mode: int, z: Sequence[Any], kit: Kit) -> tuple[int, Leaf]:
+def filter_leaf(leaf: Leaf, model: Model, mode: int, z: Sequence[Any], kit: Kit) -> tuple[int, Leaf]:
     """Kalman filter of one hypothesis; its weight is multiplied by the density of the innovation."""
-    mean = apply(model.F, leaf.mean)
+    mean = product_with(model.F, leaf.mean)
     P = add(product(product(model.F, leaf.covariance), transposed(model.F)), model.Q)
     came = [j for j, value in enumerate(z) if value is not None]
     if not came:
         return mode, Leaf(leaf.weights, mean, P)
     H = [model.H[j] for j in came]
     R = [[model.R[i][j] for j in came] for i in came]
-    innovation = [z[j] - expected for j, expected in zip(came, apply(H, mean), strict=True)]
+    innovation = [z[j] - expected for j, expected in zip(came, product_with(H, mean), strict=True)]
     PHt = product(P, transposed(H))
     S = add(product(H, PHt), R)
     solved, determinant = solve(S, [[v, *row] for v, row in zip(innovation, transposed(PHt), strict=True)])
     distance = sum(v * row[0] for v, row in zip(innovation, solved, strict=True))
-    shift = apply(PHt, [row[0] for row in solved])
+    shift = product_with(PHt, [row[0] for row in solved])
     shrink = product(PHt, [row[1:] for row in solved])
     corrected = [[x - y for x, y in zip(*rows, strict=True)] for rows in zip(P, shrink, strict=True)]
     weight = leaf.weights[0] * kit.density(distance, determinant, len(came))
     return mode, Leaf((weight,), [m + d for m, d in zip(mean, shift, strict=True)], corrected)
 
 
-def summed(grown: Sequence[tuple[int, Leaf]], modes: int, kit: Kit) -> ExactStep:
+def weigh_leaves(grown: Sequence[tuple[int, Leaf]], modes: int, kit: Kit) -> ExactStep:
     """Normalise the weights of all branches and take the moments."""
     likelihood = total([leaf for _, leaf in grown])
     leaves = tuple(
         Leaf(tuple(leaf.weights[0] / likelihood if i == mode else 0 for i in range(modes)), leaf.mean, leaf.covariance)
         for mode, leaf in grown
     )
-    mean, covariance = merged(leaves, kit)
+    mean, covariance = merge_leaves(leaves, kit)
     return ExactStep(mode_weights(leaves, modes), mean, covariance, likelihood, leaves)
 
 
@@ -186,7 +186,7 @@ def mode_weights(leaves: Sequence[Leaf], modes: int) -> Vector:
     return [sum(leaf.weights[i] for leaf in leaves) for i in range(modes)]
 
 
-def fold(rule: Scheme, k: int, step: ExactStep, kit: Kit) -> list[Leaf]:
+def fold_leaves(rule: Scheme, k: int, step: ExactStep, kit: Kit) -> list[Leaf]:
     """Replace groups of leaves by one each, as the scheme says."""
     if rule.folding == "none" or k % rule.period:
         return list(step.leaves)
@@ -199,17 +199,17 @@ def fold(rule: Scheme, k: int, step: ExactStep, kit: Kit) -> list[Leaf]:
     ordered = sorted(step.leaves, key=last_mode)
     groups = [list(group) for _, group in groupby(ordered, key=last_mode)]
     modes = range(len(step.probabilities))
-    return [Leaf(tuple(mode_weights(group, len(modes))), *merged(group, kit)) for group in groups]
+    return [Leaf(tuple(mode_weights(group, len(modes))), *merge_leaves(group, kit)) for group in groups]
 
 
-def apply(A: Matrix, x: Vector) -> Vector:
+def product_with(A: Matrix, x: Vector) -> Vector:
     """A x for A (m, n) and x (n,)."""
     return [sum(a * b for a, b in zip(row, x, strict=True)) for row in A]
 
 
 def product(A: Matrix, B: Matrix) -> Matrix:
     """A B for A (m, n) and B (n, p)."""
-    return [apply(transposed(B), row) for row in A]
+    return [product_with(transposed(B), row) for row in A]
 
 
 def add(A: Matrix, B: Matrix) -> Matrix:

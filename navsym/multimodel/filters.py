@@ -1,6 +1,6 @@
 """Filters for a signal whose model switches: exact, pulsating, K-pulsating, polygaussian, GPB2 and IMM.
 
-One function, :func:`run_filter`, whatever the method; :mod:`navsym.multimodel.steps` says how the
+One function, :func:`run_filter`, whatever the method; :mod:`navsym.multimodel.schemes` says how the
 methods differ. Paper: module ``multistructure``.
 """
 
@@ -20,8 +20,8 @@ from navsym.language.jsonfile import read_json
 from navsym.language.names import only_keys
 from navsym.multimodel.bank import Bank, check_initial, forget_modes, measurements_for
 from navsym.multimodel.engine import Estimates, run_in_numpy
-from navsym.multimodel.kalman.forms import form_of
-from navsym.multimodel.steps import require_room, scheme
+from navsym.multimodel.kalman import form_of
+from navsym.multimodel.schemes import require_room, scheme
 
 Array = NDArray[np.floating[Any]]
 Engine = Literal["auto", "numpy", "compiled"]
@@ -130,7 +130,7 @@ def run_filter(
     notes = (UNUSED,) if rule.branching == "own" and not never_switches(models.mode_transition) else ()
     count = require_room(rule, models.modes, models.states, roots, len(z))
     if compiled_fits(count, engine, form):
-        from navsym.multimodel.fast import run_compiled
+        from navsym.multimodel.compiled import run_compiled
 
         return replace(require_range(run_compiled(rule, models, z, count)), notes=notes)
     with np.errstate(over="ignore", invalid="ignore"):  # what leaves the range is refused, with its step

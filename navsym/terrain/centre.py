@@ -101,18 +101,6 @@ def information(gx: Array, gy: Array, times: Array, *, centred: bool = False) ->
     return Information(g @ g.T, M1 if centred else 0.5 * (M1 + M1.T), M2)
 
 
-def quadratic_slowly(gx: Array, gy: Array, times: Array) -> tuple[float, float, float]:
-    """Twin of :attr:`Information.quadratic`: the double sums of the paper, corrected (terrain_search:12*)."""
-    A2 = A1 = A0 = 0.0
-    for i, t in enumerate(times):
-        for j in range(len(times)):
-            cross = gx[i] * gy[j] - gy[i] * gx[j]
-            A2 += t * gx[i] * gx[j] * cross
-            A1 += t * ((gx[i] * gy[j]) ** 2 - (gy[i] * gx[j]) ** 2)
-            A0 += t * gy[i] * gy[j] * cross
-    return A2, A1, A0
-
-
 #: Weights of three neighbouring nodes for the slope at the first, the middle and the last of them.
 STENCILS = np.array([[-1.5, 2.0, -0.5], [-0.5, 0.0, 0.5], [0.5, -2.0, 1.5]])
 

@@ -17,13 +17,13 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
-from navsym.core.errors import NotEstimableError, TooLargeError
+from navsym.core.errors import NotEstimableError
 from navsym.terrain.heights import TerrainMap, demand_heights
 from navsym.terrain.kernels.bounded import BoundedResult, search_bounded, search_one_velocity
 from navsym.terrain.kernels.criteria import TOGETHER, dense_masked, padded, patch_rows, profile, slab
 from navsym.terrain.kernels.lattice import fits, lattice, rounded
 from navsym.terrain.kernels.margins import DOUBLE, PLAIN, parts_about_the_mean
-from navsym.terrain.track import MOST_HYPOTHESES, Hypotheses, Profile
+from navsym.terrain.track import Hypotheses, Profile
 
 Array = NDArray[np.float64]
 Index = tuple[int, int, int, int]
@@ -315,9 +315,3 @@ def exact_height(H: Array, u: Fraction, w: Fraction) -> Fraction:
     low, high = (1 - f) * (1 - g), (1 - f) * g
     weights = ((low, r, c), (1 - g - low, r, c + 1), (high, r + 1, c), (g - high, r + 1, c + 1))
     return sum((weight * Fraction(H[a, b]) for weight, a, b in weights if weight), Fraction(0))
-
-
-def demand_memory(cells: int) -> None:
-    """TooLargeError above the number of criteria that are kept at once."""
-    if cells > MOST_HYPOTHESES:
-        raise TooLargeError(f"hypotheses: expected at most {MOST_HYPOTHESES}; got {cells}; use fewer")

@@ -31,7 +31,7 @@ from navsym.trajectory.inversion import (
     scaled_model,
     windowed_filter,
 )
-from navsym.trajectory.twins import adaptive_filter_slowly, candidates
+from tests.twins.trajectory import adaptive_filter_slowly, candidates
 
 ROUNDS = 5
 

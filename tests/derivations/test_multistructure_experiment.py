@@ -5,13 +5,14 @@ import pytest
 from numpy.testing import assert_allclose
 
 from navsym.core.errors import DomainError, NoDataError, NotFiniteError, ShapeError, TooLargeError
-from navsym.multimodel import memory as multimodel_memory
 from navsym.multimodel.bank import Bank
-from navsym.multimodel.batch import imm_in_numpy, run_batch
+from navsym.multimodel.batch import run_batch
 from navsym.multimodel.filters import run_filter
+from navsym_papers.multistructure.experiment import memory as multimodel_memory
 from navsym_papers.multistructure.experiment import road as multimodel_road
 from navsym_papers.multistructure.experiment import study as multimodel_study
 from tests.benchmarks import multimodel as benchmark
+from tests.twins.mixture import imm_in_numpy
 
 
 @pytest.fixture(scope="module")

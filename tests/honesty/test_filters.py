@@ -11,9 +11,9 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.stats import binom, chi2
 
+from navsym.multimodel import kalman
 from navsym.multimodel.bank import Bank
 from navsym.multimodel.filters import run_filter
-from navsym.multimodel.kalman import steps as kalman
 from tests.honesty.linear_cases import CASES, STEPS, batch_least_squares, simulate
 
 RUNS = 10_000

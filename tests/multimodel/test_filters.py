@@ -7,12 +7,12 @@ import pytest
 from numpy.testing import assert_allclose
 
 from navsym.core.errors import DomainError, EmptyError, NavsymError, NotFiniteError, ShapeError, TooLargeError
-from navsym.multimodel import steps as steps_module
+from navsym.multimodel import kalman
+from navsym.multimodel import schemes as steps_module
 from navsym.multimodel.bank import Bank
 from navsym.multimodel.exact import Leaf, Model, fractions_kit, run_exactly
 from navsym.multimodel.filters import read_bank, run_filter
-from navsym.multimodel.kalman import steps as kalman
-from navsym.multimodel.steps import SCHEMES, filters_at, scheme
+from navsym.multimodel.schemes import SCHEMES, filters_at, scheme
 
 METHODS = tuple(SCHEMES)
 FIELDS = ("probabilities", "mean", "covariance", "log_likelihood")

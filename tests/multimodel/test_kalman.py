@@ -5,7 +5,7 @@ import pytest
 from numpy.linalg import inv
 from numpy.testing import assert_allclose
 
-from navsym.multimodel.kalman import steps as kalman
+from navsym.multimodel import kalman
 
 
 def random_spd(rng, n):

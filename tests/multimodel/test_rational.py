@@ -14,8 +14,8 @@ from navsym.multimodel.bank import Bank
 from navsym.multimodel.batch import run_batch
 from navsym.multimodel.exact import Leaf, Model, fractions_kit, run_exactly
 from navsym.multimodel.filters import run_filter
-from navsym.multimodel.kalman.forms import FORMS
-from navsym.multimodel.steps import SCHEMES, scheme
+from navsym.multimodel.kalman import FORMS
+from navsym.multimodel.schemes import SCHEMES, scheme
 
 STEPS = 3
 

@@ -7,9 +7,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 from navsym.core.errors import DomainError
-from navsym.multimodel.exact import Kit, Leaf, Model, filtered
-from navsym.multimodel.kalman.forms import FORMS, form_of
-from navsym.multimodel.kalman.square_root import bierman, potter, root_of, square, triangular, ud_of
+from navsym.multimodel.exact import Kit, Leaf, Model, filter_leaf
+from navsym.multimodel.kalman import FORMS, bierman, form_of, potter, root_of, square, triangular, ud_of
 
 FACTORED = [name for name in FORMS if name != "joseph"]
 
@@ -60,7 +59,7 @@ def fraction_of(P, z, H, R):
     unit = [[Fraction(int(a == b)) for b in range(n)] for a in range(n)]
     leaf = Leaf((Fraction(1),), [Fraction(0)] * n, rows[0])
     kit = Kit(lambda distance, determinant, p: Fraction(1), lambda value: value)
-    _, found = filtered(leaf, Model(unit, zero, rows[1], rows[2]), 0, [Fraction(float(v)) for v in z], kit)
+    _, found = filter_leaf(leaf, Model(unit, zero, rows[1], rows[2]), 0, [Fraction(float(v)) for v in z], kit)
     return np.array(found.mean, dtype=float), np.array(found.covariance, dtype=float)
 
 

@@ -9,8 +9,9 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 from navsym.core.errors import NotEstimableError
-from navsym.terrain.centre import demand_estimable, information, quadratic_slowly, slopes
+from navsym.terrain.centre import demand_estimable, information, slopes
 from navsym.terrain.heights import TerrainMap
+from tests.twins.terrain import quadratic_slowly
 
 tracks = st.integers(3, 30).flatmap(
     lambda n: st.tuples(

@@ -10,7 +10,6 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from navsym.core.errors import NoDataError, NotEstimableError, OutsideMapError
 from navsym.terrain.heights import TerrainMap
-from navsym.terrain.incremental import add_measurement, begin, fix
 from navsym.terrain.refine import refine
 from navsym.terrain.search import criteria, exact_criterion, prepare, search_full, search_position
 from navsym.terrain.sequential import search_sequential
@@ -140,17 +139,6 @@ def test_a_constant_height_error_does_not_move_the_offset_free_fix():
     raised = Profile(track.t, track.x, track.y, track.h + 80.0)
     assert search_full(terrain, raised, GRID).index != (2, -1, 1, -2)
     assert search_full(terrain, raised, GRID, offset_free=True).index == (2, -1, 1, -2)
-
-
-def test_one_measurement_at_a_time_adds_up_to_the_batch():
-    terrain = relief()
-    track = flight(terrain, noise=3.0)
-    state = begin(terrain, GRID)
-    for t, x, y, h in zip(track.t, track.x, track.y, track.h, strict=True):
-        state = add_measurement(state, t, x, y, h)
-    batch = search_position(terrain, track, GRID, dense=True)
-    assert fix(state).index == batch.index and state.measurements == 41
-    assert_allclose(state.values[0, 0], batch.criteria[0, 0], rtol=1e-12)
 
 
 # The sequential search

@@ -11,16 +11,7 @@ import pytest
 from numpy.testing import assert_array_equal
 
 from navsym.terrain.kernels.bounded import BoundedResult, search_bounded, search_one_velocity
-from navsym.terrain.kernels.criteria import (
-    TOGETHER,
-    criterion_one,
-    dense_masked,
-    dense_slowly,
-    height_at,
-    padded,
-    patch_rows,
-    slab,
-)
+from navsym.terrain.kernels.criteria import TOGETHER, criterion_one, dense_masked, height_at, padded, patch_rows, slab
 from navsym.terrain.kernels.lattice import fits, lattice, rounded
 from navsym.terrain.kernels.margins import (
     CONTRASTS,
@@ -31,6 +22,7 @@ from navsym.terrain.kernels.margins import (
     single_limit,
 )
 from navsym.terrain.kernels.stages import scores
+from tests.twins.terrain import dense_slowly
 
 
 def random_case(generator, *, ties=False):

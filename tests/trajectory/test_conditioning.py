@@ -14,16 +14,16 @@ from navsym.core.errors import DomainError, NotEstimableError, ShapeError, TooLa
 from navsym.models.earth import observability_rows, power_rows
 from navsym.trajectory.conditioning import (
     Enclosure,
+    best_scaling,
+    condition,
     condition_by_polynomial,
     condition_by_signs,
     condition_number,
     condition_numbers,
-    document,
     roots_above,
     scientific,
     squared_singular_polynomial,
 )
-from navsym.trajectory.scaling import best_scaling
 
 fractions = st.fractions(min_value=-5, max_value=5, max_denominator=9)
 
@@ -90,8 +90,8 @@ def test_double_precision_is_doubted_when_it_is_wrong():
     found = condition_numbers(20, "1/6371000", "0.2")
     assert not found["N_f"].trustworthy
     assert found["N_f"].error < -0.99
-    assert any("N_f" in line for line in document(20, "1/6371000", "0.2", 30)["warnings"])
-    assert document(5, "1/6371000", "0.2", 30)["warnings"] == []
+    assert any("N_f" in line for line in condition(20).warnings)
+    assert condition(5).warnings == ()
 
 
 def test_conditioning_of_the_normalised_matrices_does_not_depend_on_rho_and_tau():

@@ -25,10 +25,6 @@ from navsym.trajectory.inversion import (
     steady_gain,
     windowed_filter,
 )
-from navsym.trajectory.stability import gain_stability, harmonic_lag, stationary_covariance
-from navsym.trajectory.stability import metric_scale as metric_balls
-from navsym.trajectory.stability import normalised_scale as normalised_balls
-from navsym.trajectory.twins import adaptive_filter_slowly, one_filter, windowed_filter_slowly
 from navsym_papers.trajectory.experiment.courses import (
     PRINTED_GAIN,
     course,
@@ -36,7 +32,11 @@ from navsym_papers.trajectory.experiment.courses import (
     metric_model,
     scaling_changes_rounding,
 )
+from navsym_papers.trajectory.experiment.stability import gain_stability, harmonic_lag, stationary_covariance
+from navsym_papers.trajectory.experiment.stability import metric_scale as metric_balls
+from navsym_papers.trajectory.experiment.stability import normalised_scale as normalised_balls
 from tests.benchmarks import trajectory as benchmark
+from tests.twins.trajectory import adaptive_filter_slowly, one_filter, windowed_filter_slowly
 
 rng = np.random.default_rng(5)
 Z = np.cumsum(rng.normal(size=60)) + rng.normal(size=60)

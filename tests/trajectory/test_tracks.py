@@ -12,7 +12,7 @@ from scipy.optimize import linprog
 from scipy.stats import chi2
 
 from navsym.core.errors import DomainError, EmptyError, ShapeError
-from navsym.models.earth import cartesian, local_axes, meridian_radius, prime_vertical_radius
+from navsym.models.earth import ECCENTRICITY_SQUARED, SEMI_MAJOR, cartesian, local_axes, prime_vertical_radius
 from navsym.trajectory.estimate import (
     METHODS,
     Settings,
@@ -290,7 +290,8 @@ def straight_drive(seed, rows=60):
     rng, t = np.random.default_rng(seed), np.arange(float(rows))
     parallel = prime_vertical_radius(np.pi / 4) * np.cos(np.pi / 4)
     north, east, up = 2 * t + rng.normal(size=rows), 3 * t + rng.normal(size=rows), rng.normal(size=rows)
-    return t, np.pi / 4 + north / meridian_radius(np.pi / 4), 0.2 + east / parallel, 100 + up
+    meridian = prime_vertical_radius(np.pi / 4) ** 3 * ((1 - ECCENTRICITY_SQUARED) / SEMI_MAJOR**2)
+    return t, np.pi / 4 + north / meridian, 0.2 + east / parallel, 100 + up
 
 
 @pytest.mark.parametrize("method", METHODS)

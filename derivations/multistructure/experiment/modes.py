@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import sympy as sp
 from numpy.typing import NDArray
 
 Array = NDArray[np.floating[Any]]
@@ -20,25 +19,6 @@ GRAVITY = 9.81
 EARTH_RADIUS = 6.371e6
 DEGREE_PER_HOUR = np.pi / 180.0 / 3600.0
 MODES = ("nominal", "drift jump", "degraded measurement")
-
-
-def schuler_matrix() -> tuple[sp.Matrix, dict[str, sp.Symbol]]:
-    """A of ``d/dt (v, phi, eps) = A (v, phi, eps)`` with g and R as symbols."""
-    g, R = sp.symbols("g R", positive=True)
-    return sp.Matrix([[0, g, 0], [-1 / R, 0, 1], [0, 0, 0]]), {"g": g, "R": R}
-
-
-def schuler_transition() -> tuple[sp.Matrix, dict[str, sp.Symbol]]:
-    """The closed form of exp(A tau), with w = sqrt(g / R).
-
-    v' = v cos + (g/w) phi sin + (g/w^2) eps (1 - cos),  phi' = -(v w / g) sin + phi cos + (eps / w) sin.
-    """
-    _, symbols = schuler_matrix()
-    g, R, tau = symbols["g"], symbols["R"], sp.Symbol("tau", positive=True)
-    w = sp.sqrt(g / R)
-    s, c = sp.sin(w * tau), sp.cos(w * tau)
-    transition = sp.Matrix([[c, g / w * s, R * (1 - c)], [-w / g * s, c, s / w], [0, 0, 1]])
-    return transition, {**symbols, "tau": tau}
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +45,7 @@ class SchulerChannel:
     recover: float = 0.5
 
     def transition(self) -> Array:
-        """exp(A tau) (3, 3) of :func:`schuler_transition`."""
+        """exp(A tau) (3, 3) in closed form, with w = sqrt(g / R): waves of v and phi, and a drift that stays."""
         w = np.sqrt(GRAVITY / EARTH_RADIUS)
         s, c = np.sin(w * self.tau), np.cos(w * self.tau)
         half = np.sin(0.5 * w * self.tau)

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from navsym.core.errors import DomainError
 from navsym.multimodel.bank import Bank
 from navsym.multimodel.filters import run_filter
-from navsym.multimodel.steps import require_room, scheme
+from navsym.multimodel.schemes import require_room, scheme
 from navsym_papers.multistructure.experiment.modes import MODES, SchulerChannel
 
 Array = NDArray[np.floating[Any]]

@@ -1,7 +1,7 @@
 """A whole series of measurements through any scheme of multiple models, in one compiled loop.
 
 Hypotheses are the lanes of :mod:`navsym.multimodel.kernels.filter`; the fold happens on the fly, so nothing but
-the current hypotheses is kept. The readable twin is ``navsym.multimodel.steps``.
+the current hypotheses is kept. The readable twin is :mod:`navsym.multimodel.engine`.
 """
 
 from __future__ import annotations

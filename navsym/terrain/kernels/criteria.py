@@ -221,13 +221,6 @@ LANES = 16
 TOGETHER = 4
 
 
-@njit(**COMPILE)
-def dense_slowly(case: Any, steps: Any, counts: Any, out: np.ndarray) -> None:
-    """Twin of :func:`slab` for all Vi, one hypothesis at a time. out : flat, in the order Vi, Vj, j, i."""
-    for index in range(out.shape[0]):
-        out[index] = criterion_one(case, shift_of(index, counts, steps), np.inf)
-
-
 # The fast loops. Unsigned loop variables spare the test for negative indices, which would keep
 # the compiler from using vector instructions.
 

@@ -66,7 +66,7 @@ def add_four_lanes(
 
 
 @njit(**COMPILE)
-def add_one_slowly(
+def add_one_measurement(
     h: np.ndarray, nx: int, at: Any, f: float, g: float, z: float, Mx: int, My: int, W: int, out: np.ndarray
 ) -> None:
     """One measurement: twin of :func:`add_four_lanes`, and what is left over at the end of a track."""
@@ -95,7 +95,7 @@ def lattice(H: np.ndarray, bx: np.ndarray, by: np.ndarray, z: np.ndarray, counts
             at[q], f[q], g[q] = r * nx + c, u - c, w - r
         if four < 4:
             for q in range(four):
-                add_one_slowly(heights, nx, at[q], f[q], g[q], z[k0 + q], Mx, My, W, sums)
+                add_one_measurement(heights, nx, at[q], f[q], g[q], z[k0 + q], Mx, My, W, sums)
             continue
         for i in range(0, W, 8):
             places = (at[0] + i, at[1] + i, at[2] + i, at[3] + i)

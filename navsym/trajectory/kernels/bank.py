@@ -2,7 +2,6 @@
 
 Candidates lie in the innermost dimension, so that the compiler takes several at once, and go in blocks
 whose matrices stay in the first cache through a whole window of steps.
-The plain twin is in ``navsym.trajectory.twins``.
 """
 
 from __future__ import annotations

@@ -6,7 +6,7 @@ The measurement is a scalar, so a candidate diagonal q = (q_1, ..., q_n) enters 
     K_j = (g_j + h_j q_j) / S           gain, with g = (Phi P Phi^T) h^T and s0 = h g + R,
 
 and no candidate needs a covariance of its own. Candidates that carry their own estimates are in
-``trajectory_bank``; plain twins of both in ``navsym.trajectory.twins``.
+:mod:`navsym.trajectory.kernels.bank`.
 """
 
 from __future__ import annotations

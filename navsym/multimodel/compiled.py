@@ -1,4 +1,4 @@
-"""The compiled engine: hands a bank to the loops and falls back to the readable engine where they stop."""
+"""The compiled engine: a bank handed to the loops; where they stop, the readable engine goes on."""
 
 from __future__ import annotations
 
@@ -8,12 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navsym.core import arrays
-from navsym.multimodel import moments as mixture
 from navsym.multimodel.bank import Bank
 from navsym.multimodel.engine import UNDERFLOW, Estimates, run_in_numpy
-from navsym.multimodel.kalman import steps as kalman
+from navsym.multimodel.kalman import logs, scalar_corrections
 from navsym.multimodel.kernels.bank import ALL, BY_MODE, CROSS, KEEP, MIXED, OWN, run_bank
-from navsym.multimodel.steps import Scheme, filters_at
+from navsym.multimodel.schemes import Scheme, filters_at
 
 Array = NDArray[np.floating[Any]]
 
@@ -44,8 +43,8 @@ def run_compiled(rule: Scheme, models: Bank, z: Array, count: int) -> Estimates:
         U,
         rotated,
         models.mode_transition,
-        mixture.logs(models.mode_transition),
-        mixture.logs(models.probabilities),
+        logs(models.mode_transition),
+        logs(models.probabilities),
         models.common,
         models.means,
         models.covariances,
@@ -89,5 +88,5 @@ def independent_scalars(models: Bank) -> tuple[Array, Array, Array, bool]:
 def scalars(H: Array, R: Array) -> tuple[Array, Array, Array]:
     """Rotated observation, variances and the rotation of one model."""
     unit = np.eye(len(R))
-    rotation, rotated, variances = kalman.scalar_corrections(unit, H, R)
+    rotation, rotated, variances = scalar_corrections(unit, H, R)
     return rotated, variances, rotation.T

@@ -12,11 +12,48 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from navsym.multimodel import moments as mixture
+from navsym.multimodel import kalman
+from navsym.multimodel import kalman as mixture
 from navsym.multimodel.bank import Bank
-from navsym.multimodel.kalman import steps as kalman
 
 Array = NDArray[np.floating[Any]]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Moments:
+    """Running sums of a mixture: what the paper's averaging adders hold.
+
+    log_weight : log of the sum of the weights so far
+    mean       : (n,)   mean so far
+    covariance : (n, n) covariance so far, already divided by the sum of the weights
+    """
+
+    log_weight: float
+    mean: Array
+    covariance: Array
+
+
+def nothing(n: int) -> Moments:
+    """Moments before the first component."""
+    return Moments(-np.inf, np.zeros(n), np.zeros((n, n)))
+
+
+def accumulate(sums: Moments, log_weight: float, mean: Array, P: Array) -> Moments:
+    """Add one component and forget it: multistructure:accumulate.
+
+    With g the share of the newcomer in the new total and d = mean - old mean:
+    ``m + g d`` and ``(1 - g) C + g P + g (1 - g) d d^T``. Every term is semidefinite, nothing is subtracted,
+    so no digits are lost where second moments about zero would lose all of them. Weights stay unnormalised
+    logarithms until the last component has come.
+    """
+    if log_weight == -np.inf:
+        return sums
+    total = float(np.logaddexp(sums.log_weight, log_weight))
+    share = float(np.exp(log_weight - total))
+    rest = float(np.exp(sums.log_weight - total))
+    d = mean - sums.mean
+    covariance = rest * sums.covariance + share * P + share * rest * np.outer(d, d)
+    return Moments(total, sums.mean + share * d, covariance)
 
 
 @dataclass(slots=True)
@@ -51,14 +88,14 @@ def pulsating_step(bank: Bank, k: int, z: Array, space: Workspace) -> float:
     work, the adders, and one probability per mode.
     """
     prior = space.put("probabilities", space.arrays["probabilities"] @ bank.at("mode_transition", k))
-    sums = mixture.nothing(bank.states)
+    sums = nothing(bank.states)
     for i in range(bank.modes):
         mean, P = kalman.predict(space.arrays["mean"], space.arrays["P"], bank.at("F", k)[i], bank.at("Q", k)[i])
         mean, P, log_likelihood = kalman.correct(mean, P, z, bank.at("H", k)[i], bank.at("R", k)[i])
         space.put("partial mean", mean)
         space.put("partial P", P)
         log_weight = float(mixture.logs(prior[i]) + log_likelihood)
-        sums = mixture.accumulate(sums, log_weight, mean, P)  # multistructure:accumulate
+        sums = accumulate(sums, log_weight, mean, P)  # multistructure:accumulate
         space.put("sum of weights", sums.log_weight)
         space.put("sum of means", sums.mean)
         space.put("sum of P", sums.covariance)

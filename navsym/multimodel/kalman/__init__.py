@@ -1,1 +1,0 @@
-"""The Kalman filter, one step at a time, in covariance and square-root forms."""
