@@ -11,12 +11,12 @@ from pathlib import Path
 from typing import Any
 
 from navsym import checker
-from navsym.claims.display import card, table
+from navsym.claims.display import write_card, write_table
 from navsym.core.answers import Answer
 from navsym.core.errors import DomainError, EmptyError, NavsymError
 from navsym.export.roundtrip import check_export
 from navsym.language.files import decode
-from navsym.language.names import shown
+from navsym.language.names import quote
 
 LARGEST = 50_000_000
 #: Every key that a certificate has: a file of nothing else is one, even if it lost its kind.
@@ -75,7 +75,9 @@ class Checks(Answer):
 
     def _repr_html_(self) -> str:
         rows = [(row.path, row.kind or "", row.status, row.why) for row in self.checked]
-        return card([table(("path", "kind", "status", "why"), rows)], "PROVED" if self.accepted else "REFUTED")
+        return write_card(
+            [write_table(("path", "kind", "status", "why"), rows)], "PROVED" if self.accepted else "REFUTED"
+        )
 
 
 #: A place to check, and how.
@@ -122,7 +124,7 @@ def parts_of(item: Any) -> list[Part]:
     if isinstance(item, Mapping):
         return certificate_parts([item])
     if not isinstance(item, (str, os.PathLike)):
-        message = f"expected a path, an answer or a certificate; got {shown(item)}; name one of these"
+        message = f"expected a path, an answer or a certificate; got {quote(item)}; name one of these"
         raise DomainError(message, where="check")
     path = Path(item)
     if not path.exists():

@@ -18,7 +18,7 @@ from navsym.core.errors import DomainError
 from navsym.export.functions import function_of, require_exportable
 from navsym.export.parts import ExportedFunction, Layout, Material, Output, Source, State
 from navsym.prove.ladder import decide_within
-from navsym.prove.wording import text_of
+from navsym.prove.wording import expression_text
 
 SECONDS = 90.0
 Decided = Callable[[str], Material]
@@ -99,7 +99,7 @@ class Chain:
             method=", ".join(dict.fromkeys(s.method for s in sources)),
             scope="; ".join(dict.fromkeys(s.scope for s in sources if s.scope)),
             assumptions=tuple(dict.fromkeys(a for s in sources for a in s.assumptions)),
-            formula=(*(f"{name.name} = {text_of(formula)}" for name, formula in lets), *self.results()),
+            formula=(*(f"{name.name} = {expression_text(formula)}" for name, formula in lets), *self.results()),
             certificate={"kind": "all", "of": certificates} if certificates else None,
         )
 

@@ -16,19 +16,19 @@ import sympy as sp
 from flint import arb
 
 from navsym.claims import REFUTED, Equation
-from navsym.claims.display import table
+from navsym.claims.display import write_table
 from navsym.core.answers import Answer
 from navsym.core.balls import enclose, hull
 from navsym.core.errors import DomainError, EmptyError, ExpressionSyntaxError, NavsymError, ShapeError
 from navsym.core.numbers import Number
 from navsym.language.expression import parse, symbol
 from navsym.language.files import read_text
-from navsym.language.names import shown
+from navsym.language.names import quote
 from navsym.language.tokens import Source, tokenize
 from navsym.language.values import write_value
 from navsym.prove.ladder import decide
 from navsym.prove.sampling.points import range_of
-from navsym.prove.wording import decimal_ends, text_of
+from navsym.prove.wording import decimal_ends, expression_text
 
 POINTS = 400
 LIMIT = 20_000_000
@@ -103,7 +103,7 @@ class Differences(Answer):
         return f"<{len(self)} formulas: {', '.join(f'{n} {status}' for status, n in counts.items())}>"
 
     def _repr_html_(self) -> str:
-        return table(("formula", "status", "why"), ((d.name, d.status, d.why) for d in self.differences))
+        return write_table(("formula", "status", "why"), ((d.name, d.status, d.why) for d in self.differences))
 
 
 def diff(old: Any, new: Any, *, box: Mapping[str, Any] | None = None, **ranges: Any) -> Differences:
@@ -153,7 +153,7 @@ def exact_range(name: str, ends: Any) -> tuple[sp.Expr, sp.Expr]:
     """Two exact ends of a range; raises ShapeError for what is no pair."""
     where = f"diff: {name}"
     if not isinstance(ends, (tuple, list)) or len(ends) != 2:
-        raise ShapeError(f'expected two ends; got {shown(ends)}; write {name}=("0", "1")', where=where)
+        raise ShapeError(f'expected two ends; got {quote(ends)}; write {name}=("0", "1")', where=where)
     lower, upper = (parse(write_value(end, where), {}, where=where) for end in ends)
     return lower, upper
 
@@ -185,7 +185,7 @@ def compare_pair(name: str, old: Formula | None, new: Formula | None) -> Differe
     point, difference = worst_point(left - right, box)
     if point is None or difference is None:
         return Difference(name, "DIFFERENT", "counterexample", (), verdict.counterexample or {}, verdict.difference)
-    exact = {s.name: text_of(value) for s, value in point.items()}
+    exact = {s.name: expression_text(value) for s, value in point.items()}
     return Difference(name, "DIFFERENT", f"largest of {POINTS} points", (), exact, decimal_ends(difference))
 
 

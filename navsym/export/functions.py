@@ -25,7 +25,7 @@ from navsym.export.inputs import arguments_of, inputs_of, with_whole_arrays
 from navsym.export.languages.names import function_name, local_names
 from navsym.export.parts import ExportedFunction, Input, Layout, Material, Output, Piece, Source, inside
 from navsym.export.regimes import common_outputs, in_order, joined_box, limit_of
-from navsym.prove.wording import text_of
+from navsym.prove.wording import expression_text
 
 MOST_OUTPUTS = 400
 WORK = 40_000  # nodes times cells that the uniform bound may cost
@@ -113,7 +113,7 @@ def material(
 def formula_lines(results: Sequence[tuple[Output, Sequence[sp.Expr]]]) -> tuple[str, ...]:
     """``name = formula`` of every result, ``name[k] = formula`` of every entry."""
     return tuple(
-        f"{output.name}{f'[{k}]' if output.shape else ''} = {text_of(e)}"
+        f"{output.name}{f'[{k}]' if output.shape else ''} = {expression_text(e)}"
         for output, flat in results
         for k, e in enumerate(flat)
     )

@@ -13,7 +13,7 @@ from navsym.core.errors import ShapeError
 from navsym.export.languages.names import LONGEST, identifier
 from navsym.export.parts import Argument, Input, Layout, inside
 from navsym.prove.sampling.points import Range, range_of
-from navsym.prove.wording import text_of
+from navsym.prove.wording import expression_text
 
 SMALLEST = {"double": 2.0**-60, "float": 2.0**-20}  # stands for an open end at zero
 LARGE = 1000.0  # the end of a range that has none, for vectors and bounds
@@ -99,6 +99,6 @@ def input_of(symbol: sp.Symbol, name: str, box: Mapping[Any, Any], real: str) ->
 
 def around(limits: Range) -> str:
     """A range in words, with {} for the name."""
-    lower = "" if limits.lower is None else f"{text_of(limits.lower)} {'<' if limits.open_lower else '<='} "
-    upper = "" if limits.upper is None else f" <= {text_of(limits.upper)}"
+    lower = "" if limits.lower is None else f"{expression_text(limits.lower)} {'<' if limits.open_lower else '<='} "
+    upper = "" if limits.upper is None else f" <= {expression_text(limits.upper)}"
     return f"{lower}{{}}{upper}" if lower or upper else "{} real"

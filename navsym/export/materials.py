@@ -19,11 +19,11 @@ from navsym.export.parts import ExportedFunction, Layout, Material, Output, Sour
 from navsym.export.ready import ALGORITHMS, READY, UNITS, algorithm
 from navsym.guaranteed.phases.answer import Phases, Regime
 from navsym.guaranteed.solver import Estimator
-from navsym.language.names import shown
+from navsym.language.names import quote
 from navsym.models.derivation import Derivation, derive
 from navsym.models.model import Model
 from navsym.prove.claimfile import claims_from, decide_claim, read_claims, statement_of
-from navsym.prove.ladder import decide_within, exhausted
+from navsym.prove.ladder import decide_within, leave_open
 from navsym.verification.papers import load_papers
 
 SECONDS = 90.0
@@ -60,7 +60,7 @@ def functions_from(
         item = derive(item)
     if isinstance(item, Derivation):
         return functions_of_derivation(item, real, units)
-    raise DomainError(f"expected {EXPORTABLE}; got {shown(item)}; name one of these", where="export")
+    raise DomainError(f"expected {EXPORTABLE}; got {quote(item)}; name one of these", where="export")
 
 
 # Claims by their ids
@@ -127,7 +127,7 @@ def material_from_file(path: Path, wanted: str, allow_confirmed: bool) -> Materi
     return material(
         f"{path.stem}:{wanted}",
         statement_of(claim),
-        exhausted(outcome) if isinstance(outcome, Exhausted) else outcome,
+        leave_open(outcome) if isinstance(outcome, Exhausted) else outcome,
         title=f"Claim {wanted} of a claim file",
         equation=f"claim {wanted}",
         paper=path.name,
@@ -166,7 +166,8 @@ def function_of_estimator(found: Estimator, real: str, units: Mapping[str, str])
     weights = [sp.Rational(point.text[1]) for point in found.support]
     times = [sp.Rational(point.text[0]) for point in found.support]
     value = (sp.Rational(found.lower) + sp.Rational(found.upper)) / 2
-    rows = [f"z[{k}] is {p.measurement} at {p.text[0]}, weight {p.text[1]}" for k, p in enumerate(found.support)]
+    rows = [f"z[{k}]: {point.measurement} at {point.text[0]}" for k, point in enumerate(found.support)]
+    plain = dict(zip(w, weights, strict=True))
     results = [
         (Output("estimate"), [sum((a * b for a, b in zip(w, z, strict=True)), start=sp.S.Zero)]),
         (Output("times", (len(times),)), times),
@@ -179,9 +180,9 @@ def function_of_estimator(found: Estimator, real: str, units: Mapping[str, str])
         equation="",
         status=str(found.status),
         method="exact primal-dual certificate",
-        scope="weights, times and value to the digits shown",
+        scope=f"{'; '.join(rows)}; weights, times and value to {found.digits} digits",
         assumptions=(),
-        formula=(*rows, "estimate = sum of w*z", f"value in [{found.lower}, {found.upper}]"),
+        formula=formula_lines([(output, [e.xreplace(plain) for e in flat]) for output, flat in results]),
         certificate=found.certificate,
     )
     part = Material(source.claim, results, {}, source, tuple(zip(w, weights, strict=True)))

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from navsym.claims import Claim, Record
-from navsym.claims.display import card, verdict_words
+from navsym.claims.display import mark_verdict, write_card
 from navsym.claims.paper import papers_folder
 from navsym.core.answers import Answer
 from navsym.core.balls import enclose, tape
@@ -78,12 +78,12 @@ class Explanation(Answer):
         return f"<explanation of {self.record.id}: {self.record.status}, {len(self.steps)} steps>"
 
     def _repr_html_(self) -> str:
-        lines = [f"<b>{html.escape(self.record.id)}</b> {verdict_words(str(self.record.status))}"]
+        lines = [f"<b>{html.escape(self.record.id)}</b> {mark_verdict(str(self.record.status))}"]
         for step in self.steps:
             head = f"<b>{html.escape(step.heading)}.</b> " if step.heading else ""
             formula = f" <code>{html.escape(step.formula)}</code>" if step.formula else ""
             lines.append(f"{head}{html.escape(step.words)}{formula}")
-        return card(lines, str(self.record.status))
+        return write_card(lines, str(self.record.status))
 
 
 def explain(claim: str, *, seconds: float = SECONDS) -> Explanation:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from navsym.claims import Claim, Record, Status
-from navsym.claims.display import table
+from navsym.claims.display import write_table
 from navsym.core.answers import Answer
 from navsym.core.choice import one_of
 from navsym.core.errors import UnknownSymbolError
@@ -121,10 +121,11 @@ class Listing(Answer):
         return {"claims": [claim.document() for claim in self.claims], "count": len(self)}
 
     def __repr__(self) -> str:
-        return f"<{len(self)} claims of {len({claim.paper for claim in self.claims})} papers>"
+        papers = ", ".join(dict.fromkeys(claim.paper for claim in self.claims))
+        return f"<{len(self)} claim{'' if len(self) == 1 else 's'}{f' of {papers}' if papers else ''}>"
 
     def _repr_html_(self) -> str:
-        return table(("claim", "verdict", "title"), ((c.id, str(c.status), c.title) for c in self.claims))
+        return write_table(("claim", "verdict", "title"), ((c.id, str(c.status), c.title) for c in self.claims))
 
 
 def claims(*papers: str, status: str | Sequence[str] = (), slip: str | None = None, words: str = "") -> Listing:
@@ -140,11 +141,11 @@ def claims(*papers: str, status: str | Sequence[str] = (), slip: str | None = No
     >>> import navsym as nav
     >>> refuted = nav.claims("alpha_beta_filter", status="REFUTED")
     >>> refuted
-    <1 claims of 1 papers>
+    <1 claim of alpha_beta_filter>
     >>> refuted[0].id
     'alpha_beta_filter:remark.critical'
     >>> nav.claims()["guaranteed_velocity:4.3.u2*"].latex
-    '-\\frac{\\sin^{2}\\left( T/4 \\right)}{\\cos\\left( T/2 \\right)}'
+    ' - \\frac{\\sin^{2}\\left( T/4 \\right)}{\\cos\\left( T/2 \\right)}'
     """
     given = [status] if isinstance(status, str) else status
     statuses = {one_of(str(word).upper(), tuple(Status), "status") for word in given}

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from navsym.claims import Bound, Claim, Equation, Optimum, Property, Statement, Verdict
-from navsym.claims.display import SIGNS, card, latex_of, verdict_words
+from navsym.claims.display import SIGNS, latex_of, mark_verdict, write_card
 from navsym.core.errors import NavsymError
 from navsym.prove.ladder import decide
 
@@ -34,10 +34,10 @@ class Shown:
         rows = [
             f"<b>{html.escape(self.claim.id)}</b> {html.escape(self.claim.title)}",
             *(f"<i>{name}</i> $\\displaystyle {latex}$" for name, latex in statement_latex(self.statement)),
-            f"{verdict_words(str(verdict.status))} by {html.escape(verdict.method)}, {html.escape(verdict.scope)}",
+            f"{mark_verdict(str(verdict.status))} by {html.escape(verdict.method)}, {html.escape(verdict.scope)}",
         ]
         rows += [html.escape(words) for words in remarks(self.claim, verdict)]
-        return card(rows, str(verdict.status))
+        return write_card(rows, str(verdict.status))
 
     def __repr__(self) -> str:
         return f"{self.claim.id}: {self.verdict.status} ({self.verdict.method}; {self.verdict.scope})"

@@ -27,7 +27,7 @@ from navsym.core.errors import DomainError, NavsymError
 from navsym.guaranteed.phases.answer import Phases, Regime
 from navsym.guaranteed.solver import Estimator
 from navsym.language.expression import parse, symbol
-from navsym.language.names import shown
+from navsym.language.names import quote
 from navsym.multimodel.engine import Estimates
 from navsym.report.explain import entries_of
 from navsym.report.names import latex_name
@@ -311,7 +311,7 @@ def plot(answer: Any) -> Figure:
             drawn: Figure = draw(answer)
             return drawn
     expected = ", ".join(kind.__name__ for kind in PICTURES)
-    raise DomainError(f"expected one of {expected}, or a refuted claim; got {shown(answer)}; plot one of these")
+    raise DomainError(f"expected one of {expected}, or a refuted claim; got {quote(answer)}; plot one of these")
 
 
 def plot_estimator(found: Estimator) -> Figure:

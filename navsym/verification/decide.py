@@ -13,7 +13,7 @@ from navsym.claims import OPEN, Bound, Claim, Equation, Optimum, Paper, Property
 from navsym.core.errors import DomainError
 from navsym.core.sandbox import Exhausted, Failed, require_limits, run_many
 from navsym.prove.ladder import decide
-from navsym.prove.wording import text_of
+from navsym.prove.wording import expression_text
 from navsym.verification.ledger import Ledger
 from navsym.verification.papers import PaperModule, claim_ids, find_claim, load_papers, summarise_paper
 from navsym.verification.verdict_store import VerdictStore, sources
@@ -47,8 +47,8 @@ def verify(
     >>> ledger = nav.verify("alpha_beta_filter")
     >>> ledger.counts["REFUTED"], ledger.unexpected, ledger.missing
     (1, (), ())
-    >>> ledger.document()["papers"][0]["claimed"]
-    8
+    >>> ledger["alpha_beta_filter:12.stable"].scope
+    'all r in (0, 1]'
     """
     require_workers(jobs, seconds)
     before = sources()
@@ -188,7 +188,7 @@ def make_record(paper: Paper, claim: Claim, statement: Statement | None, verdict
 def sides(statement: Statement) -> tuple[str, str]:
     """Printed and derived side in the language of files."""
     if isinstance(statement, Equation):
-        tail = "" if statement.tolerance is None else f" +- {text_of(sp.sympify(statement.tolerance, strict=True))}"
+        tail = "" if statement.tolerance is None else f" +- {expression_text(sp.sympify(statement.tolerance, strict=True))}"
         return side_text(statement.printed) + tail, side_text(statement.derived)
     if isinstance(statement, Bound):
         return f"{side_text(statement.printed)} {statement.relation} {side_text(statement.derived)}", ""
@@ -201,11 +201,11 @@ def sides(statement: Statement) -> tuple[str, str]:
 def side_text(side: Any) -> str:
     """One side of a statement as text: a matrix by rows, a tuple, or one expression."""
     if isinstance(side, sp.MatrixBase):
-        rows = ["[" + ", ".join(text_of(entry) for entry in side.row(i)) + "]" for i in range(side.rows)]
+        rows = ["[" + ", ".join(expression_text(entry) for entry in side.row(i)) + "]" for i in range(side.rows)]
         return "[" + ", ".join(rows) + "]"
     if isinstance(side, (tuple, list)):
-        return "(" + ", ".join(text_of(sp.sympify(entry, strict=True)) for entry in side) + ")"
-    return text_of(sp.sympify(side, strict=True))
+        return "(" + ", ".join(expression_text(sp.sympify(entry, strict=True)) for entry in side) + ")"
+    return expression_text(sp.sympify(side, strict=True))
 
 
 def value_text(value: Any) -> str:

@@ -13,7 +13,7 @@ from dataclasses import asdict, dataclass, field
 from typing import Any, Protocol, TypeVar
 
 from navsym.claims import Paper, Record, equation_of
-from navsym.claims.display import card, table, verdict_words
+from navsym.claims.display import write_card, write_table, mark_verdict
 from navsym.core.answers import Answer
 from navsym.core.errors import UnknownSymbolError
 from navsym.language.files import write_text
@@ -35,7 +35,7 @@ class Ledger(Answer):
     >>> import navsym as nav
     >>> ledger = nav.verify("alpha_beta_filter")
     >>> ledger
-    <Ledger: 19 claims: 17 PROVED, 1 CERTIFIED, 1 REFUTED, all as declared>
+    <Ledger: 19 claims: 18 PROVED, 1 REFUTED, all as declared>
     >>> ledger["alpha_beta_filter:12.stable"].printed
     '4*r'
     """
@@ -144,9 +144,9 @@ class Ledger(Answer):
         for paper, records in self.by_paper():
             statuses = [str(record.status) for record in records]
             rows.append((paper.module, *(statuses.count(status) for status in MARKS), ", ".join(paper.missing)))
-        lines = [table(("paper", *MARKS, "missing equations"), rows)]
-        lines += [f"{html.escape(r.id)} {verdict_words(str(r.status))}, declared {r.expect}" for r in self.unexpected]
-        return card(lines, "REFUTED" if self.unexpected else "PROVED")
+        lines = [write_table(("paper", *MARKS, "missing equations"), rows)]
+        lines += [f"{html.escape(r.id)} {mark_verdict(str(r.status))}, declared {r.expect}" for r in self.unexpected]
+        return write_card(lines, "REFUTED" if self.unexpected else "PROVED")
 
 
 # The order of a paper

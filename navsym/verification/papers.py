@@ -73,7 +73,8 @@ def stored_records() -> dict[str, Record]:
 
 def find_claim(wanted: str) -> tuple[PaperModule, Claim]:
     """Paper and claim of an id ``module:number``; raises DomainError that lists the ids that begin so."""
-    module, colon, number = str(wanted).partition(":")
+    wanted = str(wanted)
+    module, colon, number = wanted.partition(":")
     if not colon and (known := papers_with(wanted)):
         whole = " or ".join(f"{name}:{wanted}" for name in known)
         message = f"expected the id of a claim, MODULE:NUMBER; got {wanted[:80]}; take {whole}"
@@ -98,7 +99,8 @@ def papers_with(number: str) -> list[str]:
 
 def claim_ids(wanted: str) -> list[str]:
     """Ids of all claims about a numbered equation, ``module:4.16``; of anything else, the id itself."""
-    module, colon, number = str(wanted).partition(":")
+    wanted = str(wanted)
+    module, colon, number = wanted.partition(":")
     if not colon:
         return [wanted]
     (paper,) = load_papers([module])

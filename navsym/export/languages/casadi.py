@@ -16,7 +16,7 @@ from typing import Any
 
 import sympy as sp
 
-from navsym.core.casadi_functions import Memo, by_distance, column_function, inputs_of, translated
+from navsym.core.casadi_functions import Memo, by_distance, column_function, declare_inputs, translate
 from navsym.export.accuracy.continuation import continuation
 from navsym.export.accuracy.vectors import Vector
 from navsym.export.atoms import expm1, filled
@@ -83,7 +83,7 @@ def files(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]],
 
 def function_of_piece(name: str, symbols: Sequence[sp.Symbol], piece: Piece) -> Any:
     """One regime in casadi's own operations, from its formulas."""
-    inputs, memo = inputs_of(symbols)
+    inputs, memo = declare_inputs(symbols)
     for symbol, _, form in piece.lets:
         memo[symbol] = in_casadi(form, memo)
     return column_function(name, inputs, [in_casadi(form, memo) for form in piece.forms])
@@ -94,8 +94,8 @@ def in_casadi(form: sp.Expr, memo: Memo) -> Any:
     form = form.replace(expm1, lambda x: sp.exp(x) - 1)
     for part in sp.postorder_traversal(form):
         if isinstance(part, filled) and part not in memo:
-            memo[part] = without_hole(part_of(part), translated(part.args[2], memo))
-    return translated(form, memo)
+            memo[part] = without_hole(part_of(part), translate(part.args[2], memo))
+    return translate(form, memo)
 
 
 def without_hole(part: Part, t: Any) -> Any:
@@ -103,7 +103,7 @@ def without_hole(part: Part, t: Any) -> Any:
     proved, total = continuation(part, "double"), 0 * t
     for c in reversed(proved.polynomial):
         total = total * t + int(c.p) / int(c.q)
-    above = translated(part.plain, {T: t})
+    above = translate(part.plain, {T: t})
     for _ in range(part.divided):
         above = above / t
     return by_distance(t, proved.switch, t**proved.power * total, above)

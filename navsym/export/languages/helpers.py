@@ -17,7 +17,7 @@ from navsym.export.holes import Part, T
 from navsym.export.languages.part_names import name_of
 from navsym.export.languages.printing import Spelling, bare, node_text
 from navsym.export.parts import ExportedFunction
-from navsym.prove.wording import text_of
+from navsym.prove.wording import expression_text
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +40,7 @@ class Helper:
     @property
     def formula(self) -> str:
         """What it is, in x."""
-        numerator = text_of(self.part.plain.xreplace({T: sp.Symbol("x", real=True)}))
+        numerator = expression_text(self.part.plain.xreplace({T: sp.Symbol("x", real=True)}))
         power = {0: "", 1: "/x"}.get(self.part.divided, f"/x^{self.part.divided}")
         return f"({numerator}){power}" if power else numerator
 

@@ -9,7 +9,7 @@ import sympy as sp
 
 from navsym.export.atoms import expm1
 from navsym.export.holes import Part, T
-from navsym.prove.wording import text_of
+from navsym.prove.wording import expression_text
 
 LONGEST_NAME = 24
 #: What people call some of them.
@@ -26,7 +26,7 @@ def name_of(part: Part) -> str:
     """A name from people, or one from the formula with a few digits that tell equal ones apart."""
     if part in NAMES:
         return NAMES[part]
-    text = f"{text_of(part.plain)}{'_over_t' * bool(part.divided)}"
+    text = f"{expression_text(part.plain)}{'_over_t' * bool(part.divided)}"
     for sign, word in (("**", ""), ("+", "_plus_"), ("-", "_minus_"), ("/", "_over_")):
         text = text.replace(sign, word)
     plain = re.sub(r"_+", "_", re.sub(r"\W", "_", text)).strip("_")[:LONGEST_NAME].rstrip("_")
