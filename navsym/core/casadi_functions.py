@@ -65,23 +65,13 @@ def casadi_function(
     Raises UnknownSymbolError (a symbol that is no argument), DomainError (a function that has no
     counterpart, a name that is no identifier), NotFiniteError (a number beyond double precision).
     """
-    inputs, memo = inputs_of(arguments)
+    inputs, memo = declare_inputs(arguments)
     for symbol, value in named:
-        memo[symbol] = translated(value, memo)
-    return ca.Function(identifier(name), inputs, [output_of(expression, memo)])
+        memo[symbol] = translate(value, memo)
+    return ca.Function(check_identifier(name), inputs, [translate_output(expression, memo)])
 
 
-def jacobian_function(name: str, arguments: Sequence[Argument], expression: Any, *, by: int = 0) -> ca.Function:
-    """The Jacobian of the expression by one of its arguments, by casadi's own differentiation.
-
-    For an (m,) column and an argument of k symbols the output is (m, k).
-    """
-    inputs, memo = inputs_of(arguments)
-    output = ca.jacobian(ca.vec(output_of(expression, memo)), inputs[by])
-    return ca.Function(identifier(name), inputs, [output])
-
-
-def on_grid(function: ca.Function, points: Any, *constants: float) -> Array:
+def evaluate_on_grid(function: ca.Function, points: Any, *constants: float) -> Array:
     """Values of a function of a scalar (and further constant arguments) at n points.
 
     Returns (m, n) for a column of m outputs: one column per point, the shape of ``regressors``.
@@ -97,7 +87,7 @@ def on_grid(function: ca.Function, points: Any, *constants: float) -> Array:
 
 def column_function(name: str, inputs: Sequence[Any], outputs: Sequence[Any]) -> ca.Function:
     """A casadi function of expressions that are translated already; its output is the column of them."""
-    return ca.Function(identifier(name), list(inputs), [ca.densify(ca.vertcat(*outputs))])
+    return ca.Function(check_identifier(name), list(inputs), [ca.densify(ca.vertcat(*outputs))])
 
 
 def by_distance(x: Any, limit: float, below: Any, above: Any) -> Any:
@@ -105,14 +95,14 @@ def by_distance(x: Any, limit: float, below: Any, above: Any) -> Any:
     return ca.if_else(ca.fabs(x) < limit, below, above)
 
 
-def identifier(name: str) -> str:
+def check_identifier(name: str) -> str:
     """The name, if it may stand in generated code."""
     if not re.fullmatch(r"[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*", name):
         raise DomainError(f"name: expected letters, digits and single underscores; got {name!r}; rename it")
     return name
 
 
-def inputs_of(arguments: Sequence[Argument]) -> tuple[list[Any], Memo]:
+def declare_inputs(arguments: Sequence[Argument]) -> tuple[list[Any], Memo]:
     """casadi's variables, and the first entries of the table of known subexpressions."""
     inputs, memo = [], {}
     for place, argument in enumerate(arguments):
@@ -128,48 +118,48 @@ def inputs_of(arguments: Sequence[Argument]) -> tuple[list[Any], Memo]:
     return inputs, memo
 
 
-def output_of(expression: Any, memo: Memo) -> Any:
+def translate_output(expression: Any, memo: Memo) -> Any:
     """A scalar or a dense matrix of casadi expressions."""
     if not isinstance(expression, sp.MatrixBase):
-        return ca.SX(translated(sp.sympify(expression, strict=True), memo))
-    rows = [ca.horzcat(*(translated(entry, memo) for entry in row)) for row in expression.tolist()]
+        return ca.SX(translate(sp.sympify(expression, strict=True), memo))
+    rows = [ca.horzcat(*(translate(entry, memo) for entry in row)) for row in expression.tolist()]
     return ca.densify(ca.vertcat(*rows))
 
 
-def translated(expression: sp.Expr, memo: Memo) -> Any:
+def translate(expression: sp.Expr, memo: Memo) -> Any:
     """One node; common subexpressions are translated once."""
     known = memo.get(expression)
     if known is None:
-        known = memo[expression] = node(expression, memo)
+        known = memo[expression] = translate_node(expression, memo)
     return known
 
 
-def node(expression: sp.Expr, memo: Memo) -> Any:
+def translate_node(expression: sp.Expr, memo: Memo) -> Any:
     """One node of the expression, its parts translated first."""
     if isinstance(expression, sp.Rational):
-        return rounded(expression)
+        return round_once(expression)
     if expression in CONSTANTS:
         return ca.SX(CONSTANTS[expression])
     if isinstance(expression, sp.Add):
-        return sum_of(expression, memo)
+        return translate_sum(expression, memo)
     if isinstance(expression, sp.Mul):
-        return product_of(expression, memo)
+        return translate_product(expression, memo)
     if isinstance(expression, sp.Pow):
-        return power_of(expression, memo)
+        return translate_power(expression, memo)
     if isinstance(expression, sp.atan2):
-        return ca.atan2(*(translated(part, memo) for part in expression.args))
+        return ca.atan2(*(translate(part, memo) for part in expression.args))
     if isinstance(expression, (sp.Min, sp.Max)):
         pick = ca.fmin if isinstance(expression, sp.Min) else ca.fmax
-        return reduce(pick, [translated(part, memo) for part in expression.args])
+        return reduce(pick, [translate(part, memo) for part in expression.args])
     function = UNARY.get(type(expression))
     if function is not None:
-        return function(translated(expression.args[0], memo))
+        return function(translate(expression.args[0], memo))
     if isinstance(expression, sp.Symbol):
         raise UnknownSymbolError(f"expression: expected only its arguments; got {expression}; name it as one")
     raise DomainError(f"expression: expected functions of the language; got {type(expression).__name__}; rewrite it")
 
 
-def rounded(number: sp.Rational) -> Any:
+def round_once(number: sp.Rational) -> Any:
     """The nearest double of an exact number; the quotient of two integers is rounded once."""
     try:
         return ca.SX(int(number.p) / int(number.q))
@@ -177,7 +167,7 @@ def rounded(number: sp.Rational) -> Any:
         raise NotFiniteError("expression: expected numbers below 1.8e308; got a larger one; rescale") from None
 
 
-def sum_of(expression: sp.Add, memo: Memo) -> Any:
+def translate_sum(expression: sp.Add, memo: Memo) -> Any:
     """A sum, with pairs k f(x), -k joined where f(0) = 1."""
     terms = list(expression.args)
     parts = []
@@ -186,9 +176,9 @@ def sum_of(expression: sp.Add, memo: Memo) -> Any:
         if function is not None and term in terms and -coefficient in terms:
             terms.remove(term)
             terms.remove(-coefficient)
-            less_one = LESS_ONE[type(function)](translated(function.args[0], memo))
-            parts.append(less_one if coefficient == 1 else translated(coefficient, memo) * less_one)
-    parts += [translated(term, memo) for term in terms]
+            less_one = LESS_ONE[type(function)](translate(function.args[0], memo))
+            parts.append(less_one if coefficient == 1 else translate(coefficient, memo) * less_one)
+    parts += [translate(term, memo) for term in terms]
     return reduce(add, parts)
 
 
@@ -201,35 +191,35 @@ def unit_function(term: sp.Expr) -> tuple[sp.Expr, sp.Expr | None]:
     return sp.Mul(*(factor for factor in factors if factor is not functions[0])), functions[0]
 
 
-def product_of(expression: sp.Mul, memo: Memo) -> Any:
+def translate_product(expression: sp.Mul, memo: Memo) -> Any:
     """Numerator over denominator: one division, and the rational coefficient in its two parts."""
     above, below = expression.as_numer_denom() if expression.is_commutative else (expression, sp.S.One)
     if below == 1:
         return (
-            reduce(mul, (translated(factor, memo) for factor in above.args))
+            reduce(mul, (translate(factor, memo) for factor in above.args))
             if above.is_Mul
-            else (translated(above, memo))
+            else (translate(above, memo))
         )
-    return translated(above, memo) / translated(below, memo)
+    return translate(above, memo) / translate(below, memo)
 
 
-def power_of(expression: sp.Pow, memo: Memo) -> Any:
+def translate_power(expression: sp.Pow, memo: Memo) -> Any:
     """A power: whole exponents by multiplication, halves by the square root, others as they are."""
     base, exponent = expression.args
-    x = translated(base, memo)
+    x = translate(base, memo)
     if exponent.is_Integer:
         n = int(exponent)
-        return whole_power(x, n) if n > 0 else 1 / whole_power(x, -n)
+        return raise_to_whole(x, n) if n > 0 else 1 / raise_to_whole(x, -n)
     if exponent.is_Rational and exponent.q == 2:
         return (
-            whole_power(ca.sqrt(x), int(exponent.p))
+            raise_to_whole(ca.sqrt(x), int(exponent.p))
             if exponent.p > 0
-            else (1 / whole_power(ca.sqrt(x), -int(exponent.p)))
+            else (1 / raise_to_whole(ca.sqrt(x), -int(exponent.p)))
         )
-    return ca.power(x, translated(exponent, memo))
+    return ca.power(x, translate(exponent, memo))
 
 
-def whole_power(x: Any, n: int) -> Any:
+def raise_to_whole(x: Any, n: int) -> Any:
     """x ** n by repeated squaring."""
     result, square = None, x
     while n:

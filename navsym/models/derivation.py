@@ -21,7 +21,7 @@ from typing import Any
 
 import sympy as sp
 
-from navsym.claims.display import card, displayed
+from navsym.claims.display import display_latex, write_card
 from navsym.core.answers import Answer
 from navsym.core.errors import DomainError, ShapeError
 from navsym.models.linear import LinearModel, observability_matrix
@@ -139,8 +139,8 @@ class Derivation(Answer):
         """A card for notebooks: the name, and every formula on a line of its own."""
         from navsym.models.document import latex_displays
 
-        lines = (escape(displayed(show)) for show in latex_displays(self))
-        return card([f"<b>{escape(self.name)}</b>: {escape(', '.join(self.states))}", *lines])
+        lines = (escape(display_latex(show)) for show in latex_displays(self))
+        return write_card([f"<b>{escape(self.name)}</b>: {escape(', '.join(self.states))}", *lines])
 
     def _repr_latex_(self) -> str:
         """All formulas, one below the other, for notebooks."""

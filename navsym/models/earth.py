@@ -141,11 +141,6 @@ def prime_vertical_radius(latitude: Angles) -> Array:
     return SEMI_MAJOR / np.sqrt(1 - ECCENTRICITY_SQUARED * np.sin(latitude) ** 2)
 
 
-def meridian_radius(latitude: Angles) -> Array:
-    """a (1 - e^2) / (1 - e^2 sin^2 phi)^(3/2), metres: change of northing per radian of latitude."""
-    return prime_vertical_radius(latitude) ** 3 * ((1 - ECCENTRICITY_SQUARED) / SEMI_MAJOR**2)
-
-
 def cartesian(latitude: Angles, longitude: Angles, height: Angles) -> Array:
     """Earth-fixed Cartesian position, (..., 3), metres."""
     radius = prime_vertical_radius(latitude)
@@ -162,14 +157,6 @@ def local_axes(latitude: Angles, longitude: Angles) -> Array:
     north = np.stack(np.broadcast_arrays(-sp * cl, -sp * sl, cp + zero), axis=-1)
     up = np.stack(np.broadcast_arrays(cp * cl, cp * sl, sp + zero), axis=-1)
     return np.stack((east, north, up), axis=-2)
-
-
-def geocentric(latitude: Angles, height: Angles) -> tuple[Array, Array]:
-    """Geocentric latitude (radians) and radius (metres) of a geodetic latitude and height."""
-    radius = prime_vertical_radius(latitude)
-    axis = (radius + height) * np.cos(latitude)
-    z = (radius * (1 - ECCENTRICITY_SQUARED) + height) * np.sin(latitude)
-    return np.arctan2(z, axis), np.hypot(axis, z)
 
 
 def dynamics(n: int, rho: Any) -> sp.Matrix:

@@ -12,7 +12,7 @@ from typing import Any
 
 import sympy as sp
 
-from navsym.claims.display import displayed, latex_of, latex_words
+from navsym.claims.display import display_latex, latex_of, latex_words
 from navsym.core.errors import DomainError, DuplicateError, EmptyError, NotFiniteError, ShapeError
 
 #: The independent variable of a model that is not told otherwise.
@@ -88,7 +88,7 @@ class LinearModel:
         noise = rf" + {latex_of(self.G)} w" if self.G.cols else ""
         lines = [rf"\frac{{d}}{{d{latex_of(self.time)}}} x = {latex_of(self.F)} x{noise}"]
         lines += [rf"z = {latex_of(self.H)} x + r"] if self.H.rows else []
-        return displayed(r", \qquad ".join([*lines, rf"x = {x}"]))
+        return display_latex(r", \qquad ".join([*lines, rf"x = {x}"]))
 
     def at(self, values: Mapping[sp.Symbol, Any]) -> LinearModel:
         """The model with exact values or expressions put in for some of its parameters.

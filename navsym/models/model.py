@@ -12,14 +12,14 @@ from typing import Any
 
 import sympy as sp
 
-from navsym.claims.display import card, displayed, latex_of
+from navsym.claims.display import display_latex, latex_of, write_card
 from navsym.core.errors import DomainError, DuplicateError, EmptyError, NavsymError, ShapeError
 from navsym.language.declarations import Parameter, read_parameters, symbols_of
 from navsym.language.expression import parse, symbol, to_text
-from navsym.language.files import called, write_text
-from navsym.language.names import inside, shown
+from navsym.language.files import name_file, write_text
+from navsym.language.names import join_place, quote
 from navsym.language.tomlfile import read_toml, toml_text
-from navsym.language.values import declared_words, write_declaration, write_entries, write_value
+from navsym.language.values import read_assumptions, write_declaration, write_entries, write_value
 from navsym.models.linear import LinearModel, linear_row
 from navsym.models.modelfile import BasisFile, ModelFile, Piece, model_from, piece_model, read_model
 
@@ -121,7 +121,7 @@ class Model:
         Raises the errors of a model file; ``where`` stands before the key.
         """
         if not isinstance(document, Mapping):
-            got = shown(document)
+            got = quote(document)
             raise ShapeError(f"expected the tables of a model file; got {got}; give a dict", where=where)
         model = object.__new__(cls)
         model._fill(copy_as_texts(document), where)
@@ -242,7 +242,7 @@ class Model:
         if not values:
             return self._contents
         with places_of_arguments():
-            given = {name: write_value(value, inside("Model: values", name)) for name, value in values.items()}
+            given = {name: write_value(value, join_place("Model: values", name)) for name, value in values.items()}
             return model_from(self._document, "Model", given)
 
     def with_values(self, **values: Any) -> Model:
@@ -348,13 +348,13 @@ class Model:
 
     def _repr_latex_(self) -> str:
         """The equations of the model, for notebooks."""
-        return displayed(r", \qquad ".join(equations_latex(self._contents)))
+        return display_latex(r", \qquad ".join(equations_latex(self._contents)))
 
     def _repr_html_(self) -> str:
         """A card for notebooks: name, equations, parameters and targets."""
         lines = [f"<b>{html.escape(self.name)}</b>: {html.escape(', '.join(self.states))}"]
-        lines += [html.escape(displayed(latex)) for latex in equations_latex(self._contents)]
-        return card([*lines, html.escape(repr(self))])
+        lines += [html.escape(display_latex(latex)) for latex in equations_latex(self._contents)]
+        return write_card([*lines, html.escape(repr(self))])
 
 
 def contents_of(
@@ -392,7 +392,7 @@ def as_model(value: Any, where: str) -> Model:
         return Model.from_document(value, where)
     if isinstance(value, str | os.PathLike):
         return Model.load(value)
-    message = f"expected a model, or the path of a model file; got {shown(value)}; make one with navsym.Model"
+    message = f"expected a model, or the path of a model file; got {quote(value)}; make one with navsym.Model"
     raise DomainError(message, where=where)
 
 
@@ -402,7 +402,7 @@ def file_in_errors(model: Any) -> Iterator[None]:
     try:
         yield
     except NavsymError as error:
-        name = called(model) if isinstance(model, str | os.PathLike) else ""
+        name = name_file(model) if isinstance(model, str | os.PathLike) else ""
         if name and not error.where.startswith(name):
             error.at(name)
         raise
@@ -426,7 +426,7 @@ def places_of_arguments() -> Iterator[None]:
 def error_of_call(where: str, path: Any) -> Iterator[None]:
     """A path of another type is refused in our words."""
     if not isinstance(path, str | os.PathLike):
-        raise DomainError(f"expected the path of a file; got {shown(path)}; give text or a Path", where=where)
+        raise DomainError(f"expected the path of a file; got {quote(path)}; give text or a Path", where=where)
     yield
 
 
@@ -435,7 +435,7 @@ def name_list(names: Any, where: str) -> list[Any]:
     if isinstance(names, str):
         return names.replace(",", " ").split()
     if not isinstance(names, list | tuple):
-        raise ShapeError(f'expected names; got {shown(names)}; write them in one text: "x v"', where=where)
+        raise ShapeError(f'expected names; got {quote(names)}; write them in one text: "x v"', where=where)
     return [item.name if isinstance(item, sp.Symbol) else item for item in names]
 
 
@@ -447,10 +447,10 @@ def declarations_of(
     formulas : arguments that may hold expressions of sympy; ``others`` are the names in them that are no parameters
     """
     if not isinstance(parameters, Mapping | None):
-        message = f"expected name -> declaration; got {shown(parameters)}; write keywords or a dict"
+        message = f"expected name -> declaration; got {quote(parameters)}; write keywords or a dict"
         raise ShapeError(message, where="Model: parameters")
     given = {**(parameters or {}), **declared}
-    words = declared_words([list(f.values()) if isinstance(f, Mapping) else f for f in formulas], "Model")
+    words = read_assumptions([list(f.values()) if isinstance(f, Mapping) else f for f in formulas], "Model")
     table = {name: write_declaration(value, f"Model: {name}") for name, value in given.items()}
     for name, word in words.items():
         if name in table and word != "real":
@@ -506,7 +506,7 @@ def one_for_each(value: Any, count: int, where: str) -> list[str]:
 def piece_blocks(pieces: Any) -> list[dict[str, Any]]:
     """The [[piece]] blocks."""
     if not isinstance(pieces, list | tuple):
-        message = f"expected a list of (from, to, F); got {shown(pieces)}; give them in order"
+        message = f"expected a list of (from, to, F); got {quote(pieces)}; give them in order"
         raise ShapeError(message, where="Model: pieces")
     return [piece_block(piece, f"Model: pieces[{k}]") for k, piece in enumerate(pieces)]
 
@@ -514,22 +514,22 @@ def piece_blocks(pieces: Any) -> list[dict[str, Any]]:
 def piece_block(piece: Any, where: str) -> dict[str, Any]:
     """One [[piece]] block from (from, to, F), or from a table with these keys."""
     if isinstance(piece, Mapping):
-        return {key: write_entries(value, inside(where, key)) for key, value in piece.items()}
+        return {key: write_entries(value, join_place(where, key)) for key, value in piece.items()}
     if not isinstance(piece, list | tuple) or len(piece) != 3:
-        raise ShapeError(f"expected (from, to, F); got {shown(piece)}; give all three", where=where)
+        raise ShapeError(f"expected (from, to, F); got {quote(piece)}; give all three", where=where)
     keys = ("from", "to", "F")
-    return {key: write_entries(value, inside(where, key)) for key, value in zip(keys, piece, strict=True)}
+    return {key: write_entries(value, join_place(where, key)) for key, value in zip(keys, piece, strict=True)}
 
 
 def target_rows(targets: Mapping[str, Any], states: Sequence[str], declared: Mapping[str, Any]) -> dict[str, Any]:
     """The [targets] table: rows of entries, or formulas of the states."""
     if not isinstance(targets, Mapping):
-        message = f'expected name -> functional; got {shown(targets)}; write {{"{states[0]}": "{states[0]}"}}'
+        message = f'expected name -> functional; got {quote(targets)}; write {{"{states[0]}": "{states[0]}"}}'
         raise ShapeError(message, where="Model: targets")
     known = known_symbols(declared)
     rows = {}
     for name, row in targets.items():
-        where = inside("Model: targets", name)
+        where = join_place("Model: targets", name)
         rows[name] = read_row(write_entries(row, where), states, known, where)
     return rows
 

@@ -8,19 +8,19 @@ from dataclasses import dataclass
 from typing import Any
 
 from navsym.core.errors import DomainError, DuplicateError, EmptyError, ShapeError, UnknownSymbolError
-from navsym.language.arithmetic import sign
+from navsym.language.arithmetic import sign_of_constant
 from navsym.language.declarations import (
     Parameter,
     box_of,
-    brief,
+    cut_text,
     read_parameters,
     require_order,
     require_positive,
     symbols_of,
 )
 from navsym.language.expression import ONE, ZERO, Expr, Matrix, Symbol, parse, symbol
-from navsym.language.files import called
-from navsym.language.names import check_name, nearest, shown
+from navsym.language.files import name_file
+from navsym.language.names import check_name, quote, suggest_nearest
 from navsym.language.schema import (
     Table,
     as_label,
@@ -28,13 +28,13 @@ from navsym.language.schema import (
     as_table,
     as_text,
     as_title,
-    distinct,
-    entry,
     expect_keys,
     inside,
-    required,
-    square,
-    vector,
+    read_entry,
+    read_square,
+    read_vector,
+    require_distinct,
+    require_key,
 )
 from navsym.language.tomlfile import read_toml
 from navsym.models.linear import LinearModel
@@ -149,10 +149,10 @@ def read_basis(document: Table, where: str, parameters: Mapping[str, Parameter],
     place = inside(where, "basis")
     table = as_table(document["basis"], place)
     expect_keys(table, ("name", "variable", "H", "sigma", "interval"), place)
-    variable = as_text(required(table, "variable", place), inside(place, "variable"), "a name")
+    variable = as_text(require_key(table, "variable", place), inside(place, "variable"), "a name")
     made = symbol(variable, where=inside(place, "variable"))
-    distinct((*known, variable), inside(place, "variable"))
-    H = read_rows(required(table, "H", place), {**known, variable: made}, inside(place, "H"))
+    require_distinct((*known, variable), inside(place, "variable"))
+    H = read_rows(require_key(table, "H", place), {**known, variable: made}, inside(place, "H"))
     names = tuple(f"c{i}" for i in range(len(H[0])))
     return BasisFile(
         name=as_title(table.get("name", "basis"), inside(place, "name")),
@@ -160,7 +160,7 @@ def read_basis(document: Table, where: str, parameters: Mapping[str, Parameter],
         variable=made,
         H=H,
         sigma=read_sigmas(table, known, len(H), place),
-        interval=read_ends(required(table, "interval", place), known, inside(place, "interval")),
+        interval=read_ends(require_key(table, "interval", place), known, inside(place, "interval")),
         targets=read_targets(document, known, names, where),
     )
 
@@ -176,7 +176,8 @@ def read_rows(value: Any, known: Known, where: str) -> tuple[tuple[Expr, ...], .
     size = len(rows[0])
     places = [inside(where, i) if nested[0] else where for i in range(len(rows))]
     return tuple(
-        vector(row, known, here, size, "as many as in the first row") for row, here in zip(rows, places, strict=True)
+        read_vector(row, known, here, size, "as many as in the first row")
+        for row, here in zip(rows, places, strict=True)
     )
 
 
@@ -186,7 +187,7 @@ def read_sigmas(table: Table, known: Known, count: int, where: str) -> tuple[Exp
     value = table.get("sigma", ["1"] * count)
     if not isinstance(value, list):
         value = [value]
-    sigmas = vector(value, known, place, count, "one per measurement")
+    sigmas = read_vector(value, known, place, count, "one per measurement")
     for i, sigma in enumerate(sigmas):
         require_positive(sigma, "a standard deviation", inside(place, i))
     return sigmas
@@ -194,7 +195,7 @@ def read_sigmas(table: Table, known: Known, count: int, where: str) -> tuple[Exp
 
 def read_ends(value: Any, known: Known, where: str) -> tuple[Expr, Expr]:
     """Start and end of the variable, in order."""
-    start, end = vector(value, known, where, 2, "start and end")
+    start, end = read_vector(value, known, where, 2, "start and end")
     require_order(start, end, where)
     return start, end
 
@@ -207,7 +208,7 @@ def read_targets(document: Table, known: Known, names: tuple[str, ...], where: s
     targets = {}
     for label, row in as_table(document["targets"], place).items():
         here = inside(place, label)
-        functional = vector(row, known, here, n, "one per unknown")
+        functional = read_vector(row, known, here, n, "one per unknown")
         if all(weight == 0 for weight in functional):
             raise DomainError("expected a functional that is not zero; got zeros; do correct it", where=here)
         targets[as_label(label, here)] = functional
@@ -226,7 +227,7 @@ def read_model(path: str | os.PathLike[str], values: Mapping[str, str] | None = 
 
     Raises a NavsymError whose ``where`` names the file and the key.
     """
-    return model_from(read_toml(path), called(path), values)
+    return model_from(read_toml(path), name_file(path), values)
 
 
 def model_from(document: Table, where: str = "", values: Mapping[str, str] | None = None) -> ModelFile | BasisFile:
@@ -247,14 +248,14 @@ def read_values(values: Mapping[str, str], parameters: Mapping[str, Parameter]) 
     """Exact numbers that replace parameters, each inside what the file declares."""
     given = {}
     for name, text in values.items():
-        where = f"--set {shown(name)[1:-1]}"
+        where = f"--set {quote(name)[1:-1]}"
         if name not in parameters:
-            hint = nearest(name, parameters)
-            message = f"expected a declared parameter; got {shown(name)}; do correct it: {hint}"
+            hint = suggest_nearest(name, parameters)
+            message = f"expected a declared parameter; got {quote(name)}; do correct it: {hint}"
             raise UnknownSymbolError(message, where=where)
         value = parse(text, {}, where=where)
         if not admitted(value, parameters[name]):
-            message = f"expected a value in the declared range of {name}; got {shown(text)}; do correct it"
+            message = f"expected a value in the declared range of {name}; got {quote(text)}; do correct it"
             raise DomainError(message, where=where)
         given[name] = value
     return given
@@ -262,10 +263,10 @@ def read_values(values: Mapping[str, str], parameters: Mapping[str, Parameter]) 
 
 def admitted(value: Expr, parameter: Parameter) -> bool:
     """False when the value certainly contradicts the declaration."""
-    below = parameter.lower is not None and sign(value - parameter.lower) == -1
-    above = parameter.upper is not None and sign(parameter.upper - value) == -1
+    below = parameter.lower is not None and sign_of_constant(value - parameter.lower) == -1
+    above = parameter.upper is not None and sign_of_constant(parameter.upper - value) == -1
     wrong = {"positive": (0, -1), "nonnegative": (-1,), "nonzero": (0,)}.get(parameter.kind, ())
-    return not below and not above and sign(value) not in wrong
+    return not below and not above and sign_of_constant(value) not in wrong
 
 
 def read_system(document: Table, where: str, parameters: Mapping[str, Parameter], known: Known) -> ModelFile:
@@ -274,8 +275,8 @@ def read_system(document: Table, where: str, parameters: Mapping[str, Parameter]
     place = inside(where, "model")
     model = as_table(document["model"], place)
     expect_keys(model, ("name", "states", "F"), place)
-    states = read_names(required(model, "states", place), inside(place, "states"))
-    distinct((*known, "t", *states), inside(place, "states"))
+    states = read_names(require_key(model, "states", place), inside(place, "states"))
+    require_distinct((*known, "t", *states), inside(place, "states"))
     time = symbol("t")
     moving = {**known, "t": time}
     T = read_interval(document, known, inside(where, "interval"))
@@ -295,7 +296,7 @@ def read_names(value: Any, where: str) -> tuple[str, ...]:
     """Distinct declared names, in order."""
     items = as_list(value, where, "a list of names")
     names = tuple(check_name(name, where=inside(where, i)) for i, name in enumerate(items))
-    distinct(names, where)
+    require_distinct(names, where)
     return names
 
 
@@ -305,7 +306,7 @@ def read_interval(document: Table, known: Known, where: str) -> Expr | None:
         return None
     table = as_table(document["interval"], where)
     expect_keys(table, ("T",), where)
-    T = entry(required(table, "T", where), known, inside(where, "T"))
+    T = read_entry(require_key(table, "T", where), known, inside(where, "T"))
     require_positive(T, "a length of time T", inside(where, "T"))
     return T
 
@@ -314,8 +315,8 @@ def read_pieces(document: Table, model: Table, moving: Known, n: int, T: Expr | 
     """F of [model], or the [[piece]] blocks in order and without gaps."""
     place, why = inside(where, "piece"), "one per state"
     if "piece" not in document:
-        F = required(model, "F", inside(where, "model"))
-        return (Piece(ZERO, T, square(F, moving, inside(where, "model.F"), n, why)),)
+        F = require_key(model, "F", inside(where, "model"))
+        return (Piece(ZERO, T, read_square(F, moving, inside(where, "model.F"), n, why)),)
     if "F" in model:
         raise DuplicateError("expected F or [[piece]]; got both; do remove one of them", where=place)
     blocks = as_list(document["piece"], place, "[[piece]] blocks")
@@ -323,10 +324,10 @@ def read_pieces(document: Table, model: Table, moving: Known, n: int, T: Expr | 
     ends = [ZERO, *(piece.end for piece in pieces)]
     for i, piece in enumerate(pieces):
         if piece.start != ends[i]:
-            message = f"expected a start at {brief(ends[i])}; got {brief(piece.start)}; do close the gap"
+            message = f"expected a start at {cut_text(ends[i])}; got {cut_text(piece.start)}; do close the gap"
             raise DomainError(message, where=inside(inside(place, i), "from"))
     if T is not None and ends[-1] != T:
-        message = f"expected the last piece to end at T = {brief(T)}; got {brief(ends[-1])}; do correct it"
+        message = f"expected the last piece to end at T = {cut_text(T)}; got {cut_text(ends[-1])}; do correct it"
         raise DomainError(message, where=inside(inside(place, len(pieces) - 1), "to"))
     return pieces
 
@@ -336,32 +337,32 @@ def read_piece(block: Any, moving: Known, n: int, where: str) -> Piece:
     table = as_table(block, where)
     expect_keys(table, ("from", "to", "F"), where)
     fixed = {name: value for name, value in moving.items() if name != "t"}
-    start = entry(required(table, "from", where), fixed, inside(where, "from"))
-    end = entry(required(table, "to", where), fixed, inside(where, "to"))
+    start = read_entry(require_key(table, "from", where), fixed, inside(where, "from"))
+    end = read_entry(require_key(table, "to", where), fixed, inside(where, "to"))
     require_order(start, end, where)
-    F = square(required(table, "F", where), moving, inside(where, "F"), n, "one per state")
+    F = read_square(require_key(table, "F", where), moving, inside(where, "F"), n, "one per state")
     return Piece(start, end, F)
 
 
 def read_measurements(document: Table, moving: Known, n: int, where: str) -> tuple[Measurement, ...]:
     """The [[measurement]] blocks, with distinct names."""
     place = inside(where, "measurement")
-    blocks = as_list(required(document, "measurement", where), place, "[[measurement]] blocks")
+    blocks = as_list(require_key(document, "measurement", where), place, "[[measurement]] blocks")
     found = []
     for i, block in enumerate(blocks):
         here = inside(place, i)
         table = as_table(block, here)
         expect_keys(table, ("name", "h", "sigma"), here)
         name = as_label(table.get("name", f"z{i + 1}"), inside(here, "name"))
-        h = vector(required(table, "h", here), moving, inside(here, "h"), n, "one per state")
+        h = read_vector(require_key(table, "h", here), moving, inside(here, "h"), n, "one per state")
         fixed = {key: value for key, value in moving.items() if key != "t"}
         found.append(Measurement(name, h, read_sigma(table.get("sigma", 1), fixed, inside(here, "sigma"))))
-    distinct((measurement.name for measurement in found), place)
+    require_distinct((measurement.name for measurement in found), place)
     return tuple(found)
 
 
 def read_sigma(value: Any, known: Known, where: str) -> Expr:
     """A bound of a standard deviation, above zero."""
-    sigma = entry(value, known, where)
+    sigma = read_entry(value, known, where)
     require_positive(sigma, "a standard deviation", where)
     return sigma

@@ -6,7 +6,7 @@ import pytest
 import sympy as sp
 from numpy.testing import assert_allclose
 
-from navsym.core.casadi_functions import casadi_function, jacobian_function, on_grid
+from navsym.core.casadi_functions import casadi_function, evaluate_on_grid
 from navsym.core.errors import DomainError, NotFiniteError, ShapeError, UnknownSymbolError
 from navsym.models.linear import LinearModel
 from navsym.models.transition.exponential import regressors
@@ -51,17 +51,10 @@ def test_the_derived_regressors_on_a_grid_have_one_column_per_instant():
     model = LinearModel([[0, -1, 0], [0, 0, 1], [0, -1, 0]], H=[[1, 0, 0]])
     H = casadi_function("H", [tau, T], regressors(model, T, tau).matrix.T)
     grid = np.linspace(0.0, 1.5, 7)
-    values = on_grid(H, grid, 1.5)
+    values = evaluate_on_grid(H, grid, 1.5)
     assert values.shape == (3, 7)
     assert_allclose(values, [np.ones(7), np.sin(1.5 - grid), np.cos(1.5 - grid) - 1], atol=2e-16)
     assert_allclose(values[2], -2 * np.sin((1.5 - grid) / 2) ** 2, rtol=1e-15)
-
-
-def test_the_jacobian_is_the_derivative_that_sympy_finds():
-    column = sp.Matrix([sp.sin(x * y), x / y, sp.exp(x)])
-    jacobian = jacobian_function("J", [[x, y]], column)
-    expected = column.jacobian([x, y]).subs({x: 2, y: 3}).evalf()
-    assert_allclose(np.array(jacobian([2.0, 3.0])), np.array(expected, dtype=float), rtol=1e-14)
 
 
 def test_a_matrix_keeps_its_shape_and_its_zeros():
@@ -99,4 +92,4 @@ def test_arguments_are_different_and_present():
     with pytest.raises(ShapeError, match="at least one"):
         casadi_function("f", [[]], sp.Integer(1))
     with pytest.raises(ShapeError, match="at least one"):
-        on_grid(casadi_function("f", [x], x), [])
+        evaluate_on_grid(casadi_function("f", [x], x), [])

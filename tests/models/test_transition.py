@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from navsym.claims import PROVED, Equation
 from navsym.core.errors import DomainError, NotFiniteError, ShapeError, TooLargeError
 from navsym.models.linear import LinearModel
-from navsym.models.transition.exponential import discrete_transition, regressors, transition_matrix
+from navsym.models.transition.exponential import regressors, transition_matrix
 from navsym.prove.ladder import decide
 
 t, T, tau = sp.symbols("t T tau", positive=True)
@@ -249,12 +249,10 @@ def test_a_measurement_row_may_vary_but_the_motion_may_not():
     assert (regressors(model, T, tau).matrix - expected).applyfunc(sp.expand) == sp.zeros(1, 2)
     with pytest.raises(DomainError, match="in pieces"):
         regressors(LinearModel([[0, t], [0, 0]], H=[[1, 0]], time=t), T, tau)
-    with pytest.raises(DomainError, match="constant"):
-        discrete_transition(LinearModel([[0, t], [0, 0]], time=t), 1)
 
 
 def test_two_steps_are_one_step_of_twice_the_length():
     step = sp.Symbol("h", positive=True)
-    model = LinearModel([[0, 1, 0], [0, 0, 1], [0, 0, 0]])
-    one, two = (discrete_transition(model, k * step).matrix for k in (1, 2))
+    F = sp.Matrix([[0, 1, 0], [0, 0, 1], [0, 0, 0]])
+    one, two = (transition_matrix(F, k * step).matrix for k in (1, 2))
     assert (one * one - two).applyfunc(sp.expand) == sp.zeros(3)

@@ -111,12 +111,6 @@ def refuse_system(system: sp.ImmutableMatrix, time: sp.Expr) -> None:
         raise DomainError(f"A: expected a constant matrix; got one that contains {time}; rename the time")
 
 
-def discrete_transition(model: LinearModel, step: Any) -> TransitionMatrix:
-    """Transition over one step, ``x[k+1] = Phi x[k]`` with ``Phi = exp(F step)``; F must be constant."""
-    need_constant(model)
-    return transition_matrix(model.F, step)
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class Regressors:
     """Measurements referred to the state at the end of the interval: z(tau) = H(tau)^T q + r, q = x(T).
