@@ -44,12 +44,11 @@ def chain_is_a_basis():
 def rank_of(rows: sp.MatrixBase) -> int:
     """Exact generic rank: pivots of a fraction-free elimination."""
     from navsym.observability.chains import numerators
-    from navsym.observability.linear import reduce_rows
     from navsym.observability.ring import Ring
 
     ring = Ring.of(rows)
     entries, _ = numerators([rows[r, :] for r in range(rows.rows)], ring)
-    return len(reduce_rows(entries, ring).rows)
+    return len(pivot_rows(entries, ring).rows)
 
 
 def characteristic(matrix: sp.MatrixBase) -> list[sp.Expr]:

@@ -29,7 +29,7 @@ from navsym.language.schema import (
     as_text,
     as_title,
     expect_keys,
-    inside,
+    join_place,
     read_entry,
     read_square,
     read_vector,
@@ -146,21 +146,21 @@ Known = Mapping[str, Expr]
 def read_basis(document: Table, where: str, parameters: Mapping[str, Parameter], known: Known) -> BasisFile:
     """The [basis] table with its targets."""
     expect_keys(document, ("basis", "parameters", "targets"), where)
-    place = inside(where, "basis")
+    place = join_place(where, "basis")
     table = as_table(document["basis"], place)
     expect_keys(table, ("name", "variable", "H", "sigma", "interval"), place)
-    variable = as_text(require_key(table, "variable", place), inside(place, "variable"), "a name")
-    made = symbol(variable, where=inside(place, "variable"))
-    require_distinct((*known, variable), inside(place, "variable"))
-    H = read_rows(require_key(table, "H", place), {**known, variable: made}, inside(place, "H"))
+    variable = as_text(require_key(table, "variable", place), join_place(place, "variable"), "a name")
+    made = symbol(variable, where=join_place(place, "variable"))
+    require_distinct((*known, variable), join_place(place, "variable"))
+    H = read_rows(require_key(table, "H", place), {**known, variable: made}, join_place(place, "H"))
     names = tuple(f"c{i}" for i in range(len(H[0])))
     return BasisFile(
-        name=as_title(table.get("name", "basis"), inside(place, "name")),
+        name=as_title(table.get("name", "basis"), join_place(place, "name")),
         parameters=parameters,
         variable=made,
         H=H,
         sigma=read_sigmas(table, known, len(H), place),
-        interval=read_ends(require_key(table, "interval", place), known, inside(place, "interval")),
+        interval=read_ends(require_key(table, "interval", place), known, join_place(place, "interval")),
         targets=read_targets(document, known, names, where),
     )
 
@@ -174,7 +174,7 @@ def read_rows(value: Any, known: Known, where: str) -> tuple[tuple[Expr, ...], .
         raise ShapeError(message, where=where)
     rows = items if nested[0] else [items]
     size = len(rows[0])
-    places = [inside(where, i) if nested[0] else where for i in range(len(rows))]
+    places = [join_place(where, i) if nested[0] else where for i in range(len(rows))]
     return tuple(
         read_vector(row, known, here, size, "as many as in the first row")
         for row, here in zip(rows, places, strict=True)
@@ -183,13 +183,13 @@ def read_rows(value: Any, known: Known, where: str) -> tuple[tuple[Expr, ...], .
 
 def read_sigmas(table: Table, known: Known, count: int, where: str) -> tuple[Expr, ...]:
     """One positive bound per measurement; ones where the file gives none."""
-    place = inside(where, "sigma")
+    place = join_place(where, "sigma")
     value = table.get("sigma", ["1"] * count)
     if not isinstance(value, list):
         value = [value]
     sigmas = read_vector(value, known, place, count, "one per measurement")
     for i, sigma in enumerate(sigmas):
-        require_positive(sigma, "a standard deviation", inside(place, i))
+        require_positive(sigma, "a standard deviation", join_place(place, i))
     return sigmas
 
 
@@ -202,12 +202,12 @@ def read_ends(value: Any, known: Known, where: str) -> tuple[Expr, Expr]:
 
 def read_targets(document: Table, known: Known, names: tuple[str, ...], where: str) -> Targets:
     """The file's functionals, or one for every unknown."""
-    n, place = len(names), inside(where, "targets")
+    n, place = len(names), join_place(where, "targets")
     if "targets" not in document:
         return {name: tuple(ONE if i == j else ZERO for j in range(n)) for i, name in enumerate(names)}
     targets = {}
     for label, row in as_table(document["targets"], place).items():
-        here = inside(place, label)
+        here = join_place(place, label)
         functional = read_vector(row, known, here, n, "one per unknown")
         if all(weight == 0 for weight in functional):
             raise DomainError("expected a functional that is not zero; got zeros; do correct it", where=here)
@@ -232,7 +232,7 @@ def read_model(path: str | os.PathLike[str], values: Mapping[str, str] | None = 
 
 def model_from(document: Table, where: str = "", values: Mapping[str, str] | None = None) -> ModelFile | BasisFile:
     """Like :func:`read_model` for a document in memory, with the same errors."""
-    place = inside(where, "parameters")
+    place = join_place(where, "parameters")
     parameters = read_parameters(as_table(document.get("parameters", {}), place), place)
     known = dict(symbols_of(parameters)) | read_values(values or {}, parameters)
     free = {name: parameter for name, parameter in parameters.items() if name not in (values or {})}
@@ -245,7 +245,7 @@ def model_from(document: Table, where: str = "", values: Mapping[str, str] | Non
 
 
 def read_values(values: Mapping[str, str], parameters: Mapping[str, Parameter]) -> dict[str, Expr]:
-    """Exact numbers that replace parameters, each inside what the file declares."""
+    """Exact numbers that replace parameters, each join_place what the file declares."""
     given = {}
     for name, text in values.items():
         where = f"--set {quote(name)[1:-1]}"
@@ -272,16 +272,16 @@ def admitted(value: Expr, parameter: Parameter) -> bool:
 def read_system(document: Table, where: str, parameters: Mapping[str, Parameter], known: Known) -> ModelFile:
     """The [model] with its measurements, interval and targets."""
     expect_keys(document, tuple(key for key in TABLES if key != "basis"), where)
-    place = inside(where, "model")
+    place = join_place(where, "model")
     model = as_table(document["model"], place)
     expect_keys(model, ("name", "states", "F"), place)
-    states = read_names(require_key(model, "states", place), inside(place, "states"))
-    require_distinct((*known, "t", *states), inside(place, "states"))
+    states = read_names(require_key(model, "states", place), join_place(place, "states"))
+    require_distinct((*known, "t", *states), join_place(place, "states"))
     time = symbol("t")
     moving = {**known, "t": time}
-    T = read_interval(document, known, inside(where, "interval"))
+    T = read_interval(document, known, join_place(where, "interval"))
     return ModelFile(
-        name=as_title(model.get("name", "model"), inside(place, "name")),
+        name=as_title(model.get("name", "model"), join_place(place, "name")),
         parameters=parameters,
         states=states,
         time=time,
@@ -295,7 +295,7 @@ def read_system(document: Table, where: str, parameters: Mapping[str, Parameter]
 def read_names(value: Any, where: str) -> tuple[str, ...]:
     """Distinct declared names, in order."""
     items = as_list(value, where, "a list of names")
-    names = tuple(check_name(name, where=inside(where, i)) for i, name in enumerate(items))
+    names = tuple(check_name(name, where=join_place(where, i)) for i, name in enumerate(items))
     require_distinct(names, where)
     return names
 
@@ -306,29 +306,29 @@ def read_interval(document: Table, known: Known, where: str) -> Expr | None:
         return None
     table = as_table(document["interval"], where)
     expect_keys(table, ("T",), where)
-    T = read_entry(require_key(table, "T", where), known, inside(where, "T"))
-    require_positive(T, "a length of time T", inside(where, "T"))
+    T = read_entry(require_key(table, "T", where), known, join_place(where, "T"))
+    require_positive(T, "a length of time T", join_place(where, "T"))
     return T
 
 
 def read_pieces(document: Table, model: Table, moving: Known, n: int, T: Expr | None, where: str) -> tuple[Piece, ...]:
     """F of [model], or the [[piece]] blocks in order and without gaps."""
-    place, why = inside(where, "piece"), "one per state"
+    place, why = join_place(where, "piece"), "one per state"
     if "piece" not in document:
-        F = require_key(model, "F", inside(where, "model"))
-        return (Piece(ZERO, T, read_square(F, moving, inside(where, "model.F"), n, why)),)
+        F = require_key(model, "F", join_place(where, "model"))
+        return (Piece(ZERO, T, read_square(F, moving, join_place(where, "model.F"), n, why)),)
     if "F" in model:
         raise DuplicateError("expected F or [[piece]]; got both; do remove one of them", where=place)
     blocks = as_list(document["piece"], place, "[[piece]] blocks")
-    pieces = tuple(read_piece(block, moving, n, inside(place, i)) for i, block in enumerate(blocks))
+    pieces = tuple(read_piece(block, moving, n, join_place(place, i)) for i, block in enumerate(blocks))
     ends = [ZERO, *(piece.end for piece in pieces)]
     for i, piece in enumerate(pieces):
         if piece.start != ends[i]:
             message = f"expected a start at {cut_text(ends[i])}; got {cut_text(piece.start)}; do close the gap"
-            raise DomainError(message, where=inside(inside(place, i), "from"))
+            raise DomainError(message, where=join_place(join_place(place, i), "from"))
     if T is not None and ends[-1] != T:
         message = f"expected the last piece to end at T = {cut_text(T)}; got {cut_text(ends[-1])}; do correct it"
-        raise DomainError(message, where=inside(inside(place, len(pieces) - 1), "to"))
+        raise DomainError(message, where=join_place(join_place(place, len(pieces) - 1), "to"))
     return pieces
 
 
@@ -337,26 +337,26 @@ def read_piece(block: Any, moving: Known, n: int, where: str) -> Piece:
     table = as_table(block, where)
     expect_keys(table, ("from", "to", "F"), where)
     fixed = {name: value for name, value in moving.items() if name != "t"}
-    start = read_entry(require_key(table, "from", where), fixed, inside(where, "from"))
-    end = read_entry(require_key(table, "to", where), fixed, inside(where, "to"))
+    start = read_entry(require_key(table, "from", where), fixed, join_place(where, "from"))
+    end = read_entry(require_key(table, "to", where), fixed, join_place(where, "to"))
     require_order(start, end, where)
-    F = read_square(require_key(table, "F", where), moving, inside(where, "F"), n, "one per state")
+    F = read_square(require_key(table, "F", where), moving, join_place(where, "F"), n, "one per state")
     return Piece(start, end, F)
 
 
 def read_measurements(document: Table, moving: Known, n: int, where: str) -> tuple[Measurement, ...]:
     """The [[measurement]] blocks, with distinct names."""
-    place = inside(where, "measurement")
+    place = join_place(where, "measurement")
     blocks = as_list(require_key(document, "measurement", where), place, "[[measurement]] blocks")
     found = []
     for i, block in enumerate(blocks):
-        here = inside(place, i)
+        here = join_place(place, i)
         table = as_table(block, here)
         expect_keys(table, ("name", "h", "sigma"), here)
-        name = as_label(table.get("name", f"z{i + 1}"), inside(here, "name"))
-        h = read_vector(require_key(table, "h", here), moving, inside(here, "h"), n, "one per state")
+        name = as_label(table.get("name", f"z{i + 1}"), join_place(here, "name"))
+        h = read_vector(require_key(table, "h", here), moving, join_place(here, "h"), n, "one per state")
         fixed = {key: value for key, value in moving.items() if key != "t"}
-        found.append(Measurement(name, h, read_sigma(table.get("sigma", 1), fixed, inside(here, "sigma"))))
+        found.append(Measurement(name, h, read_sigma(table.get("sigma", 1), fixed, join_place(here, "sigma"))))
     require_distinct((measurement.name for measurement in found), place)
     return tuple(found)
 

@@ -11,11 +11,11 @@ from typing import Any
 
 import sympy as sp
 
-from navsym.claims.display import card, displayed, latex_of, table
+from navsym.claims.display import display_latex, latex_of, write_card, write_table
 from navsym.core.answers import Answer
 from navsym.core.errors import DomainError, DuplicateError, ExpressionSyntaxError, ShapeError
 from navsym.language.expression import parse, symbol
-from navsym.language.names import RESERVED, inside, shown
+from navsym.language.names import RESERVED, join_place, quote
 from navsym.language.values import write_entries, write_value
 from navsym.models.document import rank_certificate
 from navsym.models.linear import LinearModel, linear_row, observability_matrix
@@ -122,15 +122,15 @@ class Observability(Answer):
         """Dimensions and companion coefficients as a table, for notebooks."""
         n, word = len(self.states), "observable" if self.observable else "not observable"
         rows = [
-            (m.name, f"{m.dimension} of {n}", k, displayed(latex_of(m.companion)))
+            (m.name, f"{m.dimension} of {n}", k, display_latex(latex_of(m.companion)))
             for m, k in zip(self.measurements, self.joint.staircase, strict=True)
         ]
         heads = ("measurement", "observes", "taken", "companion coefficients")
-        lines = [f"<b>{word}</b>: {self.rank} of {n} dimensions", table(heads, rows)]
+        lines = [f"<b>{word}</b>: {self.rank} of {n} dimensions", write_table(heads, rows)]
         lines += [f"unobservable: {escape('; '.join(self.unobservable))}"] if self.unobservable else []
         zeros = (" and ".join(rf"{latex_of(zero)} = 0" for zero in drop.zeros) for drop in self.rank_drops)
-        lines += [escape(f"the rank drops where {displayed(zero)}") for zero in zeros]
-        return card(lines)
+        lines += [escape(f"the rank drops where {display_latex(zero)}") for zero in zeros]
+        return write_card(lines)
 
     def _repr_latex_(self) -> str:
         """Observed bases and companion coefficients, for notebooks."""
@@ -138,7 +138,7 @@ class Observability(Answer):
             rf"A_{{{k}}} = {latex_of(m.basis)}, \quad \vartheta^{{({k})}} = {latex_of(m.companion)}"
             for k, m in enumerate(self.measurements, start=1)
         ]
-        return displayed(r" \qquad ".join(shows))
+        return display_latex(r" \qquad ".join(shows))
 
 
 def observe(
@@ -245,7 +245,7 @@ def read_split(value: Any) -> tuple[int, int]:
         return int(parts[1]), int(parts[2])
     if isinstance(value, list | tuple) and len(value) == 2 and all(type(part) is int for part in value):
         return value[0], value[1]
-    message = f'expected two numbers "i,j"; got {shown(value)}; write 3,2'
+    message = f'expected two numbers "i,j"; got {quote(value)}; write 3,2'
     raise ExpressionSyntaxError(message, where="observe: split")
 
 
@@ -269,13 +269,13 @@ def read_poles(value: Any, contents: ModelFile) -> tuple[sp.Expr, ...]:
 def read_candidate_rows(candidates: Mapping[str, Any], contents: ModelFile) -> dict[str, list[sp.Expr]]:
     """Rows of exact coefficients, from formulas of the states or rows of entries."""
     if not isinstance(candidates, Mapping):
-        message = f"expected name -> formula of the states; got {shown(candidates)}; give a dict"
+        message = f"expected name -> formula of the states; got {quote(candidates)}; give a dict"
         raise ShapeError(message, where="observe: candidates")
     states = {name: symbol(name) for name in contents.states}
     known = {name: parameter.symbol for name, parameter in contents.parameters.items()}
     rows: dict[str, list[sp.Expr]] = {}
     for name, value in candidates.items():
-        where = inside("observe: candidates", name)
+        where = join_place("observe: candidates", name)
         if isinstance(value, list | tuple) or hasattr(value, "tolist"):
             rows[name] = [parse(text, known, where=where) for text in write_entries(value, where)]
         else:

@@ -18,7 +18,7 @@ from typing import Any
 import sympy as sp
 from flint import nmod_mat
 
-from navsym.claims.display import card, displayed, latex_of, table
+from navsym.claims.display import display_latex, latex_of, write_card, write_table
 from navsym.core.errors import DomainError, DuplicateError, EmptyError, TooLargeError, UnobservableError
 from navsym.models.linear import LinearModel
 from navsym.observability.linear import (
@@ -478,11 +478,11 @@ class JointObservability:
         """Dimensions and companion coefficients as a table, for notebooks."""
         n, word = len(self.states), "observable" if self.observable else "not observable"
         rows = [
-            (m.name, f"{m.dimension} of {n}", k, displayed(latex_of(m.companion)))
+            (m.name, f"{m.dimension} of {n}", k, display_latex(latex_of(m.companion)))
             for m, k in zip(self.measurements, self.staircase, strict=True)
         ]
         heads = ("measurement", "observes", "taken", "companion coefficients")
-        return card([f"<b>{word}</b>: {self.joint_dimension} of {n} dimensions", table(heads, rows)])
+        return write_card([f"<b>{word}</b>: {self.joint_dimension} of {n} dimensions", write_table(heads, rows)])
 
     @property
     def joint_dimension(self) -> int:
@@ -519,12 +519,12 @@ def observe_jointly(model: LinearModel) -> JointObservability:
 
 def measurement_of(chain: Chain, ring: Ring) -> MeasurementObservability:
     """The chain of one measurement in sympy."""
-    rows = basis_rows(chain.vectors, chain, ring)
+    rows = chain_rows(chain.vectors, chain, ring)
     companion = tuple(ring.expression(c) for c in chain.companion)
     return MeasurementObservability(chain.name, rows, companion)
 
 
-def basis_rows(vectors: Matrix, chain: Chain, ring: Ring) -> sp.ImmutableMatrix:
+def chain_rows(vectors: Matrix, chain: Chain, ring: Ring) -> sp.ImmutableMatrix:
     """The vectors as rows with their denominators put back."""
     entries = []
     for j, vector in enumerate(vectors):

@@ -102,7 +102,7 @@ class Reduced:
     sign: int  # of the row permutation
 
 
-def reduce_rows(matrix: Matrix, ring: Ring, columns: Sequence[int] | None = None) -> Reduced:
+def pivot_rows(matrix: Matrix, ring: Ring, columns: Sequence[int] | None = None) -> Reduced:
     """Row-reduced form without fractions, pivots taken from the given columns (all by default).
 
     Bareiss' elimination downwards, then each free column by substitution upwards: a column that is a pivot
@@ -224,7 +224,7 @@ def linear_relation(vectors: Matrix, target: list[Poly], ring: Ring) -> list[Quo
         return [] if all(x == 0 for x in target) else None
     stacked = [[*column, t] for column, t in zip(zip(*vectors, strict=True), target, strict=True)]
     size = len(vectors)
-    reduced = reduce_rows(stacked, ring, range(size))
+    reduced = pivot_rows(stacked, ring, range(size))
     if len(reduced.rows) < size:
         raise ArithmeticError("relation: the vectors are dependent")
     values = [ring.constant(0)] * size
@@ -244,7 +244,7 @@ def null_vectors(rows: Matrix, size: int, ring: Ring) -> Matrix:
     """
     if not rows:
         return [[ring.constant(int(i == k)) for i in range(size)] for k in range(size)]
-    reduced = reduce_rows(rows, ring)
+    reduced = pivot_rows(rows, ring)
     basis = []
     for free in (k for k in range(size) if k not in reduced.columns):
         vector = [ring.constant(0)] * size

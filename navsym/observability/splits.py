@@ -22,7 +22,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from navsym.core.errors import DomainError, ShapeError
-from navsym.observability.chains import Chain, JointObservability, basis_rows, need_observable
+from navsym.observability.chains import Chain, JointObservability, chain_rows, need_observable
 from navsym.observability.linear import Matrix, determinant, linear_relation
 from navsym.observability.ring import Quotient, Ring
 
@@ -163,12 +163,12 @@ def choose_split(found: JointObservability, i: int | None = None, j: int | None 
     chains = found.chains
     first, second = chains.chains
     ring = chains.ring
-    rows = [*basis_rows(first.vectors[:i], first, ring).tolist(), *second_rows(found, j)]
+    rows = [*chain_rows(first.vectors[:i], first, ring).tolist(), *second_rows(found, j)]
     return Split(
         i=i,
         j=j,
         L=sp.ImmutableMatrix(n, n, [x for row in rows for x in row]),
-        tail=basis_rows(first.vectors, first, ring)[i:, :],
+        tail=chain_rows(first.vectors, first, ring)[i:, :],
         theta=found.measurements[0].companion,
         link=tuple(ring.expression(q) for q in link_coefficients(found, first, second, i, j)),
         determinant=ring.factored(value),
@@ -178,7 +178,7 @@ def choose_split(found: JointObservability, i: int | None = None, j: int | None 
 def second_rows(found: JointObservability, j: int) -> list[list[sp.Expr]]:
     """The first j vectors of the second chain as rows."""
     chain = found.chains.chains[1]
-    return basis_rows(found.chains.first(chain, j), chain, found.chains.ring).tolist()
+    return chain_rows(found.chains.first(chain, j), chain, found.chains.ring).tolist()
 
 
 def link_coefficients(found: JointObservability, first: Chain, second: Chain, i: int, j: int) -> list[Quotient]:

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from navsym.core.arrays import Array, frozen, named
+from navsym.core.arrays import Array, as_array, freeze
 from navsym.core.errors import DomainError, ShapeError
 from navsym.observability.linear import determinant
 from navsym.observability.ring import Poly, Ring
@@ -221,7 +221,7 @@ class TwoStageObserver:
         }
         for name, shape in shapes.items():
             value = getattr(self, name)
-            array = frozen(np.zeros(shape)) if 0 in shape else named(name, value, shape, "blocks of the observer")
+            array = freeze(np.zeros(shape)) if 0 in shape else as_array(name, value, shape, "blocks of the observer")
             object.__setattr__(self, name, array)
 
     @property

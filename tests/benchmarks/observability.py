@@ -22,7 +22,7 @@ from sympy.polys.matrices import DomainMatrix
 from navsym.models.inertial import FULL, full_model
 from navsym.models.linear import LinearModel, observability_matrix
 from navsym.observability.chains import chains_of, numerators, observe_jointly, prove_rank
-from navsym.observability.linear import reduce_rows
+from navsym.observability.linear import pivot_rows
 from navsym.observability.rank_drops import chain_determinant
 from navsym.observability.ring import Ring
 
@@ -105,7 +105,7 @@ def ours_reduce(matrix: sp.Matrix) -> int:
     """Fraction-free row-reduced form."""
     ring = Ring.of(matrix)
     entries, _ = numerators([matrix[r, :] for r in range(matrix.rows)], ring)
-    return len(reduce_rows(entries, ring).rows)
+    return len(pivot_rows(entries, ring).rows)
 
 
 def sympy_reduce(matrix: sp.Matrix) -> int:

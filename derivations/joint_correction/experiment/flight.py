@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from navsym.core.arrays import Array, frozen
+from navsym.core.arrays import Array, freeze
 from navsym.core.errors import DomainError
 
 EARTH_RATE = 7.292115e-5  # 1/s
@@ -63,7 +63,7 @@ def great_circle(
     omega_rate = np.einsum("nij,nj->ni", axes, rate_inertial)[:, :2]  # omega x omega = 0
     earth = np.einsum("nij,j->ni", axes, np.array([0.0, 0.0, EARTH_RATE]))
     w0 = SCHULER_RATE
-    return Flight(frozen(t * w0), frozen(omega / w0), frozen(omega_rate / w0**2), frozen(earth / w0))
+    return Flight(freeze(t * w0), freeze(omega / w0), freeze(omega_rate / w0**2), freeze(earth / w0))
 
 
 def vertical_motion(speed: float, latitude: float, heading: float, t: Array) -> tuple[Array, Array, Array]:

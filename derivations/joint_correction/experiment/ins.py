@@ -16,7 +16,7 @@ from functools import cache
 import numpy as np
 import sympy as sp
 
-from navsym.core.arrays import Array, frozen
+from navsym.core.arrays import Array, freeze
 from navsym.models.inertial import (
     EARTH,
     FULL,
@@ -133,7 +133,7 @@ def along(flight: Flight) -> Linearised:
     rates = np.hstack([flight.omega, flight.u])
     found = []
     for function in compiled():
-        found.append(frozen(np.array([np.array(function(row)) for row in rates])))  # type: ignore[operator]
+        found.append(freeze(np.array([np.array(function(row)) for row in rates])))  # type: ignore[operator]
     return Linearised(*found)
 
 

@@ -15,7 +15,7 @@ from functools import cache
 import numpy as np
 import sympy as sp
 
-from navsym.core.arrays import Array, frozen, named
+from navsym.core.arrays import Array, as_array, freeze
 from navsym.core.errors import DomainError, EmptyError, UnknownSymbolError
 from navsym.models.linear import LinearModel
 from navsym.observability.chains import observe_jointly
@@ -73,7 +73,7 @@ def reckon(record: Mapping[str, Array]) -> Aided:
     position = np.cumsum(velocity * dt, axis=0)
     places = fixes - start
     return Aided(
-        frozen(t[places]), frozen(velocity[places] - gps_velocity), frozen(position[places] - gps), frozen(gps)
+        freeze(t[places]), freeze(velocity[places] - gps_velocity), freeze(position[places] - gps), freeze(gps)
     )
 
 
@@ -83,7 +83,7 @@ def columns_of(record: Mapping[str, Array]) -> dict[str, Array]:
         if name not in record:
             raise UnknownSymbolError(f"expected a column {name}; got none; record it")
     size = np.size(record["time"])
-    columns = {name: named(name, np.ravel(record[name]), (size,), "one entry per row") for name in FIELDS}
+    columns = {name: as_array(name, np.ravel(record[name]), (size,), "one entry per row") for name in FIELDS}
     back = np.flatnonzero(np.diff(columns["time"]) < 0)
     if back.size:
         raise DomainError(f"time: expected no time before the one above it; got row {back[0] + 1}; sort the rows")

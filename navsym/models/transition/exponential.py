@@ -31,11 +31,11 @@ from navsym.models.transition.rings import (
     add_fractions,
     cancel_fraction,
     companion_inverse,
-    expand_polynomial,
     monic_quotient,
     monic_remainder,
     mu_coefficients,
     multiply_monic,
+    polynomial_sum,
     reduce_squares,
     ring_fraction,
     ring_of,
@@ -318,7 +318,7 @@ def list_conditions(ring: Ring, divisors: Iterable[Poly], forms: Iterable[Form])
     }
     for divisor in divisors:
         for base, _ in divisor.factor()[1]:
-            expression = expand_polynomial(ring, base)
+            expression = polynomial_sum(ring, base)
             if expression not in stated:
                 relations.setdefault(sp.Ne(expression, 0))
     if sp.false in relations:

@@ -45,8 +45,8 @@ from navsym.models.transition.rings import (
     Ring,
     cancel_fraction,
     declared_sign,
-    expand_polynomial,
     multiply_monic,
+    polynomial_sum,
     write_quotient,
 )
 
@@ -171,9 +171,9 @@ def nested_waves(frame: Frame, a: Poly, b: Poly) -> tuple[str, Sums, tuple[sp.Ba
         (wave(ring, C1, over), wave(ring, C2, negative)),
         (nested_wave(*S1, over), nested_wave(*S2, negative)),
     )
-    conditions = [*reality_conditions(ring, delta), sp.Ne(expand_polynomial(ring, b), 0)]
+    conditions = [*reality_conditions(ring, delta), sp.Ne(polynomial_sum(ring, b), 0)]
     if signs[1] == 0 or (signs[1] > 0 and signs[0] == 0):
-        conditions += [sp.Gt(expand_polynomial(ring, a), 0), sp.Gt(expand_polynomial(ring, b), 0)]
+        conditions += [sp.Gt(polynomial_sum(ring, a), 0), sp.Gt(polynomial_sum(ring, b), 0)]
     return ("two frequencies", "exponents and waves", "two exponents")[sum(grows)], sums, tuple(conditions)
 
 

@@ -196,7 +196,7 @@ def constant_value(poly: Poly) -> sp.Rational:
     return sp.S.Zero if poly.is_zero() else to_rational(poly.leading_coefficient())
 
 
-def expand_polynomial(ring: Ring, poly: Poly) -> sp.Expr:
+def polynomial_sum(ring: Ring, poly: Poly) -> sp.Expr:
     """A polynomial without mu as a sympy sum of monomials."""
     return sp.Add(
         *(
@@ -209,9 +209,9 @@ def expand_polynomial(ring: Ring, poly: Poly) -> sp.Expr:
 def factor_polynomial(ring: Ring, poly: Poly) -> sp.Expr:
     """A polynomial as a sympy product of its irreducible factors."""
     if len(poly) <= 1:
-        return expand_polynomial(ring, poly)
+        return polynomial_sum(ring, poly)
     content, factors = poly.factor()
-    return sp.Mul(to_rational(content), *(expand_polynomial(ring, base) ** int(times) for base, times in factors))
+    return sp.Mul(to_rational(content), *(polynomial_sum(ring, base) ** int(times) for base, times in factors))
 
 
 def write_quotient(ring: Ring, above: Poly, divisor: Poly) -> sp.Expr:
@@ -272,7 +272,7 @@ def split_square_root(ring: Ring, number_: Poly, divisor: Poly) -> tuple[Fractio
     whole, surd = sp.sqrt(to_rational(content)).as_coeff_Mul()
     outer *= fmpq(int(whole.p), int(whole.q))
     radicand = inner * ring_fraction(ring, surd**2)[0]
-    return cancel_fraction(outer, divisor), radicand, surd * sp.sqrt(expand_polynomial(ring, inner))
+    return cancel_fraction(outer, divisor), radicand, surd * sp.sqrt(polynomial_sum(ring, inner))
 
 
 # Polynomials in one variable whose coefficients are polynomials in the parameters.
