@@ -317,6 +317,8 @@ LAST = (
     }
     | alone(["1"], [(0, "1", "1")], ["0.000001"] * 3)
 )
+# A root of what vanishes identically is zero.
+ROOT_OF_ZERO = GAP | {"panels": [VELOCITY | {"H": ["1 + sqrt(0*t)", "t"]}]}
 ALL = {"kind": "all", "of": [IDENTITY, RANK]}
 GOOD = [
     IDENTITY,
@@ -340,6 +342,7 @@ GOOD = [
     NO_CELLS,
     MANY_CELLS,
     GAP,
+    ROOT_OF_ZERO,
     EXACT,
     SLIVER,
     TOUCH,
