@@ -2,7 +2,7 @@
 
 from navsym.claims.claim import Claim, claim
 from navsym.claims.formula import Formula
-from navsym.claims.paper import Coverage, Paper, claims_of, coverage, equation_of
+from navsym.claims.paper import Coverage, Paper, claims_of, compare_equations, equation_of
 from navsym.claims.record import Record
 from navsym.claims.statement import Bound, Box, Equation, Finding, Optimum, Property, Statement
 from navsym.claims.verdict import CERTIFIED, CONFIRMED, OPEN, PROVED, REFUTED, Status, Verdict, Verdicts
@@ -30,6 +30,6 @@ __all__ = [
     "Verdicts",
     "claim",
     "claims_of",
-    "coverage",
+    "compare_equations",
     "equation_of",
 ]

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
-from navsym.claims.display import card, verdict_words
+from navsym.claims.display import mark_verdict, write_card
 from navsym.claims.statement import Statement
 from navsym.claims.verdict import PROVED, Status
 from navsym.core.errors import MissingEngineError
@@ -55,12 +55,12 @@ class Claim:
     def _repr_html_(self) -> str:
         """A card for notebooks; nothing is derived or decided for it."""
         lines = [f"<b>{html.escape(self.id)}</b> {html.escape(self.title)}"]
-        lines.append(f"declared {verdict_words(str(self.expect))}")
+        lines.append(f"declared {mark_verdict(str(self.expect))}")
         if self.corrects_id:
             lines.append(html.escape(f"corrects {self.corrects_id}"))
         if self.reason:
             lines.append(html.escape(f"{self.slip or 'note'}: {self.reason}"))
-        return card(lines, str(self.expect))
+        return write_card(lines, str(self.expect))
 
 
 def claim(
@@ -76,9 +76,9 @@ def claim(
 
     def make(derive: Callable[[], Statement]) -> Claim:
         return Claim(
-            module=module_of(derive),
+            module=derivation_name(derive),
             number=number,
-            title=title if title is not None else first_line(derive),
+            title=title if title is not None else title_of(derive),
             derive=derive,
             expect=expect,
             corrects=corrects,
@@ -89,13 +89,13 @@ def claim(
     return make
 
 
-def module_of(derive: Callable[[], Statement]) -> str:
+def derivation_name(derive: Callable[[], Statement]) -> str:
     """Name of the derivation module: the part of the dotted name after the package of the papers."""
     parts = derive.__module__.split(".")
     return parts[1] if parts[0] == PAPERS and len(parts) > 1 else parts[-1]
 
 
-def first_line(derive: Callable[[], Statement]) -> str:
+def title_of(derive: Callable[[], Statement]) -> str:
     """First line of the docstring of a claim's function: the title.
 
     Raises MissingEngineError under -OO, which drops docstrings, and ValueError without one.

@@ -34,38 +34,38 @@ def latex_words(text: str) -> str:
     return "".join(" " if c in "\\{}$&#%_^~" or not c.isprintable() else c for c in text)
 
 
-def displayed(latex: str) -> str:
+def display_latex(latex: str) -> str:
     """A formula as a notebook displays it."""
     return rf"$\displaystyle {latex}$"
 
 
-def card(lines: Iterable[str], status: str = "") -> str:
+def write_card(lines: Iterable[str], status: str = "") -> str:
     """Lines of HTML in a card, with the colour of a verdict at its edge."""
     colour = COLOURS.get(status, "#57606a")
     body = "<br>".join(lines)
     return f'<div style="border-left:4px solid {colour};padding-left:10px;margin:4px 0;overflow-x:auto">{body}</div>'
 
 
-def verdict_words(status: str) -> str:
+def mark_verdict(status: str) -> str:
     """A verdict in its colour, with its mark."""
     colour = COLOURS.get(status, "inherit")
     return f'<b style="color:{colour}">{MARKS.get(status, "")} {html.escape(status)}</b>'
 
 
-def table(heads: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:
+def write_table(heads: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:
     """A table; a cell between dollar signs is a formula, a verdict has its colour, anything else is text."""
     head = "".join(f'<th style="text-align:left">{html.escape(name)}</th>' for name in heads)
-    body = "".join("<tr>" + "".join(cell(value) for value in row) + "</tr>" for row in rows)
+    body = "".join("<tr>" + "".join(write_cell(value) for value in row) + "</tr>" for row in rows)
     return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
 
 
-def cell(value: Any) -> str:
+def write_cell(value: Any) -> str:
     """One cell of a table of text in HTML; a verdict has its mark and colour."""
     text = str(value)
-    shown = verdict_words(text) if text in MARKS else html.escape(text)
+    shown = mark_verdict(text) if text in MARKS else html.escape(text)
     return f'<td style="text-align:left">{shown}</td>'
 
 
-def shortened(digits: str, length: int = 14) -> str:
+def shorten_digits(digits: str, length: int = 14) -> str:
     """A decimal string cut for reading."""
     return digits if len(digits) <= length else digits[:length] + "…"

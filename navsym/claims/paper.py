@@ -52,7 +52,7 @@ def equation_of(number: str, equations: Iterable[str]) -> str | None:
     return max(fits, key=len, default=None)
 
 
-def coverage(paper: Paper, claims: Iterable[Claim]) -> Coverage:
+def compare_equations(paper: Paper, claims: Iterable[Claim]) -> Coverage:
     """Compare the paper's list of equations with the claims made about it."""
     touched = {equation_of(claim.number, paper.equations) for claim in claims}
     claimed = tuple(e for e in paper.equations if e in touched)
@@ -89,7 +89,7 @@ def claims_of(module: ModuleType) -> tuple[Claim, ...]:
     the claims of its files in the order of their names.
     """
     found: dict[str, Claim] = {}
-    for part in parts_of(module):
+    for part in import_parts(module):
         for value in vars(part).values():
             for claim in claims_in(value):
                 known = found.setdefault(claim.id, claim)
@@ -106,7 +106,7 @@ def claims_in(value: object) -> Iterator[Claim]:
         yield from (item for item in value if isinstance(item, Claim))
 
 
-def parts_of(module: ModuleType) -> list[ModuleType]:
+def import_parts(module: ModuleType) -> list[ModuleType]:
     """The module itself, and the files below it when it is a folder."""
     path = getattr(module, "__path__", None)
     if path is None:

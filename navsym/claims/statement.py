@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from navsym.claims.display import SIGNS, displayed, latex_of
+from navsym.claims.display import SIGNS, display_latex, latex_of
 from navsym.claims.verdict import PROVED, Status
 
 #: Box: symbol -> (lower, upper), exact numbers, None for an end at infinity.
@@ -42,7 +42,7 @@ class Equation:
     def _repr_latex_(self) -> str:
         """Both sides for notebooks, with a question mark: a statement is not yet a verdict."""
         within = "" if self.tolerance is None else rf" \pm {latex_of(self.tolerance)}"
-        return displayed(rf"{latex_of(self.printed)}{within} \overset{{?}}{{=}} {latex_of(self.derived)}")
+        return display_latex(rf"{latex_of(self.printed)}{within} \overset{{?}}{{=}} {latex_of(self.derived)}")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -61,7 +61,7 @@ class Bound:
 
     def _repr_latex_(self) -> str:
         sign = rf"\overset{{?}}{{{SIGNS.get(self.relation, self.relation)}}}"
-        return displayed(f"{latex_of(self.printed)} {sign} {latex_of(self.derived)}")
+        return display_latex(f"{latex_of(self.printed)} {sign} {latex_of(self.derived)}")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -99,7 +99,7 @@ class Optimum:
         problem = rf"\min {over} |\Phi|\,d{t}, \quad {over} {latex_of(self.regressors)}^T\, \Phi\,d{t} = "
         found = rf"{latex_of(self.weights)} \text{{ at }} {latex_of(self.support)}"
         answer = rf"{latex_of(self.functional)}^T: \quad {found}"
-        return displayed(rf"{problem}{answer}, \quad \text{{value }} {latex_of(self.value)}")
+        return display_latex(rf"{problem}{answer}, \quad \text{{value }} {latex_of(self.value)}")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -132,7 +132,7 @@ class Property:
     derived: Finding
 
     def _repr_latex_(self) -> str:
-        return displayed(rf"{latex_of(self.printed)} \overset{{?}}{{=}} {latex_of(self.derived.value)}")
+        return display_latex(rf"{latex_of(self.printed)} \overset{{?}}{{=}} {latex_of(self.derived.value)}")
 
 
 Statement = Equation | Bound | Optimum | Property

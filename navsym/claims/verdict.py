@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Any
 
-from navsym.claims.display import card, table, verdict_words
+from navsym.claims.display import mark_verdict, write_card, write_table
 from navsym.claims.formula import Formula
 from navsym.core.answers import Answer
 from navsym.core.errors import NavsymError, UnknownSymbolError
@@ -128,7 +128,7 @@ class Verdict(Answer):
 
     def _repr_html_(self) -> str:
         """A card for notebooks: verdict, formula, scope, counterexample, assumptions."""
-        head = f"{verdict_words(str(self.status))} by {html.escape(self.method)}"
+        head = f"{mark_verdict(str(self.status))} by {html.escape(self.method)}"
         lines = [f"{head}, {html.escape(self.scope)}" if self.scope else head]
         if self.formula:
             lines.insert(0, html.escape(self.formula._repr_latex_()))
@@ -136,7 +136,7 @@ class Verdict(Answer):
             lines.append(html.escape(self.point_text()))
         if self.assumptions:
             lines.append(html.escape("assuming " + ", ".join(self.assumptions)))
-        return card(lines, str(self.status))
+        return write_card(lines, str(self.status))
 
 
 @dataclass(frozen=True, slots=True, repr=False, eq=False)
@@ -200,4 +200,4 @@ class Verdicts(Answer):
         rows = [
             (v.formula.id if v.formula else "", v.formula or "", v.status, v.method, v.scope) for v in self.verdicts
         ]
-        return table(("claim", "formula", "verdict", "method", "scope"), rows)
+        return write_table(("claim", "formula", "verdict", "method", "scope"), rows)

@@ -36,7 +36,7 @@ def command(
     Example: navsym new-claim schuler_pendulum 1 --printed "2*pi*sqrt(R/g)" --derived "2*pi/sqrt(g/R)" --positive R,g
     """
     from navsym.claims.paper import papers_folder
-    from navsym.language.scaffold import NewClaim, check_module_name, equations_of, with_claim
+    from navsym.language.scaffold import NewClaim, append_claim, check_module_name, read_equation_numbers
 
     path = (folder or papers_folder()) / f"{check_module_name(module)}.py"
     if not path.is_file():
@@ -48,15 +48,15 @@ def command(
     sentence = title or f"Equation ({number.rstrip('*')}), {'corrected' if corrects else 'as it stands in the paper'}."
     source = path.read_text(encoding="utf-8")
     asked = NewClaim(number, sentence, printed, derived, "OPEN", corrects, reason, "", names, tolerance)
-    with_claim(source, asked)  # what cannot be written is refused before it is decided
+    append_claim(source, asked)  # what cannot be written is refused before it is decided
     verdict = decided(source, asked)
-    write_text(path, with_claim(source, declared(asked, verdict, slip)))
+    write_text(path, append_claim(source, declared(asked, verdict, slip)))
     document = {
         "path": str(path),
         "id": f"{module}:{number}",
         "status": str(verdict.status),
         "evidence": verdict.evidence,
-        "equation": equation_of(number, equations_of(source)),
+        "equation": equation_of(number, read_equation_numbers(source)),
     }
     emit(document, as_json=json_, text=lambda: as_text(document, asked))
 
@@ -82,21 +82,24 @@ def decided(source: str, asked: NewClaim) -> Verdict:
 
 def verdict_for(source: str, asked: NewClaim, positive: frozenset[str]) -> Verdict:
     from navsym.claims import Equation
-    from navsym.language.scaffold import declarations, module_tree, read, read_tolerance
+    from navsym.language.scaffold import parse_module, read_claim_side, read_declarations, read_tolerance
     from navsym.prove.ladder import decide_within
 
-    given = declarations(module_tree(source), positive)
-    printed, derived = read(asked.printed, "--printed", given), read(asked.derived, "--derived", given)
+    given = read_declarations(parse_module(source), positive)
+    printed, derived = (
+        read_claim_side(asked.printed, "--printed", given),
+        read_claim_side(asked.derived, "--derived", given),
+    )
     tolerance = None if asked.tolerance is None else read_tolerance(asked.tolerance)
     return decide_within(Equation(printed, derived, tolerance=tolerance))
 
 
 def new_names(source: str, asked: NewClaim) -> frozenset[str]:
     """Names of the two sides that neither the file nor the command declares."""
-    from navsym.language.scaffold import EXAMPLE, declarations, module_tree, read
+    from navsym.language.scaffold import EXAMPLE, parse_module, read_claim_side, read_declarations
 
-    given = declarations(module_tree(source.replace(EXAMPLE, "", 1)), asked.positive)
-    sides = read(asked.printed, "--printed"), read(asked.derived, "--derived")
+    given = read_declarations(parse_module(source.replace(EXAMPLE, "", 1)), asked.positive)
+    sides = read_claim_side(asked.printed, "--printed"), read_claim_side(asked.derived, "--derived")
     return frozenset(s.name for side in sides for s in side.free_symbols) - frozenset(given)
 
 

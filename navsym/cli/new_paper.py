@@ -27,13 +27,13 @@ def command(
     Example: navsym new-paper schuler_pendulum --author "A. Author" --year 1923 --equations "1-6"
     """
     from navsym.claims.paper import papers_folder
-    from navsym.language.scaffold import check_module_name, equation_numbers, module_source
+    from navsym.language.scaffold import check_module_name, module_source, split_numbers
 
     path = (folder or papers_folder()) / f"{check_module_name(name)}.py"
     if path.exists() or path.with_suffix("").exists():
         message = f"expected a new module; got {name}, which exists; choose another name"
         raise DuplicateError(message, where=str(path))
-    text = module_source(name, title, author or [], year, source, language, equation_numbers(equations))
+    text = module_source(name, title, author or [], year, source, language, split_numbers(equations))
     write_text(path, text)
     emit({"path": str(path), "module": name}, as_json=json_, text=f"{path}\nnext: {advice(name, folder)}")
 

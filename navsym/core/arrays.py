@@ -22,7 +22,7 @@ Shape = Sequence[int | None]
 SLACK = 1e-9
 
 
-def named(name: str, value: Any, shape: Shape, why: str) -> Array:
+def as_array(name: str, value: Any, shape: Shape, why: str) -> Array:
     """A read-only float copy of ``value``, of the given shape and without NaN or infinities.
 
     name  : what the caller calls it; opens every error message
@@ -31,21 +31,23 @@ def named(name: str, value: Any, shape: Shape, why: str) -> Array:
 
     Raises ShapeError, EmptyError (no entries), NotFiniteError.
     """
-    array = numbers(name, value, why)
+    array = as_floats(name, value, why)
     if array.size == 0:
-        raise EmptyError(f"{name}: expected shape {written(shape)}, {why}; got no entries; give at least one")
+        raise EmptyError(f"{name}: expected shape {describe_shape(shape)}, {why}; got no entries; give at least one")
     fits = array.ndim == len(shape) and all(
         want is None or want == got for want, got in zip(shape, array.shape, strict=True)
     )
     if not fits:
-        raise ShapeError(f"{name}: expected shape {written(shape)}, {why}; got {array.shape}; give one entry for each")
+        raise ShapeError(
+            f"{name}: expected shape {describe_shape(shape)}, {why}; got {array.shape}; give one entry for each"
+        )
     if not np.isfinite(array).all():
         place = tuple(int(i) for i in np.argwhere(~np.isfinite(array))[0])
         raise NotFiniteError(f"{name}: expected finite numbers; got {array[place]} at index {place}; remove or mend it")
-    return frozen(array)
+    return freeze(array)
 
 
-def numbers(name: str, value: Any, why: str) -> Array:
+def as_floats(name: str, value: Any, why: str) -> Array:
     """A float copy of nested sequences of numbers; ragged rows and words are a ShapeError."""
     try:
         raw = np.asarray(value)
@@ -61,28 +63,28 @@ def numbers(name: str, value: Any, why: str) -> Array:
         raise NotFiniteError(f"{name}: expected numbers below 1.8e308; got a larger one; rescale it") from None
 
 
-def written(shape: Shape) -> str:
+def describe_shape(shape: Shape) -> str:
     """A shape for people: ``(3, any)``."""
     sizes = ["any" if size is None else str(size) for size in shape]
     return f"({', '.join(sizes)}{',' if len(sizes) == 1 else ''})"
 
 
-def frozen(array: Array) -> Array:
+def freeze(array: Array) -> Array:
     """The same array, read-only from now on."""
     array.flags.writeable = False
     return array
 
 
-def positive(name: str, value: Any, shape: Shape, why: str) -> Array:
-    """Like :func:`named`, and every entry above zero (DomainError otherwise)."""
-    array = named(name, value, shape, why)
+def as_positive(name: str, value: Any, shape: Shape, why: str) -> Array:
+    """Like :func:`as_array`, and every entry above zero (DomainError otherwise)."""
+    array = as_array(name, value, shape, why)
     if array.min() <= 0.0:
         place = tuple(int(i) for i in np.argwhere(array <= 0.0)[0])
         raise DomainError(f"{name}: expected positive numbers; got {array[place]} at index {place}; {why}")
     return array
 
 
-def covariance(name: str, value: Any, n: int | None, *, definite: bool = False) -> Array:
+def as_covariance(name: str, value: Any, n: int | None, *, definite: bool = False) -> Array:
     """A covariance matrix (n, n): symmetric and positive semidefinite, made exactly symmetric.
 
     Asymmetry and negative eigenvalues of the size of rounding (1e-9 of the largest entry) pass.
@@ -90,12 +92,12 @@ def covariance(name: str, value: Any, n: int | None, *, definite: bool = False) 
 
     Raises ShapeError, NotFiniteError, EmptyError, DomainError.
     """
-    array = named(name, value, (n, n), "a covariance, states by states")
+    array = as_array(name, value, (n, n), "a covariance, states by states")
     if array.shape[0] != array.shape[1]:
         raise ShapeError(f"{name}: expected a square covariance; got {array.shape}; give all rows")
     scale = np.abs(array).max()
     if np.abs(array - array.T).max() > SLACK * scale:
-        raise DomainError(f"{name}: expected a symmetric covariance; got {asymmetry(array)}; symmetrise it")
+        raise DomainError(f"{name}: expected a symmetric covariance; got {worst_asymmetry(array)}; symmetrise it")
     symmetric = 0.5 * array + 0.5 * array.T
     least = float(np.linalg.eigvalsh(symmetric)[0])
     if least < -SLACK * scale or (definite and least <= 0.0):
@@ -103,33 +105,33 @@ def covariance(name: str, value: Any, n: int | None, *, definite: bool = False) 
         raise DomainError(
             f"{name}: expected a positive {kind} covariance; got the eigenvalue {least:.6g}; mend its entries"
         )
-    return frozen(symmetric)
+    return freeze(symmetric)
 
 
-def asymmetry(array: Array) -> str:
+def worst_asymmetry(array: Array) -> str:
     """The worst pair of an array that should be symmetric, in words."""
     i, j = (int(k) for k in np.unravel_index(np.abs(array - array.T).argmax(), array.shape))
     return f"[{i}, {j}] = {array[i, j]} against [{j}, {i}] = {array[j, i]}"
 
 
-def probabilities(name: str, value: Any, k: int | None = None) -> Array:
+def as_probabilities(name: str, value: Any, k: int | None = None) -> Array:
     """A probability vector (k,): entries in [0, 1] that sum to one, scaled to do so exactly.
 
     Raises DomainError for a negative entry or a sum that differs from one by more than 1e-9.
     """
-    array = named(name, value, (k,), "one probability per mode")
-    return frozen(unit_rows(name, array[np.newaxis])[0])
+    array = as_array(name, value, (k,), "one probability per mode")
+    return freeze(scale_rows(name, array[np.newaxis])[0])
 
 
-def row_stochastic(name: str, value: Any, k: int | None = None) -> Array:
+def as_transition(name: str, value: Any, k: int | None = None) -> Array:
     """A matrix of transition probabilities (k, k), entry [i, j] leads from i to j; rows sum to one."""
-    array = named(name, value, (k, k), "rows = from, columns = to")
+    array = as_array(name, value, (k, k), "rows = from, columns = to")
     if array.shape[0] != array.shape[1]:
         raise ShapeError(f"{name}: expected a square matrix; got {array.shape}; rows = from, columns = to")
-    return frozen(unit_rows(name, array))
+    return freeze(scale_rows(name, array))
 
 
-def unit_rows(name: str, array: Array) -> Array:
+def scale_rows(name: str, array: Array) -> Array:
     """Rows of probabilities divided by their sums; DomainError when they are none."""
     if array.min() < 0.0:
         raise DomainError(f"{name}: expected probabilities; got the negative entry {array.min()}; mend it")

@@ -43,7 +43,7 @@ def precision(bits: int) -> Iterator[None]:
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
+class Instruction:
     """One instruction: an operation, the places of its arguments and a constant."""
 
     operation: str
@@ -56,7 +56,7 @@ class Tape:
     """A flattened expression; the last step is its value."""
 
     expression: sp.Expr
-    steps: tuple[Step, ...]
+    steps: tuple[Instruction, ...]
 
     def run(self, values: Mapping[sp.Symbol, Any]) -> Any:
         """Value of the expression; ``values`` are balls or power series of balls."""
@@ -68,14 +68,14 @@ class Tape:
 
 def tape(expression: sp.Expr) -> Tape:
     """Flatten an expression of the language; raises :class:`UnsupportedError` outside it."""
-    steps: list[Step] = []
+    steps: list[Instruction] = []
     place: dict[sp.Basic, int] = {}
 
     def visit(node: sp.Basic) -> int:
         if node in place:
             return place[node]
-        operation, arguments, constant = instruction(node)
-        step = Step(operation, tuple(visit(argument) for argument in arguments), constant)
+        operation, arguments, constant = read_instruction(node)
+        step = Instruction(operation, tuple(visit(argument) for argument in arguments), constant)
         steps.append(step)
         place[node] = len(steps) - 1
         return place[node]
@@ -107,7 +107,7 @@ FUNCTIONS = {
 }
 
 
-def instruction(node: sp.Basic) -> tuple[str, Sequence[sp.Basic], Any]:
+def read_instruction(node: sp.Basic) -> tuple[str, Sequence[sp.Basic], Any]:
     """Operation, arguments and constant of one node of a sympy tree."""
     if isinstance(node, sp.Rational):
         return "number", (), to_fmpq(node)
@@ -145,19 +145,19 @@ def constant_term(x: Any) -> arb:
     return x[0] if isinstance(x, arb_series) else x
 
 
-def undefined(like: Any) -> Any:
+def undefined_like(like: Any) -> Any:
     """NaN in every coefficient: a NaN constant term alone would leave finite derivatives behind it."""
     return arb_series([arb("nan")] * ctx.cap) if isinstance(like, arb_series) else arb("nan")
 
 
-def product(factors: Sequence[Any]) -> Any:
+def multiply_all(factors: Sequence[Any]) -> Any:
     value = factors[0]
     for factor in factors[1:]:
         value = value * factor
     return value
 
 
-def total(terms: Sequence[Any]) -> Any:
+def add_all(terms: Sequence[Any]) -> Any:
     value = terms[0]
     for term in terms[1:]:
         value = value + term
@@ -182,7 +182,7 @@ def integer_power(x: Any, n: int) -> Any:
 
 def reciprocal(x: Any) -> Any:
     if constant_term(x).contains(0):
-        return undefined(x)
+        return undefined_like(x)
     return 1 / x
 
 
@@ -190,10 +190,10 @@ def ball_power(x: arb, n: int) -> arb:
     """x**n of a ball, n >= 0; flint's own is NaN where the midpoint is exactly zero, and below zero around it."""
     around_zero = n > 0 and x.mid() == 0 and x.is_finite() and not x.is_exact()
     power = arb(0, x.rad() ** n) if around_zero else x**n
-    return not_negative(power) if n % 2 == 0 else power
+    return cut_below_zero(power) if n % 2 == 0 else power
 
 
-def not_negative(x: arb) -> arb:
+def cut_below_zero(x: arb) -> arb:
     """The part of a ball that is not below zero, for what cannot be negative."""
     return x.nonnegative_part() if x.is_finite() and not x >= 0 else x
 
@@ -203,34 +203,34 @@ def rational_power(x: Any, p: int, q: int) -> Any:
     head = constant_term(x)
     if isinstance(x, arb) and q < MOST_ROOT:
         if not head >= 0:
-            return undefined(x)
+            return undefined_like(x)
         root = x.sqrt() if q == 2 else x.root(q)
         return integer_power(root, p)
     if not head > 0:
-        return undefined(x)
+        return undefined_like(x)
     if q == 2:
         return integer_power(x.sqrt(), p)
     return (x.log() * (arb(p) / q)).exp()
 
 
 def general_power(base: Any, exponent: Any) -> Any:
-    return (base.log() * exponent).exp() if constant_term(base) > 0 else undefined(base)
+    return (base.log() * exponent).exp() if constant_term(base) > 0 else undefined_like(base)
 
 
 def logarithm(x: Any) -> Any:
-    return x.log() if constant_term(x) > 0 else undefined(x)
+    return x.log() if constant_term(x) > 0 else undefined_like(x)
 
 
-def absolute(x: Any) -> Any:
+def absolute_value(x: Any) -> Any:
     if isinstance(x, arb):
-        return not_negative(abs(x))
+        return cut_below_zero(abs(x))
     head = constant_term(x)
     if head > 0:
         return x
-    return -x if head < 0 else undefined(x)
+    return -x if head < 0 else undefined_like(x)
 
 
-def sign(x: Any) -> Any:
+def sign_function(x: Any) -> Any:
     head = constant_term(x)
     if head > 0:
         return arb(1)
@@ -238,18 +238,18 @@ def sign(x: Any) -> Any:
         return arb(-1)
     if head == 0:
         return arb(0)
-    return arb(0, 1) if head.is_finite() and isinstance(x, arb) else undefined(x)
+    return arb(0, 1) if head.is_finite() and isinstance(x, arb) else undefined_like(x)
 
 
 def inverse_sine(x: Any) -> Any:
-    return x.asin() if within_unit(x) else undefined(x)
+    return x.asin() if is_within_unit(x) else undefined_like(x)
 
 
 def inverse_cosine(x: Any) -> Any:
-    return x.acos() if within_unit(x) else undefined(x)
+    return x.acos() if is_within_unit(x) else undefined_like(x)
 
 
-def within_unit(x: Any) -> bool:
+def is_within_unit(x: Any) -> bool:
     head = constant_term(x)
     if isinstance(x, arb_series):
         return bool(head > -1) and bool(head < 1)
@@ -258,12 +258,12 @@ def within_unit(x: Any) -> bool:
 
 def two_argument_arctangent(y: Any, x: Any) -> Any:
     if isinstance(y, arb) and isinstance(x, arb):
-        return undefined(y) if y.contains(0) and x.contains(0) else arb.atan2(y, x)
+        return undefined_like(y) if y.contains(0) and x.contains(0) else arb.atan2(y, x)
     head = constant_term(x)
-    return atan_of(y * reciprocal(x)) if head > 0 else undefined(y if isinstance(y, arb_series) else x)
+    return arctangent(y * reciprocal(x)) if head > 0 else undefined_like(y if isinstance(y, arb_series) else x)
 
 
-def atan_of(x: Any) -> Any:
+def arctangent(x: Any) -> Any:
     return x.atan()
 
 
@@ -281,10 +281,10 @@ def hyperbolic(name: str) -> Callable[[Any], Any]:
     return value
 
 
-def extreme(name: str) -> Callable[[Sequence[Any]], Any]:
+def extreme_of(name: str) -> Callable[[Sequence[Any]], Any]:
     def value(arguments: Sequence[Any]) -> Any:
         if not all(isinstance(argument, arb) for argument in arguments):
-            return undefined(next(a for a in arguments if isinstance(a, arb_series)))
+            return undefined_like(next(a for a in arguments if isinstance(a, arb_series)))
         result = arguments[0]
         for argument in arguments[1:]:
             result = getattr(result, name)(argument)
@@ -302,8 +302,8 @@ OPERATIONS: dict[str, Callable[[Any, list[Any], Any], Any]] = {
     "pi": lambda constant, arguments, values: arb.pi(),
     "e": lambda constant, arguments, values: arb(1).exp(),
     "symbol": lambda constant, arguments, values: values[constant],
-    "add": lambda constant, arguments, values: total(arguments),
-    "mul": lambda constant, arguments, values: product(arguments),
+    "add": lambda constant, arguments, values: add_all(arguments),
+    "mul": lambda constant, arguments, values: multiply_all(arguments),
     "power": lambda constant, arguments, values: integer_power(arguments[0], constant),
     "root": lambda constant, arguments, values: rational_power(arguments[0], *constant),
     "general_power": lambda constant, arguments, values: general_power(*arguments),
@@ -315,17 +315,17 @@ OPERATIONS: dict[str, Callable[[Any, list[Any], Any], Any]] = {
     "csc": unary(lambda x: reciprocal(x.sin())),
     "exp": unary(lambda x: x.exp()),
     "log": unary(logarithm),
-    "abs": unary(absolute),
-    "sign": unary(sign),
+    "abs": unary(absolute_value),
+    "sign": unary(sign_function),
     "asin": unary(inverse_sine),
     "acos": unary(inverse_cosine),
-    "atan": unary(atan_of),
+    "atan": unary(arctangent),
     "atan2": lambda constant, arguments, values: two_argument_arctangent(*arguments),
     "sinh": unary(hyperbolic("sinh")),
     "cosh": unary(hyperbolic("cosh")),
     "tanh": unary(hyperbolic("tanh")),
-    "max": lambda constant, arguments, values: extreme("max")(arguments),
-    "min": lambda constant, arguments, values: extreme("min")(arguments),
+    "max": lambda constant, arguments, values: extreme_of("max")(arguments),
+    "min": lambda constant, arguments, values: extreme_of("min")(arguments),
 }
 
 

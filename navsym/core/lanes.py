@@ -2,8 +2,8 @@
 
 The loop vectoriser gives up on the short, many-array loops of a bank of filters, so the bank is written with
 a value of eight lanes: one hypothesis, or one Monte-Carlo run, in each. The compiler maps it to whatever
-vectors the machine has. Lanes know ``+ - * /``, :func:`load`, :func:`store` and :func:`spread`; products and
-sums may be fused, so results agree with scalar code to rounding and not bit by bit.
+vectors the machine has. Lanes know ``+ - * /``, :func:`load_lanes`, :func:`store_lanes` and :func:`spread_lanes`;
+products and sums may be fused, so results agree with scalar code to rounding and not bit by bit.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ class LanesModel(models.PrimitiveModel):
         super().__init__(manager, declared, VECTOR)
 
 
-def arithmetic(symbol: Callable[..., Any], emit: Callable[[Any, Any, Any], Any]) -> None:
+def teach_operation(symbol: Callable[..., Any], emit: Callable[[Any, Any, Any], Any]) -> None:
     """Teach the compiler one operation between lanes."""
 
     class Template(AbstractTemplate):
@@ -55,51 +55,51 @@ def arithmetic(symbol: Callable[..., Any], emit: Callable[[Any, Any, Any], Any])
         return emit(builder, *args)
 
 
-arithmetic(operator.add, lambda builder, a, b: builder.fadd(a, b, flags=FUSED))
-arithmetic(operator.sub, lambda builder, a, b: builder.fsub(a, b, flags=FUSED))
-arithmetic(operator.mul, lambda builder, a, b: builder.fmul(a, b, flags=FUSED))
-arithmetic(operator.truediv, lambda builder, a, b: builder.fdiv(a, b, flags=FUSED))
+teach_operation(operator.add, lambda builder, a, b: builder.fadd(a, b, flags=FUSED))
+teach_operation(operator.sub, lambda builder, a, b: builder.fsub(a, b, flags=FUSED))
+teach_operation(operator.mul, lambda builder, a, b: builder.fmul(a, b, flags=FUSED))
+teach_operation(operator.truediv, lambda builder, a, b: builder.fdiv(a, b, flags=FUSED))
 
 
-def place(context: Any, builder: Any, declared: Any, array: Any, index: Any) -> Any:
+def pointer_to_lanes(context: Any, builder: Any, declared: Any, array: Any, index: Any) -> Any:
     """Pointer to eight doubles of a flat array, from ``index`` on."""
     data = context.make_array(declared)(context, builder, array).data
     return builder.bitcast(builder.gep(data, [index]), VECTOR.as_pointer())
 
 
-def flat_doubles(declared: Any) -> bool:
+def is_flat_doubles(declared: Any) -> bool:
     """True for numba's type of a one-dimensional array of doubles."""
     return isinstance(declared, types.Array) and declared.ndim == 1 and declared.dtype == types.float64
 
 
 @intrinsic
-def load(typingctx: Any, array: Any, index: Any) -> Any:
+def load_lanes(typingctx: Any, array: Any, index: Any) -> Any:
     """Eight doubles of a flat array from ``index`` on."""
-    if not flat_doubles(array):
+    if not is_flat_doubles(array):
         return None
 
     def generate(context: Any, builder: Any, sig: Any, args: Any) -> Any:
         # Numpy promises eight bytes of alignment and no more.
-        return builder.load(place(context, builder, sig.args[0], args[0], args[1]), align=8)
+        return builder.load(pointer_to_lanes(context, builder, sig.args[0], args[0], args[1]), align=8)
 
     return LANES(array, types.intp), generate
 
 
 @intrinsic
-def store(typingctx: Any, array: Any, index: Any, value: Any) -> Any:
+def store_lanes(typingctx: Any, array: Any, index: Any, value: Any) -> Any:
     """Write lanes into a flat array from ``index`` on."""
-    if not (flat_doubles(array) and isinstance(value, Lanes)):
+    if not (is_flat_doubles(array) and isinstance(value, Lanes)):
         return None
 
     def generate(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-        builder.store(args[2], place(context, builder, sig.args[0], args[0], args[1]), align=8)
+        builder.store(args[2], pointer_to_lanes(context, builder, sig.args[0], args[0], args[1]), align=8)
         return context.get_dummy_value()
 
     return types.void(array, types.intp, LANES), generate
 
 
 @intrinsic
-def spread(typingctx: Any, value: Any) -> Any:
+def spread_lanes(typingctx: Any, value: Any) -> Any:
     """One double in every lane."""
 
     def generate(context: Any, builder: Any, sig: Any, args: Any) -> Any:

@@ -60,7 +60,7 @@ class Kernel(Generic[P, R]):
 
     def compiled(self) -> Callable[P, R]:
         """The compiled function; the written one where there is no compiler."""
-        self.fast = cast("Callable[P, R]", compiled(cast(FunctionType, self.py_func)))
+        self.fast = cast("Callable[P, R]", compile_loop(cast(FunctionType, self.py_func)))
         return self.fast
 
     def price(self) -> float:
@@ -80,10 +80,10 @@ def part(function: Callable[P, R]) -> Callable[P, R]:
 
 
 @cache
-def compiled(function: FunctionType) -> Callable[..., Any]:
+def compile_loop(function: FunctionType) -> Callable[..., Any]:
     """The function compiled, with every part that it calls."""
     names = {name: function.__globals__.get(name) for name in function.__code__.co_names}
-    parts = {name: compiled(written(g)) for name, g in names.items() if is_loop(g)}
+    parts = {name: compile_loop(source_function(g)) for name, g in names.items() if is_loop(g)}
     twin = FunctionType(function.__code__, {**function.__globals__, **parts}, function.__name__)
     twin.__qualname__, twin.__doc__ = function.__qualname__, function.__doc__
     try:
@@ -97,7 +97,7 @@ def is_loop(thing: Any) -> bool:
     return isinstance(thing, Kernel) or bool(getattr(thing, "part", False))
 
 
-def written(thing: Any) -> FunctionType:
+def source_function(thing: Any) -> FunctionType:
     """The function as it is written, also of a kernel."""
     return cast(FunctionType, thing.py_func if isinstance(thing, Kernel) else thing)
 

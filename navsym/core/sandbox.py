@@ -117,13 +117,13 @@ def run_many(
         while waiting or running:
             while waiting and len(running) < max(1, jobs):
                 place, item = waiting.pop()
-                running.append(start(place, function, item, Limits(seconds, megabytes, os.getpid())))
-            for child in ready(running, seconds):
+                running.append(start_child(place, function, item, Limits(seconds, megabytes, os.getpid())))
+            for child in wait_for_children(running, seconds):
                 running.remove(child)
-                yield finish(child, seconds)
+                yield collect_outcome(child, seconds)
     finally:
         for child in running:
-            stop(child)
+            stop_child(child)
 
 
 def require_limits(seconds: float, megabytes: int) -> None:
@@ -134,10 +134,10 @@ def require_limits(seconds: float, megabytes: int) -> None:
         raise DomainError(f"expected megabytes above 0 and at most {MOST_MEGABYTES}; got {megabytes}; correct it")
 
 
-def start(place: int, function: Callable[[Any], Any], item: Any, limits: Limits) -> Child:
+def start_child(place: int, function: Callable[[Any], Any], item: Any, limits: Limits) -> Child:
     context = multiprocessing.get_context("fork")
     receiver, sender = context.Pipe(duplex=False)
-    process = context.Process(target=work, args=(sender, function, item, limits), daemon=True)
+    process = context.Process(target=work_in_child, args=(sender, function, item, limits), daemon=True)
     process.start()
     sender.close()
     return Child(place, process, receiver, time.monotonic())
@@ -154,7 +154,7 @@ def die_with_parent(parent: int) -> None:
         os._exit(1)
 
 
-def work(sender: Connection, function: Callable[[Any], Any], item: Any, limits: Limits) -> None:
+def work_in_child(sender: Connection, function: Callable[[Any], Any], item: Any, limits: Limits) -> None:
     """Runs in the child. Ctrl-C reaches the whole group; here the parent answers it, and kills its children."""
     die_with_parent(limits.parent)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -163,7 +163,7 @@ def work(sender: Connection, function: Callable[[Any], Any], item: Any, limits: 
     try:
         sender.send(("result", function(item)))
     except NavsymError as error:
-        sender.send(("error", alone(error)))
+        sender.send(("error", strip_causes(error)))
     except MemoryError:
         sender.send(("stopped", f"memory above {limits.megabytes} MB"))
     except RecursionError:
@@ -174,7 +174,7 @@ def work(sender: Connection, function: Callable[[Any], Any], item: Any, limits: 
         sender.close()
 
 
-def alone(error: NavsymError) -> NavsymError:
+def strip_causes(error: NavsymError) -> NavsymError:
     """The error without those that led to it.
 
     Where tblib is at work (distributed brings it), they would be sent along, and what their frames hold cannot
@@ -184,16 +184,18 @@ def alone(error: NavsymError) -> NavsymError:
     return error.with_traceback(None)
 
 
-def ready(running: Sequence[Child], seconds: float) -> list[Child]:
+def wait_for_children(running: Sequence[Child], seconds: float) -> list[Child]:
     """Children with a result or out of time; waits until there is one."""
     while True:
-        late = [child for child in running if left(child, seconds) <= 0]
-        answered = wait([child.receiver for child in running], 0 if late else min(left(c, seconds) for c in running))
+        late = [child for child in running if seconds_left(child, seconds) <= 0]
+        answered = wait(
+            [child.receiver for child in running], 0 if late else min(seconds_left(c, seconds) for c in running)
+        )
         if late or answered:
             return [child for child in running if child in late or child.receiver in answered]
 
 
-def left(child: Child, seconds: float) -> float:
+def seconds_left(child: Child, seconds: float) -> float:
     """Seconds that a child may still go on, at the least: of processor time, and of the clock, of which it has more."""
     gone = time.monotonic() - child.started
     try:
@@ -203,7 +205,7 @@ def left(child: Child, seconds: float) -> float:
     return min(seconds - used, PATIENCE * seconds - gone)
 
 
-def finish(child: Child, seconds: float) -> Outcome:
+def collect_outcome(child: Child, seconds: float) -> Outcome:
     spent = time.monotonic() - child.started
     try:
         if not child.receiver.poll(0):
@@ -214,13 +216,13 @@ def finish(child: Child, seconds: float) -> Outcome:
         code = child.process.exitcode
         return Outcome(child.place, Exhausted(f"the child ended without a result (exit {code})"), spent)
     finally:
-        stop(child)
+        stop_child(child)
     if kind == "result":
         return Outcome(child.place, value, spent)
     return Outcome(child.place, Failed(value) if kind == "error" else Exhausted(value), spent)
 
 
-def stop(child: Child) -> None:
+def stop_child(child: Child) -> None:
     if child.process.is_alive():
         child.process.kill()
     child.process.join()

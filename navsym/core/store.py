@@ -53,7 +53,7 @@ def key_of(*parts: str) -> str:
     return digest.hexdigest()
 
 
-def intact(key: str, value: bytes | None, digest: bytes | None) -> bool:
+def is_intact(key: str, value: bytes | None, digest: bytes | None) -> bool:
     """True when the checksum fits the entry."""
     return value is not None and key_of(key, value.decode("utf-8", "replace")).encode() == digest
 
@@ -83,7 +83,7 @@ class Store:
         try:
             for key in keys:
                 row = self.connection.execute(READ, (key,)).fetchone()
-                if row is not None and intact(key, *row):
+                if row is not None and is_intact(key, *row):
                     found[key] = json.loads(row[0])
         except TROUBLE as error:
             raise self.trouble("read", error) from error
@@ -111,7 +111,7 @@ class Store:
 
 
 @contextlib.contextmanager
-def opened(path: Path | None = None) -> Iterator[Store]:
+def open_store(path: Path | None = None) -> Iterator[Store]:
     """A store that is closed at the end."""
     store = Store(path)
     try:

@@ -9,7 +9,7 @@ import re
 import unicodedata
 from collections.abc import Iterable
 
-from navsym.language.names import nearest
+from navsym.language.names import suggest_nearest
 
 HINTS = {
     "^": "write ** for a power",
@@ -62,7 +62,7 @@ UNITS = frozenset(("m", "km", "s", "min", "h", "deg", "rad", "kg", "Hz", "mg"))
 RELATION = {"==": "=", "\u2264": "<=", "=<": "<=", "\u2265": ">=", "=>": ">=", "\u2260": "!=", "<>": "!=", "~=": "!="}
 
 
-def for_character(text: str, at: int) -> str:
+def advise_on_character(text: str, at: int) -> str:
     """What to write for a character that the language does not have."""
     char = text[at]
     if char in RAISED:
@@ -79,14 +79,14 @@ def for_character(text: str, at: int) -> str:
     return HINTS.get(char, "remove it or write it in ASCII")
 
 
-def for_name(name: str, known: Iterable[str]) -> str:
+def advise_on_name(name: str, known: Iterable[str]) -> str:
     """What to do about a name that nobody declared."""
     if name in FOREIGN and name not in known:
         return f"write {FOREIGN[name]}, or declare it if it is a symbol of yours"
-    return f"declare it or correct it: {nearest(name, known)}"
+    return f"declare it or correct it: {suggest_nearest(name, known)}"
 
 
-def for_token(text: str, at: int, implicit: bool) -> str:
+def advise_on_token(text: str, at: int, implicit: bool) -> str:
     """What to do about a token that is in its place by mistake; implicit for one that may be a factor."""
     before, mark = text[:at].rstrip(), text[at : at + 2]
     if mark[:1] == "," and re.search(r"\d$", before) and re.match(r"\d", mark[1:]):
@@ -100,6 +100,6 @@ def for_token(text: str, at: int, implicit: bool) -> str:
     return "write a product with *" if implicit else "complete or remove this part"
 
 
-def for_relation(relation: str, known: Iterable[str]) -> str:
+def advise_on_relation(relation: str, known: Iterable[str]) -> str:
     """What to write for a relation that is none."""
-    return f"write {RELATION[relation]}" if relation in RELATION else nearest(relation, known)
+    return f"write {RELATION[relation]}" if relation in RELATION else suggest_nearest(relation, known)

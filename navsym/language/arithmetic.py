@@ -54,77 +54,77 @@ class Refusal(Exception):
         self.error, self.expected, self.got, self.remedy = error, expected, got, remedy
 
 
-def too_large(expected: str, got: str) -> Refusal:
+def refuse_size(expected: str, got: str) -> Refusal:
     """A refusal for size."""
     return Refusal(TooLargeError, expected, got, "rescale, or state the formula without this power")
 
 
-def undefined(got: str) -> Refusal:
+def refuse_value(got: str) -> Refusal:
     """A refusal for a value that does not exist or is not real."""
     return Refusal(DomainError, "a finite real value", got, "restrict or correct the expression")
 
 
-def number(text: str) -> sp.Rational:
+def number_from_text(text: str) -> sp.Rational:
     """A decimal number, exactly: ``"0.1"`` is 1/10 and ``"1e-9"`` is 1/10**9."""
     return sp.Rational(*Fraction(text).as_integer_ratio())
 
 
-def add(terms: list[sp.Expr]) -> sp.Expr:
+def add_exactly(terms: list[sp.Expr]) -> sp.Expr:
     """The sum."""
-    return real(sp.Add(*terms)) if len(terms) > 1 else terms[0]
+    return require_real(sp.Add(*terms)) if len(terms) > 1 else terms[0]
 
 
 def bound_factors(factors: list[sp.Expr]) -> None:
     """Refuse a product with too many factors before all of them are read."""
     if len(factors) > FACTORS:
-        raise too_large(f"at most {FACTORS} factors in a product", "more")
+        raise refuse_size(f"at most {FACTORS} factors in a product", "more")
 
 
-def multiply(factors: list[sp.Expr]) -> sp.Expr:
+def multiply_exactly(factors: list[sp.Expr]) -> sp.Expr:
     """The product, with the size of its numbers bounded first."""
     if len(factors) > 2 and sum(number_bits(factor) for factor in factors) > 4 * BITS:
-        raise too_large(f"numbers of at most {BITS} bits", "a product of many large ones")
-    return real(sp.Mul(*factors)) if len(factors) > 1 else factors[0]
+        raise refuse_size(f"numbers of at most {BITS} bits", "a product of many large ones")
+    return require_real(sp.Mul(*factors)) if len(factors) > 1 else factors[0]
 
 
-def invert(divisor: sp.Expr) -> sp.Expr:
+def invert_exactly(divisor: sp.Expr) -> sp.Expr:
     """One over the divisor, which must not be a zero, open or in disguise."""
-    if sign(divisor) == 0:
+    if sign_of_constant(divisor) == 0:
         raise Refusal(DomainError, "a nonzero divisor", "zero", "correct the denominator")
-    return real(sp.Pow(divisor, -1))
+    return require_real(sp.Pow(divisor, -1))
 
 
-def power(base: sp.Expr, exponent: sp.Expr) -> sp.Expr:
+def raise_exactly(base: sp.Expr, exponent: sp.Expr) -> sp.Expr:
     """``base**exponent`` with the size of the result bounded before it is computed."""
     bound_exponent(base, exponent)
-    if exponent.is_extended_negative and sign(base) == 0:
+    if exponent.is_extended_negative and sign_of_constant(base) == 0:
         raise Refusal(DomainError, "a nonzero base", "zero to a negative power", "correct the denominator")
-    if exponent.free_symbols and sign(base) == -1:
-        raise undefined("a negative number to a symbolic power")
-    return real(sp.Pow(base, exponent))
+    if exponent.free_symbols and sign_of_constant(base) == -1:
+        raise refuse_value("a negative number to a symbolic power")
+    return require_real(sp.Pow(base, exponent))
 
 
-def call(name: str, arguments: list[sp.Expr]) -> sp.Expr:
+def call_function(name: str, arguments: list[sp.Expr]) -> sp.Expr:
     """Function of the language at exact arguments."""
     if name == "sqrt":
-        return power(arguments[0], sp.Rational(1, 2))
+        return raise_exactly(arguments[0], sp.Rational(1, 2))
     for argument in arguments:
         bound_constant(name, argument)
     check_domain(name, arguments[0])
     if name == "exp":
         bound_logarithms(arguments[0])
-    return real(BUILDERS[name](*arguments))
+    return require_real(BUILDERS[name](*arguments))
 
 
 def check_domain(name: str, argument: sp.Expr) -> None:
     """Refuse a constant outside the domain before the algebra turns ``sin(asin(2))`` into 2."""
-    if name in ("asin", "acos") and sign(1 - argument**2) == -1:
-        raise undefined("the inverse of a sine or cosine above one")
-    if name == "log" and sign(argument) == -1:
-        raise undefined("the logarithm of a negative number")
+    if name in ("asin", "acos") and sign_of_constant(1 - argument**2) == -1:
+        raise refuse_value("the inverse of a sine or cosine above one")
+    if name == "log" and sign_of_constant(argument) == -1:
+        raise refuse_value("the logarithm of a negative number")
 
 
-def sign(value: sp.Expr) -> int | None:
+def sign_of_constant(value: sp.Expr) -> int | None:
     """Sign of a constant: -1, 1, or 0 for zero and what 120 digits cannot tell from it; None with symbols."""
     if value.free_symbols:
         return None
@@ -141,18 +141,18 @@ def bound_exponent(base: sp.Expr, exponent: sp.Expr) -> None:
 
     Every rational part of the exponent counts, also beside symbols: ``2**(x + n)*2**(-x)`` is ``2**n``.
     """
-    size = max((abs(part) for part in [*rational_parts(exponent), *irrational(exponent)]), default=sp.Integer(0))
+    size = max((abs(part) for part in [*rational_parts(exponent), *irrational_parts(exponent)]), default=sp.Integer(0))
     bits = number_bits(base)
     if size > EXPONENT:
-        raise too_large(f"an exponent of at most {EXPONENT}", "a larger one")
+        raise refuse_size(f"an exponent of at most {EXPONENT}", "a larger one")
     if exponent.is_Rational and exponent.q > EXPONENT:
-        raise too_large(f"a fractional exponent with a denominator of at most {EXPONENT}", "a larger one")
+        raise refuse_size(f"a fractional exponent with a denominator of at most {EXPONENT}", "a larger one")
     if exponent.is_Rational and total_exponent(base) * size > EXPONENT:
-        raise too_large(f"a total exponent of at most {EXPONENT}", "powers of powers beyond it")
+        raise refuse_size(f"a total exponent of at most {EXPONENT}", "powers of powers beyond it")
     if bits * size > BITS:
-        raise too_large(f"numbers of at most {BITS} bits", f"about {int(bits * size)} bits")
+        raise refuse_size(f"numbers of at most {BITS} bits", f"about {int(bits * size)} bits")
     if not exponent.is_integer and bits > ROOT_BITS:
-        raise too_large(f"at most {ROOT_BITS} bits under a root", f"{bits} bits")
+        raise refuse_size(f"at most {ROOT_BITS} bits under a root", f"{bits} bits")
 
 
 def bound_constant(name: str, argument: sp.Expr) -> None:
@@ -162,7 +162,7 @@ def bound_constant(name: str, argument: sp.Expr) -> None:
     size = abs(argument.evalf(5))
     largest = GROWTH if name in ("exp", "sinh", "cosh") else sp.Integer(2) ** BITS
     if size.is_Float and size > largest:
-        raise too_large(f"an argument of {name} of bounded size", "a larger constant")
+        raise refuse_size(f"an argument of {name} of bounded size", "a larger constant")
 
 
 def bound_logarithms(argument: sp.Expr) -> None:
@@ -179,7 +179,7 @@ def rational_parts(exponent: sp.Expr) -> list[sp.Rational]:
     return [part for part in parts if part.is_Rational]
 
 
-def irrational(exponent: sp.Expr) -> list[sp.Expr]:
+def irrational_parts(exponent: sp.Expr) -> list[sp.Expr]:
     """The value of a constant exponent that is no fraction, to a few digits.
 
     Of towers such as ``9**9**9**(1/2)`` sympy would want all digits when it puts terms in order.
@@ -207,16 +207,16 @@ def total_exponent(base: sp.Expr) -> sp.Rational:
     return max(inside, default=sp.Integer(1))
 
 
-def real(value: sp.Expr) -> sp.Expr:
+def require_real(value: sp.Expr) -> sp.Expr:
     """The value, when it is finite and real as far as a look at its surface tells."""
     for term in sp.Add.make_args(value):
         for factor in sp.Mul.make_args(term):
             if factor in (sp.nan, sp.zoo, sp.oo, -sp.oo):
-                raise undefined("an undefined or infinite value")
+                raise refuse_value("an undefined or infinite value")
             if factor is sp.I or (
                 factor.is_Pow and factor.base.is_negative and factor.exp.is_Rational and not factor.exp.is_integer
             ):
                 raise Refusal(DomainError, "a finite real value", "a root of a negative number", ROOT_ADVICE)
             if factor.is_Rational and number_bits(factor) > BITS:
-                raise too_large(f"numbers of at most {BITS} bits", "a larger number")
+                raise refuse_size(f"numbers of at most {BITS} bits", "a larger number")
     return value

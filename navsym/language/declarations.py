@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from navsym.core.errors import DomainError, ExpressionSyntaxError, ShapeError, TooLargeError
-from navsym.language.arithmetic import sign
+from navsym.language.arithmetic import sign_of_constant
 from navsym.language.expression import Expr, Symbol, symbol
-from navsym.language.names import nearest, shown
-from navsym.language.schema import SIDE, Table, as_list, entry, inside, kind_of
+from navsym.language.names import quote, suggest_nearest
+from navsym.language.schema import SIDE, Table, as_list, describe_value, join_place, read_entry
 
 Kind = Literal["range", "real", "positive", "nonnegative", "nonzero"]
 
@@ -43,24 +43,26 @@ def read_parameters(table: Table, where: str) -> dict[str, Parameter]:
     if len(table) > SIDE:
         message = f"expected at most {SIDE} names; got {len(table)}; split the file"
         raise TooLargeError(message, where=where)
-    return {name: read_parameter(name, value, inside(where, name)) for name, value in table.items()}
+    return {name: read_parameter(name, value, join_place(where, name)) for name, value in table.items()}
 
 
 def read_parameter(name: str, value: Any, where: str) -> Parameter:
     """One declaration: a range, or a word about the sign."""
     if isinstance(value, list):
         lower, upper = read_range(value, where)
-        return Parameter(name, symbol(name, where=where, **sign_of(lower)), lower, upper, "range")
+        return Parameter(name, symbol(name, where=where, **assumptions_of_range(lower)), lower, upper, "range")
     if not isinstance(value, str) or value not in SIGNS:
-        got = shown(value) if isinstance(value, str) else kind_of(value)
-        hint = f": {nearest(value, SIGNS)}" if isinstance(value, str) else ""
+        got = quote(value) if isinstance(value, str) else describe_value(value)
+        hint = f": {suggest_nearest(value, SIGNS)}" if isinstance(value, str) else ""
         expected = f'a range such as ["1/2", "2"] or one of {", ".join(SIGNS)}'
-        raise ExpressionSyntaxError(f"expected {expected}; got {got}; {advice(value, name)}{hint}", where=where)
+        raise ExpressionSyntaxError(
+            f"expected {expected}; got {got}; {advise_on_declaration(value, name)}{hint}", where=where
+        )
     made = symbol(name, where=where, **SIGNS[value])
     return Parameter(name, made, None, None, value)  # type: ignore[arg-type]
 
 
-def advice(value: Any, name: str) -> str:
+def advise_on_declaration(value: Any, name: str) -> str:
     """What to do with a declaration that is none; a number is what people write for a constant."""
     text = value if isinstance(value, str) else "a number" if isinstance(value, int | float) else ""
     if text == "a number" or text[:1].isdigit() or text[:1] in "+-.":
@@ -73,9 +75,9 @@ def read_range(value: Any, where: str) -> tuple[Expr, Expr]:
     ends = as_list(value, where, "a range of two numbers")
     if len(ends) != 2:
         raise ShapeError(f"expected a range of two numbers; got {len(ends)}; give both ends", where=where)
-    lower, upper = (entry(end, {}, inside(where, i)) for i, end in enumerate(ends))
-    if sign(upper - lower) == 0:
-        message = f"expected two different numbers; got {brief(lower)} twice; write a constant in place of the name"
+    lower, upper = (read_entry(end, {}, join_place(where, i)) for i, end in enumerate(ends))
+    if sign_of_constant(upper - lower) == 0:
+        message = f"expected two different numbers; got {cut_text(lower)} twice; write a constant in place of the name"
         raise DomainError(message, where=where)
     require_order(lower, upper, where)
     return lower, upper
@@ -83,8 +85,8 @@ def read_range(value: Any, where: str) -> tuple[Expr, Expr]:
 
 def require_order(lower: Expr, upper: Expr, where: str) -> None:
     """Refuse ends that are not in order, as far as that can be decided."""
-    if sign(upper - lower) in (0, -1):
-        got = f"{brief(lower)} and {brief(upper)}"
+    if sign_of_constant(upper - lower) in (0, -1):
+        got = f"{cut_text(lower)} and {cut_text(upper)}"
         message = f"expected the lower end below the upper one; got {got}; swap or correct them"
         raise DomainError(message, where=where)
 
@@ -92,20 +94,20 @@ def require_order(lower: Expr, upper: Expr, where: str) -> None:
 def require_positive(value: Expr, what: str, where: str) -> None:
     """Refuse a number that is not positive, and a name that is not declared to be."""
     declared = value.is_Symbol and (value.is_positive or value.is_nonnegative)
-    if not declared and (value.is_Symbol or sign(value) in (0, -1) or value.is_nonpositive):
-        message = f"expected {what} above zero; got {brief(value)}; correct it or declare it positive"
+    if not declared and (value.is_Symbol or sign_of_constant(value) in (0, -1) or value.is_nonpositive):
+        message = f"expected {what} above zero; got {cut_text(value)}; correct it or declare it positive"
         raise DomainError(message, where=where)
 
 
-def brief(value: object) -> str:
+def cut_text(value: object) -> str:
     """An expression of our own making, cut for a message."""
     text = str(value)
     return text if len(text) <= 60 else f"{text[:60]}..."
 
 
-def sign_of(lower: Expr) -> dict[str, bool]:
+def assumptions_of_range(lower: Expr) -> dict[str, bool]:
     """What a range with this lower end says of the sign."""
-    if sign(lower) == 1:
+    if sign_of_constant(lower) == 1:
         return {"positive": True}
     return {"nonnegative": True} if lower == 0 else {}
 

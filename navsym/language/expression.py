@@ -27,7 +27,7 @@ from navsym.core.errors import (
     UnknownSymbolError,
 )
 from navsym.language import advice, arithmetic
-from navsym.language.names import FUNCTIONS, RESERVED, check_name, shown
+from navsym.language.names import FUNCTIONS, RESERVED, check_name, quote
 from navsym.language.printer import to_text
 from navsym.language.tokens import CALLS, DEPTH, Source, Token, tokenize
 
@@ -71,7 +71,7 @@ def parse_noting(text: str, symbols: Mapping[str, sp.Symbol], *, where: str = ""
     """Like :func:`parse`, together with every symbolic divisor and radicand that the text has."""
     if not isinstance(text, str):
         raise ExpressionSyntaxError(
-            f'expected an expression as text; got {shown(text)}; put it in quotes, such as "1/2"', where=where
+            f'expected an expression as text; got {quote(text)}; put it in quotes, such as "1/2"', where=where
         )
     for name in RESERVED & symbols.keys():
         check_name(name, where=where)
@@ -144,7 +144,7 @@ class Reader:
         while mark := self.take("+", "-"):
             term = self.product()
             terms.append(term if mark.text == "+" else self.minus(mark.start, term))
-        return self.apply(at, arithmetic.add, terms)
+        return self.apply(at, arithmetic.add_exactly, terms)
 
     def product(self) -> sp.Expr:
         """Factors and inverted divisors, multiplied in one step; a leading minus is a factor."""
@@ -154,13 +154,13 @@ class Reader:
             factor = self.unary()
             factors.append(factor if mark.text == "*" else self.inverse(mark.start, factor))
             self.apply(mark.start, arithmetic.bound_factors, factors)
-        return self.apply(at, arithmetic.multiply, factors)
+        return self.apply(at, arithmetic.multiply_exactly, factors)
 
     def inverse(self, at: int, divisor: sp.Expr) -> sp.Expr:
         """One over a divisor, which is noted."""
         if divisor.free_symbols:
             self.divisors.append(divisor)
-        return self.apply(at, arithmetic.invert, divisor)
+        return self.apply(at, arithmetic.invert_exactly, divisor)
 
     def unary(self) -> sp.Expr:
         """A power with signs before it."""
@@ -177,7 +177,7 @@ class Reader:
 
     def minus(self, at: int, value: sp.Expr) -> sp.Expr:
         """The value with the other sign."""
-        return self.apply(at, arithmetic.multiply, [sp.S.NegativeOne, value])
+        return self.apply(at, arithmetic.multiply_exactly, [sp.S.NegativeOne, value])
 
     def power(self) -> sp.Expr:
         """An atom, raised or not; a base under a negative exponent is a divisor."""
@@ -189,7 +189,7 @@ class Reader:
         if exponent.is_extended_negative is not False and base.free_symbols and exponent.is_number:
             self.divisors.append(base)
         self.count_roots(mark, base, exponent)
-        return self.apply(mark.start, arithmetic.power, base, exponent)
+        return self.apply(mark.start, arithmetic.raise_exactly, base, exponent)
 
     def count_roots(self, mark: Token, base: sp.Expr, exponent: sp.Expr) -> None:
         """The algebra factors numbers under roots, again in every product: their total is bounded."""
@@ -206,7 +206,7 @@ class Reader:
         token = self.token
         self.position += 1
         if token.kind == "number":
-            return self.apply(token.start, arithmetic.number, token.text)
+            return self.apply(token.start, arithmetic.number_from_text, token.text)
         if token.kind == "name":
             return self.name(token)
         if token.text == "(":
@@ -223,7 +223,7 @@ class Reader:
         if token.text == "pi":
             return sp.pi
         if token.text not in self.symbols:
-            got, remedy = shown(token.text), advice.for_name(token.text, self.symbols)
+            got, remedy = quote(token.text), advice.advise_on_name(token.text, self.symbols)
             self.source.fail(token.start, "a declared name or a function", got, remedy, UnknownSymbolError)
         if self.token.kind == "mark" and self.token.text == "(":
             remedy = f"write a product with *: {token.text}*(...)"
@@ -237,7 +237,7 @@ class Reader:
         if opening is None and self.token.text == "**":
             self.unexpected(f"( after {token.text}")
         if opening is None:
-            got = "the end of the text" if self.token.kind == "end" else shown(self.token.text)
+            got = "the end of the text" if self.token.kind == "end" else quote(self.token.text)
             remedy = f"put what it is taken of in parentheses: {token.text}(...)"
             self.source.fail(self.token.start, f"( after {token.text}", got, remedy)
         self.calls += 1
@@ -258,7 +258,7 @@ class Reader:
         if token.text == "sqrt":
             self.count_roots(token, arguments[0], sp.S.Half)
         self.note_domain(token.text, arguments)
-        return self.apply(token.start, arithmetic.call, token.text, arguments)
+        return self.apply(token.start, arithmetic.call_function, token.text, arguments)
 
     def note_domain(self, name: str, arguments: list[sp.Expr]) -> None:
         """Remember where the function exists."""
@@ -305,9 +305,9 @@ class Reader:
     def unexpected(self, expected: str) -> NoReturn:
         """Refuse the token that stands here."""
         token = self.token
-        got = "the end of the text" if token.kind == "end" else shown(token.text)
+        got = "the end of the text" if token.kind == "end" else quote(token.text)
         implicit = token.kind in ("number", "name") or token.text == "("
-        self.source.fail(token.start, expected, got, advice.for_token(self.source.text, token.start, implicit))
+        self.source.fail(token.start, expected, got, advice.advise_on_token(self.source.text, token.start, implicit))
 
     def apply(self, at: int, step: Callable[..., sp.Expr], *arguments: object) -> sp.Expr:
         """One step of arithmetic, with its refusal placed in the text."""

@@ -21,7 +21,7 @@ MARKS = {
 }
 
 
-def called(path: str | os.PathLike[str]) -> str:
+def name_file(path: str | os.PathLike[str]) -> str:
     """The path as it may stand in a message."""
     return printable(os.fspath(path))
 
@@ -31,25 +31,25 @@ def read_text(path: str | os.PathLike[str], limit: int) -> str:
 
     Raises NavsymError of kind ``missing-file``, TooLargeError, EmptyError or ExpressionSyntaxError.
     """
-    return decode(read_bytes(path, limit), called(path))
+    return decode(read_bytes(path, limit), name_file(path))
 
 
 def read_bytes(path: str | os.PathLike[str], limit: int) -> bytes:
     """The bytes of a regular file, at most ``limit`` of them; no device or pipe is opened."""
-    where = called(path)
+    where = name_file(path)
     try:
         if not Path(path).is_file():
-            raise missing(where, "a directory or device" if Path(path).exists() else "nothing there")
+            raise missing_file(where, "a directory or device" if Path(path).exists() else "nothing there")
         with open(path, "rb") as file:
             data = file.read(limit + 1)
     except (OSError, ValueError) as failure:  # ValueError: a NUL in the name
-        raise missing(where, getattr(failure, "strerror", None) or "a name that no file can have") from None
+        raise missing_file(where, getattr(failure, "strerror", None) or "a name that no file can have") from None
     if len(data) > limit:
         raise TooLargeError(f"expected at most {limit} bytes; got a larger file; split it", where=where)
     return data
 
 
-def missing(where: str, got: str) -> NavsymError:
+def missing_file(where: str, got: str) -> NavsymError:
     """The error for a file that cannot be read."""
     message = f"expected a readable file; got {got}; check the path and the permissions"
     return NavsymError(message, where=where, kind="missing-file")
@@ -117,7 +117,7 @@ def replace_file(target: Path, data: bytes, durable: bool) -> None:
             file.flush()
             if durable:
                 os.fsync(file.fileno())
-        os.chmod(name, mode_for(target))
+        os.chmod(name, file_mode(target))
         os.replace(name, target)
     except BaseException:
         with contextlib.suppress(OSError):
@@ -125,7 +125,7 @@ def replace_file(target: Path, data: bytes, durable: bool) -> None:
         raise
 
 
-def mode_for(target: Path) -> int:
+def file_mode(target: Path) -> int:
     """Permission bits of the file that stands there, or what the umask leaves of 0666."""
     if target.exists():
         return target.stat().st_mode & 0o777

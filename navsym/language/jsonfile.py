@@ -8,8 +8,8 @@ import os
 from typing import Any
 
 from navsym.core.errors import DuplicateError, ExpressionSyntaxError, NotFiniteError, TooLargeError
-from navsym.language.files import called, decode, read_bytes
-from navsym.language.names import shown
+from navsym.language.files import decode, name_file, read_bytes
+from navsym.language.names import quote
 
 SIZE = 16_000_000  # bytes
 DEPTH = 64
@@ -22,7 +22,7 @@ def read_json(path: str | os.PathLike[str], *, limit: int = SIZE) -> Any:
     Raises NavsymError of kind ``missing-file``, EmptyError, ExpressionSyntaxError (with line and column),
     DuplicateError, NotFiniteError (NaN, Infinity, 1e999) or TooLargeError; ``where`` is ``"file: key"``.
     """
-    return parse_json(read_bytes(path, limit), called(path))
+    return parse_json(read_bytes(path, limit), name_file(path))
 
 
 def parse_json(data: bytes | str, where: str = "") -> Any:
@@ -32,32 +32,32 @@ def parse_json(data: bytes | str, where: str = "") -> Any:
         message = f"expected at most {CONTAINERS} lists and tables; got more; split the document"
         raise TooLargeError(message, where=where)
     try:
-        document = json.loads(text, object_pairs_hook=lambda pairs: unique(pairs, where))
+        document = json.loads(text, object_pairs_hook=lambda pairs: require_unique_keys(pairs, where))
     except json.JSONDecodeError as failure:
         place = f"line {failure.lineno}, column {failure.colno}"
-        near = shown(text[failure.pos : failure.pos + 20])
+        near = quote(text[failure.pos : failure.pos + 20])
         message = f"expected JSON ({failure.msg}); got {near}; correct it there"
         raise ExpressionSyntaxError(message, where=f"{where}: {place}" if where else place) from None
     except RecursionError:
         raise too_deep(where) from None
     except ValueError:  # an integer beyond the interpreter's limit of digits
         raise too_many_digits(where) from None
-    check(document, where)
+    check_document(document, where)
     return document
 
 
-def unique(pairs: list[tuple[str, Any]], where: str) -> dict[str, Any]:
+def require_unique_keys(pairs: list[tuple[str, Any]], where: str) -> dict[str, Any]:
     """The pairs as a table, when no key comes twice."""
     table = dict(pairs)
     if len(table) < len(pairs):
         seen: set[str] = set()
         twice = next(key for key, _ in pairs if key in seen or seen.add(key))  # type: ignore[func-returns-value]
         place = f"{where}: {printable(twice)}" if where else printable(twice)
-        raise DuplicateError(f"expected every key once; got {shown(twice)} again; remove one of them", where=place)
+        raise DuplicateError(f"expected every key once; got {quote(twice)} again; remove one of them", where=place)
     return table
 
 
-def check(document: Any, where: str) -> None:
+def check_document(document: Any, where: str) -> None:
     """Walk without recursion: every number finite, every string valid text, nothing too deep."""
     stack: list[tuple[Any, tuple[Any, ...]]] = [(document, ())]
     while stack:
@@ -93,7 +93,7 @@ def check_leaf(value: Any, where: str, path: tuple[Any, ...], key: Any) -> None:
 def check_text(value: str, where: str, path: tuple[Any, ...], key: Any) -> None:
     """Refuse lone surrogates, which no output can carry."""
     if not value.isascii() and any("\ud800" <= char <= "\udfff" for char in value):
-        message = f"expected valid Unicode; got a lone surrogate in {shown(value)}; remove it"
+        message = f"expected valid Unicode; got a lone surrogate in {quote(value)}; remove it"
         raise ExpressionSyntaxError(message, where=place_of(where, (*path, key)))
 
 

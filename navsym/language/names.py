@@ -54,34 +54,34 @@ def check_name(name: object, *, where: str = "") -> str:
     if not isinstance(name, str) or (len(name) <= NAME_LENGTH and not NAME.fullmatch(name)):
         raise ExpressionSyntaxError(
             f"expected a name: an ASCII letter, then ASCII letters, digits and underscores; "
-            f"got {shown(name)}; rename it",
+            f"got {quote(name)}; rename it",
             where=where,
         )
     if len(name) > NAME_LENGTH:
         raise TooLargeError(
-            f"expected a name of at most {NAME_LENGTH} characters; got {len(name)} of them, {shown(name)}; shorten it",
+            f"expected a name of at most {NAME_LENGTH} characters; got {len(name)} of them, {quote(name)}; shorten it",
             where=where,
         )
     if name in RESERVED:
         raise DuplicateError(
-            f"expected a new name; got {name!r}, which already means {meaning(name)}; rename it", where=where
+            f"expected a new name; got {name!r}, which already means {describe_reserved(name)}; rename it", where=where
         )
     return name
 
 
-def meaning(name: str) -> str:
+def describe_reserved(name: str) -> str:
     """What a reserved name means."""
     return "the number pi" if name == "pi" else "a function"
 
 
-def shown(value: object, limit: int = 40) -> str:
+def quote(value: object, limit: int = 40) -> str:
     """Foreign text as it may stand in a message: quoted, escaped, ASCII only, and cut."""
-    text = value if isinstance(value, str) else f"{type(value).__name__} {short_repr(value, limit)}"
+    text = value if isinstance(value, str) else f"{type(value).__name__} {shorten_repr(value, limit)}"
     cut = text[:limit]
     return ascii(cut) + (f" ... ({len(text)} characters)" if len(text) > limit else "")
 
 
-def short_repr(value: object, limit: int) -> str:
+def shorten_repr(value: object, limit: int) -> str:
     """``repr`` of small things only: that of a huge integer or a deep list costs time or fails."""
     if isinstance(value, int) and value.bit_length() > 200:
         return f"of {value.bit_length()} bits"
@@ -90,14 +90,14 @@ def short_repr(value: object, limit: int) -> str:
     return repr(value)[:limit]
 
 
-def character(char: str) -> str:
+def describe_character(char: str) -> str:
     """A character with its code and its Unicode name, so that look-alikes show."""
     code = f"U+{ord(char):04X}"
     name = unicodedata.name(char, "")
     return f"{char!a} ({code} {name})" if name else f"{char!a} ({code})"
 
 
-def nearest(name: str, known: Iterable[str]) -> str:
+def suggest_nearest(name: str, known: Iterable[str]) -> str:
     """``"did you mean 'omega'?"``, or the list of what there is."""
     choices = sorted(known)
     if not choices:
@@ -112,9 +112,9 @@ def nearest(name: str, known: Iterable[str]) -> str:
 Table = Mapping[str, Any]
 
 
-def inside(where: str, key: object) -> str:
+def join_place(where: str, key: object) -> str:
     """The place of a key: ``"file: model.F"``, ``"file: measurement[2].h"``."""
-    part = f"[{key}]" if isinstance(key, int) else shown(key)[1:-1]
+    part = f"[{key}]" if isinstance(key, int) else quote(key)[1:-1]
     if not where:
         return part
     if isinstance(key, int):
@@ -129,20 +129,20 @@ def expect_keys(table: Table, known: Collection[str], where: str) -> None:
     """
     for key in table:
         if key not in known:
-            raise ExpressionSyntaxError(unknown(key, known), where=inside(where, key))
+            raise ExpressionSyntaxError(describe_unknown(key, known), where=join_place(where, key))
 
 
 def only_keys(table: Table, known: Collection[str], place: str = "") -> None:
     """The same for tables of numbers, of kind ``unknown-symbol``; whoever knows the file puts it before the place."""
     for key in table:
         if key not in known:
-            name = inside("", key)
-            raise UnknownSymbolError(unknown(key, known), where=f"{place}.{name}" if place else name)
+            name = join_place("", key)
+            raise UnknownSymbolError(describe_unknown(key, known), where=f"{place}.{name}" if place else name)
 
 
-def unknown(key: object, known: Collection[str]) -> str:
+def describe_unknown(key: object, known: Collection[str]) -> str:
     """What to say of a key that a format does not have."""
     return (
-        f"expected one of the keys {', '.join(known)}; got {shown(key)}; "
-        f"remove or correct it: {nearest(str(key), known)}"
+        f"expected one of the keys {', '.join(known)}; got {quote(key)}; "
+        f"remove or correct it: {suggest_nearest(str(key), known)}"
     )

@@ -9,7 +9,7 @@ import sympy as sp
 
 from navsym.core.errors import ExpressionSyntaxError, TooLargeError
 from navsym.language.arithmetic import BITS, BUILDERS, number_bits
-from navsym.language.names import check_name, shown
+from navsym.language.names import check_name, quote
 
 SUM, PRODUCT, POWER, ATOM = range(4)
 
@@ -37,7 +37,7 @@ def to_python(expression: sp.Expr) -> str:
 def refuse(part: object) -> NoReturn:
     """Raise ExpressionSyntaxError for what the language does not have."""
     kind = type(part).__name__
-    text = shown(str(part)) if not isinstance(part, str) else shown(part)
+    text = quote(str(part)) if not isinstance(part, str) else quote(part)
     raise ExpressionSyntaxError(
         f"expected numbers, names, + - * / **, pi and the functions of the language; got {kind} {text}; "
         "rewrite it exactly in these terms"
@@ -67,7 +67,7 @@ class Printer:
 
     def write(self, e: sp.Expr, floor: int) -> str:
         """Text of ``e``, in parentheses when it binds less tightly than ``floor`` asks."""
-        return bracket(self.spell(e), floor)
+        return add_brackets(self.spell(e), floor)
 
     def spell(self, e: sp.Expr) -> tuple[str, int]:
         """Text and how tightly it binds."""
@@ -129,13 +129,13 @@ class Printer:
             below.insert(0, self.spell_number(sp.Integer(coefficient.q)))
         if abs(coefficient.p) != 1 or not above:
             above.insert(0, self.spell_number(sp.Integer(abs(coefficient.p))))
-        top = "*".join(bracket(part, PRODUCT) for part in above)
+        top = "*".join(add_brackets(part, PRODUCT) for part in above)
         text = f"{top}/{self.divisor(below)}" if below else top
         return (f"-{text}", SUM) if coefficient < 0 else (text, PRODUCT)
 
     def divisor(self, below: list[tuple[str, int]]) -> str:
         """What stands behind the first ``/``; with a sum, one divisor after another: reading would multiply it out."""
-        parts = [bracket(part, POWER) for part in below]
+        parts = [add_brackets(part, POWER) for part in below]
         if any(level == SUM for _, level in below):
             return "/".join(parts[1:] + parts[:1] if self.python else parts)  # 1/2 in Python is a float
         return parts[0] if len(parts) == 1 else f"({'*'.join(parts)})"
@@ -147,11 +147,11 @@ class Printer:
         if exponent == sp.Rational(1, 2):
             return f"{self.prefix('sqrt')}({self.write(base, SUM)})", ATOM
         if exponent.is_Rational and exponent < 0:
-            return f"1/{bracket(self.spell_power(base, -exponent), POWER)}", PRODUCT
+            return f"1/{add_brackets(self.spell_power(base, -exponent), POWER)}", PRODUCT
         return f"{self.write(base, ATOM)}**{self.write(exponent, ATOM)}", POWER
 
 
-def bracket(part: tuple[str, int], floor: int) -> str:
+def add_brackets(part: tuple[str, int], floor: int) -> str:
     """A part in parentheses when it binds less tightly than ``floor`` asks."""
     text, level = part
     return text if level >= floor else f"({text})"

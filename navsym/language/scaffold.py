@@ -16,7 +16,7 @@ import sympy as sp
 
 from navsym.core.errors import DomainError, DuplicateError, ExpressionSyntaxError, UnknownSymbolError
 from navsym.language.expression import parse, symbol
-from navsym.language.names import RESERVED, shown
+from navsym.language.names import RESERVED, quote
 from navsym.language.printer import Printer, to_python
 
 NAME = re.compile(r"[a-z][a-z0-9_]{1,40}")
@@ -76,7 +76,7 @@ def check_module_name(name: str) -> str:
     if NAME.fullmatch(name) and not keyword.iskeyword(name):
         return name
     raise ExpressionSyntaxError(
-        f"expected a module name of small letters, digits and underscores; got {shown(name)}; rename it"
+        f"expected a module name of small letters, digits and underscores; got {quote(name)}; rename it"
     )
 
 
@@ -97,30 +97,30 @@ def module_source(
         check_number(number)
     lines = "".join(f'        "{number}": {NOT_YET},\n' for number in equations)
     return MODULE.format(
-        name=quoted(check_module_name(name)),
-        heading=plain(title) or name,
-        title=quoted(title or name),
-        authors=several(authors),
+        name=quote_string(check_module_name(name)),
+        heading=write_docstring(title) or name,
+        title=quote_string(title or name),
+        authors=write_tuple(authors),
         year=year,
-        source=quoted(source),
-        language=quoted(language),
-        equations=several(equations),
+        source=quote_string(source),
+        language=quote_string(language),
+        equations=write_tuple(equations),
         definitions=lines,
         example=EXAMPLE,
     )
 
 
-def quoted(text: str) -> str:
+def quote_string(text: str) -> str:
     """A string as Python source, in double quotes where that needs no escaping."""
     return repr(text) if set(text) & set("\"'\\") or not text.isprintable() else f'"{text}"'
 
 
-def several(texts: Sequence[str]) -> str:
+def write_tuple(texts: Sequence[str]) -> str:
     """A tuple of strings as Python source."""
-    return "(" + ", ".join(quoted(text) for text in texts) + ("," if len(texts) == 1 else "") + ")"
+    return "(" + ", ".join(quote_string(text) for text in texts) + ("," if len(texts) == 1 else "") + ")"
 
 
-def equation_numbers(text: str) -> tuple[str, ...]:
+def split_numbers(text: str) -> tuple[str, ...]:
     """``"1-6"``, ``"1.1-1.9, 2.1"`` or a list with commas, as numbers in order.
 
     Raises ExpressionSyntaxError for text that is no list of numbers, DuplicateError for a number that stands twice.
@@ -143,10 +143,10 @@ def check_number(number: str) -> str:
     """The number of an equation; raises ExpressionSyntaxError when it has another form."""
     if NUMBER.fullmatch(number):
         return number
-    raise ExpressionSyntaxError(f"expected an equation number such as 4.3 or 4.3.u2; got {shown(number)}; correct it")
+    raise ExpressionSyntaxError(f"expected an equation number such as 4.3 or 4.3.u2; got {quote(number)}; correct it")
 
 
-def plain(text: str) -> str:
+def write_docstring(text: str) -> str:
     """A sentence that may stand in a docstring."""
     return " ".join(text.replace("\\", "/").replace('"', "'").split())
 
@@ -191,11 +191,11 @@ class NewClaim:
         found = [f'"{self.number}"', f"expect=Status.{self.expect}"]
         found += [f'corrects="{check_number(self.corrects)}"'] if self.corrects else []
         found += [f'slip="{self.slip}"'] if self.slip else []
-        found += [f'reason="{plain(self.reason)}"'] if self.reason else []
+        found += [f'reason="{write_docstring(self.reason)}"'] if self.reason else []
         return ", ".join(found)
 
 
-def with_claim(source: str, new: NewClaim) -> str:
+def append_claim(source: str, new: NewClaim) -> str:
     """The source of a module with one more claim at its end, which takes the place of the example.
 
     Raises DuplicateError when the number is claimed already, DomainError when the file is not a
@@ -207,26 +207,28 @@ def with_claim(source: str, new: NewClaim) -> str:
         message = f"expected a new number; got {new.number}, claimed already; choose another or edit the file"
         raise DuplicateError(message)
     source = source.replace(EXAMPLE, "", 1)
-    tree = module_tree(source)
-    given = declarations(tree, new.positive)
-    sides = [read(text, where, given) for text, where in ((new.printed, "--printed"), (new.derived, "--derived"))]
+    tree = parse_module(source)
+    given = read_declarations(tree, new.positive)
+    sides = [
+        read_claim_side(text, where, given) for text, where in ((new.printed, "--printed"), (new.derived, "--derived"))
+    ]
     used = {s.name for side in sides for s in side.free_symbols}
     if idle := sorted(new.positive - used):
         raise UnknownSymbolError(f"expected names of the two sides; got {idle[0]}; leave it out", where="--positive")
     block = CLAIM.format(
         arguments=new.arguments,
-        function=function_name(new.number, assigned(tree)),
-        title=plain(new.title),
+        function=name_function(new.number, names_at_top(tree)),
+        title=write_docstring(new.title),
         printed=side_source(sides[0]),
         derived=side_source(sides[1]),
         tolerance=tolerance_source(new.tolerance),
     )
-    names = used - assigned(tree)
-    declared = declared_as("real", names - new.positive) + declared_as("positive", names & new.positive)
-    return looked_at(source, new.number).rstrip("\n") + "\n" + declared + block
+    names = used - names_at_top(tree)
+    declared = write_declarations("real", names - new.positive) + write_declarations("positive", names & new.positive)
+    return strike_off(source, new.number).rstrip("\n") + "\n" + declared + block
 
 
-def declared_as(kind: str, names: set[str]) -> str:
+def write_declarations(kind: str, names: set[str]) -> str:
     """Source that declares new symbols; nothing where there are none."""
     if not names:
         return ""
@@ -242,13 +244,13 @@ def tolerance_source(text: str | None) -> str:
 
 def read_tolerance(text: str) -> sp.Rational:
     """Half a unit of the last digit, or another positive number, exactly; raises DomainError for anything else."""
-    value = read(text, "--tolerance")
+    value = read_claim_side(text, "--tolerance")
     if isinstance(value, sp.Rational) and value.is_positive:
         return value
-    raise DomainError(f"expected a positive number such as 0.05; got {shown(text)}; write one", where="--tolerance")
+    raise DomainError(f"expected a positive number such as 0.05; got {quote(text)}; write one", where="--tolerance")
 
 
-def declarations(tree: ast.Module, positive: frozenset[str] = frozenset()) -> dict[str, sp.Symbol]:
+def read_declarations(tree: ast.Module, positive: frozenset[str] = frozenset()) -> dict[str, sp.Symbol]:
     """Symbols as the file declares them at its top, and ``positive`` ones that it does not declare yet.
 
     Raises DuplicateError for a positive name that the file declares otherwise.
@@ -256,7 +258,7 @@ def declarations(tree: ast.Module, positive: frozenset[str] = frozenset()) -> di
     found: dict[str, sp.Symbol] = {}
     for node in tree.body:
         if isinstance(node, ast.Assign) and isinstance(node.value, ast.Call):
-            found |= symbols_of(node.value)
+            found |= read_symbol_call(node.value)
     for name in sorted(positive):
         if name in found and not found[name].is_positive:
             message = f"expected a new name; got {name}, which the file declares already; change its line there"
@@ -268,7 +270,7 @@ def declarations(tree: ast.Module, positive: frozenset[str] = frozenset()) -> di
 KINDS = ("real", "positive", "nonnegative", "nonzero")
 
 
-def symbols_of(call: ast.Call) -> dict[str, sp.Symbol]:
+def read_symbol_call(call: ast.Call) -> dict[str, sp.Symbol]:
     """What ``sp.Symbol("x", real=True)`` or ``sp.symbols("x y", positive=True)`` declares; nothing for another call."""
     named = isinstance(call.func, ast.Attribute) and call.func.attr in ("Symbol", "symbols")
     text = call.args[0].value if named and call.args and isinstance(call.args[0], ast.Constant) else ""
@@ -281,18 +283,18 @@ def symbols_of(call: ast.Call) -> dict[str, sp.Symbol]:
     }
 
 
-def equations_of(source: str) -> tuple[str, ...]:
+def read_equation_numbers(source: str) -> tuple[str, ...]:
     """The numbers that the card of a module lists; empty where they are not written out.
 
     Raises DomainError for a file that was not begun by new-paper.
     """
-    for node in ast.walk(module_tree(source)):
+    for node in ast.walk(parse_module(source)):
         if isinstance(node, ast.keyword) and node.arg == "equations" and isinstance(node.value, ast.Tuple):
             return tuple(str(part.value) for part in node.value.elts if isinstance(part, ast.Constant))
     return ()
 
 
-def looked_at(source: str, number: str) -> str:
+def strike_off(source: str, number: str) -> str:
     """The source without the line that lists the equation of a claim as not looked at."""
     equation = number.rstrip("*")
     while equation:
@@ -303,13 +305,13 @@ def looked_at(source: str, number: str) -> str:
     return source
 
 
-def module_tree(source: str) -> ast.Module:
+def parse_module(source: str) -> ast.Module:
     """The syntax tree of a derivation module; raises DomainError for a file that was not begun by new-paper."""
     try:
         tree = ast.parse(source)
     except SyntaxError as error:
         raise DomainError(f"expected a derivation module; got a syntax error at line {error.lineno}") from error
-    if not {"PAPER", "sp", "claim", "Equation", "Status"} <= assigned(tree):
+    if not {"PAPER", "sp", "claim", "Equation", "Status"} <= names_at_top(tree):
         raise DomainError(
             "expected a module made by navsym new-paper, with PAPER, sp, claim, Equation and Status at its top; "
             "got another; add the imports"
@@ -317,7 +319,7 @@ def module_tree(source: str) -> ast.Module:
     return tree
 
 
-def assigned(tree: ast.Module) -> set[str]:
+def names_at_top(tree: ast.Module) -> set[str]:
     """Names that a module defines or imports at its top."""
     names: set[str] = set()
     for node in tree.body:
@@ -331,13 +333,13 @@ def assigned(tree: ast.Module) -> set[str]:
     return names
 
 
-def function_name(number: str, known: set[str]) -> str:
+def name_function(number: str, known: set[str]) -> str:
     """A name that is not yet known for the function of a claim: ``claim_2_17_corrected`` of 2.17*."""
     base = "claim_" + re.sub(r"\W", "_", number.replace("*", "_corrected"))
     return next(name for name in (base, *(f"{base}_{k}" for k in range(2, 1000))) if name not in known)
 
 
-def read(text: str, where: str, given: Mapping[str, sp.Symbol] | None = None) -> sp.Expr:
+def read_claim_side(text: str, where: str, given: Mapping[str, sp.Symbol] | None = None) -> sp.Expr:
     """A side of a claim; names are those ``given``, or declared real.
 
     Raises ExpressionSyntaxError that names ``where``.

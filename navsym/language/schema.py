@@ -8,7 +8,7 @@ from typing import Any
 
 from navsym.core.errors import DuplicateError, EmptyError, ExpressionSyntaxError, ShapeError, TooLargeError
 from navsym.language.expression import Expr, Matrix, Parsed, parse_noting
-from navsym.language.names import NAME_LENGTH, Table, inside, shown
+from navsym.language.names import NAME_LENGTH, Table, join_place, quote
 from navsym.language.names import expect_keys as expect_keys
 from navsym.language.tomlfile import Numeral
 
@@ -16,10 +16,10 @@ LABEL = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.:*'+-]*")
 SIDE = 64  # rows of a matrix, entries of a vector
 
 
-def required(table: Table, key: str, where: str) -> Any:
+def require_key(table: Table, key: str, where: str) -> Any:
     """The value of a key that must be there."""
     if key not in table:
-        raise EmptyError(f"expected the key {key}; got none; add it", where=inside(where, key))
+        raise EmptyError(f"expected the key {key}; got none; add it", where=join_place(where, key))
     return table[key]
 
 
@@ -29,7 +29,7 @@ LIST_ADVICE = 'write it in brackets with commas: ["1", "0"], and a matrix by its
 def as_table(value: Any, where: str) -> Table:
     """The value, when it is a table."""
     if not isinstance(value, dict):
-        message = f"expected a table; got {kind_of(value)}; write [name] and keys below it"
+        message = f"expected a table; got {describe_value(value)}; write [name] and keys below it"
         raise ShapeError(message, where=where)
     return value
 
@@ -38,7 +38,7 @@ def as_list(value: Any, where: str, what: str = "a list") -> Sequence[Any]:
     """A list with at least one entry and at most ``SIDE``."""
     if not isinstance(value, list):
         remedy = f"write [[{where.rpartition(': ')[2]}]], with two brackets" if isinstance(value, dict) else LIST_ADVICE
-        raise ShapeError(f"expected {what}; got {kind_of(value)}; {remedy}", where=where)
+        raise ShapeError(f"expected {what}; got {describe_value(value)}; {remedy}", where=where)
     if not value:
         raise EmptyError(f"expected {what}; got an empty one; fill it in", where=where)
     if len(value) > SIDE:
@@ -50,7 +50,7 @@ def as_list(value: Any, where: str, what: str = "a list") -> Sequence[Any]:
 def as_text(value: Any, where: str, what: str) -> str:
     """The value, when it is quoted text."""
     if not isinstance(value, str) or isinstance(value, Numeral):
-        message = f"expected {what} in quotes; got {kind_of(value)}; quote it"
+        message = f"expected {what} in quotes; got {describe_value(value)}; quote it"
         raise ExpressionSyntaxError(message, where=where)
     return value
 
@@ -63,7 +63,7 @@ def as_title(value: Any, where: str) -> str:
     if len(text) > 200:
         raise TooLargeError(f"expected at most 200 characters; got {len(text)}; shorten it", where=where)
     if not text.isprintable():
-        message = f"expected one printable line; got {shown(text)}; remove the control characters"
+        message = f"expected one printable line; got {quote(text)}; remove the control characters"
         raise ExpressionSyntaxError(message, where=where)
     return text
 
@@ -77,56 +77,56 @@ def as_label(value: Any, where: str) -> str:
         message = f"expected at most {NAME_LENGTH} characters; got {len(text)}; shorten it"
         raise TooLargeError(message, where=where)
     if not LABEL.fullmatch(text):
-        message = f"expected ASCII letters, digits and _ . : * ' + -; got {shown(text)}; rename it"
+        message = f"expected ASCII letters, digits and _ . : * ' + -; got {quote(text)}; rename it"
         raise ExpressionSyntaxError(message, where=where)
     return text
 
 
-def distinct(names: Iterable[str], where: str) -> None:
+def require_distinct(names: Iterable[str], where: str) -> None:
     """Refuse a name that comes twice."""
     seen: set[str] = set()
     for name in names:
         if name in seen:
-            message = f"expected distinct names; got {shown(name)} twice; rename one of them"
+            message = f"expected distinct names; got {quote(name)} twice; rename one of them"
             raise DuplicateError(message, where=where)
         seen.add(name)
 
 
-def entry(value: Any, symbols: Mapping[str, Expr], where: str) -> Expr:
+def read_entry(value: Any, symbols: Mapping[str, Expr], where: str) -> Expr:
     """An exact expression from quoted text, or from a bare TOML number by its digits."""
-    return entry_noting(value, symbols, where).expression
+    return read_entry_noting(value, symbols, where).expression
 
 
-def entry_noting(value: Any, symbols: Mapping[str, Expr], where: str) -> Parsed:
-    """Like :func:`entry`, together with the divisors of the text."""
+def read_entry_noting(value: Any, symbols: Mapping[str, Expr], where: str) -> Parsed:
+    """Like :func:`read_entry`, together with the divisors of the text."""
     if isinstance(value, int) and not isinstance(value, bool):
         value = str(value)
     if not isinstance(value, str):
         raise ExpressionSyntaxError(
-            f'expected an expression in quotes; got {kind_of(value)}; write it as "1/2"', where=where
+            f'expected an expression in quotes; got {describe_value(value)}; write it as "1/2"', where=where
         )
     return parse_noting(str(value), symbols, where=where)
 
 
-def vector(value: Any, symbols: Mapping[str, Expr], where: str, size: int, why: str) -> tuple[Expr, ...]:
+def read_vector(value: Any, symbols: Mapping[str, Expr], where: str, size: int, why: str) -> tuple[Expr, ...]:
     """A list of ``size`` expressions."""
     items = as_list(value, where, "a list of expressions")
     if len(items) != size:
         message = f"expected {size} entries, {why}; got {len(items)}; correct the list"
         raise ShapeError(message, where=where)
-    return tuple(entry(item, symbols, inside(where, i)) for i, item in enumerate(items))
+    return tuple(read_entry(item, symbols, join_place(where, i)) for i, item in enumerate(items))
 
 
-def square(value: Any, symbols: Mapping[str, Expr], where: str, size: int, why: str) -> Matrix:
+def read_square(value: Any, symbols: Mapping[str, Expr], where: str, size: int, why: str) -> Matrix:
     """A ``size`` by ``size`` matrix from a list of rows."""
     rows = as_list(value, where, "a list of rows")
     if len(rows) != size:
         message = f"expected {size} rows, {why}; got {len(rows)}; correct the matrix"
         raise ShapeError(message, where=where)
-    return Matrix([list(vector(row, symbols, inside(where, i), size, why)) for i, row in enumerate(rows)])
+    return Matrix([list(read_vector(row, symbols, join_place(where, i), size, why)) for i, row in enumerate(rows)])
 
 
-def kind_of(value: Any) -> str:
+def describe_value(value: Any) -> str:
     """What a TOML value is, in words."""
     names = {bool: "true or false", int: "a number", Numeral: "a decimal", dict: "a table", list: "a list"}
-    return names.get(type(value), shown(value))
+    return names.get(type(value), quote(value))

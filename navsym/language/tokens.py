@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from typing import NoReturn
 
 from navsym.core.errors import ExpressionSyntaxError, NavsymError, TooLargeError
-from navsym.language.advice import for_character
-from navsym.language.names import character, shown
+from navsym.language.advice import advise_on_character
+from navsym.language.names import describe_character, quote
 
 LENGTH = 10_000  # characters of one expression
 DIGITS = 1_000  # digits of one number
@@ -86,7 +86,7 @@ def refuse_character(source: Source, at: int) -> NoReturn:
     """Refuse a character that the language does not have, with a hint when there is one."""
     char = source.text[at]
     expected = "ASCII letters, digits and + - * / ** ( ) ,"
-    source.fail(at, expected, character(char), for_character(source.text, at))
+    source.fail(at, expected, describe_character(char), advise_on_character(source.text, at))
 
 
 def refuse_tail(source: Source, token: Token, at: int) -> None:
@@ -94,7 +94,7 @@ def refuse_tail(source: Source, token: Token, at: int) -> None:
     following = source.text[at : at + 1]
     if following.isalpha() or following in {"_", "."}:
         word = re.match(r"[\w.]*", source.text[token.start :])
-        got = shown(word[0] if word else following)
+        got = quote(word[0] if word else following)
         remedy = "write products with * and numbers in decimal without separators: 2*x, 1000, 0.5"
         source.fail(token.start, "a decimal number", got, remedy)
     mantissa, _, exponent = token.text.lower().partition("e")
@@ -103,4 +103,4 @@ def refuse_tail(source: Source, token: Token, at: int) -> None:
         source.fail(token.start, f"at most {DIGITS} digits", got, remedy, TooLargeError)
     if exponent and (len(exponent) > 8 or abs(int(exponent)) > EXPONENT):
         expected = f"a decimal exponent of at most {EXPONENT}"
-        source.fail(token.start, expected, shown(exponent), "rescale the units", TooLargeError)
+        source.fail(token.start, expected, quote(exponent), "rescale the units", TooLargeError)

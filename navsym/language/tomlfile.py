@@ -9,9 +9,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from navsym.core.errors import DuplicateError, ExpressionSyntaxError, NavsymError, NotFiniteError, TooLargeError
-from navsym.language.files import called, decode, read_bytes
+from navsym.language.files import decode, name_file, read_bytes
 from navsym.language.jsonfile import place_of
-from navsym.language.names import shown
+from navsym.language.names import quote
 
 SIZE = 256_000  # bytes: the reader of the standard library does about a megabyte a second
 DEPTH = 16  # nesting of brackets, and parts of a dotted key
@@ -38,7 +38,7 @@ def read_toml(path: str | os.PathLike[str], *, limit: int = SIZE) -> dict[str, A
     Raises NavsymError of kind ``missing-file``, EmptyError, ExpressionSyntaxError (with line and column),
     DuplicateError, NotFiniteError (nan, inf) or TooLargeError; ``where`` is ``"file: key"``.
     """
-    return parse_toml(read_bytes(path, limit), called(path))
+    return parse_toml(read_bytes(path, limit), name_file(path))
 
 
 def parse_toml(data: bytes | str, where: str = "") -> dict[str, Any]:
@@ -46,10 +46,10 @@ def parse_toml(data: bytes | str, where: str = "") -> dict[str, Any]:
     text = decode(data if isinstance(data, bytes) else data.encode("utf-8", "replace"), where)
     bound_nesting(text, where)
     try:
-        document = tomllib.loads(text, parse_float=numeral)
-        check(document, where, ())
+        document = tomllib.loads(text, parse_float=read_numeral)
+        check_values(document, where, ())
     except tomllib.TOMLDecodeError as failure:
-        raise refused(str(failure), where) from None
+        raise syntax_error(str(failure), where) from None
     except RecursionError:
         raise too_deep(where) from None
     except ValueError:  # an integer beyond the interpreter's limit of digits, an impossible date
@@ -58,17 +58,17 @@ def parse_toml(data: bytes | str, where: str = "") -> dict[str, Any]:
     return document
 
 
-def numeral(text: str) -> Numeral:
+def read_numeral(text: str) -> Numeral:
     """The digits without separators, in lower case."""
     return Numeral(text.replace("_", "").lower())
 
 
-def refused(message: str, where: str) -> NavsymError:
+def syntax_error(message: str, where: str) -> NavsymError:
     """The reader's complaint as one of ours, with its line and column."""
     found = LINE.search(message)
     line = f"line {found[1]}, column {found[2]}" if found and found[1] else "the end"
     place = f"{where}: {line}" if where else line
-    what = shown(LINE.sub("", message).strip(), 80)[1:-1]
+    what = quote(LINE.sub("", message).strip(), 80)[1:-1]
     if message.startswith(TWICE):
         got = f"one twice ({what})"
         return DuplicateError(f"expected every key and table once; got {got}; remove one", where=place)
@@ -99,11 +99,11 @@ def too_deep(where: str) -> TooLargeError:
     return TooLargeError(f"expected at most {DEPTH} levels; got more; flatten the file", where=where)
 
 
-def check(value: Any, where: str, path: tuple[Any, ...]) -> None:
+def check_values(value: Any, where: str, path: tuple[Any, ...]) -> None:
     """Every number finite and of bounded size, and no dates."""
     if isinstance(value, (dict, list)):
         for key, item in value.items() if isinstance(value, dict) else enumerate(value):
-            check(item, where, (*path, key))
+            check_values(item, where, (*path, key))
     elif isinstance(value, Numeral):
         if value.lstrip("+-") in ("nan", "inf"):
             message = f"expected a finite number; got {value}; replace it"

@@ -16,7 +16,7 @@ import sympy as sp
 
 from navsym.core.errors import DomainError, ExpressionSyntaxError, NavsymError, NotFiniteError
 from navsym.language.declarations import SIGNS
-from navsym.language.names import inside, shown
+from navsym.language.names import join_place, quote
 from navsym.language.printer import to_text
 
 #: What a symbol of sympy without assumptions is taken for, and what stronger words include.
@@ -44,8 +44,8 @@ def write_value(value: Any, where: str) -> str:
     if isinstance(value, Decimal) and value.is_finite():
         return f"{value:f}" if abs(value.adjusted()) < 100 else str(value)
     if isinstance(value, (numbers.Real, Decimal)):
-        raise inexact(float(value), where)
-    got = shown(value)
+        raise float_error(float(value), where)
+    got = quote(value)
     message = f"expected text, an exact number or a sympy expression; got {got}; write the formula as text"
     raise ExpressionSyntaxError(message, where=where)
 
@@ -54,14 +54,14 @@ def write_expression(value: sp.Basic, where: str) -> str:
     """Text of a sympy expression without floating-point numbers."""
     floats = sorted(value.atoms(sp.Float), key=str)
     if floats:
-        raise inexact(float(floats[0]), where)
+        raise float_error(float(floats[0]), where)
     try:
         return to_text(value)
     except NavsymError as error:
         raise error.at(where) from None
 
 
-def inexact(value: float, where: str) -> NavsymError:
+def float_error(value: float, where: str) -> NavsymError:
     """The error for a float where an exact number is meant, with the exact spelling of its shortest decimal."""
     if value != value or value in (float("inf"), float("-inf")):
         return NotFiniteError(f"expected an exact number; got {value}; write a finite one", where=where)
@@ -78,47 +78,47 @@ def write_entries(value: Any, where: str) -> Any:
     """
     rows = value.tolist() if hasattr(value, "tolist") else value
     if isinstance(rows, (list, tuple)):
-        return [write_entries(row, inside(where, i)) for i, row in enumerate(rows)]
+        return [write_entries(row, join_place(where, i)) for i, row in enumerate(rows)]
     return write_value(rows, where)
 
 
 def write_declaration(value: Any, where: str) -> Any:
     """A declaration as ``[symbols]`` has it: a word, or a range of two texts from a pair of exact numbers."""
     if isinstance(value, (tuple, list)):
-        return [write_value(end, inside(where, i)) for i, end in enumerate(value)]
+        return [write_value(end, join_place(where, i)) for i, end in enumerate(value)]
     if isinstance(value, (str, Mapping)):
         return value
     expected = f'a range such as ("1/2", "2") or one of {", ".join(SIGNS)}'
     raise ExpressionSyntaxError(
-        f"expected {expected}; got {shown(value)}; declare it in one of these ways", where=where
+        f"expected {expected}; got {quote(value)}; declare it in one of these ways", where=where
     )
 
 
-def declared_words(values: Iterable[Any], where: str) -> dict[str, str]:
+def read_assumptions(values: Iterable[Any], where: str) -> dict[str, str]:
     """Name -> word of the symbols in expressions of sympy: what their assumptions say.
 
     Raises DomainError for two symbols of one name, and for assumptions that no declaration expresses.
     """
     symbols: dict[str, sp.Symbol] = {}
-    for symbol in sorted(set(free_symbols(values)), key=lambda s: (s.name, str(s.assumptions0))):
+    for symbol in sorted(set(symbols_in_values(values)), key=lambda s: (s.name, str(s.assumptions0))):
         known = symbols.setdefault(symbol.name, symbol)
         if known != symbol:
-            got = f"two called {symbol.name}, {word_of(known, where)} and {word_of(symbol, where)}"
+            got = f"two called {symbol.name}, {declaration_word(known, where)} and {declaration_word(symbol, where)}"
             message = f"expected one symbol of each name; got {got}; declare both alike or rename one"
             raise DomainError(message, where=where)
-    return {name: word_of(symbol, where) for name, symbol in symbols.items()}
+    return {name: declaration_word(symbol, where) for name, symbol in symbols.items()}
 
 
-def free_symbols(values: Iterable[Any]) -> Iterable[sp.Symbol]:
+def symbols_in_values(values: Iterable[Any]) -> Iterable[sp.Symbol]:
     """Symbols in values of sympy, also inside lists."""
     for value in values:
         if isinstance(value, (sp.Basic, sp.MatrixBase)):
             yield from value.free_symbols
         elif isinstance(value, (list, tuple)):
-            yield from free_symbols(value)
+            yield from symbols_in_values(value)
 
 
-def word_of(symbol: sp.Symbol, where: str) -> str:
+def declaration_word(symbol: sp.Symbol, where: str) -> str:
     """The declaration that says what sympy assumes of a symbol; one without assumptions is real."""
     if symbol == sp.Symbol(symbol.name):
         return "real"

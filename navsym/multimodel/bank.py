@@ -68,11 +68,11 @@ class Bank:
         rows = checked_models(models)
         check_initial(initial)
         m = len(rows)
-        F = stacked(rows, "F", functools.partial(arrays.named, why="states by states"))
+        F = stacked(rows, "F", functools.partial(arrays.as_array, why="states by states"))
         n = F.shape[2]
         if F.shape[3] != n:
             raise ShapeError(f"models[0].F: expected a square matrix; got {F.shape[2:]}; give n rows of n numbers")
-        H = stacked(rows, "H", functools.partial(arrays.named, why="measurements by states"))
+        H = stacked(rows, "H", functools.partial(arrays.as_array, why="measurements by states"))
         p = H.shape[2]
         if H.shape[3] != n:
             raise ShapeError(f"models[0].H: expected {n} columns, one per state; got {H.shape[3]}; match F")
@@ -80,7 +80,7 @@ class Bank:
         R = stacked(rows, "R", covariance_of(p, "one row per measurement"))
         transition = transitions(mode_transition, m)
         start, spread, common = initial_moments(initial["mean"], initial["covariance"], m, n)
-        probabilities = arrays.probabilities("initial.probabilities", initial["probabilities"], m)
+        probabilities = arrays.as_probabilities("initial.probabilities", initial["probabilities"], m)
         values = (F, Q, H, R, transition, probabilities, start, spread, common)
         for field, value in zip(fields(self), values, strict=True):
             object.__setattr__(self, field.name, value)
@@ -141,8 +141,8 @@ def covariance_of(size: int, why: str) -> Any:
     """A gate for one covariance matrix of the given size."""
 
     def gate(name: str, value: Any, shape: Any) -> Array:
-        arrays.named(name, value, (size, size), why)
-        return arrays.covariance(name, value, size)
+        arrays.as_array(name, value, (size, size), why)
+        return arrays.as_covariance(name, value, size)
 
     return gate
 
@@ -163,7 +163,7 @@ def stacked(models: Sequence[Any], key: str, gate: Any) -> Array:
             f"models.{key}: expected lists over time of one length; got "
             f"{sorted({len(row) for row in rows})}; give every step or one matrix"
         )
-    return arrays.frozen(np.stack([np.broadcast_to(row, (length, *first)) for row in rows], axis=1))
+    return arrays.freeze(np.stack([np.broadcast_to(row, (length, *first)) for row in rows], axis=1))
 
 
 def entry(model: Any, i: int, key: str) -> Any:
@@ -199,18 +199,18 @@ def transitions(value: Any, m: int) -> Array:
     """Transition probabilities as (T or 1, m, m)."""
 
     def gate(name: str, part: Any, shape: Any) -> Array:
-        return arrays.row_stochastic(name, part, m)
+        return arrays.as_transition(name, part, m)
 
-    return arrays.frozen(over_time("mode_transition", value, gate))
+    return arrays.freeze(over_time("mode_transition", value, gate))
 
 
 def initial_moments(mean: Any, covariance: Any, m: int, n: int) -> tuple[Array, Array, bool]:
     """Means (m, n) and covariances (m, n, n) at step 0, and whether they are one Gaussian."""
     common = depth(mean) < 2 and depth(covariance) < 3
     if depth(mean) < 2:
-        means = np.tile(arrays.named("initial.mean", mean, (n,), "one entry per state"), (m, 1))
+        means = np.tile(arrays.as_array("initial.mean", mean, (n,), "one entry per state"), (m, 1))
     else:
-        means = arrays.named("initial.mean", mean, (m, n), "one row per mode")
+        means = arrays.as_array("initial.mean", mean, (m, n), "one row per mode")
     gate = covariance_of(n, "one row per state")
     if depth(covariance) < 3:
         spread = np.tile(gate("initial.covariance", covariance, None), (m, 1, 1))
@@ -218,7 +218,7 @@ def initial_moments(mean: Any, covariance: Any, m: int, n: int) -> tuple[Array, 
         raise ShapeError(f"initial.covariance: expected one per mode, {m}; got {len(covariance)}; give all")
     else:
         spread = np.stack([gate(f"initial.covariance[{i}]", c, None) for i, c in enumerate(covariance)])
-    return arrays.frozen(means), arrays.frozen(spread), common
+    return arrays.freeze(means), arrays.freeze(spread), common
 
 
 def check_lengths(made: Bank) -> None:
@@ -251,7 +251,7 @@ def measurements_for(made: Bank, values: Any, *, missing: bool = False) -> Array
             f"measurements: expected at most {made.horizon} rows, the steps for which models are "
             f"given; got {len(table)}; give models for every step"
         )
-    return arrays.frozen(table)
+    return arrays.freeze(table)
 
 
 def table_of(values: Any, p: int) -> Array:
@@ -297,5 +297,5 @@ def forget_modes(made: Bank, steps: int) -> Bank:
 def with_transition(made: Bank, stack: Array) -> Bank:
     """The same bank with other transition probabilities (T or 1, m, m)."""
     twin = copy.copy(made)
-    object.__setattr__(twin, "mode_transition", arrays.frozen(np.array(stack)))
+    object.__setattr__(twin, "mode_transition", arrays.freeze(np.array(stack)))
     return twin

@@ -15,13 +15,13 @@ from navsym.prove.identities.normal_form import (
     radicands_inside,
     reduce_to_zero,
 )
-from navsym.prove.sampling.points import ranges
+from navsym.prove.sampling.points import ranges_of
 from navsym.prove.signs.bounds import Sign, prove_sign
-from navsym.prove.signs.one_variable import survey
-from navsym.prove.wording import text_of
+from navsym.prove.signs.one_variable import survey_signs
+from navsym.prove.wording import expression_text
 
 
-def with_sides(reduction: Reduction, *sides: sp.Expr) -> Reduction:
+def add_sides(reduction: Reduction, *sides: sp.Expr) -> Reduction:
     """Add the divisors and radicands of the sides, which subtraction may have cancelled."""
     parts = [reduction, *(reduce_to_zero(side) for side in sides)]
 
@@ -31,7 +31,7 @@ def with_sides(reduction: Reduction, *sides: sp.Expr) -> Reduction:
     return replace(reduction, divisors=union("divisors"), radicands=union("radicands"), arguments=union("arguments"))
 
 
-def written_conditions(*sides: sp.Expr) -> Reduction:
+def conditions_as_written(*sides: sp.Expr) -> Reduction:
     """Divisors, radicands and arguments of logarithms as they stand in the sides; nothing is reduced."""
     whole = sp.Tuple(*sides)
 
@@ -52,16 +52,16 @@ def is_nonnegative(expression: sp.Basic, box: Box) -> bool:
     return prove_sign(expression, box).at_least(Sign.NONNEGATIVE)
 
 
-def without_zeros(expression: sp.Basic, box: Box) -> bool:
+def has_no_zeros(expression: sp.Basic, box: Box) -> bool:
     """True when exact real roots show that an expression in one symbol is zero nowhere in its range."""
-    found = list(ranges(list(expression.free_symbols), box).values())
-    known = survey(expression, found[0]) if len(found) == 1 else None
+    found = list(ranges_of(list(expression.free_symbols), box).values())
+    known = survey_signs(expression, found[0]) if len(found) == 1 else None
     return known is not None and all(found[0].nonzero and zero.at == 0 for zero in known.zeros)
 
 
 def is_nonzero(expression: sp.Basic, box: Box) -> bool:
     """True when the expression is proved to vanish nowhere on the box."""
-    if without_zeros(expression, box):
+    if has_no_zeros(expression, box):
         return True
     return is_positive(expression, box) or is_positive(-expression, box)
 
@@ -86,7 +86,7 @@ def remaining_assumptions(
     """
     whole = replace(reduction, divisors=(*reduction.divisors, *nonzero))
     found = [
-        f"{text_of(part)} {sign}"
+        f"{expression_text(part)} {sign}"
         for name, sign, holds in KINDS
         for part in getattr(whole, name)
         if not holds(at(part), box)

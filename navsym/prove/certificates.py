@@ -15,8 +15,8 @@ from navsym.core.exact import to_fmpq
 from navsym.language.expression import to_text
 from navsym.prove.sampling.points import Range
 from navsym.prove.signs.exact import Limits
-from navsym.prove.signs.real_roots import UndecidedError, value_of
-from navsym.prove.signs.substitutions import carried, closed_ends
+from navsym.prove.signs.real_roots import UndecidedError, polynomial_at
+from navsym.prove.signs.substitutions import closed_ends, substitute_one_number
 
 BITS = 96
 MOST_CELLS = 1000
@@ -30,7 +30,7 @@ Cell = dict[sp.Symbol, tuple[fmpq, fmpq]]
 
 def identity_certificate(left: sp.Expr, right: sp.Expr) -> Mapping[str, Any] | None:
     """``left = right`` in the language of files; None when a side lies outside it, or is too large for the checker."""
-    if multiplied_out(left, right) > MOST_TERMS:
+    if count_terms(left, right) > MOST_TERMS:
         return None
     symbols = sorted({s.name for s in left.free_symbols | right.free_symbols})
     try:
@@ -39,7 +39,7 @@ def identity_certificate(left: sp.Expr, right: sp.Expr) -> Mapping[str, Any] | N
         return None
 
 
-def multiplied_out(*sides: sp.Expr) -> int:
+def count_terms(*sides: sp.Expr) -> int:
     """How many terms every term becomes when the checker multiplies by all sums that something is divided by."""
     powers: dict[sp.Expr, int] = {}
     for power in set().union(*(side.atoms(sp.Pow) for side in sides)):
@@ -108,21 +108,23 @@ def factored_certificate(
     if limit.integer or not expression.is_rational_function(symbol) or symbol not in expression.free_symbols:
         return None
     try:
-        found = carried((expression,), symbol, limit)
+        found = substitute_one_number((expression,), symbol, limit)
     except UndecidedError:
         return None
     if found is None:
         return None
     top, bottom = found.fractions[0]
-    square, ends, rest = parted(top * bottom, limit, strict)
-    product = sp.Mul(value_of(square, symbol) ** 2, *(value_of(end, symbol) for end in ends), value_of(rest, symbol))
-    parts = [identity_certificate(expression, product / value_of(bottom, symbol) ** 2)]
-    for curve, box in covers(rest, limit):
-        parts.append(positivity_certificate(value_of(curve, symbol), {symbol: box}))
+    square, ends, rest = take_out_squares(top * bottom, limit, strict)
+    product = sp.Mul(
+        polynomial_at(square, symbol) ** 2, *(polynomial_at(end, symbol) for end in ends), polynomial_at(rest, symbol)
+    )
+    parts = [identity_certificate(expression, product / polynomial_at(bottom, symbol) ** 2)]
+    for curve, box in list_covers(rest, limit):
+        parts.append(positivity_certificate(polynomial_at(curve, symbol), {symbol: box}))
     return {"kind": "all", "of": [dict(part) for part in parts if part]} if all(parts) else None
 
 
-def parted(curve: fmpq_poly, limit: Range, strict: bool) -> tuple[fmpq_poly, list[fmpq_poly], fmpq_poly]:
+def take_out_squares(curve: fmpq_poly, limit: Range, strict: bool) -> tuple[fmpq_poly, list[fmpq_poly], fmpq_poly]:
     """A square, what vanishes at an end of the range, and the rest; no square where zero is not allowed."""
     _, factors = curve.numer().factor()
     square, rest = fmpq_poly([1]), curve
@@ -139,7 +141,7 @@ def parted(curve: fmpq_poly, limit: Range, strict: bool) -> tuple[fmpq_poly, lis
     return square, ends, rest
 
 
-def covers(curve: fmpq_poly, limit: Range) -> Iterator[tuple[fmpq_poly, Range]]:
+def list_covers(curve: fmpq_poly, limit: Range) -> Iterator[tuple[fmpq_poly, Range]]:
     """Polynomials and closed boxes on which they must be positive for the polynomial to be so on the range."""
     zero, one = sp.Integer(0), sp.Integer(1)
     if limit.lower is not None and limit.upper is not None:
@@ -147,18 +149,18 @@ def covers(curve: fmpq_poly, limit: Range) -> Iterator[tuple[fmpq_poly, Range]]:
         return
     if limit.lower is None and limit.upper is None:
         yield curve, Range(-one, one)
-        yield reversed_polynomial(curve), Range(-one, one)  # of even degree, or it would change its sign
+        yield reverse_polynomial(curve), Range(-one, one)  # of even degree, or it would change its sign
         return
     end = limit.lower if limit.lower is not None else limit.upper
     if isinstance(end, sp.Rational):
         way = X if limit.lower is not None else -X
         shifted = curve(to_fmpq(end) + way)
         yield shifted, Range(zero, one)
-        yield reversed_polynomial(shifted), Range(zero, one)
+        yield reverse_polynomial(shifted), Range(zero, one)
     else:
         yield fmpq_poly([-1]), Range(zero, one)  # no certificate: nothing is positive
 
 
-def reversed_polynomial(curve: fmpq_poly) -> fmpq_poly:
+def reverse_polynomial(curve: fmpq_poly) -> fmpq_poly:
     """x**n Q(1/x)."""
     return fmpq_poly(list(reversed(curve.coeffs())))

@@ -13,29 +13,29 @@ from navsym.claims import OPEN, REFUTED, Bound, Equation, Statement, Verdict, Ve
 from navsym.claims.formula import Formula, Side, names_of
 from navsym.core.errors import DomainError, EmptyError, ExpressionSyntaxError, NavsymError, ShapeError, TooLargeError
 from navsym.core.sandbox import Exhausted, Failed, run_many
-from navsym.language.advice import for_relation
-from navsym.language.arithmetic import sign
+from navsym.language.advice import advise_on_relation
+from navsym.language.arithmetic import sign_of_constant
 from navsym.language.declarations import Parameter, box_of, read_parameters, read_range, symbols_of
 from navsym.language.expression import ZERO, Expr, Matrix, Parsed, Symbol
-from navsym.language.files import called
-from navsym.language.names import shown
+from navsym.language.files import name_file
+from navsym.language.names import quote
 from navsym.language.schema import (
     Table,
     as_label,
     as_list,
     as_table,
     as_text,
-    distinct,
-    entry_noting,
     expect_keys,
-    inside,
-    required,
+    join_place,
+    read_entry_noting,
+    require_distinct,
+    require_key,
 )
 from navsym.language.tomlfile import read_toml
 from navsym.prove.assumptions import is_nonzero, is_positive
 from navsym.prove.ladder import decide
 from navsym.prove.signs.bounds import Sign, prove_sign
-from navsym.prove.wording import scope_of, text_of
+from navsym.prove.wording import expression_text, scope_of
 
 RELATIONS = ("=", "!=", "<", "<=", ">", ">=")
 CLAIMS = 2_000
@@ -57,16 +57,16 @@ class Symbols:
 
     def formula(self, block: Table) -> Formula:
         """A claim as it is written, with the declarations of the names in it."""
-        sides = [written_side(block[side]) for side in ("left", "right")]
+        sides = [side_as_written(block[side]) for side in ("left", "right")]
         box = block.get("box", {})
         names = names_of(sides[0]) | names_of(sides[1]) | set(box)
         symbols = {name: value for name, value in self.written.items() if name in names}
         return Formula(sides[0], block.get("relation", "="), sides[1], symbols, box, block["id"])
 
 
-def written_side(value: Any) -> Side:
+def side_as_written(value: Any) -> Side:
     """A side of a claim as text: decimals and integers of TOML by their digits."""
-    return [written_side(part) for part in value] if isinstance(value, list) else str(value)
+    return [side_as_written(part) for part in value] if isinstance(value, list) else str(value)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -125,15 +125,15 @@ def read_claims(path: str | os.PathLike[str], *, go_on: bool = False) -> ClaimFi
 
     go_on : keep the claims of which both sides have values, as long as there is one, and note the others
     """
-    return claims_from(read_toml(path), called(path), go_on=go_on)
+    return claims_from(read_toml(path), name_file(path), go_on=go_on)
 
 
 def claims_from(document: Table, where: str = "", *, go_on: bool = False) -> ClaimFile:
     """Like :func:`read_claims` for a document in memory."""
     expect_keys(document, ("symbols", "claim"), where)
-    symbols = Symbols.read(document.get("symbols", {}), inside(where, "symbols"))
-    blocks = required(document, "claim", where)
-    place = inside(where, "claim")
+    symbols = Symbols.read(document.get("symbols", {}), join_place(where, "symbols"))
+    blocks = require_key(document, "claim", where)
+    place = join_place(where, "claim")
     if not isinstance(blocks, list):
         raise ShapeError("expected [[claim]] blocks; got a single one; write double brackets", where=place)
     if not blocks:
@@ -141,8 +141,8 @@ def claims_from(document: Table, where: str = "", *, go_on: bool = False) -> Cla
     if len(blocks) > CLAIMS:
         message = f"expected at most {CLAIMS} claims; got {len(blocks)}; split the file"
         raise TooLargeError(message, where=place)
-    found = [claim_or_error(block, symbols, place, i) for i, block in enumerate(blocks)]
-    distinct((claim.id for claim in found), place)
+    found = [read_claim_or_error(block, symbols, place, i) for i, block in enumerate(blocks)]
+    require_distinct((claim.id for claim in found), place)
     claims = tuple(claim for claim in found if isinstance(claim, FileClaim))
     undefined = tuple(claim for claim in found if isinstance(claim, UndefinedClaim))
     if undefined and not (go_on and claims):
@@ -150,15 +150,15 @@ def claims_from(document: Table, where: str = "", *, go_on: bool = False) -> Cla
     return ClaimFile(symbols.parameters, claims, undefined)
 
 
-def claim_or_error(block: Any, symbols: Symbols, where: str, place: int) -> FileClaim | UndefinedClaim:
+def read_claim_or_error(block: Any, symbols: Symbols, where: str, place: int) -> FileClaim | UndefinedClaim:
     """The claim, or why a side of it has no value; everything else that is wrong with it is raised."""
     try:
-        return read_claim(block, symbols, inside(where, place))
+        return read_claim(block, symbols, join_place(where, place))
     except DomainError as error:
-        sides = tuple(inside(inside(where, place), side) for side in ("left", "right"))
+        sides = tuple(join_place(join_place(where, place), side) for side in ("left", "right"))
         if not error.where.startswith(sides):
             raise
-        as_label(block["id"], inside(inside(where, place), "id"))
+        as_label(block["id"], join_place(join_place(where, place), "id"))
         return UndefinedClaim(symbols.formula(block), place, error)
 
 
@@ -166,18 +166,18 @@ def read_claim(block: Any, symbols: Symbols, where: str) -> FileClaim:
     """One [[claim]] block."""
     table = as_table(block, where)
     expect_keys(table, ("id", "left", "right", "relation", "box"), where)
-    as_label(required(table, "id", where), inside(where, "id"))
-    relation = as_text(table.get("relation", "="), inside(where, "relation"), "a relation")
+    as_label(require_key(table, "id", where), join_place(where, "id"))
+    relation = as_text(table.get("relation", "="), join_place(where, "relation"), "a relation")
     if relation not in RELATIONS:
-        hint = for_relation(relation, RELATIONS)
-        message = f"expected one of {' '.join(RELATIONS)}; got {shown(relation)}; correct it: {hint}"
-        raise ExpressionSyntaxError(message, where=inside(where, "relation"))
+        hint = advise_on_relation(relation, RELATIONS)
+        message = f"expected one of {' '.join(RELATIONS)}; got {quote(relation)}; correct it: {hint}"
+        raise ExpressionSyntaxError(message, where=join_place(where, "relation"))
     known = symbols_of(symbols.parameters)
-    left, left_cells = read_side(required(table, "left", where), known, inside(where, "left"))
-    right, right_cells = read_side(required(table, "right", where), known, inside(where, "right"))
+    left, left_cells = read_side(require_key(table, "left", where), known, join_place(where, "left"))
+    right, right_cells = read_side(require_key(table, "right", where), known, join_place(where, "right"))
     cells = left_cells + right_cells
     require_comparable(left, right, relation, where)
-    box = box_of(symbols.parameters) | read_box(table.get("box", {}), symbols.parameters, inside(where, "box"))
+    box = box_of(symbols.parameters) | read_box(table.get("box", {}), symbols.parameters, join_place(where, "box"))
     noted = [
         tuple(dict.fromkeys(part for cell in cells for part in getattr(cell, name)))
         for name in ("divisors", "radicands", "arguments")
@@ -188,11 +188,14 @@ def read_claim(block: Any, symbols: Symbols, where: str) -> FileClaim:
 def read_side(value: Any, known: Mapping[str, Symbol], where: str) -> tuple[Any, list[Parsed]]:
     """An expression, a column given as a list, or a matrix given as a list of rows; with its cells."""
     if not isinstance(value, list):
-        parsed = entry_noting(value, known, where)
+        parsed = read_entry_noting(value, known, where)
         return parsed.expression, [parsed]
     rows = [row if isinstance(row, list) else [row] for row in as_list(value, where)]
     cells = [
-        [entry_noting(cell, known, inside(inside(where, i), j)) for j, cell in enumerate(as_list(row, where))]
+        [
+            read_entry_noting(cell, known, join_place(join_place(where, i), j))
+            for j, cell in enumerate(as_list(row, where))
+        ]
         for i, row in enumerate(rows)
     ]
     if len({len(row) for row in cells}) > 1:
@@ -208,30 +211,30 @@ def require_comparable(left: Any, right: Any, relation: str, where: str) -> None
         raise ShapeError(message.replace("None", "a scalar"), where=where)
     if shapes[0] is not None and relation not in ("=", "!="):
         message = f"expected = or != between matrices; got {relation}; compare them entry by entry"
-        raise ShapeError(message, where=inside(where, "relation"))
+        raise ShapeError(message, where=join_place(where, "relation"))
 
 
 def read_box(value: Any, symbols: Mapping[str, Parameter], where: str) -> Box:
     """The claim's own ranges; they may narrow what the file says of a symbol, not contradict it."""
     box = {}
     for name, ends in as_table(value, where).items():
-        place = inside(where, name)
+        place = join_place(where, name)
         if name not in symbols:
             expect_keys({name: ends}, tuple(symbols), where)
         lower, upper = read_range(ends, place)
         parameter = symbols[name]
         unnamed = ZERO if parameter.symbol.is_nonnegative else None
         low_end = unnamed if parameter.lower is None else parameter.lower
-        if outside(lower, low_end) or outside(parameter.upper, upper):
-            message = f"expected a range inside the declaration of {name}; got a wider one; narrow it"
+        if is_outside(lower, low_end) or is_outside(parameter.upper, upper):
+            message = f"expected a range join_place the declaration of {name}; got a wider one; narrow it"
             raise DomainError(message, where=place)
         box[parameter.symbol] = (lower, upper)
     return box
 
 
-def outside(inner: Expr | None, outer: Expr | None) -> bool:
+def is_outside(inner: Expr | None, outer: Expr | None) -> bool:
     """True when ``inner < outer`` is certain; None means no end."""
-    return inner is not None and outer is not None and sign(inner - outer) == -1
+    return inner is not None and outer is not None and sign_of_constant(inner - outer) == -1
 
 
 # A user's own formulas, decided one by one.
@@ -284,13 +287,13 @@ def scope_of_text(claim: FileClaim) -> str:
 
 def text_conditions(claim: FileClaim) -> list[str]:
     """What the text divides by and takes roots and logarithms of, where the algebra has cancelled it since."""
-    found = [f"{text_of(d)} != 0" for d in claim.divisors if not is_nonzero(d, claim.box)]
+    found = [f"{expression_text(d)} != 0" for d in claim.divisors if not is_nonzero(d, claim.box)]
     at_least = (r for r in claim.radicands if not prove_sign(r, claim.box).at_least(Sign.NONNEGATIVE))
-    found += [f"{text_of(r)} >= 0" for r in at_least]
-    return found + [f"{text_of(a)} > 0" for a in claim.arguments if not is_positive(a, claim.box)]
+    found += [f"{expression_text(r)} >= 0" for r in at_least]
+    return found + [f"{expression_text(a)} > 0" for a in claim.arguments if not is_positive(a, claim.box)]
 
 
-def existing(claim: FileClaim) -> tuple[sp.Expr, ...]:
+def existing_parts(claim: FileClaim) -> tuple[sp.Expr, ...]:
     """Expressions with a value exactly where the text has one, whatever the algebra has cancelled."""
     return (
         *(1 / divisor for divisor in claim.divisors),
@@ -302,5 +305,5 @@ def existing(claim: FileClaim) -> tuple[sp.Expr, ...]:
 def statement_of(claim: FileClaim) -> Statement:
     """The file's claim as a statement of the ladder."""
     if claim.relation == "=":
-        return Equation(claim.left, claim.right, claim.box, exists=existing(claim))
-    return Bound(claim.left, claim.relation, claim.right, claim.box, existing(claim))
+        return Equation(claim.left, claim.right, claim.box, exists=existing_parts(claim))
+    return Bound(claim.left, claim.relation, claim.right, claim.box, existing_parts(claim))

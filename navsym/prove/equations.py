@@ -14,15 +14,15 @@ import sympy as sp
 from navsym.claims.statement import Equation
 from navsym.claims.verdict import CERTIFIED, CONFIRMED, OPEN, PROVED, REFUTED, Verdict
 from navsym.core.balls import UnsupportedError, enclose
-from navsym.prove.assumptions import remaining_assumptions, written_conditions
+from navsym.prove.assumptions import conditions_as_written, remaining_assumptions
 from navsym.prove.certificates import identity_certificate
 from navsym.prove.identities.equalities import WAYS, Proof, first_proof
 from navsym.prove.identities.normal_form import OutsideLanguageError, UndefinedExpressionError, reduce_to_zero
 from navsym.prove.one_symbol import decide_by_roots
 from navsym.prove.sampling.points import Sample, search_counterexample
-from navsym.prove.sampling.second_look import BITS, Look, second_look
+from navsym.prove.sampling.second_look import BITS, Look, look_again
 from navsym.prove.signs.bounds import Sign, prove_sign
-from navsym.prove.wording import broken, decimal_ends, scope_of
+from navsym.prove.wording import decimal_ends, refute_at_point, scope_of
 
 ENOUGH_POINTS = 32
 
@@ -32,7 +32,7 @@ BENT = (sp.Abs, sp.sign, sp.Max, sp.Min)
 
 def decide_equation(statement: Equation) -> Verdict:
     """Verdict of an equation between scalars, matrices or sequences, entry by entry."""
-    printed, derived = entries(statement.printed), entries(statement.derived)
+    printed, derived = list_entries(statement.printed), list_entries(statement.derived)
     if shape_of(statement.printed) != shape_of(statement.derived):
         return Verdict(
             REFUTED,
@@ -41,7 +41,7 @@ def decide_equation(statement: Equation) -> Verdict:
             counterexample={},
         )
     verdicts = [decide_entry(p, d, statement) for p, d in zip(printed, derived, strict=True)]
-    verdict = combine(verdicts)
+    verdict = weakest_verdict(verdicts)
     if verdict.status == REFUTED:
         return verdict
     return replace(verdict, scope=scope_of(sp.Tuple(*printed, *derived), statement.box))
@@ -54,7 +54,7 @@ def shape_of(side: object) -> tuple[int, ...]:
     return (len(side),) if isinstance(side, (tuple, list)) else ()
 
 
-def entries(side: object) -> list[sp.Expr]:
+def list_entries(side: object) -> list[sp.Expr]:
     """The scalar expressions of a side; never a string, which sympy would execute."""
     if isinstance(side, (sp.MatrixBase, tuple, list)):
         return [sp.sympify(entry, strict=True) for entry in side]
@@ -64,7 +64,7 @@ def entries(side: object) -> list[sp.Expr]:
 STRENGTH = (REFUTED, OPEN, CONFIRMED, CERTIFIED, PROVED)
 
 
-def combine(verdicts: Sequence[Verdict]) -> Verdict:
+def weakest_verdict(verdicts: Sequence[Verdict]) -> Verdict:
     """The weakest verdict of several entries; assumptions and counts are those of all."""
     weakest = min(verdicts, key=lambda verdict: STRENGTH.index(verdict.status))
     if len(verdicts) == 1:
@@ -87,7 +87,7 @@ def decide_entry(printed: sp.Expr, derived: sp.Expr, statement: Equation) -> Ver
             printed - derived, lambda b: not b.contains(0), box, sides=finite_sides(printed, derived, statement)
         )
         if sample.counterexample is not None:
-            return refuted(sample)
+            return refute_by_sample(sample)
         return prove_equal(printed, derived, statement, sample)
     except UndefinedExpressionError as error:
         return Verdict(OPEN, "normal form", scope_of(printed - derived, box), evidence=str(error))
@@ -101,9 +101,9 @@ def finite_sides(printed: sp.Expr, derived: sp.Expr, statement: Equation) -> tup
     return (printed, derived, *statement.exists, *(1 / part for part in divisors if part != 0))
 
 
-def refuted(sample: Sample) -> Verdict:
+def refute_by_sample(sample: Sample) -> Verdict:
     assert sample.counterexample is not None and sample.difference is not None
-    return broken(sample.counterexample, sample.difference)
+    return refute_at_point(sample.counterexample, sample.difference)
 
 
 # -- numerals ---------------------------------------
@@ -120,23 +120,23 @@ def decide_numeral(printed: sp.Expr, derived: sp.Expr, statement: Equation) -> V
         sides=finite_sides(printed, derived, statement),
     )
     if sample.counterexample is not None:
-        return refuted(sample)
+        return refute_by_sample(sample)
     if sample.points == 0:  # what exists nowhere is near to everything
-        return sampled(sample, scope_of(difference, box), f"within {tolerance}")
+        return judge_sample(sample, scope_of(difference, box), f"within {tolerance}")
     for side in (tolerance - difference, tolerance + difference):
         if prove_sign(side, box).at_least(Sign.NONNEGATIVE):
             continue
         decided = decide_by_roots(side, ">=", box, scope_of(difference, box), finite_sides(printed, derived, statement))
         if decided is not None and decided.status == PROVED:
             continue
-        look = second_look(
+        look = look_again(
             difference,
             lambda ball: bool(abs(ball) > enclose(tolerance, bits=BITS)),
             box,
             finite_sides(printed, derived, statement),
             goals=(tolerance - difference, tolerance + difference),
         )
-        return decided or after_look(look, sample, scope_of(difference, box), f"within {tolerance}")
+        return decided or judge_look(look, sample, scope_of(difference, box), f"within {tolerance}")
     return Verdict(
         CERTIFIED,
         method="ball arithmetic",
@@ -148,7 +148,7 @@ def decide_numeral(printed: sp.Expr, derived: sp.Expr, statement: Equation) -> V
 
 def assumptions_of(printed: sp.Expr, derived: sp.Expr, statement: Equation) -> tuple[str, ...]:
     """What the two sides need to exist; subtraction may have cancelled it."""
-    return remaining_assumptions(written_conditions(printed, derived), statement.box, statement.nonzero)
+    return remaining_assumptions(conditions_as_written(printed, derived), statement.box, statement.nonzero)
 
 
 # -- exact equality ---------------------------------------
@@ -156,22 +156,22 @@ def assumptions_of(printed: sp.Expr, derived: sp.Expr, statement: Equation) -> t
 
 def prove_equal(printed: sp.Expr, derived: sp.Expr, statement: Equation, sample: Sample) -> Verdict:
     if sample.points == 0:  # what exists nowhere is equal to everything
-        return sampled(sample, scope_of(printed - derived, statement.box), "equality")
+        return judge_sample(sample, scope_of(printed - derived, statement.box), "equality")
     proof = first_proof(printed, derived, statement.box, WAYS)
     if proof is not None:
-        return proved(proof, printed, derived, statement)
-    return unproved(printed, derived, statement, sample)
+        return grant_proof(proof, printed, derived, statement)
+    return decide_unproved(printed, derived, statement, sample)
 
 
-def unproved(printed: sp.Expr, derived: sp.Expr, statement: Equation, sample: Sample) -> Verdict:
+def decide_unproved(printed: sp.Expr, derived: sp.Expr, statement: Equation, sample: Sample) -> Verdict:
     """What no rung proves: broken by a second look, or sampled; OPEN when the normal form denies it."""
     difference, scope = printed - derived, scope_of(printed - derived, statement.box)
     sides = finite_sides(printed, derived, statement)
     decided = decide_by_roots(difference, "=", statement.box, scope, sides)
     if decided is not None:
         return decided
-    look = second_look(difference, lambda ball: not ball.contains(0), statement.box, sides)
-    verdict = after_look(look, sample, scope, "equality")
+    look = look_again(difference, lambda ball: not ball.contains(0), statement.box, sides)
+    verdict = judge_look(look, sample, scope, "equality")
     if verdict.status == CONFIRMED and not difference.has(*BENT) and reduce_to_zero(difference).complete:
         evidence = f"{verdict.evidence}, and the normal form of printed - derived is not zero"
         return replace(verdict, status=OPEN, method="normal form", evidence=evidence)
@@ -180,14 +180,14 @@ def unproved(printed: sp.Expr, derived: sp.Expr, statement: Equation, sample: Sa
     return verdict
 
 
-def after_look(look: Look, sample: Sample, scope: str, what: str) -> Verdict:
+def judge_look(look: Look, sample: Sample, scope: str, what: str) -> Verdict:
     """REFUTED by the point of a second look, else what the samples say."""
     if look.counterexample is None or look.difference is None:
-        return sampled(sample, scope, what)
-    return broken(look.counterexample, look.difference, look.exact)
+        return judge_sample(sample, scope, what)
+    return refute_at_point(look.counterexample, look.difference, look.exact)
 
 
-def proved(proof: Proof, printed: sp.Expr, derived: sp.Expr, statement: Equation) -> Verdict:
+def grant_proof(proof: Proof, printed: sp.Expr, derived: sp.Expr, statement: Equation) -> Verdict:
     return Verdict(
         PROVED,
         method=proof.method,
@@ -198,7 +198,7 @@ def proved(proof: Proof, printed: sp.Expr, derived: sp.Expr, statement: Equation
     )
 
 
-def sampled(sample: Sample, scope: str, what: str) -> Verdict:
+def judge_sample(sample: Sample, scope: str, what: str) -> Verdict:
     """CONFIRMED with its count when enough points could be evaluated, otherwise OPEN."""
     if sample.points == 0:
         return Verdict(OPEN, "sampling", scope, evidence="no exact point of the box could be evaluated")

@@ -12,7 +12,7 @@ from typing import Any, overload
 from navsym.claims import Verdict, Verdicts
 from navsym.claims.formula import names_of
 from navsym.core.errors import DomainError, ExpressionSyntaxError, ShapeError, UnknownSymbolError
-from navsym.language.names import RESERVED, nearest, shown
+from navsym.language.names import RESERVED, quote, suggest_nearest
 from navsym.language.tomlfile import read_toml
 
 SECONDS = 20.0
@@ -88,7 +88,7 @@ def prove(
     require_options(box, seconds, jobs)
     if relation is None and is_file(statement):
         if symbols or box:
-            raise declared_in_a_file(symbols or box or {})
+            raise misplaced_declarations(symbols or box or {})
         return prove_file(statement, seconds, jobs, progress)
     sides = split_formula(statement) if relation is None else Sides(statement, relation, right)
     return prove_formula(sides, symbols, box or {}, seconds)
@@ -114,14 +114,17 @@ def prove_file(path: str | os.PathLike[str], seconds: float, jobs: int, progress
 
 def prove_formula(sides: Sides, given: Mapping[str, Any], box: Mapping[str, Any], seconds: float) -> Verdict:
     """The verdict of one formula."""
-    from navsym.language.values import declared_words, merge_declarations, write_declaration, write_entries
+    from navsym.language.values import merge_declarations, read_assumptions, write_declaration, write_entries
     from navsym.prove.claimfile import ClaimFile, Symbols, decide_claims, read_claim
 
     left, right = write_entries(sides.left, "prove: left"), write_entries(sides.right, "prove: right")
-    words = dict.fromkeys(symbols_in(left, right, given), "real") | declared_words((sides.left, sides.right), "prove")
+    words = dict.fromkeys(symbols_in(left, right, given), "real")
+    words |= read_assumptions((sides.left, sides.right), "prove")
     declared = {name: write_declaration(value, f"prove: {name}") for name, value in given.items()}
     for name in declared.keys() - words.keys():
-        message = f"expected a symbol of the formula; got {shown(name)}; remove or correct it: {nearest(name, words)}"
+        message = (
+            f"expected a symbol of the formula; got {quote(name)}; remove or correct it: {suggest_nearest(name, words)}"
+        )
         raise UnknownSymbolError(message, where=f"prove: {name}")
     table, narrowed = merge_declarations(words, declared, "prove")
     narrowed |= {name: write_declaration(ends, f"prove: box.{name}") for name, ends in box.items()}
@@ -134,15 +137,15 @@ def prove_formula(sides: Sides, given: Mapping[str, Any], box: Mapping[str, Any]
 def require_options(box: Any, seconds: Any, jobs: Any) -> None:
     """Refuse ranges that are no mapping and limits that are no numbers."""
     if not isinstance(box, (Mapping, NoneType)):
-        message = f'expected ranges by name; got {shown(box)}; write box={{"T": ("0", "1")}}'
+        message = f'expected ranges by name; got {quote(box)}; write box={{"T": ("0", "1")}}'
         raise ShapeError(message, where="prove: box")
     if not isinstance(seconds, (int, float)) or isinstance(seconds, bool):
-        raise DomainError(f"expected seconds as a number; got {shown(seconds)}; correct it", where="prove: seconds")
+        raise DomainError(f"expected seconds as a number; got {quote(seconds)}; correct it", where="prove: seconds")
     if not seconds > 0:
         raise DomainError(f"expected seconds above 0; got {seconds:g}; correct it", where="prove: seconds")
     if not isinstance(jobs, int) or isinstance(jobs, bool) or jobs < 1:
         raise DomainError(
-            f"expected a whole number of jobs from 1 on; got {shown(jobs)}; correct it", where="prove: jobs"
+            f"expected a whole number of jobs from 1 on; got {quote(jobs)}; correct it", where="prove: jobs"
         )
 
 
@@ -151,7 +154,7 @@ def is_file(statement: Any) -> bool:
     return isinstance(statement, os.PathLike) or (isinstance(statement, str) and statement.endswith(".toml"))
 
 
-def declared_in_a_file(names: Mapping[str, Any]) -> DomainError:
+def misplaced_declarations(names: Mapping[str, Any]) -> DomainError:
     """The error for declarations beside a claim file, which has its own."""
     message = f"expected declarations in the file; got {', '.join(names)} beside it; write them below [symbols]"
     return DomainError(message, where="prove")
@@ -161,14 +164,14 @@ def split_formula(statement: Any) -> Sides:
     """The two sides of a text at its one relation."""
     if not isinstance(statement, str):
         expected = "a formula as text, or two sides with their relation between them"
-        message = f'expected {expected}; got {shown(statement)}; write prove(left, "=", right)'
+        message = f'expected {expected}; got {quote(statement)}; write prove(left, "=", right)'
         raise ExpressionSyntaxError(message, where="prove: statement")
     marks = list(RELATION.finditer(statement))
     if not marks:
-        message = f"expected a relation = != < <= > >= or a file.toml; got {shown(statement)}; write both sides"
+        message = f"expected a relation = != < <= > >= or a file.toml; got {quote(statement)}; write both sides"
         raise ExpressionSyntaxError(message, where="prove: statement")
     if len(marks) > 1:
-        message = f"expected one relation; got {len(marks)} in {shown(statement)}; prove them one by one"
+        message = f"expected one relation; got {len(marks)} in {quote(statement)}; prove them one by one"
         raise ExpressionSyntaxError(message, where="prove: statement")
     (mark,) = marks
     return Sides(statement[: mark.start()].strip(), mark[0], statement[mark.end() :].strip())

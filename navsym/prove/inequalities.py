@@ -13,17 +13,17 @@ from navsym.claims.statement import Bound, Box, Equation
 from navsym.claims.verdict import CERTIFIED, CONFIRMED, OPEN, PROVED, Verdict
 from navsym.core.balls import UnsupportedError, tape
 from navsym.core.errors import DomainError
-from navsym.prove.assumptions import remaining_assumptions, with_sides
+from navsym.prove.assumptions import add_sides, remaining_assumptions
 from navsym.prove.certificates import factored_certificate, positivity_certificate
-from navsym.prove.equations import after_look, decide_equation, entries, sampled, shape_of
+from navsym.prove.equations import decide_equation, judge_look, judge_sample, list_entries, shape_of
 from navsym.prove.identities.equalities import WAYS, first_proof
 from navsym.prove.identities.normal_form import OutsideLanguageError, reduce_to_zero
 from navsym.prove.identities.numbers import is_zero
 from navsym.prove.one_symbol import decide_by_roots
-from navsym.prove.sampling.points import Point, Sample, points, ranges, search_counterexample, value_at
-from navsym.prove.sampling.second_look import Look, second_look
+from navsym.prove.sampling.points import Point, Sample, draw_points, ranges_of, search_counterexample, value_at
+from navsym.prove.sampling.second_look import Look, look_again
 from navsym.prove.signs.bounds import Sign, SignProof, prove_sign
-from navsym.prove.wording import broken, point_text, scope_of
+from navsym.prove.wording import point_text, refute_at_point, scope_of
 
 #: relation -> when a finite ball of printed - derived contradicts it.
 EXCLUDES: dict[str, Callable[[arb], bool]] = {
@@ -60,13 +60,13 @@ def decide_bound(statement: Bound) -> Verdict:
     difference = difference_of(statement)
     scope = scope_of(difference, statement.box)
     try:
-        sides = [*entries(statement.printed), *entries(statement.derived)]
+        sides = [*list_entries(statement.printed), *list_entries(statement.derived)]
         existing = (*sides, *statement.exists)
         verdict = decide_difference(difference, statement.relation, statement.box, scope, existing)
         if not verdict.status.holds and verdict.status != CONFIRMED:
             return verdict
         # Subtraction and the algebra may have cancelled what is not defined everywhere.
-        conditions = with_sides(reduce_to_zero(difference), *sides)
+        conditions = add_sides(reduce_to_zero(difference), *sides)
         assumed = remaining_assumptions(conditions, statement.box)
         return replace(verdict, assumptions=assumed)
     except (UnsupportedError, OutsideLanguageError) as error:
@@ -77,7 +77,7 @@ def difference_of(statement: Bound) -> sp.Expr:
     """Printed - derived; of matrices the sum of the squares, which vanishes only where they are equal."""
     if shape_of(statement.printed) != shape_of(statement.derived):
         raise DomainError("expected sides of one shape; got two shapes; correct one of them")
-    pairs = zip(entries(statement.printed), entries(statement.derived), strict=True)
+    pairs = zip(list_entries(statement.printed), list_entries(statement.derived), strict=True)
     differences = [printed - derived for printed, derived in pairs]
     if not shape_of(statement.printed):
         return differences[0]
@@ -92,14 +92,14 @@ def decide_difference(
     """Verdict of ``difference relation 0``: break it by a point where the sides exist, or prove its sign."""
     sample = search_counterexample(difference, lambda ball: contradicts(ball, relation), box, sides=sides)
     if sample.points == 0:
-        return sampled(sample, scope, f"printed {relation} derived")
+        return judge_sample(sample, scope, f"printed {relation} derived")
     if sample.counterexample is None and relation in STRICT:
-        exact = exact_zero_point(difference, box, sides)
+        exact = find_exact_zero(difference, box, sides)
         if exact is not None:
-            return broken(exact, arb(0), exact=True)
+            return refute_at_point(exact, arb(0), exact=True)
     if sample.counterexample is not None:
         assert sample.difference is not None
-        return broken(sample.counterexample, sample.difference)
+        return refute_at_point(sample.counterexample, sample.difference)
     decided = decide_by_roots(difference, relation, box, scope, sides)
     if decided is not None:
         certificate = certificate_of(difference, relation, box) if decided.status == PROVED else None
@@ -109,14 +109,14 @@ def decide_difference(
         status = PROVED if proof.exact else CERTIFIED
         certificate = certificate_of(difference, relation, box)
         return Verdict(status, "sign on the box", scope, evidence=proof.reason, certificate=certificate)
-    return unproved_relation(difference, relation, box, scope, sides, sample)
+    return decide_unproved_relation(difference, relation, box, scope, sides, sample)
 
 
-def unproved_relation(
+def decide_unproved_relation(
     difference: sp.Expr, relation: str, box: Box, scope: str, sides: Sequence[sp.Expr], sample: Sample
 ) -> Verdict:
     """What has no proof of sign: broken by a second look, or sampled; never CONFIRMED across a change of sign."""
-    look = second_look(
+    look = look_again(
         difference,
         lambda ball: contradicts(ball, relation),
         box,
@@ -127,7 +127,7 @@ def unproved_relation(
     doubt = doubt_of(look, relation)
     if doubt:
         return Verdict(OPEN, "sampling", scope, evidence=doubt)
-    return after_look(look, sample, scope, f"printed {relation} derived")
+    return judge_look(look, sample, scope, f"printed {relation} derived")
 
 
 def doubt_of(look: Look, relation: str) -> str:
@@ -148,11 +148,11 @@ def contradicts(ball: arb, relation: str) -> bool:
     return EXCLUDES[relation](ball)
 
 
-def exact_zero_point(difference: sp.Expr, box: Box, sides: Sequence[sp.Expr] = ()) -> Point | None:
+def find_exact_zero(difference: sp.Expr, box: Box, sides: Sequence[sp.Expr] = ()) -> Point | None:
     """An exact point of the box at which the difference vanishes, proved by the normal form."""
     program, others = tape(difference), [tape(side) for side in sides]
     symbols = sorted(difference.free_symbols | set().union(*(s.free_symbols for s in sides)), key=str)
-    for point in points(symbols, box, 24):
+    for point in draw_points(symbols, box, 24):
         ball = value_at(program, point)
         if not ball.is_finite() or not ball.contains(0):
             continue
@@ -188,7 +188,7 @@ def is_equality(difference: sp.Expr, box: Box, sample: Sample) -> bool:
 
 def certificate_of(difference: sp.Expr, relation: str, box: Box) -> Mapping[str, Any] | None:
     """Positivity on a closed box, or of what is left beside squares, for the checker; None where it has none."""
-    limits = ranges(sorted(difference.free_symbols, key=str), box)
+    limits = ranges_of(sorted(difference.free_symbols, key=str), box)
     signs = {"<": (-1,), "<=": (-1,), "!=": (1, -1)}.get(relation, (1,))
     found = (positivity_certificate(sign * difference, limits) for sign in signs)
     certificate = next((item for item in found if item is not None), None)

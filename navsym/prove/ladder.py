@@ -41,10 +41,10 @@ def decide_within(
 ) -> Verdict:
     """The same in a child process; OPEN when it needs more time or memory than allowed."""
     outcome = run_limited(decide, (statement,), seconds, megabytes)
-    return exhausted(outcome) if isinstance(outcome, Exhausted) else outcome
+    return leave_open(outcome) if isinstance(outcome, Exhausted) else outcome
 
 
-def exhausted(outcome: Exhausted) -> Verdict:
+def leave_open(outcome: Exhausted) -> Verdict:
     """OPEN, with the limit that was met."""
     return Verdict(OPEN, "none", evidence=f"stopped: {outcome.why}; nothing is known")
 
@@ -52,8 +52,8 @@ def exhausted(outcome: Exhausted) -> Verdict:
 def decide_property(statement: Property) -> Verdict:
     """A printed fact beside a computed one: they are equal, or the computed one refutes it."""
     finding = statement.derived
-    if not same_value(statement.printed, finding.value):
-        return contradicted(statement, finding)
+    if not is_same_value(statement.printed, finding.value):
+        return contradict(statement, finding)
     return Verdict(
         finding.status,
         method=finding.method,
@@ -64,7 +64,7 @@ def decide_property(statement: Property) -> Verdict:
     )
 
 
-def contradicted(statement: Property, finding: Finding) -> Verdict:
+def contradict(statement: Property, finding: Finding) -> Verdict:
     """REFUTED by a decided value; a value that was only sampled cannot refute."""
     words = f"printed {statement.printed!r}, found {finding.value!r}. {finding.evidence}".strip()
     if not finding.status.holds:
@@ -79,11 +79,11 @@ def contradicted(statement: Property, finding: Finding) -> Verdict:
     )
 
 
-def same_value(printed: object, found: object) -> bool:
+def is_same_value(printed: object, found: object) -> bool:
     """Equality of exact values; True is not 1, and a float is never compared."""
     if isinstance(printed, float) or isinstance(found, float):
         raise DomainError("expected exact values in a property; got a float; write a Fraction or Rational")
     if isinstance(printed, (tuple, list)) and isinstance(found, (tuple, list)):
         pairs = zip(printed, found, strict=False)
-        return len(printed) == len(found) and all(same_value(p, f) for p, f in pairs)
+        return len(printed) == len(found) and all(is_same_value(p, f) for p, f in pairs)
     return isinstance(printed, bool) == isinstance(found, bool) and printed == found

@@ -18,18 +18,18 @@ from navsym.claims.verdict import PROVED, REFUTED, Verdict
 from navsym.core.balls import UnsupportedError, exact_ball, tape
 from navsym.core.exact import to_fraction, to_rational
 from navsym.core.numbers import Number
-from navsym.prove.assumptions import remaining_assumptions, written_conditions
+from navsym.prove.assumptions import conditions_as_written, remaining_assumptions
 from navsym.prove.identities.normal_form import (
     OutsideLanguageError,
     divisors_inside,
     logarithms_inside,
     radicands_inside,
 )
-from navsym.prove.sampling.points import Point, Range, ranges, value_at
+from navsym.prove.sampling.points import Point, Range, ranges_of, value_at
 from navsym.prove.sampling.second_look import exists_at
-from navsym.prove.signs.one_variable import Survey, Zero, survey
+from navsym.prove.signs.one_variable import Survey, Zero, survey_signs
 from navsym.prove.signs.real_roots import is_root
-from navsym.prove.wording import broken
+from navsym.prove.wording import refute_at_point
 
 #: Relation -> the signs of printed - derived that contradict it.
 CONTRADICTED = {"<": (0, 1), "<=": (1,), ">": (0, -1), ">=": (-1,), "!=": (0,), "=": (1, -1)}
@@ -47,22 +47,22 @@ def decide_by_roots(
     whole = sp.Tuple(difference, *sides)
     if len(whole.free_symbols) != 1 or whole.free_symbols != difference.free_symbols:
         return None
-    ((symbol, limit),) = ranges(list(whole.free_symbols), box).items()
+    ((symbol, limit),) = ranges_of(list(whole.free_symbols), box).items()
     try:
         divisors = tuple(d for d in dict.fromkeys(divisors_inside(whole)) if d.free_symbols)
-        found = survey(difference, limit, divisors)
+        found = survey_signs(difference, limit, divisors)
         complete = found is not None
-        found = survey(difference, limit) if found is None else found
+        found = survey_signs(difference, limit) if found is None else found
         if found is None:
             return None
-        statement = Sides(symbol, box, limit, (difference, *sides), found, complete)
+        statement = RootStatement(symbol, box, limit, (difference, *sides), found, complete)
         return verdict_of(statement, CONTRADICTED[relation], scope)
     except (UnsupportedError, OutsideLanguageError):
         return None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Sides:
+class RootStatement:
     """What has to exist at a place of the statement, the difference first; ``complete`` with all its divisors."""
 
     symbol: sp.Symbol
@@ -74,7 +74,7 @@ class Sides:
 
     def assumptions(self) -> tuple[str, ...]:
         """Where the sides exist, as far as the range does not guarantee it."""
-        return remaining_assumptions(written_conditions(*self.sides), self.box)
+        return remaining_assumptions(conditions_as_written(*self.sides), self.box)
 
     def exist_at(self, value: sp.Expr) -> bool:
         """True where all sides are shown to exist, at a value that is shown to lie in the range."""
@@ -95,12 +95,12 @@ class Sides:
         return True
 
 
-def verdict_of(statement: Sides, contradicted: tuple[int, ...], scope: str) -> Verdict | None:
+def verdict_of(statement: RootStatement, contradicted: tuple[int, ...], scope: str) -> Verdict | None:
     """REFUTED by a sign between two roots or by a zero, else PROVED; None where what breaks it may not exist."""
     found = statement.found
     broken = [v for sign, values in ((1, found.above), (-1, found.below)) if sign in contradicted for v in values]
     for value in broken:
-        refuted = refuted_near(statement, value, contradicted)
+        refuted = refute_near(statement, value, contradicted)
         if refuted is not None:
             return refuted
     if broken:
@@ -109,7 +109,7 @@ def verdict_of(statement: Sides, contradicted: tuple[int, ...], scope: str) -> V
         known = [(zero, statement.exist_at_zero(zero)) for zero in found.zeros]
         for zero, there in known:
             if there:
-                return refuted_at_zero(statement, zero)
+                return refute_at_zero(statement, zero)
         if any(there is None for _, there in known):
             return None
     words = f"exact signs between {found.roots} real roots of numerator and denominator"
@@ -119,12 +119,12 @@ def verdict_of(statement: Sides, contradicted: tuple[int, ...], scope: str) -> V
 # -- what refutes ---------------------------------------
 
 
-def refuted_near(statement: Sides, value: sp.Expr, contradicted: tuple[int, ...]) -> Verdict | None:
+def refute_near(statement: RootStatement, value: sp.Expr, contradicted: tuple[int, ...]) -> Verdict | None:
     """REFUTED at a simple number near a value between two roots; None where the sides exist at none of those tried."""
     for number in numbers_near(value):
-        ball = sign_at(statement.sides[0], {statement.symbol: number})
+        ball = find_sign_ball(statement.sides[0], {statement.symbol: number})
         if ball is not None and int(ball > 0) - int(ball < 0) in contradicted and statement.exist_at(number):
-            return broken({statement.symbol: number}, ball)
+            return refute_at_point({statement.symbol: number}, ball)
     return None
 
 
@@ -137,7 +137,7 @@ def numbers_near(value: sp.Expr) -> Iterator[sp.Expr]:
     yield from dict.fromkeys([value, *numbers] if value.is_Rational else [*numbers, value])
 
 
-def sign_at(difference: sp.Expr, point: Point) -> arb | None:
+def find_sign_ball(difference: sp.Expr, point: Point) -> arb | None:
     """A ball of the difference that tells its sign; None where it has none, or none is found."""
     program = tape(difference)
     for bits in BITS:
@@ -147,10 +147,10 @@ def sign_at(difference: sp.Expr, point: Point) -> arb | None:
     return None
 
 
-def refuted_at_zero(statement: Sides, zero: Zero) -> Verdict:
+def refute_at_zero(statement: RootStatement, zero: Zero) -> Verdict:
     """REFUTED where the sides are equal: at a formula, or at a root that has none."""
     if zero.at is not None:
-        return broken({statement.symbol: zero.at}, arb(0), exact=True)
+        return refute_at_point({statement.symbol: zero.at}, arb(0), exact=True)
     assert zero.root is not None
     ends = " and ".join(str(to_rational(end)) for end in (zero.root.lower, zero.root.upper))
     words = f"the difference is exactly zero at a root that has no formula, of the polynomial {zero.root.factor}"

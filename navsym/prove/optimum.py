@@ -18,8 +18,8 @@ import sympy as sp
 
 from navsym.claims.statement import Box, Equation, Optimum
 from navsym.claims.verdict import CERTIFIED, OPEN, PROVED, Status, Verdict
-from navsym.prove.assumptions import remaining_assumptions, written_conditions
-from navsym.prove.equations import combine, decide_equation
+from navsym.prove.assumptions import conditions_as_written, remaining_assumptions
+from navsym.prove.equations import decide_equation, weakest_verdict
 from navsym.prove.inequalities import decide_difference
 from navsym.prove.signs.bounds import Sign, SignProof, prove_sign
 from navsym.prove.signs.products import as_product
@@ -33,30 +33,37 @@ def decide_optimum(statement: Optimum) -> Verdict:
     """Verdict of a printed optimum; REFUTED as soon as one of the four conditions is."""
     if statement.variable in fixed_parts(statement).free_symbols:
         return Verdict(OPEN, "none", evidence=f"{statement.variable} occurs outside the regressors; name it otherwise")
-    parts = [constraints(statement), instants(statement), feasibility(statement), equal_values(statement)]
-    verdict = combine(parts)
+    parts = [
+        decide_constraints(statement),
+        decide_times(statement),
+        decide_feasibility(statement),
+        decide_values(statement),
+    ]
+    verdict = weakest_verdict(parts)
     if verdict.status.holds:
-        verdict = replace(verdict, assumptions=tuple(dict.fromkeys((*verdict.assumptions, *assumed(statement)))))
+        verdict = replace(
+            verdict, assumptions=tuple(dict.fromkeys((*verdict.assumptions, *existence_assumptions(statement))))
+        )
     names = ("constraints", "instants inside", "dual feasible", "equal values")
     words = ", ".join(f"{name}: {part.status}" for name, part in zip(names, parts, strict=True))
     return replace(
         verdict,
         method=f"exact primal-dual pair ({verdict.method})",
-        scope=scope_of(parameters(statement), statement.box),
+        scope=scope_of(without_variable(statement), statement.box),
         evidence=f"{words}. {verdict.evidence}",
     )
 
 
-def assumed(statement: Optimum) -> tuple[str, ...]:
+def existence_assumptions(statement: Optimum) -> tuple[str, ...]:
     """Where the printed solution and the regressors exist, as far as the box does not guarantee it.
 
     A component of the dual that the functional does not meet, or that a regressor cancels, is part of the solution
     as well: (1, 1/(T - 1)) is no dual at T = 1.
     """
-    fixed = remaining_assumptions(written_conditions(fixed_parts(statement)), statement.box)
+    fixed = remaining_assumptions(conditions_as_written(fixed_parts(statement)), statement.box)
     start, end = statement.interval
     place, box = start + (end - start) * SHARE, {**statement.box, SHARE: (0, 1)}
-    conditions = written_conditions(*statement.regressors)
+    conditions = conditions_as_written(*statement.regressors)
     moving = remaining_assumptions(conditions, box, at=lambda part: part.subs(statement.variable, place))
     return (*fixed, *moving)
 
@@ -73,13 +80,13 @@ def fixed_parts(statement: Optimum) -> sp.Basic:
     )
 
 
-def parameters(statement: Optimum) -> sp.Basic:
+def without_variable(statement: Optimum) -> sp.Basic:
     """Everything but the variable that the statement is about, for the words of its scope."""
     sides = sp.Tuple(*statement.regressors, *statement.interval, *statement.dual, statement.value)
     return sides.subs(statement.variable, statement.interval[0])
 
 
-def constraints(statement: Optimum) -> Verdict:
+def decide_constraints(statement: Optimum) -> Verdict:
     """sum_j phi_j H(t_j) = P."""
     total = [
         sum(
@@ -91,7 +98,7 @@ def constraints(statement: Optimum) -> Verdict:
     return decide_equation(Equation(tuple(total), tuple(statement.functional), statement.box))
 
 
-def instants(statement: Optimum) -> Verdict:
+def decide_times(statement: Optimum) -> Verdict:
     """start <= t_j <= end for every printed instant."""
     start, end = statement.interval
     proofs = [
@@ -99,17 +106,17 @@ def instants(statement: Optimum) -> Verdict:
         for at in statement.support
         for side in (at - start, end - at)
     ]
-    return from_signs(proofs, "instants inside the interval")
+    return judge_signs(proofs, "instants inside the interval")
 
 
-def from_signs(proofs: Sequence[SignProof], what: str) -> Verdict:
+def judge_signs(proofs: Sequence[SignProof], what: str) -> Verdict:
     if any(proof.sign == Sign.UNKNOWN for proof in proofs):
         return Verdict(OPEN, "signs", evidence=f"{what}: not proved")
     status: Status = PROVED if all(proof.exact for proof in proofs) else CERTIFIED
     return Verdict(status, "signs", evidence=what)
 
 
-def feasibility(statement: Optimum) -> Verdict:
+def decide_feasibility(statement: Optimum) -> Verdict:
     """1 - x.H(t) >= 0 and 1 + x.H(t) >= 0 on the interval, as products where they factor."""
     polynomial = sum((x * h for x, h in zip(statement.dual, statement.regressors, strict=True)), sp.Integer(0))
     start, end = statement.interval
@@ -120,11 +127,11 @@ def feasibility(statement: Optimum) -> Verdict:
     for side in (1 - polynomial, 1 + polynomial):
         product = as_product(side)
         inside = (side if product is None else product).subs(statement.variable, start + (end - start) * SHARE)
-        verdicts.append(everywhere(decide_difference(inside, ">=", box, scope_of(inside, box))))
-    return combine(verdicts)
+        verdicts.append(require_everywhere(decide_difference(inside, ">=", box, scope_of(inside, box))))
+    return weakest_verdict(verdicts)
 
 
-def everywhere(verdict: Verdict) -> Verdict:
+def require_everywhere(verdict: Verdict) -> Verdict:
     """OPEN for a bound that is proved only where it exists: the interval of an optimum has no holes."""
     if not verdict.status.holds or not verdict.assumptions:
         return verdict
@@ -132,17 +139,17 @@ def everywhere(verdict: Verdict) -> Verdict:
     return Verdict(OPEN, verdict.method, verdict.scope, evidence=words)
 
 
-def equal_values(statement: Optimum) -> Verdict:
+def decide_values(statement: Optimum) -> Verdict:
     """sum |phi_j| = x . P = printed value, with the signs of the weights proved."""
     dual_value = sum((x * p for x, p in zip(statement.dual, statement.functional, strict=True)), sp.Integer(0))
-    proved = [modulus(weight, statement.box) for weight in statement.weights]
+    proved = [prove_modulus(weight, statement.box) for weight in statement.weights]
     sizes = [sp.Abs(weight) if size is None else size for size, weight in zip(proved, statement.weights, strict=True)]
     primal_value = sum(sizes, sp.Integer(0))
     sides = Equation((statement.value, primal_value), (dual_value, dual_value), statement.box)
     return decide_equation(sides)
 
 
-def modulus(weight: sp.Expr, box: Box) -> sp.Expr | None:
+def prove_modulus(weight: sp.Expr, box: Box) -> sp.Expr | None:
     """|weight| with its sign proved on the whole box, or None."""
     weight = sp.sympify(weight, strict=True)
     for value in (weight, -weight):

@@ -10,7 +10,7 @@ import sympy as sp
 
 from navsym.claims.statement import Finding, Property, Statement
 from navsym.core.errors import DomainError
-from navsym.language.names import inside, shown
+from navsym.language.names import join_place, quote
 
 
 def require_statement(statement: Any) -> None:
@@ -18,12 +18,12 @@ def require_statement(statement: Any) -> None:
     if not isinstance(statement, Statement):
         expected = "an Equation, Bound, Optimum or Property"
         remedy = "write Equation(left, right) or Bound(left, '<=', right)"
-        message = f"expected {expected}; got {shown(statement)}; {remedy}"
+        message = f"expected {expected}; got {quote(statement)}; {remedy}"
         raise DomainError(message, where="statement")
     kind = type(statement).__name__
     if isinstance(statement, Property):
         if not isinstance(statement.derived, Finding):
-            message = f"expected a Finding; got {shown(statement.derived)}; write Finding(value, method)"
+            message = f"expected a Finding; got {quote(statement.derived)}; write Finding(value, method)"
             raise DomainError(message, where=f"{kind}: derived")
         return
     for field in fields(statement):
@@ -37,12 +37,12 @@ def require_statement(statement: Any) -> None:
 def require_box(box: Any, where: str) -> None:
     """Refuse a box that is no mapping of symbols to pairs of exact numbers."""
     if not isinstance(box, Mapping):
-        raise DomainError(f"expected ranges by symbol; got {shown(box)}; write {{T: (0, 1)}}", where=where)
+        raise DomainError(f"expected ranges by symbol; got {quote(box)}; write {{T: (0, 1)}}", where=where)
     for symbol, ends in box.items():
         if not isinstance(symbol, sp.Symbol) or not isinstance(ends, (tuple, list)) or len(ends) != 2:
-            got = f"{shown(symbol)} with {shown(ends)}"
+            got = f"{quote(symbol)} with {quote(ends)}"
             raise DomainError(f"expected a symbol and two ends; got {got}; write {{T: (0, 1)}}", where=where)
-        require_formulas([end for end in ends if end is not None], inside(where, symbol.name))
+        require_formulas([end for end in ends if end is not None], join_place(where, symbol.name))
 
 
 def require_formulas(value: Any, where: str) -> None:
@@ -65,5 +65,5 @@ def require_formula(value: Any, where: str) -> None:
     except sp.SympifyError:
         formula = None
     if not isinstance(formula, sp.Expr):
-        message = f"expected an exact number or a formula of sympy; got {shown(value)}; use navsym.prove for text"
+        message = f"expected an exact number or a formula of sympy; got {quote(value)}; use navsym.prove for text"
         raise DomainError(message, where=where)

@@ -19,7 +19,7 @@ from navsym.prove.sampling.points import Point, Range, range_of
 MOST_SIZE = 20_000
 
 
-def text_of(expression: sp.Basic) -> str:
+def expression_text(expression: sp.Basic) -> str:
     """Text in the language of files; sympy's own words for what lies outside it."""
     try:
         return to_text(expression)
@@ -29,7 +29,7 @@ def text_of(expression: sp.Basic) -> str:
 
 def point_text(point: Point) -> Mapping[str, str]:
     """A counterexample in the language of files, by name."""
-    return {symbol.name: text_of(value) for symbol, value in sorted(point.items(), key=lambda i: i[0].name)}
+    return {symbol.name: expression_text(value) for symbol, value in sorted(point.items(), key=lambda i: i[0].name)}
 
 
 def scope_of(expression: sp.Basic, box: Box) -> str:
@@ -46,8 +46,8 @@ def range_text(symbol: sp.Symbol, limits: Range) -> str:
         return f"{kind} {symbol}" + (" != 0" if limits.nonzero else "")
     left = "(" if limits.open_lower or limits.lower is None else "["
     right = ")" if limits.upper is None else "]"
-    lower = "-oo" if limits.lower is None else text_of(limits.lower)
-    upper = "oo" if limits.upper is None else text_of(limits.upper)
+    lower = "-oo" if limits.lower is None else expression_text(limits.lower)
+    upper = "oo" if limits.upper is None else expression_text(limits.upper)
     return f"{symbol} in {left}{lower}, {upper}{right}" + (" whole" if limits.integer else "")
 
 
@@ -55,10 +55,10 @@ def decimal_ends(ball: arb, digits: int = 20) -> Number:
     """Decimal strings below and above every point of the ball."""
     with precision(256):
         lower, upper = ball.lower(), ball.upper()
-    return Number(decimal(lower, digits, -1), decimal(upper, digits, 1))
+    return Number(write_decimal(lower, digits, -1), write_decimal(upper, digits, 1))
 
 
-def decimal(end: arb, digits: int, direction: int) -> str:
+def write_decimal(end: arb, digits: int, direction: int) -> str:
     """An exact ball as a decimal rounded downwards (-1) or upwards (1)."""
     mantissa, exponent = end.man_exp()
     numerator, power = int(mantissa), int(exponent)
@@ -66,17 +66,17 @@ def decimal(end: arb, digits: int, direction: int) -> str:
         return "0"
     size = abs(numerator).bit_length() + power
     if abs(size) > MOST_SIZE:
-        return power_of_ten(size, numerator > 0, direction)
+        return write_power_of_ten(size, numerator > 0, direction)
     places = max(0, digits - int(size * 0.30103) - 1)
     scaled = numerator * 10**places
-    whole = scaled << power if power >= 0 else rounded_shift(scaled, -power, direction)
+    whole = scaled << power if power >= 0 else shift_rounding(scaled, -power, direction)
     text = str(abs(whole)).rjust(places + 1, "0")
     head, tail = (text[:-places], text[-places:]) if places else (text, "")
     sign = "-" if whole < 0 else ""
     return sign + (f"{head}.{tail}" if tail else head)
 
 
-def power_of_ten(size: int, positive: bool, direction: int) -> str:
+def write_power_of_ten(size: int, positive: bool, direction: int) -> str:
     """A power of ten beyond a number between 2**(size - 1) and 2**size: its digits would fill the memory.
 
     log10(2) lies between 0.30102 and 0.30103.
@@ -87,12 +87,12 @@ def power_of_ten(size: int, positive: bool, direction: int) -> str:
     return f"{'' if positive else '-'}1e{max(ends) + 1 if away else min(ends)}"
 
 
-def rounded_shift(value: int, bits: int, direction: int) -> int:
+def shift_rounding(value: int, bits: int, direction: int) -> int:
     """value / 2**bits rounded down or up."""
     return value >> bits if direction < 0 else -((-value) >> bits)
 
 
-def broken(point: Point, difference: arb, exact: bool = False) -> Verdict:
+def refute_at_point(point: Point, difference: arb, exact: bool = False) -> Verdict:
     """REFUTED at one exact point."""
     ends = Number("0", "0") if exact else decimal_ends(difference)
     words = "the difference is exactly zero there" if exact else f"the sides differ by {ends.lower} at an exact point"

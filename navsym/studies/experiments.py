@@ -9,12 +9,12 @@ from dataclasses import dataclass
 from types import ModuleType
 from typing import Any
 
-from navsym.claims.display import table
+from navsym.claims.display import write_table
 from navsym.claims.paper import experiment_names, import_paper
 from navsym.core.answers import Answer
 from navsym.core.choice import one_of
 from navsym.core.errors import DomainError
-from navsym.language.names import shown
+from navsym.language.names import quote
 
 #: What an experiment may take beside its seed.
 OPTIONS = ("runs", "steps", "journal")
@@ -44,7 +44,7 @@ class Experiment(Answer):
         return f"<Experiment {self.name}: {len(lines)} rows of {len(heads)} columns>"
 
     def _repr_html_(self) -> str:
-        return table(*self.rows())
+        return write_table(*self.rows())
 
 
 def simulate(
@@ -73,7 +73,7 @@ def simulate(
     ['exact', 'pulsating']
     """
     if isinstance(seed, bool) or not isinstance(seed, int) or seed < 0:
-        raise DomainError(f"expected a seed of at least 0; got {shown(seed)}; choose another", where="simulate: seed")
+        raise DomainError(f"expected a seed of at least 0; got {quote(seed)}; choose another", where="simulate: seed")
     accepted = options_of(name)
     given = {"runs": runs, "steps": steps, "journal": journal}
     options = {key: value for key, value in given.items() if value is not None}
@@ -83,7 +83,7 @@ def simulate(
             message = f"expected an option that {name} has ({takes}); got {option}; leave it out"
             raise DomainError(message, where=f"simulate: {option}")
         if option != "journal" and (isinstance(value, bool) or not isinstance(value, int)):
-            message = f"expected a whole number; got {shown(value)}; give one"
+            message = f"expected a whole number; got {quote(value)}; give one"
             raise DomainError(message, where=f"simulate: {option}")
     return Experiment(name, study_of(name).study(seed=seed, progress=progress, **options))
 

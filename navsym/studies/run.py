@@ -15,12 +15,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from navsym.claims.display import table
+from navsym.claims.display import write_table
 from navsym.core.answers import Answer
 from navsym.core.errors import DomainError, MissingEngineError, NavsymError
 from navsym.core.store import default_path, key_of
+from navsym.language.files import name_file
 from navsym.language.jsonfile import read_json
-from navsym.language.names import shown
+from navsym.language.names import quote
 from navsym.studies.cluster import PATIENCE, answers, cluster
 from navsym.studies.plan import Sweep, fingerprint, run_job, summary, sweep_from
 from navsym.verification.fingerprints import rooms_digest
@@ -143,7 +144,7 @@ class Study(Answer):
 
     def _repr_html_(self) -> str:
         heads = list(self.rows[0]) if self.rows else []
-        return table(heads, [[row.get(name) for name in heads] for row in self.rows[:50]])
+        return write_table(heads, [[row.get(name) for name in heads] for row in self.rows[:50]])
 
 
 def sweep(
@@ -180,14 +181,14 @@ def sweep(
     """
     for name, value in (("workers", workers), ("size", size)):
         if value is not None and (isinstance(value, bool) or not isinstance(value, int) or value < 0):
-            raise DomainError(f"expected a whole number; got {shown(value)}; give one", where=f"sweep: {name}")
+            raise DomainError(f"expected a whole number; got {quote(value)}; give one", where=f"sweep: {name}")
     if size == 0:
         raise DomainError("expected at least one job in a shard; got 0; give more", where="sweep: size")
     plan = config if isinstance(config, Sweep) else read_plan(config)
     try:
         folder = None if out is None else Path(out)
     except TypeError:
-        raise DomainError(f"expected a folder; got {shown(out)}; give its path", where="sweep: out") from None
+        raise DomainError(f"expected a folder; got {quote(out)}; give its path", where="sweep: out") from None
     document = run_sweep(
         plan,
         workers=workers,
@@ -204,8 +205,13 @@ def sweep(
 def read_plan(config: Any) -> Sweep:
     """The study of a configuration file, or of its document."""
     if isinstance(config, str | os.PathLike):
-        return sweep_from(read_json(config))
-    return sweep_from(config)
+        document, place = read_json(config), name_file(config)
+    else:
+        document, place = config, "sweep"
+    try:
+        return sweep_from(document)
+    except NavsymError as error:
+        raise error.at(place) from None
 
 
 def run_sweep(

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from navsym.core.errors import DomainError, EmptyError, NavsymError, ShapeError
-from navsym.language.names import only_keys, shown
+from navsym.language.names import only_keys, quote
 from navsym.terrain.heights import TerrainMap
 from navsym.terrain.maps import local_frame, read_map, read_track
 from navsym.terrain.track import Hypotheses, Profile
@@ -43,6 +43,8 @@ def read_search(
 def block(config: Mapping[str, Any], name: str) -> Mapping[str, Any]:
     """A table of the configuration that must be there."""
     value = config.get(name)
+    if not isinstance(value, Mapping) and hasattr(value, "keys") and hasattr(value, "__getitem__"):  # a data frame
+        return {key: value[key] for key in value.keys()}  # noqa: SIM118
     if not isinstance(value, Mapping):
         got = "nothing" if value is None else type(value).__name__
         raise ShapeError(f"{name}: expected a table; got {got}; add it", where=name)
@@ -83,7 +85,7 @@ def map_in(path: Path, frame: Any, nodata: float | None) -> TerrainMap:
 def number(value: Any, name: str) -> float:
     """One number; an integer that no float can hold is refused as well."""
     if isinstance(value, bool) or not isinstance(value, int | float) or abs(value) > sys.float_info.max:
-        raise ShapeError(f"{name}: expected a number; got {shown(value)}; mend it")
+        raise ShapeError(f"{name}: expected a number; got {quote(value)}; mend it")
     return float(value)
 
 

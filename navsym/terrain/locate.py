@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from navsym.claims.display import table
+from navsym.claims.display import write_table
 from navsym.core.answers import Answer
 from navsym.core.errors import DomainError, NavsymError
-from navsym.language.files import called
+from navsym.language.files import name_file
 from navsym.language.jsonfile import read_json
 from navsym.terrain.centre import demand_estimable, one_sided
 from navsym.terrain.configuration import read_search
@@ -95,7 +95,9 @@ class Fix(Answer):
     def _repr_html_(self) -> str:
         moves = (float(value) for part in self.correction for value in part)
         values = zip(("x", "y", "vx", "vy"), (self.x, self.y, self.vx, self.vy), moves, strict=True)
-        return table(("", "fix", "correction"), [(name, f"{at:.3f}", f"{move:+.3f}") for name, at, move in values])
+        return write_table(
+            ("", "fix", "correction"), [(name, f"{at:.3f}", f"{move:+.3f}") for name, at, move in values]
+        )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -150,7 +152,7 @@ def locate(
     navsym.core.errors.EmptyError: locate: map: heights: expected a value; got none; add it
     """
     if isinstance(config, str | os.PathLike):
-        document, place = read_json(config), called(config)
+        document, place = read_json(config), name_file(config)
         folder = Path(config).parent if folder is None else folder
     else:
         document, place = config, "locate"

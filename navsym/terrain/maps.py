@@ -34,7 +34,7 @@ from navsym.core.errors import (
     ShapeError,
     TooLargeError,
 )
-from navsym.language.files import called, read_bytes, read_text
+from navsym.language.files import name_file, read_bytes, read_text
 
 # Plain GeoTIFF files without a library: one band of numbers in strips or tiles, uncompressed or deflated. The rest of
 # the format is left to rasterio: :func:`read_plain` returns None. Every offset and size is checked against the file and
@@ -296,8 +296,8 @@ def read_map(path: str | os.PathLike[str]) -> Raster:
     reader = readers.get(Path(path).suffix.lower())
     if reader is None:
         raise DomainError(
-            f"expected {', '.join(readers)} at the end; got {called(Path(path).name)[-40:]}; convert it",
-            where=called(path),
+            f"expected {', '.join(readers)} at the end; got {name_file(Path(path).name)[-40:]}; convert it",
+            where=name_file(path),
         )
     return reader(Path(path))
 
@@ -343,7 +343,7 @@ def opened_zip(path: Path) -> zipfile.ZipFile:
         return zipfile.ZipFile(path)
     except FileNotFoundError:
         message = "expected a readable map file; got nothing there; check the path"
-        raise NavsymError(message, where=called(path), kind="missing-file") from None
+        raise NavsymError(message, where=name_file(path), kind="missing-file") from None
     except Exception as reason:  # zipfile has many: BadZipFile, NotImplementedError, struct errors
         raise damaged(path, "an npz archive", reason) from None
 
@@ -351,7 +351,7 @@ def opened_zip(path: Path) -> zipfile.ZipFile:
 def damaged(path: Path, what: str, reason: object) -> ExpressionSyntaxError:
     """The error of a damaged file; what says what was expected in it, reason what came."""
     message = f"expected {what}; got a damaged file ({reason!s:.80}); fetch or write it again"
-    return ExpressionSyntaxError(message, where=called(path))
+    return ExpressionSyntaxError(message, where=name_file(path))
 
 
 def member_names(archive: zipfile.ZipFile, path: Path) -> frozenset[str]:
@@ -359,13 +359,13 @@ def member_names(archive: zipfile.ZipFile, path: Path) -> frozenset[str]:
     names = [name.removesuffix(".npy") for name in archive.namelist()]
     if len(set(names)) < len(names):
         message = "expected every array once; got one name twice; write it again"
-        raise DuplicateError(message, where=called(path))
+        raise DuplicateError(message, where=name_file(path))
     return frozenset(names)
 
 
 def read_member(archive: zipfile.ZipFile, names: frozenset[str], name: str, path: Path) -> NDArray[Any]:
     """One array of an npz archive, its header checked before anything is allocated."""
-    where = f"{called(path)}: {name}"
+    where = f"{name_file(path)}: {name}"
     if name not in names:
         message = f"expected an array '{name}'; got {', '.join(sorted(names))[:120]}; add it"
         raise EmptyError(message, where=where)
@@ -416,7 +416,7 @@ def scalar(get: Callable[[str], NDArray[Any]], name: str, path: Path, *, finite:
 
     Raises ShapeError for more or fewer numbers, NotFiniteError for nan and infinity unless finite is False.
     """
-    array, where = get(name), f"{called(path)}: {name}"
+    array, where = get(name), f"{name_file(path)}: {name}"
     if array.size != 1:
         raise ShapeError(f"expected one number; got shape {array.shape}; give one", where=where)
     value = float(array.reshape(-1)[0])
@@ -436,8 +436,8 @@ def read_hgt(path: Path) -> Raster:
     name = re.match(r"([NS])(\d{2})([EW])(\d{3})", path.name.upper())
     if name is None:
         raise DomainError(
-            f"expected a name such as N44W072.hgt, which gives the corner; got {called(path.name)[-40:]}; rename it",
-            where=called(path),
+            f"expected a name such as N44W072.hgt, which gives the corner; got {name_file(path.name)[-40:]}; rename it",
+            where=name_file(path),
         )
     data = read_bytes(path, 2 * 3601 * 3601)
     side = {2 * n * n: n for n in (1201, 3601)}.get(len(data))
@@ -445,7 +445,7 @@ def read_hgt(path: Path) -> Raster:
         raise ShapeError(
             f"expected {2 * 1201**2} or {2 * 3601**2} bytes (1201 or 3601 samples squared); got {len(data)}; "
             "fetch it again",
-            where=called(path),
+            where=name_file(path),
         )
     latitude = int(name[2]) * (1 if name[1] == "N" else -1)
     longitude = int(name[4]) * (1 if name[3] == "E" else -1)
@@ -467,7 +467,7 @@ def read_geotiff(path: Path) -> Raster:
         plain = read_plain(data, MOST_HEIGHTS)
     except OverflowError as reason:
         raise TooLargeError(
-            f"expected at most {MOST_HEIGHTS} numbers; got {reason!s:.60}; cut the map", where=called(path)
+            f"expected at most {MOST_HEIGHTS} numbers; got {reason!s:.60}; cut the map", where=name_file(path)
         ) from None
     except (Damaged, struct.error, UnicodeDecodeError) as reason:
         raise damaged(path, "a GeoTIFF", reason) from None
@@ -485,12 +485,12 @@ def by_rasterio(path: Path) -> Raster:
         raise MissingEngineError(
             "expected one band of numbers, uncompressed or deflated, placed by a tie point and a scale, or the Python "
             "package rasterio; got another GeoTIFF and no rasterio; install the extra navsym[maps]",
-            where=called(path),
+            where=name_file(path),
         ) from None
     try:
         with rasterio.open(path) as source:
             shape, transform = (source.height, source.width), source.transform
-            checked_size((shape, np.dtype(source.dtypes[0])), called(path))
+            checked_size((shape, np.dtype(source.dtypes[0])), name_file(path))
             geographic = bool(source.crs is not None and source.crs.is_geographic)
             ours(foreign_to_us(source.crs), path)
             return upright(source.read(1), transform, source.nodata, geographic, path)
@@ -505,7 +505,7 @@ def ours(foreign: str | None, path: Path) -> None:
     if foreign is not None:
         raise DomainError(
             f"expected places in degrees or true metres, and heights in metres; got {foreign}; warp it first",
-            where=called(path),
+            where=name_file(path),
         )
 
 
@@ -523,7 +523,7 @@ def upright(heights: NDArray[Any], transform: Any, nodata: Any, geographic: bool
     """A north-up raster with its rows turned round; heights stand at the middle of the pixels."""
     if transform.b or transform.d or transform.a <= 0 or transform.e >= 0:
         raise DomainError(
-            "expected a raster with north up and no rotation; got another one; warp it first", where=called(path)
+            "expected a raster with north up and no rotation; got another one; warp it first", where=name_file(path)
         )
     x0 = transform.c + 0.5 * transform.a
     y0 = transform.f + transform.e * (heights.shape[0] - 0.5)
@@ -540,7 +540,7 @@ def read_track(path: str | os.PathLike[str]) -> dict[str, list[float]]:
     Lines that start with # and empty lines are skipped. Raises NavsymError with the line.
     """
     rows = csv.reader(io.StringIO(read_text(path, MOST_BYTES)))
-    where = called(path)
+    where = name_file(path)
     try:
         lines = [(rows.line_num, row) for row in rows if row and not row[0].lstrip().startswith("#")]
     except csv.Error as reason:

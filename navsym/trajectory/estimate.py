@@ -16,7 +16,7 @@ from typing import Literal
 
 import numpy as np
 
-from navsym.core.arrays import Array, frozen
+from navsym.core.arrays import Array, freeze
 from navsym.core.errors import DomainError
 from navsym.guaranteed.search.kernels import simplex, spread_rows
 from navsym.trajectory.kernels.tracks import DOUBTED, backward, forward
@@ -157,7 +157,7 @@ def noise_points(
         for sign in (-1.0, 1.0):
             moves = [10.0 ** (sign * np.sqrt(REACH) * root[:, axis]) for root in roots]
             factors = np.array([moves[0], moves[0], moves[1]]).T
-            moved = Noise(frozen(noise.scale * factors[0]), frozen(noise.density * factors[1]))
+            moved = Noise(freeze(noise.scale * factors[0]), freeze(noise.density * factors[1]))
             points.append(NoisePoint(1.0 / (2.0 * REACH), moved))
     return points
 

@@ -18,7 +18,7 @@ from typing import Literal
 
 import numpy as np
 
-from navsym.core.arrays import Array, named
+from navsym.core.arrays import Array, as_array
 from navsym.core.errors import DomainError, TooLargeError
 from navsym.models.earth import need_order, pascal_rows, power_rows
 from navsym.trajectory.kernels.bank import tune_by_windows
@@ -49,9 +49,9 @@ class SteppedModel:
     def __post_init__(self) -> None:
         n = np.shape(self.Phi)[0]
         put = partial(object.__setattr__, self)
-        put("Phi", named("Phi", self.Phi, (n, n), "states by states"))
-        put("row", named("row", self.row, (n,), "one entry per state"))
-        put("gain_row", named("gain_row", self.gain_row, (n,), "one entry per state"))
+        put("Phi", as_array("Phi", self.Phi, (n, n), "states by states"))
+        put("row", as_array("row", self.row, (n,), "one entry per state"))
+        put("gain_row", as_array("gain_row", self.gain_row, (n,), "one entry per state"))
         if not np.allclose(np.tril(self.Phi), np.eye(n), rtol=0, atol=0):
             raise DomainError(
                 "Phi: expected an upper triangle with ones on the diagonal; got another matrix; use a polynomial motion"
@@ -100,9 +100,9 @@ class Start:
     def __post_init__(self) -> None:
         n = len(np.shape(self.estimate)) and np.shape(self.estimate)[0]
         put = partial(object.__setattr__, self)
-        put("estimate", named("estimate", self.estimate, (n,), "one entry per state"))
-        put("P", named("P", self.P, (n, n), "states by states"))
-        put("Q", named("Q", self.Q, (n,), "one entry per state"))
+        put("estimate", as_array("estimate", self.estimate, (n,), "one entry per state"))
+        put("P", as_array("P", self.P, (n, n), "states by states"))
+        put("Q", as_array("Q", self.Q, (n,), "one entry per state"))
         if (self.Q < 0).any():
             raise DomainError("Q: expected no negative element; got one; Q is a diagonal of variances")
 
@@ -133,7 +133,7 @@ def first_stage_model(n: int, form: Form = "corrected") -> SteppedModel:
 
 def scaled_model(model: SteppedModel, scale: Array) -> SteppedModel:
     """The same motion in the variables scale * f, scale (n,) positive."""
-    scale = named("scale", scale, (model.order,), "one factor per state")
+    scale = as_array("scale", scale, (model.order,), "one factor per state")
     return SteppedModel(model.Phi * scale[:, None] / scale, model.row / scale, model.gain_row / scale)
 
 
@@ -161,7 +161,7 @@ def checked(z: Array, model: SteppedModel, start: Start) -> Array:
         )
     if start.estimate.shape != (model.order,):
         raise DomainError(f"start: expected {model.order} states; got {len(start.estimate)}; give one per state")
-    return named("z", z, (None,), "one entry per step")
+    return as_array("z", z, (None,), "one entry per step")
 
 
 def empty_run(N: int, n: int) -> tuple[Array, Array, Array, Array]:
@@ -244,10 +244,10 @@ def fixed_gain_filter(z: Array, model: SteppedModel, gain: Array, estimate: Arra
 
     z : (N,); gain : (n,) in the variables of the model; estimate : (n,) before the first measurement
     """
-    z = named("z", z, (None,), "one entry per step")
-    gain = named("gain", gain, (model.order,), "one entry per state")
+    z = as_array("z", z, (None,), "one entry per step")
+    gain = as_array("gain", gain, (model.order,), "one entry per state")
     states = np.empty((len(z), model.order))
-    start = named("estimate", estimate, (model.order,), "one entry per state")
+    start = as_array("estimate", estimate, (model.order,), "one entry per state")
     run_fixed_gain(model.Phi, model.row, gain, z, start.copy(), states)
     return states
 
@@ -258,7 +258,7 @@ def steady_gain(model: SteppedModel, R: float, Q: Array, *, rounds: int = 200) -
     Doubling algorithm for the Riccati equation: each round doubles the number of steps.
     """
     n = model.order
-    Q = np.diag(named("Q", Q, (n,), "one entry per state"))
+    Q = np.diag(as_array("Q", Q, (n,), "one entry per state"))
     h = model.gain_row[:, None]
     A, G, X = model.Phi.T.copy(), h @ h.T / R, Q.copy()
     for _ in range(rounds):

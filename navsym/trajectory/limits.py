@@ -14,11 +14,11 @@ from typing import Any
 
 import numpy as np
 
-from navsym.claims.display import table
+from navsym.claims.display import write_table
 from navsym.core.answers import Answer
-from navsym.core.arrays import Array, named
+from navsym.core.arrays import Array, as_array
 from navsym.core.errors import DomainError, TooLargeError
-from navsym.language.names import shown
+from navsym.language.names import quote
 
 #: (derivative, order): factor of noise^(1 - d/m) bound^(d/m) in the least error.
 CONSTANTS = {(1, 2): 2.0, (1, 3): (243 / 8) ** (1 / 3), (2, 3): 24 ** (1 / 3)}
@@ -56,8 +56,8 @@ class Rule:
     motion: float
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "ages", named("ages", self.ages, (None,), "one for each position"))
-        object.__setattr__(self, "weights", named("weights", self.weights, np.shape(self.ages), "one for each age"))
+        object.__setattr__(self, "ages", as_array("ages", self.ages, (None,), "one for each position"))
+        object.__setattr__(self, "weights", as_array("weights", self.weights, np.shape(self.ages), "one for each age"))
 
     @property
     def error(self) -> float:
@@ -142,7 +142,7 @@ class Limits(Answer):
 
     def _repr_html_(self) -> str:
         rows = [(part.derivative, f"{part.rule.error:.6g} {part.unit}", part.formula) for part in self.limits]
-        return table(("derivative", "least guaranteed error", "formula"), rows)
+        return write_table(("derivative", "least guaranteed error", "formula"), rows)
 
 
 def limits(
@@ -187,7 +187,7 @@ def limits(
 def real_number(value: float | None, name: str) -> float:
     """The number itself; DomainError for what is none, with the name of the argument."""
     if isinstance(value, bool) or not isinstance(value, int | float | np.number):
-        raise DomainError(f"expected a number; got {shown(value)}; give one", where=f"limits: {name}")
+        raise DomainError(f"expected a number; got {quote(value)}; give one", where=f"limits: {name}")
     return float(value)
 
 
@@ -275,7 +275,7 @@ def rule(ages: Array, noise: float, bound: float, derivative: int = 1) -> Rule:
     divided difference's, hence positive, and its integral an elementary symmetric function of the ages.
     Raises DomainError when the ages do not rise from 0.
     """
-    ages = named("ages", ages, (None,), "one for each position")
+    ages = as_array("ages", ages, (None,), "one for each position")
     check(noise, bound, derivative, len(ages))
     if ages[0] != 0 or not (np.diff(ages) > 0).all():
         raise DomainError(f"ages: expected ages that rise from 0; got {ages.tolist()}; give the newest position first")
@@ -298,7 +298,7 @@ def best_rule(available: Array, noise: float, bound: float, derivative: int = 1,
     Samples next to the optimal ages, and the oldest, are tried in all combinations; the answer says what it guarantees.
     Raises DomainError.
     """
-    available = named("available", available, (None,), "one for each position")
+    available = as_array("available", available, (None,), "one for each position")
     if len(available) < order:
         raise DomainError(f"available: expected at least {order} positions; got {len(available)}; wait for more")
     near = set(range(len(available) - order + 1, len(available)))

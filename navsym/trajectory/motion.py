@@ -9,12 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from navsym.claims.display import table
+from navsym.claims.display import write_table
 from navsym.core.answers import Answer
-from navsym.core.arrays import Array, frozen
+from navsym.core.arrays import Array, freeze
 from navsym.core.errors import DomainError, NavsymError
-from navsym.language.files import called
-from navsym.language.names import shown
+from navsym.language.files import name_file
+from navsym.language.names import quote
 from navsym.trajectory.estimate import Settings, estimate, filtered, gaps, largest_gap, window_of
 from navsym.trajectory.reader import TrackFile, read_columns, read_track
 from navsym.trajectory.tracks import Noise, Positions, Rows, TrackEstimate, memory, project_positions, usual_step
@@ -94,7 +94,7 @@ class Track(Answer):
             (f"{self.t[k]:.3f}", *self.quantities("velocity", k), *self.quantities("acceleration", k), self.flags[k])
             for k in range(0, len(self.t), step)
         ]
-        return table(heads, rows)
+        return write_table(heads, rows)
 
     def quantities(self, name: str, k: int) -> list[str]:
         """Values of a row with their standard deviations, for people; name : ``velocity`` or ``acceleration``."""
@@ -138,7 +138,7 @@ def track(
     """
     settings = settings_of(method, window, order, gate, sigma)
     read = read_track(data, policy) if isinstance(data, str | os.PathLike) else read_columns(data, policy)
-    place = called(data) if isinstance(data, str | os.PathLike) else "track"
+    place = name_file(data) if isinstance(data, str | os.PathLike) else "track"
     try:
         given = read.sigma if sigma is None else sigma
         positions = project_positions(read.t - read.t[0], read.latitude, read.longitude, read.height, given)
@@ -151,9 +151,9 @@ def settings_of(method: str | None, window: float | None, order: int, gate: floa
     """The settings of a call: a window asks for the sliding window, every other method has to be named."""
     for name, value in (("window", window), ("gate", gate), ("sigma", sigma)):
         if value is not None and (isinstance(value, bool) or not isinstance(value, int | float | np.number)):
-            raise DomainError(f"expected a number; got {shown(value)}; give one", where=f"track: {name}")
+            raise DomainError(f"expected a number; got {quote(value)}; give one", where=f"track: {name}")
     if isinstance(order, bool) or not isinstance(order, int):
-        raise DomainError(f"expected 2 to 6 states; got {shown(order)}; give a whole number", where="track: order")
+        raise DomainError(f"expected 2 to 6 states; got {quote(order)}; give a whole number", where="track: order")
     chosen = method or ("window" if window is not None else "smoother")
     if window is not None and chosen not in ("window", "guaranteed"):
         message = f"expected method window or guaranteed with it; got {chosen}; drop one"
@@ -168,7 +168,7 @@ def describe_motion(read: TrackFile, positions: Positions, settings: Settings) -
     """The answer for a track as read and as projected."""
     found, noise = estimate(positions, settings)
     return Track(
-        frozen(np.array(read.t)),
+        freeze(np.array(read.t)),
         found.velocity,
         found.velocity_sd,
         found.acceleration,

@@ -19,7 +19,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from navsym.core.arrays import named, numbers
+from navsym.core.arrays import as_array, as_floats
 from navsym.core.errors import (
     DomainError,
     DuplicateError,
@@ -30,7 +30,7 @@ from navsym.core.errors import (
     ShapeError,
     TooLargeError,
 )
-from navsym.language.files import called, decode, read_bytes
+from navsym.language.files import decode, name_file, read_bytes
 
 Array = NDArray[np.float64]
 Policy = Literal["strict", "repair"]
@@ -133,7 +133,7 @@ def read_track(path: str | os.PathLike[str], policy: Policy | str = "strict") ->
     Raises NavsymError with the line: unreadable text, a missing column, a value that is not a finite
     number, a latitude beyond 90 degrees, a time that stands still or goes back.
     """
-    log = new_log(called(path), policy)
+    log = new_log(name_file(path), policy)
     text = text_of(read_bytes(path, LARGEST_FILE), log)
     return checked_track(rtklib_rows(text, log) if looks_like_rtklib(text) else csv_rows(text, log), log)
 
@@ -166,15 +166,11 @@ def read_columns(data: Any, policy: Policy | str = "strict") -> TrackFile:
     Seconds, degrees, metres; row k counts from 1 where a file has its line. The same checks as for a file.
     """
     log = new_log("track", policy)
-    if hasattr(data, "keys") and hasattr(data, "__getitem__"):
-        header = [str(name) for name in data.keys()]  # noqa: SIM118
-        places, scale = columns_of(header, log, 0)
-        names = list(data.keys())
-        columns = [data[names[places[name]]] for name in ("t", "lat", "lon", "h")]
-    else:
-        scale, table = 1.0, named("track", data, (None, 4), "rows of t, lat, lon, height")
-        columns = list(table.T)
-    values = [numbers("track", column, "one entry per row").ravel().tolist() for column in columns]
+    try:
+        columns, scale = columns_in(data, log)
+        values = [as_floats("data", column, "one entry per row").ravel().tolist() for column in columns]
+    except NavsymError as error:
+        raise error if error.where else error.at(log.where) from None
     if len({len(column) for column in values}) > 1:
         lengths = [len(column) for column in values]
         raise ShapeError(f"expected columns of one length; got {lengths}; complete them", where=log.where)
@@ -184,6 +180,15 @@ def read_columns(data: Any, policy: Policy | str = "strict") -> TrackFile:
     return checked_track(
         (Row(row.line, row.t, row.lat, row.lon, row.h * scale) for row in rows if row is not None), log
     )
+
+
+def columns_in(data: Any, log: Log) -> tuple[list[Any], float]:
+    """The four columns of a DataFrame, a mapping or an array, and the factor from heights to metres."""
+    if hasattr(data, "keys") and hasattr(data, "__getitem__"):
+        names = list(data.keys())
+        places, scale = columns_of([str(name) for name in names], log, 0)
+        return [data[names[places[name]]] for name in ("t", "lat", "lon", "h")], scale
+    return list(as_array("data", data, (None, 4), "rows of t, lat, lon, height").T), 1.0
 
 
 # -- text ----------------------------------------------------------------------------------------------

@@ -15,7 +15,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from navsym.core.arrays import Array, frozen, named
+from navsym.core.arrays import Array, as_array, freeze
 from navsym.core.errors import DomainError, EmptyError, ShapeError
 from navsym.models.earth import cartesian, local_axes
 from navsym.trajectory.kernels.tracks import misfit
@@ -54,10 +54,10 @@ class Positions:
     def __post_init__(self) -> None:
         N = len(self.t)
         put = partial(object.__setattr__, self)
-        put("t", named("t", self.t, (N,), "one entry per row"))
-        put("position", named("position", self.position, (N, 3), "rows by East, North, Up"))
-        put("variance", named("variance", self.variance, (N, 3), "rows by East, North, Up"))
-        put("turn", named("turn", self.turn, (N, 3, 3), "one rotation per row"))
+        put("t", as_array("t", self.t, (N,), "one entry per row"))
+        put("position", as_array("position", self.position, (N, 3), "rows by East, North, Up"))
+        put("variance", as_array("variance", self.variance, (N, 3), "rows by East, North, Up"))
+        put("turn", as_array("turn", self.turn, (N, 3, 3), "one rotation per row"))
         if not (self.variance > 0).all():
             least = float(self.variance.min())
             raise DomainError(f"variance: expected positive numbers; got {least:g}; leave them out if unknown")
@@ -119,7 +119,7 @@ def project_positions(
         raise EmptyError(f"track: expected at least 2 rows; got {np.size(t)}; record a longer track")
     N = np.size(t)
     columns = {"latitude": latitude, "longitude": longitude, "height": height}
-    lat, lon, h = (named(name, value, (N,), "one entry per row") for name, value in columns.items())
+    lat, lon, h = (as_array(name, value, (N,), "one entry per row") for name, value in columns.items())
     if (np.abs(lat) > np.pi / 2 + 1e-12).any() or (np.abs(lon) > 2 * np.pi + 1e-12).any():
         raise DomainError("latitude, longitude: expected radians on the Earth; got larger; convert degrees")
     axes = local_axes(lat, lon)
@@ -225,7 +225,7 @@ def noise_of(track: Positions, order: int, use: Rows, *, gate: float = 0.0, fixe
     check_order(track, order)
     pairs = [Fit(track, order, use, c, gate, fixed_scale).best() for c in ((0, 1), (2,))]
     scale, density = (np.array([pairs[0][i], pairs[0][i], pairs[1][i]]) for i in (0, 1))
-    return Noise(frozen(scale), frozen(density))
+    return Noise(freeze(scale), freeze(density))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

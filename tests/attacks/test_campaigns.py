@@ -9,7 +9,7 @@ import sympy as sp
 
 from navsym.claims import Bound, Claim, Equation, Optimum, paper
 from navsym.cli.main import run
-from navsym.core.store import opened
+from navsym.core.store import open_store
 from navsym.prove.certificates import identity_certificate
 from tests.attacks.campaigns import certificates as campaign_certificates
 from tests.attacks.campaigns import mutants as campaign_mutants
@@ -52,7 +52,7 @@ def counted(item):
 
 def test_a_second_run_takes_everything_from_the_store(tmp_path):
     batches = [Batch(f"b{k}", k) for k in range(3)]
-    with opened(tmp_path / "s.sqlite") as store:
+    with open_store(tmp_path / "s.sqlite") as store:
         first = run_campaign("count", batches[:2], counted, store=store)
         second = run_campaign("count", batches, counted, store=store)
     assert (first["resumed"], second["resumed"]) == (0, 2)

@@ -14,7 +14,7 @@ from navsym.claims import Equation
 from navsym.cli.main import run
 from navsym.core.errors import NavsymError
 from navsym.language.printer import to_python
-from navsym.language.scaffold import equation_numbers, read, side_source
+from navsym.language.scaffold import read_claim_side, side_source, split_numbers
 from navsym.prove.ladder import decide
 from navsym.verification.decide import decide_claims
 from navsym.verification.papers import paper_module
@@ -119,8 +119,8 @@ def test_names_that_are_no_new_module_are_refused(folder, capsys, name):
 
 
 def test_lists_of_equation_numbers():
-    assert equation_numbers("1-3, 4.a") == ("1", "2", "3", "4.a")
-    assert equation_numbers("1.9-1.11,2.1") == ("1.9", "1.10", "1.11", "2.1")
+    assert split_numbers("1-3, 4.a") == ("1", "2", "3", "4.a")
+    assert split_numbers("1.9-1.11,2.1") == ("1.9", "1.10", "1.11", "2.1")
 
 
 @pytest.mark.parametrize(
@@ -133,12 +133,15 @@ def test_lists_of_equation_numbers():
     ],
 )
 def test_source_of_a_formula_is_written_as_a_person_would(text, source):
-    assert to_python(read(text, "")) == source
+    assert to_python(read_claim_side(text, "")) == source
 
 
 def test_a_bare_number_is_exact_and_a_long_sum_has_a_line_for_each_term():
-    assert side_source(read("2", "")) == "sp.Integer(2)" and side_source(read("1/2", "")) == "sp.Rational(1, 2)"
-    lines = side_source(read(" + ".join(f"a**{k}*sin({k}*b)" for k in range(2, 14)), "")).splitlines()
+    assert (
+        side_source(read_claim_side("2", "")) == "sp.Integer(2)"
+        and side_source(read_claim_side("1/2", "")) == "sp.Rational(1, 2)"
+    )
+    lines = side_source(read_claim_side(" + ".join(f"a**{k}*sin({k}*b)" for k in range(2, 14)), "")).splitlines()
     assert len(lines) == 14 and max(map(len, lines)) < 100
 
 
@@ -159,7 +162,7 @@ def test_source_of_any_formula_builds_the_same_expression(text):
     import sympy
 
     try:
-        expression = read(text, "")
+        expression = read_claim_side(text, "")
     except NavsymError:
         reject()
     assume(expression.is_finite or expression.free_symbols)
@@ -173,7 +176,7 @@ def test_source_of_any_formula_builds_the_same_expression(text):
 def test_source_of_a_formula_keeps_it_exact(text):
     import sympy
 
-    expression = read(text, "")
+    expression = read_claim_side(text, "")
     source = to_python(expression)
     # The source is ours, made from a parsed formula; the test runs it as the new module would.
     again = eval(source, {"sp": sympy, "a": sympy.Symbol("a", real=True)})

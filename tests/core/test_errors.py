@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from navsym.core.errors import NavsymError
-from navsym.language.names import shown
+from navsym.language.names import quote
 from navsym.models.modelfile import model_from
 
 ANYTHING = st.text(st.characters(), max_size=20)
@@ -37,8 +37,8 @@ def test_a_parameter_named_by_a_control_character_is_refused_in_one_printable_li
 
 @given(ANYTHING, ANYTHING)
 def test_a_message_has_three_parts_whatever_is_quoted_in_it(quoted, name):
-    error = NavsymError(f"expected a name; got {shown(quoted)} in {shown(name)}; rename it: did you mean 'a; got b'?")
-    assert error.expected == "a name" and error.got == f"{shown(quoted)} in {shown(name)}"
+    error = NavsymError(f"expected a name; got {quote(quoted)} in {quote(name)}; rename it: did you mean 'a; got b'?")
+    assert error.expected == "a name" and error.got == f"{quote(quoted)} in {quote(name)}"
     assert error.remedy == "rename it: did you mean 'a; got b'?"
 
 

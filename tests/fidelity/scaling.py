@@ -12,7 +12,7 @@ from fractions import Fraction
 import sympy as sp
 
 from navsym.claims import Optimum
-from navsym.prove.equations import entries
+from navsym.prove.equations import list_entries
 
 ALIKE = (sp.Max, sp.Min)  # arguments of one unit, which is that of the value
 ONLY_ALIKE = (sp.atan2,)  # arguments of one unit, a value without
@@ -105,7 +105,7 @@ def total(parts):
 def pairs_of(statement):
     """Pairs of formulas of one unit: the two sides, or what an optimum says of weights, dual and instants."""
     if not isinstance(statement, Optimum):
-        return list(zip(entries(statement.printed), entries(statement.derived), strict=True))
+        return list(zip(list_entries(statement.printed), list_entries(statement.derived), strict=True))
     t, regressors, functional = statement.variable, statement.regressors, statement.functional
     found = [(place, t) for place in (*statement.interval, *statement.support)]
     found += [(dual * h, sp.Integer(1)) for dual, h in zip(statement.dual, regressors, strict=True)]

@@ -12,7 +12,7 @@ from navsym.prove.ladder import decide
 from navsym.prove.sampling.points import Range
 from navsym.prove.signs.slopes import has_few_zeros
 from navsym.prove.signs.sums import cases_of_sum
-from navsym.prove.wording import power_of_ten
+from navsym.prove.wording import write_power_of_ten
 
 UNIT = ["0", "1"]
 HOLDS = (PROVED, CERTIFIED)
@@ -182,9 +182,11 @@ def test_a_difference_with_more_digits_than_the_memory_holds_is_a_power_of_ten(l
 
 @pytest.mark.parametrize("size", [20_001, 10**6, -20_001, -(10**6)])
 def test_a_power_of_ten_lies_beyond_what_it_stands_for(size):
-    ends = [int(power_of_ten(size, True, direction).removeprefix("1e")) for direction in (-1, 1)]
+    ends = [int(write_power_of_ten(size, True, direction).removeprefix("1e")) for direction in (-1, 1)]
     assert ends[0] <= (size - 1) * 0.30102999566398 and size * 0.30102999566398 <= ends[1]
-    assert power_of_ten(size, False, -1) == f"-1e{ends[1]}" and power_of_ten(size, False, 1) == f"-1e{ends[0]}"
+    assert (
+        write_power_of_ten(size, False, -1) == f"-1e{ends[1]}" and write_power_of_ten(size, False, 1) == f"-1e{ends[0]}"
+    )
 
 
 def test_a_zero_with_many_digits_in_its_denominator_is_found():

@@ -13,7 +13,7 @@ from navsym.prove.certificates import factored_certificate
 from navsym.prove.ladder import decide
 from navsym.prove.sampling.points import Range
 from navsym.prove.signs.bounds import Sign, prove_sign
-from navsym.prove.signs.real_roots import between, compare, place_of, real_roots
+from navsym.prove.signs.real_roots import compare_numbers, enclose_number, find_real_roots, number_between
 from tests.prove.one_symbol import random_case, verdict_against
 
 x = sp.Symbol("x", real=True)
@@ -129,12 +129,12 @@ def test_poles_of_a_dual_that_the_functional_does_not_meet_are_assumptions():
 def test_places_are_ordered_and_equal_ones_are_found():
     from flint import fmpq, fmpq_poly
 
-    near = real_roots([fmpq_poly([-2, 0, 1]), fmpq_poly([fmpq(-2) - fmpq(1, 10**60), 0, 1])])
-    root = place_of(sp.sqrt(2))
-    assert sorted(compare(place, root) for place in near) == [-1, -1, 0, 1]
-    assert compare(place_of(sp.sqrt(3 + 2 * sp.sqrt(2))), place_of(1 + sp.sqrt(2))) == 0
-    low, high = place_of(sp.pi), place_of(sp.pi + THIN)
-    assert compare(low, high) == -1 and between(low, high) is not None
+    near = find_real_roots([fmpq_poly([-2, 0, 1]), fmpq_poly([fmpq(-2) - fmpq(1, 10**60), 0, 1])])
+    root = enclose_number(sp.sqrt(2))
+    assert sorted(compare_numbers(place, root) for place in near) == [-1, -1, 0, 1]
+    assert compare_numbers(enclose_number(sp.sqrt(3 + 2 * sp.sqrt(2))), enclose_number(1 + sp.sqrt(2))) == 0
+    low, high = enclose_number(sp.pi), enclose_number(sp.pi + THIN)
+    assert compare_numbers(low, high) == -1 and number_between(low, high) is not None
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ import sympy as sp
 
 from navsym.prove.identities.cases import vanishes_in_all_cases
 from navsym.prove.identities.numbers import is_algebraic_zero, is_zero, separation_bits
-from navsym.prove.sampling.points import ranges
+from navsym.prove.sampling.points import ranges_of
 from navsym.prove.signs.algebraic import algebraic_sign
 from navsym.prove.signs.bounds import Sign, prove_sign
 
@@ -20,7 +20,7 @@ HAIR = sp.Rational(1, 10**40)
 
 
 def sign_of(expression, box=None):
-    return algebraic_sign(expression, ranges(sorted(expression.free_symbols, key=str), box or {})).sign
+    return algebraic_sign(expression, ranges_of(sorted(expression.free_symbols, key=str), box or {})).sign
 
 
 TOUCHING = (

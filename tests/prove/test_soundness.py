@@ -17,7 +17,7 @@ from navsym.core.balls import UnsupportedError
 from navsym.core.errors import DomainError
 from navsym.prove.claimfile import claims_from, decide_claims
 from navsym.prove.ladder import decide
-from navsym.prove.sampling.points import ranges
+from navsym.prove.sampling.points import ranges_of
 from navsym.prove.signs.algebraic import algebraic_sign
 from navsym.prove.signs.bounds import Sign, prove_sign
 
@@ -327,8 +327,8 @@ def test_a_root_of_a_quotient_with_a_negative_constant_below_keeps_its_sign():
     x = sp.Symbol("x", real=True)
     radicand = 5 + x * (x - 1) / (1 - x)  # 5 - x, reduced to (x - 5)/(-1)
     expression = (1 + sp.sqrt(radicand)) ** 2
-    assert algebraic_sign(expression, ranges([x], {x: (2, 4)})).sign >= Sign.NONNEGATIVE
-    assert algebraic_sign(-expression, ranges([x], {x: (2, 4)})).sign == Sign.UNKNOWN
+    assert algebraic_sign(expression, ranges_of([x], {x: (2, 4)})).sign >= Sign.NONNEGATIVE
+    assert algebraic_sign(-expression, ranges_of([x], {x: (2, 4)})).sign == Sign.UNKNOWN
 
 
 def test_a_point_where_an_inner_part_is_infinite_refutes_nothing():

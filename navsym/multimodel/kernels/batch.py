@@ -11,7 +11,7 @@ import math
 import numba
 import numpy as np
 
-from navsym.core.lanes import load, spread, store
+from navsym.core.lanes import load_lanes, spread_lanes, store_lanes
 from navsym.core.loops import njit
 from navsym.multimodel.kernels.filter import COMPILE, account, aligned
 
@@ -21,23 +21,23 @@ def predict_mode(i, n, F, Q, x, P, scratch):  # type: ignore[no-untyped-def]
     """Predict mode i of eight runs by one model F, Q (n, n); scratch (n + n n) 8."""
     start, square = i * n * 8, i * n * n * 8
     for a in range(n):
-        total = spread(F[a, 0]) * load(x, start)
+        total = spread_lanes(F[a, 0]) * load_lanes(x, start)
         for c in range(1, n):
-            total = total + spread(F[a, c]) * load(x, start + c * 8)
-        store(scratch, a * 8, total)
+            total = total + spread_lanes(F[a, c]) * load_lanes(x, start + c * 8)
+        store_lanes(scratch, a * 8, total)
         for b in range(n):
-            total = spread(F[a, 0]) * load(P, square + b * 8)
+            total = spread_lanes(F[a, 0]) * load_lanes(P, square + b * 8)
             for c in range(1, n):
-                total = total + spread(F[a, c]) * load(P, square + (c * n + b) * 8)
-            store(scratch, (n + a * n + b) * 8, total)
+                total = total + spread_lanes(F[a, c]) * load_lanes(P, square + (c * n + b) * 8)
+            store_lanes(scratch, (n + a * n + b) * 8, total)
     for a in range(n):
-        store(x, start + a * 8, load(scratch, a * 8))
+        store_lanes(x, start + a * 8, load_lanes(scratch, a * 8))
         for b in range(a + 1):
-            total = spread(Q[a, b])
+            total = spread_lanes(Q[a, b])
             for c in range(n):
-                total = total + spread(F[b, c]) * load(scratch, (n + a * n + c) * 8)
-            store(P, square + (a * n + b) * 8, total)
-            store(P, square + (b * n + a) * 8, total)
+                total = total + spread_lanes(F[b, c]) * load_lanes(scratch, (n + a * n + c) * 8)
+            store_lanes(P, square + (a * n + b) * 8, total)
+            store_lanes(P, square + (b * n + a) * 8, total)
 
 
 @njit(**COMPILE)
@@ -48,41 +48,41 @@ def correct_mode(i, n, p, H, r, z, x, P, scratch, log_likelihood, volume):  # ty
     variances: one logarithm later serves several of them and the prediction of the mode.
     """
     start, square = i * n * 8, i * n * n * 8
-    store(volume, i * 8, spread(1.0))
+    store_lanes(volume, i * 8, spread_lanes(1.0))
     for c in range(p):
-        variance, innovation = spread(r[c]), load(z, c * 8)
+        variance, innovation = spread_lanes(r[c]), load_lanes(z, c * 8)
         for a in range(n):
-            v = load(P, square + a * n * 8) * spread(H[c, 0])
+            v = load_lanes(P, square + a * n * 8) * spread_lanes(H[c, 0])
             for b in range(1, n):
-                v = v + load(P, square + (a * n + b) * 8) * spread(H[c, b])
-            store(scratch, a * 8, v)
-            variance = variance + spread(H[c, a]) * v
-            innovation = innovation - spread(H[c, a]) * load(x, start + a * 8)
-        inverse = spread(1.0) / variance
+                v = v + load_lanes(P, square + (a * n + b) * 8) * spread_lanes(H[c, b])
+            store_lanes(scratch, a * 8, v)
+            variance = variance + spread_lanes(H[c, a]) * v
+            innovation = innovation - spread_lanes(H[c, a]) * load_lanes(x, start + a * 8)
+        inverse = spread_lanes(1.0) / variance
         weight = innovation * inverse
-        store(scratch, 2 * n * 8, variance)
-        store(scratch, 2 * n * 8 + 8, innovation * weight)
+        store_lanes(scratch, 2 * n * 8, variance)
+        store_lanes(scratch, 2 * n * 8 + 8, innovation * weight)
         if not account(scratch, 2 * n * 8, log_likelihood, i * 8, volume, i * 8):
             return False
         for a in range(n):
-            v = load(scratch, a * 8)
-            store(x, start + a * 8, load(x, start + a * 8) + v * weight)
+            v = load_lanes(scratch, a * 8)
+            store_lanes(x, start + a * 8, load_lanes(x, start + a * 8) + v * weight)
             gain = v * inverse
-            store(scratch, (n + a) * 8, gain)
+            store_lanes(scratch, (n + a) * 8, gain)
             for b in range(n):
                 place = square + (a * n + b) * 8
-                store(P, place, load(P, place) - gain * load(scratch, b * 8))
+                store_lanes(P, place, load_lanes(P, place) - gain * load_lanes(scratch, b * 8))
         for a in range(n):
-            left = spread(r[c]) * load(scratch, (n + a) * 8)
+            left = spread_lanes(r[c]) * load_lanes(scratch, (n + a) * 8)
             for b in range(n):
-                left = left - load(P, square + (a * n + b) * 8) * spread(H[c, b])
-            store(scratch, a * 8, left)
+                left = left - load_lanes(P, square + (a * n + b) * 8) * spread_lanes(H[c, b])
+            store_lanes(scratch, a * 8, left)
         for a in range(n):
             for b in range(a + 1):
                 place = square + (a * n + b) * 8
-                value = load(P, place) + load(scratch, a * 8) * load(scratch, (n + b) * 8)
-                store(P, place, value)
-                store(P, square + (b * n + a) * 8, value)
+                value = load_lanes(P, place) + load_lanes(scratch, a * 8) * load_lanes(scratch, (n + b) * 8)
+                store_lanes(P, place, value)
+                store_lanes(P, square + (b * n + a) * 8, value)
     return True
 
 
@@ -91,20 +91,22 @@ def merge_modes(m, n, weights, place, x, P, target, mean, covariance, off):  # t
     """Merge the m modes of eight runs by weights [s] at ``(place + s) 8`` into slot ``target``; off (m n) 8."""
     start, square = target * n * 8, target * n * n * 8
     for a in range(n):
-        total = load(weights, place * 8) * load(x, a * 8)
+        total = load_lanes(weights, place * 8) * load_lanes(x, a * 8)
         for s in range(1, m):
-            total = total + load(weights, (place + s) * 8) * load(x, (s * n + a) * 8)
-        store(mean, start + a * 8, total)
+            total = total + load_lanes(weights, (place + s) * 8) * load_lanes(x, (s * n + a) * 8)
+        store_lanes(mean, start + a * 8, total)
         for s in range(m):
-            store(off, (a * m + s) * 8, load(x, (s * n + a) * 8) - total)
+            store_lanes(off, (a * m + s) * 8, load_lanes(x, (s * n + a) * 8) - total)
     for a in range(n):
         for b in range(a + 1):
-            total = spread(0.0)
+            total = spread_lanes(0.0)
             for s in range(m):
-                inner = load(P, ((s * n + a) * n + b) * 8) + load(off, (a * m + s) * 8) * load(off, (b * m + s) * 8)
-                total = total + load(weights, (place + s) * 8) * inner
-            store(covariance, square + (a * n + b) * 8, total)
-            store(covariance, square + (b * n + a) * 8, total)
+                inner = load_lanes(P, ((s * n + a) * n + b) * 8) + load_lanes(off, (a * m + s) * 8) * load_lanes(
+                    off, (b * m + s) * 8
+                )
+                total = total + load_lanes(weights, (place + s) * 8) * inner
+            store_lanes(covariance, square + (a * n + b) * 8, total)
+            store_lanes(covariance, square + (b * n + a) * 8, total)
 
 
 @njit(**COMPILE)
@@ -122,14 +124,14 @@ def mode_weights(m, branching, p_mode, logs, totals, shares, mixing, raw):  # ty
             raw[s * 8 + lane] = math.exp(logs[s * 8 + lane] - top)
             totals[s * 8 + lane] = top
     for i in range(m):
-        total = load(raw, 0) * spread(p_mode[0, i])
+        total = load_lanes(raw, 0) * spread_lanes(p_mode[0, i])
         for s in range(1, m):
-            total = total + load(raw, s * 8) * spread(p_mode[s, i])
-        store(shares, i * 8, total)
+            total = total + load_lanes(raw, s * 8) * spread_lanes(p_mode[s, i])
+        store_lanes(shares, i * 8, total)
         if branching == 1:
-            inverse = spread(1.0) / total
+            inverse = spread_lanes(1.0) / total
             for s in range(m):
-                store(mixing, (i * m + s) * 8, load(raw, s * 8) * spread(p_mode[s, i]) * inverse)
+                store_lanes(mixing, (i * m + s) * 8, load_lanes(raw, s * 8) * spread_lanes(p_mode[s, i]) * inverse)
         for lane in range(8):
             if shares[i * 8 + lane] < 1e-290:
                 top = totals[i * 8 + lane]
@@ -170,9 +172,9 @@ def begin_eight(m, n, log_prior, means, covariances, logs, x, P):  # type: ignor
         for lane in range(8):
             logs[i * 8 + lane] = log_prior[i]
         for a in range(n):
-            store(x, (i * n + a) * 8, spread(means[i, a]))
+            store_lanes(x, (i * n + a) * 8, spread_lanes(means[i, a]))
             for b in range(n):
-                store(P, ((i * n + a) * n + b) * 8, spread(covariances[i, a, b]))
+                store_lanes(P, ((i * n + a) * n + b) * 8, spread_lanes(covariances[i, a, b]))
 
 
 @njit(inline="always", **COMPILE)
@@ -234,9 +236,9 @@ def restart_eight(m, n, now_mean, now, x, P):  # type: ignore[no-untyped-def]
     """Every mode goes on from the merged estimate: the pulsating filter."""
     for i in range(m):
         for a in range(n):
-            store(x, (i * n + a) * 8, load(now_mean, a * 8))
+            store_lanes(x, (i * n + a) * 8, load_lanes(now_mean, a * 8))
             for b in range(n):
-                store(P, ((i * n + a) * n + b) * 8, load(now, (a * n + b) * 8))
+                store_lanes(P, ((i * n + a) * n + b) * 8, load_lanes(now, (a * n + b) * 8))
 
 
 @njit(**COMPILE)
@@ -291,7 +293,7 @@ def run_eight(  # type: ignore[no-untyped-def]
             P, S = S, P
         for i in range(m):
             lay_eight(first, k, i, rotated, u, z, zl)
-            store(ll, i * 8, spread(0.0))
+            store_lanes(ll, i * 8, spread_lanes(0.0))
             predict_mode(i, n, f[i], q[i], x, P, scratch)
             if not correct_mode(i, n, p, h[i], v[i], zl, x, P, scratch, ll, volume):
                 return False

@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-from navsym.core.lanes import load, spread, store
+from navsym.core.lanes import load_lanes, spread_lanes, store_lanes
 from navsym.core.loops import njit
 
 LOG_TWO_PI = math.log(2.0 * math.pi)
@@ -31,12 +31,12 @@ def predict_group(g, n, F, Q, x, P, scratch):  # type: ignore[no-untyped-def]
     """x <- F x, P <- F P F^T + Q for the eight filters of group g; scratch (n + n n) 8."""
     start, square = g * n * 8, g * n * n * 8
     for a in range(n):
-        total = load(F, square + a * n * 8) * load(x, start)
+        total = load_lanes(F, square + a * n * 8) * load_lanes(x, start)
         for c in range(1, n):
-            total = total + load(F, square + (a * n + c) * 8) * load(x, start + c * 8)
-        store(scratch, a * 8, total)
+            total = total + load_lanes(F, square + (a * n + c) * 8) * load_lanes(x, start + c * 8)
+        store_lanes(scratch, a * 8, total)
     for a in range(n):
-        store(x, start + a * 8, load(scratch, a * 8))
+        store_lanes(x, start + a * 8, load_lanes(scratch, a * 8))
     rows, columns = n // 2 * 2, n // 3 * 3
     for a in range(0, rows, 2):
         for b in range(0, columns, 3):
@@ -51,55 +51,62 @@ def predict_group(g, n, F, Q, x, P, scratch):  # type: ignore[no-untyped-def]
         full = (a + 1) // 3 * 3
         for b in range(0, full, 3):
             place = square + (a * n + b) * 8
-            first, second, third = load(Q, place), load(Q, place + 8), load(Q, place + 16)
+            first, second, third = load_lanes(Q, place), load_lanes(Q, place + 8), load_lanes(Q, place + 16)
             for c in range(n):
-                entry, row = load(scratch, (n + a * n + c) * 8), square + (b * n + c) * 8
-                first = first + load(F, row) * entry
-                second = second + load(F, row + n * 8) * entry
-                third = third + load(F, row + 2 * n * 8) * entry
+                entry, row = load_lanes(scratch, (n + a * n + c) * 8), square + (b * n + c) * 8
+                first = first + load_lanes(F, row) * entry
+                second = second + load_lanes(F, row + n * 8) * entry
+                third = third + load_lanes(F, row + 2 * n * 8) * entry
             store_twice(P, square, n, a, b, first)
             store_twice(P, square, n, a, b + 1, second)
             store_twice(P, square, n, a, b + 2, third)
         for b in range(full, a + 1):
-            total = load(Q, square + (a * n + b) * 8)
+            total = load_lanes(Q, square + (a * n + b) * 8)
             for c in range(n):
-                total = total + load(F, square + (b * n + c) * 8) * load(scratch, (n + a * n + c) * 8)
+                total = total + load_lanes(F, square + (b * n + c) * 8) * load_lanes(scratch, (n + a * n + c) * 8)
             store_twice(P, square, n, a, b, total)
 
 
 @njit(inline="always", **COMPILE)
 def six_of_product(n, A, at_a, B, at_b, out, at_out, a, b):  # type: ignore[no-untyped-def]
     """Entries [a, b..b+2] and [a+1, b..b+2] of a product: five loads for six products."""
-    s0, s1, s2, t0, t1, t2 = spread(0.0), spread(0.0), spread(0.0), spread(0.0), spread(0.0), spread(0.0)
+    s0, s1, s2, t0, t1, t2 = (
+        spread_lanes(0.0),
+        spread_lanes(0.0),
+        spread_lanes(0.0),
+        spread_lanes(0.0),
+        spread_lanes(0.0),
+        spread_lanes(0.0),
+    )
     for c in range(n):
-        up, down = load(A, at_a + (a * n + c) * 8), load(A, at_a + (a * n + n + c) * 8)
+        up, down = load_lanes(A, at_a + (a * n + c) * 8), load_lanes(A, at_a + (a * n + n + c) * 8)
         row = at_b + (c * n + b) * 8
-        p0, p1, p2 = load(B, row), load(B, row + 8), load(B, row + 16)
+        p0, p1, p2 = load_lanes(B, row), load_lanes(B, row + 8), load_lanes(B, row + 16)
         s0, s1, s2 = s0 + up * p0, s1 + up * p1, s2 + up * p2
         t0, t1, t2 = t0 + down * p0, t1 + down * p1, t2 + down * p2
     place = at_out + (a * n + b) * 8
-    store(out, place, s0)
-    store(out, place + 8, s1)
-    store(out, place + 16, s2)
-    store(out, place + n * 8, t0)
-    store(out, place + n * 8 + 8, t1)
-    store(out, place + n * 8 + 16, t2)
+    store_lanes(out, place, s0)
+    store_lanes(out, place + 8, s1)
+    store_lanes(out, place + 16, s2)
+    store_lanes(out, place + n * 8, t0)
+    store_lanes(out, place + n * 8 + 8, t1)
+    store_lanes(out, place + n * 8 + 16, t2)
 
 
 @njit(inline="always", **COMPILE)
 def one_of_product(n, A, at_a, B, at_b, out, at_out, a, b):  # type: ignore[no-untyped-def]
     """Entry [a, b] of a product."""
-    total = spread(0.0)
+    total = spread_lanes(0.0)
     for c in range(n):
-        total = total + load(A, at_a + (a * n + c) * 8) * load(B, at_b + (c * n + b) * 8)
-    store(out, at_out + (a * n + b) * 8, total)
+        total = total + load_lanes(A, at_a + (a * n + c) * 8) * load_lanes(B, at_b + (c * n + b) * 8)
+    store_lanes(out, at_out + (a * n + b) * 8, total)
 
 
 @njit(inline="always", **COMPILE)
 def store_twice(P, square, n, a, b, value):  # type: ignore[no-untyped-def]
     """Write [a, b] and [b, a] of a symmetric matrix."""
-    store(P, square + (a * n + b) * 8, value)
-    store(P, square + (b * n + a) * 8, value)
+    store_lanes(P, square + (a * n + b) * 8, value)
+    store_lanes(P, square + (b * n + a) * 8, value)
 
 
 @njit(inline="always", **COMPILE)
@@ -131,44 +138,46 @@ def correct_group(g, n, p, came, H, r, z, x, P, scratch, log_likelihood):  # typ
     P = P1 + (r k - P1 h) k^T. It costs n^2 and stays symmetric and positive under rounding.
     """
     start, square = g * n * 8, g * n * n * 8
-    store(scratch, 2 * n * 8 + 16, spread(1.0))
+    store_lanes(scratch, 2 * n * 8 + 16, spread_lanes(1.0))
     for c in range(p):
         if not came[c]:
             continue
         row = (g * p + c) * n * 8
-        variance, innovation = load(r, (g * p + c) * 8), load(z, (g * p + c) * 8)
+        variance, innovation = load_lanes(r, (g * p + c) * 8), load_lanes(z, (g * p + c) * 8)
         for a in range(n):
-            v = load(P, square + a * n * 8) * load(H, row)
+            v = load_lanes(P, square + a * n * 8) * load_lanes(H, row)
             for b in range(1, n):
-                v = v + load(P, square + (a * n + b) * 8) * load(H, row + b * 8)
-            store(scratch, a * 8, v)
-            variance = variance + load(H, row + a * 8) * v
-            innovation = innovation - load(H, row + a * 8) * load(x, start + a * 8)
-        inverse = spread(1.0) / variance
+                v = v + load_lanes(P, square + (a * n + b) * 8) * load_lanes(H, row + b * 8)
+            store_lanes(scratch, a * 8, v)
+            variance = variance + load_lanes(H, row + a * 8) * v
+            innovation = innovation - load_lanes(H, row + a * 8) * load_lanes(x, start + a * 8)
+        inverse = spread_lanes(1.0) / variance
         weight = innovation * inverse
-        store(scratch, 2 * n * 8, variance)
-        store(scratch, 2 * n * 8 + 8, innovation * weight)
+        store_lanes(scratch, 2 * n * 8, variance)
+        store_lanes(scratch, 2 * n * 8 + 8, innovation * weight)
         if not account(scratch, 2 * n * 8, log_likelihood, g * 8, scratch, 2 * n * 8 + 16):
             return False
         for a in range(n):
-            v = load(scratch, a * 8)
-            store(x, start + a * 8, load(x, start + a * 8) + v * weight)
-            store(scratch, (n + a) * 8, v * inverse)
-        noise = load(r, (g * p + c) * 8)
+            v = load_lanes(scratch, a * 8)
+            store_lanes(x, start + a * 8, load_lanes(x, start + a * 8) + v * weight)
+            store_lanes(scratch, (n + a) * 8, v * inverse)
+        noise = load_lanes(r, (g * p + c) * 8)
         for a in range(n):
             # One row of P1 at a time: its sum with h is needed before any entry of the result.
-            gain, line = load(scratch, (n + a) * 8), square + a * n * 8
+            gain, line = load_lanes(scratch, (n + a) * 8), square + a * n * 8
             left = noise * gain
             for b in range(a + 1):
-                entry = load(P, line + b * 8) - gain * load(scratch, b * 8)
-                left = left - entry * load(H, row + b * 8)
-                store(scratch, (2 * n + 3 + b) * 8, entry)
+                entry = load_lanes(P, line + b * 8) - gain * load_lanes(scratch, b * 8)
+                left = left - entry * load_lanes(H, row + b * 8)
+                store_lanes(scratch, (2 * n + 3 + b) * 8, entry)
             for b in range(a + 1, n):
-                left = left - (load(P, line + b * 8) - gain * load(scratch, b * 8)) * load(H, row + b * 8)
+                left = left - (load_lanes(P, line + b * 8) - gain * load_lanes(scratch, b * 8)) * load_lanes(
+                    H, row + b * 8
+                )
             for b in range(a + 1):
-                value = load(scratch, (2 * n + 3 + b) * 8) + left * load(scratch, (n + b) * 8)
-                store(P, line + b * 8, value)
-                store(P, square + (b * n + a) * 8, value)
+                value = load_lanes(scratch, (2 * n + 3 + b) * 8) + left * load_lanes(scratch, (n + b) * 8)
+                store_lanes(P, line + b * 8, value)
+                store_lanes(P, square + (b * n + a) * 8, value)
     for lane in range(8):
         log_likelihood[g * 8 + lane] -= 0.5 * math.log(scratch[2 * n * 8 + 16 + lane])
     return True
@@ -184,13 +193,13 @@ def mix_group(g, n, sources, weights, x, P, mean, covariance, off):  # type: ign
     """
     start = g * n * 8
     for a in range(n):
-        total = spread(0.0)
+        total = spread_lanes(0.0)
         for s in range(sources):
-            total = total + load(weights, (g * sources + s) * 8) * spread(x[((s // 8) * n + a) * 8 + s % 8])
-        store(mean, start + a * 8, total)
+            total = total + load_lanes(weights, (g * sources + s) * 8) * spread_lanes(x[((s // 8) * n + a) * 8 + s % 8])
+        store_lanes(mean, start + a * 8, total)
         for s in range(sources):
-            deviation = spread(x[((s // 8) * n + a) * 8 + s % 8]) - total
-            store(off, (a * sources + s) * 8, deviation)
+            deviation = spread_lanes(x[((s // 8) * n + a) * 8 + s % 8]) - total
+            store_lanes(off, (a * sources + s) * 8, deviation)
     even = n // 2 * 2
     for a in range(0, even, 2):
         for b in range(0, a + 2, 2):
@@ -206,19 +215,19 @@ def mix_four(g, n, sources, weights, P, covariance, off, a, b):  # type: ignore[
     """Entries [a, b], [a, b + 1], [a + 1, b], [a + 1, b + 1]: nine loads for four entries, and see mix_pair."""
     square, up, given = g * n * n * 8, a * sources * 8, g * sources * 8
     down, one, two = up + sources * 8, b * sources * 8, (b + 1) * sources * 8
-    i00, i01, i10, i11 = spread(0.0), spread(0.0), spread(0.0), spread(0.0)
-    d00, d01, d10, d11 = spread(0.0), spread(0.0), spread(0.0), spread(0.0)
+    i00, i01, i10, i11 = spread_lanes(0.0), spread_lanes(0.0), spread_lanes(0.0), spread_lanes(0.0)
+    d00, d01, d10, d11 = spread_lanes(0.0), spread_lanes(0.0), spread_lanes(0.0), spread_lanes(0.0)
     for block in range(0, sources, 8):
         value = block * n * n + (a * n + b) * 8
         for lane in range(min(8, sources - block)):
             step = (block + lane) * 8
-            w = load(weights, given + step)
-            e0, e1 = w * load(off, up + step), w * load(off, down + step)
-            f0, f1 = load(off, one + step), load(off, two + step)
-            i00 = i00 + w * spread(P[value + lane])
-            i01 = i01 + w * spread(P[value + 8 + lane])
-            i10 = i10 + w * spread(P[value + n * 8 + lane])
-            i11 = i11 + w * spread(P[value + n * 8 + 8 + lane])
+            w = load_lanes(weights, given + step)
+            e0, e1 = w * load_lanes(off, up + step), w * load_lanes(off, down + step)
+            f0, f1 = load_lanes(off, one + step), load_lanes(off, two + step)
+            i00 = i00 + w * spread_lanes(P[value + lane])
+            i01 = i01 + w * spread_lanes(P[value + 8 + lane])
+            i10 = i10 + w * spread_lanes(P[value + n * 8 + lane])
+            i11 = i11 + w * spread_lanes(P[value + n * 8 + 8 + lane])
             d00, d01, d10, d11 = d00 + e0 * f0, d01 + e0 * f1, d10 + e1 * f0, d11 + e1 * f1
     store_twice(covariance, square, n, a, b, i00 + d00)
     store_twice(covariance, square, n, a + 1, b, i10 + d10)
@@ -235,17 +244,17 @@ def mix_pair(g, n, sources, weights, P, covariance, off, a, b):  # type: ignore[
     """
     square, left = g * n * n * 8, a * sources * 8
     one, two, given = b * sources * 8, (b + 1) * sources * 8, g * sources * 8
-    inside, between, inside2, between2 = spread(0.0), spread(0.0), spread(0.0), spread(0.0)
+    inside, between, inside2, between2 = spread_lanes(0.0), spread_lanes(0.0), spread_lanes(0.0), spread_lanes(0.0)
     for block in range(0, sources, 8):
         value = block * n * n + (a * n + b) * 8
         for lane in range(min(8, sources - block)):
             step = (block + lane) * 8
-            w = load(weights, given + step)
-            d = w * load(off, left + step)
-            inside = inside + w * spread(P[value + lane])
-            inside2 = inside2 + w * spread(P[value + 8 + lane])
-            between = between + d * load(off, one + step)
-            between2 = between2 + d * load(off, two + step)
+            w = load_lanes(weights, given + step)
+            d = w * load_lanes(off, left + step)
+            inside = inside + w * spread_lanes(P[value + lane])
+            inside2 = inside2 + w * spread_lanes(P[value + 8 + lane])
+            between = between + d * load_lanes(off, one + step)
+            between2 = between2 + d * load_lanes(off, two + step)
     store_twice(covariance, square, n, a, b, inside + between)
     store_twice(covariance, square, n, a, b + 1, inside2 + between2)
 
@@ -254,11 +263,13 @@ def mix_pair(g, n, sources, weights, P, covariance, off, a, b):  # type: ignore[
 def mix_one(g, n, sources, weights, P, covariance, off, a, b):  # type: ignore[no-untyped-def]
     """Entry [a, b] of the mixed covariance, for the odd one out."""
     left, right, given = a * sources * 8, b * sources * 8, g * sources * 8
-    inside, between = spread(0.0), spread(0.0)
+    inside, between = spread_lanes(0.0), spread_lanes(0.0)
     for s in range(sources):
-        value = spread(P[(((s // 8) * n + a) * n + b) * 8 + s % 8])
-        inside = inside + load(weights, given + s * 8) * value
-        between = between + load(weights, given + s * 8) * load(off, left + s * 8) * load(off, right + s * 8)
+        value = spread_lanes(P[(((s // 8) * n + a) * n + b) * 8 + s % 8])
+        inside = inside + load_lanes(weights, given + s * 8) * value
+        between = between + load_lanes(weights, given + s * 8) * load_lanes(off, left + s * 8) * load_lanes(
+            off, right + s * 8
+        )
     store_twice(covariance, g * n * n * 8, n, a, b, inside + between)
 
 
@@ -266,19 +277,19 @@ def mix_one(g, n, sources, weights, P, covariance, off, a, b):  # type: ignore[n
 def moments(groups, n, weights, x, P, mean, covariance, scratch):  # type: ignore[no-untyped-def]
     """Mean (n,) and covariance (n, n) of all lanes with their weights (8 groups,); scratch (8,)."""
     for a in range(n):
-        total = spread(0.0)
+        total = spread_lanes(0.0)
         for g in range(groups):
-            total = total + load(weights, g * 8) * load(x, (g * n + a) * 8)
-        store(scratch, 0, total)
+            total = total + load_lanes(weights, g * 8) * load_lanes(x, (g * n + a) * 8)
+        store_lanes(scratch, 0, total)
         mean[a] = gathered(scratch)
     for a in range(n):
         for b in range(a + 1):
-            total = spread(0.0)
+            total = spread_lanes(0.0)
             for g in range(groups):
-                off = load(x, (g * n + a) * 8) - spread(mean[a])
-                other = load(x, (g * n + b) * 8) - spread(mean[b])
-                total = total + load(weights, g * 8) * (load(P, ((g * n + a) * n + b) * 8) + off * other)
-            store(scratch, 0, total)
+                off = load_lanes(x, (g * n + a) * 8) - spread_lanes(mean[a])
+                other = load_lanes(x, (g * n + b) * 8) - spread_lanes(mean[b])
+                total = total + load_lanes(weights, g * 8) * (load_lanes(P, ((g * n + a) * n + b) * 8) + off * other)
+            store_lanes(scratch, 0, total)
             covariance[a, b] = gathered(scratch)
             covariance[b, a] = covariance[a, b]
 

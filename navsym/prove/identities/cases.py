@@ -13,7 +13,7 @@ import sympy as sp
 from navsym.core.balls import exact_ball
 from navsym.core.errors import NavsymError
 from navsym.prove.identities.normal_form import vanishes_identically
-from navsym.prove.identities.transcendental import factored
+from navsym.prove.identities.transcendental import factor_exactly
 from navsym.prove.sampling.points import Range
 
 MOST_VALUES = 6
@@ -23,12 +23,12 @@ def vanishes_in_all_cases(expression: sp.Expr) -> bool:
     """True when the expression vanishes for every choice of signs of its absolute values."""
     try:
         expression = split_values(expression)
-        return len(expression.atoms(sp.Abs)) <= MOST_VALUES and every_case(expression, MOST_VALUES)
+        return len(expression.atoms(sp.Abs)) <= MOST_VALUES and vanishes_in_every_case(expression, MOST_VALUES)
     except NavsymError:
         return False
 
 
-def every_case(expression: sp.Expr, left: int) -> bool:
+def vanishes_in_every_case(expression: sp.Expr, left: int) -> bool:
     """The innermost absolute value first; new ones may come up when outer arguments change."""
     values = [node for node in expression.atoms(sp.Abs) if not node.args[0].has(sp.Abs)]
     if not values:
@@ -37,7 +37,7 @@ def every_case(expression: sp.Expr, left: int) -> bool:
         return False
     value = min(values, key=sp.default_sort_key)
     cases = (expression.xreplace({value: sign * value.args[0]}) for sign in (1, -1))
-    return all(every_case(case, left - 1) for case in cases)
+    return all(vanishes_in_every_case(case, left - 1) for case in cases)
 
 
 def split_values(expression: sp.Expr) -> sp.Expr:
@@ -46,7 +46,7 @@ def split_values(expression: sp.Expr) -> sp.Expr:
         if root.exp == sp.S.Half and root.base.is_Add:
             expression = expression.xreplace({root: perfect_root(root.base)})
     for value in sorted(expression.atoms(sp.Abs), key=sp.default_sort_key):
-        factors = [one_value(factor) for factor in sp.Mul.make_args(factored(value.args[0]))]
+        factors = [split_factor(factor) for factor in sp.Mul.make_args(factor_exactly(value.args[0]))]
         expression = expression.xreplace({value: sp.Mul(*factors)})
     return expression
 
@@ -54,7 +54,7 @@ def split_values(expression: sp.Expr) -> sp.Expr:
 def perfect_root(radicand: sp.Expr) -> sp.Expr:
     """sqrt(c u**2) = sqrt(c) |u| for a number c >= 0; the root as it was for anything else."""
     root = sp.Integer(1)
-    for factor in sp.Mul.make_args(factored(radicand)):
+    for factor in sp.Mul.make_args(factor_exactly(radicand)):
         base, exponent = factor.as_base_exp()
         if factor.is_Rational and factor > 0:
             root *= sp.sqrt(factor)
@@ -65,7 +65,7 @@ def perfect_root(radicand: sp.Expr) -> sp.Expr:
     return root
 
 
-def one_value(factor: sp.Expr) -> sp.Expr:
+def split_factor(factor: sp.Expr) -> sp.Expr:
     base, exponent = factor.as_base_exp()
     if not exponent.is_Integer:
         base, exponent = factor, sp.Integer(1)

@@ -23,7 +23,7 @@ from navsym.prove.identities.ingredients import (
     gather,
     inverse_radicand,
     linear_terms,
-    single,
+    single_function,
 )
 
 
@@ -216,7 +216,7 @@ class Converter:
         return value
 
     def rotation_generator(self, monomial: Monomial) -> Quotient:
-        inverse = single(monomial, INVERSE)
+        inverse = single_function(monomial, INVERSE)
         if inverse is not None and self.found.angles[monomial] == 1:
             return self.inverse_rotation(inverse)
         return self.generator(f"z{list(self.found.angles).index(monomial)}")
@@ -241,7 +241,7 @@ class Converter:
     def exponential(self, exponent: sp.Basic) -> Quotient:
         value = self.constant(1)
         for monomial, coefficient in linear_terms(exponent).items():
-            logarithm = single(monomial, (sp.log,))
+            logarithm = single_function(monomial, (sp.log,))
             if logarithm is not None:
                 self.arguments.setdefault(logarithm.args[0])
                 rational = to_rational(coefficient)
@@ -344,12 +344,12 @@ def merge_atoms(atoms: list[sp.Basic]) -> dict[sp.Basic, int]:
     """Number the atoms; two get one number when their arguments are provably the same."""
     numbers: dict[sp.Basic, int] = {}
     for atom in atoms:
-        twin = next((known for known in numbers if same_atom(known, atom)), None)
+        twin = next((known for known in numbers if is_same_atom(known, atom)), None)
         numbers[atom] = numbers[twin] if twin is not None else 1 + max(numbers.values(), default=-1)
     return numbers
 
 
-def same_atom(left: sp.Basic, right: sp.Basic) -> bool:
+def is_same_atom(left: sp.Basic, right: sp.Basic) -> bool:
     if left.func is not right.func or len(left.args) != len(right.args) or not left.args:
         return left == right
     return all(vanishes_identically(a - b) for a, b in zip(left.args, right.args, strict=True))

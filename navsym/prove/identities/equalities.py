@@ -14,18 +14,18 @@ import sympy as sp
 from navsym.claims.statement import Box
 from navsym.core.balls import enclose, tape
 from navsym.core.errors import NavsymError
-from navsym.prove.assumptions import is_nonnegative, is_nonzero, is_positive, with_sides
+from navsym.prove.assumptions import add_sides, is_nonnegative, is_nonzero, is_positive
 from navsym.prove.identities.cases import vanishes_in_all_cases
 from navsym.prove.identities.normal_form import OutsideLanguageError, Reduction, reduce_to_zero, vanishes_identically
-from navsym.prove.identities.numbers import denested, is_zero
+from navsym.prove.identities.numbers import denest, is_zero
 from navsym.prove.identities.transcendental import (
     KINDS,
-    Solved,
+    Solution,
     expand_logarithms,
-    principal_least,
-    solved_for_inverses,
+    least_principal_value,
+    solve_for_inverses,
 )
-from navsym.prove.sampling.points import Point, points, ranges
+from navsym.prove.sampling.points import Point, draw_points, ranges_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +56,7 @@ def by_normal_form(printed: sp.Expr, derived: sp.Expr, box: Box) -> Proof | None
     reduction = reduce_to_zero(printed - derived)
     if not reduction.zero:
         return None
-    reduction = with_sides(reduction, printed, derived)
+    reduction = add_sides(reduction, printed, derived)
     return Proof("normal form", f"printed - derived reduces to 0 in {reduction.ring}", reduction)
 
 
@@ -65,12 +65,12 @@ def by_number(printed: sp.Expr, derived: sp.Expr, box: Box) -> Proof | None:
     difference = printed - derived
     if difference.free_symbols or not is_zero(difference):
         return None
-    return Proof("exact number", "printed - derived is exactly zero", conditions_of(printed, derived))
+    return Proof("exact number", "printed - derived is exactly zero", reduce_conditions(printed, derived))
 
 
-def conditions_of(printed: sp.Expr, derived: sp.Expr) -> Reduction:
+def reduce_conditions(printed: sp.Expr, derived: sp.Expr) -> Reduction:
     """What the two sides divide by and take roots and logarithms of."""
-    return with_sides(reduce_to_zero(printed), derived)
+    return add_sides(reduce_to_zero(printed), derived)
 
 
 def by_logarithms(printed: sp.Expr, derived: sp.Expr, box: Box) -> Proof | None:
@@ -82,18 +82,18 @@ def by_logarithms(printed: sp.Expr, derived: sp.Expr, box: Box) -> Proof | None:
     if spread == difference or not reduce_to_zero(spread).zero:
         return None
     evidence = f"with logarithms of products written out, printed - derived reduces to 0: {spread}"
-    return Proof("logarithms of factors", evidence, conditions_of(printed, derived))
+    return Proof("logarithms of factors", evidence, reduce_conditions(printed, derived))
 
 
 def by_nested_roots(printed: sp.Expr, derived: sp.Expr, box: Box) -> Proof | None:
     """Nested square roots of numbers replaced by sums of roots that are proved to be the same numbers."""
     difference = printed - derived
-    roots = {node: denested(node) for node in difference.atoms(sp.Pow) if not node.free_symbols}
+    roots = {node: denest(node) for node in difference.atoms(sp.Pow) if not node.free_symbols}
     simpler = difference.xreplace({node: value for node, value in roots.items() if value != node})
     if simpler == difference or not reduce_to_zero(simpler).zero:
         return None
     evidence = f"with nested roots written out, printed - derived reduces to 0: {simpler}"
-    return Proof("nested roots", evidence, conditions_of(printed, derived))
+    return Proof("nested roots", evidence, reduce_conditions(printed, derived))
 
 
 def by_cases(printed: sp.Expr, derived: sp.Expr, box: Box) -> Proof | None:
@@ -102,7 +102,7 @@ def by_cases(printed: sp.Expr, derived: sp.Expr, box: Box) -> Proof | None:
     if not difference.atoms(sp.Abs, sp.Pow) or not vanishes_in_all_cases(difference):
         return None
     evidence = "printed - derived reduces to 0 for every choice of signs of the absolute values"
-    return Proof("cases", evidence, conditions_of(printed, derived))
+    return Proof("cases", evidence, reduce_conditions(printed, derived))
 
 
 def by_resolved_signs(printed: sp.Expr, derived: sp.Expr, box: Box) -> Proof | None:
@@ -113,15 +113,15 @@ def by_resolved_signs(printed: sp.Expr, derived: sp.Expr, box: Box) -> Proof | N
     reduction = reduce_to_zero(difference)
     if not reduction.zero:
         return None
-    reduction = with_sides(reduction, printed, derived)
+    reduction = add_sides(reduction, printed, derived)
     return Proof("normal form after signs", f"{'; '.join(notes)}; then 0 in {reduction.ring}", reduction)
 
 
 def resolve_signs(expression: sp.Expr, box: Box) -> tuple[sp.Expr, list[str]]:
     notes: list[str] = []
-    found = [node for node in expression.atoms(sp.Abs, sp.Pow) if signed_inside(node) is not None]
+    found = [node for node in expression.atoms(sp.Abs, sp.Pow) if inside_of_modulus(node) is not None]
     for node in sorted(found, key=sp.default_sort_key):
-        inside = signed_inside(node)
+        inside = inside_of_modulus(node)
         assert inside is not None
         for value in (inside, -inside):
             if is_nonnegative(value, box):
@@ -131,7 +131,7 @@ def resolve_signs(expression: sp.Expr, box: Box) -> tuple[sp.Expr, list[str]]:
     return expression, notes
 
 
-def signed_inside(node: sp.Basic) -> sp.Expr | None:
+def inside_of_modulus(node: sp.Basic) -> sp.Expr | None:
     """u for |u| and for sqrt(u**2); None for anything else."""
     if isinstance(node, sp.Abs):
         return node.args[0]
@@ -142,7 +142,7 @@ def signed_inside(node: sp.Basic) -> sp.Expr | None:
     return None
 
 
-def by_squares(printed: sp.Expr, derived: sp.Expr, box: Box) -> Proof | None:
+def by_equal_squares(printed: sp.Expr, derived: sp.Expr, box: Box) -> Proof | None:
     """Equal squares and both sides nonnegative: what roots of sums need."""
     if not (printed - derived).atoms(sp.Pow, sp.Abs):
         return None
@@ -151,7 +151,7 @@ def by_squares(printed: sp.Expr, derived: sp.Expr, box: Box) -> Proof | None:
         return None
     for flip in (1, -1):
         if all(is_nonnegative(flip * side, box) for side in (printed, derived)):
-            reduction = with_sides(reduction, printed, derived)
+            reduction = add_sides(reduction, printed, derived)
             return Proof("squares", f"both sides of one sign, squares equal in {reduction.ring}", reduction)
     return None
 
@@ -171,29 +171,29 @@ def by_coefficients(printed: sp.Expr, derived: sp.Expr, box: Box) -> Proof | Non
     if not vanishes_identically(difference - gathered):
         return None
     evidence = f"{len(coefficients)} numbers are exactly zero: the coefficients of functions of the symbols"
-    return Proof("exact coefficients", evidence, conditions_of(printed, derived))
+    return Proof("exact coefficients", evidence, reduce_conditions(printed, derived))
 
 
-def by_inverses(printed: sp.Expr, derived: sp.Expr, box: Box) -> Proof | None:
+def by_solving_inverses(printed: sp.Expr, derived: sp.Expr, box: Box) -> Proof | None:
     """Solve for an inverse function and use its definition."""
     if not (printed - derived).has(*KINDS):
         return None
-    for solved in solved_for_inverses(printed - derived):
+    for solved in solve_for_inverses(printed - derived):
         try:
             proof = first_proof(solved.left, solved.right, box, ALGEBRAIC)
-            if proof is None or not in_principal_range(solved, box):
+            if proof is None or not is_in_principal_range(solved, box):
                 continue
             evidence = f"the definition of {solved.atom}: {solved.left} = {solved.right}; {proof.evidence}"
-            return Proof("inverse function", evidence, with_sides(proof.reduction, printed, derived))
+            return Proof("inverse function", evidence, add_sides(proof.reduction, printed, derived))
         except NavsymError:
             continue
     return None
 
 
-def in_principal_range(solved: Solved, box: Box) -> bool:
+def is_in_principal_range(solved: Solution, box: Box) -> bool:
     """The value lies where the inverse function has its values."""
-    return all(principal_least(v) >= (0, False) or is_nonnegative(v, box) for v in solved.nonnegative) and all(
-        principal_least(v) >= (0, True) or is_positive(v, box) for v in solved.positive
+    return all(least_principal_value(v) >= (0, False) or is_nonnegative(v, box) for v in solved.nonnegative) and all(
+        least_principal_value(v) >= (0, True) or is_positive(v, box) for v in solved.positive
     )
 
 
@@ -205,20 +205,20 @@ def by_derivative(printed: sp.Expr, derived: sp.Expr, box: Box) -> Proof | None:
     """
     difference = printed - derived
     symbols = sorted(difference.free_symbols, key=str)
-    if not symbols or any(limit.integer or limit.parted for limit in ranges(symbols, box).values()):
+    if not symbols or any(limit.integer or limit.parted for limit in ranges_of(symbols, box).values()):
         return None
     if difference.has(sp.Abs, sp.sign, sp.Max, sp.Min, sp.atan2):
         return None
     if not all(reduce_to_zero(sp.diff(difference, symbol)).zero for symbol in symbols):
         return None
-    point = common_point(difference, symbols, box) if smooth_on(difference, box) else None
+    point = find_common_point(difference, symbols, box) if is_smooth_on(difference, box) else None
     if point is None:
         return None
     place = ", ".join(f"{symbol} = {value}" for symbol, value in point.items())
-    return Proof("derivative", f"equal derivatives, and equal at {place}", conditions_of(printed, derived))
+    return Proof("derivative", f"equal derivatives, and equal at {place}", reduce_conditions(printed, derived))
 
 
-def smooth_on(expression: sp.Expr, box: Box) -> bool:
+def is_smooth_on(expression: sp.Expr, box: Box) -> bool:
     """True when divisors, radicands, arguments of logarithms are proved to stay away from zero."""
     conditions = reduce_to_zero(expression)
     inner = [*conditions.radicands, *conditions.arguments]
@@ -231,9 +231,9 @@ def smooth_on(expression: sp.Expr, box: Box) -> bool:
     return all(is_positive(item, box) for item in inner) and all(is_nonzero(item, box) for item in divisors)
 
 
-def common_point(difference: sp.Expr, symbols: list[sp.Symbol], box: Box) -> Point | None:
+def find_common_point(difference: sp.Expr, symbols: list[sp.Symbol], box: Box) -> Point | None:
     """An exact point of the box at which the difference is exactly zero."""
-    for point in points(symbols, box, 12):
+    for point in draw_points(symbols, box, 12):
         value = difference.subs(point)
         if not value.has(sp.nan, sp.zoo, sp.oo) and enclose(tape(value)).contains(0) and is_zero(value):
             return point
@@ -249,6 +249,6 @@ ALGEBRAIC: tuple[Way, ...] = (
     by_cases,
     by_resolved_signs,
     by_coefficients,
-    by_squares,
+    by_equal_squares,
 )
-WAYS: tuple[Way, ...] = (*ALGEBRAIC, by_inverses, by_derivative)
+WAYS: tuple[Way, ...] = (*ALGEBRAIC, by_solving_inverses, by_derivative)

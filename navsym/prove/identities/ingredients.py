@@ -84,7 +84,7 @@ def multiply_monomials(left: Monomial, right: Monomial) -> Monomial:
     return frozenset((b, e) for b, e in exponents.items() if e)
 
 
-def single(monomial: Monomial, kinds: tuple[type, ...]) -> sp.Basic | None:
+def single_function(monomial: Monomial, kinds: tuple[type, ...]) -> sp.Basic | None:
     """The base of a monomial that is one function of the given kinds to the first power."""
     if len(monomial) == 1:
         ((base, exponent),) = monomial
@@ -192,7 +192,7 @@ def gather_angle(angle: sp.Basic, found: Ingredients) -> None:
                 )
             continue
         found.angles[monomial] = lcm(found.angles.get(monomial, 1), coefficient.denominator)
-        inverse = single(monomial, INVERSE)
+        inverse = single_function(monomial, INVERSE)
         if inverse is not None and found.angles[monomial] == 1:
             gather_inverse(inverse, found)
 
@@ -214,7 +214,7 @@ def inverse_radicand(inverse: sp.Basic) -> sp.Expr:
 
 def gather_exponent(exponent: sp.Basic, found: Ingredients) -> None:
     for monomial, coefficient in linear_terms(exponent).items():
-        logarithm = single(monomial, (sp.log,))
+        logarithm = single_function(monomial, (sp.log,))
         if logarithm is not None:
             power = to_rational(coefficient)
             gather(sp.Pow(logarithm.args[0], power), found)

@@ -61,40 +61,40 @@ def reduce_to_zero(expression: sp.Expr) -> Reduction:
         divisors=tuple(d for d in converter.divisors if not d.is_Number),
         radicands=tuple(dict.fromkeys([*converter.radicands, *radicands_inside(expression)])),
         arguments=tuple(dict.fromkeys([*converter.arguments, *logarithms_inside(expression)])),
-        ring=describe(converter),
+        ring=describe_ring(converter),
         complete=not converter.roots and not converter.atoms,
     )
 
 
-def ordered(nodes: set[sp.Basic]) -> list[sp.Basic]:
+def order_nodes(nodes: set[sp.Basic]) -> list[sp.Basic]:
     """Nodes of a tree in an order that does not depend on the run."""
     return sorted(nodes, key=sp.default_sort_key)
 
 
 def divisors_inside(expression: sp.Expr) -> list[sp.Basic]:
     """Bases of negative powers anywhere in the expression, arguments of functions included."""
-    powers = ordered(expression.atoms(sp.Pow))
+    powers = order_nodes(expression.atoms(sp.Pow))
     found = [power.base for power in powers if power.exp.is_Rational and power.exp < 0]
-    found += [sp.cos(node.args[0]) for node in ordered(expression.atoms(sp.tan, sp.sec))]
-    found += [sp.sin(node.args[0]) for node in ordered(expression.atoms(sp.cot, sp.csc))]
-    return found + [sum(a**2 for a in node.args) for node in ordered(expression.atoms(sp.atan2))]
+    found += [sp.cos(node.args[0]) for node in order_nodes(expression.atoms(sp.tan, sp.sec))]
+    found += [sp.sin(node.args[0]) for node in order_nodes(expression.atoms(sp.cot, sp.csc))]
+    return found + [sum(a**2 for a in node.args) for node in order_nodes(expression.atoms(sp.atan2))]
 
 
 def radicands_inside(expression: sp.Expr) -> list[sp.Basic]:
     """What has to be nonnegative for roots, inverse sines and inverse cosines to be real."""
-    powers = ordered(expression.atoms(sp.Pow))
+    powers = order_nodes(expression.atoms(sp.Pow))
     found = [p.base for p in powers if p.exp.is_Rational and not p.exp.is_Integer and not p.base.is_nonnegative]
-    return found + [1 - node.args[0] ** 2 for node in ordered(expression.atoms(sp.asin, sp.acos))]
+    return found + [1 - node.args[0] ** 2 for node in order_nodes(expression.atoms(sp.asin, sp.acos))]
 
 
 def logarithms_inside(expression: sp.Expr) -> list[sp.Basic]:
     """Arguments of logarithms and bases of general powers, which have to be positive."""
-    found = [node.args[0] for node in ordered(expression.atoms(sp.log))]
-    found += [p.base for p in ordered(expression.atoms(sp.Pow)) if not p.exp.is_Rational]
+    found = [node.args[0] for node in order_nodes(expression.atoms(sp.log))]
+    found += [p.base for p in order_nodes(expression.atoms(sp.Pow)) if not p.exp.is_Rational]
     return [argument for argument in found if not argument.is_positive]
 
 
-def describe(converter: Converter) -> str:
+def describe_ring(converter: Converter) -> str:
     """The ring in words: ``Q(zeta_24)[T, exp(i T/4)]``."""
     found = converter.found
     field_name = "Q" if found.unity <= 2 else f"Q(zeta_{found.unity})"

@@ -12,7 +12,7 @@ from navsym.core.balls import enclose, exact_ball, tape
 from navsym.core.errors import NavsymError
 from navsym.prove.identities.ingredients import TRIGONOMETRIC
 from navsym.prove.identities.normal_form import OutsideLanguageError, vanishes_identically
-from navsym.prove.identities.transcendental import KINDS, expand_logarithms, solved_for_inverses
+from navsym.prove.identities.transcendental import KINDS, expand_logarithms, solve_for_inverses
 
 # Numbers given by radicals and by sines and cosines of rational turns: zero or not, decided exactly.
 #
@@ -149,10 +149,10 @@ def is_zero(number: sp.Expr, depth: int = DEPTH) -> bool:
     if not number.has(*KINDS):
         return False
     spread = expand_logarithms(number, is_positive_number)
-    return is_formally_zero(spread) or (depth > 0 and by_inverses(number, depth))
+    return is_formally_zero(spread) or (depth > 0 and is_zero_by_inverses(number, depth))
 
 
-def denested(root: sp.Expr) -> sp.Expr:
+def denest(root: sp.Expr) -> sp.Expr:
     """sqrt(a + sqrt(b)) = sqrt((a + d)/2) + sqrt((a - d)/2) for d**2 = a**2 - b, and the same with minus.
 
     The root as it was where d is not rational, or where the two are not proved to be the same number.
@@ -178,9 +178,9 @@ def is_formally_zero(number: sp.Expr) -> bool:
         return False
 
 
-def by_inverses(number: sp.Expr, depth: int) -> bool:
+def is_zero_by_inverses(number: sp.Expr, depth: int) -> bool:
     """Zero by the definition of one of its inverse functions."""
-    for solved in solved_for_inverses(number):
+    for solved in solve_for_inverses(number):
         try:
             if not is_zero(solved.left - solved.right, depth - 1):
                 continue

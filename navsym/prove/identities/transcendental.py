@@ -13,7 +13,7 @@ from math import lcm
 import sympy as sp
 
 from navsym.core.exact import to_rational
-from navsym.prove.identities.ingredients import PI, linear_terms, single
+from navsym.prove.identities.ingredients import PI, linear_terms, single_function
 from navsym.prove.identities.normal_form import vanishes_identically
 
 MOST_POWERS = 400
@@ -21,7 +21,7 @@ KINDS = (sp.log, sp.asin, sp.acos, sp.atan, sp.atan2)
 
 
 @dataclass(frozen=True, slots=True)
-class Solved:
+class Solution:
     """A sum vanishes when ``left = right`` and the others have their signs."""
 
     atom: sp.Expr
@@ -31,11 +31,11 @@ class Solved:
     positive: tuple[sp.Expr, ...] = ()
 
 
-def solved_for_inverses(difference: sp.Expr) -> Iterator[Solved]:
+def solve_for_inverses(difference: sp.Expr) -> Iterator[Solution]:
     """The sum solved for each of its inverse functions, and what that leaves to prove."""
     for factor in sp.Mul.make_args(sp.factor_terms(difference)):
         terms = linear_terms(factor)
-        atoms = {m: single(m, KINDS) for m in terms}
+        atoms = {m: single_function(m, KINDS) for m in terms}
         if len(terms) < 2 and factor is not difference:
             continue
         for monomial, atom in sorted(atoms.items(), key=lambda item: str(item[1])):
@@ -43,33 +43,33 @@ def solved_for_inverses(difference: sp.Expr) -> Iterator[Solved]:
                 coefficient = terms[monomial]
                 share = to_rational(coefficient)
                 value = sp.expand_mul(atom - factor / share)
-                if not isinstance(atom, sp.log) or size_of(value) <= MOST_POWERS:
-                    yield definition(atom, value)
+                if not isinstance(atom, sp.log) or largest_power(value) <= MOST_POWERS:
+                    yield replace_by_definition(atom, value)
 
 
-def size_of(value: sp.Expr) -> int:
+def largest_power(value: sp.Expr) -> int:
     """The largest whole power that a sum of logarithms turns into."""
     shares = list(linear_terms(value).values())
     n = lcm(*(share.denominator for share in shares), 1)
     return max([n, *(abs(int(share * n)) for share in shares)])
 
 
-def definition(atom: sp.Expr, value: sp.Expr) -> Solved:
+def replace_by_definition(atom: sp.Expr, value: sp.Expr) -> Solution:
     """``atom = value`` without the inverse function."""
     half = sp.pi / 2
     if isinstance(atom, sp.log):
         # u > 0 wherever the logarithm exists, so whole powers of the two sides may be compared.
         n = lcm(*(c.denominator for c in linear_terms(value).values()), 1)
-        return Solved(atom, atom.args[0] ** n, sp.exp(sp.expand_mul(n * value)))
+        return Solution(atom, atom.args[0] ** n, sp.exp(sp.expand_mul(n * value)))
     if isinstance(atom, sp.asin):
-        return Solved(atom, atom.args[0], sp.sin(value), (half - value, half + value))
+        return Solution(atom, atom.args[0], sp.sin(value), (half - value, half + value))
     if isinstance(atom, sp.acos):
-        return Solved(atom, atom.args[0], sp.cos(value), (value, sp.pi - value))
+        return Solution(atom, atom.args[0], sp.cos(value), (value, sp.pi - value))
     if isinstance(atom, sp.atan):
-        return Solved(atom, atom.args[0] * sp.cos(value), sp.sin(value), (), (half - value, half + value))
+        return Solution(atom, atom.args[0] * sp.cos(value), sp.sin(value), (), (half - value, half + value))
     y, x = atom.args
     along = x * sp.cos(value) + y * sp.sin(value)
-    return Solved(atom, x * sp.sin(value), y * sp.cos(value), (sp.pi - value,), (sp.pi + value, along))
+    return Solution(atom, x * sp.sin(value), y * sp.cos(value), (sp.pi - value,), (sp.pi + value, along))
 
 
 #: Principal ranges in half turns: the ends, and whether each is left out.
@@ -81,12 +81,12 @@ RANGES: dict[type, tuple[tuple[sp.Rational, bool], tuple[sp.Rational, bool]]] = 
 }
 
 
-def principal_least(value: sp.Expr) -> tuple[sp.Rational, bool]:
+def least_principal_value(value: sp.Expr) -> tuple[sp.Rational, bool]:
     """A lower bound of a sum of inverse functions in half turns, and whether it is left out; or -infinity."""
     total, left_out = sp.S.Zero, False
     for monomial, coefficient in linear_terms(value).items():
         share = to_rational(coefficient)
-        atom = single(monomial, tuple(RANGES))
+        atom = single_function(monomial, tuple(RANGES))
         if monomial == PI:
             total += share
         elif atom is not None:
@@ -111,14 +111,14 @@ def expand_logarithms(expression: sp.Expr, is_positive: Test) -> sp.Expr:
 
     The argument itself is positive wherever the logarithm exists, so that a rest with no proof is positive too.
     """
-    found = {node: expanded(node.args[0], is_positive) for node in expression.atoms(sp.log)}
+    found = {node: expand_argument(node.args[0], is_positive) for node in expression.atoms(sp.log)}
     return expression.xreplace({node: value for node, value in found.items() if value != node})
 
 
-def expanded(argument: sp.Expr, is_positive: Test) -> sp.Expr:
+def expand_argument(argument: sp.Expr, is_positive: Test) -> sp.Expr:
     total, rest = sp.Integer(0), sp.Integer(1)
-    for factor in sp.Mul.make_args(factored(argument)):
-        value = one_factor(factor, is_positive)
+    for factor in sp.Mul.make_args(factor_exactly(argument)):
+        value = logarithm_of_factor(factor, is_positive)
         if value is None:
             rest *= factor
         else:
@@ -126,7 +126,7 @@ def expanded(argument: sp.Expr, is_positive: Test) -> sp.Expr:
     return total + (sp.log(rest) if rest != 1 else 0)
 
 
-def one_factor(factor: sp.Expr, is_positive: Test) -> sp.Expr | None:
+def logarithm_of_factor(factor: sp.Expr, is_positive: Test) -> sp.Expr | None:
     """Logarithm of a positive number, or of a power of something positive; None without a proof."""
     if isinstance(factor, sp.Rational):
         return rational_logarithm(factor) if factor > 0 else None
@@ -136,7 +136,7 @@ def one_factor(factor: sp.Expr, is_positive: Test) -> sp.Expr | None:
     if base == factor:
         return sp.log(factor) if is_positive(factor) else None
     for value in (base, -base) if exponent.is_even else (base,):
-        inner = one_factor(value, is_positive)
+        inner = logarithm_of_factor(value, is_positive)
         if inner is not None:
             return exponent * inner
     return None
@@ -148,15 +148,15 @@ def rational_logarithm(number: sp.Rational) -> sp.Expr:
     return sp.Add(*(sign * k * sp.log(prime) for n, sign in parts for prime, k in sp.factorint(n).items()))
 
 
-def factored(argument: sp.Expr) -> sp.Expr:
+def factor_exactly(argument: sp.Expr) -> sp.Expr:
     """The argument as a product; a factoring is taken only when the normal form proves it."""
-    if argument.is_number or not argument.has(sp.Add) or degree_bound(argument) > MOST_DEGREE:
+    if argument.is_number or not argument.has(sp.Add) or largest_exponent(argument) > MOST_DEGREE:
         return argument
     product = sp.factor(argument)
     return product if vanishes_identically(argument - product) else argument
 
 
-def degree_bound(argument: sp.Expr) -> int:
+def largest_exponent(argument: sp.Expr) -> int:
     """The largest number in an exponent: exp(12345/67891) is a power of 12345 to the algebra."""
     exponents = [power.exp for power in argument.atoms(sp.Pow)] + [node.args[0] for node in argument.atoms(sp.exp)]
     numbers = set().union(*(exponent.atoms(sp.Rational) for exponent in exponents))

@@ -32,10 +32,10 @@ Place = list[float]
 Guess = dict[sp.Symbol, Fraction]
 
 
-def lowest(goal: sp.Expr, limits: dict[sp.Symbol, Range]) -> Iterator[dict[sp.Symbol, Fraction]]:
+def find_lowest(goal: sp.Expr, limits: dict[sp.Symbol, Range]) -> Iterator[dict[sp.Symbol, Fraction]]:
     """Places where ``goal`` is low, the lowest start first."""
     symbols = list(limits)
-    maps = [stretch(limits[symbol]) for symbol in symbols]
+    maps = [map_onto_range(limits[symbol]) for symbol in symbols]
     try:
         program = tape(goal)
     except UnsupportedError:
@@ -49,9 +49,9 @@ def lowest(goal: sp.Expr, limits: dict[sp.Symbol, Range]) -> Iterator[dict[sp.Sy
             return math.inf
         return float(ball.mid()) if ball.is_finite() else math.inf
 
-    polish = polisher(goal, symbols)
-    for place in sorted(starts(len(symbols)), key=value)[:KEPT]:
-        found = compass(value, place)
+    polish = make_polisher(goal, symbols)
+    for place in sorted(spread_starts(len(symbols)), key=value)[:KEPT]:
+        found = search_by_compass(value, place)
         try:
             rough = {s: Fraction(to(x)) for s, to, x in zip(symbols, maps, found, strict=True)}
         except (OverflowError, ValueError):
@@ -60,7 +60,7 @@ def lowest(goal: sp.Expr, limits: dict[sp.Symbol, Range]) -> Iterator[dict[sp.Sy
         yield from polish(rough)
 
 
-def stretch(limit: Range) -> Callable[[float], float]:
+def map_onto_range(limit: Range) -> Callable[[float], float]:
     """From (0, 1) onto the range: straight between two ends, x / (1 - x) towards infinity."""
     lower = None if limit.lower is None else float(exact_ball(limit.lower).mid())
     upper = None if limit.upper is None else float(exact_ball(limit.upper).mid())
@@ -73,14 +73,14 @@ def stretch(limit: Range) -> Callable[[float], float]:
     return lambda x: (2 * x - 1) / max(4 * x * (1 - x), 1e-9) * 2
 
 
-def starts(size: int) -> list[Place]:
+def spread_starts(size: int) -> list[Place]:
     """Points spread over the unit cube: the fractional parts of multiples of square roots of primes."""
     roots = [math.sqrt(p) for p in itertools.islice(sp.primerange(2, 10**4), size)]
     spread = [[(k * root) % 1 for root in roots] for k in range(1, STARTS)]
     return [[0.5] * size, *spread]
 
 
-def compass(value: Callable[[Place], float], place: Place) -> Place:
+def search_by_compass(value: Callable[[Place], float], place: Place) -> Place:
     """Compass search: step along an axis when that goes down, halve the step when none does."""
     here, step, steps = value(place), 0.1, 0
     while step > 1e-15 and steps < STEPS:
@@ -99,7 +99,7 @@ def compass(value: Callable[[Place], float], place: Place) -> Place:
 # -- Newton ---------------------------------------
 
 
-def polisher(goal: sp.Expr, symbols: list[sp.Symbol]) -> Callable[[dict[sp.Symbol, Fraction]], Iterator[Guess]]:
+def make_polisher(goal: sp.Expr, symbols: list[sp.Symbol]) -> Callable[[dict[sp.Symbol, Fraction]], Iterator[Guess]]:
     """Newton's method towards a zero of the gradient; it yields nothing where there is no gradient."""
     gradient = [sp.diff(goal, symbol) for symbol in symbols]
     hessian = [[sp.diff(slope, symbol) for symbol in symbols] for slope in gradient]
@@ -111,9 +111,9 @@ def polisher(goal: sp.Expr, symbols: list[sp.Symbol]) -> Callable[[dict[sp.Symbo
 
     def polish(rough: dict[sp.Symbol, Fraction]) -> Iterator[Guess]:
         at = {s: arb(to_fmpq(x)) for s, x in rough.items()}
-        at = approached(height, slopes, curves, at)
+        at = approach_zero(height, slopes, curves, at)
         for _ in range(ROUNDS):
-            step = newton_step(slopes, curves, at)
+            step = solve_newton_step(slopes, curves, at)
             if step is None or not all(abs(float(d)) < SMALL for d in step):
                 return
             with precision(BITS):
@@ -123,13 +123,13 @@ def polisher(goal: sp.Expr, symbols: list[sp.Symbol]) -> Callable[[dict[sp.Symbo
     return polish
 
 
-def approached(
+def approach_zero(
     height: Tape, slopes: list[Tape], curves: list[list[Tape]], at: dict[sp.Symbol, arb]
 ) -> dict[sp.Symbol, arb]:
     """Newton's steps as long as they are large, each halved until it goes down: a compass stops in narrow valleys."""
     here = enclose(height, at).mid()
     for _ in range(LARGE_STEPS):
-        step = newton_step(slopes, curves, at, DEFAULT_BITS)
+        step = solve_newton_step(slopes, curves, at, DEFAULT_BITS)
         if step is None or all(abs(float(d)) < SMALL for d in step):
             break
         halved = ({s: arb((at[s] - d * fmpq(1, 2**k)).mid()) for s, d in zip(at, step, strict=True)} for k in range(8))
@@ -140,7 +140,7 @@ def approached(
     return at
 
 
-def newton_step(
+def solve_newton_step(
     slopes: list[Tape], curves: list[list[Tape]], at: dict[sp.Symbol, arb], bits: int = BITS
 ) -> list[arb] | None:
     """Solution of hessian * step = gradient by midpoints; None where it is singular or undefined."""

@@ -109,12 +109,12 @@ def refuse_empty(symbol: sp.Symbol, limits: Range) -> Range:
     return limits
 
 
-def ranges(symbols: Sequence[sp.Symbol], box: Box) -> dict[sp.Symbol, Range]:
+def ranges_of(symbols: Sequence[sp.Symbol], box: Box) -> dict[sp.Symbol, Range]:
     """Range of every symbol."""
     return {symbol: range_of(symbol, box) for symbol in symbols}
 
 
-def candidates(limits: Range, generator: random.Random) -> Iterator[sp.Expr]:
+def draw_candidates(limits: Range, generator: random.Random) -> Iterator[sp.Expr]:
     """Exact values of one symbol: inside points, ends and awkward numbers, then random rationals."""
     lower, upper = limits.lower, limits.upper
     if limits.integer:
@@ -130,13 +130,13 @@ def candidates(limits: Range, generator: random.Random) -> Iterator[sp.Expr]:
             yield lower + width * sp.Rational(*share)
     yield from (value for value in AWKWARD if limits.contains(value))
     while True:
-        yield random_value(limits, generator)
+        yield draw_value(limits, generator)
 
 
-def allowed(limits: Range, generator: random.Random) -> Iterator[sp.Expr]:
+def draw_allowed(limits: Range, generator: random.Random) -> Iterator[sp.Expr]:
     """The candidates that lie in the range; it ends where many in a row do not, as in an empty one."""
     patience = PATIENCE
-    for value in candidates(limits, generator):
+    for value in draw_candidates(limits, generator):
         inside = limits.contains(value)
         patience = PATIENCE if inside else patience - 1
         if patience == 0:
@@ -145,7 +145,7 @@ def allowed(limits: Range, generator: random.Random) -> Iterator[sp.Expr]:
             yield value
 
 
-def random_value(limits: Range, generator: random.Random) -> sp.Expr:
+def draw_value(limits: Range, generator: random.Random) -> sp.Expr:
     share = sp.Rational(generator.randint(1, 9999), 10000)
     if limits.lower is not None and limits.upper is not None:
         return limits.lower + (limits.upper - limits.lower) * share
@@ -157,17 +157,17 @@ def random_value(limits: Range, generator: random.Random) -> sp.Expr:
     return stretched if generator.random() < 0.5 else -stretched
 
 
-def points(symbols: Sequence[sp.Symbol], box: Box, count: int, seed: int = 0) -> Iterator[Point]:
+def draw_points(symbols: Sequence[sp.Symbol], box: Box, count: int, seed: int = 0) -> Iterator[Point]:
     """``count`` exact points of the box, the same ones for the same seed."""
     if not symbols:
         yield {}
         return
     generator = random.Random(seed)
-    limits = ranges(symbols, box)
+    limits = ranges_of(symbols, box)
     # Different symbols start at different awkward values, so that they are not all equal.
     streams = {
         symbol: itertools.islice(
-            allowed(limits[symbol], generator), place if limits[symbol].integer else 2 * place, None
+            draw_allowed(limits[symbol], generator), place if limits[symbol].integer else 2 * place, None
         )
         for place, symbol in enumerate(symbols)
     }
@@ -209,7 +209,7 @@ def search_counterexample(
     symbols = sorted(difference.free_symbols | set().union(*(s.free_symbols for s in sides)), key=str)
     program, others = tape(difference), [tape(side) for side in sides]
     tried, largest = 0, None
-    for point in points(symbols, box, count, seed):
+    for point in draw_points(symbols, box, count, seed):
         ball = value_at(program, point)
         if not ball.is_finite() or not all(value_at(other, point).is_finite() for other in others):
             continue

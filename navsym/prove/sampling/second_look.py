@@ -24,9 +24,9 @@ from navsym.core.balls import UnsupportedError, enclose, exact_ball, tape
 from navsym.core.exact import to_fmpq, to_rational
 from navsym.prove.identities.normal_form import OutsideLanguageError
 from navsym.prove.identities.numbers import is_zero
-from navsym.prove.identities.transcendental import factored
-from navsym.prove.sampling.descent import Guess, lowest
-from navsym.prove.sampling.points import AWKWARD, Point, Range, points, ranges, value_at
+from navsym.prove.identities.transcendental import factor_exactly
+from navsym.prove.sampling.descent import Guess, find_lowest
+from navsym.prove.sampling.points import AWKWARD, Point, Range, draw_points, ranges_of, value_at
 
 # Exact points at which a factor of an expression vanishes: (x + y - 3)**2 > 0 fails on a whole line.
 #
@@ -43,16 +43,16 @@ VANISHING = (sp.Abs, sp.sin, sp.tan, sp.atan, sp.asin, sp.sinh, sp.tanh)
 
 def zeros_of_factors(difference: sp.Expr, limits: Mapping[sp.Symbol, Range]) -> Iterator[Point]:
     """Points of the box where a factor is zero; the caller shows that the whole is, and exists there."""
-    bases = dict.fromkeys(unwrapped(factor) for factor in sp.Mul.make_args(factored(difference)))
+    bases = dict.fromkeys(unwrap_factor(factor) for factor in sp.Mul.make_args(factor_exactly(difference)))
     for base in list(bases)[:MOST_FACTORS]:
         for symbol in sorted(base.free_symbols, key=str):
             yield from zeros_in(base, symbol, limits)
 
 
-def unwrapped(factor: sp.Expr) -> sp.Expr:
+def unwrap_factor(factor: sp.Expr) -> sp.Expr:
     """What a power or a function like |u| vanishes with."""
     base = factor.as_base_exp()[0]
-    return unwrapped(base.args[0]) if isinstance(base, VANISHING) else base
+    return unwrap_factor(base.args[0]) if isinstance(base, VANISHING) else base
 
 
 def zeros_in(base: sp.Expr, symbol: sp.Symbol, limits: Mapping[sp.Symbol, Range]) -> Iterator[Point]:
@@ -62,7 +62,7 @@ def zeros_in(base: sp.Expr, symbol: sp.Symbol, limits: Mapping[sp.Symbol, Range]
     if symbol in curve.free_symbols:
         return
     others = [other for other in limits if other is not symbol]
-    for point in points(others, ends_of(limits), PLACES):
+    for point in draw_points(others, box_of_ranges(limits), PLACES):
         numbers = [part.subs({**point, symbol: 0}) for part in (curve, slope, base)]
         try:
             found = [value for value in roots_of(*numbers) if limits[symbol].contains(value)]
@@ -71,7 +71,7 @@ def zeros_in(base: sp.Expr, symbol: sp.Symbol, limits: Mapping[sp.Symbol, Range]
         yield from ({**point, symbol: value} for value in found)
 
 
-def ends_of(limits: Mapping[sp.Symbol, Range]) -> dict[sp.Symbol, tuple[sp.Expr | None, sp.Expr | None]]:
+def box_of_ranges(limits: Mapping[sp.Symbol, Range]) -> dict[sp.Symbol, tuple[sp.Expr | None, sp.Expr | None]]:
     """The ranges as a box."""
     return {symbol: (limit.lower, limit.upper) for symbol, limit in limits.items()}
 
@@ -117,7 +117,7 @@ class Look:
     touching: Point | None = None  # the difference is almost zero there, and equality would break the relation
 
 
-def second_look(
+def look_again(
     difference: sp.Expr,
     excludes: Callable[[arb], bool],
     box: Box,
@@ -133,9 +133,9 @@ def second_look(
     goals       : expressions whose lowest place is worth a try
     """
     symbols = sorted(difference.free_symbols | set().union(*(s.free_symbols for s in sides)), key=str)
-    limits = ranges(symbols, box)
+    limits = ranges_of(symbols, box)
     places = itertools.chain(
-        points(symbols, box, ORDINARY),
+        draw_points(symbols, box, ORDINARY),
         special_points(limits),
         zeros_of_factors(difference, limits) if zero_breaks else (),
         *(descents(goal, limits) for goal in goals),
@@ -167,7 +167,7 @@ def sharp_value(difference: sp.Expr, point: Point, sides: Sequence[sp.Expr]) -> 
         ball = value_at(tape(difference), point, BITS)
         if ball.is_finite() and (not ball.contains(0) or ball.rad() < SHARP):
             return ball
-        put_in = substituted(difference, point)
+        put_in = put_in_numbers(difference, point)
         if put_in is None:
             return None
         ball = enclose(tape(put_in), {}, BITS)
@@ -181,13 +181,13 @@ def exists_at(side: sp.Expr, point: Point) -> bool:
     if value_at(tape(side), point, BITS).is_finite():
         return True
     # every part has to exist: 1/log(0) would come out as 1/zoo = 0
-    parts = [substituted(node, point) for node in sp.preorder_traversal(side) if not node.is_Atom]
+    parts = [put_in_numbers(node, point) for node in sp.preorder_traversal(side) if not node.is_Atom]
     if any(part is None or part.has(sp.nan, sp.zoo, sp.oo, -sp.oo, sp.I) for part in parts):
         return False
     return all(enclose(tape(part), {}, BITS).is_finite() for part in parts)
 
 
-def substituted(expression: sp.Expr, point: Point) -> sp.Expr | None:
+def put_in_numbers(expression: sp.Expr, point: Point) -> sp.Expr | None:
     """The expression with exact numbers put in; None where that would multiply out a power with too many digits."""
     exponents = [power.exp for power in expression.atoms(sp.Pow) if power.exp.free_symbols]
     turned = [node.args[0] for node in expression.atoms(sp.exp) if node.has(sp.log)]  # exp(y log x) becomes x**y
@@ -198,7 +198,7 @@ def substituted(expression: sp.Expr, point: Point) -> sp.Expr | None:
 
 def is_zero_at(difference: sp.Expr, point: Point) -> bool:
     try:
-        put_in = substituted(difference, point)
+        put_in = put_in_numbers(difference, point)
         return put_in is not None and is_zero(put_in)
     except (UnsupportedError, OutsideLanguageError):
         return False
@@ -211,7 +211,7 @@ def special_points(limits: dict[sp.Symbol, Range]) -> Iterator[Point]:
     """Corners, diagonals, and points far out or near an end: one symbol at a time, and all at once."""
     if not limits:
         return
-    ends = {symbol: edge_values(limit) for symbol, limit in limits.items()}
+    ends = {symbol: values_at_edges(limit) for symbol, limit in limits.items()}
     yield from diagonals(limits)
     yield from corners(ends)
     home = {symbol: home_value(limit) for symbol, limit in limits.items()}
@@ -221,7 +221,7 @@ def special_points(limits: dict[sp.Symbol, Range]) -> Iterator[Point]:
         yield {symbol: values[min(step, len(values) - 1)] for symbol, values in ends.items()}
 
 
-def edge_values(limit: Range) -> list[sp.Expr]:
+def values_at_edges(limit: Range) -> list[sp.Expr]:
     """Ends of a range, and values near a finite end and far towards an infinite one."""
     found: list[sp.Expr] = []
     for end, inwards in ((limit.lower, 1), (limit.upper, -1)):
@@ -275,12 +275,12 @@ def descents(goal: sp.Expr, limits: dict[sp.Symbol, Range]) -> Iterator[Point]:
     held: Point = {}
     while len(held) < len(limits):
         rest = {symbol: limit for symbol, limit in limits.items() if symbol not in held}
-        places = list(lowest(goal.subs(held), rest))
-        yield from snapped(places, held, limits)
+        places = list(find_lowest(goal.subs(held), rest))
+        yield from snap_places(places, held, limits)
         ends = nearby_ends(places[0], rest) if places else {}
         if ends and len(ends) < len(rest):  # lowest on a face: once more, inside that face
             face = {symbol: limit for symbol, limit in rest.items() if symbol not in ends}
-            yield from snapped(list(lowest(goal.subs({**held, **ends}), face)), {**held, **ends}, limits)
+            yield from snap_places(list(find_lowest(goal.subs({**held, **ends}), face)), {**held, **ends}, limits)
         symbol = next(iter(rest))
         value = round_to_fraction(DENOMINATORS[5], places[0][symbol]) if places else None
         if value is None or not limits[symbol].contains(value):
@@ -288,9 +288,9 @@ def descents(goal: sp.Expr, limits: dict[sp.Symbol, Range]) -> Iterator[Point]:
         held[symbol] = value
 
 
-def snapped(places: Sequence[Guess], held: Point, limits: dict[sp.Symbol, Range]) -> Iterator[Point]:
+def snap_places(places: Sequence[Guess], held: Point, limits: dict[sp.Symbol, Range]) -> Iterator[Point]:
     """The places with their coordinates rounded in every way, those that are held as they are."""
-    for place, snap in itertools.product(places, snappings()):
+    for place, snap in itertools.product(places, list_snappings()):
         point = {**held, **{symbol: snap(value) for symbol, value in place.items()}}
         if all(limits[symbol].contains(value) for symbol, value in point.items()):
             yield point
@@ -309,7 +309,7 @@ def nearby_ends(place: Guess, limits: dict[sp.Symbol, Range]) -> Point:
     return found
 
 
-def snappings() -> Iterator[Callable[[Fraction], sp.Expr]]:
+def list_snappings() -> Iterator[Callable[[Fraction], sp.Expr]]:
     """Ways to round a coordinate to a simple exact number."""
     yield from (partial(round_to_fraction, denominator) for denominator in DENOMINATORS)
     yield round_to_simplest

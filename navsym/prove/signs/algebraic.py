@@ -21,8 +21,8 @@ from navsym.prove.identities.cases import half_range
 from navsym.prove.identities.converter import Converter
 from navsym.prove.sampling.points import Range
 from navsym.prove.signs.exact import Limits, Sign, SignProof, monomial_sign
-from navsym.prove.signs.half_angles import without_angles
-from navsym.prove.signs.polynomials import Effort, Span, polynomial_sign
+from navsym.prove.signs.half_angles import replace_angles
+from navsym.prove.signs.polynomials import Effort, VariableRange, polynomial_sign
 from navsym.prove.signs.products import monomial_expression
 from navsym.prove.signs.sums import cases_of_sum
 
@@ -33,11 +33,11 @@ EFFORT = 4000
 def algebraic_sign(expression: sp.Expr, limits: Limits, effort: int = EFFORT) -> SignProof:
     """Sign wherever the expression exists on the box; whether it exists everywhere is the caller's question."""
     ranges = tuple(sorted(((s, limits[s]) for s in expression.free_symbols), key=lambda item: item[0].name))
-    return SignProof(known_sign(expression, ranges, effort), "polynomials in nonnegative variables", exact=True)
+    return SignProof(remember_sign(expression, ranges, effort), "polynomials in nonnegative variables", exact=True)
 
 
 @lru_cache(maxsize=512)
-def known_sign(expression: sp.Expr, ranges: tuple[tuple[sp.Symbol, Range], ...], effort: int) -> Sign:
+def remember_sign(expression: sp.Expr, ranges: tuple[tuple[sp.Symbol, Range], ...], effort: int) -> Sign:
     """The sign, kept: proofs by derivatives ask for the same ones again."""
     try:
         return sign_by_cases(expression, dict(ranges), Effort(effort), MOST_VALUES)
@@ -55,14 +55,14 @@ def sign_by_cases(expression: sp.Expr, limits: Mapping[sp.Symbol, Range], effort
     if left == 0:
         return Sign.UNKNOWN
     worst = Sign.POSITIVE
-    for case, narrowed in cases_of(expression, inner, limits):
+    for case, narrowed in split_modulus(expression, inner, limits):
         worst = min(worst, sign_by_cases(case, narrowed, effort, left - 1))
         if worst == Sign.UNKNOWN:
             break
     return worst
 
 
-def cases_of(
+def split_modulus(
     expression: sp.Expr, value: sp.Abs, limits: Mapping[sp.Symbol, Range]
 ) -> Iterator[tuple[sp.Expr, Mapping[sp.Symbol, Range]]]:
     """|x| of a symbol by the two parts of its range, of a sum by a variable for it, of anything else everywhere."""
@@ -79,7 +79,7 @@ def cases_of(
 
 def plain_sign(expression: sp.Expr, limits: Mapping[sp.Symbol, Range], effort: Effort) -> Sign:
     """Sign of an expression without absolute values."""
-    found = without_angles(expression, limits)
+    found = replace_angles(expression, limits)
     if found is None:
         return Sign.UNKNOWN
     rational, angles = found
@@ -88,12 +88,12 @@ def plain_sign(expression: sp.Expr, limits: Mapping[sp.Symbol, Range], effort: E
     converter = Converter([rational])
     quotient = converter.convert(rational)
     spans = spans_of(converter, {**limits, **angles.ranges})
-    numerator = without_roots(converter, quotient.numerator)
+    numerator = replace_roots(converter, quotient.numerator)
     sign = quotient_sign(numerator, quotient.denominator, spans, effort)
     return min(sign, Sign.NONNEGATIVE) if angles.endless else sign
 
 
-def quotient_sign(top: fmpq_mpoly, bottom: fmpq_mpoly, spans: list[Span], effort: Effort) -> Sign:
+def quotient_sign(top: fmpq_mpoly, bottom: fmpq_mpoly, spans: list[VariableRange], effort: Effort) -> Sign:
     """Sign of top/bottom where bottom is not zero."""
     if any(int(p.degrees()[-1]) > 0 for p in (top, bottom)):
         return Sign.UNKNOWN  # a root of unity: the coefficients are not rational
@@ -103,7 +103,7 @@ def quotient_sign(top: fmpq_mpoly, bottom: fmpq_mpoly, spans: list[Span], effort
     return Sign.UNKNOWN
 
 
-def without_roots(converter: Converter, polynomial: fmpq_mpoly) -> fmpq_mpoly:
+def replace_roots(converter: Converter, polynomial: fmpq_mpoly) -> fmpq_mpoly:
     """Powers g**q replaced by the radicand, where that is a polynomial over one, so that no sign changes."""
     for index in reversed(range(len(converter.roots))):
         if converter.convert(converter.roots[index][0]).denominator.is_one():
@@ -114,7 +114,7 @@ def without_roots(converter: Converter, polynomial: fmpq_mpoly) -> fmpq_mpoly:
 # -- ranges of the generators ---------------------------------------
 
 
-def spans_of(converter: Converter, limits: Mapping[sp.Symbol, Range]) -> list[Span]:
+def spans_of(converter: Converter, limits: Mapping[sp.Symbol, Range]) -> list[VariableRange]:
     """Ranges of the generators of the ring, in its order; the last one, the root of unity, never counts."""
     found = converter.found
     if found.angles:
@@ -124,27 +124,27 @@ def spans_of(converter: Converter, limits: Mapping[sp.Symbol, Range]) -> list[Sp
     numbered = {place: atom for atom, place in converter.atoms.items()}
     spans += [ball_span(numbered[place], limits) for place in sorted(numbered)]
     spans += [root_span(radicand, q, limits) for radicand, q in converter.roots]
-    return [*spans, Span()]
+    return [*spans, VariableRange()]
 
 
-def symbol_span(limit: Range, q: int) -> Span:
+def symbol_span(limit: Range, q: int) -> VariableRange:
     """Rational ends outside those of the range; of its root for a symbol that stands under one."""
     left_out = limit.open_lower or (limit.nonzero and limit.lower in (None, 0))
     if q > 1:
-        return Span(fmpq(0), None, left_out and limit.lower == 0)
+        return VariableRange(fmpq(0), None, left_out and limit.lower == 0)
     lower = None if limit.lower is None else rational_end(exact_ball(limit.lower, 256), limit.lower, -1)
     upper = None if limit.upper is None else rational_end(exact_ball(limit.upper, 256), limit.upper, 1)
-    return Span(lower, upper, left_out) if lower is None or lower != upper else Span(lower, lower + 1)
+    return VariableRange(lower, upper, left_out) if lower is None or lower != upper else VariableRange(lower, lower + 1)
 
 
 def rational_end(ball: arb, exact: sp.Expr, direction: int) -> fmpq | None:
     """The number itself when it is rational, otherwise a rational number beyond it."""
     if isinstance(exact, sp.Rational):
         return to_fmpq(exact)
-    return outer(ball, direction)
+    return round_outwards(ball, direction)
 
 
-def outer(ball: arb, direction: int) -> fmpq | None:
+def round_outwards(ball: arb, direction: int) -> fmpq | None:
     """A short rational number below (-1) or above (1) the ball; None when the ball is not finite."""
     if not ball.is_finite():
         return None
@@ -157,26 +157,26 @@ def outer(ball: arb, direction: int) -> fmpq | None:
     return fmpq(int(value) + direction, scale)
 
 
-def exponential_span(monomial: sp.Expr, limits: Limits) -> Span:
+def exponential_span(monomial: sp.Expr, limits: Limits) -> VariableRange:
     """exp(u): above one where u is not negative, below one where u is not positive."""
     sign = monomial_sign(monomial, limits)
     if sign != Sign.UNKNOWN:
-        return Span(fmpq(1), None, sign == Sign.POSITIVE)
+        return VariableRange(fmpq(1), None, sign == Sign.POSITIVE)
     if monomial_sign(-monomial, limits) != Sign.UNKNOWN:
-        return Span(fmpq(0), fmpq(1), True)
-    return Span(fmpq(0), None, True)
+        return VariableRange(fmpq(0), fmpq(1), True)
+    return VariableRange(fmpq(0), None, True)
 
 
-def ball_span(atom: sp.Expr, limits: Limits) -> Span:
+def ball_span(atom: sp.Expr, limits: Limits) -> VariableRange:
     """A function that is a variable of its own, with the range that a ball gives."""
     values = {s: hull(limits[s].lower, limits[s].upper) for s in atom.free_symbols}
     ball = enclose(tape(atom), values)
-    return Span(outer(ball, -1), outer(ball, 1)) if ball.is_finite() else Span()
+    return VariableRange(round_outwards(ball, -1), round_outwards(ball, 1)) if ball.is_finite() else VariableRange()
 
 
-def root_span(radicand: sp.Expr, q: int, limits: Limits) -> Span:
+def root_span(radicand: sp.Expr, q: int, limits: Limits) -> VariableRange:
     """A root is not negative; of a number it has a ball."""
     if radicand.free_symbols:
-        return Span(fmpq(0))
+        return VariableRange(fmpq(0))
     span = ball_span(sp.Pow(radicand, sp.Rational(1, q)), limits)
-    return span if span.lower is not None and span.lower > 0 else Span(fmpq(0))
+    return span if span.lower is not None and span.lower > 0 else VariableRange(fmpq(0))

@@ -22,8 +22,8 @@ from navsym.claims.statement import Box
 from navsym.core.balls import DEFAULT_BITS, UnsupportedError, enclose, exact_ball, precision, tape
 from navsym.prove.identities.cases import split_values
 from navsym.prove.identities.normal_form import OutsideLanguageError
-from navsym.prove.identities.transcendental import KINDS, principal_least
-from navsym.prove.sampling.points import Range, ranges
+from navsym.prove.identities.transcendental import KINDS, least_principal_value
+from navsym.prove.sampling.points import Range, ranges_of
 from navsym.prove.signs.algebraic import algebraic_sign
 from navsym.prove.signs.exact import (
     UNKNOWN,
@@ -31,10 +31,10 @@ from navsym.prove.signs.exact import (
     Sign,
     SignProof,
     angle_sign,
-    bounded_terms,
     constant_sign,
     is_entire,
     multilinear_sign,
+    sum_of_bounded_terms,
     symbol_sign,
 )
 from navsym.prove.signs.one_variable import root_sign
@@ -67,7 +67,7 @@ FEW = 64
 def prove_sign(expression: sp.Expr, box: Box, wanted: Sign = Sign.NONNEGATIVE, budget: int = 4000) -> SignProof:
     """Prove that the expression is nonnegative (or positive) on the box, or return unknown."""
     expression = sp.sympify(expression, strict=True)
-    limits = ranges(sorted(expression.free_symbols, key=str), box)
+    limits = ranges_of(sorted(expression.free_symbols, key=str), box)
     try:
         proof = attempt(expression, limits, wanted, budget, 0)
         if proof.at_least(wanted) or not expression.has(sp.Abs):
@@ -85,9 +85,9 @@ def attempt(expression: sp.Expr, limits: Limits, wanted: Sign, budget: int, dept
     by_roots = root_sign(expression, limits)
     if by_roots is not None and not by_roots.at_least(wanted):
         return UNKNOWN
-    if by_roots is not None and exists(expression, limits, budget, depth):
+    if by_roots is not None and is_defined_on_box(expression, limits, budget, depth):
         return by_roots
-    if negative_somewhere(expression, limits):
+    if is_negative_somewhere(expression, limits):
         return UNKNOWN
 
     def prove(simpler: sp.Expr, on: Limits, sign: Sign) -> SignProof:
@@ -95,7 +95,7 @@ def attempt(expression: sp.Expr, limits: Limits, wanted: Sign, budget: int, dept
 
     endless = any(limit.lower is None or limit.upper is None for limit in limits.values())
     # Balls settle most of what a bounded box holds; without an end they only settle what is simple.
-    for first in (by_forms, by_polynomials, by_balls) if endless else (by_forms, by_balls, by_polynomials):
+    for first in (by_forms, by_polynomials, by_subdivision) if endless else (by_forms, by_subdivision, by_polynomials):
         proof = first(expression, limits, wanted, budget, depth)
         if proof.at_least(wanted):
             return proof
@@ -116,7 +116,7 @@ def attempt(expression: sp.Expr, limits: Limits, wanted: Sign, budget: int, dept
     return UNKNOWN
 
 
-def by_balls(expression: sp.Expr, limits: Limits, wanted: Sign, budget: int, depth: int) -> SignProof:
+def by_subdivision(expression: sp.Expr, limits: Limits, wanted: Sign, budget: int, depth: int) -> SignProof:
     return subdivide(expression, limits, wanted, budget)
 
 
@@ -125,22 +125,22 @@ def by_forms(expression: sp.Expr, limits: Limits, wanted: Sign, budget: int, dep
     product = as_product(expression) if depth <= 1 else None
     if product is not None:
         by_product = product_sign(product, limits, budget, depth)
-        if by_product.at_least(wanted) and exists(expression, limits, budget, depth):
+        if by_product.at_least(wanted) and is_defined_on_box(expression, limits, budget, depth):
             return replace(by_product, reason=f"product form {product}")
     by_factors = product_sign(expression, limits, budget, depth)
     if by_factors.at_least(wanted):
         return by_factors
-    for way in (angle_sign, bounded_terms, multilinear_sign):
+    for way in (angle_sign, sum_of_bounded_terms, multilinear_sign):
         by_range = way(expression, limits)
         if by_range.at_least(wanted):
             return by_range
     principal = principal_sign(expression)
-    return principal if principal.at_least(wanted) and exists(expression, limits, budget, depth) else UNKNOWN
+    return principal if principal.at_least(wanted) and is_defined_on_box(expression, limits, budget, depth) else UNKNOWN
 
 
 def principal_sign(expression: sp.Expr) -> SignProof:
     """Sign of a sum of inverse functions and multiples of pi by their principal values, wherever it exists."""
-    least, left_out = principal_least(expression) if expression.has(*KINDS) else (sp.Integer(-1), False)
+    least, left_out = least_principal_value(expression) if expression.has(*KINDS) else (sp.Integer(-1), False)
     if least < 0:
         return UNKNOWN
     sign = Sign.POSITIVE if least > 0 or left_out else Sign.NONNEGATIVE
@@ -150,10 +150,10 @@ def principal_sign(expression: sp.Expr) -> SignProof:
 def by_polynomials(expression: sp.Expr, limits: Limits, wanted: Sign, budget: int, depth: int) -> SignProof:
     """Exact as well, by the polynomials behind the expression."""
     proof = algebraic_sign(expression, limits, ALGEBRA[min(depth, 2)])
-    return proof if proof.at_least(wanted) and exists(expression, limits, budget, depth) else UNKNOWN
+    return proof if proof.at_least(wanted) and is_defined_on_box(expression, limits, budget, depth) else UNKNOWN
 
 
-def exists(expression: sp.Expr, limits: Limits, budget: int, depth: int) -> bool:
+def is_defined_on_box(expression: sp.Expr, limits: Limits, budget: int, depth: int) -> bool:
     """True when the expression is proved to be defined and continuous on the box."""
     return is_defined(expression, limits, lambda inside, on, sign: attempt(inside, on, sign, budget // 4, depth + 1))
 
@@ -164,16 +164,16 @@ def by_simple_taylor(expression: sp.Expr, limits: Limits, wanted: Sign, budget: 
     def simple(simpler: sp.Expr, on: Limits, sign: Sign) -> SignProof:
         if not simpler.free_symbols:
             return constant_sign(simpler)
-        if negative_somewhere(simpler, on):
+        if is_negative_somewhere(simpler, on):
             return UNKNOWN
-        ways = (by_forms, by_polynomials, by_balls)
+        ways = (by_forms, by_polynomials, by_subdivision)
         proofs = (way(simpler, on, sign, FEW, MAX_DEPTH) for way in ways)
         return next((proof for proof in proofs if proof.at_least(sign)), UNKNOWN)
 
     return by_taylor(expression, limits, wanted, simple)
 
 
-def negative_somewhere(expression: sp.Expr, limits: Limits) -> bool:
+def is_negative_somewhere(expression: sp.Expr, limits: Limits) -> bool:
     """A look at a few inner points, to give up early on what is not true."""
     program = tape(expression)
     for share in (fmpq(1, 2), fmpq(1, 7), fmpq(12, 13)):
@@ -204,7 +204,7 @@ def product_sign(expression: sp.Expr, limits: Limits, budget: int, depth: int) -
         return power_sign(expression, limits, budget, depth)
     if isinstance(expression, sp.Add):
         return sum_sign(expression, limits, budget, depth)
-    if isinstance(expression, sp.Abs) and exists(expression, limits, budget, depth):
+    if isinstance(expression, sp.Abs) and is_defined_on_box(expression, limits, budget, depth):
         return SignProof(Sign.NONNEGATIVE, "an absolute value", exact=True)
     if not isinstance(expression, sp.Mul):
         return UNKNOWN

@@ -80,18 +80,18 @@ def is_entire(expression: sp.Expr) -> bool:
     return isinstance(expression, ENTIRE) and all(is_entire(a) for a in expression.args)
 
 
-def is_polynomial(expression: sp.Expr) -> bool:
+def is_whole_polynomial(expression: sp.Expr) -> bool:
     """True when the symbols occur in sums, products and whole powers only."""
     if not expression.free_symbols or isinstance(expression, sp.Symbol):
         return True
     if isinstance(expression, sp.Pow):
-        return isinstance(expression.exp, sp.Integer) and expression.exp > 0 and is_polynomial(expression.base)
-    return isinstance(expression, (sp.Add, sp.Mul)) and all(is_polynomial(a) for a in expression.args)
+        return isinstance(expression.exp, sp.Integer) and expression.exp > 0 and is_whole_polynomial(expression.base)
+    return isinstance(expression, (sp.Add, sp.Mul)) and all(is_whole_polynomial(a) for a in expression.args)
 
 
-def bounded_terms(expression: sp.Expr, limits: Limits) -> SignProof:
+def sum_of_bounded_terms(expression: sp.Expr, limits: Limits) -> SignProof:
     """A sum whose terms have exact least values: c sin(u) >= -|c|, c u**2 >= 0, c atan(u) > -|c| pi/2, c >= c."""
-    found = [least_value(term) for term in sp.Add.make_args(expression)]
+    found = [least_term_value(term) for term in sp.Add.make_args(expression)]
     least = [pair for pair in found if pair is not None]
     if len(least) < len(found):
         return UNKNOWN
@@ -109,7 +109,7 @@ SYMMETRIC = {
 }
 
 
-def least_value(term: sp.Expr) -> tuple[sp.Expr, bool] | None:
+def least_term_value(term: sp.Expr) -> tuple[sp.Expr, bool] | None:
     """An exact lower bound of one term for all real values of its symbols, and whether it is left out; or None."""
     coefficient, rest = term.as_independent(*term.free_symbols, as_Add=False)
     if not term.free_symbols:
@@ -194,7 +194,7 @@ def corner_values(angle: sp.Expr, limits: Limits) -> list[sp.Expr] | None:
     None when the expression is not multilinear, the box is not bounded or it has many corners.
     """
     symbols = sorted(angle.free_symbols, key=str)
-    if not is_polynomial(angle):
+    if not is_whole_polynomial(angle):
         return None  # expanding it could cancel a pole
     if len(symbols) > 4 or any(limits[s].lower is None or limits[s].upper is None for s in symbols):
         return None

@@ -37,7 +37,7 @@ class HalfAngles:
         return any(limit.upper is None for limit in self.ranges.values())
 
 
-def without_angles(expression: sp.Expr, limits: Limits) -> tuple[sp.Expr, HalfAngles] | None:
+def replace_angles(expression: sp.Expr, limits: Limits) -> tuple[sp.Expr, HalfAngles] | None:
     """The expression with all sines and cosines written in the t; None where an angle has another form."""
     angles = HalfAngles(limits)
     nodes = sorted(expression.atoms(*TRIGONOMETRIC), key=sp.default_sort_key)
@@ -50,11 +50,11 @@ def without_angles(expression: sp.Expr, limits: Limits) -> tuple[sp.Expr, HalfAn
             if monomial != PI:
                 known = angles.denominators.get(monomial, 1)
                 angles.denominators[monomial] = lcm(known, coefficient.denominator)
-    values = {node: function_of(node, *pair_of(node.args[0], angles)) for node in nodes}
+    values = {node: combine_functions(node, *cosine_and_sine(node.args[0], angles)) for node in nodes}
     return expression.xreplace(values), angles
 
 
-def function_of(node: sp.Expr, cosine: sp.Expr, sine: sp.Expr) -> sp.Expr:
+def combine_functions(node: sp.Expr, cosine: sp.Expr, sine: sp.Expr) -> sp.Expr:
     """The six functions by cosine and sine."""
     kinds = {
         sp.cos: lambda: cosine,
@@ -67,22 +67,24 @@ def function_of(node: sp.Expr, cosine: sp.Expr, sine: sp.Expr) -> sp.Expr:
     return kinds[node.func]()
 
 
-def pair_of(angle: sp.Expr, angles: HalfAngles) -> Pair:
+def cosine_and_sine(angle: sp.Expr, angles: HalfAngles) -> Pair:
     """cos and sin of a sum of multiples of the angle monomials and of pi/2."""
     if angle not in angles.pairs:
         pair: Pair = (sp.Integer(1), sp.Integer(0))
         for monomial, coefficient in linear_terms(angle).items():
-            pair = turned(pair, quarter(coefficient) if monomial == PI else multiple(monomial, coefficient, angles))
+            pair = add_angles(
+                pair, quarter_turn(coefficient) if monomial == PI else multiply_angle(monomial, coefficient, angles)
+            )
         angles.pairs[angle] = pair
     return angles.pairs[angle]
 
 
-def quarter(coefficient: Fraction) -> Pair:
+def quarter_turn(coefficient: Fraction) -> Pair:
     turns = int(2 * coefficient) % 4
     return ((sp.Integer((1, 0, -1, 0)[turns])), sp.Integer((0, 1, 0, -1)[turns]))
 
 
-def multiple(monomial: Monomial, coefficient: Fraction, angles: HalfAngles) -> Pair:
+def multiply_angle(monomial: Monomial, coefficient: Fraction, angles: HalfAngles) -> Pair:
     """cos and sin of a whole multiple of the angle whose half has the tangent t."""
     share = angles.denominators[monomial]
     count = int(coefficient * share)
@@ -92,11 +94,11 @@ def multiple(monomial: Monomial, coefficient: Fraction, angles: HalfAngles) -> P
     once: Pair = ((1 - t**2) / (1 + t**2), sp.sign(count) * 2 * t / (1 + t**2))
     pair: Pair = (sp.Integer(1), sp.Integer(0))
     for _ in range(abs(count)):
-        pair = turned(pair, once)
+        pair = add_angles(pair, once)
     return pair
 
 
-def turned(first: Pair, second: Pair) -> Pair:
+def add_angles(first: Pair, second: Pair) -> Pair:
     """cos and sin of a sum of two angles."""
     return (first[0] * second[0] - first[1] * second[1], first[1] * second[0] + first[0] * second[1])
 

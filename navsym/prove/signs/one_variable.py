@@ -19,8 +19,15 @@ from navsym.core.balls import UnsupportedError
 from navsym.core.exact import to_rational
 from navsym.prove.sampling.points import Range
 from navsym.prove.signs.exact import Limits, Sign, SignProof
-from navsym.prove.signs.real_roots import Place, UndecidedError, between, compare, is_root, real_roots
-from navsym.prove.signs.substitutions import Fraction, Piece, carried
+from navsym.prove.signs.real_roots import (
+    RealNumber,
+    UndecidedError,
+    compare_numbers,
+    find_real_roots,
+    is_root,
+    number_between,
+)
+from navsym.prove.signs.substitutions import Fraction, Interval, substitute_one_number
 
 #: Absolute values in one expression; each doubles the cases.
 MOST_VALUES = 4
@@ -30,7 +37,7 @@ MOST_VALUES = 4
 class Zero:
     """A zero: a root of the numerator, None where u is infinite; ``at`` is the symbol there, if that has a formula."""
 
-    root: Place | None
+    root: RealNumber | None
     at: sp.Expr | None
 
 
@@ -60,39 +67,39 @@ class Branch:
 
     def holds_at(self, u: fmpq) -> bool:
         """True where all tests have their signs."""
-        return all(sign * sign_at(test, u) >= 0 for sign, test in self.tests)
+        return all(sign * sign_at_number(test, u) >= 0 for sign, test in self.tests)
 
 
-def sign_at(fraction: Fraction, u: fmpq) -> int:
+def sign_at_number(fraction: Fraction, u: fmpq) -> int:
     """Exact sign of top/bottom at a rational number that is no root of the bottom."""
     value = fraction[0](u) * fraction[1](u)
     return int(value > 0) - int(value < 0)
 
 
-def survey(expression: sp.Expr, limit: Range, others: tuple[sp.Expr, ...] = ()) -> Survey | None:
+def survey_signs(expression: sp.Expr, limit: Range, others: tuple[sp.Expr, ...] = ()) -> Survey | None:
     """All signs of an expression in one symbol on its range; None where they are not decided exactly."""
     if len(expression.free_symbols) != 1 or limit.integer:
         return None
     try:
-        return known_survey(expression, limit, others)
+        return remember_survey(expression, limit, others)
     except (UndecidedError, UnsupportedError):
         return None
 
 
 @lru_cache(maxsize=512)
-def known_survey(expression: sp.Expr, limit: Range, others: tuple[sp.Expr, ...]) -> Survey | None:
+def remember_survey(expression: sp.Expr, limit: Range, others: tuple[sp.Expr, ...]) -> Survey | None:
     """The survey, kept: proofs by derivatives ask for the same ones again."""
     (symbol,) = expression.free_symbols
     if limit.lower is not None and limit.lower == limit.upper:
         return None
-    cases = list(signed(expression, MOST_VALUES))
+    cases = list(split_branches(expression, MOST_VALUES))
     parts = [part for case, tests in cases for part in (case, *(test for _, test in tests))]
-    found = carried([*parts, *others], symbol, limit)
+    found = substitute_one_number([*parts, *others], symbol, limit)
     if found is None:
         return None
     fractions = iter(found.fractions)
     branches = [Branch(next(fractions), tuple((sign, next(fractions)) for sign, _ in tests)) for _, tests in cases]
-    pieces = [survey_of_piece(branches, piece) for piece in found.pieces]
+    pieces = [survey_piece(branches, piece) for piece in found.pieces]
     return Survey(
         tuple(value for part in pieces for value in part.above),
         tuple(value for part in pieces for value in part.below),
@@ -102,7 +109,7 @@ def known_survey(expression: sp.Expr, limit: Range, others: tuple[sp.Expr, ...])
     )
 
 
-def signed(expression: sp.Expr, left: int) -> Iterator[tuple[sp.Expr, tuple[tuple[int, sp.Expr], ...]]]:
+def split_branches(expression: sp.Expr, left: int) -> Iterator[tuple[sp.Expr, tuple[tuple[int, sp.Expr], ...]]]:
     """The expression for all signs of its absolute values, inner ones first, with what has these signs."""
     values = sorted((v for v in expression.atoms(sp.Abs) if not v.args[0].has(sp.Abs)), key=sp.default_sort_key)
     if not values:
@@ -112,32 +119,36 @@ def signed(expression: sp.Expr, left: int) -> Iterator[tuple[sp.Expr, tuple[tupl
         raise UndecidedError
     inside = values[0].args[0]
     for sign in (1, -1):
-        for case, tests in signed(expression.xreplace({values[0]: sign * inside}), left - 1):
+        for case, tests in split_branches(expression.xreplace({values[0]: sign * inside}), left - 1):
             yield case, ((sign, inside), *tests)
 
 
-def survey_of_piece(branches: list[Branch], piece: Piece) -> Survey:
+def survey_piece(branches: list[Branch], piece: Interval) -> Survey:
     """Signs between the roots, and the zeros."""
     fractions = [f for branch in branches for f in (branch.value, *(test for _, test in branch.tests))]
-    places = [root for root in real_roots([part for f in fractions for part in f]) if belongs(root, piece)]
-    inside = sorted((root for root in places if not is_end(root, piece)), key=cmp_to_key(compare))
-    cells = [between(left, right) for left, right in pairwise([piece.lower, *inside, piece.upper])]
+    places = [root for root in find_real_roots([part for f in fractions for part in f]) if is_root_inside(root, piece)]
+    inside = sorted((root for root in places if not is_root_at_end(root, piece)), key=cmp_to_key(compare_numbers))
+    cells = [number_between(left, right) for left, right in pairwise([piece.lower, *inside, piece.upper])]
     known = [branch_at(branches, u) for u in cells]
     signs: dict[int, list[sp.Expr]] = {1: [], 0: [], -1: []}
     for u, branch in zip(cells, known, strict=True):
-        signs[sign_at(branch.value, u)].append(piece.back(to_rational(u)))
+        signs[sign_at_number(branch.value, u)].append(piece.back(to_rational(u)))
     # |f| is continuous: at a root the branch of the interval before it has the value, at the lower end that after it.
     before = {id(root): known[k] for k, root in enumerate(inside)}
-    low = [root for root in places if id(root) not in before and at_end(root, piece.lower)]
+    low = [root for root in places if id(root) not in before and is_at_end(root, piece.lower)]
     before |= {id(root): known[0] if root in low else known[-1] for root in places if id(root) not in before}
-    zeros = [Zero(root, formula(root, piece)) for root in places if is_root(before[id(root)].value[0], root)]
+    zeros = [Zero(root, symbol_at_root(root, piece)) for root in places if is_root(before[id(root)].value[0], root)]
     infinite = zip(piece.ends, (piece.lower, piece.upper), piece.closed, (known[0], known[-1]), strict=True)
-    far = [end for end, place, closed, branch in infinite if place is None and closed and falls(branch.value)]
+    far = [
+        end
+        for end, place, closed, branch in infinite
+        if place is None and closed and vanishes_at_infinity(branch.value)
+    ]
     zeros += [Zero(None, value) for value in (*far, *signs[0])]
     return Survey(tuple(signs[1]), tuple(signs[-1]), tuple(zeros), len(places))
 
 
-def falls(fraction: Fraction) -> bool:
+def vanishes_at_infinity(fraction: Fraction) -> bool:
     """True for a function that is zero at infinity."""
     return bool(fraction[0].degree() < fraction[1].degree())
 
@@ -150,27 +161,27 @@ def branch_at(branches: list[Branch], u: fmpq) -> Branch:
     raise UndecidedError
 
 
-def belongs(root: Place, piece: Piece) -> bool:
+def is_root_inside(root: RealNumber, piece: Interval) -> bool:
     """True for a root in the piece, its closed ends included."""
-    low = 1 if piece.lower is None else compare(root, piece.lower)
-    high = -1 if piece.upper is None else compare(root, piece.upper)
+    low = 1 if piece.lower is None else compare_numbers(root, piece.lower)
+    high = -1 if piece.upper is None else compare_numbers(root, piece.upper)
     return (low > 0 or (low == 0 and piece.closed[0])) and (high < 0 or (high == 0 and piece.closed[1]))
 
 
-def is_end(root: Place, piece: Piece) -> bool:
+def is_root_at_end(root: RealNumber, piece: Interval) -> bool:
     """True for a root at one of the ends of the piece."""
-    return at_end(root, piece.lower) or at_end(root, piece.upper)
+    return is_at_end(root, piece.lower) or is_at_end(root, piece.upper)
 
 
-def at_end(root: Place, end: Place | None) -> bool:
+def is_at_end(root: RealNumber, end: RealNumber | None) -> bool:
     """True where a root is the end."""
-    return end is not None and compare(root, end) == 0
+    return end is not None and compare_numbers(root, end) == 0
 
 
-def formula(root: Place, piece: Piece) -> sp.Expr | None:
+def symbol_at_root(root: RealNumber, piece: Interval) -> sp.Expr | None:
     """The symbol at a root; the end itself where it lies there."""
     for end, place in zip(piece.ends, (piece.lower, piece.upper), strict=True):
-        if at_end(root, place):
+        if is_at_end(root, place):
             return end
     return None if root.value is None else piece.back(root.value)
 
@@ -186,7 +197,7 @@ def root_sign(expression: sp.Expr, limits: Limits) -> SignProof | None:
     ((symbol, limit),) = limits.items() if len(limits) == 1 else ((None, None),)
     if symbol is None or limit is None or expression.free_symbols != {symbol}:
         return None
-    found = survey(expression, limit)
+    found = survey_signs(expression, limit)
     if found is None:
         return None
     if found.below:

@@ -63,14 +63,14 @@ def cone_sign(cone: Cone, effort: Effort) -> Sign:
         if not negative:
             worst = min(worst, sign_of_terms(terms, here.alive))
             continue
-        pair = compared_pair(terms, negative, depth)
+        pair = choose_pair(terms, negative, depth)
         if pair is None:
             return Sign.UNKNOWN
-        pending.extend((half, depth + 1) for half in halves(here, *pair))
+        pending.extend((half, depth + 1) for half in halve_cone(here, *pair))
     return worst
 
 
-def compared_pair(terms: dict[Any, Any], negative: dict[Any, Any], depth: int) -> tuple[int, int] | None:
+def choose_pair(terms: dict[Any, Any], negative: dict[Any, Any], depth: int) -> tuple[int, int] | None:
     """The two variables to compare; None when a negative term has only one, so that nothing can mend it.
 
     Best are y_i, y_j with a negative term between two positive ones, as in y_i**2 - y_i y_j + y_j**2.
@@ -81,19 +81,19 @@ def compared_pair(terms: dict[Any, Any], negative: dict[Any, Any], depth: int) -
         if len(places) < 2:
             return None
         for pair in combinations(places, 2):
-            framed = all(terms.get(shifted(exponents, i, j), 0) > 0 for i, j in (pair, pair[::-1]))
+            framed = all(terms.get(shift_power(exponents, i, j), 0) > 0 for i, j in (pair, pair[::-1]))
             scores[pair] = scores.get(pair, 0) - (value if framed else 0)
     best = max(scores.values())
     ranked = sorted(pair for pair, score in scores.items() if score == best)
     return ranked[depth % len(ranked)]
 
 
-def shifted(exponents: Any, i: int, j: int) -> tuple[int, ...]:
+def shift_power(exponents: Any, i: int, j: int) -> tuple[int, ...]:
     """One power moved from y_j to y_i."""
     return tuple(int(e) + (k == i) - (k == j) for k, e in enumerate(exponents))
 
 
-def halves(cone: Cone, i: int, j: int) -> Iterator[Cone]:
+def halve_cone(cone: Cone, i: int, j: int) -> Iterator[Cone]:
     """The parts where y_i >= y_j and where y_j >= y_i."""
     generators = list(cone.polynomial.context().gens())
     for larger, smaller in ((i, j), (j, i)):
@@ -127,7 +127,7 @@ SHARES = (fmpq(1, 2), fmpq(1, 5), fmpq(9, 10), fmpq(1, 1000))
 
 
 @dataclass(frozen=True, slots=True)
-class Span:
+class VariableRange:
     """Range of a variable with rational ends; None is infinity.
 
     left_out : the lower end is not attained; zero is not, where there is neither end
@@ -138,7 +138,7 @@ class Span:
     left_out: bool = False
 
 
-def polynomial_sign(polynomial: fmpq_mpoly, spans: Sequence[Span], effort: Effort) -> Sign:
+def polynomial_sign(polynomial: fmpq_mpoly, spans: Sequence[VariableRange], effort: Effort) -> Sign:
     """POSITIVE or NONNEGATIVE when that is proved for all values of the variables in their ranges."""
     if polynomial.is_zero():
         return Sign.NONNEGATIVE
@@ -147,7 +147,9 @@ def polynomial_sign(polynomial: fmpq_mpoly, spans: Sequence[Span], effort: Effor
     constant, factors = polynomial.factor()
     rest, worst = polynomial.context().constant(constant), Sign.POSITIVE
     for factor, power in factors:
-        sign, flipped = factor_sign(factor, spans, effort) if len(factors) > 1 or power > 1 else (Sign.UNKNOWN, False)
+        sign, flipped = (
+            sign_of_factor(factor, spans, effort) if len(factors) > 1 or power > 1 else (Sign.UNKNOWN, False)
+        )
         if sign == Sign.UNKNOWN and (power % 2 or len(factor) == 1):  # the square of a variable may be positive
             rest = rest * factor ** (power if power % 2 == 0 else 1)
         else:
@@ -156,21 +158,21 @@ def polynomial_sign(polynomial: fmpq_mpoly, spans: Sequence[Span], effort: Effor
     return min(worst, irreducible_sign(rest, spans, effort))
 
 
-def factor_sign(factor: fmpq_mpoly, spans: Sequence[Span], effort: Effort) -> tuple[Sign, bool]:
+def sign_of_factor(factor: fmpq_mpoly, spans: Sequence[VariableRange], effort: Effort) -> tuple[Sign, bool]:
     """Sign of a factor or of its negative; true when it is the negative."""
     sign = irreducible_sign(factor, spans, effort)
     return (sign, False) if sign != Sign.UNKNOWN else (irreducible_sign(-factor, spans, effort), True)
 
 
-def irreducible_sign(polynomial: fmpq_mpoly, spans: Sequence[Span], effort: Effort) -> Sign:
+def irreducible_sign(polynomial: fmpq_mpoly, spans: Sequence[VariableRange], effort: Effort) -> Sign:
     if polynomial.is_constant():
         value = polynomial.to_dict().get((0,) * len(spans), fmpq(0))
         return Sign.POSITIVE if value > 0 else Sign.NONNEGATIVE if value == 0 else Sign.UNKNOWN
-    if negative_at_a_point(polynomial, spans) or not effort.spend():
+    if is_negative_at_a_point(polynomial, spans) or not effort.spend():
         return Sign.UNKNOWN
     by_cones = Sign.POSITIVE
     share = Effort(given := min(effort.left, MOST_CONES))
-    for cone in cones(polynomial, spans):
+    for cone in cover_by_cones(polynomial, spans):
         by_cones = min(by_cones, cone_sign(cone, share))
         if by_cones == Sign.UNKNOWN:
             break
@@ -178,16 +180,16 @@ def irreducible_sign(polynomial: fmpq_mpoly, spans: Sequence[Span], effort: Effo
     return by_cones if by_cones != Sign.UNKNOWN else quadratic_sign(polynomial, spans, effort)
 
 
-def negative_at_a_point(polynomial: fmpq_mpoly, spans: Sequence[Span]) -> bool:
+def is_negative_at_a_point(polynomial: fmpq_mpoly, spans: Sequence[VariableRange]) -> bool:
     """A look at a few points, to give up early on what is not true."""
     for round_ in range(len(SHARES) + 2):
-        place = [inner(span, SHARES[(round_ + k * (round_ // 2)) % len(SHARES)]) for k, span in enumerate(spans)]
+        place = [inner_number(span, SHARES[(round_ + k * (round_ // 2)) % len(SHARES)]) for k, span in enumerate(spans)]
         if polynomial(*place) < 0:
             return True
     return False
 
 
-def inner(span: Span, share: fmpq) -> fmpq:
+def inner_number(span: VariableRange, share: fmpq) -> fmpq:
     if span.lower is not None and span.upper is not None:
         return span.lower + (span.upper - span.lower) * share
     stretched = share / (1 - share)
@@ -199,12 +201,12 @@ def inner(span: Span, share: fmpq) -> fmpq:
 # -- quadratics ---------------------------------------
 
 
-def quadratic_sign(polynomial: fmpq_mpoly, spans: Sequence[Span], effort: Effort) -> Sign:
+def quadratic_sign(polynomial: fmpq_mpoly, spans: Sequence[VariableRange], effort: Effort) -> Sign:
     """A v**2 + B v + C >= 0 for all real v when A, C and 4 A C - B**2 are nonnegative."""
     for place, degree in enumerate(polynomial.degrees()):
         if degree != 2 or not effort.spend():
             continue
-        c, b, a = coefficients(polynomial, place)
+        c, b, a = quadratic_coefficients(polynomial, place)
         if any(polynomial_sign(part, spans, effort) == Sign.UNKNOWN for part in (a, c)):
             continue
         sign = polynomial_sign(4 * a * c - b * b, spans, effort)
@@ -213,7 +215,7 @@ def quadratic_sign(polynomial: fmpq_mpoly, spans: Sequence[Span], effort: Effort
     return Sign.UNKNOWN
 
 
-def coefficients(polynomial: fmpq_mpoly, place: int) -> list[fmpq_mpoly]:
+def quadratic_coefficients(polynomial: fmpq_mpoly, place: int) -> list[fmpq_mpoly]:
     """Coefficients of the powers 0, 1, 2 of one variable."""
     context = polynomial.context()
     parts: list[dict[tuple[int, ...], fmpq]] = [{}, {}, {}]
@@ -226,16 +228,16 @@ def coefficients(polynomial: fmpq_mpoly, place: int) -> list[fmpq_mpoly]:
 # -- from ranges to cones ---------------------------------------
 
 
-def cones(polynomial: fmpq_mpoly, spans: Sequence[Span]) -> Iterator[Cone]:
+def cover_by_cones(polynomial: fmpq_mpoly, spans: Sequence[VariableRange]) -> Iterator[Cone]:
     """Cones that cover the box: two for every variable of both signs that occurs in odd powers."""
     used = [k for k, degree in enumerate(polynomial.degrees()) if degree]
     even = {k for k in used if all(e[k] % 2 == 0 for e in polynomial.to_dict())}
     signs = [(1, -1) if spans[k].lower is None and spans[k].upper is None and k not in even else (1,) for k in used]
     for chosen in choices(*signs):
-        yield one_cone(polynomial, spans, dict(zip(used, chosen, strict=True)), even)
+        yield build_cone(polynomial, spans, dict(zip(used, chosen, strict=True)), even)
 
 
-def one_cone(polynomial: fmpq_mpoly, spans: Sequence[Span], signs: dict[int, int], even: set[int]) -> Cone:
+def build_cone(polynomial: fmpq_mpoly, spans: Sequence[VariableRange], signs: dict[int, int], even: set[int]) -> Cone:
     """Places 0 .. n-1 belong to the variables, n .. 2n-1 to the other ends of bounded ones, 2n makes it homogeneous."""
     n = len(spans)
     context = fmpq_mpoly_ctx.get([f"y{k}" for k in range(2 * n + 1)], Ordering.lex)
@@ -246,7 +248,7 @@ def one_cone(polynomial: fmpq_mpoly, spans: Sequence[Span], signs: dict[int, int
     halved = {k for k in even if spans[k].lower is None and spans[k].upper is None}
     for k, sign in signs.items():
         span, alone = spans[k], frozenset({k})  # y_k is what lies above the lower end
-        tops[k], bottoms[k] = carried(span, sign, y[k], y[n + k], one)
+        tops[k], bottoms[k] = variable_on_cone(span, sign, y[k], y[n + k], one)
         bounded = span.lower is not None and span.upper is not None
         alive += [frozenset({k, n + k})] if bounded else []
         alive += [alone] if span.left_out and (span.lower is not None or span.upper is None) else []
@@ -262,7 +264,9 @@ def one_cone(polynomial: fmpq_mpoly, spans: Sequence[Span], signs: dict[int, int
     return Cone(total, tuple(alive))
 
 
-def carried(span: Span, sign: int, y: fmpq_mpoly, twin: fmpq_mpoly, one: fmpq_mpoly) -> tuple[fmpq_mpoly, fmpq_mpoly]:
+def variable_on_cone(
+    span: VariableRange, sign: int, y: fmpq_mpoly, twin: fmpq_mpoly, one: fmpq_mpoly
+) -> tuple[fmpq_mpoly, fmpq_mpoly]:
     """The variable as a quotient of two forms of nonnegative variables, the lower one positive."""
     if span.lower is not None and span.upper is not None:
         return span.lower * twin + span.upper * y, y + twin

@@ -77,10 +77,10 @@ def real_form(converter: Converter, factor: fmpq_mpoly) -> sp.Expr | None:
         return sp.Integer(1)
     if any(exponents[-1] for exponents in terms):
         return None  # a root of unity inside the factor
-    centre = middle(converter, terms)
+    centre = middle_power(converter, terms)
     for parity in (1, -1):
         if is_symmetric(converter, terms, centre, parity):
-            return rebuilt(converter, terms, centre, parity)
+            return rebuild_product(converter, terms, centre, parity)
     return None
 
 
@@ -95,7 +95,7 @@ def is_phase(converter: Converter, exponents: Exponents) -> bool:
     return all(place in phases for place, e in enumerate(exponents) if e)
 
 
-def middle(converter: Converter, terms: Mapping[Exponents, Fraction]) -> dict[int, Fraction]:
+def middle_power(converter: Converter, terms: Mapping[Exponents, Fraction]) -> dict[int, Fraction]:
     places = angle_places(converter)
     return {p: Fraction(min(k[p] for k in terms) + max(k[p] for k in terms), 2) for p in places}
 
@@ -111,7 +111,7 @@ def is_symmetric(
     return True
 
 
-def rebuilt(
+def rebuild_product(
     converter: Converter, terms: Mapping[Exponents, Fraction], centre: Mapping[int, Fraction], parity: int
 ) -> sp.Expr:
     function = sp.cos if parity == 1 else sp.sin

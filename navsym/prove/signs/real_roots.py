@@ -30,7 +30,7 @@ class UndecidedError(Exception):
 
 
 @dataclass(slots=True, eq=False)
-class Place:
+class RealNumber:
     """A real number from ``lower`` to ``upper``, which are equal for a rational one.
 
     factor  : the irreducible polynomial of which it is the only root between them, None for an end of a range
@@ -71,15 +71,15 @@ class Place:
                 self.upper = middle
 
 
-def rational_place(number: fmpq) -> Place:
+def rational_number(number: fmpq) -> RealNumber:
     """A rational number."""
-    return Place(number, number, value=to_rational(number))
+    return RealNumber(number, number, value=to_rational(number))
 
 
-def place_of(value: sp.Expr) -> Place:
+def enclose_number(value: sp.Expr) -> RealNumber:
     """An exact real number of the language. Raises UndecidedError where it has no finite ball, or is too long."""
     if isinstance(value, sp.Rational):
-        return rational_place(to_fmpq(value))
+        return rational_number(to_fmpq(value))
 
     def enclosure(bits: int) -> tuple[fmpq, fmpq]:
         ball = exact_ball(value, bits)
@@ -88,13 +88,13 @@ def place_of(value: sp.Expr) -> Place:
         with precision(2 * bits):
             return (to_fmpq(ball.lower()), to_fmpq(ball.upper()))
 
-    return Place(*enclosure(FIRST_BITS), value=value, sharper=enclosure)
+    return RealNumber(*enclosure(FIRST_BITS), value=value, sharper=enclosure)
 
 
 # -- roots ---------------------------------------
 
 
-def real_roots(polynomials: Iterable[fmpq_poly]) -> list[Place]:
+def find_real_roots(polynomials: Iterable[fmpq_poly]) -> list[RealNumber]:
     """All real roots of the polynomials other than zero, each once, in no order."""
     found: dict[tuple[int, ...], fmpz_poly] = {}
     for polynomial in polynomials:
@@ -105,28 +105,28 @@ def real_roots(polynomials: Iterable[fmpq_poly]) -> list[Place]:
     return [root for factor in found.values() for root in roots_of_factor(factor)]
 
 
-def is_root(polynomial: fmpq_poly, root: Place) -> bool:
+def is_root(polynomial: fmpq_poly, root: RealNumber) -> bool:
     """True when a polynomial is zero at a root: it has its irreducible factor, or is zero at the rational number."""
     if polynomial.degree() < 0:
         return True
     return bool(polynomial % root.factor == 0 if root.factor is not None else polynomial(root.lower) == 0)
 
 
-def roots_of_factor(factor: fmpz_poly) -> Iterator[Place]:
+def roots_of_factor(factor: fmpz_poly) -> Iterator[RealNumber]:
     """The real roots of an irreducible polynomial."""
     if factor.degree() == 1:
-        yield rational_place(fmpq(-int(factor[0]), int(factor[1])))
+        yield rational_number(fmpq(-int(factor[0]), int(factor[1])))
         return
     bits = FIRST_BITS
-    while (found := counted_roots(factor, bits)) is None:
+    while (found := isolate_roots(factor, bits)) is None:
         bits *= 2
         if bits > MOST_BITS:
             raise UndecidedError
     for lower, upper in found:
-        yield Place(lower, upper, factor=fmpq_poly(factor), value=surd(factor, lower, upper), bits=bits)
+        yield RealNumber(lower, upper, factor=fmpq_poly(factor), value=surd(factor, lower, upper), bits=bits)
 
 
-def counted_roots(factor: fmpz_poly, bits: int) -> list[tuple[fmpq, fmpq]] | None:
+def isolate_roots(factor: fmpz_poly, bits: int) -> list[tuple[fmpq, fmpq]] | None:
     """Intervals with one root each, as many as there are real roots; None where that is not shown by so many bits."""
     with precision(bits):
         found = [pair[0] for pair in factor.complex_roots()]  # type: ignore[index]
@@ -153,21 +153,21 @@ def surd(factor: fmpz_poly, lower: fmpq, upper: fmpq) -> sp.Expr | None:
 # -- order ---------------------------------------
 
 
-def compare(left: Place, right: Place) -> int:
+def compare_numbers(left: RealNumber, right: RealNumber) -> int:
     """-1, 0 or 1 as the left number is less than, equal to or greater than the right one; exact."""
-    if order(left, right) == 0 and are_equal(left, right):
+    if order_by_enclosures(left, right) == 0 and are_equal(left, right):
         return 0
-    while (found := order(left, right)) == 0:
+    while (found := order_by_enclosures(left, right)) == 0:
         sharpen(left, right)
     return found
 
 
-def order(left: Place, right: Place) -> int:
+def order_by_enclosures(left: RealNumber, right: RealNumber) -> int:
     """The order by the enclosures; 0 while they meet."""
     return int(left.lower > right.upper) - int(left.upper < right.lower)
 
 
-def sharpen(*places: Place) -> None:
+def sharpen(*places: RealNumber) -> None:
     """Narrower enclosures of all that are not rational. Raises UndecidedError where none is left."""
     moving = [place for place in places if not place.exact]
     if not moving:
@@ -176,36 +176,36 @@ def sharpen(*places: Place) -> None:
         place.sharpen()
 
 
-def are_equal(left: Place, right: Place) -> bool:
+def are_equal(left: RealNumber, right: RealNumber) -> bool:
     """True when two numbers whose enclosures meet are proved to be the same."""
     if left.exact and right.exact:
         return True
     if left.factor is not None and right.factor is not None:
-        return left.factor == right.factor and one_root(left, right)
+        return left.factor == right.factor and hold_one_root(left, right)
     if left.factor is None and right.factor is None:
         return is_same_number(left, right)
     root, end = (left, right) if left.factor is not None else (right, left)
     assert root.factor is not None
-    if end.exact or end.value is None or not is_zero(value_of(root.factor, end.value)):
+    if end.exact or end.value is None or not is_zero(polynomial_at(root.factor, end.value)):
         return False  # a rational number is no root of an irreducible factor
-    while not (root.lower < end.lower and end.upper < root.upper) and order(root, end) == 0:
+    while not (root.lower < end.lower and end.upper < root.upper) and order_by_enclosures(root, end) == 0:
         end.sharpen()  # a root of the factor: this one, which lies inside, or another one, which does not
-    return order(root, end) == 0
+    return order_by_enclosures(root, end) == 0
 
 
-def one_root(left: Place, right: Place) -> bool:
+def hold_one_root(left: RealNumber, right: RealNumber) -> bool:
     """True when two enclosures of roots of one polynomial hold the same root: it changes its sign where they meet."""
     low, high = max(left.lower, right.lower), min(left.upper, right.upper)
     assert left.factor is not None
     return bool(low < high and left.factor(low) * left.factor(high) < 0)
 
 
-def is_same_number(left: Place, right: Place) -> bool:
+def is_same_number(left: RealNumber, right: RealNumber) -> bool:
     """True when the formulas of two numbers are proved to be equal."""
     return left.value is not None and right.value is not None and is_zero(left.value - right.value)
 
 
-def value_of(polynomial: fmpq_poly, at: sp.Expr) -> sp.Expr:
+def polynomial_at(polynomial: fmpq_poly, at: sp.Expr) -> sp.Expr:
     """The value of a polynomial at an exact number."""
     total = sp.Integer(0)
     for c in reversed(polynomial.coeffs()):
@@ -213,7 +213,7 @@ def value_of(polynomial: fmpq_poly, at: sp.Expr) -> sp.Expr:
     return total
 
 
-def between(left: Place | None, right: Place | None) -> fmpq:
+def number_between(left: RealNumber | None, right: RealNumber | None) -> fmpq:
     """The simplest rational number strictly between two places of which the left is less; None is infinity."""
     if left is None and right is None:
         return fmpq(0)
@@ -221,12 +221,12 @@ def between(left: Place | None, right: Place | None) -> fmpq:
         place = left or right
         assert place is not None
         return fmpq(place.upper.floor() + 1) if right is None else fmpq(place.lower.ceil() - 1)
-    while order(left, right) == 0:
+    while order_by_enclosures(left, right) == 0:
         sharpen(left, right)
-    return simplest(left.upper, right.lower)
+    return simplest_between(left.upper, right.lower)
 
 
-def simplest(low: fmpq, high: fmpq) -> fmpq:
+def simplest_between(low: fmpq, high: fmpq) -> fmpq:
     """The fraction with the least denominator strictly between two numbers, by continued fractions."""
     whole = low.floor()
     if whole + 1 < high:
@@ -234,4 +234,4 @@ def simplest(low: fmpq, high: fmpq) -> fmpq:
     low, high = low - whole, high - whole  # 0 <= low < high <= 1
     if low == 0:
         return whole + 1 / fmpq((1 / high).floor() + 1)
-    return whole + 1 / simplest(1 / high, 1 / low)
+    return whole + 1 / simplest_between(1 / high, 1 / low)

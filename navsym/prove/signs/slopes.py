@@ -22,10 +22,10 @@ from navsym.prove.identities.normal_form import (
     vanishes_identically,
 )
 from navsym.prove.identities.numbers import is_zero
-from navsym.prove.identities.transcendental import factored
+from navsym.prove.identities.transcendental import factor_exactly
 from navsym.prove.sampling.points import Range
 from navsym.prove.signs.exact import UNKNOWN, Limits, Sign, SignProof, constant_sign, is_entire
-from navsym.prove.signs.subdivision import guessed_points
+from navsym.prove.signs.subdivision import guess_points
 from navsym.prove.signs.sums import cases_of_sum
 
 Prove = Callable[[sp.Expr, Limits, Sign], SignProof]
@@ -36,7 +36,7 @@ BENT = (*JUMPING, sp.Abs)
 MOST_DERIVATIVES = 7
 
 
-def own(limits: Limits, expression: sp.Expr) -> dict[sp.Symbol, Range]:
+def ranges_in(limits: Limits, expression: sp.Expr) -> dict[sp.Symbol, Range]:
     """The ranges of the symbols that occur."""
     return {s: limits[s] for s in expression.free_symbols}
 
@@ -55,34 +55,34 @@ def roots_exist(expression: sp.Expr, limits: Limits, prove: Prove) -> bool:
     """No radicand and no argument of a logarithm leaves its range."""
     needs = [(radicand, Sign.NONNEGATIVE) for radicand in dict.fromkeys(radicands_inside(expression))]
     needs += [(argument, Sign.POSITIVE) for argument in dict.fromkeys(logarithms_inside(expression))]
-    return all(prove(inside, own(limits, inside), wanted).at_least(wanted) for inside, wanted in needs)
+    return all(prove(inside, ranges_in(limits, inside), wanted).at_least(wanted) for inside, wanted in needs)
 
 
 def is_never_zero(divisor: sp.Expr, limits: Limits, prove: Prove) -> bool:
     """One sign on the whole box."""
     positive = Sign.POSITIVE
-    return any(prove(d, own(limits, divisor), positive).at_least(positive) for d in (divisor, -divisor))
+    return any(prove(d, ranges_in(limits, divisor), positive).at_least(positive) for d in (divisor, -divisor))
 
 
-def left_out(limit: Range) -> bool:
+def is_left_out(limit: Range) -> bool:
     """True when the lower end does not belong to the range."""
     return limit.open_lower or (limit.nonzero and limit.lower == 0)
 
 
-def reaches_end(expression: sp.Expr, symbol: sp.Symbol, end: sp.Expr, limits: Limits, prove: Prove) -> bool:
+def is_continuous_to_end(expression: sp.Expr, symbol: sp.Symbol, end: sp.Expr, limits: Limits, prove: Prove) -> bool:
     """True when the expression is continuous up to an end that is left out.
 
     There a value may exist that is no limit: x**(1/log(x)) is e for x > 0, and 0**0 = 1 at zero.
     """
     limit = limits[symbol]
-    if end != limit.lower or not left_out(limit):
+    if end != limit.lower or not is_left_out(limit):
         return True
     inside = [node.args[0] for node in expression.atoms(sp.log)]
     inside += [power.base for power in expression.atoms(sp.Pow) if not power.exp.is_Rational]
     inside += [divisor**2 for divisor in divisors_inside(expression)]
     at_end = [part.subs(symbol, end) for part in inside if part.has(symbol)]
     return not any(part.has(sp.nan, sp.zoo, sp.oo) for part in at_end) and all(
-        prove(part, own(limits, part), Sign.POSITIVE).at_least(Sign.POSITIVE) for part in at_end
+        prove(part, ranges_in(limits, part), Sign.POSITIVE).at_least(Sign.POSITIVE) for part in at_end
     )
 
 
@@ -90,23 +90,23 @@ def by_monotony(expression: sp.Expr, limits: Limits, wanted: Sign, prove: Prove)
     """Reduce to the end of one range at which the expression is smallest."""
     if expression.has(*JUMPING) or not is_defined(expression, limits, prove):
         return UNKNOWN
-    for symbol, limit in own(limits, expression).items():
+    for symbol, limit in ranges_in(limits, expression).items():
         if limit.integer:
             continue  # sympy simplifies derivatives by it, cos(2 pi n) = 1 say
         slope = sp.diff(expression, symbol)
         for direction, end in ((1, limit.lower), (-1, limit.upper)):
             at_end = sp.nan if end is None else expression.subs(symbol, end)
-            if at_end.has(sp.nan, sp.zoo, sp.oo) or not reaches_end(expression, symbol, end, limits, prove):
+            if at_end.has(sp.nan, sp.zoo, sp.oo) or not is_continuous_to_end(expression, symbol, end, limits, prove):
                 continue
-            floor = prove(at_end, own(limits, at_end), Sign.NONNEGATIVE)
+            floor = prove(at_end, ranges_in(limits, at_end), Sign.NONNEGATIVE)
             if floor.sign == Sign.UNKNOWN:
                 continue
             rising = prove(direction * slope, limits, Sign.NONNEGATIVE)
             if rising.sign == Sign.UNKNOWN:
-                rising = almost_everywhere(direction * slope, symbol, limits, prove)
+                rising = rises_almost_everywhere(direction * slope, symbol, limits, prove)
             if rising.sign == Sign.UNKNOWN:
                 continue
-            lifted = direction == 1 and left_out(limit) and rises_at_once(expression, limits, rising)
+            lifted = direction == 1 and is_left_out(limit) and rises_at_once(expression, limits, rising)
             sign = Sign.POSITIVE if floor.sign == Sign.POSITIVE or lifted else Sign.NONNEGATIVE
             if sign >= wanted:
                 exact = floor.exact and rising.exact
@@ -114,7 +114,7 @@ def by_monotony(expression: sp.Expr, limits: Limits, wanted: Sign, prove: Prove)
     return UNKNOWN
 
 
-def almost_everywhere(slope: sp.Expr, symbol: sp.Symbol, limits: Limits, prove: Prove) -> SignProof:
+def rises_almost_everywhere(slope: sp.Expr, symbol: sp.Symbol, limits: Limits, prove: Prove) -> SignProof:
     """Not negative wherever it exists, and it exists but for finitely many values of the symbol.
 
     A continuous function with such a derivative does not fall: that of asin(x) - x is infinite at x = 1.
@@ -127,9 +127,9 @@ def almost_everywhere(slope: sp.Expr, symbol: sp.Symbol, limits: Limits, prove: 
     if not seldom or not roots_exist(sp.Tuple(slope, top, bottom), limits, prove):
         return UNKNOWN
     for sign in (1, -1):
-        below = prove(sign * bottom, own(limits, bottom), Sign.NONNEGATIVE)
+        below = prove(sign * bottom, ranges_in(limits, bottom), Sign.NONNEGATIVE)
         if below.sign != Sign.UNKNOWN:
-            above = prove(sp.expand(sign * top), own(limits, top), Sign.NONNEGATIVE)
+            above = prove(sp.expand(sign * top), ranges_in(limits, top), Sign.NONNEGATIVE)
             sign_there = min(above.sign, Sign.NONNEGATIVE)
             return SignProof(sign_there, "", above.boxes + below.boxes, above.exact and below.exact)
     return UNKNOWN
@@ -168,7 +168,7 @@ def by_taylor(expression: sp.Expr, limits: Limits, wanted: Sign, simple: Prove) 
     """
     if expression.has(*BENT) or not is_defined(expression, limits, simple):
         return UNKNOWN
-    for symbol, limit in own(limits, expression).items():
+    for symbol, limit in ranges_in(limits, expression).items():
         if limit.integer:
             continue  # sympy simplifies derivatives by it, cos(2 pi n) = 1 say
         for direction, end in ((1, limit.lower), (-1, limit.upper)):
@@ -188,9 +188,9 @@ def taylor_at(
     derivative, floor, exact, strict = expression, Sign.POSITIVE, True, False
     for order in range(1, MOST_DERIVATIVES):
         value = derivative.subs(symbol, place)
-        if value.has(sp.nan, sp.zoo, sp.oo) or not reaches_end(derivative, symbol, place, limits, simple):
+        if value.has(sp.nan, sp.zoo, sp.oo) or not is_continuous_to_end(derivative, symbol, place, limits, simple):
             return UNKNOWN
-        at_end = simple(value, own(limits, value), Sign.NONNEGATIVE)
+        at_end = simple(value, ranges_in(limits, value), Sign.NONNEGATIVE)
         if at_end.sign == Sign.UNKNOWN:
             return UNKNOWN
         floor = at_end.sign if order == 1 else floor
@@ -198,11 +198,11 @@ def taylor_at(
         slope = direction * sp.diff(derivative, symbol)
         if not is_defined(slope, limits, simple):
             return UNKNOWN
-        derivative = factored(slope)
+        derivative = factor_exactly(slope)
         rest = simple(derivative, limits, Sign.NONNEGATIVE)
         exact = exact and at_end.exact and rest.exact
         if rest.sign != Sign.UNKNOWN:
-            inside = direction == 1 and left_out(limits[symbol])
+            inside = direction == 1 and is_left_out(limits[symbol])
             lifted = inside and (strict or rises_at_once(expression, limits, rest))
             sign = Sign.POSITIVE if floor == Sign.POSITIVE or lifted else Sign.NONNEGATIVE
             words = f"derivatives at {symbol} = {place} not negative, nor that of order {order} anywhere"
@@ -214,7 +214,7 @@ def between_contacts(expression: sp.Expr, limits: Limits, wanted: Sign, prove: P
     """Zeros of even order inside one range, at guessed exact points; the parts between them are proved apart."""
     if wanted > Sign.NONNEGATIVE or expression.has(*JUMPING):
         return UNKNOWN
-    for symbol, limit in own(limits, expression).items():
+    for symbol, limit in ranges_in(limits, expression).items():
         if limit.integer:
             continue
         contacts = contacts_of(expression, symbol, limit)
@@ -237,7 +237,7 @@ def between_contacts(expression: sp.Expr, limits: Limits, wanted: Sign, prove: P
 
 def contacts_of(expression: sp.Expr, symbol: sp.Symbol, limit: Range) -> list[sp.Expr]:
     """Inner points, in order, at which the expression vanishes whatever the other symbols are."""
-    guesses = guessed_points(limit)
+    guesses = guess_points(limit)
     several = len(expression.free_symbols) > 1
     found = [p for p in (guesses[:4] if several else guesses) if vanishes_at(expression, symbol, p)]
     return sorted(found, key=lambda point: float(exact_ball(point).mid()))
@@ -258,10 +258,10 @@ def by_squares(expression: sp.Expr, limits: Limits, wanted: Sign, prove: Prove) 
         squares = sp.expand(left**2 - right**2)
         if squares.count_ops() > 4 * expression.count_ops() + 40:
             continue
-        proof = prove(squares, own(limits, squares), wanted)
+        proof = prove(squares, ranges_in(limits, squares), wanted)
         if not proof.at_least(wanted):
             continue
-        side = prove(left, own(limits, left), Sign.NONNEGATIVE)
+        side = prove(left, ranges_in(limits, left), Sign.NONNEGATIVE)
         if side.sign != Sign.UNKNOWN:
             reason = f"squares of {left} and {right}; {proof.reason}"
             return replace(proof, reason=reason, exact=proof.exact and side.exact)
@@ -292,7 +292,7 @@ def by_values(expression: sp.Expr, limits: Limits, wanted: Sign, prove: Prove) -
         narrowed = half_range(limits, inner.args[0], sign)
         if narrowed is not None:
             case = expression.xreplace({inner: sign * inner.args[0]})
-            proofs.append(prove(case, own(narrowed, case), wanted))
+            proofs.append(prove(case, ranges_in(narrowed, case), wanted))
             if not proofs[-1].at_least(wanted):
                 return UNKNOWN
     worst = min(proofs, key=lambda proof: proof.sign)
@@ -303,7 +303,7 @@ def signs_of(inside: sp.Expr, limits: Limits, prove: Prove) -> tuple[int, ...]:
     """The signs that the inside of an absolute value may have on the box."""
     if isinstance(inside, sp.Symbol):
         return (1, -1)
-    proved = [s for s in (1, -1) if prove(s * inside, own(limits, inside), Sign.NONNEGATIVE).sign != Sign.UNKNOWN]
+    proved = [s for s in (1, -1) if prove(s * inside, ranges_in(limits, inside), Sign.NONNEGATIVE).sign != Sign.UNKNOWN]
     return (proved[0],) if proved else (1, -1)
 
 
@@ -329,10 +329,10 @@ def by_quotient(expression: sp.Expr, limits: Limits, wanted: Sign, prove: Prove)
     top, bottom = sp.fraction(sp.together(expression))
     if not bottom.free_symbols or top == expression or not vanishes_identically(expression - top / bottom):
         return UNKNOWN
-    below = prove(bottom, own(limits, bottom), Sign.POSITIVE)
+    below = prove(bottom, ranges_in(limits, bottom), Sign.POSITIVE)
     if below.sign != Sign.POSITIVE or not is_defined(expression, limits, prove):
         return UNKNOWN
-    above = prove(sp.expand(top), own(limits, top), wanted)
+    above = prove(sp.expand(top), ranges_in(limits, top), wanted)
     if not above.at_least(wanted):
         return UNKNOWN
     return replace(above, reason=f"over {bottom}: {above.reason}", exact=above.exact and below.exact)
@@ -353,7 +353,7 @@ def by_exponential(expression: sp.Expr, limits: Limits, wanted: Sign, prove: Pro
     above = sp.Mul(*(u**p for u, p in powers.items() if p > 0)) * sp.exp(rest)
     below = sp.Mul(*(u**-p for u, p in powers.items() if p < 0))
     difference = sp.expand(above - below)
-    proof = prove(difference, own(limits, difference), wanted)
+    proof = prove(difference, ranges_in(limits, difference), wanted)
     return replace(proof, reason=f"{above} against {below}: {proof.reason}") if proof.at_least(wanted) else UNKNOWN
 
 

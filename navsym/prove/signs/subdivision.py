@@ -28,7 +28,7 @@ def subdivide(expression: sp.Expr, limits: Limits, wanted: Sign, budget: int) ->
         if sign >= wanted:
             positive = positive and sign == Sign.POSITIVE
             continue
-        halves = split(program, piece, list(slopes))
+        halves = split_piece(program, piece, list(slopes))
         if halves is None or len(pieces) > 400:
             return UNKNOWN
         pieces.extend(halves)
@@ -69,7 +69,7 @@ def mean_value(program: Tape, piece: Mapping[sp.Symbol, arb], divisible: list[sp
         return value
 
 
-def split(
+def split_piece(
     program: Tape, piece: Mapping[sp.Symbol, arb], divisible: list[sp.Symbol]
 ) -> list[dict[sp.Symbol, arb]] | None:
     """Two halves along the widest side; None when the piece is too small to go on."""
@@ -157,7 +157,7 @@ def derivative_sign(
     return bool(ball < 0) if negative else bool(ball > 0)
 
 
-def guessed_points(limit: Range) -> list[sp.Expr]:
+def guess_points(limit: Range) -> list[sp.Expr]:
     """Exact points inside the range at which formulas like to vanish."""
     guesses = [
         sp.Integer(0),

@@ -20,12 +20,19 @@ from navsym.core.errors import NavsymError
 from navsym.core.exact import to_fmpq, to_fraction
 from navsym.prove.identities.converter import Converter, Quotient
 from navsym.prove.identities.ingredients import Monomial
-from navsym.prove.identities.transcendental import degree_bound
+from navsym.prove.identities.transcendental import largest_exponent
 from navsym.prove.sampling.points import Range
 from navsym.prove.signs.exact import Sign, constant_sign
-from navsym.prove.signs.half_angles import HalfAngles, without_angles
+from navsym.prove.signs.half_angles import HalfAngles, replace_angles
 from navsym.prove.signs.products import monomial_expression
-from navsym.prove.signs.real_roots import MOST_DEGREE, Place, UndecidedError, compare, place_of, rational_place
+from navsym.prove.signs.real_roots import (
+    MOST_DEGREE,
+    RealNumber,
+    UndecidedError,
+    compare_numbers,
+    enclose_number,
+    rational_number,
+)
 
 #: Functions that are no rational functions of one u.
 BENT = (sp.Abs, sp.sign, sp.Max, sp.Min, sp.atan2)
@@ -35,7 +42,7 @@ Fraction: TypeAlias = tuple[fmpq_poly, fmpq_poly]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Piece:
+class Interval:
     """Values of u from ``lower`` to ``upper``, None at infinity.
 
     closed : whether the ends belong to it; one at infinity does where the angle is an odd multiple of pi
@@ -43,31 +50,31 @@ class Piece:
     back   : the symbol as a formula of u
     """
 
-    lower: Place | None
-    upper: Place | None
+    lower: RealNumber | None
+    upper: RealNumber | None
     closed: tuple[bool, bool]
     ends: tuple[End, End]
     back: Callable[[sp.Expr], sp.Expr]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Carried:
+class Substitution:
     """Expressions as (top, bottom) of one u, coprime, and the range of u in pieces."""
 
     fractions: tuple[Fraction, ...]
-    pieces: tuple[Piece, ...]
+    pieces: tuple[Interval, ...]
 
 
-def carried(expressions: Sequence[sp.Expr], symbol: sp.Symbol, limit: Range) -> Carried | None:
+def substitute_one_number(expressions: Sequence[sp.Expr], symbol: sp.Symbol, limit: Range) -> Substitution | None:
     """The expressions by one u, wherever they exist; None where there is no such u.
 
     Raises UndecidedError where ends of ranges cannot be compared.
     """
     whole = sp.Tuple(*expressions)
-    if not whole.free_symbols <= {symbol} or whole.has(*BENT) or degree_bound(whole) > MOST_DEGREE:
+    if not whole.free_symbols <= {symbol} or whole.has(*BENT) or largest_exponent(whole) > MOST_DEGREE:
         return None
     try:
-        found = without_angles(whole, {symbol: limit})
+        found = replace_angles(whole, {symbol: limit})
         if found is None or found[0].has(sp.zoo, sp.nan, sp.oo):
             return None
         rational, angles = found
@@ -76,25 +83,25 @@ def carried(expressions: Sequence[sp.Expr], symbol: sp.Symbol, limit: Range) -> 
     except (NavsymError, OverflowError, ZeroDivisionError):
         return None
     return (
-        by_tangent(converter, quotients, symbol, limit, angles)
+        carry_tangent(converter, quotients, symbol, limit, angles)
         if angles.tangents
-        else (by_generators(converter, quotients, symbol, limit))
+        else (carry_generators(converter, quotients, symbol, limit))
     )
 
 
-def by_generators(
+def carry_generators(
     converter: Converter, quotients: Sequence[Quotient], symbol: sp.Symbol, limit: Range
-) -> Carried | None:
+) -> Substitution | None:
     """u by the generators that occur in the ring of the normal form."""
     names, used = converter.generator_names(), used_places(quotients)
     kinds = {names[place][0] for place in used}
     if kinds <= {"x"} and symbol in converter.found.symbols:
-        return by_symbol(converter, quotients, symbol, limit)
+        return carry_symbol(converter, quotients, symbol, limit)
     if kinds == {"e"} and len(used) == 1:
         monomial, share = list(converter.found.exponents.items())[int(names[min(used)][1:])]
-        return by_exponential(quotients, min(used), monomial, share, limit, symbol)
+        return carry_exponential(quotients, min(used), monomial, share, limit, symbol)
     if kinds <= {"x", "g"} and len(used - {0}) == 1 and converter.found.symbols.get(symbol) == 1:
-        return by_root(converter, quotients, max(used), symbol, limit)
+        return carry_root(converter, quotients, max(used), symbol, limit)
     return None
 
 
@@ -106,14 +113,14 @@ def used_places(quotients: Sequence[Quotient]) -> set[int]:
 
 def fraction_of(quotient: Quotient, images: dict[int, fmpq_poly]) -> Fraction:
     """Numerator and denominator with polynomials of u for the generators, in lowest terms."""
-    top, bottom = (substituted(part, images) for part in (quotient.numerator, quotient.denominator))
+    top, bottom = (substitute_images(part, images) for part in (quotient.numerator, quotient.denominator))
     if bottom.degree() < 0:
         raise UndecidedError
     common = top.gcd(bottom)
     return top / common, bottom / common
 
 
-def substituted(polynomial: fmpq_mpoly, images: dict[int, fmpq_poly]) -> fmpq_poly:
+def substitute_images(polynomial: fmpq_mpoly, images: dict[int, fmpq_poly]) -> fmpq_poly:
     """The polynomial with images in u for its generators."""
     total = fmpq_poly([0])
     for exponents, value in polynomial.to_dict().items():
@@ -136,48 +143,50 @@ def closed_ends(limit: Range) -> tuple[bool, bool]:
     return lower, limit.upper is not None and not (limit.nonzero and limit.upper == 0)
 
 
-def rising(
+def rising_interval(
     limit: Range,
     closed: tuple[bool, bool],
     forth: Callable[[sp.Expr], sp.Expr],
     back: Callable[[sp.Expr], sp.Expr],
-    least: Place | None = None,
-) -> Piece:
+    least: RealNumber | None = None,
+) -> Interval:
     """The piece of an u that rises with the symbol; ``least`` is its limit towards minus infinity."""
-    lower = least if limit.lower is None else place_of(forth(limit.lower))
-    upper = None if limit.upper is None else place_of(forth(limit.upper))
-    return Piece(lower, upper, closed, (limit.lower, limit.upper), back)
+    lower = least if limit.lower is None else enclose_number(forth(limit.lower))
+    upper = None if limit.upper is None else enclose_number(forth(limit.upper))
+    return Interval(lower, upper, closed, (limit.lower, limit.upper), back)
 
 
-def by_symbol(converter: Converter, quotients: Sequence[Quotient], symbol: sp.Symbol, limit: Range) -> Carried | None:
+def carry_symbol(
+    converter: Converter, quotients: Sequence[Quotient], symbol: sp.Symbol, limit: Range
+) -> Substitution | None:
     """u**q = x; a root is taken only of a symbol that is declared nonnegative."""
     q = converter.found.symbols[symbol]
     place = list(converter.found.symbols).index(symbol)
     fractions = tuple(fraction_of(quotient, {place: U}) for quotient in quotients)
-    piece = rising(limit, closed_ends(limit), lambda x: sp.Pow(x, sp.Rational(1, q)), lambda u: u**q)
-    return Carried(fractions, (piece,))
+    piece = rising_interval(limit, closed_ends(limit), lambda x: sp.Pow(x, sp.Rational(1, q)), lambda u: u**q)
+    return Substitution(fractions, (piece,))
 
 
-def by_exponential(
+def carry_exponential(
     quotients: Sequence[Quotient], place: int, monomial: Monomial, share: int, limit: Range, symbol: sp.Symbol
-) -> Carried | None:
+) -> Substitution | None:
     """u = exp(x/share)."""
     if monomial_expression(monomial) != symbol:
         return None
     fractions = tuple(fraction_of(quotient, {place: U}) for quotient in quotients)
-    piece = rising(
-        limit, closed_ends(limit), lambda x: sp.exp(x / share), lambda u: share * sp.log(u), rational_place(fmpq(0))
+    piece = rising_interval(
+        limit, closed_ends(limit), lambda x: sp.exp(x / share), lambda u: share * sp.log(u), rational_number(fmpq(0))
     )
-    return Carried(fractions, (piece,))
+    return Substitution(fractions, (piece,))
 
 
-def by_root(
+def carry_root(
     converter: Converter, quotients: Sequence[Quotient], place: int, symbol: sp.Symbol, limit: Range
-) -> Carried | None:
+) -> Substitution | None:
     """u**q = a + b x, where that is not negative."""
     radicand, q = converter.roots[int(converter.generator_names()[place][1:])]
     if is_odd_power(radicand, symbol):
-        return by_power(converter, quotients, place, symbol, limit)
+        return carry_power(converter, quotients, place, symbol, limit)
     slope, start = sp.diff(radicand, symbol), radicand.subs(symbol, 0)
     if radicand.free_symbols != {symbol} or not (slope.is_Rational and start.is_Rational and slope != 0):
         return None
@@ -195,10 +204,14 @@ def by_root(
     if not inside and values[0] is not None and not exact_ball(values[0]) < 0:
         return None
     least = values[0] if inside else sp.Integer(0)
-    places = [None if value is None else place_of(sp.Pow(value, sp.Rational(1, q))) for value in (least, values[1])]
+    places = [
+        None if value is None else enclose_number(sp.Pow(value, sp.Rational(1, q))) for value in (least, values[1])
+    ]
     closed = (closed[0] or not inside, closed[1])
     last = ends[0] if inside else -start / slope
-    return Carried(fractions, (Piece(places[0], places[1], closed, (last, ends[1]), lambda u: (u**q - start) / slope),))
+    return Substitution(
+        fractions, (Interval(places[0], places[1], closed, (last, ends[1]), lambda u: (u**q - start) / slope),)
+    )
 
 
 def is_odd_power(radicand: sp.Expr, symbol: sp.Symbol) -> bool:
@@ -207,9 +220,9 @@ def is_odd_power(radicand: sp.Expr, symbol: sp.Symbol) -> bool:
     return bool(base == symbol and exponent.is_Integer and exponent > 1 and exponent % 2 == 1)
 
 
-def by_power(
+def carry_power(
     converter: Converter, quotients: Sequence[Quotient], place: int, symbol: sp.Symbol, limit: Range
-) -> Carried | None:
+) -> Substitution | None:
     """u = x**(1/q) for a root of an odd power x**k, which exists where x is not negative: it is u**k."""
     radicand, q = converter.roots[int(converter.generator_names()[place][1:])]
     x = list(converter.found.symbols).index(symbol)
@@ -221,16 +234,16 @@ def by_power(
     if not inside and limit.lower is not None and not exact_ball(limit.lower) < 0:
         return None
     cut = limit if inside else replace(limit, lower=sp.Integer(0), open_lower=False)
-    piece = rising(cut, closed_ends(cut), lambda x: sp.Pow(x, sp.Rational(1, q)), lambda u: u**q)
-    return Carried(fractions, (piece,))
+    piece = rising_interval(cut, closed_ends(cut), lambda x: sp.Pow(x, sp.Rational(1, q)), lambda u: u**q)
+    return Substitution(fractions, (piece,))
 
 
 # -- angles ---------------------------------------
 
 
-def by_tangent(
+def carry_tangent(
     converter: Converter, quotients: Sequence[Quotient], symbol: sp.Symbol, limit: Range, angles: HalfAngles
-) -> Carried | None:
+) -> Substitution | None:
     """u = tan(theta/2) for the one angle theta = c x that occurs."""
     if len(angles.tangents) != 1 or set(converter.found.symbols) != set(angles.tangents.values()):
         return None
@@ -242,41 +255,48 @@ def by_tangent(
     if constant_sign(speed).sign != Sign.POSITIVE:
         return None
     fractions = tuple(fraction_of(quotient, {place: U}) for quotient in quotients)
-    return Carried(fractions, tuple(arcs(limit, speed)))
+    return Substitution(fractions, tuple(split_turns(limit, speed)))
 
 
-def arcs(limit: Range, speed: sp.Expr) -> Iterator[Piece]:
+def split_turns(limit: Range, speed: sp.Expr) -> Iterator[Interval]:
     """The range of theta = speed x, one turn of it where it is longer, cut at odd multiples of pi."""
     turn = 2 * sp.pi / speed
     closed, (lower, upper) = closed_ends(limit), (limit.lower, limit.upper)
     if lower is None:
         lower, closed = (-turn / 2 if upper is None else upper - turn), (False, closed[1])
-    if upper is None or compare(place_of(upper - lower), place_of(turn)) >= 0:
+    if upper is None or compare_numbers(enclose_number(upper - lower), enclose_number(turn)) >= 0:
         upper, closed = lower + turn, (closed[0], True)
     k = floor(to_fraction(exact_ball(lower / turn + sp.S.Half, 256)))
-    k += compare(place_of(lower), place_of(odd(k + 1, turn))) >= 0
-    k -= compare(place_of(lower), place_of(odd(k, turn))) < 0
-    if compare(place_of(lower), place_of(odd(k, turn))) * compare(place_of(lower), place_of(odd(k + 1, turn))) > 0:
+    k += compare_with_cut(lower, k + 1, turn) >= 0
+    k -= compare_with_cut(lower, k, turn) < 0
+    if compare_with_cut(lower, k, turn) * compare_with_cut(lower, k + 1, turn) > 0:
         raise UndecidedError  # the number of the turn was guessed too roughly
     while True:
-        side = compare(place_of(upper), place_of(odd(k + 1, turn)))
-        last = upper if side <= 0 else odd(k + 1, turn)
-        yield arc((lower, last), (closed[0], closed[1] or side > 0), k, turn)
+        side = compare_with_cut(upper, k + 1, turn)
+        last = upper if side <= 0 else odd_half_turn(k + 1, turn)
+        yield cut_arc((lower, last), (closed[0], closed[1] or side > 0), k, turn)
         if side <= 0:
             return
         lower, closed, k = last, (True, closed[1]), k + 1
 
 
-def odd(k: int, turn: sp.Expr) -> sp.Expr:
+def compare_with_cut(value: sp.Expr, k: int, turn: sp.Expr) -> int:
+    """-1, 0 or 1 as an exact number lies before, at or behind the k-th cut."""
+    return compare_numbers(enclose_number(value), enclose_number(odd_half_turn(k, turn)))
+
+
+def odd_half_turn(k: int, turn: sp.Expr) -> sp.Expr:
     """Where the k-th half turn before a whole one ends: theta = (2 k - 1) pi."""
     return (k - sp.S.Half) * turn
 
 
-def arc(ends: tuple[sp.Expr, sp.Expr], closed: tuple[bool, bool], k: int, turn: sp.Expr) -> Piece:
+def cut_arc(ends: tuple[sp.Expr, sp.Expr], closed: tuple[bool, bool], k: int, turn: sp.Expr) -> Interval:
     """The piece between two ends in the turn from (2 k - 1) pi to (2 k + 1) pi, where the tangent is infinite."""
-    cuts = (odd(k, turn), odd(k + 1, turn))
+    cuts = (odd_half_turn(k, turn), odd_half_turn(k + 1, turn))
     places = [
-        None if compare(place_of(end), place_of(cut)) == 0 else place_of(sp.tan(sp.pi * end / turn))
+        None
+        if compare_numbers(enclose_number(end), enclose_number(cut)) == 0
+        else enclose_number(sp.tan(sp.pi * end / turn))
         for end, cut in zip(ends, cuts, strict=True)
     ]
-    return Piece(places[0], places[1], closed, ends, lambda u: (sp.atan(u) / sp.pi + k) * turn)
+    return Interval(places[0], places[1], closed, ends, lambda u: (sp.atan(u) / sp.pi + k) * turn)

@@ -52,7 +52,7 @@ class Case:
     wider: bool = False
 
 
-def sum_of(expression: sp.Expr) -> Sum | None:
+def read_sum(expression: sp.Expr) -> Sum | None:
     """The expression as such a sum; None when it has another form."""
     constant: sp.Expr = sp.Integer(0)
     shares: dict[sp.Symbol, sp.Rational] = {}
@@ -72,16 +72,16 @@ def cases_of_sum(expression: sp.Expr, value: sp.Abs, limits: Limits) -> list[lis
 
     Each case comes in several forms, of which one is enough; those with the smaller box come first.
     """
-    inside = sum_of(value.args[0])
+    inside = read_sum(value.args[0])
     if inside is None or not inside.shares:
         return None
     both = [inside.times(sp.Integer(sign)) for sign in (1, -1)]
-    possible = [signed for signed in both if not is_negative(signed, limits)]
+    possible = [signed for signed in both if not is_negative_sum(signed, limits)]
     cases = [forms_of_case(expression, value, signed, limits) for signed in possible]
     return cases if all(cases) else None
 
 
-def is_negative(inside: Sum, limits: Limits) -> bool:
+def is_negative_sum(inside: Sum, limits: Limits) -> bool:
     """True when the sum is negative on the whole box."""
     turned = inside.times(sp.Integer(-1)).least(limits)
     return turned is not None and constant_sign(turned).sign == Sign.POSITIVE
@@ -109,10 +109,10 @@ def replacements(inside: Sum, t: sp.Symbol, limits: Limits) -> Iterator[tuple[bo
             continue
         others = {s: -a / share for s, a in inside.shares.items() if s != symbol}
         solved = Sum(-inside.constant / share, {**others, t: 1 / share})
-        yield not follows(solved, limits[symbol], limits), symbol, solved.expression()
+        yield not is_inside_range(solved, limits[symbol], limits), symbol, solved.expression()
 
 
-def follows(solved: Sum, limit: Range, limits: Limits) -> bool:
+def is_inside_range(solved: Sum, limit: Range, limits: Limits) -> bool:
     """True when the sum lies in the range for all values of its symbols."""
     ends = [(limit.lower, solved)] if limit.lower is not None else []
     ends += [(-limit.upper, solved.times(sp.Integer(-1)))] if limit.upper is not None else []

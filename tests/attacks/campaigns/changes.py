@@ -15,9 +15,9 @@ from flint import arb
 
 from navsym.claims import Bound, Box, Equation, Optimum
 from navsym.core.balls import UnsupportedError
-from navsym.prove.equations import entries
+from navsym.prove.equations import list_entries
 from navsym.prove.inequalities import contradicts
-from navsym.prove.sampling.points import Point, points
+from navsym.prove.sampling.points import Point, draw_points
 from tests.attacks.campaigns.edited_values import Values, values_at
 from tests.attacks.campaigns.edits import Edit, apply_edit, list_edits, rearrange, widen
 
@@ -48,8 +48,8 @@ class Change:
 def printed_parts(statement: Assertion) -> list[sp.Expr]:
     """The printed formulas of a statement."""
     if isinstance(statement, Optimum):
-        return [part for name in FIELDS for part in entries(getattr(statement, name))]
-    return entries(statement.printed)
+        return [part for name in FIELDS for part in list_entries(getattr(statement, name))]
+    return list_entries(statement.printed)
 
 
 def changes(statement: Assertion) -> Iterator[Change]:
@@ -59,7 +59,9 @@ def changes(statement: Assertion) -> Iterator[Change]:
             yield Change(edit.kind, part, edit)
     if isinstance(statement, Equation):
         for kind, order in rearrange(statement.printed):
-            if any(entries(statement.printed)[k] != entries(statement.printed)[p] for k, p in enumerate(order)):
+            if any(
+                list_entries(statement.printed)[k] != list_entries(statement.printed)[p] for k, p in enumerate(order)
+            ):
                 yield Change(kind, order=tuple(order))
     for box in widen(statement.box):
         yield Change("range", box=box)
@@ -72,7 +74,7 @@ def replace_parts(statement: Assertion, parts: Sequence[sp.Expr]) -> Assertion:
         rest = list(parts)
         for name in FIELDS:
             whole = getattr(statement, name)
-            count = len(entries(whole))
+            count = len(list_entries(whole))
             fields[name] = tuple(rest[:count]) if isinstance(whole, (tuple, list)) else rest[0]
             rest = rest[count:]
         return replace(statement, **fields)
@@ -114,7 +116,7 @@ def rows(statement: Assertion, count: int = POINTS) -> list[Row]:
     derived = derived_parts(statement)
     symbols = free_symbols(statement)
     found = []
-    for point in points(symbols, statement.box, count):
+    for point in draw_points(symbols, statement.box, count):
         values = values_at(point)
         found.append(Row(point, values, tuple(values.of(part) for part in derived)))
     return found
@@ -122,7 +124,7 @@ def rows(statement: Assertion, count: int = POINTS) -> list[Row]:
 
 def derived_parts(statement: Assertion) -> list[sp.Expr]:
     """What the printed formulas are compared with: the derived side, or the functional of an optimum."""
-    return entries(statement.functional if isinstance(statement, Optimum) else statement.derived)
+    return list_entries(statement.functional if isinstance(statement, Optimum) else statement.derived)
 
 
 def free_symbols(statement: Assertion) -> list[sp.Symbol]:

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 import sympy as sp
 from flint import arb
 
-from navsym.core.balls import OPERATIONS, exact_ball, instruction, precision
+from navsym.core.balls import OPERATIONS, exact_ball, precision, read_instruction
 from navsym.prove.sampling.points import Point
 from tests.attacks.campaigns.edits import Edit
 
@@ -34,7 +34,7 @@ class Values:
 
     def value(self, node: sp.Basic) -> arb:
         if node not in self.known:
-            operation, arguments, constant = instruction(node)
+            operation, arguments, constant = read_instruction(node)
             balls = [self.value(argument) for argument in arguments]
             self.known[node] = arb(OPERATIONS[operation](constant, balls, self.point))
         return self.known[node]
@@ -52,7 +52,7 @@ class Values:
     def carry_up(self, above: Sequence[tuple[sp.Basic, int]], ball: arb) -> arb:
         """The value at the root when the argument at the end of the path has this value."""
         for node, place in reversed(above):
-            operation, arguments, constant = instruction(node)
+            operation, arguments, constant = read_instruction(node)
             balls = [self.value(argument) for argument in arguments]
             balls[place] = ball
             ball = arb(OPERATIONS[operation](constant, balls, self.point))

@@ -19,8 +19,8 @@ import sympy as sp
 from navsym.claims import REFUTED, Bound, Claim, Equation, Optimum
 from navsym.core.errors import NavsymError
 from navsym.prove.ladder import decide
-from navsym.prove.sampling.points import points
-from navsym.prove.wording import point_text, text_of
+from navsym.prove.sampling.points import draw_points
+from navsym.prove.wording import expression_text, point_text
 from navsym.verification.fingerprints import fingerprint
 from tests.attacks.campaigns.batches import Batch, Result, result
 from tests.attacks.campaigns.changes import (
@@ -170,7 +170,9 @@ def limit_time(seconds: float) -> Iterator[None]:
 def describe(statement: Assertion, change: Change) -> str:
     """The change in words, with its place in the formula."""
     if change.box is not None:
-        ends = "; ".join(f"{s} in [{text_of(low)}, {text_of(high)}]" for s, (low, high) in change.box.items())
+        ends = "; ".join(
+            f"{s} in [{expression_text(low)}, {expression_text(high)}]" for s, (low, high) in change.box.items()
+        )
         return f"range: {ends}"
     if change.order is not None:
         return f"{change.kind}: entries in the order {list(change.order)}"
@@ -178,7 +180,7 @@ def describe(statement: Assertion, change: Change) -> str:
     node: Any = printed_parts(statement)[change.part]
     for place in change.edit.path:
         node = node.args[place]
-    words = f"{text_of(node)} -> {text_of(change.edit.replacement)}"
+    words = f"{expression_text(node)} -> {expression_text(change.edit.replacement)}"
     return f"{change.kind} in entry {change.part + 1} at {list(change.edit.path)}: {words}"
 
 
@@ -203,7 +205,7 @@ def is_denied(mutant: Assertion, count: int = 8, digits: int = 40) -> bool:
     least = sp.Float(10) ** (-digits // 2)
     if isinstance(mutant, Equation) and mutant.tolerance is not None:
         least += sp.sympify(mutant.tolerance, strict=True).evalf(digits)
-    for point in points(free_symbols(mutant), mutant.box, count, seed=99):
+    for point in draw_points(free_symbols(mutant), mutant.box, count, seed=99):
         for difference in subtract_sides(mutant):
             value = difference.subs(point).evalf(digits)
             if value.is_Float and DENIES[relation](value, least):

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from navsym.core.store import default_path, opened
+from navsym.core.store import default_path, open_store
 from navsym.verification.papers import load_papers
 from tests.attacks.campaigns import cases, certificates, disks, fuzz, kills, mutants, parser
 from tests.attacks.campaigns.batches import Batch, run_campaign
@@ -42,7 +42,7 @@ def start_campaign(
     limits: dict[str, Any] = {"jobs": jobs, "seconds": seconds, "progress": progress}
     if fresh:
         return run_campaign(name, batches, judge, **limits)
-    with opened() as store:
+    with open_store() as store:
         return run_campaign(name, batches, judge, store=store, **limits)
 
 
