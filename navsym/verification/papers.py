@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
 
-from navsym.claims import Claim, Paper, Record, claims_of, coverage, equation_of
+from navsym.claims import Claim, Paper, Record, claims_of, compare_equations, equation_of
 from navsym.claims.paper import import_paper, paper_names, papers_folder
 from navsym.core.choice import one_of
 from navsym.core.errors import DomainError
@@ -52,7 +52,7 @@ def load_papers(names: Iterable[str] = ()) -> list[PaperModule]:
 
 def summarise_paper(module: PaperModule) -> PaperSummary:
     """Coverage of the numbered equations of a paper."""
-    covered = coverage(module.paper, module.claims)
+    covered = compare_equations(module.paper, module.claims)
     counts = (len(module.paper.equations), len(covered.claimed), len(covered.definitions))
     return PaperSummary(module.name, module.paper.title, *counts, tuple(covered.missing))
 

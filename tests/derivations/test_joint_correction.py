@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import sympy as sp
 
-from navsym.claims import REFUTED, claims_of, coverage
+from navsym.claims import REFUTED, claims_of, compare_equations
 from navsym.models.inertial import ORDERS, lowest_order
 from navsym_papers import joint_correction
 from navsym_papers.joint_correction import section1_systems, section3_gains
@@ -15,7 +15,7 @@ CLAIMS = claims_of(joint_correction)
 
 
 def test_every_numbered_equation_is_claimed_or_a_definition():
-    found = coverage(joint_correction.PAPER, CLAIMS)
+    found = compare_equations(joint_correction.PAPER, CLAIMS)
     assert found.missing == ()
     assert set(found.definitions) == {"1.1", "1.2"}
 
