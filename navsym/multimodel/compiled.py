@@ -54,10 +54,10 @@ def run_compiled(rule: Scheme, models: Bank, z: Array, count: int) -> Estimates:
     if stopped:
         return run_in_numpy(rule, models, z, count)
     return Estimates(
-        arrays.frozen(out[0]),
-        arrays.frozen(out[1]),
-        arrays.frozen(out[2]),
-        arrays.frozen(out[3]),
+        arrays.freeze(out[0]),
+        arrays.freeze(out[1]),
+        arrays.freeze(out[2]),
+        arrays.freeze(out[3]),
         count,
         tuple(int(k) + 1 for k in np.flatnonzero(out[4] < UNDERFLOW)),
         engine="compiled",

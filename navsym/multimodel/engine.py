@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from navsym.claims.display import table
+from navsym.claims.display import write_table
 from navsym.core import arrays
 from navsym.core.answers import Answer
 from navsym.multimodel.bank import Bank
@@ -257,7 +257,7 @@ class Estimates(Answer):
     def _repr_html_(self) -> str:
         rows = self.rows()
         shown = rows if len(rows) <= 20 else [*rows[:10], ("…",) * 4, *rows[-10:]]
-        return table(("step", "mode", "probability", "mean (standard deviation)"), shown)
+        return write_table(("step", "mode", "probability", "mean (standard deviation)"), shown)
 
 
 def run_in_numpy(rule: Scheme, models: Bank, z: Array, count: int, form: Form = FORMS["joseph"]) -> Estimates:
@@ -276,10 +276,10 @@ def stack_steps(found: list[Step], models: Bank, count: int) -> Estimates:
     T, m, n = len(found), models.modes, models.states
     best = [step.best for step in found]
     return Estimates(
-        arrays.frozen(np.array([s.probabilities for s in found]).reshape(T, m)),
-        arrays.frozen(np.array([s.mean for s in found]).reshape(T, n)),
-        arrays.frozen(np.array([s.covariance for s in found]).reshape(T, n, n)),
-        arrays.frozen(np.cumsum([s.log_likelihood for s in found])),
+        arrays.freeze(np.array([s.probabilities for s in found]).reshape(T, m)),
+        arrays.freeze(np.array([s.mean for s in found]).reshape(T, n)),
+        arrays.freeze(np.array([s.covariance for s in found]).reshape(T, n, n)),
+        arrays.freeze(np.cumsum([s.log_likelihood for s in found])),
         count,
         tuple(k for k, b in enumerate(best, start=1) if b < UNDERFLOW),
         tuple(k for k, b in enumerate(best, start=1) if b == -np.inf),

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from navsym.core.errors import DomainError, NavsymError, NotFiniteError, ShapeError
-from navsym.language.files import called
+from navsym.language.files import name_file
 from navsym.language.jsonfile import read_json
 from navsym.language.names import only_keys
 from navsym.multimodel.bank import Bank, check_initial, forget_modes, measurements_for
@@ -70,7 +70,7 @@ def filter(
     >>> nav.filter(bank, [[0.1], [30.0]], method="gpb2").modes.tolist()
     [0, 1]
     """
-    place = called(bank) if isinstance(bank, str | os.PathLike) else "filter"
+    place = name_file(bank) if isinstance(bank, str | os.PathLike) else "filter"
     try:
         for name, value in (("memoryless", memoryless), ("missing", missing)):
             switch({name: value}, name)

@@ -17,7 +17,7 @@ from typing import Any
 import flint
 import numpy as np
 
-from navsym.claims.display import shortened, table
+from navsym.claims.display import shorten_digits, write_table
 from navsym.core.answers import Answer
 from navsym.core.arrays import Array
 from navsym.core.errors import (
@@ -30,7 +30,7 @@ from navsym.core.errors import (
 )
 from navsym.core.exact import to_fmpq, to_fraction
 from navsym.core.numbers import Number
-from navsym.language.names import shown
+from navsym.language.names import quote
 from navsym.models.earth import observability_rows, power_rows
 
 # Exact rational enclosures of a positive number, and their decimal strings.
@@ -567,8 +567,8 @@ class Conditions(Answer):
         return f"<Conditions n = {self.n}: {values}>"
 
     def _repr_html_(self) -> str:
-        rows = [(c.name, shortened(c.value.lower, 20), c.double, c.trustworthy) for c in self]
-        return table(("matrix", "condition number", "double precision", "trustworthy"), rows)
+        rows = [(c.name, shorten_digits(c.value.lower, 20), c.double, c.trustworthy) for c in self]
+        return write_table(("matrix", "condition number", "double precision", "trustworthy"), rows)
 
 
 def condition(
@@ -601,7 +601,7 @@ def condition(
     """
     for name, number in (("n", n), ("digits", digits)):
         if isinstance(number, bool) or not isinstance(number, int):
-            raise DomainError(f"expected an integer; got {shown(number)}; give one", where=f"condition: {name}")
+            raise DomainError(f"expected an integer; got {quote(number)}; give one", where=f"condition: {name}")
     exact_tau, exact_rho = read_exactly(tau, "condition: tau"), read_exactly(rho, "condition: rho")
     try:
         found = condition_numbers(n, exact_rho, exact_tau, digits=digits, progress=progress)

@@ -7,8 +7,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 from navsym.core.errors import DomainError, EmptyError, NavsymError, NotFiniteError, ShapeError, TooLargeError
+from navsym.multimodel import engine as engine_module
 from navsym.multimodel import kalman
-from navsym.multimodel import schemes as steps_module
 from navsym.multimodel.bank import Bank
 from navsym.multimodel.exact import Leaf, Model, fractions_kit, run_exactly
 from navsym.multimodel.filters import read_bank, run_filter
@@ -315,13 +315,13 @@ def test_an_unreachable_mode_has_probability_zero_and_no_nan():
 )
 def test_filters_run_counts_the_kalman_filters_of_every_step(method, depth, steps, monkeypatch):
     ran = []
-    original = steps_module.filtered
+    original = engine_module.filter_branches
 
     def counted(models, k, branches, *rest):
         ran.append(len(branches.modes))
         return original(models, k, branches, *rest)
 
-    monkeypatch.setattr(steps_module, "filtered", counted)
+    monkeypatch.setattr(engine_module, "filter_branches", counted)
     found = run_filter(random_bank(13), series(13, steps), method, depth=depth, engine="numpy")
     assert found.filters_run == sum(ran)
 
@@ -409,7 +409,7 @@ def test_a_tree_that_cannot_fit_is_refused_with_its_count():
         ("kalman", {}, "expected one of"),
         ("imm", {"depth": 2}, "belongs to k-pulsating"),
         ("k-pulsating", {"depth": 0}, "from 1 on"),
-        ("polygaussian", {"forget": True}, "never switch"),
+        ("polygaussian", {"memoryless": True}, "never switch"),
         ("imm", {"engine": "fast"}, "auto, numpy or compiled"),
     ],
 )

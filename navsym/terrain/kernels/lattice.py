@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from navsym.core.lanes import load, spread, store
+from navsym.core.lanes import load_lanes, spread_lanes, store_lanes
 from navsym.core.loops import njit
 from navsym.terrain.kernels.criteria import COMPILE, add_square, blend
 
@@ -40,29 +40,29 @@ def add_four_lanes(
     h : the map, flat ; at : four places of the first height ; f, g, z : four fractions each way, four heights
     out : (My, W) flat
     """
-    f0, f1, f2, f3 = spread(f[0]), spread(f[1]), spread(f[2]), spread(f[3])
-    g0, g1, g2, g3 = spread(g[0]), spread(g[1]), spread(g[2]), spread(g[3])
-    z0, z1, z2, z3 = spread(z[0]), spread(z[1]), spread(z[2]), spread(z[3])
-    a0 = blend(load(h, at[0]), load(h, at[0] + 1), f0)
-    a1 = blend(load(h, at[1]), load(h, at[1] + 1), f1)
-    a2 = blend(load(h, at[2]), load(h, at[2] + 1), f2)
-    a3 = blend(load(h, at[3]), load(h, at[3] + 1), f3)
+    f0, f1, f2, f3 = spread_lanes(f[0]), spread_lanes(f[1]), spread_lanes(f[2]), spread_lanes(f[3])
+    g0, g1, g2, g3 = spread_lanes(g[0]), spread_lanes(g[1]), spread_lanes(g[2]), spread_lanes(g[3])
+    z0, z1, z2, z3 = spread_lanes(z[0]), spread_lanes(z[1]), spread_lanes(z[2]), spread_lanes(z[3])
+    a0 = blend(load_lanes(h, at[0]), load_lanes(h, at[0] + 1), f0)
+    a1 = blend(load_lanes(h, at[1]), load_lanes(h, at[1] + 1), f1)
+    a2 = blend(load_lanes(h, at[2]), load_lanes(h, at[2] + 1), f2)
+    a3 = blend(load_lanes(h, at[3]), load_lanes(h, at[3] + 1), f3)
     for j in range(My):
         below = (j + 1) * nx
-        total = load(out, j * W + first)
-        b = blend(load(h, at[0] + below), load(h, at[0] + below + 1), f0)
+        total = load_lanes(out, j * W + first)
+        b = blend(load_lanes(h, at[0] + below), load_lanes(h, at[0] + below + 1), f0)
         d = z0 - blend(a0, b, g0)
         total, a0 = add_square(total, d), b
-        b = blend(load(h, at[1] + below), load(h, at[1] + below + 1), f1)
+        b = blend(load_lanes(h, at[1] + below), load_lanes(h, at[1] + below + 1), f1)
         d = z1 - blend(a1, b, g1)
         total, a1 = add_square(total, d), b
-        b = blend(load(h, at[2] + below), load(h, at[2] + below + 1), f2)
+        b = blend(load_lanes(h, at[2] + below), load_lanes(h, at[2] + below + 1), f2)
         d = z2 - blend(a2, b, g2)
         total, a2 = add_square(total, d), b
-        b = blend(load(h, at[3] + below), load(h, at[3] + below + 1), f3)
+        b = blend(load_lanes(h, at[3] + below), load_lanes(h, at[3] + below + 1), f3)
         d = z3 - blend(a3, b, g3)
         total, a3 = add_square(total, d), b
-        store(out, j * W + first, total)
+        store_lanes(out, j * W + first, total)
 
 
 @njit(**COMPILE)

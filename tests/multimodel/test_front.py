@@ -1,0 +1,82 @@
+"""``nav.filter`` and ``nav.Bank``: the document of the verb, what goes in, and errors that name their place."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+import navsym as nav
+from navsym.cli.main import run
+from navsym.core.errors import NavsymError
+from tests.frames import Frame
+
+FILE = "examples/switching.json"
+MODEL = {"F": [[1]], "Q": [[0.1]], "H": [[1]], "R": [[1]]}
+START = {"mean": [0], "covariance": [[1]], "probabilities": [0.5, 0.5]}
+SWITCH = [[0.9, 0.1], [0.2, 0.8]]
+
+
+def small_bank() -> nav.Bank:
+    return nav.Bank([MODEL, {**MODEL, "R": [[100]]}], SWITCH, START)
+
+
+def test_the_document_is_the_one_of_the_verb(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["filter", FILE, "--method", "imm", "--json"]) == 0
+    assert nav.filter(FILE, method="imm").document() == json.loads(capsys.readouterr().out)
+
+
+def test_a_bank_a_document_and_any_table_of_measurements_go_in() -> None:
+    rows = [[0.1], [30.0], [1.0]]
+    document = {"models": [MODEL, {**MODEL, "R": [[100]]}], "mode_transition": SWITCH, "initial": START}
+    expected = nav.filter({**document, "measurements": rows}).document()
+    for z in (rows, np.array(rows), np.array(rows)[:, 0], Frame({0: [0.1, 30.0, 1.0]})):
+        assert nav.filter(small_bank(), z).document() == expected == nav.filter(document, z).document()
+
+
+def test_an_answer_shows_itself_in_one_line_and_says_which_engine_ran() -> None:
+    found = nav.filter(FILE, engine="compiled")
+    assert found.engine == "compiled" and "\n" not in repr(found) and "<table>" in found._repr_html_()
+    assert found.modes.shape == found.log_likelihood.shape and found.standard_deviations.shape == found.mean.shape
+
+
+@pytest.mark.parametrize(
+    ("arguments", "options", "kind"),
+    [
+        ((5,), {}, "shape"),
+        (({},), {}, "shape"),
+        (("missing.json",), {}, "missing-file"),
+        ((small_bank(),), {}, "shape"),
+        ((small_bank(), 5), {}, "shape"),
+        ((small_bank(), "12"), {}, "shape"),
+        ((small_bank(), {"a": 1}), {}, "shape"),
+        ((small_bank(), [[[1.0]]]), {}, "shape"),
+        ((small_bank(), [[None]]), {}, "not-finite"),
+        ((small_bank(), [[1.0]]), {"method": ["imm"]}, "domain"),
+        ((small_bank(), [[1.0]]), {"method": "kalman"}, "domain"),
+        ((small_bank(), [[1.0]]), {"form": 3}, "domain"),
+        ((small_bank(), [[1.0]]), {"engine": {}}, "domain"),
+        ((small_bank(), [[1.0]]), {"depth": 2}, "domain"),
+        ((small_bank(), [[1.0]]), {"missing": "yes"}, "domain"),
+    ],
+)
+def test_wrong_arguments_are_errors_with_kind_and_place(arguments, options, kind) -> None:
+    with pytest.raises(NavsymError) as caught:
+        nav.filter(*arguments, **options)
+    assert caught.value.kind == kind and caught.value.where
+
+
+@pytest.mark.parametrize(
+    "parts",
+    [
+        (5, SWITCH, START),
+        ([], SWITCH, START),
+        ([MODEL] * 2, SWITCH, None),
+        ([5, 6], SWITCH, START),
+        ("FQ", SWITCH, START),
+    ],
+)
+def test_a_bank_of_anything_else_is_refused(parts) -> None:
+    with pytest.raises(NavsymError, match="expected"):
+        nav.Bank(*parts)
