@@ -43,9 +43,9 @@ ASTRAY = (
     "VERBOSE",
 )
 
-# The whole suite runs on two cores, whole files apart: what a file prepares is prepared once. A worker that dies
-# is replaced once, not for ever: the file that killed it is run again.
-WHOLE = ["-n", "2", "--dist", "loadfile", "--max-worker-restart", "1"]
+# The whole suite runs on two cores, group by group: what a group prepares is prepared once (tests/conftest.py). A
+# worker that dies is replaced once, not for ever: the group that killed it is run again.
+WHOLE = ["-n", "2", "--dist", "loadgroup", "--no-loadscope-reorder", "--max-worker-restart", "1"]
 
 USAGE = """usage: python3 bootstrap.py VERB [arguments]
 

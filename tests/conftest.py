@@ -25,7 +25,12 @@ os.environ.pop("NAVSYM_DEBUG", None)
 
 
 def pytest_collection_modifyitems(items):
-    """Slow tests have twice the time before they count as waiting for ever."""
+    """Every file is a group of tests that one worker runs, unless its tests name groups of their own.
+
+    What a file prepares is prepared once. Slow tests have twice the time before they count as waiting for ever.
+    """
     for item in items:
+        if not item.get_closest_marker("xdist_group"):
+            item.add_marker(pytest.mark.xdist_group(item.location[0]))
         if item.get_closest_marker("slow"):
             item.add_marker(pytest.mark.timeout(1800))

@@ -2,24 +2,22 @@
 
 from __future__ import annotations
 
-import importlib
 import json
 
 import pytest
 
 from navsym.checker import Refused, check, load
-from navsym.claims import REFUTED, claims_of
-from navsym.claims.paper import paper_names, papers_folder
+from navsym.claims import REFUTED
+from navsym.claims.paper import papers_folder
 from navsym.verification.decide import decide_claims
-from navsym.verification.papers import paper_module
+from tests.derivations.statements import EACH, module
 
 HOLDS = {"PROVED", "CERTIFIED"}
 
 
-@pytest.fixture(scope="module", params=paper_names())
+@pytest.fixture(scope="module", params=EACH)
 def document(request):
-    module = paper_module(importlib.import_module(f"navsym_papers.{request.param}"))
-    return decide_claims([module], jobs=1).document()
+    return decide_claims([module(request.param)], jobs=1).document()
 
 
 def test_every_verdict_is_the_one_that_its_source_declares(document):
@@ -82,8 +80,8 @@ def test_the_independent_checker_accepts_every_certificate(document):
     assert not refused
 
 
-@pytest.mark.parametrize("name", paper_names())
+@pytest.mark.parametrize("name", EACH)
 def test_titles_are_sentences_and_refuted_claims_are_declared_as_such(name):
-    for claim in claims_of(importlib.import_module(f"navsym_papers.{name}")):
+    for claim in module(name).claims:
         assert len(claim.title) > 10, claim.id
         assert (claim.slip is None) or claim.expect == REFUTED, claim.id

@@ -2,27 +2,26 @@
 
 from __future__ import annotations
 
-import importlib
-
 import pytest
 
-from navsym.claims import claims_of
-from navsym.claims.paper import paper_names
 from navsym.core.sandbox import Exhausted, run_many
 from navsym.prove.ladder import decide
 from tests.attacks.campaigns.edits import spoil
+from tests.derivations.statements import EACH, claims
 
 
-def spoiled_status(claim):
-    return str(decide(spoil(claim.derive())).status)
+def spoiled_status(case):
+    _, statement = case
+    return str(decide(spoil(statement)).status)
 
 
-@pytest.mark.parametrize("name", paper_names())
+@pytest.mark.parametrize("name", EACH)
 def test_every_spoiled_claim_falls(name):
-    claims = [c for c in claims_of(importlib.import_module(f"navsym_papers.{name}")) if c.expect != "REFUTED"]
+    cases = [(claim, statement) for claim, statement in claims(name) if claim.expect != "REFUTED"]
     held = []
-    for outcome in run_many(spoiled_status, claims, jobs=1, seconds=60):
-        assert not isinstance(outcome.value, Exhausted), (claims[outcome.place].id, outcome.value)
+    for outcome in run_many(spoiled_status, cases, jobs=1, seconds=60):
+        claim, _ = cases[outcome.place]
+        assert not isinstance(outcome.value, Exhausted), (claim.id, outcome.value)
         if outcome.value in ("PROVED", "CERTIFIED", "CONFIRMED"):
-            held.append(claims[outcome.place].id)
+            held.append(claim.id)
     assert not held

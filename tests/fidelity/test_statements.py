@@ -18,14 +18,16 @@ import pytest
 import sympy as sp
 
 from navsym.claims import Bound, Equation, Optimum, Property
+from navsym.claims.paper import import_paper
 from navsym.language.expression import parse, to_text
 from navsym.language.tokens import LENGTH
-from navsym.prove.equations import entries
-from navsym.prove.sampling.points import points
+from navsym.prove.equations import list_entries
+from navsym.prove.sampling.points import draw_points
 from navsym.verification.decide import sides
+from navsym.verification.papers import paper_module
 from tests.attacks.campaigns.edited_values import values_at
+from tests.derivations.statements import EACH, PAPERS, assertions, claims, formulas, symbols_in
 from tests.fidelity.plain_arithmetic import Undefined, value
-from tests.fidelity.statements import PAPERS, assertions, claims, formulas, symbols_in
 
 ROOT = Path(__file__).resolve().parents[2]
 CLOSE = mpmath.mpf(10) ** -25
@@ -43,7 +45,7 @@ def ledger():
 OUTSIDE = (sp.Max, sp.Min, sp.sign)  # not in the language of files
 
 
-@pytest.mark.parametrize("paper", PAPERS)
+@pytest.mark.parametrize("paper", EACH)
 def test_every_formula_comes_back_from_its_text(paper):
     """Short ones in every run; primes and the like are named anew."""
     not_back = lost_on_the_way(paper, SHORT)
@@ -51,7 +53,7 @@ def test_every_formula_comes_back_from_its_text(paper):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("paper", PAPERS)
+@pytest.mark.parametrize("paper", EACH)
 def test_every_long_formula_comes_back_from_its_text(paper):
     """Up to the length that the language of files allows."""
     not_back = lost_on_the_way(paper, LENGTH)
@@ -81,14 +83,14 @@ def in_plain_names(formula):
 
 def same_number(left, right):
     """Equal balls at points of a box of positive numbers: what differs is only the order of building."""
-    for point in points(sorted(left.free_symbols | right.free_symbols, key=str), {}, 5):
+    for point in draw_points(sorted(left.free_symbols | right.free_symbols, key=str), {}, 5):
         values = values_at(point)
         if not (values.of(left) - values.of(right)).contains(0):
             return False
     return True
 
 
-@pytest.mark.parametrize("paper", PAPERS)
+@pytest.mark.parametrize("paper", EACH)
 def test_the_ledger_prints_what_is_decided(paper):
     for claim, statement in claims(paper):
         record = ledger().get(claim.id)
@@ -101,7 +103,7 @@ def test_the_ledger_prints_what_is_decided(paper):
 
 def texts(statement):
     """Pairs of texts (printed, derived) of an equation or inequality, entry by entry."""
-    pairs = zip(entries(statement.printed), entries(statement.derived), strict=True)
+    pairs = zip(list_entries(statement.printed), list_entries(statement.derived), strict=True)
     return [(text(p), text(d)) for p, d in pairs if not (p.has(*OUTSIDE) or d.has(*OUTSIDE))]
 
 
@@ -133,7 +135,7 @@ def differences(statement, point, digits=50, longest=10**6):
 
 
 def symbols_of(statement):
-    parts = (*entries(statement.printed), *entries(statement.derived))
+    parts = (*list_entries(statement.printed), *list_entries(statement.derived))
     return sorted(set().union(*(part.free_symbols for part in parts)), key=str)
 
 
@@ -147,13 +149,13 @@ DENIED = {
 }
 
 
-@pytest.mark.parametrize("paper", PAPERS)
+@pytest.mark.parametrize("paper", EACH)
 def test_what_holds_is_not_denied_by_the_numbers_of_its_text(paper):
     assert compared(paper, SHORT, 2) > 20
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("paper", PAPERS)
+@pytest.mark.parametrize("paper", EACH)
 def test_long_formulas_are_not_denied_by_their_numbers_either(paper):
     assert compared(paper, 10**6, 4) > 20
 
@@ -168,7 +170,7 @@ def compared(paper, longest, count):
         room = mpmath.mpf(0)
         if isinstance(statement, Equation) and statement.tolerance is not None:
             room = value(to_text(sp.sympify(statement.tolerance, strict=True)), {})
-        for point in points(symbols_of(statement), statement.box, count, seed=5):
+        for point in draw_points(symbols_of(statement), statement.box, count, seed=5):
             for difference, size in differences(statement, point, longest=longest):
                 seen += 1
                 with mpmath.workdps(50):
@@ -176,7 +178,7 @@ def compared(paper, longest, count):
     return seen
 
 
-@pytest.mark.parametrize("paper", PAPERS)
+@pytest.mark.parametrize("paper", EACH)
 def test_what_is_refuted_is_denied_at_its_counterexample(paper):
     for claim, statement in assertions(paper):
         record = ledger().get(claim.id, {})
@@ -193,12 +195,13 @@ def test_what_is_refuted_is_denied_at_its_counterexample(paper):
 
 def complete(statement, point):
     """The statement without the entries that have symbols beyond the point."""
-    pairs = zip(entries(statement.printed), entries(statement.derived), strict=True)
+    pairs = zip(list_entries(statement.printed), list_entries(statement.derived), strict=True)
     kept = [(p, d) for p, d in pairs if (p - d).free_symbols | p.free_symbols | d.free_symbols <= set(point)]
     return type("Kept", (), {"printed": [p for p, _ in kept], "derived": [d for _, d in kept]})
 
 
+@pytest.mark.xdist_group("guaranteed_velocity")
 def test_inequalities_and_optima_are_among_what_is_read_back():
-    kinds = {type(statement) for paper in PAPERS for _, statement in claims(paper)}
+    kinds = {type(statement) for _, statement in claims("guaranteed_velocity")}
     assert kinds == {Equation, Bound, Optimum, Property}
-    assert sum(len(claims(paper)) for paper in PAPERS) >= 750
+    assert sum(len(paper_module(import_paper(paper)).claims) for paper in PAPERS) >= 750

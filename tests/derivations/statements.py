@@ -1,0 +1,54 @@
+"""The claims of every paper with their statements, derived once for all tests of a paper.
+
+Tests that take :data:`EACH` run beside each other, in the process that holds the statements of the paper.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import pytest
+import sympy as sp
+
+from navsym.claims import Claim, Optimum, Property, Statement
+from navsym.claims.paper import import_paper, paper_names
+from navsym.prove.equations import list_entries
+from navsym.verification.papers import PaperModule, paper_module
+
+PAPERS = paper_names()
+
+#: Every paper as a parameter, in a group of its own.
+EACH = [pytest.param(name, marks=pytest.mark.xdist_group(name)) for name in PAPERS]
+
+
+@cache
+def claims(paper: str) -> list[tuple[Claim, Statement]]:
+    """Every claim of a paper with its statement."""
+    return [(claim, claim.derive()) for claim in paper_module(import_paper(paper)).claims]
+
+
+@cache
+def module(paper: str) -> PaperModule:
+    """The paper as the verb ``verify`` takes it; its claims have been derived."""
+    known = tuple(replace(claim, derive=lambda statement=statement: statement) for claim, statement in claims(paper))
+    return replace(paper_module(import_paper(paper)), claims=known)
+
+
+def assertions(paper):
+    """Claims with formulas on both sides."""
+    return [(claim, s) for claim, s in claims(paper) if not isinstance(s, Property)]
+
+
+def formulas(statement):
+    """Every expression of a statement, the ends of its ranges included."""
+    fields = ("printed", "derived")
+    if isinstance(statement, Optimum):
+        fields = ("regressors", "functional", "interval", "dual", "support", "weights", "value")
+    found = [part for name in fields for part in list_entries(getattr(statement, name))]
+    ends = [end for pair in statement.box.values() for end in pair if end is not None]
+    return [*found, *(end for end in (sp.sympify(e, strict=True) for e in ends) if end.is_finite)]
+
+
+def symbols_in(statement):
+    return set().union(*(formula.free_symbols for formula in formulas(statement)))
