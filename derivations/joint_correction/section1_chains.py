@@ -5,6 +5,9 @@ from __future__ import annotations
 import sympy as sp
 
 from navsym.claims import CERTIFIED, Bound, Equation, Finding, Property, claim
+from navsym.observability.chains import numerators
+from navsym.observability.linear import linear_relation, pivot_rows
+from navsym.observability.ring import Ring
 from navsym.observability.splits import companion, exact_inverse, unit_row
 from navsym_papers.joint_correction.section1_systems import (
     System,
@@ -43,9 +46,6 @@ def chain_is_a_basis():
 
 def rank_of(rows: sp.MatrixBase) -> int:
     """Exact generic rank: pivots of a fraction-free elimination."""
-    from navsym.observability.chains import numerators
-    from navsym.observability.ring import Ring
-
     ring = Ring.of(rows)
     entries, _ = numerators([rows[r, :] for r in range(rows.rows)], ring)
     return len(pivot_rows(entries, ring).rows)
@@ -112,10 +112,6 @@ def companion_matrix():
 
 def coefficients(basis: sp.MatrixBase, row: sp.MatrixBase) -> list[sp.Expr]:
     """Coefficients of a row in a basis of rows, by the exact elimination of the house."""
-    from navsym.observability.chains import numerators
-    from navsym.observability.linear import linear_relation
-    from navsym.observability.ring import Ring
-
     ring = Ring.of(sp.Matrix.vstack(sp.Matrix(basis), sp.Matrix(row)))
     entries, _ = numerators([*(basis[r, :] for r in range(basis.rows)), row], ring)
     values = linear_relation(entries[:-1], entries[-1], ring)
