@@ -9,7 +9,7 @@ from typing import Any
 
 from navsym.core.errors import DuplicateError, ExpressionSyntaxError, NotFiniteError, TooLargeError
 from navsym.language.files import decode, name_file, read_bytes
-from navsym.language.names import quote
+from navsym.language.names import join_places, quote, too_deep
 
 SIZE = 16_000_000  # bytes
 DEPTH = 64
@@ -39,7 +39,7 @@ def parse_json(data: bytes | str, where: str = "") -> Any:
         message = f"expected JSON ({failure.msg}); got {near}; correct it there"
         raise ExpressionSyntaxError(message, where=f"{where}: {place}" if where else place) from None
     except RecursionError:
-        raise too_deep(where) from None
+        raise too_deep(DEPTH, where) from None
     except ValueError:  # an integer beyond the interpreter's limit of digits
         raise too_many_digits(where) from None
     check_document(document, where)
@@ -52,8 +52,9 @@ def require_unique_keys(pairs: list[tuple[str, Any]], where: str) -> dict[str, A
     if len(table) < len(pairs):
         seen: set[str] = set()
         twice = next(key for key, _ in pairs if key in seen or seen.add(key))  # type: ignore[func-returns-value]
-        place = f"{where}: {printable(twice)}" if where else printable(twice)
-        raise DuplicateError(f"expected every key once; got {quote(twice)} again; remove one of them", where=place)
+        raise DuplicateError(
+            f"expected every key once; got {quote(twice)} again; remove one of them", where=join_places(where, (twice,))
+        )
     return table
 
 
@@ -64,7 +65,7 @@ def check_document(document: Any, where: str) -> None:
         value, path = stack.pop()
         if isinstance(value, (dict, list)):
             if len(path) > DEPTH:
-                raise too_deep(place_of(where, path[:4]))
+                raise too_deep(DEPTH, join_places(where, path[:4]))
             items = value.items() if isinstance(value, dict) else enumerate(value)
             for key, item in items:
                 if isinstance(item, (dict, list)):
@@ -83,37 +84,18 @@ def check_leaf(value: Any, where: str, path: tuple[Any, ...], key: Any) -> None:
         if not math.isfinite(value):
             got = "NaN" if value != value else "an infinite number"
             message = f"expected a finite number; got {got}; replace or remove it"
-            raise NotFiniteError(message, where=place_of(where, (*path, key)))
+            raise NotFiniteError(message, where=join_places(where, (*path, key)))
     elif isinstance(value, str):
         check_text(value, where, path, key)
     elif isinstance(value, int) and value.bit_length() > 1023:
-        raise too_many_digits(place_of(where, (*path, key)))
+        raise too_many_digits(join_places(where, (*path, key)))
 
 
 def check_text(value: str, where: str, path: tuple[Any, ...], key: Any) -> None:
     """Refuse lone surrogates, which no output can carry."""
     if not value.isascii() and any("\ud800" <= char <= "\udfff" for char in value):
         message = f"expected valid Unicode; got a lone surrogate in {quote(value)}; remove it"
-        raise ExpressionSyntaxError(message, where=place_of(where, (*path, key)))
-
-
-def place_of(where: str, path: tuple[Any, ...]) -> str:
-    """The place in words, such as ``"file: models[2].F"``."""
-    text = ""
-    for key in path:
-        text += f"[{key}]" if isinstance(key, int) else f".{printable(key)}" if key != "" else ""
-    text = text.lstrip(".")
-    return f"{where}: {text}" if where and text else where or text or "the document"
-
-
-def printable(key: str) -> str:
-    """A key as it may stand in a place."""
-    return ascii(key[:60])[1:-1]
-
-
-def too_deep(where: str) -> TooLargeError:
-    """The error for too many levels."""
-    return TooLargeError(f"expected at most {DEPTH} levels; got more; flatten the document", where=where)
+        raise ExpressionSyntaxError(message, where=join_places(where, (*path, key)))
 
 
 def too_many_digits(where: str) -> TooLargeError:

@@ -122,6 +122,20 @@ def join_place(where: str, key: object) -> str:
     return f"{where}.{part}" if ": " in where else f"{where}: {part}"
 
 
+def join_places(where: str, path: Iterable[object]) -> str:
+    """The place at the end of a path of keys: ``"file: models[2].F"``."""
+    text = ""
+    for key in path:
+        text += f"[{key}]" if isinstance(key, int) else f".{ascii(str(key)[:60])[1:-1]}" if key != "" else ""
+    text = text.lstrip(".")
+    return f"{where}: {text}" if where and text else where or text or "the document"
+
+
+def too_deep(depth: int, where: str) -> TooLargeError:
+    """The error for too many levels."""
+    return TooLargeError(f"expected at most {depth} levels; got more; flatten the document", where=where)
+
+
 def expect_keys(table: Table, known: Collection[str], where: str) -> None:
     """Refuse a key that the format does not have, naming the one that was probably meant.
 

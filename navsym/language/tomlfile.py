@@ -10,8 +10,7 @@ from typing import Any
 
 from navsym.core.errors import DuplicateError, ExpressionSyntaxError, NavsymError, NotFiniteError, TooLargeError
 from navsym.language.files import decode, name_file, read_bytes
-from navsym.language.jsonfile import place_of
-from navsym.language.names import quote
+from navsym.language.names import join_places, quote, too_deep
 
 SIZE = 256_000  # bytes: the reader of the standard library does about a megabyte a second
 DEPTH = 16  # nesting of brackets, and parts of a dotted key
@@ -51,7 +50,7 @@ def parse_toml(data: bytes | str, where: str = "") -> dict[str, Any]:
     except tomllib.TOMLDecodeError as failure:
         raise syntax_error(str(failure), where) from None
     except RecursionError:
-        raise too_deep(where) from None
+        raise too_deep(DEPTH, where) from None
     except ValueError:  # an integer beyond the interpreter's limit of digits, an impossible date
         message = "expected numbers below 1000 digits and real dates; got another; correct it"
         raise TooLargeError(message, where=where) from None
@@ -91,12 +90,7 @@ def bound_nesting(text: str, where: str) -> None:
         elif piece in ("\n", "=", ","):
             dots = 0
         if depth > DEPTH or dots > DEPTH:
-            raise too_deep(f"{where}: line {row + 1}" if where else f"line {row + 1}")
-
-
-def too_deep(where: str) -> TooLargeError:
-    """The error for too many levels."""
-    return TooLargeError(f"expected at most {DEPTH} levels; got more; flatten the file", where=where)
+            raise too_deep(DEPTH, f"{where}: line {row + 1}" if where else f"line {row + 1}")
 
 
 def check_values(value: Any, where: str, path: tuple[Any, ...]) -> None:
@@ -107,14 +101,14 @@ def check_values(value: Any, where: str, path: tuple[Any, ...]) -> None:
     elif isinstance(value, Numeral):
         if value.lstrip("+-") in ("nan", "inf"):
             message = f"expected a finite number; got {value}; replace it"
-            raise NotFiniteError(message, where=place_of(where, path))
+            raise NotFiniteError(message, where=join_places(where, path))
     elif isinstance(value, int):
         if value.bit_length() > INTEGER_BITS:
             message = f"expected at most {INTEGER_BITS} bits; got {value.bit_length()}; rescale"
-            raise TooLargeError(message, where=place_of(where, path))
+            raise TooLargeError(message, where=join_places(where, path))
     elif not isinstance(value, str):
         message = f"expected text or a number; got a {type(value).__name__}; put it in quotes or remove it"
-        raise ExpressionSyntaxError(message, where=place_of(where, path))
+        raise ExpressionSyntaxError(message, where=join_places(where, path))
 
 
 def toml_text(document: Mapping[str, Any]) -> str:
