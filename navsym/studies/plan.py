@@ -18,22 +18,23 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import asdict, dataclass
 from fractions import Fraction
-from typing import Any
+from typing import Annotated, Any, Literal
 
+import msgspec
 import numpy as np
+from msgspec import Meta
 
 from navsym.claims.paper import import_paper
 from navsym.core.errors import DomainError, NavsymError, NotFiniteError
 from navsym.core.store import key_of
+from navsym.language.structs import fit_struct
 
-KINDS = ("filter", "terrain", "guaranteed", "phases", "two-stage")
-METHODS = ("pulsating", "imm", "polygaussian", "gpb2", "k-pulsating", "exact")
+Kind = Literal["filter", "terrain", "guaranteed", "phases", "two-stage"]
+Method = Literal["pulsating", "imm", "polygaussian", "gpb2", "k-pulsating", "exact"]
 
 
-@dataclass(frozen=True, slots=True)
-class Sweep:
+class Sweep(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A study: kind, number of jobs, seed, and what the kind needs.
 
     runs, steps, method : of ``filter``
@@ -43,31 +44,20 @@ class Sweep:
     second_start, second_end : range of the second parameter
     """
 
-    kind: str
-    jobs: int
-    seed: int = 0
-    runs: int = 16
-    steps: int = 20
-    method: str = "imm"
-    degree: int = 1
+    kind: Kind
+    jobs: Annotated[int, Meta(ge=1, le=10**6)]
+    seed: Annotated[int, Meta(ge=0)] = 0
+    runs: Annotated[int, Meta(ge=1, le=10**5)] = 16
+    steps: Annotated[int, Meta(ge=1, le=10**5)] = 20
+    method: Method = "imm"
+    degree: Annotated[int, Meta(ge=1, le=12)] = 1
     start: str = "1"
     end: str = "2"
-    columns: int = 1
+    columns: Annotated[int, Meta(ge=1, le=10**6)] = 1
     second_start: str = "1"
     second_end: str = "2"
 
     def __post_init__(self) -> None:
-        if self.kind not in KINDS:
-            raise DomainError(f"kind: expected one of {', '.join(KINDS)}; got {self.kind!r:.80}; correct it")
-        if self.method not in METHODS:
-            raise DomainError(f"method: expected one of {', '.join(METHODS)}; got {self.method!r:.80}; correct it")
-        limits = {"jobs": 10**6, "runs": 10**5, "steps": 10**5, "degree": 12, "columns": 10**6}
-        for name, limit in limits.items():
-            value = getattr(self, name)
-            if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= limit:
-                raise DomainError(f"{name}: expected an integer from 1 to {limit}; got {value!r:.80}; correct it")
-        if isinstance(self.seed, bool) or not isinstance(self.seed, int) or self.seed < 0:
-            raise DomainError(f"seed: expected a nonnegative integer; got {self.seed!r:.80}; correct it")
         if self.jobs % self.columns:
             raise DomainError(f"columns: expected a divisor of {self.jobs} jobs; got {self.columns}; correct it")
         for low, high in ((self.start, self.end), (self.second_start, self.second_end)):
@@ -101,16 +91,12 @@ def sweep_from(document: Mapping[str, Any]) -> Sweep:
     """The study that a configuration file describes; raises DomainError that names the key."""
     if not isinstance(document, Mapping):
         raise DomainError(f"expected one JSON object; got {type(document).__name__}; see the keys of a sweep")
-    unknown = set(document) - set(Sweep.__dataclass_fields__)
-    missing = {"kind", "jobs"} - set(document)
-    if unknown or missing:
-        raise DomainError(f"expected the keys of a sweep; got unknown {sorted(unknown)}, missing {sorted(missing)}")
-    return Sweep(**document)
+    return fit_struct(dict(document), Sweep)
 
 
 def fingerprint(sweep: Sweep) -> str:
     """Digest of the configuration: shards of another study are never mixed in."""
-    return key_of("sweep", *(f"{name}={value}" for name, value in sorted(asdict(sweep).items())))
+    return key_of("sweep", *(f"{name}={value}" for name, value in sorted(msgspec.structs.asdict(sweep).items())))
 
 
 def run_job(sweep: Sweep, index: int) -> dict[str, Any]:
@@ -227,7 +213,11 @@ JOBS: dict[str, Callable[[Sweep, int], dict[str, Any]]] = {
 def summary(sweep: Sweep, rows: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
     """The document of ``navsym sweep``: rows in the order of their index, and means for ``filter``."""
     ordered = sorted((dict(row) for row in rows), key=lambda row: row["index"])
-    document: dict[str, Any] = {**asdict(sweep), "fingerprint": fingerprint(sweep), "done": len(ordered)}
+    document: dict[str, Any] = {
+        **msgspec.structs.asdict(sweep),
+        "fingerprint": fingerprint(sweep),
+        "done": len(ordered),
+    }
     if sweep.kind == "filter" and ordered:
         names = [name for name in ordered[0] if name.startswith("mse")]
         document["rmse"] = [float(np.sqrt(np.mean([row[name] for row in ordered]))) for name in names]

@@ -184,7 +184,7 @@ def sweep(
             raise DomainError(f"expected a whole number; got {quote(value)}; give one", where=f"sweep: {name}")
     if size == 0:
         raise DomainError("expected at least one job in a shard; got 0; give more", where="sweep: size")
-    plan = config if isinstance(config, Sweep) else read_plan(config)
+    plan = read_plan(msgspec.structs.asdict(config) if isinstance(config, Sweep) else config)
     try:
         folder = None if out is None else Path(out)
     except TypeError:

@@ -42,7 +42,7 @@ def read_search(
 
 def block(config: Mapping[str, Any], name: str) -> Mapping[str, Any]:
     """A table of the configuration that must be there."""
-    value = config.get(name)
+    value: Any = config.get(name)
     if not isinstance(value, Mapping) and hasattr(value, "keys") and hasattr(value, "__getitem__"):  # a data frame
         return {key: value[key] for key in value.keys()}  # noqa: SIM118
     if not isinstance(value, Mapping):

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import csv
 import io
+import logging
 import math
 import os
 import re
@@ -15,7 +16,7 @@ import struct
 import warnings
 import zipfile
 import zlib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -36,32 +37,18 @@ from navsym.core.errors import (
 )
 from navsym.language.files import name_file, read_bytes, read_text
 
-# Plain GeoTIFF files without a library: one band of numbers in strips or tiles, uncompressed or deflated. The rest of
-# the format is left to rasterio: :func:`read_plain` returns None. Every offset and size is checked against the file and
-# the size of the raster against a limit, before anything is allocated. TIFF 6.0; OGC 19-008, GeoTIFF 1.1.
+# Plain GeoTIFF files: one band of numbers in strips or tiles, uncompressed or deflated. tifffile reads the tags; the
+# blocks are put together here, so that every offset and size is checked against the file, and the size of the raster
+# against a limit, before anything is allocated. The rest of the format is left to rasterio: :func:`read_plain` returns
+# None. TIFF 6.0; OGC 19-008, GeoTIFF 1.1.
 
-#: Tags that are read, and whether a plain file may hold several values.
-WIDTH, HEIGHT, BITS, COMPRESSION, OFFSETS, SAMPLES, ROWS, COUNTS = 256, 257, 258, 259, 273, 277, 278, 279
-PLANES, PREDICTOR, TILE_WIDTH, TILE_HEIGHT, TILE_OFFSETS, TILE_COUNTS, FORMAT = 284, 317, 322, 323, 324, 325, 339
 SCALE, TIEPOINT, MATRIX, KEYS, NODATA = 33550, 33922, 34264, 34735, 42113
-#: Field types: number -> (bytes, letter of struct).
-FIELDS = {
-    1: (1, "B"),
-    2: (1, "c"),
-    3: (2, "H"),
-    4: (4, "I"),
-    5: (8, "Q"),
-    6: (1, "b"),
-    8: (2, "h"),
-    9: (4, "i"),
-    11: (4, "f"),
-    12: (8, "d"),
-}
-#: SampleFormat -> kind of a numpy type.
-KINDS = {1: "u", 2: "i", 3: "f"}
-RAW, DEFLATE, OLD_DEFLATE = 1, 8, 32946
+#: Compressions that are read here: none, and two names of deflate.
+RAW, DEFLATES = 1, (8, 32946)
 #: Entries of a directory, and values of one tag, that a sensible file may have.
 MOST_TAGS, MOST_VALUES = 200, 2_000_000
+#: SampleFormat and bits of the numbers that are read here: unsigned, signed, floating point.
+SAMPLES = {(kind, bits) for kind in (1, 2) for bits in (8, 16, 32)} | {(3, 32), (3, 64)}
 #: GeoKeys: model type (2 = geographic), raster type (2 = heights stand at points, not in areas).
 MODEL_TYPE, RASTER_TYPE = 1024, 1025
 #: Units of angles, lengths and heights, and the system of coordinates; codes of the metre, the degree, Web Mercator.
@@ -103,93 +90,73 @@ def read_plain(data: bytes, most: int) -> Plain | None:
 
     most : largest number of heights ; raises Damaged, and OverflowError above ``most``
     """
-    tags, order = directory(data)
-    dtype = sample_type(tags, order)
-    if dtype is None or MATRIX in tags or SCALE not in tags or TIEPOINT not in tags:
-        return None
-    shape = (whole(tags, HEIGHT), whole(tags, WIDTH))
-    if min(shape) < 1 or math.prod(shape) > most:
-        raise OverflowError(f"shape {shape}")
-    heights = assembled(data, tags, shape, dtype)
-    keys = geo_keys(tags)
-    transform = placed(tags, keys.get(RASTER_TYPE) == 2)
-    return Plain(heights, transform, void(tags), keys.get(MODEL_TYPE) == 2, foreign(keys, transform.a))
+    require_small_directory(data)
+    import tifffile
+
+    silence = logging.getLogger("tifffile")
+    silence.disabled = True  # damage is an error here, not a remark in a log
+    try:
+        with tifffile.TiffFile(io.BytesIO(data)) as file:
+            return None if file.is_bigtiff else plain_page(file.pages.first, data, file.byteorder, most)
+    except (Damaged, OverflowError):
+        raise
+    except Exception as reason:  # whatever the library makes of a damaged directory
+        raise Damaged(f"{type(reason).__name__}: {reason}") from None
+    finally:
+        silence.disabled = False
 
 
-def directory(data: bytes) -> tuple[dict[int, tuple[Any, ...]], str]:
-    """Values of all known tags of the first directory, and the byte order."""
+def require_small_directory(data: bytes) -> None:
+    """Damaged for a first directory that announces more than a sensible file has; nothing of it is read before."""
     order = {b"II": "<", b"MM": ">"}.get(data[:2])
     if order is None or len(data) < 8:
         raise Damaged("no TIFF header")
     version, start = struct.unpack(order + "HI", data[2:8])
     if version != 42:
-        return {}, order
-    (entries,) = struct.unpack(order + "H", part(data, start, 2))
+        return
+    (entries,) = struct.unpack(order + "H", data[start : start + 2].ljust(2, b"\0"))
     if not 0 < entries <= MOST_TAGS:
         raise Damaged(f"{entries} entries in the directory")
-    table = part(data, start + 2, 12 * entries)
-    return {tag: values for tag, values in fields(data, table, order)}, order
+    layout = np.dtype([("tag", order + "u2"), ("type", order + "u2"), ("count", order + "u4"), ("at", order + "u4")])
+    if start + 2 + 12 * entries > len(data):
+        raise Damaged("the directory ends too early")
+    if np.frombuffer(data, layout, entries, start + 2)["count"].max() > MOST_VALUES:
+        raise Damaged("a tag with too many values")
 
 
-def fields(data: bytes, table: bytes, order: str) -> Iterator[tuple[int, tuple[Any, ...]]]:
-    """(tag, values) of every entry of a known type."""
-    for k in range(0, len(table), 12):
-        tag, kind, count = struct.unpack(order + "HHI", table[k : k + 8])
-        if kind not in FIELDS:
-            continue
-        size, letter = FIELDS[kind]
-        if count > MOST_VALUES:
-            raise Damaged(f"{count} values of tag {tag}")
-        at = table[k + 8 : k + 12]
-        raw = at[: size * count] if size * count <= 4 else part(data, struct.unpack(order + "I", at)[0], size * count)
-        yield tag, struct.unpack(f"{order}{count}{letter}", raw)
-
-
-def part(data: bytes, start: int, size: int) -> bytes:
-    """Bytes of the file; Damaged when it ends before."""
-    if start + size > len(data):
-        raise Damaged(f"{size} bytes at {start} of {len(data)}")
-    return data[start : start + size]
-
-
-def whole(tags: dict[int, tuple[Any, ...]], tag: int, default: int | None = None) -> int:
-    """One whole number."""
-    values = tags.get(tag, () if default is None else (default,))
-    if len(values) < 1 or not isinstance(values[0], int):
-        raise Damaged(f"tag {tag} missing")
-    return values[0]
-
-
-def sample_type(tags: dict[int, tuple[Any, ...]], order: str) -> np.dtype[Any] | None:
-    """Type of one sample, or None when the file is not plain."""
-    if not tags or whole(tags, SAMPLES, 1) != 1 or whole(tags, PLANES, 1) != 1 or whole(tags, PREDICTOR, 1) != 1:
+def plain_page(page: Any, data: bytes, order: str, most: int) -> Plain | None:
+    """The band of a page of tifffile, which has read the tags; None when it is not plain."""
+    tags = {tag.code: tag.value for tag in page.tags if tag.code in (SCALE, TIEPOINT, MATRIX, KEYS, NODATA)}
+    if page.samplesperpixel != 1 or page.planarconfig != 1 or page.predictor != 1 or MATRIX in tags:
         return None
-    bits, kind = whole(tags, BITS, 1), KINDS.get(whole(tags, FORMAT, 1), "")
-    known = (kind == "f" and bits in (32, 64)) or (kind in ("u", "i") and bits in (8, 16, 32))
-    if not known or whole(tags, COMPRESSION, 1) not in (RAW, DEFLATE, OLD_DEFLATE):
+    known = page.dtype is not None and (page.sampleformat, page.bitspersample) in SAMPLES
+    if not known or page.compression not in (RAW, *DEFLATES) or SCALE not in tags or TIEPOINT not in tags:
         return None
-    return np.dtype(f"{order}{kind}{bits // 8}")
+    shape = (int(page.imagelength), int(page.imagewidth))
+    if min(shape) < 1 or math.prod(shape) > most:
+        raise OverflowError(f"shape {shape}")
+    heights = assembled(data, page, shape, np.dtype(page.dtype).newbyteorder(order))  # type: ignore[call-overload]
+    keys = geo_keys(tags.get(KEYS, ()))
+    transform = placed(tags[SCALE], tags[TIEPOINT], keys.get(RASTER_TYPE) == 2)
+    return Plain(heights, transform, void(tags.get(NODATA, "")), keys.get(MODEL_TYPE) == 2, foreign(keys, transform.a))
 
 
-def assembled(data: bytes, tags: dict[int, tuple[Any, ...]], shape: tuple[int, int], dtype: np.dtype[Any]) -> Any:
+def assembled(data: bytes, page: Any, shape: tuple[int, int], dtype: np.dtype[Any]) -> NDArray[Any]:
     """Strips or tiles put together; what tiles have beyond the edge is cut off."""
     ny, nx = shape
-    if TILE_OFFSETS in tags:
-        high, wide = whole(tags, TILE_HEIGHT), whole(tags, TILE_WIDTH)
-        offsets, counts = tags[TILE_OFFSETS], tags.get(TILE_COUNTS, ())
-    else:
-        high, wide = min(whole(tags, ROWS, ny), ny), nx
-        offsets, counts = tags.get(OFFSETS, ()), tags.get(COUNTS, ())
+    high, wide = (page.tilelength, page.tilewidth) if page.is_tiled else (min(page.rowsperstrip, ny), nx)
     if high < 1 or wide < 1 or high * wide > 4 * ny * nx + 65536:
         raise Damaged(f"blocks of {high} by {wide}")
     across, down = -(-nx // wide), -(-ny // high)
-    if not len(offsets) == len(counts) == across * down:
-        raise Damaged(f"{len(offsets)} blocks instead of {across * down}")
+    if not len(page.dataoffsets) == len(page.databytecounts) == across * down:
+        raise Damaged(f"{len(page.dataoffsets)} blocks instead of {across * down}")
     out = np.empty(shape, dtype=dtype.newbyteorder("="))
-    for number, (start, count) in enumerate(zip(offsets, counts, strict=True)):
+    for number, (start, count) in enumerate(zip(page.dataoffsets, page.databytecounts, strict=True)):
         top, left = number // across * high, number % across * wide
-        rows = high if TILE_OFFSETS in tags else min(high, ny - top)
-        block = block_of(part(data, start, count), whole(tags, COMPRESSION, 1), rows * wide, dtype)
+        rows = high if page.is_tiled else min(high, ny - top)
+        if start + count > len(data):
+            raise Damaged(f"{count} bytes at {start} of {len(data)}")
+        block = block_of(data[start : start + count], page.compression, rows * wide, dtype)
         block = block.reshape(rows, wide)[: ny - top, : nx - left]
         out[top : top + block.shape[0], left : left + block.shape[1]] = block
     return out
@@ -199,21 +166,17 @@ def block_of(raw: bytes, compression: int, samples: int, dtype: np.dtype[Any]) -
     """Samples of one block; a deflated one is never inflated beyond its announced size."""
     size = samples * dtype.itemsize
     if compression != RAW:
-        try:
-            raw = zlib.decompressobj().decompress(raw, size)
-        except zlib.error as reason:
-            raise Damaged(str(reason)) from None
+        raw = zlib.decompressobj().decompress(raw, size)
     if len(raw) < size:
         raise Damaged(f"a block of {len(raw)} bytes instead of {size}")
     return np.frombuffer(raw, dtype=dtype, count=samples)
 
 
-def placed(tags: dict[int, tuple[Any, ...]], points: bool) -> Transform:
+def placed(scale: Any, tie: Any, points: bool) -> Transform:
     """Place of the pixels' corners from one tie point and the scale.
 
     points : the tie point is where a height stands, not the corner of its pixel
     """
-    scale, tie = tags[SCALE], tags[TIEPOINT]
     if len(scale) < 2 or len(tie) < 6 or not all(isinstance(v, float) for v in (*scale[:2], *tie[:6])):
         raise Damaged("scale or tie point")
     if not all(math.isfinite(v) for v in (*scale[:2], *tie[:6])):
@@ -223,9 +186,8 @@ def placed(tags: dict[int, tuple[Any, ...]], points: bool) -> Transform:
     return Transform(a, tie[3] - (tie[0] + half) * a, e, tie[4] - (tie[1] + half) * e)
 
 
-def geo_keys(tags: dict[int, tuple[Any, ...]]) -> dict[int, int]:
+def geo_keys(values: Any) -> dict[int, int]:
     """Keys whose value stands in the directory of keys itself."""
-    values = tags.get(KEYS, ())
     rows = [values[k : k + 4] for k in range(4, len(values) - 3, 4)]
     return {row[0]: row[3] for row in rows if row[1] == 0}
 
@@ -242,14 +204,11 @@ def foreign(keys: dict[int, int], spacing: float) -> str | None:
     return None
 
 
-def void(tags: dict[int, tuple[Any, ...]]) -> float | None:
+def void(written: Any) -> float | None:
     """The value that means no height, written as text."""
-    text = b"".join(tags.get(NODATA, ())) if all(isinstance(c, bytes) for c in tags.get(NODATA, ())) else b""
-    text = text.strip(b"\0 ")
-    if not text:
-        return None
+    text = written.strip("\0 ") if isinstance(written, str) else ""
     try:
-        return float(text.decode("ascii"))
+        return float(text) if text else None
     except ValueError:
         raise Damaged("the value for no data") from None
 
@@ -469,7 +428,7 @@ def read_geotiff(path: Path) -> Raster:
         raise TooLargeError(
             f"expected at most {MOST_HEIGHTS} numbers; got {reason!s:.60}; cut the map", where=name_file(path)
         ) from None
-    except (Damaged, struct.error, UnicodeDecodeError) as reason:
+    except Damaged as reason:
         raise damaged(path, "a GeoTIFF", reason) from None
     if plain is not None:
         ours(plain.foreign, path)
