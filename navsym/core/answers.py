@@ -31,6 +31,12 @@ class Answer:
 
         return navsym.export(self, to=to, out=out)
 
+    def plot(self) -> Any:
+        """A picture of this answer: :func:`navsym.plot`."""
+        import navsym
+
+        return navsym.plot(self)
+
     def certificates(self) -> list[Mapping[str, Any]]:
         """The certificates that :meth:`check` replays."""
         return []

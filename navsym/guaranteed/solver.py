@@ -17,23 +17,23 @@ from typing import TYPE_CHECKING, Any
 from flint import arb
 
 from navsym.claims import CERTIFIED, OPEN, Status
-from navsym.claims.display import card, shortened, table, verdict_words
+from navsym.claims.display import mark_verdict, shorten_digits, write_card, write_table
 from navsym.core.answers import Answer
 from navsym.core.balls import precision
 from navsym.core.errors import DomainError
 from navsym.core.exact import decimal
 from navsym.core.numbers import Number
 from navsym.guaranteed.certificate.basis import Basis, DependentError, make_basis
-from navsym.guaranteed.certificate.enclosure import Problem
-from navsym.guaranteed.certificate.fixed import Certified, certify
+from navsym.guaranteed.certificate.enclosure import PanelProblem
+from navsym.guaranteed.certificate.fixed import CertifiedOptimum, certify
 from navsym.guaranteed.estimability import drop_dependent
 from navsym.guaranteed.problem import GuaranteedProblem, problem_of
 from navsym.guaranteed.search.exchange import find_contacts
-from navsym.guaranteed.separation import FAR, separated
+from navsym.guaranteed.separation import FAR, separate_regressors
 from navsym.guaranteed.time_varying import ERROR
-from navsym.guaranteed.uniqueness import only_optimal, several_optimal
+from navsym.guaranteed.uniqueness import has_other_optimum, is_only_optimum
 from navsym.language.expression import to_text
-from navsym.language.names import shown
+from navsym.language.names import quote
 from navsym.models.model import file_in_errors
 
 if TYPE_CHECKING:
@@ -163,26 +163,20 @@ class Estimator(Answer):
         >>> drift.compare(solvers=[])
         Comparison(optimum 4.82843, least squares 7.02971, Kalman filter 7.02971, 0 solvers)
         """
-        from navsym.guaranteed.baselines import LP_SOLVERS, compare
+        from navsym.guaranteed.baselines import LP_SOLVERS, compare_estimators
 
-        return compare(self, LP_SOLVERS if solvers is None else solvers, progress)
-
-    def plot(self) -> Any:
-        """The dual polynomial within its bound, with the contacts: :func:`navsym.plot`."""
-        import navsym
-
-        return navsym.plot(self)
+        return compare_estimators(self, LP_SOLVERS if solvers is None else solvers, progress)
 
     def __repr__(self) -> str:
         count = f"{len(self.support)} measurement{'' if len(self.support) == 1 else 's'}"
-        return f"Estimator({shown(self.target)[1:-1]}: {self.value}, {count}, {self.status})"
+        return f"Estimator({quote(self.target)[1:-1]}: {self.value}, {count}, {self.status})"
 
     def _repr_html_(self) -> str:
         """The estimator as a table, for notebooks."""
-        value = self.lower if self.lower == self.upper else f"{shortened(self.lower)} to {shortened(self.upper)}"
-        head = f"{html.escape(self.target)}: {html.escape(value)} {verdict_words(str(self.status))}"
-        rows = [(p.measurement, shortened(p.text[0]), shortened(p.text[1])) for p in self.support]
-        return card([head, table(("measurement", "time", "weight"), rows)], str(self.status))
+        value = self.lower if self.lower == self.upper else f"{shorten_digits(self.lower)} to {shorten_digits(self.upper)}"
+        head = f"{html.escape(self.target)}: {html.escape(value)} {mark_verdict(str(self.status))}"
+        rows = [(p.measurement, shorten_digits(p.text[0]), shorten_digits(p.text[1])) for p in self.support]
+        return write_card([head, write_table(("measurement", "time", "weight"), rows)], str(self.status))
 
 
 def solve(
@@ -215,7 +209,7 @@ def solve(
     ('4.828427124746190097603377', True)
     """
     if not isinstance(digits, int) or isinstance(digits, bool) or not 1 <= digits <= MOST_DIGITS:
-        got = shown(digits)
+        got = quote(digits)
         message = f"expected 1 to {MOST_DIGITS} digits; got {got}; choose a whole number between"
         raise DomainError(message, where="solve: digits")
     with file_in_errors(model):
@@ -224,21 +218,21 @@ def solve(
 
 def solve_problem(problem: GuaranteedProblem, digits: int = 30) -> Estimator:
     """The estimator of a problem, see :func:`solve`."""
-    exact, kept, basis = independent(problem)
-    found = certified(exact, digits, basis)
+    exact, kept, basis = independent_problem(problem)
+    found = certify_separated(exact, digits, basis)
     unique = found.unique
     if unique is None and not problem.error:
         contacts, bound = find_contacts(basis.panels), found.dual
-        unique = False if several_optimal(exact, contacts, bound) else only_optimal(exact, basis, contacts, bound)
+        unique = False if has_other_optimum(exact, contacts, bound) else is_only_optimum(exact, basis, contacts, bound)
     dual = ["0"] * len(problem.functional)
     for k, x in zip(kept, found.dual, strict=True):
         dual[k] = decimal(x, digits)
     return Estimator(
         Number(found.certificate["lower"], found.certificate["upper"]),
-        support_points(problem, exact, found, digits),
+        support_rows(problem, exact, found, digits),
         tuple(dual),
         unique,
-        with_error(problem, found.certificate),
+        certificate_with_error(problem, found.certificate),
         CERTIFIED if found.reaches(digits) else OPEN,
         problem,
         found.width,
@@ -246,9 +240,11 @@ def solve_problem(problem: GuaranteedProblem, digits: int = 30) -> Estimator:
     )
 
 
-def certified(exact: Problem, digits: int, basis: Basis) -> Certified:
+def certify_separated(exact: PanelProblem, digits: int, basis: Basis) -> CertifiedOptimum:
     """The optimum and its certificate; of the same problem in other unknowns, where too much cancels in these."""
-    other = separated(exact) if basis.loss >= FAR and not any(panel.values for panel in exact.panels) else None
+    other = (
+        separate_regressors(exact) if basis.loss >= FAR and not any(panel.values for panel in exact.panels) else None
+    )
     better = basis if other is None else make_basis(other.problem)
     if other is None or better.loss >= basis.loss:
         return certify(exact, digits, basis)
@@ -260,7 +256,7 @@ def certified(exact: Problem, digits: int, basis: Basis) -> Certified:
     return min(found, certify(exact, digits, basis), key=lambda answer: answer.width)
 
 
-def with_error(problem: GuaranteedProblem, certificate: Mapping[str, Any]) -> Mapping[str, Any]:
+def certificate_with_error(problem: GuaranteedProblem, certificate: Mapping[str, Any]) -> Mapping[str, Any]:
     """The certificate; where regressors have an error, it holds for every value of it up to its bound."""
     if not problem.error:
         return certificate
@@ -268,8 +264,8 @@ def with_error(problem: GuaranteedProblem, certificate: Mapping[str, Any]) -> Ma
     return {**certificate, "kind": "sliver", "parameter": ERROR.name, "from": f"-{bound}", "to": bound}
 
 
-def support_points(
-    problem: GuaranteedProblem, exact: Problem, found: Certified, digits: int
+def support_rows(
+    problem: GuaranteedProblem, exact: PanelProblem, found: CertifiedOptimum, digits: int
 ) -> tuple[SupportPoint, ...]:
     """Times and weights of a certified solution, by measurement and time.
 
@@ -296,23 +292,23 @@ def enclosing_number(x: arb, digits: int) -> Number:
 # Unknowns that the measurements do not tell apart
 
 
-def independent(problem: GuaranteedProblem) -> tuple[Problem, list[int], Basis]:
+def independent_problem(problem: GuaranteedProblem) -> tuple[PanelProblem, list[int], Basis]:
     """The problem without unknowns whose regressors depend on the others, exactly.
 
     Returns the reduced problem, the unknowns that are left and its basis. Raises NotEstimableError.
     """
     kept = list(range(len(problem.functional)))
     while True:
-        exact = restricted(problem, kept)
+        exact = restrict_problem(problem, kept)
         try:
             return exact, kept, make_basis(exact)
         except DependentError as found:
             drop_dependent(problem, kept, found.index, found.relation)
 
 
-def restricted(problem: GuaranteedProblem, kept: list[int]) -> Problem:
+def restrict_problem(problem: GuaranteedProblem, kept: list[int]) -> PanelProblem:
     """The problem with some of the unknowns only."""
     panels = tuple(
         replace(panel, functions=tuple(panel.functions[k] for k in kept)) for panel in problem.exact().panels
     )
-    return Problem(panels, tuple(problem.functional[k] for k in kept))
+    return PanelProblem(panels, tuple(problem.functional[k] for k in kept))

@@ -203,7 +203,7 @@ def test_a_full_disk_leaves_nothing_behind(tmp_path: Path, monkeypatch: pytest.M
         if len(calls) == 3:
             raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("navsym.export.folder.os.chmod", full)
+    monkeypatch.setattr("os.chmod", full)
     with pytest.raises(FolderError, match="No space left") as error:
         write_folder(tmp_path / "e", {"c/a.c": "x", "c/b.c": "x", "certificates/d.json": "x"})
     assert error.value.kind == "output" and not (tmp_path / "e").exists()
@@ -211,7 +211,7 @@ def test_a_full_disk_leaves_nothing_behind(tmp_path: Path, monkeypatch: pytest.M
 
 def test_what_is_replaced_stays_when_the_disk_is_full(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     write_folder(tmp_path, {"a": "old", "b": "old"})
-    monkeypatch.setattr("navsym.export.folder.os.chmod", lambda path, mode: os.close(-1))
+    monkeypatch.setattr("os.chmod", lambda path, mode: os.close(-1))
     with pytest.raises(FolderError):
         write_folder(tmp_path, {"a": "new", "b": "new"}, force=True)
     assert sorted((p.name, p.read_text()) for p in tmp_path.iterdir()) == [("a", "old"), ("b", "old")]

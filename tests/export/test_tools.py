@@ -134,7 +134,7 @@ def test_text_of_a_claim_cannot_leave_the_script_of_the_page() -> None:
 
 def test_the_table_says_what_ran_and_what_did_not(tmp_path: Path, monkeypatch) -> None:
     targets = [TARGETS[n] for n in ("python", "julia")]
-    monkeypatch.setattr("navsym.export.languages.targets.answers", lambda path: False)
+    monkeypatch.setattr(targets, "answers", lambda path: False)
     document = closing_table({"g": [samples.by_name("Phi33")]}, targets, 6)
     (record,) = document["functions"]
     assert record["languages"]["python"]["status"] == "verified" and record["languages"]["julia"]["worst"] is None

@@ -11,16 +11,16 @@ import sympy as sp
 from flint import fmpq
 
 from navsym.claims import Status
-from navsym.claims.display import card, displayed, latex_of, table
+from navsym.claims.display import display_latex, latex_of, write_card, write_table
 from navsym.core.answers import Answer
 from navsym.core.balls import enclose
 from navsym.core.errors import DomainError
 from navsym.core.exact import decimal, to_fmpq
 from navsym.guaranteed.phases.boundaries import Boundary
-from navsym.guaranteed.phases.closed_forms import Closed
+from navsym.guaranteed.phases.closed_forms import ClosedForm
 from navsym.guaranteed.phases.family import Family
 from navsym.guaranteed.phases.narrow import Sliver
-from navsym.guaranteed.phases.patterns import Span
+from navsym.guaranteed.phases.patterns import PatternInterval
 from navsym.language.expression import parse, to_text
 from navsym.language.values import write_value
 
@@ -67,10 +67,10 @@ class Regime:
     """
 
     family: Family
-    span: Span
+    span: PatternInterval
     lower: sp.Expr
     upper: sp.Expr
-    closed: Closed | None
+    closed: ClosedForm | None
     status: Status
     table: tuple[dict[str, Any], ...] = ()
     certificates: tuple[Mapping[str, Any], ...] = ()
@@ -226,12 +226,6 @@ class Phases(Answer):
         thin = [dict(s.certificate) for regime in self.regimes for s in regime.slivers]
         return ranges + thin + [dict(tie) for tie in self.ties]
 
-    def plot(self) -> Any:
-        """Value and times by the parameter, regimes shaded: :func:`navsym.plot`."""
-        import navsym
-
-        return navsym.plot(self)
-
     def __repr__(self) -> str:
         range_ = f"{self.parameter} from {end_text(self.lower)} to {end_text(self.upper)}"
         counts = [
@@ -246,15 +240,15 @@ class Phases(Answer):
         heads = ("from", "to", "value", "times", "verdict")
         rows = [
             (
-                displayed(latex_of(r.lower)),
-                displayed(latex_of(r.upper)),
-                "a table of enclosures" if r.value is None else displayed(latex_of(r.value)),
-                displayed(latex_of(tuple(point.at for point in r.support))) if r.closed else "",
+                display_latex(latex_of(r.lower)),
+                display_latex(latex_of(r.upper)),
+                "a table of enclosures" if r.value is None else display_latex(latex_of(r.value)),
+                display_latex(latex_of(tuple(point.at for point in r.support))) if r.closed else "",
                 str(r.status),
             )
             for r in self.regimes
         ]
-        return card([html.escape(f"{self.target} by {self.parameter}"), table(heads, rows)])
+        return write_card([html.escape(f"{self.target} by {self.parameter}"), write_table(heads, rows)])
 
 
 def end_text(end: sp.Expr, side: int = 0) -> str:
