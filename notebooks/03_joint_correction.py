@@ -275,7 +275,12 @@ for found in claims_of(sensors):
     require(found)
     print(f"{found.number:24s} {found.title}")
 velocities = restore_observability(sensors.measured_by(("sigma_c1", "sigma_c2")))
-print("hidden by the velocities:", velocities.hidden, "- a measurement of one of these is enough:", velocities.sets)
+print(
+    "unobservable by the velocities:",
+    velocities.unobservable,
+    "- a measurement of one of these is enough:",
+    velocities.sets,
+)
 assert velocities.proved and velocities.fewest == 1
 
 # %% [markdown]

@@ -56,7 +56,9 @@ def one_coordinate_is_enough():
     """With velocity alone four variables are hidden; either coordinate of the position shows all four of them."""
     velocity = ("sigma_c1", "sigma_c2")
     answer = restore_observability(measured_by(velocity), others(velocity))
-    return Property(printed=(4, (("sigma_M1",), ("sigma_M2",))), derived=found(answer, (answer.hidden, answer.sets)))
+    return Property(
+        printed=(4, (("sigma_M1",), ("sigma_M2",))), derived=found(answer, (answer.unobservable, answer.sets))
+    )
 
 
 @claim("sensors.triples")

@@ -84,9 +84,9 @@ def as_text(data: Mapping[str, Any]) -> str:
 
 
 def overview(data: Mapping[str, Any]) -> str:
-    """What each measurement observes, and what none of them does."""
+    """The dimension that each measurement observes, and the unobservable directions."""
     verdict = "observable" if data["observable"] else "NOT observable"
-    hidden = data["unobservable_directions"]
+    directions = data["unobservable_directions"]
     return "\n".join(
         [
             f"{data['n']} states, joint dimension {data['joint_dimension']}: {verdict}\n",
@@ -94,7 +94,7 @@ def overview(data: Mapping[str, Any]) -> str:
                 ["measurement", "dimension", "companion"],
                 [[m["name"], str(m["dimension"]), ", ".join(m["companion"])] for m in data["measurements"]],
             ),
-            *(["unobservable: " + "; ".join(hidden) + "\n"] if hidden else []),
+            *(["unobservable: " + "; ".join(directions) + "\n"] if directions else []),
         ]
     )
 
@@ -146,7 +146,7 @@ def split_text(chosen: Mapping[str, Any]) -> str:
 
 
 def restored_text(data: Mapping[str, Any]) -> str:
-    """What is hidden, what is needed at least, and the smallest sets of candidates that are enough."""
+    """The number of further measurements needed at least, and the smallest sets of candidates that are enough."""
     if not data["hidden"]:
         return "every state is shown already: no further measurement is needed\n"
     lines = [f"further measurements: at least {data['needed']} needed, whatever they measure"]

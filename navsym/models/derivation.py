@@ -61,7 +61,7 @@ class Conditions:
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Derivation(Answer):
-    """What follows from a model before an estimator is chosen.
+    """Everything that follows from a model before an estimator is chosen.
 
     states, measurements, sigmas : names and bounds, as the model gives them
     system        : F (n, n), one matrix per piece; empty for regressors

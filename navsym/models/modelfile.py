@@ -69,7 +69,7 @@ class ModelFile:
 
     time         : the symbol t, which F and h may contain
     states       : n names
-    pieces       : one piece for a constant (or continuously varying) F, otherwise one per stretch
+    pieces       : one piece for a constant (or continuously varying) F, otherwise one for each [[piece]]
     T            : length of the interval, None when the file has no [interval]
     targets      : name -> n expressions, a functional of the state at T
     """
@@ -91,7 +91,7 @@ class ModelFile:
     def F(self) -> Matrix:
         """The matrix of a model in one piece. Raises ShapeError when there are several."""
         if len(self.pieces) != 1:
-            message = f"expected one F; got {len(self.pieces)} pieces; do use a method that takes pieces"
+            message = f"expected one F; got {len(self.pieces)} pieces; use a method that takes pieces"
             raise ShapeError(message)
         return self.pieces[0].F
 
@@ -170,7 +170,7 @@ def read_rows(value: Any, known: Known, where: str) -> tuple[tuple[Expr, ...], .
     items = as_list(value, where, "a list of expressions")
     nested = [isinstance(item, list) for item in items]
     if any(nested) and not all(nested):
-        message = "expected expressions or rows of expressions; got both; do write one list per measurement"
+        message = "expected expressions or rows of expressions; got both; write one list per measurement"
         raise ShapeError(message, where=where)
     rows = items if nested[0] else [items]
     size = len(rows[0])
@@ -210,10 +210,10 @@ def read_targets(document: Table, known: Known, names: tuple[str, ...], where: s
         here = join_place(place, label)
         functional = read_vector(row, known, here, n, "one per unknown")
         if all(weight == 0 for weight in functional):
-            raise DomainError("expected a functional that is not zero; got zeros; do correct it", where=here)
+            raise DomainError("expected a functional that is not zero; got zeros; correct it", where=here)
         targets[as_label(label, here)] = functional
     if not targets:
-        raise EmptyError("expected at least one target; got none; do add one or drop the table", where=place)
+        raise EmptyError("expected at least one target; got none; add one or drop the table", where=place)
     return targets
 
 
@@ -240,7 +240,7 @@ def model_from(document: Table, where: str = "", values: Mapping[str, str] | Non
         return read_basis(document, where, free, known)
     if "model" not in document:
         expect_keys(document, TABLES, where)
-        raise EmptyError("expected a [model] or a [basis]; got neither; do add one", where=where)
+        raise EmptyError("expected a [model] or a [basis]; got neither; add one", where=where)
     return read_system(document, where, free, known)
 
 
@@ -251,11 +251,11 @@ def read_values(values: Mapping[str, str], parameters: Mapping[str, Parameter]) 
         where = f"--set {quote(name)[1:-1]}"
         if name not in parameters:
             hint = suggest_nearest(name, parameters)
-            message = f"expected a declared parameter; got {quote(name)}; do correct it: {hint}"
+            message = f"expected a declared parameter; got {quote(name)}; correct it: {hint}"
             raise UnknownSymbolError(message, where=where)
         value = parse(text, {}, where=where)
         if not admitted(value, parameters[name]):
-            message = f"expected a value in the declared range of {name}; got {quote(text)}; do correct it"
+            message = f"expected a value in the declared range of {name}; got {quote(text)}; correct it"
             raise DomainError(message, where=where)
         given[name] = value
     return given
@@ -318,16 +318,16 @@ def read_pieces(document: Table, model: Table, moving: Known, n: int, T: Expr | 
         F = require_key(model, "F", join_place(where, "model"))
         return (Piece(ZERO, T, read_square(F, moving, join_place(where, "model.F"), n, why)),)
     if "F" in model:
-        raise DuplicateError("expected F or [[piece]]; got both; do remove one of them", where=place)
+        raise DuplicateError("expected F or [[piece]]; got both; remove one of them", where=place)
     blocks = as_list(document["piece"], place, "[[piece]] blocks")
     pieces = tuple(read_piece(block, moving, n, join_place(place, i)) for i, block in enumerate(blocks))
     ends = [ZERO, *(piece.end for piece in pieces)]
     for i, piece in enumerate(pieces):
         if piece.start != ends[i]:
-            message = f"expected a start at {cut_text(ends[i])}; got {cut_text(piece.start)}; do close the gap"
+            message = f"expected a start at {cut_text(ends[i])}; got {cut_text(piece.start)}; close the gap"
             raise DomainError(message, where=join_place(join_place(place, i), "from"))
     if T is not None and ends[-1] != T:
-        message = f"expected the last piece to end at T = {cut_text(T)}; got {cut_text(ends[-1])}; do correct it"
+        message = f"expected the last piece to end at T = {cut_text(T)}; got {cut_text(ends[-1])}; correct it"
         raise DomainError(message, where=join_place(join_place(place, len(pieces) - 1), "to"))
     return pieces
 

@@ -40,7 +40,9 @@ VARIABLE = "p"
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Observability(Answer):
-    """Which directions of the state the measurements of a constant model determine, for generic parameters.
+    """Observability of a constant model: the directions of the state that its measurements determine.
+
+    Ranks hold for generic parameters; ``rank_drops`` lists the special ones.
 
     name                : of the model
     joint               : chains, dimensions and the staircase of all measurements
@@ -72,7 +74,7 @@ class Observability(Answer):
 
     @property
     def measurements(self) -> tuple[MeasurementObservability, ...]:
-        """What each measurement observes by itself: name, dimension, basis (m, n), companion coefficients."""
+        """The subspace of each measurement by itself: name, dimension, basis (m, n), companion coefficients."""
         return self.joint.measurements
 
     @property

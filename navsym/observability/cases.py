@@ -39,7 +39,7 @@ LAST_PRODUCTS, LAST_MINORS, LAST_TERMS = 16_000_000, 8, 40_000
 
 @dataclass(slots=True)
 class Search:
-    """What is found on the way: systems on which the rank drops, cases left, and whether all were decided."""
+    """The state of the search: systems on which the rank drops, cases left, and whether all were decided."""
 
     ring: Ring
     found: list[System] = field(default_factory=list)
@@ -117,7 +117,7 @@ def visit(search: Search, rows: Matrix, rank: int, system: System) -> None:
 
 
 def is_whole(search: Search, rows: Matrix, rank: int, system: System, pivot: Poly) -> bool:
-    """Whether the rank is proved to be smaller on all of a system on which elimination stopped at a pivot.
+    """True when the rank is proved to be smaller on all of a system on which elimination stopped at a pivot.
 
     Off pivot = 0 it is. An irreducible system has the rest in its closure; otherwise the part with
     pivot = 0 is examined on its own, and must be whole again.
@@ -140,7 +140,7 @@ def is_whole(search: Search, rows: Matrix, rank: int, system: System, pivot: Pol
 
 
 def is_irreducible(system: System) -> bool:
-    """Whether the zeros of a system are known not to split: all equations but one solve for a variable each.
+    """True when the zeros of a system are known not to split: all equations but one solve for a variable each.
 
     An equation c x - g with a number c and without x in g only names x; it does not occur in the others.
     """
@@ -262,5 +262,5 @@ def pivot_on(work: Matrix, step: int, free: Sequence[int], system: System) -> tu
 
 
 def is_covered(system: System, found: Sequence[System]) -> bool:
-    """Whether the zeros of a system visibly lie inside a drop that is known already."""
+    """True when the zeros of a system visibly lie inside a drop that is known already."""
     return any(all(lies_in_ideal(f, system) for f in other) for other in found)

@@ -104,7 +104,7 @@ def residue_relation(vectors: Matrix, m: int, point: Sequence[int]) -> list[int]
 
 
 def annihilates(theta: Sequence[Poly], vectors: Matrix, ring: Ring) -> bool:
-    """Whether a_{m+1} = sum theta_j a_j, component by component."""
+    """True when a_{m+1} = sum theta_j a_j, component by component."""
     zero = ring.constant(0)
     size = len(theta)
     return all(
@@ -258,9 +258,7 @@ def chains_of(model: LinearModel) -> Chains:
 def need_chains(model: LinearModel) -> None:
     """Refuse what has no chains: time-varying or too large models, and models without a measurement."""
     if not model.constant:
-        raise DomainError(
-            f"expected constant F and H; got entries with the time {model.time}; freeze them at an instant"
-        )
+        raise DomainError(f"expected constant F and H; got entries with the time {model.time}; freeze them at one time")
     if model.size > STATES:
         raise TooLargeError(f"expected at most {STATES} states; got {model.size}; split the model")
     if model.H.rows == 0:
@@ -339,7 +337,7 @@ def generic_rank(rows: Matrix, matrix: Matrix, ring: Ring) -> tuple[int, tuple[i
 
 
 def joint_staircase(chains: tuple[Chain, ...], matrix: Matrix, ring: Ring, n: int) -> tuple[int, ...]:
-    """How many vectors of every chain are needed after those of the earlier chains.
+    """Numbers of vectors of every chain that are needed after those of the earlier chains.
 
     The counts at a point are a proved lower bound of the rank; elimination of what is not regular everywhere
     proves the upper one. Where they differ the points were unlucky, and relations decide.
@@ -395,7 +393,7 @@ def prove_rank(model: LinearModel) -> ProvedRank:
     """Generic rank of everything that the measurements observe together, and nothing else.
 
     Below: a minor that is not zero at a point. Above: either there are no more states, or as many
-    hidden directions N are exhibited, with h N = 0 for every measurement and G N inside the span of N.
+    unobservable directions N are exhibited, with h N = 0 for every measurement and G N inside the span of N.
     """
     need_chains(model)
     ring = Ring.of([model.F, model.H])
@@ -427,14 +425,14 @@ def exhibit_unobservable(rows: Matrix, matrix: Matrix, ring: Ring, rank: int, po
                 basis.append(vector)
                 residues = trial
         step = [transposed_times(matrix, vector, ring) for vector in step]
-    hidden = null_vectors(basis, n, ring)
+    directions = null_vectors(basis, n, ring)
     zero = ring.constant(0)
-    for vector in hidden:
+    for vector in directions:
         moved = [sum((g * x for g, x in zip(row, vector, strict=True) if g != 0), zero) for row in matrix]
         seen = [scalar_product(row, vector, zero) for row in rows] + [scalar_product(row, moved, zero) for row in basis]
         if any(value != 0 for value in seen):
             return None
-    return hidden
+    return directions
 
 
 # The answer in sympy
@@ -442,7 +440,7 @@ def exhibit_unobservable(rows: Matrix, matrix: Matrix, ring: Ring, rank: int, po
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MeasurementObservability:
-    """What one scalar measurement observes.
+    """The subspace that one scalar measurement observes.
 
     basis     : (m, n) rows a_1 ... a_m
     companion : theta_1 ... theta_m with a_{m+1} = sum theta_j a_j
@@ -502,16 +500,16 @@ def observe_jointly(model: LinearModel) -> JointObservability:
     """
     chains = chains_of(model)
     ring, n = chains.ring, chains.size
-    hidden: Matrix = []
+    directions: Matrix = []
     if chains.joint_dimension < n:
         starts = [(chain.vectors[0], chain.dimension) for chain in chains.chains]
-        hidden = null_vectors(krylov_rows(starts, chains.matrix, chains.joint_dimension, ring), n, ring)
-    entries = [ring.expression(x) for vector in hidden for x in vector]
+        directions = null_vectors(krylov_rows(starts, chains.matrix, chains.joint_dimension, ring), n, ring)
+    entries = [ring.expression(x) for vector in directions for x in vector]
     return JointObservability(
         states=model.states,
         measurements=tuple(measurement_of(chain, ring) for chain in chains.chains),
         staircase=chains.staircase,
-        unobservable=sp.ImmutableMatrix(len(hidden), n, entries),
+        unobservable=sp.ImmutableMatrix(len(directions), n, entries),
         assumptions=model_denominators(chains),
         chains=chains,
     )
@@ -534,7 +532,7 @@ def chain_rows(vectors: Matrix, chain: Chain, ring: Ring) -> sp.ImmutableMatrix:
 
 
 def model_denominators(chains: Chains) -> tuple[sp.Expr, ...]:
-    """What must not vanish for the model itself to make sense."""
+    """Denominators of the model, which must not vanish."""
     ring = chains.ring
     bottoms = [chains.clock, *(chain.bottom for chain in chains.chains)]
     written = dict.fromkeys(ring.factored(b) for b in bottoms if not b.is_constant())
@@ -555,8 +553,8 @@ def direction_names(vector: Sequence[sp.Expr], states: Sequence[str]) -> str:
 def need_observable(found: JointObservability) -> None:
     """Raise UnobservableError with the directions that no measurement shows."""
     if not found.observable:
-        hidden = found.unobservable
-        named = "; ".join(direction_names(hidden[k, :], found.states) for k in range(hidden.rows))
+        rows = found.unobservable
+        named = "; ".join(direction_names(rows[k, :], found.states) for k in range(rows.rows))
         raise UnobservableError(
             f"expected an observable pair; got rank {found.joint_dimension} of {len(found.states)}, no "
             f"measurement "

@@ -43,7 +43,7 @@ def restoration_data(answer: Observability) -> dict[str, Any]:
     restoration = answer.restoration
     assert restoration is not None
     return {
-        "hidden": restoration.hidden,
+        "hidden": restoration.unobservable,
         "needed": restoration.needed,
         "fewest": restoration.fewest,
         "sets": [list(names) for names in restoration.sets],

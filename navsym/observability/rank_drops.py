@@ -295,7 +295,7 @@ def drops_by_staircases(
 
 
 def too_many_points(chains: Chains, part: tuple[Chain, ...], steps: Sequence[tuple[int, ...]]) -> bool:
-    """Whether the determinants of all staircases take more values than one of them may."""
+    """True when the determinants of all staircases take more values than one of them may."""
     starts = [chain.vectors[0] for chain in part]
     return sum(points_needed(list(zip(starts, step, strict=True)), chains.matrix) for step in steps) > POINTS
 

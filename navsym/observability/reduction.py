@@ -144,7 +144,7 @@ def irredundant(systems: list[list[Poly]]) -> list[list[Poly]]:
 
 
 def lies_in_ideal(value: Poly, system: System) -> bool:
-    """Whether a polynomial lies in the ideal of a system that is its own Groebner basis."""
+    """True when a polynomial lies in the ideal of a system that is its own Groebner basis."""
     if value == 0 or not system:
         return bool(value == 0)
     if any(is_divisor(f, value) for f in system):
@@ -235,7 +235,7 @@ def without_columns(basis: UnitBasis, rows: Sequence[list[Poly]]) -> Remainder:
 
 
 def row_weight(row: list[Poly]) -> int:
-    """How much there is to multiply."""
+    """Number of terms to multiply."""
     return sum(len(entry) for entry in row)
 
 

@@ -344,7 +344,7 @@ class Ring:
 
 
 def is_odd(value: Poly, cosine: int) -> bool:
-    """Whether a form has odd degree in the halves of an angle, given the place of its cosine."""
+    """True when a form has odd degree in the halves of an angle, given the place of its cosine."""
     powers = next(iter(value.to_dict()), None)
     return powers is not None and (int(powers[cosine - 1]) + int(powers[cosine])) % 2 == 1
 

@@ -36,15 +36,15 @@ SETS, DISPROVED = 200_000, 500
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Restoration:
-    """What it takes to observe every state.
+    """The fewest further measurements that show every state.
 
-    hidden : dimension of what the model's own measurements never show, generically
+    unobservable : dimension that the model's own measurements never show, generically
     needed : how many further scalar measurements are needed, whatever they measure (a proved lower bound)
     sets   : all sets of candidates of the least size found that are enough; none when all together are not
     proved : whether no smaller set of candidates is enough
     """
 
-    hidden: int
+    unobservable: int
     needed: int
     sets: tuple[tuple[str, ...], ...]
     proved: bool
@@ -59,8 +59,8 @@ class Restoration:
 class Setting:
     """The model and the candidates without denominators, and what is left to see at an integer point.
 
-    hidden : dimension of what the model's own measurements do not see at the point
-    chains : name -> independent vectors (k, hidden) of what a candidate sees of it, modulo the prime
+    unobservable : dimension that the model's own measurements do not show at the point
+    chains : name -> independent vectors (k, unobservable) that a candidate shows of it, modulo the prime
     """
 
     ring: Ring
@@ -68,7 +68,7 @@ class Setting:
     own: Matrix
     rows: dict[str, list[Poly]]
     point: tuple[int, ...]
-    hidden: int
+    unobservable: int
     chains: dict[str, list[list[int]]]
 
     @property
@@ -77,7 +77,7 @@ class Setting:
         return len(self.matrix)
 
     def seen_by(self, names: Sequence[str]) -> int:
-        """How much of what is hidden a set of candidates sees, at the point."""
+        """Dimension of the unobservable part that a set of candidates shows, at the point."""
         return residue_rank([vector for name in names for vector in self.chains[name]])
 
 
@@ -90,14 +90,14 @@ def restore_observability(model: LinearModel, candidates: Mapping[str, Sequence[
     """
     need_chains(model)
     setting = lay_out(model, candidate_rows(model, candidates))
-    hidden, needed = model.size - prove_rank(model).rank, unseen_constants(setting)
-    if not hidden:
+    missing, needed = model.size - prove_rank(model).rank, unseen_constants(setting)
+    if not missing:
         return Restoration(0, 0, ((),), True)
     for size in range(max(needed, 1), len(setting.rows) + 1):
         if found := tuple(enough_sets(setting, size)):
             proved = size == max(needed, 1) or all_sets_fail(setting, size - 1)
-            return Restoration(hidden, needed, found, proved)
-    return Restoration(hidden, needed, (), all_sets_fail(setting, len(setting.rows)))
+            return Restoration(missing, needed, found, proved)
+    return Restoration(missing, needed, (), all_sets_fail(setting, len(setting.rows)))
 
 
 def candidate_rows(model: LinearModel, candidates: Mapping[str, Sequence[sp.Expr]] | None) -> dict[str, sp.Matrix]:
@@ -120,9 +120,9 @@ def lay_out(model: LinearModel, rows: Mapping[str, sp.Matrix]) -> Setting:
     free = {name: numerators([row], ring)[0][0] for name, row in rows.items()}
     seen = {point: residue_chains(own, matrix, point) for point in integer_points(ring)}
     point = max(seen, key=lambda key: residue_rank(seen[key]))
-    kernel, hidden = residue_kernel(seen[point])
-    chains = {name: residues_on(residue_chains([row], matrix, point), kernel, hidden) for name, row in free.items()}
-    return Setting(ring, matrix, own, free, point, hidden, chains)
+    kernel, missing = residue_kernel(seen[point])
+    chains = {name: residues_on(residue_chains([row], matrix, point), kernel, missing) for name, row in free.items()}
+    return Setting(ring, matrix, own, free, point, missing, chains)
 
 
 def unseen_constants(setting: Setting) -> int:
@@ -142,19 +142,19 @@ def enough_sets(setting: Setting, size: int) -> Iterator[tuple[str, ...]]:
     if count > SETS:
         raise TooLargeError(f"candidates: expected at most {SETS} sets of {size}; got {count}; name fewer candidates")
     for names in combinations(setting.rows, size):
-        if setting.seen_by(names) == setting.hidden:
+        if setting.seen_by(names) == setting.unobservable:
             yield names
 
 
 def all_sets_fail(setting: Setting, size: int) -> bool:
-    """Whether every set of a size is proved to leave a direction hidden, with as many directions as its rank lacks."""
+    """True when every set of a size is proved to leave a direction unobservable, with as many as its rank lacks."""
     if comb(len(setting.rows), size) > DISPROVED:
         return False
     return all(is_insufficient(setting, names) for names in combinations(setting.rows, size))
 
 
 def is_insufficient(setting: Setting, names: Sequence[str]) -> bool:
-    """Whether hidden directions of a set are exhibited."""
+    """True when unobservable directions of a set are exhibited."""
     rows = [*setting.own, *(setting.rows[name] for name in names)]
-    rank = setting.size - setting.hidden + setting.seen_by(names)
+    rank = setting.size - setting.unobservable + setting.seen_by(names)
     return rank < setting.size and bool(exhibit_unobservable(rows, setting.matrix, setting.ring, rank, setting.point))

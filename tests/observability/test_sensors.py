@@ -21,14 +21,14 @@ def test_two_unseen_constants_need_two_measurements_whatever_they_are() -> None:
     F = [[0, 1, 0, 0], *([[0, 0, 0, 0]] * 3)]
     model = LinearModel(F, None, [[1, 0, 0, 0]], ("x", "v", "b", "c"))
     answer = restore_observability(model)
-    assert (answer.hidden, answer.needed, answer.sets, answer.proved) == (2, 2, (("b", "c"),), True)
+    assert (answer.unobservable, answer.needed, answer.sets, answer.proved) == (2, 2, (("b", "c"),), True)
 
 
 def test_one_measurement_shows_two_hidden_states_that_move_apart() -> None:
     a = sp.Symbol("a")
     model = LinearModel([[0, 0, 0], [0, a, 0], [0, 0, 2 * a]], None, [[1, 0, 0]], ("x", "u", "w"))
     both = restore_observability(model, {"sum": [0, 1, 1], "u": [0, 1, 0], "w": [0, 0, 1]})
-    assert (both.hidden, both.needed, both.sets, both.proved) == (2, 0, (("sum",),), True)
+    assert (both.unobservable, both.needed, both.sets, both.proved) == (2, 0, (("sum",),), True)
     states = restore_observability(model)
     assert states.sets == (("u", "w"),)
     assert states.proved
@@ -37,7 +37,7 @@ def test_one_measurement_shows_two_hidden_states_that_move_apart() -> None:
 def test_a_coupling_of_1e_15_is_seen_and_an_observable_model_needs_nothing() -> None:
     model = LinearModel([[0, sp.Rational(1, 10**15)], [0, 0]], None, [[1, 0]])
     answer = restore_observability(model)
-    assert (answer.hidden, answer.fewest, answer.proved) == (0, 0, True)
+    assert (answer.unobservable, answer.fewest, answer.proved) == (0, 0, True)
 
 
 def test_candidates_that_are_all_too_little_are_called_so_with_proof() -> None:
@@ -54,7 +54,7 @@ def test_random_systems_agree_with_every_combination_in_fractions() -> None:
         H = sp.zeros(1, n)
         H[int(rng.integers(n))] = 1
         answer = restore_observability(LinearModel(F, None, H))
-        assert answer.hidden == n - rank_slowly(F, H)
+        assert answer.unobservable == n - rank_slowly(F, H)
         names = [f"x{i + 1}" for i in range(n)]
         for size in range(n + 1):
             good = tuple(

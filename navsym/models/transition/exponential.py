@@ -311,7 +311,7 @@ def dependence_error() -> DomainError:
 
 
 def list_conditions(ring: Ring, divisors: Iterable[Poly], forms: Iterable[Form]) -> tuple[sp.Basic, ...]:
-    """What the formula takes to hold, without what the declared signs already grant."""
+    """Assumptions of the formula that the declared signs do not grant."""
     relations = dict.fromkeys(relation for form in forms for relation in form.conditions)
     stated = {
         sp.expand(side * r.lhs) for r in relations if isinstance(r, sp.core.relational.Relational) for side in (1, -1)

@@ -67,7 +67,7 @@ class Form:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Frame:
-    """What the forms of one matrix share: the ring, d, and the elapsed time t."""
+    """The ground that the forms of one matrix share: the ring, d, and the elapsed time t."""
 
     ring: Ring
     d: Poly

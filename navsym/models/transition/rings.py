@@ -104,7 +104,7 @@ def note_root(base: sp.Expr, order: int, roots: dict[sp.Expr, int]) -> None:
 
 
 def square_of(ring: Ring, generator: sp.Expr) -> Poly | None:
-    """What the square of a sine or of a square root is, as a polynomial in the others."""
+    """The square of a sine or of a square root as a polynomial in the others."""
     if isinstance(generator, sp.sin):
         cosine = ring_fraction(ring, sp.cos(generator.args[0]))[0]
         return ring.one - cosine * cosine
@@ -160,7 +160,7 @@ def multiply_fractions(a: Fraction, b: Fraction) -> Fraction:
 
 
 def cancel_fraction(number: Poly, divisor: Poly) -> Fraction:
-    """The same fraction in lowest terms, with a primitive denominator whose leading coefficient is 1."""
+    """A fraction in lowest terms, with a primitive denominator whose leading coefficient is 1."""
     if number.is_zero():
         return number, divisor.context().constant(1)
     if not divisor.is_one():
