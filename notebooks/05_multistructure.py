@@ -17,36 +17,24 @@
 # D. Obidin, D. Makarchuk, O. Kostenko, N. Mishukova, 2018.
 
 # %%
-import tempfile
-from pathlib import Path
-
 import matplotlib.pyplot as plt
 import numpy as np
 from ipywidgets import FloatSlider, IntSlider, interact
 
-from navsym.claims import claims_of
-from navsym.cli.main import run as navsym
-from navsym.core.datasets import dataset, local_copy
-from navsym.multimodel.bank import Bank
-from navsym.multimodel.filters import run_filter
-from navsym.multimodel.schemes import filters_at, scheme
-from navsym.report.notebook import require, show
-from navsym_papers import multistructure as paper
-from navsym_papers.multistructure import (
-    any_number,
-    forgetting,
-    gaussian,
-    interval,
-    jump_model,
-    moments,
-    polygaussian,
-    pulsating,
-    recursion,
-)
+import navsym as nav
+from navsym_papers.multistructure import interval
 from navsym_papers.multistructure.experiment import road, study
-from navsym_papers.multistructure.experiment.modes import MODES
+from navsym_papers.multistructure.experiment.modes import MODES, SchulerChannel
 
 BLUE, ORANGE, GREEN, RED = "#0072b2", "#e69f00", "#009e73", "#d55e00"
+
+
+def explain(number):
+    """The claim of the paper with this number, decided now; its verdict is the declared one."""
+    explanation = nav.explain(f"multistructure:{number}")
+    assert explanation.record.is_expected
+    return explanation
+
 
 # %% [markdown]
 # ## The exact recursion
@@ -54,29 +42,41 @@ BLUE, ORANGE, GREEN, RED = "#0072b2", "#e69f00", "#009e73", "#d55e00"
 # total probability and Bayes' rule; they are decided with free symbols for all probabilities.
 
 # %%
-show(recursion.partial_posterior)
+explain("8")
 
 # %%
-show(recursion.mode_probability)
-require(any_number.partial_posterior)
-require(any_number.mode_probability)
+explain("10")
+
+# %% [markdown]
+# The same for any number of modes:
+
+# %%
+explain("8.every")
+
+# %%
+explain("10.every")
 
 # %% [markdown]
 # The printed (9) takes the density of the wrong mode:
 
 # %%
-show(recursion.pair_likelihood_printed)
-show(recursion.pair_likelihood)
+explain("9")
+
+# %%
+explain("9*")
 
 # %% [markdown]
 # ## Why it cannot be kept up
 
 # %%
-show(pulsating.number_of_sequences)
-print("Kalman filters in step k = 1, 2, ... with three modes")
+series = study.simulate(study.schuler_bank(), 1, 7, seed=2).measurements[0]
+print("Kalman filters up to step k = 1, 2, ... with three modes")
 for method, K in (("exact", None), ("k-pulsating", 3), ("gpb2", None), ("imm", None), ("pulsating", None)):
-    rule = scheme(method, K)
-    print(f"  {method:12s} {K or '':>2}", [filters_at(rule, 3, 1, k) for k in range(1, 8)])
+    counts = [nav.filter(study.schuler_bank(), series[:k], method, depth=K).filters_run for k in range(1, 8)]
+    print(f"  {method:12s} {K or '':>2}", counts)
+
+# %%
+explain("count.sequences")
 
 # %% [markdown]
 # ## One step, four ways to fold
@@ -86,11 +86,9 @@ for method, K in (("exact", None), ("k-pulsating", 3), ("gpb2", None), ("imm", N
 
 # %%
 def two_modes(stay):
-    unit = [[1.0]]
-    models = [{"F": unit, "Q": [[q]], "H": unit, "R": unit} for q in (0.0, 25.0)]
-    return Bank(
-        models, [[stay, 1 - stay], [1 - stay, stay]], {"mean": [0.0], "covariance": unit, "probabilities": [0.5, 0.5]}
-    )
+    models = [{"F": [[1]], "Q": [[q]], "H": [[1]], "R": [[1]]} for q in (0, 25)]
+    initial = {"mean": [0], "covariance": [[1]], "probabilities": [0.5, 0.5]}
+    return nav.Bank(models, [[stay, 1 - stay], [1 - stay, stay]], initial)
 
 
 def draw_folds(stay=0.9, first=3.0, second=1.0, depth=2):
@@ -104,7 +102,7 @@ def draw_folds(stay=0.9, first=3.0, second=1.0, depth=2):
         ("gpb2", GREEN, None),
         ("imm", BLUE, None),
     ):
-        found = run_filter(two_modes(stay), series, method, depth=K)
+        found = nav.filter(two_modes(stay), series, method, depth=K)
         for k, axis in enumerate(axes):
             mean, variance = found.mean[k, 0], found.covariance[k, 0, 0]
             name = method if K is None else f"{method} {K}"
@@ -131,23 +129,29 @@ interact(
 # At step 1 all are exact (no fold has come yet), and the paper's filter is suboptimal from step 2 on:
 
 # %%
-require(pulsating.first_step_is_exact)
-require(pulsating.suboptimal)
+explain("17.first")
+
+# %%
+explain("17.suboptimal")
 
 # %% [markdown]
 # ## Folding: mean and covariance
 # (13) is right, its middle line is not: the spread of the partial estimates would count twice.
 
 # %%
-show(moments.covariance_of_any_number)
-show(moments.middle_printed)
+explain("13.every")
+
+# %%
+explain("13.middle")
 
 # %% [markdown]
 # Partial estimates need not be stored, as promised, but the adders must be: two means and two covariances.
 
 # %%
-show(pulsating.memory_printed)
-require(pulsating.memory_corrected)
+explain("17.memory")
+
+# %%
+explain("17.memory*")
 
 # %% [markdown]
 # ## Memoryless modes
@@ -155,13 +159,17 @@ require(pulsating.memory_corrected)
 # approximation: the mode before is still known through its posterior.
 
 # %%
-show(jump_model.follows_printed)
-require(jump_model.follows)
+explain("14.follows")
+
+# %%
+explain("14.follows*")
+
+# %%
 series = study.simulate(study.schuler_bank(), 200, 30, seed=2)
 loss = {}
 for forget in (False, True):
     true = [
-        np.log(run_filter(study.schuler_bank(), z, memoryless=forget).probabilities[np.arange(30), m]).mean()
+        np.log(nav.filter(study.schuler_bank(), z, memoryless=forget).probabilities[np.arange(30), m]).mean()
         for z, m in zip(series.measurements[:60], series.modes[:60], strict=True)
     ]
     loss["memoryless" if forget else "Markov"] = -float(np.mean(true))
@@ -172,9 +180,13 @@ print({name: round(value, 3) for name, value in loss.items()}, "nats per step, l
 # A part is Gaussian, the sum is not.
 
 # %%
-require(gaussian.likelihood)
-show(gaussian.sum_is_gaussian)
-require(gaussian.part_is_gaussian)
+explain("18")
+
+# %%
+explain("15.gaussian")
+
+# %%
+explain("15.gaussian*")
 
 # %% [markdown]
 # ## How to choose K
@@ -210,11 +222,21 @@ assert exact["log_likelihood"]["mean"] >= by_name["pulsating", None]["log_likeli
 # the modes have just parted.
 
 # %%
-require(interval.exact_up_to_K)
-show(interval.longer_is_better_on_average)
-show(interval.longer_is_better)
-require(interval.lossless_fold)
-require(interval.longer_may_be_worse)
+explain("K.exact")
+
+# %%
+explain("K.better*")
+
+# %%
+explain("K.better")
+
+# %%
+explain("K.fold")
+
+# %%
+explain("K.longer")
+
+# %%
 one, two = ([float(value) for value in row] for row in interval.mean_square_distances())
 figure, axis = plt.subplots(figsize=(5, 3))
 steps = np.arange(1, len(one) + 1)
@@ -275,8 +297,8 @@ def depth_and_switching(K=2, switch=0.1, runs=40):
     """Excess of K-pulsating and of IMM over the exact estimate, in units of its variance."""
     base, stay = study.schuler_bank(), np.full((3, 3), switch / 2)
     np.fill_diagonal(stay, 1.0 - switch)
-    chosen = Bank(
-        study.SchulerChannel().models(),
+    chosen = nav.Bank(
+        SchulerChannel().models(),
         stay,
         {"mean": base.means[0], "covariance": base.covariances[0], "probabilities": np.full(3, 1 / 3)},
     )
@@ -297,8 +319,10 @@ interact(
 # Nor is a confident mode enough for the Gaussian approximation; the modes must also stay near each other.
 
 # %%
-show(pulsating.near_optimal)
-require(pulsating.near_optimal_corrected)
+explain("near")
+
+# %%
+explain("near*")
 
 # %% [markdown]
 # ## How long a mistake about the modes lasts
@@ -308,10 +332,12 @@ require(pulsating.near_optimal_corrected)
 # and at their worst.
 
 # %%
-for found in claims_of(forgetting):
-    require(found)
-    print(f"{found.number:24s} {found.title}")
-show(forgetting.modes_are_forgotten)
+for words in (":10.forgets", ":17.error"):
+    for claim in nav.claims("multistructure", words=words):
+        print(f"{claim.number:24s} {claim.status:9s} {claim.title}")
+
+# %%
+explain("10.forgets")
 
 # %%
 generator, c, stay = np.random.default_rng(3), 0.1, 0.9
@@ -341,8 +367,10 @@ figure
 # The polygaussian filter is exact then, and stays a bank of I filters.
 
 # %%
-require(polygaussian.optimal)
-show(polygaussian.start_printed)
+explain("21.optimal")
+
+# %%
+explain("21.start")
 
 # %% [markdown]
 # ## A real road
@@ -350,7 +378,7 @@ show(polygaussian.start_printed)
 # of the reference system are integrated; the filter sees no flags.
 
 # %%
-files = [local_copy(dataset(name)) for name in ("nagoya-reference", "nagoya-rtk")]
+files = [nav.data()[name] for name in ("nagoya-reference", "nagoya-rtk")]
 if all(files):
     run_of_nagoya = road.read_road(files[0].parent)
     for method in ("pulsating", "imm", "gpb2"):
@@ -378,19 +406,14 @@ else:
 # ## All claims
 
 # %%
-found = claims_of(paper)
-refuted = [c for c in found if c.expect == "REFUTED"]
-print(len(found), "claims,", len(refuted), "refuted and corrected")
-for item in refuted:
-    print(f"  {item.number:16s} {item.slip}: {item.reason}")
+refuted = nav.claims("multistructure", status="REFUTED")
+print(len(nav.claims("multistructure")), "claims,", len(refuted), "refuted and corrected")
+for claim in refuted:
+    print(f"  {claim.number:16s} {claim.record.slip}: {claim.record.reason}")
 
 # %% [markdown]
-# ## Out of the house
-# The likelihood of an innovation, equation (18), as code.
+# ## Code
+# The likelihood of an innovation, equation (18), leaves as code.
 
 # %%
-with tempfile.TemporaryDirectory() as folder:
-    words = ["export", "multistructure:18", "--to", "python", "--out", folder, "--vectors", "8"]
-    assert navsym(words) == 0
-    source = (Path(folder) / "python" / "navsym_functions.py").read_text(encoding="utf-8")
-print(source)
+nav.export("multistructure:18", to=["python"], out="build/likelihood", vectors=8, force=True)

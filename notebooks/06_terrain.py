@@ -17,64 +17,58 @@
 
 # %%
 import math
-import tempfile
-from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
 from ipywidgets import FloatSlider, IntSlider, interact
 from matplotlib.colors import LightSource
 
-from navsym.claims import claims_of
-from navsym.cli.main import run as navsym
-from navsym.core.datasets import dataset, local_copy
-from navsym.report.notebook import require, show
+import navsym as nav
 from navsym.terrain.accuracy import accuracy_map
 from navsym.terrain.centre import information, slopes
-from navsym.terrain.refine import refine
-from navsym.terrain.search import criteria, prepare, search_full, search_position
-from navsym.terrain.sequential import search_sequential
-from navsym.terrain.track import Profile
-from navsym_papers import terrain_search as paper
-from navsym_papers.terrain_search import (
-    cost,
-    crossing,
-    degenerate,
-    directions,
-    experiment,
-    extremes,
-    problem,
-    reading,
-    solution,
-)
+from navsym_papers.terrain_search.experiment import study
 from navsym_papers.terrain_search.experiment.flights import Setting, course, fly, sample_terrain, terrain_from
-from navsym_papers.terrain_search.experiment.study import GRID
-from navsym_papers.terrain_search.experiment.study import experiment as rerun
 
 BLUE, ORANGE, GREEN, RED = "#0072b2", "#e69f00", "#009e73", "#d55e00"
+
+
+def explain(number):
+    """The claim of the paper with this number, decided now; its verdict is the declared one."""
+    explanation = nav.explain(f"terrain_search:{number}")
+    assert explanation.record.is_expected
+    return explanation
+
 
 # %% [markdown]
 # ## A flight
 # Real heights (the sample that comes with matplotlib), a simulated altimeter with 1.5 % noise, and errors of the
 # inertial system within the hypotheses of the paper: 41 × 41 positions of 50 m, 11 × 11 velocities of 1 m/s.
 
+
 # %%
+def search(ground, track):
+    """What `nav.locate` reads: a map, a track with its measured heights, and the hypotheses of the paper."""
+    return {
+        "map": {"heights": ground.heights, "x0": ground.x0, "y0": ground.y0, "dx": ground.dx, "dy": ground.dy},
+        "track": {"t": track.t, "x": track.x, "y": track.y, "h": track.h},
+        "position": {"step": [50, 50], "half_count": [20, 20]},
+        "velocity": {"step": [1, 1], "half_count": [5, 5]},
+    }
+
+
 terrain = sample_terrain()
-setting = Setting(measurements=500, speed=60.0, drift=2.5)
-start, heading = course(terrain, setting, 1, 5)
-flight = fly(terrain, start, heading, setting, np.random.default_rng(11))
+start, heading = course(terrain, Setting(measurements=500, speed=60.0, drift=2.5), 1, 5)
+flight = fly(terrain, start, heading, Setting(measurements=500, speed=60.0, drift=2.5), np.random.default_rng(11))
 track = flight.track
-full = search_full(terrain, track, GRID)
-sequential = search_sequential(terrain, track, GRID)
-i, j, Vi, Vj = full.index
-fine = refine(terrain, track, (50.0 * i, 50.0 * j), (float(Vi), float(Vj)))
-T = track.elapsed[-1]
+full, sequential, fine = (
+    nav.locate(search(terrain, track), method, maps=method == "full") for method in ("full", "sequential", "refined")
+)
 print("true correction at the end  ", flight.shift.round(1), flight.velocity.round(2))
-print("exact joint search          ", np.array([50 * i + Vi * T, 50 * j + Vj * T]), (Vi, Vj), "unique:", full.unique)
-print("sequential, as printed      ", sequential.shift.round(1), sequential.velocity)
-print("refined                     ", (fine.position + T * fine.velocity).round(1), fine.velocity.round(2))
-error = fine.position + T * fine.velocity - flight.shift
-assert full.unique and math.hypot(*error) < 60.0
+for fix in (full, sequential, fine):
+    shift, velocity = fix.correction
+    print(f"{fix.method:28}", shift.round(1), velocity.round(2), "unique:", fix.unique)
+assert full.unique and math.hypot(*(fine.correction[0] - flight.shift)) < 60.0
+full
 
 
 # %%
@@ -93,16 +87,18 @@ def corrected(position, velocity):
     return (track.x + position[0] + velocity[0] * tau) / 1000, (track.y + position[1] + velocity[1] * tau) / 1000
 
 
+T = track.elapsed[-1]
 figure, axis = plt.subplots(figsize=(8, 7))
 hill_shade(axis)
 true_start = flight.shift - flight.velocity * T
 axis.plot(*corrected((0, 0), (0, 0)), color="white", lw=1.2, label="inertial")
 axis.plot(*corrected(true_start, flight.velocity), color="black", lw=2.5, label="true")
-axis.plot(*corrected(fine.position, fine.velocity), "--", color=RED, lw=1.5, label="matched")
+matched_shift, matched_velocity = fine.correction
+axis.plot(*corrected(matched_shift - matched_velocity * T, matched_velocity), "--", color=RED, lw=1.5, label="matched")
 low, high, middle = sequential.t_G
 number = np.arange(track.t.size)
 for value, mark in ((low, "<"), (middle, "o"), (high, ">")):
-    x, y = corrected((50 * sequential.index[0], 50 * sequential.index[1]), (0, 0))
+    x, y = corrected((50 * sequential.position_index[0], 50 * sequential.position_index[1]), (0, 0))
     axis.plot(np.interp(value, number, x), np.interp(value, number, y), mark, color=ORANGE, ms=8)
 axis.plot([], [], "o", color=ORANGE, label="t_G on the coarse track: least, middle, largest")
 axis.legend(loc="upper left", fontsize=8, facecolor="0.7", framealpha=0.9)
@@ -114,14 +110,11 @@ figure
 # Left: positions only, the minimum displaced by the unknown drift. Right: positions at the right velocity.
 
 # %%
-still = criteria(prepare(terrain, track, GRID.position_only))[0, 0]
-moving = Profile(track.t, track.x + Vi * track.elapsed, track.y + Vj * track.elapsed, track.h)
-at_velocity = criteria(prepare(terrain, moving, GRID.position_only, on_map=False))[0, 0]
+still = nav.locate(search(terrain, track), "position", maps=True)
 figure, axes = plt.subplots(1, 2, figsize=(11, 4.5), sharey=True)
 reach = (-1025, 1025, -1025, 1025)
-for axis, surface, name in zip(
-    axes, (still, at_velocity), ("velocity error taken as zero", "at the best velocity"), strict=True
-):
+names = ("velocity error taken as zero", "at the best velocity")
+for axis, surface, name in zip(axes, (still.criterion_map, full.criterion_map), names, strict=True):
     shown = axis.imshow(np.sqrt(surface / track.t.size), origin="lower", extent=reach)
     figure.colorbar(shown, ax=axis, label="RMS misfit, m")
     row, column = np.unravel_index(surface.argmin(), surface.shape)
@@ -138,22 +131,23 @@ figure
 # an eigenvector, its discriminant is a sum of squares, and the double sums are six single ones.
 
 # %%
-show(crossing.crossing)
+explain("10")
 
 # %%
-show(directions.crossing_as_printed)
+explain("11")
 
 # %%
-show(directions.ax0_as_printed)
+explain("12.Ax0")
 
 # %%
-show(directions.ax0)
+explain("12.Ax0*")
 
 # %%
-show(extremes.always_solvable)
+explain("roots.solvable")
 
 # %%
-gx, gy = slopes(terrain, *(1000 * v for v in corrected((50 * i, 50 * j), (Vi, Vj))))
+(i, j), velocity = full.position_index, full.correction[1]
+gx, gy = slopes(terrain, *(1000 * v for v in corrected((50 * i, 50 * j), velocity)))
 info = information(gx, gy, number.astype(float))
 angles = np.linspace(0, np.pi, 361)
 figure, axis = plt.subplots(figsize=(7, 3.5))
@@ -173,20 +167,20 @@ figure
 
 # %% [markdown]
 # ## What the sequential search estimates, and the correction that costs nothing
-# Turning the track about one instant makes the velocity too small; turning it about the matrix $C = G^{-1} M_1$
+# Turning the track about one time makes the velocity too small; turning it about the matrix $C = G^{-1} M_1$
 # makes the two stages the joint least-squares solution, whatever the noise.
 
 # %%
-show(solution.sequential_estimate)
+explain("sequential.shrinks")
 
 # %%
-show(solution.two_stages_are_the_joint_solution)
+explain("sequential.exact")
 
 # %%
-show(extremes.middle_as_printed)
+explain("mean")
 
 # %%
-show(extremes.mean_in_any_axes)
+explain("mean.rotated")
 
 # %% [markdown]
 # ## Ground over which nothing can be told
@@ -195,10 +189,10 @@ show(extremes.mean_in_any_axes)
 # There the second stage of the sequential search answers zero, and nothing shows that it knows nothing.
 
 # %%
-for found in claims_of(degenerate):
-    require(found)
-    print(f"{found.number:24s} {found.title}")
-show(degenerate.four_measurements)
+nav.claims("terrain_search", words=":joint.")
+
+# %%
+explain("joint.four")
 
 # %%
 summit, ticks = np.array([0.0, 0.0]), np.linspace(-4, 4, 161)
@@ -227,7 +221,7 @@ figure
 # search loses the track, and the exact search does not. The 92.7 m of the table are near what a grid of 1 m/s leaves.
 
 # %%
-table = rerun(terrain, settings=[Setting(drift=0.8), Setting(drift=4.0)], runs=2)
+table = study.experiment(terrain, settings=[Setting(drift=0.8), Setting(drift=4.0)], runs=2)
 for row in table["rows"]:
     printed = "" if row["printed"] is None else f"(printed {row['printed']})"
     low, high = row["rms_position_interval"]
@@ -246,28 +240,33 @@ assert rows[4.0, "full, refined"]["rms_position"] < rows[4.0, "sequential"]["rms
 # tell five per cent, which is the difference in position that it reports.
 
 # %%
-show(experiment.accuracy_is_that_of_the_grid)
-for claim in claims_of(reading):
-    require(claim)
-    print(f"{claim.number:<22} {claim.expect:<9} {claim.title}")
+explain("table.quantisation")
 
 # %%
-show(reading.velocity_errors_of_the_table)
+nav.claims("terrain_search", words=":table.")
 
 # %%
-show(cost.table_full_time_as_printed)
+explain("table.bias*")
+
+# %%
+explain("table.full")
 
 # %% [markdown]
 # ## An altimeter that is off by a constant
 # Forty metres too high everywhere: the criterion less its mean does not notice, and the bounded search stays exact.
 
 # %%
-raised = Profile(track.t, track.x, track.y, track.h + 40.0)
-plain, free = search_full(terrain, raised, GRID), search_full(terrain, raised, GRID, offset_free=True)
-print("criterion of the paper:", plain.index, " less its mean:", free.index, " without the error:", full.index)
-require(solution.groups_about_their_own_means)
-require(solution.coarse_fix_with_an_unknown_height)
-assert free.index == search_full(terrain, track, GRID, offset_free=True).index and free.share < 0.3
+raised = search(terrain, track)
+raised["track"]["h"] = track.h + 40.0
+plain, free = nav.locate(raised), nav.locate(raised, offset_free=True)
+print("criterion of the paper:", plain.position_index, plain.velocity_index)
+print("less its mean:         ", free.position_index, free.velocity_index, f"offset {free.height_offset:.1f} m")
+print("without the error:     ", full.position_index, full.velocity_index)
+without = nav.locate(search(terrain, track), offset_free=True)
+assert (free.position_index, free.velocity_index) == (without.position_index, without.velocity_index)
+
+# %%
+nav.claims("terrain_search", words=":offset.")
 
 # %% [markdown]
 # ## Two maps of one land
@@ -275,18 +274,15 @@ assert free.index == search_full(terrain, track, GRID, offset_free=True).index a
 # which it differs by 4 m on average and 7 m in scatter. The tiles are those of `navsym data get srtm` and `nasadem`.
 
 # %%
-tiles = [local_copy(dataset(name)) for name in ("srtm", "nasadem")]
+tiles = [nav.data()[name] for name in ("srtm", "nasadem")]
 if all(tiles):
     mapped, ground = map(terrain_from, tiles)
     setting = Setting(measurements=300, speed=70.0, drift=1.0)
     errors = {"map is the ground": [], "another product": []}
     for seed in range(4):
-        start, heading = course(ground, setting, seed, 1)
-        over = fly(ground, start, heading, setting, np.random.default_rng(seed))
+        over = fly(ground, *course(ground, setting, seed, 1), setting, np.random.default_rng(seed))
         for name, used in zip(errors, (ground, mapped), strict=True):
-            i, j, Vi, Vj = search_full(used, over.track, GRID).index
-            where = np.array([50.0 * i, 50.0 * j]) + over.track.elapsed[-1] * np.array([Vi, Vj])
-            errors[name].append(math.hypot(*(where - over.shift)))
+            errors[name].append(math.hypot(*(nav.locate(search(used, over.track)).correction[0] - over.shift)))
     for name, found in errors.items():
         print(f"{name:18s} errors of four flights, m: {', '.join(f'{error:.0f}' for error in found)}")
 else:
@@ -302,10 +298,10 @@ def compare(noise=0.015, length=500):
     """Errors at the end for one altimeter noise and number of measurements."""
     chosen = Setting(measurements=length, speed=60.0, drift=2.5, altimeter=noise)
     flown = fly(terrain, start, heading, chosen, np.random.default_rng(11))
-    a, b, u, w = search_full(terrain, flown.track, GRID).index
-    end = flown.track.elapsed[-1]
-    joint = math.hypot(*(np.array([50 * a + u * end, 50 * b + w * end]) - flown.shift))
-    two_stages = math.hypot(*(search_sequential(terrain, flown.track, GRID).shift - flown.shift))
+    joint, two_stages = (
+        math.hypot(*(nav.locate(search(terrain, flown.track), method).correction[0] - flown.shift))
+        for method in ("full", "sequential")
+    )
     print(f"noise {100 * noise:.1f} %, {length} measurements: joint {joint:.0f} m, sequential {two_stages:.0f} m")
 
 
@@ -338,20 +334,16 @@ figure
 # ## Every refuted line, with its reason
 
 # %%
-for claim in claims_of(paper):
-    if claim.expect == "REFUTED":
-        require(claim)
-        print(f"{claim.number:<18} {claim.slip}: {claim.reason}")
-require(problem.bias_on_average)
-assert search_position(terrain, track, GRID).criterion >= full.criterion
-
-# %% [markdown]
-# ## Out of the house
-# The corrected position at the last time as code.
+for claim in nav.claims("terrain_search", status="REFUTED"):
+    print(f"{claim.number:<18} {claim.record.slip}: {claim.record.reason}")
+assert nav.locate(search(terrain, track), "position").criterion >= full.criterion
 
 # %%
-with tempfile.TemporaryDirectory() as folder:
-    words = ["export", "terrain_search:8.y*", "--to", "python", "--out", folder, "--vectors", "8"]
-    assert navsym(words) == 0
-    source = (Path(folder) / "python" / "navsym_functions.py").read_text(encoding="utf-8")
-print(source)
+explain("bias.mean")
+
+# %% [markdown]
+# ## Code
+# The corrected position at the last time leaves as code.
+
+# %%
+nav.export("terrain_search:8.y*", to=["python"], out="build/position", vectors=8, force=True)
