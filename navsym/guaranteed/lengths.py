@@ -15,20 +15,12 @@ import numpy as np
 from navsym.core.errors import DomainError
 from navsym.core.exact import to_rational
 from navsym.core.loops import kernel
+from navsym.core.simplex import invert_matrix, rows_times, times_rows
 from navsym.guaranteed.certificate.basis import Basis, make_basis
 from navsym.guaranteed.phases.family import Family
-from navsym.guaranteed.phases.patterns import ordered
+from navsym.guaranteed.phases.patterns import order_contacts
 from navsym.guaranteed.search.exchange import Contacts, find_contacts
-from navsym.guaranteed.search.kernels import (
-    Array,
-    Ints,
-    applied,
-    chebyshev_derivative,
-    chebyshev_rows,
-    chebyshev_sum,
-    combined,
-    inverted,
-)
+from navsym.guaranteed.search.kernels import Array, Ints, chebyshev_derivative, chebyshev_rows, chebyshev_sum
 
 #: The search basis of a length serves lengths down to this part of it.
 REACH = 0.25
@@ -58,7 +50,7 @@ def fill_values(family: Family, T: Array, block: Ints, values: Array) -> int:
     """Values for the first lengths of a descending block; how many were done, at least one."""
     top = Fraction(float(T[block[0]]))
     basis = make_basis(family.exact(to_rational(top)))
-    contacts = ordered(find_contacts(basis.sharp))
+    contacts = order_contacts(find_contacts(basis.sharp))
     values[block[0]] = contacts.value * basis.scale
     if block.size == 1 or not is_alternance(basis, contacts):
         return 1
@@ -103,12 +95,12 @@ def follow_lengths(C: Array, C1: Array, C2: Array, p: Array, ends: Array, u: Arr
             B = np.empty((m, m))
             for k in range(m):
                 B[k] = chebyshev_rows(C, u[k])
-            inverse, regular = inverted(B)
+            inverse, regular = invert_matrix(B)
             if not regular:
                 return values
-            x = applied(inverse, sign)
+            x = rows_times(inverse, sign)
             move = 0.0
-            slopes, bends = applied(C1, x), applied(C2, x)
+            slopes, bends = rows_times(C1, x), rows_times(C2, x)
             for k in range(m):
                 if kind[k] == 1:
                     bend = chebyshev_sum(bends, u[k])
@@ -119,13 +111,13 @@ def follow_lengths(C: Array, C1: Array, C2: Array, p: Array, ends: Array, u: Arr
                     move = max(move, abs(step))
             if move < 1e-8:
                 break
-        weights = combined(inverse, p)
+        weights = times_rows(inverse, p)
         total = 0.0
         for k in range(m):
             if not (weights[k] * sign[k] > 0.0 and -1.0 <= u[k] <= ends[i]):
                 return values
             total += abs(weights[k])
-        f = applied(C, x)
+        f = rows_times(C, x)
         for j in range(CHECKS):
             if abs(chebyshev_sum(f, -1.0 + (ends[i] + 1.0) * j / (CHECKS - 1.0))) > 1.0 + 1e-7:
                 return values

@@ -15,6 +15,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import msgspec
+
 from navsym.claims.display import write_table
 from navsym.core.answers import Answer
 from navsym.core.errors import DomainError, MissingEngineError, NavsymError

@@ -18,7 +18,7 @@ import numpy as np
 
 from navsym.core.arrays import Array, freeze
 from navsym.core.errors import DomainError
-from navsym.guaranteed.search.kernels import simplex, spread_rows
+from navsym.core.simplex import simplex, spread_rows
 from navsym.trajectory.kernels.tracks import DOUBTED, backward, forward
 from navsym.trajectory.tracks import (
     GAP,

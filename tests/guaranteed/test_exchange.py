@@ -10,20 +10,20 @@ import sympy as sp
 from numpy.polynomial import chebyshev
 from scipy.optimize import linprog
 
-from navsym.core import loops
-from navsym.core.loops import compiled
+from navsym.core import loops, simplex
+from navsym.core.loops import compile_loop
 from navsym.guaranteed.certificate.basis import make_basis
-from navsym.guaranteed.certificate.enclosure import Panel, Problem
+from navsym.guaranteed.certificate.enclosure import Panel, PanelProblem
 from navsym.guaranteed.search import kernels
-from navsym.guaranteed.search.alternance import local_maxima, two_product, two_sum, values_on
+from navsym.guaranteed.search.alternance import chebyshev_values, local_maxima, two_product, two_sum
 from navsym.guaranteed.search.exchange import (
     Panels,
-    careful,
     chebyshev_nodes,
+    contact_candidates,
+    degenerate_contacts,
+    drop_dependent_contacts,
     find_contacts,
-    independent,
-    roads,
-    rows_at,
+    regressor_rows,
 )
 
 
@@ -45,14 +45,14 @@ def test_the_leading_chebyshev_coefficient_is_bounded_by_the_alternance(m):
 def test_the_compiled_loops_give_the_bits_of_the_interpreted_ones():
     rng = np.random.default_rng(0)
     G, p = rng.standard_normal((40, 3)), rng.standard_normal(3)
-    start = kernels.spread_rows.py_func(G)
+    start = simplex.spread_rows.py_func(G)
     pairs = [
-        (kernels.spread_rows, (G,)),
-        (kernels.simplex, (G, p, start, 500)),
+        (simplex.spread_rows, (G,)),
+        (simplex.simplex, (G, p, start, 500)),
         (local_maxima, (rng.standard_normal((2, 9)), chebyshev_nodes(101))),
     ]
     for loop, arguments in pairs:
-        fast, slow = compiled(loop.py_func)(*arguments), loop.py_func(*arguments)
+        fast, slow = compile_loop(loop.py_func)(*arguments), loop.py_func(*arguments)
         for a, b in zip(fast, slow, strict=True):
             assert np.array_equal(a, b)
 
@@ -61,7 +61,9 @@ def test_chebyshev_sums_agree_with_those_of_numpy():
     c = np.random.default_rng(0).standard_normal((9, 3))
     assert np.allclose(kernels.chebyshev_rows(c, 0.3), chebyshev.chebval(0.3, c), rtol=1e-13)
     assert np.allclose(kernels.chebyshev_derivative(c)[:-1], chebyshev.chebder(c), rtol=1e-13)
-    assert np.allclose(values_on(c[:, 0], np.array([0.3, -1.0])), chebyshev.chebval([0.3, -1.0], c[:, 0]), rtol=1e-13)
+    assert np.allclose(
+        chebyshev_values(c[:, 0], np.array([0.3, -1.0])), chebyshev.chebval([0.3, -1.0], c[:, 0]), rtol=1e-13
+    )
 
 
 def test_a_loop_is_interpreted_until_that_has_cost_as_much_as_compiling(monkeypatch):
@@ -75,9 +77,9 @@ def test_a_loop_is_interpreted_until_that_has_cost_as_much_as_compiling(monkeypa
 
 def test_inverses_of_small_matrices_are_those_of_numpy():
     B = np.random.default_rng(3).standard_normal((7, 7))
-    X, regular = kernels.inverted(B)
+    X, regular = simplex.invert_matrix(B)
     assert regular and np.allclose(X, np.linalg.inv(B), rtol=1e-10)
-    assert not kernels.inverted(np.ones((3, 3)))[1]
+    assert not simplex.invert_matrix(np.ones((3, 3)))[1]
 
 
 @pytest.mark.parametrize("seed", range(12))
@@ -85,7 +87,7 @@ def test_the_grid_simplex_reaches_the_optimum_of_a_general_solver(seed):
     rng = np.random.default_rng(seed)
     m, n = int(rng.integers(1, 7)), 60
     G, p = rng.standard_normal((n, m)), rng.standard_normal(m)
-    _, weights, x, count = kernels.simplex(G, p, kernels.spread_rows(G), 2000)
+    _, weights, x, count = simplex.simplex(G, p, simplex.spread_rows(G), 2000)
     reference = linprog(np.ones(2 * n), A_eq=np.hstack([G.T, -G.T]), b_eq=p)
     assert count >= 0
     assert np.abs(weights).sum() == pytest.approx(reference.fun, rel=1e-7)
@@ -97,14 +99,14 @@ def test_dependent_contacts_are_reduced_without_changing_the_sum_or_the_cost():
     rows = rng.standard_normal((3, 4))
     rows = np.vstack([rows, rows[0] * 0.5 + rows[1] * 0.5])
     weights = np.array([1.0, 1.0, 0.5, 2.0])
-    kept, left = independent(rows, weights)
+    kept, left = drop_dependent_contacts(rows, weights)
     assert np.allclose(left @ rows[kept], weights @ rows)
     assert kept.size == 3 and (left > 0).all()
 
 
 def test_a_functional_with_fewer_contacts_than_unknowns_is_solved():
     m = 4
-    ends = rows_at(np.eye(m)[None], np.array([0]), np.array([1.0]))[0]
+    ends = regressor_rows(np.eye(m)[None], np.array([0]), np.array([1.0]))[0]
     found = find_contacts(power_panels(m, ends))
     assert found.value == pytest.approx(1.0, rel=1e-10)
     assert found.u.size == 1 and found.u[0] == 1.0
@@ -114,7 +116,7 @@ def test_a_functional_with_fewer_contacts_than_unknowns_is_solved():
 def test_the_value_in_twofold_precision_is_that_of_the_chebyshev_polynomial_to_the_last_bits(k):
     t = sp.Symbol("t", real=True)
     panel = Panel(0, tuple(t**j for j in range(8)), t, sp.Integer(0), sp.Integer(1), sp.Integer(1))
-    basis = make_basis(Problem((panel,), tuple(sp.Integer(int(j == k)) for j in range(8))))
+    basis = make_basis(PanelProblem((panel,), tuple(sp.Integer(int(j == k)) for j in range(8))))
     shifted = sp.Poly(sp.chebyshevt(7, 2 * t - 1), t).coeff_monomial(t**k)
     assert find_contacts(basis.sharp).value * basis.scale == pytest.approx(abs(int(shifted)), rel=1e-15)
 
@@ -146,9 +148,9 @@ def test_a_contact_whose_weight_is_nothing_is_a_touch_and_no_contact():
         sp.exp(-2 * s),
     )
     panel = Panel(0, functions, s, sp.S.Zero, sp.Rational(33, 10), sp.S.One)
-    basis = make_basis(Problem((panel,), tuple(h.subs(s, 1) for h in functions)))
-    for found in (find_contacts(basis.panels), careful(basis.panels, basis.panels.search.nodes)):
-        f = rows_at(basis.panels.coefficients, found.panel, found.u) @ found.dual
+    basis = make_basis(PanelProblem((panel,), tuple(h.subs(s, 1) for h in functions)))
+    for found in (find_contacts(basis.panels), degenerate_contacts(basis.panels, basis.panels.search.nodes)):
+        f = regressor_rows(basis.panels.coefficients, found.panel, found.u) @ found.dual
         assert (found.weights * f > 0).all() and (found.sign == np.sign(found.weights)).all()
         assert np.abs(found.weights).min() > 1e-7 * np.abs(found.weights).sum()
 
@@ -158,7 +160,7 @@ def test_a_weight_that_changes_its_sign_between_the_grid_and_the_contacts_is_not
     s = sp.Symbol("t", real=True)
     functions = (sp.exp(-s / 2) * sp.sin(3 * s / 2), s * sp.sin(8 * s / 3))
     panel = Panel(0, functions, s, sp.S.Zero, sp.Rational(27, 10), sp.S.One)
-    basis = make_basis(Problem((panel,), (sp.S.One, sp.Integer(-2))))
-    for found in roads(basis.panels):
-        f = rows_at(basis.panels.coefficients, found.panel, found.u) @ found.dual
+    basis = make_basis(PanelProblem((panel,), (sp.S.One, sp.Integer(-2))))
+    for found in contact_candidates(basis.panels):
+        f = regressor_rows(basis.panels.coefficients, found.panel, found.u) @ found.dual
         assert (found.weights * f > 0).all() or found.excess > 1e-7

@@ -9,17 +9,8 @@ from __future__ import annotations
 import numpy as np
 
 from navsym.core.loops import kernel, part
-from navsym.guaranteed.search.kernels import (
-    Array,
-    Ints,
-    applied,
-    chebyshev_derivative,
-    chebyshev_rows,
-    chebyshev_sum,
-    combined,
-    inverted,
-    simplex,
-)
+from navsym.core.simplex import invert_matrix, rows_times, simplex, times_rows
+from navsym.guaranteed.search.kernels import Array, Ints, chebyshev_derivative, chebyshev_rows, chebyshev_sum
 
 # Where a Chebyshev sum is largest in modulus: grid, parabola through three values, two Newton steps.
 #
@@ -46,7 +37,7 @@ def local_maxima(sums: Array, nodes: Array) -> tuple[Ints, Array, Array]:
     heights = np.empty(panels * count)
     found = 0
     for k in range(panels):
-        f = np.abs(values_on(sums[k], nodes))
+        f = np.abs(chebyshev_values(sums[k], nodes))
         slope = np.ascontiguousarray(slopes[:, k])
         bend = np.ascontiguousarray(bends[:, k])
         for i in range(count):
@@ -59,7 +50,7 @@ def local_maxima(sums: Array, nodes: Array) -> tuple[Ints, Array, Array]:
 
 
 @part
-def values_on(c: Array, nodes: Array) -> Array:
+def chebyshev_values(c: Array, nodes: Array) -> Array:
     """``sum c_k T_k`` on many nodes, by Clenshaw's recurrence."""
     twice = 2.0 * nodes
     b1, b2 = np.zeros(nodes.shape[0]), np.zeros(nodes.shape[0])
@@ -170,7 +161,7 @@ def lagrangian(
     return total + rest
 
 
-Road = tuple[float, Ints, Array, Array, Array, float, float, Ints, Array]
+Alternance = tuple[float, Ints, Array, Array, Array, float, float, Ints, Array]
 
 #: A Newton move below this leaves contacts right to the square of it.
 SETTLED = 1e-6
@@ -179,7 +170,7 @@ SAME = 1e-5
 
 
 @part
-def rows_of(C: Array, panel: Ints, u: Array) -> Array:
+def place_rows(C: Array, panel: Ints, u: Array) -> Array:
     """q at the given places, (l, m)."""
     B = np.empty((u.shape[0], C.shape[2]))
     for k in range(u.shape[0]):
@@ -188,16 +179,16 @@ def rows_of(C: Array, panel: Ints, u: Array) -> Array:
 
 
 @part
-def sums_of(C: Array, x: Array) -> Array:
+def panel_sums(C: Array, x: Array) -> Array:
     """Chebyshev coefficients of ``x . q`` on every panel."""
     sums = np.empty((C.shape[0], C.shape[1]))
     for k in range(C.shape[0]):
-        sums[k] = applied(C[k], x)
+        sums[k] = rows_times(C[k], x)
     return sums
 
 
 @part
-def moved(sums: Array, panel: Ints, u: Array, sign: Array) -> tuple[Array, float]:
+def move_contacts(sums: Array, panel: Ints, u: Array, sign: Array) -> tuple[Array, float]:
     """Each inner contact moved by ``-f'/f''``, and the largest move; infinite where f does not bend inwards."""
     slopes = chebyshev_derivative(np.ascontiguousarray(sums.T))
     bends = chebyshev_derivative(slopes)
@@ -226,17 +217,17 @@ def remez_steps(C: Array, panel: Ints, u: Array, sign: Array, steps: int) -> tup
     """
     most = np.inf
     for _ in range(steps):
-        inverse, regular = inverted(rows_of(C, panel, u))
+        inverse, regular = invert_matrix(place_rows(C, panel, u))
         if not regular:
             return u, np.inf
-        u, most = moved(sums_of(C, applied(inverse, sign)), panel, u, sign)
+        u, most = move_contacts(panel_sums(C, rows_times(inverse, sign)), panel, u, sign)
         if most < SETTLED or most == np.inf:
             break
     return u, most
 
 
 @part
-def separate(basis: Ints, n: int) -> bool:
+def is_separate(basis: Ints, n: int) -> bool:
     """True when no two grid places in order are neighbours on one panel."""
     for k in range(basis.shape[0] - 1):
         if basis[k + 1] - basis[k] <= 2 and basis[k] // n == basis[k + 1] // n:
@@ -245,7 +236,7 @@ def separate(basis: Ints, n: int) -> bool:
 
 
 @part
-def others(where: Ints, places: Array, heights: Array, near: float, panel: Ints, u: Array) -> Ints:
+def further_touches(where: Ints, places: Array, heights: Array, near: float, panel: Ints, u: Array) -> Ints:
     """Indices of the places where ``|f|`` exceeds ``near`` that are not among the contacts."""
     kept = np.empty(where.shape[0], dtype=np.int64)
     count = 0
@@ -261,9 +252,9 @@ def others(where: Ints, places: Array, heights: Array, near: float, panel: Ints,
 
 
 @kernel
-def alternance(
+def find_alternance(
     C: Array, C_low: Array, p: Array, p_low: Array, nodes: Array, G: Array, start: Ints, fine: Array, near: float
-) -> Road:
+) -> Alternance:
     """(last move, panels, contacts, weights, dual, largest ``|f|``, value, panels and places of other touches)."""
     m, n = p.shape[0], nodes.shape[0]
     basis, weights, x, count = simplex(G, p, start, 60 * m + 200)
@@ -271,18 +262,18 @@ def alternance(
     basis, weights = basis[order], weights[order]
     panel, u, sign = basis // n, nodes[basis % n], np.sign(weights)
     nowhere = (np.inf, panel, u, weights, x, np.inf, np.inf, panel, u)
-    if count < 0 or not separate(basis, n):
+    if count < 0 or not is_separate(basis, n):
         return nowhere
     u, move = remez_steps(C, panel, u, sign, 12)
     if not move < SETTLED or not np.abs(sign).min() > 0.0:
         return nowhere
-    inverse, regular = inverted(rows_of(C, panel, u))
+    inverse, regular = invert_matrix(place_rows(C, panel, u))
     if not regular:
         return nowhere
-    weights, x = combined(inverse, p), applied(inverse, sign)
+    weights, x = times_rows(inverse, p), rows_times(inverse, sign)
     if not (weights * sign).min() > 0.0:  # on the grid it had this sign, at the contacts it has not
         return nowhere
-    where, places, heights = local_maxima(sums_of(C, x), fine)
-    rest = others(where, places, heights, near, panel, u)
+    where, places, heights = local_maxima(panel_sums(C, x), fine)
+    rest = further_touches(where, places, heights, near, panel, u)
     value = lagrangian(C, C_low, p, p_low, panel, u, sign, weights, x)
     return move, panel, u, weights, x, max(1.0, heights.max()), value, where[rest], places[rest]

@@ -15,17 +15,10 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 
-from navsym.core.arrays import named
-from navsym.guaranteed.search.alternance import SAME, alternance, fine_count, lagrangian, local_maxima
-from navsym.guaranteed.search.kernels import (
-    Array,
-    Ints,
-    contact_system,
-    differentiation,
-    grid_values,
-    simplex,
-    spread_rows,
-)
+from navsym.core.arrays import as_array
+from navsym.core.simplex import simplex, spread_rows
+from navsym.guaranteed.search.alternance import SAME, find_alternance, fine_count, lagrangian, local_maxima
+from navsym.guaranteed.search.kernels import Array, Ints, contact_system, differentiation, grid_values
 
 NEAR = 1e-7  # |f| above 1 - NEAR counts as touching
 NEGLIGIBLE = 1e-7  # weights below this part of their sum are not contacts
@@ -36,7 +29,7 @@ MOST_TOUCHES = 600
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Search:
+class SearchGrid:
     """What every search on the same functions needs, made once: places, values there, rows to start from."""
 
     nodes: Array
@@ -65,8 +58,8 @@ class Panels:
         for name, wanted, why in (("coefficients", shape, "panels"), ("functional", (m,), "unknowns")):
             low = f"{name}_low"
             given = np.zeros(wanted) if getattr(self, low) is None else getattr(self, low)
-            object.__setattr__(self, name, named(name, getattr(self, name), wanted, why))
-            object.__setattr__(self, low, named(low, given, wanted, why))
+            object.__setattr__(self, name, as_array(name, getattr(self, name), wanted, why))
+            object.__setattr__(self, low, as_array(low, given, wanted, why))
 
     @property
     def low(self) -> tuple[Array, Array]:
@@ -82,12 +75,12 @@ class Panels:
         return slopes, D @ slopes
 
     @cached_property
-    def search(self) -> Search:
+    def search(self) -> SearchGrid:
         """Nodes, values there and rows to start from, made at the first use."""
-        nodes = nodes_for(self)
+        nodes = search_nodes(self)
         grid = grid_values(self.coefficients, nodes)
         fine = chebyshev_nodes(fine_count(self.coefficients.shape[1]))
-        return Search(nodes, grid, spread_rows(grid), fine)
+        return SearchGrid(nodes, grid, spread_rows(grid), fine)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -115,7 +108,7 @@ class Contacts:
     value: float = np.nan
 
 
-def nodes_for(panels: Panels) -> Array:
+def search_nodes(panels: Panels) -> Array:
     """Chebyshev-spaced search nodes, ends included, several for each oscillation."""
     K = panels.coefficients.shape[1]
     m = panels.functional.size
@@ -133,21 +126,21 @@ def chebyshev_nodes(count: int) -> Array:
 
 def find_contacts(panels: Panels) -> Contacts:
     """Solve the problem to double precision; the fast road first, the careful one when it refuses."""
-    return next(roads(panels))
+    return next(contact_candidates(panels))
 
 
-def roads(panels: Panels) -> Iterator[Contacts]:
+def contact_candidates(panels: Panels) -> Iterator[Contacts]:
     """The answer of the fast road, where it has one, then that of the careful one."""
     quick = regular_contacts(panels)
     if quick is not None:
         yield quick
-    yield careful(panels, panels.search.nodes)
+    yield degenerate_contacts(panels, panels.search.nodes)
 
 
 def regular_contacts(panels: Panels) -> Contacts | None:
     """Contacts of a full alternance, or None when there is none or the fast road does not find it."""
     made, (C_low, p_low) = panels.search, panels.low
-    move, panel, u, weights, x, height, value, where, places = alternance(
+    move, panel, u, weights, x, height, value, where, places = find_alternance(
         panels.coefficients, C_low, panels.functional, p_low, made.nodes, made.grid, made.start, made.fine, 1.0 - NEAR
     )
     sizes = np.abs(weights)
@@ -158,7 +151,7 @@ def regular_contacts(panels: Panels) -> Contacts | None:
     return Contacts(panel, u, inner, np.sign(weights), weights, x, height - 1.0, touching, value)
 
 
-def rows_at(coefficients: Array, panel: Ints, u: Array) -> Array:
+def regressor_rows(coefficients: Array, panel: Ints, u: Array) -> Array:
     """q at the given places, (l, m)."""
     K = coefficients.shape[1]
     T = np.cos(np.arange(K) * np.arccos(np.clip(u, -1.0, 1.0))[:, None])
@@ -166,7 +159,7 @@ def rows_at(coefficients: Array, panel: Ints, u: Array) -> Array:
     return rows
 
 
-def careful(panels: Panels, nodes: Array) -> Contacts:
+def degenerate_contacts(panels: Panels, nodes: Array) -> Contacts:
     """The road for degenerate problems: vertices of the dual face, averaged; contacts merged."""
     C, p = panels.coefficients, panels.functional
     extra_panel = np.empty(0, dtype=np.int64)
@@ -175,25 +168,25 @@ def careful(panels: Panels, nodes: Array) -> Contacts:
     for k in range(ROUNDS):
         panel = np.concatenate([np.repeat(np.arange(C.shape[0]), nodes.size), extra_panel])
         u = np.concatenate([np.tile(nodes, C.shape[0]), extra_u])
-        G = np.concatenate([grid_values(C, nodes), rows_at(C, extra_panel, extra_u)])
+        G = np.concatenate([grid_values(C, nodes), regressor_rows(C, extra_panel, extra_u)])
         basis, vertices = dual_face(G, p)
         tried = []
         # A point inside the face; where the face is a point in truth, only the first vertex comes near it.
         for x in (vertices.mean(axis=0), vertices[0]):
             for reach in {1.0, 3.0**-k}:  # contacts may be nearer than nodes: later rounds keep them apart
-                tried.append(polish(panels, merged(panels, G, p, basis, panel, u, nodes, reach), x))
+                tried.append(fit_contacts(panels, merge_rows(panels, G, p, basis, panel, u, nodes, reach), x))
             best = min(tried if best is None else [best, *tried], key=lambda c: c.excess)
-            best = best if best.excess < 1e-9 or misfits(best) else completed(panels, best)
+            best = best if best.excess < 1e-9 or has_misfits(best) else complete_dual(panels, best)
             if best.excess < 1e-9:
                 return best
-        more = [place for dual in (*vertices, tried[-1].dual) for place in peaks(panels, dual)]
+        more = [place for dual in (*vertices, tried[-1].dual) for place in maxima_above_bound(panels, dual)]
         extra_panel = np.concatenate([extra_panel, np.array([k for k, _ in more], dtype=np.int64)])
         extra_u = np.concatenate([extra_u, np.array([v for _, v in more])])
     assert best is not None
     return best
 
 
-def completed(panels: Panels, found: Contacts) -> Contacts:
+def complete_dual(panels: Panels, found: Contacts) -> Contacts:
     """The same with a dual that also touches where it nearly does, by Newton's method; if it is optimal.
 
     Where the dual is unique and contacts without weight belong to it, the contacts with weight do not fix it.
@@ -201,7 +194,7 @@ def completed(panels: Panels, found: Contacts) -> Contacts:
     C1, C2 = panels.derivatives
     where, places, heights = local_maxima(panels.coefficients @ found.dual, panels.search.fine)
     near = heights > 1.0 - max(NEAR, 30.0 * found.excess)
-    all_ = with_places(panels, found, apart(where[near], places[near], found.panel, found.u))
+    all_ = add_places(panels, found, places_apart(where[near], places[near], found.panel, found.u))
     panel, u, inner, sign, x, weights = all_.panel, all_.u, all_.inner, all_.sign, all_.dual, all_.weights
     free, m = int(inner.sum()), x.size
     for _ in range(8):
@@ -210,14 +203,14 @@ def completed(panels: Panels, found: Contacts) -> Contacts:
         step = np.linalg.lstsq(J[:rows, : m + free], -F[:rows], rcond=1e-11)[0]
         x, u = x + step[:m], u.copy()
         u[inner == 1] = np.clip(u[inner == 1] + step[m:], -1.0, 1.0)
-    excess, touching = survey(panels, x, found.panel, found.u)
+    excess, touching = survey_dual(panels, x, found.panel, found.u)
     cost = float(np.abs(found.weights).sum())
     if excess >= found.excess or abs(float(panels.functional @ x) - cost) > 1e-9 * cost:
         return found  # where the two sides differ, contacts are missing that have a weight
     return replace(found, dual=x, excess=excess, touching=touching)
 
 
-def with_places(panels: Panels, found: Contacts, more: Sequence[tuple[int, float]]) -> Contacts:
+def add_places(panels: Panels, found: Contacts, more: Sequence[tuple[int, float]]) -> Contacts:
     """The contacts and further places without weight."""
     extra = np.array([v for _, v in more])
     panel = np.concatenate([found.panel, np.array([k for k, _ in more], dtype=np.int64)])
@@ -226,7 +219,7 @@ def with_places(panels: Panels, found: Contacts, more: Sequence[tuple[int, float
         panel,
         u,
         np.concatenate([found.inner, (np.abs(extra) < 1.0).astype(np.int64)]),
-        np.sign(rows_at(panels.coefficients, panel, u) @ found.dual),
+        np.sign(regressor_rows(panels.coefficients, panel, u) @ found.dual),
         np.concatenate([found.weights, np.zeros(extra.size)]),
         found.dual,
         found.excess,
@@ -251,7 +244,7 @@ def dual_face(G: Array, p: Array) -> tuple[Ints, Array]:
     return first, np.array(vertices)
 
 
-def merged(
+def merge_rows(
     panels: Panels, G: Array, p: Array, basis: Ints, panel: Ints, u: Array, nodes: Array, reach: float
 ) -> tuple[Ints, Array, Array, Array]:
     """Contacts from basis rows: negligible ones dropped, neighbours of one sign made one."""
@@ -263,7 +256,7 @@ def merged(
     for k in order:
         if groups:
             last = groups[-1][-1]
-            near = abs(u[basis[k]] - u[basis[last]]) <= 2.6 * reach * spacing(nodes, u[basis[k]])
+            near = abs(u[basis[k]] - u[basis[last]]) <= 2.6 * reach * node_spacing(nodes, u[basis[k]])
             if near and panel[basis[k]] == panel[basis[last]] and weights[k] * weights[last] > 0:
                 groups[-1].append(int(k))
                 continue
@@ -280,13 +273,13 @@ def end_or_mean(u: Array, weights: Array) -> float:
     return float(u[np.abs(u).argmax()]) if abs(mean) > 1.0 - 1e-9 else mean
 
 
-def spacing(nodes: Array, u: float) -> float:
+def node_spacing(nodes: Array, u: float) -> float:
     """Distance of the two search nodes around u."""
     k = int(np.clip(np.searchsorted(nodes, u), 1, nodes.size - 1))
     return float(nodes[k] - nodes[k - 1])
 
 
-def polish(panels: Panels, start: tuple[Ints, Array, Array, Array], x: Array) -> Contacts:
+def fit_contacts(panels: Panels, start: tuple[Ints, Array, Array, Array], x: Array) -> Contacts:
     """Newton in the least-squares sense on the optimality system, contacts kept inside their panels."""
     C = panels.coefficients
     C1, C2 = panels.derivatives
@@ -306,23 +299,23 @@ def polish(panels: Panels, start: tuple[Ints, Array, Array, Array], x: Array) ->
         inner = np.where(outside, 0, inner)
         if np.abs(step).max() < 1e-13 * max(1.0, float(np.abs(x).max())):
             break
-    kept, weights = independent(rows_at(C, panel, u), weights)
+    kept, weights = drop_dependent_contacts(regressor_rows(C, panel, u), weights)
     heavy = np.abs(weights) > NEGLIGIBLE * np.abs(weights).sum()  # the others touch without a weight
     kept, weights = kept[heavy], weights[heavy]
     panel, u, inner, sign = panel[kept], u[kept], inner[kept], sign[kept]
-    excess, touching = survey(panels, x, panel, u)
+    excess, touching = survey_dual(panels, x, panel, u)
     (C_low, p_low), p = panels.low, panels.functional
     value = lagrangian(C, C_low, p, p_low, panel, u, sign, weights, x)
     found = Contacts(panel, u, inner, sign, weights, x, excess, touching, value)
-    return replace(found, excess=max(excess, 1e-3)) if misfits(found) else found
+    return replace(found, excess=max(excess, 1e-3)) if has_misfits(found) else found
 
 
-def misfits(found: Contacts) -> bool:
+def has_misfits(found: Contacts) -> bool:
     """Some weight has not the sign of the dual polynomial at its contact."""
     return bool((found.weights * found.sign <= 0).any())
 
 
-def independent(rows: Array, weights: Array) -> tuple[Ints, Array]:
+def drop_dependent_contacts(rows: Array, weights: Array) -> tuple[Ints, Array]:
     """Fewer contacts with the same sum and the same cost, until their rows are independent.
 
     Along a null vector n of the rows the cost ``sum |w|`` does not change while no weight changes
@@ -350,25 +343,25 @@ def inner_flags(C1: Array, panel: Ints, u: Array, sign: Array, x: Array) -> Ints
     """0 for a contact on an end of its panel towards which the polynomial still grows, or is flat."""
     flags = np.ones(u.size, dtype=np.int64)
     for i in np.flatnonzero(np.abs(u) >= 1.0 - 1e-12):
-        slope = rows_at(C1, panel[i : i + 1], u[i : i + 1])[0] @ x
+        slope = regressor_rows(C1, panel[i : i + 1], u[i : i + 1])[0] @ x
         flags[i] = 0 if slope * sign[i] * u[i] > -1e-6 else 1
     return flags
 
 
-def peaks(panels: Panels, x: Array) -> list[tuple[int, float]]:
+def maxima_above_bound(panels: Panels, x: Array) -> list[tuple[int, float]]:
     """Local maxima of |f| above one."""
     panel, u, height = local_maxima(panels.coefficients @ x, panels.search.fine)
     return [(int(panel[i]), float(u[i])) for i in np.flatnonzero(height > 1.0 + 1e-12)]
 
 
-def survey(panels: Panels, x: Array, panel: Ints, u: Array) -> tuple[float, tuple[tuple[int, float], ...]]:
+def survey_dual(panels: Panels, x: Array, panel: Ints, u: Array) -> tuple[float, tuple[tuple[int, float], ...]]:
     """Largest ``|f| - 1``, and the near-touching maxima that are not among the given contacts."""
     where, v, height = local_maxima(panels.coefficients @ x, panels.search.fine)
     near = height > 1.0 - NEAR
-    return float(height.max(initial=1.0)) - 1.0, apart(where[near], v[near], panel, u)
+    return float(height.max(initial=1.0)) - 1.0, places_apart(where[near], v[near], panel, u)
 
 
-def apart(where: Ints, v: Array, panel: Ints, u: Array) -> tuple[tuple[int, float], ...]:
+def places_apart(where: Ints, v: Array, panel: Ints, u: Array) -> tuple[tuple[int, float], ...]:
     """The near-touching places that are not among the given contacts."""
     contacts = list(zip(panel.tolist(), u.tolist(), strict=True))
     rest = [
@@ -381,5 +374,5 @@ def apart(where: Ints, v: Array, panel: Ints, u: Array) -> tuple[tuple[int, floa
 
 def compile_loops() -> None:
     """Compile the loops of the search now: for many problems, where waiting for the meter would cost more."""
-    for loop in (alternance, contact_system, grid_values, lagrangian, local_maxima, simplex, spread_rows):
+    for loop in (find_alternance, contact_system, grid_values, lagrangian, local_maxima, simplex, spread_rows):
         loop.compiled()
