@@ -8,25 +8,11 @@ from collections.abc import Sequence
 
 from navsym.export.accuracy.vectors import Vector
 from navsym.export.languages.helpers import Helper, helper_about, helper_parts, helpers_used, squares_if_needed
-from navsym.export.languages.printing import Spelling, assignments, calls, code_names
+from navsym.export.languages.printing import Spelling, assignments, calls, code_names, template
 from navsym.export.languages.programs import c_header, c_through_state, output_places
 from navsym.export.languages.summary import summary, unit_of
 from navsym.export.parts import Argument, ExportedFunction, Output
 from navsym.export.tools import deviations_page
-
-STATUS = """/* {license} */
-/* Status of every exported function. */
-#ifndef NAVSYM_STATUS_H
-#define NAVSYM_STATUS_H
-
-typedef enum {{
-    NAVSYM_OK = 0,          /* results are written */
-    NAVSYM_DOMAIN = 1,      /* an argument is outside the proved domain, or not a number */
-    NAVSYM_NOT_FINITE = 2   /* a result would overflow or is undefined here */
-}} navsym_status;
-
-#endif
-"""
 
 
 def spelling(real: str) -> Spelling:
@@ -37,7 +23,7 @@ def spelling(real: str) -> Spelling:
 
 def files(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str) -> dict[str, str]:
     """File name -> text of the whole C folder."""
-    found = {"navsym_status.h": STATUS.format(license=license_)}
+    found = {"navsym_status.h": template("c_status.h").format(license=license_)}
     for function in functions:
         found[f"{function.name}.h"] = header(function, license_)
         found[f"{function.name}.c"] = source(function, license_)
@@ -73,42 +59,11 @@ def signature(function: ExportedFunction) -> str:
     return line if len(line) < 100 else line.replace("(", "(\n    ", 1).replace(", ", ",\n    ")
 
 
-HEADER = """/* {license} */
-#ifndef {guard}
-#define {guard}
-
-#include "navsym_status.h"
-
-#ifdef __cplusplus
-extern "C" {{
-#endif
-
-/**
- * @brief {title}
- *
- * @verbatim
-{summary}
- * @endverbatim
- *
-{parameters}
- * @return NAVSYM_OK; otherwise no result is written.
- * @note   Every argument is read before the first result is written: results may take the place of arguments.
- */
-{signature};
-
-#ifdef __cplusplus
-}}
-#endif
-
-#endif
-"""
-
-
 def header(function: ExportedFunction, license_: str) -> str:
     """Declaration with everything a reader must know before calling it."""
     params = [f" * @param[in]  {text}" for text in argument_texts(function)]
     params += [f" * @param[out] {o.name}  {shape_text(o)} [{unit_of(o.unit)}]" for o in function.outputs]
-    return HEADER.format(
+    return template("c_header.h").format(
         license=license_,
         guard=f"NAVSYM_{function.name.upper()}_H",
         signature=signature(function),
@@ -268,67 +223,10 @@ def array_text(kind: str, name: str, values: Sequence[float], s: Spelling) -> li
     return [f"static const {kind} {name}[] = {{", ",\n".join(f"    {row}" for row in rows), "};"]
 
 
-PROGRAM = """/* {license} */
-/* Calls every function on its vectors; the exit status is the number of functions that failed. */
-#include "test_vectors.h"
-
-{includes}
-#include <stdio.h>
-
-static int inside(double value, double lower, double upper)
-{{
-    return (value >= lower) && (value <= upper);
-}}
-
-/* Distance from the double nearest to the exact value, in relative units of {unit}. */
-static double distance(double value, double nearest)
-{{
-    const double size = fabs(nearest);
-    return (size > 0.0) ? ((fabs(value - nearest) / size) / {epsilon}) : 0.0;
-}}
-
-{tests}
-int main(void)
-{{
-    int failed = 0;
-{calls}
-    return failed;
-}}
-"""
-
-TEST = """static int test_{name}(void)
-{{
-    int wrong = 0;
-    double worst = 0.0;
-    int k;
-    for (k = 0; k < {name}_COUNT; k++) {{
-        {real} r[{size}] = {{{zero}}};
-        const navsym_status status = {call}({arguments});
-        int j;
-        if ((int)status != {name}_status[k]) {{
-            wrong++;
-        }}
-        for (j = 0; (status == NAVSYM_OK) && ({name}_status[k] == 0) && (j < {size}); j++) {{
-            const double value = (double)r[j];
-            const int at = (k * {size}) + j;
-            const double far = distance(value, {name}_nearest[at]);
-            const double room = distance({name}_upper[at], {name}_nearest[at]);
-            if (!inside(value, {name}_lower[at], {name}_upper[at])) {{
-                wrong++;
-            }}
-            worst = ((room < 1000.0) && (far > worst)) ? far : worst;
-        }}
-    }}
-    (void)printf("{name} vectors %d wrong %d worst %.3g\\n", {name}_COUNT, wrong, worst);
-    return (wrong > 0) ? 1 : 0;
-}}
-"""
-
-
 def test_program(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str) -> str:
     """The program that ctest runs."""
     real = functions[0].arithmetic.name
-    return PROGRAM.format(
+    return template("c_test_main.c").format(
         license=license_,
         includes="\n".join(f'#include "{f.state.program if f.state else f.name}.h"' for f in functions),
         unit="2^-52" if real == "double" else "2^-23",
@@ -346,7 +244,7 @@ def test_function(function: ExportedFunction) -> str:
         arguments.append(f"{'&' if a.size else ''}{function.name}_in[(k * {n}) + {a.first}]")
     arguments += [f"&r[{place}]" for place in output_places(function)]
     zero = "0.0f" if real == "float" else "0.0"
-    return TEST.format(
+    return template("c_test_function.c").format(
         name=function.name,
         size=function.size,
         real=real,

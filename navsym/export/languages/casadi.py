@@ -21,42 +21,9 @@ from navsym.export.accuracy.continuation import continuation
 from navsym.export.accuracy.vectors import Vector
 from navsym.export.atoms import expm1, filled
 from navsym.export.holes import Part, T, part_of
-from navsym.export.languages.python import ENDING, vectors_json
+from navsym.export.languages.printing import template
+from navsym.export.languages.python import vectors_json
 from navsym.export.parts import ExportedFunction, Piece
-
-TEST = '''# {license}
-"""Evaluates every casadi function on its vectors; the exit status is the number that failed."""
-
-import json
-import pathlib
-import sys
-
-import casadi
-
-
-def main():
-    folder = pathlib.Path(__file__).parent
-    tests = json.loads((folder / "vectors.json").read_text(encoding="utf-8"))
-    failed = 0
-    for name, rows in tests.items():
-        limits = json.loads((folder / "pieces.json").read_text(encoding="utf-8"))[name]
-        functions = [casadi.Function.deserialize((folder / p["file"]).read_text()) for p in limits["pieces"]]
-        wrong, worst = 0, 0.0
-        for row in rows:
-            if row["status"]:
-                continue
-            place = 0
-            for k, piece in enumerate(limits["pieces"]):
-                place = k
-                if piece["limit"] is None or row["in"][limits["switch"]] <= piece["limit"]:
-                    break
-            values = [float(x) for x in functions[place](*row["in"]).elements()]
-            for value, low, high, nearest in zip(values, row["lower"], row["upper"], row["nearest"], strict=True):
-                wrong += not low <= value <= high
-                size = abs(nearest) * 2.0**-52
-                if size and high - nearest < 1000.0 * size:
-                    worst = max(worst, abs(value - nearest) / size)
-'''
 
 
 def files(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str) -> dict[str, str]:
@@ -77,7 +44,7 @@ def files(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]],
     return found | {
         "pieces.json": json.dumps(index, indent=2) + "\n",
         "vectors.json": vectors_json(functions, tests),
-        "test_vectors.py": (TEST + ENDING).format(license=license_),
+        "test_vectors.py": (template("casadi_test.py") + template("python_test_ending.py")).format(license=license_),
     }
 
 

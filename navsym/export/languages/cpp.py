@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from navsym.export.accuracy.vectors import Vector
 from navsym.export.languages.c import helper_text, safe_comment
 from navsym.export.languages.helpers import helpers_used
-from navsym.export.languages.printing import Spelling, assignments, calls, code_names
+from navsym.export.languages.printing import Spelling, assignments, calls, code_names, template
 from navsym.export.languages.programs import cpp_program, cpp_through_state, through_accessors
 from navsym.export.languages.summary import summary
 from navsym.export.parts import Argument, ExportedFunction, Output
@@ -26,7 +26,7 @@ def files(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]],
     return {
         "navsym_functions.hpp": header(functions, license_),
         "test_main.cpp": program(functions, tests, license_),
-        "CMakeLists.txt": CMAKE.format(license=license_),
+        "CMakeLists.txt": template("cpp_CMakeLists").format(license=license_),
     }
 
 
@@ -120,37 +120,6 @@ def bound(x: float, s: Spelling, largest: str) -> str:
     return s.number(x)
 
 
-TEST = """static int test_{name}()
-{{
-    static const {real} in[] = {{{inputs}}};
-    static const int status[] = {{{status}}};
-    static const double lower[] = {{{lower}}};
-    static const double upper[] = {{{upper}}};
-    static const double nearest[] = {{{nearest}}};
-    int wrong = 0;
-    double worst = 0.0;
-    for (int k = 0; k < {count}; k++) {{
-{call}
-        wrong += (static_cast<int>(result.status) != status[k]) ? 1 : 0;
-        if (result.status != navsym::Status::ok || status[k] != 0) {{
-            continue;
-        }}
-        const double values[] = {{{values}}};
-        for (int j = 0; j < {size}; j++) {{
-            const int at = (k * {size}) + j;
-            wrong += (values[j] >= lower[at] && values[j] <= upper[at]) ? 0 : 1;
-            const double size = std::fabs(nearest[at]) * {epsilon};
-            if (size > 0.0 && upper[at] - nearest[at] < 1000.0 * size) {{
-                worst = std::fmax(worst, std::fabs(values[j] - nearest[at]) / size);
-            }}
-        }}
-    }}
-    std::printf("{name} vectors %d wrong %d worst %.3g\\n", {count}, wrong, worst);
-    return wrong > 0 ? 1 : 0;
-}}
-"""
-
-
 def program(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str) -> str:
     """The program that ctest runs."""
     lines = [f"// {license_}", '#include "navsym_functions.hpp"', "", "#include <cmath>", "#include <cstdio>", ""]
@@ -170,8 +139,9 @@ def test_function(function: ExportedFunction, found: list[Vector]) -> str:
 
     accessors = through_accessors(function)
     cast = "static_cast<double>({})" if real == "float" else "{}"
-    template = TEST if n else TEST.replace("    static const {real} in[] = {{{inputs}}};\n", "")
-    return template.format(
+    text = template("cpp_test_function.cpp")
+    text = text if n else text.replace("    static const {real} in[] = {{{inputs}}};\n", "")
+    return text.format(
         name=function.name,
         real=real,
         size=function.size,
@@ -200,21 +170,3 @@ def cpp_call(function: ExportedFunction, real: str) -> str:
 def rows(numbers: list[str]) -> str:
     """Numbers separated by commas, four in a line."""
     return ",\n        ".join(", ".join(numbers[k : k + 4]) for k in range(0, len(numbers), 4))
-
-
-CMAKE = """# {license}
-cmake_minimum_required(VERSION 3.10)
-project(navsym_export_cpp CXX)
-
-set(CMAKE_CXX_STANDARD 17)
-set(CMAKE_CXX_STANDARD_REQUIRED ON)
-set(CMAKE_CXX_EXTENSIONS OFF)
-
-enable_testing()
-add_executable(test_main test_main.cpp)
-if(CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
-    target_compile_options(test_main PRIVATE
-        -Wall -Wextra -Wconversion -Wdouble-promotion -pedantic -Werror)
-endif()
-add_test(NAME vectors COMMAND test_main)
-"""

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from navsym.export.accuracy.vectors import Vector
 from navsym.export.languages.helpers import Helper, helper_parts, helpers_used, squares_if_needed
-from navsym.export.languages.printing import Spelling, assignments, calls
+from navsym.export.languages.printing import Spelling, assignments, calls, template
 from navsym.export.languages.scripts import branch, domain, short_names, vectors_text
 from navsym.export.languages.summary import summary
 from navsym.export.parts import ExportedFunction
@@ -122,45 +122,6 @@ def source(function: ExportedFunction, name: str) -> list[str]:
     return [*lines, "    status = 0", "  end subroutine", ""]
 
 
-TEST = """! {license}
-program test_vectors
-  use, intrinsic :: iso_fortran_env, only: real64
-  use navsym_functions
-  implicit none
-  integer, parameter :: total = {total}
-  character(len=200) :: name
-  character(len={longest}) :: line
-  real(real64) :: v({widest}), r({most}), unit, worst(total)
-  integer :: expected, status, io, n, m, j, k, counts(total), wrong(total)
-  counts = 0
-  wrong = 0
-  worst = 0.0d0
-  open(10, file="vectors.txt", status="old")
-  do
-    read(10, "(a)", iostat=io) line
-    if (io /= 0) exit
-    read(line, *) name
-    select case (trim(name))
-{cases}
-    end select
-    counts(k) = counts(k) + 1
-    if (status /= expected) wrong(k) = wrong(k) + 1
-    if (status == 0 .and. expected == 0) then
-      do j = 1, m
-        if (.not. (r(j) >= v(n + j) .and. r(j) <= v(n + m + j))) wrong(k) = wrong(k) + 1
-        unit = abs(v(n + 2 * m + j)) * epsilon(1.0d0)
-        if (unit > 0.0d0 .and. v(n + m + j) - v(n + 2 * m + j) < 1000 * unit) then
-          worst(k) = max(worst(k), abs(r(j) - v(n + 2 * m + j)) / unit)
-        end if
-      end do
-    end if
-  end do
-{prints}
-  if (any(wrong > 0)) error stop 1
-end program
-"""
-
-
 def test(functions: Sequence[ExportedFunction], names: dict[str, str], license_: str) -> str:
     """The program that reads the vectors, with a case for each function."""
     widest = max(len(f.inputs) + 3 * f.size for f in functions)
@@ -169,7 +130,7 @@ def test(functions: Sequence[ExportedFunction], names: dict[str, str], license_:
         f'  print "(a,i0,a,i0,a,f0.3)", "{f.name} vectors ", counts({k}), " wrong ", wrong({k}), " worst ", worst({k})'
         for k, f in enumerate(functions, start=1)
     ]
-    text = TEST.format(
+    text = template("fortran_test.f90").format(
         license=license_,
         total=len(functions),
         widest=widest,

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from navsym.export.accuracy.vectors import Vector
 from navsym.export.languages.helpers import Helper, helper_parts, helpers_used, squares_if_needed
-from navsym.export.languages.printing import Spelling, assignments, calls, code_names, result_fields
+from navsym.export.languages.printing import Spelling, assignments, calls, code_names, result_fields, template
 from navsym.export.languages.programs import calls_table, js_program
 from navsym.export.languages.python import vectors_json
 from navsym.export.languages.summary import summary
@@ -14,52 +14,6 @@ from navsym.export.parts import ExportedFunction
 
 SPECIAL = {"abs": "Math.abs({0})", "max": "Math.max({0}, {1})", "min": "Math.min({0}, {1})"}
 SPELLING = Spelling(calls(prefix="Math.", **SPECIAL), "NaN", "Infinity")
-
-TEST = """// {license}
-// Runs every function on its vectors; the exit status is the number of functions that failed.
-import {{ readFileSync }} from "node:fs";
-import * as functions from "./navsym_functions.mjs";
-
-const tests = JSON.parse(readFileSync(new URL("./vectors.json", import.meta.url), "utf8"));
-const number = (x) => (x === "inf" ? Infinity : x === "-inf" ? -Infinity : x === "nan" ? NaN : x);
-const calls = {calls};
-
-// Numbers of a row as arguments; a step runs through its state, which must follow its results.
-function call(name, row) {{
-  const given = calls[name].arguments.map(([first, size]) => (size ? row.slice(first, first + size) : row[first]));
-  const state = calls[name].state;
-  if (!state) {{ return functions[name](...given); }}
-  const program = new functions[state.program]();
-  const others = given.filter((_, k) => !state.fields.some((f) => f.argument === k));
-  for (const f of state.fields) {{ program[f.name] = f.argument < 0 ? 0 : given[f.argument]; }}
-  const before = JSON.stringify(program);
-  const {{ status, ...results }} = program.step(...others);
-  if (status !== 0 && JSON.stringify(program) !== before) {{ return {{ status: -1 }}; }}
-  for (const f of state.fields) {{ if (status === 0 && f.output) {{ results[f.output] = program[f.name]; }} }}
-  return {{ status, ...results }};
-}}
-
-let failed = 0;
-for (const [name, rows] of Object.entries(tests)) {{
-  let wrong = 0;
-  let worst = 0;
-  for (const row of rows) {{
-    const {{ status, ...results }} = call(name, row.in.map(number));
-    if (status !== row.status) {{ wrong += 1; }}
-    if (status !== 0 || row.status !== 0) {{ continue; }}
-    Object.values(results).flat().forEach((value, k) => {{
-      if (!(value >= row.lower[k] && value <= row.upper[k])) {{ wrong += 1; }}
-      const size = Math.abs(row.nearest[k]) * Number.EPSILON;
-      if (size > 0 && row.upper[k] - row.nearest[k] < 1000 * size) {{
-        worst = Math.max(worst, Math.abs(value - row.nearest[k]) / size);
-      }}
-    }});
-  }}
-  console.log(`${{name}} vectors ${{rows.length}} wrong ${{wrong}} worst ${{worst.toPrecision(3)}}`);
-  failed += wrong > 0 ? 1 : 0;
-}}
-process.exit(failed);
-"""
 
 
 def files(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str) -> dict[str, str]:
@@ -70,7 +24,7 @@ def files(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]],
         "navsym_functions.mjs": "\n".join(
             [*head, *helpers, *(text for f in functions for text in (source(f), *js_program(f)))]
         ),
-        "test_vectors.mjs": TEST.format(license=license_, calls=calls_table(functions)),
+        "test_vectors.mjs": template("javascript_test.mjs").format(license=license_, calls=calls_table(functions)),
         "vectors.json": vectors_json(functions, tests),
     }
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from navsym.export.accuracy.vectors import Vector
 from navsym.export.languages.helpers import Helper, helper_parts, helpers_used, squares_if_needed
-from navsym.export.languages.printing import Spelling, assignments, calls
+from navsym.export.languages.printing import Spelling, assignments, calls, template
 from navsym.export.languages.scripts import branch, domain, vectors_text
 from navsym.export.languages.summary import summary
 from navsym.export.parts import ExportedFunction
@@ -30,7 +30,7 @@ def files(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]],
     body = [line for f in functions for line in source(f)]
     return {
         "NavsymFunctions.jl": "\n".join([*head, *body, "end", ""]),
-        "test_vectors.jl": TEST.format(license=license_),
+        "test_vectors.jl": template("julia_test.jl").format(license=license_),
         "vectors.txt": vectors_text(functions, tests),
     }
 
@@ -62,40 +62,3 @@ def source(function: ExportedFunction) -> list[str]:
     entries = ", ".join(f"r{k}" for k in range(function.size))
     lines += [f"    if !all(isfinite, ({entries},))", "        return (2,)", "    end"]
     return [*lines, f"    return (0, {entries})", "end", ""]
-
-
-TEST = """# {license}
-include("NavsymFunctions.jl")
-
-function main()
-    count, wrong, worst = Dict{{String,Int}}(), Dict{{String,Int}}(), Dict{{String,Float64}}()
-    for line in eachline(joinpath(@__DIR__, "vectors.txt"))
-        words = split(line)
-        name, status = String(words[1]), parse(Int, words[2])
-        numbers = parse.(Float64, words[3:end])
-        f = getfield(NavsymFunctions, Symbol(name))
-        inputs = first(methods(f)).nargs - 1
-        size = div(length(numbers) - inputs, 3)
-        found = f(numbers[1:inputs]...)
-        count[name] = get(count, name, 0) + 1
-        bad = found[1] != status ? 1 : 0
-        if found[1] == 0 && status == 0
-            for j in 1:size
-                low, high, near = numbers[inputs + j], numbers[inputs + size + j], numbers[inputs + 2size + j]
-                bad += low <= found[1 + j] <= high ? 0 : 1
-                unit = abs(near) * eps(Float64)
-                if unit > 0 && high - near < 1000 * unit
-                    worst[name] = max(get(worst, name, 0.0), abs(found[1 + j] - near) / unit)
-                end
-            end
-        end
-        wrong[name] = get(wrong, name, 0) + bad
-    end
-    for name in keys(count)
-        println("$name vectors $(count[name]) wrong $(wrong[name]) worst $(get(worst, name, 0.0))")
-    end
-    exit(Base.count(>(0), values(wrong)))
-end
-
-main()
-"""

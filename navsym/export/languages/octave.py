@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 from navsym.export.accuracy.vectors import Vector
 from navsym.export.languages.helpers import Helper, helper_about, helper_parts, helpers_used, squares_if_needed
-from navsym.export.languages.printing import Spelling, assignments, calls, code_names
+from navsym.export.languages.printing import Spelling, assignments, calls, code_names, template
 from navsym.export.languages.programs import octave_program, octave_through_state
 from navsym.export.languages.scripts import branch, short_names, vectors_text
 from navsym.export.languages.summary import summary
@@ -170,54 +170,6 @@ def placed(output: Output, first: int) -> str:
 
 # -- the test ---------------------------------------
 
-TEST = """% {license}
-function test_vectors()
-  % Runs every function on its vectors; the exit status is the number of functions that failed.
-  known = {{ ...
-{known}
-  }}; % name, call, entries of each argument, number of outputs
-  [count, wrong, worst] = deal(zeros(1, size(known, 1)));
-  file = fopen(fullfile(fileparts(mfilename('fullpath')), 'vectors.txt'));
-  line = fgetl(file);
-  while ischar(line)
-    words = strsplit(strtrim(line), ' ');
-    k = find(strcmp(known(:, 1), words{{1}}));
-    [bad, distance] = navsym_checked(known(k, 2:4), str2double(words(2:end)));
-    count(k) = count(k) + 1;
-    wrong(k) = wrong(k) + bad;
-    worst(k) = max(worst(k), distance);
-    line = fgetl(file);
-  end
-  fclose(file);
-  for k = 1:size(known, 1)
-    fprintf('%s vectors %d wrong %d worst %.3g\\n', known{{k, 1}}, count(k), wrong(k), worst(k));
-  end
-  exit(sum(wrong > 0));
-end
-
-function [bad, distance] = navsym_checked(known, numbers)
-  % One vector: expected status, arguments, lower and upper ends and nearest numbers of the results.
-  given = mat2cell(numbers(2:1 + sum(known{{2}})), 1, known{{2}});
-  results = cell(1, known{{3}} + 1);
-  [results{{:}}] = known{{1}}(given{{:}});
-  bad = ~isequal(results{{1}}, numbers(1));
-  distance = 0;
-  flat = cellfun(@(r) reshape(r.', 1, []), results(2:end), 'UniformOutput', false);
-  values = [flat{{:}}];
-  if results{{1}} ~= 0
-    bad = bad || ~all(isnan(values)); % what is refused has no number
-  end
-  if bad || numbers(1) ~= 0
-    return
-  end
-  ends = reshape(numbers(2 + sum(known{{2}}):end), [], 3).';
-  bad = ~isreal(values) + sum(~(values >= ends(1, :) & values <= ends(2, :)));
-  unit = abs(ends(3, :)) * eps;
-  good = unit > 0 & ends(2, :) - ends(3, :) < 1000 * unit;
-  distance = max([0, abs(values(good) - ends(3, good)) ./ unit(good)]);
-end
-"""
-
 
 def test(functions: Sequence[ExportedFunction], names: dict[str, str], license_: str) -> str:
     """The program that reads the vectors; a step is run through its state."""
@@ -227,4 +179,4 @@ def test(functions: Sequence[ExportedFunction], names: dict[str, str], license_:
         sizes = " ".join(str(a.size or 1) for a in f.called_with)
         rows.append(f"    '{f.name}', {call}, [{sizes}], {len(f.outputs)}; ...")
     through = [octave_through_state(f, names[f.name], results_text(f)) for f in functions if f.state]
-    return TEST.format(license=license_, known="\n".join(rows)) + "".join(through)
+    return template("octave_test.m").format(license=license_, known="\n".join(rows)) + "".join(through)

@@ -6,9 +6,11 @@ and a blank on either side of an operator, so that tests can find and corrupt it
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from navsym.export.expression_graph import Graph
@@ -17,6 +19,13 @@ from navsym.export.parts import ExportedFunction, Piece
 
 SIGNS = {"add": "+", "sub": "-", "mul": "*", "div": "/"}
 LONGEST = 76
+TEMPLATES = Path(__file__).parents[1] / "templates"
+
+
+@functools.cache
+def template(name: str) -> str:
+    """Text of a file of exported code, with its fields in braces (and braces of the language doubled)."""
+    return (TEMPLATES / f"{name}.txt").read_text(encoding="utf-8")
 
 
 @dataclass(frozen=True, slots=True)

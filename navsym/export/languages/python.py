@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from navsym.export.accuracy.vectors import Vector
 from navsym.export.languages.helpers import Helper, helper_parts, helpers_used, squares_if_needed
-from navsym.export.languages.printing import Spelling, assignments, calls, code_names
+from navsym.export.languages.printing import Spelling, assignments, calls, code_names, template
 from navsym.export.languages.programs import calls_table, python_program
 from navsym.export.languages.summary import summary
 from navsym.export.parts import ExportedFunction
@@ -17,110 +17,19 @@ SPECIAL |= {"atan2": "np.arctan2({0}, {1})", "pow": "np.power({0}, {1})"}
 SPECIAL |= {name: f"np.arc{name[1:]}({{0}})" for name in ("asin", "acos", "atan")}
 SPELLING = Spelling(calls(prefix="np.", **SPECIAL), "np.nan", "np.inf")
 
-HEAD = '''# {license}
-"""Functions exported by navsym, over NumPy arrays. Outside the proved domain they raise ValueError."""
-
-import numpy as np
-
-
-def _checked(name, values, low, high, size=None):
-    values = np.asarray(values, dtype=np.{real})
-    if size is not None and values.shape[-1:] != (size,):
-        raise ValueError(f"{{name}}: expected {{size}} entries in the last axis; got shape {{values.shape}}")
-    if not np.all((values >= low) & (values <= high)):
-        raise ValueError(f"{{name}}: expected numbers from {{low!r}} to {{high!r}}; got others")
-    return values
-
-
-def _finite(values):
-    if not all(np.all(np.isfinite(v)) for v in values):
-        raise ArithmeticError("a result would overflow or is undefined here")
-    return values
-
-'''
-
-#: How the test programs in Python end.
-ENDING = """        print(f"{{name}} vectors {{len(rows)}} wrong {{wrong}} worst {{worst:.3g}}")
-        failed += wrong > 0
-    return failed
-
-
-sys.exit(main())
-"""
-TEST = '''# {license}
-"""Runs every function on its vectors; the exit status is the number of functions that failed."""
-
-import json
-import pathlib
-import sys
-
-import numpy as np
-
-import navsym_functions as module
-
-
-def numbers(values):
-    return [float(v) for v in values]
-
-
-CALLS = {calls}
-
-
-def call(name, row):
-    given = [row[first:first + size] if size else row[first] for first, size in CALLS[name]["arguments"]]
-    try:
-        with np.errstate(all="ignore"):
-            results = stepped(name, given) if CALLS[name]["state"] else getattr(module, name)(*given)
-    except ValueError:
-        return 1, []
-    except ArithmeticError:
-        return 2, []
-    results = results if isinstance(results, tuple) else (results,)
-    return 0, [float(x) for r in results for x in np.ravel(r)]
-
-
-def stepped(name, given):
-    """The step through its state, which must follow its results."""
-    state = CALLS[name]["state"]
-    program = object.__new__(getattr(module, state["program"]))
-    for f in state["fields"]:
-        setattr(program, f["name"], 0.0 if f["argument"] < 0 else given[f["argument"]])
-    taken = {{f["argument"] for f in state["fields"]}}
-    results = program.step(*(x for k, x in enumerate(given) if k not in taken))
-    fields = {{f["output"]: getattr(program, f["name"]) for f in state["fields"] if f["output"]}}
-    results = results if isinstance(results, tuple) else (results,)
-    return tuple(fields.get(name, value) for name, value in zip(state["outputs"], results, strict=True))
-
-
-def main():
-    folder = pathlib.Path(__file__).parent
-    tests = json.loads((folder / "vectors.json").read_text(encoding="utf-8"))
-    failed = 0
-    for name, rows in tests.items():
-        wrong, worst = 0, 0.0
-        for row in rows:
-            status, results = call(name, numbers(row["in"]))
-            wrong += status != row["status"]
-            if status or row["status"]:
-                continue
-            ends = zip(results, row["lower"], row["upper"], row["nearest"], strict=True)
-            for value, low, high, nearest in ends:
-                wrong += not low <= value <= high
-                size = abs(nearest) * {epsilon}
-                if size and high - nearest < 1000.0 * size:
-                    worst = max(worst, abs(value - nearest) / size)
-'''
-
 
 def files(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str) -> dict[str, str]:
     """The module, its vectors and the program that runs them."""
     real = "float32" if functions[0].arithmetic.name == "float" else "float64"
-    texts = [HEAD.format(license=license_, real=real), *map(helper_text, helpers_used(*functions))]
+    texts = [
+        template("python_head.py").format(license=license_, real=real),
+        *map(helper_text, helpers_used(*functions)),
+    ]
     texts += [text for f in functions for text in (source(f), *python_program(f))]
     epsilon = "2.0**-52" if real == "float64" else "2.0**-23"
     return {
         "navsym_functions.py": "\n\n".join(texts),
-        "test_vectors.py": (TEST + ENDING).format(
+        "test_vectors.py": (template("python_test.py") + template("python_test_ending.py")).format(
             license=license_, epsilon=epsilon, calls=calls_table(functions, python=True)
         ),
         "vectors.json": vectors_json(functions, tests),

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from navsym.export.accuracy.vectors import Vector
 from navsym.export.languages.helpers import Helper, helper_parts, helpers_used, squares_if_needed
-from navsym.export.languages.printing import Spelling, assignments, code_names, result_fields
+from navsym.export.languages.printing import Spelling, assignments, code_names, result_fields, template
 from navsym.export.languages.programs import rust_program, rust_through_state, through_accessors
 from navsym.export.languages.summary import summary
 from navsym.export.parts import Argument, ExportedFunction, Output
@@ -108,37 +108,6 @@ def helper_text(helper: Helper, kind: str, s: Spelling) -> str:
     )
 
 
-TEST = """fn test_{name}() -> i32 {{
-    let input: [{kind}; {inputs_size}] = [{inputs}];
-    let status: [i32; {count}] = [{status}];
-    let lower: [f64; {total}] = [{lower}];
-    let upper: [f64; {total}] = [{upper}];
-    let nearest: [f64; {total}] = [{nearest}];
-    let mut wrong = 0;
-    let mut worst = 0.0_f64;
-    for k in 0..{count} {{
-        match {call} {{
-            Err(s) => wrong += if s as i32 == status[k] {{ 0 }} else {{ 1 }},
-            Ok(_) if status[k] != 0 => wrong += 1,
-            Ok({found}) => {{
-                let values: [f64; {size}] = [{values}];
-                for j in 0..{size} {{
-                    let at = k * {size} + j;
-                    wrong += if values[j] >= lower[at] && values[j] <= upper[at] {{ 0 }} else {{ 1 }};
-                    let size = nearest[at].abs() * {epsilon};
-                    if size > 0.0 && upper[at] - nearest[at] < 1000.0 * size {{
-                        worst = worst.max((values[j] - nearest[at]).abs() / size);
-                    }}
-                }}
-            }}
-        }}
-    }}
-    println!("{name} vectors {{}} wrong {{}} worst {{:.3}}", {count}, wrong, worst);
-    if wrong > 0 {{ 1 }} else {{ 0 }}
-}}
-"""
-
-
 def program(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str) -> str:
     """The test program."""
     lines = [f"// {license_}", "#![allow(non_snake_case, unused_variables, clippy::all)]", "mod navsym_functions;"]
@@ -158,7 +127,7 @@ def test_function(function: ExportedFunction, found: list[Vector]) -> str:
         return ", ".join(d.number(x) for v in found for x in (getattr(v, part) or (0.0,) * function.size))
 
     accessors = through_accessors(function)
-    return TEST.format(
+    return template("rust_test_function.rs").format(
         name=function.name,
         kind=kind,
         size=function.size,

@@ -15,45 +15,24 @@ from navsym.core.errors import MissingEngineError
 from navsym.export.accuracy.vectors import Vector
 from navsym.export.languages.c import files as c_files
 from navsym.export.languages.c import output_places
+from navsym.export.languages.printing import TEMPLATES, template
 from navsym.export.languages.summary import bound_text, unit_of
 from navsym.export.parts import ExportedFunction, Piece
 from navsym.export.processes import run
-
-WASI = """# {license}
-\"\"\"Runs the test program that was compiled to WebAssembly (needs wasmtime); its exit status is ours.\"\"\"
-
-import sys
-
-import wasmtime
-
-engine = wasmtime.Engine()
-linker = wasmtime.Linker(engine)
-linker.define_wasi()
-store = wasmtime.Store(engine)
-config = wasmtime.WasiConfig()
-config.argv = ["run"]
-config.inherit_stdout()
-store.set_wasi(config)
-instance = linker.instantiate(store, wasmtime.Module.from_file(engine, sys.argv[1]))
-try:
-    instance.exports(store)["_start"](store)
-except wasmtime.ExitTrap as ended:
-    sys.exit(ended.code)
-"""
 
 FLAGS = ("-target", "wasm32-wasi", "-mexec-model=reactor", "-O2", "-s", "-std=c99", "-ffp-contract=off")
 
 
 def wasm_files(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str) -> dict[str, str]:
     """The C folder with a runner for its WebAssembly."""
-    return c_files(functions, tests, license_) | {"run_wasi.py": WASI.format(license=license_)}
+    return c_files(functions, tests, license_) | {"run_wasi.py": template("wasm_run_wasi.py").format(license=license_)}
 
 
 def page_files(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str) -> dict[str, str]:
     """One self-contained page: the compiled functions, their vectors, bounds and verdicts; no network."""
     module = base64.b64encode(compiled(functions, tests, license_)).decode("ascii")
     data = json.dumps([record(f, tests[f.name]) for f in functions], allow_nan=False)
-    text = (Path(__file__).with_name("page.html")).read_text(encoding="utf-8")
+    text = (TEMPLATES / "page.html").read_text(encoding="utf-8")
     safe = data.replace("&", "\\u0026").replace("<", "\\u003c").replace(">", "\\u003e")
     return {"index.html": text.replace("@LICENSE@", license_).replace("@DATA@", safe).replace("@WASM@", module)}
 
