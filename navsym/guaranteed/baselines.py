@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from navsym.claims.display import table
+from navsym.claims.display import write_table
 from navsym.core.answers import Answer
 from navsym.guaranteed.convex import LP_SOLVERS, GridProblem, grid_problem, guaranteed_lp
 from navsym.guaranteed.problem import GuaranteedProblem
@@ -26,7 +26,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Sampled:
+class SampledRegressors:
     """Regressors on Gauss-Legendre points of every panel: (m, n), lengths of time and noise bounds (n,)."""
 
     regressors: Array
@@ -34,7 +34,7 @@ class Sampled:
     bounds: Array
 
 
-def sampled(problem: GuaranteedProblem, count: int = 4000) -> Sampled:
+def sample_regressors(problem: GuaranteedProblem, count: int = 4000) -> SampledRegressors:
     """Composite Gauss points, fine enough for integrals of |Phi| to six digits."""
     nodes, weights = np.polynomial.legendre.leggauss(4)
     cells = count // 4
@@ -43,14 +43,14 @@ def sampled(problem: GuaranteedProblem, count: int = 4000) -> Sampled:
     panels = problem.exact().panels
     parts = [panel.numbers(v) for panel in panels]
     lengths = [float(end - start) for start, end, _ in (panel.edges() for panel in panels)]
-    return Sampled(
+    return SampledRegressors(
         np.hstack([H for _, H, _ in parts]),
         np.concatenate([length * share for length in lengths]),
         np.concatenate([np.full(v.size, sigma) for _, _, sigma in parts]),
     )
 
 
-def quadratic_estimator(samples: Sampled, functional: Array, trust: Array) -> Array:
+def quadratic_estimator(samples: SampledRegressors, functional: Array, trust: Array) -> Array:
     """Weights Phi (n,) per unit of time that minimise ``integral Phi^2 / trust`` without bias.
 
     trust = 1 is least squares; trust = 1 / sigma^2 is what the Kalman filter converges to that knows
@@ -65,7 +65,7 @@ def quadratic_estimator(samples: Sampled, functional: Array, trust: Array) -> Ar
     return density
 
 
-def guaranteed_deviation(samples: Sampled, density: Array) -> float:
+def guaranteed_deviation(samples: SampledRegressors, density: Array) -> float:
     """``sum_j sigma_j integral |Phi_j|``: the standard deviation under the estimator's own worst correlation."""
     return float(np.sum(samples.bounds * np.abs(density) * samples.spacing))
 
@@ -122,10 +122,10 @@ class Comparison(Answer):
         """The table of ``--compare``, for notebooks."""
         rows = [("guaranteed", "", self.optimum), *self.rows()]
         heads = ("estimator", "status", "guaranteed deviation")
-        return table(heads, [(*row[:2], "" if row[2] is None else f"{row[2]:.6g}") for row in rows])
+        return write_table(heads, [(*row[:2], "" if row[2] is None else f"{row[2]:.6g}") for row in rows])
 
 
-def compare(
+def compare_estimators(
     estimator: Estimator, solvers: Sequence[str] = LP_SOLVERS, progress: Callable[[str], None] = lambda solver: None
 ) -> Comparison:
     """Guaranteed deviation of least squares and of the white-noise Kalman filter; every solver's answer.
@@ -135,7 +135,7 @@ def compare(
     Raises NotEstimableError, and DomainError for an unknown solver.
     """
     problem, optimum = estimator.problem, float(estimator.value)
-    samples = sampled(problem)
+    samples = sample_regressors(problem)
     P = np.array([float(p) for p in problem.functional])
     ones = np.ones_like(samples.bounds)
     least = guaranteed_deviation(samples, quadratic_estimator(samples, P, ones))
@@ -164,7 +164,7 @@ def signed_bounds(estimator: Estimator) -> Array:
     return np.copysign(bounds, [float(weight) for weight in estimator.weights])
 
 
-def realise(estimator: Estimator, runs: int, seed: int = 0) -> Array:
+def realise_worst_noise(estimator: Estimator, runs: int, seed: int = 0) -> Array:
     """Errors (runs,) of the estimate in realisations of the worst noise, in units of the target.
 
     The same seed gives the same errors.

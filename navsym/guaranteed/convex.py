@@ -20,7 +20,7 @@ from typing import Any
 
 import numpy as np
 
-from navsym.core.arrays import Array, frozen, named, positive
+from navsym.core.arrays import Array, as_array, as_positive, freeze
 from navsym.core.errors import DomainError, MissingEngineError, NotEstimableError
 from navsym.guaranteed.problem import GuaranteedProblem
 
@@ -53,17 +53,17 @@ class GridProblem:
     times: Any = None
 
     def __post_init__(self) -> None:
-        regressors = named("regressors", self.regressors, (None, None), "unknowns by times")
+        regressors = as_array("regressors", self.regressors, (None, None), "unknowns by times")
         m, n = regressors.shape
         ones = np.ones(n)
         put = object.__setattr__
         put(self, "regressors", regressors)
-        put(self, "functional", named("functional", self.functional, (m,), "one entry per unknown"))
+        put(self, "functional", as_array("functional", self.functional, (m,), "one entry per unknown"))
         for name in ("bounds", "spacing"):
             value = getattr(self, name)
-            put(self, name, positive(name, ones if value is None else value, (n,), "one entry per time"))
+            put(self, name, as_positive(name, ones if value is None else value, (n,), "one entry per time"))
         times = np.arange(n) if self.times is None else self.times
-        put(self, "times", named("times", times, (n,), "one entry per time"))
+        put(self, "times", as_array("times", times, (n,), "one entry per time"))
 
 
 def grid_problem(problem: GuaranteedProblem, count: int = 201) -> GridProblem:
@@ -111,7 +111,7 @@ class ConvexResult:
 
 
 #: (weights or None, multipliers or None, status)
-Answer = tuple[Any, Any, str]
+RawAnswer = tuple[Any, Any, str]
 
 
 def guaranteed_lp(problem: GridProblem, *, solver: str = LP_SOLVERS[0]) -> ConvexResult:
@@ -123,7 +123,7 @@ def guaranteed_lp(problem: GridProblem, *, solver: str = LP_SOLVERS[0]) -> Conve
     need_estimable(problem)
     programme, engine = engine_of(solver, LP_SOLVERS)
     run = {"casadi": lp_by_casadi, "cvxpy": lp_by_cvxpy}[programme]
-    return judged(problem, solver, run, engine)
+    return run_solver(problem, solver, run, engine)
 
 
 def least_squares_qp(problem: GridProblem, *, solver: str = QP_SOLVERS[0]) -> ConvexResult:
@@ -136,7 +136,7 @@ def least_squares_qp(problem: GridProblem, *, solver: str = QP_SOLVERS[0]) -> Co
     need_estimable(problem)
     programme, engine = engine_of(solver, QP_SOLVERS)
     run = {"casadi": qp_by_casadi, "cvxpy": qp_by_cvxpy}[programme]
-    return judged(problem, solver, run, engine)
+    return run_solver(problem, solver, run, engine)
 
 
 def engine_of(solver: str, known: tuple[str, ...]) -> tuple[str, str]:
@@ -165,7 +165,9 @@ def need_estimable(problem: GridProblem) -> None:
         )
 
 
-def judged(problem: GridProblem, solver: str, run: Callable[[GridProblem, str], Answer], engine: str) -> ConvexResult:
+def run_solver(
+    problem: GridProblem, solver: str, run: Callable[[GridProblem, str], RawAnswer], engine: str
+) -> ConvexResult:
     """Run a solver, measure it, and compute what its answer is worth."""
     start = time.perf_counter()
     try:
@@ -177,12 +179,12 @@ def judged(problem: GridProblem, solver: str, run: Callable[[GridProblem, str], 
     except Exception as reason:  # engines raise types of their own
         weights, multipliers, status = None, None, f"failed: {type(reason).__name__}: {first_line(reason)}"
     seconds = time.perf_counter() - start
-    weights = usable(weights)
+    weights = finite_vector(weights)
     residual = value = None
     if weights is not None:
         value = float(problem.bounds @ np.abs(weights))
         residual = float(np.abs(problem.regressors @ weights - problem.functional).max())
-    lower = lower_bound(problem, usable(multipliers))
+    lower = dual_lower_bound(problem, finite_vector(multipliers))
     return ConvexResult(solver, status, value, weights, residual, seconds, lower, status in SUCCESS)
 
 
@@ -191,15 +193,15 @@ def first_line(reason: Exception) -> str:
     return (str(reason).strip().splitlines() or [""])[0][:120]
 
 
-def usable(vector: Any) -> Array | None:
+def finite_vector(vector: Any) -> Array | None:
     """A finite read-only vector, or None."""
     if vector is None:
         return None
     array = np.array(vector, dtype=float).reshape(-1)
-    return frozen(array) if array.size and np.isfinite(array).all() else None
+    return freeze(array) if array.size and np.isfinite(array).all() else None
 
 
-def lower_bound(problem: GridProblem, multipliers: Array | None) -> float | None:
+def dual_lower_bound(problem: GridProblem, multipliers: Array | None) -> float | None:
     """|x . P| / max_i |x . H(t_i)| / sigma_i: every vector x bounds the optimum from below (weak duality).
 
     In double precision, hence a bound up to rounding.
@@ -238,7 +240,7 @@ def need_one_highs(engine: str) -> None:
         )
 
 
-def lp_by_casadi(problem: GridProblem, engine: str) -> Answer:
+def lp_by_casadi(problem: GridProblem, engine: str) -> RawAnswer:
     """The linear programme through casadi, with weights = positive part - negative part."""
     import casadi as ca
 
@@ -251,7 +253,7 @@ def lp_by_casadi(problem: GridProblem, engine: str) -> Answer:
     return x[:n] - x[n:], np.array(answer["lam_a"]).reshape(-1), str(solver.stats()["return_status"])
 
 
-def qp_by_casadi(problem: GridProblem, engine: str) -> Answer:
+def qp_by_casadi(problem: GridProblem, engine: str) -> RawAnswer:
     """The quadratic programme through casadi."""
     import casadi as ca
 
@@ -265,25 +267,25 @@ def qp_by_casadi(problem: GridProblem, engine: str) -> Answer:
 # --- cvxpy -------------------------------------------------------------------------------------------
 
 
-def lp_by_cvxpy(problem: GridProblem, engine: str) -> Answer:
+def lp_by_cvxpy(problem: GridProblem, engine: str) -> RawAnswer:
     """The linear programme through cvxpy, with the absolute value left to it."""
     import cvxpy as cp
 
     weights = cp.Variable(problem.regressors.shape[1])
     objective = cp.Minimize(problem.bounds @ cp.abs(weights))
-    return solved_by_cvxpy(problem, objective, weights, engine)
+    return solve_by_cvxpy(problem, objective, weights, engine)
 
 
-def qp_by_cvxpy(problem: GridProblem, engine: str) -> Answer:
+def qp_by_cvxpy(problem: GridProblem, engine: str) -> RawAnswer:
     """The quadratic programme through cvxpy."""
     import cvxpy as cp
 
     weights = cp.Variable(problem.regressors.shape[1])
     objective = cp.Minimize(cp.sum_squares(cp.multiply(1.0 / np.sqrt(problem.spacing), weights)))
-    return solved_by_cvxpy(problem, objective, weights, engine)
+    return solve_by_cvxpy(problem, objective, weights, engine)
 
 
-def solved_by_cvxpy(problem: GridProblem, objective: Any, weights: Any, engine: str) -> Answer:
+def solve_by_cvxpy(problem: GridProblem, objective: Any, weights: Any, engine: str) -> RawAnswer:
     """Run cvxpy, and take weights, multipliers and its own word."""
     import cvxpy as cp
 

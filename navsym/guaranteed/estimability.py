@@ -17,9 +17,9 @@ from navsym.claims import PROVED, Equation
 from navsym.core.balls import UnsupportedError, enclose, precision
 from navsym.core.errors import NavsymError, NotEstimableError
 from navsym.core.exact import decimal, to_fmpq, to_rational
-from navsym.guaranteed.certificate.enclosure import coefficients, interval, program, terms
+from navsym.guaranteed.certificate.enclosure import interval_ball, joint_tape, series_coefficients, series_terms
 from navsym.guaranteed.problem import GuaranteedProblem
-from navsym.guaranteed.time_varying import exact_end
+from navsym.guaranteed.time_varying import rational_end
 from navsym.language.expression import to_text
 from navsym.models.modelfile import ModelFile, Piece
 from navsym.prove.ladder import decide
@@ -41,14 +41,14 @@ MOST_PARTS = 400
 
 
 @dataclass(frozen=True, slots=True)
-class Direction:
+class UnobservableDirection:
     """A state at T whose motion no measurement shows; the entry ``at`` is one."""
 
     entries: tuple[sp.Expr, ...]
     at: int
 
 
-def null_directions(found: ModelFile) -> list[Direction]:
+def unobservable_directions(found: ModelFile) -> list[UnobservableDirection]:
     """Independent directions, exact; empty where none is proved. No two have an entry at each other's place.
 
     h and F must be analytic on every piece. Where two pieces meet, the columns of the later one must lie among those
@@ -57,18 +57,18 @@ def null_directions(found: ModelFile) -> list[Direction]:
     T, after = found.T, None
     if T is None or not T.is_Rational:
         return []
-    directions: list[Direction] = []
+    directions: list[UnobservableDirection] = []
     try:
         for piece in reversed(found.pieces):
             end = T if piece.end is None else piece.end
-            part = kernel_of(found, piece, end)
-            if part is None or not analytic(found, piece, end):
+            part = prove_kernel(found, piece, end)
+            if part is None or not is_analytic(found, piece, end):
                 return []
             N, free = part
             at_end = N.subs(found.time, end)
             if after is None:
-                directions = [Direction(tuple(at_end[:, k]), j) for k, j in enumerate(free)]
-            elif not vanishes(after - at_end * after.extract(free, list(range(after.cols)))):
+                directions = [UnobservableDirection(tuple(at_end[:, k]), j) for k, j in enumerate(free)]
+            elif not is_zero_matrix(after - at_end * after.extract(free, list(range(after.cols)))):
                 return []
             after = N.subs(found.time, piece.start)
     except UnsupportedError:
@@ -76,22 +76,22 @@ def null_directions(found: ModelFile) -> list[Direction]:
     return directions
 
 
-def vanishes(matrix: sp.Matrix) -> bool:
+def is_zero_matrix(matrix: sp.Matrix) -> bool:
     """Every entry is proved to be zero."""
     return all(entry == 0 or decide(Equation(entry, sp.S.Zero)).status is PROVED for entry in matrix)
 
 
-def kernel_of(found: ModelFile, piece: Piece, end: sp.Expr) -> tuple[sp.Matrix, list[int]] | None:
+def prove_kernel(found: ModelFile, piece: Piece, end: sp.Expr) -> tuple[sp.Matrix, list[int]] | None:
     """N on a piece with its identities proved, and its free rows; None where there is none."""
-    R, pivots = independent_rows(found, piece, end)
+    R, pivots = derivative_rows(found, piece, end)
     free = [j for j in range(len(found.states)) if j not in pivots]
     if R is None or not free:
         return None
-    N = kernel(R, pivots, free, found.time)
-    return (N, free) if shown(found, piece, N, free) else None
+    N = kernel_matrix(R, pivots, free, found.time)
+    return (N, free) if is_invariant(found, piece, N, free) else None
 
 
-def kernel(R: sp.Matrix, pivots: Sequence[int], free: Sequence[int], time: sp.Symbol) -> sp.Matrix:
+def kernel_matrix(R: sp.Matrix, pivots: Sequence[int], free: Sequence[int], time: sp.Symbol) -> sp.Matrix:
     """N with ``R N = 0`` and an identity matrix in the free rows."""
     N = sp.zeros(R.cols, len(free))
     for k, j in enumerate(free):
@@ -105,7 +105,7 @@ def kernel(R: sp.Matrix, pivots: Sequence[int], free: Sequence[int], time: sp.Sy
     return N
 
 
-def independent_rows(found: ModelFile, piece: Piece, end: sp.Expr) -> tuple[sp.Matrix | None, list[int]]:
+def derivative_rows(found: ModelFile, piece: Piece, end: sp.Expr) -> tuple[sp.Matrix | None, list[int]]:
     """Rows o_k that are independent at the end of a piece, and the columns of a regular block of them there."""
     F, time = piece.F, found.time
     waiting = [sp.Matrix([list(measurement.h)]) for measurement in found.measurements]
@@ -117,7 +117,7 @@ def independent_rows(found: ModelFile, piece: Piece, end: sp.Expr) -> tuple[sp.M
         if row.has(sp.zoo, sp.nan) or sp.count_ops(row) > LONGEST:
             return None, []
         with precision(BITS):
-            left = remaining([enclose(f.subs(time, end), bits=BITS) for f in row], reduced, pivots)
+            left = reduce_row([enclose(f.subs(time, end), bits=BITS) for f in row], reduced, pivots)
             best = max(range(len(left)), key=lambda j: float(abs(left[j]).lower()))
             if not bool(abs(left[best]) > NOTHING):
                 continue
@@ -128,7 +128,7 @@ def independent_rows(found: ModelFile, piece: Piece, end: sp.Expr) -> tuple[sp.M
     return (sp.Matrix.vstack(*chosen) if chosen else sp.zeros(0, F.cols)), pivots
 
 
-def remaining(row: list[arb], reduced: Sequence[Sequence[arb]], pivots: Sequence[int]) -> list[arb]:
+def reduce_row(row: list[arb], reduced: Sequence[Sequence[arb]], pivots: Sequence[int]) -> list[arb]:
     """The row without its parts along rows that are one at their pivots."""
     for other, pivot in zip(reduced, pivots, strict=True):
         share = row[pivot]
@@ -136,7 +136,7 @@ def remaining(row: list[arb], reduced: Sequence[Sequence[arb]], pivots: Sequence
     return row
 
 
-def shown(found: ModelFile, piece: Piece, N: sp.Matrix, free: Sequence[int]) -> bool:
+def is_invariant(found: ModelFile, piece: Piece, N: sp.Matrix, free: Sequence[int]) -> bool:
     """N has values at the ends of the piece, and the identities ``h N = 0`` and ``N' - F N = N M`` are proved."""
     for end in (piece.start, found.T if piece.end is None else piece.end):
         if not all(enclose(entry, bits=BITS).is_finite() for entry in N.subs(found.time, end)):
@@ -144,26 +144,26 @@ def shown(found: ModelFile, piece: Piece, N: sp.Matrix, free: Sequence[int]) -> 
     moved = N.diff(found.time) - piece.F * N
     defect = moved - N * moved.extract(list(free), list(range(N.cols)))
     H = sp.Matrix([list(measurement.h) for measurement in found.measurements])
-    return vanishes(H * N) and vanishes(defect)
+    return is_zero_matrix(H * N) and is_zero_matrix(defect)
 
 
-def analytic(found: ModelFile, piece: Piece, end: sp.Expr) -> bool:
+def is_analytic(found: ModelFile, piece: Piece, end: sp.Expr) -> bool:
     """Every entry of F and h has series in balls about every place of the piece, on parts of it."""
     entries = {*piece.F, *(h for measurement in found.measurements for h in measurement.h)}
     return all(
-        entry.is_polynomial(found.time) or resolved(entry, found.time, exact_end(piece.start), exact_end(end))
+        entry.is_polynomial(found.time) or has_series(entry, found.time, rational_end(piece.start), rational_end(end))
         for entry in entries
     )
 
 
-def resolved(entry: sp.Expr, time: sp.Symbol, start: fmpq, end: fmpq) -> bool:
+def has_series(entry: sp.Expr, time: sp.Symbol, start: fmpq, end: fmpq) -> bool:
     """The series of an entry exist on parts of [start, end]."""
-    tape, waiting, used = program([entry]), [(start, end)], 0
+    tape, waiting, used = joint_tape([entry]), [(start, end)], 0
     while waiting and used < MOST_PARTS:
         lower, upper = waiting.pop()
         used += 1
-        with terms(2):
-            value = coefficients(tape.run({time: arb_series([interval(lower, upper), arb(1)])})[0], 1)
+        with series_terms(2):
+            value = series_coefficients(tape.run({time: arb_series([interval_ball(lower, upper), arb(1)])})[0], 1)
         if not all(c.is_finite() for c in value):
             middle = (lower + upper) / 2
             waiting += [(lower, middle), (middle, upper)]
@@ -179,7 +179,7 @@ Relation = dict[int, sp.Expr]
 
 
 @dataclass(frozen=True, slots=True)
-class Null:
+class NullDirection:
     """Entries of a direction that no measurement shows, and the unknown that is dropped for it."""
 
     entries: Relation
@@ -195,12 +195,12 @@ def drop_dependent(problem: GuaranteedProblem, kept: list[int], index: int, coef
     k, balls = kept[index], dict(zip(kept, coefficients, strict=False))
     direction = integrated_direction(problem, kept) if problem.model else exact_direction(problem, k, balls)
     if direction is None:
-        raise undecided(problem, k, balls)
+        raise undecided_error(problem, k, balls)
     change = sum((c * problem.functional[j] for j, c in direction.entries.items()), sp.S.Zero)
     if decide(Equation(change, sp.S.Zero)).status is not PROVED:
         if enclose(change, bits=DECIDING).contains(0):
-            raise undecided(problem, k, balls)
-        words = ", ".join(in_words(direction.entries.get(j, sp.S.Zero)) for j in range(len(problem.functional)))
+            raise undecided_error(problem, k, balls)
+        words = ", ".join(entry_words(direction.entries.get(j, sp.S.Zero)) for j in range(len(problem.functional)))
         raise NotEstimableError(
             f"functional: expected one that the measurements determine; got one that changes along the null "
             f"direction [{words}] which no measurement shows; estimate another combination"
@@ -208,20 +208,20 @@ def drop_dependent(problem: GuaranteedProblem, kept: list[int], index: int, coef
     kept.remove(direction.at)
 
 
-def exact_direction(problem: GuaranteedProblem, k: int, balls: dict[int, arb]) -> Null | None:
+def exact_direction(problem: GuaranteedProblem, k: int, balls: dict[int, arb]) -> NullDirection | None:
     """The direction of the proved relation of the regressor k."""
-    relation = proved_relation(problem, k, balls)
-    return None if relation is None else Null({j: -c for j, c in relation.items()} | {k: sp.S.One}, k)
+    relation = prove_relation(problem, k, balls)
+    return None if relation is None else NullDirection({j: -c for j, c in relation.items()} | {k: sp.S.One}, k)
 
 
-def integrated_direction(problem: GuaranteedProblem, kept: Sequence[int]) -> Null | None:
+def integrated_direction(problem: GuaranteedProblem, kept: Sequence[int]) -> NullDirection | None:
     """A direction of an integrated model, proved from F and h, whose own unknown is left."""
     assert problem.model is not None
-    known = (d for d in null_directions(problem.model) if d.at in kept)
-    return next((Null({j: c for j, c in enumerate(d.entries) if c != 0}, d.at) for d in known), None)
+    known = (d for d in unobservable_directions(problem.model) if d.at in kept)
+    return next((NullDirection({j: c for j, c in enumerate(d.entries) if c != 0}, d.at) for d in known), None)
 
 
-def undecided(problem: GuaranteedProblem, k: int, balls: dict[int, arb]) -> NavsymError:
+def undecided_error(problem: GuaranteedProblem, k: int, balls: dict[int, arb]) -> NavsymError:
     """What is known where no relation is proved: the direction along which nothing is seen to change."""
     seen = {j: decimal(-c, 12) for j, c in balls.items() if not abs(c) < TINY} | {k: "1"}
     near = [seen.get(j, "0") for j in range(len(problem.functional))]
@@ -235,21 +235,21 @@ def undecided(problem: GuaranteedProblem, k: int, balls: dict[int, arb]) -> Navs
     )
 
 
-def in_words(c: sp.Expr) -> str:
+def entry_words(c: sp.Expr) -> str:
     """An exact number, rounded where its text is long."""
     text = to_text(c)
     return text if len(text) <= LETTERS else decimal(enclose(c), 15)
 
 
-def proved_relation(problem: GuaranteedProblem, k: int, balls: dict[int, arb]) -> Relation | None:
+def prove_relation(problem: GuaranteedProblem, k: int, balls: dict[int, arb]) -> Relation | None:
     """Exact c with ``H_k = sum c_j H_j`` on all measurements at all times, or None where there is no proof."""
     involved = [j for j, c in balls.items() if not abs(c) < TINY]
     near = {j: recognised(balls[j]) for j in involved}
     if all(c is not None for c in near.values()):
         relation: Relation | None = {j: c for j, c in near.items() if c is not None}
     else:
-        relation = solved_at_instants(problem, k, involved)
-    return relation if relation is not None and holds(problem, k, relation) else None
+        relation = solve_at_times(problem, k, involved)
+    return relation if relation is not None and is_relation_proved(problem, k, relation) else None
 
 
 def recognised(x: arb) -> sp.Rational | None:
@@ -260,7 +260,7 @@ def recognised(x: arb) -> sp.Rational | None:
     return best if abs(best - number) < sp.Rational(1, 10**40) else None
 
 
-def solved_at_instants(problem: GuaranteedProblem, k: int, involved: list[int]) -> Relation | None:
+def solve_at_times(problem: GuaranteedProblem, k: int, involved: list[int]) -> Relation | None:
     """The coefficients from as many exact equations as there are of them, or None where there are too many."""
     if problem.error or not 1 <= len(involved) <= MOST:
         return None
@@ -294,7 +294,7 @@ def rows_of_full_rank(values: np.ndarray, count: int) -> list[int] | None:
     return chosen
 
 
-def holds(problem: GuaranteedProblem, k: int, relation: Relation) -> bool:
+def is_relation_proved(problem: GuaranteedProblem, k: int, relation: Relation) -> bool:
     """The relation is proved for every measurement on every stretch."""
     for stretch in problem.stretches:
         for row in stretch.rows:

@@ -119,16 +119,16 @@ def formulation_text(
     factor = {"lp": 0.0, "qp": 1.0, "mixed": mixture}[kind]
     quadratic = factor * grid.bounds**2 / grid.spacing
     if to == "mps":
-        return mps(grid, linear, quadratic)
-    return script(grid, linear, quadratic, to)
+        return mps_text(grid, linear, quadratic)
+    return script_text(grid, linear, quadratic, to)
 
 
-def numbers(values: Array) -> str:
+def number_list(values: Array) -> str:
     """A row of numbers as a JSON list whose decimals give the same doubles when read."""
     return json.dumps([float(x) for x in values])
 
 
-def mps(grid: GridProblem, linear: Array, quadratic: Array) -> str:
+def mps_text(grid: GridProblem, linear: Array, quadratic: Array) -> str:
     """Free-form MPS; columns a0, b0, a1, b1, …, rows u0, u1, … for the unknowns."""
     m, n = grid.regressors.shape
     lines = ["NAME guaranteed", "ROWS", " N cost", *(f" E u{j}" for j in range(m)), "COLUMNS"]
@@ -184,16 +184,16 @@ if __name__ == "__main__":
 """
 
 
-def script(grid: GridProblem, linear: Array, quadratic: Array, to: str) -> str:
+def script_text(grid: GridProblem, linear: Array, quadratic: Array, to: str) -> str:
     """Python source that states the problem on the grid for cvxpy or casadi and solves it.
 
     linear, quadratic : (N,) of the cost ``linear . (a + b) + quadratic . (a - b)^2 / 2``
     """
     head = HEAD.format(
-        times=numbers(grid.times),
-        rows="[" + ",\n".join(numbers(row) for row in grid.regressors) + "]",
-        functional=numbers(grid.functional),
-        linear=numbers(linear),
-        quadratic=numbers(quadratic),
+        times=number_list(grid.times),
+        rows="[" + ",\n".join(number_list(row) for row in grid.regressors) + "]",
+        functional=number_list(grid.functional),
+        linear=number_list(linear),
+        quadratic=number_list(quadratic),
     )
     return head + (CVXPY if to == "cvxpy" else CASADI)

@@ -13,9 +13,16 @@ from flint import arb
 from navsym.core.balls import enclose
 from navsym.core.errors import DomainError, EmptyError, NotFiniteError, ShapeError
 from navsym.core.exact import to_fmpq
-from navsym.guaranteed.certificate.enclosure import Panel, Problem
-from navsym.guaranteed.time_varying import ERROR, error_bound, on_rational_interval, regressors_of, steps_of, varying
-from navsym.language.names import shown
+from navsym.guaranteed.certificate.enclosure import Panel, PanelProblem
+from navsym.guaranteed.time_varying import (
+    ERROR,
+    error_bound,
+    has_varying_system,
+    integrate_steps,
+    step_regressors,
+    to_rational_interval,
+)
+from navsym.language.names import quote
 from navsym.models.linear import LinearModel, exact_entry
 from navsym.models.model import Model, contents_of
 from navsym.models.modelfile import BasisFile, ModelFile
@@ -25,7 +32,7 @@ Rows = tuple[tuple[sp.Expr, ...], ...]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Stretch:
+class RegressorPiece:
     """Part of the interval on which the regressors are analytic: one row H_j(t) per measurement."""
 
     start: sp.Expr
@@ -49,7 +56,7 @@ class GuaranteedProblem:
     Raises ShapeError, EmptyError, NotFiniteError and DomainError (no length, sigma <= 0, P = 0, free symbols).
     """
 
-    stretches: tuple[Stretch, ...]
+    stretches: tuple[RegressorPiece, ...]
     functional: tuple[sp.Expr, ...]
     sigma: tuple[sp.Expr, ...]
     variable: sp.Symbol
@@ -77,14 +84,14 @@ class GuaranteedProblem:
         """A ball for the error of the regressors."""
         return {ERROR: arb(0, arb(to_fmpq(self.error)).upper())} if self.error else {}
 
-    def exact(self) -> Problem:
+    def exact(self) -> PanelProblem:
         """The same for the proofs: one panel per stretch and measurement, empty rows left out."""
         panels = [
             Panel(j, row, self.variable, stretch.start, stretch.end, self.sigma[j], self.unknown)
             for stretch in self.stretches
             for j, row in enumerate(stretch.rows)
         ]
-        return Problem(tuple(panels), self.functional)
+        return PanelProblem(tuple(panels), self.functional)
 
 
 def need_shapes(problem: GuaranteedProblem) -> None:
@@ -144,7 +151,7 @@ def from_regressors(
     exact = tuple(tuple(exact_entry("H", i, j, h) for j, h in enumerate(row)) for i, row in enumerate(rows))
     start, end = (exact_entry("interval", 0, k, e) for k, e in enumerate(interval))
     bounds = tuple(sigma) if sigma is not None else (1,) * len(exact)
-    return GuaranteedProblem((Stretch(start, end, exact),), tuple(functional), bounds, variable, target=target)
+    return GuaranteedProblem((RegressorPiece(start, end, exact),), tuple(functional), bounds, variable, target=target)
 
 
 def problem_of(
@@ -160,9 +167,9 @@ def problem_of(
     where              : name of that function, for errors
     """
     if not isinstance(model, GuaranteedProblem):
-        return from_file(contents_of(model, values, parameters, where), target, where)
+        return from_contents(contents_of(model, values, parameters, where), target, where)
     if target not in (None, model.target):
-        got = f"a problem that has {shown(model.target)}"
+        got = f"a problem that has {quote(model.target)}"
         raise DomainError(f"expected its target; got {got}; leave the target out", where=f"{where}: target")
     if values or parameters:
         name = next(iter({**(values or {}), **parameters}))
@@ -171,7 +178,7 @@ def problem_of(
     return model
 
 
-def from_file(found: ModelFile | BasisFile, target: str | None = None, where: str = "") -> GuaranteedProblem:
+def from_contents(found: ModelFile | BasisFile, target: str | None = None, where: str = "") -> GuaranteedProblem:
     """The problem that a model file states for one of its targets: regressors H(t), functional, bounds sigma.
 
     target : its name; not needed where the file has one
@@ -179,11 +186,11 @@ def from_file(found: ModelFile | BasisFile, target: str | None = None, where: st
     """
     name, functional = chosen_target(found, target, where)
     if isinstance(found, BasisFile):
-        stretch = Stretch(*found.interval, found.H)
+        stretch = RegressorPiece(*found.interval, found.H)
         return GuaranteedProblem((stretch,), functional, found.sigma, found.variable, target=name)
     if found.T is None:
         raise EmptyError("expected the length of the interval; got no [interval]; add T", where="interval.T")
-    stretches, error = all_stretches(found)
+    stretches, error = regressor_pieces(found)
     return GuaranteedProblem(
         stretches,
         functional,
@@ -196,24 +203,24 @@ def from_file(found: ModelFile | BasisFile, target: str | None = None, where: st
     )
 
 
-def all_stretches(found: ModelFile) -> tuple[tuple[Stretch, ...], sp.Rational]:
+def regressor_pieces(found: ModelFile) -> tuple[tuple[RegressorPiece, ...], sp.Rational]:
     """Regressors and the bound of their error: exact where exp(F t) has a closed form."""
-    if not varying(found):
-        stretches = stretches_of(found)
+    if not has_varying_system(found):
+        stretches = exact_pieces(found)
         if not any(h.has(sp.RootSum) for stretch in stretches for row in stretch.rows for h in row):
             return stretches, sp.S.Zero
-    return polynomial_stretches(found)
+    return polynomial_pieces(found)
 
 
-def polynomial_stretches(found: ModelFile) -> tuple[tuple[Stretch, ...], sp.Rational]:
+def polynomial_pieces(found: ModelFile) -> tuple[tuple[RegressorPiece, ...], sp.Rational]:
     """Polynomial regressors and the bound of their error."""
     if not found.measurements:
         raise EmptyError("expected a measurement; got none; add a [[measurement]]", where="measurement")
-    moved, shift = on_rational_interval(found)
-    made = [(step, *regressors_of(moved, step, shift)) for step in steps_of(moved)]
+    moved, shift = to_rational_interval(found)
+    made = [(step, *step_regressors(moved, step, shift)) for step in integrate_steps(moved)]
     ends = [sp.S.Zero, *(sp.Rational(str(step.end)) + shift for step, _, _ in made)]
     stretches = tuple(
-        Stretch(start, end, rows) for start, end, (_, rows, _) in zip(ends[:-1], ends[1:], made, strict=True)
+        RegressorPiece(start, end, rows) for start, end, (_, rows, _) in zip(ends[:-1], ends[1:], made, strict=True)
     )
     return stretches, sp.Rational(str(error_bound([bound for _, _, bound in made])))
 
@@ -226,12 +233,12 @@ def chosen_target(found: ModelFile | BasisFile, target: str | None, where: str =
         raise DomainError(message, where=where)
     name = names[0] if target is None else target
     if not isinstance(name, str) or name not in found.targets:
-        message = f"expected a target of the model; got {shown(name)}; name one of {', '.join(names)}"
+        message = f"expected a target of the model; got {quote(name)}; name one of {', '.join(names)}"
         raise DomainError(message, where=where)
     return name, found.targets[name]
 
 
-def stretches_of(found: ModelFile) -> tuple[Stretch, ...]:
+def exact_pieces(found: ModelFile) -> tuple[RegressorPiece, ...]:
     """H_j(tau)^T = h_j Phi(tau, T) on every piece of F, the last piece first.
 
     Within a piece ``Phi(tau, T) = exp(F (tau - e)) Phi(e, T)`` with e its end.
@@ -243,17 +250,17 @@ def stretches_of(found: ModelFile) -> tuple[Stretch, ...]:
     H = sp.ImmutableMatrix([list(m.h) for m in found.measurements])
     if len(found.pieces) == 1:
         model = LinearModel(found.pieces[0].F, None, H, found.states, time=found.time)
-        return (Stretch(sp.S.Zero, T, rows_of(regressors(model, T, found.time).matrix)),)
-    done: list[Stretch] = []
+        return (RegressorPiece(sp.S.Zero, T, matrix_rows(regressors(model, T, found.time).matrix)),)
+    done: list[RegressorPiece] = []
     after = sp.ImmutableMatrix.eye(len(found.states))
     for piece in reversed(found.pieces):
         end = T if piece.end is None else piece.end
         back = transition_matrix(-piece.F, end - found.time).matrix
-        done.append(Stretch(piece.start, end, rows_of(H * back * after)))
+        done.append(RegressorPiece(piece.start, end, matrix_rows(H * back * after)))
         after = sp.ImmutableMatrix(transition_matrix(-piece.F, end - piece.start).matrix * after)
     return tuple(reversed(done))
 
 
-def rows_of(matrix: sp.ImmutableMatrix) -> Rows:
+def matrix_rows(matrix: sp.ImmutableMatrix) -> Rows:
     """The rows of a matrix as tuples."""
     return tuple(tuple(row) for row in matrix.tolist())

@@ -173,7 +173,9 @@ class Estimator(Answer):
 
     def _repr_html_(self) -> str:
         """The estimator as a table, for notebooks."""
-        value = self.lower if self.lower == self.upper else f"{shorten_digits(self.lower)} to {shorten_digits(self.upper)}"
+        value = (
+            self.lower if self.lower == self.upper else f"{shorten_digits(self.lower)} to {shorten_digits(self.upper)}"
+        )
         head = f"{html.escape(self.target)}: {html.escape(value)} {mark_verdict(str(self.status))}"
         rows = [(p.measurement, shorten_digits(p.text[0]), shorten_digits(p.text[1])) for p in self.support]
         return write_card([head, write_table(("measurement", "time", "weight"), rows)], str(self.status))

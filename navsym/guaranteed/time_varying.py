@@ -21,8 +21,8 @@ from flint import arb, arb_mat, arb_series, fmpq
 from navsym.core.balls import enclose, precision
 from navsym.core.errors import DomainError, TooLargeError
 from navsym.core.exact import decimal, from_decimal, to_fmpq, to_rational
-from navsym.guaranteed.certificate.enclosure import interval, program, terms
-from navsym.guaranteed.certificate.moving import number_of
+from navsym.guaranteed.certificate.enclosure import interval_ball, joint_tape, series_terms
+from navsym.guaranteed.certificate.moving import series_coefficient
 from navsym.models.modelfile import ModelFile, Piece
 
 #: The error of a regressor; everything about it is its bound.
@@ -37,7 +37,7 @@ Matrix = list[list[arb]]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Step:
+class TaylorStep:
     """Psi on [start, end]: polynomials in ``end - t`` and the largest error of an entry."""
 
     start: fmpq
@@ -46,33 +46,33 @@ class Step:
     error: arb
 
 
-def varying(found: ModelFile) -> bool:
+def has_varying_system(found: ModelFile) -> bool:
     """True when F contains the time."""
     return any(found.time in piece.F.free_symbols for piece in found.pieces)
 
 
-def on_rational_interval(found: ModelFile) -> tuple[ModelFile, sp.Expr]:
+def to_rational_interval(found: ModelFile) -> tuple[ModelFile, sp.Expr]:
     """The model on [0, S], S rational, and T - S: what F without the time does depends on T - t alone.
 
     Where T is rational, where F depends on the time or is given piece by piece, the model itself and zero.
     """
     assert found.T is not None
-    if found.T.is_Rational or varying(found) or len(found.pieces) > 1:
+    if found.T.is_Rational or has_varying_system(found) or len(found.pieces) > 1:
         return found, sp.S.Zero
     above = to_fmpq(enclose(found.T).upper())
     S = to_rational(above)
     return replace(found, T=S, pieces=(replace(found.pieces[0], end=None),)), found.T - S
 
 
-def steps_of(found: ModelFile) -> list[Step]:
+def integrate_steps(found: ModelFile) -> list[TaylorStep]:
     """Psi on steps from 0 to T, in order. Raises DomainError for ends that are not rational, and TooLargeError."""
-    done: list[Step] = []
+    done: list[TaylorStep] = []
     n = len(found.states)
     with precision(BITS):
         Psi = [[arb(int(i == j)) for j in range(n)] for i in range(n)]
         for piece in reversed(found.pieces):
             end = found.T if piece.end is None else piece.end
-            at, last = exact_end(end), exact_end(piece.start)
+            at, last = rational_end(end), rational_end(piece.start)
             size = at - last
             while at > last:
                 if len(done) >= MOST_STEPS:
@@ -80,20 +80,20 @@ def steps_of(found: ModelFile) -> list[Step]:
                         f"F: expected a motion that {MOST_STEPS} steps of order {ORDER} resolve; got more; "
                         "shorten the interval"
                     )
-                step, Psi, size = longest(found, piece, Psi, at, min(size, at - last))
+                step, Psi, size = longest_step(found, piece, Psi, at, min(size, at - last))
                 done.append(step)
                 at = step.start
     return list(reversed(done))
 
 
-def exact_end(end: sp.Expr | None) -> fmpq:
+def rational_end(end: sp.Expr | None) -> fmpq:
     """An end of the interval as a rational of flint; raises DomainError where it is none."""
     if end is None or not end.is_Rational:
         raise DomainError(f"interval: expected rational ends where F depends on the time; got {end}; give fractions")
     return to_fmpq(end)
 
 
-def longest(found: ModelFile, piece: Piece, Psi: Matrix, at: fmpq, size: fmpq) -> tuple[Step, Matrix, fmpq]:
+def longest_step(found: ModelFile, piece: Piece, Psi: Matrix, at: fmpq, size: fmpq) -> tuple[TaylorStep, Matrix, fmpq]:
     """One step to the left of ``at``, halved until its remainder is small; Psi at its left end; the next size."""
     for _ in range(40):
         made = taylor_step(found, piece, Psi, at, size)
@@ -103,21 +103,21 @@ def longest(found: ModelFile, piece: Piece, Psi: Matrix, at: fmpq, size: fmpq) -
     raise DomainError(f"F: expected functions that are analytic on the interval; got a singularity near {at}")
 
 
-def taylor_step(found: ModelFile, piece: Piece, Psi: Matrix, at: fmpq, size: fmpq) -> tuple[Step, Matrix] | None:
+def taylor_step(found: ModelFile, piece: Piece, Psi: Matrix, at: fmpq, size: fmpq) -> tuple[TaylorStep, Matrix] | None:
     """Psi on ``[at - size, at]``, or None when the remainder is too large."""
     n, h = len(Psi), arb(size)
-    thin = coefficients_of(found, piece, arb(at))
-    wide = coefficients_of(found, piece, interval(at - size, at))
-    bound = norm([[f[0] for f in row] for row in wide])
-    growth = (bound * h).exp() * norm(Psi)
+    thin = system_coefficients(found, piece, arb(at))
+    wide = system_coefficients(found, piece, interval_ball(at - size, at))
+    bound = row_norm([[f[0] for f in row] for row in wide])
+    growth = (bound * h).exp() * row_norm(Psi)
     if not growth.is_finite() or bool(bound * h > 8):
         return None
     box = arb(0, growth.upper())
-    last = expanded(wide, [[box] * n for _ in range(n)])[-1]
-    rest = norm(last) * h**ORDER
-    if not bool(rest < WANTED * norm(Psi)):
+    last = solution_coefficients(wide, [[box] * n for _ in range(n)])[-1]
+    rest = row_norm(last) * h**ORDER
+    if not bool(rest < WANTED * row_norm(Psi)):
         return None
-    parts = expanded(thin, Psi)[:-1]
+    parts = solution_coefficients(thin, Psi)[:-1]
     polynomials = [[[from_decimal(decimal(part[i][j], DIGITS)) for part in parts] for j in range(n)] for i in range(n)]
     after = [[arb(0)] * n for _ in range(n)]
     error = arb(0)
@@ -125,22 +125,22 @@ def taylor_step(found: ModelFile, piece: Piece, Psi: Matrix, at: fmpq, size: fmp
         for j in range(n):
             terms_ = enumerate(zip(parts, polynomials[i][j], strict=True))
             away = sum((abs(part[i][j] - arb(c)) * h**k for k, (part, c) in terms_), arb(0))
-            error = largest([error, away + rest])
+            error = largest_upper_end([error, away + rest])
             value = sum((part[i][j] * h**k for k, part in enumerate(parts)), arb(0))
             after[i][j] = value + arb(0, rest.upper())
-    return Step(at - size, at, polynomials, error), after
+    return TaylorStep(at - size, at, polynomials, error), after
 
 
-def coefficients_of(found: ModelFile, piece: Piece, at: arb) -> list[list[list[arb]]]:
+def system_coefficients(found: ModelFile, piece: Piece, at: arb) -> list[list[list[arb]]]:
     """Taylor coefficients of F in ``s``, ``t = at - s``; with a ball for every place in it."""
     n = len(found.states)
-    with terms(ORDER + 1):
-        entries = program(list(piece.F)).run({found.time: arb_series([at, arb(-1)])})
-        flat = [[number_of(f, k) for k in range(ORDER + 1)] for f in entries]
+    with series_terms(ORDER + 1):
+        entries = joint_tape(list(piece.F)).run({found.time: arb_series([at, arb(-1)])})
+        flat = [[series_coefficient(f, k) for k in range(ORDER + 1)] for f in entries]
     return [flat[i * n : (i + 1) * n] for i in range(n)]
 
 
-def expanded(F: list[list[list[arb]]], Psi: Matrix) -> list[Matrix]:
+def solution_coefficients(F: list[list[list[arb]]], Psi: Matrix) -> list[Matrix]:
     """Taylor coefficients 0 … ORDER of Psi in s."""
     n = len(Psi)
     slices = [arb_mat([[F[i][j][k] for j in range(n)] for i in range(n)]) for k in range(ORDER + 1)]
@@ -153,12 +153,12 @@ def expanded(F: list[list[list[arb]]], Psi: Matrix) -> list[Matrix]:
     return [part.tolist() for part in done]
 
 
-def norm(A: Matrix) -> arb:
+def row_norm(A: Matrix) -> arb:
     """Largest sum of moduli of a row."""
-    return largest([sum((abs(a).upper() for a in row), arb(0)) for row in A])
+    return largest_upper_end([sum((abs(a).upper() for a in row), arb(0)) for row in A])
 
 
-def largest(values: Sequence[arb]) -> arb:
+def largest_upper_end(values: Sequence[arb]) -> arb:
     """An exact number not below any of the balls; no number at all where one of them is none."""
     top = values[0].upper()
     for value in values[1:]:
@@ -166,15 +166,15 @@ def largest(values: Sequence[arb]) -> arb:
     return top
 
 
-def regressors_of(found: ModelFile, step: Step, shift: sp.Expr) -> tuple[tuple[tuple[sp.Expr, ...], ...], arb]:
+def step_regressors(found: ModelFile, step: TaylorStep, shift: sp.Expr) -> tuple[tuple[tuple[sp.Expr, ...], ...], arb]:
     """``h_j(t) Psi(t)`` on a step moved by ``shift``, with :data:`ERROR` added, and the bound of that error."""
     n = len(found.states)
     local = to_rational(step.end) + shift - found.time
-    Psi = [[horner(c, local) for c in row] for row in step.polynomials]
+    Psi = [[horner_form(c, local) for c in row] for row in step.polynomials]
     rows, bound = [], arb(0)
     for measurement in found.measurements:
-        sizes = [enclose_on(h, found.time, shift, step.start, step.end) for h in measurement.h]
-        bound = largest([bound, sum(sizes, arb(0)) * step.error])
+        sizes = [largest_on_step(h, found.time, shift, step.start, step.end) for h in measurement.h]
+        bound = largest_upper_end([bound, sum(sizes, arb(0)) * step.error])
         rows.append(
             # Unevaluated zeros are left out: sympy would study the signs of long polynomials for them.
             tuple(sp.Add(ERROR, *(h * Psi[i][j] for i, h in enumerate(measurement.h) if h != 0)) for j in range(n))
@@ -182,7 +182,7 @@ def regressors_of(found: ModelFile, step: Step, shift: sp.Expr) -> tuple[tuple[t
     return tuple(rows), bound
 
 
-def horner(c: list[fmpq], at: sp.Expr) -> sp.Expr:
+def horner_form(c: list[fmpq], at: sp.Expr) -> sp.Expr:
     """The polynomial with coefficients c, lowest power first, at an expression, in Horner's form."""
     value: sp.Expr = sp.S.Zero
     for a in reversed(c):
@@ -190,19 +190,21 @@ def horner(c: list[fmpq], at: sp.Expr) -> sp.Expr:
     return value
 
 
-def enclose_on(h: sp.Expr, time: sp.Symbol, shift: sp.Expr, start: fmpq, end: fmpq, halvings: int = 8) -> arb:
+def largest_on_step(h: sp.Expr, time: sp.Symbol, shift: sp.Expr, start: fmpq, end: fmpq, halvings: int = 8) -> arb:
     """Largest modulus of h on a step moved by ``shift``; parts of it where one ball is too coarse to be a number."""
-    place = interval(start, end) + enclose(shift, bits=BITS)
+    place = interval_ball(start, end) + enclose(shift, bits=BITS)
     size = abs(enclose(h, {time: place}, bits=BITS)).upper()
     if size.is_finite() or halvings == 0:
         return size
     middle = (start + end) / 2
-    return largest([enclose_on(h, time, shift, *part, halvings - 1) for part in ((start, middle), (middle, end))])
+    return largest_upper_end(
+        [largest_on_step(h, time, shift, *part, halvings - 1) for part in ((start, middle), (middle, end))]
+    )
 
 
 def error_bound(bounds: list[arb]) -> fmpq:
     """A short rational above all bounds, never zero. Raises DomainError where one is no number."""
-    top = largest(bounds)
+    top = largest_upper_end(bounds)
     if not top.is_finite():
         raise DomainError("h: expected functions that are finite on the interval; got a singular one; change it")
     return max(from_decimal(decimal(top, 3, 1)), fmpq(1, 10**DIGITS))

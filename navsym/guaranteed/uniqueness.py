@@ -18,11 +18,11 @@ from flint import arb, arb_mat, fmpq, fmpq_mat
 from navsym.claims import PROVED, Equation
 from navsym.core.balls import enclose, precision
 from navsym.core.exact import to_fmpq, to_rational
-from navsym.guaranteed.certificate.basis import Basis, as_fraction
-from navsym.guaranteed.certificate.enclosure import Panel, Problem, Touch
-from navsym.guaranteed.certificate.fixed import flattened
-from navsym.guaranteed.certificate.whole import bounded
-from navsym.guaranteed.search.exchange import Contacts, with_places
+from navsym.guaranteed.certificate.basis import Basis, unit_fraction
+from navsym.guaranteed.certificate.enclosure import Panel, PanelProblem, Touch
+from navsym.guaranteed.certificate.fixed import flatten_contacts
+from navsym.guaranteed.certificate.whole import prove_panel_bound
+from navsym.guaranteed.search.exchange import Contacts, add_places
 from navsym.guaranteed.search.interior import interior_dual
 from navsym.prove.ladder import decide
 
@@ -33,7 +33,7 @@ SAMPLES = 12
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class ContactPlace:
     """An exact place where the dual polynomial is ``sign * sigma``."""
 
     panel: int
@@ -41,7 +41,7 @@ class Place:
     sign: int
 
 
-def several_optimal(problem: Problem, contacts: Contacts, dual: Sequence[arb]) -> bool:
+def has_other_optimum(problem: PanelProblem, contacts: Contacts, dual: Sequence[arb]) -> bool:
     """True when a second optimal estimator is proved to exist."""
     x = [recognised(c) for c in dual]
     if any(c is None for c in x):
@@ -51,13 +51,13 @@ def several_optimal(problem: Problem, contacts: Contacts, dual: Sequence[arb]) -
     m = len(exact)
     if not places:
         return False
-    places = [places[i] for i in largest_support(*numbers_at(problem, places))]
+    places = [places[i] for i in largest_support(*signed_columns(problem, places))]
     if not places:
         return False
-    rational_values = exact_values(problem, places)
+    rational_values = rational_columns(problem, places)
     if rational_values is not None:
-        return exact_interior(rational_values, [p.sign for p in places])
-    return len(places) > m and interior(problem, places, m)
+        return has_rational_interior(rational_values, [p.sign for p in places])
+    return len(places) > m and has_interior_weights(problem, places, m)
 
 
 def recognised(x: arb) -> sp.Rational | None:
@@ -68,20 +68,20 @@ def recognised(x: arb) -> sp.Rational | None:
     return best if abs(best - number) <= NEAR * max(1, abs(number)) else None
 
 
-def exact_places(problem: Problem, contacts: Contacts, x: Sequence[sp.Rational]) -> list[Place] | None:
+def exact_places(problem: PanelProblem, contacts: Contacts, x: Sequence[sp.Rational]) -> list[ContactPlace] | None:
     """Places where the bound is proved to be reached, or None when the dual is not proved feasible."""
-    places: list[Place] = []
+    places: list[ContactPlace] = []
     for k, panel in enumerate(problem.panels):
         f = sp.expand(sum((c * h for c, h in zip(x, panel.functions, strict=True)), sp.S.Zero))
         sign = flat_sign(panel, f)
         if sign:
-            places += [Place(k, fmpq(j, SAMPLES), sign) for j in range(SAMPLES + 1)]
+            places += [ContactPlace(k, fmpq(j, SAMPLES), sign) for j in range(SAMPLES + 1)]
             continue
-        mine = [place for place in guess_places(contacts, k, panel, f) if holds(panel, f, place)]
-        touches = [Touch(p.at, p.sign, True, "no" if level(panel, f, p) else end_of(p.at)) for p in mine]
+        mine = [place for place in guess_places(contacts, k, panel, f) if is_contact(panel, f, place)]
+        touches = [Touch(p.at, p.sign, True, "no" if has_zero_slope(panel, f, p) else end_label(p.at)) for p in mine]
         with precision(BITS):
             balls = [enclose(c, bits=BITS) for c in x]
-            if bounded(panel, balls, touches) is None:
+            if prove_panel_bound(panel, balls, touches) is None:
                 return None
         places += mine
     return places
@@ -94,47 +94,47 @@ def flat_sign(panel: Panel, f: sp.Expr) -> int:
     return sign if decide(Equation(f, sign * panel.sigma)).status is PROVED else 0
 
 
-def guess_places(contacts: Contacts, k: int, panel: Panel, f: sp.Expr) -> list[Place]:
+def guess_places(contacts: Contacts, k: int, panel: Panel, f: sp.Expr) -> list[ContactPlace]:
     """Contacts of a panel at shares with a small denominator."""
     at = [(int(j), float(u)) for j, u in zip(contacts.panel, contacts.u, strict=True)]
-    shares = {as_fraction(u) for j, u in [*at, *contacts.touching] if j == k}
+    shares = {unit_fraction(u) for j, u in [*at, *contacts.touching] if j == k}
     found = {}
     for share in shares:
         best = to_rational(share).limit_denominator(60)
         value = f.subs(panel.variable, panel.start + (panel.end - panel.start) * best)
         found[to_fmpq(best)] = 1 if bool(enclose(value) > 0) else -1
-    return [Place(k, at_, sign) for at_, sign in found.items()]
+    return [ContactPlace(k, at_, sign) for at_, sign in found.items()]
 
 
-def holds(panel: Panel, f: sp.Expr, place: Place) -> bool:
+def is_contact(panel: Panel, f: sp.Expr, place: ContactPlace) -> bool:
     """The bound is reached there exactly, with a slope of zero inside the panel."""
-    value = f.subs(panel.variable, time_of(panel, place))
+    value = f.subs(panel.variable, exact_time(panel, place))
     reached = decide(Equation(value, place.sign * panel.sigma)).status is PROVED
-    return reached and (end_of(place.at) != "no" or level(panel, f, place))
+    return reached and (end_label(place.at) != "no" or has_zero_slope(panel, f, place))
 
 
-def level(panel: Panel, f: sp.Expr, place: Place) -> bool:
+def has_zero_slope(panel: Panel, f: sp.Expr, place: ContactPlace) -> bool:
     """The slope there is zero; it may also be at an end."""
-    slope = f.diff(panel.variable).subs(panel.variable, time_of(panel, place))
+    slope = f.diff(panel.variable).subs(panel.variable, exact_time(panel, place))
     return decide(Equation(slope, sp.S.Zero)).status is PROVED
 
 
-def time_of(panel: Panel, place: Place) -> sp.Expr:
+def exact_time(panel: Panel, place: ContactPlace) -> sp.Expr:
     """The exact instant of a place, whose share of the panel is from 0 to 1."""
     return panel.start + (panel.end - panel.start) * to_rational(place.at)
 
 
-def end_of(at: fmpq) -> str:
+def end_label(at: fmpq) -> str:
     """The end of a panel at which a share lies: ``from`` at 0, ``to`` at 1, ``no`` inside."""
     return "from" if at == 0 else "to" if at == 1 else "no"
 
 
-def interior(problem: Problem, places: Sequence[Place], m: int) -> bool:
+def has_interior_weights(problem: PanelProblem, places: Sequence[ContactPlace], m: int) -> bool:
     """Weights of the right signs at all places: the last ones exact and free to move, the others from balls."""
-    N, P = numbers_at(problem, places)
+    N, P = signed_columns(problem, places)
     with precision(BITS):
         columns = [problem.panels[p.panel].rows(arb(p.at)) for p in places]
-        weights = most_inside(N, P)
+        weights = most_interior_weights(N, P)
         if weights is None:
             return False
         order = independent_first(N, m)
@@ -153,7 +153,7 @@ def interior(problem: Problem, places: Sequence[Place], m: int) -> bool:
         return all(w > 0 for w in fixed) and all(bool(s * solved[j, 0] > 0) for j, s in enumerate(signs))
 
 
-def numbers_at(problem: Problem, places: Sequence[Place]) -> tuple[np.ndarray, np.ndarray]:
+def signed_columns(problem: PanelProblem, places: Sequence[ContactPlace]) -> tuple[np.ndarray, np.ndarray]:
     """Signed regressors at the places as columns and P, in doubles, rows scaled."""
     with precision(BITS):
         columns = [problem.panels[p.panel].rows(arb(p.at)) for p in places]
@@ -184,12 +184,12 @@ def largest_support(N: np.ndarray, P: np.ndarray) -> list[int]:
     return [i for i in range(n) if answer.success and answer.x[n + i] > 1e-7]
 
 
-def exact_values(problem: Problem, places: Sequence[Place]) -> tuple[fmpq_mat, fmpq_mat] | None:
+def rational_columns(problem: PanelProblem, places: Sequence[ContactPlace]) -> tuple[fmpq_mat, fmpq_mat] | None:
     """The regressors at the places as columns, and P, when all of them are rational numbers."""
     rows: list[sp.Expr] = []
     for place in places:
         panel = problem.panels[place.panel]
-        at = time_of(panel, place)
+        at = exact_time(panel, place)
         rows += [sp.sympify(h, strict=True).subs(panel.variable, at) for h in panel.functions]
     values = [*rows, *(sp.sympify(p, strict=True) for p in problem.functional)]
     if not all(v.is_Rational for v in values):
@@ -199,7 +199,7 @@ def exact_values(problem: Problem, places: Sequence[Place]) -> tuple[fmpq_mat, f
     return fmpq_mat(len(places), m, numbers[:-m]).transpose(), fmpq_mat(m, 1, numbers[-m:])
 
 
-def exact_interior(values: tuple[fmpq_mat, fmpq_mat], signs: Sequence[int]) -> bool:
+def has_rational_interior(values: tuple[fmpq_mat, fmpq_mat], signs: Sequence[int]) -> bool:
     """Weights of the right signs at all places and a null vector of their columns, in rational numbers."""
     N, P = values
     m, n = N.nrows(), N.ncols()
@@ -208,7 +208,7 @@ def exact_interior(values: tuple[fmpq_mat, fmpq_mat], signs: Sequence[int]) -> b
         return False
     dense = np.array([[signs[j] * float(N[i, j]) for j in range(n)] for i in range(m)])
     scale = np.abs(dense).max(axis=1) + 1e-300
-    weights = most_inside(dense / scale[:, None], np.array([float(P[i, 0]) for i in range(m)]) / scale)
+    weights = most_interior_weights(dense / scale[:, None], np.array([float(P[i, 0]) for i in range(m)]) / scale)
     order = None if weights is None else independent_first(dense, rank)
     if weights is None or order is None:
         return False
@@ -224,7 +224,7 @@ def exact_interior(values: tuple[fmpq_mat, fmpq_mat], signs: Sequence[int]) -> b
     )
 
 
-def most_inside(N: np.ndarray, P: np.ndarray) -> np.ndarray | None:
+def most_interior_weights(N: np.ndarray, P: np.ndarray) -> np.ndarray | None:
     """Positive weights with ``N w = P`` whose smallest is as large as can be."""
     from scipy.optimize import linprog
 
@@ -272,26 +272,26 @@ LARGEST, CLOSE, MOST = 720, 1e-6, 6
 class Pin:
     """An exact place, and whether the dual is flat there."""
 
-    place: Place
+    place: ContactPlace
     flat: bool
 
 
-def only_optimal(problem: Problem, basis: Basis, contacts: Contacts, dual: Sequence[arb]) -> bool | None:
+def is_only_optimum(problem: PanelProblem, basis: Basis, contacts: Contacts, dual: Sequence[arb]) -> bool | None:
     """True when the optimal estimator is proved to be the only one, False when another is, else None."""
     if any(panel.values for panel in problem.panels):
         return None
-    sets = [contacts, flattened(contacts)]
+    sets = [contacts, flatten_contacts(contacts)]
     if 0 < len(contacts.touching) <= basis.panels.functional.size:
-        sets.append(flattened(with_places(basis.panels, contacts, contacts.touching)))
+        sets.append(flatten_contacts(add_places(basis.panels, contacts, contacts.touching)))
     for places in sets:
         pins = guess_pins(places)
         x = None if pins is None else interior_dual(basis.panels, places)
-        if pins is not None and x is not None and touches_only(problem, basis, pins, x):
-            return decided(problem, [pin.place for pin in pins])
-    return by_round_dual(problem, contacts, dual)
+        if pins is not None and x is not None and touches_only_at(problem, basis, pins, x):
+            return decide_weights(problem, [pin.place for pin in pins])
+    return decide_by_simple_dual(problem, contacts, dual)
 
 
-def by_round_dual(problem: Problem, contacts: Contacts, dual: Sequence[arb]) -> bool | None:
+def decide_by_simple_dual(problem: PanelProblem, contacts: Contacts, dual: Sequence[arb]) -> bool | None:
     """The same from a dual of simple rational numbers and all places where it touches, when these are single ones."""
     x = [c for c in map(recognised, dual) if c is not None]
     places = exact_places(problem, contacts, x) if len(x) == len(dual) else None
@@ -301,53 +301,53 @@ def by_round_dual(problem: Problem, contacts: Contacts, dual: Sequence[arb]) -> 
         balls = [enclose(c, bits=BITS) for c in x]
         for k, panel in enumerate(problem.panels):
             here = sum(place.panel == k for place in places)
-            if here > SAMPLES or (here == 0 and not strictly_below(panel, balls)):
+            if here > SAMPLES or (here == 0 and not is_strictly_below(panel, balls)):
                 return None
-    return decided(problem, places)
+    return decide_weights(problem, places)
 
 
-def strictly_below(panel: Panel, dual: Sequence[arb]) -> bool:
+def is_strictly_below(panel: Panel, dual: Sequence[arb]) -> bool:
     """The dual is proved to touch nowhere on the panel: it keeps a bound that is a little smaller."""
-    return bounded(replace(panel, sigma=panel.sigma * (1 - sp.Rational(1, 10**9))), dual, []) is not None
+    return prove_panel_bound(replace(panel, sigma=panel.sigma * (1 - sp.Rational(1, 10**9))), dual, []) is not None
 
 
 def guess_pins(contacts: Contacts) -> list[Pin] | None:
     """The contacts at shares with a small denominator; None where one has none."""
     pins = []
     for k, u, inner, sign in zip(contacts.panel, contacts.u, contacts.inner, contacts.sign, strict=True):
-        share = as_fraction(float(u))
+        share = unit_fraction(float(u))
         exact = to_rational(share)
         best = exact.limit_denominator(LARGEST)
         if abs(best - exact) > CLOSE:
             return None
-        pins.append(Pin(Place(int(k), to_fmpq(best), int(sign)), bool(inner)))
+        pins.append(Pin(ContactPlace(int(k), to_fmpq(best), int(sign)), bool(inner)))
     return pins
 
 
-def touches_only(problem: Problem, basis: Basis, pins: Sequence[Pin], x: np.ndarray) -> bool:
+def touches_only_at(problem: PanelProblem, basis: Basis, pins: Sequence[Pin], x: np.ndarray) -> bool:
     """A dual next to x meets its bound at the pins, flat where they say so, and is proved to stay below elsewhere."""
     with precision(BITS):
-        dual = pinned_exactly(problem, basis, pins, x)
+        dual = exact_pinned_dual(problem, basis, pins, x)
         if dual is None:
             return False
         for k, panel in enumerate(problem.panels):
             mine = [pin for pin in pins if pin.place.panel == k]
-            touches = [Touch(p.place.at, p.place.sign, True, "no" if p.flat else end_of(p.place.at)) for p in mine]
-            if not (strictly_below(panel, dual) if not touches else bounded(panel, dual, touches)):
+            touches = [Touch(p.place.at, p.place.sign, True, "no" if p.flat else end_label(p.place.at)) for p in mine]
+            if not (is_strictly_below(panel, dual) if not touches else prove_panel_bound(panel, dual, touches)):
                 return False
     return True
 
 
-def pinned_exactly(problem: Problem, basis: Basis, pins: Sequence[Pin], x: np.ndarray) -> list[arb] | None:
+def exact_pinned_dual(problem: PanelProblem, basis: Basis, pins: Sequence[Pin], x: np.ndarray) -> list[arb] | None:
     """Balls around a dual that meets the conditions of the pins exactly: some entries rational, the others follow."""
-    rows, right = conditions(problem, pins)
+    rows, right = pin_conditions(problem, pins)
     near = (basis.transform.transpose() * arb_mat([[arb(float(c))] for c in x])).entries()
     sizes = [max(abs(row[j]).mid() for row in rows) for j in range(len(near))]
     least = NOTHING * max(sizes)  # a sine that vanishes is no column to be scaled up
     dense = np.array([[float(h / s) if s > least else 0.0 for h, s in zip(row, sizes, strict=True)] for row in rows])
     rank = int(np.linalg.matrix_rank(dense, tol=1e-9))
     chosen, order = independent_first(dense.T, rank), independent_first(dense, rank)
-    if chosen is None or order is None or not follow(problem, pins, chosen[:rank], chosen[rank:]):
+    if chosen is None or order is None or not conditions_follow(problem, pins, chosen[:rank], chosen[rank:]):
         return None
     free = {j: near[j].mid() for j in order[rank:]}
     rest = [right[i] - sum((rows[i][j] * c for j, c in free.items()), arb(0)) for i in chosen[:rank]]
@@ -360,7 +360,7 @@ def pinned_exactly(problem: Problem, basis: Basis, pins: Sequence[Pin], x: np.nd
     return [found[j] for j in range(len(near))]
 
 
-def conditions(problem: Problem, pins: Sequence[Pin]) -> tuple[list[list[arb]], list[arb]]:
+def pin_conditions(problem: PanelProblem, pins: Sequence[Pin]) -> tuple[list[list[arb]], list[arb]]:
     """Values, and slopes where flat, as rows for the dual, and what they must be."""
     rows, right = [], []
     for pin in pins:
@@ -374,19 +374,19 @@ def conditions(problem: Problem, pins: Sequence[Pin]) -> tuple[list[list[arb]], 
     return rows, right
 
 
-def follow(problem: Problem, pins: Sequence[Pin], chosen: Sequence[int], others: Sequence[int]) -> bool:
+def conditions_follow(problem: PanelProblem, pins: Sequence[Pin], chosen: Sequence[int], others: Sequence[int]) -> bool:
     """The conditions left out follow from the others: each is one of them exactly (a period later), or is empty."""
     if not others:
         return True
     exact = exact_conditions(problem, pins)
-    return all(zero(exact[i]) or any(same(exact[i], exact[j]) for j in chosen) for i in others)
+    return all(is_zero_row(exact[i]) or any(is_same_row(exact[i], exact[j]) for j in chosen) for i in others)
 
 
-def exact_conditions(problem: Problem, pins: Sequence[Pin]) -> list[tuple[sp.Expr, ...]]:
+def exact_conditions(problem: PanelProblem, pins: Sequence[Pin]) -> list[tuple[sp.Expr, ...]]:
     """The rows of the conditions with their right sides, exactly; slopes are with respect to the share."""
     rows: list[tuple[sp.Expr, ...]] = []
     for pin in pins:
-        panel, at = problem.panels[pin.place.panel], time_of(problem.panels[pin.place.panel], pin.place)
+        panel, at = problem.panels[pin.place.panel], exact_time(problem.panels[pin.place.panel], pin.place)
         rows.append((*(h.subs(panel.variable, at) for h in panel.functions), pin.place.sign * panel.sigma))
         if pin.flat:
             slopes = (h.diff(panel.variable) * (panel.end - panel.start) for h in panel.functions)
@@ -394,55 +394,55 @@ def exact_conditions(problem: Problem, pins: Sequence[Pin]) -> list[tuple[sp.Exp
     return rows
 
 
-def zero(row: Sequence[sp.Expr]) -> bool:
+def is_zero_row(row: Sequence[sp.Expr]) -> bool:
     """Every entry is proved to be zero."""
-    return all(entry == 0 or proved(entry) for entry in row)
+    return all(entry == 0 or is_proved_zero(entry) for entry in row)
 
 
-def same(row: Sequence[sp.Expr], other: Sequence[sp.Expr]) -> bool:
+def is_same_row(row: Sequence[sp.Expr], other: Sequence[sp.Expr]) -> bool:
     """The rows are equal but for a sign."""
-    return any(zero([a - s * b for a, b in zip(row, other, strict=True)]) for s in (1, -1))
+    return any(is_zero_row([a - s * b for a, b in zip(row, other, strict=True)]) for s in (1, -1))
 
 
-def proved(entry: sp.Expr) -> bool:
+def is_proved_zero(entry: sp.Expr) -> bool:
     """The number is proved to be zero."""
     return decide(Equation(sp.sympify(entry, strict=True), sp.S.Zero)).status is PROVED
 
 
-def decided(problem: Problem, places: Sequence[Place]) -> bool | None:
+def decide_weights(problem: PanelProblem, places: Sequence[ContactPlace]) -> bool | None:
     """Whether weights at these places, all of the contacts of an optimal dual, are the only ones."""
-    m, values = len(problem.functional), exact_values(problem, places)
-    twins = [k for k in range(len(places)) if any(alike(problem, places[k], other) for other in places[:k])]
+    m, values = len(problem.functional), rational_columns(problem, places)
+    twins = [k for k in range(len(places)) if any(is_twin(problem, places[k], other) for other in places[:k])]
     rest = [place for k, place in enumerate(places) if k not in twins]
-    if len(rest) <= m and independent_weights(problem, rest):
+    if len(rest) <= m and has_only_weights(problem, rest):
         return not twins  # the weight of a place may be shared with its twin
     several = (
-        exact_interior(values, [p.sign for p in places])
+        has_rational_interior(values, [p.sign for p in places])
         if values is not None
-        else len(places) > m and interior(problem, places, m)
+        else len(places) > m and has_interior_weights(problem, places, m)
     )
     return False if several else None
 
 
-def alike(problem: Problem, place: Place, other: Place) -> bool:
+def is_twin(problem: PanelProblem, place: ContactPlace, other: ContactPlace) -> bool:
     """The regressors over the noise bound are the same at two places, and so is the sign."""
     if place.sign != other.sign:
         return False
-    a, b = columns_at(problem, [place, other])
+    a, b = exact_columns(problem, [place, other])
     bounds = [problem.panels[p.panel].sigma for p in (place, other)]
-    return zero([h * bounds[1] - g * bounds[0] for h, g in zip(a, b, strict=True)])
+    return is_zero_row([h * bounds[1] - g * bounds[0] for h, g in zip(a, b, strict=True)])
 
 
-def columns_at(problem: Problem, places: Sequence[Place]) -> list[list[sp.Expr]]:
+def exact_columns(problem: PanelProblem, places: Sequence[ContactPlace]) -> list[list[sp.Expr]]:
     """The regressors at the places, exactly."""
     panels = [problem.panels[p.panel] for p in places]
     return [
-        [h.subs(panel.variable, time_of(panel, p)) for h in panel.functions]
+        [h.subs(panel.variable, exact_time(panel, p)) for h in panel.functions]
         for panel, p in zip(panels, places, strict=True)
     ]
 
 
-def independent_weights(problem: Problem, places: Sequence[Place]) -> bool:
+def has_only_weights(problem: PanelProblem, places: Sequence[ContactPlace]) -> bool:
     """The regressors at the places are independent, and weights of the right signs satisfy all equations exactly."""
     with precision(BITS):
         N = arb_mat([problem.panels[p.panel].rows(arb(p.at)) for p in places]).transpose()
@@ -462,14 +462,16 @@ def independent_weights(problem: Problem, places: Sequence[Place]) -> bool:
     return not others or (len(places) <= MOST and equations_hold(problem, places, rows, others))
 
 
-def equations_hold(problem: Problem, places: Sequence[Place], rows: Sequence[int], others: Sequence[int]) -> bool:
+def equations_hold(
+    problem: PanelProblem, places: Sequence[ContactPlace], rows: Sequence[int], others: Sequence[int]
+) -> bool:
     """``sum w_i H(t_i) = P`` in the other rows, exactly, when it holds in those that fix the weights."""
-    columns = columns_at(problem, places)
+    columns = exact_columns(problem, places)
     block = sp.Matrix([[column[i] for column in columns] for i in rows])
     determinant = block.det(method="berkowitz")
     times = block.adjugate() * sp.Matrix([problem.functional[i] for i in rows])
     return all(
-        proved(
+        is_proved_zero(
             sum((column[i] * w for column, w in zip(columns, times, strict=True)), sp.S.Zero)
             - determinant * problem.functional[i]
         )

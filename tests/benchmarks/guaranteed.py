@@ -18,8 +18,8 @@ import highspy
 import numpy as np
 import sympy as sp
 
-from navsym.guaranteed.certificate.basis import kept_basis, make_basis
-from navsym.guaranteed.certificate.enclosure import Panel, Problem
+from navsym.guaranteed.certificate.basis import cached_basis, make_basis
+from navsym.guaranteed.certificate.enclosure import Panel, PanelProblem
 from navsym.guaranteed.certificate.fixed import certify
 from navsym.guaranteed.lengths import follow_lengths, values_for_lengths
 from navsym.guaranteed.phases.family import Family, U
@@ -29,7 +29,7 @@ t = sp.Symbol("t", real=True)
 
 
 def problem(rows, functional, end):
-    return Problem(
+    return PanelProblem(
         (Panel(0, tuple(map(sp.sympify, rows)), t, sp.Integer(0), sp.sympify(end), sp.Integer(1)),),
         tuple(map(sp.sympify, functional)),
     )
@@ -102,7 +102,7 @@ def alone(case):
 
 def anew(case):
     """The same problem without anything that was made for it: no tape of its functions, no basis."""
-    kept_basis.cache_clear()
+    cached_basis.cache_clear()
     return replace(case, panels=tuple(map(replace, case.panels)))
 
 

@@ -15,7 +15,7 @@ from navsym.claims.display import latex_of
 from navsym.core.numbers import Number
 from navsym.guaranteed.phases.driver import find_phases
 from navsym.guaranteed.phases.family import family_of
-from navsym.guaranteed.problem import from_file
+from navsym.guaranteed.problem import from_contents
 from navsym.guaranteed.solver import solve
 from navsym.models.modelfile import linear_model, model_from
 from navsym.observability.chains import observe_jointly
@@ -81,7 +81,7 @@ def test_a_verdict_shows_its_mark_counterexample_and_assumptions_and_escapes_wor
 
 
 def test_solutions_show_tables(file):
-    solution = solve(from_file(model_from(MODEL, values={"T": "2"})), digits=10)._repr_html_()
+    solution = solve(from_contents(model_from(MODEL, values={"T": "2"})), digits=10)._repr_html_()
     assert solution.count("<tr>") == 3 and "position" in solution and "speed" in solution
     answer = find_phases(family_of(file, "speed", "T"), sp.Integer(1), sp.Integer(2))._repr_html_()
     assert r"\frac{2}{T}" in answer and "✓ PROVED" in answer

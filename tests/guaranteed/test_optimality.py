@@ -10,7 +10,7 @@ import sympy as sp
 
 from navsym import checker
 from navsym.core.exact import decimal, from_decimal
-from navsym.guaranteed.certificate.enclosure import Panel, Problem
+from navsym.guaranteed.certificate.enclosure import Panel, PanelProblem
 from navsym.guaranteed.certificate.fixed import certify
 
 t = sp.Symbol("t", real=True)
@@ -19,7 +19,7 @@ t = sp.Symbol("t", real=True)
 def problem(functions, functional, end, sigma=1):
     rows = tuple(sp.sympify(h) for h in functions)
     panel = Panel(0, rows, t, sp.Integer(0), sp.sympify(end), sp.sympify(sigma))
-    return Problem((panel,), tuple(sp.sympify(p) for p in functional))
+    return PanelProblem((panel,), tuple(sp.sympify(p) for p in functional))
 
 
 def accepted(found) -> str:
@@ -102,7 +102,7 @@ def test_two_measurements_are_never_worse_than_the_better_one():
         Panel(j, row, t, sp.Integer(0), sp.Integer(1), s)
         for j, (row, s) in enumerate(zip(H, (sp.Integer(1), sp.Rational(3, 2)), strict=True))
     )
-    both = certify(Problem(panels, (sp.Integer(0), sp.Integer(1))), 20)
+    both = certify(PanelProblem(panels, (sp.Integer(0), sp.Integer(1))), 20)
     assert both.lower <= sp.Rational(3, 2) <= both.upper
     assert accepted(both) in ("gap", "touch")
 

@@ -11,11 +11,25 @@ from flint import arb, arb_mat, arb_series, fmpq
 
 from navsym.core.balls import OPERATIONS, precision
 from navsym.guaranteed.certificate import basis as basis_room
-from navsym.guaranteed.certificate.basis import DependentError, make_basis, samples, transform_of
-from navsym.guaranteed.certificate.enclosure import Cell, Panel, Problem, Touch, interval, program, terms
-from navsym.guaranteed.certificate.fixed import alternance_image, certify, krawczyk, optimality_system, unknowns
-from navsym.guaranteed.certificate.polish import local, polish
-from navsym.guaranteed.certificate.whole import bounded, polynomial, shifted
+from navsym.guaranteed.certificate.basis import DependentError, make_basis, orthonormal_transform, sample_panels
+from navsym.guaranteed.certificate.enclosure import (
+    Panel,
+    PanelCell,
+    PanelProblem,
+    Touch,
+    interval_ball,
+    joint_tape,
+    series_terms,
+)
+from navsym.guaranteed.certificate.fixed import (
+    alternance_image,
+    certify,
+    krawczyk,
+    optimality_system,
+    solution_unknowns,
+)
+from navsym.guaranteed.certificate.polish import expand_locally, sharpen_contacts
+from navsym.guaranteed.certificate.whole import panel_polynomial, prove_panel_bound, shift_polynomial
 from navsym.guaranteed.search.exchange import find_contacts
 
 t = sp.Symbol("t", real=True)
@@ -29,20 +43,20 @@ FULL = {
 
 def problem(functions, functional, end, sigma=1):
     panel = Panel(0, tuple(map(sp.sympify, functions)), t, sp.S.Zero, sp.sympify(end), sp.sympify(sigma))
-    return Problem((panel,), tuple(map(sp.sympify, functional)))
+    return PanelProblem((panel,), tuple(map(sp.sympify, functional)))
 
 
 def polished(case, sigma=1):
     made = problem(*case, sigma)
     basis = make_basis(made)
-    return made, polish(made.panels, basis, find_contacts(basis.panels), 256, 1e-50)
+    return made, sharpen_contacts(made.panels, basis, find_contacts(basis.panels), 256, 1e-50)
 
 
 @pytest.mark.parametrize("case", FULL)
 def test_krawczyk_by_blocks_finds_the_solution_that_the_dense_test_finds(case):
     made, found = polished(FULL[case], R(2, 3))
     with precision(256):
-        centre = [c.mid() for c in unknowns(found)]
+        centre = [c.mid() for c in solution_unknowns(found)]
         for radius in (arb(10) ** -30, arb(10) ** -12):
             radii = [radius * (1 + abs(c)).mid() for c in centre]
             box = [c + r * arb(0, 1) for c, r in zip(centre, radii, strict=True)]
@@ -59,8 +73,8 @@ def test_krawczyk_by_blocks_finds_the_solution_that_the_dense_test_finds(case):
 def test_a_centre_off_the_solution_by_more_than_the_box_is_refused_by_blocks(case, k):
     made, found = polished(FULL[case])
     with precision(256):
-        radii = [arb(10) ** -20 * (1 + abs(c)).mid() for c in unknowns(found)]
-        off = list(unknowns(found))
+        radii = [arb(10) ** -20 * (1 + abs(c)).mid() for c in solution_unknowns(found)]
+        off = list(solution_unknowns(found))
         off[k] = (off[k] + 3 * radii[k]).mid()
         assert alternance_image(made, found, off, radii) is None
 
@@ -68,7 +82,7 @@ def test_a_centre_off_the_solution_by_more_than_the_box_is_refused_by_blocks(cas
 def test_a_box_with_a_ball_that_is_no_number_is_refused_by_blocks():
     made, found = polished(FULL["monomials"])
     with precision(256):
-        centre = list(unknowns(found))
+        centre = list(solution_unknowns(found))
         assert alternance_image(made, found, [arb("nan"), *centre[1:]], [arb(10) ** -20] * len(centre)) is None
 
 
@@ -77,14 +91,14 @@ def test_the_polynomial_of_a_panel_encloses_every_coefficient_of_every_cell(case
     panel, x = problem(*FULL[case]).panels[0], [arb(k + 1) / 3 for k in range(len(FULL[case][0]))]
     rng = random.Random(case)
     with precision(160):
-        model = polynomial(panel, x)
+        model = panel_polynomial(panel, x)
         assert model is not None
         for _ in range(40):
             lower, upper = sorted(fmpq(rng.randint(0, 1 << 20), 1 << 20) for _ in range(2))
             if lower == upper:
                 continue
             centre, radius = (lower + upper) / 2, (upper - lower) / 2
-            coarse = shifted(model, None, Cell(lower, upper), centre, radius)
+            coarse = shift_polynomial(model, None, PanelCell(lower, upper), centre, radius)
             last = len(coarse) - 1
             point = panel.dual_polynomial(x, arb(centre), radius, last)
             somewhere = lower + (upper - lower) * fmpq(rng.randint(0, 64), 64)
@@ -99,11 +113,11 @@ def test_a_dual_that_exceeds_its_bound_by_a_trillionth_between_coarse_cells_is_r
     with precision(200):
         over = [arb(0), arb(1) + arb(10) ** -12, arb(0), arb(0)]
         under = [arb(0), arb(1) - arb(10) ** -12, arb(0), arb(0)]
-        assert bounded(panel, over, []) is None
+        assert prove_panel_bound(panel, over, []) is None
         tops = [fmpq(round(float(sp.pi / 18 + k * sp.pi / 9) * 2**60), 5 * 2**60) for k in range(14)]
         touches = [Touch(at, (-1) ** k) for k, at in enumerate(tops)]
-        assert bounded(panel, under, touches) is not None
-        assert bounded(panel, over, touches) is None
+        assert prove_panel_bound(panel, under, touches) is not None
+        assert prove_panel_bound(panel, over, touches) is None
 
 
 def test_a_panel_with_a_singular_or_wild_function_has_no_polynomial_and_is_still_bounded():
@@ -111,16 +125,16 @@ def test_a_panel_with_a_singular_or_wild_function_has_no_polynomial_and_is_still
     wild = Panel(0, (sin(300 * t), sp.S.One), t, sp.S(0), sp.S(1), sp.S.One)
     with precision(160):
         for panel in (root, wild):
-            assert polynomial(panel, [arb(1) / 2, arb(0)]) is None
-            assert bounded(panel, [arb(1) / 2, arb(0)], []) is not None
-            assert bounded(panel, [arb(2), arb(0)], []) is None
+            assert panel_polynomial(panel, [arb(1) / 2, arb(0)]) is None
+            assert prove_panel_bound(panel, [arb(1) / 2, arb(0)], []) is not None
+            assert prove_panel_bound(panel, [arb(2), arb(0)], []) is None
 
 
 def test_tapes_give_the_balls_of_the_plain_operations():
     expressions = [sp.sympify(h) for h in FULL["a mixed basis"][0]] + [t**3 / (1 + t**2), sp.sqrt(1 + t), sp.tan(t / 4)]
-    tape = program(expressions)
-    for value in (arb(1) / 3, interval(fmpq(1, 8), fmpq(1, 4)), arb_series([arb(1) / 3, arb(1)])):
-        with precision(120), terms(6):
+    tape = joint_tape(expressions)
+    for value in (arb(1) / 3, interval_ball(fmpq(1, 8), fmpq(1, 4)), arb_series([arb(1) / 3, arb(1)])):
+        with precision(120), series_terms(6):
             done = []
             for step in tape.steps:
                 arguments = [done[i] for i in step.arguments]
@@ -141,8 +155,8 @@ def test_a_scaled_noise_bound_scales_the_weights_in_the_certificate():
 def test_a_transform_of_doubles_makes_the_functions_as_orthonormal_as_that_in_balls(case, monkeypatch):
     made = problem(*FULL[case])
     with precision(192):
-        values = samples(made.panels, 32, 192)
-        for transform in (transform_of, partial(in_balls, monkeypatch)):
+        values = sample_panels(made.panels, 32, 192)
+        for transform in (orthonormal_transform, partial(in_balls, monkeypatch)):
             A, loss = transform(values, 192)
             q = values * A.transpose()
             gram = (q.transpose() * q) * (arb(1) / 32)
@@ -151,8 +165,8 @@ def test_a_transform_of_doubles_makes_the_functions_as_orthonormal_as_that_in_ba
 
 
 def in_balls(monkeypatch, values, bits):
-    monkeypatch.setattr(basis_room, "rounded_transform", lambda values: None)
-    return transform_of(values, bits)
+    monkeypatch.setattr(basis_room, "double_transform", lambda values: None)
+    return orthonormal_transform(values, bits)
 
 
 @pytest.mark.parametrize("case", FULL)
@@ -160,8 +174,8 @@ def test_polynomials_about_contacts_give_the_sums_that_new_expansions_give(case)
     made, found = polished(FULL[case])
     with precision(256):
         start = [arb(float(v)) for v in found.v]
-        about = local(made.panels, found.panel, start, found.inner, arb(10) ** -40)
-        anew = local(made.panels, found.panel, found.v, found.inner, arb(10) ** -40)
+        about = expand_locally(made.panels, found.panel, start, found.inner, arb(10) ** -40)
+        anew = expand_locally(made.panels, found.panel, found.v, found.inner, arb(10) ** -40)
         assert about.reaches(found.v, arb(10) ** -30)
         dual = arb_mat([[c] for c in found.dual])
         for a, b in zip(about.sums(dual, found.v), anew.sums(dual, found.v), strict=True):
@@ -174,5 +188,5 @@ def test_pivots_that_are_known_to_few_bits_are_no_pivots():
     """1e-150 of an independent function is too little for 192 bits, and enough for more."""
     made = problem([1, t, t + e(t) / 10**150], [0, 0, 1], 1)
     with pytest.raises(DependentError):
-        transform_of(samples(made.panels, 32, 192), 192)
+        orthonormal_transform(sample_panels(made.panels, 32, 192), 192)
     assert make_basis(made).bits > 192

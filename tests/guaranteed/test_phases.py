@@ -209,9 +209,9 @@ def test_a_change_at_zero_is_found_and_the_mirrored_regime_has_its_closed_form()
 
 
 def test_a_boundary_that_is_not_located_is_enclosed_by_what_is_proved_on_both_sides(monkeypatch):
-    monkeypatch.setattr(events, "exact_root", lambda *_: None)
-    monkeypatch.setattr(events, "proves", lambda *_: False)
-    monkeypatch.setattr(events, "proves_walking", lambda *_: False)
+    monkeypatch.setattr(events, "recognise_root", lambda *_: None)
+    monkeypatch.setattr(events, "is_pattern_optimal", lambda *_: False)
+    monkeypatch.setattr(events, "is_pattern_optimal_near", lambda *_: False)
     answer = find_phases(family_of(model_from(VELOCITY), "y3", "T"), sp.Rational(1), sp.Rational(3))
     (edge,) = answer.boundaries
     assert not edge.proved and "not enclosed" in edge.why
@@ -239,12 +239,12 @@ def test_the_position_measured_model_is_complete_with_four_boundaries_of_thirty_
 
 def test_a_numerator_that_vanishes_with_its_denominator_is_no_zero():
     T = sp.Symbol("T", positive=True)
-    assert events.exact_root((T - 1) / (T**2 - 1), T, 1.0, 0.1) is None
-    assert events.exact_root((T - 1) / (T**2 + 1), T, 1.0, 0.1) == 1
+    assert events.recognise_root((T - 1) / (T**2 - 1), T, 1.0, 0.1) is None
+    assert events.recognise_root((T - 1) / (T**2 + 1), T, 1.0, 0.1) == 1
 
 
 def test_a_change_does_not_rest_on_a_closed_form_that_is_not_proved(monkeypatch):
-    monkeypatch.setattr(changes, "proved_form", lambda *_: None)
+    monkeypatch.setattr(changes, "prove_form", lambda *_: None)
     answer = find_phases(family(VELOCITY, "y2"), sp.Integer(1), sp.Rational(9, 2))
     (change,) = answer.boundaries
     assert {r.status for r in answer.regimes} == {CERTIFIED}

@@ -14,14 +14,14 @@ from navsym import checker
 from navsym.claims import OPEN, PROVED, Verdict
 from navsym.core.errors import DomainError
 from navsym.core.exact import from_decimal
-from navsym.guaranteed.phases.certify_range import covered, followed
-from navsym.guaranteed.phases.closed_forms import Closed, prove
+from navsym.guaranteed.phases.certify_range import covered, follow_regime
+from navsym.guaranteed.phases.closed_forms import ClosedForm, prove_closed_form
 from navsym.guaranteed.phases.driver import find_phases
 from navsym.guaranteed.phases.family import family_of
-from navsym.guaranteed.phases.narrow import slivers
-from navsym.guaranteed.phases.patterns import sample
-from navsym.guaranteed.phases.recognise import constant
-from navsym.guaranteed.phases.singular_values import real_roots
+from navsym.guaranteed.phases.narrow import certify_slivers
+from navsym.guaranteed.phases.patterns import sample_contacts
+from navsym.guaranteed.phases.recognise import recognise_constant
+from navsym.guaranteed.phases.singular_values import exact_real_roots
 from navsym.models.modelfile import model_from
 
 
@@ -82,7 +82,7 @@ def test_a_contact_with_a_weight_of_rounding_is_none():
 
 def test_a_contact_has_the_sign_of_the_dual_polynomial():
     family = family_of(model_from(oscillator("0", ("1+p**2", "2-p"), "2")), "c", "p")
-    _, found = sample(family, Fraction("0.578"))
+    _, found = sample_contacts(family, Fraction("0.578"))
     assert found.panel.tolist() == [1] and found.sign.tolist() == [1]
 
 
@@ -93,7 +93,7 @@ def test_both_sides_of_a_boundary_are_tried_before_it_is_given_up():
 
 def test_slivers_where_a_noise_bound_moves_are_accepted():
     family = family_of(model_from(oscillator("0", ("1+p**2", "2-p"), "2")), "c", "p")
-    made, left = slivers(family, from_decimal("0.506604"), from_decimal("0.506606"))
+    made, left = certify_slivers(family, from_decimal("0.506604"), from_decimal("0.506606"))
     assert left == [] and {checker.check(checker.load(json.dumps(dict(s.certificate)))) for s in made} == {"sliver"}
 
 
@@ -157,27 +157,27 @@ def test_a_closed_form_that_is_followed_is_proved_to_be_the_only_optimum():
 )
 def test_constants_with_short_coefficients_are_recognised(text):
     value = sp.sympify(text)
-    assert sp.simplify(constant(sp.Rational(str(sp.N(value, 60)))) - value) == 0
+    assert sp.simplify(recognise_constant(sp.Rational(str(sp.N(value, 60)))) - value) == 0
 
 
 def test_a_number_without_a_short_form_is_not_recognised():
-    assert constant(sp.Rational(str(sp.N(sp.E * sp.sqrt(3), 60)))) is None
+    assert recognise_constant(sp.Rational(str(sp.N(sp.E * sp.sqrt(3), 60)))) is None
 
 
 def test_roots_with_one_square_root_are_found():
     p = sp.Symbol("p", real=True)
-    assert set(real_roots(sp.sqrt(4 - p**2) / 2, p)) == {2, -2}
-    assert real_roots(p / 2 - sp.sqrt(4 - p**2) / 2, p) == [sp.sqrt(2)]
+    assert set(exact_real_roots(sp.sqrt(4 - p**2) / 2, p)) == {2, -2}
+    assert exact_real_roots(p / 2 - sp.sqrt(4 - p**2) / 2, p) == [sp.sqrt(2)]
 
 
 def test_a_closed_form_that_divides_by_zero_inside_its_range_is_not_proved():
     """2 (p - 2)/(p (p - 2)) is 2/p but for p = 2, where it is nothing."""
     family = family_of(model_from(basis(["1", "u"], ["0", "p"], ["0", "1"])), "c", "p")
     p = family.parameter
-    guess = Closed((0, 0), (sp.S.Zero, p), (-1 / p, 1 / p), (sp.S.NegativeOne, 2 / p), 2 / p, Verdict(OPEN, "none"))
+    guess = ClosedForm((0, 0), (sp.S.Zero, p), (-1 / p, 1 / p), (sp.S.NegativeOne, 2 / p), 2 / p, Verdict(OPEN, "none"))
     holed = sp.Mul(2 * (p - 2), 1 / p, 1 / (p - 2), evaluate=False)
     for value, status in ((2 / p, PROVED), (holed, OPEN)):
-        found = prove(family, [replace(guess, value=value)], sp.S.One, sp.Integer(3))
+        found = prove_closed_form(family, [replace(guess, value=value)], sp.S.One, sp.Integer(3))
         assert found is not None and found.verdict.status is status
 
 
@@ -189,7 +189,7 @@ def test_an_unknown_of_the_dual_that_is_zero_throughout_does_not_stop_the_contac
         "targets": {"c": ["1", "0"]},
     }
     family = family_of(model_from(document), "c", "a")
-    found = followed(family, ((0, "no", 1),), fmpq(-2), fmpq(2))
+    found = follow_regime(family, ((0, "no", 1),), fmpq(-2), fmpq(2))
     assert found.ends == (-2, 2) and covered(found.pieces) == [found.ends]
     assert [checker.check(checker.load(json.dumps(one))) for one in found.documents] == ["range"]
 

@@ -15,8 +15,8 @@ from navsym.core.errors import DomainError
 from navsym.core.exact import to_rational
 from navsym.guaranteed.phases import budget as limits
 from navsym.guaranteed.phases import certify_range as range_
-from navsym.guaranteed.phases.budget import Limit
-from navsym.guaranteed.phases.certify_range import covered, echelon, parts
+from navsym.guaranteed.phases.budget import Budget
+from navsym.guaranteed.phases.certify_range import covered, echelon_form, group_pieces
 from navsym.guaranteed.phases.driver import find_phases
 from navsym.guaranteed.phases.family import family_of
 from navsym.models.modelfile import model_from
@@ -55,7 +55,7 @@ class Clock:
 
 
 def test_work_beyond_its_limit_ends_with_what_is_known_and_names_the_rest(monkeypatch):
-    monkeypatch.setattr(limits, "used", Clock(0.12))
+    monkeypatch.setattr(limits, "processor_seconds", Clock(0.12))
     answer = solved(HARD, 0, 5, "T", seconds=20.0)
     document = answer.document()
     assert document["uncovered"] and any("limit of work" in what for what in document["given_up"])
@@ -64,14 +64,14 @@ def test_work_beyond_its_limit_ends_with_what_is_known_and_names_the_rest(monkey
 
 
 def test_a_search_that_meets_its_limit_leaves_the_rest_of_the_range(monkeypatch):
-    monkeypatch.setattr(limits, "used", Clock(0.5))
+    monkeypatch.setattr(limits, "processor_seconds", Clock(0.5))
     answer = solved(HARD, 1, 2, "T", seconds=20.0, certify=False)
     assert any(what.startswith("the search for patterns") for what in answer.given_up)
     assert answer.uncovered[-1][1] == "2"
 
 
 def test_with_next_to_no_time_all_of_the_range_is_uncovered(monkeypatch):
-    monkeypatch.setattr(limits, "used", Clock(1.0))
+    monkeypatch.setattr(limits, "processor_seconds", Clock(1.0))
     answer = solved(HARD, 1, 2, "T", seconds=0.5)
     assert answer.given_up and answer.document()["uncovered"] == [["1", "2"]]
 
@@ -83,7 +83,7 @@ def test_a_limit_that_is_no_time_is_refused(seconds):
 
 
 def test_a_step_that_does_not_end_is_stopped_and_written_down():
-    limit = Limit.of(0.5)
+    limit = Budget.of(0.5)
     assert limit.within("sleeping", time.sleep, 0) is None and limit.given_up == []
     assert limit.within("turning", turning) is None
     assert limit.given_up[0].startswith("turning: ") and limit.share(0.5).given_up is limit.given_up
@@ -117,14 +117,14 @@ def test_hyperbolic_functions_and_quotients_have_a_scaled_form_from_length_zero_
 def test_a_pole_at_zero_or_another_function_has_no_scaled_form():
     for h in ("1/u", "log(1+u)"):
         family = family_of(model_from(basis(["1", h], ["0", "T"], ["1", "0"], "T")), "c", "T")
-        assert echelon(family) is None
+        assert echelon_form(family) is None
 
 
 @pytest.mark.parametrize("seconds", [300.0, 12.0])
 def test_between_the_pieces_from_zero_on_and_those_from_the_middle_nothing_is_lost(monkeypatch, seconds):
-    found = range_.follow
-    monkeypatch.setattr(range_, "follow", lambda *these: found(*these)[1:])
-    monkeypatch.setattr(limits, "used", Clock(0.1))
+    found = range_.follow_pattern
+    monkeypatch.setattr(range_, "follow_pattern", lambda *these: found(*these)[1:])
+    monkeypatch.setattr(limits, "processor_seconds", Clock(0.1))
     answer = solved(basis(["1", "u", "exp(-u)"], ["0", "T"], ["0", "0", "1"], "T"), 0, 1, "T", seconds=seconds)
     (regime,) = answer.regimes
     pieces = followed_pieces(answer)
@@ -136,4 +136,4 @@ def test_between_the_pieces_from_zero_on_and_those_from_the_middle_nothing_is_lo
 
 def test_pieces_with_a_gap_between_them_have_certificates_of_their_own():
     one, two, three = (SimpleNamespace(lower=fmpq(k), upper=fmpq(k + 1), cells=7) for k in (0, 1, 5))
-    assert parts([one, two, three]) == [[one, two], [three]] and covered([one, two, three]) == [(0, 2), (5, 6)]
+    assert group_pieces([one, two, three]) == [[one, two], [three]] and covered([one, two, three]) == [(0, 2), (5, 6)]

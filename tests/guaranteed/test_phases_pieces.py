@@ -14,11 +14,16 @@ from navsym import checker
 from navsym.core.errors import DomainError
 from navsym.core.exact import from_decimal
 from navsym.guaranteed.phases import narrow as thin
-from navsym.guaranteed.phases.boundaries import anchors, doubled, forced, proves_walking
+from navsym.guaranteed.phases.boundaries import (
+    has_double_contact,
+    is_pattern_optimal_near,
+    nearby_contacts,
+    solve_pattern,
+)
 from navsym.guaranteed.phases.driver import find_phases
 from navsym.guaranteed.phases.family import family_of
-from navsym.guaranteed.phases.patterns import Span
-from navsym.guaranteed.phases.singular_values import singular_values
+from navsym.guaranteed.phases.patterns import PatternInterval
+from navsym.guaranteed.phases.singular_values import find_singular_values
 from navsym.guaranteed.solver import solve
 from navsym.models.modelfile import model_from
 
@@ -107,17 +112,17 @@ def test_a_pattern_is_proved_next_to_the_value_where_its_contacts_merge():
     """On [-T/2, T/2] the ramp t is approximated by k sin t; past 2 pi the contacts next to either end merge with it."""
     family = family_of(model_from(RAMP), "r", "T")
     pattern = ((0, "from", -1), (0, "no", -1), (0, "no", 1), (0, "to", 1))
-    span = Span(Fraction("6.28319"), Fraction(7), pattern)
+    span = PatternInterval(Fraction("6.28319"), Fraction(7), pattern)
     root = sp.Rational(str(sp.N(2 * sp.pi, 60)))
     T = sp.Rational(round((root + sp.Rational(1, 10**32)) * 10**40), 10**40)
-    assert proves_walking(family, span, T, 1, root)
-    assert not proves_walking(family, span, 2 * root - T, 1, root)
+    assert is_pattern_optimal_near(family, span, T, 1, root)
+    assert not is_pattern_optimal_near(family, span, 2 * root - T, 1, root)
 
 
 def test_past_a_full_period_the_ramp_is_covered_by_slivers_that_the_checker_accepts():
     family = family_of(model_from(RAMP), "r", "T")
     start, end = from_decimal("6.2831853"), from_decimal("6.32")
-    made, left = thin.slivers(family, start, end)
+    made, left = thin.certify_slivers(family, start, end)
     assert left == [] and made[0].start == start and made[-1].end == end
     assert {checker.check(checker.load(json.dumps(dict(s.certificate)))) for s in made} == {"sliver"}
     assert all(a.end == b.start for a, b in pairwise(made))
@@ -126,15 +131,15 @@ def test_past_a_full_period_the_ramp_is_covered_by_slivers_that_the_checker_acce
 def test_what_the_attempts_do_not_reach_is_left_in_one_part(monkeypatch):
     monkeypatch.setattr(thin, "MOST_TRIES", 6)
     family = family_of(model_from(RAMP), "r", "T")
-    made, left = thin.slivers(family, fmpq(63, 10), fmpq(7))
+    made, left = thin.certify_slivers(family, fmpq(63, 10), fmpq(7))
     assert len(left) == 1 and left[0][1] == 7 and left[0][0] == (made[-1].end if made else fmpq(63, 10))
 
 
 def test_a_contact_at_a_switch_touches_twice_and_is_not_tried():
     family = family_of(model_from(STOPPED), "v", "T").chain[1]
-    span = Span(Fraction("1.9"), Fraction("2.5"), ((0, "from", -1), (0, "to", -1)))
-    contacts, T = next(anchors(family, span, span.lower, 1))
-    assert doubled(family.exact(T), forced(family, T, span.pattern, contacts, T))
+    span = PatternInterval(Fraction("1.9"), Fraction("2.5"), ((0, "from", -1), (0, "to", -1)))
+    contacts, T = next(nearby_contacts(family, span, span.lower, 1))
+    assert has_double_contact(family.exact(T), solve_pattern(family, T, span.pattern, contacts, T))
 
 
 # -- fewer contacts than unknowns ------------------------------------------------------------------
@@ -166,7 +171,9 @@ def reasons(rows, target=None, sigma=None, lower="-1", upper="4", end="1"):
         "parameters": {"p": ["-9", "9"]},
         "targets": {"c": target or ["1"] + ["0"] * (len(rows) - 1)},
     }
-    found, unknown = singular_values(family_of(model_from(document), "c", "p"), sp.sympify(lower), sp.sympify(upper))
+    found, unknown = find_singular_values(
+        family_of(model_from(document), "c", "p"), sp.sympify(lower), sp.sympify(upper)
+    )
     return {str(s.at): s.why for s in found}, [str(e) for e in unknown]
 
 

@@ -10,8 +10,8 @@ import sympy as sp
 
 from navsym import checker
 from navsym.core.errors import DomainError, NavsymError, NotEstimableError, NotFiniteError, ShapeError
-from navsym.guaranteed.baselines import realise, search_correlations
-from navsym.guaranteed.problem import from_file, from_regressors
+from navsym.guaranteed.baselines import realise_worst_noise, search_correlations
+from navsym.guaranteed.problem import from_contents, from_regressors
 from navsym.guaranteed.solver import solve
 from navsym.models.modelfile import model_from
 
@@ -29,7 +29,7 @@ VELOCITY = {
 
 
 def velocity(state, T="pi/2"):
-    return from_file(model_from(VELOCITY, "", {"T": T}), state)
+    return from_contents(model_from(VELOCITY, "", {"T": T}), state)
 
 
 def line(functional=(0, 1), sigma=(1,), interval=(0, 1)):
@@ -54,7 +54,7 @@ def test_pieces_of_F_that_are_equal_give_the_solution_of_one_piece():
     pieces = dict(VELOCITY) | {"model": {"name": "p", "states": ["y1", "y2", "y3"]}}
     F = VELOCITY["model"]["F"]
     pieces["piece"] = [{"from": "0", "to": "1/2", "F": F}, {"from": "1/2", "to": "T", "F": F}]
-    split = solve(from_file(model_from(pieces, "", {"T": "3/2"}), "y3"), digits=15)
+    split = solve(from_contents(model_from(pieces, "", {"T": "3/2"}), "y3"), digits=15)
     whole = solve(velocity("y3", "3/2"), digits=15)
     assert float(split.lower) == pytest.approx(float(whole.lower), rel=1e-13)
 
@@ -100,7 +100,7 @@ def test_several_measurements_share_the_work_by_their_noise():
 
 def test_the_worst_noise_reaches_the_guaranteed_deviation():
     solution = solve(velocity("y3"), digits=15)
-    errors = realise(solution, 200_000, seed=1)
+    errors = realise_worst_noise(solution, 200_000, seed=1)
     assert np.std(errors) == pytest.approx(float(solution.value), rel=0.01)
     assert sum(abs(float(weight)) for weight in solution.weights) == pytest.approx(float(solution.value), rel=1e-12)
 

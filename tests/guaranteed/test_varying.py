@@ -13,10 +13,10 @@ from scipy.optimize import linprog
 
 from navsym import checker
 from navsym.core.errors import DomainError, NavsymError, NotEstimableError
-from navsym.guaranteed.estimability import null_directions
-from navsym.guaranteed.problem import from_file
+from navsym.guaranteed.estimability import unobservable_directions
+from navsym.guaranteed.problem import from_contents
 from navsym.guaranteed.solver import solve
-from navsym.guaranteed.time_varying import largest
+from navsym.guaranteed.time_varying import largest_upper_end
 from navsym.models.modelfile import model_from
 
 
@@ -31,7 +31,7 @@ def model(F, h, T, target, pieces=None):
     if pieces is not None:
         del document["model"]["F"]
         document["piece"] = pieces
-    return from_file(model_from(document))
+    return from_contents(model_from(document))
 
 
 def encloses(solution, value):
@@ -59,7 +59,7 @@ def test_pieces_may_vary_and_agree_with_one_piece():
     assert encloses(solution, sp.Rational(1, 2))
 
 
-@pytest.mark.parametrize("T", ["1", "pi/2"])
+@pytest.mark.parametrize("T", ["1", pytest.param("pi/2", marks=pytest.mark.long)])
 def test_a_matrix_without_a_closed_exponential_is_integrated(T):
     """The characteristic polynomial s**3 - s - 1 is irreducible; the peer is a linear program on a fine grid."""
     F = [["0", "1", "0"], ["0", "0", "1"], ["1", "1", "0"]]
@@ -112,7 +112,7 @@ def test_a_regressor_with_a_kink_proves_no_null_direction():
             "targets": {"c": ["1", "0"]},
         }
     )
-    assert null_directions(found) == []
+    assert unobservable_directions(found) == []
 
 
 def test_ends_that_are_not_rational_and_singularities_are_refused():
@@ -135,8 +135,8 @@ def test_a_regressor_that_is_singular_on_the_interval_is_refused(h):
 
 
 def test_the_largest_of_balls_is_no_number_when_one_of_them_is_none():
-    assert 4 <= largest([arb(1), arb(3, 1), arb(2)]) < 4.001
+    assert 4 <= largest_upper_end([arb(1), arb(3, 1), arb(2)]) < 4.001
     for at in range(3):
         values = [arb(1), arb(2), arb(3)]
         values[at] = arb("nan")
-        assert not largest(values).is_finite()
+        assert not largest_upper_end(values).is_finite()

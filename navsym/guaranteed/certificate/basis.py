@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from navsym.core.balls import precision
 from navsym.core.errors import NotFiniteError, TooLargeError
 from navsym.core.exact import to_fmpq
-from navsym.guaranteed.certificate.enclosure import Panel, Problem
+from navsym.guaranteed.certificate.enclosure import Panel, PanelProblem
 from navsym.guaranteed.search.exchange import Panels
 
 # Chebyshev coefficients from values at Chebyshev points: in doubles for a search, in balls for the last bits of it.
@@ -33,21 +33,21 @@ SHARP = 96
 NODE_BITS = 128
 
 
-def double(matrix: arb_mat) -> NDArray[np.float64]:
+def to_doubles(matrix: arb_mat) -> NDArray[np.float64]:
     """The midpoints as doubles."""
     return np.array(list(map(float, matrix.entries()))).reshape(matrix.nrows(), matrix.ncols())
 
 
-def twofold(matrix: arb_mat) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def to_twofold(matrix: arb_mat) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """The midpoints as doubles, and what these lack."""
-    high = double(matrix)
+    high = to_doubles(matrix)
     low = [float(e - h) for e, h in zip(matrix.entries(), high.ravel().tolist(), strict=True)]
     return high, np.array(low).reshape(high.shape)
 
 
-def rounded_coefficients(q: arb_mat, panels: int, count: int) -> NDArray[np.float64]:
+def double_coefficients(q: arb_mat, panels: int, count: int) -> NDArray[np.float64]:
     """Coefficients (panels, count, m) from values at the points of the first kind, in doubles."""
-    values, cosines = double(q), double_cosines(count)
+    values, cosines = to_doubles(q), double_cosines(count)
     return np.stack([cosines @ values[i * count : (i + 1) * count] for i in range(panels)])
 
 
@@ -61,20 +61,20 @@ def double_cosines(count: int) -> NDArray[np.float64]:
     return cosines
 
 
-def sharp_coefficients(q: arb_mat, panels: int, count: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def twofold_coefficients(q: arb_mat, panels: int, count: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """The same as doubles and what these lack."""
     rows = q.tolist()
     with precision(NODE_BITS):
-        parts = [transformed(rows[i * count : (i + 1) * count]) for i in range(panels)]
+        parts = [cosine_transform(rows[i * count : (i + 1) * count]) for i in range(panels)]
     return np.stack([high for high, _ in parts]), np.stack([low for _, low in parts])
 
 
-def tail(high: NDArray[np.float64]) -> float:
+def tail_share(high: NDArray[np.float64]) -> float:
     """The last coefficients as a part of the largest."""
     return float(np.abs(high[:, -3:, :]).max() / np.abs(high).max())
 
 
-def transformed(rows: list[list[arb]]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def cosine_transform(rows: list[list[arb]]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Coefficients from an even number of values, the even ones from their sums about the middle, the odd ones
     from their differences.
     """
@@ -84,7 +84,7 @@ def transformed(rows: list[list[arb]]) -> tuple[NDArray[np.float64], NDArray[np.
     odd = arb_mat([[a - b for a, b in zip(*pair, strict=True)] for pair in pairs])
     high, low = np.empty((2, count, len(rows[0])))
     for k, folded in enumerate((even, odd)):
-        high[k::2], low[k::2] = twofold(ball_cosines(count)[k] * folded)
+        high[k::2], low[k::2] = to_twofold(ball_cosines(count)[k] * folded)
     return high, low
 
 
@@ -98,7 +98,7 @@ def ball_cosines(count: int) -> tuple[arb_mat, arb_mat]:
         return arb_mat(rows[::2]), arb_mat(rows[1::2])
 
 
-def resolved(high: NDArray[np.float64], least: float = 1e-15) -> int:
+def resolved_count(high: NDArray[np.float64], least: float = 1e-15) -> int:
     """How many coefficients are above their rounding, or another part of the largest."""
     size = np.abs(high).max(axis=(0, 2))
     return max(int(np.flatnonzero(size > least * size.max()).max()) + 1, 3)
@@ -166,7 +166,7 @@ def chebyshev_fractions(count: int) -> tuple[fmpq, ...]:
         return tuple((1 + to_fmpq(c)) / 2 for c in cosines)
 
 
-def samples(panels: Sequence[Panel], count: int, bits: int) -> arb_mat:
+def sample_panels(panels: Sequence[Panel], count: int, bits: int) -> arb_mat:
     """H / sigma at the Chebyshev points of every panel, (panels * count, m)."""
     fractions = chebyshev_fractions(count)
     rows: list[list[arb]] = []
@@ -182,7 +182,7 @@ def samples(panels: Sequence[Panel], count: int, bits: int) -> arb_mat:
         return arb_mat(rows)
 
 
-def cholesky(gram: arb_mat, bits: int) -> list[list[arb]]:
+def ball_cholesky(gram: arb_mat, bits: int) -> list[list[arb]]:
     """Lower factor of the Gram matrix in balls; raises DependentError at a pivot that is not known well enough."""
     m = gram.nrows()
     L = [[arb(0)] * m for _ in range(m)]
@@ -193,14 +193,14 @@ def cholesky(gram: arb_mat, bits: int) -> list[list[arb]]:
                 rest = rest - L[i][k] * L[j][k]
             if i == j:
                 if not bool(rest > 0) or rest.rel_accuracy_bits() < KNOWN:
-                    raise DependentError(i, relation_of(gram, i), bits)
+                    raise DependentError(i, fit_relation(gram, i), bits)
                 L[i][i] = rest.sqrt()
             else:
                 L[i][j] = rest / L[j][j]
     return L
 
 
-def relation_of(gram: arb_mat, index: int) -> list[arb]:
+def fit_relation(gram: arb_mat, index: int) -> list[arb]:
     """Coefficients c with ``H_index = sum c_k H_k`` over the rows before, from the normal equations."""
     if index == 0:
         return []
@@ -210,25 +210,25 @@ def relation_of(gram: arb_mat, index: int) -> list[arb]:
     return [solved[i, 0].mid() for i in range(index)]
 
 
-def transform_of(values: arb_mat, bits: int) -> tuple[arb_mat, int]:
+def orthonormal_transform(values: arb_mat, bits: int) -> tuple[arb_mat, int]:
     """A = L^-1 for the Gram matrix ``L L^T`` of the rows, as exact midpoints; the digits that A and L span.
 
     Any regular A near it will do: one of doubles, where the functions are far from dependent.
     """
-    rounded = rounded_transform(double(values))
+    rounded = double_transform(to_doubles(values))
     if rounded is not None:
         return rounded
     gram = values.transpose() * values
     count = values.nrows()
-    L = arb_mat(cholesky(gram * (arb(1) / count), bits)).mid()
+    L = arb_mat(ball_cholesky(gram * (arb(1) / count), bits)).mid()
     inverse = L.inv()
     A = arb_mat(L.nrows(), L.ncols(), [e.mid() for e in inverse.entries()])
     digits = [(max(map(arb.abs_upper, matrix.entries())).log() / arb(10).log()).mid() for matrix in (A, L)]
     return A, max(0, int(float(sum(digits, arb(0)))) + 1)
 
 
-def rounded_transform(values: NDArray[np.float64]) -> tuple[arb_mat, int] | None:
-    """:func:`transform_of` in doubles; None where these do not tell the functions apart for certain."""
+def double_transform(values: NDArray[np.float64]) -> tuple[arb_mat, int] | None:
+    """:func:`orthonormal_transform` in doubles; None where these do not tell the functions apart for certain."""
     sizes = np.abs(values).max(axis=0)
     if not np.isfinite(sizes).all() or sizes.min() < RANGE[0] or sizes.max() > RANGE[1]:
         return None
@@ -245,7 +245,7 @@ def rounded_transform(values: NDArray[np.float64]) -> tuple[arb_mat, int] | None
     return arb_mat([[arb(a) for a in row] for row in A.tolist()]), max(0, int(span) + 1)
 
 
-def make_basis(problem: Problem, bits: int = BITS) -> Basis:
+def make_basis(problem: PanelProblem, bits: int = BITS) -> Basis:
     """Orthonormal basis of a problem, with points and bits increased until both suffice.
 
     The last ones are kept: the same exact expressions have the same basis.
@@ -254,75 +254,75 @@ def make_basis(problem: Problem, bits: int = BITS) -> Basis:
     ``LARGEST`` points a panel do not resolve them.
     """
     if any(panel.values or panel.mix is not None for panel in problem.panels):
-        return made_basis(problem, bits)
+        return compute_basis(problem, bits)
     panels = tuple((p.measurement, p.functions, p.variable, p.start, p.end, p.sigma) for p in problem.panels)
-    return kept_basis(Exact((panels, problem.functional), problem), bits)
+    return cached_basis(ExactKey((panels, problem.functional), problem), bits)
 
 
 @dataclass(frozen=True, slots=True)
-class Exact:
+class ExactKey:
     """A problem that is compared by its exact expressions."""
 
     expressions: tuple[Any, ...]
-    problem: Problem = field(compare=False)
+    problem: PanelProblem = field(compare=False)
 
 
 @lru_cache(maxsize=64)
-def kept_basis(exact: Exact, bits: int) -> Basis:
-    """:func:`made_basis` for exact expressions, which are compared as a whole."""
-    return made_basis(exact.problem, bits)
+def cached_basis(exact: ExactKey, bits: int) -> Basis:
+    """:func:`compute_basis` for exact expressions, which are compared as a whole."""
+    return compute_basis(exact.problem, bits)
 
 
-def made_basis(problem: Problem, bits: int) -> Basis:
+def compute_basis(problem: PanelProblem, bits: int) -> Basis:
     """The basis, computed."""
     panels, least = problem.panels, bits
     count = first_count(problem)
     while True:
         try:
             with precision(bits):
-                values = samples(panels, count, bits)
-                A, loss = transform_of(values, bits)
+                values = sample_panels(panels, count, bits)
+                A, loss = orthonormal_transform(values, bits)
                 q = values * A.transpose()
                 P = A * arb_mat([[p] for p in problem.target()])
         except DependentError as found:
             if bits < MOST_BITS:
                 bits *= 2
-            elif count < LARGEST and only_at_points(problem, found):
+            elif count < LARGEST and differs_between_points(problem, found):
                 count, bits = 2 * count, least
             else:
                 raise
             continue
-        high = rounded_coefficients(q, len(panels), count)
-        if tail(high) < RESOLVED:
+        high = double_coefficients(q, len(panels), count)
+        if tail_share(high) < RESOLVED:
             break
         if count >= LARGEST:
             raise TooLargeError(
-                f"expected functions that {LARGEST} points a piece resolve; got a tail of {tail(high):.1e}; "
+                f"expected functions that {LARGEST} points a piece resolve; got a tail of {tail_share(high):.1e}; "
                 "shorten the interval, or keep poles and kinks out of it"
             )
         count *= 2
     with precision(bits):
         size = sum((p * p for p in P.entries()), arb(0)).sqrt().mid()
-        search = Panels(high[:, : resolved(high)], double(P * (1 / size))[:, 0])
-    return Basis(A, P, size, search, bits, loss, partial(sharpened, panels, A, P, size, search, count, bits))
+        search = Panels(high[:, : resolved_count(high)], to_doubles(P * (1 / size))[:, 0])
+    return Basis(A, P, size, search, bits, loss, partial(sharpen_panels, panels, A, P, size, search, count, bits))
 
 
-def sharpened(
+def sharpen_panels(
     panels: Sequence[Panel], A: arb_mat, P: arb_mat, size: arb, rounded: Panels, count: int, bits: int
 ) -> Panels:
     """The panels of a basis with what the doubles lack; as they are where that would take too many points."""
     while count <= SHARP:
         with precision(bits):
-            high, low = sharp_coefficients(samples(panels, count, bits) * A.transpose(), len(panels), count)
-            p_high, p_low = twofold(P * (1 / size))
-        if tail(high) < (SHARP_RESOLVED if 2 * count <= SHARP else RESOLVED):
-            used = resolved(high, SHARP_RESOLVED)
+            high, low = twofold_coefficients(sample_panels(panels, count, bits) * A.transpose(), len(panels), count)
+            p_high, p_low = to_twofold(P * (1 / size))
+        if tail_share(high) < (SHARP_RESOLVED if 2 * count <= SHARP else RESOLVED):
+            used = resolved_count(high, SHARP_RESOLVED)
             return Panels(high[:, :used], p_high[:, 0], low[:, :used], p_low[:, 0])
         count *= 2
     return rounded
 
 
-def first_count(problem: Problem) -> int:
+def first_count(problem: PanelProblem) -> int:
     """Points a panel to begin with: no fewer than functions, and where doubles say so what resolves the functions.
 
     Only a guess: what is too few shows itself in balls later.
@@ -330,7 +330,7 @@ def first_count(problem: Problem) -> int:
     enough = [count for count in COUNTS if count >= len(problem.functional)]
     if not enough:
         return COUNTS[-1] * -(-len(problem.functional) // COUNTS[-1])
-    smooth_at = (n for n in enough[:-1] if all(smooth(panel, n) for panel in problem.panels))
+    smooth_at = (n for n in enough[:-1] if all(is_smooth(panel, n) for panel in problem.panels))
     return next(smooth_at, enough[-1])
 
 
@@ -341,7 +341,7 @@ def last_cosines(count: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     return (1 + np.cos(angles)) / 2, np.cos(np.outer(angles, np.arange(count - 3, count))) * (2 / count)
 
 
-def smooth(panel: Panel, count: int) -> bool:
+def is_smooth(panel: Panel, count: int) -> bool:
     """The last coefficients of every function of a panel are small in doubles, or doubles say nothing."""
     inputs: dict[Any, Any] = {symbol: float(arb(value).mid()) for symbol, value in panel.values.items()}
     start, end, _ = (float(edge.mid()) for edge in panel.edges())
@@ -359,7 +359,7 @@ def smooth(panel: Panel, count: int) -> bool:
         return not bool((tail > GUESSED * np.abs(rows).max(axis=1)).any())
 
 
-def only_at_points(problem: Problem, found: DependentError) -> bool:
+def differs_between_points(problem: PanelProblem, found: DependentError) -> bool:
     """True when functions that look dependent at the Chebyshev points are not so between them.
 
     ``T_{n+k} = -T_{n-k}`` at n of these points.
@@ -375,7 +375,7 @@ def only_at_points(problem: Problem, found: DependentError) -> bool:
     return False
 
 
-def as_fraction(u: float) -> fmpq:
+def unit_fraction(u: float) -> fmpq:
     """The fraction in [0, 1] of a local coordinate in [-1, 1], exactly."""
     if u <= -1.0:
         return fmpq(0)

@@ -20,21 +20,21 @@ import sympy as sp
 from flint import arb, arb_mat, arb_series, ctx, fmpq, fmpz
 from numpy.typing import NDArray
 
-from navsym.core.balls import OPERATIONS, Step, instruction
+from navsym.core.balls import OPERATIONS, Instruction, read_instruction
 from navsym.core.exact import to_fmpq
 
 # Several expressions as one tape: shared parts once, constants once for each precision, run over balls and series.
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Program:
+class JointTape:
     """Several expressions flattened into one tape, shared parts once; ``outputs`` are their places."""
 
-    steps: tuple[Step, ...]
+    steps: tuple[Instruction, ...]
     outputs: tuple[int, ...]
 
     def run(self, values: Mapping[sp.Symbol, Any]) -> list[Any]:
-        fixed, symbols, moving = prepared(self, ctx.prec)
+        fixed, symbols, moving = prepare_steps(self, ctx.prec)
         done = list(fixed)
         for place, symbol in symbols:
             done[place] = values[symbol]
@@ -64,7 +64,7 @@ TWO: dict[str, Callable[[Any, Any], Any]] = {"add": add, "mul": mul}
 
 
 @lru_cache(maxsize=256)
-def prepared(tape: Program, bits: int) -> tuple[list[Any], list[tuple[int, sp.Symbol]], list[Moving]]:
+def prepare_steps(tape: JointTape, bits: int) -> tuple[list[Any], list[tuple[int, sp.Symbol]], list[Moving]]:
     """The steps without a symbol, done at a precision, those that are symbols, and the others."""
     done: list[Any] = []
     symbols: list[tuple[int, sp.Symbol]] = []
@@ -73,7 +73,7 @@ def prepared(tape: Program, bits: int) -> tuple[list[Any], list[tuple[int, sp.Sy
         if step.operation == "symbol":
             symbols.append((place, step.constant))
         elif any(done[i] is None for i in step.arguments):
-            moving.append((place, *called(step)))
+            moving.append((place, *step_call(step)))
         else:
             done.append(OPERATIONS[step.operation](step.constant, [done[i] for i in step.arguments], {}))
             continue
@@ -81,7 +81,7 @@ def prepared(tape: Program, bits: int) -> tuple[list[Any], list[tuple[int, sp.Sy
     return done, symbols, moving
 
 
-def called(step: Step) -> tuple[Callable[..., Any], Any, int | None]:
+def step_call(step: Instruction) -> tuple[Callable[..., Any], Any, int | None]:
     """How a step is called."""
     if step.operation in UNARY:
         return UNARY[step.operation], step.arguments[0], None
@@ -91,20 +91,20 @@ def called(step: Step) -> tuple[Callable[..., Any], Any, int | None]:
     return (lambda arguments: operation(step.constant, arguments, {})), step.arguments, -1
 
 
-def program(expressions: Sequence[sp.Expr]) -> Program:
+def joint_tape(expressions: Sequence[sp.Expr]) -> JointTape:
     """Flatten expressions; raises :class:`~navsym.core.balls.UnsupportedError` outside the language."""
-    steps: list[Step] = []
+    steps: list[Instruction] = []
     place: dict[sp.Basic, int] = {}
 
     def visit(node: sp.Basic) -> int:
         if node not in place:
-            operation, arguments, constant = instruction(node)
-            steps.append(Step(operation, tuple(visit(a) for a in arguments), constant))
+            operation, arguments, constant = read_instruction(node)
+            steps.append(Instruction(operation, tuple(visit(a) for a in arguments), constant))
             place[node] = len(steps) - 1
         return place[node]
 
     outputs = tuple(visit(sp.sympify(e, strict=True)) for e in expressions)
-    return Program(tuple(steps), outputs)
+    return JointTape(tuple(steps), outputs)
 
 
 FLOATS: dict[str, Any] = {
@@ -145,7 +145,7 @@ ONE = fmpz(1)
 
 
 @contextmanager
-def terms(count: int) -> Iterator[None]:
+def series_terms(count: int) -> Iterator[None]:
     """Series of ``count`` terms; flint's cap is global, so it is put back."""
     before = ctx.cap
     ctx.cap = count
@@ -178,12 +178,12 @@ class Panel:
     mix: arb_mat | None = None
 
     @cached_property
-    def program(self) -> Program:
-        return program(self.functions)
+    def program(self) -> JointTape:
+        return joint_tape(self.functions)
 
     @cached_property
-    def ends(self) -> Program:
-        return program([self.start, self.end, self.sigma])
+    def ends(self) -> JointTape:
+        return joint_tape([self.start, self.end, self.sigma])
 
     @cached_property
     def kept(self) -> dict[int, tuple[arb, arb, arb]]:
@@ -223,17 +223,17 @@ class Panel:
 
         With a ball for v the coefficients hold for every centre in it (Lagrange remainders).
         """
-        with terms(order + 1):
-            rows = [coefficients(h, order) for h in self.expanded(v, scale)]
+        with series_terms(order + 1):
+            rows = [series_coefficients(h, order) for h in self.expanded(v, scale)]
         return rows if self.mix is None else (self.mix * arb_mat(rows)).tolist()
 
     def dual_polynomial(self, x: Sequence[arb], v: Any, scale: Any, order: int) -> list[arb]:
         """Taylor coefficients 0 … order of ``x . H``, see :meth:`series`."""
         if self.mix is not None:
             x = (self.mix.transpose() * arb_mat([[a] for a in x])).entries()
-        with terms(order + 1):
+        with series_terms(order + 1):
             parts = zip(x, self.expanded(v, scale), strict=True)
-            return coefficients(sum((a * h for a, h in parts), arb(0)), order)
+            return series_coefficients(sum((a * h for a, h in parts), arb(0)), order)
 
     def expanded(self, v: Any, scale: Any) -> list[Any]:
         """Every expression as a series in w, or as a number where it is constant."""
@@ -244,19 +244,19 @@ class Panel:
         return self.program.run(inputs)
 
 
-def coefficients(value: Any, order: int) -> list[arb]:
+def series_coefficients(value: Any, order: int) -> list[arb]:
     """Coefficients 0 … order of a series, or of a number as a constant one."""
     if isinstance(value, arb_series):
         return [value[k] for k in range(order + 1)]
     return [arb(value)] + [arb(0)] * order
 
 
-def combination(x: Sequence[arb], series: Sequence[Sequence[arb]]) -> list[arb]:
+def combine_series(x: Sequence[arb], series: Sequence[Sequence[arb]]) -> list[arb]:
     """Taylor coefficients of ``x . H`` from those of H."""
-    return [total(x, [s[k] for s in series]) for k in range(len(series[0]))]
+    return [dot_product(x, [s[k] for s in series]) for k in range(len(series[0]))]
 
 
-def total(x: Sequence[arb], y: Sequence[arb]) -> arb:
+def dot_product(x: Sequence[arb], y: Sequence[arb]) -> arb:
     """Sum of the products ``x_i y_i``."""
     value = arb(0)
     for a, b in zip(x, y, strict=True):
@@ -265,7 +265,7 @@ def total(x: Sequence[arb], y: Sequence[arb]) -> arb:
 
 
 @dataclass(frozen=True)
-class Problem:
+class PanelProblem:
     """Minimise ``sum |w|`` times the noise bounds subject to ``sum w H = P``, with exact data.
 
     panels     : pieces of the measurements, in any order
@@ -278,8 +278,8 @@ class Problem:
     values: Mapping[sp.Symbol, Any] = field(default_factory=dict)
 
     @cached_property
-    def functional_program(self) -> Program:
-        return program(self.functional)
+    def functional_program(self) -> JointTape:
+        return joint_tape(self.functional)
 
     def target(self) -> list[arb]:
         """P as balls at the working precision."""
@@ -306,7 +306,7 @@ class Touch:
 
 
 @dataclass(frozen=True, slots=True)
-class Cell:
+class PanelCell:
     """Part [lower, upper] of a panel, with the touch inside it, if any."""
 
     lower: fmpq
@@ -315,10 +315,10 @@ class Cell:
 
 
 #: Taylor coefficients of f in w on a cell, fraction ``centre + radius w``; the last one over the whole cell.
-Expansion = Callable[[Cell, fmpq, fmpq], list[arb]]
+Expansion = Callable[[PanelCell, fmpq, fmpq], list[arb]]
 
 
-def covered(bound: arb, touches: Sequence[Touch], limit: int, expand: Expansion) -> int | None:
+def prove_by_cells(bound: arb, touches: Sequence[Touch], limit: int, expand: Expansion) -> int | None:
     """Number of cells that prove ``|f| <= bound`` for the function with these expansions, or None.
 
     Cells around touches pass by curvature or slope, all others by Taylor bounds; a cell that
@@ -332,19 +332,19 @@ def covered(bound: arb, touches: Sequence[Touch], limit: int, expand: Expansion)
         used += 1
         if used > limit:
             return None
-        if passes(expand, cell, bound, strict):
+        if is_cell_bounded(expand, cell, bound, strict):
             continue
         if cell.upper - cell.lower < fmpq(1, 1 << 400):
             return None
-        stack.extend(split(cell))
+        stack.extend(split_cell(cell))
     return used
 
 
-def first_cells(touches: Sequence[Touch]) -> list[Cell]:
+def first_cells(touches: Sequence[Touch]) -> list[PanelCell]:
     """[0, 1] cut between neighbouring touches; ends of the panel do not count as neighbours."""
     ordered = sorted(touches, key=lambda t: float(to_fmpq(t.at)))
-    reach = [extent(t) for t in ordered]
-    cells: list[Cell] = []
+    reach = [touch_extent(t) for t in ordered]
+    cells: list[PanelCell] = []
     edge = fmpq(0)
     for i, touch in enumerate(ordered):
         gaps = [reach[i][0] - reach[i - 1][1]] if i else []
@@ -354,90 +354,90 @@ def first_cells(touches: Sequence[Touch]) -> list[Cell]:
         if touch.end == "to":  # a moving end: the ball of its places reaches to the end of the panel
             upper = fmpq(1)
         if lower > edge:
-            cells.append(Cell(edge, lower))
-        cells.append(Cell(lower, upper, touch))
+            cells.append(PanelCell(edge, lower))
+        cells.append(PanelCell(lower, upper, touch))
         edge = upper
     if edge < 1:
-        cells.append(Cell(edge, fmpq(1)))
+        cells.append(PanelCell(edge, fmpq(1)))
     return cells
 
 
-def extent(touch: Touch) -> tuple[fmpq, fmpq]:
+def touch_extent(touch: Touch) -> tuple[fmpq, fmpq]:
     """Ends of the ball of the place, or the exact place twice."""
     if isinstance(touch.at, arb):
         return to_fmpq(touch.at.lower()), to_fmpq(touch.at.upper())
     return to_fmpq(touch.at), to_fmpq(touch.at)
 
 
-def split(cell: Cell) -> list[Cell]:
+def split_cell(cell: PanelCell) -> list[PanelCell]:
     """Halves of a plain cell; a touch keeps a cell half-way nearer to its places, in the middle of two more."""
     if cell.touch is None:
         middle = (cell.lower + cell.upper) / 2
-        return [Cell(cell.lower, middle), Cell(middle, cell.upper)]
-    left, right = extent(cell.touch)
+        return [PanelCell(cell.lower, middle), PanelCell(middle, cell.upper)]
+    left, right = touch_extent(cell.touch)
     lower = cell.lower if cell.touch.end == "from" else (cell.lower + left) / 2
     upper = cell.upper if cell.touch.end == "to" else (cell.upper + right) / 2
-    parts = [Cell(lower, upper, cell.touch)]
+    parts = [PanelCell(lower, upper, cell.touch)]
     if lower > cell.lower:
-        parts.append(Cell(cell.lower, lower))
+        parts.append(PanelCell(cell.lower, lower))
     if upper < cell.upper:
-        parts.append(Cell(upper, cell.upper))
+        parts.append(PanelCell(upper, cell.upper))
     return parts
 
 
-def order_for(m: int) -> int:
+def taylor_order(m: int) -> int:
     """Order of the Taylor bounds: above the degree of m monomials, so that their remainder vanishes."""
     return min(24, max(ORDER, m + 2))
 
 
-def interval(lower: fmpq, upper: fmpq) -> arb:
+def interval_ball(lower: fmpq, upper: fmpq) -> arb:
     """A ball around an interval with exact ends."""
     return arb((lower + upper) / 2) + arb((upper - lower) / 2) * arb(0, 1)
 
 
-def passes(expand: Expansion, cell: Cell, bound: arb, strict: bool) -> bool:
+def is_cell_bounded(expand: Expansion, cell: PanelCell, bound: arb, strict: bool) -> bool:
     """``|f| <= bound`` on the cell (``<`` off an exact touch), from one Taylor expansion with remainder."""
     centre = (cell.lower + cell.upper) / 2 if cell.touch is None else to_fmpq(cell.touch.at)
     radius = max(centre - cell.lower, cell.upper - centre)
     taylor = expand(cell, centre, radius)
-    spread = remainder(taylor, 0)
+    spread = remainder_bound(taylor, 0)
     if cell.touch is not None and cell.touch.exact:
-        return exact_touch(cell, taylor, spread, bound)
+        return is_bounded_at_touch(cell, taylor, spread, bound)
     height = abs(taylor[0]) + spread
     if bool(height < bound) or (not strict and bool(height <= bound)):
         return True
-    return cell.touch is not None and near_touch(cell, taylor, spread, bound)
+    return cell.touch is not None and is_bounded_near_touch(cell, taylor, spread, bound)
 
 
-def remainder(taylor: Sequence[arb], derivative: int) -> arb:
+def remainder_bound(taylor: Sequence[arb], derivative: int) -> arb:
     """Bound of ``f^(d)/d!`` minus its value at the centre, over ``|w| <= 1``."""
     sizes = map(arb.abs_upper, taylor[derivative + 1 :])
-    return sum(sizes if derivative == 0 else map(mul, counts(derivative, len(taylor)), sizes), arb(0))
+    return sum(sizes if derivative == 0 else map(mul, binomials(derivative, len(taylor)), sizes), arb(0))
 
 
 @lru_cache(maxsize=256)
-def counts(derivative: int, size: int) -> tuple[int, ...]:
+def binomials(derivative: int, size: int) -> tuple[int, ...]:
     """``binom(k, derivative)`` for all k from above the derivative to below the size."""
     return tuple(comb(k, derivative) for k in range(derivative + 1, size))
 
 
-def near_touch(cell: Cell, taylor: Sequence[arb], spread: arb, bound: arb) -> bool:
+def is_bounded_near_touch(cell: PanelCell, taylor: Sequence[arb], spread: arb, bound: arb) -> bool:
     """f <= bound by concavity around the centre, or by monotony up to an end of the cell."""
     assert cell.touch is not None
     s = cell.touch.sign
     if not bool(-s * taylor[0] + spread <= bound):
         return False
-    bend = s * taylor[2] + remainder(taylor, 2)
+    bend = s * taylor[2] + remainder_bound(taylor, 2)
     if bool(bend < 0) and bool(s * taylor[0] + taylor[1] ** 2 / (-4 * bend) <= bound):
         return True
     centre = to_fmpq(cell.touch.at)
-    slope, change = s * taylor[1], remainder(taylor, 1)
+    slope, change = s * taylor[1], remainder_bound(taylor, 1)
     rising = centre == cell.upper and bool(slope > change)
     falling = centre == cell.lower and bool(-slope > change)
     return (rising or falling) and bool(s * taylor[0] <= bound)
 
 
-def exact_touch(cell: Cell, taylor: Sequence[arb], spread: arb, bound: arb) -> bool:
+def is_bounded_at_touch(cell: PanelCell, taylor: Sequence[arb], spread: arb, bound: arb) -> bool:
     """``|f| < bound`` on the cell off the contact: strictly concave with f' = 0 at an inner contact; strictly
     monotone up to a contact at an end of the panel, or concave with an outward slope there.
     """
@@ -450,8 +450,8 @@ def exact_touch(cell: Cell, taylor: Sequence[arb], spread: arb, bound: arb) -> b
     )
     if not inside or not bool(-s * taylor[0] + spread < bound):
         return False
-    concave = bool(s * taylor[2] + remainder(taylor, 2) < 0)
+    concave = bool(s * taylor[2] + remainder_bound(taylor, 2) < 0)
     if cell.touch.end == "no":
         return concave
     outward = (s if cell.touch.end == "to" else -s) * taylor[1]
-    return bool(outward > remainder(taylor, 1)) or (concave and bool(outward > 0))
+    return bool(outward > remainder_bound(taylor, 1)) or (concave and bool(outward > 0))

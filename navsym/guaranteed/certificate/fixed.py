@@ -17,11 +17,18 @@ from flint import arb, arb_mat, ctx, fmpq
 
 from navsym.core.balls import precision
 from navsym.core.exact import decimal, from_decimal, lower_end, to_fmpq, to_fraction, upper_end
-from navsym.guaranteed.certificate.basis import Basis, as_fraction, make_basis
-from navsym.guaranteed.certificate.enclosure import Panel, Problem, Touch, combination, interval, total
-from navsym.guaranteed.certificate.polish import Polished, pinned, polish, series_rows
-from navsym.guaranteed.certificate.whole import bounded
-from navsym.guaranteed.search.exchange import Contacts, nodes_for, roads, rows_at, with_places
+from navsym.guaranteed.certificate.basis import Basis, make_basis, unit_fraction
+from navsym.guaranteed.certificate.enclosure import (
+    Panel,
+    PanelProblem,
+    Touch,
+    combine_series,
+    dot_product,
+    interval_ball,
+)
+from navsym.guaranteed.certificate.polish import ContactSolution, pin_dual, series_rows, sharpen_contacts
+from navsym.guaranteed.certificate.whole import prove_panel_bound
+from navsym.guaranteed.search.exchange import Contacts, add_places, contact_candidates, regressor_rows, search_nodes
 from navsym.guaranteed.search.interior import interior_dual
 from navsym.language.expression import to_text
 
@@ -40,18 +47,18 @@ def krawczyk(centre: Sequence[arb], radius: Sequence[arb], value: Sequence[arb],
     Methods for Systems of Equations, section 5.1.
     """
     for bits in (ctx.prec // 2 + 32, ctx.prec):
-        image = image_of(centre, radius, value, jacobian, bits)
-        if image is not None and inside(image, centre, radius) is not None:
+        image = krawczyk_step(centre, radius, value, jacobian, bits)
+        if image is not None and image_inside(image, centre, radius) is not None:
             return image
     return None
 
 
-def inside(image: list[arb], centre: Sequence[arb], radius: Sequence[arb]) -> list[arb] | None:
+def image_inside(image: list[arb], centre: Sequence[arb], radius: Sequence[arb]) -> list[arb] | None:
     """The image when it lies in the interior of the box, else None; a ball that is not finite lies nowhere."""
     return image if all(bool(abs(k - z) < r) for k, z, r in zip(image, centre, radius, strict=True)) else None
 
 
-def image_of(
+def krawczyk_step(
     centre: Sequence[arb], radius: Sequence[arb], value: Sequence[arb], jacobian: arb_mat, bits: int
 ) -> list[arb] | None:
     """The set K with a matrix Y of some bits; only ``I - Y F'(Z)`` is computed with so few."""
@@ -69,41 +76,41 @@ def image_of(
 # As many places as unknowns, with weights that satisfy the constraints exactly: the upper side of the optimum.
 
 
-def support_points(basis: Basis, contacts: Contacts, at: Sequence[fmpq]) -> list[tuple[int, fmpq]]:
+def complete_support(basis: Basis, contacts: Contacts, at: Sequence[fmpq]) -> list[tuple[int, fmpq]]:
     """As many places as unknowns, regressors far from dependent: the contacts, filled up from the grid.
 
     at : the exact fraction of each contact; where a step of Newton's left the panel by a rounding, its end is taken
     """
     C = basis.panels.coefficients
     m = C.shape[2]
-    nodes = nodes_for(basis.panels)
+    nodes = search_nodes(basis.panels)
     grid = [(k, float(u)) for k in range(C.shape[0]) for u in nodes[:: max(1, nodes.size // (12 * m))]]
     grid += [(k, 1.0) for k in range(C.shape[0])]
     order = np.argsort(-np.abs(contacts.weights))
     chosen: list[tuple[int, fmpq]] = []
     rest = np.eye(m)
     for i in order:
-        row = rows_at(C, contacts.panel[i : i + 1], contacts.u[i : i + 1])[0] @ rest
+        row = regressor_rows(C, contacts.panel[i : i + 1], contacts.u[i : i + 1])[0] @ rest
         if np.linalg.norm(row) > 1e-7 and len(chosen) < m:
             chosen.append((int(contacts.panel[i]), min(max(at[i], fmpq(0)), fmpq(1))))
-            rest = without(rest, row)
-    rows = rows_at(C, np.array([k for k, _ in grid]), np.array([u for _, u in grid]))
+            rest = project_out(rest, row)
+    rows = regressor_rows(C, np.array([k for k, _ in grid]), np.array([u for _, u in grid]))
     while len(chosen) < m:
         along = rows @ rest
         best = int(np.argmax(np.linalg.norm(along, axis=1)))
-        chosen.append((grid[best][0], as_fraction(grid[best][1])))
-        rest = without(rest, along[best])
+        chosen.append((grid[best][0], unit_fraction(grid[best][1])))
+        rest = project_out(rest, along[best])
     return chosen
 
 
-def without(rest: np.ndarray, row: np.ndarray) -> np.ndarray:
+def project_out(rest: np.ndarray, row: np.ndarray) -> np.ndarray:
     """The projection ``rest`` with one more direction taken out."""
     unit = row / np.linalg.norm(row)
     projected: np.ndarray = rest - np.outer(rest @ unit, unit)
     return projected
 
 
-def balanced(problem: Problem, support: Sequence[tuple[int, fmpq]]) -> list[arb]:
+def balance_weights(problem: PanelProblem, support: Sequence[tuple[int, fmpq]]) -> list[arb]:
     """Weights with ``sum w_i H(t_i) = P`` exactly, as balls."""
     columns = [problem.panels[k].rows(arb(v)) for k, v in support]
     N = arb_mat(columns).transpose()
@@ -111,7 +118,7 @@ def balanced(problem: Problem, support: Sequence[tuple[int, fmpq]]) -> list[arb]
     return [solved[i, 0] for i in range(len(support))]
 
 
-def cost(problem: Problem, support: Sequence[tuple[int, fmpq]], weights: Sequence[arb]) -> arb:
+def estimator_cost(problem: PanelProblem, support: Sequence[tuple[int, fmpq]], weights: Sequence[arb]) -> arb:
     """``sum sigma |w|``, which no optimum exceeds when the weights satisfy the constraints."""
     value = arb(0)
     for (k, _), w in zip(support, weights, strict=True):
@@ -132,7 +139,7 @@ def cost(problem: Problem, support: Sequence[tuple[int, fmpq]], weights: Sequenc
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Blocks:
+class JacobianBlocks:
     """Over a box: B, S and diag(w) S (l, m), and ``f'``, ``f''`` (l, 1) at the places; zeros at ends."""
 
     values: arb_mat
@@ -143,7 +150,7 @@ class Blocks:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Inverse:
+class BlockInverse:
     """Exact midpoints: C, D, S_0 and G of the head of this file."""
 
     values: arb_mat
@@ -154,21 +161,21 @@ class Inverse:
     def applied(self, r1: arb_mat, r2: arb_mat, r3: arb_mat) -> tuple[arb_mat, arb_mat, arb_mat]:
         """Y r."""
         dx = self.values * r1
-        dv = times(self.bend, r2 - self.slopes * dx)
+        dv = entrywise(self.bend, r2 - self.slopes * dx)
         return dx, dv, self.values.transpose() * (r3 - self.weighted.transpose() * dv)
 
-    def defect(self, J: Blocks, x: arb_mat, v: arb_mat, w: arb_mat) -> tuple[arb_mat, arb_mat, arb_mat]:
+    def defect(self, J: JacobianBlocks, x: arb_mat, v: arb_mat, w: arb_mat) -> tuple[arb_mat, arb_mat, arb_mat]:
         """``(I - Y J) d`` for the step d = (x, v, w), with everything that cancels taken out by hand."""
-        C, one = self.values, unit(self.values.nrows())
-        ex = (one - C * J.values) * x - C * times(J.slope, v)
+        C, one = self.values, identity_matrix(self.values.nrows())
+        ex = (one - C * J.values) * x - C * entrywise(J.slope, v)
         turn = column([1 - d * b for d, b in zip(self.bend.entries(), J.bend.entries(), strict=True)])
-        ev = times(turn, v) - times(self.bend, (J.slopes - self.slopes) * x + self.slopes * ex)
+        ev = entrywise(turn, v) - entrywise(self.bend, (J.slopes - self.slopes) * x + self.slopes * ex)
         rest = (J.weighted - self.weighted).transpose() * v + self.weighted.transpose() * ev
         return ex, ev, (one - J.values * C).transpose() * w - C.transpose() * rest
 
 
 def alternance_image(
-    problem: Problem, found: Polished, centre: Sequence[arb], radius: Sequence[arb]
+    problem: PanelProblem, found: ContactSolution, centre: Sequence[arb], radius: Sequence[arb]
 ) -> list[arb] | None:
     """Balls around the only exact solution in ``centre +- radius``, or None when the test fails.
 
@@ -176,100 +183,107 @@ def alternance_image(
     Y and I - Y J need only be good for contraction: few bits first, and bounds of whole panels.
     """
     thin = block_rows(problem, found, centre, 2)
-    F, around = residual(problem, found, centre, thin), [r * arb(0, 1) for r in radius]
+    F, around = block_residual(problem, found, centre, thin), [r * arb(0, 1) for r in radius]
     box = [c + r for c, r in zip(centre, around, strict=True)]
-    within = all(bool(at >= 0) and bool(at <= 1) for at in parted(found, box)[1].entries())
+    within = all(bool(at >= 0) and bool(at <= 1) for at in split_unknowns(found, box)[1].entries())
     for bits, whole in ((ctx.prec // 2 + 32, within), (ctx.prec, False)):
         with precision(bits):
-            rows = spread_rows(problem, found, thin, around) if whole else block_rows(problem, found, box, 2)
-            step = newton_step(found, F, blocks(found, rows, box), around)
-        image = None if step is None else inside([c + d for c, d in zip(centre, step, strict=True)], centre, radius)
+            rows = rows_around(problem, found, thin, around) if whole else block_rows(problem, found, box, 2)
+            step = block_step(found, F, jacobian_blocks(found, rows, box), around)
+        image = (
+            None if step is None else image_inside([c + d for c, d in zip(centre, step, strict=True)], centre, radius)
+        )
         if image is not None:
             return image
     return None
 
 
-def newton_step(
-    found: Polished, F: tuple[arb_mat, arb_mat, arb_mat], J: Blocks, around: Sequence[arb]
+def block_step(
+    found: ContactSolution, F: tuple[arb_mat, arb_mat, arb_mat], J: JacobianBlocks, around: Sequence[arb]
 ) -> list[arb] | None:
     """``-Y F + (I - Y J) d`` for all d in the balls ``around`` zero; None where Y cannot be made."""
-    Y = inverse(J)
+    Y = block_inverse(J)
     if Y is None:
         return None
-    shift, spread = gathered(found, Y.applied(*F)), gathered(found, Y.defect(J, *parted(found, around)))
+    shift, spread = (
+        join_unknowns(found, Y.applied(*F)),
+        join_unknowns(found, Y.defect(J, *split_unknowns(found, around))),
+    )
     return [d - s for s, d in zip(shift, spread, strict=True)]
 
 
-def parted(found: Polished, z: Sequence[arb]) -> tuple[arb_mat, arb_mat, arb_mat]:
+def split_unknowns(found: ContactSolution, z: Sequence[arb]) -> tuple[arb_mat, arb_mat, arb_mat]:
     """(x, v, w) as columns, zero for the places at ends, which are no unknowns."""
     m, l = len(found.dual), len(found.v)
     free = iter(z[m : len(z) - l])
     return column(z[:m]), column([next(free) if inner else arb(0) for inner in found.inner]), column(z[len(z) - l :])
 
 
-def gathered(found: Polished, parts: tuple[arb_mat, arb_mat, arb_mat]) -> list[arb]:
+def join_unknowns(found: ContactSolution, parts: tuple[arb_mat, arb_mat, arb_mat]) -> list[arb]:
     """The unknowns in a list."""
     x, v, w = (part.entries() for part in parts)
     return [*x, *(at for at, inner in zip(v, found.inner, strict=True) if inner), *w]
 
 
-def block_rows(problem: Problem, found: Polished, z: Sequence[arb], order: int) -> list[arb_mat]:
+def block_rows(problem: PanelProblem, found: ContactSolution, z: Sequence[arb], order: int) -> list[arb_mat]:
     """Taylor coefficients 0 … order of H at the places in z."""
     free = iter(z[len(found.dual) :])
     at = [next(free) if inner else v for v, inner in zip(found.v, found.inner, strict=True)]
     return series_rows(problem.panels, found.panel, at, found.inner, order)
 
 
-def spread_rows(problem: Problem, found: Polished, thin: list[arb_mat], around: Sequence[arb]) -> list[arb_mat]:
+def rows_around(
+    problem: PanelProblem, found: ContactSolution, thin: list[arb_mat], around: Sequence[arb]
+) -> list[arb_mat]:
     """Taylor coefficients 0 … 2 of H for every place within ``around`` of those of ``thin`` and on its panel.
 
     ``c_k(v + d)`` lies in ``c_k(v) + d (k + 1) C_(k+1)`` where C holds for the whole panel (mean value theorem).
     """
     used = sorted(set(found.panel))
-    whole = {k: problem.panels[k].series(interval(fmpq(0), fmpq(1)), arb(1), 3) for k in used}
-    d, size = parted(found, around)[1].entries(), len(found.v)
+    whole = {k: problem.panels[k].series(interval_ball(fmpq(0), fmpq(1)), arb(1), 3) for k in used}
+    d, size = split_unknowns(found, around)[1].entries(), len(found.v)
     shifts = arb_mat([[d[i] if i == j else 0 for j in range(size)] for i in range(size)])
     bounds = [arb_mat([[h[k + 1] for h in whole[place]] for place in found.panel]) for k in range(3)]
     return [row + shifts * bound * (k + 1) for k, (row, bound) in enumerate(zip(thin, bounds, strict=True))]
 
 
-def residual(
-    problem: Problem, found: Polished, z: Sequence[arb], rows: Sequence[arb_mat]
+def block_residual(
+    problem: PanelProblem, found: ContactSolution, z: Sequence[arb], rows: Sequence[arb_mat]
 ) -> tuple[arb_mat, arb_mat, arb_mat]:
     """``B x - s sigma, S x, B^T w - P`` at z, from H and its slopes there."""
-    x, _, w = parted(found, z)
+    x, _, w = split_unknowns(found, z)
     B, S = rows[:2]
     bounds = [s * problem.panels[k].bound() for k, s in zip(found.panel, found.sign, strict=True)]
     return B * x - column(bounds), S * x, B.transpose() * w - column(problem.target())
 
 
-def blocks(found: Polished, rows: Sequence[arb_mat], z: Sequence[arb]) -> Blocks:
+def jacobian_blocks(found: ContactSolution, rows: Sequence[arb_mat], z: Sequence[arb]) -> JacobianBlocks:
     """The parts of the derivative over a box z, from the Taylor coefficients of H over it."""
-    x, _, w = parted(found, z)
+    x, _, w = split_unknowns(found, z)
     B, S, bends = rows
     weighted = arb_mat([[a * h for h in row] for a, row in zip(w.entries(), S.tolist(), strict=True)])
-    return Blocks(B, S, weighted, S * x, bends * x * 2)
+    return JacobianBlocks(B, S, weighted, S * x, bends * x * 2)
 
 
-def inverse(J: Blocks) -> Inverse | None:
+def block_inverse(J: JacobianBlocks) -> BlockInverse | None:
     """C, D, S_0 and G from midpoints; None where B is singular."""
     try:
         C = J.values.mid().inv().mid()
     except ZeroDivisionError:
         return None
     D = [arb(0) if b == 0 else (1 / b.mid()).mid() for b in J.bend.entries()]
-    return Inverse(C, column(D), J.slopes.mid(), J.weighted.mid())
+    return BlockInverse(C, column(D), J.slopes.mid(), J.weighted.mid())
 
 
 def column(entries: Sequence[arb]) -> arb_mat:
     return arb_mat(len(entries), 1, list(entries))
 
 
-def unit(size: int) -> arb_mat:
+def identity_matrix(size: int) -> arb_mat:
     return arb_mat(size, size, 1)
 
 
-def times(a: arb_mat, b: arb_mat) -> arb_mat:
+def entrywise(a: arb_mat, b: arb_mat) -> arb_mat:
     """Entry by entry."""
     return column([p * q for p, q in zip(a.entries(), b.entries(), strict=True)])
 
@@ -283,7 +297,7 @@ CLOSE = 8
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Certified:
+class CertifiedOptimum:
     """An optimum between two bounds, with the data that prove it.
 
     lower, upper : exact rationals
@@ -311,16 +325,16 @@ class Certified:
         return bool((self.upper - self.lower) * fmpq(10) ** digits <= abs(self.upper))
 
 
-def certify(problem: Problem, digits: int = 30, basis: Basis | None = None) -> Certified:
+def certify(problem: PanelProblem, digits: int = 30, basis: Basis | None = None) -> CertifiedOptimum:
     """Solve and enclose to a relative width of ``10**-digits`` if the problem lets us.
 
     Raises DependentError when the regressors look dependent; the width of the answer tells how
     far it came.
     """
     basis = make_basis(problem) if basis is None else basis
-    best: Certified | None = None
-    for contacts in roads(basis.panels):
-        found = from_contacts(problem, basis, contacts, digits)
+    best: CertifiedOptimum | None = None
+    for contacts in contact_candidates(basis.panels):
+        found = certify_contacts(problem, basis, contacts, digits)
         best = found if best is None or found.width < best.width else best
         if best.reaches(digits):
             break
@@ -328,7 +342,7 @@ def certify(problem: Problem, digits: int = 30, basis: Basis | None = None) -> C
     return best
 
 
-def from_contacts(problem: Problem, basis: Basis, contacts: Contacts, digits: int) -> Certified:
+def certify_contacts(problem: PanelProblem, basis: Basis, contacts: Contacts, digits: int) -> CertifiedOptimum:
     """The exact-contact certificate where the contacts are regular, else the two-sided one.
 
     Functions that are close to dependent need a smaller box than the digits ask for: it is tried second.
@@ -336,27 +350,29 @@ def from_contacts(problem: Problem, basis: Basis, contacts: Contacts, digits: in
     loss = basis.loss
     # A ball in the regressors is an error that may differ from instant to instant: only two sides are rigorous then.
     exact_data = not any(panel.values for panel in problem.panels)
-    first = refined, bits = refined_to(problem, basis, contacts, digits)
+    first = refined, bits = refine_contacts(problem, basis, contacts, digits)
     for more in (0, loss) if loss >= CLOSE else (0,):
         if more:
-            refined, bits = refined_to(problem, basis, contacts, digits + more)
+            refined, bits = refine_contacts(problem, basis, contacts, digits + more)
         if not exact_data or not refined.regular or contacts.excess >= 1e-7 or refined.touching:
             break
-        proved = touch(problem, basis, refined, digits + more, bits)
+        proved = certify_touch(problem, basis, refined, digits + more, bits)
         if proved is not None:
             return proved
     refined, bits = first
-    return gap(problem, basis, contacts, refined, digits, bits)
+    return certify_gap(problem, basis, contacts, refined, digits, bits)
 
 
-def refined_to(problem: Problem, basis: Basis, contacts: Contacts, digits: int) -> tuple[Polished, int]:
+def refine_contacts(
+    problem: PanelProblem, basis: Basis, contacts: Contacts, digits: int
+) -> tuple[ContactSolution, int]:
     """Contacts good for so many digits of the value, and the bits to compute them with."""
     loss = basis.loss
     bits = int(3.33 * (digits + 2 * loss + 25)) + 64
-    return polish(problem.panels, basis, contacts, bits, goal_of(digits + loss)), bits
+    return sharpen_contacts(problem.panels, basis, contacts, bits, correction_goal(digits + loss)), bits
 
 
-def goal_of(digits: int) -> arb:
+def correction_goal(digits: int) -> arb:
     """How small corrections must become for so many digits."""
     return arb(10) ** -(digits + 14)
 
@@ -364,43 +380,47 @@ def goal_of(digits: int) -> arb:
 # -- exact contacts ---------------------------------------
 
 
-def touch(problem: Problem, basis: Basis, found: Polished, digits: int, bits: int) -> Certified | None:
+def certify_touch(
+    problem: PanelProblem, basis: Basis, found: ContactSolution, digits: int, bits: int
+) -> CertifiedOptimum | None:
     """The exact-contact certificate, or None when one of its tests fails."""
     loss = basis.loss
     places = digits + 10 + loss // 2  # the digits that cancel in x . H widen what a checker sees of a box
     with precision(bits):
-        middles = [decimal(c, places + loss + 8) for c in unknowns(found)]
-        spread = [decimal(r, 3, 1) for r in spreads(problem, basis, found, places)]
+        middles = [decimal(c, places + loss + 8) for c in solution_unknowns(found)]
+        spread = [decimal(r, 3, 1) for r in box_radii(problem, basis, found, places)]
         z = solution_box(
             problem, found, [arb(from_decimal(c)) for c in middles], [arb(from_decimal(r)) for r in spread]
         )
-        if z is None or not admissible(found, z):
+        if z is None or not is_admissible(found, z):
             return None
         m = len(found.dual)
-        cells = covered(problem, z[:m], exact_touches(found, z), loss)
+        cells = prove_off_contacts(problem, z[:m], exact_touches(found, z), loss)
         if cells is None:
             return None
-        value = total(z[:m], problem.target())
+        value = dot_product(z[:m], problem.target())
         lower, upper = lower_end(value, digits + 4), upper_end(value, digits + 4)
         solution = {
             "from": "0",
             "to": "0",
             "basis": [[str(int(i == j)) for i in range(m)] for j in range(m)],
             "dual": [[c] for c in middles[:m]],
-            "contacts": contact_rows(found, costs(problem, found, middles, places + loss + 8)),
-            "radius": with_ends(found, costs(problem, found, spread, 3, 1)),
+            "contacts": contact_rows(found, weights_as_costs(problem, found, middles, places + loss + 8)),
+            "radius": radii_with_ends(found, weights_as_costs(problem, found, spread, 3, 1)),
         }
-        document = header(problem, "touch", bits, cells, lower, upper) | {"pieces": [solution]}
-        return Certified(from_decimal(lower), from_decimal(upper), support_of(found, z), tuple(z[:m]), True, document)
+        document = certificate_header(problem, "touch", bits, cells, lower, upper) | {"pieces": [solution]}
+        return CertifiedOptimum(
+            from_decimal(lower), from_decimal(upper), ball_support(found, z), tuple(z[:m]), True, document
+        )
 
 
-def unknowns(found: Polished) -> list[arb]:
+def solution_unknowns(found: ContactSolution) -> list[arb]:
     """(x, inner contacts, weights) in one list."""
     free = [v for v, i in zip(found.v, found.inner, strict=True) if i]
     return [*found.dual, *free, *found.weights]
 
 
-def spreads(problem: Problem, basis: Basis, found: Polished, places: int) -> list[arb]:
+def box_radii(problem: PanelProblem, basis: Basis, found: ContactSolution, places: int) -> list[arb]:
     """Radii of the box: equal in the orthonormal basis, hence scaled by its columns in that of the problem."""
     unit = arb(10) ** (-places)
     m = len(found.dual)
@@ -410,7 +430,9 @@ def spreads(problem: Problem, basis: Basis, found: Polished, places: int) -> lis
     return [unit * c.mid() for c in columns] + [unit] * free + [unit * weights.mid()] * len(found.weights)
 
 
-def solution_box(problem: Problem, found: Polished, centre: Sequence[arb], radius: Sequence[arb]) -> list[arb] | None:
+def solution_box(
+    problem: PanelProblem, found: ContactSolution, centre: Sequence[arb], radius: Sequence[arb]
+) -> list[arb] | None:
     """Balls around the exact solution of the optimality system, by Krawczyk's test."""
     if len(found.v) == len(found.dual):
         return alternance_image(problem, found, centre, radius)
@@ -420,7 +442,7 @@ def solution_box(problem: Problem, found: Polished, centre: Sequence[arb], radiu
     return krawczyk(centre, radius, value, jacobian)
 
 
-def optimality_system(problem: Problem, found: Polished, z: Sequence[arb]) -> tuple[list[arb], arb_mat]:
+def optimality_system(problem: PanelProblem, found: ContactSolution, z: Sequence[arb]) -> tuple[list[arb], arb_mat]:
     """F and F' of the optimality system over balls: ``f(v_i) - s_i sigma``, ``f'(v_i)``, ``sum w_i H - P``."""
     m, l = len(found.dual), len(found.v)
     x, w = z[:m], z[len(z) - l :]
@@ -434,7 +456,7 @@ def optimality_system(problem: Problem, found: Polished, z: Sequence[arb]) -> tu
         column = next(free) if found.inner[i] else None
         at = found.v[i] if column is None else z[column]
         H = panel.series(at, arb(1), 2)
-        f = combination(x, H)
+        f = combine_series(x, H)
         F[i] = f[0] - found.sign[i] * panel.bound()
         J[i][:m] = [h[0] for h in H]
         for j, h in enumerate(H):
@@ -451,14 +473,14 @@ def optimality_system(problem: Problem, found: Polished, z: Sequence[arb]) -> tu
     return F, arb_mat(J)
 
 
-def admissible(found: Polished, z: Sequence[arb]) -> bool:
+def is_admissible(found: ContactSolution, z: Sequence[arb]) -> bool:
     """Inner contacts strictly inside their panels, weights of the signs of f."""
     m, l = len(found.dual), len(found.v)
     inside = all(bool(v > 0) and bool(v < 1) for v in z[m : len(z) - l])
     return inside and all(bool(s * w > 0) for s, w in zip(found.sign, z[len(z) - l :], strict=True))
 
 
-def exact_touches(found: Polished, z: Sequence[arb]) -> list[list[Touch]]:
+def exact_touches(found: ContactSolution, z: Sequence[arb]) -> list[list[Touch]]:
     """Touches by panel, with balls for the inner ones."""
     free = iter(z[len(found.dual) :])
     rows: list[list[Touch]] = [[] for _ in range(max(found.panel) + 1)]
@@ -467,27 +489,31 @@ def exact_touches(found: Polished, z: Sequence[arb]) -> list[list[Touch]]:
     return rows
 
 
-def covered(problem: Problem, x: Sequence[arb], touches: Sequence[Sequence[Touch]], loss: int) -> int | None:
+def prove_off_contacts(
+    problem: PanelProblem, x: Sequence[arb], touches: Sequence[Sequence[Touch]], loss: int
+) -> int | None:
     """Cells that prove ``|x . H| < sigma`` off exact contacts; where few bits do not suffice, with all."""
     with precision(min(ctx.prec, int(3.33 * loss) + 64)):
-        cells = every_cell(problem, x, touches)
-    return every_cell(problem, x, touches) if cells is None else cells
+        cells = prove_all_panels(problem, x, touches)
+    return prove_all_panels(problem, x, touches) if cells is None else cells
 
 
-def every_cell(
-    problem: Problem, x: Sequence[arb], touches: Sequence[Sequence[Touch]], share: float = 1.0
+def prove_all_panels(
+    problem: PanelProblem, x: Sequence[arb], touches: Sequence[Sequence[Touch]], share: float = 1.0
 ) -> int | None:
     """Cells that prove ``|x . H| <= sigma`` on every panel, or None; with many bits fewer of them may be tried."""
     cells, limit = 0, int(share * LIMIT * min(1.0, USUAL / ctx.prec) ** 2)
     for k, panel in enumerate(problem.panels):
-        used = bounded(panel, x, touches[k] if k < len(touches) else [], limit)
+        used = prove_panel_bound(panel, x, touches[k] if k < len(touches) else [], limit)
         if used is None:
             return None
         cells += used
     return cells
 
 
-def costs(problem: Problem, found: Polished, values: Sequence[str], digits: int, direction: int = 0) -> list[str]:
+def weights_as_costs(
+    problem: PanelProblem, found: ContactSolution, values: Sequence[str], digits: int, direction: int = 0
+) -> list[str]:
     """The weights at the end of the unknowns times their sigma: what a certificate holds."""
     head = len(values) - len(found.panel)
     panels = [problem.panels[k] for k in found.panel]
@@ -500,36 +526,36 @@ def costs(problem: Problem, found: Polished, values: Sequence[str], digits: int,
     ]
 
 
-def contact_rows(found: Polished, middles: Sequence[str]) -> list[dict[str, Any]]:
+def contact_rows(found: ContactSolution, middles: Sequence[str]) -> list[dict[str, Any]]:
     l = len(found.v)
     free = iter(middles[len(found.dual) : len(middles) - l])
     rows = []
     for i, k in enumerate(found.panel):
-        at = next(free) if found.inner[i] else place_of(end_name(found, i))
+        at = next(free) if found.inner[i] else end_place(end_name(found, i))
         rows.append({"panel": k, "at": [at], "weight": [middles[len(middles) - l + i]]})
     return rows
 
 
-def with_ends(found: Polished, radius: Sequence[str]) -> list[str]:
+def radii_with_ends(found: ContactSolution, radius: Sequence[str]) -> list[str]:
     """Radii of all unknowns: a place at an end is one for the checker, too, with an equation of its own."""
     m, l = len(found.dual), len(found.v)
     free, smallest = iter(radius[m : len(radius) - l]), min(radius, key=from_decimal)
     return [*radius[:m], *(next(free) if i else smallest for i in found.inner), *radius[len(radius) - l :]]
 
 
-def place_of(end: str) -> str:
+def end_place(end: str) -> str:
     """The end of a panel as a certificate names it."""
     return {"from": "0", "to": "1"}[end]
 
 
-def end_name(found: Polished, i: int) -> str:
+def end_name(found: ContactSolution, i: int) -> str:
     """Which end of its panel a contact sits on: "from", "to", or "no"."""
     if found.inner[i]:
         return "no"
     return "to" if to_fmpq(found.v[i]) == 1 else "from"
 
 
-def support_of(found: Polished, z: Sequence[arb]) -> tuple[tuple[int, arb, arb], ...]:
+def ball_support(found: ContactSolution, z: Sequence[arb]) -> tuple[tuple[int, arb, arb], ...]:
     m, l = len(found.dual), len(found.v)
     free = iter(z[m : len(z) - l])
     at = [next(free) if inner else v for v, inner in zip(found.v, found.inner, strict=True)]
@@ -539,15 +565,15 @@ def support_of(found: Polished, z: Sequence[arb]) -> tuple[tuple[int, arb, arb],
 # -- two-sided ---------------------------------------
 
 
-def gap(
-    problem: Problem,
+def certify_gap(
+    problem: PanelProblem,
     basis: Basis,
     contacts: Contacts,
-    found: Polished,
+    found: ContactSolution,
     digits: int,
     bits: int,
     carriers: Contacts | None = None,
-) -> Certified:
+) -> CertifiedOptimum:
     """The two-sided certificate; the dual is shrunk until nothing above the bound is left.
 
     carriers : what carries the weights; by default the contacts
@@ -556,16 +582,16 @@ def gap(
     with precision(bits):
         if carriers is None:
             at = [from_decimal(decimal(v, places)) for v in found.v]
-            support = support_points(basis, contacts, at)
+            support = complete_support(basis, contacts, at)
         else:
-            support = support_points(basis, carriers, [as_fraction(float(u)) for u in carriers.u])
-        weights = balanced(problem, support)
-        upper = upper_end(cost(problem, support, weights), digits + 6)
+            support = complete_support(basis, carriers, [unit_fraction(float(u)) for u in carriers.u])
+        weights = balance_weights(problem, support)
+        upper = upper_end(estimator_cost(problem, support, weights), digits + 6)
         x, cells, touches = best_dual(problem, basis, contacts, found, digits, from_decimal(upper))
-        lower = lower_end(total([arb(c) for c in x], problem.target()), digits + 6)
+        lower = lower_end(dot_product([arb(c) for c in x], problem.target()), digits + 6)
         # The checker has no touches to guide it: it halves its way towards each of them.
         plain = cells + sum(map(len, touches)) * 2 * (digits + 12)
-        document = header(problem, "gap", bits, plain, lower, upper) | {
+        document = certificate_header(problem, "gap", bits, plain, lower, upper) | {
             "dual": [decimal(c, places + 8) for c in x],
             "support": [[k, decimal(v, places)] for k, v in support],
         }
@@ -573,11 +599,13 @@ def gap(
         shown = tuple(
             row for row in rows if not bool(abs(row[2]) < arb(10) ** (-digits) * abs(arb(from_decimal(upper))))
         )
-        return Certified(from_decimal(lower), from_decimal(upper), shown, tuple(arb(c) for c in x), None, document)
+        return CertifiedOptimum(
+            from_decimal(lower), from_decimal(upper), shown, tuple(arb(c) for c in x), None, document
+        )
 
 
 def best_dual(
-    problem: Problem, basis: Basis, contacts: Contacts, found: Polished, digits: int, upper: fmpq
+    problem: PanelProblem, basis: Basis, contacts: Contacts, found: ContactSolution, digits: int, upper: fmpq
 ) -> tuple[list[fmpq], int, list[list[Touch]]]:
     """The attempt that keeps the bound and reaches highest, the cells of its proof, its touches; zero when none holds.
 
@@ -586,13 +614,13 @@ def best_dual(
     places, target = digits + basis.loss + 12, problem.target()
     best: tuple[list[fmpq], int, list[list[Touch]]] = [fmpq(0)] * len(found.dual), 0, []
     highest, share = fmpq(0), 1.0
-    for base, shrink, seen in attempts(problem, basis, contacts, found, digits):
+    for base, shrink, seen in dual_attempts(problem, basis, contacts, found, digits):
         scale, touches = 1 - fmpq(1, 10) ** shrink, near_touches(problem, seen, places)
         x = [from_decimal(decimal(c * scale, places + 8)) for c in base]
-        reached = to_fmpq(total([arb(c) for c in x], target))
+        reached = to_fmpq(dot_product([arb(c) for c in x], target))
         if reached <= highest:
             continue
-        cells = every_cell(problem, [arb(c) for c in x], touches, share)
+        cells = prove_all_panels(problem, [arb(c) for c in x], touches, share)
         share = share if shrink > digits else max(share / 2, LEAST)
         if cells is not None:
             best, highest = (x, cells, touches), reached
@@ -601,15 +629,15 @@ def best_dual(
     return best
 
 
-def attempts(
-    problem: Problem, basis: Basis, contacts: Contacts, found: Polished, digits: int
-) -> Iterator[tuple[list[fmpq], int, Polished]]:
+def dual_attempts(
+    problem: PanelProblem, basis: Basis, contacts: Contacts, found: ContactSolution, digits: int
+) -> Iterator[tuple[list[fmpq], int, ContactSolution]]:
     """Duals, by how many digits to shrink them, and where they touch.
 
     Where the contacts do not fix the dual, round numbers come first, then one that touches at all places where it
     nearly does, then one with room to spare off the contacts, or off all places where it touches.
     """
-    base, goal = [to_fmpq(c) for c in found.dual], goal_of(digits + basis.loss)
+    base, goal = [to_fmpq(c) for c in found.dual], correction_goal(digits + basis.loss)
     few = 0 < len(contacts.touching) <= len(base)
     # More touches than unknowns are places of a dual that is near its bound along a part of a panel.
     found = found if few else replace(found, touching=())
@@ -617,14 +645,14 @@ def attempts(
         yield [round_number(c) for c in base], digits + 3, found
         full, v = contacts, found.v
         if few:
-            full = with_places(basis.panels, contacts, contacts.touching)
-            whole = polish(problem.panels, basis, full, ctx.prec, goal)
+            full = add_places(basis.panels, contacts, contacts.touching)
+            whole = sharpen_contacts(problem.panels, basis, full, ctx.prec, goal)
             v = whole.v
             yield [to_fmpq(c) for c in whole.dual], digits + 3, whole
-        for places, at in ((contacts, found.v), (flattened(full), v)):
+        for places, at in ((contacts, found.v), (flatten_contacts(full), v)):
             inside = interior_dual(basis.panels, places)
             if inside is not None:
-                dual = pinned(problem, basis, places, at, inside, goal)
+                dual = pin_dual(problem, basis, places, at, inside, goal)
                 yield [to_fmpq(c) for c in dual], digits + 3, replace(found, touching=())
                 break
     fewer = {3 * digits // 4, digits // 2, 12, 9, 6, 4, 3, 2, 1}
@@ -632,7 +660,7 @@ def attempts(
         yield base, k, found
 
 
-def flattened(places: Contacts) -> Contacts:
+def flatten_contacts(places: Contacts) -> Contacts:
     """The same, taken to be flat at ends as well: so are duals that must touch at places which belong together."""
     return replace(places, inner=np.ones_like(places.inner))
 
@@ -645,33 +673,35 @@ def round_number(x: fmpq) -> fmpq:
     return near if abs(near - x) < room else x
 
 
-def near_touches(problem: Problem, found: Polished, places: int) -> list[list[Touch]]:
+def near_touches(problem: PanelProblem, found: ContactSolution, places: int) -> list[list[Touch]]:
     """Where the dual polynomial is expected at its bound: contacts and further near maxima."""
     rows: list[list[Touch]] = [[] for _ in problem.panels]
     for k, at_ball, s in zip(found.panel, found.v, found.sign, strict=True):
         rows[k].append(Touch(from_decimal(decimal(at_ball, places)), s))
     for k, v in found.touching:
-        f = total(found.dual, problem.panels[k].rows(arb(v)))
-        at = from_decimal(decimal(peak(problem.panels[k], found.dual, v), places))
+        f = dot_product(found.dual, problem.panels[k].rows(arb(v)))
+        at = from_decimal(decimal(stationary_fraction(problem.panels[k], found.dual, v), places))
         if all(abs(at - t.at) > fmpq(1, 10**6) for t in rows[k]):
             rows[k].append(Touch(at, 1 if bool(f > 0) else -1))
     return rows
 
 
-def peak(panel: Panel, x: Sequence[arb], v: fmpq) -> fmpq:
+def stationary_fraction(panel: Panel, x: Sequence[arb], v: fmpq) -> fmpq:
     """A stationary point of f near the fraction v, by Newton's method; v itself when it runs away."""
     if v in (0, 1):
         return v
     at = arb(v)
     for _ in range(8):
-        f = combination(x, panel.series(at, arb(1), 2))
+        f = combine_series(x, panel.series(at, arb(1), 2))
         if f[2].contains(0):
             return v
         at = (at - f[1] / (2 * f[2])).mid()
     return to_fmpq(at) if bool(abs(at - arb(v)) < 1e-4) else v
 
 
-def header(problem: Problem, kind: str, bits: int, cells: int, lower: str, upper: str) -> dict[str, Any]:
+def certificate_header(
+    problem: PanelProblem, kind: str, bits: int, cells: int, lower: str, upper: str
+) -> dict[str, Any]:
     """What every kind says about the problem; the parameter is one that occurs nowhere, unless it is replaced."""
     variable = problem.panels[0].variable.name
     return {

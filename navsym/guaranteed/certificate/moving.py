@@ -16,7 +16,7 @@ import sympy as sp
 from flint import arb, arb_mat, arb_series, ctx, fmpq, fmpq_mat
 
 from navsym.core.exact import to_fmpq
-from navsym.guaranteed.certificate.enclosure import Problem
+from navsym.guaranteed.certificate.enclosure import PanelProblem
 
 # Power series in two variables: a jet in w whose coefficients are series in s.
 #
@@ -35,7 +35,7 @@ class Jet:
         self._waves: tuple[Jet, Jet] | None = None
 
     def __add__(self, other: Any) -> Jet:
-        mine, theirs = self.parts, parts_of(other)
+        mine, theirs = self.parts, jet_parts(other)
         longer, shorter = (mine, theirs) if len(mine) >= len(theirs) else (theirs, mine)
         both = [a + b for a, b in zip(longer, shorter, strict=False)]
         return Jet([*both, *longer[len(shorter) :]], self.order)
@@ -43,11 +43,11 @@ class Jet:
     __radd__ = __add__
 
     def __mul__(self, other: Any) -> Jet:
-        theirs = parts_of(other)
+        theirs = jet_parts(other)
         if len(theirs) == 1:
             return Jet([a * theirs[0] for a in self.parts], self.order)
         size = min(len(self.parts) + len(theirs) - 1, self.order + 1)
-        return Jet([convolved(self.parts, theirs, k) for k in range(size)], self.order)
+        return Jet([convolve_at(self.parts, theirs, k) for k in range(size)], self.order)
 
     __rmul__ = __mul__
 
@@ -64,7 +64,7 @@ class Jet:
         a = self.parts
         done = [1 / a[0]]
         for k in range(1, self.size()):
-            done.append(-done[0] * summed(a[j] * done[k - j] for j in range(1, min(k, len(a) - 1) + 1)))
+            done.append(-done[0] * add_up(a[j] * done[k - j] for j in range(1, min(k, len(a) - 1) + 1)))
         return Jet(done, self.order) * other
 
     def size(self) -> int:
@@ -89,7 +89,7 @@ class Jet:
     def exp(self) -> Jet:
         a, done = self.parts, [self.parts[0].exp()]
         for k in range(1, self.size()):
-            done.append(summed(j * a[j] * done[k - j] for j in range(1, min(k, len(a) - 1) + 1)) / k)
+            done.append(add_up(j * a[j] * done[k - j] for j in range(1, min(k, len(a) - 1) + 1)) / k)
         return Jet(done, self.order)
 
     def log(self) -> Jet:
@@ -98,7 +98,7 @@ class Jet:
         for k in range(1, self.size()):
             known = [j * done[j] * a[k - j] for j in range(1, k) if k - j < len(a)]
             own = [k * a[k]] if k < len(a) else []
-            done.append(summed([*own, *(-x for x in known)]) * below / k)
+            done.append(add_up([*own, *(-x for x in known)]) * below / k)
         return Jet(done, self.order)
 
     def sqrt(self) -> Jet:
@@ -111,8 +111,8 @@ class Jet:
             sine, cosine = [a[0].sin()], [a[0].cos()]
             for k in range(1, self.size()):
                 js = range(1, min(k, len(a) - 1) + 1)
-                up = summed(j * a[j] * cosine[k - j] for j in js) / k
-                cosine.append(-summed(j * a[j] * sine[k - j] for j in js) / k)
+                up = add_up(j * a[j] * cosine[k - j] for j in js) / k
+                cosine.append(-add_up(j * a[j] * sine[k - j] for j in js) / k)
                 sine.append(up)
             self._waves = Jet(sine, self.order), Jet(cosine, self.order)
         return self._waves
@@ -124,16 +124,16 @@ class Jet:
         return self.waves()[1]
 
 
-def parts_of(x: Any) -> tuple[Any, ...]:
+def jet_parts(x: Any) -> tuple[Any, ...]:
     return x.parts if isinstance(x, Jet) else (x,)
 
 
-def convolved(a: Sequence[Any], b: Sequence[Any], k: int) -> Any:
+def convolve_at(a: Sequence[Any], b: Sequence[Any], k: int) -> Any:
     low, high = max(0, k - len(b) + 1), min(k, len(a) - 1)
-    return summed(a[i] * b[k - i] for i in range(low, high + 1))
+    return add_up(a[i] * b[k - i] for i in range(low, high + 1))
 
 
-def summed(terms: Any) -> Any:
+def add_up(terms: Any) -> Any:
     value = None
     for term in terms:
         value = term if value is None else value + term
@@ -143,7 +143,7 @@ def summed(terms: Any) -> Any:
 EVERY = arb(0, 1)
 
 
-def series_at(coefficients: Sequence[Any], s: arb) -> arb_series:
+def expand_polynomial(coefficients: Sequence[Any], s: arb) -> arb_series:
     """The polynomial expanded about s."""
     at = arb_series([s, arb(1)])
     value = arb_series([arb(0)])
@@ -152,7 +152,7 @@ def series_at(coefficients: Sequence[Any], s: arb) -> arb_series:
     return value
 
 
-def number_of(value: Any, k: int) -> arb:
+def series_coefficient(value: Any, k: int) -> arb:
     """Coefficient k of a series or of a constant; NaN when the series lost it."""
     if isinstance(value, arb_series):
         return value[k] if value.prec > k else arb("nan")
@@ -174,10 +174,10 @@ class Member:
 
 
 @dataclass(frozen=True)
-class Moving:
+class MovingProblem:
     """The problem on one piece: rows of regressors and the functional as series in s."""
 
-    problem: Problem
+    problem: PanelProblem
     parameter: sp.Symbol
     basis: fmpq_mat
     middle: fmpq
@@ -222,11 +222,11 @@ class Moving:
         start, end, sigma = panel.ends.run({self.parameter: p})
         t = Jet([start + (end - start) * v, (end - start) * r], order)
         H = panel.program.run({panel.variable: t, self.parameter: Jet([p], order)})
-        return [padded(h, order) for h in H], 1 / sigma
+        return [pad_jet(h, order) for h in H], 1 / sigma
 
     def mixed(self, matrix: arb_mat, H: Sequence[Sequence[Any]], scale: Any, order: int) -> list[list[Any]]:
         n = ctx.cap
-        flat = arb_mat([[number_of(part, j) for part in h for j in range(n)] for h in H])
+        flat = arb_mat([[series_coefficient(part, j) for part in h for j in range(n)] for h in H])
         q = (matrix * flat).tolist()
         return [[arb_series(row[n * k : n * (k + 1)]) * scale for k in range(order + 1)] for row in q]
 
@@ -236,7 +236,7 @@ class Moving:
         return [row[0] for row in self.mixed(self.mix, [[p] for p in P], arb(1), 0)]
 
 
-def padded(h: Any, order: int) -> list[Any]:
+def pad_jet(h: Any, order: int) -> list[Any]:
     parts = list(h.parts) if isinstance(h, Jet) else [h]
     return parts + [arb(0)] * (order + 1 - len(parts))
 
@@ -245,7 +245,7 @@ def padded(h: Any, order: int) -> list[Any]:
 
 
 @dataclass(frozen=True)
-class Vanishing(Moving):
+class VanishingProblem(MovingProblem):
     """The same on [0, p] with p near 0: row i of ``A H`` starts with u**k_i and is divided by p**k_i.
 
     lows  : k_i, different from each other
@@ -285,11 +285,11 @@ class Vanishing(Moving):
                 value = value * u + a
             for _ in range(low):
                 value = value * place
-            done.append(padded(value, order))
+            done.append(pad_jet(value, order))
         return done
 
     def target(self, s: arb) -> list[Any]:
-        p, P = self.value(s), exact_functional(self.problem)
+        p, P = self.value(s), rational_functional(self.problem)
         image = self.basis * fmpq_mat(len(P), 1, P)
         done = []
         for i, low in enumerate(self.lows):
@@ -300,6 +300,6 @@ class Vanishing(Moving):
         return done
 
 
-def exact_functional(problem: Problem) -> list[fmpq]:
+def rational_functional(problem: PanelProblem) -> list[fmpq]:
     """P as rational numbers."""
     return [to_fmpq(sp.sympify(p, strict=True)) for p in problem.functional]

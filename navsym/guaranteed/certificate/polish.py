@@ -15,10 +15,10 @@ import numpy as np
 from flint import arb, arb_mat, fmpq
 
 from navsym.core.balls import precision
-from navsym.guaranteed.certificate.basis import Basis, as_fraction
-from navsym.guaranteed.certificate.enclosure import Panel, Problem
+from navsym.guaranteed.certificate.basis import Basis, unit_fraction
+from navsym.guaranteed.certificate.enclosure import Panel, PanelProblem
 from navsym.guaranteed.search.exchange import Contacts
-from navsym.guaranteed.search.interior import pinned_rows
+from navsym.guaranteed.search.interior import pin_rows
 from navsym.guaranteed.search.kernels import contact_system
 
 # Taylor coefficients of the regressors about several places at once, and polynomials made of them.
@@ -48,7 +48,7 @@ def series_rows(
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Local:
+class LocalExpansion:
     """H about the places ``at``: ``H_j(at_i + s) = sum_k rows[k][i, j] s**k`` up to terms that are left out."""
 
     at: tuple[arb, ...]
@@ -82,11 +82,13 @@ class Local:
         return done
 
 
-def local(panels: Sequence[Panel], places: Sequence[int], v: Sequence[arb], inner: Sequence[bool], goal: arb) -> Local:
+def expand_locally(
+    panels: Sequence[Panel], places: Sequence[int], v: Sequence[arb], inner: Sequence[bool], goal: arb
+) -> LocalExpansion:
     """H about the places v with as many terms as reach the goal, or the most."""
     digits = -float(goal.log() / arb(10).log())
     order = min(MOST_TERMS - 1, max(2, int(digits / MOVE) + 1))
-    return Local(tuple(v), tuple(series_rows(panels, places, v, inner, order)))
+    return LocalExpansion(tuple(v), tuple(series_rows(panels, places, v, inner, order)))
 
 
 STEPS = 60
@@ -97,7 +99,7 @@ SMALL = arb(1e-12)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Polished:
+class ContactSolution:
     """Contacts to high precision, all midpoints exact.
 
     panel, v, inner, sign : place of each contact as a fraction of its panel, whether it may move, its sign
@@ -118,7 +120,9 @@ class Polished:
     touching: tuple[tuple[int, fmpq], ...] = ()
 
 
-def polish(panels: Sequence[Panel], basis: Basis, contacts: Contacts, bits: int, goal: arb | float) -> Polished:
+def sharpen_contacts(
+    panels: Sequence[Panel], basis: Basis, contacts: Contacts, bits: int, goal: arb | float
+) -> ContactSolution:
     """Newton with a fixed Jacobian until the correction is below ``goal`` or stops shrinking.
 
     Steps that run away lead back to where they began; the answer is then called irregular.
@@ -127,20 +131,20 @@ def polish(panels: Sequence[Panel], basis: Basis, contacts: Contacts, bits: int,
     m, l = contacts.dual.size, contacts.u.size
     with precision(bits):
         x = [arb(float(c)) for c in contacts.dual]
-        v = [arb(as_fraction(float(u))) for u in contacts.u]
+        v = [arb(unit_fraction(float(u))) for u in contacts.u]
         w = [arb(float(c)) for c in contacts.weights]
         p = [basis.functional[i, 0] / basis.size for i in range(m)]
         signs = [int(s) for s in contacts.sign]
         inner = [bool(i) for i in contacts.inner]
         places, goal = contacts.panel.tolist(), arb(goal)
         bounds = [panels[k].bound() for k in places]
-        about = local(panels, places, v, inner, goal)
+        about = expand_locally(panels, places, v, inner, goal)
         begun, away, last = (x, v, w), arb("inf"), None
         for _ in range(STEPS):
             if not about.reaches(v, goal):
-                about = local(panels, places, v, inner, goal)
-            F = residual(about, bounds, basis, x, v, w, p, signs, inner)
-            size = largest(F)
+                about = expand_locally(panels, places, v, inner, goal)
+            F = optimality_residual(about, bounds, basis, x, v, w, p, signs, inner)
+            size = largest_modulus(F)
             if not size <= away:
                 (x, v, w), regular, size = begun, False, away / AWAY
                 break
@@ -150,7 +154,7 @@ def polish(panels: Sequence[Panel], basis: Basis, contacts: Contacts, bits: int,
                 break
             done = 0 < ratio < 1e-6 and size * ratio < goal
             last, size = size, (size * ratio).mid()
-            step = correction(inverse, F)
+            step = newton_correction(inverse, F)
             x = [(a + s).mid() for a, s in zip(x, step[:m], strict=True)]
             free = iter(step[m : len(step) - l])
             v = [(a + next(free) / 2).mid() if i else a for a, i in zip(v, inner, strict=True)]
@@ -159,8 +163,8 @@ def polish(panels: Sequence[Panel], basis: Basis, contacts: Contacts, bits: int,
                 break
         dual = basis.transform.transpose() * arb_mat([[a] for a in x])
         weights = [a * basis.size / panels[k].bound() for a, k in zip(w, contacts.panel, strict=True)]
-        touching = tuple((k, as_fraction(u)) for k, u in contacts.touching)
-        return Polished(
+        touching = tuple((k, unit_fraction(u)) for k, u in contacts.touching)
+        return ContactSolution(
             tuple(int(k) for k in contacts.panel),
             tuple(v),
             tuple(inner),
@@ -173,24 +177,24 @@ def polish(panels: Sequence[Panel], basis: Basis, contacts: Contacts, bits: int,
         )
 
 
-def pinned(
-    problem: Problem, basis: Basis, places: Contacts, v: Sequence[arb], x: np.ndarray, goal: arb | float
+def pin_dual(
+    problem: PanelProblem, basis: Basis, places: Contacts, v: Sequence[arb], x: np.ndarray, goal: arb | float
 ) -> list[arb]:
     """The dual next to x, in the basis of the problem, that meets its bound at the contacts and is flat at inner ones.
 
     v : the places of the contacts to high precision; they give fewer conditions on x than unknowns
     """
-    rows = pinned_rows(basis.panels, places)[0]
+    rows = pin_rows(basis.panels, places)[0]
     inverse, nothing = np.linalg.pinv(rows, rcond=1e-9), [arb(0)] * x.size
     signs, inner = [int(s) for s in places.sign], [bool(i) for i in places.inner]
     y, goal = [arb(float(c)) for c in x], arb(goal)
     bounds = [problem.panels[k].bound() for k in places.panel]
-    about = local(problem.panels, places.panel.tolist(), v, inner, goal)
+    about = expand_locally(problem.panels, places.panel.tolist(), v, inner, goal)
     for _ in range(STEPS):
-        F = residual(about, bounds, basis, y, v, [arb(0)] * len(v), nothing, signs, inner)[: rows.shape[0]]
-        if largest(F) < goal:
+        F = optimality_residual(about, bounds, basis, y, v, [arb(0)] * len(v), nothing, signs, inner)[: rows.shape[0]]
+        if largest_modulus(F) < goal:
             break
-        y = [(a + s).mid() for a, s in zip(y, correction(inverse, F), strict=True)]
+        y = [(a + s).mid() for a, s in zip(y, newton_correction(inverse, F), strict=True)]
     return [a.mid() for a in (basis.transform.transpose() * arb_mat([[a] for a in y])).entries()]
 
 
@@ -207,7 +211,7 @@ def pseudo_inverse(basis: Basis, contacts: Contacts) -> tuple[np.ndarray, bool]:
         contacts.dual,
         contacts.weights,
     )
-    if J.shape[0] == J.shape[1] and (inverse := well_conditioned(J)) is not None:
+    if J.shape[0] == J.shape[1] and (inverse := regular_inverse(J)) is not None:
         return inverse, True
     U, s, Vt = np.linalg.svd(J)
     keep = s > 1e-9 * s.max()
@@ -216,7 +220,7 @@ def pseudo_inverse(basis: Basis, contacts: Contacts) -> tuple[np.ndarray, bool]:
     return (Vt[:r].T / s[:r]) @ U[:, :r].T, regular
 
 
-def well_conditioned(J: np.ndarray) -> np.ndarray | None:
+def regular_inverse(J: np.ndarray) -> np.ndarray | None:
     """The inverse, where Frobenius' norms say that no singular value is below 1e-9 of the largest."""
     try:
         inverse: np.ndarray = np.linalg.inv(J)
@@ -225,23 +229,23 @@ def well_conditioned(J: np.ndarray) -> np.ndarray | None:
     return inverse if np.linalg.norm(J) * np.linalg.norm(inverse) < 1e9 else None
 
 
-def largest(F: Sequence[arb]) -> arb:
+def largest_modulus(F: Sequence[arb]) -> arb:
     """The largest modulus of numbers, exactly; no number where one of them is none."""
     sizes = [abs(f).mid() for f in F]
     return max(sizes) if all(size.is_finite() for size in sizes) else arb("nan")
 
 
-def correction(inverse: np.ndarray, F: Sequence[arb]) -> list[arb]:
+def newton_correction(inverse: np.ndarray, F: Sequence[arb]) -> list[arb]:
     """``-inverse F`` where F is divided by its largest number, so that tiny residuals keep their digits."""
-    scale = largest(F)
+    scale = largest_modulus(F)
     if scale == 0:
         return [arb(0)] * inverse.shape[0]
     small = np.array([float((f / scale).mid()) for f in F])
     return [-arb(float(s)) * scale for s in inverse @ small]
 
 
-def residual(
-    about: Local,
+def optimality_residual(
+    about: LocalExpansion,
     bounds: Sequence[arb],
     basis: Basis,
     x: Sequence[arb],

@@ -19,18 +19,18 @@ from flint import arb, arb_mat, fmpq
 from navsym.core.balls import precision
 from navsym.core.exact import decimal, from_decimal, to_fmpq
 from navsym.guaranteed.certificate.enclosure import (
-    Cell,
     Expansion,
-    Problem,
+    PanelCell,
+    PanelProblem,
     Touch,
-    interval,
-    order_for,
-    passes,
-    terms,
-    total,
+    dot_product,
+    interval_ball,
+    is_cell_bounded,
+    series_terms,
+    taylor_order,
 )
-from navsym.guaranteed.certificate.fixed import header, place_of
-from navsym.guaranteed.certificate.moving import EVERY, Member, Moving, number_of, series_at
+from navsym.guaranteed.certificate.fixed import certificate_header, end_place
+from navsym.guaranteed.certificate.moving import EVERY, Member, MovingProblem, expand_polynomial, series_coefficient
 
 BITS = 192
 #: Order of the series in s, the last coefficient over the whole piece; and degree of the curves.
@@ -51,22 +51,22 @@ Pattern = tuple[tuple[int, str, int], ...]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Track:
+class PatternTrack:
     """What is followed: the contacts (panel, end, sign), a first solution, and the problem in a good basis.
 
     first  : p -> Member of this pattern to start from, or None
     moving : (a, b) -> the problem on that piece
     """
 
-    problem: Problem
+    problem: PanelProblem
     parameter: sp.Symbol
     pattern: Pattern
     first: Callable[[fmpq], Member | None]
-    moving: Callable[[fmpq, fmpq], Moving]
+    moving: Callable[[fmpq, fmpq], MovingProblem]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Piece:
+class RangePiece:
     """One verified piece: its certificate, the cells that it took, its optima, the solution at either end."""
 
     lower: fmpq
@@ -78,10 +78,10 @@ class Piece:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Ranged:
+class RangeProof:
     """What was followed, as far as it came: pieces next to each other, in order, and their certificates."""
 
-    pieces: tuple[Piece, ...]
+    pieces: tuple[RangePiece, ...]
     documents: tuple[dict[str, Any], ...]
 
     @property
@@ -90,14 +90,14 @@ class Ranged:
         return (self.pieces[0].lower, self.pieces[-1].upper) if self.pieces else None
 
 
-def range_document(problem: Problem, parameter: str, pieces: Sequence[Piece]) -> dict[str, Any]:
+def range_document(problem: PanelProblem, parameter: str, pieces: Sequence[RangePiece]) -> dict[str, Any]:
     """The certificate of pieces that lie next to each other."""
-    head = header(problem, "range", BITS, sum(p.cells for p in pieces), *value_bounds(pieces))
+    head = certificate_header(problem, "range", BITS, sum(p.cells for p in pieces), *value_bounds(pieces))
     ends = {"parameter": parameter, "from": fraction(pieces[0].lower), "to": fraction(pieces[-1].upper)}
     return head | ends | {"pieces": [p.row for p in pieces]}
 
 
-def value_bounds(pieces: Sequence[Piece]) -> tuple[str, str]:
+def value_bounds(pieces: Sequence[RangePiece]) -> tuple[str, str]:
     """Decimals below and above the optimum of every piece, with room for a checker whose balls are wider."""
     low, high = (min(to_fmpq(p.value.lower()) for p in pieces), max(to_fmpq(p.value.upper()) for p in pieces))
     room = max(abs(low), abs(high)) / ROOM
@@ -112,55 +112,55 @@ def fraction(x: fmpq) -> str:
 # -- one piece ---------------------------------------------------------------------------------------
 
 
-def piece(track: Track, member: Member, a: fmpq, b: fmpq) -> Piece | None:
+def verify_piece(track: PatternTrack, member: Member, a: fmpq, b: fmpq) -> RangePiece | None:
     """The piece between two values, from a solution near it; None when a test fails."""
     a, b = min(a, b), max(a, b)
     with precision(BITS):
         moving = track.moving(a, b)
         curves = solution_curves(moving, track.pattern, moving.local_member(member))
-        found = None if curves is None else verified(track, moving, curves)
+        found = None if curves is None else verify_curves(track, moving, curves)
         if curves is None or found is None:
             return None
-        ends = tuple(moving.global_member(*at_number(curves, s, moving.size)) for s in (-1, 1))
-        return Piece(a, b, *found, ends)  # type: ignore[arg-type]
+        ends = tuple(moving.global_member(*curve_values(curves, s, moving.size)) for s in (-1, 1))
+        return RangePiece(a, b, *found, ends)  # type: ignore[arg-type]
 
 
-def at_number(curves: Sequence[Sequence[fmpq]], s: int, m: int) -> tuple[list[fmpq], list[fmpq], list[fmpq]]:
+def curve_values(curves: Sequence[Sequence[fmpq]], s: int, m: int) -> tuple[list[fmpq], list[fmpq], list[fmpq]]:
     """Dual, places and weights at s."""
     values = [sum((c * s**k for k, c in enumerate(row)), fmpq(0)) for row in curves]
     l = (len(curves) - m) // 2
     return values[:m], values[m : m + l], values[m + l :]
 
 
-def solution_curves(moving: Moving, pattern: Pattern, start: Sequence[fmpq]) -> list[list[fmpq]] | None:
+def solution_curves(moving: MovingProblem, pattern: Pattern, start: Sequence[fmpq]) -> list[list[fmpq]] | None:
     """Taylor polynomials of the solution about the middle: ``z <- z - F'(0)^-1 F(z(s))``, an order a step."""
-    free = free_places(pattern, moving.size)
-    found = corrected(moving, pattern, [[c] for c in start], free)
+    free = free_unknowns(pattern, moving.size)
+    found = correct_centre(moving, pattern, [[c] for c in start], free)
     if found is None:
         return None
     curves, inverse = found
     for count in (*range(2, DEGREE + 2), DEGREE + 1):
-        with terms(count):
-            F, _ = optimality_system(moving, pattern, curves, {}, arb(0))
-            steps = [(inverse * arb_mat([[number_of(f, k)] for f in F])).tolist() for k in range(count)]
+        with series_terms(count):
+            F, _ = moving_system(moving, pattern, curves, {}, arb(0))
+            steps = [(inverse * arb_mat([[series_coefficient(f, k)] for f in F])).tolist() for k in range(count)]
         for place, k in enumerate(free):
             c = [*curves[k], *[fmpq(0)] * (count - len(curves[k]))]
             curves[k] = [old - to_fmpq(steps[j][place][0]) for j, old in enumerate(c)]
-    return [shortened(c) for c in curves]
+    return [round_coefficients(c) for c in curves]
 
 
-def corrected(
-    moving: Moving, pattern: Pattern, z: list[list[fmpq]], free: Sequence[int]
+def correct_centre(
+    moving: MovingProblem, pattern: Pattern, z: list[list[fmpq]], free: Sequence[int]
 ) -> tuple[list[list[fmpq]], arb_mat] | None:
     """Newton at the middle of the piece; the solution and the inverse of the derivative there."""
     last = None
     for _ in range(8):
-        with terms(1):
-            F, J = optimality_system(moving, pattern, z, {}, arb(0))
-        inverse = inverse_of([[row_.get(k, arb(0)) for k in free] for row_ in J], 0)
+        with series_terms(1):
+            F, J = moving_system(moving, pattern, z, {}, arb(0))
+        inverse = midpoint_inverse([[row_.get(k, arb(0)) for k in free] for row_ in J], 0)
         if inverse is None:
             return None
-        steps = (inverse * arb_mat([[number_of(f, 0).mid()] for f in F])).tolist()
+        steps = (inverse * arb_mat([[series_coefficient(f, 0).mid()] for f in F])).tolist()
         size = max(float(abs(e[0]).mid()) for e in steps)
         if not size < 1e3 or (last is not None and size > 10 * last + 1e-20):
             return None
@@ -172,7 +172,7 @@ def corrected(
     return (z, inverse) if inverse is not None and size < 1e-15 else None
 
 
-def shortened(c: Sequence[fmpq]) -> list[fmpq]:
+def round_coefficients(c: Sequence[fmpq]) -> list[fmpq]:
     """Coefficients rounded to DIGITS digits of the largest."""
     scale = max(abs(a) for a in c) or fmpq(1)
     unit = fmpq(1)
@@ -181,9 +181,9 @@ def shortened(c: Sequence[fmpq]) -> list[fmpq]:
     return [unit * ((a / unit) + fmpq(1, 2)).floor() for a in c]
 
 
-def inverse_of(J: Sequence[Sequence[Any]], k: int) -> arb_mat | None:
+def midpoint_inverse(J: Sequence[Sequence[Any]], k: int) -> arb_mat | None:
     """Midpoint inverse of coefficient k, or None when it is singular."""
-    middle = arb_mat([[number_of(e, k).mid() for e in row] for row in J])
+    middle = arb_mat([[series_coefficient(e, k).mid() for e in row] for row in J])
     try:
         found = middle.inv()
     except ZeroDivisionError:
@@ -192,18 +192,18 @@ def inverse_of(J: Sequence[Sequence[Any]], k: int) -> arb_mat | None:
     return arb_mat([[e.mid() for e in row] for row in found.tolist()]) if good else None
 
 
-def free_places(pattern: Pattern, m: int) -> list[int]:
+def free_unknowns(pattern: Pattern, m: int) -> list[int]:
     """Unknowns among (y, places, weights): all but the places at ends."""
     l = len(pattern)
     return [k for k in range(m + 2 * l) if not m <= k < m + l or pattern[k - m][1] == "no"]
 
 
-def optimality_system(
-    moving: Moving, pattern: Pattern, z: Sequence[Sequence[Any]], radius: dict[int, arb], s: arb
+def moving_system(
+    moving: MovingProblem, pattern: Pattern, z: Sequence[Sequence[Any]], radius: dict[int, arb], s: arb
 ) -> tuple[list[Any], list[dict[int, Any]]]:
     """F and its derivatives as series about s: ``f(v_i) - s_i``, ``w_i f'(v_i)``, ``sum w_i q(v_i) - A P``."""
     m, l = moving.size, len(pattern)
-    here = [series_at(c, s) + radius.get(k, arb(0)) * EVERY for k, c in enumerate(z)]
+    here = [expand_polynomial(c, s) + radius.get(k, arb(0)) * EVERY for k, c in enumerate(z)]
     y, w = here[:m], here[m + l :]
     F: list[Any] = []
     J: list[dict[int, Any]] = []
@@ -231,73 +231,78 @@ def dot(x: Sequence[Any], y: Sequence[Any]) -> Any:
     return value
 
 
-def verified(track: Track, moving: Moving, curves: Sequence[Sequence[fmpq]]) -> tuple[dict[str, Any], int, arb] | None:
+def verify_curves(
+    track: PatternTrack, moving: MovingProblem, curves: Sequence[Sequence[fmpq]]
+) -> tuple[dict[str, Any], int, arb] | None:
     """Krawczyk's test for all s, signs, places and the bound off the contacts; the row, cells, the value."""
     pattern, m = track.pattern, moving.size
     z = [list(map(arb, c)) for c in curves]
-    free = free_places(pattern, m)
-    residual = enclosed_series(partial(system_values, moving, pattern, z, {}))
+    free = free_unknowns(pattern, m)
+    residual = enclose_series(partial(system_values, moving, pattern, z, {}))
     radius: dict[int, arb] = {}
     for attempt in range(4):
-        move = image(moving, pattern, z, residual, radius, free)
+        move = newton_image(moving, pattern, z, residual, radius, free)
         if move is None or not all(bool(abs(d) < HUGE) for d in move.values()):
             return None
         if attempt and all(bool(abs(d) * MARGIN < radius[k]) for k, d in move.items()):
             break
-        radius = {k: arb(from_decimal(decimal(r, 3, 1))) for k, r in room_for(move, z, moving.slack).items()}
+        radius = {k: arb(from_decimal(decimal(r, 3, 1))) for k, r in box_radius(move, z, moving.slack).items()}
     else:
         return None
-    here = [at_all(c) + move.get(k, arb(0)) for k, c in enumerate(z)]
-    touches = touches_of(track, here, m)
+    here = [ball_over_piece(c) + move.get(k, arb(0)) for k, c in enumerate(z)]
+    touches = piece_touches(track, here, m)
     if touches is None:
         return None
     spread = {k: abs(move[k]).upper() * moving.slack for k in range(m)}
     cells = 0
     for k, mine in enumerate(touches):
-        used = halved(mine, partial(expansion, moving, z[:m], spread, k))
+        used = prove_by_halving(mine, partial(expand_moving_cell, moving, z[:m], spread, k))
         if used is None:
             return None
         cells += used
-    return row(track, moving, curves, radius), cells, value_over(moving, z[:m], spread)
+    return piece_row(track, moving, curves, radius), cells, value_ball(moving, z[:m], spread)
 
 
-def room_for(move: dict[int, arb], z: Sequence[Sequence[arb]], slack: int) -> dict[int, arb]:
+def box_radius(move: dict[int, arb], z: Sequence[Sequence[arb]], slack: int) -> dict[int, arb]:
     """The radius of a box in which Newton's step has so many times the room that it needs."""
-    sizes = {k: size_of(z[k]) for k in move}
+    sizes = {k: curve_size(z[k]) for k in move}
     worst = max((abs(d).upper() / sizes[k] for k, d in move.items()), key=to_fmpq) + arb(10) ** (4 - DIGITS)
     return {k: (slack * abs(d).upper() + SHARE * worst * sizes[k]).upper() for k, d in move.items()}
 
 
-def value_over(moving: Moving, y: Sequence[Sequence[arb]], spread: dict[int, arb]) -> arb:
+def value_ball(moving: MovingProblem, y: Sequence[Sequence[arb]], spread: dict[int, arb]) -> arb:
     """The optimum ``y . A P`` for all s."""
 
     def product(s: arb) -> list[Any]:
-        return [dot([series_at(c, s) + spread[j] * EVERY for j, c in enumerate(y)], moving.target(s))]
+        return [dot([expand_polynomial(c, s) + spread[j] * EVERY for j, c in enumerate(y)], moving.target(s))]
 
-    return at_all(enclosed_series(product)[0])
+    return ball_over_piece(enclose_series(product)[0])
 
 
-def size_of(c: Sequence[arb]) -> arb:
+def curve_size(c: Sequence[arb]) -> arb:
     return max((abs(a) for a in c), key=lambda a: float(a.mid())) + arb(10) ** -20
 
 
 def system_values(
-    moving: Moving, pattern: Pattern, z: Sequence[Sequence[arb]], radius: dict[int, arb], s: arb
+    moving: MovingProblem, pattern: Pattern, z: Sequence[Sequence[arb]], radius: dict[int, arb], s: arb
 ) -> list[Any]:
-    return optimality_system(moving, pattern, z, radius, s)[0]
+    return moving_system(moving, pattern, z, radius, s)[0]
 
 
-def enclosed_series(function: Callable[[arb], list[Any]]) -> list[list[arb]]:
+def enclose_series(function: Callable[[arb], list[Any]]) -> list[list[arb]]:
     """Taylor coefficients about s = 0 of every entry; the last holds over all |s| <= 1."""
-    with terms(ORDER):
+    with series_terms(ORDER):
         thin = function(arb(0))
-    with terms(ORDER + 1):
+    with series_terms(ORDER + 1):
         wide = function(EVERY)
-    return [[*(number_of(a, k) for k in range(ORDER)), number_of(b, ORDER)] for a, b in zip(thin, wide, strict=True)]
+    return [
+        [*(series_coefficient(a, k) for k in range(ORDER)), series_coefficient(b, ORDER)]
+        for a, b in zip(thin, wide, strict=True)
+    ]
 
 
-def image(
-    moving: Moving,
+def newton_image(
+    moving: MovingProblem,
     pattern: Pattern,
     z: Sequence[Sequence[arb]],
     residual: Sequence[Sequence[arb]],
@@ -310,18 +315,18 @@ def image(
     n = len(free)
 
     def entries(s: arb) -> list[Any]:
-        J = optimality_system(moving, pattern, z, radius, s)[1]
+        J = moving_system(moving, pattern, z, radius, s)[1]
         return [row_.get(k, arb(0)) for row_ in J for k in free]
 
-    J = arb_mat(n, n, [at_all(e) for e in enclosed_series(entries)])
+    J = arb_mat(n, n, [ball_over_piece(e) for e in enclose_series(entries)])
     try:
-        moved = J.solve(-arb_mat([[at_all(r)] for r in residual]), algorithm="precond").entries()
+        moved = J.solve(-arb_mat([[ball_over_piece(r)] for r in residual]), algorithm="precond").entries()
     except ZeroDivisionError:
         return None
     return dict(zip(free, moved, strict=True)) if all(d.is_finite() for d in moved) else None
 
 
-def halved(touches: Sequence[Touch], expand: Expansion) -> int | None:
+def prove_by_halving(touches: Sequence[Touch], expand: Expansion) -> int | None:
     """Number of cells that prove ``|f| < 1`` off the contacts by halving [0, 1], or None; as the checker does it.
 
     A cell nearer to the middle of a contact than its own length is tested on the interval about that
@@ -334,27 +339,27 @@ def halved(touches: Sequence[Touch], expand: Expansion) -> int | None:
         used += 1
         if used > MOST_CELLS + CELLS_EACH * len(touches):
             return None
-        if not passes(expand, cell_for(a, b, marks), arb(1), bool(touches)):
+        if not is_cell_bounded(expand, cell_around(a, b, marks), arb(1), bool(touches)):
             stack += [(a, (a + b) / 2), ((a + b) / 2, b)]
     return used
 
 
-def cell_for(a: fmpq, b: fmpq, marks: Sequence[tuple[fmpq, Touch]]) -> Cell:
+def cell_around(a: fmpq, b: fmpq, marks: Sequence[tuple[fmpq, Touch]]) -> PanelCell:
     """The cell itself, or the interval about a contact next to it."""
     middle = (a + b) / 2
     at, touch = min(marks, key=lambda mark: abs(mark[0] - middle), default=(None, None))
     if at is None or touch is None or not abs(at - middle) < b - a:
-        return Cell(a, b)
+        return PanelCell(a, b)
     radius = max(at - a, b - at)
-    return Cell(at - radius, at + radius, touch)
+    return PanelCell(at - radius, at + radius, touch)
 
 
-def at_all(c: Sequence[arb]) -> arb:
+def ball_over_piece(c: Sequence[arb]) -> arb:
     """A ball around the polynomial for all |s| <= 1."""
     return c[0] + sum((a * EVERY for a in c[1:]), arb(0))
 
 
-def touches_of(track: Track, here: Sequence[arb], m: int) -> list[list[Touch]] | None:
+def piece_touches(track: PatternTrack, here: Sequence[arb], m: int) -> list[list[Touch]] | None:
     """Contacts as balls over the piece, by panel; None when a sign or a place is not certain."""
     l = len(track.pattern)
     touches: list[list[Touch]] = [[] for _ in track.problem.panels]
@@ -367,31 +372,43 @@ def touches_of(track: Track, here: Sequence[arb], m: int) -> list[list[Touch]] |
     return touches
 
 
-def expansion(
-    moving: Moving, y: Sequence[Sequence[arb]], spread: dict[int, arb], k: int, cell: Cell, centre: fmpq, radius: fmpq
+def expand_moving_cell(
+    moving: MovingProblem,
+    y: Sequence[Sequence[arb]],
+    spread: dict[int, arb],
+    k: int,
+    cell: PanelCell,
+    centre: fmpq,
+    radius: fmpq,
 ) -> list[arb]:
     """Taylor coefficients of f in w, place ``centre + radius w``, for all |s| <= 1; the last over the whole cell."""
-    order = order_for(moving.size)
+    order = taylor_order(moving.size)
 
     def values(s: arb) -> list[Any]:
-        x = [series_at(c, s) + spread[j] * EVERY for j, c in enumerate(y)]
+        x = [expand_polynomial(c, s) + spread[j] * EVERY for j, c in enumerate(y)]
         q = moving.rows(k, arb(centre), arb(radius), s, order - 1)
         return [dot(x, [row_[d] for row_ in q]) for d in range(order)]
 
-    point = [at_all(c) for c in enclosed_series(values)]
-    with terms(1):
-        x = [at_all(c) + spread[j] * EVERY for j, c in enumerate(y)]
-        wide = moving.rows(k, interval(cell.lower, cell.upper), arb(radius), EVERY, order)
-        last = total(x, [number_of(row_[order], 0) for row_ in wide])
+    point = [ball_over_piece(c) for c in enclose_series(values)]
+    with series_terms(1):
+        x = [ball_over_piece(c) + spread[j] * EVERY for j, c in enumerate(y)]
+        wide = moving.rows(k, interval_ball(cell.lower, cell.upper), arb(radius), EVERY, order)
+        last = dot_product(x, [series_coefficient(row_[order], 0) for row_ in wide])
     return [*point, last]
 
 
-def row(track: Track, moving: Moving, curves: Sequence[Sequence[fmpq]], radius: dict[int, arb]) -> dict[str, Any]:
+def piece_row(
+    track: PatternTrack, moving: MovingProblem, curves: Sequence[Sequence[fmpq]], radius: dict[int, arb]
+) -> dict[str, Any]:
     """The piece as plain data. A place at an end is an unknown for the checker, too, with an equation of its own."""
     m, l, smallest = moving.size, len(track.pattern), min(radius.values(), key=to_fmpq)
     text = lambda c: [decimal(a, 60) for a in c]  # noqa: E731
     contacts = [
-        {"panel": k, "at": text(curves[m + i]) if kind == "no" else [place_of(kind)], "weight": text(curves[m + l + i])}
+        {
+            "panel": k,
+            "at": text(curves[m + i]) if kind == "no" else [end_place(kind)],
+            "weight": text(curves[m + l + i]),
+        }
         for i, (k, kind, _) in enumerate(track.pattern)
     ]
     return {
@@ -419,36 +436,36 @@ def never() -> bool:
     return False
 
 
-def always(piece: Piece) -> bool:
+def always(piece: RangePiece) -> bool:
     """Every piece is accepted."""
     return True
 
 
-Accepts = Callable[[Piece], bool]
+Accepts = Callable[[RangePiece], bool]
 
 
-def follow(
-    track: Track, lower: fmpq, upper: fmpq, enough: Callable[[], bool] = never, accepts: Accepts = always
-) -> list[Piece]:
+def follow_pattern(
+    track: PatternTrack, lower: fmpq, upper: fmpq, enough: Callable[[], bool] = never, accepts: Accepts = always
+) -> list[RangePiece]:
     """Pieces from the middle towards both ends, each as long as its tests allow and accepted, until it is enough."""
-    middle = simple((lower + upper) / 2, upper - lower)
+    middle = short_decimal((lower + upper) / 2, upper - lower)
     member = track.first(middle)
     if member is None:
         return []
-    up = march(track, member, middle, upper, MOST_FAILURES, enough, accepts)
-    down = march(track, up[0].ends[0] if up else member, middle, lower, MOST_FAILURES, enough, accepts)
+    up = march_pieces(track, member, middle, upper, MOST_FAILURES, enough, accepts)
+    down = march_pieces(track, up[0].ends[0] if up else member, middle, lower, MOST_FAILURES, enough, accepts)
     return [*reversed(down), *up]
 
 
-def march(
-    track: Track,
+def march_pieces(
+    track: PatternTrack,
     member: Member,
     at: fmpq,
     last: fmpq,
     failures: int = MOST_FAILURES,
     enough: Callable[[], bool] = never,
     accepts: Accepts = always,
-) -> list[Piece]:
+) -> list[RangePiece]:
     """Pieces from ``at`` to ``last``, upwards or downwards; given up after ``failures`` halvings of one step, and when
     it is enough.
 
@@ -457,13 +474,13 @@ def march(
     Towards the end of a regime a weight, the room of a contact or the room below the bound shrinks to nothing;
     a piece may then be about as long as the root of what is left behind it, so steps square their distance.
     """
-    pieces: list[Piece] = []
+    pieces: list[RangePiece] = []
     span = abs(last - at)
     step, failed = span / 3, 0
     while at != last and len(pieces) < MOST_PIECES and failed < failures and not enough():
         made = None
         for end in ends_to_try(at, last, step, span):
-            made = piece(track, member, at, end)
+            made = verify_piece(track, member, at, end)
             if made is not None and accepts(made):
                 break
             made = None
@@ -483,14 +500,14 @@ def ends_to_try(at: fmpq, last: fmpq, step: fmpq, span: fmpq) -> list[fmpq]:
     """The next end; near the last one that first, then one with the distance to it raised to the power 3/2."""
     rest, side = abs(last - at), 1 if last > at else -1
     if step * fmpq(9, 8) < rest:
-        return [simple(at + side * step, step)]
+        return [short_decimal(at + side * step, step)]
     near = rest * to_fmpq(arb(rest / span).sqrt()) / 2
     if rest < span * NEAREST:
         return [last]
-    return [last, simple(last - side * near, near), simple(at + side * rest / 2, rest)]
+    return [last, short_decimal(last - side * near, near), short_decimal(at + side * rest / 2, rest)]
 
 
-def simple(x: fmpq, step: fmpq) -> fmpq:
+def short_decimal(x: fmpq, step: fmpq) -> fmpq:
     """A short decimal near x, well within the step."""
     unit = fmpq(1)
     while unit > step / 16:

@@ -14,7 +14,15 @@ from functools import partial
 
 from flint import arb, arb_poly, fmpq
 
-from navsym.guaranteed.certificate.enclosure import Cell, Expansion, Panel, Touch, covered, interval, order_for
+from navsym.guaranteed.certificate.enclosure import (
+    Expansion,
+    Panel,
+    PanelCell,
+    Touch,
+    interval_ball,
+    prove_by_cells,
+    taylor_order,
+)
 
 HALF = fmpq(1, 2)
 #: Orders of the polynomial that are tried, and how small R must be, as a part of the bound.
@@ -22,24 +30,24 @@ LARGEST, SMALL = 48, arb(2) ** -20
 #: What varies by less than so many times that is called constant.
 FLAT = 16
 #: Cells shorter than this part of the panel are expanded on their own: R may be too much for them.
-SHORTEST = fmpq(1, 1 << 16)
+SHORTEST_CELL = fmpq(1, 1 << 16)
 
 
-def bounded(panel: Panel, x: Sequence[arb], touches: Sequence[Touch], limit: int = 4000) -> int | None:
+def prove_panel_bound(panel: Panel, x: Sequence[arb], touches: Sequence[Touch], limit: int = 4000) -> int | None:
     """Number of cells that prove ``|x . H| <= sigma`` on the whole panel, or None."""
-    anew: Expansion = partial(expansion, panel, x)
-    model = polynomial(panel, x)
-    expand = anew if model is None else partial(shifted, model, anew)
-    return covered(panel.bound(), touches, limit, expand)
+    anew: Expansion = partial(expand_cell, panel, x)
+    model = panel_polynomial(panel, x)
+    expand = anew if model is None else partial(shift_polynomial, model, anew)
+    return prove_by_cells(panel.bound(), touches, limit, expand)
 
 
-def polynomial(panel: Panel, x: Sequence[arb]) -> arb_poly | None:
+def panel_polynomial(panel: Panel, x: Sequence[arb]) -> arb_poly | None:
     """The coefficients ``c_0 … c_(n-1), R`` of f in u, or None where they do not help.
 
     No R may be small; balls in the data may make the coefficients wide, each on its own, while f is not; or f is
     almost constant, so that all of it may lie nearer to the bound than R.
     """
-    wide = panel.dual_polynomial(x, interval(fmpq(0), fmpq(1)), HALF, LARGEST)
+    wide = panel.dual_polynomial(x, interval_ball(fmpq(0), fmpq(1)), HALF, LARGEST)
     small = SMALL * panel.bound()
     order = next((k for k in range(3, LARGEST + 1) if bool(abs(wide[k]) < small)), None)
     if order is None:
@@ -51,21 +59,21 @@ def polynomial(panel: Panel, x: Sequence[arb]) -> arb_poly | None:
     return arb_poly([*thin, wide[order]])
 
 
-def shifted(model: arb_poly, anew: Expansion, cell: Cell, centre: fmpq, radius: fmpq) -> list[arb]:
-    """What :func:`expansion` gives, from the polynomial of the panel; where that is too coarse, anew.
+def shift_polynomial(model: arb_poly, anew: Expansion, cell: PanelCell, centre: fmpq, radius: fmpq) -> list[arb]:
+    """What :func:`expand_cell` gives, from the polynomial of the panel; where that is too coarse, anew.
 
     Near a touch that is not exact a bound is met up to the last digits, which R does not have.
     """
     fine = cell.touch is not None and not cell.touch.exact
-    if fine or cell.upper - cell.lower < SHORTEST:
+    if fine or cell.upper - cell.lower < SHORTEST_CELL:
         return anew(cell, centre, radius)
     taylor: list[arb] = model(arb_poly([arb(2 * centre - 1), arb(2 * radius)])).coeffs()
     return taylor + [arb(0)] * (3 - len(taylor))
 
 
-def expansion(panel: Panel, x: Sequence[arb], cell: Cell, centre: fmpq, radius: fmpq) -> list[arb]:
+def expand_cell(panel: Panel, x: Sequence[arb], cell: PanelCell, centre: fmpq, radius: fmpq) -> list[arb]:
     """Taylor coefficients of f in w, fraction ``centre + radius w``; the last one holds over the whole cell."""
-    order = order_for(len(x))
+    order = taylor_order(len(x))
     point = panel.dual_polynomial(x, arb(centre), radius, order - 1)
-    wide = panel.dual_polynomial(x, interval(cell.lower, cell.upper), radius, order)
+    wide = panel.dual_polynomial(x, interval_ball(cell.lower, cell.upper), radius, order)
     return [*point, wide[order]]

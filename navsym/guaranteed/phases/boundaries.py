@@ -15,16 +15,16 @@ from flint import arb, arb_mat
 from navsym.claims import PROVED, Equation
 from navsym.core.balls import enclose, precision
 from navsym.core.exact import decimal, lower_end, to_fmpq, to_rational, upper_end
-from navsym.guaranteed.certificate.basis import as_fraction, make_basis
-from navsym.guaranteed.certificate.enclosure import Problem, total
-from navsym.guaranteed.certificate.fixed import peak, touch
-from navsym.guaranteed.certificate.polish import Polished, polish
+from navsym.guaranteed.certificate.basis import make_basis, unit_fraction
+from navsym.guaranteed.certificate.enclosure import PanelProblem, dot_product
+from navsym.guaranteed.certificate.fixed import certify_touch, stationary_fraction
+from navsym.guaranteed.certificate.polish import ContactSolution, sharpen_contacts
 from navsym.guaranteed.phases import walk
-from navsym.guaranteed.phases.closed_forms import BITS, GOAL, Closed
+from navsym.guaranteed.phases.closed_forms import BITS, GOAL, ClosedForm
 from navsym.guaranteed.phases.family import Family, U
-from navsym.guaranteed.phases.patterns import Pattern, Span, pattern_of, sample
-from navsym.guaranteed.phases.recognise import constant
-from navsym.guaranteed.phases.walk import walked
+from navsym.guaranteed.phases.patterns import Pattern, PatternInterval, contact_pattern, sample_contacts
+from navsym.guaranteed.phases.recognise import recognise_constant
+from navsym.guaranteed.phases.walk import walk_to
 from navsym.guaranteed.search.exchange import Contacts
 from navsym.language.expression import to_text
 from navsym.prove.ladder import decide
@@ -56,7 +56,9 @@ class Boundary:
         return {"at": at, "lower": self.lower, "upper": self.upper, "why": self.why}
 
 
-def boundary(family: Family, left: Span, right: Span, before: Closed | None, after: Closed | None) -> Boundary:
+def locate_boundary(
+    family: Family, left: PatternInterval, right: PatternInterval, before: ClosedForm | None, after: ClosedForm | None
+) -> Boundary:
     """The change from one span to the next, as exactly as it can be had."""
     guess = float(left.upper)
     if before is not None and after is not None and before.dual == after.dual:
@@ -65,21 +67,21 @@ def boundary(family: Family, left: Span, right: Span, before: Closed | None, aft
     else:
         # A guess near zero has no size of its own, and patterns next to each other are told apart only so far.
         reach = REACH * max(abs(guess), float(right.upper - left.lower))
-    for expression, why in events(family, left, before, right, after):
-        found = exact_root(expression, family.parameter, guess, reach)
+    for expression, why in boundary_events(family, left, before, right, after):
+        found = recognise_root(expression, family.parameter, guess, reach)
         if found is not None:
             with precision(200):
                 ball = enclose(found, bits=200)
                 return Boundary(found, lower_end(ball, DIGITS), upper_end(ball, DIGITS), why, True)
-    return implicit(family, left, right)
+    return locate_implicitly(family, left, right)
 
 
-def events(
-    family: Family, left: Span, before: Closed | None, right: Span, after: Closed | None
+def boundary_events(
+    family: Family, left: PatternInterval, before: ClosedForm | None, right: PatternInterval, after: ClosedForm | None
 ) -> Iterator[tuple[sp.Expr, str]]:
     """Expressions that vanish at the change, with words: a weight, the room of an instant, the room below the bound."""
-    yield from rooms_below(family, before, after, right)
-    yield from rooms_below(family, after, before, left)
+    yield from bound_slacks(family, before, after, right)
+    yield from bound_slacks(family, after, before, left)
     for closed, span in ((before, left), (after, right)):
         if closed is None:
             continue
@@ -94,8 +96,8 @@ def events(
                 yield place - start, why
 
 
-def rooms_below(
-    family: Family, closed: Closed | None, other: Closed | None, span: Span
+def bound_slacks(
+    family: Family, closed: ClosedForm | None, other: ClosedForm | None, span: PatternInterval
 ) -> Iterator[tuple[sp.Expr, str]]:
     """What one dual polynomial leaves below the bound at the instants of the other regime, as far as those are known
     exactly: ends of the interval are without a closed form of the other.
@@ -112,7 +114,7 @@ def rooms_below(
         yield family.sigma[k] - sign * f, f"the dual polynomial reaches its bound at {family.time(u)}"
 
 
-def exact_root(expression: sp.Expr, T: sp.Symbol, guess: float, reach: float) -> sp.Expr | None:
+def recognise_root(expression: sp.Expr, T: sp.Symbol, guess: float, reach: float) -> sp.Expr | None:
     """A recognised root within reach of the guess, proved to be one: zero is the numerator, and not the denominator."""
     top, bottom = sp.fraction(sp.together(expression))
     if T not in top.free_symbols:
@@ -127,7 +129,7 @@ def exact_root(expression: sp.Expr, T: sp.Symbol, guess: float, reach: float) ->
             near = abs(root - guess) < reach
         except (ValueError, ZeroDivisionError):
             return None
-        found = constant(sp.Rational(mpmath.nstr(root, 55))) if near else None
+        found = recognise_constant(sp.Rational(mpmath.nstr(root, 55))) if near else None
     if found is None or decide(Equation(top.subs(T, found), sp.S.Zero)).status is not PROVED:
         return None
     return None if enclose(bottom.subs(T, found), bits=200).contains(0) else found
@@ -136,7 +138,9 @@ def exact_root(expression: sp.Expr, T: sp.Symbol, guess: float, reach: float) ->
 # -- without closed forms ---------------------------------------------------------------------------
 
 
-def forced(family: Family, T: sp.Rational, pattern: Pattern, near: Contacts, near_T: sp.Rational) -> Polished:
+def solve_pattern(
+    family: Family, T: sp.Rational, pattern: Pattern, near: Contacts, near_T: sp.Rational
+) -> ContactSolution:
     """The solution of the optimality system of a pattern at T, started from contacts at a nearby length."""
     old, new = make_basis(family.exact(near_T)), make_basis(family.exact(T))
     with precision(BITS):
@@ -144,42 +148,44 @@ def forced(family: Family, T: sp.Rational, pattern: Pattern, near: Contacts, nea
         y = new.transform.transpose().solve(x)
     dual = np.array([float(y[i, 0].mid()) for i in range(near.dual.size)])
     start = Contacts(near.panel, near.u, near.inner, near.sign, near.weights * (old.scale / new.scale), dual, 0.0)
-    return polish(family.exact(T).panels, new, start, BITS, GOAL)
+    return sharpen_contacts(family.exact(T).panels, new, start, BITS, GOAL)
 
 
-def anchors(family: Family, span: Span, edge: Fraction, side: int) -> Iterator[tuple[Contacts, sp.Rational]]:
+def nearby_contacts(
+    family: Family, span: PatternInterval, edge: Fraction, side: int
+) -> Iterator[tuple[Contacts, sp.Rational]]:
     """Contacts of the span's pattern inside it, farther and farther from the edge."""
     width = span.upper - span.lower
     for share in (Fraction(1, 500), Fraction(1, 100), Fraction(1, 20), Fraction(1, 5)):
         T = (edge + side * share * width).limit_denominator(10**7)
-        _, contacts = sample(family, T, span.pattern)
-        if pattern_of(contacts) == span.pattern:
+        _, contacts = sample_contacts(family, T, span.pattern)
+        if contact_pattern(contacts) == span.pattern:
             yield contacts, to_rational(T)
 
 
-Others = Sequence[tuple[int, float, int]]
+FurtherContacts = Sequence[tuple[int, float, int]]
 #: What closes: ("weight", contact), ("start" or "end", contact), ("bound", place among those of the regime beyond).
-Room = tuple[str, int]
+Slack = tuple[str, int]
 
 
-def rooms(found: Polished, problem: Problem, others: Others) -> dict[Room, arb]:
+def pattern_slacks(found: ContactSolution, problem: PanelProblem, others: FurtherContacts) -> dict[Slack, arb]:
     """Quantities that are positive inside a regime: sizes of the weights, distances to the ends, rooms below the
     bound near those contacts of the regime beyond (panel, u, sign) that are none of this one.
     """
-    done: dict[Room, arb] = {}
+    done: dict[Slack, arb] = {}
     for i, (s, w, v) in enumerate(zip(found.sign, found.weights, found.v, strict=True)):
         done["weight", i] = s * w
         if found.inner[i]:
             done["start", i], done["end", i] = v, 1 - v
     for i, (k, u, s) in enumerate(others):
-        place, panel = as_fraction(u), problem.panels[k]
+        place, panel = unit_fraction(u), problem.panels[k]
         if all(j != k or bool(abs(v - arb(place)) > 1e-3) for j, v in zip(found.panel, found.v, strict=True)):
-            f = total(found.dual, panel.rows(arb(peak(panel, found.dual, place))))
+            f = dot_product(found.dual, panel.rows(arb(stationary_fraction(panel, found.dual, place))))
             done["bound", i] = panel.bound() - s * f
     return {room: size for room, size in done.items() if size.is_finite()}
 
 
-def in_words(family: Family, room: Room, others: Others) -> str:
+def slack_words(family: Family, room: Slack, others: FurtherContacts) -> str:
     """What happens where a room closes; others are the contacts of the regime beyond."""
     kind, i = room
     if kind == "weight":
@@ -190,44 +196,44 @@ def in_words(family: Family, room: Room, others: Others) -> str:
     return f"contact {i + 1} reaches an end of {family.stretch_name}"
 
 
-def implicit(family: Family, left: Span, right: Span) -> Boundary:
+def locate_implicitly(family: Family, left: PatternInterval, right: PatternInterval) -> Boundary:
     """The length at which a room of one of the two patterns closes; enclosed by two exact-contact proofs."""
     edge = left.upper
-    starts = [next(anchors(family, span, edge, side), None) for span, side in ((left, -1), (right, 1))]
+    starts = [next(nearby_contacts(family, span, edge, side), None) for span, side in ((left, -1), (right, 1))]
     guesses = []
     for span, start, beyond in ((left, starts[0], starts[1]), (right, starts[1], starts[0])):
         if start is None:
             continue
         c = None if beyond is None else beyond[0]
         others = [] if c is None else list(zip(c.panel.tolist(), c.u.tolist(), c.sign.tolist(), strict=True))
-        found = closing(family, span.pattern, start, edge, others)
+        found = find_closing_slack(family, span.pattern, start, edge, others)
         if found is not None:
-            guesses.append(enclosed(family, left, right, *found))
+            guesses.append(enclose_change(family, left, right, *found))
             if guesses[-1].proved:
                 return guesses[-1]
-    return next(iter(guesses), nowhere(edge))
+    return next(iter(guesses), unlocated_boundary(edge))
 
 
-def nowhere(edge: Fraction) -> Boundary:
+def unlocated_boundary(edge: Fraction) -> Boundary:
     """A change of which no more is known than that the search saw it at the edge."""
     text = decimal(to_fmpq(edge), 8)
     return Boundary(None, text, text, "the pattern of instants changes; not located further", False)
 
 
-def closing(
-    family: Family, pattern: Pattern, start: tuple[Contacts, sp.Rational], edge: Fraction, others: Others
+def find_closing_slack(
+    family: Family, pattern: Pattern, start: tuple[Contacts, sp.Rational], edge: Fraction, others: FurtherContacts
 ) -> tuple[sp.Rational, str] | None:
     """Where the room that closes next to the edge is zero, and what closes."""
     contacts, T0 = start
 
-    def rooms_at(T: sp.Rational) -> dict[Room, arb]:
+    def rooms_at(T: sp.Rational) -> dict[Slack, arb]:
         with precision(BITS):
-            return rooms(forced(family, T, pattern, contacts, T0), family.exact(T), others)
+            return pattern_slacks(solve_pattern(family, T, pattern, contacts, T0), family.exact(T), others)
 
     target = to_rational(edge)
     middle = (T0 + target) / 2
     first, second = rooms_at(T0), rooms_at(middle)
-    room = nearest_to_close(first, second, float(T0), float(target))
+    room = nearest_closing(first, second, float(T0), float(target))
     if room is None:
         return None
 
@@ -236,13 +242,13 @@ def closing(
         return None if found is None else to_rational(found.mid())
 
     ends = (T0, to_rational(first[room].mid())), (middle, to_rational(second[room].mid()))
-    root = secant(size, *ends, target, abs(T0 - target) * 3 + sp.Rational(1, 1000))
-    return None if root is None else (root, in_words(family, room, others))
+    root = secant_root(size, *ends, target, abs(T0 - target) * 3 + sp.Rational(1, 1000))
+    return None if root is None else (root, slack_words(family, room, others))
 
 
-def nearest_to_close(first: dict[Room, arb], second: dict[Room, arb], start: float, edge: float) -> Room | None:
+def nearest_closing(first: dict[Slack, arb], second: dict[Slack, arb], start: float, edge: float) -> Slack | None:
     """The room that, extended from its sizes at the start and half-way to the edge, closes nearest to the edge."""
-    misses: dict[Room, float] = {}
+    misses: dict[Slack, float] = {}
     for room in first.keys() & second.keys():
         drop = float((first[room] - second[room]).mid())
         if drop != 0.0:
@@ -253,7 +259,7 @@ def nearest_to_close(first: dict[Room, arb], second: dict[Room, arb], start: flo
 Point = tuple[sp.Rational, sp.Rational]
 
 
-def secant(
+def secant_root(
     size: Callable[[sp.Rational], sp.Rational | None], one: Point, two: Point, target: sp.Rational, reach: sp.Rational
 ) -> sp.Rational | None:
     """A root by secant steps, within reach of the target; None when they run away."""
@@ -270,9 +276,11 @@ def secant(
     return q
 
 
-def enclosed(family: Family, left: Span, right: Span, root: sp.Rational, why: str) -> Boundary:
+def enclose_change(
+    family: Family, left: PatternInterval, right: PatternInterval, root: sp.Rational, why: str
+) -> Boundary:
     """Exact contacts of the left pattern just below and of the right pattern just above the root."""
-    for proof, sizes in ((proves, (32, 24, 16, 10, 6)), (proves_walking, (32, 16))):
+    for proof, sizes in ((is_pattern_optimal, (32, 24, 16, 10, 6)), (is_pattern_optimal_near, (32, 16))):
         for places in sizes:
             delta = abs(root or sp.Integer(1)) / sp.Integer(10) ** places
             below, above = (
@@ -289,20 +297,20 @@ def exact_decimal(x: sp.Rational) -> str:
     return decimal(to_fmpq(x), 60)
 
 
-def proves(family: Family, span: Span, T: sp.Rational, side: int, root: sp.Rational) -> bool:
+def is_pattern_optimal(family: Family, span: PatternInterval, T: sp.Rational, side: int, root: sp.Rational) -> bool:
     """True when exact contacts of the span's pattern are proved optimal at T."""
     edge = span.upper if side < 0 else span.lower
     problem = family.exact(T)
     basis = make_basis(problem)
-    for start in anchors(family, span, edge, side):
-        found = forced(family, T, span.pattern, *start)
-        regular = found.residual < 1e-45 and not doubled(problem, found)
-        if regular and touch(problem, basis, found, 50, BITS) is not None:
+    for start in nearby_contacts(family, span, edge, side):
+        found = solve_pattern(family, T, span.pattern, *start)
+        regular = found.residual < 1e-45 and not has_double_contact(problem, found)
+        if regular and certify_touch(problem, basis, found, 50, BITS) is not None:
             return True
     return False
 
 
-def doubled(problem: Problem, found: Polished) -> bool:
+def has_double_contact(problem: PanelProblem, found: ContactSolution) -> bool:
     """True when a contact sits where two stretches meet: the end of the other touches as well, and no strict bound
     holds there.
     """
@@ -313,20 +321,22 @@ def doubled(problem: Problem, found: Polished) -> bool:
         for k, v in twins - contacts:
             if 0 <= k < len(problem.panels):
                 panel = problem.panels[k]
-                room = panel.bound() - abs(total(found.dual, panel.rows(arb(v))))
+                room = panel.bound() - abs(dot_product(found.dual, panel.rows(arb(v))))
                 if bool(abs(room) < arb(10) ** -40 * panel.bound()):
                     return True
     return False
 
 
-def proves_walking(family: Family, span: Span, T: sp.Rational, side: int, root: sp.Rational) -> bool:
+def is_pattern_optimal_near(
+    family: Family, span: PatternInterval, T: sp.Rational, side: int, root: sp.Rational
+) -> bool:
     """The same where the pattern is singular at the root itself: it is followed there with many digits."""
-    if proves(family, span, T, side, root):
+    if is_pattern_optimal(family, span, T, side, root):
         return True
     edge = span.upper if side < 0 else span.lower
-    for contacts, begin in anchors(family, span, edge, side):
-        found = walked(family, forced(family, begin, span.pattern, contacts, begin), begin, root, T)
+    for contacts, begin in nearby_contacts(family, span, edge, side):
+        found = walk_to(family, solve_pattern(family, begin, span.pattern, contacts, begin), begin, root, T)
         problem = family.exact(T)
-        if found is not None and not doubled(problem, found):
-            return touch(problem, make_basis(problem), found, walk.DIGITS, walk.BITS) is not None
+        if found is not None and not has_double_contact(problem, found):
+            return certify_touch(problem, make_basis(problem), found, walk.WALK_DIGITS, walk.WALK_BITS) is not None
     return False

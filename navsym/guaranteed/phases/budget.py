@@ -21,15 +21,15 @@ DEFAULT_SECONDS = 300.0
 LEAST = 0.1
 
 
-def used() -> float:
+def processor_seconds() -> float:
     """Seconds of processor time of this thread and of the children that have ended."""
     children = resource.getrusage(resource.RUSAGE_CHILDREN)
     return time.thread_time() + children.ru_utime + children.ru_stime
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Limit:
-    """Until when, on the clock of :func:`used`, a step may go on.
+class Budget:
+    """Until when, on the clock of :func:`processor_seconds`, a step may go on.
 
     given_up : what was stopped or not begun, in words; the same list for all parts of one limit
     """
@@ -38,22 +38,22 @@ class Limit:
     given_up: list[str] = field(default_factory=list)
 
     @classmethod
-    def of(cls, seconds: float) -> Limit:
+    def of(cls, seconds: float) -> Budget:
         """So many seconds from now on. Raises DomainError for what is no time."""
         require_limits(seconds, DEFAULT_MEGABYTES)
-        return cls(used() + seconds)
+        return cls(processor_seconds() + seconds)
 
     def left(self) -> float:
         """Seconds that are left, not below zero."""
-        return max(0.0, self.until - used())
+        return max(0.0, self.until - processor_seconds())
 
     def met(self) -> bool:
         """True when nothing is left."""
-        return used() >= self.until
+        return processor_seconds() >= self.until
 
-    def share(self, part: float) -> Limit:
+    def share(self, part: float) -> Budget:
         """A part of what is left, for one step; what the step leaves of it goes to the others."""
-        return replace(self, until=used() + self.left() * part)
+        return replace(self, until=processor_seconds() + self.left() * part)
 
     def gives_up(self, what: str, why: str = "the limit of work is met") -> None:
         """Write down what was not done."""

@@ -15,22 +15,28 @@ from navsym import checker
 from navsym.core.balls import enclose
 from navsym.core.exact import decimal, from_decimal, to_fmpq, to_fraction, to_rational
 from navsym.guaranteed.certificate.basis import make_basis
-from navsym.guaranteed.certificate.enclosure import interval, terms
-from navsym.guaranteed.certificate.moving import Member, Moving, Vanishing, exact_functional, number_of
+from navsym.guaranteed.certificate.enclosure import interval_ball, series_terms
+from navsym.guaranteed.certificate.moving import (
+    Member,
+    MovingProblem,
+    VanishingProblem,
+    rational_functional,
+    series_coefficient,
+)
 from navsym.guaranteed.certificate.range import (
     BITS,
-    Piece,
-    Ranged,
-    Track,
-    follow,
-    march,
+    PatternTrack,
+    RangePiece,
+    RangeProof,
+    follow_pattern,
+    march_pieces,
     never,
-    piece,
     range_document,
-    simple,
+    short_decimal,
     value_bounds,
+    verify_piece,
 )
-from navsym.guaranteed.phases.closed_forms import refined
+from navsym.guaranteed.phases.closed_forms import sharp_member
 from navsym.guaranteed.phases.family import Family, U
 from navsym.guaranteed.phases.patterns import Pattern
 from navsym.language.expression import to_text
@@ -60,33 +66,33 @@ class Echelon:
     reach: fmpq
 
 
-def echelon(family: Family) -> Echelon | None:
+def echelon_form(family: Family) -> Echelon | None:
     """The echelon form of the regressors at u = 0, or None when a coefficient is not rational."""
     m, count = len(family.functional), len(family.functional) + EXTRA
-    rates = rates_of_row([h for row in family.rows for h in row])
+    rates = argument_rates([h for row in family.rows for h in row])
     if rates is None:
         return None
     tables = [taylor_table(row, count) for row in family.rows]
     if any(t is None for t in tables) or not all(p.is_Rational for p in family.functional):
         return None
     wide = [[t[i][k] for k in range(count) for t in tables if t is not None] for i in range(m)]
-    reduced, A, pivots = eliminated(wide)
+    reduced, A, pivots = reduce_rows(wide)
     if len(pivots) < m:
         return None
     lows = tuple(k // len(tables) for k in pivots)
     exact = tuple(A * fmpq_mat(m, count, [c for row in t for c in row]) for t in tables if t is not None)
-    image = A * fmpq_mat(m, 1, exact_functional(family.moving))
+    image = A * fmpq_mat(m, 1, rational_functional(family.moving))
     shift = max(low for i, low in enumerate(lows) if image[i, 0] != 0)
     return Echelon(A, lows, shift, exact, REACH / max(rates) if rates else fmpq(10**6))
 
 
-def rates_of_row(row: list[sp.Expr]) -> list[fmpq] | None:
+def argument_rates(row: list[sp.Expr]) -> list[fmpq] | None:
     """|c| of every ``sin(c u)``, ``cos(c u)``, ``exp(c u)``, and a bound of 1/|z| for the zeros z of every denominator;
     None when there is another function.
     """
     rates = []
-    for f in {f for h in map(in_exponentials, row) for f in h.atoms(sp.Function, sp.exp) | denominators(h)}:
-        rate = pole_rate(f) if f.is_Pow and not f.is_polynomial(U) and f.base != sp.E else of_argument(f)
+    for f in {f for h in map(in_exponentials, row) for f in h.atoms(sp.Function, sp.exp) | reciprocals(h)}:
+        rate = pole_rate(f) if f.is_Pow and not f.is_polynomial(U) and f.base != sp.E else argument_rate(f)
         if rate is None:
             return None
         rates.append(rate)
@@ -99,18 +105,18 @@ def in_exponentials(h: sp.Expr) -> sp.Expr:
 
 
 def is_polynomial_in_terms(h: sp.Expr) -> bool:
-    """True for a polynomial in U and in what :func:`opened` replaces: functions and reciprocals."""
-    own = {f: sp.Dummy() for f in h.atoms(sp.Function, sp.exp) | denominators(h)}
+    """True for a polynomial in U and in what :func:`expand_functions` replaces: functions and reciprocals."""
+    own = {f: sp.Dummy() for f in h.atoms(sp.Function, sp.exp) | reciprocals(h)}
     return bool(h.xreplace(own).is_polynomial(U))
 
 
-def denominators(h: sp.Expr) -> set[sp.Expr]:
+def reciprocals(h: sp.Expr) -> set[sp.Expr]:
     """Reciprocals of polynomials in U."""
     powers = (e for e in h.atoms(sp.Pow) if e.exp.is_Integer and e.exp.is_negative)
     return {e for e in powers if e.has(U) and e.base.is_polynomial(U)}
 
 
-def of_argument(f: sp.Expr) -> fmpq | None:
+def argument_rate(f: sp.Expr) -> fmpq | None:
     """|c| of ``sin(c u)``, ``cos(c u)``, ``exp(c u)``."""
     c = sp.expand(f.args[0] / U) if f.func in (sp.sin, sp.cos, sp.exp) else sp.S.NaN
     return abs(to_fmpq(c)) if c.is_Rational else None
@@ -140,7 +146,7 @@ def taylor_table(row: tuple[sp.Expr, ...], count: int) -> list[list[fmpq]] | Non
     return table
 
 
-def eliminated(rows: list[list[fmpq]]) -> tuple[list[list[fmpq]], fmpq_mat, list[int]]:
+def reduce_rows(rows: list[list[fmpq]]) -> tuple[list[list[fmpq]], fmpq_mat, list[int]]:
     """Gauss and Jordan with the matrix of the row operations; rows scaled to one at their pivots."""
     m, n = len(rows), len(rows[0])
     work = [[*row, *(fmpq(int(i == j)) for j in range(m))] for i, row in enumerate(rows)]
@@ -162,26 +168,28 @@ def eliminated(rows: list[list[fmpq]]) -> tuple[list[list[fmpq]], fmpq_mat, list
     return [row[:n] for row in work], A, pivots
 
 
-def scaled(family: Family, form: Echelon, start: fmpq, end: fmpq) -> Vanishing:
+def scaled_problem(family: Family, form: Echelon, start: fmpq, end: fmpq) -> VanishingProblem:
     """The scaled problem for lengths from start to end: exact coefficients, and the last one over [0, end]."""
     m, count = form.basis.nrows(), form.exact[0].ncols()
     mix = arb_mat(m, m, [arb(a) for a in form.basis.entries()])
     local = []
     for panel, table in zip(family.moving.panels, form.exact, strict=True):
-        with terms(count + 1):
+        with series_terms(count + 1):
             sigma = enclose(panel.sigma, bits=BITS)
-            whole = panel.program.run({panel.variable: arb_series([interval(fmpq(0), end), arb(1)])})
-            last = mix * arb_mat([[number_of(h, count)] for h in whole])
+            whole = panel.program.run({panel.variable: arb_series([interval_ball(fmpq(0), end), arb(1)])})
+            last = mix * arb_mat([[series_coefficient(h, count)] for h in whole])
         rows = [[arb(table[i, k]) / sigma for k in range(count)] + [last[i, 0] / sigma] for i in range(m)]
         local.append(tuple(tuple(row) for row in rows))
     middle, half = (start + end) / 2, (end - start) / 2
-    return Vanishing(family.moving, family.parameter, form.basis, middle, half, form.lows, form.shift, tuple(local))
+    return VanishingProblem(
+        family.moving, family.parameter, form.basis, middle, half, form.lows, form.shift, tuple(local)
+    )
 
 
 # -- the certificate: regressors written with entire functions ---------------------------------------
 
 
-def scaled_certificate(family: Family, form: Echelon, pieces: Sequence[Piece]) -> dict[str, Any]:
+def scaled_certificate(family: Family, form: Echelon, pieces: Sequence[RangePiece]) -> dict[str, Any]:
     """A range certificate of the scaled problem on [0, 1], and the identities that tie it to the original.
 
     ``sin_k(x)`` is sin(x) less its Taylor polynomial of degree below k, divided by x**k, and so for the others.
@@ -190,10 +198,10 @@ def scaled_certificate(family: Family, form: Echelon, pieces: Sequence[Piece]) -
     v = "v" if T.name != "v" else "place"
     panels, ties = [], []
     for k, row in enumerate(family.rows):
-        texts = [scaled_text(form, i, row, T.name, v) for i in range(m)]
+        texts = [scaled_row_text(form, i, row, T.name, v) for i in range(m)]
         sigma = to_text(family.sigma[k])
         panels.append({"measurement": k, "from": "0", "to": "1", "sigma": sigma, "H": texts})
-        ties += [tie(form, i, row, text, T, v) for i, text in enumerate(texts)]
+        ties += [tie_identity(form, i, row, text, T, v) for i, text in enumerate(texts)]
     unit = [[str(int(i == j)) for j in range(m)] for i in range(m)]
     lower, upper = value_bounds(pieces)
     found = {
@@ -213,7 +221,7 @@ def scaled_certificate(family: Family, form: Echelon, pieces: Sequence[Piece]) -
     return {"kind": "all", "of": [found, *ties]}
 
 
-def rescaled(family: Family, form: Echelon) -> Family:
+def rescale_family(family: Family, form: Echelon) -> Family:
     """The same problems with places as shares of the interval and rows scaled, for lengths above zero."""
     T, m = family.parameter, len(family.functional)
     rows = tuple(
@@ -224,27 +232,29 @@ def rescaled(family: Family, form: Echelon) -> Family:
         )
         for row in family.rows
     )
-    image = form.basis * fmpq_mat(m, 1, exact_functional(family.moving))
+    image = form.basis * fmpq_mat(m, 1, rational_functional(family.moving))
     functional = tuple(to_rational(image[i, 0]) * T ** (form.shift - low) for i, low in enumerate(form.lows))
     return replace(family, rows=rows, functional=functional, start=sp.S.Zero, end=sp.S.One)
 
 
-def tied(family: Family, form: Echelon, document: dict[str, Any]) -> dict[str, Any]:
+def tie_certificate(family: Family, form: Echelon, document: dict[str, Any]) -> dict[str, Any]:
     """A certificate of the rescaled problem with the identities that tie it to the original."""
     T, v = family.parameter, document["variable"]
     ties = [
-        tie(form, i, row, text, T, v)
+        tie_identity(form, i, row, text, T, v)
         for row, panel in zip(family.rows, document["panels"], strict=True)
         for i, text in enumerate(panel["H"])
     ]
     return {"kind": "all", "of": [document, *ties]}
 
 
-def scaled_text(form: Echelon, i: int, row: tuple[sp.Expr, ...], T: str, v: str) -> str:
+def scaled_row_text(form: Echelon, i: int, row: tuple[sp.Expr, ...], T: str, v: str) -> str:
     """Row i of ``A H(T v) / T**k_i``, powers cancelled."""
     parts: dict[sp.Symbol, str] = {}
     K = max(form.lows) + 1
-    total = sum((to_rational(form.basis[i, j]) * opened(h, K, T, v, parts) for j, h in enumerate(row)), sp.S.Zero)
+    total = sum(
+        (to_rational(form.basis[i, j]) * expand_functions(h, K, T, v, parts) for j, h in enumerate(row)), sp.S.Zero
+    )
     terms = []
     for (power,), factor in sp.Poly(sp.expand(total), U).terms():
         for monomial, c in sp.Poly(factor, *parts).terms() if parts else [((), factor)]:
@@ -254,7 +264,7 @@ def scaled_text(form: Echelon, i: int, row: tuple[sp.Expr, ...], T: str, v: str)
     return " + ".join(terms)
 
 
-def opened(h: sp.Expr, K: int, T: str, v: str, parts: dict[sp.Symbol, str]) -> sp.Expr:
+def expand_functions(h: sp.Expr, K: int, T: str, v: str, parts: dict[sp.Symbol, str]) -> sp.Expr:
     """h with every function written as its Taylor polynomial and ``(c u)**K`` times an entire function, and every
     reciprocal as its Taylor polynomial and ``u**K`` times a rational function.
     """
@@ -263,7 +273,7 @@ def opened(h: sp.Expr, K: int, T: str, v: str, parts: dict[sp.Symbol, str]) -> s
         c, name = sp.expand(f.args[0] / U), {sp.sin: "sin", sp.cos: "cos", sp.exp: "exp"}[f.func]
         symbol = sp.Symbol(f"{name}[{c}]")
         parts[symbol] = f"{name}_{K}(({to_text(c)})*{T}*{v})"
-        return polynomial_of(name, c, K) + (c * U) ** K * symbol
+        return taylor_polynomial(name, c, K) + (c * U) ** K * symbol
 
     def reciprocal(f: sp.Expr) -> sp.Expr:
         (table,), symbol = taylor_table((f,), K) or ([],), sp.Symbol(f"rest[{f}]")
@@ -273,18 +283,18 @@ def opened(h: sp.Expr, K: int, T: str, v: str, parts: dict[sp.Symbol, str]) -> s
         return polynomial + U**K * symbol
 
     shown = in_exponentials(h)
-    below = denominators(shown)
+    below = reciprocals(shown)
     shown = shown.replace(lambda e: isinstance(e, (sp.sin, sp.cos, sp.exp)), function)
     return sp.expand(shown.xreplace({f: reciprocal(f) for f in below}))
 
 
-def polynomial_of(name: str, c: sp.Rational, K: int) -> sp.Expr:
+def taylor_polynomial(name: str, c: sp.Rational, K: int) -> sp.Expr:
     """Taylor polynomial, of degree below K, of exp, sin or cos of c u."""
     signs = {"exp": lambda k: 1, "sin": lambda k: (0, 1, 0, -1)[k % 4], "cos": lambda k: (1, 0, -1, 0)[k % 4]}
     return sum((signs[name](k) * (c * U) ** k / sp.factorial(k) for k in range(K)), sp.S.Zero)
 
 
-def tie(form: Echelon, i: int, row: tuple[sp.Expr, ...], text: str, T: sp.Symbol, v: str) -> dict[str, Any]:
+def tie_identity(form: Echelon, i: int, row: tuple[sp.Expr, ...], text: str, T: sp.Symbol, v: str) -> dict[str, Any]:
     """``H_i T**k_i = sum_j A_ij H_j(T v)``."""
     place = sp.Symbol(v, real=True)
     pairs = [(to_rational(form.basis[i, j]), h.subs(U, T * place)) for j, h in enumerate(row)]
@@ -294,7 +304,7 @@ def tie(form: Echelon, i: int, row: tuple[sp.Expr, ...], text: str, T: sp.Symbol
 
 def scaled_functional(family: Family, form: Echelon) -> list[str]:
     """``(A P)_i T**(shift - k_i)`` as texts for the certificate."""
-    image = form.basis * fmpq_mat(form.basis.nrows(), 1, exact_functional(family.moving))
+    image = form.basis * fmpq_mat(form.basis.nrows(), 1, rational_functional(family.moving))
     T = family.parameter.name
     return [
         f"({to_text(to_rational(image[i, 0]))})*{T}**{form.shift - low}" if image[i, 0] != 0 else "0"
@@ -305,37 +315,45 @@ def scaled_functional(family: Family, form: Echelon) -> list[str]:
 MOST_CELLS = 10_000
 
 
-def followed(family: Family, pattern: Pattern, lower: fmpq, upper: fmpq, enough: Callable[[], bool] = never) -> Ranged:
+def follow_regime(
+    family: Family, pattern: Pattern, lower: fmpq, upper: fmpq, enough: Callable[[], bool] = never
+) -> RangeProof:
     """Certificate pieces for the pattern between two values, as far as the tests pass and until it is enough."""
-    form = echelon(family) if family.growing else None
+    form = echelon_form(family) if family.growing else None
     if form is None:
         least = max(lower, upper / 400) if family.growing else lower
-        found = from_middle(family, pattern, least, upper, enough)
-        documents = [plain(family, part) for part in parts(found)]
-        return Ranged(tuple(found), tuple(documents))
+        found = follow_from_middle(family, pattern, least, upper, enough)
+        documents = [plain_certificate(family, part) for part in group_pieces(found)]
+        return RangeProof(tuple(found), tuple(documents))
     start, documents = [], []
     if lower == 0:
-        start = from_zero(family, form, pattern, upper, enough)
+        start = follow_from_zero(family, form, pattern, upper, enough)
         if not start:
-            return Ranged((), ())
+            return RangeProof((), ())
         lower = start[-1].upper
-        documents += [scaled_certificate(family, form, part) for part in parts(start)]
-    scaled_family = rescaled(family, form)
-    rest = from_middle(scaled_family, pattern, lower, upper, enough) if lower < upper else []
+        documents += [scaled_certificate(family, form, part) for part in group_pieces(start)]
+    scaled_family = rescale_family(family, form)
+    rest = follow_from_middle(scaled_family, pattern, lower, upper, enough) if lower < upper else []
     if rest and lower < rest[0].lower and not enough():
-        rest = [*from_middle(scaled_family, pattern, lower, rest[0].lower, enough), *rest]
-    documents += [tied(family, form, plain(scaled_family, part)) for part in parts(rest)]
-    return Ranged((*start, *rest), tuple(documents))
+        rest = [*follow_from_middle(scaled_family, pattern, lower, rest[0].lower, enough), *rest]
+    documents += [tie_certificate(family, form, plain_certificate(scaled_family, part)) for part in group_pieces(rest)]
+    return RangeProof((*start, *rest), tuple(documents))
 
 
-def from_middle(family: Family, pattern: Pattern, lower: fmpq, upper: fmpq, enough: Callable[[], bool]) -> list[Piece]:
+def follow_from_middle(
+    family: Family, pattern: Pattern, lower: fmpq, upper: fmpq, enough: Callable[[], bool]
+) -> list[RangePiece]:
     """Pieces from the middle towards both ends; in a turned basis where the first one makes none."""
-    accepts = accepted_by(partial(plain, family))
-    found = follow(plain_track(family, pattern, conditioner), lower, upper, enough, accepts)
-    return found or ([] if enough() else follow(plain_track(family, pattern, turned), lower, upper, enough, accepts))
+    accepts = checker_accepts(partial(plain_certificate, family))
+    found = follow_pattern(plain_track(family, pattern, conditioning_matrix), lower, upper, enough, accepts)
+    return found or (
+        []
+        if enough()
+        else follow_pattern(plain_track(family, pattern, reflected_matrix), lower, upper, enough, accepts)
+    )
 
 
-def covered(pieces: Sequence[Piece]) -> list[tuple[fmpq, fmpq]]:
+def covered(pieces: Sequence[RangePiece]) -> list[tuple[fmpq, fmpq]]:
     """Ranges that pieces in order cover, neighbours joined; pieces from zero and from the middle need not meet."""
     done: list[tuple[fmpq, fmpq]] = []
     for one in pieces:
@@ -344,17 +362,17 @@ def covered(pieces: Sequence[Piece]) -> list[tuple[fmpq, fmpq]]:
     return done
 
 
-def plain(family: Family, pieces: Sequence[Piece]) -> dict[str, Any]:
+def plain_certificate(family: Family, pieces: Sequence[RangePiece]) -> dict[str, Any]:
     """The range certificate of pieces that lie next to each other."""
     return range_document(family.moving, family.parameter.name, pieces)
 
 
-def accepted_by(document: Callable[[Sequence[Piece]], dict[str, Any]]) -> Callable[[Piece], bool]:
+def checker_accepts(document: Callable[[Sequence[RangePiece]], dict[str, Any]]) -> Callable[[RangePiece], bool]:
     """Whether the independent checker accepts the certificate of a piece alone: its balls come from texts, and are not
     those of the proof here.
     """
 
-    def accepts(one: Piece) -> bool:
+    def accepts(one: RangePiece) -> bool:
         try:
             checker.check(checker.load(json.dumps(document([one]))))
         except checker.Refused:
@@ -364,9 +382,9 @@ def accepted_by(document: Callable[[Sequence[Piece]], dict[str, Any]]) -> Callab
     return accepts
 
 
-def parts(pieces: Sequence[Piece]) -> list[list[Piece]]:
+def group_pieces(pieces: Sequence[RangePiece]) -> list[list[RangePiece]]:
     """Neighbours in groups that take no more cells together than a checker allows one certificate."""
-    done: list[list[Piece]] = []
+    done: list[list[RangePiece]] = []
     used = MOST_CELLS
     for one in pieces:
         apart = bool(done) and done[-1][-1].upper != one.lower
@@ -378,45 +396,47 @@ def parts(pieces: Sequence[Piece]) -> list[list[Piece]]:
     return done
 
 
-def plain_track(family: Family, pattern: Pattern, basis: Callable[[Family, fmpq], fmpq_mat]) -> Track:
+def plain_track(family: Family, pattern: Pattern, basis: Callable[[Family, fmpq], fmpq_mat]) -> PatternTrack:
     """The problem in a basis at a value of the parameter, which is renewed now and then."""
     bases: list[tuple[fmpq, fmpq, fmpq_mat]] = []
 
-    def moving(a: fmpq, b: fmpq) -> Moving:
+    def moving(a: fmpq, b: fmpq) -> MovingProblem:
         middle, half = (a + b) / 2, (b - a) / 2
         if not bases or abs(middle - bases[-1][0]) > 2 * bases[-1][1]:
             bases.append((middle, half, basis(family, middle)))
-        return Moving(family.moving, family.parameter, bases[-1][2], middle, half)
+        return MovingProblem(family.moving, family.parameter, bases[-1][2], middle, half)
 
-    return Track(family.moving, family.parameter, pattern, lambda p: member(family, pattern, p), moving)
+    return PatternTrack(family.moving, family.parameter, pattern, lambda p: pattern_member(family, pattern, p), moving)
 
 
-def from_zero(family: Family, form: Echelon, pattern: Pattern, upper: fmpq, enough: Callable[[], bool]) -> list[Piece]:
+def follow_from_zero(
+    family: Family, form: Echelon, pattern: Pattern, upper: fmpq, enough: Callable[[], bool]
+) -> list[RangePiece]:
     """Pieces from the length zero on, scaled by powers of the length, as far as their series are sharp."""
-    track = Track(
+    track = PatternTrack(
         family.moving,
         family.parameter,
         pattern,
-        lambda p: member(family, pattern, p),
-        lambda a, b: scaled(family, form, a, b),
+        lambda p: pattern_member(family, pattern, p),
+        lambda a, b: scaled_problem(family, form, a, b),
     )
-    accepts = accepted_by(lambda part: scaled_certificate(family, form, part)["of"][0])
-    last = min(simple(upper * fmpq(7, 8), upper), simple(form.reach, form.reach))
+    accepts = checker_accepts(lambda part: scaled_certificate(family, form, part)["of"][0])
+    last = min(short_decimal(upper * fmpq(7, 8), upper), short_decimal(form.reach, form.reach))
     end = last
     for _ in range(12):
         if enough():
             break
         start = track.first(end / 2)
-        first = None if start is None else piece(track, start, fmpq(0), end)
+        first = None if start is None else verify_piece(track, start, fmpq(0), end)
         if first is not None and accepts(first):
-            return [first, *march(track, first.ends[1], end, last, 3, enough, accepts)]
-        end = simple(end / 2, end)
+            return [first, *march_pieces(track, first.ends[1], end, last, 3, enough, accepts)]
+        end = short_decimal(end / 2, end)
     return []
 
 
-def member(family: Family, pattern: Pattern, p: fmpq) -> Member | None:
+def pattern_member(family: Family, pattern: Pattern, p: fmpq) -> Member | None:
     """The solution at a value whose pattern can be told in double precision."""
-    found = refined(family, to_fraction(p), pattern)
+    found = sharp_member(family, to_fraction(p), pattern)
     if found is None:
         return None
     done, problem = found.polished, family.exact(to_rational(p))
@@ -424,18 +444,18 @@ def member(family: Family, pattern: Pattern, p: fmpq) -> Member | None:
     return Member(tuple(map(to_fmpq, done.dual)), tuple(map(to_fmpq, done.v)), tuple(map(to_fmpq, weights)))
 
 
-def conditioner(family: Family, p: fmpq) -> fmpq_mat:
+def conditioning_matrix(family: Family, p: fmpq) -> fmpq_mat:
     """The orthonormalising matrix at a value, rounded to twelve digits."""
     basis = make_basis(family.exact(to_rational(p)))
     m = basis.transform.nrows()
     return fmpq_mat(m, m, [from_decimal(decimal(basis.transform[i, j], 12)) for i in range(m) for j in range(m)])
 
 
-def turned(family: Family, p: fmpq) -> fmpq_mat:
+def reflected_matrix(family: Family, p: fmpq) -> fmpq_mat:
     """The same after a reflection along (1, ..., m): the boxes of the proof are as large as what moves in them, and an
     unknown of the dual that is zero for all values has no size of its own.
     """
-    A = conditioner(family, p)
+    A = conditioning_matrix(family, p)
     m = A.nrows()
     squares = sum(k * k for k in range(1, m + 1))
     mirror = [fmpq(int(i == j)) - fmpq(2 * (i + 1) * (j + 1), squares) for i in range(m) for j in range(m)]

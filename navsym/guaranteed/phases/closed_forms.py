@@ -19,15 +19,15 @@ from navsym.claims import OPEN, PROVED, Equation, Optimum, Verdict
 from navsym.core.balls import enclose
 from navsym.core.exact import to_fraction, to_rational
 from navsym.core.sandbox import Exhausted, run_limited
-from navsym.guaranteed.certificate.fixed import attempts
-from navsym.guaranteed.certificate.polish import Polished, polish
-from navsym.guaranteed.phases.budget import LEAST, Limit
+from navsym.guaranteed.certificate.fixed import dual_attempts
+from navsym.guaranteed.certificate.polish import ContactSolution, sharpen_contacts
+from navsym.guaranteed.phases.budget import LEAST, Budget
 from navsym.guaranteed.phases.family import Family, U
-from navsym.guaranteed.phases.patterns import Pattern, Span, pattern_of, sample
-from navsym.guaranteed.phases.recognise import middle_of_constant, place_or_share
-from navsym.prove.equations import combine, decide_equation
+from navsym.guaranteed.phases.patterns import Pattern, PatternInterval, contact_pattern, sample_contacts
+from navsym.guaranteed.phases.recognise import middle_of_constant, recognise_place
+from navsym.prove.equations import decide_equation, weakest_verdict
 from navsym.prove.ladder import DEFAULT_MEGABYTES, decide_within
-from navsym.prove.optimum import SHARE, constraints, equal_values, feasibility, instants
+from navsym.prove.optimum import SHARE, decide_constraints, decide_feasibility, decide_times, decide_values
 from navsym.prove.signs.products import as_product
 
 # Closed forms for monomials on [0, T]: shares of the interval, powers of T, and Lagrange's weights.
@@ -43,7 +43,7 @@ from navsym.prove.signs.products import as_product
 NEAR = sp.Rational(1, 10**35)
 
 
-def is_monomial(family: Family) -> bool:
+def has_monomials(family: Family) -> bool:
     """One measurement with the regressors 1, u, u**2, …."""
     return len(family.rows) == 1 and family.rows[0] == tuple(U**k for k in range(len(family.rows[0])))
 
@@ -61,7 +61,7 @@ def monomial_weights(family: Family, places: Sequence[sp.Expr]) -> tuple[sp.Expr
     shares = [sp.expand(p / T) for p in places]
     if len(places) != m or any(c.free_symbols for c in shares):
         return None
-    omega = recognised_product(shares)
+    omega = rational_product(shares)
     if omega is None:
         return None
     slope = [k * c for k, c in enumerate(omega)][1:]
@@ -79,7 +79,7 @@ def monomial_weights(family: Family, places: Sequence[sp.Expr]) -> tuple[sp.Expr
     return tuple(weights)
 
 
-def recognised_product(shares: Sequence[sp.Expr]) -> list[sp.Rational] | None:
+def rational_product(shares: Sequence[sp.Expr]) -> list[sp.Rational] | None:
     """Coefficients of ``prod (t - c_i)``, lowest first, when they are recognised as rational."""
     c = [sp.Integer(1)]
     for share in shares:
@@ -108,7 +108,7 @@ GOAL = 1e-60
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Closed:
+class ClosedForm:
     """Places in u, weights, dual and value as expressions in T, and the verdict on the pair."""
 
     panels: tuple[int, ...]
@@ -120,71 +120,75 @@ class Closed:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Sample:
+class SharpMember:
     """One member of the family with many digits."""
 
     T: sp.Rational
     places: tuple[sp.Rational, ...]
-    polished: Polished
+    polished: ContactSolution
 
 
-def samples_of(family: Family, span: Span, shares: Sequence[str] = ("0.23", "0.41", "0.59", "0.83")) -> list[Sample]:
+def sample_regime(
+    family: Family, span: PatternInterval, shares: Sequence[str] = ("0.23", "0.41", "0.59", "0.83")
+) -> list[SharpMember]:
     """Members of a span whose pattern is that of the span."""
     found = []
     for share in shares:
         T = (span.lower + (span.upper - span.lower) * Fraction(share)).limit_denominator(10**6)
-        one = refined(family, T, span.pattern)
+        one = sharp_member(family, T, span.pattern)
         if one is not None:
             found.append(one)
     return found
 
 
-def refined(family: Family, T: Fraction, pattern: Pattern | None) -> Sample | None:
+def sharp_member(family: Family, T: Fraction, pattern: Pattern | None) -> SharpMember | None:
     """The member of length T with about 90 digits, or None when its pattern is another one."""
-    basis, contacts = sample(family, T, pattern)
-    if pattern is not None and pattern_of(contacts) != pattern:
+    basis, contacts = sample_contacts(family, T, pattern)
+    if pattern is not None and contact_pattern(contacts) != pattern:
         return None
     value = to_rational(T)
-    done = polish(family.exact(value).panels, basis, contacts, BITS, GOAL)
+    done = sharpen_contacts(family.exact(value).panels, basis, contacts, BITS, GOAL)
     places = []
     for k, v in zip(done.panel, done.v, strict=True):
         start, end = (sp.Rational(str(sp.N(e, 95))) if not e.is_Rational else e for e in family.ends(value, k))
         places.append(start + (end - start) * to_rational(v))
-    return Sample(value, tuple(places), done)
+    return SharpMember(value, tuple(places), done)
 
 
 # -- exact linear algebra on the contacts ---------------------------------------------------------
 
 
-def candidates(family: Family, span: Span) -> list[Closed]:
+def propose_closed_forms(family: Family, span: PatternInterval) -> list[ClosedForm]:
     """Closed forms of a span as guesses, not yet proved; the dual with most zeros first."""
-    found = samples_of(family, span)
+    found = sample_regime(family, span)
     if len(found) < 3:
         return []
     lengths = [s.T for s in found]
     columns = [[s.places[i] for s in found] for i in range(len(span.pattern))]
     panels = tuple(k for k, _, _ in span.pattern)
-    places = [place_or_share(family, k, c, lengths) for k, c in zip(panels, columns, strict=True)]
+    places = [recognise_place(family, k, c, lengths) for k, c in zip(panels, columns, strict=True)]
     places = [middle_of_constant(family, k) if p is None else p for k, p in zip(panels, places, strict=True)]
     if any(p is None for p in places):
         return []
     exact = tuple(p for p in places if p is not None)
-    if is_monomial(family) and family.growing:
+    if has_monomials(family) and family.growing:
         quick = monomial_guess(family, span, exact, found)
         if quick is not None:
             return [quick]
-    weights = weights_of(family, span, exact, found[0])
+    weights = solve_weights(family, span, exact, found[0])
     if weights is None:
         return []
     guesses = []
-    moving = itertools.islice(duals(family, span, exact, found), 3)
-    for dual in (*moving, *fixed_duals(family, span, found)):
-        value = tidy(sum((x * p for x, p in zip(dual, family.functional, strict=True)), sp.S.Zero))
-        guesses.append(Closed(panels, exact, weights, dual, value, Verdict(OPEN, "none")))
+    moving = itertools.islice(propose_duals(family, span, exact, found), 3)
+    for dual in (*moving, *constant_duals(family, span, found)):
+        value = shorten_formula(sum((x * p for x, p in zip(dual, family.functional, strict=True)), sp.S.Zero))
+        guesses.append(ClosedForm(panels, exact, weights, dual, value, Verdict(OPEN, "none")))
     return guesses
 
 
-def monomial_guess(family: Family, span: Span, places: tuple[sp.Expr, ...], found: Sequence[Sample]) -> Closed | None:
+def monomial_guess(
+    family: Family, span: PatternInterval, places: tuple[sp.Expr, ...], found: Sequence[SharpMember]
+) -> ClosedForm | None:
     """A closed form for monomials on [0, T], not yet proved: weights from the places, the dual by powers of T.
 
     places : closed forms of the contacts. None when the samples follow no power law or the weights are not found
@@ -195,24 +199,24 @@ def monomial_guess(family: Family, span: Span, places: tuple[sp.Expr, ...], foun
     if dual is None or weights is None:
         return None
     value = sum((x * p for x, p in zip(dual, family.functional, strict=True)), sp.S.Zero)
-    return Closed(tuple(k for k, _, _ in span.pattern), places, weights, dual, value, Verdict(OPEN, "none"))
+    return ClosedForm(tuple(k for k, _, _ in span.pattern), places, weights, dual, value, Verdict(OPEN, "none"))
 
 
-def prove(
-    family: Family, guesses: Sequence[Closed], lower: sp.Expr, upper: sp.Expr, seconds: float = 60.0
-) -> Closed | None:
+def prove_closed_form(
+    family: Family, guesses: Sequence[ClosedForm], lower: sp.Expr, upper: sp.Expr, seconds: float = 60.0
+) -> ClosedForm | None:
     """The first guess that the ladder proves or certifies on the whole of (lower, upper); else the first.
 
     seconds : for all guesses together; each may take its share of what is left
     What had to be taken for granted on the way (a divisor that may vanish inside the range) leaves a guess OPEN.
     """
-    best: Closed | None = None
-    limit = Limit.of(seconds)
+    best: ClosedForm | None = None
+    limit = Budget.of(seconds)
     for k, guess in enumerate(guesses):
         mine = limit.share(1 / (len(guesses) - k)).left()
         if mine < LEAST:
             break
-        verdict = proved(family, guess, lower, upper, mine)
+        verdict = decide_pair(family, guess, lower, upper, mine)
         if verdict.assumptions:
             verdict = Verdict(OPEN, "none", evidence=f"not shown: {', '.join(verdict.assumptions)}")
         done = replace(guess, verdict=verdict)
@@ -222,8 +226,8 @@ def prove(
     return best
 
 
-def duals(
-    family: Family, span: Span, places: Sequence[sp.Expr], found: Sequence[Sample]
+def propose_duals(
+    family: Family, span: PatternInterval, places: Sequence[sp.Expr], found: Sequence[SharpMember]
 ) -> Iterator[tuple[sp.Expr, ...]]:
     """Solutions x of ``x . H(u_i) = s_i sigma`` and ``x . H'(u_i) = 0``; those with most zeros first.
 
@@ -231,13 +235,13 @@ def duals(
     bound at an end.
     """
     rows, right = contact_equations(family, span, places)
-    rank = rank_at(family, rows, found[0].T)
+    rank = numeric_rank(family, rows, found[0].T)
     for columns in itertools.combinations(range(len(rows[0])), rank):
-        yield from solved_dual(family, rows, right, columns, found)
+        yield from solve_dual(family, rows, right, columns, found)
     free = len(rows[0]) - rank
     for more in itertools.combinations(conditions_at_ends(family), free) if free else ():
         left, bounds = [row for row, _ in more], [bound for _, bound in more]
-        yield from solved_dual(family, [*rows, *left], [*right, *bounds], range(len(rows[0])), found)
+        yield from solve_dual(family, [*rows, *left], [*right, *bounds], range(len(rows[0])), found)
 
 
 def conditions_at_ends(family: Family) -> list[tuple[list[sp.Expr], sp.Expr]]:
@@ -251,7 +255,7 @@ def conditions_at_ends(family: Family) -> list[tuple[list[sp.Expr], sp.Expr]]:
     return balanced + [(row, sp.sympify(bound, strict=True)) for row, bound in signed_]
 
 
-def fixed_duals(family: Family, span: Span, found: Sequence[Sample]) -> list[tuple[sp.Expr, ...]]:
+def constant_duals(family: Family, span: PatternInterval, found: Sequence[SharpMember]) -> list[tuple[sp.Expr, ...]]:
     """Duals with rational entries that do not move, where contacts are too few to determine one.
 
     Of a growing interval what stays within the bound on the longest does so on the others: that one comes first.
@@ -260,19 +264,19 @@ def fixed_duals(family: Family, span: Span, found: Sequence[Sample]) -> list[tup
         return []
     done: list[tuple[sp.Expr, ...]] = []
     for T in (span.upper, span.lower, to_fraction(found[-1].T)):
-        basis, contacts = sample(family, T, span.pattern)
+        basis, contacts = sample_contacts(family, T, span.pattern)
         problem = family.exact(to_rational(T))
-        refined_ = polish(problem.panels, basis, contacts, BITS, GOAL)
-        for base, _, _ in attempts(problem, basis, contacts, refined_, 14):
+        refined_ = sharpen_contacts(problem.panels, basis, contacts, BITS, GOAL)
+        for base, _, _ in dual_attempts(problem, basis, contacts, refined_, 14):
             x = tuple(to_rational(c) for c in base)
             short = all(c.q <= 720 for c in x)
-            if short and x not in done and all(feasible(family, one, np.array(x, dtype=float)) for one in found):
+            if short and x not in done and all(is_feasible(family, one, np.array(x, dtype=float)) for one in found):
                 done.append(x)
     return done
 
 
 def contact_equations(
-    family: Family, span: Span, places: Sequence[sp.Expr]
+    family: Family, span: PatternInterval, places: Sequence[sp.Expr]
 ) -> tuple[list[list[sp.Expr]], list[sp.Expr]]:
     """Rows and right sides of what the dual satisfies at its contacts."""
     rows, right = [], []
@@ -285,36 +289,36 @@ def contact_equations(
     return rows, right
 
 
-def numbers_at(family: Family, rows: Sequence[Sequence[sp.Expr]], p: sp.Rational) -> np.ndarray:
+def numeric_matrix(family: Family, rows: Sequence[Sequence[sp.Expr]], p: sp.Rational) -> np.ndarray:
     """Double values of a matrix for one value of the parameter."""
     return np.array([[float(family.at(e, p).evalf(30)) for e in row] for row in rows])
 
 
-def rank_at(family: Family, rows: Sequence[Sequence[sp.Expr]], p: sp.Rational) -> int:
+def numeric_rank(family: Family, rows: Sequence[Sequence[sp.Expr]], p: sp.Rational) -> int:
     """Rank of a matrix, in doubles, for one value of the parameter."""
-    return int(np.linalg.matrix_rank(numbers_at(family, rows, p), tol=1e-9))
+    return int(np.linalg.matrix_rank(numeric_matrix(family, rows, p), tol=1e-9))
 
 
-def solved_dual(
+def solve_dual(
     family: Family,
     rows: Sequence[Sequence[sp.Expr]],
     right: Sequence[sp.Expr],
     columns: Sequence[int],
-    found: Sequence[Sample],
+    found: Sequence[SharpMember],
 ) -> Iterator[tuple[sp.Expr, ...]]:
     """The exact solution with zeros outside the columns, if it is feasible at every sample."""
     columns, m = list(columns), len(rows[0])
-    numeric = numbers_at(family, rows, found[0].T)[:, columns]
-    picked = independent_rows(numeric)
+    numeric = numeric_matrix(family, rows, found[0].T)[:, columns]
+    picked = first_independent_rows(numeric)
     if len(picked) < len(columns):
         return
     for one in found:
-        A, b = numbers_at(family, rows, one.T)[:, columns], numbers_at(family, [right], one.T)[0]
+        A, b = numeric_matrix(family, rows, one.T)[:, columns], numeric_matrix(family, [right], one.T)[0]
         x = np.zeros(m)
         x[columns] = np.linalg.lstsq(A, b, rcond=None)[0]
-        if np.abs(A @ x[columns] - b).max() > 1e-9 or not feasible(family, one, x):
+        if np.abs(A @ x[columns] - b).max() > 1e-9 or not is_feasible(family, one, x):
             return
-    solved = exact_solution(sp.Matrix(rows), right, picked, columns)
+    solved = solve_by_cramer(sp.Matrix(rows), right, picked, columns)
     if solved is not None:
         full = [sp.S.Zero] * m
         for c, value in zip(columns, solved, strict=True):
@@ -322,7 +326,7 @@ def solved_dual(
         yield tuple(full)
 
 
-def feasible(family: Family, one: Sample, x: np.ndarray) -> bool:
+def is_feasible(family: Family, one: SharpMember, x: np.ndarray) -> bool:
     """|x . H| <= sigma on a grid, up to rounding."""
     for panel in family.exact(one.T).panels:
         _, H, sigma = panel.numbers(np.linspace(0.0, 1.0, 801))
@@ -331,7 +335,7 @@ def feasible(family: Family, one: Sample, x: np.ndarray) -> bool:
     return True
 
 
-def independent_rows(A: np.ndarray) -> list[int]:
+def first_independent_rows(A: np.ndarray) -> list[int]:
     """Indices of rows that span the row space, greedily."""
     picked: list[int] = []
     for i in range(A.shape[0]):
@@ -340,7 +344,7 @@ def independent_rows(A: np.ndarray) -> list[int]:
     return picked
 
 
-def exact_solution(
+def solve_by_cramer(
     A: sp.Matrix, right: Sequence[sp.Expr], rows: Sequence[int], columns: Sequence[int]
 ) -> list[sp.Expr] | None:
     """Cramer's rule on the chosen rows and columns, every quotient brought to a product if it has one."""
@@ -352,11 +356,11 @@ def exact_solution(
         changed = block.copy()
         changed[:, j] = b
         above = sp.expand(changed.det(method="berkowitz"))
-        solved.append(tidy(above / below))
+        solved.append(shorten_formula(above / below))
     return solved
 
 
-def tidy(expression: sp.Expr) -> sp.Expr:
+def shorten_formula(expression: sp.Expr) -> sp.Expr:
     """A short form: the product of the normal form when there is one; nothing rests on it."""
     if not expression.free_symbols:
         return sp.nsimplify(expression) if expression.is_Rational else sp.radsimp(expression)
@@ -375,20 +379,22 @@ def in_cotangents(expression: sp.Expr) -> sp.Expr:
     return expression.replace(inverse, lambda e: sp.cot(*e.base.args) ** -e.exp)
 
 
-def weights_of(family: Family, span: Span, places: Sequence[sp.Expr], one: Sample) -> tuple[sp.Expr, ...] | None:
+def solve_weights(
+    family: Family, span: PatternInterval, places: Sequence[sp.Expr], one: SharpMember
+) -> tuple[sp.Expr, ...] | None:
     """Exact weights from ``sum w_i H(u_i) = P`` on independent rows."""
     N = sp.Matrix([[h.subs(U, u) for h in family.rows[k]] for (k, _, _), u in zip(span.pattern, places, strict=True)]).T
     numeric = np.array(N.subs(family.parameter, one.T).evalf(30).tolist(), dtype=float)
-    rows = independent_rows(numeric)
+    rows = first_independent_rows(numeric)
     if len(rows) < N.cols:
         return None
-    solved = exact_solution(N, family.functional, rows[: N.cols], range(N.cols))
+    solved = solve_by_cramer(N, family.functional, rows[: N.cols], range(N.cols))
     return None if solved is None else tuple(solved)
 
 
-def proved(family: Family, guess: Closed, lower: sp.Expr, upper: sp.Expr, seconds: float) -> Verdict:
+def decide_pair(family: Family, guess: ClosedForm, lower: sp.Expr, upper: sp.Expr, seconds: float) -> Verdict:
     """The ladder's verdict on the pair for all values between the ends."""
-    T, value, (start, end) = signed(family.parameter, lower, upper)
+    T, value, (start, end) = signed_parameter(family.parameter, lower, upper)
     put = lambda e: sp.sympify(e, strict=True).subs(family.parameter, value)  # noqa: E731
     statements = [
         Optimum(
@@ -407,12 +413,14 @@ def proved(family: Family, guess: Closed, lower: sp.Expr, upper: sp.Expr, second
     if len(statements) > 1:
         outcome = run_limited(decide_jointly, (statements, guess.panels), seconds, DEFAULT_MEGABYTES)
         return Verdict(OPEN, "none", evidence="stopped") if isinstance(outcome, Exhausted) else outcome
-    if family.growing and is_polynomial(statements[0]):
+    if family.growing and has_polynomial_dual(statements[0]):
         return decide_polynomial(statements[0])
     return decide_within(statements[0], seconds)
 
 
-def signed(p: sp.Symbol, lower: sp.Expr, upper: sp.Expr) -> tuple[sp.Symbol, sp.Expr, tuple[sp.Expr, sp.Expr]]:
+def signed_parameter(
+    p: sp.Symbol, lower: sp.Expr, upper: sp.Expr
+) -> tuple[sp.Symbol, sp.Expr, tuple[sp.Expr, sp.Expr]]:
     """A symbol for the parameter, positive where the range lets it, the parameter's value in it, and its range.
 
     At zero itself, the end of an open range, weights may be infinite: hence positive, not nonnegative. A range below
@@ -439,9 +447,9 @@ def decide_jointly(statements: Sequence[Optimum], panels: Sequence[int]) -> Verd
         for j in range(len(first.functional))
     )
     balance = decide_equation(Equation(sums, tuple(first.functional), first.box))
-    feasible_ = [feasibility(statement) for statement in statements]
-    inside = [instants(replace(s, support=own(first.support, panels, k))) for k, s in enumerate(statements)]
-    verdict = combine([balance, *inside, *feasible_, equal_values(first)])
+    feasible_ = [decide_feasibility(statement) for statement in statements]
+    inside = [decide_times(replace(s, support=own(first.support, panels, k))) for k, s in enumerate(statements)]
+    verdict = weakest_verdict([balance, *inside, *feasible_, decide_values(first)])
     return replace(verdict, method=f"exact primal-dual pair ({verdict.method})")
 
 
@@ -453,7 +461,7 @@ def own(places: Sequence[sp.Expr], panels: Sequence[int], k: int) -> tuple[sp.Ex
 # -- polynomials, where the share of the interval is the only variable ----------------------------
 
 
-def is_polynomial(statement: Optimum) -> bool:
+def has_polynomial_dual(statement: Optimum) -> bool:
     """True when the dual polynomial in the share v = t/T has rational coefficients and contains no other symbol."""
     T = statement.interval[1]
     f = sum((x * h for x, h in zip(statement.dual, statement.regressors, strict=True)), sp.S.Zero)
@@ -471,20 +479,20 @@ def decide_polynomial(statement: Optimum) -> Verdict:
     f = sum((x * h for x, h in zip(statement.dual, statement.regressors, strict=True)), sp.S.Zero)
     scaled = sp.expand(f.subs(statement.variable, T * SHARE))
     sides = [sp.Poly(1 - scaled, SHARE), sp.Poly(1 + scaled, SHARE)]
-    if not all(nonnegative_on_unit(side) for side in sides):
+    if not all(is_nonnegative_on_unit(side) for side in sides):
         return Verdict(OPEN, "Sturm", evidence="the dual polynomial leaves its bound")
     unit = {T: sp.S.One}  # weights and places scale with powers of T: prove them at T = 1 and as identities in T
-    return combine(
+    return weakest_verdict(
         [
             Verdict(PROVED, "Sturm's theorem on square-free factors"),
-            constraints(statement),
-            instants_of(statement, unit),
-            equal_values(statement),
+            decide_constraints(statement),
+            decide_shares(statement, unit),
+            decide_values(statement),
         ]
     )
 
 
-def nonnegative_on_unit(polynomial: sp.Poly) -> bool:
+def is_nonnegative_on_unit(polynomial: sp.Poly) -> bool:
     """p >= 0 on [0, 1], exactly: factors of odd multiplicity have no root inside, and p > 0 somewhere."""
     if polynomial.is_zero:
         return True
@@ -500,7 +508,7 @@ def nonnegative_on_unit(polynomial: sp.Poly) -> bool:
     return bool(next(v for v in (polynomial.eval(p) for p in points) if v != 0) > 0)
 
 
-def instants_of(statement: Optimum, unit: Mapping[sp.Symbol, sp.Expr]) -> Verdict:
+def decide_shares(statement: Optimum, unit: Mapping[sp.Symbol, sp.Expr]) -> Verdict:
     """Places c T with constants c between 0 and 1, by balls, ends exactly."""
     for place in statement.support:
         c = place.subs(unit)

@@ -22,24 +22,30 @@ from navsym.claims import CERTIFIED, OPEN, Verdict
 from navsym.core.balls import enclose
 from navsym.core.errors import DomainError, DuplicateError, ExpressionSyntaxError
 from navsym.core.exact import decimal, from_decimal, lower_end, to_fmpq, to_fraction, to_rational, upper_end
-from navsym.guaranteed.certificate.range import Ranged
+from navsym.guaranteed.certificate.range import RangeProof
 from navsym.guaranteed.phases.answer import Phases, Question, Regime, end_text
-from navsym.guaranteed.phases.boundaries import Boundary, boundary, nowhere
-from navsym.guaranteed.phases.budget import DEFAULT_SECONDS, Limit
-from navsym.guaranteed.phases.certify_range import covered, followed
-from navsym.guaranteed.phases.closed_forms import Closed, Sample, candidates, prove, refined
+from navsym.guaranteed.phases.boundaries import Boundary, locate_boundary, unlocated_boundary
+from navsym.guaranteed.phases.budget import DEFAULT_SECONDS, Budget
+from navsym.guaranteed.phases.certify_range import covered, follow_regime
+from navsym.guaranteed.phases.closed_forms import (
+    ClosedForm,
+    SharpMember,
+    propose_closed_forms,
+    prove_closed_form,
+    sharp_member,
+)
 from navsym.guaranteed.phases.family import Family, family_of
-from navsym.guaranteed.phases.narrow import slivers
-from navsym.guaranteed.phases.patterns import COUNT, Span, scan
+from navsym.guaranteed.phases.narrow import certify_slivers
+from navsym.guaranteed.phases.patterns import COUNT, PatternInterval, scan_patterns
 from navsym.guaranteed.phases.singular_values import (
-    Section,
-    begins,
-    event,
+    RegularInterval,
+    family_intervals,
+    imaginary_boundaries,
     need_range,
-    not_looked_at,
-    real_parts,
-    sections,
-    split,
+    real_intervals,
+    singular_boundary,
+    split_at_singular_values,
+    unsolved_boundary,
 )
 from navsym.guaranteed.problem import GuaranteedProblem
 from navsym.guaranteed.solver import solve_problem
@@ -61,17 +67,17 @@ DIGITS = 34
 
 
 @dataclass(frozen=True, slots=True)
-class Follow:
+class FollowOptions:
     """Which regimes are followed rigorously: those without a closed form, those with one."""
 
     implicit: bool
     closed: bool
 
 
-Limits = tuple[fmpq, fmpq, fmpq, fmpq]
+RegimeLimits = tuple[fmpq, fmpq, fmpq, fmpq]
 
 
-def limits_of(
+def regime_limits(
     family: Family,
     lower: sp.Expr,
     upper: sp.Expr,
@@ -79,13 +85,13 @@ def limits_of(
     high: Fraction,
     changes: Sequence[Boundary],
     singular: set[sp.Expr],
-) -> list[Limits]:
+) -> list[RegimeLimits]:
     """For every regime: where it must be covered (outer) and where exact contacts are followed (inner)."""
     margin = to_fmpq(MARGIN * (high - low))
     marks = [end_marks(family, lower, -1, singular, margin)]
     marks += [(from_decimal(b.lower), from_decimal(b.upper)) for b in changes]
     marks.append(end_marks(family, upper, 1, singular, margin))
-    done: list[Limits] = []
+    done: list[RegimeLimits] = []
     for k, (left, right) in enumerate(pairwise(marks)):
         outer = left[0] if k == 0 else (left[0] + left[1]) / 2
         done.append((outer, left[1], right[0], right[1] if k == len(changes) else (right[0] + right[1]) / 2))
@@ -104,69 +110,69 @@ def end_marks(family: Family, end: sp.Expr, side: int, singular: set[sp.Expr], m
     return (at, inner) if side < 0 else (inner, at)
 
 
-def regime_of(
+def settle_regime(
     family: Family,
-    span: Span,
+    span: PatternInterval,
     ends: tuple[sp.Expr, sp.Expr],
-    limits: Limits,
-    closed: Closed | None,
-    follow: Follow,
-    limit: Limit,
+    limits: RegimeLimits,
+    closed: ClosedForm | None,
+    follow: FollowOptions,
+    limit: Budget,
 ) -> tuple[Regime, list[tuple[str, str]]]:
     """One regime: its proved closed form, or contacts followed for every value, slivers and holes."""
     a, b = ends
     name = f"from {end_text(a)} to {end_text(b)}"
     if closed is not None:
-        done = followed_within(family, span, limits, limit, name) if follow.closed else Ranged((), ())
+        done = follow_within(family, span, limits, limit, name) if follow.closed else RangeProof((), ())
         held, status = (limits[1], limits[2]), closed.verdict.status
-        return Regime(family, span, a, b, closed, status, (), done.documents, (), held, longest(done)), []
-    shown = limit.share(1 / 4).within(f"the table of values {name}", table_of, family, span) or ()
+        return Regime(family, span, a, b, closed, status, (), done.documents, (), held, longest_run(done)), []
+    shown = limit.share(1 / 4).within(f"the table of values {name}", value_table, family, span) or ()
     if not follow.implicit:
         return Regime(family, span, a, b, None, OPEN, shown), [(end_text(a, -1), end_text(b, 1))]
-    done = followed_within(family, span, limits, limit.share(3 / 4), name)
+    done = follow_within(family, span, limits, limit.share(3 / 4), name)
     thin, holes = [], []
-    for left, right in rests(done, limits):
-        made, left_over = slivers(family, left, right, limit.met)
+    for left, right in uncovered_intervals(done, limits):
+        made, left_over = certify_slivers(family, left, right, limit.met)
         thin += made
         holes += [(end_text(to_rational(p), -1), end_text(to_rational(q), 1)) for p, q in left_over]
-    run = longest(done)
+    run = longest_run(done)
     status = CERTIFIED if run is not None else OPEN
     return Regime(family, span, a, b, None, status, shown, done.documents, tuple(thin), run, run), holes
 
 
-def followed_within(family: Family, span: Span, limits: Limits, limit: Limit, name: str) -> Ranged:
+def follow_within(family: Family, span: PatternInterval, limits: RegimeLimits, limit: Budget, name: str) -> RangeProof:
     """The contacts of a regime followed as far as the tests and the limit allow."""
-    done = followed(family, span.pattern, limits[1], limits[2], limit.met)
+    done = follow_regime(family, span.pattern, limits[1], limits[2], limit.met)
     if limit.met():
         limit.gives_up(f"following the contacts {name}")
     return done
 
 
-def rests(done: Ranged, limits: Limits) -> list[tuple[fmpq, fmpq]]:
+def uncovered_intervals(done: RangeProof, limits: RegimeLimits) -> list[tuple[fmpq, fmpq]]:
     """Stretches of the regime that the followed contacts leave, before, between and behind their pieces."""
     edges = [limits[0], *(edge for run in covered(done.pieces) for edge in run), limits[3]]
     return [(a, b) for a, b in zip(edges[::2], edges[1::2], strict=True) if a < b]
 
 
-def longest(done: Ranged) -> tuple[fmpq, fmpq] | None:
+def longest_run(done: RangeProof) -> tuple[fmpq, fmpq] | None:
     """The longest stretch that the followed contacts cover without a gap."""
     return max(covered(done.pieces), key=lambda run: run[1] - run[0], default=None)
 
 
-def table_of(family: Family, span: Span) -> tuple[dict[str, Any], ...]:
+def value_table(family: Family, span: PatternInterval) -> tuple[dict[str, Any], ...]:
     """Enclosures of the value, instants and weights at a few values of the parameter."""
     rows = []
     for k in range(POINTS):
         T = (span.lower + (span.upper - span.lower) * Fraction(2 * k + 1, 2 * POINTS)).limit_denominator(1000)
         found = solve_problem(family.problem(to_rational(T)), 20)
         places = [point.document() for point in found.support]
-        places = [place | {"at": instant(family, T, place["at"])} for place in places]
+        places = [place | {"at": time_text(family, T, place["at"])} for place in places]
         places.sort(key=lambda place: sp.Rational(place["at"]))
         rows.append({family.parameter.name: str(T), "lower": found.lower, "upper": found.upper, "support": places})
     return tuple(rows)
 
 
-def instant(family: Family, T: Fraction, u: str) -> str:
+def time_text(family: Family, T: Fraction, u: str) -> str:
     """The instant that a coordinate means at a value of the parameter, to twenty digits."""
     end = family.at(family.stop, to_rational(T))
     return decimal(to_fmpq(enclose(end - sp.Rational(u), bits=200)), 20) if family.backward else u
@@ -178,74 +184,88 @@ def instant(family: Family, T: Fraction, u: str) -> str:
 # a change that rests on the guess is located again without it, and what is proved on either side is proved anew.
 
 
-Forms = Sequence[Closed | None]
+Forms = Sequence[ClosedForm | None]
 Ends = tuple[sp.Expr, sp.Expr]
 
 
-def located(
-    family: Family, spans: Sequence[Span], closed: Sequence[Closed | None], limit: Limit
+def locate_changes(
+    family: Family, spans: Sequence[PatternInterval], closed: Sequence[ClosedForm | None], limit: Budget
 ) -> tuple[Boundary, ...]:
     """The changes from each span to the next, as exactly as they are had within the limit."""
     found = []
     for k, (left, right) in enumerate(pairwise(spans)):
         part = limit.share(1 / (len(spans) - 1 - k))
-        found.append(change(family, left, right, part, closed[k], closed[k + 1]) or nowhere(left.upper))
+        found.append(
+            locate_change(family, left, right, part, closed[k], closed[k + 1]) or unlocated_boundary(left.upper)
+        )
     return tuple(found)
 
 
-def change(
-    family: Family, left: Span, right: Span, limit: Limit, before: Closed | None = None, after: Closed | None = None
+def locate_change(
+    family: Family,
+    left: PatternInterval,
+    right: PatternInterval,
+    limit: Budget,
+    before: ClosedForm | None = None,
+    after: ClosedForm | None = None,
 ) -> Boundary | None:
     """The change from one span to the next; None when it is not had within the limit."""
     return limit.within(
-        f"the change of pattern near {float(left.upper):.6g}", boundary, family, left, right, before, after
+        f"the change of pattern near {float(left.upper):.6g}", locate_boundary, family, left, right, before, after
     )  # type: ignore[no-any-return]
 
 
-def firm(
+def agree_on_forms(
     family: Family,
-    spans: Sequence[Span],
-    guesses: Sequence[Sequence[Closed]],
+    spans: Sequence[PatternInterval],
+    guesses: Sequence[Sequence[ClosedForm]],
     changes: Sequence[Boundary],
     ends: Ends,
-    limit: Limit,
-) -> tuple[list[Boundary], list[Closed | None]]:
+    limit: Budget,
+) -> tuple[list[Boundary], list[ClosedForm | None]]:
     """The changes and the closed forms proved between them, each in agreement with the other.
 
     changes : located from the first guess of every span
     After the first round a form only stays or falls, and no change moves unless one beside it fell.
     """
-    rest: list[Closed | None] = [g[0] if g else None for g in guesses]
-    parts = pieces_of(changes, ends)
+    rest: list[ClosedForm | None] = [g[0] if g else None for g in guesses]
+    parts = cut_at_changes(changes, ends)
     forms = [
-        proved_form(family, g, part, limit.share(1 / (len(spans) - k)))
+        prove_form(family, g, part, limit.share(1 / (len(spans) - k)))
         for k, (g, part) in enumerate(zip(guesses, parts, strict=True))
     ]
-    while not all(map(same, rest, forms)):
-        changes, before = relocated(family, spans, changes, rest, forms, limit), parts
-        rest, parts = forms, pieces_of(changes, ends)
+    while not all(map(is_same_form, rest, forms)):
+        changes, before = relocate_changes(family, spans, changes, rest, forms, limit), parts
+        rest, parts = forms, cut_at_changes(changes, ends)
         forms = [
-            form if form is None or part == old else proved_form(family, [form], part, limit.share(1 / 2))
+            form if form is None or part == old else prove_form(family, [form], part, limit.share(1 / 2))
             for form, part, old in zip(rest, parts, before, strict=True)
         ]
     return list(changes), forms
 
 
-def relocated(
-    family: Family, spans: Sequence[Span], changes: Sequence[Boundary], rest: Forms, forms: Forms, limit: Limit
+def relocate_changes(
+    family: Family,
+    spans: Sequence[PatternInterval],
+    changes: Sequence[Boundary],
+    rest: Forms,
+    forms: Forms,
+    limit: Budget,
 ) -> list[Boundary]:
     """The changes, those located again that rest on another closed form than is proved beside them."""
     found = []
     for k, b in enumerate(changes):
-        if b.at is not None and not (same(rest[k], forms[k]) and same(rest[k + 1], forms[k + 1])):
-            b = change(family, spans[k], spans[k + 1], limit, forms[k], forms[k + 1]) or nowhere(spans[k].upper)
+        if b.at is not None and not (is_same_form(rest[k], forms[k]) and is_same_form(rest[k + 1], forms[k + 1])):
+            b = locate_change(family, spans[k], spans[k + 1], limit, forms[k], forms[k + 1]) or unlocated_boundary(
+                spans[k].upper
+            )
         found.append(b)
     return found
 
 
-def proved_form(family: Family, guesses: Sequence[Closed], ends: Ends, limit: Limit) -> Closed | None:
+def prove_form(family: Family, guesses: Sequence[ClosedForm], ends: Ends, limit: Budget) -> ClosedForm | None:
     """The closed form that is proved between the ends within the limit."""
-    found = prove(family, guesses, *ends, seconds=limit.left()) if guesses and not limit.met() else None
+    found = prove_closed_form(family, guesses, *ends, seconds=limit.left()) if guesses and not limit.met() else None
     if found is not None and found.verdict.status.holds:
         return found
     if guesses and limit.met():
@@ -253,19 +273,19 @@ def proved_form(family: Family, guesses: Sequence[Closed], ends: Ends, limit: Li
     return None
 
 
-def same(one: Closed | None, other: Closed | None) -> bool:
+def is_same_form(one: ClosedForm | None, other: ClosedForm | None) -> bool:
     """True for the same estimator and dual, whatever the verdicts."""
     if one is None or other is None:
         return one is other
     return (one.panels, one.places, one.weights, one.dual) == (other.panels, other.places, other.weights, other.dual)
 
 
-def pieces_of(changes: Sequence[Boundary], ends: Ends) -> list[Ends]:
+def cut_at_changes(changes: Sequence[Boundary], ends: Ends) -> list[Ends]:
     """The range between its ends, cut at the changes."""
-    return list(pairwise([ends[0], *map(middle_of, changes), ends[1]]))
+    return list(pairwise([ends[0], *map(boundary_middle, changes), ends[1]]))
 
 
-def middle_of(b: Boundary) -> sp.Expr:
+def boundary_middle(b: Boundary) -> sp.Expr:
     """The exact value of a boundary, or the middle of its bracket."""
     return b.at if b.at is not None else (sp.Rational(b.lower) + sp.Rational(b.upper)) / 2
 
@@ -282,49 +302,53 @@ LARGEST = 720
 SHARES = tuple(map(Fraction, ("0.03", "0.23", "0.59", "0.97")))
 
 
-def continued(
-    family: Family, spans: Sequence[Span], guesses: Sequence[list[Closed]]
-) -> tuple[list[Span], list[list[Closed]]]:
+def extend_forms(
+    family: Family, spans: Sequence[PatternInterval], guesses: Sequence[list[ClosedForm]]
+) -> tuple[list[PatternInterval], list[list[ClosedForm]]]:
     """Spans and their guesses; neighbours without any are made one when the closed form beside them holds there."""
     runs = [list(run) for _, run in groupby(range(len(spans)), key=lambda k: k if guesses[k] else -1)]
-    kept: list[tuple[Span, list[Closed]]] = []
+    kept: list[tuple[PatternInterval, list[ClosedForm]]] = []
     for run in runs:
         first, last = run[0], run[-1]
         beside = [k for k in (first - 1, last + 1) if 0 <= k < len(spans) and guesses[k]]
-        whole = Span(spans[first].lower, spans[last].upper, spans[first].pattern)
-        found = None if guesses[first] else taken_over(family, whole, beside, spans, guesses)
+        whole = PatternInterval(spans[first].lower, spans[last].upper, spans[first].pattern)
+        found = None if guesses[first] else take_over_form(family, whole, beside, spans, guesses)
         kept += [found] if found else [(spans[k], guesses[k]) for k in run]
     return [span for span, _ in kept], [list(guess) for _, guess in kept]
 
 
-def taken_over(
-    family: Family, span: Span, beside: Sequence[int], spans: Sequence[Span], guesses: Sequence[list[Closed]]
-) -> tuple[Span, list[Closed]] | None:
+def take_over_form(
+    family: Family,
+    span: PatternInterval,
+    beside: Sequence[int],
+    spans: Sequence[PatternInterval],
+    guesses: Sequence[list[ClosedForm]],
+) -> tuple[PatternInterval, list[ClosedForm]] | None:
     """A span with the pattern and the closed form of one of the regimes beside it, or None."""
-    found = [one for T in inside(span) if (one := refined(family, T, None)) is not None] if beside else []
-    dual = still_dual(found)
+    found = [one for T in inner_values(span) if (one := sharp_member(family, T, None)) is not None] if beside else []
+    dual = constant_dual(found)
     if dual is None:
         return None
     for k in beside:
-        fits = [pair for closed in guesses[k] if (pair := with_dual(family, closed, dual, found)) is not None]
+        fits = [pair for closed in guesses[k] if (pair := combine_with_dual(family, closed, dual, found)) is not None]
         if fits:
-            signs = signs_at(family, fits[0], found[0])
+            signs = weight_signs(family, fits[0], found[0])
             pattern = tuple((p, e, sign) for (p, e, _), sign in zip(spans[k].pattern, signs, strict=True))
             return replace(span, pattern=pattern), fits
     return None
 
 
-def inside(span: Span) -> list[Fraction]:
+def inner_values(span: PatternInterval) -> list[Fraction]:
     """Values inside the span."""
     return [(span.lower + (span.upper - span.lower) * share).limit_denominator(10**6) for share in SHARES]
 
 
-def signs_at(family: Family, closed: Closed, one: Sample) -> list[int]:
+def weight_signs(family: Family, closed: ClosedForm, one: SharpMember) -> list[int]:
     """Signs of the weights at a value of the parameter."""
     return [1 if bool(enclose(family.at(w, one.T)) > 0) else -1 for w in closed.weights]
 
 
-def still_dual(found: Sequence[Sample]) -> tuple[sp.Expr, ...] | None:
+def constant_dual(found: Sequence[SharpMember]) -> tuple[sp.Expr, ...] | None:
     """The dual that all samples share, when its entries are short rational numbers."""
     if len(found) < 3:
         return None
@@ -334,7 +358,9 @@ def still_dual(found: Sequence[Sample]) -> tuple[sp.Expr, ...] | None:
     return None if moves else short
 
 
-def with_dual(family: Family, closed: Closed, dual: tuple[sp.Expr, ...], found: Sequence[Sample]) -> Closed | None:
+def combine_with_dual(
+    family: Family, closed: ClosedForm, dual: tuple[sp.Expr, ...], found: Sequence[SharpMember]
+) -> ClosedForm | None:
     """Places and weights of a regime with another dual, when they cost what it reaches at all samples."""
     value = sp.expand(sum((x * p for x, p in zip(dual, family.functional, strict=True)), sp.S.Zero))
     cost = sum((family.sigma[k] * sp.Abs(w) for k, w in zip(closed.panels, closed.weights, strict=True)), sp.S.Zero)
@@ -367,13 +393,13 @@ def find_phases(
     Raises DomainError for a range without length, lengths of the interval below zero, and seconds that are none.
     """
     need_range(family, lower, upper)
-    limit = Limit.of(seconds)
-    plan, lost, edges = planned(family, lower, upper, limit.share(1 / 4))
-    steps = Steps(progress, len(plan) * (COUNT - 1))
-    follow = Follow(certify, unique)
-    parts = [stretch(section, follow, steps, limit.share(1 / (len(plan) - k))) for k, section in enumerate(plan)]
+    limit = Budget.of(seconds)
+    plan, lost, edges = plan_range(family, lower, upper, limit.share(1 / 4))
+    steps = StepCounter(progress, len(plan) * (COUNT - 1))
+    follow = FollowOptions(certify, unique)
+    parts = [solve_interval(section, follow, steps, limit.share(1 / (len(plan) - k))) for k, section in enumerate(plan)]
     uncovered = [*lost, *(pair for part in parts for pair in part.uncovered)]
-    changes = {b if b.at is None else b.at: b for b in (*changes_between(plan, lower), *edges)}
+    changes = {b if b.at is None else b.at: b for b in (*planned_boundaries(plan, lower), *edges)}
     inner = [b for part in parts for b in part.boundaries]
     ties = {id(tie): tie for section in plan for tie in section.ties}
     return Phases(
@@ -388,35 +414,37 @@ def find_phases(
     )
 
 
-def planned(
-    family: Family, lower: sp.Expr, upper: sp.Expr, limit: Limit
-) -> tuple[list[Section], list[tuple[str, str]], list[Boundary]]:
+def plan_range(
+    family: Family, lower: sp.Expr, upper: sp.Expr, limit: Budget
+) -> tuple[list[RegularInterval], list[tuple[str, str]], list[Boundary]]:
     """The sections of the range, the ends of parts that have none (imaginary, or not split within the limit), and where
     imaginary ones begin.
     """
-    plan: list[Section] = []
+    plan: list[RegularInterval] = []
     lost: list[tuple[str, str]] = []
     edges: list[Boundary] = []
-    for part in sections(family, lower, upper):
-        real, imaginary = real_parts(*part)
+    for part in family_intervals(family, lower, upper):
+        real, imaginary = real_intervals(*part)
         lost += [(end_text(one.lower), end_text(one.upper)) for one in imaginary]
-        edges += [b for one in imaginary for b in begins(one, lower, upper, family.parameter.name)]
+        edges += [b for one in imaginary for b in imaginary_boundaries(one, lower, upper, family.parameter.name)]
         for one in real:
             ends = end_text(one[1]), end_text(one[2])
-            found = limit.share(1 / 2).within(f"singular values from {ends[0]} to {ends[1]}", split, *one)
+            found = limit.share(1 / 2).within(
+                f"singular values from {ends[0]} to {ends[1]}", split_at_singular_values, *one
+            )
             plan += found or []
             lost += [ends] if found is None else []
     return plan, lost, edges
 
 
-def changes_between(plan: Sequence[Section], lower: sp.Expr) -> list[Boundary]:
+def planned_boundaries(plan: Sequence[RegularInterval], lower: sp.Expr) -> list[Boundary]:
     """The singular values of all sections as boundaries, and what may hide further ones."""
     singular = {s.at: s for section in plan for s in section.singular}
-    known = [event(s) for s in singular.values() if not (s.at == lower == 0 and plan[0].family.growing)]
-    return known + [not_looked_at(s) for s in plan if s.unknown]
+    known = [singular_boundary(s) for s in singular.values() if not (s.at == lower == 0 and plan[0].family.growing)]
+    return known + [unsolved_boundary(s) for s in plan if s.unknown]
 
 
-class Steps:
+class StepCounter:
     """Counts the steps of a search that finds more of them on its way.
 
     A closed form that is guessed and one that is settled are worth ten looks of a scan each.
@@ -438,37 +466,41 @@ class Steps:
         self.progress(self.done, self.of)
 
 
-def stretch(section: Section, follow: Follow, steps: Steps, limit: Limit) -> Phases:
+def solve_interval(section: RegularInterval, follow: FollowOptions, steps: StepCounter, limit: Budget) -> Phases:
     """All regimes between two values without a singular one inside."""
     family, lower, singular = section.family, section.lower, section.names
     low, high = inner_range(lower, section.upper, singular)
-    spans = scanned(family, low, high, steps, limit)
+    spans = scan_interval(family, low, high, steps, limit)
     upper = section.upper if spans[-1].upper == high else to_rational(spans[-1].upper)
-    spans = without_accidents(family, spans, limit.share(1 / 4))
+    spans = drop_accidental_intervals(family, spans, limit.share(1 / 4))
     steps.found(len(spans))
-    guesses = guessed(family, spans, steps, limit.share(1 / 2))
-    spans, guesses = limit.share(1 / 4).within("closed forms next to others", continued, family, spans, guesses) or (
+    guesses = guess_forms(family, spans, steps, limit.share(1 / 2))
+    spans, guesses = limit.share(1 / 4).within("closed forms next to others", extend_forms, family, spans, guesses) or (
         spans,
         guesses,
     )
-    first = located(family, spans, [g[0] if g else None for g in guesses], limit.share(1 / 2))
-    changes, forms = firm(family, spans, guesses, first, (lower, upper), limit.share(1 / 2))
-    cuts = [lower, *(middle_of(b) for b in changes), upper]
-    limits = limits_of(family, lower, upper, low, high, changes, singular)
+    first = locate_changes(family, spans, [g[0] if g else None for g in guesses], limit.share(1 / 2))
+    changes, forms = agree_on_forms(family, spans, guesses, first, (lower, upper), limit.share(1 / 2))
+    cuts = [lower, *(boundary_middle(b) for b in changes), upper]
+    limits = regime_limits(family, lower, upper, low, high, changes, singular)
     regimes, uncovered = [], []
     for k, span in enumerate(spans):
         part = limit.share(1 / (len(spans) - k))
-        regime, holes = regime_of(family, span, (cuts[k], cuts[k + 1]), limits[k], forms[k], follow, part)
+        regime, holes = settle_regime(family, span, (cuts[k], cuts[k + 1]), limits[k], forms[k], follow, part)
         regimes.append(regime)
         uncovered += holes
-        steps.did(Steps.LOOKS)
+        steps.did(StepCounter.LOOKS)
     if upper != section.upper:
         uncovered.append((end_text(upper, -1), end_text(section.upper)))
-    honest = tuple(b if b.proved else between(b, *pair) for b, pair in zip(changes, pairwise(regimes), strict=True))
+    honest = tuple(
+        b if b.proved else bracket_boundary(b, *pair) for b, pair in zip(changes, pairwise(regimes), strict=True)
+    )
     return Phases(family, lower, upper, tuple(regimes), honest, tuple(uncovered))
 
 
-def scanned(family: Family, low: Fraction, high: Fraction, steps: Steps, limit: Limit) -> list[Span]:
+def scan_interval(
+    family: Family, low: Fraction, high: Fraction, steps: StepCounter, limit: Budget
+) -> list[PatternInterval]:
     """The spans of a section, up to where half of its time allows."""
     half = limit.share(1 / 2)
 
@@ -476,23 +508,25 @@ def scanned(family: Family, low: Fraction, high: Fraction, steps: Steps, limit: 
         steps.did()
         return not half.met()
 
-    spans = scan(family, low, high, step=step)
+    spans = scan_patterns(family, low, high, step=step)
     if spans[-1].upper != high:
         limit.gives_up(f"the search for patterns from {float(spans[-1].upper):.6g} to {float(high):.6g}")
     return spans
 
 
-def guessed(family: Family, spans: Sequence[Span], steps: Steps, limit: Limit) -> list[list[Closed]]:
+def guess_forms(
+    family: Family, spans: Sequence[PatternInterval], steps: StepCounter, limit: Budget
+) -> list[list[ClosedForm]]:
     """Closed forms of every span, not yet proved."""
     found = []
     for k, span in enumerate(spans):
         what = f"the search for a closed form from {float(span.lower):.6g} to {float(span.upper):.6g}"
-        found.append(limit.share(1 / (len(spans) - k)).within(what, candidates, family, span) or [])
-        steps.did(Steps.LOOKS)
+        found.append(limit.share(1 / (len(spans) - k)).within(what, propose_closed_forms, family, span) or [])
+        steps.did(StepCounter.LOOKS)
     return found
 
 
-def without_accidents(family: Family, spans: list[Span], limit: Limit) -> list[Span]:
+def drop_accidental_intervals(family: Family, spans: list[PatternInterval], limit: Budget) -> list[PatternInterval]:
     """Spans without short ones between neighbours that are proved to follow each other: there contacts merge, and
     the search in double precision takes one pattern for another, or for several.
     """
@@ -500,16 +534,16 @@ def without_accidents(family: Family, spans: list[Span], limit: Limit) -> list[S
     kept, rest = spans[:1], spans[1:]
     while rest:
         beyond = next((k for k, span in enumerate(rest) if span.upper - span.lower >= short), 0)
-        found = change(family, kept[-1], rest[beyond], limit) if beyond else None
+        found = locate_change(family, kept[-1], rest[beyond], limit) if beyond else None
         if found is not None and found.proved:
-            cut = to_fraction(enclose(middle_of(found), bits=200))
+            cut = to_fraction(enclose(boundary_middle(found), bits=200))
             kept[-1], rest = replace(kept[-1], upper=cut), rest[beyond:]
             rest[0] = replace(rest[0], lower=cut)
         kept.append(rest.pop(0))
     return kept
 
 
-def between(guess: Boundary, before: Regime, after: Regime) -> Boundary:
+def bracket_boundary(guess: Boundary, before: Regime, after: Regime) -> Boundary:
     """A change that was not located lies between the last value of one proved pattern and the first of the other.
 
     Where a pattern is proved nowhere, the bracket is that of the search, and the regime is uncovered.
@@ -580,13 +614,13 @@ def phases(
     with file_in_errors(model):
         contents = contents_of(model, None, fixed, "phases")
         name = next(iter(pairs), parameter)
-        ends = range_of(contents, name, pairs.get(name))
+        ends = range_ends(contents, name, pairs.get(name))
         family = family_of(contents, target, name)
         answer = find_phases(family, *ends, certify=not quick, unique=unique, seconds=seconds, progress=progress)
     return replace(answer, question=Question(model, target, fixed))
 
 
-def range_of(contents: ModelFile | BasisFile, name: str, pair: Sequence[Any] | None) -> Ends:
+def range_ends(contents: ModelFile | BasisFile, name: str, pair: Sequence[Any] | None) -> Ends:
     """The ends of a range that is given, or of the one that the model declares for the parameter.
 
     Raises ExpressionSyntaxError for other than two ends, and DomainError where there is no range.

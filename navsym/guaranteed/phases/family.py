@@ -19,9 +19,9 @@ import sympy as sp
 
 from navsym.core.balls import enclose
 from navsym.core.errors import DomainError, EmptyError
-from navsym.guaranteed.certificate.enclosure import Panel, Problem
-from navsym.guaranteed.problem import GuaranteedProblem, Rows, Stretch, chosen_target, stretches_of
-from navsym.guaranteed.time_varying import varying
+from navsym.guaranteed.certificate.enclosure import Panel, PanelProblem
+from navsym.guaranteed.problem import GuaranteedProblem, RegressorPiece, Rows, chosen_target, exact_pieces
+from navsym.guaranteed.time_varying import has_varying_system
 from navsym.models.modelfile import BasisFile, ModelFile
 
 #: Time before the estimate, or the variable of the basis.
@@ -112,18 +112,18 @@ class Family:
         rows = [tuple(self.at(h, value) for h in row) for row in self.rows]
         functional = tuple(self.at(p, value) for p in self.functional)
         sigma = tuple(self.at(s, value) for s in self.sigma[:n])
-        stretches = tuple(Stretch(*self.ends(value, k), tuple(rows[k : k + n])) for k in range(0, len(rows), n))
+        stretches = tuple(RegressorPiece(*self.ends(value, k), tuple(rows[k : k + n])) for k in range(0, len(rows), n))
         return GuaranteedProblem(stretches, functional, sigma, U, self.measurements[:n], self.target)
 
-    def exact(self, value: Any) -> Problem:
+    def exact(self, value: Any) -> PanelProblem:
         """The member with an exact value of the parameter, as panels for the proofs."""
         return self.problem(value).exact()
 
     @cached_property
-    def moving(self) -> Problem:
+    def moving(self) -> PanelProblem:
         """The problem with the parameter left free."""
         panels = [Panel(j % self.many, row, U, *self.panels[j], self.sigma[j]) for j, row in enumerate(self.rows)]
-        return Problem(tuple(panels), self.functional)
+        return PanelProblem(tuple(panels), self.functional)
 
     def real_near(self, value: Any) -> Family:
         """The same with square roots of what is positive at a value: ``sqrt(c) = i sqrt(-c)``, sines of ``i x`` as
@@ -153,17 +153,17 @@ def family_of(found: ModelFile | BasisFile, target: str | None, parameter: str) 
     closed form, or when other parameters have no value.
     """
     name, functional = chosen_target(found, target)
-    symbol = declared(found, parameter)
+    symbol = declared_symbol(found, parameter)
     if isinstance(found, BasisFile):
-        family = direct(found, name, functional, symbol)
+        family = direct_family(found, name, functional, symbol)
     else:
-        family = of_model(found, name, functional, symbol)
+        family = model_family(found, name, functional, symbol)
     refuse_others(family)
     refuse_sums_over_roots(family)
     return family
 
 
-def declared(found: ModelFile | BasisFile, parameter: str) -> sp.Symbol:
+def declared_symbol(found: ModelFile | BasisFile, parameter: str) -> sp.Symbol:
     """The symbol of a declared parameter that has no value."""
     if parameter not in found.parameters:
         names = ", ".join(found.parameters) or "none"
@@ -198,7 +198,7 @@ def refuse_sums_over_roots(family: Family) -> None:
             )
 
 
-def direct(found: BasisFile, name: str, functional: tuple[sp.Expr, ...], symbol: sp.Symbol) -> Family:
+def direct_family(found: BasisFile, name: str, functional: tuple[sp.Expr, ...], symbol: sp.Symbol) -> Family:
     """The family of a basis file: its regressors, written in U, on its interval."""
     start, end = found.interval
     rows = tuple(tuple(h.subs(found.variable, U) for h in row) for row in found.H)
@@ -206,66 +206,68 @@ def direct(found: BasisFile, name: str, functional: tuple[sp.Expr, ...], symbol:
     return Family(rows, functional, found.sigma, symbol, False, names, name, start, end)
 
 
-def of_model(found: ModelFile, name: str, functional: tuple[sp.Expr, ...], symbol: sp.Symbol) -> Family:
+def model_family(found: ModelFile, name: str, functional: tuple[sp.Expr, ...], symbol: sp.Symbol) -> Family:
     """The family of a model file: backward in time for one F, forward for an F in pieces.
 
     Raises EmptyError without an interval, and DomainError where F depends on the time.
     """
     if found.T is None:
         raise EmptyError("expected the length of the interval; got no [interval]; add T", where="interval.T")
-    if varying(found):
+    if has_varying_system(found):
         raise DomainError(
             "F: expected matrices without the time; got F(t), whose regressors are polynomials with an error of which "
             "only a bound is known, so that no contact is exact; solve for single values instead"
         )
     return (
-        backward(found, name, functional, symbol)
+        backward_family(found, name, functional, symbol)
         if len(found.pieces) == 1
-        else (forward(found, name, functional, symbol))
+        else (forward_family(found, name, functional, symbol))
     )
 
 
-def backward(found: ModelFile, name: str, functional: tuple[sp.Expr, ...], symbol: sp.Symbol) -> Family:
+def backward_family(found: ModelFile, name: str, functional: tuple[sp.Expr, ...], symbol: sp.Symbol) -> Family:
     """One F: the regressors depend on the time before the end."""
-    (stretch,), T = stretches_of(found), end_of(found)
+    (stretch,), T = exact_pieces(found), interval_length(found)
     rows = tuple(tuple(sp.expand(h).subs(found.time, T - U) for h in row) for row in stretch.rows)
-    rows = tuple(tuple(settled(h, T, symbol) for h in row) for row in rows)
+    rows = tuple(tuple(expand_arguments(h, T, symbol) for h in row) for row in rows)
     names = tuple(m.name for m in found.measurements)
     sigma = tuple(m.sigma for m in found.measurements)
     return Family(rows, functional, sigma, symbol, True, names, name, sp.S.Zero, T)
 
 
-def end_of(found: ModelFile) -> sp.Expr:
+def interval_length(found: ModelFile) -> sp.Expr:
     """The length of the interval, which the file has."""
     assert found.T is not None
     return found.T
 
 
-def forward(found: ModelFile, name: str, functional: tuple[sp.Expr, ...], symbol: sp.Symbol) -> Family:
+def forward_family(found: ModelFile, name: str, functional: tuple[sp.Expr, ...], symbol: sp.Symbol) -> Family:
     """F in pieces: regressors in time, stretch by stretch, and families of their own for shorter lengths.
 
     Raises DomainError when the pieces end at a length that depends on the parameter otherwise than by being it.
     """
-    T, last, n = end_of(found), found.pieces[-1], len(found.pieces)
-    stretches = stretches_of(found)
-    rows = tuple(tuple(settled(h.subs(found.time, U), T, symbol) for h in row) for s in stretches for row in s.rows)
+    T, last, n = interval_length(found), found.pieces[-1], len(found.pieces)
+    stretches = exact_pieces(found)
+    rows = tuple(
+        tuple(expand_arguments(h.subs(found.time, U), T, symbol) for h in row) for s in stretches for row in s.rows
+    )
     names, sigma = tuple(m.name for m in found.measurements) * n, tuple(m.sigma for m in found.measurements) * n
     cuts = tuple(piece.start for piece in found.pieces[1:])
     moved = symbol in T.free_symbols and not any(symbol in cut.free_symbols for cut in cuts)
     if moved and symbol != T:
         raise DomainError(f"interval: expected the length {symbol} itself where F comes in pieces; got {T}; rename it")
-    shorter = of_model(without_last(found), name, functional, symbol) if moved else None
+    shorter = model_family(drop_last_piece(found), name, functional, symbol) if moved else None
     least = last.start if moved else sp.S.Zero
     return Family(rows, functional, sigma, symbol, False, names, name, sp.S.Zero, T, (), cuts, shorter, least)
 
 
-def without_last(found: ModelFile) -> ModelFile:
+def drop_last_piece(found: ModelFile) -> ModelFile:
     """The model whose last piece is the one before."""
     *before, end = found.pieces[:-1]
     return replace(found, pieces=(*before, replace(end, end=found.T)))
 
 
-def settled(h: sp.Expr, T: sp.Expr, symbol: sp.Symbol) -> sp.Expr:
+def expand_arguments(h: sp.Expr, T: sp.Expr, symbol: sp.Symbol) -> sp.Expr:
     """Arguments expanded, so that ``T - (T - u)`` is u."""
     done = h.replace(lambda e: isinstance(e, sp.Function), lambda e: e.func(*(sp.expand(a) for a in e.args)))
     done = done.replace(lambda e: e.is_Pow and e.base == sp.E, lambda e: sp.exp(sp.expand(e.exp)))

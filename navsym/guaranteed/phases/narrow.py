@@ -19,13 +19,19 @@ from flint import arb, arb_mat, fmpq
 from navsym.core.balls import precision
 from navsym.core.errors import NavsymError
 from navsym.core.exact import decimal, from_decimal, to_fmpq, to_rational
-from navsym.guaranteed.certificate.basis import Basis, DependentError, as_fraction, make_basis
-from navsym.guaranteed.certificate.enclosure import Panel, Problem, Touch, interval, total
-from navsym.guaranteed.certificate.fixed import attempts, every_cell, header, near_touches, support_points
-from navsym.guaranteed.certificate.polish import Polished, polish
+from navsym.guaranteed.certificate.basis import Basis, DependentError, make_basis, unit_fraction
+from navsym.guaranteed.certificate.enclosure import Panel, PanelProblem, Touch, dot_product, interval_ball
+from navsym.guaranteed.certificate.fixed import (
+    certificate_header,
+    complete_support,
+    dual_attempts,
+    near_touches,
+    prove_all_panels,
+)
+from navsym.guaranteed.certificate.polish import ContactSolution, sharpen_contacts
 from navsym.guaranteed.certificate.range import fraction, never
 from navsym.guaranteed.phases.family import Family
-from navsym.guaranteed.phases.patterns import ordered
+from navsym.guaranteed.phases.patterns import order_contacts
 from navsym.guaranteed.search.exchange import Contacts, find_contacts
 
 DIGITS = 14
@@ -61,7 +67,7 @@ class Sliver:
         return decimal(self.start, 60), decimal(self.end, 60), self.lower, self.upper
 
 
-def slivers(
+def certify_slivers(
     family: Family, start: fmpq, end: fmpq, enough: Callable[[], bool] = never
 ) -> tuple[list[Sliver], list[tuple[fmpq, fmpq]]]:
     """Slivers on a stretch, each as long as it stays narrow, and what they leave when the attempts are used up or it is
@@ -76,22 +82,22 @@ def slivers(
             left.append((a, b))
             continue
         tries += 1
-        one, width = sliver(family, a, b)
+        one, width = certify_sliver(family, a, b)
         if one is not None:
             made.append(one)
             continue
-        stack += reversed(cut(a, b, width))
-    return made, joined(left)
+        stack += reversed(cut_interval(a, b, width))
+    return made, join_intervals(left)
 
 
-def cut(a: fmpq, b: fmpq, width: float) -> list[tuple[fmpq, fmpq]]:
+def cut_interval(a: fmpq, b: fmpq, width: float) -> list[tuple[fmpq, fmpq]]:
     """Equal parts of a stretch on which an enclosure had this width: as many as make it narrow enough."""
     parts = 2 if width == inf else max(2, min(MOST_PARTS, int(1.2 * width / WIDEST) + 1))
     marks = [a + (b - a) * fmpq(k, parts) for k in range(parts + 1)]
     return list(pairwise(marks))
 
 
-def joined(stretches: list[tuple[fmpq, fmpq]]) -> list[tuple[fmpq, fmpq]]:
+def join_intervals(stretches: list[tuple[fmpq, fmpq]]) -> list[tuple[fmpq, fmpq]]:
     """Neighbours made one."""
     done: list[tuple[fmpq, fmpq]] = []
     for a, b in stretches:
@@ -101,22 +107,22 @@ def joined(stretches: list[tuple[fmpq, fmpq]]) -> list[tuple[fmpq, fmpq]]:
     return done
 
 
-def sliver(family: Family, start: fmpq, end: fmpq) -> tuple[Sliver | None, float]:
+def certify_sliver(family: Family, start: fmpq, end: fmpq) -> tuple[Sliver | None, float]:
     """The two-sided certificate with the parameter as a ball, None when it is too wide, and how wide it is."""
     middle = (start + end) / 2
-    shown = ball_problem(family, interval(start, end))
+    shown = ball_problem(family, interval_ball(start, end))
     if not all(bool(b > a) and bool(sigma > 0) for a, b, sigma in (panel.edges() for panel in shown.panels)):
         return None, inf
-    ball = over_bounds(shown)
+    ball = divide_by_bounds(shown)
     try:
         problem = family.exact(to_rational(middle))
         basis = make_basis(problem)
         contacts = find_contacts(basis.panels)
-        refined = polish(problem.panels, basis, contacts, BITS, 1e-40)
+        refined = sharpen_contacts(problem.panels, basis, contacts, BITS, 1e-40)
         with precision(BITS):
-            support, most = cheapest(ball, basis, contacts, refined)
-            x, cells = within(ball, basis, contacts, refined)
-            least = to_fmpq(total([arb(c) for c in x], ball.target()).lower())
+            support, most = cheapest_support(ball, basis, contacts, refined)
+            x, cells = bounded_dual(ball, basis, contacts, refined)
+            least = to_fmpq(dot_product([arb(c) for c in x], ball.target()).lower())
     except (DependentError, NavsymError, ArithmeticError, ValueError):
         return None, inf
     width = float(arb((most - least) / most))
@@ -124,7 +130,7 @@ def sliver(family: Family, start: fmpq, end: fmpq) -> tuple[Sliver | None, float
         return None, width if width > 0 else inf
     room = (most - least) / ROOM
     lower, upper = decimal(least - room, DIGITS + 6, -1), decimal(most + room, DIGITS + 6, 1)
-    document = header(shown, "sliver", BITS, cells, lower, upper) | {
+    document = certificate_header(shown, "sliver", BITS, cells, lower, upper) | {
         "parameter": family.parameter.name,
         "from": fraction(start),
         "to": fraction(end),
@@ -137,18 +143,20 @@ def sliver(family: Family, start: fmpq, end: fmpq) -> tuple[Sliver | None, float
 Support = list[tuple[int, fmpq]]
 
 
-def cheapest(ball: Problem, basis: Basis, contacts: Contacts, refined: Polished) -> tuple[Support, fmpq]:
+def cheapest_support(
+    ball: PanelProblem, basis: Basis, contacts: Contacts, refined: ContactSolution
+) -> tuple[Support, fmpq]:
     """Places and an upper bound: the contacts of the middle, or the middles of those that are about to merge.
 
     Raises ValueError when balls as wide as these carry the functional on neither.
     """
-    together = merged(contacts)
-    places = [from_decimal(decimal(v, PLACES)) for v in refined.v], [as_fraction(float(u)) for u in together.u]
+    together = merge_contacts(contacts)
+    places = [from_decimal(decimal(v, PLACES)) for v in refined.v], [unit_fraction(float(u)) for u in together.u]
     found = []
     for carriers, at in zip((contacts, together), places, strict=True):
-        support = support_points(basis, carriers, at)
+        support = complete_support(basis, carriers, at)
         try:
-            found.append((to_fmpq(most_of(ball, support).upper()), support))
+            found.append((to_fmpq(support_cost(ball, support).upper()), support))
         except (ZeroDivisionError, ValueError):
             continue
     if not found:
@@ -157,7 +165,7 @@ def cheapest(ball: Problem, basis: Basis, contacts: Contacts, refined: Polished)
     return support, most
 
 
-def most_of(ball: Problem, support: Support) -> arb:
+def support_cost(ball: PanelProblem, support: Support) -> arb:
     """``sum |W|`` of the weights over their noise bounds, ``sum W H/sigma = P``: in the order of the checker, whose
     balls are as wide as these where sigma moves.
     """
@@ -167,25 +175,27 @@ def most_of(ball: Problem, support: Support) -> arb:
     return sum(map(abs, weights), arb(0))
 
 
-def within(ball: Problem, basis: Basis, contacts: Contacts, refined: Polished) -> tuple[list[fmpq], int]:
+def bounded_dual(
+    ball: PanelProblem, basis: Basis, contacts: Contacts, refined: ContactSolution
+) -> tuple[list[fmpq], int]:
     """A dual within the bound for every value in the ball, and the cells of the proof.
 
     Raises ValueError when none is found.
     """
     best: tuple[fmpq, list[fmpq], int] | None = None
     tried: list[list[fmpq]] = []
-    for base, _, seen in attempts(ball, basis, contacts, refined, DIGITS):
+    for base, _, seen in dual_attempts(ball, basis, contacts, refined, DIGITS):
         if base in tried:
             continue
         tried.append(base)
-        over = excess(ball, base, near_touches(ball, seen, PLACES))
+        over = dual_excess(ball, base, near_touches(ball, seen, PLACES))
         for more in (arb(1.05), arb(1.5), arb(4)):
             scale = to_fmpq((1 / (1 + over * more + TINY)).mid())
             x = [from_decimal(decimal(c * scale, PLACES)) for c in base]
-            reached = to_fmpq(total([arb(c) for c in x], ball.target()).lower())
+            reached = to_fmpq(dot_product([arb(c) for c in x], ball.target()).lower())
             if best is not None and reached <= best[0]:
                 break
-            cells = every_cell(ball, [arb(c) for c in x], [[] for _ in ball.panels])
+            cells = prove_all_panels(ball, [arb(c) for c in x], [[] for _ in ball.panels])
             if cells is not None:
                 best = reached, [from_decimal(decimal(c * (1 - fmpq(1, 10**9)), PLACES)) for c in x], cells
                 break
@@ -194,18 +204,18 @@ def within(ball: Problem, basis: Basis, contacts: Contacts, refined: Polished) -
     return best[1], best[2]
 
 
-def excess(ball: Problem, x: Sequence[fmpq], touches: Sequence[Sequence[Touch]]) -> arb:
+def dual_excess(ball: PanelProblem, x: Sequence[fmpq], touches: Sequence[Sequence[Touch]]) -> arb:
     """By how much the dual polynomial may leave its bound, at its touches and on a grid: a guess to be proved."""
     dual, worst = [arb(c) for c in x], arb(0)
     for panel, near in zip(ball.panels, touches, strict=True):
         for v in (*(to_fmpq(t.at) for t in near), *(fmpq(k, GRID) for k in range(GRID + 1))):
-            worst = max(worst, (abs(total(dual, panel.rows(arb(v)))) / panel.bound()).upper() - 1)
+            worst = max(worst, (abs(dot_product(dual, panel.rows(arb(v)))) / panel.bound()).upper() - 1)
     return worst
 
 
-def merged(contacts: Contacts) -> Contacts:
+def merge_contacts(contacts: Contacts) -> Contacts:
     """Neighbours of one sign on one panel as one contact at their mean: what that costs is of the second order."""
-    found = ordered(contacts)
+    found = order_contacts(contacts)
     change = (np.diff(found.panel) != 0) | (np.diff(found.sign) != 0) | (np.diff(found.u) > NEAR)
     groups = np.split(np.arange(found.u.size), np.flatnonzero(change) + 1)
     weights = np.array([found.weights[g].sum() for g in groups])
@@ -214,14 +224,14 @@ def merged(contacts: Contacts) -> Contacts:
     return replace(found, panel=found.panel[first], u=means, sign=found.sign[first], weights=weights)
 
 
-def ball_problem(family: Family, ball: arb) -> Problem:
+def ball_problem(family: Family, ball: arb) -> PanelProblem:
     """The problem with a ball for the parameter."""
     values = {family.parameter: ball}
     panels = tuple(replace(panel, values=values) for panel in family.moving.panels)
-    return Problem(panels, family.moving.functional, values)
+    return PanelProblem(panels, family.moving.functional, values)
 
 
-def over_bounds(problem: Problem) -> Problem:
+def divide_by_bounds(problem: PanelProblem) -> PanelProblem:
     """Regressors over their noise bounds, one by one: where a bound moves, a checker's balls are as wide as these."""
 
     def scaled(panel: Panel) -> Panel:

@@ -18,7 +18,7 @@ from navsym.core.errors import DomainError
 from navsym.core.exact import to_rational
 from navsym.guaranteed.certificate.basis import Basis, DependentError, make_basis
 from navsym.guaranteed.phases.family import Family
-from navsym.guaranteed.search.exchange import NEGLIGIBLE, Contacts, Panels, find_contacts, rows_at
+from navsym.guaranteed.search.exchange import NEGLIGIBLE, Contacts, Panels, find_contacts, regressor_rows
 from navsym.guaranteed.search.kernels import Array, Ints
 
 # Where several estimators are optimal: the one with a given pattern, if it is among them.
@@ -34,37 +34,37 @@ BALANCED = 1e-7
 AT_END = 1e-9
 
 
-def pattern_of(found: Contacts) -> Pattern:
+def contact_pattern(found: Contacts) -> Pattern:
     """Panel, kind of place and sign of every contact."""
-    return marks(found.panel, np.where(found.inner == 1, 0.0, np.sign(found.u)), found.sign)
+    return pattern_marks(found.panel, np.where(found.inner == 1, 0.0, np.sign(found.u)), found.sign)
 
 
-def marks(panel: Ints, end: Array, sign: Array) -> Pattern:
+def pattern_marks(panel: Ints, end: Array, sign: Array) -> Pattern:
     """The pattern of contacts, all (l,): panel, kind of place, sign; end is -1, 1 at an end of the panel, 0 inside."""
     kinds = {-1: "from", 0: "no", 1: "to"}
     return tuple((int(k), kinds[int(e)], int(s)) for k, e, s in zip(panel, end, sign, strict=True))
 
 
-def alike(panels: Panels, found: Contacts, pattern: Pattern) -> Contacts | None:
+def match_pattern(panels: Panels, found: Contacts, pattern: Pattern) -> Contacts | None:
     """Contacts of the pattern with the same dual, the earliest places first; None when there are none."""
     if not found.touching:
         return None
-    panel, u = every_place(found)
-    rows = rows_at(panels.coefficients, panel, u)
+    panel, u = all_touches(found)
+    rows = regressor_rows(panels.coefficients, panel, u)
     sign = np.sign(rows @ found.dual)
-    here = marks(panel, np.where(np.abs(u) > 1.0 - AT_END, np.sign(u), 0.0), sign)
+    here = pattern_marks(panel, np.where(np.abs(u) > 1.0 - AT_END, np.sign(u), 0.0), sign)
     choices = combinations([i for i, mark in enumerate(here) if mark in pattern], len(pattern))
     for choice in islice(choices, MOST_CHOICES):
         if tuple(here[i] for i in choice) != pattern:
             continue
         chosen = np.array(choice)
-        weights = balanced(rows[chosen], panels.functional)
+        weights = solve_balance(rows[chosen], panels.functional)
         if weights is not None and (weights * sign[chosen] > NEGLIGIBLE * np.abs(weights).sum()).all():
-            return with_places(found, panel, u, sign, chosen, weights)
+            return replace_contacts(found, panel, u, sign, chosen, weights)
     return None
 
 
-def every_place(found: Contacts) -> tuple[Ints, Array]:
+def all_touches(found: Contacts) -> tuple[Ints, Array]:
     """Contacts and further touches in order."""
     panel = np.concatenate([found.panel, np.array([k for k, _ in found.touching], dtype=np.int64)])
     u = np.concatenate([found.u, np.array([v for _, v in found.touching])])
@@ -72,14 +72,14 @@ def every_place(found: Contacts) -> tuple[Ints, Array]:
     return panel[order], u[order]
 
 
-def balanced(rows: Array, functional: Array) -> Array | None:
+def solve_balance(rows: Array, functional: Array) -> Array | None:
     """The weights that carry the functional on the rows, or None."""
     weights: Array = np.linalg.lstsq(rows.T, functional, rcond=1e-11)[0].astype(np.float64)
     rest = np.abs(weights @ rows - functional).max()
     return weights if rest <= BALANCED * np.abs(functional).max() else None
 
 
-def with_places(found: Contacts, panel: Ints, u: Array, sign: Array, chosen: Ints, weights: Array) -> Contacts:
+def replace_contacts(found: Contacts, panel: Ints, u: Array, sign: Array, chosen: Ints, weights: Array) -> Contacts:
     """The same dual with other contacts; the places left over are touches."""
     left = [(int(panel[i]), float(u[i])) for i in range(panel.size) if i not in chosen]
     at = u[chosen]
@@ -105,7 +105,7 @@ SHORTEST = Fraction(1, 5000)
 
 
 @dataclass(frozen=True, slots=True)
-class Span:
+class PatternInterval:
     """A stretch of lengths with one pattern, and the brackets of its ends."""
 
     lower: Fraction
@@ -113,7 +113,7 @@ class Span:
     pattern: Pattern
 
 
-def sample(family: Family, T: Fraction, *wanted: Pattern | None) -> tuple[Basis, Contacts]:
+def sample_contacts(family: Family, T: Fraction, *wanted: Pattern | None) -> tuple[Basis, Contacts]:
     """Basis and contacts for one length; the contacts in order.
 
     wanted : patterns to prefer where there are several optimal estimators, the first that is optimal wins
@@ -125,38 +125,51 @@ def sample(family: Family, T: Fraction, *wanted: Pattern | None) -> tuple[Basis,
             f"{family.parameter.name}: expected a range inside which the regressors are independent; got dependent "
             f"ones at or next to {float(T):.9g}, which was not foreseen; give a range that ends there"
         ) from None
-    found = ordered(at_cuts(find_contacts(basis.panels), basis.panels, family.many), basis.panels)
+    found = center_on_constants(find_contacts(basis.panels), basis.panels)
+    found = order_contacts(move_to_cuts(found, basis.panels, family.many), basis.panels)
     for pattern in wanted:
-        if pattern is None or pattern_of(found) == pattern:
+        if pattern is None or contact_pattern(found) == pattern:
             continue
-        other = alike(basis.panels, found, pattern)
+        other = match_pattern(basis.panels, found, pattern)
         if other is not None:
             return basis, other
     return basis, found
 
 
-def at_cuts(found: Contacts, panels: Panels, many: int) -> Contacts:
+def center_on_constants(found: Contacts, panels: Panels) -> Contacts:
+    """The same contacts, in the middle of panels whose regressors do not change.
+
+    There one place is as good as another, and rounding alone would choose it.
+    """
+    sizes = np.abs(panels.coefficients).max(axis=2)
+    constant = sizes[:, 1:].max(axis=1) <= SAME * sizes[:, 0]
+    here = constant[found.panel]
+    touching = tuple(place for place in found.touching if not constant[place[0]])
+    return replace(found, u=np.where(here, 0.0, found.u), inner=np.where(here, 1, found.inner), touching=touching)
+
+
+def move_to_cuts(found: Contacts, panels: Panels, many: int) -> Contacts:
     """The same contacts; one at the start of a stretch stands at the end of the stretch before where the regressors go
     on without a jump: such a place belongs to both, and a pattern names it in one way.
     """
     panel, u = found.panel.copy(), found.u.copy()
     for i in np.flatnonzero((found.inner == 0) & (u < 0) & (panel >= many)):
-        here = rows_at(panels.coefficients, panel[i : i + 1], u[i : i + 1])
-        before = rows_at(panels.coefficients, panel[i : i + 1] - many, -u[i : i + 1])
+        here = regressor_rows(panels.coefficients, panel[i : i + 1], u[i : i + 1])
+        before = regressor_rows(panels.coefficients, panel[i : i + 1] - many, -u[i : i + 1])
         twin = ((panel == panel[i] - many) & (u == 1.0)).any()
         if not twin and np.abs(here - before).max() <= SAME * np.abs(here).max():
             panel[i], u[i] = panel[i] - many, 1.0
     return replace(found, panel=panel, u=u)
 
 
-def ordered(found: Contacts, panels: Panels | None = None) -> Contacts:
+def order_contacts(found: Contacts, panels: Panels | None = None) -> Contacts:
     """The same contacts by panel and place; those whose weight is rounding, or has not the sign of the dual
     polynomial there (with panels), are touches only.
     """
     sizes = np.abs(found.weights)
     idle = sizes <= ROUNDING * sizes.sum()
     if panels is not None:
-        against = found.weights * (rows_at(panels.coefficients, found.panel, found.u) @ found.dual) < 0
+        against = found.weights * (regressor_rows(panels.coefficients, found.panel, found.u) @ found.dual) < 0
         idle |= against & ~against.all()
     touches = zip(found.panel[idle].tolist(), found.u[idle].tolist(), strict=True)
     order = np.lexsort((found.u, found.panel))
@@ -174,33 +187,33 @@ def ordered(found: Contacts, panels: Panels | None = None) -> Contacts:
     )
 
 
-def scan(
+def scan_patterns(
     family: Family, lower: Fraction, upper: Fraction, count: int = COUNT, step: Callable[[], bool] = lambda: True
-) -> list[Span]:
+) -> list[PatternInterval]:
     """Spans of equal pattern between two positive lengths, from a scan and bisections.
 
     step : called after each of the ``count - 1`` stretches of the scan; False ends it there, before ``upper``
     """
 
     def at(T: Fraction, *wanted: Pattern) -> Pattern:
-        return pattern_of(sample(family, T, *wanted)[1])
+        return contact_pattern(sample_contacts(family, T, *wanted)[1])
 
     width = upper - lower
     places = [lower + width * Fraction(2 * k + 1, 2 * count) for k in range(count)]
     pattern = at(places[0])
     spans, edge = [], lower
     for a, b in pairwise(places):
-        for cut, after in changes(at, a, b, pattern, at(b, pattern)):
-            spans.append(Span(edge, cut, pattern))
+        for cut, after in bisect_changes(at, a, b, pattern, at(b, pattern)):
+            spans.append(PatternInterval(edge, cut, pattern))
             edge, pattern = cut, after
         if not step() and b != places[-1]:
             upper = b
             break
-    spans.append(Span(edge, upper, pattern))
-    return joined([s for s in spans if s.upper - s.lower > SHORTEST * width])
+    spans.append(PatternInterval(edge, upper, pattern))
+    return join_equal_patterns([s for s in spans if s.upper - s.lower > SHORTEST * width])
 
 
-def changes(
+def bisect_changes(
     at: Callable[..., Pattern], a: Fraction, b: Fraction, before: Pattern, after: Pattern
 ) -> Iterator[tuple[Fraction, Pattern]]:
     """All changes between a and b that bisection sees, each with the pattern after it."""
@@ -211,18 +224,18 @@ def changes(
         yield middle, after
         return
     between = at(middle, before, after)
-    yield from changes(at, a, middle, before, between)
-    yield from changes(at, middle, b, between, after)
+    yield from bisect_changes(at, a, middle, before, between)
+    yield from bisect_changes(at, middle, b, between, after)
 
 
-def joined(spans: list[Span]) -> list[Span]:
+def join_equal_patterns(spans: list[PatternInterval]) -> list[PatternInterval]:
     """Neighbours with one pattern made one."""
-    done: list[Span] = []
+    done: list[PatternInterval] = []
     for span in spans:
         if done and done[-1].pattern == span.pattern:
-            done[-1] = Span(done[-1].lower, span.upper, span.pattern)
+            done[-1] = PatternInterval(done[-1].lower, span.upper, span.pattern)
         elif done:
-            done.append(Span(done[-1].upper, span.upper, span.pattern))
+            done.append(PatternInterval(done[-1].upper, span.upper, span.pattern))
         else:
             done.append(span)
     return done

@@ -14,9 +14,9 @@ NEAR = sp.Rational(1, 10**40)
 SHORT = 1000
 
 
-def constant(x: sp.Rational) -> sp.Expr | None:
+def recognise_constant(x: sp.Rational) -> sp.Expr | None:
     """A rational, a rational multiple of pi, a cosine share ``(1 - cos(pi r))/2``, a rational multiple of a root, or
-    what :func:`related` knows, within 1e-40.
+    what :func:`recognise_relation` knows, within 1e-40.
     """
     pi = sp.Rational(str(sp.pi.evalf(90)))
     for unit, base in ((sp.Integer(1), sp.Integer(1)), (pi, sp.pi)):
@@ -34,65 +34,65 @@ def constant(x: sp.Rational) -> sp.Expr | None:
         best = sp.Rational(x / root).limit_denominator(720)
         if abs(best * root - x) < NEAR:
             return best * sp.sqrt(q)
-    return related(x)
+    return recognise_relation(x)
 
 
-def related(x: sp.Rational) -> sp.Expr | None:
+def recognise_relation(x: sp.Rational) -> sp.Expr | None:
     """``a + b pi``, a root of a quadratic polynomial, or a logarithm of either with short coefficients."""
     with mpmath.workdps(50):
         at = mpmath.mpf(int(x.p)) / int(x.q)
-        line = relation([at, mpmath.mpf(1), mpmath.pi])
+        line = integer_relation([at, mpmath.mpf(1), mpmath.pi])
         if line is not None and line[0]:
             return -(line[1] + line[2] * sp.pi) / sp.Integer(line[0])
-        found = quadratic(at)
+        found = recognise_quadratic(at)
         if found is None and abs(at) < 20:
-            inner = quadratic(mpmath.exp(at))
+            inner = recognise_quadratic(mpmath.exp(at))
             found = None if inner is None else sp.log(inner)
         return found
 
 
-def quadratic(at: mpmath.mpf) -> sp.Expr | None:
+def recognise_quadratic(at: mpmath.mpf) -> sp.Expr | None:
     """The rational number or the root of a quadratic polynomial next to a number."""
-    c = relation([at * at, at, mpmath.mpf(1)])
+    c = integer_relation([at * at, at, mpmath.mpf(1)])
     if c is None:
         return None
     roots = sp.roots(sp.Poly(c, sp.Symbol("x"))).keys()
     return min(roots, key=lambda root: abs(mpmath.mpmathify(sp.N(root, 40)) - at))
 
 
-def relation(values: Sequence[mpmath.mpf]) -> list[int] | None:
+def integer_relation(values: Sequence[mpmath.mpf]) -> list[int] | None:
     """Short integers c with ``sum c_i values_i`` next to zero."""
     return mpmath.pslq(values, tol=mpmath.mpf(10) ** -40, maxcoeff=SHORT, maxsteps=2000)
 
 
-def place_of(values: Sequence[sp.Rational], lengths: Sequence[sp.Rational], T: sp.Symbol) -> sp.Expr | None:
+def linear_place(values: Sequence[sp.Rational], lengths: Sequence[sp.Rational], T: sp.Symbol) -> sp.Expr | None:
     """``a T + b`` through the first two samples, confirmed on all of them."""
     slope = (values[1] - values[0]) / (lengths[1] - lengths[0])
     start = values[0] - slope * lengths[0]
     if any(abs(slope * t + start - v) > NEAR for v, t in zip(values, lengths, strict=True)):
         return None
-    a, b = constant(slope), constant(start)
+    a, b = recognise_constant(slope), recognise_constant(start)
     return None if a is None or b is None else a * T + b
 
 
-def place_from(values: Sequence[sp.Rational], parameters: Sequence[sp.Rational], p: sp.Symbol) -> sp.Expr | None:
+def simple_place(values: Sequence[sp.Rational], parameters: Sequence[sp.Rational], p: sp.Symbol) -> sp.Expr | None:
     """A place linear in the parameter or in its reciprocal."""
-    found = place_of(values, parameters, p)
+    found = linear_place(values, parameters, p)
     if found is not None or any(v == 0 for v in parameters):
         return found
-    scaled = place_of([v * q for v, q in zip(values, parameters, strict=True)], parameters, p)
+    scaled = linear_place([v * q for v, q in zip(values, parameters, strict=True)], parameters, p)
     return None if scaled is None else sp.expand(scaled / p)
 
 
-def place_or_share(
+def recognise_place(
     family: Family, panel: int, values: Sequence[sp.Rational], parameters: Sequence[sp.Rational]
 ) -> sp.Expr | None:
     """A place linear in the parameter or its reciprocal, else a fixed share of its panel."""
-    found = place_from(values, parameters, family.parameter)
-    return share_of(family, panel, values, parameters) if found is None else found
+    found = simple_place(values, parameters, family.parameter)
+    return fixed_share(family, panel, values, parameters) if found is None else found
 
 
-def share_of(
+def fixed_share(
     family: Family, panel: int, values: Sequence[sp.Rational], parameters: Sequence[sp.Rational]
 ) -> sp.Expr | None:
     """A fixed share of the panel, to nine digits: where the dual polynomial is flat, no place is better known."""

@@ -25,7 +25,7 @@ from navsym.prove.ladder import decide
 # Families with regressors that depend on the others for every value of the parameter: they are left out, exactly.
 
 
-def without_dependent(family: Family, value: sp.Rational) -> tuple[Family, tuple[dict[str, Any], ...]]:
+def drop_dependent_unknowns(family: Family, value: sp.Rational) -> tuple[Family, tuple[dict[str, Any], ...]]:
     """The family without dependent unknowns, and identity certificates that tie it to the whole one.
 
     value : a value of the parameter at which dependence is looked for; it is proved for all of them
@@ -40,12 +40,12 @@ def without_dependent(family: Family, value: sp.Rational) -> tuple[Family, tuple
             relation = [recognised(c) for c in found.relation]
             if any(c is None for c in relation):
                 raise
-            family = dropped(family, found, relation, ties)
+            family = drop_unknown(family, found, relation, ties)
         else:
             return family, tuple(ties)
 
 
-def dropped(
+def drop_unknown(
     family: Family, found: DependentError, relation: list[sp.Rational | None], ties: list[dict[str, Any]]
 ) -> Family:
     """One unknown fewer: ``H_k = sum c_j H_j`` and ``P_k = sum c_j P_j``, both proved."""
@@ -82,33 +82,35 @@ CELLS = 64
 
 
 @dataclass(frozen=True, slots=True)
-class Singular:
+class SingularValue:
     """A value of the parameter where the range is split, and why."""
 
     at: sp.Expr
     why: str
 
 
-def singular_values(family: Family, lower: sp.Expr, upper: sp.Expr) -> tuple[tuple[Singular, ...], tuple[sp.Expr, ...]]:
+def find_singular_values(
+    family: Family, lower: sp.Expr, upper: sp.Expr
+) -> tuple[tuple[SingularValue, ...], tuple[sp.Expr, ...]]:
     """Singular values in [lower, upper], in order, and the expressions whose roots in it are not known."""
     found: dict[sp.Expr, str] = {}
     unknown: list[sp.Expr] = []
-    for k, expression in enumerate(dict.fromkeys(suspects(family))):
-        roots = real_roots(expression, family.parameter) if k < MOST else None
+    for k, expression in enumerate(dict.fromkeys(suspect_expressions(family))):
+        roots = exact_real_roots(expression, family.parameter) if k < MOST else None
         if roots is None:
-            unknown += [] if rootless(expression, family.parameter, lower, upper) else [expression]
+            unknown += [] if is_rootless(expression, family.parameter, lower, upper) else [expression]
             continue
         for root in roots:
             below, above = enclose(root - lower, bits=200), enclose(upper - root, bits=200)
             if root not in found and not bool(below < 0) and not bool(above < 0):
-                why = reason(family, root)
+                why = singularity_reason(family, root)
                 if why is not None:
                     found[root] = why
     ordered = sorted(found, key=lambda e: float(enclose(e).mid()))
-    return tuple(Singular(at, found[at]) for at in ordered), tuple(unknown)
+    return tuple(SingularValue(at, found[at]) for at in ordered), tuple(unknown)
 
 
-def suspects(family: Family) -> Iterator[sp.Expr]:
+def suspect_expressions(family: Family) -> Iterator[sp.Expr]:
     """Expressions in the parameter whose roots may be singular."""
     p = family.parameter
     parts = [*family.functional, *family.sigma, *(h for row in family.rows for h in row)]
@@ -122,8 +124,8 @@ def suspects(family: Family) -> Iterator[sp.Expr]:
                 yield power.base
     for part in (*parts, family.start, family.stop):
         yield from (e.base for e in part.atoms(sp.Pow) if is_square_root(e, p))
-    yield from lost_ranks(family)
-    rates = list(dict.fromkeys(r for part in parts for r in rates_of(part)))
+    yield from rank_losses(family)
+    rates = list(dict.fromkeys(r for part in parts for r in function_rates(part)))
     yield from (r for r in rates if p in r.free_symbols)
     for a, b in combinations(rates, 2):
         yield from (e for e in (a - b, a + b) if p in e.free_symbols)
@@ -134,7 +136,7 @@ def is_square_root(power: sp.Pow, parameter: sp.Symbol) -> bool:
     return bool(power.exp.is_Rational and power.exp.q == 2 and power.base.free_symbols == {parameter})
 
 
-def lost_ranks(family: Family) -> Iterator[sp.Expr]:
+def rank_losses(family: Family) -> Iterator[sp.Expr]:
     """Expressions that vanish where the regressors, as combinations of functions of U, lose rank: the common divisor
     of minors of the matrix of their coefficients.
     """
@@ -157,7 +159,7 @@ def lost_ranks(family: Family) -> Iterator[sp.Expr]:
         yield common
 
 
-def rates_of(part: sp.Expr) -> Iterator[sp.Expr]:
+def function_rates(part: sp.Expr) -> Iterator[sp.Expr]:
     """Factors of U in the arguments of functions."""
     for f in part.atoms(sp.Function) | {e for e in part.atoms(sp.exp)}:
         for argument in f.args:
@@ -166,7 +168,7 @@ def rates_of(part: sp.Expr) -> Iterator[sp.Expr]:
                 yield rate
 
 
-def real_roots(expression: sp.Expr, p: sp.Symbol) -> list[sp.Expr] | None:
+def exact_real_roots(expression: sp.Expr, p: sp.Symbol) -> list[sp.Expr] | None:
     """Real roots of a polynomial in p, or in p and one square root of such, exactly; None for anything else."""
     top = sp.fraction(sp.together(expression))[0]
     if not top.free_symbols:
@@ -176,11 +178,11 @@ def real_roots(expression: sp.Expr, p: sp.Symbol) -> list[sp.Expr] | None:
         s = sp.Dummy()
         squared = sp.resultant(top.subs(roots[0], s), s**2 - roots[0].base, s)
         found = polynomial_roots(squared, p)
-        return None if found is None else [root for root in found if vanishes(top.subs(p, root))]
+        return None if found is None else [root for root in found if may_vanish(top.subs(p, root))]
     return polynomial_roots(top, p)
 
 
-def vanishes(x: sp.Expr) -> bool:
+def may_vanish(x: sp.Expr) -> bool:
     """False only when a ball shows that a number is not zero."""
     return not bool(abs(enclose(x)) > 0)
 
@@ -197,14 +199,14 @@ def polynomial_roots(top: sp.Expr, p: sp.Symbol) -> list[sp.Expr] | None:
         return None
 
 
-def rootless(expression: sp.Expr, p: sp.Symbol, lower: sp.Expr, upper: sp.Expr) -> bool:
+def is_rootless(expression: sp.Expr, p: sp.Symbol, lower: sp.Expr, upper: sp.Expr) -> bool:
     """True when balls over cells of the range show that the expression has no root there."""
     a, width = enclose(lower), enclose(upper - lower)
     cells = [a + width * (arb(2 * k + 1) + arb(0, 1)) / (2 * CELLS) for k in range(CELLS)]
     return all(bool(size > 0) or bool(size < 0) for size in (enclose(expression, {p: cell}) for cell in cells))
 
 
-def reason(family: Family, value: sp.Expr) -> str | None:
+def singularity_reason(family: Family, value: sp.Expr) -> str | None:
     """Why the problem is singular there, or None when it is not."""
     name = f"{family.parameter.name} = {value}"
     lengths = dict.fromkeys(family.at(stop - start, value) for start, stop in family.panels)
@@ -236,7 +238,7 @@ Part = tuple[Family, sp.Expr, sp.Expr]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Section:
+class RegularInterval:
     """A part of the range without a singular value inside, as far as they are known.
 
     singular : those of the range
@@ -247,7 +249,7 @@ class Section:
     family: Family
     lower: sp.Expr
     upper: sp.Expr
-    singular: tuple[Singular, ...]
+    singular: tuple[SingularValue, ...]
     unknown: tuple[sp.Expr, ...]
     ties: tuple[dict[str, Any], ...]
 
@@ -257,21 +259,21 @@ class Section:
         return {s.at for s in self.singular}
 
 
-def sections(family: Family, lower: sp.Expr, upper: sp.Expr) -> list[Part]:
+def family_intervals(family: Family, lower: sp.Expr, upper: sp.Expr) -> list[Part]:
     """The range cut where one family of a chain follows another."""
     chain = family.chain
     first = [lower, *(one.least for one in chain[1:])]
     last = [*(one.least for one in chain[1:]), upper]
     done = []
     for one, a, b in zip(chain, first, last, strict=True):
-        start, end = (lower if above(lower, a) else a), (upper if above(b, upper) else b)
-        if above(end, start):
+        start, end = (lower if is_above(lower, a) else a), (upper if is_above(b, upper) else b)
+        if is_above(end, start):
             done.append((one, start, end))
     return done
 
 
 @dataclass(frozen=True, slots=True)
-class Imaginary:
+class ImaginaryInterval:
     """A part of the range in which a square root of the file is imaginary: there is no problem there."""
 
     root: sp.Expr
@@ -283,22 +285,24 @@ class Imaginary:
         return f"{self.root} is imaginary for {name} from {self.lower} to {self.upper}, where there is no problem"
 
 
-def real_parts(family: Family, lower: sp.Expr, upper: sp.Expr) -> tuple[list[Part], list[Imaginary]]:
+def real_intervals(family: Family, lower: sp.Expr, upper: sp.Expr) -> tuple[list[Part], list[ImaginaryInterval]]:
     """The range cut where square roots of the parameter become imaginary, and the parts in which one of them is.
 
     Roots that only stand where sines become hyperbolic sines, or in pairs, cut nothing. Raises DomainError when one is
     imaginary on the whole range.
     """
-    roots = {r for e in expressions(family) for r in e.atoms(sp.Pow) if is_square_root(r, family.parameter)}
-    found = {z for r in roots for z in real_roots(r.base, family.parameter) or ()}
-    marks = sorted((z for z in found if above(z, lower) and above(upper, z)), key=lambda z: float(enclose(z).mid()))
+    roots = {r for e in family_expressions(family) for r in e.atoms(sp.Pow) if is_square_root(r, family.parameter)}
+    found = {z for r in roots for z in exact_real_roots(r.base, family.parameter) or ()}
+    marks = sorted(
+        (z for z in found if is_above(z, lower) and is_above(upper, z)), key=lambda z: float(enclose(z).mid())
+    )
     parts, left = [], []
     for a, b in pairwise([lower, *marks, upper]):
-        bad = imaginary_at(family, roots, inside_of(a, b))
+        bad = imaginary_root(family, roots, value_inside(a, b))
         if bad is None:
             parts.append((family, a, b))
         else:
-            left.append(Imaginary(bad, a, b))
+            left.append(ImaginaryInterval(bad, a, b))
     if not parts:
         raise DomainError(
             f"{family.parameter.name}: expected a range in which the problem is real; got {lower} to {upper}, and "
@@ -307,57 +311,57 @@ def real_parts(family: Family, lower: sp.Expr, upper: sp.Expr) -> tuple[list[Par
     return ([(family, lower, upper)] if not left else parts), left
 
 
-def expressions(family: Family) -> list[sp.Expr]:
+def family_expressions(family: Family) -> list[sp.Expr]:
     """All that may depend on the parameter."""
     rows = [h for row in family.rows for h in row]
     return [*family.functional, *family.sigma, *rows, family.start, *family.cuts, family.stop]
 
 
-def imaginary_at(family: Family, roots: set[sp.Expr], value: sp.Rational) -> sp.Expr | None:
+def imaginary_root(family: Family, roots: set[sp.Expr], value: sp.Rational) -> sp.Expr | None:
     """A square root that makes the problem imaginary at a value, or None."""
     real = family.real_near(value)
-    if not any(real.at(e, value).has(sp.I) for e in expressions(real)):
+    if not any(real.at(e, value).has(sp.I) for e in family_expressions(real)):
         return None
     negative = [sp.sqrt(r.base) for r in roots if bool(enclose(family.at(r.base, value)) < 0)]
     return min(negative, key=sp.default_sort_key, default=None)
 
 
-def begins(part: Imaginary, lower: sp.Expr, upper: sp.Expr, name: str) -> list[Boundary]:
+def imaginary_boundaries(part: ImaginaryInterval, lower: sp.Expr, upper: sp.Expr, name: str) -> list[Boundary]:
     """The ends of an imaginary part inside the range, as boundaries."""
     ends = [end for end in (part.lower, part.upper) if end not in (lower, upper)]
-    return [event(Singular(end, part.in_words(name))) for end in ends]
+    return [singular_boundary(SingularValue(end, part.in_words(name))) for end in ends]
 
 
-def above(x: sp.Expr, y: sp.Expr) -> bool:
+def is_above(x: sp.Expr, y: sp.Expr) -> bool:
     """x > y, by balls."""
     return x != y and bool(enclose(x - y) > 0)
 
 
-def split(family: Family, lower: sp.Expr, upper: sp.Expr) -> list[Section]:
+def split_at_singular_values(family: Family, lower: sp.Expr, upper: sp.Expr) -> list[RegularInterval]:
     """The range cut at its singular values, and unknowns that depend on others left out."""
-    inside = inside_of(lower, upper)
-    family, ties = without_dependent(family.real_near(inside), inside)
-    singular, unknown = singular_values(family, lower, upper)
-    inner = [s.at for s in singular if above(s.at, lower) and above(upper, s.at)]
+    inside = value_inside(lower, upper)
+    family, ties = drop_dependent_unknowns(family.real_near(inside), inside)
+    singular, unknown = find_singular_values(family, lower, upper)
+    inner = [s.at for s in singular if is_above(s.at, lower) and is_above(upper, s.at)]
     return [
-        Section(family.real_near(inside_of(a, b)), a, b, singular, unknown, ties)
+        RegularInterval(family.real_near(value_inside(a, b)), a, b, singular, unknown, ties)
         for a, b in pairwise([lower, *inner, upper])
     ]
 
 
-def inside_of(lower: sp.Expr, upper: sp.Expr) -> sp.Rational:
+def value_inside(lower: sp.Expr, upper: sp.Expr) -> sp.Rational:
     """A rational value between the ends that no symmetry singles out."""
     ball = enclose(lower + (upper - lower) * sp.Rational(5, 13), bits=96)
     return to_rational(to_fraction(ball).limit_denominator(10**6))
 
 
-def event(singular: Singular) -> Boundary:
+def singular_boundary(singular: SingularValue) -> Boundary:
     """A singular value as a boundary."""
     ball = enclose(singular.at, bits=200)
     return Boundary(singular.at, lower_end(ball, DIGITS), upper_end(ball, DIGITS), singular.why, True)
 
 
-def not_looked_at(section: Section) -> Boundary:
+def unsolved_boundary(section: RegularInterval) -> Boundary:
     """What may split a section further, as a boundary somewhere in it that was not located."""
     ends = lower_end(enclose(section.lower, bits=200), DIGITS), upper_end(enclose(section.upper, bits=200), DIGITS)
     shown = ", ".join(map(str, section.unknown[:5])) + (", …" if len(section.unknown) > 5 else "")

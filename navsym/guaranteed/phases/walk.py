@@ -14,31 +14,33 @@ import sympy as sp
 from flint import arb, arb_mat
 
 from navsym.core.balls import precision
-from navsym.guaranteed.certificate.enclosure import Problem
-from navsym.guaranteed.certificate.fixed import optimality_system, unknowns
-from navsym.guaranteed.certificate.polish import Polished
+from navsym.guaranteed.certificate.enclosure import PanelProblem
+from navsym.guaranteed.certificate.fixed import optimality_system, solution_unknowns
+from navsym.guaranteed.certificate.polish import ContactSolution
 from navsym.guaranteed.phases.family import Family
 
-BITS = 1600
+WALK_BITS = 1600
 #: Digits of the box that is tested at the end of the walk.
-DIGITS = 160
+WALK_DIGITS = 160
 #: How much nearer a value comes to the root than the one before: the first few, and the others.
 FIRST, NEARER = sp.Rational(4, 5), sp.Rational(1, 4)
 MOST_STEPS = 70
 MOST_CORRECTIONS = 12
-GOAL = 1e-300
+WALK_GOAL = 1e-300
 
 
-def walked(family: Family, found: Polished, begin: sp.Rational, root: sp.Rational, end: sp.Rational) -> Polished | None:
+def walk_to(
+    family: Family, found: ContactSolution, begin: sp.Rational, root: sp.Rational, end: sp.Rational
+) -> ContactSolution | None:
     """The solution of a pattern at ``end``, near the root, from its solution at ``begin`` on the same side."""
     if not found.regular:
         return None
-    with precision(BITS):
+    with precision(WALK_BITS):
         known: list[tuple[sp.Rational, list[arb]]] = []
         value = begin
         for _ in range(MOST_STEPS):
-            start = extrapolated(known[-3:], value) if known else unknowns(found)
-            z = solved(family.exact(value), found, start)
+            start = extrapolate(known[-3:], value) if known else solution_unknowns(found)
+            z = settle_system(family.exact(value), found, start)
             if z is None:
                 return None
             if value == end:
@@ -49,7 +51,7 @@ def walked(family: Family, found: Polished, begin: sp.Rational, root: sp.Rationa
     return None
 
 
-def extrapolated(known: Sequence[tuple[sp.Rational, list[arb]]], value: sp.Rational) -> list[arb]:
+def extrapolate(known: Sequence[tuple[sp.Rational, list[arb]]], value: sp.Rational) -> list[arb]:
     """Lagrange's polynomial through the last solutions."""
     total = [arb(0)] * len(known[0][1])
     for p, z in known:
@@ -61,7 +63,7 @@ def extrapolated(known: Sequence[tuple[sp.Rational, list[arb]]], value: sp.Ratio
     return [a.mid() for a in total]
 
 
-def solved(problem: Problem, found: Polished, z: list[arb]) -> list[arb] | None:
+def settle_system(problem: PanelProblem, found: ContactSolution, z: list[arb]) -> list[arb] | None:
     """Newton's method on the optimality system, None when it does not settle."""
     last = None
     for _ in range(MOST_CORRECTIONS):
@@ -75,13 +77,13 @@ def solved(problem: Problem, found: Polished, z: list[arb]) -> list[arb] | None:
         if not size.is_finite():
             return None
         z = [(a - e).mid() for a, e in zip(z, step, strict=True)]
-        if bool(size < arb(GOAL)) or (last is not None and bool(size < arb(10) ** -200) and not bool(size < last)):
+        if bool(size < arb(WALK_GOAL)) or (last is not None and bool(size < arb(10) ** -200) and not bool(size < last)):
             return z
         last = size
     return None
 
 
-def with_unknowns(found: Polished, z: Sequence[arb]) -> Polished:
+def with_unknowns(found: ContactSolution, z: Sequence[arb]) -> ContactSolution:
     """A solution in place of another of the same pattern."""
     m, l = len(found.dual), len(found.v)
     free = iter(z[m : len(z) - l])
