@@ -11,7 +11,17 @@ FOLDER = Path(__file__).parent.parent / "notebooks"
 NOTEBOOKS = sorted(FOLDER.glob("*.py"))
 
 
-@pytest.mark.parametrize("path", [pytest.param(p, id=p.stem, marks=pytest.mark.xdist_group(p.stem)) for p in NOTEBOOKS])
+#: These run in the ten minutes, those of the papers in CI.
+FIRST = ("00_tour", "01_guaranteed_velocity", "10_your_own_model")
+
+
+def as_parameter(path):
+    """A notebook in a group of its own, and long when it is not among the first."""
+    marks = [pytest.mark.xdist_group(path.stem), *([] if path.stem in FIRST else [pytest.mark.long])]
+    return pytest.param(path, id=path.stem, marks=marks)
+
+
+@pytest.mark.parametrize("path", [as_parameter(path) for path in NOTEBOOKS])
 @pytest.mark.filterwarnings("ignore")
 def test_the_notebook_runs(path):
     jupytext = pytest.importorskip("jupytext")

@@ -233,7 +233,7 @@ def test_the_text_names_the_most_probable_mode(tmp_path, capsys):
 def test_simulate_is_repeatable_and_scores_every_method(capsys):
     documents = []
     for _ in range(2):
-        assert main.run(["simulate", "multistructure", "--runs", "20", "--steps", "3", "--json"]) == 0
+        assert main.run(["simulate", "multistructure", "--runs", "4", "--steps", "3", "--json"]) == 0
         documents.append(json.loads(capsys.readouterr().out))
     for document in documents:
         for row in document["methods"]:

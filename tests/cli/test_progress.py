@@ -81,7 +81,7 @@ def told_by(study, **options):
     ("module", "name", "options"),
     [
         ("navsym_papers.multistructure.experiment.study", "study", {"runs": 2, "steps": 2}),
-        ("navsym_papers.trajectory.experiment.study", "study", {"runs": 1}),
+        pytest.param("navsym_papers.trajectory.experiment.study", "study", {"runs": 1}, marks=pytest.mark.long),
         ("navsym_papers.joint_correction.experiment.study", "study", {}),
     ],
 )

@@ -21,6 +21,12 @@ PAPERS = paper_names()
 #: Every paper as a parameter, in a group of its own.
 EACH = [pytest.param(name, marks=pytest.mark.xdist_group(name)) for name in PAPERS]
 
+#: Every paper, and which of its claims: a quarter in every run, the others in the long ones.
+IN_PARTS = [
+    *(pytest.param(name, "a quarter", marks=pytest.mark.xdist_group(name)) for name in PAPERS),
+    *(pytest.param(name, "the others", marks=[pytest.mark.xdist_group(name), pytest.mark.long]) for name in PAPERS),
+]
+
 
 @cache
 def claims(paper: str) -> list[tuple[Claim, Statement]]:
@@ -33,6 +39,11 @@ def module(paper: str) -> PaperModule:
     """The paper as the verb ``verify`` takes it; its claims have been derived."""
     known = tuple(replace(claim, derive=lambda statement=statement: statement) for claim, statement in claims(paper))
     return replace(paper_module(import_paper(paper)), claims=known)
+
+
+def part_of(items, part):
+    """A quarter of a list, or the others."""
+    return [item for place, item in enumerate(items) if (place % 4 == 0) == (part == "a quarter")]
 
 
 def assertions(paper):

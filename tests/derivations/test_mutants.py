@@ -14,7 +14,7 @@ from navsym.claims import PROVED, REFUTED, Equation
 from navsym.core.sandbox import Exhausted, run_many
 from navsym.prove.equations import decide_equation, list_entries
 from tests.attacks.campaigns.edits import list_mutants
-from tests.derivations.statements import EACH, claims
+from tests.derivations.statements import claims
 
 #: Paper -> how many entries are changed, and in how many ways each.
 SAMPLES = {"guaranteed_velocity": (60, 4), "joint_correction": (40, 2), "trajectory": (40, 2)}
@@ -55,7 +55,13 @@ def judge(case):
     return f"{identity}: {mutant} is {verdict.status} against derived and {same.status} against printed"
 
 
-@pytest.mark.parametrize("name", [paper for paper in EACH if paper.values[0] in SAMPLES])
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=[pytest.mark.xdist_group(name), *marks])
+        for name, marks in zip(SAMPLES, ([], [pytest.mark.long], [pytest.mark.long]), strict=True)
+    ],
+)
 def test_a_sample_of_the_mutants_of_a_paper_falls(name):
     sampled, most = SAMPLES[name]
     source = random.Random(1)

@@ -26,7 +26,7 @@ from navsym.prove.sampling.points import draw_points
 from navsym.verification.decide import sides
 from navsym.verification.papers import paper_module
 from tests.attacks.campaigns.edited_values import values_at
-from tests.derivations.statements import EACH, PAPERS, assertions, claims, formulas, symbols_in
+from tests.derivations.statements import EACH, IN_PARTS, PAPERS, assertions, claims, formulas, part_of, symbols_in
 from tests.fidelity.plain_arithmetic import Undefined, value
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -45,10 +45,10 @@ def ledger():
 OUTSIDE = (sp.Max, sp.Min, sp.sign)  # not in the language of files
 
 
-@pytest.mark.parametrize("paper", EACH)
-def test_every_formula_comes_back_from_its_text(paper):
+@pytest.mark.parametrize(("paper", "part"), IN_PARTS)
+def test_every_formula_comes_back_from_its_text(paper, part):
     """Short ones in every run; primes and the like are named anew."""
-    not_back = lost_on_the_way(paper, SHORT)
+    not_back = lost_on_the_way(part_of(assertions(paper), part), SHORT)
     assert not not_back, "\n".join(not_back[:20])
 
 
@@ -56,15 +56,15 @@ def test_every_formula_comes_back_from_its_text(paper):
 @pytest.mark.parametrize("paper", EACH)
 def test_every_long_formula_comes_back_from_its_text(paper):
     """Up to the length that the language of files allows."""
-    not_back = lost_on_the_way(paper, LENGTH)
+    not_back = lost_on_the_way(assertions(paper), LENGTH)
     assert not not_back, "\n".join(not_back[:20])
 
 
-def lost_on_the_way(paper, longest):
+def lost_on_the_way(some, longest):
     failed = []
-    for claim, statement in assertions(paper):
+    for claim, statement in some:
         assert len({s.name for s in symbols_in(statement)}) == len(symbols_in(statement)), claim.id
-    for formula in dict.fromkeys(f for _, s in assertions(paper) for f in formulas(s) if not f.has(*OUTSIDE)):
+    for formula in dict.fromkeys(f for _, s in some for f in formulas(s) if not f.has(*OUTSIDE)):
         renamed, symbols = in_plain_names(formula)
         text = to_text(renamed)
         if len(text) <= longest:
@@ -149,21 +149,21 @@ DENIED = {
 }
 
 
-@pytest.mark.parametrize("paper", EACH)
-def test_what_holds_is_not_denied_by_the_numbers_of_its_text(paper):
-    assert compared(paper, SHORT, 2) > 20
+@pytest.mark.parametrize(("paper", "part"), IN_PARTS)
+def test_what_holds_is_not_denied_by_the_numbers_of_its_text(paper, part):
+    assert compared(part_of(assertions(paper), part), SHORT, 2) > 2
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("paper", EACH)
 def test_long_formulas_are_not_denied_by_their_numbers_either(paper):
-    assert compared(paper, 10**6, 4) > 20
+    assert compared(assertions(paper), 10**6, 4) > 20
 
 
-def compared(paper, longest, count):
+def compared(some, longest, count):
     """Number of entries that were compared at points; asserts that none is denied."""
     seen = 0
-    for claim, statement in assertions(paper):
+    for claim, statement in some:
         if isinstance(statement, Optimum) or not claim.expect.holds:
             continue
         relation = getattr(statement, "relation", "=")
