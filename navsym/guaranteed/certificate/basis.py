@@ -75,8 +75,9 @@ def tail_share(high: NDArray[np.float64]) -> float:
 
 
 def cosine_transform(rows: list[list[arb]]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Coefficients from an even number of values, the even ones from their sums about the middle, the odd ones
-    from their differences.
+    """Coefficients from an even number of values.
+
+    The even ones come from sums of values about the middle, the odd ones from differences.
     """
     count, half = len(rows), len(rows) // 2
     pairs = list(zip(rows[:half], reversed(rows), strict=False))

@@ -438,8 +438,10 @@ def is_bounded_near_touch(cell: PanelCell, taylor: Sequence[arb], spread: arb, b
 
 
 def is_bounded_at_touch(cell: PanelCell, taylor: Sequence[arb], spread: arb, bound: arb) -> bool:
-    """``|f| < bound`` on the cell off the contact: strictly concave with f' = 0 at an inner contact; strictly
-    monotone up to a contact at an end of the panel, or concave with an outward slope there.
+    """True when ``|f| < bound`` is proved on the cell off an exact contact.
+
+    At an inner contact, with f' = 0, f is strictly concave; up to a contact at an end of the panel it is strictly
+    monotone, or concave with an outward slope there.
     """
     assert cell.touch is not None
     s, place = cell.touch.sign, arb(cell.touch.at)

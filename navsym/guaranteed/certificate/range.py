@@ -309,8 +309,9 @@ def newton_image(
     radius: dict[int, arb],
     free: Sequence[int],
 ) -> dict[int, arb] | None:
-    """Newton's step from the moving centre for all s, by the derivatives of the whole box; None when they look
-    singular. The checker does the same, with balls of the same order.
+    """Newton's step from the moving centre for all s, by the derivatives of the whole box.
+
+    None when these look singular. The checker does the same, with balls of the same order.
     """
     n = len(free)
 
@@ -466,13 +467,14 @@ def march_pieces(
     enough: Callable[[], bool] = never,
     accepts: Accepts = always,
 ) -> list[RangePiece]:
-    """Pieces from ``at`` to ``last``, upwards or downwards; given up after ``failures`` halvings of one step, and when
-    it is enough.
+    """Pieces from ``at`` to ``last``, upwards or downwards.
 
-    accepts : what else a piece has to pass
+    failures : halvings of one step after which the march stops
+    enough   : asked before every step; True stops the march
+    accepts  : further test of a piece
 
-    Towards the end of a regime a weight, the room of a contact or the room below the bound shrinks to nothing;
-    a piece may then be about as long as the root of what is left behind it, so steps square their distance.
+    Towards the end of a regime a weight, the distance of a contact from an end or the slack below the bound vanishes.
+    A piece may then be about as long as the square root of the distance, so steps square their distance.
     """
     pieces: list[RangePiece] = []
     span = abs(last - at)

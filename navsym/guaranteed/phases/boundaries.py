@@ -99,8 +99,9 @@ def boundary_events(
 def bound_slacks(
     family: Family, closed: ClosedForm | None, other: ClosedForm | None, span: PatternInterval
 ) -> Iterator[tuple[sp.Expr, str]]:
-    """What one dual polynomial leaves below the bound at the instants of the other regime, as far as those are known
-    exactly: ends of the interval are without a closed form of the other.
+    """Slacks of one dual polynomial below its bound at the times of the other regime, as far as these are exact.
+
+    Without a closed form of the other regime only the ends of the interval are.
     """
     if closed is None:
         return
@@ -169,8 +170,10 @@ Slack = tuple[str, int]
 
 
 def pattern_slacks(found: ContactSolution, problem: PanelProblem, others: FurtherContacts) -> dict[Slack, arb]:
-    """Quantities that are positive inside a regime: sizes of the weights, distances to the ends, rooms below the
-    bound near those contacts of the regime beyond (panel, u, sign) that are none of this one.
+    """Quantities that are positive inside a regime.
+
+    They are the sizes of the weights, the distances of inner contacts from the ends, and the slacks below the bound
+    near those contacts (panel, u, sign) of the next regime that are none of this one.
     """
     done: dict[Slack, arb] = {}
     for i, (s, w, v) in enumerate(zip(found.sign, found.weights, found.v, strict=True)):
@@ -311,8 +314,9 @@ def is_pattern_optimal(family: Family, span: PatternInterval, T: sp.Rational, si
 
 
 def has_double_contact(problem: PanelProblem, found: ContactSolution) -> bool:
-    """True when a contact sits where two stretches meet: the end of the other touches as well, and no strict bound
-    holds there.
+    """True when a contact stands where two pieces meet.
+
+    The end of the other piece touches as well, and no strict bound holds there.
     """
     many = 1 + max(panel.measurement for panel in problem.panels)
     contacts = {(int(k), to_fmpq(at)) for k, at in zip(found.panel, found.v, strict=True)}

@@ -87,7 +87,8 @@ def echelon_form(family: Family) -> Echelon | None:
 
 
 def argument_rates(row: list[sp.Expr]) -> list[fmpq] | None:
-    """|c| of every ``sin(c u)``, ``cos(c u)``, ``exp(c u)``, and a bound of 1/|z| for the zeros z of every denominator;
+    """|c| of every ``sin(c u)``, ``cos(c u)``, ``exp(c u)``, and a bound of 1/|z| for the zeros z of every denominator.
+
     None when there is another function.
     """
     rates = []
@@ -265,8 +266,9 @@ def scaled_row_text(form: Echelon, i: int, row: tuple[sp.Expr, ...], T: str, v: 
 
 
 def expand_functions(h: sp.Expr, K: int, T: str, v: str, parts: dict[sp.Symbol, str]) -> sp.Expr:
-    """h with every function written as its Taylor polynomial and ``(c u)**K`` times an entire function, and every
-    reciprocal as its Taylor polynomial and ``u**K`` times a rational function.
+    """h with every function written as its Taylor polynomial and ``(c u)**K`` times an entire function.
+
+    A reciprocal is written as its Taylor polynomial and ``u**K`` times a rational function.
     """
 
     def function(f: sp.Expr) -> sp.Expr:
@@ -368,8 +370,9 @@ def plain_certificate(family: Family, pieces: Sequence[RangePiece]) -> dict[str,
 
 
 def checker_accepts(document: Callable[[Sequence[RangePiece]], dict[str, Any]]) -> Callable[[RangePiece], bool]:
-    """Whether the independent checker accepts the certificate of a piece alone: its balls come from texts, and are not
-    those of the proof here.
+    """A predicate: the independent checker accepts the certificate of a piece alone.
+
+    Its balls come from texts, and are not those of the proof here.
     """
 
     def accepts(one: RangePiece) -> bool:
@@ -452,8 +455,10 @@ def conditioning_matrix(family: Family, p: fmpq) -> fmpq_mat:
 
 
 def reflected_matrix(family: Family, p: fmpq) -> fmpq_mat:
-    """The same after a reflection along (1, ..., m): the boxes of the proof are as large as what moves in them, and an
-    unknown of the dual that is zero for all values has no size of its own.
+    """The conditioning matrix after a reflection along (1, ..., m).
+
+    The boxes of the proof are as large as the unknowns that move in them; an unknown of the dual that is zero for all
+    values has no size of its own.
     """
     A = conditioning_matrix(family, p)
     m = A.nrows()

@@ -417,8 +417,9 @@ def find_phases(
 def plan_range(
     family: Family, lower: sp.Expr, upper: sp.Expr, limit: Budget
 ) -> tuple[list[RegularInterval], list[tuple[str, str]], list[Boundary]]:
-    """The sections of the range, the ends of parts that have none (imaginary, or not split within the limit), and where
-    imaginary ones begin.
+    """Regular intervals of the range, the ends of parts without any, and boundaries of imaginary parts.
+
+    Parts without any are imaginary, or were not split within the budget.
     """
     plan: list[RegularInterval] = []
     lost: list[tuple[str, str]] = []
@@ -527,8 +528,9 @@ def guess_forms(
 
 
 def drop_accidental_intervals(family: Family, spans: list[PatternInterval], limit: Budget) -> list[PatternInterval]:
-    """Spans without short ones between neighbours that are proved to follow each other: there contacts merge, and
-    the search in double precision takes one pattern for another, or for several.
+    """The intervals without short ones between neighbours that are proved to follow each other.
+
+    There contacts merge, and the search in double precision takes one pattern for another, or for several.
     """
     short = SHORT * (spans[-1].upper - spans[0].lower)
     kept, rest = spans[:1], spans[1:]

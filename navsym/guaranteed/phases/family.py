@@ -126,8 +126,9 @@ class Family:
         return PanelProblem(tuple(panels), self.functional)
 
     def real_near(self, value: Any) -> Family:
-        """The same with square roots of what is positive at a value: ``sqrt(c) = i sqrt(-c)``, sines of ``i x`` as
-        hyperbolic sines. To be used where no radicand changes its sign.
+        """The family with real square roots at a value: ``sqrt(c) = i sqrt(-c)``, sines of ``i x`` as hyperbolic sines.
+
+        It holds where no radicand changes its sign.
         """
         parts = [*self.functional, *(h for row in self.rows for h in row)]
         roots = {e for part in parts for e in part.atoms(sp.Pow) if e.exp.is_Rational and e.exp.q == 2}

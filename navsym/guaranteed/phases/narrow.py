@@ -70,8 +70,9 @@ class Sliver:
 def certify_slivers(
     family: Family, start: fmpq, end: fmpq, enough: Callable[[], bool] = never
 ) -> tuple[list[Sliver], list[tuple[fmpq, fmpq]]]:
-    """Slivers on a stretch, each as long as it stays narrow, and what they leave when the attempts are used up or it is
-    enough.
+    """Slivers of an interval, each as long as its enclosure stays narrow, and the intervals that they leave.
+
+    enough : asked before every attempt; True stops
     """
     made: list[Sliver] = []
     left: list[tuple[fmpq, fmpq]] = []
@@ -166,8 +167,9 @@ def cheapest_support(
 
 
 def support_cost(ball: PanelProblem, support: Support) -> arb:
-    """``sum |W|`` of the weights over their noise bounds, ``sum W H/sigma = P``: in the order of the checker, whose
-    balls are as wide as these where sigma moves.
+    """``sum |W|`` of the weights over their noise bounds, ``sum W H/sigma = P``.
+
+    The order is that of the checker, whose balls are as wide as these where sigma moves.
     """
     panels = [ball.panels[k] for k, _ in support]
     columns = [[h / panel.bound() for h in panel.rows(arb(v))] for panel, (_, v) in zip(panels, support, strict=True)]

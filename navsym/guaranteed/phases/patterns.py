@@ -149,8 +149,9 @@ def center_on_constants(found: Contacts, panels: Panels) -> Contacts:
 
 
 def move_to_cuts(found: Contacts, panels: Panels, many: int) -> Contacts:
-    """The same contacts; one at the start of a stretch stands at the end of the stretch before where the regressors go
-    on without a jump: such a place belongs to both, and a pattern names it in one way.
+    """The same contacts; one at the start of a piece stands at the end of the piece before.
+
+    It does where the regressors go on without a jump: such a place belongs to both, and a pattern names it in one way.
     """
     panel, u = found.panel.copy(), found.u.copy()
     for i in np.flatnonzero((found.inner == 0) & (u < 0) & (panel >= many)):
@@ -163,8 +164,9 @@ def move_to_cuts(found: Contacts, panels: Panels, many: int) -> Contacts:
 
 
 def order_contacts(found: Contacts, panels: Panels | None = None) -> Contacts:
-    """The same contacts by panel and place; those whose weight is rounding, or has not the sign of the dual
-    polynomial there (with panels), are touches only.
+    """The same contacts by panel and place.
+
+    Those whose weight is rounding, or has not the sign of the dual polynomial there (with panels), are touches only.
     """
     sizes = np.abs(found.weights)
     idle = sizes <= ROUNDING * sizes.sum()

@@ -15,8 +15,10 @@ SHORT = 1000
 
 
 def recognise_constant(x: sp.Rational) -> sp.Expr | None:
-    """A rational, a rational multiple of pi, a cosine share ``(1 - cos(pi r))/2``, a rational multiple of a root, or
-    what :func:`recognise_relation` knows, within 1e-40.
+    """The exact number within 1e-40 of a rational with many digits, or None.
+
+    It is a rational, a rational multiple of pi, a cosine share ``(1 - cos(pi r))/2``, a rational multiple of a root,
+    or one of those of :func:`recognise_relation`.
     """
     pi = sp.Rational(str(sp.pi.evalf(90)))
     for unit, base in ((sp.Integer(1), sp.Integer(1)), (pi, sp.pi)):
@@ -109,8 +111,9 @@ def fixed_share(
 
 
 def middle_of_constant(family: Family, panel: int) -> sp.Expr | None:
-    """The middle of a panel whose regressors do not change on it: there one place is as good as another, and what a
-    search found says nothing. None for other panels.
+    """The middle of a panel whose regressors do not change on it; None for other panels.
+
+    There one place is as good as another, and the place of a search says nothing.
     """
     start, stop = family.panels[panel]
     return None if any(h.has(U) for h in family.rows[panel]) else (start + stop) / 2

@@ -137,8 +137,9 @@ def is_square_root(power: sp.Pow, parameter: sp.Symbol) -> bool:
 
 
 def rank_losses(family: Family) -> Iterator[sp.Expr]:
-    """Expressions that vanish where the regressors, as combinations of functions of U, lose rank: the common divisor
-    of minors of the matrix of their coefficients.
+    """Expressions that vanish where the regressors, as combinations of functions of U, lose rank.
+
+    Each is the common divisor of minors of the matrix of their coefficients.
     """
     p, m = family.parameter, len(family.functional)
     columns: dict[tuple[int, sp.Expr], list[sp.Expr]] = {}
