@@ -72,6 +72,10 @@ class Derivation(Answer):
     observability_matrix : rows H, H F, ... (n p, n); None for regressors or several pieces
     conditions    : per target, the conditions of an optimal guaranteed estimate
     assumptions   : what the formulas take to hold
+
+    >>> import navsym as nav
+    >>> nav.derive("examples/schuler-velocity.toml").Phi[1, :]
+    Matrix([[0, cos(t), sin(t)]])
     """
 
     name: str

@@ -53,6 +53,10 @@ class Observability(Answer):
     gains               : of the stages, None unless poles were asked for
     restoration         : the fewest further measurements, None unless asked for
     candidates          : names of what could be measured
+
+    >>> import navsym as nav
+    >>> nav.observe("examples/schuler-velocity.toml")
+    Observability(schuler-velocity: rank 3 of 3, observable, 0 rank drops)
     """
 
     name: str
@@ -177,7 +181,7 @@ def observe(
     >>> [drop.zeros for drop in answer.rank_drops]
     [(g,), (g,)]
     >>> nav.observe(sensor, g=0).unobservable
-    ('-x + b',)
+    ('x - b',)
     """
     with file_in_errors(model):
         contents = contents_of(model, values, parameters, "observe")
