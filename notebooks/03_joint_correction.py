@@ -18,34 +18,29 @@
 # V. I. Kalenova, V. M. Morozov, N. A. Parusnikov, A. G. Shakot'ko, 1979.
 
 # %%
-import tempfile
 from itertools import pairwise
-from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
 from ipywidgets import FloatSlider, interact
 
-from navsym.claims import claims_of
-from navsym.cli.main import run as navsym
-from navsym.core.datasets import dataset, local_copy
+import navsym as nav
 from navsym.models.inertial import full_model, joint_model, position_group, velocity_group
-from navsym.observability.chains import observe_jointly
-from navsym.observability.rank_drops import rank_drops
-from navsym.observability.sensors import restore_observability
-from navsym.observability.splits import feasible_splits
-from navsym.report.notebook import require, show
-from navsym_papers import joint_correction as paper
-from navsym_papers.joint_correction import section2_error_equations as errors_of_section_2
-from navsym_papers.joint_correction import section2_groups as groups
 from navsym_papers.joint_correction import section3_gains as analysis
-from navsym_papers.joint_correction import section3_noise as poles
 from navsym_papers.joint_correction import sensors
 from navsym_papers.joint_correction.experiment import ins as experiment
 from navsym_papers.joint_correction.experiment import real as aiding
 from navsym_papers.joint_correction.experiment.flight import EARTH_RADIUS, SCHULER_RATE, great_circle
 
 BLUE, ORANGE, GREEN, RED = "#0072b2", "#e69f00", "#009e73", "#d55e00"
+
+
+def explain(number):
+    """The claim of the paper with this number, decided now; its verdict is the declared one."""
+    explanation = nav.explain(f"joint_correction:{number}")
+    assert explanation.record.is_expected
+    return explanation
+
 
 # %% [markdown]
 # ## Three frames
@@ -72,12 +67,10 @@ plt.show()
 # of (2.2) is misprinted:
 
 # %%
-show(errors_of_section_2.drift_3_printed)
+explain("2.2.beta3")
 
 # %%
-require(errors_of_section_2.drift_3_printed)
-require(errors_of_section_2.drift_3)
-show(errors_of_section_2.drift_3)
+explain("2.2.beta3*")
 
 # %% [markdown]
 # What (2.8) and (2.9) keep and what they drop, with the order of every term relative to ρ:
@@ -89,16 +82,16 @@ for group in (velocity_group(), position_group()):
         print(f"d {variable}/dτ = {rate}    [left out: {left_out}]")
 
 # %%
-for claim in (groups.row_x6_printed, groups.row_x6, groups.row_y2_printed, groups.row_y2):
-    require(claim)
-show(groups.row_x6_printed)
+for number in ("2.8.x6*", "2.9.y2", "2.9.y2*"):
+    print(explain(number).record.title)
+explain("2.8.x6")
 
 # %% [markdown]
 # ## The observability ladder
 
 # %%
-found = observe_jointly(joint_model())
-steps = np.cumsum((0, *found.staircase))
+joint = nav.observe(joint_model())
+steps = np.cumsum((0, *joint.joint.staircase))
 figure, axis = plt.subplots(figsize=(7, 3))
 for k, (low, high) in enumerate(pairwise(steps)):
     axis.bar(k, high - low, bottom=low, color=(BLUE, BLUE, ORANGE, ORANGE)[k])
@@ -115,15 +108,15 @@ axis.set(xticks=range(4), xticklabels=names, ylabel="observed dimensions", ylim=
 axis.axhline(10, color="black", lw=0.5)
 axis.text(-0.4, 10.15, "all ten variables", fontsize=8)
 plt.show()
-assert found.observable
+assert joint.observable
 
 # %% [markdown]
 # All feasible splits of the position group; the one with the least max(i, j) estimates four derivatives
 # of each measurement instead of six.
 
 # %%
-for feasible in feasible_splits(observe_jointly(position_group().model(("position 1", "position 2")))):
-    print(feasible.i, feasible.j, "det L =", feasible.determinant)
+for split in nav.observe(position_group().model(("position_1", "position_2"))).splits:
+    print(split.i, split.j, "det L =", split.determinant)
 
 # %% [markdown]
 # ## Where it breaks
@@ -131,7 +124,7 @@ for feasible in feasible_splits(observe_jointly(position_group().model(("positio
 # Schuler frequency. The smallest singular value of the six chain vectors shows the loss.
 
 # %%
-for drop in rank_drops(observe_jointly(velocity_group().model(("velocity 1", "velocity 2")))):
+for drop in nav.observe(velocity_group().model(("velocity_1", "velocity_2"))).rank_drops:
     print(drop.subspace, drop.condition, "complete list" if drop.complete else "")
 kappa = np.linspace(-1.5, 1.5, 301)
 least = [np.linalg.svd(experiment.chain_matrix(value), compute_uv=False)[-1] for value in kappa]
@@ -148,15 +141,9 @@ plt.show()
 # apart by the cube root of μu₃: stable exactly for |μu₃| < 1, but slower than wished.
 
 # %%
-for claim in (
-    analysis.velocity_gains,
-    analysis.coupled_characteristic_polynomial,
-    analysis.coupled_system_is_stable_inside,
-    analysis.true_decay_rate,
-    analysis.link_removed_by_the_split,
-):
-    require(claim)
-show(analysis.coupled_characteristic_polynomial)
+for number in ("3.2.gains", "3.coupled.stable", "3.coupled.decay", "3.coupled.repaired"):
+    print(f"{number:20s} {explain(number).record.title}")
+explain("3.coupled.characteristic")
 
 
 # %%
@@ -185,10 +172,10 @@ interact(
 # large: the steady variances have closed forms, and with a constant drive d of y₂ the best λ_h is (16 d²/5)^(1/5).
 
 # %%
-for found in claims_of(poles):
-    require(found)
-    print(f"{found.number:20s} {found.title}")
-show(poles.best_decay_of_the_position_stage)
+for words in (":3.noise", ":3.choice"):
+    for claim in nav.claims("joint_correction", words=words):
+        print(f"{claim.number:20s} {claim.status:9s} {claim.title}")
+explain("3.choice.lambda_h")
 
 # %%
 drive, decays = 2.0, np.linspace(0.4, 4.0, 200)
@@ -266,22 +253,20 @@ plt.show()
 
 # %% [markdown]
 # ## How few measurements are enough
-# The paper joins both velocities with both coordinates. One coordinate less would do, and nothing less: with the
-# velocities alone four variables are hidden, and either coordinate shows all four of them at once. With position alone
-# it takes exactly $x_3$ and $x_6$. With all constant errors kept, five measurements are missing, whatever they are.
+# The paper joins both velocities with both coordinates. One coordinate less is enough, and nothing less. With the
+# velocities alone four variables are unobservable, and either coordinate shows all four of them at once. With position
+# alone it takes exactly $x_3$ and $x_6$. With all constant errors kept, five measurements are missing, whatever they
+# are.
 
 # %%
-for found in claims_of(sensors):
-    require(found)
-    print(f"{found.number:24s} {found.title}")
-velocities = restore_observability(sensors.measured_by(("sigma_c1", "sigma_c2")))
-print(
-    "unobservable by the velocities:",
-    velocities.unobservable,
-    "- a measurement of one of these is enough:",
-    velocities.sets,
-)
-assert velocities.proved and velocities.fewest == 1
+nav.claims("joint_correction", words=":sensors.")
+
+# %%
+velocities = nav.observe(sensors.measured_by(("sigma_c1", "sigma_c2")), restore=True)
+print("unobservable by the velocities:", *velocities.unobservable)
+print("one measurement of these is enough:", *(name for (name,) in velocities.restoration.sets))
+assert velocities.restoration.proved and velocities.restoration.needed == 1
+velocities
 
 # %% [markdown]
 # ## A real flight
@@ -289,7 +274,7 @@ assert velocities.proved and velocities.fewest == 1
 # the split with m = 2, n = 3; the judge is GPS itself, some seconds ahead.
 
 # %%
-record = local_copy(dataset("thor-flight75"))
+record = nav.data()["thor-flight75"]
 if record:
     from scipy.io import loadmat
 
@@ -313,20 +298,16 @@ else:
 # ## The whole paper
 
 # %%
-claims = claims_of(paper)
-refuted = [claim for claim in claims if claim.expect == "REFUTED"]
+claims = nav.claims("joint_correction")
+refuted = nav.claims("joint_correction", status="REFUTED")
 print(len(claims), "claims,", len(refuted), "of them refuted:")
 for claim in refuted:
-    print(f"  {claim.number:28s} {claim.slip:6s} {claim.reason}")
+    print(f"  {claim.number:28s} {claim.record.slip or '':6s} {claim.record.reason}")
 assert full_model().size == 16
 
 # %% [markdown]
-# ## Out of the house
-# The corrected row of the estimator for y5 as code.
+# ## Code
+# The corrected row of the estimator for y5 leaves as code.
 
 # %%
-with tempfile.TemporaryDirectory() as folder:
-    words = ["export", "joint_correction:3.3.y5*", "--to", "python", "--out", folder, "--vectors", "8"]
-    assert navsym(words) == 0
-    source = (Path(folder) / "python" / "navsym_functions.py").read_text(encoding="utf-8")
-print(source)
+nav.export("joint_correction:3.3.y5*", to=["python"], out="build/estimator_row", vectors=8, force=True)
