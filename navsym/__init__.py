@@ -61,6 +61,7 @@ _HOMES = {
         ("Verdict", "Verdicts", "Status", "PROVED", "CERTIFIED", "CONFIRMED", "REFUTED", "OPEN"), "navsym.claims"
     ),
     "prove": "navsym.prove.formulas",
+    "new_paper": "navsym.prove.drafts",
     "Bank": "navsym.multimodel.bank",
     "condition": "navsym.trajectory.conditioning",
     "data": "navsym.core.datasets",
@@ -115,6 +116,7 @@ if TYPE_CHECKING:
     from navsym.multimodel.filters import filter as filter
     from navsym.observability.answer import Observability as Observability
     from navsym.observability.answer import observe as observe
+    from navsym.prove.drafts import new_paper as new_paper
     from navsym.prove.formulas import prove as prove
     from navsym.report.citation import cite as cite
     from navsym.report.explain import explain as explain

@@ -7,8 +7,7 @@ from typing import Annotated
 
 import typer
 
-from navsym.cli.output import emit, write_text
-from navsym.core.errors import DuplicateError
+from navsym.cli.output import emit
 
 
 def command(
@@ -26,20 +25,23 @@ def command(
 
     Example: navsym new-paper schuler_pendulum --author "A. Author" --year 1923 --equations "1-6"
     """
-    from navsym.claims.paper import papers_folder
-    from navsym.language.scaffold import check_module_name, module_source, split_numbers
+    import navsym as nav
 
-    path = (folder or papers_folder()) / f"{check_module_name(name)}.py"
-    if path.exists() or path.with_suffix("").exists():
-        message = f"expected a new module; got {name}, which exists; choose another name"
-        raise DuplicateError(message, where=str(path))
-    text = module_source(name, title, author or [], year, source, language, split_numbers(equations))
-    write_text(path, text)
-    emit({"path": str(path), "module": name}, as_json=json_, text=f"{path}\nnext: {advice(name, folder)}")
+    paper = nav.new_paper(
+        name,
+        title=title,
+        authors=author or [],
+        year=year,
+        source=source,
+        language=language,
+        equations=equations,
+        folder=folder,
+    )
+    emit(paper.document(), as_json=json_, text=lambda: f"{paper.path}\nnext: {next_step(name, folder)}")
 
 
-def advice(name: str, folder: Path | None) -> str:
-    """What to do with the new module; ``verify`` knows only the folder of derivations."""
+def next_step(name: str, folder: Path | None) -> str:
+    """The next command; ``verify`` knows only the folder of derivations."""
     claims = f"navsym new-claim {name} NUMBER --printed … --derived …"
     if folder is None:
         return f"{claims}; then navsym verify {name}"

@@ -73,7 +73,7 @@ def {function}() -> Equation:
 
 def check_module_name(name: str) -> str:
     """The name, when it can be a derivation module; raises ExpressionSyntaxError otherwise."""
-    if NAME.fullmatch(name) and not keyword.iskeyword(name):
+    if isinstance(name, str) and NAME.fullmatch(name) and not keyword.iskeyword(name):
         return name
     raise ExpressionSyntaxError(
         f"expected a module name of small letters, digits and underscores; got {quote(name)}; rename it"
