@@ -226,7 +226,7 @@ def read_box(value: Any, symbols: Mapping[str, Parameter], where: str) -> Box:
         unnamed = ZERO if parameter.symbol.is_nonnegative else None
         low_end = unnamed if parameter.lower is None else parameter.lower
         if is_outside(lower, low_end) or is_outside(parameter.upper, upper):
-            message = f"expected a range join_place the declaration of {name}; got a wider one; narrow it"
+            message = f"expected a range inside the declaration of {name}; got a wider one; narrow it"
             raise DomainError(message, where=place)
         box[parameter.symbol] = (lower, upper)
     return box
