@@ -245,7 +245,7 @@ def model_from(document: Table, where: str = "", values: Mapping[str, str] | Non
 
 
 def read_values(values: Mapping[str, str], parameters: Mapping[str, Parameter]) -> dict[str, Expr]:
-    """Exact numbers that replace parameters, each join_place what the file declares."""
+    """Exact numbers that replace parameters, each inside what the file declares."""
     given = {}
     for name, text in values.items():
         where = f"--set {quote(name)[1:-1]}"
