@@ -1,4 +1,4 @@
-"""Completion of verbs, options and claim ids in bash, zsh or fish."""
+"""Complete verbs, options and claim ids in bash, zsh or fish."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What this machine has and lacks: Python, engines, compilers, data folder, cache."""
+"""Show what this machine has and lacks: Python, engines, compilers, data folder, cache."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The ready-made exports in every language: vectors, worst error, bound, MISRA findings, size."""
+"""Run the ready-made exports in every language: vectors, worst error, bound, MISRA findings, size."""
 
 from __future__ import annotations
 
@@ -71,13 +71,13 @@ def command(
 
 def as_text(document: dict[str, Any]) -> str:
     """One line for each function, one for each language and tool."""
-    from navsym.export.table import cell
+    from navsym.export.table import measured_cell
 
     names = [n for n, record in document["languages"].items() if record["status"] != "not executed"]
     rows = [
         (
             f["name"],
-            *(cell(f["languages"][n]) for n in names),
+            *(measured_cell(f["languages"][n]) for n in names),
             f["misra"] if f["misra"] is not None else "-",
             f["cortex_m4_bytes"] or "-",
         )

@@ -132,7 +132,7 @@ def module_of(verb: str) -> str:
     if verb in found:
         return f"navsym.cli.{found[verb].stem}"
     close = difflib.get_close_matches(verb, found, n=1)
-    advice = f"did you mean {close[0]}?" if close else "do see navsym --help"
+    advice = f"did you mean {close[0]}?" if close else "see navsym --help"
     message = f"expected one of {', '.join(found)}; got {verb[:60]}; {advice}"
     raise ExpressionSyntaxError(message, where="command line")
 
@@ -198,11 +198,11 @@ def is_our_own(module: str | None) -> bool:
 
 
 def usage_error(error: Any, arguments: Sequence[str]) -> NavsymError:
-    """``expected …; got …; do …`` for a wrong option, argument or value."""
+    """``expected …; got …; remedy`` for a wrong option, argument or value."""
     verb = arguments[0]
     got = " ".join(arguments[1:])[:200] or "nothing after the verb"
     text = error.format_message().strip().rstrip(".").replace("\n", " ")
-    message = f"expected options and arguments of {verb} ({text}); got {got}; do see navsym {verb} --help"
+    message = f"expected options and arguments of {verb} ({text}); got {got}; see navsym {verb} --help"
     return ExpressionSyntaxError(message, where="command line")
 
 

@@ -67,14 +67,14 @@ def put(text: str, stream: IO[str] | None = None) -> None:
     stream = sys.stdout if stream is None else stream
     LINE.clear()
     if stream is None:  # Python's word for an output that was closed before the start
-        raise OutputError("expected an output that is open; got a closed one; do open it", where="standard output")
+        raise OutputError("expected an output that is open; got a closed one; open it", where="standard output")
     try:
         write_whole(stream, text.encode("utf-8", "replace"))
     except BrokenPipeError:
         raise
     except OSError as error:
         reason = error.strerror or type(error).__name__
-        message = f"expected an output that can be written; got '{reason}'; do redirect it elsewhere"
+        message = f"expected an output that can be written; got '{reason}'; redirect it elsewhere"
         raise OutputError(message, where="standard output") from error
 
 

@@ -296,11 +296,11 @@ def of_file(path: Path) -> dict[str, Formula]:
         from navsym.prove.claimfile import claims_from
 
         claims = claims_from(document, str(path)).claims
-        return {name: found for c in claims for name, found in entries_of(c.id, c.left, c.box).items()}
+        return {name: found for c in claims for name, found in entries_by_place(c.id, c.left, c.box).items()}
     return of_model(path)
 
 
-def entries_of(name: str, side: Any, box: Mapping[sp.Symbol, tuple[Any, Any]]) -> dict[str, Formula]:
+def entries_by_place(name: str, side: Any, box: Mapping[sp.Symbol, tuple[Any, Any]]) -> dict[str, Formula]:
     """A formula, or the entries of a matrix or list by their places."""
     if isinstance(side, sp.MatrixBase):
         found = {f"{name}[{i + 1},{j + 1}]": side[i, j] for i in range(side.rows) for j in range(side.cols)}

@@ -36,16 +36,15 @@ def export(
 ) -> Exported:
     """Write proved formulas as code with test vectors, rounding bounds and certificates, compiled and run here.
 
-    A claim that does not hold is refused, and the one that corrects it is named. Code reaches ``out`` only when every
-    language that could run stayed inside the enclosures of its formulas.
+    A claim that does not hold is refused, and the one that corrects it is named. Code outside its enclosures is not
+    written.
 
     item  : id of a claim ("guaranteed_velocity:4.13.y3", "claims.toml:ratio"), regimes "A+B", a ready-made name
             ("kalman"), or a list of these; a verdict of :func:`navsym.prove`; an Estimator, as a function of its
             measurements; Phases with closed forms, as functions of the parameter; a Derivation or a Model, as Phi and H
     to    : languages: c, cpp, python, batch, javascript, rust, fortran, casadi, wasm, html, julia, octave
     out   : folder for the code; made when it is not there
-    real  : "double" or "float"
-    force : replace files that are there
+    real  : "double" or "float"; force : replace files that are there
     allow_confirmed : accept claims that were only sampled
     license  : SPDX identifier for the headers
     vectors  : test vectors for each function

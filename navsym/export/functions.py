@@ -182,7 +182,7 @@ def piece_of(
     taken : names in code besides those of the inputs
     """
     symbols = [i.symbol for i in inputs]
-    box = box_of(part, inputs, switch, arithmetic)
+    box = box_of_piece(part, inputs, switch, arithmetic)
     ranges = {i.symbol: (i.low, i.high) for i in inputs}
     plainly = bool(part.lets)  # the choice of forms needs values of all symbols; a chain keeps its forms
     forms = [safe(f, ranges) if plainly else best_form(f, symbols, ranges, box, arithmetic) for f in formulas]
@@ -212,7 +212,7 @@ def rebounded(function: ExportedFunction, library: int) -> ExportedFunction:
     return replace(function, arithmetic=arithmetic, pieces=pieces)
 
 
-def box_of(
+def box_of_piece(
     part: Material, inputs: Sequence[Input], switch: sp.Symbol | None, arithmetic: Arithmetic
 ) -> list[tuple[float, float]]:
     """Where vectors and bounds of one regime live."""

@@ -53,7 +53,7 @@ def files_of(functions: Sequence[ExportedFunction], order: Order) -> dict[str, s
         made = target.files()(known, tests.of(known, target), notice)
         found |= {f"{target.name}/{name}": text for name, text in made.items()}
     for function in functions:
-        found |= certificates(function)
+        found |= certificate_texts(function)
     found[MANIFEST] = sealed(manifest(functions, order, found))
     return found
 
@@ -101,7 +101,7 @@ class Tests:
 # -- certificates ---------------------------------------
 
 
-def certificates(function: ExportedFunction) -> dict[str, str]:
+def certificate_texts(function: ExportedFunction) -> dict[str, str]:
     """The claim's own certificates, and those that the code graph equals the claim's formula.
 
     One file for each, in a form that ``navsym check`` replays.

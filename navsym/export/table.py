@@ -168,7 +168,7 @@ def as_markdown(document: Record, command: str) -> str:
     head = ["function", *(SHORT.get(n, n) for n in names), "vectors", "MISRA", "M4 bytes"]
     lines += [f"| {' | '.join(head)} |", f"| --- |{' ---: |' * (len(head) - 1)}"]
     for record in document["functions"]:
-        cells = [cell(record["languages"][n]) for n in names]
+        cells = [measured_cell(record["languages"][n]) for n in names]
         vectors = max(found["vectors"] for found in record["languages"].values())
         tail = ["-" if record[key] is None else str(record[key]) for key in ("misra", "cortex_m4_bytes")]
         lines.append(f"| {' | '.join([record['name'], *cells, str(vectors), *tail])} |")
@@ -207,7 +207,7 @@ def points_lines(document: Record) -> list[str]:
     return lines
 
 
-def cell(found: Record) -> str:
+def measured_cell(found: Record) -> str:
     """What one language measured, in a word."""
     if found["status"] == "verified":
         return f"{found['worst']:.3g}"

@@ -85,7 +85,9 @@ def bibtex(paper: Paper, record: Record, version: str, correction: Record | None
         "note": latex_escape(source_words(paper)),
         "doi": paper.doi,
     }
-    return block("misc", key, words) + "\n" + block("misc", f"{key}-{citation_key(record.number)}", verdict)
+    return (
+        bibtex_entry("misc", key, words) + "\n" + bibtex_entry("misc", f"{key}-{citation_key(record.number)}", verdict)
+    )
 
 
 def source_words(paper: Paper) -> str:
@@ -114,7 +116,7 @@ def correction_words(correction: Record | None) -> list[str]:
     return [f"Corrected by {correction.id}, {correction.status}{says}."]
 
 
-def block(kind: str, key: str, fields: Mapping[str, str]) -> str:
+def bibtex_entry(kind: str, key: str, fields: Mapping[str, str]) -> str:
     """An entry of BibTeX; empty fields are left out."""
     lines = [f"  {name} = {{{value}}}," for name, value in fields.items() if value]
     return "\n".join([f"@{kind}{{{key},", *lines, "}", ""])

@@ -38,11 +38,11 @@ def certificate_files(records: Sequence[Record]) -> dict[str, str]:
     return {
         name: json.dumps(part, ensure_ascii=False, indent=1) + "\n"
         for record in records
-        for name, part in certificates(record)
+        for name, part in certificates_by_file(record)
     }
 
 
-def certificates(record: Record) -> list[tuple[str, Any]]:
+def certificates_by_file(record: Record) -> list[tuple[str, Any]]:
     """File names and certificates of a record: one for each entry where a claim has several."""
     whole = record.certificate
     if not whole:
@@ -239,7 +239,7 @@ def paper_view(
     return PaperView(
         card=card,
         file=slug(card.module),
-        cells=tuple(cell(card, equation, mine) for equation in card.equations),
+        cells=tuple(equation_cell(card, equation, mine) for equation in card.equations),
         claims=tuple(claim_views(mine, progress)),
         counts={status: statuses.count(status) for status in MARKS},
         damaged=sum(is_only_in_the_copy(record) for record in mine),
@@ -249,7 +249,7 @@ def paper_view(
     )
 
 
-def cell(card: Paper, equation: str, records: Sequence[Record]) -> Cell:
+def equation_cell(card: Paper, equation: str, records: Sequence[Record]) -> Cell:
     """The worst verdict on an equation; ``copy`` for damage of the copy, ``definition`` or ``missing`` without any."""
     found = records_about(equation, card.equations, records)
     if not found:
@@ -292,7 +292,7 @@ def claim_view(record: Record, correction: Record | None, corrected: Record | No
         point=coordinates(record.counterexample),
         correction=link(correction),
         corrects=link(corrected),
-        certificates=tuple(name for name, _ in certificates(record)),
+        certificates=tuple(name for name, _ in certificates_by_file(record)),
     )
 
 

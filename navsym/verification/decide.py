@@ -66,7 +66,7 @@ def verify(
         progress(done, missing, record.id)
 
     try:
-        ledger = decide_claims(chosen, jobs=jobs, seconds=seconds, known=store.known, progress=step)
+        ledger = decide_papers(chosen, jobs=jobs, seconds=seconds, known=store.known, progress=step)
     finally:
         store.close()
     return replace(ledger, unsaved=tuple(store.lost))
@@ -85,7 +85,7 @@ def decide_claim_of(wanted: str, seconds: float = SECONDS) -> tuple[Paper, Recor
     """Paper card and record of one claim, decided now in a limited child process."""
     module, claim = find_claim(wanted)
     one = PaperModule(module.name, module.paper, (claim,))
-    return module.paper, decide_claims([one], jobs=1, seconds=seconds).claims[0]
+    return module.paper, decide_papers([one], jobs=1, seconds=seconds).claims[0]
 
 
 def show(claim: str, *, seconds: float = SECONDS) -> tuple[Record, ...]:
@@ -105,7 +105,7 @@ def show(claim: str, *, seconds: float = SECONDS) -> tuple[Record, ...]:
     return tuple(decide_claim_of(part, seconds)[1] for part in claim_ids(claim))
 
 
-def decide_claims(
+def decide_papers(
     modules: Sequence[PaperModule],
     *,
     jobs: int | None = None,
@@ -188,7 +188,11 @@ def make_record(paper: Paper, claim: Claim, statement: Statement | None, verdict
 def sides(statement: Statement) -> tuple[str, str]:
     """Printed and derived side in the language of files."""
     if isinstance(statement, Equation):
-        tail = "" if statement.tolerance is None else f" +- {expression_text(sp.sympify(statement.tolerance, strict=True))}"
+        tail = (
+            ""
+            if statement.tolerance is None
+            else f" +- {expression_text(sp.sympify(statement.tolerance, strict=True))}"
+        )
         return side_text(statement.printed) + tail, side_text(statement.derived)
     if isinstance(statement, Bound):
         return f"{side_text(statement.printed)} {statement.relation} {side_text(statement.derived)}", ""

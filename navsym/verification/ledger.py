@@ -13,7 +13,7 @@ from dataclasses import asdict, dataclass, field
 from typing import Any, Protocol, TypeVar
 
 from navsym.claims import Paper, Record, equation_of
-from navsym.claims.display import write_card, write_table, mark_verdict
+from navsym.claims.display import mark_verdict, write_card, write_table
 from navsym.core.answers import Answer
 from navsym.core.errors import UnknownSymbolError
 from navsym.language.files import write_text

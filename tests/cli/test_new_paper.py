@@ -16,7 +16,7 @@ from navsym.core.errors import NavsymError
 from navsym.language.printer import to_python
 from navsym.language.scaffold import read_claim_side, side_source, split_numbers
 from navsym.prove.ladder import decide
-from navsym.verification.decide import decide_claims
+from navsym.verification.decide import decide_papers
 from navsym.verification.papers import paper_module
 from tests.attacks.campaigns.edits import spoil
 
@@ -41,7 +41,7 @@ def add(folder, *words):
 
 def test_a_new_paper_passes_the_generic_tests(folder):
     paper = loaded(folder / "sample_paper.py")
-    document = decide_claims([paper], jobs=1).document()
+    document = decide_papers([paper], jobs=1).document()
     assert [r["status"] for r in document["claims"]] == ["PROVED"]
     assert document["papers"][0] | {"definitions": 3, "missing": []} == document["papers"][0]
     assert all(not decide(spoil(claim.derive())).status.holds for claim in paper.claims)
@@ -51,7 +51,7 @@ def test_claims_are_added_with_the_verdict_that_was_found(folder, capsys):
     assert add(folder, "1", "--printed", "sin(w*t)**2/3 + 0.5", "--derived", "(1 - cos(2*w*t))/6 + 1/2") == 0
     assert add(folder, "2", "--printed", "a/3", "--derived", "a/4", "--reason", "a quarter is meant") == 0
     assert add(folder, "2*", "--printed", "a/4", "--derived", "a*(1/4)", "--corrects", "2") == 0
-    document = decide_claims([loaded(folder / "sample_paper.py")], jobs=1).document()
+    document = decide_papers([loaded(folder / "sample_paper.py")], jobs=1).document()
     assert [(r["number"], r["status"], r["expect"]) for r in document["claims"]] == [
         ("1", "PROVED", "PROVED"),
         ("2", "REFUTED", "REFUTED"),
@@ -69,7 +69,7 @@ def test_names_that_must_be_positive_are_asked_for_and_declared(folder, capsys):
     assert (folder / "sample_paper.py").read_text() == before
     assert add(folder, "1", *sides, "--positive", "R,g") == 0
     assert add(folder, "2", "--printed", "sqrt(R**2)", "--derived", "R") == 0  # as the file declares it now
-    document = decide_claims([loaded(folder / "sample_paper.py")], jobs=1).document()
+    document = decide_papers([loaded(folder / "sample_paper.py")], jobs=1).document()
     assert [r["status"] for r in document["claims"]] == ["PROVED", "PROVED"]
     assert add(folder, "3", "--printed", "R", "--derived", "R", "--positive", "R,q") == 2
     assert "got q" in capsys.readouterr().err
@@ -80,7 +80,7 @@ def test_a_printed_numeral_has_a_tolerance(folder, capsys):
     assert add(folder, "1", "--printed", "5064", *derived) == 0
     assert "--tolerance" in capsys.readouterr().out
     assert add(folder, "2", "--printed", "5063.5", *derived, "--tolerance", "0.05") == 0
-    document = decide_claims([loaded(folder / "sample_paper.py")], jobs=1).document()
+    document = decide_papers([loaded(folder / "sample_paper.py")], jobs=1).document()
     assert [r["status"] for r in document["claims"]] == ["REFUTED", "CERTIFIED"]
     assert add(folder, "3", "--printed", "1", "--derived", "1", "--tolerance", "0") == 2
 

@@ -9,7 +9,7 @@ import pytest
 from navsym.checker import Refused, check, load
 from navsym.claims import REFUTED
 from navsym.claims.paper import papers_folder
-from navsym.verification.decide import decide_claims
+from navsym.verification.decide import decide_papers
 from tests.derivations.statements import EACH, module
 
 HOLDS = {"PROVED", "CERTIFIED"}
@@ -17,7 +17,7 @@ HOLDS = {"PROVED", "CERTIFIED"}
 
 @pytest.fixture(scope="module", params=EACH)
 def document(request):
-    return decide_claims([module(request.param)], jobs=1).document()
+    return decide_papers([module(request.param)], jobs=1).document()
 
 
 def test_every_verdict_is_the_one_that_its_source_declares(document):

@@ -68,8 +68,8 @@ def vector_at(
         balls = [arb(x) for x in point]
         found = analysed(piece, balls, arithmetic)
         errors = [result.absolute for result in found]
-        exact = continued(piece, sharp_values(piece, balls, errors), found)
-        ends = [ends_of(value, error * widen) for value, error in zip(exact, errors, strict=True)]
+        exact = fill_holes(piece, sharp_values(piece, balls, errors), found)
+        ends = [outward_ends(value, error * widen) for value, error in zip(exact, errors, strict=True)]
     if any(end is None for end in ends):
         return None
     lower, upper, nearest = zip(*(end for end in ends if end is not None), strict=True)
@@ -99,7 +99,7 @@ def exact_values(piece: Piece, balls: Sequence[arb], bits: int = BITS) -> list[a
     return [enclose(t, named, bits) for t in formulas]
 
 
-def continued(piece: Piece, exact: Sequence[arb], found: Sequence[Bounded]) -> list[arb]:
+def fill_holes(piece: Piece, exact: Sequence[arb], found: Sequence[Bounded]) -> list[arb]:
     """The formulas, and in a hole of one of them the graph's value, which is proved to be the formula around it."""
     proved = piece.tie != "enclosures"
     return [r.value if proved and not x.is_finite() else x for x, r in zip(exact, found, strict=True)]
@@ -125,7 +125,7 @@ def analysed(piece: Piece, balls: Sequence[arb], arithmetic: Arithmetic) -> list
     return found if kept else [replace(result, absolute=INFINITE) for result in found]
 
 
-def ends_of(value: arb, error: arb) -> tuple[float, float, float] | None:
+def outward_ends(value: arb, error: arb) -> tuple[float, float, float] | None:
     """(lower, upper, nearest) as doubles, rounded outwards."""
     if not (value.is_finite() and error.is_finite()):
         return None

@@ -45,7 +45,7 @@ def compiled(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector
         for name, text in c_files(functions, tests, license_).items():
             if not name.startswith("test_"):
                 (Path(folder) / name).write_text(text, encoding="utf-8")
-        (Path(folder) / "calls.c").write_text(calls(functions), encoding="utf-8")
+        (Path(folder) / "calls.c").write_text(calls_source(functions), encoding="utf-8")
         sources = ["calls.c", *(f"{f.name}.c" for f in functions)]
         exports = ["demo_numbers", *(f"demo_{f.name}" for f in functions)]
         words = [*FLAGS, *sources, *(f"-Wl,--export={name}" for name in exports), "-o", "module.wasm", "-lm"]
@@ -55,7 +55,7 @@ def compiled(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector
         return (Path(folder) / "module.wasm").read_bytes()
 
 
-def calls(functions: Sequence[ExportedFunction]) -> str:
+def calls_source(functions: Sequence[ExportedFunction]) -> str:
     """Calls without arguments over one array of numbers: inputs first, results behind them."""
     real = functions[0].arithmetic.name
     widest = max(len(f.inputs) + f.size for f in functions)
