@@ -98,6 +98,11 @@ class Comparison(Answer):
     kalman_white_noise : of the Kalman filter that takes the noise to be white, under its own worst correlation
     optimum            : of the guaranteed estimator
     solvers            : answers of general solvers on a grid of times
+
+    >>> import navsym as nav
+    >>> beside = nav.solve("examples/schuler-velocity.toml", "drift", T="pi/2").compare(solvers=["casadi:highs"])
+    >>> beside.least_squares > 1.4 * beside.optimum, beside.solvers[0].solver
+    (True, 'casadi:highs')
     """
 
     least_squares: float

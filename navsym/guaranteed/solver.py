@@ -82,7 +82,7 @@ class Estimator(Answer):
     >>> drift
     Estimator(drift: 4.82842712474619..., 3 measurements, CERTIFIED)
     >>> [f"{float(w):.4f}" for w in drift.weights]
-    ['-0.7071', '2.4142', '-1.7071']
+    ['-1.7071', '2.4142', '-0.7071']
     """
 
     value: Number
@@ -208,7 +208,7 @@ def solve(
     >>> import navsym as nav
     >>> drift = nav.solve("examples/schuler-velocity.toml", "drift", T="pi/2", digits=20)
     >>> drift.lower, drift.unique
-    ('4.828427124746190097603377', True)
+    ('4.82842712474619009760337', True)
     """
     if not isinstance(digits, int) or isinstance(digits, bool) or not 1 <= digits <= MOST_DIGITS:
         got = quote(digits)
