@@ -18,19 +18,14 @@
 # embedded GLONASS systems".
 
 # %%
-import tempfile
 from fractions import Fraction
-from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
 
-from navsym.claims import claims_of
-from navsym.cli.main import run as navsym
-from navsym.core.datasets import dataset, local_copy
-from navsym.report.notebook import explore, require, show
-from navsym.trajectory.conditioning import best_scaling, condition_numbers
-from navsym.trajectory.estimate import METHODS, Settings, estimate
+import navsym as nav
+from navsym.report.notebook import explore
+from navsym.trajectory.conditioning import best_scaling
 from navsym.trajectory.inversion import (
     Start,
     Tuning,
@@ -40,28 +35,19 @@ from navsym.trajectory.inversion import (
     scaled_model,
     windowed_filter,
 )
-from navsym.trajectory.limits import best_ages, least_error, rule
-from navsym.trajectory.reader import read_track
-from navsym.trajectory.tracks import project_positions
-from navsym_papers import trajectory as paper
-from navsym_papers.trajectory import (
-    algorithm,
-    earth,
-    experiment,
-    gain,
-    limits,
-    motion,
-    remarks,
-    scaling,
-    speeds,
-    stages,
-    table,
-    window,
-)
+from navsym_papers.trajectory import table, window
 from navsym_papers.trajectory.experiment.courses import ORDER, TAU, course, measured, with_printed_gain
 from navsym_papers.trajectory.experiment.courses import experiment as rerun
 
 BLUE, ORANGE, GREEN, RED = "#0072b2", "#e69f00", "#009e73", "#d55e00"
+
+
+def explain(number):
+    """The claim of the paper with this number, decided now; its verdict is the declared one."""
+    explanation = nav.explain(f"trajectory:{number}")
+    assert explanation.record.is_expected
+    return explanation
+
 
 # %% [markdown]
 # ## From the Earth to one coordinate
@@ -69,13 +55,13 @@ BLUE, ORANGE, GREEN, RED = "#0072b2", "#e69f00", "#009e73", "#d55e00"
 # $\cos^{-1}\varphi$ is lost in the rate of longitude and comes back as the minus sign of $\rho^{(2)}$.
 
 # %%
-show(earth.longitude_rate_printed)
+explain("kinematics.lambda_rate")
 
 # %%
-show(earth.longitude_factor)
+explain("1.rho2*")
 
 # %%
-show(motion.transition_matrix)
+explain("4.Phi")
 
 # %% [markdown]
 # ## The curse of dimension
@@ -84,17 +70,18 @@ show(motion.transition_matrix)
 
 # %%
 orders = list(range(2, 31, 2))
-found = {n: condition_numbers(n, "1/6371000", "1/5", digits=20) for n in orders}
+conditions = {n: nav.condition(n, tau="1/5", digits=20) for n in orders}
 figure, axis = plt.subplots(figsize=(7, 4))
 for name, colour in (("N_p", RED), ("N_f", ORANGE), ("N_s", BLUE)):
-    axis.semilogy(orders, [float(found[n][name].enclosure.lower) for n in orders], color=colour, label=name)
-    axis.semilogy(orders, [found[n][name].double for n in orders], ".", color=colour)
+    matrices = [getattr(conditions[n], name) for n in orders]
+    axis.semilogy(orders, [float(matrix.value) for matrix in matrices], color=colour, label=name)
+    axis.semilogy(orders, [matrix.double for matrix in matrices], ".", color=colour)
 axis.axhline(2.0**52, color="0.6", lw=0.8)
 axis.set(xlabel="order n", ylabel="condition number", title="lines: certified; dots: double precision; τ = 0.2 s")
 axis.legend()
 plt.close(figure)
-assert all(found[n]["N_s"].trustworthy for n in orders if n <= 18)
-assert not found[30]["N_s"].trustworthy
+assert all(conditions[n].N_s.trustworthy for n in orders if n <= 18)
+assert not conditions[30].N_s.trustworthy
 figure
 
 # %% [markdown]
@@ -104,13 +91,14 @@ figure
 
 # %%
 def conditioning_for(step, order):
-    found = condition_numbers(round(order), "1/6371000", str(round(step, 3)), digits=12)
+    conditions = nav.condition(round(order), tau=str(round(step, 3)), digits=12)
     names, values = ("N_p", "N_f", "N_s"), []
     figure, axis = plt.subplots(figsize=(7, 2))
     for place, (name, colour) in enumerate(zip(names, (RED, ORANGE, BLUE), strict=True)):
-        values.append(float(found[name].enclosure.lower))
+        matrix = getattr(conditions, name)
+        values.append(float(matrix.value))
         axis.barh(place, values[-1], color=colour)
-        axis.plot(found[name].double, place, "|", color="black", markersize=14, markeredgewidth=2)
+        axis.plot(matrix.double, place, "|", color="black", markersize=14, markeredgewidth=2)
     axis.set(
         xscale="log",
         xlim=(1, 1e32),
@@ -137,8 +125,9 @@ for (n, step), row in table.PRINTED.items():
         for text, column in zip(row, table.COLUMNS, strict=True)
     ]
     print(f"n = {n:<3}{step:<8}" + "  ".join(f"{t:>10} ({e:+8.1e})" for t, e in zip(row, errors, strict=True)))
-for entry in (*table.ENTRIES, *table.CORRECTIONS):
-    require(entry)
+
+# %%
+nav.claims("trajectory", words=":table.n19")
 
 # %%
 low, high = table.implied_radius()
@@ -151,10 +140,10 @@ assert low < Fraction(6371000) < high < Fraction("6371008.8")
 # ($\rho = 1$) with τ = 0.65 s it raises it. It changes no bit of what the filter computes.
 
 # %%
-show(remarks.normalisation_always_improves)
+explain("experiment.better")
 
 # %%
-show(remarks.variables_change_the_filter)
+explain("experiment.physical")
 
 # %%
 for n in (2, 3, 5, 10):
@@ -167,10 +156,10 @@ for n in (2, 3, 5, 10):
 # The gain is printed with a row that belongs to the state before the step.
 
 # %%
-show(algorithm.gain_printed)
+explain("algorithm.K")
 
 # %%
-show(algorithm.gain)
+explain("algorithm.K*")
 
 # %% [markdown]
 # ## The printed gain
@@ -178,10 +167,10 @@ show(algorithm.gain)
 # in metres and m/s it is stable, but too slow for the yawing course.
 
 # %%
-show(gain.constant_gain_in_normalised_variables)
+explain("experiment.gain")
 
 # %%
-show(gain.constant_gain_in_metric_variables)
+explain("experiment.gain*")
 
 # %% [markdown]
 # ## The experiment: speed and acceleration (figures 1 and 2 of the paper)
@@ -243,10 +232,10 @@ for row in rerun(runs=2):
     )
 
 # %%
-show(gain.yawing_speed_error_printed)
+explain("experiment.sigma_v.yaw.100")
 
 # %%
-show(experiment.position_error_printed)
+explain("experiment.sigma_phi.100")
 
 # %% [markdown]
 # ## Three speeds, one algorithm
@@ -255,21 +244,20 @@ show(experiment.position_error_printed)
 # compares the measurement with the estimate before the step, which no candidate of that step can change.
 
 # %%
-for claim in (
-    speeds.the_tuning_does_not_see_the_speed,
-    speeds.mean_square_is_noise_plus_lag,
-    speeds.one_gain_on_straight_courses,
-    speeds.one_gain_while_yawing,
-    algorithm.first_term_of_the_criterion,
-    algorithm.criterion_prefers_standing_still,
-    stages.each_state_costs_nearly_a_digit,
-    stages.the_first_stage_alone_can_worsen,
+for number in (
+    "experiment.straight.free",
+    "experiment.one_gain.straight",
+    "experiment.one_gain.yawing",
+    "algorithm.J.first",
+    "algorithm.J.still",
+    "table.curse",
+    "6.first_stage.worse",
 ):
-    require(claim)
-    print(f"{claim.number:<26} {claim.expect:<9} {claim.title}")
+    record = explain(number).record
+    print(f"{record.number:<26} {record.status:<9} {record.title}")
 
 # %%
-show(speeds.mean_square_is_noise_plus_lag)
+nav.claims("trajectory")["trajectory:experiment.straight.squares"]
 
 # %% [markdown]
 # ## What no algorithm can undercut
@@ -280,27 +268,25 @@ show(speeds.mean_square_is_noise_plus_lag)
 # measured as rest for ever, and moves at this speed now. With a bounded jerk three do it, ages 0 : 1 : 3.
 
 # %%
-for found in (*limits.RULES, *limits.MOTIONS, limits.yawing_of_the_experiment):
-    require(found)
-show(limits.yawing_of_the_experiment)
+nav.claims("trajectory", words=":limit.")
+
+# %%
+explain("limit.yawing")
 
 # %%
 noise, yaw_rate = np.sqrt(3), np.radians(5) * 2 * np.pi / 360
 manoeuvre = {2: 100 * np.sin(np.pi / 4) * yaw_rate, 3: 100 * yaw_rate * 2 * np.pi / 360}
-for order, derivative, unit in ((2, 1, "m/s"), (3, 1, "m/s"), (3, 2, "m/s²")):
-    ages = best_ages(noise, manoeuvre[order], order)
-    error = least_error(noise, manoeuvre[order], derivative, order)
-    assert np.isclose(rule(ages, noise, manoeuvre[order], derivative).error, error)
-    print(
-        f"derivative {derivative}, order {order} bounded: {error:.3f} {unit} from the ages "
-        f"{', '.join(f'{age:.1f}' for age in ages)} s"
-    )
+for answer in (nav.limits(noise, acceleration=manoeuvre[2]), nav.limits(noise, jerk=manoeuvre[3])):
+    for limit in answer.limits:
+        assert np.isclose(limit.rule.error, limit.least_error)
+        ages = ", ".join(f"{age:.1f}" for age in limit.rule.ages)
+        print(f"{limit.derivative:<12} {limit.least_error:.3f} {limit.unit:5} from the ages {ages} s")
 
 # %% [markdown]
 # The invisible motion (order 3, in units of the noise), and the three positions that are enough against it.
 
 # %%
-ages = best_ages(1.0, 192.0, 3)
+ages = nav.limits(1, jerk=192).limits[0].rule.ages
 past = np.linspace(0, 3, 601)
 young = past <= ages[-1]
 piece, share = np.divmod((past - ages[-1]) * 2, 1.0)
@@ -324,9 +310,12 @@ figure
 # unbiased algorithm at the end of a window is a ratio of factorials: n = 5 knows the speed 20 times worse than n = 2.
 
 # %%
-for found in claims_of(window):
-    require(found)
-show(window.price_of_the_order)
+nav.claims("trajectory", words=":window.")
+
+# %%
+explain("window.order")
+
+# %%
 lengths, noise_intensity = np.geomspace(5, 500, 60), 0.2
 figure, axis = plt.subplots(figsize=(7, 3.2))
 for n, colour in zip((2, 3, 4, 5), (GREEN, BLUE, ORANGE, RED), strict=True):
@@ -345,21 +334,18 @@ figure
 # reference system. The files are those of `navsym data get nagoya-spp` and `nagoya-reference`.
 
 # %%
-positions, judge = (local_copy(dataset(name)) for name in ("nagoya-spp", "nagoya-reference"))
+positions, judge = (nav.data()[name] for name in ("nagoya-spp", "nagoya-reference"))
 if positions and judge:
     reference = np.genfromtxt(judge, delimiter=",", skip_header=1)
-    read = read_track(positions)
-    times = read.t - 2270 * 604800
-    track = project_positions(times, read.latitude, read.longitude, read.height, read.sigma)
-    expected = np.column_stack([np.interp(times, reference[:, 0], reference[:, i]) for i in (11, 12, 13)])
     rms = {}
-    for method in METHODS:
-        answer, _ = estimate(track, Settings(method))
+    for method in ("differences", "window", "filter", "guaranteed", "smoother"):
+        answer = nav.track(positions, method=method)
+        times = answer.t - 2270 * 604800
+        expected = np.column_stack([np.interp(times, reference[:, 0], reference[:, i]) for i in (11, 12, 13)])
         error = answer.velocity - expected
         rms[method] = np.sqrt(np.mean(error[:, :2] ** 2))
         print(f"{method:<12} rms {rms[method]:.2f} m/s, median {np.median(np.hypot(*error[:, :2].T)):.2f} m/s")
     assert rms["smoother"] == min(rms.values())
-    answer, _ = estimate(track, Settings())
     figure, axis = plt.subplots(figsize=(8, 3.5))
     axis.plot(times - times[0], expected[:, 1], color="black", lw=0.8, label="reference")
     axis.plot(times - times[0], answer.velocity[:, 1], color=BLUE, lw=0.8, label="smoother")
@@ -375,19 +361,16 @@ figure
 # ## Every refuted line, with its reason
 
 # %%
-refuted = [claim for claim in claims_of(paper) if claim.expect == "REFUTED" and not claim.number.startswith("table")]
-for claim in refuted:
-    require(claim)
-    print(f"{claim.number:<28} {claim.slip}: {claim.reason}")
-require(scaling.scalings_multiply)
-
-# %% [markdown]
-# ## Out of the house
-# The corrected rate of longitude as code.
+for claim in nav.claims("trajectory", status="REFUTED"):
+    if not claim.number.startswith("table"):
+        print(f"{claim.number:<28} {claim.record.slip}: {claim.record.reason}")
 
 # %%
-with tempfile.TemporaryDirectory() as folder:
-    words = ["export", "trajectory:kinematics.lambda_rate*", "--to", "python", "--out", folder, "--vectors", "8"]
-    assert navsym(words) == 0
-    source = (Path(folder) / "python" / "navsym_functions.py").read_text(encoding="utf-8")
-print(source)
+explain("6.D")
+
+# %% [markdown]
+# ## Code
+# The corrected rate of longitude leaves as code.
+
+# %%
+nav.export("trajectory:kinematics.lambda_rate*", to=["python"], out="build/longitude_rate", vectors=8, force=True)
