@@ -51,7 +51,7 @@ def test_public_docstrings_say_results_shapes_and_errors():
 
 
 def poor(x: list[float] | np.ndarray) -> float:  # noqa: F821
-    """mean"""
+    """mean"""  # noqa: D400
     if not len(x):
         raise nav.NavsymError("x")
     return x[0]
