@@ -40,5 +40,24 @@ def test_the_notebook_is_a_percent_script_without_outputs_that_asserts_something
     assert "# %%" in text
     tree = ast.parse(text)
     asserts = [node for node in ast.walk(tree) if isinstance(node, ast.Assert)]
-    required = [n for n in ast.walk(tree) if isinstance(n, ast.Call) and getattr(n.func, "id", "") == "require"]
-    assert asserts or required
+    assert asserts
+
+
+def imports_of(path):
+    """Modules that a notebook imports."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            yield str(node.module)
+
+
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+def test_the_notebook_uses_the_front_door_and_not_the_command_line(path):
+    modules = list(imports_of(path))
+    assert "navsym" in modules
+    assert not [name for name in modules if name.startswith("navsym.cli")]
+
+
+def test_a_model_of_ones_own_needs_one_import():
+    assert list(imports_of(FOLDER / "10_your_own_model.py")) == ["navsym"]
