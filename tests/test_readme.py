@@ -128,6 +128,21 @@ def test_the_regimes_of_the_readme_are_what_is_printed(tmp_path: Path) -> None:
     assert [line for line in shown_after("## Beyond the paper") if line not in said] == []
 
 
+def test_the_python_of_the_first_screen_runs(tmp_path: Path) -> None:
+    """Every statement as it stands; the verdicts of a whole paper have tests of their own."""
+    section = (ROOT / "README.md").read_text(encoding="utf-8").split("## In Python")[1]
+    block = re.search(r"```python\n(.*?)```", section, re.S)
+    assert block is not None
+    lines = [line for line in block.group(1).splitlines() if not line.startswith("nav.verify(")]
+    script = "\n".join(
+        [*lines, "print(drift.value, drift.check().accepted, nav.prove('sin(2*a) = 2*sin(a)*cos(a)').status)"]
+    )
+    done = subprocess.run([sys.executable, "-c", script], cwd=tmp_path, capture_output=True, text=True, timeout=600)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.split()[0].startswith("4.8284271247461900976") and done.stdout.split()[1:] == ["True", "PROVED"]
+    assert (tmp_path / "build" / "weights" / "c").is_dir()
+
+
 PAPERS = ("guaranteed_velocity", "joint_correction", "multistructure", "terrain_search", "trajectory")
 
 
