@@ -36,15 +36,19 @@ class Number:
         return float((Fraction(self.lower) + Fraction(self.upper)) / 2)
 
     def __str__(self) -> str:
-        """The leading digits that both ends share; both ends where they share none."""
+        """The digits that both ends share; where they share none, the middle to as many digits as are certain."""
+        if self.lower == self.upper:
+            return self.lower
         shared = 0
         for a, b in zip(self.lower, self.upper, strict=False):
             if a != b:
                 break
             shared += 1
-        text = self.lower if self.lower == self.upper else self.lower[:shared].rstrip(".")
-        whole = len(self.lower.partition(".")[0])
-        return text if len(text) >= whole and text.strip("-0.") else f"{self.lower} … {self.upper}"
+        text, whole = self.lower[:shared], len(self.lower.partition(".")[0])
+        if shared > whole and text.strip("-0."):
+            return text.rstrip(".")
+        wide = self.digits < 3
+        return f"{self.lower} … {self.upper}" if wide else f"{float(self):.{min(self.digits, 15)}g}"
 
     def __contains__(self, value: object) -> bool:
         """True when an exact number lies between the ends: ``Fraction(1, 3) in number``."""
