@@ -77,7 +77,7 @@ def phases() -> Figure:
         latex = sp.latex(regime.closed.value, fold_short_frac=True)
         for wide, plain in ((r"\frac", r"\dfrac"), (r"\left(", "("), (r" \right)", ")")):
             latex = latex.replace(wide, plain)
-        label = f"{len(places)} instants: ${latex}$"
+        label = f"{len(places)} times: ${latex}$"
         regimes.append({"at": at, "value": value, "label": label, "instants": places})
     return plots.phase_diagram(
         regimes,
