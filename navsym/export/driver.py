@@ -53,8 +53,7 @@ def export(
     command  : words for the manifest that make the same export again
     progress : called with (done, all, name) after each part
 
-    Raises RefusedError for a claim that does not hold, FailedError for code outside its enclosures, FolderError where
-    nothing may be written, DomainError for what cannot be exported.
+    Raises RefusedError (does not hold), FailedError (code outside its enclosures), FolderError, DomainError (no code).
 
     >>> import navsym as nav
     >>> half = nav.prove("tan(a/2) = sin(a)/(1 + cos(a))", a=("0", "3"))

@@ -32,24 +32,12 @@ def run_compiled(rule: Scheme, models: Bank, z: Array, count: int) -> Estimates:
     T, m, n = len(z), models.modes, models.states
     out = (np.empty((T, m)), np.empty((T, n)), np.empty((T, n, n)), np.empty(T), np.empty(T))
     stopped = run_bank(
-        BRANCHING[rule.branching],
-        FOLDING[rule.folding],
-        rule.period,
-        widest,
-        models.F,
-        models.Q,
-        H,
-        r,
-        U,
-        rotated,
-        models.mode_transition,
-        logs(models.mode_transition),
-        logs(models.probabilities),
-        models.common,
-        models.means,
-        models.covariances,
+        (BRANCHING[rule.branching], FOLDING[rule.folding], rule.period, widest, models.common),
+        (models.F, models.Q, H, r, U, rotated),
+        (models.mode_transition, logs(models.mode_transition)),
+        (logs(models.probabilities), models.means, models.covariances),
         z,
-        *out,
+        out,
     )
     if stopped:
         return run_in_numpy(rule, models, z, count)

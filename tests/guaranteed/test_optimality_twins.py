@@ -21,13 +21,8 @@ from navsym.guaranteed.certificate.enclosure import (
     joint_tape,
     series_terms,
 )
-from navsym.guaranteed.certificate.fixed import (
-    alternance_image,
-    certify,
-    krawczyk,
-    optimality_system,
-    solution_unknowns,
-)
+from navsym.guaranteed.certificate.fixed import certify, optimality_system, solution_unknowns
+from navsym.guaranteed.certificate.krawczyk import alternance_image, krawczyk
 from navsym.guaranteed.certificate.polish import expand_locally, sharpen_contacts
 from navsym.guaranteed.certificate.whole import panel_polynomial, prove_panel_bound, shift_polynomial
 from navsym.guaranteed.search.exchange import find_contacts

@@ -282,58 +282,43 @@ def constant(F, Q, H, r):  # type: ignore[no-untyped-def]
 
 
 @njit(**COMPILE)
-def run_bank(  # type: ignore[no-untyped-def]
-    branching,
-    folding,
-    period,
-    widest,
-    F,
-    Q,
-    H,
-    r,
-    U,
-    rotated,
-    p_mode,
-    log_p,
-    log_prior,
-    common,
-    means,
-    covariances,
-    z,
-    probabilities,
-    mean,
-    covariance,
-    log_likelihood,
-    best,
-):
-    """Filter a series; fills probabilities (T, m), mean, covariance, log_likelihood (cumulative), best.
+def fold(folding, branches, m, n, logs, totals, terms, weights, nx, nP, mean, covariance, x, P):  # type: ignore[no-untyped-def]
+    """The sources of the next step, and their log weights: one for all branches, or one for each mode."""
+    log_sums_by_mode(branches, m, logs, totals, terms)
+    if folding == ALL:
+        fold_to_one(n, mean, covariance, x, P)
+    else:
+        fold_by_mode(branches, m, n, logs, totals, weights, nx, nP, x, P)
+    for i in range(m):
+        logs[i] = totals[i]
 
-    F, Q (T or 1, m, n, n), H rotated, r variances, U rotations (T or 1, m, p, p), p_mode and log_p (T or 1, m, m),
-    means (m, n), covariances (m, n, n), z (T, p) with NaN for missing.
+
+@njit(**COMPILE)
+def run_bank(scheme, models, chain, start, z, results):  # type: ignore[no-untyped-def]
+    """Filter a series z (T, p) with NaN for missing; fills results.
+
+    scheme: branching, folding, period, most hypotheses, whether all modes start alike; models: F, Q (T or 1, m, n, n),
+    H rotated, r variances, U rotations (T or 1, m, p, p), whether they rotate; chain: p_mode, log_p (T or 1, m, m);
+    start: log_prior, means, covariances; results: probabilities, mean, covariance, cumulative log_likelihood, best.
     Returns 0, or the step (from 1) at which lanes cannot go on and the readable engine must take over.
     """
+    branching, folding, period, widest, common = scheme  # by its own name: a tuple in the loop costs 5 % of a step
+    F, Q, H, r, U, rotated = models
+    p_mode, log_p = chain
+    log_prior, means, covariances = start
+    probabilities, mean, covariance, log_likelihood, best = results
     T, m, n, p = z.shape[0], F.shape[1], F.shape[2], z.shape[1]
-    size = max(widest, m)
-    groups = (size + 7) // 8
+    size, groups = max(widest, m), (max(widest, m) + 7) // 8
     x, P = aligned(groups * n * 8), aligned(groups * n * n * 8)
     nx, nP = aligned(groups * n * 8), aligned(groups * n * n * 8)
-    lanes = (
-        aligned(groups * n * n * 8),
-        aligned(groups * n * n * 8),
-        aligned(groups * p * n * 8),
-        aligned(groups * p * 8),
-    )
-    lf, lq, lh, lr = lanes  # each by its own name in the loop: a tuple there costs 5 % of a step
-    zl, came = aligned(groups * p * 8), np.zeros(p, dtype=np.bool_)
-    scratch = aligned((n * n + 3 * n + 3) * 8)
-    ahead, totals = np.zeros((size, m)), aligned(groups * 8)
-    weights, logs, ll = aligned(groups * 8), aligned(groups * 8), aligned(groups * 8)
-    mixing, terms = aligned(groups * size * 8 if branching == MIXED else 8), aligned(size)
-    off = aligned(size * n * 8 if branching == MIXED else 8)
-    current_mean, current = np.zeros(n), np.zeros((n, n))
-
-    known = branching == OWN or not common
-    sources = m if known else 1
+    lf, lq = aligned(groups * n * n * 8), aligned(groups * n * n * 8)
+    lh, lr = aligned(groups * p * n * 8), aligned(groups * p * 8)
+    current_mean, current, came = np.zeros(n), np.zeros((n, n)), np.zeros(p, dtype=np.bool_)
+    scratch, ahead, totals = aligned((n * n + 3 * n + 3) * 8), np.zeros((size, m)), aligned(groups * 8)
+    weights, logs, ll, zl = aligned(groups * 8), aligned(groups * 8), aligned(groups * 8), aligned(groups * p * 8)
+    mixed = size if branching == MIXED else 1
+    mixing, off, terms = aligned(groups * mixed * 8), aligned(mixed * n * 8), aligned(size)
+    known, sources = (True, m) if branching == OWN or not common else (False, 1)
     lay_start(sources, n, means, covariances, x, P)
     logs[:m] = log_prior
     laid, total_log, unchanging = 0, 0.0, constant(F, Q, H, r)
@@ -341,19 +326,16 @@ def run_bank(  # type: ignore[no-untyped-def]
         branches = sources * m if branching == CROSS else m
         branch_modes(branching, known, sources, m, k, logs, p_mode, log_p, totals, mixing, ahead, terms)
         if branching == OWN:
-            x, nx = nx, x
-            P, nP = nP, P
+            x, nx, P, nP = nx, x, nP, P
         elif branching == CROSS:
             copy_sources(branches, m, n, x, P, nx, nP)
         if laid != branches or not unchanging:
-            lay_models(k, branches, m, F, Q, H, r, U, z, lanes)
+            lay_models(k, branches, m, F, Q, H, r, U, z, (lf, lq, lh, lr))
             laid = branches
         lay_measurement(k, branches, m, rotated, U, z, came, zl)
         for g in range((branches + 7) // 8):
-            for lane in range(8):
-                ll[g * 8 + lane] = 0.0
-            if branching == MIXED:
-                # Mixed, predicted and corrected group by group, while its numbers are near.
+            ll[g * 8 : (g + 1) * 8] = 0.0
+            if branching == MIXED:  # mixed, predicted and corrected group by group, while its numbers are near
                 mix_group(g, n, sources, mixing, x, P, nx, nP, off)
             predict_group(g, n, lf, lq, nx, nP, scratch)
             if not correct_group(g, n, p, came, lh, lr, zl, nx, nP, scratch, ll):
@@ -366,16 +348,9 @@ def run_bank(  # type: ignore[no-untyped-def]
         moments((branches + 7) // 8, n, weights, nx, nP, current_mean, current, scratch)
         keep(k, n, current_mean, current, mean, covariance)
         if folding == KEEP or (folding == ALL and (k + 1) % period) or (folding == BY_MODE and branches <= m):
-            x, nx = nx, x
-            P, nP = nP, P
+            x, nx, P, nP = nx, x, nP, P
             sources, known = branches, True
-            continue
-        log_sums_by_mode(branches, m, logs, totals, terms)
-        if folding == ALL:
-            fold_to_one(n, current_mean, current, x, P)
         else:
-            fold_by_mode(branches, m, n, logs, totals, weights, nx, nP, x, P)
-        for i in range(m):
-            logs[i] = totals[i]
-        sources, known = (1, False) if folding == ALL else (m, True)
+            fold(folding, branches, m, n, logs, totals, terms, weights, nx, nP, current_mean, current, x, P)
+            sources, known = (1, False) if folding == ALL else (m, True)
     return 0

@@ -281,16 +281,13 @@ def run_eight(  # type: ignore[no-untyped-def]
         f, q = F[min(k, F.shape[0] - 1)], Q[min(k, Q.shape[0] - 1)]
         h, v, u = H[min(k, H.shape[0] - 1)], r[min(k, r.shape[0] - 1)], U[min(k, U.shape[0] - 1)]
         if branching == 2:
-            for j in range(m * 8):
-                totals[j] = logs[j]
-                shares[j] = 1.0
+            totals[:], shares[:] = logs, 1.0
         else:
             mode_weights(m, branching, p_mode[min(k, p_mode.shape[0] - 1)], logs, totals, shares, mixing, weights)
         if branching == 1:
             for i in range(m):
                 merge_modes(m, n, mixing, i * m, x, P, i, y, S, off)
-            x, y = y, x
-            P, S = S, P
+            x, y, P, S = y, x, S, P
         for i in range(m):
             lay_eight(first, k, i, rotated, u, z, zl)
             store_lanes(ll, i * 8, spread_lanes(0.0))

@@ -118,6 +118,29 @@ def run_block(
 
 
 @njit(error_model="numpy")
+def report_window(
+    trace: Array,
+    q: Array,
+    h0: float,
+    R: float,
+    first: int,
+    steps: int,
+    states: Array,
+    gains: Array,
+    diagonals: Array,
+    values: Array,
+) -> None:
+    """States, gains P h / R after the correction (no inverse is needed), diagonals and values of one window."""
+    n = q.shape[0]
+    for k in range(steps):
+        for i in range(n):
+            states[first + k, i] = trace[k, i]
+            gains[first + k, i] = trace[k, n + i] * h0 / R
+            diagonals[first + k, i] = q[i]
+        values[first + k] = trace[k, 2 * n]
+
+
+@njit(error_model="numpy")
 def tune_by_windows(
     Phi: Array,
     h: Array,
@@ -143,9 +166,8 @@ def tune_by_windows(
     a last block that is not full repeats the last candidate.
     """
     n = y.shape[0]
-    C = 3**n
+    C, h0 = 3**n, h[0]
     W = min(C, LANES)
-    h0 = h[0]
     qs, ys, cost = np.empty((n, W)), np.empty((n, W)), np.empty(W)
     Ps = np.empty((n, n, W))
     scratch = (np.empty(W), np.empty(W), np.empty((n, W)), np.empty((n, n, W)), np.empty((n, n, W)))
@@ -163,13 +185,7 @@ def tune_by_windows(
                     qs[i, c] = min(max(diagonal[i], floor[i]), ceiling[i])
             run_block(Phi, h0, R, part, y, P, qs, ys, Ps, cost, scratch, trace)
             if block == 0:
-                for k in range(part.shape[0]):
-                    for i in range(n):
-                        states[first + k, i] = trace[k, i]
-                        # After the correction P h / R is the gain; it needs no inverse.
-                        gains[first + k, i] = trace[k, n + i] * h0 / R
-                        diagonals[first + k, i] = q[i]
-                    values[first + k] = trace[k, 2 * n]
+                report_window(trace, q, h0, R, first, part.shape[0], states, gains, diagonals, values)
             c = int(np.argmin(cost))
             if cost[c] < lowest:
                 lowest = cost[c]
