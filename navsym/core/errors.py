@@ -67,13 +67,14 @@ class NavsymError(Exception):
 
     def parts(self) -> tuple[str, str, str]:
         """The message at its two semicolons; those inside quoted text do not count."""
-        masked = QUOTED.sub(lambda found: "-" * len(found[0]), self.message)
-        start, middle = masked.find("expected "), masked.find("; got ")
-        if start < 0 or middle < start:
+        start = self.message.find("expected ")
+        middle = self.message.find("; got ", start)
+        if start < 0 or middle < 0:
             return "", "", self.message
-        end = masked.find("; ", middle + 6)
-        end = end if end >= 0 else len(masked)
-        return self.message[start + 9 : middle], self.message[middle + 6 : end], self.message[end + 2 :]
+        rest = self.message[middle + 6 :]
+        end = QUOTED.sub(lambda found: "-" * len(found[0]), rest).find("; ")
+        end = end if end >= 0 else len(rest)
+        return self.message[start + 9 : middle], rest[:end], rest[end + 2 :]
 
     def at(self, where: str) -> NavsymError:
         """The same error with a place put in front of the one it has."""

@@ -150,7 +150,7 @@ ERRORS = [
     (["count-things"], 2, "syntax", "command line", "got nothing after the verb"),
     (["count-things", "a", "b"], 2, "syntax", "command line", "got a b"),
     (["count-things", "a", "--times", "x"], 2, "syntax", "command line", "got a --times x"),
-    (["count-things", "a", "--bad"], 2, "syntax", "command line", "do see navsym count-things --help"),
+    (["count-things", "a", "--bad"], 2, "syntax", "command line", "; see navsym count-things --help"),
     (["count-thing", "a"], 2, "syntax", "command line", "did you mean count-things?"),
     (["--bad"], 2, "syntax", "command line", "got --bad"),
     (["../main"], 2, "syntax", "command line", "got ../main"),
