@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import os
+import re
 
 import pytest
 from hypothesis import settings
 from hypothesis.internal.conjecture import providers
+from xdist.scheduler import LoadScopeScheduling
 
 # Examples are the same on every machine and every run; a shared machine may be slow, so no deadline. They would differ
 # with the modules that happen to be loaded, whose constants hypothesis also tries, hence with the worker that runs a
@@ -19,18 +21,37 @@ else:
     settings.load_profile("navsym")
     providers._get_local_constants = lambda: providers._local_constants
 
+#: Tests that are grouped by the paper or notebook that is their first parameter.
+APART = re.compile(
+    r"tests/(?:derivations/test_(?:papers|power|mutants)|fidelity/test_(?:statements|units)|test_notebooks)\.py"
+    r"::\w+\[(\d*[a-z_]+)(?:-|\])"
+)
+
 os.environ["NO_COLOR"] = "1"
 os.environ["MPLBACKEND"] = "Agg"
 os.environ.pop("NAVSYM_DEBUG", None)
 
 
-def pytest_collection_modifyitems(items):
-    """Every file is a group of tests that one worker runs, unless its tests name groups of their own.
+class Groups(LoadScopeScheduling):
+    """One worker runs a whole file, so that what a file prepares is prepared once.
 
-    What a file prepares is prepared once. Slow tests have twice the time before they count as waiting for ever.
+    Papers and notebooks are groups of their own: the statements of a paper are derived once for the tests of several
+    files, and no worker waits for all notebooks.
     """
+
+    def _split_scope(self, nodeid: str) -> str:
+        found = APART.match(nodeid)
+        return found[1] if found else nodeid.split("::")[0]
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config, log):
+    """Stand in for xdist's own ``loadgroup``, which needs an attribute that pytest no longer has."""
+    return Groups(config, log) if config.getvalue("dist") == "loadgroup" else None
+
+
+def pytest_collection_modifyitems(items):
+    """Slow tests have twice the time before they count as waiting for ever."""
     for item in items:
-        if not item.get_closest_marker("xdist_group"):
-            item.add_marker(pytest.mark.xdist_group(item.location[0]))
         if item.get_closest_marker("slow"):
             item.add_marker(pytest.mark.timeout(1800))

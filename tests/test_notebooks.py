@@ -16,9 +16,8 @@ FIRST = ("00_tour", "01_guaranteed_velocity", "10_your_own_model")
 
 
 def as_parameter(path):
-    """A notebook in a group of its own, and long when it is not among the first."""
-    marks = [pytest.mark.xdist_group(path.stem), *([] if path.stem in FIRST else [pytest.mark.long])]
-    return pytest.param(path, id=path.stem, marks=marks)
+    """A notebook, long when it is not among the first."""
+    return pytest.param(path, id=path.stem, marks=[] if path.stem in FIRST else [pytest.mark.long])
 
 
 @pytest.mark.parametrize("path", [as_parameter(path) for path in NOTEBOOKS])

@@ -1,6 +1,6 @@
 """The claims of every paper with their statements, derived once for all tests of a paper.
 
-Tests that take :data:`EACH` run beside each other, in the process that holds the statements of the paper.
+Tests whose first parameter is a paper run in the process that holds its statements (tests/conftest.py).
 """
 
 from __future__ import annotations
@@ -18,13 +18,10 @@ from navsym.verification.papers import PaperModule, paper_module
 
 PAPERS = paper_names()
 
-#: Every paper as a parameter, in a group of its own.
-EACH = [pytest.param(name, marks=pytest.mark.xdist_group(name)) for name in PAPERS]
-
 #: Every paper, and which of its claims: a quarter in every run, the others in the long ones.
 IN_PARTS = [
-    *(pytest.param(name, "a quarter", marks=pytest.mark.xdist_group(name)) for name in PAPERS),
-    *(pytest.param(name, "the others", marks=[pytest.mark.xdist_group(name), pytest.mark.long]) for name in PAPERS),
+    *((name, "a quarter") for name in PAPERS),
+    *(pytest.param(name, "the others", marks=pytest.mark.long) for name in PAPERS),
 ]
 
 

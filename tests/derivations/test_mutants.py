@@ -58,7 +58,7 @@ def judge(case):
 @pytest.mark.parametrize(
     "name",
     [
-        pytest.param(name, marks=[pytest.mark.xdist_group(name), *marks])
+        pytest.param(name, marks=marks)
         for name, marks in zip(SAMPLES, ([], [pytest.mark.long], [pytest.mark.long]), strict=True)
     ],
 )

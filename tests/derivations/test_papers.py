@@ -10,12 +10,12 @@ from navsym.checker import Refused, check, load
 from navsym.claims import REFUTED
 from navsym.claims.paper import papers_folder
 from navsym.verification.decide import decide_papers
-from tests.derivations.statements import EACH, module
+from tests.derivations.statements import PAPERS, module
 
 HOLDS = {"PROVED", "CERTIFIED"}
 
 
-@pytest.fixture(scope="module", params=EACH)
+@pytest.fixture(scope="module", params=PAPERS)
 def document(request):
     return decide_papers([module(request.param)], jobs=1).document()
 
@@ -80,7 +80,7 @@ def test_the_independent_checker_accepts_every_certificate(document):
     assert not refused
 
 
-@pytest.mark.parametrize("name", EACH)
+@pytest.mark.parametrize("name", PAPERS)
 def test_titles_are_sentences_and_refuted_claims_are_declared_as_such(name):
     for claim in module(name).claims:
         assert len(claim.title) > 10, claim.id

@@ -26,7 +26,7 @@ from navsym.prove.sampling.points import draw_points
 from navsym.verification.decide import sides
 from navsym.verification.papers import paper_module
 from tests.attacks.campaigns.edited_values import values_at
-from tests.derivations.statements import EACH, IN_PARTS, PAPERS, assertions, claims, formulas, part_of, symbols_in
+from tests.derivations.statements import IN_PARTS, PAPERS, assertions, claims, formulas, part_of, symbols_in
 from tests.fidelity.plain_arithmetic import Undefined, value
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -53,7 +53,7 @@ def test_every_formula_comes_back_from_its_text(paper, part):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("paper", EACH)
+@pytest.mark.parametrize("paper", PAPERS)
 def test_every_long_formula_comes_back_from_its_text(paper):
     """Up to the length that the language of files allows."""
     not_back = lost_on_the_way(assertions(paper), LENGTH)
@@ -90,7 +90,7 @@ def same_number(left, right):
     return True
 
 
-@pytest.mark.parametrize("paper", EACH)
+@pytest.mark.parametrize("paper", PAPERS)
 def test_the_ledger_prints_what_is_decided(paper):
     for claim, statement in claims(paper):
         record = ledger().get(claim.id)
@@ -155,7 +155,7 @@ def test_what_holds_is_not_denied_by_the_numbers_of_its_text(paper, part):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("paper", EACH)
+@pytest.mark.parametrize("paper", PAPERS)
 def test_long_formulas_are_not_denied_by_their_numbers_either(paper):
     assert compared(assertions(paper), 10**6, 4) > 20
 
@@ -178,7 +178,7 @@ def compared(some, longest, count):
     return seen
 
 
-@pytest.mark.parametrize("paper", EACH)
+@pytest.mark.parametrize("paper", PAPERS)
 def test_what_is_refuted_is_denied_at_its_counterexample(paper):
     for claim, statement in assertions(paper):
         record = ledger().get(claim.id, {})
@@ -200,8 +200,8 @@ def complete(statement, point):
     return type("Kept", (), {"printed": [p for p, _ in kept], "derived": [d for _, d in kept]})
 
 
-@pytest.mark.xdist_group("guaranteed_velocity")
-def test_inequalities_and_optima_are_among_what_is_read_back():
-    kinds = {type(statement) for _, statement in claims("guaranteed_velocity")}
+@pytest.mark.parametrize("paper", ["guaranteed_velocity"])
+def test_inequalities_and_optima_are_among_what_is_read_back(paper):
+    kinds = {type(statement) for _, statement in claims(paper)}
     assert kinds == {Equation, Bound, Optimum, Property}
-    assert sum(len(paper_module(import_paper(paper)).claims) for paper in PAPERS) >= 750
+    assert sum(len(paper_module(import_paper(name)).claims) for name in PAPERS) >= 750

@@ -7,7 +7,7 @@ import sympy as sp
 
 from navsym.claims import Equation, Optimum
 from tests.attacks.campaigns.edits import apply_edit, is_formula, list_edits
-from tests.derivations.statements import EACH, assertions, symbols_in
+from tests.derivations.statements import PAPERS, assertions, symbols_in
 from tests.fidelity.scaling import Scaling, narrowed, pairs_of
 from tests.fidelity.units import METRE, SECOND, units_of
 
@@ -39,13 +39,13 @@ def names_in(statement):
     return {symbol.name for symbol in symbols_in(statement)}
 
 
-@pytest.mark.parametrize("paper", EACH)
+@pytest.mark.parametrize("paper", PAPERS)
 def test_every_claim_is_homogeneous_in_the_units_of_its_symbols(paper):
     for claim, statement, units in held(paper):
         assert Scaling(pairs_of(statement)).denied(units) is None, claim.id
 
 
-@pytest.mark.parametrize("paper", EACH)
+@pytest.mark.parametrize("paper", PAPERS)
 def test_what_is_printed_allows_the_units_that_its_derivation_allows(paper):
     compared = [(claim.id, s) for claim, s, _ in held(paper) if not isinstance(s, Optimum)]
     expected = {name for name in NARROWER if name.startswith(f"{paper}:")}
@@ -77,7 +77,7 @@ def test_the_claims_that_units_say_something_about_are_counted(paper, at_least):
 CHANGING = ("power", "index", "dropped", "doubled")
 
 
-@pytest.mark.parametrize("paper", EACH)
+@pytest.mark.parametrize("paper", PAPERS)
 def test_slips_in_the_formulas_of_every_paper_are_noticed_by_their_units(paper):
     tried = noticed = 0
     for derived, mutant in slips(paper, 120):
