@@ -11,7 +11,7 @@ from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 NAME = "_editable_navsym_papers"
 
 #: Run when Python starts, by the line of the .pth file; so it loads nothing before the papers are asked for.
-FINDER = '''import sys
+FINDER = """import sys
 
 
 class PapersFinder:
@@ -24,7 +24,7 @@ class PapersFinder:
 
 
 sys.meta_path.append(PapersFinder)
-'''
+"""
 
 
 class PapersHook(BuildHookInterface):  # type: ignore[type-arg]
