@@ -47,7 +47,7 @@ class Number:
         text, whole = self.lower[:shared], len(self.lower.partition(".")[0])
         if shared > whole and text.strip("-0."):
             return text.rstrip(".")
-        wide = self.digits < 3
+        wide = self.digits < 3 or text.strip("-0.") != ""
         return f"{self.lower} … {self.upper}" if wide else f"{float(self):.{min(self.digits, 15)}g}"
 
     def __contains__(self, value: object) -> bool:

@@ -28,7 +28,6 @@ from types import BuiltinFunctionType, CellType, CodeType, FunctionType, MethodT
 from typing import Any
 
 import numpy as np
-import sympy as sp
 
 from navsym.claims.claim import PAPERS, Claim
 from navsym.core.store import key_of
@@ -448,6 +447,8 @@ def described(value: Any) -> str:
         return f"{type(value).__qualname__} {value!r}"
     if isinstance(value, np.ndarray) and value.dtype != object:
         return f"array {value.dtype} {value.shape} {key_of(value.tobytes().hex())}"
+    import sympy as sp
+
     if isinstance(value, (sp.Basic, sp.MatrixBase)):
         return f"formula {sp.srepr(value)}"  # the assumptions of symbols included, which str leaves out
     texts = [described(part) for part in held(value)]

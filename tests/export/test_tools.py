@@ -14,6 +14,7 @@ from navsym.claims import Equation
 from navsym.cli.main import run
 from navsym.export import tools
 from navsym.export.functions import function_of, material
+from navsym.export.languages import targets
 from navsym.export.languages.targets import TARGETS
 from navsym.export.package import Order, files_of
 from navsym.export.parts import Layout
@@ -133,9 +134,9 @@ def test_text_of_a_claim_cannot_leave_the_script_of_the_page() -> None:
 
 
 def test_the_table_says_what_ran_and_what_did_not(tmp_path: Path, monkeypatch) -> None:
-    targets = [TARGETS[n] for n in ("python", "julia")]
+    chosen = [TARGETS[n] for n in ("python", "julia")]
     monkeypatch.setattr(targets, "answers", lambda path: False)
-    document = closing_table({"g": [samples.by_name("Phi33")]}, targets, 6)
+    document = closing_table({"g": [samples.by_name("Phi33")]}, chosen, 6)
     (record,) = document["functions"]
     assert record["languages"]["python"]["status"] == "verified" and record["languages"]["julia"]["worst"] is None
     assert document["languages"]["julia"]["status"] == "not executed" and record["misra"] is None

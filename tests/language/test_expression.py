@@ -348,7 +348,7 @@ def test_any_unicode_is_an_expression_or_a_placed_error(text):
     ],
 )
 def test_long_text_takes_less_than_a_second(text):
-    assert min(seconds_of_reading(text) for _ in range(2)) < 1.0
+    assert min(seconds_of_reading(text) for _ in range(4)) < 1.0
 
 
 def seconds_of_reading(text):

@@ -196,7 +196,7 @@ def test_the_rooms_the_checker_and_the_switches_count(monkeypatch, tmp_path):
     digest = deciding_code.rooms_digest.__wrapped__
     before = digest()
     names = {path.relative_to(deciding_code.ROOT).as_posix() for path in deciding_code.room_files()}
-    assert {"checker.py", "store.py", "errors.py", "proof/ladder.py", "methods/verification/verify.py"} <= names
+    assert {"checker.py", "core/store.py", "core/errors.py", "prove/ladder.py", "verification/decide.py"} <= names
     monkeypatch.setenv("SYMPY_GROUND_TYPES", "python")
     assert digest() != before
     monkeypatch.delenv("SYMPY_GROUND_TYPES")
