@@ -24,6 +24,8 @@ class Formula:
     relation    : one of ``= != < <= > >=``
     symbols     : name -> declaration, as in ``[symbols]``: a range ``["0", "pi"]``, or a word such as ``"positive"``
     box         : name -> range of this formula inside its declaration
+    tolerance   : for a printed numeral, the exact number that ``|left - right|`` does not exceed; None for equality
+    exists      : expressions that must have a value, beside those that stand in the sides
     """
 
     left: Side
@@ -32,17 +34,22 @@ class Formula:
     symbols: Mapping[str, Any] = field(default_factory=dict)
     box: Mapping[str, Any] = field(default_factory=dict)
     id: str = "formula"
+    tolerance: str | None = None
+    exists: tuple[str, ...] = ()
 
     def __str__(self) -> str:
-        return f"{side_text(self.left)} {self.relation} {side_text(self.right)}"
+        within = "" if self.tolerance is None else f" +- {self.tolerance}"
+        return f"{side_text(self.left)}{within} {self.relation} {side_text(self.right)}"
 
     def document(self) -> dict[str, Any]:
         """A whole claim file of this formula: ``{"symbols": …, "claim": [{"id", "left", "right", "relation"}]}``."""
         block = {"id": self.id, "left": self.left, "right": self.right, "relation": self.relation}
-        return {"symbols": dict(self.symbols), "claim": [{**block, "box": dict(self.box)} if self.box else block]}
+        more = {"box": dict(self.box), "tolerance": self.tolerance, "exists": list(self.exists)}
+        return {"symbols": dict(self.symbols), "claim": [block | {key: value for key, value in more.items() if value}]}
 
     def _repr_latex_(self) -> str:
         left, right = (side_latex(side, self.symbols) for side in (self.left, self.right))
+        left += "" if self.tolerance is None else rf" \pm {side_latex(self.tolerance, {})}"
         return rf"$\displaystyle {left} {SIGNS.get(self.relation, self.relation)} {right}$"
 
 

@@ -15,7 +15,7 @@ from navsym.core.errors import DomainError, EmptyError, ExpressionSyntaxError, N
 from navsym.core.sandbox import Exhausted, Failed, run_many
 from navsym.language.advice import advise_on_relation
 from navsym.language.arithmetic import sign_of_constant
-from navsym.language.declarations import Parameter, box_of, read_parameters, read_range, symbols_of
+from navsym.language.declarations import Parameter, box_of, read_parameters, read_range, require_positive, symbols_of
 from navsym.language.expression import ZERO, Expr, Matrix, Parsed, Symbol
 from navsym.language.files import name_file
 from navsym.language.names import quote
@@ -27,6 +27,7 @@ from navsym.language.schema import (
     as_text,
     expect_keys,
     join_place,
+    read_entry,
     read_entry_noting,
     require_distinct,
     require_key,
@@ -58,10 +59,11 @@ class Symbols:
     def formula(self, block: Table) -> Formula:
         """A claim as it is written, with the declarations of the names in it."""
         sides = [side_as_written(block[side]) for side in ("left", "right")]
-        box = block.get("box", {})
-        names = names_of(sides[0]) | names_of(sides[1]) | set(box)
+        box, exists = block.get("box", {}), tuple(map(str, block.get("exists", ())))
+        names = set(box).union(*map(names_of, (*sides, *exists)))
         symbols = {name: value for name, value in self.written.items() if name in names}
-        return Formula(sides[0], block.get("relation", "="), sides[1], symbols, box, block["id"])
+        tolerance = None if "tolerance" not in block else str(block["tolerance"])
+        return Formula(sides[0], block.get("relation", "="), sides[1], symbols, box, block["id"], tolerance, exists)
 
 
 def side_as_written(value: Any) -> Side:
@@ -77,6 +79,7 @@ class FileClaim:
     left, right : expressions, or matrices of one shape (given as lists of rows)
     relation    : one of ``= != < <= > >=``
     box         : symbol -> (lower, upper), the file's ranges and those of the claim itself
+    tolerance   : None for equality; the exact number that ``|left - right|`` does not exceed
     divisors    : what the text divides by, also where the algebra has cancelled it since
     radicands   : what the text takes roots of, to be nonnegative, likewise
     arguments   : what the text takes logarithms and symbolic powers of, to be positive, likewise
@@ -87,6 +90,7 @@ class FileClaim:
     right: Any
     relation: str
     box: Mapping[Symbol, tuple[Expr, Expr]]
+    tolerance: Expr | None = None
     divisors: tuple[Expr, ...] = ()
     radicands: tuple[Expr, ...] = ()
     arguments: tuple[Expr, ...] = ()
@@ -165,7 +169,7 @@ def read_claim_or_error(block: Any, symbols: Symbols, where: str, place: int) ->
 def read_claim(block: Any, symbols: Symbols, where: str) -> FileClaim:
     """One [[claim]] block."""
     table = as_table(block, where)
-    expect_keys(table, ("id", "left", "right", "relation", "box"), where)
+    expect_keys(table, ("id", "left", "right", "relation", "box", "tolerance", "exists"), where)
     as_label(require_key(table, "id", where), join_place(where, "id"))
     relation = as_text(table.get("relation", "="), join_place(where, "relation"), "a relation")
     if relation not in RELATIONS:
@@ -175,14 +179,33 @@ def read_claim(block: Any, symbols: Symbols, where: str) -> FileClaim:
     known = symbols_of(symbols.parameters)
     left, left_cells = read_side(require_key(table, "left", where), known, join_place(where, "left"))
     right, right_cells = read_side(require_key(table, "right", where), known, join_place(where, "right"))
-    cells = left_cells + right_cells
+    cells = left_cells + right_cells + read_existing(table.get("exists"), known, join_place(where, "exists"))
     require_comparable(left, right, relation, where)
+    tolerance = read_tolerance(table.get("tolerance"), relation, join_place(where, "tolerance"))
     box = box_of(symbols.parameters) | read_box(table.get("box", {}), symbols.parameters, join_place(where, "box"))
     noted = [
         tuple(dict.fromkeys(part for cell in cells for part in getattr(cell, name)))
         for name in ("divisors", "radicands", "arguments")
     ]
-    return FileClaim(symbols.formula(table), left, right, relation, box, *noted)
+    return FileClaim(symbols.formula(table), left, right, relation, box, tolerance, *noted)
+
+
+def read_existing(value: Any, known: Mapping[str, Symbol], where: str) -> list[Parsed]:
+    """The expressions that must have a value; their divisors, radicands and logarithms are conditions of the claim."""
+    if value is None:
+        return []
+    return [read_entry_noting(item, known, join_place(where, i)) for i, item in enumerate(as_list(value, where))]
+
+
+def read_tolerance(value: Any, relation: str, where: str) -> Expr | None:
+    """Half a unit of the last digit, or another positive number, exactly."""
+    if value is None:
+        return None
+    if relation != "=":
+        raise DomainError(f"expected = beside a tolerance; got {relation}; remove the tolerance", where=where)
+    tolerance = read_entry(value, {}, where)
+    require_positive(tolerance, "a tolerance", where)
+    return tolerance
 
 
 def read_side(value: Any, known: Mapping[str, Symbol], where: str) -> tuple[Any, list[Parsed]]:
@@ -305,5 +328,5 @@ def existing_parts(claim: FileClaim) -> tuple[sp.Expr, ...]:
 def statement_of(claim: FileClaim) -> Statement:
     """The file's claim as a statement of the ladder."""
     if claim.relation == "=":
-        return Equation(claim.left, claim.right, claim.box, exists=existing_parts(claim))
+        return Equation(claim.left, claim.right, claim.box, claim.tolerance, exists=existing_parts(claim))
     return Bound(claim.left, claim.relation, claim.right, claim.box, existing_parts(claim))

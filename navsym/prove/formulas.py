@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from types import NoneType
 from typing import Any, overload
@@ -36,6 +36,8 @@ def prove(
     /,
     *,
     box: Mapping[str, Any] | None = ...,
+    tolerance: Any = ...,
+    exists: Any = ...,
     seconds: float = ...,
     **symbols: Any,
 ) -> Verdict: ...
@@ -48,6 +50,8 @@ def prove(
     /,
     *,
     box: Mapping[str, Any] | None = None,
+    tolerance: Any = None,
+    exists: Any = (),
     seconds: float = SECONDS,
     jobs: int = 1,
     progress: Progress | None = None,
@@ -62,6 +66,8 @@ def prove(
     symbols   : declarations, ``T=("0", "2*pi")`` for a closed range, or one of ``"real"``, ``"positive"``,
                 ``"nonnegative"``, ``"nonzero"``. A symbol without one is real, or what its sympy assumptions say.
     box       : name -> range, inside the declaration of that symbol
+    tolerance : of a printed numeral, half a unit of its last digit: ``|left - right| <= tolerance``
+    exists    : expression, or list of them, that must have a value: points where one has none do not count
     seconds   : limit for one formula, seconds of processor time; above it the verdict is OPEN
     jobs      : claims of a file decided at the same time
     progress  : called with each verdict of a file, and the number of its claims
@@ -77,6 +83,10 @@ def prove(
     <PROVED: sin(2*a) = 2*sin(a)*cos(a); normal form; all real a>
     >>> nav.prove("sin(T) <= T", T=("0", "pi")).status
     <Status.CERTIFIED: 'CERTIFIED'>
+    >>> nav.prove("22/7 = pi", tolerance="0.005").holds
+    True
+    >>> nav.prove("a = a", exists="log(a)").assumptions
+    ('a > 0',)
     >>> import sympy
     >>> x = sympy.Symbol("x", positive=True)
     >>> nav.prove(sympy.log(x), "<=", x - 1).holds
@@ -86,12 +96,13 @@ def prove(
     navsym.core.errors.DomainError: prove: left: expected an exact number; got the float 0.5; write "1/2" ...
     """
     require_options(box, seconds, jobs)
+    beside = {"box": box or {}, "tolerance": tolerance, "exists": exists}
     if relation is None and is_file(statement):
-        if symbols or box:
-            raise misplaced_declarations(symbols or box or {})
+        if given := symbols or {name: value for name, value in beside.items() if value not in (None, {}, ())}:
+            raise misplaced_declarations(given)
         return prove_file(statement, seconds, jobs, progress)
     sides = split_formula(statement) if relation is None else Sides(statement, relation, right)
-    return prove_formula(sides, symbols, box or {}, seconds)
+    return prove_formula(sides, symbols, beside, seconds)
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,14 +123,22 @@ def prove_file(path: str | os.PathLike[str], seconds: float, jobs: int, progress
     return decide_claims(read_claims(path, go_on=True), jobs=jobs, seconds=seconds, progress=progress)
 
 
-def prove_formula(sides: Sides, given: Mapping[str, Any], box: Mapping[str, Any], seconds: float) -> Verdict:
-    """The verdict of one formula."""
-    from navsym.language.values import merge_declarations, read_assumptions, write_declaration, write_entries
+def prove_formula(sides: Sides, given: Mapping[str, Any], beside: Mapping[str, Any], seconds: float) -> Verdict:
+    """The verdict of one formula, with the box, tolerance and existing expressions beside it."""
+    from navsym.language.values import (
+        merge_declarations,
+        read_assumptions,
+        write_declaration,
+        write_entries,
+        write_value,
+    )
     from navsym.prove.claimfile import ClaimFile, Symbols, decide_claims, read_claim
 
     left, right = write_entries(sides.left, "prove: left"), write_entries(sides.right, "prove: right")
-    words = dict.fromkeys(symbols_in(left, right, given), "real")
-    words |= read_assumptions((sides.left, sides.right), "prove")
+    existing = beside["exists"] if isinstance(beside["exists"], (list, tuple)) else [beside["exists"]]
+    exists = write_entries(list(existing), "prove: exists")
+    words = dict.fromkeys(symbols_in((left, right, exists), given), "real")
+    words |= read_assumptions((sides.left, sides.right, *existing), "prove")
     declared = {name: write_declaration(value, f"prove: {name}") for name, value in given.items()}
     for name in declared.keys() - words.keys():
         message = (
@@ -127,8 +146,11 @@ def prove_formula(sides: Sides, given: Mapping[str, Any], box: Mapping[str, Any]
         )
         raise UnknownSymbolError(message, where=f"prove: {name}")
     table, narrowed = merge_declarations(words, declared, "prove")
-    narrowed |= {name: write_declaration(ends, f"prove: box.{name}") for name, ends in box.items()}
+    narrowed |= {name: write_declaration(ends, f"prove: box.{name}") for name, ends in beside["box"].items()}
     block = {"id": "formula", "left": left, "relation": sides.relation, "right": right, "box": narrowed}
+    block |= {"exists": exists} if exists else {}
+    if beside["tolerance"] is not None:
+        block["tolerance"] = write_value(beside["tolerance"], "prove: tolerance")
     symbols = Symbols.read(table, "prove")
     claim = read_claim(block, symbols, "prove")
     return decide_claims(ClaimFile(symbols.parameters, (claim,)), seconds=seconds)[0]
@@ -177,11 +199,11 @@ def split_formula(statement: Any) -> Sides:
     return Sides(statement[: mark.start()].strip(), mark[0], statement[mark.end() :].strip())
 
 
-def symbols_in(left: Any, right: Any, given: Mapping[str, Any]) -> set[str]:
-    """Names in two sides that are symbols: no function, and not a function or number of another language.
+def symbols_in(sides: Iterable[Any], given: Mapping[str, Any]) -> set[str]:
+    """Names in texts that are symbols: no function, and not a function or number of another language.
 
     ``e`` and ``ln`` count where the caller declares them; the reader says of the others what to write instead.
     """
     from navsym.language.advice import FOREIGN
 
-    return (names_of(left) | names_of(right)) - RESERVED - (FOREIGN.keys() - given.keys())
+    return set().union(*map(names_of, sides)) - RESERVED - (FOREIGN.keys() - given.keys())

@@ -68,6 +68,10 @@ def test_claims_are_read_exactly(tmp_path):
         ('a = "real"', 'a = "complex"', "syntax", "symbols.a"),
         ('a = "real"', 'abs = "real"', "duplicate", "symbols.abs"),
         ("[symbols]", "[symbol]", "syntax", "symbol"),
+        ('relation = "<="', 'relation = "<="\ntolerance = 0.5', "domain", "claim[1].tolerance"),
+        ('relation = "="', 'relation = "="\ntolerance = -0.5', "domain", "claim[0].tolerance"),
+        ('relation = "="', 'relation = "="\nexists = "1/a"', "shape", "claim[0].exists"),
+        ('relation = "="', 'relation = "="\nexists = ["1/b"]', "unknown-symbol", "claim[0].exists[0], column 3"),
         ('relation = "="', 'relatoin = "="', "syntax", "claim[0].relatoin"),
     ],
 )

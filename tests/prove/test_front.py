@@ -96,6 +96,13 @@ def test_a_float_is_refused_with_its_exact_spelling(value):
         (("a = b",), {"seconds": float("nan")}, "domain", "prove: seconds"),
         (("a = b",), {"jobs": 0}, "domain", "prove: jobs"),
         (("a = b",), {"box": 3}, "shape", "prove: box"),
+        (("a = b",), {"tolerance": 0.5}, "domain", "prove: tolerance"),
+        (("a = b",), {"tolerance": "0"}, "domain", "prove: tolerance"),
+        (("a = b",), {"tolerance": "a"}, "unknown-symbol", "prove: tolerance, column 1"),
+        (("a < b",), {"tolerance": "1"}, "domain", "prove: tolerance"),
+        (("a = b",), {"exists": 3.5}, "domain", "prove: exists[0]"),
+        (("a = b",), {"exists": ["1/0"]}, "domain", "prove: exists[0], column 2"),
+        ((EXAMPLE,), {"tolerance": "1"}, "domain", "prove"),
         (("nothing_there.toml",), {}, "missing-file", "nothing_there.toml"),
         ((EXAMPLE,), {"T": "real"}, "domain", "prove"),
     ],
@@ -122,6 +129,28 @@ def test_the_formula_of_a_verdict_is_a_claim_file_of_its_own():
     verdict = nav.prove("x + T >= T", T=("0", "1"), x="nonnegative")
     again = decide_claims(claims_from(verdict.formula.document()))
     assert again[0] == verdict and verdict.holds
+
+
+def test_a_tolerance_is_that_of_a_printed_numeral():
+    assert nav.prove("22/7 = pi", tolerance="0.0013").holds
+    refuted = nav.prove("22/7", "=", sp.pi, tolerance=sp.Rational(12, 10000))
+    assert refuted.status == nav.REFUTED and str(refuted.formula) == "22/7 +- 3/2500 = pi"
+    assert r"\pm \frac{3}{2500}" in refuted.formula._repr_latex_()
+
+
+def test_what_must_exist_is_an_assumption_and_its_zeros_are_no_counterexamples():
+    assert nav.prove("abs(x)/x = 1").status == nav.REFUTED
+    verdict = nav.prove("abs(x)/x = 1", exists="log(x)")
+    assert verdict.status == nav.CONFIRMED and "x > 0" in verdict.assumptions
+    assert nav.prove("b = b", exists=["1/a", 1 / sp.Symbol("b", nonzero=True)]).assumptions == ("a != 0",)
+
+
+def test_the_formula_of_a_verdict_keeps_its_tolerance_and_what_must_exist():
+    from navsym.prove.claimfile import claims_from, decide_claims
+
+    verdict = nav.prove("x/2 = x/2 + 1/100", tolerance="0.02", exists=["1/x"], x=("-1", "1"))
+    again = decide_claims(claims_from(verdict.formula.document()))[0]
+    assert again == verdict and verdict.holds and verdict.assumptions == ("x != 0",)
 
 
 def test_a_time_limit_leaves_it_open():
