@@ -18,6 +18,7 @@ from sympy.polys.matrices import DomainMatrix
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
+from docs import drawings  # noqa: E402
 from navsym.claims import Record  # noqa: E402
 from navsym.report import plots  # noqa: E402
 from navsym.verification.ledger import is_only_in_the_copy, records_about  # noqa: E402
@@ -100,7 +101,7 @@ def dual() -> Figure:
     derived, printed = (sp.lambdify(model.tau, curve, "numpy")(at) for curve in curves)
     optimum = weights.OPTIMAL_ERRORS[2].derive()
     support, found = (np.array([float(x.subs(end)) for x in part]) for part in (optimum.support, optimum.weights))
-    return plots.dual_polynomial(at, derived, support, found, printed=printed, unit="Schuler units")
+    return drawings.dual_polynomial(at, derived, support, found, printed=printed, unit="Schuler units")
 
 
 def ladder() -> Figure:
@@ -112,7 +113,7 @@ def ladder() -> Figure:
     F, H = model.F.subs(values), model.H.subs(values)
     names = [name.replace("sigma_", "σ ") for name in model.measurements]
     ranks = [ranks_of(H[k, :], F, 10) for k in range(H.rows)] + [ranks_of(H, F, 10)]
-    return plots.observability_ladder((*names, "all four"), np.array(ranks), model.size)
+    return drawings.observability_ladder((*names, "all four"), np.array(ranks), model.size)
 
 
 def ranks_of(rows: sp.Matrix, F: sp.Matrix, count: int) -> list[int]:
@@ -149,7 +150,7 @@ def surface() -> Figure:
     start, heading = course(terrain, setting, 1, 5)
     flight = fly(terrain, start, heading, setting, np.random.default_rng(11))
     found = criteria(prepare(terrain, flight.track, GRID.position_only))[0, 0]
-    return plots.criterion_surface(
+    return drawings.criterion_surface(
         terrain.heights,
         found,
         cell=terrain.dx,
@@ -174,7 +175,7 @@ def errors() -> Figure:
     answer, _ = estimate(track, Settings())
     scale = np.polyfit(speed, answer.velocity[:, 1], 1)[0]
     error = answer.velocity[:, 1] / scale - speed
-    return plots.error_ribbon(t, error, answer.velocity_sd[:, 1], quantity="error of the northern speed", unit="m/s")
+    return drawings.error_ribbon(t, error, answer.velocity_sd[:, 1], quantity="error of the northern speed", unit="m/s")
 
 
 def conditions() -> Figure:
@@ -185,7 +186,7 @@ def conditions() -> Figure:
     orders = np.array([2, 3, 4, 5, 10, 15, 19, 20])
     found = [condition_numbers(int(n), "1/6371000", "1/5", digits=15)["N_f"] for n in orders]
     printed = [float(row[2]) if (row := table.PRINTED.get((int(n), "tau0.2"))) else np.nan for n in orders]
-    return plots.condition_numbers(
+    return drawings.condition_numbers(
         orders,
         np.array(printed),
         np.array([float(f.enclosure.lower) for f in found]),

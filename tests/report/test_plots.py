@@ -7,13 +7,14 @@ from xml.dom import minidom
 import numpy as np
 import pytest
 
+from docs import drawings
 from navsym.report import plots
 
 t = np.linspace(0.0, 1.0, 50)
 P = np.column_stack([t, 1 - t])
 BUMPS = np.sin(8 * t)[:, None] + np.cos(6 * t)[None, :]
 PICTURES = {
-    "dual": lambda: plots.dual_polynomial(t, 8 * t**2 - 8 * t + 1, np.array([0, 0.5, 1]), np.array([1, -4, 3])),
+    "dual": lambda: drawings.dual_polynomial(t, 8 * t**2 - 8 * t + 1, np.array([0, 0.5, 1]), np.array([1, -4, 3])),
     "phases": lambda: plots.phase_diagram(
         [{"at": t + 0.1, "value": 1 / (t + 0.1), "label": "1/T"}, {"at": t + 1.1, "value": 1 + 0 * t, "label": "1"}],
         parameter="T",
@@ -21,12 +22,12 @@ PICTURES = {
         quantity="deviation, m/s",
     ),
     "modes": lambda: plots.mode_ribbon(t, P, ("calm", "rough"), truth=(t > 0.5).astype(int)),
-    "errors": lambda: plots.error_ribbon(t, 0.1 * np.sin(9 * t), 0.1 + 0 * t, quantity="velocity error", unit="m/s"),
-    "surface": lambda: plots.criterion_surface(
+    "errors": lambda: drawings.error_ribbon(t, 0.1 * np.sin(9 * t), 0.1 + 0 * t, quantity="velocity error", unit="m/s"),
+    "surface": lambda: drawings.criterion_surface(
         100 * BUMPS, BUMPS[:21, :21] ** 2, cell=90.0, track=np.array([[0.0, 0.0], [3000.0, 3000.0]]), step=50.0
     ),
-    "conditions": lambda: plots.condition_numbers(np.arange(2, 6), 10.0 ** np.arange(2, 6), 10.0 ** np.arange(2, 6)),
-    "ladder": lambda: plots.observability_ladder(("v", "p"), np.array([[1, 2, 2], [1, 2, 3]]), 3),
+    "conditions": lambda: drawings.condition_numbers(np.arange(2, 6), 10.0 ** np.arange(2, 6), 10.0 ** np.arange(2, 6)),
+    "ladder": lambda: drawings.observability_ladder(("v", "p"), np.array([[1, 2, 2], [1, 2, 3]]), 3),
 }
 
 
