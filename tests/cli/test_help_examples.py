@@ -22,7 +22,6 @@ NOT_HERE = {
     "diff build": "two folders of the reader's own; tests/cli/test_diff.py makes some",
     "export": "a compiler; the tour of the README runs it",
     "doctor": "compiles with an empty cache; tests/cli/test_doctor.py",
-    "exports": "minutes on every compiler of the machine",
     "new-": "writes into derivations/; tests/cli/test_new_paper.py does so elsewhere",
 }
 SLOW = ("simulate", "verify", "sweep", "report", "check")

@@ -21,13 +21,13 @@ from navsym.export.accuracy.continuation import MARGIN, SWITCHES, continuation
 from navsym.export.accuracy.filled import filled_bounds, zones
 from navsym.export.accuracy.literals import literals_of
 from navsym.export.accuracy.rounding import ARITHMETICS, DOUBLE, Bounded
-from navsym.export.accuracy.sweep import sweep_c
 from navsym.export.accuracy.vectors import vectors
 from navsym.export.atoms import expm1, filled, plain
 from navsym.export.expression_graph import Graph, build
 from navsym.export.forms import safe
 from navsym.export.functions import function_of
 from navsym.export.holes import Part, T
+from tests.attacks.points.sweep import sweep_c
 from tests.export import samples
 
 x, a, b, tau = sp.symbols("x a b tau", real=True)

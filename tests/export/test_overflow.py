@@ -14,11 +14,11 @@ from flint import arb
 from navsym.claims import Equation
 from navsym.core.balls import enclose, tape
 from navsym.core.errors import DomainError
-from navsym.export.accuracy.sweep import compiled_c, sweep_c
 from navsym.export.accuracy.vectors import vectors
 from navsym.export.functions import ExportedFunction, function_of
 from navsym.export.languages.python import files as python_files
 from navsym.export.languages.targets import TARGETS
+from tests.attacks.points.sweep import compiled_c, sweep_c
 from tests.export import samples
 
 x, y = sp.symbols("x y", real=True)

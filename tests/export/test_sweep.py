@@ -12,11 +12,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from navsym.core.balls import precision
-from navsym.export.accuracy import bands, sweep, twin
 from navsym.export.accuracy.rounding import BITS
 from navsym.export.accuracy.vectors import analysed, exact_values, piece_at
 from navsym.export.languages.targets import TARGETS
 from navsym.export.ready import READY
+from tests.attacks.points import bands, sweep, twin
 from tests.export import samples
 
 COMPILER = pytest.mark.skipif(TARGETS["c"].executable() is None, reason="needs a C compiler")

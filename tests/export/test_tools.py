@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import importlib
 import importlib.util
 import json
 import shutil
+import sys
 from pathlib import Path
 
 import pytest
@@ -19,7 +21,6 @@ from navsym.export.languages.targets import TARGETS
 from navsym.export.package import Order, files_of
 from navsym.export.parts import Layout
 from navsym.export.roundtrip import run_target
-from navsym.export.table import as_markdown, closing_table
 from navsym.prove.ladder import decide
 from tests.export import programs, samples
 from tests.report.devtools import Browser
@@ -133,28 +134,40 @@ def test_text_of_a_claim_cannot_leave_the_script_of_the_page() -> None:
 # -- the table ---------------------------------------
 
 
-def test_the_table_says_what_ran_and_what_did_not(tmp_path: Path, monkeypatch) -> None:
+@pytest.fixture(scope="module")
+def table():
+    """The script that makes docs/exports.md."""
+    sys.path.insert(0, str(Path(__file__).parents[2] / "docs"))
+    try:
+        yield importlib.import_module("exports_table")
+    finally:
+        sys.path.pop(0)
+
+
+def test_the_table_says_what_ran_and_what_did_not(table, monkeypatch) -> None:
     chosen = [TARGETS[n] for n in ("python", "julia")]
     monkeypatch.setattr(targets, "answers", lambda path: False)
-    document = closing_table({"g": [samples.by_name("Phi33")]}, chosen, 6)
+    document = table.closing_table({"g": [samples.by_name("Phi33")]}, chosen, 6)
     (record,) = document["functions"]
     assert record["languages"]["python"]["status"] == "verified" and record["languages"]["julia"]["worst"] is None
     assert document["languages"]["julia"]["status"] == "not executed" and record["misra"] is None
-    page = as_markdown(document, "navsym exports")
+    page = table.as_markdown(document, "python docs/exports_table.py")
     assert "julia | not executed" in page and "| guaranteed_velocity_4_12_Phi33 |" in page
 
 
-def test_the_table_is_the_same_with_several_at_work() -> None:
+def test_the_table_is_the_same_with_several_at_work(table) -> None:
     groups = {"g": [samples.by_name("Phi33")], "h": [samples.by_name("versine")]}
     said: list[str] = []
-    tables = [closing_table(groups, [TARGETS["python"]], 6, said.append, points=64, jobs=jobs) for jobs in (1, 2)]
+    chosen = [TARGETS["python"]]
+    tables = [table.closing_table(groups, chosen, 6, said.append, points=64, jobs=jobs) for jobs in (1, 2)]
     assert tables[0] == tables[1] and tables[0]["functions"][1]["points"]["points"] >= 64
     assert sorted(said[:4]) == sorted(said[4:]) and "g languages" in said and "sample_versine points" in said
 
 
-def test_exports_names_what_is_ready_made(capsys) -> None:
-    assert run(["exports", "no-such", "--json"]) == 2
-    assert "velocity-correction" in json.loads(capsys.readouterr().out)["error"]["message"]
+def test_the_table_names_what_is_ready_made(table, capsys) -> None:
+    with pytest.raises(SystemExit) as ended:
+        table.main(["no-such", "--json"])
+    assert ended.value.code == 2 and "velocity-correction" in capsys.readouterr().err
 
 
 # -- units ---------------------------------------

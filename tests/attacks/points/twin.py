@@ -1,6 +1,6 @@
 """The fast twin of the ball analysis: exact values and rounding bounds at many points at once.
 
-Sums, products and quotients run in :mod:`navsym.export.accuracy.bands`; every other operation runs through the very
+Sums, products and quotients run in :mod:`tests.attacks.points.bands`; every other operation runs through the very
 functions of :mod:`navsym.export.accuracy.rounding` and :mod:`navsym.core.balls`, entry by entry. Whatever two doubles
 do not decide (a value that cancels below its error, a denominator that comes near its own error) is left open and
 goes to the balls. A bound that is returned differs from that of the balls by less than SLACK of itself, which the
@@ -19,7 +19,12 @@ import sympy as sp
 from flint import arb
 
 from navsym.core.balls import OPERATIONS, Tape, enclose, precision
-from navsym.export.accuracy.bands import (
+from navsym.export.accuracy.filled import filled_bounds
+from navsym.export.accuracy.rounding import Arithmetic, Bounded, factor, rounded
+from navsym.export.accuracy.vectors import tapes
+from navsym.export.expression_graph import Node
+from navsym.export.parts import Piece
+from tests.attacks.points.bands import (
     BITS,
     UP,
     Array,
@@ -37,11 +42,6 @@ from navsym.export.accuracy.bands import (
     upper,
     whole_power,
 )
-from navsym.export.accuracy.filled import filled_bounds
-from navsym.export.accuracy.rounding import Arithmetic, Bounded, factor, rounded
-from navsym.export.accuracy.vectors import tapes
-from navsym.export.expression_graph import Node
-from navsym.export.parts import Piece
 
 SLACK = 2.0**-10
 KNOWN = 2.0**-40  # a value is known when its error is below this part of it

@@ -1,26 +1,40 @@
-"""The closing table: functions by languages, with vectors, worst error, bound, findings and size."""
+"""The table of the ready-made exports: functions by languages, with vectors, worst error, bound, findings and size.
+
+``python docs/exports_table.py --vectors 48 --points 100000 --write docs/exports.md`` compiles and runs everything that
+this machine can, writes the page, and says what it cannot run. ``--json`` prints all of it as one document.
+"""
 
 from __future__ import annotations
 
+import argparse
+import json
 import platform
+import shlex
+import sys
 import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from navsym.core.errors import MissingEngineError
-from navsym.core.sandbox import MOST_MEGABYTES, Exhausted, Failed, run_many
-from navsym.export.accuracy.sweep import Swept, sweep_c
-from navsym.export.folder import write_folder
-from navsym.export.languages.summary import bound_text
-from navsym.export.languages.targets import Target
-from navsym.export.package import Order, files_of
-from navsym.export.parts import ExportedFunction
-from navsym.export.roundtrip import Outcome, run_target
-from navsym.export.tools import Said, cortex_m4_sizes, ctest, misra
+ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT))
+
+from navsym.core.errors import MissingEngineError, NavsymError  # noqa: E402
+from navsym.core.sandbox import MOST_MEGABYTES, Exhausted, Failed, run_many  # noqa: E402
+from navsym.export.folder import write_folder  # noqa: E402
+from navsym.export.languages.summary import bound_text  # noqa: E402
+from navsym.export.languages.targets import TARGETS, Target, find_targets  # noqa: E402
+from navsym.export.materials import functions_of_claim  # noqa: E402
+from navsym.export.package import Order, files_of  # noqa: E402
+from navsym.export.parts import ExportedFunction  # noqa: E402
+from navsym.export.ready import READY  # noqa: E402
+from navsym.export.roundtrip import Outcome, run_target  # noqa: E402
+from navsym.export.tools import Said, cortex_m4_sizes, ctest, misra  # noqa: E402
+from tests.attacks.points.sweep import Swept, sweep_c  # noqa: E402
 
 Record = dict[str, Any]
+EVERY = "c,cpp,python,batch,javascript,rust,fortran,casadi,wasm,julia,octave"
 SECONDS = 36_000.0  # of one task; what runs code has limits of its own
 
 
@@ -32,12 +46,12 @@ def closing_table(
     points: int = 0,
     jobs: int = 1,
 ) -> Record:
-    """Export every group, run every language, ask every tool; the document of ``navsym exports``.
+    """Export every group, run every language, ask every tool; the document of ``--json``.
 
     progress : called with "group languages" when all languages of a group were run, with "function points" after the
         points of a function.
     points   : points at which the C of every function is held besides its vectors
-        (:mod:`navsym.export.accuracy.sweep`).
+        (:mod:`tests.attacks.points.sweep`).
     jobs     : how many groups, or functions under points, are at work at the same time, each in a child process.
     Keys: ``functions`` (name, group, status, claims, bound, languages, misra, cortex_m4_bytes, points), ``languages``
     and ``tools`` (status, why), ``vectors``, ``points``, ``machine``.
@@ -163,7 +177,7 @@ def as_markdown(document: Record, command: str) -> str:
     """The page that is committed; produced, never edited."""
     names = [n for n, record in document["languages"].items() if record["status"] != "not executed"]
     lines = ["# Ready-made exports", ""]
-    lines += [f"Produced by `{command}`; not edit. {document['machine']}.", ""]
+    lines += [f"Produced by `{command}`; do not edit. {document['machine']}.", ""]
     lines += [INTRODUCTION.format(document["vectors"]), ""]
     head = ["function", *(SHORT.get(n, n) for n in names), "vectors", "MISRA", "M4 bytes"]
     lines += [f"| {' | '.join(head)} |", f"| --- |{' ---: |' * (len(head) - 1)}"]
@@ -212,3 +226,60 @@ def measured_cell(found: Record) -> str:
     if found["status"] == "verified":
         return f"{found['worst']:.3g}"
     return "-" if found["status"] in ("left out", "not executed") else str(found["status"])
+
+
+# -- the command ---------------------------------------
+
+
+def read_words(words: Sequence[str]) -> argparse.Namespace:
+    """The options of the command line."""
+    reader = argparse.ArgumentParser(description="Run the ready-made exports in every language of this machine.")
+    reader.add_argument("names", nargs="*", help=f"ready-made names among {', '.join(READY)}; all when none is given")
+    reader.add_argument("--to", default=EVERY, help="languages")
+    reader.add_argument("--real", default="double", choices=("double", "float"))
+    reader.add_argument("--vectors", type=int, default=48, help="vectors for each function")
+    reader.add_argument("--points", type=int, default=0, help="points at which C is held, too")
+    reader.add_argument("--jobs", type=int, default=1, help="groups or functions at the same time")
+    reader.add_argument("--write", type=Path, help="write the table as a markdown page")
+    reader.add_argument("--json", action="store_true", help="print one JSON document")
+    options = reader.parse_args(words)
+    unknown = [name for name in options.names if name not in READY]
+    if unknown:
+        reader.error(f"expected ready-made names among {', '.join(READY)}; got {unknown[0][:40]!r}; correct it")
+    return options
+
+
+def main(words: Sequence[str]) -> int:
+    """Run the exports and print or write their table; 1 when something failed."""
+    options = read_words(words)
+    spoken = [n for n in options.to.split(",") if n not in TARGETS or options.real in TARGETS[n].reals]
+    targets = find_targets(spoken, options.real)
+    groups = {
+        name: [f for claim in READY[name] for f in functions_of_claim(claim, options.real)]
+        for name in options.names or READY
+    }
+
+    def tell(doing: str) -> None:
+        print(doing, file=sys.stderr, flush=True)
+
+    document = closing_table(groups, targets, options.vectors, tell, options.points, options.jobs)
+    command = shlex.join(["python", "docs/exports_table.py", *without_option("--write", words)])
+    if options.write is not None:
+        options.write.write_text(as_markdown(document, command), encoding="utf-8")
+    if options.json or options.write is None:
+        print(json.dumps(document, indent=2) if options.json else as_markdown(document, command))
+    said = [*document["languages"].values(), *document["tools"].values()]
+    return 1 if any(record["status"] == "failed" for record in said) else 0
+
+
+def without_option(name: str, words: Sequence[str]) -> list[str]:
+    """The words without an option and its value."""
+    place = words.index(name) if name in words else len(words)
+    return [*words[:place], *words[place + 2 :]]
+
+
+if __name__ == "__main__":
+    try:
+        sys.exit(main(sys.argv[1:]))
+    except NavsymError as error:
+        sys.exit(str(error))

@@ -1,9 +1,9 @@
 """Many points: every output of compiled code inside the ball enclosure of its formula, widened by the derived bound.
 
-The enclosures come from the fast twin (:mod:`navsym.export.accuracy.twin`); what it does not decide is decided in
+The enclosures come from the fast twin (:mod:`tests.attacks.points.twin`); what it does not decide is decided in
 balls. The code is the C of the export, compiled with the flags of its own test program and called on rows of numbers.
 What is believed: that compiler and the C library, IEEE arithmetic of NumPy, the theorems named in
-:mod:`navsym.export.accuracy.bands`, flint's balls, and the stated accuracy of the library's functions.
+:mod:`tests.attacks.points.bands`, flint's balls, and the stated accuracy of the library's functions.
 """
 
 from __future__ import annotations
@@ -19,15 +19,15 @@ from pathlib import Path
 import numpy as np
 
 from navsym.core.errors import MissingEngineError
-from navsym.export.accuracy.bands import Array, Band, Flags
 from navsym.export.accuracy.rounding import Arithmetic, with_library
-from navsym.export.accuracy.twin import SLACK, formula_values, rounding_bounds
 from navsym.export.accuracy.vectors import LARGEST, cast, edge_values, piece_at, points, sample, vector_at
 from navsym.export.languages.c import files as c_files
 from navsym.export.languages.c import output_places
 from navsym.export.languages.targets import TARGETS, WARNINGS
 from navsym.export.parts import ExportedFunction
 from navsym.export.processes import run
+from tests.attacks.points.bands import Array, Band, Flags
+from tests.attacks.points.twin import SLACK, formula_values, rounding_bounds
 
 BLOCK = 2048
 CORNERED = 0.1  # part of the points with several arguments at an edge
