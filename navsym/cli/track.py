@@ -13,9 +13,6 @@ from navsym.cli.output import emit, remark, table
 if TYPE_CHECKING:
     from navsym.trajectory.motion import Track
 
-#: Rows of the table for people.
-SHOWN = 12
-
 
 def command(
     file: Annotated[Path, typer.Argument(help="CSV of time, latitude, longitude, height, or an RTKLIB .pos")],
@@ -23,7 +20,7 @@ def command(
         float | None, typer.Option("--window", help="length of the sliding window, seconds; chooses --method window")
     ] = None,
     order: Annotated[
-        int, typer.Option("--order", help="states of the motion: 2 to speed, 3 to acceleration, up to 6")
+        int, typer.Option("--order", help="states of the motion: 2 to velocity, 3 to acceleration, up to 6")
     ] = 3,
     method: Annotated[
         str | None, typer.Option("--method", help="differences, window, filter, smoother (default) or guaranteed")
@@ -41,6 +38,8 @@ def command(
 ) -> None:
     """Velocity (m/s) and acceleration (m/s^2) from measured positions, with standard deviations.
 
+    Seconds, degrees, metres, or the units in the heads of the columns, such as t (ms) or height (feet).
+
     Example: navsym track examples/drive.csv --order 3 --sigma 0.5
     """
     import navsym as nav
@@ -56,12 +55,7 @@ def command(
 
 def as_text(found: Track) -> str:
     """A table of some rows."""
-    step = max(1, len(found.t) // SHOWN)
-    lines = [
-        (f"{found.t[k]:.3f}", *found.quantities("velocity", k), *found.quantities("acceleration", k), found.flags[k])
-        for k in range(0, len(found.t), step)
-    ]
-    head = ("t, s", "vE, m/s", "vN", "vU", "aE, m/s2", "aN", "aU", "row")
+    head, lines = found.table()
     summary = (
         f"{len(found.t)} rows, method {found.method}, {found.order} states; noise of the positions "
         f"{found.position_sd[0]:.3g} m horizontal, {found.position_sd[2]:.3g} m vertical"

@@ -17,7 +17,7 @@ from typing import Literal
 import numpy as np
 
 from navsym.core.arrays import Array, freeze
-from navsym.core.errors import DomainError
+from navsym.core.errors import DomainError, ShapeError
 from navsym.core.simplex import simplex, spread_rows
 from navsym.trajectory.kernels.tracks import DOUBTED, backward, forward
 from navsym.trajectory.tracks import (
@@ -239,6 +239,9 @@ def estimate(track: Positions, settings: Settings) -> tuple[TrackEstimate, Noise
                 break
             use[found] = 0
         use[agreeing(track, noise, settings, use)] = 1
+    if use.sum() < settings.order + 1:
+        message = f"track: expected at least {settings.order + 1} rows that agree; got {use.sum()} of {len(use)}"
+        raise ShapeError(f"{message}; lower the order, or set the gate to 0")
     if settings.method in ("filter", "smoother"):
         return marginal(track, noise, settings, use), noise
     return by_method(track, noise, settings, use), noise
@@ -249,9 +252,11 @@ def marginal(track: Positions, noise: Noise, settings: Settings, use: Rows) -> T
     points = noise_points(track, settings.order, use, noise, gate=settings.gate, fixed_scale=settings.fixed_scale)
     found = [by_method(track, point.noise, settings, use) for point in points]
     weights = np.array([point.weight for point in points])
-    speed = mixture(weights, [f.velocity for f in found], [f.velocity_sd for f in found])
-    change = mixture(weights, [f.acceleration for f in found], [f.acceleration_sd for f in found])
-    return TrackEstimate(*speed, *change, found[0].flags, found[0].gains)
+    parts = [
+        mixture(weights, [values for values, _ in derivative], [spread for _, spread in derivative])
+        for derivative in zip(*(f.derivatives for f in found), strict=True)
+    ]
+    return TrackEstimate(parts, found[0].flags, found[0].gains)
 
 
 def mixture(weights: Array, means: list[Array], deviations: list[Array]) -> tuple[Array, Array]:
@@ -378,7 +383,7 @@ def variance(run: FilterRun, i: int) -> Array:
 
 
 def from_states(track: Positions, run: FilterRun, words: tuple[str, ...]) -> TrackEstimate:
-    """The answer of a filter or smoother run; acceleration is zero for a state of order 2.
+    """The answer of a filter or smoother run.
 
     The gains are those of the last row at which the first channel used its measurement.
     """
@@ -386,21 +391,19 @@ def from_states(track: Positions, run: FilterRun, words: tuple[str, ...]) -> Tra
     gains = {name: run.gains[c, last].tolist() for c, name in enumerate(CHANNELS)}
     n = run.states.shape[2]
     derivatives = [(run.states[:, :, i], variance(run, i)) for i in (1, 2) if i < n]
-    if n < 3:
-        zero = np.zeros(run.states.shape[:2])
-        derivatives.append((zero, zero))
     return turned(track, derivatives, words, gains)
 
 
 def turned(
     track: Positions, derivatives: list[tuple[Array, Array]], words: tuple[str, ...], gains: dict[str, list[float]]
 ) -> TrackEstimate:
-    """East, North, Up of each row from channels: values (3, N) and variances (3, N), speed then acceleration."""
-    out, turn = [], axes_of(track, words)
-    for values, variances in derivatives:
-        out.append(np.einsum("kij,jk->ki", turn, values))
-        out.append(np.sqrt(np.einsum("kij,jk->ki", turn**2, variances)))
-    return TrackEstimate(out[0], out[1], out[2], out[3], words, gains)
+    """East, North, Up of each row from channels: values and variances (3, N) of the speed, and of an acceleration."""
+    turn = axes_of(track, words)
+    parts = [
+        (np.einsum("kij,jk->ki", turn, values), np.sqrt(np.einsum("kij,jk->ki", turn**2, variances)))
+        for values, variances in derivatives
+    ]
+    return TrackEstimate(parts, words, gains)
 
 
 def axes_of(track: Positions, words: tuple[str, ...]) -> Array:
@@ -450,7 +453,8 @@ def from_weights(
 ) -> TrackEstimate:
     """Derivatives as weighted sums of positions; the weights depend on times and variances only."""
     N = len(track.t)
-    values, variances = np.zeros((2, 3, N)), np.zeros((2, 3, N))
+    wanted = range(1, min(order, 3))
+    values, variances = np.zeros((len(wanted), 3, N)), np.zeros((len(wanted), 3, N))
     same = (track.variance == track.variance[:1, :1]).all()
     cache: dict[tuple[bytes, int], tuple[Array, float]] = {}
     grain = grain_of(track)
@@ -458,9 +462,7 @@ def from_weights(
         dt = distances(track, rows, k, grain)
         for c in range(3):
             sigma = np.sqrt(track.variance[rows, c])
-            for d in (1, 2):
-                if d >= min(order, len(rows)):
-                    continue
+            for d in wanted:
                 key = (dt.tobytes(), d)
                 if not same or key not in cache:
                     cache[key] = weights(dt, sigma, min(order, len(rows)), d)
@@ -469,7 +471,7 @@ def from_weights(
                 variances[d - 1, c, k] = deviation**2 * noise.scale[c]
         if not same:
             cache.clear()
-    return turned(track, [(values[d], variances[d]) for d in (0, 1)], words, {})
+    return turned(track, list(zip(values, variances, strict=True)), words, {})
 
 
 def grain_of(track: Positions) -> float:

@@ -23,6 +23,8 @@ from navsym.trajectory.tracks import Noise, Positions, Rows, TrackEstimate, memo
 CONSISTENT = (0.5, 2.0)
 #: Steps whose lengths differ by more than this part of the usual step are jitter worth a remark.
 JITTER = 0.5
+#: Rows of the table for people.
+SHOWN = 12
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -31,7 +33,7 @@ class Track(Answer):
 
     t             : (N,) times as the file has them, s
     velocity, velocity_sd         : (N, 3) m/s
-    acceleration, acceleration_sd : (N, 3) m/s^2
+    acceleration, acceleration_sd : (N, 3) m/s^2; None for order 2, which estimates no acceleration
     flags         : one word per row: ``used``, ``doubtful`` or ``outlier``
     gains         : channel -> gain of the last step in use (empty for methods without one)
     method, order : as asked; window : its length in s, None for methods without one
@@ -43,8 +45,8 @@ class Track(Answer):
     t: Array
     velocity: Array
     velocity_sd: Array
-    acceleration: Array
-    acceleration_sd: Array
+    acceleration: Array | None
+    acceleration_sd: Array | None
     flags: tuple[str, ...]
     gains: dict[str, list[float]]
     method: str
@@ -68,8 +70,8 @@ class Track(Answer):
             "t": self.t.tolist(),
             "velocity": self.velocity.tolist(),
             "velocity_sd": self.velocity_sd.tolist(),
-            "acceleration": self.acceleration.tolist(),
-            "acceleration_sd": self.acceleration_sd.tolist(),
+            "acceleration": None if self.acceleration is None else self.acceleration.tolist(),
+            "acceleration_sd": None if self.acceleration_sd is None else self.acceleration_sd.tolist(),
             "flags": list(self.flags),
             "gains": self.gains,
             "certificate": self.certificate,
@@ -88,18 +90,20 @@ class Track(Answer):
         return f"<Track: {len(self.t)} rows, {used} used, method {self.method}, up to {fastest:.4g} m/s>"
 
     def _repr_html_(self) -> str:
-        heads = ("t, s", "vE, m/s", "vN", "vU", "aE, m/s2", "aN", "aU", "row")
-        step = max(1, len(self.t) // 12)
-        rows = [
-            (f"{self.t[k]:.3f}", *self.quantities("velocity", k), *self.quantities("acceleration", k), self.flags[k])
-            for k in range(0, len(self.t), step)
-        ]
-        return write_table(heads, rows)
+        return write_table(*self.table())
 
-    def quantities(self, name: str, k: int) -> list[str]:
-        """Values of a row with their standard deviations, for people; name : ``velocity`` or ``acceleration``."""
-        pairs = zip(getattr(self, name)[k], getattr(self, f"{name}_sd")[k], strict=True)
-        return [f"{value:.3f} ± {spread:.3f}" for value, spread in pairs]
+    def table(self) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
+        """Heads and at most two dozen rows for people: what is estimated, with standard deviations."""
+        heads, parts = ["t, s", "vE, m/s", "vN", "vU"], [(self.velocity, self.velocity_sd)]
+        if self.acceleration is not None and self.acceleration_sd is not None:
+            heads += ["aE, m/s2", "aN", "aU"]
+            parts += [(self.acceleration, self.acceleration_sd)]
+        rows = []
+        for k in range(0, len(self.t), max(1, len(self.t) // SHOWN)):
+            pairs = [pair for values, spreads in parts for pair in zip(values[k], spreads[k], strict=True)]
+            numbers = (f"{value:.3f} ± {spread:.3f}" for value, spread in pairs)
+            rows.append((f"{self.t[k]:.3f}", *numbers, self.flags[k]))
+        return (*heads, "row"), rows
 
 
 def track(
@@ -115,9 +119,10 @@ def track(
     """Velocity and acceleration of measured positions, with standard deviations.
 
     data   : path of a CSV file (time, latitude, longitude, height) or of an RTKLIB ``.pos``; a DataFrame or mapping
-             with columns of these names; or an array (N, 4). Seconds, degrees, metres.
+             with columns of these names; or an array (N, 4). Seconds, degrees, metres, unless the head of a column
+             names another unit, as in ``t (ms)``, ``lat (1e-7 deg)`` or ``height (US survey feet)``.
     window : length of the sliding window, s; asks for the method ``window``
-    order  : states of the motion, 2 (speed) to 6; 3 adds acceleration
+    order  : states of the motion, 2 to 6; an acceleration is estimated from 3 on
     method : ``differences``, ``window``, ``filter``, ``smoother`` (default) or ``guaranteed``
     sigma  : standard deviation of positions, m; default: the file's, else that found in the track
     gate   : an innovation beyond so many standard deviations has less weight; 0 switches this off
@@ -167,12 +172,13 @@ def settings_of(method: str | None, window: float | None, order: int, gate: floa
 def describe_motion(read: TrackFile, positions: Positions, settings: Settings) -> Track:
     """The answer for a track as read and as projected."""
     found, noise = estimate(positions, settings)
+    acceleration, acceleration_sd = found.derivatives[1] if len(found.derivatives) > 1 else (None, None)
     return Track(
         freeze(np.array(read.t)),
         found.velocity,
         found.velocity_sd,
-        found.acceleration,
-        found.acceleration_sd,
+        acceleration,
+        acceleration_sd,
         found.flags,
         found.gains,
         settings.method,
@@ -209,7 +215,10 @@ def remarks(track: Positions, found: TrackEstimate, noise: Noise, settings: Sett
 
     lines : (N,) number of the line of each row in its file
     """
-    out = [f"gap of {track.t[k + 1] - track.t[k]:.3g} s after line {lines[k]}" for k in gaps(track)[:20].tolist()]
+    out = []
+    if settings.order < 3:
+        out.append("acceleration is not estimated, only velocity: a motion with 2 states has none; ask for order 3")
+    out += [f"gap of {track.t[k + 1] - track.t[k]:.3g} s after line {lines[k]}" for k in gaps(track)[:20].tolist()]
     for name, text in (("outlier", "left out"), ("doubtful", "believed less")):
         where = [int(lines[k]) for k, flag in enumerate(found.flags) if flag == name]
         if where:

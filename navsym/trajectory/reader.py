@@ -31,6 +31,7 @@ from navsym.core.errors import (
     TooLargeError,
 )
 from navsym.language.files import decode, name_file, read_bytes
+from navsym.trajectory.units import BRACKETS, Unit, unit_of, usual_unit
 
 Array = NDArray[np.float64]
 Policy = Literal["strict", "repair"]
@@ -38,11 +39,10 @@ Policy = Literal["strict", "repair"]
 LARGEST_FILE = 256 * 1024 * 1024
 LARGEST_ROWS = 2_000_000
 MOST_PROBLEMS = 1_000  # after so many a strict reading gives up: the file is something else
-FOOT = 0.3048
 DECIMAL = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d{1,3})?|[+-]?(nan|inf|infinity)", re.I | re.A)
 GPS_EPOCH = datetime(1980, 1, 6, tzinfo=UTC)
 
-#: Column -> names that mean it, lower case, units in brackets removed.
+#: Column -> names that mean it, lower case, without the unit in brackets.
 NAMES = {
     "t": ("t", "time", "gps tow", "tow", "seconds", "timestamp"),
     "lat": ("lat", "latitude", "phi"),
@@ -75,7 +75,7 @@ class TrackFile:
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One row: line, time, degrees, metres, and standard deviations where the file has them."""
+    """One row: line, seconds, radians, metres, and standard deviations where the file has them."""
 
     line: int
     t: float
@@ -87,13 +87,14 @@ class Row:
 
 @dataclass(slots=True)
 class Log:
-    """Where problems go: raised at the end when strict, listed when repairing."""
+    """Where problems go: raised at the end when strict, listed when repairing; and the units of the columns."""
 
     where: str
     policy: Policy
     errors: list[NavsymError] = field(default_factory=list)
     repairs: list[str] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
+    units: tuple[Unit, ...] = tuple(map(usual_unit, NAMES))
 
     def problem(self, kind: type[NavsymError], line: int, message: str, repair: str) -> None:
         """Note a problem of a line: an error of this kind when strict, else the repair that was made.
@@ -167,7 +168,7 @@ def read_columns(data: Any, policy: Policy | str = "strict") -> TrackFile:
     """
     log = new_log("track", policy)
     try:
-        columns, scale = columns_in(data, log)
+        columns = columns_in(data, log)
         values = [as_floats("data", column, "one entry per row").ravel().tolist() for column in columns]
     except NavsymError as error:
         raise error if error.where else error.at(log.where) from None
@@ -177,18 +178,16 @@ def read_columns(data: Any, policy: Policy | str = "strict") -> TrackFile:
     if len(values[0]) > LARGEST_ROWS:
         raise too_long(log)
     rows = (row_of(row, k, [f"{x}" for x in row], None, log) for k, row in enumerate(zip(*values, strict=True), 1))
-    return checked_track(
-        (Row(row.line, row.t, row.lat, row.lon, row.h * scale) for row in rows if row is not None), log
-    )
+    return checked_track((row for row in rows if row is not None), log)
 
 
-def columns_in(data: Any, log: Log) -> tuple[list[Any], float]:
-    """The four columns of a DataFrame, a mapping or an array, and the factor from heights to metres."""
+def columns_in(data: Any, log: Log) -> list[Any]:
+    """The four columns of a DataFrame, a mapping or an array."""
     if hasattr(data, "keys") and hasattr(data, "__getitem__"):
         names = list(data.keys())
-        places, scale = columns_of([str(name) for name in names], log, 0)
-        return [data[names[places[name]]] for name in ("t", "lat", "lon", "h")], scale
-    return list(as_array("data", data, (None, 4), "rows of t, lat, lon, height").T), 1.0
+        places = columns_of([str(name) for name in names], log, "columns")
+        return [data[names[places[name]]] for name in NAMES]
+    return list(as_array("data", data, (None, 4), "rows of t, lat, lon, height").T)
 
 
 # -- text ----------------------------------------------------------------------------------------------
@@ -304,10 +303,9 @@ def csv_rows(text: str, log: Log) -> Iterator[Row]:
         raise too_long(log)
     separator = separator_of(lines[0][1])
     first = split(lines[0][1], separator)
-    columns, scale, start = dict(zip("t lat lon h".split(), range(4), strict=True)), 1.0, 0
+    columns, start = dict(zip(NAMES, range(4), strict=True)), 0
     if any(number_of(x) is None and decimal_comma(x) is None for x in first):
-        columns, scale = columns_of(first, log, lines[0][0])
-        start = 1
+        columns, start = columns_of(first, log, f"line {lines[0][0]}"), 1
     # A row of another length has a stray or decimal comma: its columns cannot be told.
     width = max(len(first), 4)
     for number, line in lines[start:]:
@@ -316,10 +314,10 @@ def csv_rows(text: str, log: Log) -> Iterator[Row]:
             message = f"expected {width} fields; got {len(fields)}; mend the row"
             log.problem(ShapeError, number, message, "row left out")
             continue
-        texts = [fields[columns[name]] for name in ("t", "lat", "lon", "h")]
+        texts = [fields[columns[name]] for name in NAMES]
         row = row_of([value_of(x, number, log) for x in texts], number, texts, None, log)
         if row is not None:
-            yield Row(row.line, row.t, row.lat, row.lon, row.h * scale)
+            yield row
 
 
 def lines_of(text: str) -> list[str]:
@@ -340,28 +338,25 @@ def split(line: str, separator: str) -> list[str]:
         return []
 
 
-def columns_of(header: Sequence[str], log: Log, line: int) -> tuple[dict[str, int], float]:
-    """Places of the four columns, and the factor from heights to metres."""
-    plain = [re.sub(r"[\(\[].*?[\)\]]", "", x).strip().lower() for x in header]
+def columns_of(header: Sequence[str], log: Log, line: str) -> dict[str, int]:
+    """Places of the four columns; their units go to the log, and what is converted to its repairs."""
+    where = f"{log.where}: {line}"
+    plain = [BRACKETS.sub("", x).strip().lower() for x in header]
     found: dict[str, int] = {}
     for name, words in NAMES.items():
         places = [i for i, x in enumerate(plain) if x in words]
         if not places:
-            raise ShapeError(
-                f"expected a column {name} (one of {', '.join(words)}); got {', '.join(header)[:99]}; add it",
-                where=f"{log.where}: line {line}",
-            )
+            expected = f"a column {name} (one of {', '.join(words)})"
+            raise ShapeError(f"expected {expected}; got {', '.join(header)[:99]}; add it", where=where)
         if len(places) > 1:
-            raise DuplicateError(
-                f"expected one column for {name}; got {len(places)}; remove or rename one",
-                where=f"{log.where}: line {line}",
-            )
+            message = f"expected one column for {name}; got {len(places)}; remove or rename one"
+            raise DuplicateError(message, where=where)
         found[name] = places[0]
-    if re.search(r"[\(\[]\s*(ft|feet|foot)\b", header[found["h"]].lower()):
-        message = "expected heights in metres; got feet by the header; convert them"
-        log.problem(DomainError, line, message, "heights converted from feet")
-        return found, FOOT
-    return found, 1.0
+    log.units = tuple(unit_of(name, header[place], where) for name, place in found.items())
+    for place, unit in zip(found.values(), log.units, strict=True):
+        if unit.factor != 1:
+            log.repairs.append(f"{line}: {plain[place]} converted from {unit.name}, the unit in its head")
+    return found
 
 
 def value_of(text: str, line: int, log: Log) -> float | None:
@@ -398,25 +393,29 @@ def too_long(log: Log) -> NavsymError:
 def row_of(
     values: Sequence[float | None], line: int, texts: Sequence[str], sigma: tuple[float, float, float] | None, log: Log
 ) -> Row | None:
-    """A row, or None after noting what is wrong with it."""
-    for name, value, text in zip(("time", "latitude", "longitude", "height"), values, texts, strict=True):
+    """A row in seconds, radians and metres, or None after noting what is wrong with it."""
+    numbers = []
+    for name, value, text, unit in zip(
+        ("time", "latitude", "longitude", "height"), values, texts, log.units, strict=True
+    ):
         if value is None:
             message = f"{name}: expected a number; got {text[:40]!r}; mend or remove the row"
             log.problem(ExpressionSyntaxError, line, message, "row left out")
             return None
-        if not math.isfinite(value):
+        numbers.append(unit.convert(float(value)))
+        if not math.isfinite(numbers[-1]):
             message = f"{name}: expected a finite number; got {text[:40]}; mend or remove the row"
             log.problem(NotFiniteError, line, message, "row left out")
             return None
-    t, lat, lon, h = (float(v) for v in values if v is not None)
+    t, lat, lon, h = numbers
     return Row(line, t, lat, lon, h, sigma)
 
 
 def acceptable(row: Row, log: Log) -> bool:
     """Whether the position can be on the Earth."""
     limits: tuple[tuple[str, float, Callable[[float], bool], str], ...] = (
-        ("latitude", row.lat, lambda x: abs(x) <= 90, "within 90 degrees"),
-        ("longitude", row.lon, lambda x: -180 <= x <= 360, "from -180 to 360 degrees"),
+        ("latitude", math.degrees(row.lat), lambda x: abs(x) <= 90, "within 90 degrees"),
+        ("longitude", math.degrees(row.lon), lambda x: -180 <= x <= 360, "from -180 to 360 degrees"),
         ("height", row.h, lambda x: -20e3 <= x <= 1e8, "from -20 km to 100000 km"),
     )
     for name, value, fits, words in limits:
@@ -445,16 +444,18 @@ def in_order(rows: list[Row], log: Log) -> list[Row]:
 def sanity(rows: Sequence[Row], log: Log) -> None:
     """What is possible but unlikely."""
     heights = [row.h for row in rows]
-    if max(heights) > 9000 and slow(rows):
+    _, lat, lon, h = (unit.name for unit in log.units)
+    if not h and max(heights) > 9000 and slow(rows):
         log.warnings.append(f"heights reach {max(heights):.0f} m at the speed of a car or ship: are they in feet?")
-    if all(abs(row.lat) <= math.pi / 2 and abs(row.lon) <= math.pi for row in rows) and len(rows) > 1:
+    small = (abs(row.lat) <= math.radians(math.pi / 2) and abs(row.lon) <= math.radians(math.pi) for row in rows)
+    if not (lat or lon) and len(rows) > 1 and all(small):
         log.warnings.append("all latitudes and longitudes are below pi/2 and pi: are they in radians?")
 
 
 def slow(rows: Sequence[Row]) -> bool:
     """True when the ends of the track are reached at less than 60 m/s."""
     a, b = rows[0], rows[-1]
-    metres = 111e3 * math.hypot(b.lat - a.lat, (b.lon - a.lon) * math.cos(math.radians(a.lat)))
+    metres = 6371e3 * math.hypot(b.lat - a.lat, (b.lon - a.lon) * math.cos(a.lat))
     return b.t > a.t and metres / (b.t - a.t) < 60
 
 
@@ -468,8 +469,8 @@ def assembled(rows: Sequence[Row], log: Log) -> TrackFile:
         log.warnings.append("standard deviations are missing in some rows and were not used")
     return TrackFile(
         t=np.array([row.t for row in rows]),
-        latitude=np.radians([row.lat for row in rows]),
-        longitude=np.radians([row.lon for row in rows]),
+        latitude=np.array([row.lat for row in rows]),
+        longitude=np.array([row.lon for row in rows]),
         height=np.array([row.h for row in rows]),
         sigma=np.array(known) if len(known) == len(rows) else None,
         lines=np.array([row.line for row in rows], dtype=np.int64),

@@ -8,7 +8,7 @@ itself by maximum likelihood, East and North together, Up for itself.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 
@@ -91,18 +91,25 @@ class Noise:
 class TrackEstimate:
     """Velocity and acceleration of a track in East, North, Up of each row.
 
-    velocity, velocity_sd         : (N, 3) m/s
-    acceleration, acceleration_sd : (N, 3) m/s^2
-    flags  : one word per row: ``used``, ``doubtful`` or ``outlier``
-    gains  : channel -> gain of the last step in use (empty for methods without one)
+    derivatives : velocity, m/s, and acceleration, m/s^2, each (N, 3) with its standard deviation (N, 3); motions of
+                  order 2 have no acceleration
+    flags       : one word per row: ``used``, ``doubtful`` or ``outlier``
+    gains       : channel -> gain of the last step in use (empty for methods without one)
     """
 
-    velocity: Array
-    velocity_sd: Array
-    acceleration: Array
-    acceleration_sd: Array
+    derivatives: Sequence[tuple[Array, Array]]
     flags: tuple[str, ...]
     gains: dict[str, list[float]]
+
+    @property
+    def velocity(self) -> Array:
+        """(N, 3) m/s."""
+        return self.derivatives[0][0]
+
+    @property
+    def velocity_sd(self) -> Array:
+        """(N, 3) m/s."""
+        return self.derivatives[0][1]
 
 
 def project_positions(

@@ -77,6 +77,20 @@ def test_every_method_answers(capsys, tmp_path, method):
     assert abs(found["velocity"][20][1] - 11.1) < 0.3
 
 
+@pytest.mark.parametrize("method", ["differences", "window", "filter", "smoother", "guaranteed"])
+def test_two_states_estimate_no_acceleration_and_say_so(capsys, tmp_path, method):
+    """Its place once held 0 with the standard deviation 0."""
+    path = tmp_path / "track.csv"
+    path.write_text(TRACK)
+    words = ("track", str(path), "--method", method, "--order", "2")
+    _, found = answer(capsys, *words)
+    assert found["acceleration"] is None and found["acceleration_sd"] is None
+    assert any("acceleration is not" in line for line in found["warnings"])
+    run(list(words))
+    printed = capsys.readouterr()
+    assert "vE, m/s" in printed.out and "aE" not in printed.out and "acceleration is not" in printed.err
+
+
 def test_a_window_asks_for_the_sliding_window(capsys, tmp_path):
     path = tmp_path / "track.csv"
     path.write_text(TRACK)

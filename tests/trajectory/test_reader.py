@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import math
+from fractions import Fraction
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
+import navsym as nav
 from navsym.core.errors import (
     DomainError,
     DuplicateError,
@@ -17,7 +21,7 @@ from navsym.core.errors import (
     NotFiniteError,
     ShapeError,
 )
-from navsym.trajectory.reader import FOOT, read_track
+from navsym.trajectory.reader import read_columns, read_track
 
 GOOD = "t,lat,lon,height\n0,45.0,10.0,100\n1,45.001,10.0,101\n2,45.002,10.001,102\n"
 
@@ -83,7 +87,14 @@ BAD = [
     (GOOD + "3,0x2d,10,100\n", ExpressionSyntaxError, "latitude: expected a number", "line 5"),
     (GOOD + "3,__import__('os'),10,100\n", ExpressionSyntaxError, "expected a number", "line 5"),
     ("t;lat;lon;height\n0;45,5;10,5;100,0\n", ExpressionSyntaxError, "decimal point", "line 2"),
-    ("t,lat,lon,height (ft)\n0,45,10,100\n", DomainError, "feet", "line 1"),
+    ("t,lat,lon,height (cubits)\n0,45,10,100\n", DomainError, "column h in a unit of length .m, dm.*feet", "line 1"),
+    ("t (lightyear),lat,lon,height\n0,45,10,100\n", DomainError, "column t in a unit of time .s, ms", "line 1"),
+    ("t (m),lat,lon,height\n0,45,10,100\n", DomainError, "column t in a unit of time", "line 1"),
+    ("t,lat (deg) (rad),lon,height\n0,45,10,100\n", DomainError, "column lat in a unit of angle", "line 1"),
+    ("t,lat,lon (dms),height\n0,45,10,100\n", DomainError, "column lon in a unit of angle", "line 1"),
+    ("t,lat (0 deg),lon,height\n0,45,10,100\n", DomainError, "column lat in a unit of angle", "line 1"),
+    ("t (h),lat,lon,height\n1e307,45,10,100\n", NotFiniteError, "time: expected a finite", "line 2"),
+    (GOOD.replace("lat", "lat (rad)"), DomainError, "within 90 degrees; got 2578", "line 2"),
     (b"\xef\xbb\xbf" + GOOD.encode(), ExpressionSyntaxError, "byte order mark", None),
     (GOOD.encode() + b"# caf\xe9\n", ExpressionSyntaxError, "0xe9", "line 5"),
     (GOOD.encode("utf-16"), ExpressionSyntaxError, "UTF-16", None),
@@ -144,9 +155,68 @@ def test_repair_reads_byte_order_marks_and_latin_1_and_says_so(tmp_path, data):
     assert len(track.t) == 3 and len(track.repairs) == 1
 
 
-def test_repair_converts_feet_that_the_header_admits(tmp_path):
+#: Column, head, and how much one of its unit is in seconds, degrees, radians or metres.
+UNITS = [
+    ("t", "t (ms)", "1/1000"),
+    ("t", "Time [us]", "1/1000000"),
+    ("t", "timestamp (ns since 1970-01-01)", "1/1000000000"),
+    ("t", "t (\u00b5s)", "1/1000000"),
+    ("t", "t (min)", "60"),
+    ("t", "t (h)", "3600"),
+    ("t", "t (0.1 s)", "1/10"),
+    ("t", "time (UTC)", "1"),
+    ("h", "height (km)", "1000"),
+    ("h", "alt (ft)", "0.3048"),
+    ("h", "altitude [Feet MSL]", "0.3048"),
+    ("h", "height (US survey feet)", "1200/3937"),
+    ("h", "height (us-ft)", "1200/3937"),
+    ("h", "Height (ellipsoidal) [mm]", "1/1000"),
+    ("lat", "lat (1e-7 deg)", "1/10000000"),
+    ("lat", "lat (degE7)", "1/10000000"),
+    ("lat", "lat (10^-7 deg)", "1/10000000"),
+    ("lat", "Latitude (degrees_north)", "1"),
+    ("lat", "lat (arcsec)", "1/3600"),
+    ("lat", "lat (gon)", "9/10"),
+]
+
+
+@pytest.mark.parametrize(("column", "head", "factor"), UNITS)
+def test_the_unit_in_the_head_of_a_column_converts_exactly(tmp_path, column, head, factor):
+    texts = ["1.7", "2.3", "3.1", "64.000001", "65.1"]
+    heads = {"t": "t", "lat": "lat", "lon": "lon", "h": "h"} | {column: head}
+    rows = [{"t": str(k), "lat": "0", "lon": "0", "h": "0"} | {column: text} for k, text in enumerate(texts)]
+    table = "\n".join([",".join(heads.values()), *(",".join(row.values()) for row in rows)])
+    expected = [float(Fraction(text) * Fraction(factor)) for text in texts]
+    expected = [math.radians(value) for value in expected] if column == "lat" else expected
+    columns = {heads[name]: [float(row[name]) for row in rows] for name in heads}
+    for track in (read_track(write(tmp_path, table)), read_columns(columns)):
+        found = {"t": track.t, "lat": track.latitude, "h": track.height}[column]
+        assert found.tolist() == expected
+        assert bool(track.repairs) == (Fraction(factor) != 1)
+
+
+@pytest.mark.parametrize(("unit", "factor"), [("rad", "1"), ("mrad", "1/1000"), ("\u00b5rad", "1/1000000")])
+def test_radians_are_not_turned_twice(tmp_path, unit, factor):
+    text = f"t,lat ({unit}),lon ({unit}),h\n0,0.7,0.1,5\n1,0.7000001,0.1,5\n"
+    track = read_track(write(tmp_path, text))
+    assert track.latitude.tolist() == [float(Fraction(x) * Fraction(factor)) for x in ("0.7", "0.7000001")]
+    assert track.warnings == ()
+
+
+def test_a_track_in_other_units_has_the_same_velocity(tmp_path):
+    rows = np.genfromtxt("examples/drive.csv", delimiter=",", skip_header=1)
+    scale = np.array([1000.0, 1e7, math.radians(1.0), 3937 / 1200])
+    heads = "t (ms),lat (1e-7 deg),lon (rad),height (US survey feet)"
+    lines = "\n".join(",".join(f"{x!r}" for x in row) for row in (rows * scale).tolist())
+    expected, found = nav.track("examples/drive.csv"), nav.track(write(tmp_path, f"{heads}\n{lines}\n"))
+    assert_allclose(found.velocity, expected.velocity, atol=1e-6)
+    assert_allclose(found.acceleration, expected.acceleration, atol=1e-6)
+    assert [line.split(" from ")[1].split(",")[0] for line in found.repairs] == ["ms", "1e-7 deg", "US survey feet"]
+
+
+def test_repair_names_the_feet_that_it_converts(tmp_path):
     track = read_track(write(tmp_path, "t,lat,lon,alt (ft)\n0,45,10,1000\n1,45,10,1000\n"), "repair")
-    assert_allclose(track.height, 1000 * FOOT)
+    assert_allclose(track.height, 304.8)
     assert "feet" in track.repairs[0]
 
 
