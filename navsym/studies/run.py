@@ -53,11 +53,6 @@ def parquet() -> tuple[Any, Any]:
     return pyarrow, pyarrow.parquet
 
 
-def default_folder(study: str) -> Path:
-    """A folder of the cache for a study, named by the digest of its configuration and of the code."""
-    return default_path().parent / "sweeps" / study[:32]
-
-
 def cut(jobs: int, size: int | None = None) -> list[range]:
     """Consecutive indices of every shard."""
     size = size or min(LONGEST, -(-jobs // SHARDS))
@@ -174,7 +169,7 @@ def sweep(
     Every job has its own seed sequence: the rows are the same bits whoever computes them.
 
     Returns :class:`Study`. Raises NavsymError of the kinds ``domain`` and ``missing`` (no dask, no pyarrow, no
-    scheduler).
+    scheduler that answers, no workers).
 
     >>> import navsym as nav
     >>> found = nav.sweep({"kind": "guaranteed", "jobs": 2, "degree": 1}, out="shards")
@@ -191,17 +186,38 @@ def sweep(
         folder = None if out is None else Path(out)
     except TypeError:
         raise DomainError(f"expected a folder; got {quote(out)}; give its path", where="sweep: out") from None
-    document = run_sweep(
-        plan,
-        workers=workers,
-        scheduler=scheduler,
-        folder=folder,
-        size=size,
-        fresh=fresh,
-        patience=patience,
-        progress=progress,
-    )
-    return Study(plan, document["rows"], document["resumed"], document["folder"], tuple(document["unsaved"]))
+    if not patience > 0:
+        raise DomainError(f"patience: expected seconds above 0; got {patience}; correct it")
+    study = key_of("sweep", fingerprint(plan), rooms_digest())
+    shards = Shards(folder or default_path().parent / "sweeps" / study[:32], study)
+    parts = cut(plan.jobs, size)
+    known = {} if fresh else {part: rows for part in parts if (rows := shards.read(part)) is not None}
+    missing = [part for part in parts if part not in known]
+    with computed(plan, missing, workers, scheduler, patience) as results:
+        return keep_shards(plan, shards, known, results, progress)
+
+
+def keep_shards(
+    plan: Sweep,
+    shards: Shards,
+    known: Mapping[range, Rows],
+    results: Iterator[tuple[range, Rows]],
+    progress: Callable[[int, int], None],
+) -> Study:
+    """The study of the shards that are known and of those that come, each of which is kept at once."""
+    found, unsaved = dict(known), []
+    resumed = done = sum(len(part) for part in known)
+    progress(done, plan.jobs)
+    for part, rows in results:
+        found[part] = rows
+        try:
+            shards.write(part, rows)
+        except OSError as error:
+            unsaved.append(f"{shards.path(part).name}: {error.strerror or error}")
+        done += len(part)
+        progress(done, plan.jobs)
+    ordered = [row for part in sorted(found, key=lambda part: part.start) for row in found[part]]
+    return Study(plan, ordered, resumed, str(shards.folder), tuple(unsaved))
 
 
 def read_plan(config: Any) -> Sweep:
@@ -214,53 +230,6 @@ def read_plan(config: Any) -> Sweep:
         return sweep_from(document)
     except NavsymError as error:
         raise error.at(place) from None
-
-
-def run_sweep(
-    sweep: Sweep,
-    *,
-    workers: int = 0,
-    scheduler: str | None = None,
-    folder: Path | None = None,
-    size: int | None = None,
-    fresh: bool = False,
-    patience: float = PATIENCE,
-    progress: Callable[[int, int], None] = lambda done, of: None,
-) -> dict[str, Any]:
-    """Compute the shards that are not kept, keep each as it comes, and sum up.
-
-    workers   : processes of this machine; 0 computes in this one
-    scheduler : ``tcp://host:port`` of a running dask scheduler, instead of processes of this machine
-    folder    : where the shards are; by default in the cache
-    size      : jobs in a shard
-    patience  : seconds without any worker until a scheduler is given up
-
-    The document of ``navsym sweep``: that of :func:`summary` with ``resumed`` (jobs that were kept),
-    ``folder`` and ``unsaved`` (shards that could not be kept). Raises MissingEngineError without dask,
-    pyarrow, an answer of the scheduler, or workers.
-    """
-    if not patience > 0:
-        raise DomainError(f"patience: expected seconds above 0; got {patience}; correct it")
-    study = key_of("sweep", fingerprint(sweep), rooms_digest())
-    shards = Shards(folder or default_folder(study), study)
-    parts = cut(sweep.jobs, size)
-    known = {} if fresh else {part: rows for part in parts if (rows := shards.read(part)) is not None}
-    found, unsaved = dict(known), []
-    done = sum(len(part) for part in known)
-    missing = [part for part in parts if part not in known]
-    progress(done, sweep.jobs)
-    with computed(sweep, missing, workers, scheduler, patience) as results:
-        for part, rows in results:
-            found[part] = rows
-            try:
-                shards.write(part, rows)
-            except OSError as error:
-                unsaved.append(f"{shards.path(part).name}: {error.strerror or error}")
-            done += len(part)
-            progress(done, sweep.jobs)
-    rows = [row for part in parts for row in found.get(part, [])]
-    resumed = sum(len(part) for part in known)
-    return {**summary(sweep, rows), "resumed": resumed, "folder": str(shards.folder), "unsaved": unsaved}
 
 
 def run_shard(sweep: Sweep, part: range) -> tuple[range, str, Rows]:

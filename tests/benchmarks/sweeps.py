@@ -18,7 +18,8 @@ from typing import Any
 
 from navsym.studies.cluster import ALONE
 from navsym.studies.plan import Sweep, run_job
-from navsym.studies.run import computed, cut, run_shard, run_sweep
+from navsym.studies.run import computed, cut, run_shard
+from navsym.studies.run import sweep as run_sweep
 
 os.environ.update({name: str(count) for name, count in ALONE.items()})  # before numba is loaded
 
@@ -86,7 +87,7 @@ def main(jobs: int = 48, workers: int = os.cpu_count() or 1) -> None:
         )
     with tempfile.TemporaryDirectory() as folder:
         started = time.perf_counter()
-        run_sweep(sweep, workers=workers, folder=Path(folder), size=size)
+        run_sweep(sweep, workers=workers, out=Path(folder), size=size).document()
         print(f"with starting the processes and keeping the shards: {time.perf_counter() - started:.2f} s")
 
 

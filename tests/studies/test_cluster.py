@@ -16,7 +16,7 @@ import pytest
 from navsym.core.errors import MissingEngineError
 from navsym.studies import cluster
 from navsym.studies.plan import Sweep
-from navsym.studies.run import run_sweep
+from navsym.studies.run import sweep as run_sweep
 
 ROOT = Path(__file__).resolve().parents[2]
 STUDY = Sweep("filter", jobs=24, seed=3, runs=4, steps=6)
@@ -66,8 +66,8 @@ def workers(address, count, folder):
 def test_two_workers_on_a_scheduler_give_the_bits_of_one_process(scheduler, tmp_path):
     address, processes = scheduler
     processes += workers(address, 2, tmp_path)
-    alone = run_sweep(STUDY, folder=tmp_path / "alone", size=3)
-    together = run_sweep(STUDY, scheduler=address, folder=tmp_path / "together", size=3)
+    alone = run_sweep(STUDY, out=tmp_path / "alone", size=3).document()
+    together = run_sweep(STUDY, scheduler=address, out=tmp_path / "together", size=3).document()
     assert json.dumps(alone["rows"]) == json.dumps(together["rows"])
     shards = [sorted((tmp_path / name).iterdir()) for name in ("alone", "together")]
     assert [path.read_bytes() for path in shards[0]] == [path.read_bytes() for path in shards[1]]
@@ -84,9 +84,9 @@ def test_a_worker_killed_midway_changes_nothing(scheduler, tmp_path):
             os.killpg(victim.pid, signal.SIGKILL)
             victim.wait()
 
-    found = run_sweep(STUDY, scheduler=address, folder=tmp_path / "s", size=1, progress=progress)
+    found = run_sweep(STUDY, scheduler=address, out=tmp_path / "s", size=1, progress=progress).document()
     assert victim.poll() is not None and found["done"] == STUDY.jobs and seen[-1] == STUDY.jobs
-    assert json.dumps(found["rows"]) == json.dumps(run_sweep(STUDY, folder=tmp_path / "alone")["rows"])
+    assert json.dumps(found["rows"]) == json.dumps(run_sweep(STUDY, out=tmp_path / "alone").document()["rows"])
 
 
 # -- what never comes is not waited for ------------------------------------------------------------
@@ -111,7 +111,7 @@ def stricken(process, sent):
 def test_a_scheduler_without_workers_is_given_up_in_words(scheduler, tmp_path, hasty):
     address, _ = scheduler
     with pytest.raises(MissingEngineError, match=f"none for 2 s; start some .dask worker {address}"):
-        run_sweep(STUDY, scheduler=address, folder=tmp_path / "s", patience=2)
+        run_sweep(STUDY, scheduler=address, out=tmp_path / "s", patience=2).document()
 
 
 @pytest.mark.slow
@@ -120,8 +120,8 @@ def test_workers_that_all_die_midway_are_not_waited_for(scheduler, tmp_path, has
     processes += workers(address, 1, tmp_path)
     dying = stricken(processes[-1], signal.SIGKILL)
     with pytest.raises(MissingEngineError, match="expected workers; got none for 10 s"):
-        run_sweep(STUDY, scheduler=address, folder=tmp_path / "s", size=1, progress=dying, patience=10)
-    assert 3 <= run_sweep(STUDY, folder=tmp_path / "s", size=1)["resumed"] < STUDY.jobs
+        run_sweep(STUDY, scheduler=address, out=tmp_path / "s", size=1, progress=dying, patience=10).document()
+    assert 3 <= run_sweep(STUDY, out=tmp_path / "s", size=1).document()["resumed"] < STUDY.jobs
 
 
 @pytest.mark.slow
@@ -131,8 +131,8 @@ def test_a_scheduler_lost_midway_is_said_and_its_finished_shards_are_kept(schedu
     processes += workers(address, 1, tmp_path)
     losing = stricken(processes[0], sent)
     with pytest.raises(MissingEngineError, match="the same command goes on"):
-        run_sweep(STUDY, scheduler=address, folder=tmp_path / "s", size=1, progress=losing)
-    found = run_sweep(STUDY, folder=tmp_path / "s", size=1)
+        run_sweep(STUDY, scheduler=address, out=tmp_path / "s", size=1, progress=losing).document()
+    found = run_sweep(STUDY, out=tmp_path / "s", size=1).document()
     assert 3 <= found["resumed"] < STUDY.jobs and found["done"] == STUDY.jobs
 
 
@@ -149,15 +149,15 @@ def test_a_scheduler_lost_between_its_greeting_and_its_work_is_said(scheduler, t
 
     monkeypatch.setattr(cluster, "greet", last_words)
     with pytest.raises(MissingEngineError, match="no answer to a client"):
-        run_sweep(STUDY, scheduler=address, folder=tmp_path / "s")
+        run_sweep(STUDY, scheduler=address, out=tmp_path / "s").document()
     monkeypatch.setattr(cluster, "greet", greet)
-    assert run_sweep(STUDY, workers=1, folder=tmp_path / "s")["done"] == STUDY.jobs  # the next client lives
+    assert run_sweep(STUDY, workers=1, out=tmp_path / "s").document()["done"] == STUDY.jobs  # the next client lives
 
 
 @pytest.mark.slow
 def test_two_processes_of_this_machine_give_the_bits_of_one(tmp_path):
-    alone = run_sweep(STUDY, folder=tmp_path / "alone", size=3)
+    alone = run_sweep(STUDY, out=tmp_path / "alone", size=3).document()
     before = dict(os.environ)
-    together = run_sweep(STUDY, workers=2, folder=tmp_path / "together", size=3)
+    together = run_sweep(STUDY, workers=2, out=tmp_path / "together", size=3).document()
     assert {name: os.environ.get(name) for name in cluster.ALONE} == {name: before.get(name) for name in cluster.ALONE}
     assert json.dumps(alone["rows"]) == json.dumps(together["rows"])

@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 from navsym.studies.plan import Sweep
-from navsym.studies.run import run_sweep
+from navsym.studies.run import sweep as run_sweep
 
 ROOT = Path(__file__).resolve().parents[2]
 STUDY = Sweep("filter", jobs=12, seed=3, runs=16, steps=50)
@@ -59,8 +59,8 @@ def test_a_sweep_killed_at_random_moments_goes_on_and_leaves_nothing_running(tmp
         while processes_of(process.pid) and time.monotonic() < deadline:
             time.sleep(0.2)
         assert processes_of(process.pid) == []
-    found = run_sweep(STUDY, folder=tmp_path / "s")
-    assert json.dumps(found["rows"]) == json.dumps(run_sweep(STUDY, folder=tmp_path / "alone")["rows"])
+    found = run_sweep(STUDY, out=tmp_path / "s").document()
+    assert json.dumps(found["rows"]) == json.dumps(run_sweep(STUDY, out=tmp_path / "alone").document()["rows"])
 
 
 @pytest.mark.slow
@@ -72,5 +72,5 @@ def test_two_sweeps_at_once_in_one_folder_give_the_rows_of_one(tmp_path):
         for process in both:
             if process.poll() is None:
                 os.killpg(process.pid, signal.SIGKILL)
-    alone = run_sweep(STUDY, folder=tmp_path / "alone")["rows"]
+    alone = run_sweep(STUDY, out=tmp_path / "alone").document()["rows"]
     assert said[0]["rows"] == said[1]["rows"] == alone and not said[0]["unsaved"] + said[1]["unsaved"]

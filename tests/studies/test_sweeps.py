@@ -17,7 +17,8 @@ from navsym.core.store import key_of
 from navsym.studies import run as sweep_shards
 from navsym.studies.cluster import greet
 from navsym.studies.plan import Sweep, fingerprint, run_job, sweep_from
-from navsym.studies.run import cut, run_sweep
+from navsym.studies.run import cut
+from navsym.studies.run import sweep as run_sweep
 from navsym.verification.fingerprints import rooms_digest
 
 
@@ -30,7 +31,7 @@ SMALL = Sweep("filter", jobs=6, seed=3, runs=4, steps=6)
 
 
 def embedded(sweep, **options):
-    return run_sweep(sweep, workers=0, size=2, **options)
+    return run_sweep(sweep, workers=0, size=2, **options).document()
 
 
 def test_a_job_depends_on_its_index_and_nothing_else():
@@ -40,8 +41,8 @@ def test_a_job_depends_on_its_index_and_nothing_else():
 
 
 def test_the_cut_into_shards_does_not_change_a_bit(tmp_path):
-    whole = run_sweep(SMALL, size=6, folder=tmp_path / "a")["rows"]
-    assert json.dumps(whole) == json.dumps(run_sweep(SMALL, size=1, folder=tmp_path / "b")["rows"])
+    whole = run_sweep(SMALL, size=6, out=tmp_path / "a").document()["rows"]
+    assert json.dumps(whole) == json.dumps(run_sweep(SMALL, size=1, out=tmp_path / "b").document()["rows"])
 
 
 def test_shards_cover_every_job_once():
@@ -54,19 +55,19 @@ def test_of_a_million_jobs_few_are_lost_with_their_process():
 
 
 def test_a_second_run_computes_what_is_missing_only(monkeypatch, tmp_path):
-    first = embedded(SMALL, folder=tmp_path / "s")
+    first = embedded(SMALL, out=tmp_path / "s")
     files = sorted((tmp_path / "s").glob("*.parquet"))
     assert len(files) == 3
     files[1].unlink()
     files[2].write_bytes(files[2].read_bytes()[:-7])  # cut short
     seen = []
     monkeypatch.setattr("navsym.studies.run.run_job", lambda sweep, k: seen.append(k) or run_job(sweep, k))
-    second = embedded(SMALL, folder=tmp_path / "s")
+    second = embedded(SMALL, out=tmp_path / "s")
     assert seen == [2, 3, 4, 5] and second["resumed"] == 2 and second["rows"] == first["rows"]
 
 
 def test_a_shard_with_any_byte_changed_is_right_or_not_read(tmp_path):
-    rows = run_sweep(SMALL, folder=tmp_path / "s", size=6)["rows"]
+    rows = run_sweep(SMALL, out=tmp_path / "s", size=6).document()["rows"]
     (file,) = (tmp_path / "s").iterdir()
     honest = file.read_bytes()
     study = key_of("sweep", fingerprint(SMALL), rooms_digest())
@@ -77,7 +78,7 @@ def test_a_shard_with_any_byte_changed_is_right_or_not_read(tmp_path):
 
 def test_a_folder_in_the_place_of_a_shard_is_named_and_the_rows_are_there(tmp_path):
     (tmp_path / "s" / "jobs-0000002-0000004.parquet").mkdir(parents=True)
-    document = embedded(SMALL, folder=tmp_path / "s")
+    document = embedded(SMALL, out=tmp_path / "s")
     assert document["done"] == 6 and len(document["unsaved"]) == 1 and "0000002" in document["unsaved"][0]
 
 
@@ -86,19 +87,19 @@ def test_a_job_without_a_finite_answer_is_named(kind, tmp_path):
     far = "99999999999999999999999999999"
     study = Sweep(kind, jobs=2, columns=2, start=far, end=far)
     with pytest.raises(NavsymError, match="job 0: expected"):
-        embedded(study, folder=tmp_path / "s")
+        embedded(study, out=tmp_path / "s")
 
 
 @pytest.mark.parametrize("patience", [0.0, -1.0, float("nan")])
 def test_a_patience_that_never_ends_anything_is_refused(patience, tmp_path):
     with pytest.raises(DomainError, match="patience"):
-        embedded(SMALL, folder=tmp_path / "s", patience=patience)
+        embedded(SMALL, out=tmp_path / "s", patience=patience)
 
 
 def test_shards_of_another_study_are_not_mixed_in(tmp_path):
-    embedded(SMALL, folder=tmp_path / "s")
+    embedded(SMALL, out=tmp_path / "s")
     other = Sweep("filter", jobs=6, seed=4, runs=4, steps=6)
-    assert embedded(other, folder=tmp_path / "s")["resumed"] == 0
+    assert embedded(other, out=tmp_path / "s")["resumed"] == 0
 
 
 def test_a_shard_that_cannot_be_kept_is_named_and_the_rows_are_there(monkeypatch, tmp_path):
@@ -106,7 +107,7 @@ def test_a_shard_that_cannot_be_kept_is_named_and_the_rows_are_there(monkeypatch
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(sweep_shards.os, "replace", full)
-    document = embedded(SMALL, folder=tmp_path / "s")
+    document = embedded(SMALL, out=tmp_path / "s")
     assert len(document["unsaved"]) == 3 and "No space" in document["unsaved"][0]
     assert document["done"] == 6 and not list((tmp_path / "s").iterdir())
 

@@ -22,7 +22,7 @@ from typing import Any
 
 from navsym.core.store import Store, StoreError, key_of
 from navsym.studies.plan import Sweep
-from navsym.studies.run import run_sweep
+from navsym.studies.run import sweep as run_sweep
 from tests.attacks.campaigns.batches import Batch, Result, result
 
 SECONDS_TO_MOUNT, SECONDS_TO_VERIFY, SECONDS_TO_DIE = 30, 600, 30  # longer than any machine needs
@@ -152,8 +152,8 @@ def no_room_for_shards(folder: Path) -> list[str]:
     """A sweep whose shards find no room: every one is named, all rows are there, and nothing is half written."""
     study = Sweep("filter", jobs=4, runs=4, steps=6)
     with limit_file_size(2**9):  # a shard is larger
-        document = run_sweep(study, folder=folder / "shards", size=1)
-    rows = run_sweep(study, folder=folder / "again", size=1)["rows"]
+        document = run_sweep(study, out=folder / "shards", size=1).document()
+    rows = run_sweep(study, out=folder / "again", size=1).document()["rows"]
     fine = len(document["unsaved"]) == 4 and document["rows"] == rows and not any((folder / "shards").iterdir())
     return [] if fine else [f"{document['unsaved']}, {[path.name for path in (folder / 'shards').iterdir()]}"]
 
