@@ -2,7 +2,7 @@
 
 The sections stand in the order of trust: each rests on those before it, and every rule states the theorem that it uses.
 
-1. Trusted are CPython with json, ast and re, and python-flint: rational numbers and polynomials (fmpq, fmpq_poly) are
+1. Trusted are CPython with json and re, and python-flint: rational numbers and polynomials (fmpq, fmpq_poly) are
    exact; an operation on balls, or on series and matrices of balls (arb, arb_series, arb_mat), encloses its results for
    all numbers in the balls, gives NaN where one does not exist, and solves no system that may be singular.
 2. Reading. A certificate is a JSON object with a kind and exactly the keys of this kind. Numbers are decimals or
@@ -16,15 +16,14 @@ The sections stand in the order of trust: each rests on those before it, and eve
 
 from __future__ import annotations
 
-import ast
 import json
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from fractions import Fraction
 from functools import lru_cache, reduce
-from itertools import product, repeat, zip_longest
+from itertools import pairwise, product, repeat, zip_longest
 from math import factorial, prod
-from operator import add, mul, sub, truediv
+from operator import add, mul
 from typing import Any, NamedTuple
 
 from flint import arb, arb_mat, arb_poly, arb_series, ctx, fmpq, fmpq_poly, fmpz_poly
@@ -92,18 +91,79 @@ def read_number(item: Any) -> fmpq:
     return fmpq(*Fraction(item).as_integer_ratio())
 
 
-@lru_cache
-def parse(text: Any) -> ast.expr:
-    """The syntax tree of an expression, read by Python's own parser.
+# A term is a tuple: ("number", q), ("pi",), ("symbol", name), ("+", *terms), ("*", *factors), ("^", base, exponent), or
+# the name of a function with its arguments. Terms are equal when their texts are, up to blanks, parentheses and signs.
+Term = tuple[Any, ...]
+TOKEN = re.compile(r" *([0-9]+(?:\.[0-9]+)?|[A-Za-z][A-Za-z0-9_]*|\*\*|[-+*/(),])")
 
-    An underscore is put before every number and name (_1_5 for 1.5, _x for x): no keyword or literal is left.
-    """
-    require(matches(r"[A-Za-z0-9_+\-*/(). ]{1,100000}", text), "unexpected characters")
-    own = re.sub(r"[0-9]+(\.[0-9]+)?|[A-Za-z][A-Za-z0-9_]*", lambda word: f" _{word[0].replace('.', '_')} ", text)
-    try:
-        return ast.parse(own.strip(), mode="eval").body
-    except SyntaxError as error:
-        raise Refused(f"not an expression: {error.msg}") from None
+
+class Parser:
+    """Recursive descent: sums of products of signed powers; ** binds its right side first, above a leading sign."""
+
+    def __init__(self, text: str):
+        self.words = ["", *reversed(TOKEN.findall(text))]
+        spaces = len(text) - len(text.replace(" ", ""))
+        require(sum(map(len, self.words)) == len(text) - spaces, "unexpected characters")
+
+    def take(self, *words: str) -> str:
+        """The next word if it is one of these, else nothing."""
+        return self.words.pop() if self.words[-1] in words else ""
+
+    def read_sum(self) -> Term:
+        terms = [self.read_product()]
+        while sign := self.take("+", "-"):
+            terms.append(self.read_product() if sign == "+" else negate(self.read_product()))
+        return ("+", *terms) if len(terms) > 1 else terms[0]
+
+    def read_product(self) -> Term:
+        factors = [self.read_signed()]
+        while sign := self.take("*", "/"):
+            factors.append(self.read_signed() if sign == "*" else ("^", self.read_signed(), MINUS_ONE))
+        return ("*", *factors) if len(factors) > 1 else factors[0]
+
+    def read_signed(self) -> Term:
+        if sign := self.take("+", "-"):
+            return self.read_signed() if sign == "+" else negate(self.read_signed())
+        base = self.read_atom()
+        return ("^", base, self.read_signed()) if self.take("**") else base
+
+    def read_atom(self) -> Term:
+        word = self.words.pop()
+        if word[:1].isdigit():
+            return ("number", read_number(word))
+        if word[:1].isalpha():
+            if not self.take("("):
+                return ("pi",) if word == "pi" else ("symbol", word)
+            arguments = [self.read_sum()]
+            while self.take(","):
+                arguments.append(self.read_sum())
+            require(self.take(")"), "not an expression: no )")
+            return (word, *arguments)
+        require(word == "(", "not an expression")
+        inside = self.read_sum()
+        require(self.take(")"), "not an expression: no )")
+        return inside
+
+
+def negate(term: Term) -> Term:
+    return ("number", -term[1]) if term[0] == "number" else ("*", MINUS_ONE, term)
+
+
+@lru_cache
+def parse(text: Any) -> Term:
+    """The term of an expression; nothing is evaluated or reordered."""
+    require(matches(r"[A-Za-z0-9_+\-*/()., ]{1,400000}", text), "unexpected characters")
+    parser = Parser(text)
+    term = parser.read_sum()
+    require(parser.words == [""], "not an expression: more than one")
+    return term
+
+
+def number(q: Any) -> Term:
+    return ("number", fmpq(q))
+
+
+MINUS_ONE: Term = ("number", fmpq(-1))
 
 
 # -- 3. Functions of a parameter ---------------------------------------------------------------------------------------
@@ -143,7 +203,7 @@ class Jet:
         return self + other * Jet(-1)
 
     def __truediv__(self, other: Jet) -> Jet:
-        return self * raise_power(other, fmpq(-1))
+        return self * raise_power(other, fmpq(-1), arb)
 
     def __getitem__(self, k: int) -> Jet:
         """The coefficient of u**k."""
@@ -178,7 +238,6 @@ def read_ball(text: Any) -> Jet:
 
 
 # -- 4. Expressions ----------------------------------------------------------------------------------------------------
-SIGNS: dict[type, Any] = {ast.Add: add, ast.Sub: sub, ast.Mult: mul, ast.Div: truediv, ast.UAdd: add, ast.USub: sub}
 DEFINITIONS = {"tan": "sin(x)/cos(x)", "cot": "cos(x)/sin(x)", "sec": "1/cos(x)", "csc": "1/sin(x)"}
 DEFINITIONS |= {"sinh": "(exp(x) - exp(-x))/2", "cosh": "(exp(x) + exp(-x))/2", "tanh": "1 - 2/(exp(2*x) + 1)"}
 DEFINITIONS |= {"sqrt": "x**(1/2)", "abs": "(x*x)**(1/2)"}
@@ -188,43 +247,103 @@ DERIVATIVES |= {"asin": "(1 - x*x)**(-1/2)", "acos": "-(1 - x*x)**(-1/2)"}
 AT_ZERO, TERMS = {"exp": (1, 1, 1, 1), "sin": (0, 1, 0, -1), "cos": (1, 0, -1, 0)}, 60
 
 
-def evaluate(node: ast.expr, names: dict[str, Jet], field: Any) -> Jet:
-    """An expression in balls (field arb) or exactly (field Exact), where names have the given values.
+def clip(x: Any) -> arb:
+    """Numbers as balls, like arb; with this field functions are restricted to where they exist: :func:`restrict`."""
+    return arb(x)
+
+
+class Nowhere(Refused):
+    """An expression exists nowhere in these balls."""
+
+
+def restrict(f: Callable[[arb], arb], x: Jet, low: int, high: int | None) -> Jet | None:
+    """The values of f at the points of a ball between two ends, if it reaches beyond one: f exists at no others.
+
+    f is monotone there, so that its values lie between those at the ends. None for what is no ball, or lies inside.
+    """
+    ball = x.parts[0] if len(x.parts) == 1 else None
+    if not isinstance(ball, arb) or not ball.is_finite():
+        return None
+    if ball < low or (high is not None and ball > high):
+        raise Nowhere("an expression that exists nowhere here")
+    first, last = ball.lower(), ball.upper()
+    if first >= low and (high is None or last <= high):
+        return None
+    value = f(first if first >= low else arb(low)).union(f(last if high is None or last <= high else arb(high)))
+    if not value.is_finite():
+        raise Undefined("a function without a bound at the end of its range")
+    return Jet(value)
+
+
+def evaluate(term: Term, names: dict[str, Jet], field: Any) -> Jet:
+    """A term in balls (field arb or clip) or exactly (field Exact), where names have the given values.
 
     Enclosures of enclosures are enclosures (Moore, Interval Analysis, 1966). Raises Undefined where a division, root
     or function may have no value.
     """
-    match node:
-        case ast.Name(name) if name[1:2].isdigit():
-            return Jet(field(read_number(name[1:].replace("_", "."))))
-        case ast.Name("_pi"):
-            return Jet(arb.pi() if field is arb else PI)
-        case ast.Name(name):
-            require(name[1:] in names, f"unknown symbol {name[1:]}")
-            return names[name[1:]]
-        case ast.Call(ast.Name(name), [argument], []):
-            return apply_function(name[1:], evaluate(argument, names, field), field)
-        case ast.BinOp(x, ast.Pow(), exponent):
-            terms = evaluate(exponent, {}, Exact).parts[0].terms
-            require(set(terms) <= {frozenset()}, "an exponent that is no rational number")
-            return raise_power(evaluate(x, names, field), terms.get(frozenset(), fmpq(0))) * Jet(field(1))
-        case ast.BinOp(x, sign, y) if type(sign) in SIGNS:
-            return SIGNS[type(sign)](evaluate(x, names, field), evaluate(y, names, field))  # type: ignore
-        case ast.UnaryOp(ast.UAdd() | ast.USub() as sign, x):
-            return SIGNS[type(sign)](Jet(0), evaluate(x, names, field))  # type: ignore[no-any-return]
+    match term:
+        case ("number", q):
+            return Jet(field(q))
+        case ("pi",):
+            return Jet(PI if field is Exact else arb.pi())
+        case ("symbol", name):
+            require(name in names, f"unknown symbol {name}")
+            return names[name]
+        case ("+", *terms) if field is Exact and not any(len(x.parts) > 1 for x in names.values()):
+            return Jet(Exact(pair for t in terms for pair in evaluate(t, names, field).parts[0]))
+        case ("+", *terms):
+            return reduce(add, (evaluate(t, names, field) for t in terms))
+        case ("*", *factors):
+            return reduce(mul, (evaluate(t, names, field) for t in factors))
+        case ("^", base, exponent):
+            q = constant_of(exponent)
+            if q is None:
+                power = ("exp", ("*", exponent, ("log", base)))
+                return evaluate(power, names, field)
+            return raise_power(evaluate(base, names, field), q, field) * Jet(field(1))
+        case ("atan2", y, x):
+            return apply_atan2(evaluate(y, names, field), evaluate(x, names, field), field)
+        case (function, argument):
+            return apply_function(function, evaluate(argument, names, field), field)
     raise Refused("not an expression")
 
 
-def raise_power(x: Jet, q: fmpq) -> Jet:
+@lru_cache
+def symbols_of(term: Term) -> frozenset[str]:
+    """The names in a term."""
+    own = {term[1]} if term[0] == "symbol" else set()
+    return frozenset(own.union(*(symbols_of(part) for part in term[1:] if isinstance(part, tuple))))
+
+
+@lru_cache
+def constant_of(term: Term) -> fmpq | None:
+    """The rational number that a term without symbols is; None for any other term."""
+    if term[0] == "number":
+        return term[1]
+    if symbols_of(term):
+        return None
+    terms = evaluate(term, {}, Exact).parts[0].terms
+    return terms.get(frozenset(), fmpq(0)) if set(terms) <= {frozenset()} else None
+
+
+def raise_power(x: Jet, q: fmpq, field: Any) -> Jet:
     """x**q; d(x**q)/dx = q x**(q - 1)."""
     require(abs(q) < 1000, "a large exponent")
     if q.q == 1 and q >= 0:
+        if field is clip and q == 0 and arb_series(x.enclose())[0].contains(0):
+            raise Undefined("0**0 has no value")
         return prod([x] * int(q), start=Jet(1))
+    inside = restrict(lambda ball: ball**q, x, 0, None) if field is clip and q.q > 1 else None
+    if inside is not None:
+        return inside
     base = x.parts[0]
     # flint has 0 for every power of a series without terms, also for the negative ones, which do not exist.
     if isinstance(base, arb_series) and len(base) == 0 and q < 0:
         raise Undefined("a division by zero")
-    return x.compose(base**q, lambda y: raise_power(y, q - 1) * Jet(q))
+    return x.compose(base**q, lambda y: raise_power(y, q - 1, field) * Jet(q))
+
+
+DOMAINS: dict[str, tuple[int, int | None]] = {"log": (0, None), "asin": (-1, 1), "acos": (-1, 1)}
 
 
 def apply_function(name: str, x: Jet, field: Any) -> Jet:
@@ -233,9 +352,25 @@ def apply_function(name: str, x: Jet, field: Any) -> Jet:
         return evaluate(parse(DEFINITIONS[name]), {"x": x}, field)
     if name not in DERIVATIVES:
         return apply_remainder(name, x, field)
+    inside = (
+        restrict(lambda ball: getattr(ball, name)(), x, *DOMAINS[name]) if field is clip and name in DOMAINS else None
+    )
+    if inside is not None:
+        return inside
     base = x.parts[0]
     value = getattr(base, name)() if hasattr(base, name) else base.make_atom(name)
     return x.compose(value, lambda y: evaluate(parse(DERIVATIVES[name]), {"x": y}, field))
+
+
+def apply_atan2(y: Jet, x: Jet, field: Any) -> Jet:
+    """The angle of the point (x, y); an atom of both to the algebra, and a ball off the negative x axis."""
+    if field is Exact:
+        return Jet(Exact.make_angle(*y.parts, *x.parts))
+    b, a = y.enclose(), x.enclose()
+    require(isinstance(a, arb) and isinstance(b, arb), "atan2 in a series")
+    if not (a > 0 or b > 0 or b < 0 or (a < 0 and b.is_zero())):
+        raise Undefined("atan2 at its cut")
+    return Jet(b.atan2(a))
 
 
 def apply_remainder(name: str, x: Jet, field: Any) -> Jet:
@@ -250,7 +385,9 @@ def apply_remainder(name: str, x: Jet, field: Any) -> Jet:
     k = int(digits)
     c = [Jet(field(fmpq(AT_ZERO[f][j % 4], factorial(j)))) for j in range(k + TERMS)]
     if field is Exact:
-        return (apply_function(f, x, field) - evaluate_polynomial([*c[:k], Jet(0)], x)) * raise_power(x, fmpq(-k))
+        return (apply_function(f, x, field) - evaluate_polynomial([*c[:k], Jet(0)], x)) * raise_power(
+            x, fmpq(-k), field
+        )
     require(abs(arb_series(x.enclose())[0]) <= 1, f"{name} beyond 1")
     return evaluate_polynomial([*c[k:], Jet(arb(0, 3) / factorial(k + TERMS))], x)
 
@@ -285,6 +422,13 @@ class Exact:
         size = len(self.terms) + sum(atom[0] for monomial in self.terms for atom, _ in monomial)
         return Exact([(frozenset({((size, kind, frozenset(self)), q)}), fmpq(1))])
 
+    @staticmethod
+    def make_angle(y: Exact, x: Exact) -> Exact:
+        """atan2(y, x), an atom of its own."""
+        both = [y.make_atom("atan2"), x.make_atom("atan2")]
+        (size, content) = sum(m[0][0][0] for e in both for m in map(list, e.terms)), (frozenset(y), frozenset(x))
+        return Exact([(frozenset({((size, "atan2", content), 1)}), fmpq(1))])
+
     def __add__(self, other: Any) -> Exact:
         return Exact([*self, *Exact(other)])
 
@@ -310,7 +454,15 @@ class Exact:
 
     def exp(self, kind: str = "exp", sign: int = 1) -> Exact:
         """exp of a sum is a product; exp(x), or exp(i sign x) for the kind "cis"."""
-        return prod((Exact([(m, fmpq(1))]).make_atom(kind, c * sign) for m, c in self), start=Exact(1))
+        return prod((self.exp_of(kind, m, c * sign) for m, c in self), start=Exact(1))
+
+    @staticmethod
+    def exp_of(kind: str, monomial: Any, c: fmpq) -> Exact:
+        """exp(c M) of a monomial M; exp(c log u) = u**c wherever log u is defined."""
+        match [*monomial]:
+            case [((_, "log", content), 1)] if kind == "exp":
+                return Exact(content) ** c
+        return Exact([(monomial, fmpq(1))]).make_atom(kind, c)
 
     def cos(self) -> Exact:
         """Euler: cos x = (exp(i x) + exp(-i x))/2."""
@@ -506,7 +658,7 @@ class Problem:
             good = (end - start).enclose() > 0 and bound.enclose() > 0
             require(good, "expected a positive noise bound and length of every panel")
 
-    def change_basis(self, functions: list[ast.expr], names: dict[str, Jet]) -> list[Jet]:
+    def change_basis(self, functions: list[Term], names: dict[str, Jet]) -> list[Jet]:
         column = [evaluate(e, names, arb) for e in functions]
         return [dot(row, column) for row in self.basis] or column
 
@@ -641,8 +793,822 @@ def check_touch(item: Any) -> None:
     require(pieces and edge == problem.high, "the pieces do not reach the end")
 
 
-# -- 9. The entry ------------------------------------------------------------------------------------------------------
-EVERY_CHECK = (check_identity, check_exponential, check_rank, check_positivity, check_all, check_gap, check_touch)
+# -- 9. Statements and their proofs ------------------------------------------------------------------------------------
+# A goal says that a term is = 0, != 0, >= 0 or > 0 at all points of a box where the term, and other terms that have to
+# exist, are defined. A proof is a tree: an object with a rule, its data and the proofs of its premises, which are goals
+# that the rule makes from its own. Each rule states the theorem that makes its goal follow from its premises.
+
+
+class Range(NamedTuple):
+    """The values of a symbol: between two terms without symbols, None at infinity; which of them are left out."""
+
+    low: Term | None
+    high: Term | None
+    open_low: bool = False
+    open_high: bool = False
+    nonzero: bool = False
+    integer: bool = False
+
+
+class Goal(NamedTuple):
+    """``term relation 0`` on a box, where the terms of ``exists`` are defined and those of ``given`` are >= 0."""
+
+    term: Term
+    relation: str
+    box: dict[str, Range]
+    exists: tuple[Term, ...] = ()
+    given: tuple[Term, ...] = ()
+
+
+FLAGS = ("open-low", "open-high", "nonzero", "integer")
+
+
+def read_range(item: Any) -> Range:
+    low, high, flags = read_list(item, lambda entry: entry, 3)
+    ends = [None if end is None else parse(end) for end in (low, high)]
+    require(all(end is None or not symbols_of(end) for end in ends), "a symbol in the end of a range")
+    words = read_list(flags, str)
+    require(set(words) <= set(FLAGS), "an unknown flag of a range")
+    return Range(ends[0], ends[1], *(flag in words for flag in FLAGS))
+
+
+def read_statement(item: Any) -> tuple[list[Goal], tuple[Term, ...], dict[str, Range]]:
+    """The goals that say it, the terms that it needs to exist, and its box."""
+    keys = "left relation right symbols exists tolerance"
+    left, relation, right, symbols, exists, tolerance = read_fields(item, keys)
+    x, y, parts = parse(left), parse(right), tuple(read_list(exists, parse))
+    require(isinstance(symbols, dict), "expected ranges by symbol")
+    box = {name: read_range(symbols[name]) for name in read_symbols([*symbols])}
+    terms = (x, y, *parts)
+    require(set().union(*map(symbols_of, terms)) <= set(box), "a symbol without a range")
+    difference = subtract(x, y)
+    if tolerance is not None:
+        require(relation == "=", "a tolerance of an inequality")
+        sides = [("+", parse(tolerance), sign) for sign in (difference, negate(difference))]
+        return [Goal(side, ">=", box, terms) for side in sides], (*terms, parse(tolerance)), box
+    signs = {"=": (1, "="), "!=": (1, "!="), ">": (1, ">"), ">=": (1, ">="), "<": (-1, ">"), "<=": (-1, ">=")}
+    require(relation in signs, "an unknown relation")
+    sign, own = signs[relation]
+    return [Goal(difference if sign == 1 else subtract(y, x), own, box, terms)], terms, box
+
+
+def subtract(x: Term, y: Term) -> Term:
+    return ("+", x, negate(y))
+
+
+def replace(term: Term, old: Term, new: Term) -> Term:
+    """The term with every part that is ``old`` replaced."""
+    if term == old:
+        return new
+    return tuple(replace(part, old, new) if isinstance(part, tuple) else part for part in term)
+
+
+def is_identity(term: Term) -> bool:
+    """Whether a term is seen to vanish wherever all of it is defined."""
+    return bool(evaluate(term, make_symbols(sorted(symbols_of(term))), Exact).parts[0].is_zero())
+
+
+ZERO, ONE = number(0), number(1)
+LEAST = {"log": ">", "sqrt": ">="}
+DIVISORS = {"tan": "cos", "sec": "cos", "cot": "sin", "csc": "sin"}
+
+
+def conditions(term: Term, level: int = 0) -> dict[tuple[str, Term], None]:
+    """What of a term has to be > 0, >= 0 or != 0 for it to be defined (level 0), continuous (1), differentiable (2).
+
+    All functions here are differentiable where they are defined, but for roots and arc functions at the ends of their
+    ranges, abs at 0, and atan2 at its cut, off which x + sqrt(x**2 + y**2) > 0.
+    """
+    found: dict[tuple[str, Term], None] = {}
+    for part in term[1:]:
+        if isinstance(part, tuple):
+            found |= conditions(part, level)
+    match term:
+        case ("^", base, exponent):
+            q = constant_of(exponent)
+            if q is None or (q.q > 1 and (q < 0 or level == 2)):
+                found[">", base] = None
+            elif q.q > 1:
+                found[">=", base] = None
+            elif q <= 0:
+                found["!=", base] = None
+        case ("log", x):
+            found[">", x] = None
+        case ("sqrt", x):
+            found[">" if level == 2 else ">=", x] = None
+        case ("asin" | "acos", x):
+            for side in (subtract(ONE, x), ("+", ONE, x)):
+                found[">" if level == 2 else ">=", side] = None
+        case ("tan" | "sec" | "cot" | "csc" as name, x):
+            found["!=", (DIVISORS[name], x)] = None
+        case ("abs", x) if level == 2:
+            found["!=", x] = None
+        case ("atan2", y, x):
+            square = ("+", ("*", x, x), ("*", y, y))
+            found["!=", square] = None
+            if level:
+                found[">", ("+", x, ("sqrt", square))] = None
+    return {pair: None for pair in found if pair[1][0] != "number" or not holds(pair[0], pair[1][1])}
+
+
+def holds(relation: str, value: Any) -> bool:
+    """Whether all numbers of a ball, or a rational number, are in this relation to 0."""
+    if relation == "!=":
+        return bool(value != 0) and not (isinstance(value, arb) and not (value > 0 or value < 0))
+    return bool(value > 0 if relation == ">" else value >= 0)
+
+
+SLOPES = DERIVATIVES | {"tan": "cos(x)**(-2)", "cot": "-sin(x)**(-2)", "sec": "sin(x)/cos(x)**2"}
+SLOPES |= {"csc": "-cos(x)/sin(x)**2", "sinh": "cosh(x)", "cosh": "sinh(x)", "tanh": "1 - tanh(x)**2"}
+SLOPES |= {"sqrt": "1/(2*sqrt(x))", "abs": "x/abs(x)"}
+
+
+def differentiate(term: Term, name: str) -> Term:
+    """The derivative by a symbol, where the term is differentiable."""
+    if name not in symbols_of(term):
+        return ZERO
+    match term:
+        case ("symbol", _):
+            return ONE
+        case ("+", *terms):
+            return ("+", ZERO, *(d for d in (differentiate(t, name) for t in terms) if d != ZERO))
+        case ("*", *factors):
+            rows = [(*factors[:k], differentiate(t, name), *factors[k + 1 :]) for k, t in enumerate(factors)]
+            return ("+", ZERO, *(("*", *row) for row, t in zip(rows, factors, strict=True) if name in symbols_of(t)))
+        case ("^", base, exponent) if constant_of(exponent) == 1:
+            return differentiate(base, name)
+        case ("^", base, exponent) if constant_of(exponent) is not None:
+            lower = ("^", base, number(constant_of(exponent) - 1))  # type: ignore[operator]
+            return ("*", exponent, lower, differentiate(base, name))
+        case ("^", base, exponent):
+            return ("*", term, differentiate(("*", exponent, ("log", base)), name))
+        case ("atan2", y, x):
+            top = subtract(("*", x, differentiate(y, name)), ("*", y, differentiate(x, name)))
+            return ("*", top, ("^", ("+", ("*", x, x), ("*", y, y)), MINUS_ONE))
+        case (function, x) if function in SLOPES:
+            return ("*", replace(parse(SLOPES[function]), ("symbol", "x"), x), differentiate(x, name))
+    raise Refused("no derivative is known")
+
+
+def prove(proof: Any, goal: Goal) -> None:
+    """Check that a proof proves a goal."""
+    require(isinstance(proof, dict) and proof.get("rule") in RULES, "expected a proof by a known rule")
+    RULES[proof["rule"]](proof, goal)
+
+
+def prove_all(proofs: Any, goals: Sequence[Goal]) -> None:
+    for proof, goal in zip(read_list(proofs, lambda entry: entry, len(goals)), goals, strict=True):
+        prove(proof, goal)
+
+
+def prove_defined(proofs: Any, goal: Goal, *terms: Term, level: int = 0) -> None:
+    """The terms are defined, or more, at all points of the goal: one proof for each condition that is not its own.
+
+    Conditions of numbers that a ball decides need no proof.
+    """
+    own = set().union(*(conditions(t) for t in (goal.term, *goal.exists)))
+    own = with_weaker(own)
+    needed = [pair for pair in set_union(conditions(t, level) for t in terms) if pair not in own]
+    needed = [pair for pair in needed if symbols_of(pair[1]) or not holds(pair[0], value_of(pair[1], {}))]
+    prove_all(proofs, [goal._replace(term=t, relation=relation) for relation, t in needed])
+
+
+def with_weaker(pairs: Iterable[tuple[str, Term]]) -> set[tuple[str, Term]]:
+    """Conditions, and those that follow from them: what is > 0 is >= 0 and != 0."""
+    return {(weaker, t) for relation, t in pairs for weaker in ((">", ">=", "!=") if relation == ">" else (relation,))}
+
+
+def set_union(parts: Iterable[dict[Any, None]]) -> dict[Any, None]:
+    return dict.fromkeys(key for part in parts for key in part)
+
+
+def value_of(term: Term, point: dict[str, Jet]) -> arb:
+    """The ball of a term at a point; NaN where it may have no value."""
+    try:
+        value = evaluate(term, point, arb).enclose()
+    except Undefined:
+        return arb.nan()
+    return value if isinstance(value, arb) else arb.nan()
+
+
+def change_range(goal: Goal, name: str, **changes: Any) -> Goal:
+    require(name in goal.box, "a symbol without a range")
+    return goal._replace(box=goal.box | {name: goal.box[name]._replace(**changes)})
+
+
+# Rules that change the goal
+
+
+def prove_equal(proof: Any, goal: Goal) -> None:
+    """The term is another one wherever both are defined, by exact algebra; it is defined wherever the goal's is."""
+    _, text, defined, premise = read_fields(proof, "rule to defined proof")
+    term = parse(text)
+    prove_defined(defined, goal, term)
+    require(is_identity(subtract(goal.term, term)), "the terms differ")
+    prove(premise, remember(goal, term))
+
+
+def remember(goal: Goal, term: Term) -> Goal:
+    """The goal with another term; the points are still those where the first is defined."""
+    return goal._replace(term=term, exists=tuple(dict.fromkeys((*goal.exists, goal.term))))
+
+
+def prove_rewrite(proof: Any, goal: Goal) -> None:
+    """A part of the term is replaced by one that is equal to it at all points of the goal."""
+    _, old, new, defined, equal, premise = read_fields(proof, "rule from to defined equal proof")
+    before, after = parse(old), parse(new)
+    prove_defined(defined, goal, before, after)
+    prove(equal, remember(goal, subtract(before, after))._replace(relation="="))
+    prove(premise, remember(goal, replace(goal.term, before, after)))
+
+
+def prove_multiply(proof: Any, goal: Goal) -> None:
+    """The term times a factor > 0 has the same sign."""
+    _, text, defined, positive, premise = read_fields(proof, "rule by defined positive proof")
+    factor = parse(text)
+    prove_defined(defined, goal, factor)
+    prove(positive, remember(goal, factor)._replace(relation=">"))
+    prove(premise, remember(goal, ("*", factor, goal.term)))
+
+
+def prove_exponential(proof: Any, goal: Goal) -> None:
+    """exp rises and exp(0) = 1: exp(f) - 1 has the sign of f."""
+    _, premise = read_fields(proof, "rule proof")
+    prove(premise, remember(goal, subtract(("exp", goal.term), ONE)))
+
+
+def prove_side(proof: Any, goal: Goal) -> None:
+    """f > 0 or -f > 0 gives f != 0."""
+    _, sign, premise = read_fields(proof, "rule sign proof")
+    require(goal.relation == "!=", "expected !=")
+    signed = goal.term if read_integer(sign, -1, 1) == 1 else negate(goal.term)
+    prove(premise, remember(goal, signed)._replace(relation=">"))
+
+
+def prove_cases(proof: Any, goal: Goal) -> None:
+    """u >= 0 or -u >= 0 at every point; |u| is u in the first case and -u in the other."""
+    _, text, proofs = read_fields(proof, "rule of proofs")
+    u = parse(text)
+    prove_defined([], goal, u)
+    cases = [replace(goal.term, ("abs", u), signed) for signed in (u, negate(u))]
+    both = [
+        remember(goal, case)._replace(given=(*goal.given, v)) for case, v in zip(cases, (u, negate(u)), strict=True)
+    ]
+    prove_all(proofs, both)
+
+
+def prove_split(proof: Any, goal: Goal) -> None:
+    """Every value of a symbol is at most, or at least, a number."""
+    _, name, at, proofs = read_fields(proof, "rule symbol at proofs")
+    middle = parse(at)
+    require(not symbols_of(middle), "expected a number")
+    parts = ({"high": middle, "open_high": False}, {"low": middle, "open_low": False})
+    prove_all(proofs, [change_range(goal, name, **part) for part in parts])
+
+
+def prove_integers(proof: Any, goal: Goal) -> None:
+    """A symbol that is an integer between two numbers is one of finitely many."""
+    _, name, first, proofs = read_fields(proof, "rule symbol from proofs")
+    require(name in goal.box and goal.box[name].integer, "expected an integer")
+    limit, start = goal.box[name], read_integer(first, -(10**9), 10**9)
+    values = read_list(proofs, lambda entry: entry)
+    ends = [(limit.low, start - 1, 1), (limit.high, start + len(values), -1)]
+    require(all(end is not None and (value_of(end, {}) - k) * sign > 0 for end, k, sign in ends), "more integers")
+    prove_all(values, [fix_symbol(goal, name, number(start + k)) for k in range(len(values))])
+
+
+def fix_symbol(goal: Goal, name: str, value: Term) -> Goal:
+    """The goal at one value of a symbol."""
+    term, exists, given = (
+        tuple(replace(t, ("symbol", name), value) for t in terms) for terms in ((goal.term,), goal.exists, goal.given)
+    )
+    return Goal(term[0], goal.relation, {k: v for k, v in goal.box.items() if k != name}, exists, given)
+
+
+def prove_abstract(proof: Any, goal: Goal) -> None:
+    """f = F(u) with u = T in a range, for terms T of new names u: F has its sign for all u in the range.
+
+    F(T) is defined wherever f is; the ranges follow from proofs of T - low and high - T.
+    """
+    _, names, ranges, text, inside, defined, premise = read_fields(proof, "rule terms ranges to inside defined proof")
+    require(isinstance(names, dict) and isinstance(ranges, dict) and set(names) == set(ranges), "expected new names")
+    terms = {name: parse(names[name]) for name in read_symbols([*names])}
+    require(not set(terms) & set(goal.box), "a name that is in use")
+    require(set().union(*map(symbols_of, terms.values())) <= set(goal.box), "a symbol without a range")
+    new = {name: read_range(ranges[name]) for name in terms}
+    require(not any(limit.nonzero or limit.integer for limit in new.values()), "a range that is no interval")
+    form = parse(text)
+    back = reduce(lambda t, name: replace(t, ("symbol", name), terms[name]), terms, form)
+    prove_defined(defined, goal, back, *terms.values())
+    require(is_identity(subtract(goal.term, back)), "the terms differ")
+    goals = []
+    for name, limit in new.items():
+        for end, is_open, sign in ((limit.low, limit.open_low, 1), (limit.high, limit.open_high, -1)):
+            if end is not None:
+                side = subtract(terms[name], end) if sign == 1 else subtract(end, terms[name])
+                goals.append(remember(goal, side)._replace(relation=">" if is_open else ">="))
+    prove_all(inside, goals)
+    prove(premise, goal._replace(term=form, box=goal.box | new, exists=(*goal.exists, goal.term)))
+
+
+def prove_dense(proof: Any, goal: Goal) -> None:
+    """f >= 0 where an entire function does not vanish gives f >= 0 everywhere, for a continuous f.
+
+    Theorem: the zeros of an analytic function that is not 0 throughout have no inner points (Krantz and Parks, A Primer
+    of Real Analytic Functions, 2002, chapter 4); so what is left is dense in a box whose sides have inner points.
+    """
+    _, text, point, defined, premise = read_fields(proof, "rule except point defined proof")
+    require(goal.relation == ">=" and not goal.given, "expected >= 0 on a whole box")
+    seldom = parse(text)
+    require(is_entire(seldom), "expected an entire function")
+    here = {name: read_ball(value) for name, value in point.items()}
+    require(holds("!=", value_of(seldom, here)), "the function may vanish throughout")
+    for limit in goal.box.values():
+        require(not limit.integer and not is_narrow(limit), "a side without inner points")
+    whole = goal._replace(
+        box={name: r._replace(open_low=False, open_high=False, nonzero=False) for name, r in goal.box.items()}
+    )
+    prove_defined(defined, whole._replace(term=ZERO, exists=()), goal.term, *goal.exists, level=1)
+    prove(premise, goal._replace(exists=(*goal.exists, ("^", seldom, MINUS_ONE))))
+
+
+def is_narrow(limit: Range) -> bool:
+    """Whether a range may have no inner points."""
+    return None not in (limit.low, limit.high) and not value_of(limit.high, {}) > value_of(limit.low, {})  # type: ignore
+
+
+def is_entire(term: Term) -> bool:
+    """Whether a term is made of sums, products, whole powers, sin, cos, exp, sinh and cosh."""
+    if term[0] == "^":
+        q = constant_of(term[2])
+        return q is not None and q.q == 1 and q > 0 and is_entire(term[1])
+    parts = [part for part in term[1:] if isinstance(part, tuple)]
+    return term[0] in ("number", "pi", "symbol", "+", "*", "sin", "cos", "exp", "sinh", "cosh") and all(
+        map(is_entire, parts)
+    )
+
+
+# Rules of equations
+
+
+def prove_identity(proof: Any, goal: Goal) -> None:
+    """The term vanishes wherever it is defined, by exact algebra; what is 0 is also >= 0."""
+    read_fields(proof, "rule")
+    require(goal.relation in ("=", ">=") and is_identity(goal.term), "the sides differ")
+
+
+def prove_zero(proof: Any, goal: Goal) -> None:
+    """What is 0 is >= 0."""
+    _, premise = read_fields(proof, "rule proof")
+    require(goal.relation == ">=", "expected >=")
+    prove(premise, goal._replace(relation="="))
+
+
+def prove_solve(proof: Any, goal: Goal) -> None:
+    """f = c (A - v) with c != 0, and A = v by the definition of the inverse function A."""
+    _, share, own, value, defined, proofs = read_fields(proof, "rule share atom value defined proofs")
+    atom, v, c = parse(own), parse(value), read_number(share)
+    require(goal.relation == "=" and c != 0, "expected an equation")
+    prove_defined(defined, goal, atom, v)
+    require(is_identity(subtract(goal.term, ("*", number(c), subtract(atom, v)))), "the equation differs")
+    pairs = [(remember(goal, term)._replace(relation=relation)) for relation, term in list_definition(atom, v)]
+    prove_all(proofs, pairs)
+
+
+def list_definition(atom: Term, v: Term) -> list[tuple[str, Term]]:
+    """What makes A = v: v has the function of which A is the inverse, and lies in the range of A."""
+    half = ("*", ("pi",), number(HALF))
+    match atom:
+        case ("log", u):
+            return [("=", subtract(("exp", v), u))]
+        case ("sqrt" | "abs" as name, u):
+            return [("=", subtract(("*", v, v), u if name == "sqrt" else ("*", u, u))), (">=", v)]
+        case ("^", u, exponent) if constant_of(exponent) is not None:
+            q = constant_of(exponent)
+            return [("=", subtract(("^", v, number(q.q)), ("^", u, number(q.p)))), (">=", v)]  # type: ignore[union-attr]
+        case ("asin", u):
+            return [("=", subtract(("sin", v), u)), (">=", ("+", half, v)), (">=", subtract(half, v))]
+        case ("acos", u):
+            return [("=", subtract(("cos", v), u)), (">=", v), (">=", subtract(("pi",), v))]
+        case ("atan", u):
+            tangent = subtract(("*", u, ("cos", v)), ("sin", v))
+            return [("=", tangent), (">", ("+", half, v)), (">", subtract(half, v))]
+        case ("atan2", y, x):
+            across = subtract(("*", x, ("sin", v)), ("*", y, ("cos", v)))
+            along = ("+", ("*", x, ("cos", v)), ("*", y, ("sin", v)))
+            return [("=", across), (">", along), (">=", subtract(("pi",), v)), (">", ("+", ("pi",), v))]
+    raise Refused("expected an inverse function")
+
+
+def prove_squares(proof: Any, goal: Goal) -> None:
+    """L**2 = R**2 with L, R of one sign gives L = R; L >= 0 and L**2 >= R**2 give L >= |R| >= R, and so for >."""
+    _, left, right, sign, defined, proofs = read_fields(proof, "rule left right sign defined proofs")
+    x, y, s = parse(left), parse(right), read_integer(sign, -1, 1)
+    require(s != 0 and goal.relation in ("=", ">=", ">") and (s == 1 or goal.relation == "="), "a wrong sign")
+    prove_defined(defined, goal, x, y)
+    require(is_identity(subtract(goal.term, subtract(x, y))), "the terms differ")
+    squares = remember(goal, subtract(("*", x, x), ("*", y, y)))
+    sides = [x if s == 1 else negate(x), *([y if s == 1 else negate(y)] if goal.relation == "=" else [])]
+    prove_all(proofs, [squares, *(remember(goal, side)._replace(relation=">=") for side in sides)])
+
+
+def prove_derivative(proof: Any, goal: Goal) -> None:
+    """A differentiable function on a box without holes, with derivatives 0, is constant; at one point it is 0."""
+    _, point, value, slopes, defined = read_fields(proof, "rule point value slopes defined")
+    require(goal.relation == "=" and not goal.given, "expected an equation on a whole box")
+    require(not any(r.nonzero or r.integer for r in goal.box.values()), "a box with holes")
+    names = sorted(symbols_of(goal.term))
+    changes = [differentiate(goal.term, name) for name in names]
+    prove_defined(defined, Goal(ZERO, "=", goal.box), goal.term, *changes, level=2)
+    prove_all(slopes, [goal._replace(term=change) for change in changes])
+    require(isinstance(point, dict) and set(point) == set(names), "the point gives every symbol of the term")
+    place = {name: parse(text) for name, text in point.items()}
+    require(all(is_inside(place[name], goal.box[name]) for name in names), "the point may lie outside the box")
+    at = reduce(lambda t, name: replace(t, ("symbol", name), place[name]), names, goal.term)
+    prove(value, Goal(at, "=", {}))
+
+
+def is_inside(value: Term, limit: Range) -> bool:
+    """Whether a number is shown to lie in a range."""
+    require(not symbols_of(value), "expected a number")
+    q = constant_of(value)
+    if (limit.integer and (q is None or q.q > 1)) or (limit.nonzero and not holds("!=", value_of(value, {}))):
+        return False
+    sides = ((limit.low, limit.open_low, 1), (limit.high, limit.open_high, -1))
+    gaps = [(("*", number(sign), subtract(value, end)), is_open) for end, is_open, sign in sides if end is not None]
+    return all(value_of(gap, {}) > 0 or (not is_open and is_identity(gap)) for gap, is_open in gaps)
+
+
+# Rules of signs
+
+
+def prove_balls(proof: Any, goal: Goal) -> None:
+    """The ball of a term on a cell contains its values there, and so does f(c) + f'(cell) (x - c) (Moore, 1966).
+
+    The cells cover the box. Where a cell has no point of the goal, nothing is to be shown.
+    """
+    _, bits, cells = read_fields(proof, "rule bits cells")
+    require(goal.relation != "=", "expected an inequality")
+    before = ctx.prec
+    try:
+        budget, names = set_work(bits, cells), set().union(*map(symbols_of, (goal.term, *goal.given)))
+        ends = {name: [goal.box[name].low, goal.box[name].high] for name in sorted(names)}
+        require(all(None not in pair for pair in ends.values()), "a range without an end")
+        sides = {name: [evaluate(end, {}, arb) for end in pair] for name, pair in ends.items()}  # type: ignore[arg-type]
+
+        def is_settled(cell: Cell) -> bool:
+            def place(jets: dict[str, Jet]) -> dict[str, Jet]:
+                return {name: low + (high - low) * jets[name] for name, (low, high) in sides.items()}
+
+            wide = place({name: Jet(arb(*cell[name])) for name in sides})
+            try:
+                if any(evaluate(t, wide, clip).enclose() < 0 for t in goal.given):
+                    return True
+                if holds(goal.relation, evaluate(goal.term, wide, clip).enclose()):
+                    return True
+            except Nowhere:
+                return True
+            slanted = place({name: Jet(arb(cell[name][0]), arb(0, cell[name][1])) for name in sides})
+            return holds(goal.relation, evaluate(goal.term, slanted, arb).enclose())
+
+        prove_on_cells([dict.fromkeys(sides, UNIT)], budget, is_settled)
+    finally:
+        ctx.prec = before
+
+
+def prove_given(proof: Any, goal: Goal) -> None:
+    """A sum of hypotheses with weights >= 0 is >= 0."""
+    _, weights = read_fields(proof, "rule weights")
+    shares = read_list(weights, read_number, len(goal.given))
+    require(goal.relation == ">=" and all(w >= 0 for w in shares), "expected >= 0 and weights >= 0")
+    total = ("+", ZERO, *(("*", number(w), t) for w, t in zip(shares, goal.given, strict=True)))
+    require(is_identity(subtract(goal.term, total)), "the term is another one")
+
+
+def prove_range(proof: Any, goal: Goal) -> None:
+    """c (s - low) or c (high - s) with c > 0, by the range of the symbol s."""
+    _, name, side, share = read_fields(proof, "rule symbol end share")
+    require(name in goal.box and goal.relation in (">=", ">") and read_number(share) > 0, "expected a symbol")
+    limit, upper = goal.box[name], read_integer(side, 0, 1)
+    end, is_open = (limit.high, limit.open_high) if upper else (limit.low, limit.open_low)
+    require(end is not None, "a range without this end")
+    open_by_zero = limit.nonzero and is_identity(end)  # type: ignore[arg-type]
+    require(goal.relation == ">=" or is_open or open_by_zero, "the end belongs to the range")
+    gap = subtract(("symbol", name), end) if not upper else subtract(end, ("symbol", name))  # type: ignore[arg-type]
+    require(is_identity(subtract(goal.term, ("*", number(read_number(share)), gap))), "the term is another one")
+
+
+def prove_corners(proof: Any, goal: Goal) -> None:
+    """A polynomial of degree one in each symbol is least at a corner of the box."""
+    _, names, proofs = read_fields(proof, "rule symbols proofs")
+    chosen = read_symbols(read_list(names, str))
+    require(goal.relation in (">=", ">") and set(chosen) <= set(goal.box), "expected symbols of the box")
+    bound = frozenset().union(*(symbols_of(t) for _, t in conditions(goal.term)))
+    require(not bound & set(chosen), "a symbol on which it depends where the term is defined")
+    polynomial = evaluate(goal.term, make_symbols(sorted(symbols_of(goal.term))), Exact).parts[0]
+    for name in chosen:
+        require(degree_in(polynomial, name) <= 1, "a symbol of a higher degree")
+    corners = [goal]
+    for name in chosen:
+        ends = (goal.box[name].low, goal.box[name].high)
+        require(None not in ends, "a range without an end")
+        corners = [fix_symbol(corner, name, end) for corner in corners for end in ends]  # type: ignore[arg-type]
+    prove_all(proofs, [corner._replace(exists=(), given=()) for corner in corners])
+
+
+def degree_in(polynomial: Exact, name: str) -> int:
+    """The degree in a symbol; refused where the symbol occurs in any other way."""
+    atom = symbol_atom(name)
+    for monomial in polynomial.terms:
+        require(all(a == atom or not occurs(atom, a) for a, _ in monomial), "a symbol inside a function")
+    powers = [q for _, q, _ in polynomial.split_powers(atom)]
+    require(all(q.q == 1 and q >= 0 for q in powers), "a symbol to a power that is no whole number")
+    return max((int(q) for q in powers), default=0)
+
+
+def symbol_atom(name: str) -> Any:
+    (((atom, _),),) = make_symbols([name])[name].parts[0].terms
+    return atom
+
+
+def occurs(atom: Any, inside: Any) -> bool:
+    """Whether an atom occurs in another one."""
+    if inside == atom:
+        return True
+    return isinstance(inside, (tuple, frozenset)) and any(occurs(atom, part) for part in inside)
+
+
+def prove_product(proof: Any, goal: Goal) -> None:
+    """A product has the product of the signs of its factors b**q; each has its entry, null or [sign, proof].
+
+    Without a proof: an even whole power is >= 0, and > 0 or != 0 when q < 0, since b != 0 where it is defined; so is a
+    broken power, abs, sqrt; exp and cosh are > 0. Else sign b > 0, or >= 0 where that is enough.
+    """
+    _, entries = read_fields(proof, "rule factors")
+    factors = list_factors(goal.term)
+    require(goal.relation != "=", "expected an inequality")
+    signs = 1
+    for factor, entry in zip(factors, read_list(entries, lambda item: item, len(factors)), strict=True):
+        base, q = (factor[1], constant_of(factor[2])) if factor[0] == "^" else (factor, fmpq(1))
+        require(q is not None or entry is None, "an exponent that is no number")
+        natural = q is None or q.q > 1 or int(q) % 2 == 0 or factor[0] in ("exp", "cosh", "abs", "sqrt")
+        strict = q is None or q <= 0 or factor[0] in ("exp", "cosh") or goal.relation == ">="
+        if factor[0] == "number":
+            require(entry is None and (factor[1] != 0 or goal.relation == ">="), "a factor 0")
+            signs *= -1 if factor[1] < 0 else 1
+        elif entry is None:
+            require((natural or (goal.relation == "!=" and strict)) and strict, "a factor without a proof")
+        else:
+            sign, premise = read_list(entry, lambda item: item, 2)
+            s = read_integer(sign, -1, 1)
+            require(s != 0, "expected a sign")
+            enough = ">=" if goal.relation == ">=" or (q is not None and q < 0) else goal.relation
+            if natural and goal.relation == ">":
+                enough = "!="
+            prove(premise, remember(goal, base if s == 1 else negate(base))._replace(relation=enough))
+            signs *= 1 if natural else s
+    require(signs == 1 or goal.relation == "!=", "the product of the signs is negative")
+
+
+def list_factors(term: Term) -> list[Term]:
+    return [f for part in term[1:] for f in list_factors(part)] if term[0] == "*" else [term]
+
+
+def list_terms(term: Term) -> list[Term]:
+    return [t for part in term[1:] for t in list_terms(part)] if term[0] == "+" else [term]
+
+
+def prove_sum(proof: Any, goal: Goal) -> None:
+    """A sum of terms >= 0 is >= 0, and > 0 when one of them is."""
+    _, proofs, strict = read_fields(proof, "rule proofs strict")
+    require(goal.relation in (">=", ">"), "expected >= or >")
+    terms = list_terms(goal.term)
+    k = read_integer(strict, 0, len(terms) - 1) if goal.relation == ">" else -1
+    prove_all(proofs, [remember(goal, t)._replace(relation=">" if i == k else ">=") for i, t in enumerate(terms)])
+
+
+def prove_slope(proof: Any, goal: Goal) -> None:
+    """A function that is continuous, and does not fall away from an end of the range of s, is least there.
+
+    Mean value theorem: f(s) - f(end) = f'(r) (s - end) with r between. Strict: f(end) > 0; or f' > 0 and the end is
+    left out. Continuity is shown on the closed range, the derivative inside it.
+    """
+    _, name, side, strict, continuous, smooth, slope, floor = read_fields(
+        proof, "rule symbol end strict continuous smooth slope floor"
+    )
+    require(name in goal.box and goal.relation in (">=", ">") and not goal.given, "expected a symbol and a whole box")
+    limit, upper = goal.box[name], read_integer(side, 0, 1)
+    end, is_open = (limit.high, limit.open_high) if upper else (limit.low, limit.open_low)
+    require(end is not None, "a range without this end")
+    by_slope = read_integer(strict, 0, 1) == 1 and goal.relation == ">"
+    require(not by_slope or is_open, "the end belongs to the range")
+    closed = change_range(goal, name, open_low=False, open_high=False, nonzero=False, integer=False)
+    whole = closed._replace(term=ZERO, exists=())
+    prove_defined(continuous, whole, goal.term, level=1)
+    inside = change_range(whole, name, open_low=True, open_high=True)
+    change = differentiate(goal.term, name)
+    known = with_weaker(conditions(goal.term, 1))
+    rest = [p for p in set_union([conditions(goal.term, 2), conditions(change)]) if p not in known]
+    prove_all(smooth, [inside._replace(term=t, relation=relation) for relation, t in rest])
+    rise = inside._replace(term=negate(change) if upper else change, relation=">" if by_slope else ">=")
+    prove(slope, rise._replace(exists=(goal.term,)))
+    start = fix_symbol(whole._replace(term=goal.term), name, end)  # type: ignore[arg-type]
+    prove(floor, start._replace(relation=">" if goal.relation == ">" and not by_slope else ">="))
+
+
+def prove_quadratic(proof: Any, goal: Goal) -> None:
+    """A v**2 + B v + C >= 0 for all real v when A, C, 4 A C - B**2 >= 0; > 0 when 4 A C - B**2 > 0."""
+    _, name, texts, defined, proofs = read_fields(proof, "rule symbol coefficients defined proofs")
+    require(goal.relation in (">=", ">"), "expected >= or >")
+    a, b, c = read_list(texts, parse, 3)
+    v = ("symbol", name)
+    require(not any(name in symbols_of(t) for t in (a, b, c)), "the symbol in a coefficient")
+    prove_defined(defined, goal, a, b, c)
+    whole = ("+", ("*", a, v, v), ("*", b, v), c)
+    require(is_identity(subtract(goal.term, whole)), "the term is another one")
+    discriminant = subtract(("*", number(4), a, c), ("*", b, b))
+    premises = [remember(goal, a), remember(goal, c), remember(goal, discriminant)]
+    prove_all(proofs, [*(p._replace(relation=">=") for p in premises[:2]), premises[2]])
+
+
+def prove_roots(proof: Any, goal: Goal) -> None:
+    """A rational function of one symbol keeps its sign between the real roots of N D, which Sturm's theorem counts.
+
+    N/D has the sign of N D where D != 0. Odd factors of N D have no root inside the range; for > and != neither has N,
+    the ends included that belong to the range. The range may be widened to rational ends.
+    """
+    _, low, high = read_fields(proof, "rule from to")
+    (name,) = symbols_of(goal.term)
+    limit, ends = goal.box[name], [None if end is None else read_number(end) for end in (low, high)]
+    exact = [is_end(end, own, sign) for end, own, sign in zip(ends, (limit.low, limit.high), (1, -1), strict=True)]
+    top, bottom = to_fraction(goal.term)
+    require(goal.relation != "=" and top != 0, "expected an inequality")
+    inner = inner_number(*ends)
+    while (top * bottom)(inner) == 0:
+        inner = (inner + (ends[0] if ends[0] is not None else inner - 1)) / 2
+    require(goal.relation == "!=" or (top * bottom)(inner) > 0, "the wrong sign")
+    if goal.relation != "!=":
+        odd = fmpq_poly([1])
+        for factor, power in (top * bottom).numer().factor()[1]:
+            odd = odd * fmpq_poly(factor) if power % 2 else odd
+        require(count_roots(strip(odd, ends), *ends) == 0, "a change of sign")
+    if goal.relation != ">=":
+        while (common := top.gcd(bottom)).degree() > 0:
+            top = top / common
+        top = strip(top, [fmpq(0)]) if limit.nonzero else top
+        left_out = [
+            end for end, same, o in zip(ends, exact, (limit.open_low, limit.open_high), strict=True) if same and o
+        ]
+        top = strip(top, left_out)
+        require(all(end is None or top(end) != 0 for end in ends), "a zero at an end")
+        require(count_roots(top, *ends) == 0, "a zero inside")
+
+
+def is_end(end: fmpq | None, own: Term | None, sign: int) -> bool:
+    """Whether a rational end is that of the range; refused where it may lie inside."""
+    if end is None or own is None:
+        require(end is None, "an end inside the range")
+        return False
+    if is_identity(subtract(own, number(end))):
+        return True
+    require((value_of(own, {}) - arb(end)) * sign > 0, "an end inside the range")
+    return False
+
+
+def inner_number(low: fmpq | None, high: fmpq | None) -> fmpq:
+    if low is not None and high is not None:
+        require(low < high, "an empty range")
+        return (low + high) / 2
+    return fmpq(0) if low is None and high is None else fmpq(low + 1 if low is not None else high - 1)  # type: ignore[operator]
+
+
+def strip(polynomial: fmpq_poly, roots: Iterable[fmpq | None]) -> fmpq_poly:
+    """The polynomial without these roots."""
+    for root in roots:
+        while root is not None and polynomial.degree() > 0 and polynomial(root) == 0:
+            polynomial = polynomial / fmpq_poly([-root, 1])
+    return polynomial
+
+
+def count_roots(polynomial: fmpq_poly, low: fmpq | None, high: fmpq | None) -> int:
+    """Distinct real roots between two numbers that are none: Sturm's theorem."""
+    require(polynomial.degree() <= 200, "a polynomial of a high degree")
+    chain = [polynomial, polynomial.derivative()]
+    while chain[-1] != 0:
+        rest = chain[-2] % chain[-1]
+        scale = max((abs(c) for c in rest.coeffs()), default=fmpq(1))
+        chain.append(rest * (-1 / scale) if rest != 0 else rest)
+
+    def changes(at: Callable[[fmpq_poly], fmpq]) -> int:
+        signs = [value > 0 for value in map(at, chain[:-1]) if value != 0]
+        return sum(a != b for a, b in pairwise(signs))
+
+    def far(p: fmpq_poly, sign: int) -> fmpq:
+        return p.leading_coefficient() * sign ** p.degree()
+
+    first = changes(lambda p: far(p, -1) if low is None else p(low))
+    return first - changes(lambda p: far(p, 1) if high is None else p(high))
+
+
+def to_fraction(term: Term) -> tuple[fmpq_poly, fmpq_poly]:
+    """A term of one symbol as N/D; the divisors of the term do not vanish where D does not."""
+    match term:
+        case ("number", q):
+            return fmpq_poly([q]), fmpq_poly([1])
+        case ("symbol", _):
+            return fmpq_poly([0, 1]), fmpq_poly([1])
+        case ("+", *terms):
+            pairs = map(to_fraction, terms)
+            return reduce(
+                lambda x, y: (x[0] * y[1] + y[0] * x[1], x[1] * y[1]) if x[1] != y[1] else (x[0] + y[0], x[1]), pairs
+            )
+        case ("*", *factors):
+            return reduce(lambda x, y: (x[0] * y[0], x[1] * y[1]), map(to_fraction, factors))
+        case ("^", base, exponent):
+            q, (top, bottom) = constant_of(exponent), to_fraction(base)
+            require(q is not None and q.q == 1 and abs(q) <= 200, "no rational function")
+            n = int(q)  # type: ignore[arg-type]
+            return (top**n, bottom**n) if n >= 0 else (bottom**-n, top**-n)
+    raise Refused("no rational function")
+
+
+RULES: dict[str, Callable[[Any, Goal], None]] = {
+    rule.__name__.removeprefix("prove_"): rule
+    for rule in (
+        prove_equal, prove_rewrite, prove_multiply, prove_exponential, prove_side, prove_cases, prove_split,
+        prove_integers, prove_abstract, prove_dense, prove_identity, prove_zero, prove_solve, prove_squares,
+        prove_derivative, prove_balls, prove_given, prove_range, prove_corners, prove_product, prove_sum, prove_slope,
+        prove_quadratic, prove_roots,
+    )
+}  # fmt: skip
+
+
+def read_point(point: Any, box: dict[str, Range]) -> dict[str, Term]:
+    """A point of a box: a number for every symbol, shown to lie in its range."""
+    require(isinstance(point, dict) and set(point) == set(box), "the point gives every symbol")
+    place = {name: parse(text) for name, text in point.items()}
+    require(all(is_inside(place[name], box[name]) for name in box), "the point may lie outside the box")
+    return place
+
+
+def check_proof(item: Any) -> None:
+    """A statement holds wherever all of it is defined; it is defined at the witness."""
+    _, statement, bits, witness, proofs = read_fields(item, "kind statement bits witness proofs")
+    ctx.prec = read_integer(bits, 53, 20000)
+    goals, terms, box = read_statement(statement)
+    place = {name: evaluate(value, {}, arb) for name, value in read_point(witness, box).items()}
+    require(all(value_of(t, place).is_finite() for t in terms), "the statement may have no value at the witness")
+    prove_all(proofs, goals)
+
+
+FAILURES: dict[str, Callable[[arb], Any]] = {
+    "=": lambda ball: ball > 0 or ball < 0,
+    "!=": lambda ball: ball == 0,
+    ">": lambda ball: ball <= 0,
+    ">=": lambda ball: ball < 0,
+}
+
+
+def check_counterexample(item: Any) -> None:
+    """At a point where all of it is defined a statement fails: by balls, or because a term is exactly 0 there."""
+    _, statement, bits, point, zero = read_fields(item, "kind statement bits point zero")
+    ctx.prec = read_integer(bits, 53, 200000)
+    goals, terms, box = read_statement(statement)
+    place = read_point(point, box)
+    balls = {name: evaluate(value, {}, arb) for name, value in place.items()}
+    require(all(value_of(t, balls).is_finite() for t in terms), "the statement may have no value at the point")
+    if zero is not None:
+        (goal,) = goals
+        at = reduce(lambda t, name: replace(t, ("symbol", name), place[name]), place, goal.term)
+        require(goal.relation in (">", "!="), "the statement allows 0")
+        prove(zero, Goal(at, "=", {}))
+        return
+    values = [(goal.relation, value_of(goal.term, balls)) for goal in goals]
+    require(any(FAILURES[relation](value) for relation, value in values), "the statement is not seen to fail there")
+
+
+def grant(statement: Any, item: Any) -> str:
+    """The verdict that a certificate gives a statement: HOLDS or FAILS; raises Refused where it gives none."""
+    parts = item["of"] if isinstance(item, dict) and item.get("kind") == "all" else [item]
+    statements = statement if isinstance(statement, list) else [statement]
+    require(isinstance(parts, list) and all(isinstance(part, dict) for part in parts), "expected certificates")
+    own = [part.get("statement") for part in parts]
+    if [part.get("kind") for part in parts] == ["counterexample"]:
+        require(own[0] in statements, "the certificate of another statement")
+        check(item)
+        return "FAILS"
+    require(
+        own == statements and all(part.get("kind") == "proof" for part in parts), "the certificate of another statement"
+    )
+    check(item)
+    return "HOLDS"
+
+
+# -- 10. The entry -----------------------------------------------------------------------------------------------------
+EVERY_CHECK: tuple[Callable[[Any], None], ...] = (
+    check_identity, check_exponential, check_rank, check_positivity, check_all, check_gap, check_touch, check_proof,
+    check_counterexample,
+)  # fmt: skip
 KINDS = {check.__name__.removeprefix("check_"): check for check in EVERY_CHECK}
 KINDS |= {"sliver": check_gap, "range": check_touch}
 
