@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from navsym.cli._options import called_options
 from navsym.cli.output import emit, remark, table
 
 if TYPE_CHECKING:
@@ -30,7 +31,8 @@ def command(
     """
     import navsym as nav
 
-    found = nav.locate(config, method, maps=maps, offset_free=offset_free)
+    with called_options("locate"):
+        found = nav.locate(config, method, maps=maps, offset_free=offset_free)
     for line in found.remarks:
         remark(f"note: {line}")
     emit(found.document(), as_json=json_, text=lambda: as_text(found))

@@ -79,10 +79,24 @@ def with_voids(heights: Any, nodata: float | None) -> Array:
     array = numbers("heights", heights, 2, "rows of y by columns of x")
     if nodata is None:
         return all_finite("heights", array)
-    voids = np.isnan(array) if math.isnan(nodata) else array == nodata
+    voids = voids_in(np.asarray(heights), nodata)
     all_finite("heights", np.where(voids, 0.0, array))
     array[voids] = np.nan
     return array
+
+
+def voids_in(heights: NDArray[Any], nodata: float | None) -> NDArray[np.bool_]:
+    """Where a matrix of heights holds ``nodata``, or that number as single precision rounds it.
+
+    A map of float32 holds -9999.9 as -9999.900390625, also after it was widened.
+    """
+    array = heights.astype(np.float64)
+    if nodata is None or math.isnan(nodata):
+        return np.isnan(array) & (nodata is not None)
+    kinds = (np.float32, np.float16) if heights.dtype == np.float16 else (np.float32,)
+    with np.errstate(over="ignore"):
+        rounded = [float(kind(nodata)) for kind in kinds]
+    return np.isin(array, [nodata, *filter(math.isfinite, rounded)])
 
 
 def finite(name: str, value: Any) -> float:
@@ -130,6 +144,8 @@ def count(name: str, value: Any) -> int:
     return int(number)
 
 
+#: Roundings that a coordinate may have seen before it is compared with the border of the map.
+ROUNDINGS = 4.0
 #: Flags of :meth:`TerrainMap.sample`.
 ON_MAP, OFF_MAP, NO_DATA = 0, 1, 2
 
@@ -183,10 +199,12 @@ class TerrainMap:
         return self.x0, self.x0 + (nx - 1) * self.dx, self.y0, self.y0 + (ny - 1) * self.dy
 
     def cells(self, x: Any, y: Any) -> tuple[Array, Array]:
-        """Positions as column and row coordinates, counted in cells from heights[0, 0]."""
-        u = (np.asarray(x, dtype=float) - self.x0) / self.dx
-        w = (np.asarray(y, dtype=float) - self.y0) / self.dy
-        return u, w
+        """Positions as column and row coordinates, counted in cells from heights[0, 0].
+
+        A coordinate that leaves the map by no more than its own rounding is on the border.
+        """
+        ny, nx = self.heights.shape
+        return along_axis(x, self.x0, self.dx, nx - 1), along_axis(y, self.y0, self.dy, ny - 1)
 
     def sample(self, x: Any, y: Any) -> tuple[Array, NDArray[np.int8]]:
         """Bilinear heights at positions of one shape, and a flag for each.
@@ -202,6 +220,15 @@ class TerrainMap:
         heights, flags = self.sample(x, y)
         demand_heights(self, np.broadcast_to(x, heights.shape), np.broadcast_to(y, heights.shape), flags)
         return heights
+
+
+def along_axis(values: Any, first: float, step: float, last: int) -> Array:
+    """Coordinates in cells along an axis from 0 to ``last``; rounding takes none off the border."""
+    values = np.asarray(values, dtype=float)
+    cells: Array = (values - first) / step
+    slack = ROUNDINGS * np.finfo(float).eps * ((np.abs(values) + abs(first)) / step + last)
+    cells = np.where((cells < 0.0) & (cells >= -slack), 0.0, cells)
+    return np.where((cells > last) & (cells <= last + slack), float(last), cells)
 
 
 def bilinear(heights: Array, u: Array, w: Array) -> tuple[Array, NDArray[np.int8]]:

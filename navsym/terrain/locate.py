@@ -14,9 +14,10 @@ from numpy.typing import NDArray
 
 from navsym.claims.display import write_table
 from navsym.core.answers import Answer
-from navsym.core.errors import DomainError, NavsymError
+from navsym.core.errors import DomainError, NavsymError, OutsideMapError
 from navsym.language.files import name_file
 from navsym.language.jsonfile import read_json
+from navsym.language.names import quote
 from navsym.terrain.centre import demand_estimable, one_sided
 from navsym.terrain.configuration import read_search
 from navsym.terrain.heights import ON_MAP, TerrainMap
@@ -151,15 +152,15 @@ def locate(
     Traceback (most recent call last):
     navsym.core.errors.EmptyError: locate: map: heights: expected a value; got none; add it
     """
+    if not isinstance(method, str) or method not in METHODS:
+        message = f"expected one of {', '.join(METHODS)}; got {quote(method)}; choose one"
+        raise DomainError(message, where="locate: method")
     if isinstance(config, str | os.PathLike):
         document, place = read_json(config), name_file(config)
         folder = Path(config).parent if folder is None else folder
     else:
         document, place = config, "locate"
     try:
-        if not isinstance(method, str) or method not in METHODS:
-            message = f"--method: expected one of {', '.join(METHODS)}; got {method!r:.40}; choose one"
-            raise DomainError(message)
         terrain, track, grid = read_search(document, Path(folder or "."), velocity_needed=method != "position")
         return fix_of(terrain, track, grid, method, maps, offset_free)
     except NavsymError as error:
@@ -169,6 +170,9 @@ def locate(
 def fix_of(terrain: TerrainMap, track: Profile, grid: Hypotheses, method: str, maps: bool, offset_free: bool) -> Fix:
     """The answer of one method."""
     found = SEARCHES[method](terrain, track, grid, offset_free)
+    if not math.isfinite(found.criterion):
+        message = "expected a hypothesis on known ground; got none; use a larger map, or smaller steps"
+        raise OutsideMapError(message, where="position, velocity")
     (x, y), velocity = (track.x[-1], track.y[-1]), track.final_velocity
     return Fix(
         method,

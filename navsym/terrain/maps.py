@@ -17,7 +17,7 @@ import warnings
 import zipfile
 import zlib
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -36,13 +36,18 @@ from navsym.core.errors import (
     TooLargeError,
 )
 from navsym.language.files import name_file, read_bytes, read_text
+from navsym.terrain.heights import voids_in
 
 # Plain GeoTIFF files: one band of numbers in strips or tiles, uncompressed or deflated. tifffile reads the tags; the
 # blocks are put together here, so that every offset and size is checked against the file, and the size of the raster
 # against a limit, before anything is allocated. The rest of the format is left to rasterio: :func:`read_plain` returns
 # None. TIFF 6.0; OGC 19-008, GeoTIFF 1.1.
 
-SCALE, TIEPOINT, MATRIX, KEYS, NODATA = 33550, 33922, 34264, 34735, 42113
+SCALE, TIEPOINT, MATRIX, KEYS, METADATA, NODATA = 33550, 33922, 34264, 34735, 42112, 42113
+#: One entry of GDAL's metadata, with the band that it is about and what it says of the samples.
+ITEM = re.compile(r"<Item\s([^>]*)>([^<]*)</Item>")
+#: What a file beside the map may say of its samples.
+SAID = re.compile(r"<(Scale|Offset|UnitType|NoDataValue)\b")
 #: Compressions that are read here: none, and two names of deflate.
 RAW, DEFLATES = 1, (8, 32946)
 #: Entries of a directory, and values of one tag, that a sensible file may have.
@@ -72,17 +77,26 @@ class Transform:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Plain:
-    """One band: heights (rows from the north), transform, value for none, whether in degrees, what is foreign to us."""
+    """One band: heights (rows from the north), transform, value for none, whether in degrees, what is foreign to us.
+
+    factor, offset : heights in metres are ``factor`` times the samples plus ``offset``
+    """
 
     heights: NDArray[Any]
     transform: Transform
     nodata: float | None
     geographic: bool
     foreign: str | None = None
+    factor: float = 1.0
+    offset: float = 0.0
 
 
 class Damaged(ValueError):
     """The file contradicts itself or ends too early."""
+
+
+class Bomb(OverflowError):
+    """A small file that would inflate to a number of bytes, the argument, above the limit."""
 
 
 def read_plain(data: bytes, most: int) -> Plain | None:
@@ -126,7 +140,8 @@ def require_small_directory(data: bytes) -> None:
 
 def plain_page(page: Any, data: bytes, order: str, most: int) -> Plain | None:
     """The band of a page of tifffile, which has read the tags; None when it is not plain."""
-    tags = {tag.code: tag.value for tag in page.tags if tag.code in (SCALE, TIEPOINT, MATRIX, KEYS, NODATA)}
+    wanted = (SCALE, TIEPOINT, MATRIX, KEYS, METADATA, NODATA)
+    tags = {tag.code: tag.value for tag in page.tags if tag.code in wanted}
     if page.samplesperpixel != 1 or page.planarconfig != 1 or page.predictor != 1 or MATRIX in tags:
         return None
     known = page.dtype is not None and (page.sampleformat, page.bitspersample) in SAMPLES
@@ -135,10 +150,48 @@ def plain_page(page: Any, data: bytes, order: str, most: int) -> Plain | None:
     shape = (int(page.imagelength), int(page.imagewidth))
     if min(shape) < 1 or math.prod(shape) > most:
         raise OverflowError(f"shape {shape}")
+    size = math.prod(shape) * np.dtype(page.dtype).itemsize
+    if page.compression != RAW and not is_inflatable(size, len(data)):
+        raise Bomb(size)
     heights = assembled(data, page, shape, np.dtype(page.dtype).newbyteorder(order))  # type: ignore[call-overload]
     keys = geo_keys(tags.get(KEYS, ()))
     transform = placed(tags[SCALE], tags[TIEPOINT], keys.get(RASTER_TYPE) == 2)
-    return Plain(heights, transform, void(tags.get(NODATA, "")), keys.get(MODEL_TYPE) == 2, foreign(keys, transform.a))
+    band = band_items(tags.get(METADATA, ""))
+    strange = foreign(keys, transform.a) or foreign_heights(band.get("unittype", ""))
+    factor, offset = (finite_item(band, name, usual) for name, usual in (("scale", 1.0), ("offset", 0.0)))
+    degrees = keys.get(MODEL_TYPE) == 2
+    return Plain(heights, transform, void(tags.get(NODATA, "")), degrees, strange, factor, offset)
+
+
+def is_inflatable(size: int, compressed: int) -> bool:
+    """Whether an archive of so many bytes may inflate to ``size``: a small one not to many times what it is."""
+    return size <= max(MOST_INFLATED, MOST_TIMES * compressed)
+
+
+def band_items(metadata: Any) -> dict[str, str]:
+    """What GDAL's metadata say of the first band, by role: ``scale``, ``offset``, ``unittype``."""
+    found = {}
+    for attributes, text in ITEM.findall(metadata if isinstance(metadata, str) else metadata.decode("latin-1")):
+        words = dict(re.findall(r"(\w+)\s*=\s*[\"']([^\"']*)[\"']", attributes))
+        if words.get("sample", "0") == "0":
+            found[words.get("role", "").lower()] = text.strip()
+    return found
+
+
+def finite_item(band: dict[str, str], name: str, usual: float) -> float:
+    """A number of the band's metadata; Damaged for another text, and for a scale of zero."""
+    try:
+        value = float(band.get(name, usual))
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value) or (name == "scale" and value == 0.0):
+        raise Damaged(f"{name} {band[name]:.40}")
+    return value
+
+
+def foreign_heights(unit: str) -> str | None:
+    """A unit of heights that is not the metre; None for the metre and for none."""
+    return None if unit.lower() in ("", "m", "metre", "metres", "meter", "meters") else f"heights in {unit:.40}"
 
 
 def assembled(data: bytes, page: Any, shape: tuple[int, int], dtype: np.dtype[Any]) -> NDArray[Any]:
@@ -215,6 +268,8 @@ def void(written: Any) -> float | None:
 
 #: Largest number of heights in a map file, and of bytes in a track file.
 MOST_HEIGHTS, MOST_BYTES = 200_000_000, 64_000_000
+#: Bytes to which an archive may inflate, whatever its size; a larger one to so many times its own bytes.
+MOST_INFLATED, MOST_TIMES = 256_000_000, 50
 #: Largest GeoTIFF, bytes.
 MOST_TIFF_BYTES = 8 * MOST_HEIGHTS
 #: Mean radius of the Earth, metres, for the local frame of a tile.
@@ -299,12 +354,28 @@ def opened_zip(path: Path) -> zipfile.ZipFile:
     try:
         if not path.is_file():
             raise FileNotFoundError
-        return zipfile.ZipFile(path)
+        archive = zipfile.ZipFile(path)
     except FileNotFoundError:
         message = "expected a readable map file; got nothing there; check the path"
         raise NavsymError(message, where=name_file(path), kind="missing-file") from None
     except Exception as reason:  # zipfile has many: BadZipFile, NotImplementedError, struct errors
         raise damaged(path, "an npz archive", reason) from None
+    packed = [member for member in archive.infolist() if member.compress_type != zipfile.ZIP_STORED]
+    size = sum(member.file_size for member in packed)
+    # numpy writes deflate; of the others one block may inflate without a bound
+    if any(member.compress_type != zipfile.ZIP_DEFLATED for member in packed):
+        message = "expected arrays stored or deflated; got another compression; save it by numpy.savez_compressed"
+        raise DomainError(message, where=name_file(path))
+    if not is_inflatable(size, path.stat().st_size):
+        raise bomb(size, path)
+    return archive
+
+
+def bomb(size: int, path: Path) -> TooLargeError:
+    """The error of an archive that would inflate too far; nothing of it has been inflated."""
+    least = f"at most {MOST_INFLATED} bytes, or {MOST_TIMES} times those of the file"
+    message = f"expected {least}, once inflated; got {size}; cut the map, or store it uncompressed"
+    return TooLargeError(message, where=name_file(path))
 
 
 def damaged(path: Path, what: str, reason: object) -> ExpressionSyntaxError:
@@ -424,6 +495,8 @@ def read_geotiff(path: Path) -> Raster:
     data = read_bytes(path, MOST_TIFF_BYTES)
     try:
         plain = read_plain(data, MOST_HEIGHTS)
+    except Bomb as reason:
+        raise bomb(reason.args[0], path) from None
     except OverflowError as reason:
         raise TooLargeError(
             f"expected at most {MOST_HEIGHTS} numbers; got {reason!s:.60}; cut the map", where=name_file(path)
@@ -431,9 +504,31 @@ def read_geotiff(path: Path) -> Raster:
     except Damaged as reason:
         raise damaged(path, "a GeoTIFF", reason) from None
     if plain is not None:
+        refuse_sidecar(path)
         ours(plain.foreign, path)
-        return upright(plain.heights, plain.transform, plain.nodata, plain.geographic, path)
+        raster = upright(plain.heights, plain.transform, plain.nodata, plain.geographic, path)
+        return in_metres(raster, plain.factor, plain.offset)
     return by_rasterio(path)
+
+
+def refuse_sidecar(path: Path) -> None:
+    """Refuse what a file of GDAL beside the map says of its samples, which is not read here."""
+    beside = path.with_name(f"{path.name}.aux.xml")
+    said = SAID.search(read_text(beside, MOST_BYTES)) if beside.is_file() else None
+    if said:
+        message = (
+            f"expected {said[1]} in the map itself; got it in {beside.name[-60:]}; write it there by gdal_translate"
+        )
+        raise DomainError(message, where=name_file(path))
+
+
+def in_metres(raster: Raster, factor: float, offset: float) -> Raster:
+    """Heights from samples: ``factor`` times each plus ``offset``; what means no height stays without one."""
+    if (factor, offset) == (1.0, 0.0):
+        return raster
+    heights = np.array(raster.heights, dtype=np.float64)
+    heights[voids_in(raster.heights, raster.nodata)] = np.nan
+    return replace(raster, heights=factor * heights + offset, nodata=math.nan)
 
 
 def by_rasterio(path: Path) -> Raster:
@@ -449,10 +544,13 @@ def by_rasterio(path: Path) -> Raster:
     try:
         with rasterio.open(path) as source:
             shape, transform = (source.height, source.width), source.transform
-            checked_size((shape, np.dtype(source.dtypes[0])), name_file(path))
+            size = checked_size((shape, np.dtype(source.dtypes[0])), name_file(path))
+            if not is_inflatable(size, path.stat().st_size):
+                raise bomb(size, path)
             geographic = bool(source.crs is not None and source.crs.is_geographic)
-            ours(foreign_to_us(source.crs), path)
-            return upright(source.read(1), transform, source.nodata, geographic, path)
+            ours(foreign_to_us(source.crs) or foreign_heights(source.units[0] or ""), path)
+            raster = upright(source.read(1), transform, source.nodata, geographic, path)
+            return in_metres(raster, source.scales[0], source.offsets[0])
     except NavsymError:
         raise
     except Exception as reason:  # whatever GDAL says about a damaged file

@@ -73,7 +73,8 @@ def search_sequential(
     timed = information(gx, gy, track.elapsed, centred=offset_free)
     instant = float(np.interp(middle, np.arange(track.t.size), track.elapsed))
     centre = timed.centre if improved else instant * np.eye(2)
-    values = velocity_stage(terrain, track, grid, start, centre, offset_free)
+    at = (position.bx + i * position.steps[0], position.by + j * position.steps[1])
+    values = velocity_stage(terrain, track, grid, at, centre, offset_free)
     Vi, Vj, criterion, second = two_lowest(values)
     velocity = np.array([Vi * grid.velocity_step[0], Vj * grid.velocity_step[1]])
     shift = start + (track.elapsed[-1] * np.eye(2) - centre) @ velocity  # terrain_search:14
@@ -86,10 +87,13 @@ def search_sequential(
 
 
 def velocity_stage(
-    terrain: TerrainMap, track: Profile, grid: Hypotheses, start: Array, centre: Array, centred: bool
+    terrain: TerrainMap, track: Profile, grid: Hypotheses, at: tuple[Array, Array], centre: Array, centred: bool
 ) -> Array:
-    """Criteria (Mvx, Mvy) of the velocities, the track turning about ``centre`` (terrain_search:6)."""
-    bx, by = terrain.cells(track.x + start[0], track.y + start[1])
+    """Criteria (Mvx, Mvy) of the velocities, the track turning about ``centre`` (terrain_search:6).
+
+    at : the track of the first stage in cells, by its own expressions: without a velocity the criterion is its
+    """
+    bx, by = at
     spacing = np.array([terrain.dx, terrain.dy])
     cells = centre * spacing[None, :] / spacing[:, None]  # from map units to cells, row by row
     steps = (grid.velocity_step[0] / terrain.dx, grid.velocity_step[1] / terrain.dy)

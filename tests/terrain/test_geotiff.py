@@ -14,6 +14,7 @@ from PIL import Image, TiffImagePlugin
 
 from navsym.cli.main import run
 from navsym.core.errors import NavsymError
+from navsym.terrain.heights import TerrainMap
 from navsym.terrain.maps import Damaged, read_map, read_plain
 
 KINDS = {"u": 1, "i": 2, "f": 3}
@@ -176,6 +177,77 @@ def test_a_block_that_inflates_beyond_its_size_is_cut_there():
     blocks = written({tag: v for tag, v in tags_of(len(bomb)).items()}, [bomb], "<")
     assert read_plain(blocks, 100).heights.shape == (2, 2)
     assert read_plain(data, 100).heights.shape == (2, 2)
+
+
+def metadata(**roles):
+    items = "".join(
+        f'<Item name="{name.upper()}" sample="0" role="{name}">{value}</Item>' for name, value in roles.items()
+    )
+    text = f'<GDALMetadata><Item name="scale" sample="0">77</Item>{items}</GDALMetadata>'
+    return {42112: (2, [text.encode() + b"\0"])}
+
+
+def test_heights_are_the_scale_times_the_samples_plus_the_offset_and_voids_stay_voids(tmp_path):
+    samples = np.array([[3, -100, 7], [5, 0, 1]], "i2")
+    (tmp_path / "m.tif").write_bytes(geotiff(samples, nodata="-100", extra=metadata(scale="0.5", offset="200")))
+    raster = read_map(tmp_path / "m.tif")
+    np.testing.assert_array_equal(raster.heights, [[202.5, 200.0, 200.5], [201.5, np.nan, 203.5]])
+    terrain = TerrainMap(raster.heights, raster.x0, raster.y0, raster.dx, raster.dy, raster.nodata)
+    assert np.isnan(terrain.heights).sum() == 1
+
+
+def test_metadata_without_a_scale_change_nothing(tmp_path):
+    (tmp_path / "m.tif").write_bytes(geotiff(relief(), extra=metadata(unittype="metre", offset="0")))
+    raster = read_map(tmp_path / "m.tif")
+    np.testing.assert_array_equal(raster.heights[::-1], relief())
+    assert raster.heights.dtype == np.float32
+
+
+@pytest.mark.parametrize(
+    ("roles", "kind", "said"),
+    [
+        ({"scale": "ten"}, "syntax", "scale ten"),
+        ({"scale": "0"}, "syntax", "scale 0"),
+        ({"offset": "nan"}, "syntax", "offset nan"),
+        ({"unittype": "US survey foot"}, "domain", "heights in US survey foot"),
+    ],
+)
+def test_samples_that_are_no_metres_are_refused_in_words(tmp_path, roles, kind, said):
+    (tmp_path / "m.tif").write_bytes(geotiff(relief(), extra=metadata(**roles)))
+    with pytest.raises(NavsymError, match=said) as caught:
+        read_map(tmp_path / "m.tif")
+    assert caught.value.kind == kind
+
+
+def test_what_stands_beside_the_map_about_its_samples_is_refused(tmp_path):
+    (tmp_path / "m.tif").write_bytes(geotiff(relief()))
+    beside = tmp_path / "m.tif.aux.xml"
+    beside.write_text("<PAMDataset><PAMRasterBand band='1'><Metadata/></PAMRasterBand></PAMDataset>")
+    assert read_map(tmp_path / "m.tif").heights.shape == relief().shape
+    beside.write_text("<PAMDataset><PAMRasterBand band='1'><Scale>2</Scale></PAMRasterBand></PAMDataset>")
+    with pytest.raises(NavsymError, match="expected Scale in the map itself; got it in m"):
+        read_map(tmp_path / "m.tif")
+
+
+@pytest.mark.parametrize("written", ["-9999.9", "-3.4028235e+38", "-32767.1", "1e-40"])
+def test_a_void_of_single_precision_is_one_although_its_number_is_rounded_there(tmp_path, written):
+    heights = relief()
+    heights[3, 4] = np.float32(written)
+    (tmp_path / "m.tif").write_bytes(geotiff(heights, nodata=written))
+    raster = read_map(tmp_path / "m.tif")
+    for held in (raster.heights, raster.heights.astype(float), raster.heights.tolist()):
+        terrain = TerrainMap(held, raster.x0, raster.y0, raster.dx, raster.dy, raster.nodata)
+        assert np.argwhere(np.isnan(terrain.heights)).tolist() == [[relief().shape[0] - 4, 4]]
+
+
+def test_a_small_file_that_inflates_far_is_refused_before_it_does(tmp_path):
+    """The announced shape counts; not one block is inflated."""
+    block = zlib.compress(b"\0" * 400)
+    tags = tags_of(len(block)) | {256: (4, [12_000]), 257: (4, [12_000]), 278: (4, [12_000])}
+    (tmp_path / "m.tif").write_bytes(written(tags, [block], "<"))
+    with pytest.raises(NavsymError, match=r"once inflated; got 576000000; cut the map") as caught:
+        read_map(tmp_path / "m.tif")
+    assert caught.value.kind == "too-large"
 
 
 def tags_of(size):

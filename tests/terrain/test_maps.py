@@ -78,6 +78,25 @@ def test_a_hostile_header_is_refused_before_memory_is_taken(tmp_path, header, ki
     assert kind_of(announced(tmp_path / "m.npz", header)) == kind
 
 
+def test_a_small_archive_that_inflates_far_is_refused_before_it_does(tmp_path, monkeypatch):
+    shape = (4000, 4000)  # 128 MB each
+    np.savez_compressed(tmp_path / "two.npz", **good(heights=np.zeros(shape), spare=np.zeros(shape)))
+    monkeypatch.setattr(readers_maps, "MOST_INFLATED", 200_000_000)
+    monkeypatch.setattr(zipfile.ZipFile, "open", lambda *_, **__: pytest.fail("a member was opened"))
+    assert kind_of(tmp_path / "two.npz") == "too-large"
+
+
+@pytest.mark.parametrize("method", [zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA])
+def test_a_compression_without_a_bound_is_refused(tmp_path, method):
+    """A few bytes of it may inflate to gigabytes in one step."""
+    with zipfile.ZipFile(tmp_path / "m.npz", "w", method) as archive:
+        for name, value in good().items():
+            buffer = io.BytesIO()
+            np.save(buffer, value)
+            archive.writestr(f"{name}.npy", buffer.getvalue())
+    assert kind_of(tmp_path / "m.npz") == "domain"
+
+
 def test_damaged_and_missing_files_are_named(tmp_path):
     path = write_npz(tmp_path / "m.npz", **good())
     data = path.read_bytes()
