@@ -13,8 +13,9 @@ Lidov 1964; Karlin and Studden, Tchebycheff Systems, chapter 2.
 
 from __future__ import annotations
 
+import itertools
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from html import escape
 from typing import Any
@@ -23,7 +24,9 @@ import sympy as sp
 
 from navsym.claims.display import display_latex, write_card
 from navsym.core.answers import Answer
-from navsym.core.errors import DomainError, ShapeError
+from navsym.core.errors import DomainError, NavsymError, ShapeError
+from navsym.language.printer import to_text
+from navsym.models.certificates import exponential_certificate, rank_certificate
 from navsym.models.linear import LinearModel, observability_matrix
 from navsym.models.model import Model, contents_of, file_in_errors
 from navsym.models.modelfile import BasisFile, ModelFile, piece_model
@@ -117,20 +120,19 @@ class Derivation(Answer):
 
     def document(self, *, latex: bool = False) -> dict[str, Any]:
         """The JSON document of ``navsym derive``; ``latex`` adds the same formulas in LaTeX."""
-        from navsym.models.document import document_of_derivation
-
-        return document_of_derivation(self, latex=latex)
+        data = write_formulas(self, formula_or_relation)
+        return data | ({"latex": write_formulas(self, sp.latex)} if latex else {})
 
     def certificates(self) -> list[Mapping[str, Any]]:
         """Proofs of exp(F t) on each piece, and of the rank of the observability matrix."""
-        from navsym.models.document import derivation_certificates
-
-        return derivation_certificates(self)
+        pairs = zip(self.system, self.transition, strict=True)
+        parts = [exponential_certificate(F, Phi.matrix, Phi.time) for F, Phi in pairs]
+        if self.observability_matrix is not None:
+            parts.append(rank_certificate(self.observability_matrix))
+        return [part for part in parts if part is not None]
 
     def latex(self) -> str:
         """All formulas as LaTeX, one display for each."""
-        from navsym.models.document import latex_displays
-
         return "\n".join(f"\\[\n  {show}\n\\]" for show in latex_displays(self)) + "\n"
 
     def __repr__(self) -> str:
@@ -141,15 +143,11 @@ class Derivation(Answer):
 
     def _repr_html_(self) -> str:
         """A card for notebooks: the name, and every formula on a line of its own."""
-        from navsym.models.document import latex_displays
-
         lines = (escape(display_latex(show)) for show in latex_displays(self))
         return write_card([f"<b>{escape(self.name)}</b>: {escape(', '.join(self.states))}", *lines])
 
     def _repr_latex_(self) -> str:
         """All formulas, one below the other, for notebooks."""
-        from navsym.models.document import latex_displays
-
         return "\n\n".join(f"$$ {show} $$" for show in latex_displays(self))
 
 
@@ -177,12 +175,8 @@ def derive(
     [0, 1]])
     """
     with file_in_errors(model):
-        return derive_contents(contents_of(model, values, parameters, "derive"))
-
-
-def derive_contents(found: ModelFile | BasisFile) -> Derivation:
-    """Like :func:`derive` for the contents of a model file."""
-    return derive_basis(found) if isinstance(found, BasisFile) else derive_model(found)
+        found = contents_of(model, values, parameters, "derive")
+        return derive_basis(found) if isinstance(found, BasisFile) else derive_model(found)
 
 
 def derive_model(found: ModelFile) -> Derivation:
@@ -191,7 +185,8 @@ def derive_model(found: ModelFile) -> Derivation:
     for model in models:
         need_constant(model, matrix_only=True)
     taken = {str(symbol) for symbol in symbols_in_model(found)} | set(found.states)
-    end = found.T if found.T is not None else sp.Symbol(free_name("T", taken), positive=True)
+    free = next(name for zeros in itertools.count() if (name := "T" + zeros * "0") not in taken)
+    end = found.T if found.T is not None else sp.Symbol(free, positive=True)
     tau = sp.Symbol(next(name for name in TIMES if name not in taken), real=True)
     pieces, backward = regressors_of_pieces(found, models, tau, end)
     transition = tuple(transition_matrix(model.F, found.time) for model in models)
@@ -277,13 +272,6 @@ def symbols_in_model(found: ModelFile) -> set[sp.Symbol]:
     return declared.union({found.time}, *matrices, *rows)
 
 
-def free_name(name: str, taken: set[str]) -> str:
-    """The name, with as many zeros behind it as it takes to be new."""
-    while name in taken:
-        name += "0"
-    return name
-
-
 def multipliers_of(count: int, taken: set[str]) -> tuple[sp.Symbol, ...]:
     """x1, x2, ... under a letter that nothing else uses."""
     for letter in MULTIPLIERS:
@@ -292,3 +280,118 @@ def multipliers_of(count: int, taken: set[str]) -> tuple[sp.Symbol, ...]:
             return tuple(sp.Symbol(name, real=True) for name in names)
     letters = ", ".join(MULTIPLIERS)
     raise DomainError(f"parameters: expected a free letter of {letters}; got all of them taken; rename one")
+
+
+# Formulas as text
+
+Writer = Callable[[sp.Basic], str]
+
+
+def formula_or_relation(expression: sp.Basic) -> str:
+    """An expression or relation in the language of files; sums over roots as sympy writes them."""
+    if isinstance(expression, sp.core.relational.Relational):
+        return f"{formula_or_relation(expression.lhs)} {expression.rel_op} {formula_or_relation(expression.rhs)}"
+    try:
+        return to_text(expression)
+    except NavsymError:
+        return str(expression)
+
+
+def write_formulas(derivation: Derivation, write: Writer) -> dict[str, Any]:
+    """All formulas, written one by one."""
+    return {
+        "name": derivation.name,
+        "states": list(derivation.states),
+        "measurements": [
+            {"name": name, "sigma": write(sigma)}
+            for name, sigma in zip(derivation.measurements, derivation.sigmas, strict=True)
+        ],
+        "F": [write_rows(F, write) for F in derivation.system],
+        "transition": [
+            {
+                "time": write(t.time),
+                "matrix": write_rows(t.matrix, write),
+                "characteristic": [
+                    {"factor": write(factor), "multiplicity": times, "form": kind} for factor, times, kind in t.factors
+                ],
+            }
+            for t in derivation.transition
+        ],
+        "regressors": [piece_data(derivation, piece, write) for piece in derivation.pieces],
+        "observability_matrix": (
+            None if derivation.observability_matrix is None else write_rows(derivation.observability_matrix, write)
+        ),
+        "conditions": [condition_data(derivation, c, write) for c in derivation.conditions],
+        "assumptions": [write(relation) for relation in derivation.assumptions],
+    }
+
+
+def write_rows(matrix: sp.MatrixBase, write: Writer) -> list[list[str]]:
+    """A matrix as rows of texts."""
+    return [[write(entry) for entry in row] for row in matrix.tolist()]
+
+
+def piece_data(derivation: Derivation, piece: PieceRegressors, write: Writer) -> dict[str, Any]:
+    """H on one piece, with the ends between which it holds."""
+    return {
+        "variable": write(derivation.time),
+        "from": write(piece.start),
+        "to": write(piece.end),
+        "H": write_rows(piece.rows, write),
+    }
+
+
+def condition_data(derivation: Derivation, conditions: Conditions, write: Writer) -> dict[str, Any]:
+    """The equations of the contacts, for one target."""
+    return {
+        "target": conditions.target,
+        "functional": [write(entry) for entry in conditions.functional],
+        "dual_polynomial": [[write(f) for f in polynomials] for polynomials in conditions.dual],
+        "slope": [[write(f) for f in slopes] for slopes in conditions.slope],
+        "value": write(sp.Add(*(x * p for x, p in zip(derivation.multipliers, conditions.functional, strict=True)))),
+    }
+
+
+# LaTeX
+
+
+def latex_displays(derivation: Derivation) -> list[str]:
+    """Every formula of a derivation in LaTeX, one for each display."""
+    tex = write_formulas(derivation, sp.latex)
+    shows = [f"F = {matrix_in_parentheses(F)}" for F in tex["F"]]
+    shows += [f"\\Phi({t['time']}) = {matrix_in_parentheses(t['matrix'])}" for t in tex["transition"]]
+    for piece in tex["regressors"]:
+        v = piece["variable"]
+        shows += [
+            f"H_{{{j + 1}}}({v}) = {matrix_in_parentheses([[entry] for entry in row])}, "
+            f"\\quad {piece['from']} \\le {v} \\le {piece['to']}"
+            for j, row in enumerate(piece["H"])
+        ]
+    if tex["observability_matrix"]:
+        shows.append(f"\\mathcal{{O}} = {matrix_in_parentheses(tex['observability_matrix'])}")
+    return [*shows, *condition_displays(tex), *tex["assumptions"]]
+
+
+def matrix_in_parentheses(rows: list[list[str]]) -> str:
+    """Rows of LaTeX as a matrix in parentheses."""
+    return "\\begin{pmatrix} " + " \\\\ ".join(" & ".join(row) for row in rows) + " \\end{pmatrix}"
+
+
+def condition_displays(tex: dict[str, Any]) -> list[str]:
+    """Dual polynomials with their bounds and slopes, unbiasedness, and the value of each target."""
+    if not tex["conditions"]:
+        return []
+    shows, first = [], tex["conditions"][0]
+    for piece, duals, slopes in zip(tex["regressors"], first["dual_polynomial"], first["slope"], strict=True):
+        v = piece["variable"]
+        for j, (m, f, slope) in enumerate(zip(tex["measurements"], duals, slopes, strict=True), start=1):
+            shows += [
+                f"f_{{{j}}}({v}) = {f}, \\quad |f_{{{j}}}({v})| \\le {m['sigma']}",
+                f"f_{{{j}}}({v}_k) = \\pm {m['sigma']}, \\quad f_{{{j}}}'({v}) = {slope}",
+            ]
+    v = tex["regressors"][0]["variable"]
+    shows.append(f"\\sum_k \\varphi_k H({v}_k) = P, \\quad \\varphi_k f({v}_k) \\ge 0")
+    return shows + [
+        f"P = {matrix_in_parentheses([[entry] for entry in c['functional']])}, \\quad \\max\\, {c['value']}"
+        for c in tex["conditions"]
+    ]

@@ -17,7 +17,7 @@ from navsym.core.errors import DomainError, DuplicateError, ExpressionSyntaxErro
 from navsym.language.expression import parse, symbol
 from navsym.language.names import RESERVED, join_place, quote
 from navsym.language.values import write_entries, write_value
-from navsym.models.document import rank_certificate
+from navsym.models.certificates import rank_certificate
 from navsym.models.linear import LinearModel, linear_row, observability_matrix
 from navsym.models.model import Model, contents_of, file_in_errors
 from navsym.models.modelfile import ModelFile, linear_model

@@ -19,6 +19,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from navsym.core.errors import TooLargeError
+from navsym.core.rational_functions import powers_apart
 from navsym.observability.linear import Matrix, clear_column, sparsest
 from navsym.observability.reduction import System, components, lies_in_ideal, take_out_regular
 from navsym.observability.ring import Poly, Ring, irreducible_factors
@@ -182,13 +183,9 @@ def replace_in_row(row: list[Poly], f: Poly, place: int, ring: Ring) -> list[Pol
 
 def replace_in_entry(entry: Poly, place: int, value: Poly, factor: int, degree: int, ring: Ring) -> Poly:
     """c^degree times the entry at x = value/c."""
-    parts: dict[int, dict[tuple[int, ...], int]] = {}
-    for powers, coefficient in entry.to_dict().items():
-        rest = tuple(0 if k == place else int(p) for k, p in enumerate(powers))
-        parts.setdefault(int(powers[place]), {})[rest] = int(coefficient)
     total = ring.constant(0)
-    for power, terms in parts.items():
-        total += ring.context.from_dict(terms) * value**power * factor ** (degree - power)
+    for (power,), rest in powers_apart(entry, place).items():
+        total += rest * value**power * factor ** (degree - power)
     return total
 
 

@@ -18,8 +18,8 @@ from typing import Any
 import sympy as sp
 from flint import nmod_mat
 
-from navsym.claims.display import display_latex, latex_of, write_card, write_table
 from navsym.core.errors import DomainError, DuplicateError, EmptyError, TooLargeError, UnobservableError
+from navsym.core.rational_functions import Quotient, cancel_fraction, clear_denominators, multiply_coefficients
 from navsym.models.linear import LinearModel
 from navsym.observability.linear import (
     PRIME,
@@ -32,11 +32,12 @@ from navsym.observability.linear import (
     residue,
     residue_chains,
     residue_rank,
+    scalar_product,
     transposed_times,
     triangular_form,
 )
 from navsym.observability.reduction import krylov_remainder, krylov_rows
-from navsym.observability.ring import Poly, Quotient, Ring
+from navsym.observability.ring import Poly, Ring
 
 # The relation that ends a chain, from the characteristic polynomial.
 #
@@ -67,11 +68,6 @@ def characteristic_coefficients(matrix: Matrix, ring: Ring) -> list[Poly]:
             for i in range(size + 2)
         ]
     return found
-
-
-def scalar_product(row: Sequence[Poly], column: Sequence[Poly], zero: Poly) -> Poly:
-    """Scalar product of polynomial vectors."""
-    return sum((a * b for a, b in zip(row, column, strict=True) if a != 0 and b != 0), zero)
 
 
 def chain_relation(vectors: Matrix, m: int, matrix: Matrix, ring: Ring, point: Sequence[int]) -> list[Poly] | None:
@@ -132,15 +128,13 @@ def monic_factors(coefficients: Sequence[Poly], degree: int, ring: Ring) -> list
             value = [ring.constant(1)]
             for k, (f, _) in zip(powers, parts, strict=True):
                 for _ in range(k):
-                    value = multiply_coefficients(value, f, ring)
+                    value = multiply_coefficients(value, f)
             found.append(value)
     return found
 
 
 def with_variable(ring: Ring) -> tuple[Any, int]:
     """The ring with one generator more, and the place of that generator."""
-    import sympy as sp
-
     wider = Ring.over([*ring.symbols, sp.Dummy("p")])
     return wider.context, len(ring.symbols)
 
@@ -153,15 +147,6 @@ def monic_by_power(f: Poly, place: int, ring: Ring) -> list[Poly]:
         parts[degree - int(powers[place])][tuple(map(int, powers[:place]))] = int(c)
     found = [ring.context.from_dict(part) for part in parts]
     return [-c for c in found] if found[0] == -1 else found
-
-
-def multiply_coefficients(left: Sequence[Poly], right: Sequence[Poly], ring: Ring) -> list[Poly]:
-    """Product of two polynomials given by coefficients."""
-    result = [ring.constant(0)] * (len(left) + len(right) - 1)
-    for i, a in enumerate(left):
-        for j, b in enumerate(right):
-            result[i + j] += a * b
-    return result
 
 
 #: Largest number of states; exact symbolic answers grow fast.
@@ -282,20 +267,8 @@ def need_own_rows(model: LinearModel, ring: Ring) -> None:
 
 def numerators(rows: Sequence[sp.Matrix], ring: Ring) -> tuple[Matrix, Poly]:
     """Entries times their least common denominator, and that denominator."""
-    known: dict[sp.Basic, Quotient] = {}
-    quotients: list[list[Quotient]] = []
-    for row in rows:
-        for entry in row:
-            if entry not in known:
-                known[entry] = ring.quotient(entry)
-        quotients.append([known[entry] for entry in row])
-    bottoms = [q.bottom for q in known.values() if q.bottom != 1]
-    if not bottoms:
-        return [[q.top for q in row] for row in quotients], ring.constant(1)
-    bottom = ring.constant(1)
-    for b in bottoms:
-        bottom = bottom * ring.lowest(b, bottom).top
-    return [[q.top * ring.lowest(bottom, q.bottom).top for q in row] for row in quotients], bottom
+    known = {entry: ring.quotient(entry) for entry in dict.fromkeys(entry for row in rows for entry in row)}
+    return clear_denominators([[known[entry] for entry in row] for row in rows], ring.constant(1))
 
 
 def chain_of(name: str, row: list[Poly], bottom: Poly, matrix: Matrix, clock: Poly, ring: Ring) -> Chain:
@@ -311,7 +284,7 @@ def chain_of(name: str, row: list[Poly], bottom: Poly, matrix: Matrix, clock: Po
         dimension += 1  # the points were unlucky: the relation, not they, decides
     m = dimension
     companion = tuple(  # joint_correction:1.4
-        ring.lowest(c.top * clock**j, c.bottom * clock**m) for j, c in enumerate(coefficients)
+        cancel_fraction(c.top * clock**j, c.bottom * clock**m) for j, c in enumerate(coefficients)
     )
     return Chain(name, vectors[:m], bottom, clock, companion)
 
@@ -400,13 +373,12 @@ def prove_rank(model: LinearModel) -> ProvedRank:
     need_own_rows(model, ring)
     matrix, _ = numerators([model.F[i, :] for i in range(model.size)], ring)
     rows = [numerators([model.H[k, :]], ring)[0][0] for k in range(model.H.rows)]
-    ranks = {point: residue_rank(residue_chains(rows, matrix, point)) for point in integer_points(ring)}
-    point = max(ranks, key=lambda key: ranks[key])
-    if ranks[point] == model.size:
+    rank, point = generic_rank(rows, matrix, ring)
+    if rank == model.size:
         return ProvedRank(model.size, point, "the number of states")
-    if exhibit_unobservable(rows, matrix, ring, ranks[point], point) is not None:
-        count = model.size - ranks[point]
-        return ProvedRank(ranks[point], point, f"{count} hidden directions, invariant and seen by no measurement")
+    if exhibit_unobservable(rows, matrix, ring, rank, point) is not None:
+        count = model.size - rank
+        return ProvedRank(rank, point, f"{count} hidden directions, invariant and seen by no measurement")
     return ProvedRank(chains_of(model).joint_dimension, point, "relations close the staircase")
 
 
@@ -428,7 +400,7 @@ def exhibit_unobservable(rows: Matrix, matrix: Matrix, ring: Ring, rank: int, po
     directions = null_vectors(basis, n, ring)
     zero = ring.constant(0)
     for vector in directions:
-        moved = [sum((g * x for g, x in zip(row, vector, strict=True) if g != 0), zero) for row in matrix]
+        moved = [scalar_product(row, vector, zero) for row in matrix]
         seen = [scalar_product(row, vector, zero) for row in rows] + [scalar_product(row, moved, zero) for row in basis]
         if any(value != 0 for value in seen):
             return None
@@ -471,16 +443,6 @@ class JointObservability:
     unobservable: sp.ImmutableMatrix
     assumptions: tuple[sp.Expr, ...]
     chains: Chains
-
-    def _repr_html_(self) -> str:
-        """Dimensions and companion coefficients as a table, for notebooks."""
-        n, word = len(self.states), "observable" if self.observable else "not observable"
-        rows = [
-            (m.name, f"{m.dimension} of {n}", k, display_latex(latex_of(m.companion)))
-            for m, k in zip(self.measurements, self.staircase, strict=True)
-        ]
-        heads = ("measurement", "observes", "taken", "companion coefficients")
-        return write_card([f"<b>{word}</b>: {self.joint_dimension} of {n} dimensions", write_table(heads, rows)])
 
     @property
     def joint_dimension(self) -> int:
@@ -527,7 +489,7 @@ def chain_rows(vectors: Matrix, chain: Chain, ring: Ring) -> sp.ImmutableMatrix:
     entries = []
     for j, vector in enumerate(vectors):
         scale = chain.bottom * chain.clock**j
-        entries += [ring.expression(ring.lowest(x, scale)) for x in vector]
+        entries += [ring.expression(cancel_fraction(x, scale)) for x in vector]
     return sp.ImmutableMatrix(len(vectors), len(chain.vectors[0]), entries)
 
 

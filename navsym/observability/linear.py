@@ -13,7 +13,8 @@ from dataclasses import dataclass
 
 from flint import nmod_mat
 
-from navsym.observability.ring import Poly, Quotient, Ring, divide_exactly, gcd_all
+from navsym.core.rational_functions import Quotient, cancel_fraction
+from navsym.observability.ring import Poly, Ring, gcd_all
 
 Matrix = list[list[Poly]]
 
@@ -43,7 +44,7 @@ def residue(entry: Poly, point: Sequence[int]) -> int:
 def residue_chains(rows: Matrix, matrix: Matrix, point: Sequence[int]) -> list[list[int]]:
     """All n vectors of every chain a, G^T a, ... at an integer point, one chain after the other."""
     n = len(matrix)
-    residues = nmod_mat(n, n, [x for row in at_point(matrix, point) for x in row], PRIME)
+    residues = nmod_mat(at_point(matrix, point), PRIME)
     found = []
     for start in at_point(rows, point):
         vector = nmod_mat(1, n, start, PRIME)
@@ -55,38 +56,26 @@ def residue_chains(rows: Matrix, matrix: Matrix, point: Sequence[int]) -> list[l
 
 def residue_rank(rows: list[list[int]]) -> int:
     """Rank of a matrix of residues."""
-    return nmod_mat(len(rows), len(rows[0]), [x for row in rows for x in row], PRIME).rank() if rows else 0
+    return nmod_mat(rows, PRIME).rank()
 
 
 def residue_kernel(rows: list[list[int]]) -> tuple[nmod_mat, int]:
     """Directions that the rows do not see, as the first columns of a matrix, and how many they are."""
-    n = len(rows[0])
-    kernel, count = nmod_mat(len(rows), n, [x for row in rows for x in row], PRIME).nullspace()
+    kernel, count = nmod_mat(rows, PRIME).nullspace()
     return kernel, int(count)
 
 
 def residues_on(rows: list[list[int]], kernel: nmod_mat, count: int) -> list[list[int]]:
     """Independent vectors (k, count) that the rows make of the first columns of a kernel."""
-    seen = nmod_mat(len(rows), len(rows[0]), [x for row in rows for x in row], PRIME) * kernel
+    seen = nmod_mat(rows, PRIME) * kernel
     parts = [[int(x) for x in vector[:count]] for vector in seen.tolist()]
     return [parts[k] for k in independent_places(parts)]
 
 
 def independent_places(rows: list[list[int]]) -> list[int]:
     """Places of the rows that are not combinations of earlier ones, modulo the prime."""
-    chosen: list[int] = []
-    reduced: list[tuple[int, list[int]]] = []
-    for place, row in enumerate(rows):
-        rest = list(row)
-        for pivot, other in reduced:
-            if factor := rest[pivot]:
-                rest = [(x - factor * y) % PRIME for x, y in zip(rest, other, strict=True)]
-        first = next((k for k, x in enumerate(rest) if x), None)
-        if first is not None:
-            inverse = pow(rest[first], -1, PRIME)
-            reduced.append((first, [x * inverse % PRIME for x in rest]))
-            chosen.append(place)
-    return chosen
+    columns, rank = nmod_mat([list(column) for column in zip(*rows, strict=True)], PRIME).rref()
+    return [next(place for place in range(len(rows)) if columns[k, place] != 0) for k in range(rank)]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -124,7 +113,7 @@ def pivot_rows(matrix: Matrix, ring: Ring, columns: Sequence[int] | None = None)
                 factor = upper[found.columns[later]]
                 if factor != 0 and rows[later][column] != 0:
                     total = total - factor * rows[later][column]
-            rows[k][column] = divide_exactly(total, upper[found.columns[k]]) if total != 0 else zero
+            rows[k][column] = total / upper[found.columns[k]] if total != 0 else zero
     return Reduced(found.pivot, rows, found.columns, found.sign)
 
 
@@ -180,12 +169,12 @@ def clear_column(rows: Matrix, step: int, column: int, last: Poly) -> None:
         factor = row[column]
         if factor == 0:
             if pivot != last:
-                rows[i] = [x if x == 0 else pivot * x if one else divide_exactly(pivot * x, last) for x in row]
+                rows[i] = [x if x == 0 else pivot * x if one else pivot * x / last for x in row]
             continue
         cleared = [x if x == 0 else pivot * x for x in row]
         for k, y in held:
             cleared[k] = cleared[k] - factor * y
-        rows[i] = cleared if one else [x if x == 0 else divide_exactly(x, last) for x in cleared]
+        rows[i] = cleared if one else [x if x == 0 else x / last for x in cleared]
 
 
 def determinant(matrix: Matrix, ring: Ring) -> Poly:
@@ -196,6 +185,11 @@ def determinant(matrix: Matrix, ring: Ring) -> Poly:
     if len(reduced.rows) < len(matrix):
         return ring.constant(0)
     return reduced.pivot * reduced.sign * permutation_sign(reduced.columns)
+
+
+def scalar_product(row: Sequence[Poly], column: Sequence[Poly], zero: Poly) -> Poly:
+    """Scalar product of polynomial vectors."""
+    return sum((a * b for a, b in zip(row, column, strict=True) if a != 0 and b != 0), zero)
 
 
 def transposed_times(matrix: Matrix, vector: list[Poly], ring: Ring) -> list[Poly]:
@@ -231,10 +225,9 @@ def linear_relation(vectors: Matrix, target: list[Poly], ring: Ring) -> list[Quo
     for row, column in zip(reduced.rows, reduced.columns, strict=True):
         values[column] = row[size]
     for k, t in enumerate(target):
-        total = sum((c * v[k] for c, v in zip(values, vectors, strict=True)), ring.constant(0))
-        if total != reduced.pivot * t:
+        if scalar_product(values, [v[k] for v in vectors], ring.constant(0)) != reduced.pivot * t:
             return None
-    return [ring.lowest(value, reduced.pivot) for value in values]
+    return [cancel_fraction(value, reduced.pivot) for value in values]
 
 
 def null_vectors(rows: Matrix, size: int, ring: Ring) -> Matrix:
@@ -253,7 +246,7 @@ def null_vectors(rows: Matrix, size: int, ring: Ring) -> Matrix:
             vector[column] = -row[free]
         basis.append(primitive_vector(vector, ring))
     for vector in basis:
-        if any(sum((a * x for a, x in zip(row, vector, strict=True)), ring.constant(0)) != 0 for row in rows):
+        if any(scalar_product(row, vector, ring.constant(0)) != 0 for row in rows):
             raise ArithmeticError("null_vectors: a product does not vanish")
     return basis
 
@@ -264,5 +257,5 @@ def primitive_vector(vector: list[Poly], ring: Ring) -> list[Poly]:
     if common == 0:
         return vector
     first = next(x for x in vector if x != 0)
-    sign = -1 if divide_exactly(first, common).leading_coefficient() < 0 else 1
-    return [divide_exactly(x, common) * sign for x in vector]
+    sign = -1 if (first / common).leading_coefficient() < 0 else 1
+    return [x / common * sign for x in vector]

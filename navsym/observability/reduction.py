@@ -15,7 +15,7 @@ from typing import Any
 from flint import fmpz_mpoly_vec
 
 from navsym.observability.linear import Matrix, at_point, independent_places, integer_points, transposed_times
-from navsym.observability.ring import Poly, Ring, divide_exactly, gcd_all, irreducible_factors, is_divisor
+from navsym.observability.ring import Poly, Ring, gcd_all, irreducible_factors, is_divisor
 
 # Common real zeros of polynomials as a list of simple systems.
 #
@@ -38,7 +38,7 @@ def components(polynomials: Sequence[Poly], ring: Ring) -> list[list[Poly]]:
     """
     common = gcd_all(polynomials, ring.constant(0))
     found = hypersurfaces(common, ring)
-    rest = [divide_exactly(p, common) for p in polynomials]
+    rest = [p / common for p in polynomials]
     if not any(p.is_constant() for p in rest):
         found += split_system(rest, ring)
     return irredundant(found)

@@ -1,8 +1,7 @@
 """Polynomials over the integers in the parameters of a model, and their quotients.
 
 The exact observability of a symbolic system needs nothing but sums, products, exact divisions
-and greatest common divisors of polynomials. This file is the only one of the methods that
-touches the polynomial engine; matrices come in as sympy and go out as sympy.
+and greatest common divisors of polynomials. Matrices come in as sympy and go out as sympy.
 """
 
 from __future__ import annotations
@@ -17,6 +16,14 @@ from flint import Ordering, fmpz_mpoly, fmpz_mpoly_ctx
 from sympy.functions.elementary.trigonometric import TrigonometricFunction
 
 from navsym.core.errors import DomainError, TooLargeError
+from navsym.core.rational_functions import (
+    Quotient,
+    cancel_fraction,
+    polynomial_sum,
+    powers_apart,
+    read_arithmetic,
+    replace_square,
+)
 
 # Sines and cosines of parameters as polynomials.
 #
@@ -122,36 +129,17 @@ def multiple_angle(n: int, S: Any, C: Any) -> tuple[Any, Any, Any]:
     return (sine if n > 0 else -sine), cosine, (S * S + C * C) ** abs(n)
 
 
-def whole_angle(powers: tuple[int, int], S: Any, C: Any) -> Any:
-    """2^d S^k C^l for k + l = 2 d, as a polynomial in sin and cos of the doubled angle.
-
-    The letters S and C then stand for those: S^2 = (1 - c)/2, C^2 = (1 + c)/2, S C = s/2.
-    """
-    k, l = powers
-    one = S**0
-    value = (one - C) ** (k // 2) * (one + C) ** (l // 2)
-    return value * S if k % 2 else value
-
-
 Poly = fmpz_mpoly
 
 #: Largest integer exponent that is multiplied out.
 EXPONENT = 64
 
 
-@dataclass(frozen=True, slots=True)
-class Quotient:
-    """``top / bottom`` in lowest terms; the bottom is not the zero polynomial."""
-
-    top: Poly
-    bottom: Poly
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class Ring:
     """Z[symbols], graded reverse lexicographic.
 
-    angles : symbols that stand under sines and cosines; their halves are generators, see ``observability_angles``
+    angles : symbols that stand under sines and cosines; their halves are generators, as explained above
     """
 
     symbols: tuple[sp.Basic, ...]
@@ -196,22 +184,20 @@ class Ring:
 
     def quotient(self, expression: sp.Basic) -> Quotient:
         """A rational function of the symbols, sines and cosines; DomainError for anything else."""
-        if isinstance(expression, sp.Rational):
-            return Quotient(self.constant(int(expression.p)), self.constant(int(expression.q)))
-        if expression in self.places and not isinstance(expression, TrigonometricFunction):
-            return Quotient(self.context.gen(self.places[expression]), self.constant(1))
-        if isinstance(expression, sp.Add):
-            return self.total([self.quotient(part) for part in expression.args])
-        if isinstance(expression, sp.Mul):
-            return self.product([self.quotient(part) for part in expression.args])
-        if isinstance(expression, sp.Pow) and isinstance(expression.exp, sp.Integer):
-            return self.power(self.quotient(expression.base), int(expression.exp))
         if isinstance(expression, TrigonometricFunction):
             return self.trigonometric(expression)
-        raise DomainError(
-            f"expected rational functions of the parameters and their sines and cosines; got "
-            f"{str(expression)[:60]}; name such a function as a parameter of its own"
-        )
+        if expression in self.places:
+            return Quotient(self.context.gen(self.places[expression]), self.constant(1))
+        if isinstance(expression, sp.Pow) and isinstance(expression.exp, sp.Integer) and abs(expression.exp) > EXPONENT:
+            got, remedy = expression.exp, "name the power as a parameter"
+            raise TooLargeError(f"expected exponents up to {EXPONENT}; got {got}; {remedy}")
+        arithmetic = read_arithmetic(expression, self.context, self.quotient)
+        if arithmetic is None:
+            raise DomainError(
+                f"expected rational functions of the parameters and their sines and cosines; got "
+                f"{str(expression)[:60]}; name such a function as a parameter of its own"
+            )
+        return arithmetic
 
     def trigonometric(self, function: TrigonometricFunction) -> Quotient:
         """sin, cos, tan, cot, sec or csc of an angle."""
@@ -225,63 +211,30 @@ class Ring:
             sp.sec: (bottom, cosine),
             sp.csc: (bottom, sine),
         }
-        return self.lowest(*parts[function.func])
-
-    def lowest(self, top: Poly, bottom: Poly) -> Quotient:
-        """The quotient in lowest terms, with a positive leading coefficient below."""
-        if top == 0:
-            return Quotient(top, self.constant(1))
-        if bottom.leading_coefficient() < 0:
-            top, bottom = -top, -bottom
-        if bottom == 1:
-            return Quotient(top, bottom)
-        common = top.gcd(bottom)
-        return Quotient(divide_exactly(top, common), divide_exactly(bottom, common))
-
-    def total(self, parts: Sequence[Quotient]) -> Quotient:
-        """Sum of quotients."""
-        top, bottom = self.constant(0), self.constant(1)
-        for part in parts:
-            if part.bottom == bottom:
-                top = top + part.top
-            else:
-                top, bottom = top * part.bottom + part.top * bottom, bottom * part.bottom
-        return self.lowest(top, bottom)
-
-    def product(self, parts: Sequence[Quotient]) -> Quotient:
-        """Product of quotients."""
-        top, bottom = self.constant(1), self.constant(1)
-        for part in parts:
-            top, bottom = top * part.top, bottom * part.bottom
-        return self.lowest(top, bottom)
-
-    def power(self, base: Quotient, exponent: int) -> Quotient:
-        """Integer power of a quotient, also a negative one."""
-        if abs(exponent) > EXPONENT:
-            raise TooLargeError(f"expected exponents up to {EXPONENT}; got {exponent}; name the power as a parameter")
-        if exponent >= 0:
-            return Quotient(base.top**exponent, base.bottom**exponent)
-        if base.top == 0:
-            raise DomainError("expected a nonzero divisor; got 0; mend the entry")
-        return self.lowest(base.bottom**-exponent, base.top**-exponent)
+        return cancel_fraction(*parts[function.func])
 
     def expression(self, value: Poly | Quotient) -> sp.Expr:
         """Back to sympy, expanded above and below; whole angles wherever they suffice."""
         if isinstance(value, Quotient):
-            top, bottom = value.top, value.bottom
-            for _, cosine in self.pairs():
-                if is_odd(top, cosine) and is_odd(bottom, cosine):
-                    top, bottom = (part * self.context.gen(cosine) for part in (top, bottom))
+            top, bottom = self.even_angles(value)
             return self.expression(top) / self.expression(bottom)
         whole, power, names = self.whole_angles(value)
-        return sp.Add(*(monomial(names, powers, int(c), power) for powers, c in whole.to_dict().items()))
+        return polynomial_sum(names, whole, 2**power)
+
+    def even_angles(self, value: Quotient) -> Quotient:
+        """The quotient with forms of even degree in the halves of every angle, where both were odd."""
+        top, bottom = value
+        for _, cosine in self.pairs():
+            if is_odd(top, cosine) and is_odd(bottom, cosine):
+                top, bottom = (part * self.context.gen(cosine) for part in (top, bottom))
+        return Quotient(top, bottom)
 
     def condition(self, value: Poly) -> sp.Expr:
         """An expression that vanishes where the polynomial does, without a common numerical factor."""
         whole, _, names = self.whole_angles(value)
         plain = whole.primitive()[1]
         plain = -plain if plain.leading_coefficient() < 0 else plain
-        return sp.Add(*(monomial(names, powers, int(c), 0) for powers, c in plain.to_dict().items()))
+        return polynomial_sum(names, plain)
 
     def whole_angles(self, value: Poly) -> tuple[Poly, int, list[sp.Basic]]:
         """(numerator, k, names): the value is numerator/2^k with the generators read as the names.
@@ -300,35 +253,20 @@ class Ring:
 
     def doubled(self, value: Poly, sine: int, cosine: int) -> tuple[Poly, int]:
         """A form of even degree in two generators, times 2^d, in terms of the doubled angle."""
-        groups: dict[tuple[int, int], dict[tuple[int, ...], int]] = {}
-        for powers, coefficient in value.to_dict().items():
-            rest = tuple(0 if k in (sine, cosine) else int(p) for k, p in enumerate(powers))
-            groups.setdefault((int(powers[sine]), int(powers[cosine])), {})[rest] = int(coefficient)
+        groups = powers_apart(value, sine, cosine)
         highest = max((sum(pair) // 2 for pair in groups), default=0)
         S, C = self.context.gen(sine), self.context.gen(cosine)
         total = self.constant(0)
-        for pair, terms in groups.items():
-            scale = 2 ** (highest - sum(pair) // 2)
-            total += self.context.from_dict(terms) * whole_angle(pair, S, C) * scale
-        return self.pythagoras(total, sine, cosine), highest
-
-    def pythagoras(self, value: Poly, sine: int, cosine: int) -> Poly:
-        """The generator ``sine`` to the power one at most, by sine^2 = 1 - cosine^2."""
-        relation = 1 - self.context.gen(cosine) ** 2
-        total = self.constant(0)
-        for powers, coefficient in value.to_dict().items():
-            count, rest = divmod(int(powers[sine]), 2)
-            lowered = tuple(rest if k == sine else int(p) for k, p in enumerate(powers))
-            total += self.context.from_dict({lowered: int(coefficient)}) * relation**count
-        return total
+        for (k, l), rest in groups.items():
+            # S^2 = (1 - c)/2, C^2 = (1 + c)/2, S C = s/2 with s and c in the places of S and C.
+            doubled = (1 - C) ** (k // 2) * (1 + C) ** (l // 2) * S ** (k % 2)
+            total += rest * doubled * 2 ** (highest - (k + l) // 2)
+        return replace_square(total, sine, 1 - C**2), highest
 
     def factored(self, value: Poly | Quotient) -> sp.Expr:
         """Back to sympy as a product of irreducible factors."""
         if isinstance(value, Quotient):
-            top, bottom = value.top, value.bottom
-            for _, cosine in self.pairs():
-                if is_odd(top, cosine) and is_odd(bottom, cosine):
-                    top, bottom = (part * self.context.gen(cosine) for part in (top, bottom))
+            top, bottom = self.even_angles(value)
             return self.factored(top) / self.factored(bottom)
         if value == 0:
             return sp.Integer(0)
@@ -347,20 +285,6 @@ def is_odd(value: Poly, cosine: int) -> bool:
     """True when a form has odd degree in the halves of an angle, given the place of its cosine."""
     powers = next(iter(value.to_dict()), None)
     return powers is not None and (int(powers[cosine - 1]) + int(powers[cosine])) % 2 == 1
-
-
-def monomial(names: Sequence[sp.Basic], powers: Sequence[int], coefficient: int, halvings: int) -> sp.Expr:
-    """One term in sympy, divided by a power of two."""
-    pairs = zip(names, powers, strict=True)
-    return sp.Mul(sp.Rational(int(coefficient), 2**halvings), *(s ** int(power) for s, power in pairs if power))
-
-
-def divide_exactly(top: Poly, bottom: Poly) -> Poly:
-    """Exact quotient; a remainder is a defect of the caller."""
-    quotient, remainder = divmod(top, bottom)
-    if remainder != 0:
-        raise ArithmeticError(f"{bottom} does not divide {top}")
-    return quotient
 
 
 def is_divisor(bottom: Poly, top: Poly) -> bool:

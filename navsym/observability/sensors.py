@@ -27,6 +27,7 @@ from navsym.observability.linear import (
     residue_kernel,
     residue_rank,
     residues_on,
+    scalar_product,
 )
 from navsym.observability.ring import Poly, Ring
 
@@ -131,9 +132,7 @@ def unseen_constants(setting: Setting) -> int:
     kept = [rows[k] for k in independent_places(at_point(rows, setting.point))]
     candidates = null_vectors(kept, setting.size, setting.ring)
     zero = setting.ring.constant(0)
-    return sum(
-        all(sum((a * x for a, x in zip(row, vector, strict=True)), zero) == 0 for row in rows) for vector in candidates
-    )
+    return sum(all(scalar_product(row, vector, zero) == 0 for row in rows) for vector in candidates)
 
 
 def enough_sets(setting: Setting, size: int) -> Iterator[tuple[str, ...]]:

@@ -22,9 +22,10 @@ from dataclasses import dataclass
 import sympy as sp
 
 from navsym.core.errors import DomainError, ShapeError
+from navsym.core.rational_functions import Quotient, cancel_fraction, clear_denominators
 from navsym.observability.chains import Chain, JointObservability, chain_rows, need_observable
 from navsym.observability.linear import Matrix, determinant, linear_relation
-from navsym.observability.ring import Quotient, Ring
+from navsym.observability.ring import Ring
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,7 +142,7 @@ def split_determinant(found: JointObservability, i: int, j: int) -> Quotient:
     """det of the rows a_1 ... a_i, b_1 ... b_j."""
     chains = found.chains
     value = determinant(chains.staircase_vectors((i, j)), chains.ring)
-    return chains.ring.lowest(value, chains.weight((i, j)))
+    return cancel_fraction(value, chains.weight((i, j)))
 
 
 def choose_split(found: JointObservability, i: int | None = None, j: int | None = None) -> Split:
@@ -199,8 +200,8 @@ def restore_denominators(ring: Ring, value: Quotient, k: int, first: Chain, seco
     clock = second.clock
     top, bottom = value.top, value.bottom * clock**j
     if k < i:
-        return ring.lowest(top * first.bottom * clock**k, bottom * second.bottom)
-    return ring.lowest(top * clock ** (k - i), bottom)
+        return cancel_fraction(top * first.bottom * clock**k, bottom * second.bottom)
+    return cancel_fraction(top * clock ** (k - i), bottom)
 
 
 def not_a_basis(found: JointObservability, i: int, j: int) -> DomainError:
@@ -266,11 +267,7 @@ def exact_inverse(name: str, matrix: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
     size = matrix.rows
     ring = Ring.of(matrix)
     columns = [[ring.quotient(matrix[r, c]) for r in range(size)] for c in range(size)]
-    bottom = ring.constant(1)
-    for column in columns:
-        for q in column:
-            bottom = bottom * ring.lowest(q.bottom, bottom).top
-    vectors = [[q.top * ring.lowest(bottom, q.bottom).top for q in column] for column in columns]
+    vectors, bottom = clear_denominators(columns, ring.constant(1))
     if determinant(vectors, ring) == 0:
         raise DomainError(f"{name}: expected an invertible matrix; got determinant 0 for all parameters; change it")
     result = sp.zeros(size, size)

@@ -19,8 +19,9 @@ import sympy as sp
 
 from navsym.core.arrays import Array, as_array, freeze
 from navsym.core.errors import DomainError, ShapeError
+from navsym.core.rational_functions import cancel_fraction, clear_denominators, powers_apart
 from navsym.observability.linear import determinant
-from navsym.observability.ring import Poly, Ring
+from navsym.observability.ring import Ring
 from navsym.observability.splits import Split, TwoStageBlocks
 
 #: Variable of characteristic polynomials.
@@ -62,7 +63,7 @@ def monic_coefficients(polynomial: sp.Expr, degree: int, variable: sp.Symbol = P
     place = ring.symbols.index(variable)
     if quotient.bottom.degrees()[place]:
         raise DomainError(f"poles: expected a polynomial in {variable}; got {polynomial}; remove the divisor")
-    parts = coefficients_by_power(quotient.top, place, ring)
+    parts = {power: part for (power,), part in powers_apart(quotient.top, place).items()}
     found = max(parts, default=0)
     if found != degree:
         raise ShapeError(
@@ -70,17 +71,8 @@ def monic_coefficients(polynomial: sp.Expr, degree: int, variable: sp.Symbol = P
             f"change the polynomial"
         )
     zero = ring.constant(0)
-    values = [ring.lowest(parts.get(k, zero), parts[degree]) for k in range(degree - 1, -1, -1)]
+    values = [cancel_fraction(parts.get(k, zero), parts[degree]) for k in range(degree - 1, -1, -1)]
     return tuple(ring.expression(value) for value in values)
-
-
-def coefficients_by_power(polynomial: Poly, place: int, ring: Ring) -> dict[int, Poly]:
-    """Coefficients of a polynomial by the power of one symbol."""
-    parts: dict[int, dict[tuple[int, ...], int]] = {}
-    for powers, coefficient in polynomial.to_dict().items():
-        rest = tuple(0 if k == place else int(power) for k, power in enumerate(powers))
-        parts.setdefault(int(powers[place]), {})[rest] = int(coefficient)
-    return {power: ring.context.from_dict(terms) for power, terms in parts.items()}
 
 
 def hurwitz_minors(coefficients: Sequence[sp.Expr]) -> tuple[sp.Expr, ...]:
@@ -93,13 +85,9 @@ def hurwitz_minors(coefficients: Sequence[sp.Expr]) -> tuple[sp.Expr, ...]:
     ]
     ring = Ring.of(coefficients)
     quotients = [[ring.quotient(sp.sympify(x, strict=True)) for x in row] for row in entry]
-    bottom = ring.constant(1)
-    for row in quotients:
-        for q in row:
-            bottom = bottom * ring.lowest(q.bottom, bottom).top
-    scaled = [[q.top * ring.lowest(bottom, q.bottom).top for q in row] for row in quotients]
+    scaled, bottom = clear_denominators(quotients, ring.constant(1))
     minors = [determinant([row[: k + 1] for row in scaled[: k + 1]], ring) for k in range(n)]
-    return tuple(ring.factored(ring.lowest(minor, bottom ** (k + 1))) for k, minor in enumerate(minors))
+    return tuple(ring.factored(cancel_fraction(minor, bottom ** (k + 1))) for k, minor in enumerate(minors))
 
 
 def stability(coefficients: Sequence[sp.Expr]) -> bool | None:
@@ -126,8 +114,6 @@ def sign_by_declarations(value: sp.Expr) -> int | None:
         if sign == 0:
             return 0
         if sign is None:
-            if isinstance(exponent, sp.Integer) and int(exponent) % 2 == 0 and base.is_Add:
-                return None
             return None
         total *= sign ** int(exponent) if isinstance(exponent, sp.Integer) else sign
     return total

@@ -18,7 +18,7 @@ from navsym.guaranteed.phases.family import family_of
 from navsym.guaranteed.problem import from_contents
 from navsym.guaranteed.solver import solve
 from navsym.models.modelfile import linear_model, model_from
-from navsym.observability.chains import observe_jointly
+from navsym.observability.answer import observe_linear
 from navsym.report.formula.latex import mathml
 from navsym_papers import alpha_beta_filter
 
@@ -85,7 +85,7 @@ def test_solutions_show_tables(file):
     assert solution.count("<tr>") == 3 and "position" in solution and "speed" in solution
     answer = find_phases(family_of(file, "speed", "T"), sp.Integer(1), sp.Integer(2))._repr_html_()
     assert r"\frac{2}{T}" in answer and "✓ PROVED" in answer
-    seen = observe_jointly(linear_model(file))._repr_html_()
+    seen = observe_linear(linear_model(file))._repr_html_()
     assert "<b>observable</b>: 2 of 2" in seen
 
 

@@ -8,7 +8,7 @@ import pytest
 import sympy as sp
 
 from navsym import checker
-from navsym.models.document import exponential_certificate, rank_certificate
+from navsym.models.certificates import exponential_certificate, rank_certificate
 from navsym.prove.certificates import identity_certificate
 
 t, w, a, b = sp.symbols("t w a b", real=True)

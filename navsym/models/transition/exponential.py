@@ -21,21 +21,24 @@ from typing import Any
 import sympy as sp
 
 from navsym.core.errors import DomainError, TooLargeError
+from navsym.core.rational_functions import (
+    Quotient,
+    add_fractions,
+    cancel_fraction,
+    clear_denominators,
+    multiply_coefficients,
+    polynomial_sum,
+)
 from navsym.models.linear import LinearModel, exact_entry, need_square
 from navsym.models.transition.factors import closed_form
 from navsym.models.transition.pieces import Form, Surd, Wave
 from navsym.models.transition.rings import (
-    Fraction,
     Poly,
     Ring,
-    add_fractions,
-    cancel_fraction,
     companion_inverse,
     monic_quotient,
     monic_remainder,
     mu_coefficients,
-    multiply_monic,
-    polynomial_sum,
     reduce_squares,
     ring_fraction,
     ring_of,
@@ -86,7 +89,8 @@ def transition_matrix(A: Any, time: Any, *, where: Mapping[sp.Symbol, Any] | Non
     moment = exact_entry("time", 0, 0, time)
     refuse_system(system, moment)
     ring = ring_of(system)
-    B, divisor = clear_denominators(ring, system)
+    fractions = [[ring_fraction(ring, entry) for entry in row] for row in system.tolist()]
+    B, divisor = clear_denominators(fractions, ring.one)
     characteristic = characteristic_polynomial(ring, B)
     forms = [
         closed_form(ring, base, times, divisor, moment) for base, times in irreducible_divisors(ring, characteristic)
@@ -160,16 +164,6 @@ def spread_products(entry: sp.Expr) -> sp.Expr:
 # --- from A to polynomials ---------------------------------------------------------------------
 
 
-def clear_denominators(ring: Ring, system: sp.ImmutableMatrix) -> tuple[Matrix, Poly]:
-    """B and d with A = B / d: polynomials, and their least common denominator."""
-    entries = [[cancel_fraction(*ring_fraction(ring, entry)) for entry in row] for row in system.tolist()]
-    divisor = ring.one
-    for row in entries:
-        for _, below in row:
-            divisor = divisor * (below / divisor.gcd(below))
-    return [[above * (divisor / below) for above, below in row] for row in entries], divisor
-
-
 def characteristic_polynomial(ring: Ring, B: Matrix) -> list[Poly]:
     """Coefficients of det(mu - B), lowest first and monic: Faddeev and Leverrier."""
     n = len(B)
@@ -226,7 +220,7 @@ class Term:
 
 def terms_of(ring: Ring, B: Matrix, characteristic: list[Poly], form: Form) -> list[Term]:
     """E_i(B) r_i(B, t) of one factor, one term for each piece of its form."""
-    power = reduce(lambda x, _: multiply_monic(ring, x, form.base), range(form.times), [ring.one])
+    power = reduce(lambda x, _: multiply_coefficients(x, form.base), range(form.times), [ring.one])
     cofactor = monic_quotient(ring, characteristic, power)
     inverse, resultant = companion_inverse(ring, monic_remainder(ring, cofactor, power), power)
     projected = [matrix_polynomial(ring, cofactor, B)]
@@ -235,7 +229,7 @@ def terms_of(ring: Ring, B: Matrix, characteristic: list[Poly], form: Form) -> l
     return [
         Term(piece.waves, combine_matrices(ring, weights, projected), resultant)
         for piece in form.pieces
-        for weights in [monic_remainder(ring, multiply_monic(ring, piece.poly, inverse), power)]
+        for weights in [monic_remainder(ring, multiply_coefficients(piece.poly, inverse), power)]
     ]
 
 
@@ -266,7 +260,7 @@ def assemble_matrix(ring: Ring, n: int, terms: list[Term]) -> tuple[sp.Immutable
 
 def entry_of(ring: Ring, terms: list[Term], i: int, j: int, divisors: dict[str, Poly]) -> sp.Expr:
     """One entry: sum over functions of time and surds of function * surd * rational coefficient."""
-    sums: dict[sp.Expr, dict[sp.Expr, tuple[Fraction, Surd]]] = {}
+    sums: dict[sp.Expr, dict[sp.Expr, tuple[Quotient, Surd]]] = {}
     for term in terms:
         if term.M[i][j].is_zero():
             continue
@@ -284,7 +278,7 @@ def entry_of(ring: Ring, terms: list[Term], i: int, j: int, divisors: dict[str, 
     )
 
 
-def write_constant(ring: Ring, value: Fraction, surd: Surd, divisors: dict[str, Poly]) -> sp.Expr:
+def write_constant(ring: Ring, value: Quotient, surd: Surd, divisors: dict[str, Poly]) -> sp.Expr:
     """value * surd; sqrt(r) / r is written 1 / sqrt(r). The denominator is noted as an assumption."""
     above, below = cancel_fraction(reduce_squares(ring, value[0]), reduce_squares(ring, value[1]))
     divisors.setdefault(str(below), below)
@@ -318,7 +312,7 @@ def list_conditions(ring: Ring, divisors: Iterable[Poly], forms: Iterable[Form])
     }
     for divisor in divisors:
         for base, _ in divisor.factor()[1]:
-            expression = polynomial_sum(ring, base)
+            expression = polynomial_sum(ring.generators, base)
             if expression not in stated:
                 relations.setdefault(sp.Ne(expression, 0))
     if sp.false in relations:

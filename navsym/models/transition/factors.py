@@ -20,6 +20,7 @@ from dataclasses import replace
 import sympy as sp
 
 from navsym.core.errors import DomainError
+from navsym.core.rational_functions import cancel_fraction, multiply_coefficients, polynomial_sum
 from navsym.models.transition.pieces import (
     LAMBDA,
     RATIONAL,
@@ -39,16 +40,7 @@ from navsym.models.transition.pieces import (
     scale_piece,
     wave,
 )
-from navsym.models.transition.rings import (
-    Coefficients,
-    Poly,
-    Ring,
-    cancel_fraction,
-    declared_sign,
-    multiply_monic,
-    polynomial_sum,
-    write_quotient,
-)
+from navsym.models.transition.rings import Coefficients, Poly, Ring, declared_sign, write_quotient
 
 # exp(x t) modulo a quartic that is a quadratic in the square of u = x - alpha.
 #
@@ -85,9 +77,9 @@ def biquadratic(frame: Frame, base: Coefficients, depressed: Coefficients, facto
     else:
         kind, sums, conditions = nested_waves(frame, a, b)
     ring, d, u = frame.ring, frame.d, [-alpha, frame.ring.one]
-    square = multiply_monic(ring, u, u)
+    square = multiply_coefficients(u, u)
     square[0] += a / 2
-    polys = [([ring.one], ring.one), (u, d), (square, d**2), (multiply_monic(ring, square, u), d**3)]
+    polys = [([ring.one], ring.one), (u, d), (square, d**2), (multiply_coefficients(square, u), d**3)]
     pieces = (
         Piece(tuple(replace(w, weight=(w.weight[0], w.weight[1] * divisor)) for w in waves), poly)
         for waves, (poly, divisor) in zip(sums, polys, strict=True)
@@ -171,9 +163,9 @@ def nested_waves(frame: Frame, a: Poly, b: Poly) -> tuple[str, Sums, tuple[sp.Ba
         (wave(ring, C1, over), wave(ring, C2, negative)),
         (nested_wave(*S1, over), nested_wave(*S2, negative)),
     )
-    conditions = [*reality_conditions(ring, delta), sp.Ne(polynomial_sum(ring, b), 0)]
+    conditions = [*reality_conditions(ring, delta), sp.Ne(polynomial_sum(ring.generators, b), 0)]
     if signs[1] == 0 or (signs[1] > 0 and signs[0] == 0):
-        conditions += [sp.Gt(polynomial_sum(ring, a), 0), sp.Gt(polynomial_sum(ring, b), 0)]
+        conditions += [sp.Gt(polynomial_sum(ring.generators, a), 0), sp.Gt(polynomial_sum(ring.generators, b), 0)]
     return ("two frequencies", "exponents and waves", "two exponents")[sum(grows)], sums, tuple(conditions)
 
 
@@ -213,7 +205,7 @@ def linear_form(frame: Frame, base: Coefficients, times: int, factor: sp.Expr) -
     for j in range(times):
         weight = ring.one, frame.d**j * int(sp.factorial(j))
         pieces.append(Piece((Wave(frame.time**j * growth, weight),), power))
-        power = multiply_monic(ring, power, base)
+        power = multiply_coefficients(power, base)
     kind = "constant" if base[0].is_zero() and times == 1 else "exponential"
     return Form(base, times, "polynomial" if base[0].is_zero() and times > 1 else kind, factor, tuple(pieces))
 
@@ -236,10 +228,10 @@ def quadratic_form(frame: Frame, base: Coefficients, times: int, factor: sp.Expr
     u = [-alpha, ring.one]
     pieces, power = [], [ring.one]
     for j, (even, odd) in enumerate(taylor_coefficients(times)):
-        for terms, poly, degree in ((even, power, 2 * j), (odd, multiply_monic(ring, power, u), 2 * j + 1)):
+        for terms, poly, degree in ((even, power, 2 * j), (odd, multiply_coefficients(power, u), 2 * j + 1)):
             combined = tuple(taylor_wave(frame, item, waves, root, D, degree) for item in terms.items())
             pieces.append(Piece(combined, poly))
-        power = multiply_monic(ring, power, base)
+        power = multiply_coefficients(power, base)
     kind = "trigonometric" if oscillates else "hyperbolic"
     grown = tuple(scale_piece(piece, frame.growth(alpha)) for piece in pieces)
     return Form(base, times, kind, factor, grown, reality_conditions(ring, root))

@@ -10,14 +10,13 @@ from dataclasses import dataclass, replace
 
 import sympy as sp
 
+from navsym.core.rational_functions import cancel_fraction, polynomial_sum
 from navsym.models.transition.rings import (
     Coefficients,
     Fraction,
     Poly,
     Ring,
-    cancel_fraction,
     declared_sign,
-    polynomial_sum,
     split_square_root,
     write_quotient,
 )
@@ -111,7 +110,7 @@ def root_of_quotient(frame: Frame, value: Poly, degree: int = 2) -> Root:
 def reality_conditions(ring: Ring, *roots: Root) -> tuple[sp.Basic, ...]:
     """Radicands that must be positive for the roots to be real, unless the declared signs make them so."""
     radicands = [root.surd.radicand for root in roots if root.surd.radicand is not None]
-    return tuple(sp.Gt(polynomial_sum(ring, r), 0) for r in radicands if declared_sign(ring, r) == 0)
+    return tuple(sp.Gt(polynomial_sum(ring.generators, r), 0) for r in radicands if declared_sign(ring, r) == 0)
 
 
 def scale_piece(piece: Piece, growth: sp.Expr) -> Piece:

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from functools import reduce
 from math import lcm
 from typing import Any
 
@@ -19,6 +18,14 @@ from flint import fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
 from navsym.core.errors import DomainError
 from navsym.core.exact import to_rational
+from navsym.core.rational_functions import (
+    Quotient,
+    cancel_fraction,
+    polynomial_sum,
+    powers_apart,
+    read_arithmetic,
+    replace_square,
+)
 
 Poly = fmpq_mpoly
 Fraction = tuple[Poly, Poly]
@@ -114,33 +121,20 @@ def square_of(ring: Ring, generator: sp.Expr) -> Poly | None:
     return None
 
 
-def ring_fraction(ring: Ring, expression: sp.Expr) -> Fraction:
-    """An expression as numerator and denominator, not yet cancelled."""
-    if expression.is_Rational:
-        return ring.context.constant(fmpq(int(expression.p), int(expression.q))), ring.one
-    if isinstance(expression, sp.Add):
-        return reduce(add_fractions, (ring_fraction(ring, part) for part in expression.args))
-    if isinstance(expression, sp.Mul):
-        return reduce(multiply_fractions, (ring_fraction(ring, part) for part in expression.args))
-    if isinstance(expression, sp.Pow) and expression.exp.is_Rational:
-        return power_fraction(ring, expression.base, expression.exp)
+def ring_fraction(ring: Ring, expression: sp.Expr) -> Quotient:
+    """An expression as a quotient of polynomials of the ring."""
+    if isinstance(expression, sp.Pow) and expression.exp.is_Rational and expression.base in ring.powers:
+        place, order = ring.powers[expression.base]
+        generator, times = ring.context.gens()[place], int(expression.exp * order)
+        return Quotient(generator**times, ring.one) if times >= 0 else Quotient(ring.one, generator**-times)
+    arithmetic = read_arithmetic(expression, ring.context, lambda part: ring_fraction(ring, part))
+    if arithmetic is not None:
+        return arithmetic
     quotient = QUOTIENTS.get(type(expression))
     if quotient is not None:
         above, below = (ring.one if f is None else generator_of(ring, f(expression.args[0])) for f in quotient)
-        return above, below
-    return generator_of(ring, expression), ring.one
-
-
-def power_fraction(ring: Ring, base: sp.Expr, exponent: sp.Rational) -> Fraction:
-    """base ** exponent with an integer exponent, or as a power of the generator that is its root."""
-    if exponent.q == 1 and base not in ring.powers:
-        number, divisor = ring_fraction(ring, base)
-        times = int(exponent)
-    else:
-        place, order = ring.powers[base]
-        number, divisor = ring.context.gens()[place], ring.one
-        times = int(exponent * order)
-    return (number**times, divisor**times) if times >= 0 else (divisor**-times, number**-times)
+        return Quotient(above, below)
+    return Quotient(generator_of(ring, expression), ring.one)
 
 
 def generator_of(ring: Ring, base: sp.Expr) -> Poly:
@@ -149,81 +143,28 @@ def generator_of(ring: Ring, base: sp.Expr) -> Poly:
     return ring.context.gens()[place] ** order
 
 
-def add_fractions(a: Fraction, b: Fraction) -> Fraction:
-    """Sum of two fractions in lowest terms."""
-    return cancel_fraction(a[0] * b[1] + b[0] * a[1], a[1] * b[1])
-
-
-def multiply_fractions(a: Fraction, b: Fraction) -> Fraction:
-    """Product of two fractions in lowest terms."""
-    return cancel_fraction(a[0] * b[0], a[1] * b[1])
-
-
-def cancel_fraction(number: Poly, divisor: Poly) -> Fraction:
-    """A fraction in lowest terms, with a primitive denominator whose leading coefficient is 1."""
-    if number.is_zero():
-        return number, divisor.context().constant(1)
-    if not divisor.is_one():
-        common = number.gcd(divisor)
-        number, divisor = number / common, divisor / common
-        lead = divisor.leading_coefficient()
-        number, divisor = number / lead, divisor / lead
-    return number, divisor
-
-
 def reduce_squares(ring: Ring, poly: Poly) -> Poly:
     """The polynomial with every square of a sine or square root replaced by what it equals."""
     for place, square in ring.relations.items():
         if poly.degrees()[place] > 1:
-            poly = replace_square(ring, poly, place, square)
+            poly = replace_square(poly, place, square)
     return poly
-
-
-def replace_square(ring: Ring, poly: Poly, place: int, square: Poly) -> Poly:
-    """Replace the square of one variable by its polynomial."""
-    total, generator = ring.zero, ring.context.gens()[place]
-    for exponents, coefficient in poly.to_dict().items():
-        k = exponents[place]
-        rest = list(exponents)
-        rest[place] = 0
-        term = ring.context.from_dict({tuple(rest): coefficient})
-        total += term * square ** (k // 2) * generator ** (k % 2)
-    return total
-
-
-def constant_value(poly: Poly) -> sp.Rational:
-    """A polynomial without variables as a number."""
-    return sp.S.Zero if poly.is_zero() else to_rational(poly.leading_coefficient())
-
-
-def polynomial_sum(ring: Ring, poly: Poly) -> sp.Expr:
-    """A polynomial without mu as a sympy sum of monomials."""
-    return sp.Add(
-        *(
-            sp.Mul(to_rational(coefficient), *(g**e for g, e in zip(ring.generators, exponents, strict=False) if e))
-            for exponents, coefficient in poly.to_dict().items()
-        )
-    )
 
 
 def factor_polynomial(ring: Ring, poly: Poly) -> sp.Expr:
     """A polynomial as a sympy product of its irreducible factors."""
     if len(poly) <= 1:
-        return polynomial_sum(ring, poly)
+        return polynomial_sum(ring.generators, poly)
     content, factors = poly.factor()
-    return sp.Mul(to_rational(content), *(polynomial_sum(ring, base) ** int(times) for base, times in factors))
+    return sp.Mul(
+        to_rational(content), *(polynomial_sum(ring.generators, base) ** int(times) for base, times in factors)
+    )
 
 
 def write_quotient(ring: Ring, above: Poly, divisor: Poly) -> sp.Expr:
     """A rational function as a sympy expression in factored form."""
-    if divisor.is_one() and above.is_constant():
-        return constant_value(above)
-    top, bottom = cancel_fraction(above, divisor)
-    return (
-        factor_polynomial(ring, top)
-        if bottom.is_one()
-        else factor_polynomial(ring, top) / factor_polynomial(ring, bottom)
-    )
+    top, bottom = (factor_polynomial(ring, part) for part in cancel_fraction(above, divisor))
+    return top / bottom
 
 
 def declared_sign(ring: Ring, poly: Poly) -> int:
@@ -256,7 +197,7 @@ def sign_of_term(ring: Ring, exponents: tuple[int, ...], coefficient: fmpq) -> i
     return result
 
 
-def split_square_root(ring: Ring, number_: Poly, divisor: Poly) -> tuple[Fraction, Poly, sp.Expr]:
+def split_square_root(ring: Ring, number_: Poly, divisor: Poly) -> tuple[Quotient, Poly, sp.Expr]:
     """sqrt(number / divisor) = (rational function) * sqrt(radicand), as (fraction, radicand, sqrt(radicand)).
 
     Squares are taken out without absolute values: the callers use even functions of the root only,
@@ -272,7 +213,7 @@ def split_square_root(ring: Ring, number_: Poly, divisor: Poly) -> tuple[Fractio
     whole, surd = sp.sqrt(to_rational(content)).as_coeff_Mul()
     outer *= fmpq(int(whole.p), int(whole.q))
     radicand = inner * ring_fraction(ring, surd**2)[0]
-    return cancel_fraction(outer, divisor), radicand, surd * sp.sqrt(polynomial_sum(ring, inner))
+    return cancel_fraction(outer, divisor), radicand, surd * sp.sqrt(polynomial_sum(ring.generators, inner))
 
 
 # Polynomials in one variable whose coefficients are polynomials in the parameters.
@@ -285,19 +226,8 @@ Coefficients = list[Poly]
 
 def mu_coefficients(ring: Ring, poly: Poly) -> Coefficients:
     """Coefficients of a polynomial of the ring in powers of its last variable mu."""
-    parts: list[dict[tuple[int, ...], object]] = [{} for _ in range(poly.degrees()[-1] + 1)]
-    for exponents, coefficient in poly.to_dict().items():
-        parts[exponents[-1]][(*exponents[:-1], 0)] = coefficient
-    return [ring.context.from_dict(part) for part in parts]
-
-
-def multiply_monic(ring: Ring, a: Coefficients, b: Coefficients) -> Coefficients:
-    """Product of two polynomials."""
-    result = [ring.zero] * (len(a) + len(b) - 1)
-    for i, x in enumerate(a):
-        for j, y in enumerate(b):
-            result[i + j] = result[i + j] + x * y
-    return result
+    parts = powers_apart(poly, ring.context.nvars() - 1)
+    return [parts.get((power,), ring.zero) for power in range(poly.degrees()[-1] + 1)]
 
 
 def monic_division(ring: Ring, a: Coefficients, b: Coefficients) -> tuple[Coefficients, Coefficients]:
