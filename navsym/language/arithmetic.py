@@ -8,7 +8,6 @@ first, and every result must be a finite real expression.
 from __future__ import annotations
 
 from collections.abc import Callable
-from fractions import Fraction
 
 import sympy as sp
 from sympy.core.evalf import PrecisionExhausted
@@ -64,20 +63,9 @@ def refuse_value(got: str) -> Refusal:
     return Refusal(DomainError, "a finite real value", got, "restrict or correct the expression")
 
 
-def number_from_text(text: str) -> sp.Rational:
-    """A decimal number, exactly: ``"0.1"`` is 1/10 and ``"1e-9"`` is 1/10**9."""
-    return sp.Rational(*Fraction(text).as_integer_ratio())
-
-
 def add_exactly(terms: list[sp.Expr]) -> sp.Expr:
     """The sum."""
     return require_real(sp.Add(*terms)) if len(terms) > 1 else terms[0]
-
-
-def bound_factors(factors: list[sp.Expr]) -> None:
-    """Refuse a product with too many factors before all of them are read."""
-    if len(factors) > FACTORS:
-        raise refuse_size(f"at most {FACTORS} factors in a product", "more")
 
 
 def multiply_exactly(factors: list[sp.Expr]) -> sp.Expr:
@@ -97,6 +85,8 @@ def invert_exactly(divisor: sp.Expr) -> sp.Expr:
 def raise_exactly(base: sp.Expr, exponent: sp.Expr) -> sp.Expr:
     """``base**exponent`` with the size of the result bounded before it is computed."""
     bound_exponent(base, exponent)
+    if exponent.is_zero and sign_of_constant(base) == 0:
+        raise Refusal(DomainError, "a nonzero base", "zero to the power zero", "write the value that is meant")
     if exponent.is_extended_negative and sign_of_constant(base) == 0:
         raise Refusal(DomainError, "a nonzero base", "zero to a negative power", "correct the denominator")
     if exponent.free_symbols and sign_of_constant(base) == -1:

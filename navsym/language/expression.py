@@ -1,4 +1,4 @@
-"""Expressions in files: text to sympy and back, by a grammar of our own.
+"""Expressions in files: text to trees and to sympy, by a grammar of our own.
 
 No string from a file reaches sympy's parsers or ``eval``. Numbers are read exactly. The
 grammar, from the loosest to the tightest binding::
@@ -8,12 +8,16 @@ grammar, from the loosest to the tightest binding::
     unary    = ("+" | "-")* power
     power    = atom ["**" unary]                     right associative, above a leading minus
     atom     = number | name | "pi" | function "(" sum ["," sum] ")" | "(" sum ")"
+
+The tree holds what is written, with these conventions: signs in a row are one, ``-3`` and ``3/4`` at the head of a
+product are numbers, ``-x`` is ``-1*x``, ``x - y`` is ``x + (-1)*y`` and ``x/y`` is ``x*y**(-1)``.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
+from fractions import Fraction
 from typing import NoReturn
 
 import sympy as sp
@@ -26,14 +30,30 @@ from navsym.core.errors import (
     TooLargeError,
     UnknownSymbolError,
 )
-from navsym.language import advice, arithmetic
+from navsym.language import advice
+from navsym.language.algebra import evaluate, evaluate_freely
+from navsym.language.arithmetic import FACTORS, Refusal, refuse_size
+from navsym.language.domains import list_conditions
 from navsym.language.names import FUNCTIONS, RESERVED, check_name, quote
 from navsym.language.printer import to_text
-from navsym.language.tokens import CALLS, DEPTH, Source, Token, tokenize
+from navsym.language.tokens import CALLS, DEPTH, LENGTH, Source, Token, split_tokens, tokenize
+from navsym.language.tree import (
+    ARITY,
+    MINUS_ONE,
+    PI,
+    POWER,
+    PRODUCT,
+    SUM,
+    SYMBOL,
+    Tree,
+    build,
+    build_number,
+    list_names,
+)
 
-ROOT_TOTAL = 3_000  # bits of all numbers under roots in one expression
+__all__ = ["Expr", "Matrix", "Parsed", "Symbol", "parse", "parse_noting", "read_tree", "symbol", "to_text"]
 
-__all__ = ["Expr", "Matrix", "Parsed", "Symbol", "parse", "parse_noting", "symbol", "to_text"]
+LONGEST = 2_000_000  # characters of a text that is read into a tree: nothing is evaluated there
 
 # What the other files of this room need of the algebra, by our names.
 Expr, Symbol, Matrix = sp.Expr, sp.Symbol, sp.ImmutableMatrix
@@ -47,12 +67,14 @@ class Parsed:
     divisors  : what it divides by, to be nonzero
     radicands : what it takes roots and fractional powers of, and 1 - u**2 for asin(u) and acos(u), nonnegative
     arguments : what it takes logarithms and symbolic powers of, to be positive
+    tree      : the text as it was written
     """
 
     expression: sp.Expr
     divisors: tuple[sp.Expr, ...]
-    radicands: tuple[sp.Expr, ...] = ()
-    arguments: tuple[sp.Expr, ...] = ()
+    radicands: tuple[sp.Expr, ...]
+    arguments: tuple[sp.Expr, ...]
+    tree: Tree
 
 
 def parse(text: str, symbols: Mapping[str, sp.Symbol], *, where: str = "") -> sp.Expr:
@@ -69,22 +91,55 @@ def parse(text: str, symbols: Mapping[str, sp.Symbol], *, where: str = "") -> sp
 
 def parse_noting(text: str, symbols: Mapping[str, sp.Symbol], *, where: str = "") -> Parsed:
     """Like :func:`parse`, together with every symbolic divisor and radicand that the text has."""
+    reader = start_reading(text, symbols, where, LENGTH)
+    try:
+        tree = reader.whole()
+        values = evaluate(tree, symbols, reader.refuse_part)
+        if values[tree].has(sp.I, sp.nan, sp.zoo, sp.oo, -sp.oo, sp.Float):
+            reader.source.fail(0, "a finite real value", "another one", "correct the expression", DomainError)
+        divisors, radicands, arguments = list_needs(tree, values)
+        return Parsed(values[tree], divisors, radicands, arguments, tree)
+    except RecursionError:
+        reader.source.fail(0, "less nesting", "an expression too deep to build", "give parts a name", TooLargeError)
+
+
+def list_needs(tree: Tree, values: dict[Tree, sp.Expr]) -> list[tuple[sp.Expr, ...]]:
+    """What must be nonzero, nonnegative and positive, unless it is a constant or its symbols were declared so."""
+    found: dict[str, dict[sp.Expr, None]] = {"!= 0": {}, ">= 0": {}, "> 0": {}}
+    for part, relation in list_conditions(tree):
+        if list_names(part):
+            value = evaluate_freely(part, values)
+            declared = {"!= 0": False, ">= 0": value.is_nonnegative, "> 0": value.is_positive}[relation]
+            if value.free_symbols and not declared:
+                found[relation][value] = None
+    return [tuple(some) for some in found.values()]
+
+
+def read_tree(text: str, names: Collection[str] | None = None, *, where: str = "") -> Tree:
+    """The tree of a text; nothing in it is evaluated.
+
+    names : the declared names; None takes every name that has no other meaning
+
+    Raises EmptyError, ExpressionSyntaxError, UnknownSymbolError or TooLargeError (caps on length, depth and digits).
+
+    >>> read_tree("0**0 + 1/(x - x)", {"x"})
+    <0**0 + 1/(x - x)>
+    """
+    return start_reading(text, names, where, LONGEST).whole()
+
+
+def start_reading(text: str, names: Collection[str] | None, where: str, length: int) -> Reader:
+    """A reader at the beginning of a text, which must be one."""
     if not isinstance(text, str):
         raise ExpressionSyntaxError(
             f'expected an expression as text; got {quote(text)}; put it in quotes, such as "1/2"', where=where
         )
-    for name in RESERVED & symbols.keys():
+    for name in RESERVED.intersection(names or ()):
         check_name(name, where=where)
     if not text.strip():
         raise EmptyError('expected an expression; got an empty text; write one, such as "0"', where=where)
     source = Source(text, where)
-    reader = Reader(source, tokenize(source), symbols)
-    try:
-        whole = reader.whole()
-        noted = (reader.divisors, reader.radicands, reader.arguments)
-        return Parsed(whole, *(tuple(dict.fromkeys(found)) for found in noted))
-    except RecursionError:
-        source.fail(0, "less nesting", "an expression too deep to build", "give parts a name", TooLargeError)
+    return Reader(source, split_tokens(source, length), names)
 
 
 def symbol(
@@ -103,220 +158,216 @@ def symbol(
 
 @dataclass(slots=True, eq=False)
 class Reader:
-    """Recursive descent over the tokens; sums and products are built in one piece each."""
+    """Recursive descent over the tokens; sums and products are built in one piece each.
+
+    tokens : the texts of the tokens, an empty one at the end
+    leaves : text of a token -> the number or symbol that it means
+    places : part -> the token at which it was written first
+    """
 
     source: Source
-    tokens: list[Token]
-    symbols: Mapping[str, sp.Symbol]
+    tokens: list[str]
+    names: Collection[str] | None
     position: int = 0
     depth: int = 0
     calls: int = 0
-    root_bits: int = 0
-    divisors: list[sp.Expr] = field(default_factory=list)
-    radicands: list[sp.Expr] = field(default_factory=list)
-    arguments: list[sp.Expr] = field(default_factory=list)
+    leaves: dict[str, Tree] = field(default_factory=lambda: {"pi": PI})
+    places: dict[Tree, int] = field(default_factory=dict)
 
-    @property
-    def token(self) -> Token:
-        """The token that is read next; the last one marks the end."""
-        return self.tokens[self.position]
+    def make(self, at: int, head: str, *args: Tree) -> Tree:
+        """A part, with its place."""
+        part = build(head, args)
+        self.places.setdefault(part, at)
+        return part
 
-    def take(self, *marks: str) -> Token | None:
-        """The next token if it is one of these marks."""
-        token = self.token
-        if token.kind != "mark" or token.text not in marks:
-            return None
-        self.position += 1
-        return token
-
-    def whole(self) -> sp.Expr:
-        """The text as one expression, up to its end."""
+    def whole(self) -> Tree:
+        """The text as one tree, up to its end."""
         value = self.sum()
-        if self.token.kind != "end":
+        if self.tokens[self.position]:
             self.unexpected("an operator or the end")
-        if value.has(sp.I, sp.nan, sp.zoo, sp.oo, -sp.oo, sp.Float):
-            self.source.fail(0, "a finite real value", "another one", "correct the expression", DomainError)
         return value
 
-    def sum(self) -> sp.Expr:
-        """Terms, added in one step."""
-        at, terms = self.token.start, [self.product()]
-        while mark := self.take("+", "-"):
-            term = self.product()
-            terms.append(term if mark.text == "+" else self.minus(mark.start, term))
-        return self.apply(at, arithmetic.add_exactly, terms)
+    def sum(self) -> Tree:
+        """Terms with their signs."""
+        at, tokens = self.position, self.tokens
+        terms = [self.product(False)]
+        while (mark := tokens[self.position]) in ("+", "-"):
+            self.position += 1
+            terms.append(self.product(mark == "-"))
+        return self.make(at, SUM, *terms) if len(terms) > 1 else terms[0]
 
-    def product(self) -> sp.Expr:
-        """Factors and inverted divisors, multiplied in one step; a leading minus is a factor."""
-        at, sign = self.token.start, self.signs()
-        factors = [self.power()] if sign > 0 else [sp.S.NegativeOne, self.power()]
-        while mark := self.take("*", "/"):
-            factor = self.unary()
-            factors.append(factor if mark.text == "*" else self.inverse(mark.start, factor))
-            self.apply(mark.start, arithmetic.bound_factors, factors)
-        return self.apply(at, arithmetic.multiply_exactly, factors)
+    def product(self, minus: bool) -> Tree:
+        """Factors and inverted divisors; a minus before them is a factor."""
+        at, tokens, leaves = self.position, self.tokens, self.leaves
+        factors = self.signed(minus)
+        while (mark := tokens[self.position]) in ("*", "/"):
+            mark_at = self.position
+            self.position += 1
+            factor = leaves.get(tokens[mark_at + 1])
+            if factor is None or tokens[mark_at + 2] in ("**", "("):
+                signed = self.signed(False, head=False)
+                factor = signed[0] if len(signed) == 1 else self.make(mark_at + 1, PRODUCT, *signed)
+            else:
+                self.position += 1
+            factors.append(factor if mark == "*" else self.make(mark_at, POWER, factor, MINUS_ONE))
+            if len(factors) > FACTORS:
+                self.refuse(mark_at, refuse_size(f"at most {FACTORS} factors in a product", "more"))
+        return self.make(at, PRODUCT, *factors) if len(factors) != 1 else factors[0]
 
-    def inverse(self, at: int, divisor: sp.Expr) -> sp.Expr:
-        """One over a divisor, which is noted."""
-        if divisor.free_symbols:
-            self.divisors.append(divisor)
-        return self.apply(at, arithmetic.invert_exactly, divisor)
+    def signed(self, minus: bool, head: bool = True) -> list[Tree]:
+        """The first factors behind signs, a minus as a number: none for the 1 of ``1/x``, one for ``-3``."""
+        while (mark := self.tokens[self.position]) in ("+", "-"):
+            self.position += 1
+            minus ^= mark == "-"
+        token, following = self.tokens[self.position : self.position + 2] if mark else (mark, mark)
+        if not token[:1].isdigit() or following == "**":
+            return [MINUS_ONE, self.power()] if minus else [self.power()]
+        at, value = self.position, self.number(token)
+        if head and following == "/" and (divisor := self.literal_divisor()):
+            self.position = at + 3
+            value = value / divisor
+        elif head and following == "/" and value == 1 and not minus:
+            self.position += 1
+            return []
+        else:
+            self.position += 1
+        number = build_number(-value if minus else value)
+        self.places.setdefault(number, at)
+        return [number]
 
-    def unary(self) -> sp.Expr:
-        """A power with signs before it."""
-        at, sign = self.token.start, self.signs()
-        value = self.power()
-        return value if sign > 0 else self.minus(at, value)
+    def literal_divisor(self) -> Fraction | None:
+        """The number behind ``/`` when its digits alone are the divisor, and it is not zero."""
+        token, following = self.tokens[self.position + 2 : self.position + 4]
+        return self.number(token) if token[:1].isdigit() and following != "**" else None
 
-    def signs(self) -> int:
-        """The product of the signs that stand here."""
-        sign = 1
-        while mark := self.take("+", "-"):
-            sign = -sign if mark.text == "-" else sign
-        return sign
+    def number(self, token: str) -> Fraction:
+        """The value of the digits."""
+        leaf = self.leaves.get(token)
+        if leaf is None:
+            leaf = self.leaves[token] = build_number(token)
+        value: Fraction = leaf.args[0]
+        return value
 
-    def minus(self, at: int, value: sp.Expr) -> sp.Expr:
-        """The value with the other sign."""
-        return self.apply(at, arithmetic.multiply_exactly, [sp.S.NegativeOne, value])
-
-    def power(self) -> sp.Expr:
-        """An atom, raised or not; a base under a negative exponent is a divisor."""
+    def power(self) -> Tree:
+        """An atom, raised or not."""
         base = self.atom()
-        mark = self.take("**")
-        if mark is None:
+        if self.tokens[self.position] != "**":
             return base
-        exponent = self.nested(mark, self.unary)
-        if exponent.is_extended_negative is not False and base.free_symbols and exponent.is_number:
-            self.divisors.append(base)
-        self.count_roots(mark, base, exponent)
-        return self.apply(mark.start, arithmetic.raise_exactly, base, exponent)
-
-    def count_roots(self, mark: Token, base: sp.Expr, exponent: sp.Expr) -> None:
-        """The algebra factors numbers under roots, again in every product: their total is bounded."""
-        if exponent.is_integer is not True:
-            self.root_bits += arithmetic.number_bits(base)
-            note = self.note_radicand if exponent.is_number else self.note_argument
-            note(base)
-        if self.root_bits > ROOT_TOTAL:
-            got, remedy = f"more, with {self.root_bits} bits", "split the expression"
-            self.source.fail(mark.start, f"at most {ROOT_TOTAL} bits under roots", got, remedy, TooLargeError)
-
-    def atom(self) -> sp.Expr:
-        """A number, a name, a call or a sum in parentheses."""
-        token = self.token
+        at = self.position
         self.position += 1
-        if token.kind == "number":
-            return self.apply(token.start, arithmetic.number_from_text, token.text)
-        if token.kind == "name":
-            return self.name(token)
-        if token.text == "(":
-            value = self.nested(token, self.sum)
-            self.close(token)
+        return self.make(at, POWER, base, self.nested(at, self.unary))
+
+    def unary(self) -> Tree:
+        """A power with signs before it."""
+        at, factors = self.position, self.signed(False, head=False)
+        return self.make(at, PRODUCT, *factors) if len(factors) > 1 else factors[0]
+
+    def atom(self) -> Tree:
+        """A number, a name, a call or a sum in parentheses."""
+        at, token = self.position, self.tokens[self.position]
+        if token == "(":
+            self.position += 1
+            value = self.nested(at, self.sum)
+            self.close(at)
             return value
-        self.position -= 1
+        if token[:1].isdigit():
+            self.position += 1
+            self.number(token)
+            return self.leaves[token]
+        if token[:1].isalpha():
+            self.position += 1
+            return self.name(at, token)
         self.unexpected("a number, a name, a function or (")
 
-    def name(self, token: Token) -> sp.Expr:
+    def name(self, at: int, token: str) -> Tree:
         """A function, pi, or what the caller declared."""
-        if token.text in FUNCTIONS:
-            return self.function(token)
-        if token.text == "pi":
-            return sp.pi
-        if token.text not in self.symbols:
-            got, remedy = quote(token.text), advice.advise_on_name(token.text, self.symbols)
-            self.source.fail(token.start, "a declared name or a function", got, remedy, UnknownSymbolError)
-        if self.token.kind == "mark" and self.token.text == "(":
-            remedy = f"write a product with *: {token.text}*(...)"
-            self.source.fail(token.start, "an operator after a name", f"{token.text}(", remedy)
-        return self.symbols[token.text]
+        if token in FUNCTIONS:
+            return self.function(at, token)
+        if token == "pi":
+            return PI
+        if self.names is not None and token not in self.names:
+            got, remedy = quote(token), advice.advise_on_name(token, self.names)
+            self.fail(at, "a declared name or a function", got, remedy, UnknownSymbolError)
+        if self.tokens[self.position] == "(":
+            remedy = f"write a product with *: {token}*(...)"
+            self.fail(at, "an operator after a name", f"{token}(", remedy)
+        return self.leaves.setdefault(token, build(SYMBOL, (token,)))
 
-    def function(self, token: Token) -> sp.Expr:
+    def function(self, at: int, name: str) -> Tree:
         """A call with as many arguments as the function takes."""
-        wanted = 2 if token.text == "atan2" else 1
-        opening = self.take("(")
-        if opening is None and self.token.text == "**":
-            self.unexpected(f"( after {token.text}")
-        if opening is None:
-            got = "the end of the text" if self.token.kind == "end" else quote(self.token.text)
-            remedy = f"put what it is taken of in parentheses: {token.text}(...)"
-            self.source.fail(self.token.start, f"( after {token.text}", got, remedy)
+        opening = self.position
+        self.open(name)
         self.calls += 1
         if self.calls > CALLS:
             got, remedy = "more", "give parts a name"
-            self.source.fail(token.start, f"functions nested at most {CALLS} deep", got, remedy, TooLargeError)
+            self.fail(at, f"functions nested at most {CALLS} deep", got, remedy, TooLargeError)
         arguments = [self.nested(opening, self.sum)]
-        while len(arguments) < wanted and self.take(","):
+        while len(arguments) < ARITY[name] and self.tokens[self.position] == ",":
+            self.position += 1
             arguments.append(self.nested(opening, self.sum))
-        if len(arguments) < wanted:
-            self.unexpected(f"a comma, since {token.text} takes {wanted} arguments,")
-        if self.token.text == "," and self.token.kind == "mark":
-            number = "one argument" if wanted == 1 else "two arguments"
-            remedy = f"write a decimal point, or remove the rest: {token.text} takes {number}"
-            self.source.fail(self.token.start, f") after the last argument of {token.text}", "','", remedy)
+        if len(arguments) < ARITY[name]:
+            self.unexpected(f"a comma, since {name} takes {ARITY[name]} arguments,")
+        if self.tokens[self.position] == ",":
+            number = "one argument" if ARITY[name] == 1 else "two arguments"
+            remedy = f"write a decimal point, or remove the rest: {name} takes {number}"
+            self.fail(self.position, f") after the last argument of {name}", "','", remedy)
         self.close(opening)
         self.calls -= 1
-        if token.text == "sqrt":
-            self.count_roots(token, arguments[0], sp.S.Half)
-        self.note_domain(token.text, arguments)
-        return self.apply(token.start, arithmetic.call_function, token.text, arguments)
+        return self.make(at, name, *arguments)
 
-    def note_domain(self, name: str, arguments: list[sp.Expr]) -> None:
-        """Remember where the function exists."""
-        if name == "log":
-            self.note_argument(arguments[0])
-        if name in ("asin", "acos"):
-            self.note_radicand(1 - arguments[0] ** 2)
-        if name in ("tan", "cot", "sec", "csc"):
-            self.note_pole(name, arguments[0])
-        if name == "atan2" and any(part.free_symbols for part in arguments):
-            self.divisors.append(sp.Add(*(part**2 for part in arguments)))
+    def open(self, name: str) -> None:
+        """The parenthesis behind the name of a function."""
+        token = self.tokens[self.position]
+        if token == "**":
+            self.unexpected(f"( after {name}")
+        if token != "(":
+            got = quote(token) if token else "the end of the text"
+            remedy = f"put what it is taken of in parentheses: {name}(...)"
+            self.fail(self.position, f"( after {name}", got, remedy)
+        self.position += 1
 
-    def note_argument(self, base: sp.Expr) -> None:
-        """Remember what must be positive, unless its symbols were declared so."""
-        if base.free_symbols and not base.is_positive:
-            self.arguments.append(base)
-
-    def note_radicand(self, base: sp.Expr) -> None:
-        """Remember what must be nonnegative, unless its symbols were declared so."""
-        if base.free_symbols and not base.is_nonnegative:
-            self.radicands.append(base)
-
-    def note_pole(self, name: str, argument: sp.Expr) -> None:
-        """tan and sec divide by the cosine, cot and csc by the sine."""
-        divisor = sp.cos(argument) if name in ("tan", "sec") else sp.sin(argument)
-        if divisor.free_symbols:
-            self.divisors.append(divisor)
-
-    def close(self, opening: Token) -> None:
+    def close(self, opening: int) -> None:
         """The parenthesis that ends what ``opening`` began."""
-        if not self.take(")"):
-            self.unexpected(f") to close the ( of {self.source.place(opening.start).rpartition(', ')[2]}")
+        if self.tokens[self.position] != ")":
+            place = self.source.place(self.token_at(opening).start).rpartition(", ")[2]
+            self.unexpected(f") to close the ( of {place}")
+        self.position += 1
 
-    def nested(self, token: Token, rule: Callable[[], sp.Expr]) -> sp.Expr:
+    def nested(self, at: int, rule: Callable[[], Tree]) -> Tree:
         """A rule one level deeper."""
         self.depth += 1
         if self.depth > DEPTH:
-            got, remedy = "more", "give parts a name"
-            self.source.fail(token.start, f"at most {DEPTH} levels", got, remedy, TooLargeError)
+            self.fail(at, f"at most {DEPTH} levels", "more", "give parts a name", TooLargeError)
         value = rule()
         self.depth -= 1
         return value
 
+    # -- errors, with the places of their tokens -----------------------------------------
+
+    def token_at(self, at: int) -> Token:
+        """A token with its place, which reading without errors does not need."""
+        return tokenize(self.source, LONGEST)[at]
+
+    def fail(
+        self, at: int, expected: str, got: str, remedy: str, error: type[NavsymError] = ExpressionSyntaxError
+    ) -> NoReturn:
+        """Raise the error at a token."""
+        self.source.fail(self.token_at(at).start, expected, got, remedy, error)
+
     def unexpected(self, expected: str) -> NoReturn:
         """Refuse the token that stands here."""
-        token = self.token
+        token = self.token_at(self.position)
         got = "the end of the text" if token.kind == "end" else quote(token.text)
         implicit = token.kind in ("number", "name") or token.text == "("
         self.source.fail(token.start, expected, got, advice.advise_on_token(self.source.text, token.start, implicit))
 
-    def apply(self, at: int, step: Callable[..., sp.Expr], *arguments: object) -> sp.Expr:
-        """One step of arithmetic, with its refusal placed in the text."""
-        try:
-            return step(*arguments)
-        except arithmetic.Refusal as refusal:
-            self.source.fail(at, refusal.expected, refusal.got, refusal.remedy, refusal.error)
-        except (NavsymError, RecursionError, MemoryError):
-            raise
-        except Exception as failure:  # sympy's own evaluation gave up on an exotic constant
-            got = f"one on which the algebra stops ({type(failure).__name__})"
-            self.source.fail(at, "a value that exists exactly", got, "simplify it", DomainError)
+    def refuse_part(self, part: Tree, refusal: Refusal) -> NoReturn:
+        """Place a refusal of the algebra where the part was written first."""
+        at = self.places[part]
+        if refusal.expected == "a nonzero divisor" and self.tokens[at] == "**":
+            refusal = Refusal(refusal.error, "a nonzero base", "zero to a negative power", refusal.remedy)
+        self.refuse(at, refusal)
+
+    def refuse(self, at: int, refusal: Refusal) -> NoReturn:
+        """Place a refusal at a token."""
+        self.fail(at, refusal.expected, refusal.got, refusal.remedy, refusal.error)

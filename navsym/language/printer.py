@@ -1,29 +1,49 @@
-"""Expressions back to text: the inverse of the parser, and the same as Python source."""
+"""Trees written down: as text of the language, as Python source and in LaTeX, by one rule for brackets.
+
+A writer turns every part into text together with how tightly the text binds; what binds less tightly than its place
+asks stands in brackets. The text of the language is read back as the same tree.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import NoReturn
+import re
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from typing import Any, NamedTuple
 
 import sympy as sp
 
-from navsym.core.errors import ExpressionSyntaxError, TooLargeError
-from navsym.language.arithmetic import BITS, BUILDERS, number_bits
-from navsym.language.names import check_name, quote
+from navsym.core.errors import TooLargeError
+from navsym.language.algebra import from_sympy
+from navsym.language.arithmetic import BITS
+from navsym.language.tree import MINUS_ONE, NUMBER, ONE, POWER, PRODUCT, SUM, SYMBOL, Tree, build, fold_tree
 
-SUM, PRODUCT, POWER, ATOM = range(4)
+ENCLOSURES = {"sqrt": r"\sqrt{{{}}}", "abs": r"\left|{}\right|", "exp": r"e^{{{}}}"}
+KNOWN_TO_LATEX = frozenset("sin cos tan cot sec csc log sinh cosh tanh".split())
+GREEK = frozenset(
+    "alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi rho sigma tau phi chi psi omega".split()
+)
 
-NAMES: dict[type, str] = {builder: name for name, builder in BUILDERS.items() if isinstance(builder, type)}
+#: How tightly a text binds.
+LOOSE, TIGHT, RAISED, WHOLE = range(4)
+
+
+class Text(NamedTuple):
+    """What stands for a part, how tightly it binds, and for ``1/u`` also what stands for u."""
+
+    text: str
+    level: int
+    divisor: Text | None = None
 
 
 def to_text(expression: sp.Expr) -> str:
     """Text of the language of files that means the expression: ``sin(T/2)**2``, ``3/4``, ``sqrt(x)``.
 
     ``parse(to_text(e), symbols) == e`` for every expression that the language can build.
-    Raises ExpressionSyntaxError on anything outside the language (floating-point numbers, I,
-    infinities, Piecewise, names that are not ASCII) and TooLargeError on depth.
+    Raises ExpressionSyntaxError on anything outside the language (I, infinities, Piecewise, names that are not ASCII),
+    DomainError on floating-point numbers, DuplicateError on two symbols of one name and TooLargeError on size.
     """
-    return Printer().whole(expression)
+    return print_tree(from_sympy(expression))
 
 
 def to_python(expression: sp.Expr) -> str:
@@ -31,127 +51,206 @@ def to_python(expression: sp.Expr) -> str:
 
     No quotient of two plain integers is written, of which Python would make a float. Raises as :func:`to_text`.
     """
-    return Printer(python=True).whole(expression)
+    return PythonWriter().whole(order_for_python(from_sympy(expression)))
 
 
-def refuse(part: object) -> NoReturn:
-    """Raise ExpressionSyntaxError for what the language does not have."""
-    kind = type(part).__name__
-    text = quote(str(part)) if not isinstance(part, str) else quote(part)
-    raise ExpressionSyntaxError(
-        f"expected numbers, names, + - * / **, pi and the functions of the language; got {kind} {text}; "
-        "rewrite it exactly in these terms"
-    )
+def python_terms(expression: sp.Add) -> list[str]:
+    """The terms of a sum as :func:`to_python` writes them, each with the sign before it."""
+    tree, writer = order_for_python(from_sympy(expression)), PythonWriter()
+    return writer.signed_terms(tree, [fold_tree(term, writer.spell) for term in tree.args])
 
 
-@dataclass(frozen=True, slots=True)
-class Printer:
-    """Writes expressions; every text comes with how tightly it binds.
+def print_tree(tree: Tree) -> str:
+    """Text of the language that is read as this tree and no other.
 
-    python : spell fractions, functions and pi for Python, and order terms and factors so that Python, which evaluates
-             from left to right, multiplies nothing out
+    >>> from navsym.language.expression import read_tree
+    >>> print_tree(read_tree("x - (3*y)/2 + 1/(4)", {"x", "y"}))
+    'x - (3*y)/2 + 1/(4)'
+    """
+    return Writer().whole(tree)
+
+
+def print_latex(tree: Tree) -> str:
+    r"""The tree in LaTeX, as it was written.
+
+    >>> from navsym.language.expression import read_tree
+    >>> print(print_latex(read_tree("sqrt(x_1)/2 - (x_1 + 1)**(-omega)", {"x_1", "omega"})))
+    \frac{\sqrt{x_{1}}}{2} - \left(x_{1} + 1\right)^{-\omega}
+    """
+    return LatexWriter().whole(tree)
+
+
+def is_whole(tree: Tree, low: int = 0) -> bool:
+    """True for an integer that its digits alone write."""
+    return tree.head == NUMBER and tree.args[0] >= low and tree.args[0].denominator == 1
+
+
+class Writer:
+    """Writes trees as text of the language; other notations change some of the steps."""
+
+    def whole(self, tree: Tree) -> str:
+        """Text of a whole tree."""
+        return fold_tree(tree, self.spell).text
+
+    def spell(self, part: Tree, inner: list[Text]) -> Text:
+        """A part from the texts of its own parts."""
+        if part.head == NUMBER:
+            if max(part.args[0].numerator.bit_length(), part.args[0].denominator.bit_length()) > BITS:
+                raise TooLargeError(f"expected numbers of at most {BITS} bits; got a larger one; rescale")
+            return self.number(part.args[0])
+        if part.head == SYMBOL:
+            return Text(self.symbol(part.args[0]), WHOLE)
+        if part.head == SUM:
+            return Text(" ".join(self.signed_terms(part, inner)), LOOSE)
+        if part.head == PRODUCT:
+            return self.product(part, inner)
+        if part.head == POWER:
+            return self.power(part, *inner)
+        return self.call(part, [text.text for text in inner])
+
+    def number(self, value: Fraction) -> Text:
+        """A number; a fraction binds like a quotient, a negative number like a sum."""
+        return Text(str(value), LOOSE if value < 0 else WHOLE if value.denominator == 1 else TIGHT)
+
+    def symbol(self, name: str) -> str:
+        """A name."""
+        return name
+
+    def call(self, part: Tree, arguments: Sequence[str]) -> Text:
+        """A function at its arguments; pi has none."""
+        return Text(f"{part.head}({', '.join(arguments)})" if arguments else part.head, WHOLE)
+
+    def enclose(self, part: Text, floor: int) -> str:
+        """A part in brackets when it binds less tightly than ``floor`` asks."""
+        return part.text if part.level >= floor else f"({part.text})"
+
+    def signed_terms(self, part: Tree, inner: Sequence[Text]) -> list[str]:
+        """Terms with their signs before them: ``["x", "- 2*y"]``."""
+        spelt = zip(part.args, inner, strict=True)
+        texts = [self.enclose(text, TIGHT) if term.head == SUM else text.text for term, text in spelt]
+        return texts[:1] + [f"- {text[1:]}" if text.startswith("-") else f"+ {text}" for text in texts[1:]]
+
+    def product(self, part: Tree, inner: Sequence[Text]) -> Text:
+        """Factors, with inverses behind ``/``.
+
+        Reading makes one number of 3/4 and -3, and drops the 1 of 1/x: brackets keep apart what is apart in the tree.
+        """
+        first, second = part.args[:2]
+        text, bare = inner[0].text, is_whole(first) or is_whole(first, -(10**9))
+        if first is MINUS_ONE and inner[1].divisor is None:
+            text, bare = "-", False
+        elif first.head != NUMBER and inner[0].divisor is None:
+            text = self.enclose(inner[0], RAISED)
+        elif first is ONE and inner[1].divisor is not None:
+            text, bare = "(1)", False
+        for factor, spelt in zip(part.args[1:], inner[1:], strict=True):
+            if spelt.divisor is not None:
+                text += "/" + self.divide(factor.args[0], spelt.divisor, bare)
+            else:
+                literal = text == "-" and is_whole(factor)
+                text += "*" * (text != "-") + (f"({spelt.text})" if literal else self.enclose(spelt, RAISED))
+            bare = False
+        return Text(text, LOOSE if text.startswith("-") else TIGHT)
+
+    def divide(self, divisor: Tree, spelt: Text, bare: bool) -> str:
+        """What stands behind ``/``; bare where reading would make one number of it and what stands before."""
+        return f"({spelt.text})" if bare and is_whole(divisor, 1) else self.enclose(spelt, RAISED)
+
+    def power(self, part: Tree, base: Text, exponent: Text) -> Text:
+        """A power; with exponent -1 a quotient."""
+        if part.args[1] is MINUS_ONE:
+            return Text(f"1/{self.divide(part.args[0], base, True)}", TIGHT, base)
+        return Text(f"{self.enclose(base, WHOLE)}**{self.enclose(exponent, WHOLE)}", RAISED)
+
+
+class PythonWriter(Writer):
+    """Python source that builds an expression of sympy."""
+
+    def number(self, value: Fraction) -> Text:
+        """A fraction as one of sympy: Python would make a float of a quotient."""
+        if value.denominator == 1:
+            return super().number(value)
+        text = f"sp.Rational({abs(value.numerator)}, {value.denominator})"
+        return Text(f"-{text}", LOOSE) if value < 0 else Text(text, WHOLE)
+
+    def call(self, part: Tree, arguments: Sequence[str]) -> Text:
+        """A function of sympy."""
+        if part.head == "exp" and arguments == ["1"]:
+            return Text("sp.E", WHOLE)
+        called = super().call(part, arguments).text
+        return Text(f"sp.{'Abs' + called[3:] if part.head == 'abs' else called}", WHOLE)
+
+
+def order_for_python(tree: Tree) -> Tree:
+    """The tree with terms and factors in an order in which Python, from left to right, multiplies nothing out.
+
+    Terms with a minus come last, sums behind other factors, divisors behind all of them and numbers among these last.
     """
 
-    python: bool = False
+    def late(factor: Tree) -> tuple[bool, bool]:
+        if factor.head == POWER and factor.args[1] is MINUS_ONE:
+            return True, factor.args[0].head == NUMBER
+        return False, factor.head == SUM
 
-    def whole(self, expression: sp.Expr) -> str:
-        """Text of a whole expression; raises what :func:`to_text` says."""
-        try:
-            return self.write(sp.sympify(expression, strict=True), SUM)
-        except (sp.SympifyError, TypeError):
-            refuse(expression)
-        except RecursionError:
-            raise TooLargeError(
-                "expected an expression that can be written; got one nested too deeply; name its parts"
-            ) from None
+    def has_minus(term: Tree) -> bool:
+        first = term.args[0] if term.head == PRODUCT else term
+        return first.head == NUMBER and first.args[0] < 0
 
-    def write(self, e: sp.Expr, floor: int) -> str:
-        """Text of ``e``, in parentheses when it binds less tightly than ``floor`` asks."""
-        return add_brackets(self.spell(e), floor)
+    def step(part: Tree, inner: list[Tree]) -> Tree:
+        if not inner:
+            return part
+        keys: dict[str, Callable[[Tree], Any]] = {SUM: has_minus, PRODUCT: late}
+        return build(part.head, tuple(sorted(inner, key=keys[part.head]) if part.head in keys else inner))
 
-    def spell(self, e: sp.Expr) -> tuple[str, int]:
-        """Text and how tightly it binds."""
-        if isinstance(e, sp.Rational):
-            return self.spell_number(e)
-        if e is sp.pi:
-            return self.prefix("pi"), ATOM
-        if e is sp.E:
-            return "sp.E" if self.python else "exp(1)", ATOM
-        if isinstance(e, sp.Symbol):
-            return check_name(e.name), ATOM
-        if isinstance(e, sp.Add):
-            return " ".join(self.signed_terms(e)), SUM
-        if isinstance(e, sp.Mul):
-            return self.spell_product(e)
-        if isinstance(e, sp.Pow):
-            return self.spell_power(e.base, e.exp)
-        name = NAMES.get(type(e))
-        if name is None or len(e.args) != (2 if name == "atan2" else 1):
-            refuse(e)
-        called = self.prefix(type(e).__name__ if self.python else name)
-        return f"{called}({', '.join(self.write(part, SUM) for part in e.args)})", ATOM
-
-    def prefix(self, name: str) -> str:
-        """A name of the algebra."""
-        return f"sp.{name}" if self.python else name
-
-    def spell_number(self, e: sp.Rational) -> tuple[str, int]:
-        """A number; a fraction binds like a quotient, a negative one like a sum."""
-        if number_bits(e) > BITS:
-            raise TooLargeError(f"expected numbers of at most {BITS} bits; got a larger one; rescale")
-        if self.python and e.q != 1:
-            return f"{'-' if e < 0 else ''}sp.Rational({abs(int(e.p))}, {int(e.q)})", SUM if e < 0 else ATOM
-        if e < 0:
-            return str(e), SUM
-        return str(e), ATOM if e.q == 1 else PRODUCT
-
-    def signed_terms(self, e: sp.Add) -> list[str]:
-        """Terms in the usual order, each with its sign; in Python those with a minus last: ``1 - K*h``."""
-        parts = [self.write(term, SUM) for term in e.as_ordered_terms()]
-        if self.python:
-            parts.sort(key=lambda part: part.startswith("-"))
-        return parts[:1] + [f"- {part[1:]}" if part.startswith("-") else f"+ {part}" for part in parts[1:]]
-
-    def spell_product(self, e: sp.Mul) -> tuple[str, int]:
-        """Factors above and below one line; powers with negative rational exponents go below."""
-        coefficient, rest = e.as_coeff_Mul()
-        above, below = [], []
-        for factor in sp.Mul.make_args(rest):
-            if isinstance(factor, sp.Pow) and factor.exp.is_Rational and factor.exp < 0:
-                below.append(self.spell_power(factor.base, -factor.exp))
-            else:
-                above.append(self.spell(factor))
-        if not isinstance(coefficient, sp.Rational):
-            refuse(coefficient)
-        if self.python:  # a number before a sum would be multiplied into it
-            above.sort(key=lambda part: part[1] == SUM)
-        if coefficient.q != 1:
-            below.insert(0, self.spell_number(sp.Integer(coefficient.q)))
-        if abs(coefficient.p) != 1 or not above:
-            above.insert(0, self.spell_number(sp.Integer(abs(coefficient.p))))
-        top = "*".join(add_brackets(part, PRODUCT) for part in above)
-        text = f"{top}/{self.divisor(below)}" if below else top
-        return (f"-{text}", SUM) if coefficient < 0 else (text, PRODUCT)
-
-    def divisor(self, below: list[tuple[str, int]]) -> str:
-        """What stands behind the first ``/``; with a sum, one divisor after another: reading would multiply it out."""
-        parts = [add_brackets(part, POWER) for part in below]
-        if any(level == SUM for _, level in below):
-            return "/".join(parts[1:] + parts[:1] if self.python else parts)  # 1/2 in Python is a float
-        return parts[0] if len(parts) == 1 else f"({'*'.join(parts)})"
-
-    def spell_power(self, base: sp.Expr, exponent: sp.Expr) -> tuple[str, int]:
-        """A power; square roots by name, negative exponents as quotients."""
-        if exponent == 1:
-            return self.spell(base)
-        if exponent == sp.Rational(1, 2):
-            return f"{self.prefix('sqrt')}({self.write(base, SUM)})", ATOM
-        if exponent.is_Rational and exponent < 0:
-            return f"1/{add_brackets(self.spell_power(base, -exponent), POWER)}", PRODUCT
-        return f"{self.write(base, ATOM)}**{self.write(exponent, ATOM)}", POWER
+    return fold_tree(tree, step)
 
 
-def add_brackets(part: tuple[str, int], floor: int) -> str:
-    """A part in parentheses when it binds less tightly than ``floor`` asks."""
-    text, level = part
-    return text if level >= floor else f"({text})"
+class LatexWriter(Writer):
+    """LaTeX: fractions one above the other, roots and absolute values by their signs."""
+
+    def number(self, value: Fraction) -> Text:
+        """A number; a fraction is a whole."""
+        if value.denominator == 1:
+            return super().number(value)
+        sign = "-" if value < 0 else ""
+        return Text(rf"{sign}\frac{{{abs(value.numerator)}}}{{{value.denominator}}}", LOOSE if sign else TIGHT)
+
+    def symbol(self, name: str) -> str:
+        """A name; Greek letters by their names, figures and what follows an underscore as an index."""
+        letter, _, index = re.sub(r"(?<=[A-Za-z])(\d+)$", r"_\1", name).partition("_")
+        head = rf"\{letter}" if letter.lower() in GREEK else letter if len(letter) < 2 else rf"\mathrm{{{letter}}}"
+        return rf"{head}_{{{index.replace('_', ', ')}}}" if index else head
+
+    def call(self, part: Tree, arguments: Sequence[str]) -> Text:
+        """A function at its arguments."""
+        if not arguments:
+            return Text(rf"\{part.head}", WHOLE)
+        if part.head in ENCLOSURES:
+            return Text(ENCLOSURES[part.head].format(arguments[0]), RAISED if part.head == "exp" else WHOLE)
+        name = rf"\{part.head}" if part.head in KNOWN_TO_LATEX else rf"\operatorname{{{part.head}}}"
+        return Text(rf"{name}\left({', '.join(arguments)}\right)", WHOLE)
+
+    def enclose(self, part: Text, floor: int) -> str:
+        """A part in brackets that grow with it."""
+        return part.text if part.level >= floor else rf"\left({part.text}\right)"
+
+    def product(self, part: Tree, inner: Sequence[Text]) -> Text:
+        """Factors over divisors."""
+        sign = part.args[0] is MINUS_ONE
+        above = [text for text in inner[sign:] if text.divisor is None]
+        below = [text.divisor for text in inner[sign:] if text.divisor is not None]
+        alone = len(above) == 1 and bool(below)
+        texts = [self.enclose(text, RAISED if at else LOOSE if alone else TIGHT) for at, text in enumerate(above)]
+        if inner[0].text.startswith("-") and part.args[0].head == NUMBER and not sign:
+            texts[0] = inner[0].text
+        top = (r" \cdot " if any(text[:1].isdigit() for text in texts[1:]) else " ").join(texts) or "1"
+        if below:
+            under = below[0].text if len(below) == 1 else " ".join(self.enclose(text, RAISED) for text in below)
+            top = rf"\frac{{{top}}}{{{under}}}"
+        return Text(f"-{top}" if sign else top, LOOSE if sign or top.startswith("-") else TIGHT)
+
+    def power(self, part: Tree, base: Text, exponent: Text) -> Text:
+        """A power; its exponent needs no brackets."""
+        if part.args[1] is MINUS_ONE:
+            return Text(rf"\frac{{1}}{{{base.text}}}", TIGHT, base)
+        return Text(f"{self.enclose(base, WHOLE)}^{{{exponent.text}}}", RAISED)

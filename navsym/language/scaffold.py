@@ -17,7 +17,7 @@ import sympy as sp
 from navsym.core.errors import DomainError, DuplicateError, ExpressionSyntaxError, UnknownSymbolError
 from navsym.language.expression import parse, symbol
 from navsym.language.names import RESERVED, quote
-from navsym.language.printer import Printer, to_python
+from navsym.language.printer import python_terms, to_python
 
 NAME = re.compile(r"[a-z][a-z0-9_]{1,40}")
 NUMBER = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,60}\*?")
@@ -158,9 +158,7 @@ def side_source(expression: sp.Expr) -> str:
     text = to_python(expression)
     if len(text) <= WIDE or not isinstance(expression, sp.Add):
         return text
-    return (
-        "(\n" + "".join(f"            {part}\n" for part in Printer(python=True).signed_terms(expression)) + "        )"
-    )
+    return "(\n" + "".join(f"            {term}\n" for term in python_terms(expression)) + "        )"
 
 
 # -- claims ----------------------------------------------------------------------------------

@@ -14,7 +14,8 @@ from typing import Any
 
 import sympy as sp
 
-from navsym.core.errors import DomainError, ExpressionSyntaxError, NavsymError, NotFiniteError
+from navsym.core.errors import DomainError, ExpressionSyntaxError, NavsymError
+from navsym.language.algebra import float_error
 from navsym.language.declarations import SIGNS
 from navsym.language.names import join_place, quote
 from navsym.language.printer import to_text
@@ -59,15 +60,6 @@ def write_expression(value: sp.Basic, where: str) -> str:
         return to_text(value)
     except NavsymError as error:
         raise error.at(where) from None
-
-
-def float_error(value: float, where: str) -> NavsymError:
-    """The error for a float where an exact number is meant, with the exact spelling of its shortest decimal."""
-    if value != value or value in (float("inf"), float("-inf")):
-        return NotFiniteError(f"expected an exact number; got {value}; write a finite one", where=where)
-    exact = Fraction(repr(value))
-    spelling = f'"{exact}"' if exact.denominator == 1 else f'"{exact}" or "{value!r}"'
-    return DomainError(f"expected an exact number; got the float {value!r}; write {spelling} as text", where=where)
 
 
 def write_entries(value: Any, where: str) -> Any:
