@@ -18,6 +18,7 @@ NAMES = {
     "parser": "damaged files, and files that lie about their size",
     "fuzz": "every reader of files by inputs that coverage guides",
     "certificates": "altered certificates",
+    "statements": "statements of known truth, judged by another arithmetic",
     "kills": "writers of the store killed at random moments",
     "disk": "full disk, read-only folder, stale lock, clock set back",
     "engines": "engines: known wrong answers",
@@ -37,7 +38,7 @@ def command(
     modules: Annotated[list[str] | None, typer.Argument(help="papers, for mutants; default: all")] = None,
     share: Annotated[float, typer.Option(min=0.0, max=1.0, help="share of the mutants that are tried")] = 1.0,
     inputs: Annotated[
-        int | None, typer.Option(min=1, help="number of damaged files, certificates or kills; default 10000, 200 kills")
+        int | None, typer.Option(min=1, help="damaged files, certificates, statements, kills; default 10000, 200 kills")
     ] = None,
     seed: Annotated[int, typer.Option(min=0, help="seed of the random choices")] = 0,
     jobs: Annotated[int, typer.Option(min=1, help="batches at the same time")] = 1,

@@ -8,7 +8,7 @@ from typing import Any
 
 from navsym.core.store import default_path, open_store
 from navsym.verification.papers import load_papers
-from tests.attacks.campaigns import cases, certificates, disks, fuzz, kills, mutants, parser
+from tests.attacks.campaigns import cases, certificates, disks, fuzz, kills, mutants, parser, statements
 from tests.attacks.campaigns.batches import Batch, run_campaign
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -36,7 +36,7 @@ def start_campaign(
 ) -> dict[str, Any]:
     """The document of a campaign; its batches are kept in the store, and taken from there, unless it is ``fresh``.
 
-    inputs : number of damaged files, certificates or kills; None for 10000, or 200 kills
+    inputs : number of damaged files, certificates, statements or kills; None for 10000, or 200 kills
     """
     batches, judge = prepare_campaign(name, papers, share, inputs or (200 if name == "kills" else 10_000), seed)
     limits: dict[str, Any] = {"jobs": jobs, "seconds": seconds, "progress": progress}
@@ -59,5 +59,5 @@ def prepare_campaign(name: str, papers: Sequence[str], share: float, inputs: int
         return certificates.make_batches(certificates.honest_certificates(), inputs, seed), certificates.judge
     if name == "disk":
         return disks.make_batches(), disks.judge
-    campaign = {"parser": parser, "kills": kills}[name]
+    campaign = {"parser": parser, "kills": kills, "statements": statements}[name]
     return campaign.make_batches(inputs, seed), campaign.judge

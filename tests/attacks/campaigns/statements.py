@@ -1,0 +1,64 @@
+"""The front door against statements of known truth: by family, how many are decided, and how many wrongly.
+
+``python -m tests.attacks.campaigns.statements DOCUMENT`` prints the table of what ``navsym campaign statements --json``
+has written.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections import Counter
+from typing import Any
+
+from tests.attacks.campaigns.batches import Batch, Result, deal, result
+from tests.attacks.statements import Statement, attack, make_statement
+
+SIZE = 100
+#: Processor time of one statement, seconds; above it the verdict is OPEN.
+SECONDS = 5.0
+OUTCOMES = ("decided", "confirmed", "open", "refused", "false confirmed", "wrong")
+
+
+def make_batches(inputs: int, seed: int = 0) -> list[Batch]:
+    """``inputs`` statements in batches of 100, each with numbers of its own."""
+    return deal(["statements"], inputs, SIZE, seed)
+
+
+def judge(task: tuple[str, int, int]) -> Result:
+    """Counts by outcome, and by family and outcome; wrong: false verdicts, crashes, certificates that are refused."""
+    _, size, seed = task
+    counts: Counter[str] = Counter()
+    wrong, undecided = [], []
+    for number in range(seed % 10**6 * SIZE, seed % 10**6 * SIZE + size):
+        statement = make_statement(number, seed // 10**6)
+        found = attack(statement, SECONDS)
+        counts.update((found.outcome, f"kind {statement.family}: {found.outcome}"))
+        row = describe(statement) | {"outcome": found.outcome, "status": found.status, "why": found.why}
+        if found.outcome == "wrong":
+            wrong.append(row)
+        elif found.outcome in ("false confirmed", "open", "refused"):
+            undecided.append(row)
+    return result(counts, wrong, undecided)
+
+
+def describe(statement: Statement) -> dict[str, Any]:
+    """A statement as plain data."""
+    said = {"text": statement.text, "symbols": dict(statement.symbols), "beside": dict(statement.beside)}
+    return said | {"family": statement.family, "truth": statement.truth}
+
+
+def make_table(counts: dict[str, int]) -> str:
+    """Markdown: a row for each family, a column for each outcome, and how many of 100 are decided."""
+    families = sorted({name.removeprefix("kind ").partition(":")[0] for name in counts if name.startswith("kind ")})
+    rows = [[family, *(counts.get(f"kind {family}: {outcome}", 0) for outcome in OUTCOMES)] for family in families]
+    rows.append(["all", *(sum(row[k] for row in rows) for k in range(1, len(OUTCOMES) + 1))])
+    lines = [f"| family | {' | '.join(OUTCOMES)} | decided, % |", "| --- |" + " ---: |" * (len(OUTCOMES) + 1)]
+    for row in rows:
+        lines.append(f"| {' | '.join(map(str, row))} | {100 * row[1] / max(1, sum(row[1:])):.0f} |")
+    return "\n".join(lines)
+
+
+if __name__ == "__main__":
+    with open(sys.argv[1], encoding="utf-8") as source:
+        print(make_table(json.load(source)["counts"]))
