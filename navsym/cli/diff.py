@@ -51,6 +51,6 @@ def as_text(found: Differences) -> str:
         size = f"old - new = {record.difference.lower}…" if record.difference else ""
         words = f"{size} at {point or 'every point'}" if size else record.why
         if record.assumptions:
-            words += f"; taken: {'; '.join(record.assumptions)}"
+            words += f"; where {', '.join(record.assumptions)}"
         rows.append((record.name, record.status, words))
     return table(("formula", "status", "where"), rows)

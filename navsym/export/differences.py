@@ -7,7 +7,7 @@ import os
 import random
 import re
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -15,17 +15,19 @@ from typing import Any
 import sympy as sp
 from flint import arb
 
-from navsym.claims import REFUTED, Equation
+from navsym.claims import REFUTED
 from navsym.claims.display import write_table
+from navsym.claims.formula import Formula as Statement
 from navsym.core.answers import Answer
 from navsym.core.balls import enclose, hull
 from navsym.core.errors import DomainError, EmptyError, ExpressionSyntaxError, NavsymError, ShapeError
 from navsym.core.numbers import Number
-from navsym.language.expression import parse, symbol
+from navsym.language.expression import parse, parse_noting, symbol
 from navsym.language.files import read_text
 from navsym.language.names import quote
 from navsym.language.tokens import Source, tokenize
 from navsym.language.values import write_value
+from navsym.prove.claimfile import FileClaim, claims_from, existing_parts, statement_of, text_conditions
 from navsym.prove.ladder import decide
 from navsym.prove.sampling.points import range_of
 from navsym.prove.wording import decimal_ends, expression_text
@@ -34,17 +36,23 @@ POINTS = 400
 LIMIT = 20_000_000
 
 
+#: Divisors, radicands, arguments of logarithms.
+Noted = tuple[tuple[sp.Expr, ...], ...]
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Formula:
     """A named formula with the ranges of its symbols.
 
     outside : its text when the language of files cannot say it; it is then compared as text only
+    noted   : divisors, radicands and arguments of logarithms of its text, also where the algebra has cancelled them
     """
 
     name: str
     expression: sp.Expr
     box: Mapping[sp.Symbol, tuple[Any, Any]]
     outside: str = ""
+    noted: Noted = ((), (), ())
 
 
 @dataclass(frozen=True, slots=True)
@@ -173,20 +181,29 @@ def compare_pair(name: str, old: Formula | None, new: Formula | None) -> Differe
         if old.outside == new.outside and not different_ranges(old, new):
             return Difference(name, "EQUAL", "the same text")
         return Difference(name, "OPEN", "outside the language of files")
-    left, right = old.expression, in_terms_of(new.expression, old)
-    box = common_box(old, new)
-    verdict = decide(Equation(left, right, box))
+    claim = claim_of(old, new)
+    verdict = decide(statement_of(claim))
     if verdict.status.holds:
         apart = different_ranges(old, new)
         words = f"equal where both are stated; ranges differ: {', '.join(apart)}" if apart else verdict.method
-        return Difference(name, "OVERLAP" if apart else "EQUAL", words, tuple(verdict.assumptions))
+        assumptions = tuple(dict.fromkeys((*verdict.assumptions, *text_conditions(claim))))
+        return Difference(name, "OVERLAP" if apart else "EQUAL", words, assumptions)
     if verdict.status != REFUTED:
         return Difference(name, "OPEN", verdict.evidence)
-    point, difference = worst_point(left - right, box)
+    point, difference = worst_point(claim.left - claim.right, claim.box, existing_parts(claim))
     if point is None or difference is None:
         return Difference(name, "DIFFERENT", "counterexample", (), verdict.counterexample or {}, verdict.difference)
     exact = {s.name: expression_text(value) for s, value in point.items()}
     return Difference(name, "DIFFERENT", f"largest of {POINTS} points", (), exact, decimal_ends(difference))
+
+
+def claim_of(old: Formula, new: Formula) -> FileClaim:
+    """``old = new`` in the old one's symbols, where both texts have a value."""
+    words = Statement(old.name, "=", new.name)
+    both = zip(old.noted, new.noted, strict=True)
+    noted = (tuple(dict.fromkeys((*mine, *(in_terms_of(part, old) for part in others)))) for mine, others in both)
+    right = in_terms_of(new.expression, old)
+    return FileClaim(words, old.expression, right, "=", common_box(old, new), None, *noted)
 
 
 def different_ranges(old: Formula, new: Formula) -> list[str]:
@@ -235,14 +252,22 @@ def smaller(a: Any, b: Any) -> Any:
     return b if enclose(sp.sympify(a - b, strict=True), {}) >= 0 else a
 
 
-def worst_point(difference: sp.Expr, box: Mapping[Any, Any]) -> tuple[dict[sp.Symbol, sp.Expr] | None, arb | None]:
-    """The sampled point where two formulas are farthest apart, with the difference enclosed there."""
+def worst_point(
+    difference: sp.Expr, box: Mapping[Any, Any], existing: Sequence[sp.Expr] = ()
+) -> tuple[dict[sp.Symbol, sp.Expr] | None, arb | None]:
+    """The sampled point where two formulas are farthest apart, with the difference enclosed there.
+
+    existing : parts that have a value at the point
+    """
     generator = random.Random(0)
-    symbols = sorted(difference.free_symbols, key=lambda s: s.name)
+    symbols = sorted(difference.free_symbols.union(*(part.free_symbols for part in existing)), key=lambda s: s.name)
     best: tuple[dict[sp.Symbol, sp.Expr] | None, arb | None] = (None, None)
     for _ in range(POINTS):
         point = {s: random_in(s, box, generator) for s in symbols}
-        found = enclose(difference, {s: hull(v, v) for s, v in point.items()}, 128)
+        balls = {s: hull(v, v) for s, v in point.items()}
+        found = enclose(difference, balls, 128)
+        if not all(enclose(part, balls, 128).is_finite() for part in existing):
+            continue
         if found.is_finite() and (best[1] is None or abs(found).lower() > abs(best[1]).upper()):
             best = point, found
     return best
@@ -284,7 +309,13 @@ def of_text(text: str, ranges: Mapping[str, tuple[Any, Any]], where: str = "") -
     names = {t.text for t in tokenize(Source(text, where)) if t.kind == "name"} - RESERVED
     symbols = {name: symbol(name, where=where) for name in sorted(names)}
     box = {symbols[name]: ends for name, ends in ranges.items() if name in symbols}
-    return Formula("formula", parse(text, symbols, where=where), box)
+    parsed = parse_noting(text, symbols, where=where)
+    return Formula("formula", parsed.expression, box, noted=noted_in(parsed))
+
+
+def noted_in(text: Any) -> Noted:
+    """Divisors, radicands and arguments of logarithms that a reader of a text, or of a claim, has noted."""
+    return text.divisors, text.radicands, text.arguments
 
 
 def of_file(path: Path) -> dict[str, Formula]:
@@ -293,22 +324,18 @@ def of_file(path: Path) -> dict[str, Formula]:
 
     document = read_toml(path)
     if "claim" in document:
-        from navsym.prove.claimfile import claims_from
-
         claims = claims_from(document, str(path)).claims
-        return {name: found for c in claims for name, found in entries_by_place(c.id, c.left, c.box).items()}
+        return {name: found for c in claims for name, found in entries_by_place(c).items()}
     return of_model(path)
 
 
-def entries_by_place(name: str, side: Any, box: Mapping[sp.Symbol, tuple[Any, Any]]) -> dict[str, Formula]:
-    """A formula, or the entries of a matrix or list by their places."""
+def entries_by_place(claim: FileClaim) -> dict[str, Formula]:
+    """The left side of a claim, or its entries by their places."""
+    name, side = claim.id, claim.left
+    found = {name: side}
     if isinstance(side, sp.MatrixBase):
         found = {f"{name}[{i + 1},{j + 1}]": side[i, j] for i in range(side.rows) for j in range(side.cols)}
-    elif isinstance(side, (tuple, list)):
-        found = {f"{name}[{k + 1}]": e for k, e in enumerate(side)}
-    else:
-        found = {name: side}
-    return {label: Formula(label, e, box) for label, e in found.items()}
+    return {label: Formula(label, e, claim.box, noted=noted_in(claim)) for label, e in found.items()}
 
 
 def of_model(path: Path) -> dict[str, Formula]:

@@ -7,7 +7,9 @@ import json
 from pathlib import Path
 
 import pytest
+import sympy as sp
 
+import navsym as nav
 from navsym.cli.main import run
 
 
@@ -109,3 +111,35 @@ def test_a_formula_outside_the_language_of_files_is_compared_as_text(capsys, tmp
     (other / "manifest.json").write_text(text.replace("Min(e_1, e_2)", "Max(e_1, e_2)"))
     status, found = document(capsys, str(tmp_path / "a"), str(other))
     assert status == 1 and [r["status"] for r in found["differences"]].count("OPEN") == 1
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "where"),
+    [
+        ("exp(log(x))", "x", ["x > 0"]),
+        ("x", "exp(log(x))", ["x > 0"]),
+        ("sqrt(x)**2", "x", ["x >= 0"]),
+        ("0*log(x)", "0", ["x > 0"]),
+        ("x**2/x", "1/(1/x)", ["x != 0"]),
+    ],
+)
+def test_equality_lists_where_both_texts_have_a_value_as_prove_does(capsys, old: str, new: str, where: list) -> None:
+    (found,) = nav.diff(old, new)
+    assert found.status == "EQUAL" and list(found.assumptions) == where
+    assert list(nav.prove(old, "=", new).assumptions) == where
+    assert run(["diff", old, new]) == 0
+    assert f"where {where[0]}" in capsys.readouterr().out
+
+
+def test_the_domain_of_a_claim_in_a_file_is_listed(tmp_path: Path) -> None:
+    for name, left in (("old", "exp(log(x))"), ("new", "x")):
+        (tmp_path / f"{name}.toml").write_text(
+            f'[symbols]\nx = "real"\n[[claim]]\nid = "a"\nleft = "{left}"\nright = "x"\n'
+        )
+    assert nav.diff(tmp_path / "old.toml", tmp_path / "new.toml")[0].assumptions == ("x > 0",)
+
+
+def test_formulas_differ_only_where_both_have_a_value() -> None:
+    (found,) = nav.diff("exp(log(x)) + x", "x")
+    assert found.status == "DIFFERENT" and sp.Rational(found.worst["x"]) > 0
+    assert nav.diff("abs(x)/x + 0*log(x)", "1")[0].status != "DIFFERENT"
