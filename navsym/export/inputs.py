@@ -101,4 +101,7 @@ def around(limits: Range) -> str:
     """A range in words, with {} for the name."""
     lower = "" if limits.lower is None else f"{expression_text(limits.lower)} {'<' if limits.open_lower else '<='} "
     upper = "" if limits.upper is None else f" <= {expression_text(limits.upper)}"
-    return f"{lower}{{}}{upper}" if lower or upper else "{} real"
+    nonzero = " != 0" if limits.nonzero else ""
+    if lower or upper:
+        return f"{lower}{{}}{upper}" + (f", {{}}{nonzero}" if nonzero else "")
+    return f"{{}}{nonzero or ' real'}"

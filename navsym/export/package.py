@@ -19,8 +19,7 @@ from navsym.core.errors import DomainError, DuplicateError, NavsymError
 from navsym.export.accuracy.vectors import Vector, vectors
 from navsym.export.folder import require_free, write_folder
 from navsym.export.functions import rebounded
-from navsym.export.languages.programs import state_record
-from navsym.export.languages.summary import bound_text
+from navsym.export.languages.summary import bound_text, state_record
 from navsym.export.languages.targets import Target
 from navsym.export.parts import ExportedFunction, Piece
 from navsym.export.roundtrip import MANIFEST, Outcome, run_target, sealed

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -150,10 +151,42 @@ class ExportedFunction:
         return sum(output.size for output in self.outputs)
 
     @property
+    def placed(self) -> tuple[tuple[Output, int], ...]:
+        """Outputs, each with the place of its first entry among all results."""
+        ends = itertools.accumulate(output.size for output in self.outputs)
+        return tuple((output, end - output.size) for output, end in zip(self.outputs, ends, strict=True))
+
+    @property
     def always_finite(self) -> bool:
         """Proved: nothing overflows for any accepted argument, so that no test of the results is needed."""
         whole = all(i.low == i.test_low and i.high == i.test_high for i in self.inputs)
         return whole and all(piece.bound.finite and not piece.graph.guards for piece in self.pieces)
+
+    @property
+    def fields(self) -> dict[str, str]:
+        """Fields of the state, each with the output that replaces it; nothing for a function without a state."""
+        return dict(self.state.fields) if self.state else {}
+
+    @property
+    def replaced(self) -> dict[str, str]:
+        """Outputs of the step that replace a field, each with that field."""
+        return {new: field for field, new in self.fields.items() if new}
+
+    @property
+    def kept(self) -> tuple[Output, ...]:
+        """The fields in order, with their shapes, as ``init`` makes them."""
+        known = {o.name: o for o in self.state.init.outputs} if self.state else {}
+        return tuple(known[name] for name in self.fields)
+
+    @property
+    def others(self) -> tuple[Argument, ...]:
+        """Arguments of the step that are no fields."""
+        return tuple(a for a in self.called_with if a.name not in self.fields)
+
+    @property
+    def extras(self) -> tuple[Output, ...]:
+        """Results of the step that replace no field."""
+        return tuple(o for o in self.outputs if o.name not in self.replaced)
 
     @property
     def sources(self) -> tuple[Source, ...]:

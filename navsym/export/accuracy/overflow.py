@@ -1,10 +1,12 @@
 """Intermediate values that may overflow or underflow where nobody would see it.
 
-Under a division an infinity becomes a zero; under a root a product that underflows is a zero, or has lost its digits.
+Under a division an infinity becomes a zero; under a root, or in a quotient, a product that underflows is a zero, or has
+lost its digits. Sums never lose digits by underflow.
 """
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -40,7 +42,7 @@ def watched(graph: Graph, box: Sequence[tuple[float, float]], arithmetic: Arithm
     needed = {a for node in graph.nodes if node.op in RELATIVE for a in node.args} & made(graph)
     ranges, least = sizes(graph, box, arithmetic, literals), arithmetic.eta - arithmetic.u
     small = [k for k in sorted(needed) if (known := ranges[k]) is not None and known.low < least]
-    return with_guards(graph, sorted(found), small)
+    return with_guards(graph, sorted(found), small, Margins(graph, ranges, least))
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,17 +103,102 @@ def combined(node: Node, args: Sequence[Size | None], graph: Graph) -> Size | No
     return None
 
 
-def with_guards(graph: Graph, large: Sequence[int], small: Sequence[int]) -> Graph:
+def with_guards(graph: Graph, large: Sequence[int], small: Sequence[int], margins: Margins) -> Graph:
     """Guards are finite where all is well: a value itself, and 4/value, which overflows where the value is subnormal.
 
-    A value that may be zero by right, as x in sqrt(x y), cannot be asked in this way.
+    A quotient of values that may be zero asks its divisor, which is not zero by right, and the margin of its numerator.
     """
-    if not small:
+    quotients = [node.args for node in graph.nodes if node.op == "div"]
+    asked = [*small, *(b for _, b in quotients if margins.is_needed(b))]
+    tops = [a for a, b in quotients if margins.may_be_below_one(b) and margins.is_needed(a)]
+    asked += [place for a in tops if (place := margins.of(a)) is not None]
+    if not asked:
         return replace(graph, guards=tuple(large))
-    four = len(graph.nodes)
-    nodes = [*graph.nodes, Node("const", (), sp.Integer(4)), *(Node("div", (four, k)) for k in small)]
-    places = range(four + 1, len(nodes))
-    return replace(graph, nodes=tuple(nodes), guards=(*large, *places))
+    four = margins.put("const", value=sp.Integer(4))
+    places = [margins.put("div", four, k) for k in dict.fromkeys(asked)]
+    return replace(graph, nodes=tuple(margins.nodes), guards=(*large, *places))
+
+
+#: Operations whose result is near zero only where their first argument is, with the same relative error there.
+FOLLOWS = frozenset({"neg", "abs", "sqrt", "sin", "asin", "atan", "sinh", "tanh", "expm1"})
+
+
+class Margins:
+    """Nodes that are normal numbers where no product behind a value has lost digits by underflow, else subnormal.
+
+    The margin of a product is its magnitude, plus one where a factor is exactly zero; that of a sum its magnitude, plus
+    the least margin of its terms, which counts where the terms are small; a value that is exact has none.
+    """
+
+    def __init__(self, graph: Graph, ranges: Sequence[Size | None], least: float):
+        self.nodes = list(graph.nodes)
+        self.ranges, self.least = ranges, least
+        self.done: dict[int, int | None] = {}
+        self.new: dict[tuple[str, tuple[int, ...], Any], int] = {}
+
+    def put(self, op: str, *args: int, value: Any = None) -> int:
+        """The place of a node behind those of the graph, made once."""
+        key = (op, args, value)
+        if key not in self.new:
+            self.new[key] = len(self.nodes)
+            self.nodes.append(Node(op, args, value))
+        return self.new[key]
+
+    def is_needed(self, place: int) -> bool:
+        """Whether a value, whose size is not known, may have lost digits by underflow."""
+        return self.ranges[place] is None and self.of(place) is not None
+
+    def may_be_below_one(self, place: int) -> bool:
+        """Whether a divisor may make a small error large."""
+        size = self.ranges[place]
+        return size is None or size.low < 0
+
+    def of(self, place: int) -> int | None:
+        """The margin of a value; None where underflow cannot reach it."""
+        if place not in self.done:
+            size = self.ranges[place]
+            safe = size is not None and size.low >= self.least
+            self.done[place] = None if safe else self.made(place)
+        return self.done[place]
+
+    def made(self, place: int) -> int | None:
+        """The margin of the result of an operation."""
+        node = self.nodes[place]
+        behind = [margin for a in node.args if (margin := self.of(a)) is not None]
+        if node.op in FOLLOWS:
+            return behind[0] if behind else None
+        if node.op in ("add", "sub", "max", "min"):
+            return self.put("add", self.put("abs", place), self.smallest(behind)) if behind else None
+        if node.op == "mul" and any(self.is_at_least_one(a) for a in node.args):
+            return behind[0] if behind else None
+        if node.op in ("mul", "div", "pow", "exp"):
+            factors = node.args if node.op == "mul" else node.args[:1] if node.op != "exp" else ()
+            zeros = [self.is_zero(a) for a in dict.fromkeys(factors) if self.ranges[a] is None]
+            return self.smallest([self.total([self.put("abs", place), *zeros]), *behind])
+        return None
+
+    def is_at_least_one(self, place: int) -> bool:
+        """Whether a factor makes nothing smaller."""
+        size = self.ranges[place]
+        return size is not None and size.low >= 0
+
+    def total(self, places: Sequence[int]) -> int:
+        """The sum of values."""
+        return functools.reduce(lambda a, b: self.put("add", a, b), places)
+
+    def smallest(self, places: Sequence[int]) -> int:
+        """The least of values."""
+        return functools.reduce(lambda a, b: self.put("min", a, b), dict.fromkeys(places))
+
+    def is_zero(self, place: int) -> int:
+        """One where a value is exactly zero, and zero elsewhere, without overflow: powers of two are exact."""
+        half = int(self.least) + 2
+        tiny = self.put("const", value=sp.Integer(2) ** half)
+        huge = self.put("const", value=sp.Integer(2) ** -half)
+        first = self.put("mul", self.put("min", self.put("abs", place), tiny), huge)
+        second = self.put("const", value=sp.Integer(2) ** -64)
+        full = self.put("mul", self.put("min", first, second), self.put("const", value=sp.Integer(2) ** 64))
+        return self.put("sub", self.put("const", value=sp.Integer(1)), full)
 
 
 def made(graph: Graph) -> set[int]:

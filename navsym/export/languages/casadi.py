@@ -21,8 +21,7 @@ from navsym.export.accuracy.continuation import continuation
 from navsym.export.accuracy.vectors import Vector
 from navsym.export.atoms import expm1, filled
 from navsym.export.holes import Part, T, part_of
-from navsym.export.languages.printing import template
-from navsym.export.languages.python import vectors_json
+from navsym.export.languages.writer import environment, vectors_json
 from navsym.export.parts import ExportedFunction, Piece
 
 
@@ -44,7 +43,7 @@ def files(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]],
     return found | {
         "pieces.json": json.dumps(index, indent=2) + "\n",
         "vectors.json": vectors_json(functions, tests),
-        "test_vectors.py": (template("casadi_test.py") + template("python_test_ending.py")).format(license=license_),
+        "test_vectors.py": environment().get_template("casadi/test_vectors.py.j2").render(license=license_),
     }
 
 

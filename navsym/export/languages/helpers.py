@@ -91,8 +91,3 @@ def helper_about(helper: Helper, s: Spelling) -> str:
     lost = int(sp.ceiling(sp.log(sp.Float(float(known.remainder / known.least)), 2)))
     switch = s.number(known.switch).removesuffix(s.suffix)
     return f"{helper.formula}; below {switch} its Taylor polynomial, proved within 2^{lost} of it; defined at zero."
-
-
-def squares_if_needed(helper: Helper, line: str) -> list[str]:
-    """The line that makes y, the square of x, for a polynomial that has it."""
-    return [] if squared_node(helper) is None else [line]

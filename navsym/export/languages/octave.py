@@ -8,13 +8,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from typing import Any
 
 from navsym.export.accuracy.vectors import Vector
-from navsym.export.languages.helpers import Helper, helper_about, helper_parts, helpers_used, squares_if_needed
-from navsym.export.languages.printing import Spelling, assignments, calls, code_names, template
-from navsym.export.languages.programs import octave_program, octave_through_state
-from navsym.export.languages.scripts import branch, short_names, vectors_text
-from navsym.export.languages.summary import summary
+from navsym.export.languages.printing import Spelling, calls
+from navsym.export.languages.writer import Writer, short_names, vectors_text
 from navsym.export.parts import Argument, ExportedFunction, Output
 
 #: Functions that leave the real numbers where those of C give NaN: the condition under which they stay real.
@@ -26,109 +24,51 @@ REAL = {
     "pow": ("x, y", "x >= 0 || y == fix(y)", "x ^ y"),
 }
 SPELLING = Spelling(
-    calls(abs="abs({0})", max="max({0}, {1})", min="min({0}, {1})")
-    | {
-        name: f"navsym_{name}({', '.join(f'{{{k}}}' for k in range(len(given.split(', '))))})"
-        for name, (given, _, _) in REAL.items()
-    },
+    calls(abs="abs({0})", max="max({0}, {1})", min="min({0}, {1})", pow="navsym_pow({0}, {1})")
+    | {name: f"navsym_{name}({{0}})" for name in REAL if name != "pow"},
     "NaN",
     "Inf",
 )
-
-NUMBERS = """function good = navsym_numbers(x, n, low, high)
-  % {license}
-  % True for n finite real numbers of type double between low and high, in a row or in a column.
-  good = isa(x, 'double') && isreal(x) && numel(x) == n && max(size(x)) == n;
-  good = good && all(isfinite(x)) && all(x(:).' >= low) && all(x(:).' <= high);
-end
-"""
+WRITER = Writer("octave", SPELLING, "double", SPELLING.inf, entry="{0}({1})", first=1)
 
 
 def files(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str) -> dict[str, str]:
     """One file for each function, each helper, each call of a program, and the test."""
     names = short_names(functions)
-    found = {f"{names[f.name]}.m": source(f, names[f.name], license_) for f in functions}
-    found |= {f"navsym_{h.name}.m": helper_text(h, license_) for h in helpers_used(*functions)}
-    found |= {name: text for f in functions for name, text in octave_program(f, names, license_).items()}
+
+    def text(template: str, **values: Any) -> str:
+        return WRITER.render(template, names=names, license=license_, results=results_text, **values)
+
+    found = {f"{names[f.name]}.m": function_text(f, names[f.name], license_) for f in functions}
+    found |= {f"navsym_{h.name}.m": text("helper.m", h=h) for h in WRITER.helpers(functions)}
+    for f in functions:
+        if f.state:
+            found |= {f"{f.state.program}_{part}.m": text(f"program_{part}.m", f=f) for part in ("init", "step")}
     code = "\n".join(found.values())
-    found |= {f"navsym_{name}.m": real_text(name, license_) for name in REAL if f"navsym_{name}(" in code}
+    for name, (given, condition, value) in REAL.items():
+        if f"navsym_{name}(" in code:
+            found[f"navsym_{name}.m"] = text("real.m", name=name, given=given, condition=condition, value=value)
     return found | {
-        "navsym_numbers.m": NUMBERS.format(license=license_),
-        "test_vectors.m": test(functions, names, license_),
+        "navsym_numbers.m": text("navsym_numbers.m"),
+        "test_vectors.m": text("test_vectors.m", functions=functions),
         "vectors.txt": vectors_text(functions, tests),
     }
 
 
-def helper_text(helper: Helper, license_: str) -> str:
-    """One function against cancellation."""
-    switch, below, above = helper_parts(helper, SPELLING)
-    return "\n".join(
-        [
-            f"function f = navsym_{helper.name}(x)",
-            f"  % {license_}",
-            f"  % {helper_about(helper, SPELLING)}",
-            *squares_if_needed(helper, "  y = x * x;"),
-            f"  if abs(x) < {switch}",
-            f"    f = {below};",
-            "  else",
-            f"    f = {above};",
-            "  end",
-            "end",
-            "",
-        ]
+def function_text(function: ExportedFunction, name: str, license_: str) -> str:
+    """The file of a function; results are NaN where the status is not 0."""
+    return WRITER.render(
+        "function.m",
+        f=function,
+        name=name,
+        license=license_,
+        results=results_text,
+        counted_from_one=counted_from_one,
+        shape_text=shape_text,
+        rows_and_columns=rows_and_columns,
+        in_range=in_range,
+        entries_text=entries_text,
     )
-
-
-def real_text(name: str, license_: str) -> str:
-    """A function that stays real."""
-    given, condition, value = REAL[name]
-    return "\n".join(
-        [
-            f"function f = navsym_{name}({given})",
-            f"  % {license_}",
-            f"  % {value} where it is real, else NaN.",
-            f"  if {condition}",
-            f"    f = {value};",
-            "  else",
-            "    f = NaN;",
-            "  end",
-            "end",
-            "",
-        ]
-    )
-
-
-def source(function: ExportedFunction, name: str, license_: str) -> str:
-    """The text of the file of a function; results are NaN where the status is not 0."""
-    names = code_names(function, "{0}({1})", first=1)
-    lines = [f"function {results_text(function)} = {name}({', '.join(a.name for a in function.called_with)})"]
-    lines += [f"  %{name.upper()}  {function.sources[0].title or function.name}", "  %"]
-    lines += [f"  % {counted_from_one(line)}" for line in summary(function)]
-    lines += [f"  % Shape    {o.name}: {shape_text(o)}" for o in function.outputs]
-    lines += [
-        "  % Status   0: results are there; 1: an argument is outside the proved domain, or no double;",
-        "  %          2: a result would overflow or is undefined here; results are NaN unless it is 0.",
-        "",
-        f"  % {license_}",
-        "  status = 1;",
-    ]
-    lines += [f"  {o.name} = NaN({', '.join(map(str, rows_and_columns(o)))});" for o in function.outputs]
-    tests = " && ...\n       ".join(in_range(function, a) for a in function.called_with)
-    lines += [f"  if ~({tests})", "    return", "  end"] if tests else []
-    for place, piece in enumerate(function.pieces):
-        temporaries, results = assignments(piece, names, SPELLING)
-        lines += [f"  {branch(function, place, 'if', 'elseif', 'else')}"] if len(function.pieces) > 1 else []
-        inner = "    " if len(function.pieces) > 1 else "  "
-        lines += [f"{inner}{local} = {text};" for local, text in temporaries]
-        lines += [f"{inner}r{k} = {text};" for k, text in enumerate(results)]
-    lines += ["  end"] if len(function.pieces) > 1 else []
-    entries = ", ".join(f"r{k}" for k in range(function.size))
-    lines += [f"  if ~all(isfinite([{entries}]))", "    status = 2;", "    return", "  end"]
-    k = 0
-    for output in function.outputs:
-        lines.append(f"  {output.name} = {placed(output, k)};")
-        k += output.size
-    return "\n".join([*lines, "  status = 0;", "end", ""])
 
 
 def counted_from_one(line: str) -> str:
@@ -161,22 +101,8 @@ def shape_text(output: Output) -> str:
     return "a number" if not output.shape else f"a column of {rows}" if columns == 1 else f"{rows} by {columns}"
 
 
-def placed(output: Output, first: int) -> str:
+def entries_text(output: Output, first: int) -> str:
     """An output made of its entries, row by row."""
     rows, columns = rows_and_columns(output)
     made = [", ".join(f"r{first + i * columns + j}" for j in range(columns)) for i in range(rows)]
     return f"[{'; '.join(made)}]" if output.shape else made[0]
-
-
-# -- the test ---------------------------------------
-
-
-def test(functions: Sequence[ExportedFunction], names: dict[str, str], license_: str) -> str:
-    """The program that reads the vectors; a step is run through its state."""
-    rows = []
-    for f in functions:
-        call = f"@navsym_through_{names[f.name]}" if f.state else f"@{names[f.name]}"
-        sizes = " ".join(str(a.size or 1) for a in f.called_with)
-        rows.append(f"    '{f.name}', {call}, [{sizes}], {len(f.outputs)}; ...")
-    through = [octave_through_state(f, names[f.name], results_text(f)) for f in functions if f.state]
-    return template("octave_test.m").format(license=license_, known="\n".join(rows)) + "".join(through)

@@ -6,11 +6,9 @@ and a blank on either side of an operator, so that tests can find and corrupt it
 
 from __future__ import annotations
 
-import functools
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 from navsym.export.expression_graph import Graph
@@ -19,13 +17,6 @@ from navsym.export.parts import ExportedFunction, Piece
 
 SIGNS = {"add": "+", "sub": "-", "mul": "*", "div": "/"}
 LONGEST = 76
-TEMPLATES = Path(__file__).parents[1] / "templates"
-
-
-@functools.cache
-def template(name: str) -> str:
-    """Text of a file of exported code, with its fields in braces (and braces of the language doubled)."""
-    return (TEMPLATES / f"{name}.txt").read_text(encoding="utf-8")
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,20 +59,14 @@ def calls(prefix: str = "", suffix: str = "", **special: str) -> dict[str, str]:
     return table | special
 
 
-def assignments(piece: Piece, names: list[str], spelling: Spelling) -> tuple[list[tuple[str, str]], list[str]]:
-    """([(temporary, expression), …], [expression of each result]).
-
-    What the formulas name keeps its name; shared nodes and long expressions get a temporary; everything else stands
-    where it is used.
-    """
-    lines, results = loops_of(piece, names, spelling, frozenset())
-    return [(name, text) for name, text, _ in lines], results
-
-
-def loops_of(
-    piece: Piece, names: list[str], spelling: Spelling, apart: frozenset[str]
+def assignments(
+    piece: Piece, names: list[str], spelling: Spelling, apart: frozenset[str] = frozenset()
 ) -> tuple[list[tuple[str, str, bool]], list[str]]:
-    """The same with every operation of ``apart`` in an assignment of its own, marked True."""
+    """([(temporary, expression, whether it is one of ``apart``), …], [expression of each result]).
+
+    What the formulas name keeps its name; shared nodes, long expressions and the operations of ``apart`` get a
+    temporary; everything else stands where it is used.
+    """
     graph, counts = piece.graph, piece.graph.uses()
     text: list[str] = []
     lines: list[tuple[str, str, bool]] = []
@@ -139,18 +124,10 @@ def bare(text: str) -> str:
     return text[1:-1]
 
 
-def code_names(function: ExportedFunction, entry: str = "{0}[{1}]", first: int = 0) -> list[str]:
-    """The name of every input in code: a number by itself, or an entry of its array, counted from ``first``."""
-    return [
-        entry.format(a.name, first + k) if a.size else a.name for a in function.called_with for k in range(a.size or 1)
-    ]
-
-
 def result_fields(function: ExportedFunction, name: str) -> str:
     """``output: value`` of every output, from results that are written as ``name`` with their place."""
-    parts, k = [], 0
-    for output in function.outputs:
-        entries = ", ".join(name.format(k + e) for e in range(output.size))
+    parts = []
+    for output, first in function.placed:
+        entries = ", ".join(name.format(first + e) for e in range(output.size))
         parts.append(f"{output.name}: [{entries}]" if output.shape else f"{output.name}: {entries}")
-        k += output.size
     return ", ".join(parts)

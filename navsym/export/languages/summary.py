@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 import textwrap
+from typing import Any
 
-from navsym.export.parts import ExportedFunction, Piece
+from navsym.export.parts import ExportedFunction, Output, Piece
 
 WIDTH = 108
 INDENT = " " * 9
@@ -70,6 +71,23 @@ def accepted(low: float, high: float) -> str:
 def unit_of(text: str) -> str:
     """The unit in words."""
     return text or "unit not stated"
+
+
+def field_text(function: ExportedFunction, field: Output) -> str:
+    """The entries of a field of the state as the formulas name them, and its unit."""
+    given = next((a for a in function.called_with if a.name == field.name), None)
+    entries = function.inputs[given.first : given.first + (given.size or 1)] if given else ()
+    names = ", ".join(i.symbol.name for i in entries) or "stays as it was made"
+    return f"{names} [{unit_of(field.unit)}]".replace("*/", "* /")
+
+
+def state_record(function: ExportedFunction) -> dict[str, Any] | None:
+    """The state as plain data: program, fields with the argument and the output of each, outputs of the step."""
+    if function.state is None:
+        return None
+    places = {a.name: k for k, a in enumerate(function.called_with)}
+    fields = [{"name": old, "argument": places.get(old, -1), "output": new} for old, new in function.fields.items()]
+    return {"program": function.state.program, "fields": fields, "outputs": [o.name for o in function.outputs]}
 
 
 TIES = {

@@ -14,8 +14,7 @@ from typing import Any
 from navsym.core.errors import MissingEngineError
 from navsym.export.accuracy.vectors import Vector
 from navsym.export.languages.c import files as c_files
-from navsym.export.languages.c import output_places
-from navsym.export.languages.printing import TEMPLATES, template
+from navsym.export.languages.c import writer
 from navsym.export.languages.summary import bound_text, unit_of
 from navsym.export.parts import ExportedFunction, Piece
 from navsym.export.processes import run
@@ -25,16 +24,17 @@ FLAGS = ("-target", "wasm32-wasi", "-mexec-model=reactor", "-O2", "-s", "-std=c9
 
 def wasm_files(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str) -> dict[str, str]:
     """The C folder with a runner for its WebAssembly."""
-    return c_files(functions, tests, license_) | {"run_wasi.py": template("wasm_run_wasi.py").format(license=license_)}
+    runner = writer(functions[0].arithmetic.name).render("wasm/run_wasi.py", license=license_)
+    return c_files(functions, tests, license_) | {"run_wasi.py": runner}
 
 
 def page_files(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str) -> dict[str, str]:
     """One self-contained page: the compiled functions, their vectors, bounds and verdicts; no network."""
     module = base64.b64encode(compiled(functions, tests, license_)).decode("ascii")
     data = json.dumps([record(f, tests[f.name]) for f in functions], allow_nan=False)
-    text = (TEMPLATES / "page.html").read_text(encoding="utf-8")
     safe = data.replace("&", "\\u0026").replace("<", "\\u003c").replace(">", "\\u003e")
-    return {"index.html": text.replace("@LICENSE@", license_).replace("@DATA@", safe).replace("@WASM@", module)}
+    w = writer(functions[0].arithmetic.name)
+    return {"index.html": w.render("wasm/index.html", license=license_, data=safe, module=module)}
 
 
 def compiled(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]], license_: str) -> bytes:
@@ -57,28 +57,8 @@ def compiled(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector
 
 def calls_source(functions: Sequence[ExportedFunction]) -> str:
     """Calls without arguments over one array of numbers: inputs first, results behind them."""
-    real = functions[0].arithmetic.name
-    widest = max(len(f.inputs) + f.size for f in functions)
-    lines = [f'#include "{f.name}.h"' for f in functions]
-    lines += [
-        f"static {real} numbers[{widest}];",
-        f"{real} *demo_numbers(void);",
-        f"{real} *demo_numbers(void)",
-        "{",
-        "    return numbers;",
-        "}",
-    ]
-    for f in functions:
-        words = [f"{'&' if a.size else ''}numbers[{a.first}]" for a in f.called_with]
-        words += [f"&numbers[{len(f.inputs) + place}]" for place in output_places(f)]
-        lines += [
-            f"int demo_{f.name}(void);",
-            f"int demo_{f.name}(void)",
-            "{",
-            f"    return (int){f.name}({', '.join(words)});",
-            "}",
-        ]
-    return "\n".join([*lines, ""])
+    w = writer(functions[0].arithmetic.name)
+    return w.render("wasm/calls.c", functions=functions, widest=max(len(f.inputs) + f.size for f in functions))
 
 
 # -- what the page knows ---------------------------------------

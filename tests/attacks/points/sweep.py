@@ -22,7 +22,6 @@ from navsym.core.errors import MissingEngineError
 from navsym.export.accuracy.rounding import Arithmetic, with_library
 from navsym.export.accuracy.vectors import LARGEST, cast, edge_values, piece_at, points, sample, vector_at
 from navsym.export.languages.c import files as c_files
-from navsym.export.languages.c import output_places
 from navsym.export.languages.targets import TARGETS, WARNINGS
 from navsym.export.parts import ExportedFunction
 from navsym.export.processes import run
@@ -195,7 +194,7 @@ def loop(function: ExportedFunction) -> str:
     """C source of a loop that calls the function at row after row."""
     n, size = len(function.inputs), function.size
     words = [f"{'&' if a.size else ''}in[(k * {n}) + {a.first}]" for a in function.called_with]
-    words += [f"&out[(k * {size}) + {place}]" for place in output_places(function)]
+    words += [f"&out[(k * {size}) + {place}]" for _, place in function.placed]
     return LOOP.format(name=function.name, real=function.arithmetic.name, arguments=", ".join(words))
 
 
