@@ -213,55 +213,6 @@ def not_a_basis(found: JointObservability, i: int, j: int) -> DomainError:
     )
 
 
-# The blocks in coordinates x, z and u, v, w
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class TwoStageBlocks:
-    """dx/dt = G_x x,  dz/dt = G_z1 x + G_z2 z,  sigma_1 = g_x x,  sigma_2 = g_z1 x + g_z2 z.
-
-    ``g_z1`` is zero for the split (1.9) and whatever it is for the variant (1.13). g are rows.
-    """
-
-    L: sp.ImmutableMatrix
-    G_x: sp.ImmutableMatrix
-    g_x: sp.ImmutableMatrix
-    G_z1: sp.ImmutableMatrix
-    G_z2: sp.ImmutableMatrix
-    g_z1: sp.ImmutableMatrix
-    g_z2: sp.ImmutableMatrix
-
-
-def two_stage_blocks(chosen: Split, C1: sp.MatrixBase | None = None, C2: sp.MatrixBase | None = None) -> TwoStageBlocks:
-    """(1.5), (1.9), (1.10) for invertible C1 (m, m) and C2 (n - m, n - m); identity by default.
-
-    Raises DomainError when the split has i < m: it then has the form u, v, w.
-    """
-    if chosen.i != chosen.m:
-        raise DomainError(f"expected a split with i = {chosen.m}; got i = {chosen.i}; use the form u, v, w")
-    one, C1_inverse = free_matrix("C1", C1, chosen.i)
-    two, C2_inverse = free_matrix("C2", C2, chosen.j)
-    return TwoStageBlocks(
-        L=sp.ImmutableMatrix.vstack(one * chosen.L[: chosen.i, :], two * chosen.L[chosen.i :, :]),
-        G_x=one * chosen.Theta * C1_inverse,  # joint_correction:1.5.Gx
-        g_x=unit_row(chosen.i) * C1_inverse,  # joint_correction:1.5.gx
-        G_z1=two * chosen.Phi_x * C1_inverse,  # joint_correction:1.10.Gz1
-        G_z2=two * chosen.Phi_z * C2_inverse,  # joint_correction:1.10.Gz2
-        g_z1=sp.ImmutableMatrix.zeros(1, chosen.i),
-        g_z2=unit_row(chosen.j) * C2_inverse,  # joint_correction:1.10.gz*
-    )
-
-
-def free_matrix(name: str, value: sp.MatrixBase | None, size: int) -> tuple[sp.ImmutableMatrix, sp.ImmutableMatrix]:
-    """An invertible matrix and its inverse, by exact elimination."""
-    if value is None:
-        return sp.ImmutableMatrix.eye(size), sp.ImmutableMatrix.eye(size)
-    if value.shape != (size, size):
-        raise ShapeError(f"{name}: expected shape {(size, size)}; got {value.shape}; one row per variable")
-    matrix = sp.ImmutableMatrix(value)
-    return matrix, exact_inverse(name, matrix)
-
-
 def exact_inverse(name: str, matrix: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
     """Exact inverse of a matrix of rational functions; DomainError when the determinant vanishes."""
     size = matrix.rows

@@ -20,9 +20,9 @@ from navsym.models.inertial import joint_model
 from navsym.multimodel.bank import Bank
 from navsym.multimodel.filters import run_filter
 from navsym.multimodel.kalman import correct, predict
-from navsym.observability.two_stage import hold_measurements
 from navsym.terrain.centre import information
 from navsym_papers.guaranteed_velocity.model import H, T, tau
+from navsym_papers.joint_correction.experiment.observer import hold_measurements
 from tests.benchmarks import export as benchmark
 from tests.export import programs
 

@@ -11,17 +11,20 @@ import sympy as sp
 from navsym.core.errors import DomainError, ShapeError
 from navsym.models.linear import LinearModel
 from navsym.observability.chains import observe_jointly
-from navsym.observability.splits import choose_split, companion, two_stage_blocks, unit_row
+from navsym.observability.splits import choose_split, companion, unit_row
 from navsym.observability.two_stage import (
     POLE,
     companion_gains,
     gains_by_poles,
-    hold_measurements,
     hurwitz_minors,
     monic_coefficients,
+    stability,
+)
+from navsym_papers.joint_correction.experiment.observer import (
+    hold_measurements,
     observer_loop,
     observer_of,
-    stability,
+    two_stage_blocks,
 )
 
 p = POLE

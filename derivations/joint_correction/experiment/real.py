@@ -19,10 +19,16 @@ from navsym.core.arrays import Array, as_array, freeze
 from navsym.core.errors import DomainError, EmptyError, UnknownSymbolError
 from navsym.models.linear import LinearModel
 from navsym.observability.chains import observe_jointly
-from navsym.observability.splits import choose_split, two_stage_blocks
-from navsym.observability.two_stage import POLE, TwoStageObserver, gains_by_poles, hold_measurements, observer_of
-from navsym.observability.two_stage import observer_loop as loop_of
+from navsym.observability.splits import choose_split
+from navsym.observability.two_stage import POLE, gains_by_poles
 from navsym_papers.joint_correction.experiment.flight import EARTH_RADIUS, GRAVITY
+from navsym_papers.joint_correction.experiment.observer import (
+    TwoStageObserver,
+    hold_measurements,
+    observer_of,
+    two_stage_blocks,
+)
+from navsym_papers.joint_correction.experiment.observer import observer_loop as loop_of
 
 FIELDS = ("time", "ax", "ay", "az", "phi", "theta", "psi", "vn", "ve", "lat", "lon", "GPS_TOW")
 
