@@ -5,7 +5,7 @@ from __future__ import annotations
 import sympy as sp
 
 from navsym.claims import REFUTED, Equation, Finding, Property, claim
-from navsym.models import dead_reckoning as model
+from navsym_papers.multistructure import model
 
 RECKONING = model.dead_reckoning()
 S = RECKONING.right_side()

@@ -12,7 +12,8 @@ from itertools import product
 import sympy as sp
 
 from navsym.claims import REFUTED, Equation, Finding, Property, claim
-from navsym.models.earth import dynamics, first_state, nilpotent_exponential, pascal_rows
+from navsym.models.earth import pascal_rows
+from navsym_papers.trajectory.model import dynamics, first_state, nilpotent_exponential
 
 N = 3
 R = sp.Symbol("R", positive=True)

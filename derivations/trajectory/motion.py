@@ -10,6 +10,7 @@ import sympy as sp
 from navsym.claims import CERTIFIED, REFUTED, Bound, Equation, Finding, Property, claim
 from navsym.models import earth as motion
 from navsym.trajectory.conditioning import condition_number
+from navsym_papers.trajectory import model
 
 rho, tau, t = sp.symbols("rho tau t", positive=True)
 
@@ -46,7 +47,7 @@ def degree_of_the_speed():
     """The speed is a polynomial of degree n - 2."""
 
     def degree(n: int) -> int:
-        speed = (motion.nilpotent_exponential(motion.dynamics(n, rho), t) * sp.Matrix(STATE[:n]))[1]
+        speed = (model.nilpotent_exponential(model.dynamics(n, rho), t) * sp.Matrix(STATE[:n]))[1]
         return int(sp.Poly(speed, t).degree())
 
     orders = range(2, ORDER + 1)
@@ -99,7 +100,7 @@ def last_row():
 @claim("1.general")
 def matrix_form():
     """The general form dx/dt = A x with A of equation 3."""
-    A = motion.dynamics(ORDER, rho)
+    A = model.dynamics(ORDER, rho)
     return Equation(printed=list(A * sp.Matrix(moved_state(ORDER, t))), derived=rate_of_state(ORDER))
 
 
@@ -138,7 +139,7 @@ def measurement_of_the_coordinate():
 
 def nilpotency_index(n: int) -> int:
     """Smallest q with A^q = 0, by exact powers; rho is a free symbol."""
-    A = motion.dynamics(n, rho)
+    A = model.dynamics(n, rho)
     power, q = sp.eye(n), 0
     while power != sp.zeros(n, n):
         power, q = power * A, q + 1
@@ -162,7 +163,7 @@ def nonzero_elements():
     """A has n - 1 elements that are not zero."""
 
     def count(n: int) -> int:
-        return sum(x != 0 for x in motion.dynamics(n, rho))
+        return sum(x != 0 for x in model.dynamics(n, rho))
 
     found = Finding(tuple(map(count, ORDERS)), "count", scope="n = 2..12", assumptions=("rho != 0",))
     return Property(printed=tuple(n - 1 for n in ORDERS), derived=found)
@@ -207,7 +208,7 @@ def transition_matrix():
 def transition_matrix_is_the_finite_series():
     """The transition matrix is the series of exp(A tau), which ends because A is nilpotent; n = 8."""
     return Equation(
-        printed=printed_transition(ORDER), derived=motion.nilpotent_exponential(motion.dynamics(ORDER, rho), tau)
+        printed=printed_transition(ORDER), derived=model.nilpotent_exponential(model.dynamics(ORDER, rho), tau)
     )
 
 

@@ -8,7 +8,7 @@ from math import comb
 import sympy as sp
 
 from navsym.claims import REFUTED, Equation, Finding, Property, claim
-from navsym.models import earth as motion
+from navsym_papers.trajectory import model
 
 rho, tau = sp.symbols("rho tau", positive=True)
 
@@ -19,26 +19,26 @@ X = sp.symbols(f"x1:{PRINTED + 1}", real=True)
 
 
 def step(n: int) -> sp.Matrix:
-    return motion.nilpotent_exponential(motion.dynamics(n, rho), tau)
+    return model.nilpotent_exponential(model.dynamics(n, rho), tau)
 
 
 def measured(n: int) -> sp.Matrix:
     """H_p = H Phi."""
-    return motion.first_state(n) * step(n)
+    return model.first_state(n) * step(n)
 
 
 def N_p(n: int) -> sp.Matrix:
-    return motion.stepped_rows(measured(n), step(n))
+    return model.stepped_rows(measured(n), step(n))
 
 
 def D(n: int) -> sp.Matrix:
     """Matrix of the one-stage procedure: norms of the columns of N_p."""
-    return sp.diag(*motion.norms_of_columns(N_p(n)))
+    return sp.diag(*model.norms_of_columns(N_p(n)))
 
 
 def D_f(n: int) -> sp.Matrix:
     """First stage: the entries of H_p."""
-    return motion.row_scaling(measured(n))
+    return model.row_scaling(measured(n))
 
 
 def in_first_stage(n: int) -> tuple[sp.Matrix, sp.Matrix]:
@@ -49,11 +49,11 @@ def in_first_stage(n: int) -> tuple[sp.Matrix, sp.Matrix]:
 
 def N_f(n: int) -> sp.Matrix:
     Phi_f, h_f = in_first_stage(n)
-    return motion.stepped_rows(h_f, Phi_f)
+    return model.stepped_rows(h_f, Phi_f)
 
 
 def D_s(n: int) -> sp.Matrix:
-    return sp.diag(*motion.norms_of_columns(N_f(n)))
+    return sp.diag(*model.norms_of_columns(N_f(n)))
 
 
 # -- one stage -----------------------------------------------------------------------------------------
@@ -80,14 +80,14 @@ def normalised_measurement():
 def normalised_observability():
     """The observability matrix of the normalised model is N_p D^-1; n = 4."""
     scale = D(SMALL)
-    pair = motion.stepped_rows(measured(SMALL) * scale.inv(), scale * step(SMALL) * scale.inv())
+    pair = model.stepped_rows(measured(SMALL) * scale.inv(), scale * step(SMALL) * scale.inv())
     return Equation(printed=N_p(SMALL) * scale.inv(), derived=pair)
 
 
 @claim("5.unit")
 def normalised_columns():
     """The columns of N_pN have unit length; n = 5."""
-    norms = motion.norms_of_columns(N_p(PRINTED) * D(PRINTED).inv())
+    norms = model.norms_of_columns(N_p(PRINTED) * D(PRINTED).inv())
     return Equation(printed=[sp.Integer(1)] * PRINTED, derived=norms)
 
 
@@ -263,7 +263,7 @@ def observability_rows_for_every_index():
 @claim("6.Ns.unit")
 def second_stage_columns():
     """N_s = N_f D_s^-1 has columns of unit length; n = 5."""
-    norms = motion.norms_of_columns(N_f(PRINTED) * D_s(PRINTED).inv())
+    norms = model.norms_of_columns(N_f(PRINTED) * D_s(PRINTED).inv())
     return Equation(printed=[sp.Integer(1)] * PRINTED, derived=norms)
 
 
@@ -278,7 +278,7 @@ def observability_row_by_row():
     """Row x of N_p, H Phi(x tau), is row (x^0, x^1, ...) of N_f times D_f, for every real x; n = 12."""
     x = sp.Symbol("x", positive=True)
     n = 12
-    row = motion.first_state(n) * motion.nilpotent_exponential(motion.dynamics(n, rho), x * tau)
+    row = model.first_state(n) * model.nilpotent_exponential(model.dynamics(n, rho), x * tau)
     printed = [x**j * (rho * tau**j / sp.factorial(j) if j else 1) for j in range(n)]
     return Equation(printed=printed, derived=list(row))
 

@@ -12,7 +12,7 @@ from fractions import Fraction
 import sympy as sp
 
 from navsym.claims import PROVED, REFUTED, Equation, Finding, Property, claim
-from navsym.models.earth import dynamics, first_state, nilpotent_exponential
+from navsym_papers.trajectory.model import dynamics, first_state, nilpotent_exponential
 
 N = 3
 STEPS = 3

@@ -1,24 +1,20 @@
-"""Polynomial motion of one coordinate, and the two ways of scaling it.
+"""The Earth and motion over it: an ellipsoid in symbols, positions as numbers, polynomial motion as exact rows.
 
-The coordinate x_1 obeys dx_1/dt = rho x_2, dx_2/dt = x_3, ..., dx_n/dt = 0: its speed is a polynomial of
-degree n - 2. Everything is derived from A: powers, the transition matrix, the rows of the observability
-matrix. The functions that end in ``rows`` work on exact numbers and load no symbolic engine.
+The coordinate x_1 of a polynomial motion obeys dx_1/dt = rho x_2, dx_2/dt = x_3, ..., dx_n/dt = 0: its speed is a
+polynomial of degree n - 2.
 """
 
 from __future__ import annotations
 
 import math
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
 from navsym.core.errors import DomainError
-
-if TYPE_CHECKING:
-    import sympy as sp
 
 # The Earth as an ellipsoid of revolution, and how a trihedron moves over it: symbolic side.
 #
@@ -159,66 +155,10 @@ def local_axes(latitude: Angles, longitude: Angles) -> Array:
     return np.stack((east, north, up), axis=-2)
 
 
-def dynamics(n: int, rho: Any) -> sp.Matrix:
-    """A of trajectory:3, (n, n): rho at the first place above the diagonal, ones at the others."""
-    import sympy as sp
-
-    need_order(n)
-    return sp.Matrix(n, n, lambda i, j: (rho if i == 0 else 1) if j == i + 1 else 0)
-
-
-def first_state(n: int) -> sp.Matrix:
-    """H, (1, n): the coordinate itself is measured."""
-    import sympy as sp
-
-    return sp.Matrix(1, n, lambda _, j: 1 if j == 0 else 0)
-
-
-def nilpotent_exponential(A: sp.Matrix, tau: Any) -> sp.Matrix:
-    """exp(A tau) of a nilpotent A, (n, n): the series sum (A tau)^k / k! ends after n terms."""
-    import sympy as sp
-
-    n = A.rows
-    total, power = sp.eye(n), sp.eye(n)
-    for k in range(1, n + 1):
-        power = power * A
-        total += power * tau**k / sp.factorial(k)
-    if power != sp.zeros(n, n):
-        raise DomainError("A: expected a nilpotent matrix; got one with A^n != 0; the series does not end")
-    return total
-
-
-def stepped_rows(h: sp.Matrix, Phi: sp.Matrix) -> sp.Matrix:
-    """Rows h, h Phi, ..., h Phi^(n-1), (n, n)."""
-    import sympy as sp
-
-    rows = [h]
-    for _ in range(Phi.rows - 1):
-        rows.append(rows[-1] * Phi)
-    return sp.Matrix.vstack(*rows)
-
-
-def norms_of_columns(matrix: sp.Matrix) -> list[sp.Expr]:
-    """Euclidean norms of the columns (symbols of the matrix are taken as declared)."""
-    import sympy as sp
-
-    return [sp.sqrt(sum(x**2 for x in matrix[:, j])) for j in range(matrix.cols)]
-
-
-def row_scaling(h: sp.Matrix) -> sp.Matrix:
-    """D_f = diag(h): the variables in which the row h becomes (1, ..., 1)."""
-    import sympy as sp
-
-    return sp.diag(*h)
-
-
 def need_order(n: int) -> None:
     """DomainError below order one."""
     if n < 1:
         raise DomainError(f"n: expected an order of 1 or more; got {n}; choose a larger one")
-
-
-# -- exact numbers ---------------------------------------------------------------------------------
 
 
 def observability_rows(n: int, rho: Fraction, tau: Fraction) -> list[list[Fraction]]:

@@ -6,7 +6,7 @@ import sympy as sp
 from numpy.testing import assert_allclose
 
 from navsym.core.casadi_functions import casadi_function
-from navsym.models import dead_reckoning
+from navsym_papers.multistructure import model as reckoning
 from navsym_papers.multistructure.experiment import modes
 
 
@@ -14,8 +14,8 @@ from navsym_papers.multistructure.experiment import modes
 def test_jacobians_by_sympy_and_by_algorithmic_differentiation_are_equal(point):
     import casadi as ca
 
-    model = dead_reckoning.dead_reckoning()
-    S = model.right_side().subs(dead_reckoning.radius, 3)
+    model = reckoning.dead_reckoning()
+    S = model.right_side().subs(reckoning.radius, 3)
     inputs = [list(model.errors), list(model.sensor_errors), [*model.reckoned, *model.readings]]
     generated = casadi_function("S", inputs, S)
     where = np.concatenate([point[:5], [1.0]])
@@ -25,7 +25,7 @@ def test_jacobians_by_sympy_and_by_algorithmic_differentiation_are_equal(point):
     ours = model.linear_parts()
     symbols = [*model.reckoned, *model.readings]
     for theirs, matrix in zip(differentiated(np.zeros(2), np.zeros(4), where), ours, strict=True):
-        exact = matrix.subs(dict(zip(symbols, map(sp.Float, where), strict=True))).subs(dead_reckoning.radius, 3)
+        exact = matrix.subs(dict(zip(symbols, map(sp.Float, where), strict=True))).subs(reckoning.radius, 3)
         assert_allclose(np.array(theirs), np.array(exact.evalf(), dtype=float), rtol=1e-12, atol=1e-14)
 
 

@@ -12,15 +12,16 @@ import sympy as sp
 
 from navsym.core.errors import DomainError
 from navsym.models import earth as motion
+from navsym_papers.trajectory import model
 
 rho, tau = sp.symbols("rho tau", positive=True)
 
 
 @pytest.mark.parametrize("n", [1, 2, 5, 9])
 def test_exact_rows_are_the_observability_matrix_of_the_model(n):
-    A = motion.dynamics(n, sp.Rational(1, 7))
-    Phi = motion.nilpotent_exponential(A, sp.Rational(2, 3))
-    symbolic = motion.stepped_rows(motion.first_state(n) * Phi, Phi)
+    A = model.dynamics(n, sp.Rational(1, 7))
+    Phi = model.nilpotent_exponential(A, sp.Rational(2, 3))
+    symbolic = model.stepped_rows(model.first_state(n) * Phi, Phi)
     exact = motion.observability_rows(n, Fraction(1, 7), Fraction(2, 3))
     assert [[Fraction(int(x.p), int(x.q)) for x in symbolic.row(i)] for i in range(n)] == exact
 
@@ -28,9 +29,9 @@ def test_exact_rows_are_the_observability_matrix_of_the_model(n):
 @pytest.mark.parametrize("n", [2, 3, 6])
 def test_transitions_over_two_steps_multiply(n):
     s = sp.Symbol("s")
-    A = motion.dynamics(n, rho)
-    product = (motion.nilpotent_exponential(A, tau) * motion.nilpotent_exponential(A, s)).applyfunc(sp.expand)
-    assert product == motion.nilpotent_exponential(A, tau + s).applyfunc(sp.expand)
+    A = model.dynamics(n, rho)
+    product = (model.nilpotent_exponential(A, tau) * model.nilpotent_exponential(A, s)).applyfunc(sp.expand)
+    assert product == model.nilpotent_exponential(A, tau + s).applyfunc(sp.expand)
 
 
 @pytest.mark.parametrize("n", range(1, 31))
@@ -54,7 +55,7 @@ def test_leading_blocks_are_the_matrices_of_smaller_orders():
 
 def test_a_matrix_that_is_not_nilpotent_has_no_finite_series():
     with pytest.raises(DomainError, match="nilpotent"):
-        motion.nilpotent_exponential(sp.eye(2), tau)
+        model.nilpotent_exponential(sp.eye(2), tau)
 
 
 def test_an_order_below_one_is_refused():
