@@ -7,9 +7,11 @@ this machine can, writes the page, and says what it cannot run. ``--json`` print
 from __future__ import annotations
 
 import argparse
+import importlib.util
 import json
 import platform
 import shlex
+import struct
 import sys
 import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -24,16 +26,19 @@ from navsym.core.errors import MissingEngineError, NavsymError  # noqa: E402
 from navsym.core.sandbox import MOST_MEGABYTES, Exhausted, Failed, run_many  # noqa: E402
 from navsym.export.folder import write_folder  # noqa: E402
 from navsym.export.languages.summary import bound_text  # noqa: E402
-from navsym.export.languages.targets import TARGETS, Target, find_targets  # noqa: E402
+from navsym.export.languages.targets import TARGETS, Target, answering, find_targets  # noqa: E402
 from navsym.export.materials import functions_of_claim  # noqa: E402
 from navsym.export.package import Order, files_of  # noqa: E402
 from navsym.export.parts import ExportedFunction  # noqa: E402
+from navsym.export.processes import run  # noqa: E402
 from navsym.export.ready import READY  # noqa: E402
 from navsym.export.roundtrip import Outcome, run_target  # noqa: E402
-from navsym.export.tools import Said, cortex_m4_sizes, ctest, misra  # noqa: E402
+from navsym.export.tools import Said, misra  # noqa: E402
 from tests.attacks.points.sweep import Swept, sweep_c  # noqa: E402
 
 Record = dict[str, Any]
+FLAGS = ("-target", "thumb-linux-musleabihf", "-mcpu=cortex_m4", "-Os", "-std=c99", "-ffp-contract=off")
+ALLOCATED, EXECUTABLE = 0x2, 0x4
 EVERY = "c,cpp,python,batch,javascript,rust,fortran,casadi,wasm,julia,octave"
 SECONDS = 36_000.0  # of one task; what runs code has limits of its own
 
@@ -159,6 +164,52 @@ def function_row(group: str, function: ExportedFunction, outcomes: Sequence[Outc
         "misra": found.files.get(f"{function.name}.c", 0) if found and found.status != "not executed" else None,
         "cortex_m4_bytes": size.counts.get(function.name) if size else None,
     }
+
+
+# -- ctest, and the size on a Cortex-M4 ---------------------------------------
+
+
+def ctest(folder: Path) -> Said:
+    """Configure, build and test a C or C++ folder by its CMakeLists.txt, outside the folder."""
+    if answering("cmake") is None or answering("ctest") is None:
+        return Said("ctest", "not executed", "cmake is not on this machine (Debian: apt install cmake; or its wheel)")
+    with tempfile.TemporaryDirectory(prefix="navsym-cmake-") as build:
+        for command in (
+            ["cmake", "-S", str(folder.resolve()), "-B", build],
+            ["cmake", "--build", build],
+            ["ctest", "--test-dir", build, "--output-on-failure", "--no-tests=error"],
+        ):
+            status, text = run(command, Path(build))
+            if status != 0:
+                return Said("ctest", "failed", text.strip()[-300:])
+    return Said("ctest", "passed", "")
+
+
+def cortex_m4_sizes(folder: Path) -> Said:
+    """Bytes of code and constants of every function for a Cortex-M4 (-Os), libraries not counted."""
+    if importlib.util.find_spec("ziglang") is None:
+        return Said("ziglang", "not executed", "ziglang is not installed (pip install ziglang)")
+    sizes = {}
+    with tempfile.TemporaryDirectory(prefix="navsym-size-") as build:
+        for source in sorted(p for p in folder.glob("*.c") if p.name != "test_main.c"):
+            made = Path(build) / f"{source.stem}.o"
+            command = [sys.executable, "-m", "ziglang", "cc", *FLAGS, "-c", source.name, "-o", str(made)]
+            status, text = run(command, folder)
+            if status != 0:
+                return Said("ziglang", "failed", text.strip()[-300:])
+            sizes[source.stem] = loaded_bytes(made.read_bytes())
+    return Said("ziglang", "passed", "", sizes)
+
+
+def loaded_bytes(image: bytes) -> int:
+    """Bytes of the sections of a 32-bit little-endian ELF object that end in memory: code and constants."""
+    if image[:6] != b"\x7fELF\x01\x01":
+        return 0
+    (table,) = struct.unpack_from("<I", image, 32)
+    size, count = struct.unpack_from("<HH", image, 46)
+    headers = (struct.unpack_from("<10I", image, table + k * size) for k in range(count))
+    program, notes = 1, 7  # SHT_PROGBITS; SHT_NOTE is left out
+    return sum(h[5] for h in headers if h[1] == program and h[1] != notes and h[2] & (ALLOCATED | EXECUTABLE))
 
 
 # -- markdown ---------------------------------------

@@ -12,9 +12,8 @@ from flint import arb
 
 from navsym.core.balls import precision
 from navsym.core.errors import NavsymError
-from navsym.export.accuracy.analysis import analyse
-from navsym.export.accuracy.literals import literals_of
-from navsym.export.accuracy.rounding import BITS, LIBRARY, Arithmetic
+from navsym.export.accuracy.filled import analyse
+from navsym.export.accuracy.rounding import BITS, LIBRARY, Arithmetic, literals_of
 from navsym.export.expression_graph import Graph, build
 from navsym.export.forms import factored, safe
 from navsym.prove.identities.normal_form import OutsideLanguageError, reduce_to_zero

@@ -14,9 +14,8 @@ import sympy as sp
 
 from navsym.claims import CONFIRMED, REFUTED, Bound, Equation, Optimum, Statement, Verdict
 from navsym.core.errors import NavsymError, ShapeError
-from navsym.export.accuracy.literals import literals_of
 from navsym.export.accuracy.overflow import watched
-from navsym.export.accuracy.rounding import ARITHMETICS, Arithmetic, with_library
+from navsym.export.accuracy.rounding import ARITHMETICS, Arithmetic, literals_of, with_library
 from navsym.export.accuracy.uniform import CELLS, uniform_bound
 from navsym.export.choice import best_form, best_graph, tie_to_formula
 from navsym.export.expression_graph import Graph

@@ -98,10 +98,10 @@ def input_of(symbol: sp.Symbol, name: str, box: Mapping[Any, Any], real: str) ->
 
 
 def around(limits: Range) -> str:
-    """A range in words, with {} for the name."""
+    """A range in words, with {0} for the name."""
     lower = "" if limits.lower is None else f"{expression_text(limits.lower)} {'<' if limits.open_lower else '<='} "
     upper = "" if limits.upper is None else f" <= {expression_text(limits.upper)}"
-    nonzero = " != 0" if limits.nonzero else ""
-    if lower or upper:
-        return f"{lower}{{}}{upper}" + (f", {{}}{nonzero}" if nonzero else "")
-    return f"{{}}{nonzero or ' real'}"
+    hole = limits.nonzero and (limits.lower is None or limits.lower < 0) and (limits.upper is None or limits.upper > 0)
+    if not (lower or upper):
+        return "{0} != 0" if hole else "{0} real"
+    return f"{lower}{{0}}{upper}" + (", {0} != 0" if hole else "")

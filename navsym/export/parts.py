@@ -38,7 +38,7 @@ class Input:
 
     low, high   : accepted range as doubles, inside the proved one; infinite where it has no end
     test_low, test_high : the range of vectors and of the rounding bound
-    around      : the proved range in words, with {} for the name
+    around      : the proved range in words, with {0} for the name
     """
 
     symbol: sp.Symbol

@@ -64,16 +64,11 @@ def steps_of(target: Target, folder: Path, tool: str, build: str, sanitize: bool
     table = {"{tool}": [tool], "{python}": [sys.executable], "{c}": [p.name for p in sorted(folder.glob("*.c"))]}
     made = []
     for step in target.steps:
-        command = [w for word in step for w in table.get(word, [word.replace("{build}", build)])]
-        if sanitize and target.name in ("c", "cpp") and word_is_compiler(command, tool):
+        command = [w for word in step.split() for w in table.get(word, [word.replace("{build}", build)])]
+        if sanitize and target.name in ("c", "cpp") and command[0] == tool:
             command[1:1] = SANITIZERS
         made.append(command)
     return made
-
-
-def word_is_compiler(command: list[str], tool: str) -> bool:
-    """True when the command starts with this tool itself."""
-    return command[0] == tool
 
 
 def measured(text: str) -> dict[str, tuple[int, int, float]]:

@@ -1,15 +1,11 @@
-"""What other programs say about exported C: MISRA findings, ctest, and the size of the code on a Cortex-M4.
+"""What cppcheck says about exported C: the MISRA rules that it breaks, and those that it deviates from on purpose.
 
 Nothing is "passed" that did not run: a missing program is reported as "not executed", with what to install.
 """
 
 from __future__ import annotations
 
-import importlib.util
 import re
-import struct
-import sys
-import tempfile
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -37,8 +33,6 @@ DEVIATIONS = {
 #: would lose too much a polynomial stands in its place.
 UNTAKEN = ("unpreciseMathCall",)
 MISRA_LINE = re.compile(r"^misra-c2012-([\d.]+):([^:]+):(\d+)")
-FLAGS = ("-target", "thumb-linux-musleabihf", "-mcpu=cortex_m4", "-Os", "-std=c99", "-ffp-contract=off")
-ALLOCATED, EXECUTABLE = 0x2, 0x4
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,49 +78,6 @@ def misra(folder: Path) -> Said:
     other = [line for line in text.splitlines() if line.strip() and not MISRA_LINE.match(line)]
     why = f"rules broken: {', '.join(beyond)}" if beyond else "; ".join(other[:3])
     return Said("cppcheck", "failed" if beyond or other else "passed", why, dict(sorted(found.items())), files)
-
-
-def ctest(folder: Path) -> Said:
-    """Configure, build and test a C or C++ folder by its CMakeLists.txt, outside the folder."""
-    if answering("cmake") is None or answering("ctest") is None:
-        return Said("ctest", "not executed", "cmake is not on this machine (Debian: apt install cmake; or its wheel)")
-    with tempfile.TemporaryDirectory(prefix="navsym-cmake-") as build:
-        for command in (
-            ["cmake", "-S", str(folder.resolve()), "-B", build],
-            ["cmake", "--build", build],
-            ["ctest", "--test-dir", build, "--output-on-failure", "--no-tests=error"],
-        ):
-            status, text = run(command, Path(build))
-            if status != 0:
-                return Said("ctest", "failed", text.strip()[-300:])
-    return Said("ctest", "passed", "")
-
-
-def cortex_m4_sizes(folder: Path) -> Said:
-    """Bytes of code and constants of every function for a Cortex-M4 (-Os), libraries not counted."""
-    if importlib.util.find_spec("ziglang") is None:
-        return Said("ziglang", "not executed", "ziglang is not installed (pip install ziglang)")
-    sizes = {}
-    with tempfile.TemporaryDirectory(prefix="navsym-size-") as build:
-        for source in sorted(p for p in folder.glob("*.c") if p.name != "test_main.c"):
-            made = Path(build) / f"{source.stem}.o"
-            command = [sys.executable, "-m", "ziglang", "cc", *FLAGS, "-c", source.name, "-o", str(made)]
-            status, text = run(command, folder)
-            if status != 0:
-                return Said("ziglang", "failed", text.strip()[-300:])
-            sizes[source.stem] = loaded_bytes(made.read_bytes())
-    return Said("ziglang", "passed", "", sizes)
-
-
-def loaded_bytes(image: bytes) -> int:
-    """Bytes of the sections of a 32-bit little-endian ELF object that end in memory: code and constants."""
-    if image[:6] != b"\x7fELF\x01\x01":
-        return 0
-    (table,) = struct.unpack_from("<I", image, 32)
-    size, count = struct.unpack_from("<HH", image, 46)
-    headers = (struct.unpack_from("<10I", image, table + k * size) for k in range(count))
-    program, notes = 1, 7  # SHT_PROGBITS; SHT_NOTE is left out
-    return sum(h[5] for h in headers if h[1] == program and h[1] != notes and h[2] & (ALLOCATED | EXECUTABLE))
 
 
 def deviations_page(license_: str) -> str:

@@ -26,6 +26,16 @@ from tests.export import programs, samples
 from tests.report.devtools import Browser
 
 
+@pytest.fixture(scope="module")
+def table():
+    """The script that makes docs/exports.md."""
+    sys.path.insert(0, str(Path(__file__).parents[2] / "docs"))
+    try:
+        yield importlib.import_module("exports_table")
+    finally:
+        sys.path.pop(0)
+
+
 def written(functions, language: str, folder: Path, count: int = 6) -> Path:
     for name, text in files_of(functions, Order((TARGETS[language],), count=count)).items():
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
@@ -62,28 +72,29 @@ def test_a_broken_rule_without_a_deviation_is_a_failure(tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(shutil.which("cmake") is None, reason="needs cmake")
-def test_ctest_runs_the_vectors(tmp_path: Path) -> None:
+def test_ctest_runs_the_vectors(table, tmp_path: Path) -> None:
     functions = [samples.by_name("versine"), *programs.functions("trajectory-filter")]
     for language in ("c", "cpp"):
         folder = written(functions, language, tmp_path)
-        said = tools.ctest(folder)
+        said = table.ctest(folder)
         assert said.status == "passed", said.why
         before = sorted(p.name for p in folder.iterdir())
         assert "CMakeCache.txt" not in before
 
 
-def test_a_missing_tool_is_not_executed_and_says_what_to_install(tmp_path: Path, monkeypatch) -> None:
-    monkeypatch.setattr(tools, "answering", lambda name: None)
+def test_a_missing_tool_is_not_executed_and_says_what_to_install(table, tmp_path: Path, monkeypatch) -> None:
+    for place in (tools, table):
+        monkeypatch.setattr(place, "answering", lambda name: None)
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
-    for said in (tools.misra(tmp_path), tools.ctest(tmp_path), tools.cortex_m4_sizes(tmp_path)):
+    for said in (tools.misra(tmp_path), table.ctest(tmp_path), table.cortex_m4_sizes(tmp_path)):
         assert said.status == "not executed" and "install" in said.why
 
 
 @pytest.mark.skipif(importlib.util.find_spec("ziglang") is None, reason="needs ziglang (extra cross)")
-def test_the_size_on_a_cortex_m4_is_measured(tmp_path: Path) -> None:
-    said = tools.cortex_m4_sizes(written([samples.by_name("versine")], "c", tmp_path))
+def test_the_size_on_a_cortex_m4_is_measured(table, tmp_path: Path) -> None:
+    said = table.cortex_m4_sizes(written([samples.by_name("versine")], "c", tmp_path))
     assert said.status == "passed" and 40 < said.counts["sample_versine"] < 2000
-    assert tools.loaded_bytes(b"no object at all") == 0
+    assert table.loaded_bytes(b"no object at all") == 0
 
 
 @pytest.mark.browser
@@ -132,16 +143,6 @@ def test_text_of_a_claim_cannot_leave_the_script_of_the_page() -> None:
 
 
 # -- the table ---------------------------------------
-
-
-@pytest.fixture(scope="module")
-def table():
-    """The script that makes docs/exports.md."""
-    sys.path.insert(0, str(Path(__file__).parents[2] / "docs"))
-    try:
-        yield importlib.import_module("exports_table")
-    finally:
-        sys.path.pop(0)
 
 
 def test_the_table_says_what_ran_and_what_did_not(table, monkeypatch) -> None:

@@ -22,8 +22,7 @@ from flint import arb, arb_series, fmpq
 
 from navsym.core.balls import Tape, precision, tape
 from navsym.core.errors import DomainError
-from navsym.export.accuracy.literals import literals_of
-from navsym.export.accuracy.rounding import ARITHMETICS, INFINITE, Arithmetic, down, followed, up
+from navsym.export.accuracy.rounding import ARITHMETICS, INFINITE, Arithmetic, down, followed, literals_of, up
 from navsym.export.expression_graph import Builder, Graph, pruned
 from navsym.export.holes import Part, T
 from navsym.export.series import capped, taylor

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import reduce
+from typing import Any
 
 from flint import arb, arb_series
 
@@ -19,9 +21,18 @@ from navsym.export.accuracy.rounding import (
     tightened,
     up,
 )
+from navsym.export.expression_graph import Graph
 from navsym.export.holes import Part, T
 
 NOTHING = Bounded(arb("nan"), INFINITE, INFINITE, INFINITE)
+
+
+def analyse(graph: Graph, inputs: Sequence[arb], arithmetic: Arithmetic, literals: Sequence[Any]) -> list[Bounded]:
+    """Value and error bounds of every node over the box of the inputs, which are taken as exact.
+
+    literals : the number that stands in the code for each constant node (None for other nodes)
+    """
+    return followed(graph, inputs, arithmetic, literals, filled_bounds)
 
 
 def filled_bounds(part: Part, a: Bounded, arithmetic: Arithmetic) -> Bounded:

@@ -10,11 +10,10 @@ from dataclasses import dataclass
 import sympy as sp
 
 from navsym.export.accuracy.continuation import Continuation, continuation
-from navsym.export.accuracy.literals import literals_of
-from navsym.export.accuracy.rounding import ARITHMETICS
+from navsym.export.accuracy.rounding import ARITHMETICS, literals_of
 from navsym.export.expression_graph import Graph
 from navsym.export.holes import Part, T
-from navsym.export.languages.part_names import name_of
+from navsym.export.languages.names import name_of
 from navsym.export.languages.printing import Spelling, bare, node_text
 from navsym.export.parts import ExportedFunction
 from navsym.prove.wording import expression_text

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from navsym.export.expression_graph import Graph
-from navsym.export.languages.part_names import name_of
+from navsym.export.languages.names import name_of
 from navsym.export.parts import ExportedFunction, Piece
 
 SIGNS = {"add": "+", "sub": "-", "mul": "*", "div": "/"}

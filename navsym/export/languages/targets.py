@@ -23,7 +23,7 @@ class Target:
 
     writer  : "module:function" that makes the files of the folder
     tool    : program that must be there to run the vectors; "" when Python itself is enough
-    steps   : commands, run in the folder; "{tool}" and "{python}" are replaced
+    steps   : commands, run in the folder; their words "{tool}", "{python}" and "{c}", and {build}, are replaced
     library : accuracy of sin, cos, exp, … in ulps, as taken for the bounds
     reals   : types that the target can be written in
     widen   : factor on the rounding error, where the order of operations is not ours
@@ -32,7 +32,7 @@ class Target:
     name: str
     writer: str
     tool: str
-    steps: tuple[tuple[str, ...], ...]
+    steps: tuple[str, ...]
     library: int = 1
     reals: tuple[str, ...] = ("double",)
     widen: int = 1
@@ -72,136 +72,72 @@ def answers(path: str) -> bool:
 
 
 BOTH = ("double", "float")
-HEADLESS = (
-    "--headless",
-    "--no-sandbox",
-    "--disable-gpu",
-    "--disable-quic",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-    "--virtual-time-budget=20000",
-)
+HEADLESS = """--headless --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-background-networking
+    --disable-component-update --disable-sync --virtual-time-budget=20000"""
+PYTHON = "{python} -B test_vectors.py"
+RUN = "{build}/run"
+STRICT = " ".join(WARNINGS)
+WRITERS = "navsym.export.languages"
 TARGETS = {
     target.name: target
     for target in (
         Target(
             "c",
-            "navsym.export.languages.c:files",
+            f"{WRITERS}.c:files",
             "gcc",
-            (
-                ("{tool}", "-std=c99", "-O2", "-ffp-contract=off", *WARNINGS, "{c}", "-o", "{build}/run", "-lm"),
-                ("{build}/run",),
-            ),
+            (f"{{tool}} -std=c99 -O2 -ffp-contract=off {STRICT} {{c}} -o {RUN} -lm", RUN),
             reals=BOTH,
         ),
         Target(
             "cpp",
-            "navsym.export.languages.cpp:files",
+            f"{WRITERS}.cpp:files",
             "g++",
-            (
-                ("{tool}", "-std=c++17", "-O1", "-ffp-contract=off", *WARNINGS, "test_main.cpp", "-o", "{build}/run"),
-                ("{build}/run",),
-            ),
+            (f"{{tool}} -std=c++17 -O1 -ffp-contract=off {STRICT} test_main.cpp -o {RUN}", RUN),
             reals=BOTH,
         ),
-        Target(
-            "python",
-            "navsym.export.languages.python:files",
-            "",
-            (("{python}", "-B", "test_vectors.py"),),
-            library=4,
-            reals=BOTH,
-        ),
-        Target("javascript", "navsym.export.languages.javascript:files", "node", (("{tool}", "test_vectors.mjs"),)),
+        Target("python", f"{WRITERS}.python:files", "", (PYTHON,), library=4, reals=BOTH),
+        Target("javascript", f"{WRITERS}.javascript:files", "node", ("{tool} test_vectors.mjs",)),
         Target(
             "rust",
-            "navsym.export.languages.rust:files",
+            f"{WRITERS}.rust:files",
             "rustc",
-            (("{tool}", "--edition=2021", "-D", "warnings", "test_main.rs", "-o", "{build}/run"), ("{build}/run",)),
+            (f"{{tool}} --edition=2021 -D warnings test_main.rs -o {RUN}", RUN),
             reals=BOTH,
         ),
-        Target(
-            "casadi",
-            "navsym.export.languages.casadi:files",
-            "",
-            (("{python}", "-B", "test_vectors.py"),),
-            widen=64,
-            modules=("casadi",),
-        ),
-        Target(
-            "batch",
-            "navsym.export.languages.batch:files",
-            "gcc",
-            (("{python}", "-B", "test_vectors.py"),),
-            library=4,
-            reals=BOTH,
-        ),
+        Target("casadi", f"{WRITERS}.casadi:files", "", (PYTHON,), widen=64, modules=("casadi",)),
+        Target("batch", f"{WRITERS}.batch:files", "gcc", (PYTHON,), library=4, reals=BOTH),
         Target(
             "fortran",
-            "navsym.export.languages.fortran:files",
+            f"{WRITERS}.fortran:files",
             "gfortran",
-            (
-                (
-                    "{tool}",
-                    "-std=f2008",
-                    "-Wall",
-                    "-J",
-                    "{build}",
-                    "navsym_functions.f90",
-                    "test_vectors.f90",
-                    "-o",
-                    "{build}/run",
-                ),
-                ("{build}/run",),
-            ),
+            (f"{{tool}} -std=f2008 -Wall -J {{build}} navsym_functions.f90 test_vectors.f90 -o {RUN}", RUN),
             library=2,
         ),
-        Target(
-            "julia",
-            "navsym.export.languages.julia:files",
-            "julia",
-            (("{tool}", "--startup-file=no", "test_vectors.jl"),),
-        ),
+        Target("julia", f"{WRITERS}.julia:files", "julia", ("{tool} --startup-file=no test_vectors.jl",)),
         Target(
             "wasm",
-            "navsym.export.languages.wasm:wasm_files",
+            f"{WRITERS}.wasm:wasm_files",
             "",
             (
-                (
-                    "{python}",
-                    "-m",
-                    "ziglang",
-                    "cc",
-                    "-target",
-                    "wasm32-wasi",
-                    "-O2",
-                    "-std=c99",
-                    "-ffp-contract=off",
-                    *WARNINGS,
-                    "{c}",
-                    "-o",
-                    "{build}/run.wasm",
-                    "-lm",
-                ),
-                ("{python}", "-B", "run_wasi.py", "{build}/run.wasm"),
+                f"{{python}} -m ziglang cc -target wasm32-wasi -O2 -std=c99 -ffp-contract=off {STRICT} {{c}} "
+                f"-o {RUN}.wasm -lm",
+                f"{{python}} -B run_wasi.py {RUN}.wasm",
             ),
             modules=("ziglang", "wasmtime"),
             reals=BOTH,
         ),
         Target(
             "html",
-            "navsym.export.languages.wasm:page_files",
+            f"{WRITERS}.wasm:page_files",
             "chromium",
-            (("{tool}", *HEADLESS, "--user-data-dir={build}/profile", "--dump-dom", "index.html"),),
+            (f"{{tool}} {HEADLESS} --user-data-dir={{build}}/profile --dump-dom index.html",),
             reals=BOTH,
         ),
         Target(
             "octave",
-            "navsym.export.languages.octave:files",
+            f"{WRITERS}.octave:files",
             "octave-cli",
-            (("{tool}", "--norc", "--no-history", "--quiet", "--eval", "test_vectors"),),
+            ("{tool} --norc --no-history --quiet --eval test_vectors",),
             library=2,
         ),
     )
