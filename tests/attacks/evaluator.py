@@ -6,7 +6,7 @@ Sums, products, roots, exponentials, logarithms, sines, cosines and arctangents 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
 from mpmath.libmp import (
@@ -274,9 +274,11 @@ def compare(x: Interval, relation: str, y: Interval) -> bool | None:
     return True if below <= 0 else False if above < 0 else None
 
 
-def judge_at(left: Tree, relation: str, right: Tree, point: Mapping[str, Tree]) -> str:
+def judge_at(
+    left: Tree, relation: str, right: Tree, point: Mapping[str, Tree], precisions: Sequence[int] = PRECISIONS
+) -> str:
     """``holds``, ``fails`` or ``undefined`` where that is certain at the point, else ``unknown``."""
-    for precision in PRECISIONS:
+    for precision in precisions:
         try:
             values = {name: evaluate(tree, {}, precision) for name, tree in point.items()}
             sides = [evaluate(side, values, precision) for side in (left, right)]

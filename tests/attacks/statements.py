@@ -8,13 +8,13 @@ a seed alone.
 from __future__ import annotations
 
 import random
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import lru_cache
 from typing import Any
 
-from tests.attacks.evaluator import UnsureError, judge_at, judge_text
+from tests.attacks.evaluator import PRECISIONS, UnsureError, judge_at, judge_text
 from tests.attacks.trees import Tree, UnreadableError, names_in, read, read_relation
 
 POINTS = 24
@@ -53,7 +53,7 @@ class Statement:
         left, _, right = self.sides()
         return names_in(left) | names_in(right)
 
-    def judge_at(self, point: Mapping[str, str]) -> str:
+    def judge_at(self, point: Mapping[str, str], precisions: Sequence[int] = PRECISIONS) -> str:
         """``holds``, ``fails`` or ``undefined`` where that is certain, else ``unknown``.
 
         ``outside`` where the declarations fail, or what must exist has no value: such a point does not count.
@@ -63,7 +63,7 @@ class Statement:
         known = judge_at(exists, "=", exists, trees)  # holds, or unknown where only equality is not settled
         if is_inside(self, point) is False or known == "undefined":
             return "outside"
-        return judge_at(*self.sides(), trees)
+        return judge_at(*self.sides(), trees, precisions)
 
 
 Scheme = Callable[[random.Random], Statement]
@@ -228,6 +228,8 @@ def fault_of_counterexample(statement: Statement, given: Mapping[str, str] | Non
     _, relation, _ = statement.sides()
     if found == "fails" or (found == "unknown" and relation != "="):
         return ""  # sides that coincide are told apart by no interval
+    if statement.truth is False and not statement.names() <= set(given or {}):
+        return ""  # false, and refuted without a point: at a root that no formula gives
     return f"at its counterexample {point}: {found}"
 
 
@@ -242,7 +244,7 @@ def contradiction(statement: Statement, assumptions: tuple[str, ...] | list[str]
     rng = random.Random(statement.text)
     for _ in range(POINTS if statement.names() else 1):
         point = draw_point(statement, rng)
-        found = statement.judge_at(point)
+        found = statement.judge_at(point, PRECISIONS[:2] if statement.names() else PRECISIONS)
         if found == "fails" and is_inside(statement, point):
             return f"fails at {point}"
         if found == "undefined" and is_inside(statement, point) and not is_excluded(point, assumptions):

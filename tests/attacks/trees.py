@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from fractions import Fraction
+from functools import lru_cache
 from typing import Any
 
 Tree = tuple[Any, ...]
@@ -92,6 +93,7 @@ class Reader:
             raise UnreadableError(f"{self.tokens[self.place][1]!r}, expected {mark}")
 
 
+@lru_cache(maxsize=4096)
 def read(text: str) -> Tree:
     """The tree of a text; raises UnreadableError."""
     reader = Reader(text)
