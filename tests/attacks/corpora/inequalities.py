@@ -192,7 +192,7 @@ def read_entries(checkout: Path) -> Iterator[tuple[str, Statement | None]]:
             continue
         first = max(0, text.find("* Examples. ")) if name.endswith("sos.ml") else 0
         for match in re.compile(r"`([^`]+)`").finditer(text, first):
-            if not re.search(r"[&#]\d", match[1]):
+            if not re.search(r"[&#]\d", match[1]) or text[: match.start()].endswith("new_definition "):
                 continue  # about whole numbers, or no statement at all
             place = f"{name.rpartition('/')[2]}:{text.count(chr(10), 0, match.start()) + 1}"
             try:
