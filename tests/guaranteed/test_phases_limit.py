@@ -126,11 +126,13 @@ def test_between_the_pieces_from_zero_on_and_those_from_the_middle_nothing_is_lo
     monkeypatch.setattr(range_, "follow_pattern", lambda *these: found(*these)[1:])
     monkeypatch.setattr(limits, "processor_seconds", Clock(0.1))
     answer = solved(basis(["1", "u", "exp(-u)"], ["0", "T"], ["0", "0", "1"], "T"), 0, 1, "T", seconds=seconds)
-    (regime,) = answer.regimes
     pieces = followed_pieces(answer)
-    slivers = [(to_rational(s.start), to_rational(s.end)) for s in regime.slivers]
-    assert gaps(pieces, 0, regime.upper) and gaps([*pieces, *slivers, *answer.uncovered], 0, 1) == []
-    assert gaps(pieces, *map(to_rational, regime.alone)) == []
+    slivers = [(to_rational(s.start), to_rational(s.end)) for regime in answer.regimes for s in regime.slivers]
+    assert gaps(pieces, 0, answer.upper) and gaps([*pieces, *slivers, *answer.uncovered], 0, 1) == []
+    for regime in answer.regimes:
+        assert gaps([*pieces, *slivers], regime.lower, regime.upper) == []
+        assert regime.alone is None or gaps(pieces, *map(to_rational, regime.alone)) == []
+    assert any(regime.alone for regime in answer.regimes)
     assert accepted(answer) <= {"all", "range", "sliver"}
 
 

@@ -12,31 +12,26 @@ import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from itertools import groupby, pairwise
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 from flint import fmpq
 
-from navsym.claims import CERTIFIED, OPEN, Verdict
+from navsym.claims import CERTIFIED, OPEN
 from navsym.core.balls import enclose
 from navsym.core.errors import DomainError, DuplicateError, ExpressionSyntaxError
 from navsym.core.exact import decimal, from_decimal, lower_end, to_fmpq, to_fraction, to_rational, upper_end
-from navsym.guaranteed.certificate.range import RangeProof
+from navsym.guaranteed.certificate.range import RangePiece, RangeProof
 from navsym.guaranteed.phases.answer import Phases, Question, Regime, end_text
 from navsym.guaranteed.phases.boundaries import Boundary, locate_boundary, unlocated_boundary
 from navsym.guaranteed.phases.budget import DEFAULT_SECONDS, Budget
 from navsym.guaranteed.phases.certify_range import covered, follow_regime
-from navsym.guaranteed.phases.closed_forms import (
-    ClosedForm,
-    SharpMember,
-    propose_closed_forms,
-    prove_closed_form,
-    sharp_member,
-)
+from navsym.guaranteed.phases.closed_forms import ClosedForm, propose_closed_forms, prove_closed_form
 from navsym.guaranteed.phases.family import Family, family_of
-from navsym.guaranteed.phases.narrow import certify_slivers
-from navsym.guaranteed.phases.patterns import COUNT, PatternInterval, scan_patterns
+from navsym.guaranteed.phases.narrow import Sliver, certify_slivers
+from navsym.guaranteed.phases.neighbours import extend_forms, merge_regimes
+from navsym.guaranteed.phases.patterns import BRACKET, COUNT, PatternInterval, scan_patterns
 from navsym.guaranteed.phases.singular_values import (
     RegularInterval,
     family_intervals,
@@ -118,26 +113,64 @@ def settle_regime(
     closed: ClosedForm | None,
     follow: FollowOptions,
     limit: Budget,
-) -> tuple[Regime, list[tuple[str, str]]]:
-    """One regime: its proved closed form, or contacts followed for every value, slivers and holes."""
+) -> tuple[list[Regime], list[tuple[str, str]]]:
+    """One regime: its proved closed form, or contacts followed for every value, slivers and holes.
+
+    Where holes are left the regime is given in parts, which lie between them.
+    """
     a, b = ends
     name = f"from {end_text(a)} to {end_text(b)}"
     if closed is not None:
         done = follow_within(family, span, limits, limit, name) if follow.closed else RangeProof((), ())
         held, status = (limits[1], limits[2]), closed.verdict.status
-        return Regime(family, span, a, b, closed, status, (), done.documents, (), held, longest_run(done)), []
+        return [Regime(family, span, a, b, closed, status, (), done.documents, (), held, longest_run(done))], []
     shown = limit.share(1 / 4).within(f"the table of values {name}", value_table, family, span) or ()
     if not follow.implicit:
-        return Regime(family, span, a, b, None, OPEN, shown), [(end_text(a, -1), end_text(b, 1))]
+        return [Regime(family, span, a, b, None, OPEN, shown)], [(end_text(a, -1), end_text(b, 1))]
     done = follow_within(family, span, limits, limit.share(3 / 4), name)
-    thin, holes = [], []
-    for left, right in uncovered_intervals(done, limits):
+    thin: list[Sliver] = []
+    holes: list[tuple[fmpq, fmpq]] = []
+    for left, right in uncovered_intervals(done.pieces, limits):
         made, left_over = certify_slivers(family, left, right, limit.met)
         thin += made
-        holes += [(end_text(to_rational(p), -1), end_text(to_rational(q), 1)) for p, q in left_over]
+        holes += left_over
     run = longest_run(done)
     status = CERTIFIED if run is not None else OPEN
-    return Regime(family, span, a, b, None, status, shown, done.documents, tuple(thin), run, run), holes
+    whole = Regime(family, span, a, b, None, status, shown, done.documents, tuple(thin), run, run)
+    parts = cut_at_holes(whole, done, limits, holes) if run is not None and holes else [whole]
+    return parts, [(end_text(to_rational(p), -1), end_text(to_rational(q), 1)) for p, q in holes]
+
+
+def cut_at_holes(
+    regime: Regime, done: RangeProof, limits: RegimeLimits, holes: Sequence[tuple[fmpq, fmpq]]
+) -> list[Regime]:
+    """The parts of a regime between its holes, each with the pieces, slivers and values that lie in it."""
+    marks = [limits[0], *(edge for hole in holes for edge in hole), limits[3]]
+    parts, name = [], regime.family.parameter.name
+    for a, b in zip(marks[::2], marks[1::2], strict=True):
+        runs = [run for run in covered(done.pieces) if a <= run[0] and run[1] <= b]
+        slivers = tuple(s for s in regime.slivers if a <= s.start and s.end <= b)
+        if not runs and not slivers:
+            continue
+        run = max(runs, key=lambda one: one[1] - one[0], default=None)
+        part = replace(
+            regime,
+            lower=regime.lower if a == limits[0] else to_rational(a),
+            upper=regime.upper if b == limits[3] else to_rational(b),
+            table=tuple(row for row in regime.table if a <= to_fmpq(sp.Rational(row[name])) <= b),
+            certificates=tuple(c for c in regime.certificates if a <= certified_start(c) < b),
+            slivers=slivers,
+            status=OPEN if run is None else CERTIFIED,
+            held=run,
+            alone=run,
+        )
+        parts.append(part)
+    return parts
+
+
+def certified_start(certificate: Mapping[str, Any]) -> fmpq:
+    """The value at which a range certificate starts, alone or with the identities that tie it to the problem."""
+    return to_fmpq(sp.Rational(certificate.get("of", [certificate])[0]["from"]))
 
 
 def follow_within(family: Family, span: PatternInterval, limits: RegimeLimits, limit: Budget, name: str) -> RangeProof:
@@ -148,9 +181,9 @@ def follow_within(family: Family, span: PatternInterval, limits: RegimeLimits, l
     return done
 
 
-def uncovered_intervals(done: RangeProof, limits: RegimeLimits) -> list[tuple[fmpq, fmpq]]:
+def uncovered_intervals(pieces: Sequence[RangePiece], limits: RegimeLimits) -> list[tuple[fmpq, fmpq]]:
     """Stretches of the regime that the followed contacts leave, before, between and behind their pieces."""
-    edges = [limits[0], *(edge for run in covered(done.pieces) for edge in run), limits[3]]
+    edges = [limits[0], *(edge for run in covered(pieces) for edge in run), limits[3]]
     return [(a, b) for a, b in zip(edges[::2], edges[1::2], strict=True) if a < b]
 
 
@@ -290,86 +323,6 @@ def boundary_middle(b: Boundary) -> sp.Expr:
     return b.at if b.at is not None else (sp.Rational(b.lower) + sp.Rational(b.upper)) / 2
 
 
-# Closed forms of a regime taken over from its neighbours, where several estimators are optimal.
-#
-# Where the dual polynomial does not move with the parameter, and is its bound on a whole interval, places may be
-# chosen; those that the search found say nothing. Places and weights of the regime next to it carry the functional
-# beyond the boundary as well; if their signs are right there, the pair is optimal. A guess, to be proved.
-
-
-NEAR = sp.Rational(1, 10**30)
-LARGEST = 720
-SHARES = tuple(map(Fraction, ("0.03", "0.23", "0.59", "0.97")))
-
-
-def extend_forms(
-    family: Family, spans: Sequence[PatternInterval], guesses: Sequence[list[ClosedForm]]
-) -> tuple[list[PatternInterval], list[list[ClosedForm]]]:
-    """Spans and their guesses; neighbours without any are made one when the closed form beside them holds there."""
-    runs = [list(run) for _, run in groupby(range(len(spans)), key=lambda k: k if guesses[k] else -1)]
-    kept: list[tuple[PatternInterval, list[ClosedForm]]] = []
-    for run in runs:
-        first, last = run[0], run[-1]
-        beside = [k for k in (first - 1, last + 1) if 0 <= k < len(spans) and guesses[k]]
-        whole = PatternInterval(spans[first].lower, spans[last].upper, spans[first].pattern)
-        found = None if guesses[first] else take_over_form(family, whole, beside, spans, guesses)
-        kept += [found] if found else [(spans[k], guesses[k]) for k in run]
-    return [span for span, _ in kept], [list(guess) for _, guess in kept]
-
-
-def take_over_form(
-    family: Family,
-    span: PatternInterval,
-    beside: Sequence[int],
-    spans: Sequence[PatternInterval],
-    guesses: Sequence[list[ClosedForm]],
-) -> tuple[PatternInterval, list[ClosedForm]] | None:
-    """A span with the pattern and the closed form of one of the regimes beside it, or None."""
-    found = [one for T in inner_values(span) if (one := sharp_member(family, T, None)) is not None] if beside else []
-    dual = constant_dual(found)
-    if dual is None:
-        return None
-    for k in beside:
-        fits = [pair for closed in guesses[k] if (pair := combine_with_dual(family, closed, dual, found)) is not None]
-        if fits:
-            signs = weight_signs(family, fits[0], found[0])
-            pattern = tuple((p, e, sign) for (p, e, _), sign in zip(spans[k].pattern, signs, strict=True))
-            return replace(span, pattern=pattern), fits
-    return None
-
-
-def inner_values(span: PatternInterval) -> list[Fraction]:
-    """Values inside the span."""
-    return [(span.lower + (span.upper - span.lower) * share).limit_denominator(10**6) for share in SHARES]
-
-
-def weight_signs(family: Family, closed: ClosedForm, one: SharpMember) -> list[int]:
-    """Signs of the weights at a value of the parameter."""
-    return [1 if bool(enclose(family.at(w, one.T)) > 0) else -1 for w in closed.weights]
-
-
-def constant_dual(found: Sequence[SharpMember]) -> tuple[sp.Expr, ...] | None:
-    """The dual that all samples share, when its entries are short rational numbers."""
-    if len(found) < 3:
-        return None
-    duals = [[to_rational(x) for x in one.polished.dual] for one in found]
-    short = tuple(x.limit_denominator(LARGEST) for x in duals[0])
-    moves = any(abs(x - y) > NEAR for row in duals for x, y in zip(row, short, strict=True))
-    return None if moves else short
-
-
-def combine_with_dual(
-    family: Family, closed: ClosedForm, dual: tuple[sp.Expr, ...], found: Sequence[SharpMember]
-) -> ClosedForm | None:
-    """Places and weights of a regime with another dual, when they cost what it reaches at all samples."""
-    value = sp.expand(sum((x * p for x, p in zip(dual, family.functional, strict=True)), sp.S.Zero))
-    cost = sum((family.sigma[k] * sp.Abs(w) for k, w in zip(closed.panels, closed.weights, strict=True)), sp.S.Zero)
-    gap = [enclose(family.at(cost - value, one.T), bits=200) for one in found]
-    if not all(bool(abs(size) < 1e-30) for size in gap):
-        return None
-    return replace(closed, dual=dual, value=value, verdict=Verdict(OPEN, "none"))
-
-
 #: A span below this part of the range is given up when its neighbours are proved to meet.
 SHORT = Fraction(1, 50)
 
@@ -482,21 +435,33 @@ def solve_interval(section: RegularInterval, follow: FollowOptions, steps: StepC
     )
     first = locate_changes(family, spans, [g[0] if g else None for g in guesses], limit.share(1 / 2))
     changes, forms = agree_on_forms(family, spans, guesses, first, (lower, upper), limit.share(1 / 2))
+    part = limit.share(1 / 4)
+    merge_regimes(
+        family,
+        spans,
+        forms,
+        changes,
+        lambda changes: [lower, *map(boundary_middle, changes), upper],
+        lambda form, start, end: prove_form(family, [form], (start, end), part.share(1 / 2)),
+    )
     cuts = [lower, *(boundary_middle(b) for b in changes), upper]
     limits = regime_limits(family, lower, upper, low, high, changes, singular)
-    regimes, uncovered = [], []
+    regimes: list[list[Regime]] = []
+    uncovered = []
     for k, span in enumerate(spans):
         part = limit.share(1 / (len(spans) - k))
-        regime, holes = settle_regime(family, span, (cuts[k], cuts[k + 1]), limits[k], forms[k], follow, part)
-        regimes.append(regime)
+        parts, holes = settle_regime(family, span, (cuts[k], cuts[k + 1]), limits[k], forms[k], follow, part)
+        regimes.append(parts)
         uncovered += holes
         steps.did(StepCounter.LOOKS)
     if upper != section.upper:
         uncovered.append((end_text(upper, -1), end_text(section.upper)))
     honest = tuple(
-        b if b.proved else bracket_boundary(b, *pair) for b, pair in zip(changes, pairwise(regimes), strict=True)
+        b if b.proved else bracket_boundary(b, before[-1], after[0])
+        for b, (before, after) in zip(changes, pairwise(regimes), strict=True)
     )
-    return Phases(family, lower, upper, tuple(regimes), honest, tuple(uncovered))
+    rows = tuple(regime for parts in regimes for regime in parts)
+    return Phases(family, lower, upper, rows, honest, tuple(uncovered))
 
 
 def scan_interval(
@@ -548,10 +513,13 @@ def drop_accidental_intervals(family: Family, spans: list[PatternInterval], limi
 def bracket_boundary(guess: Boundary, before: Regime, after: Regime) -> Boundary:
     """A change that was not located lies between the last value of one proved pattern and the first of the other.
 
-    Where a pattern is proved nowhere, the bracket is that of the search, and the regime is uncovered.
+    Where a pattern is proved nowhere, the bracket is that of the search, and the regime is uncovered. Where both are
+    proved up to one value it is the bracket of that value in the search: either may go on beyond.
     """
     last = before.held[1] if before.held else to_fmpq(before.span.lower)
     first = after.held[0] if after.held else to_fmpq(after.span.upper)
+    if not last < first:
+        last, first = min(last, first) - to_fmpq(BRACKET), max(last, first) + to_fmpq(BRACKET)
     return replace(guess, lower=decimal(last, DIGITS, -1), upper=decimal(first, DIGITS, 1))
 
 

@@ -95,7 +95,8 @@ def replace_contacts(found: Contacts, panel: Ints, u: Array, sign: Array, chosen
 
 
 COUNT = 72
-BRACKET = 1e-7
+#: Changes nearer than this are not told apart by bisection.
+BRACKET = Fraction(1, 10**7)
 #: Regressors on both sides of a cut that differ by less than this part are the same.
 SAME = 1e-9
 #: A weight below this part of their sum is the rounding of zero.
@@ -222,7 +223,7 @@ def bisect_changes(
     if before == after:
         return
     middle = (a + b) / 2
-    if b - a < Fraction(BRACKET):
+    if b - a < BRACKET:
         yield middle, after
         return
     between = at(middle, before, after)
