@@ -370,7 +370,7 @@ def apply_atan2(y: Jet, x: Jet, field: Any) -> Jet:
     require(isinstance(a, arb) and isinstance(b, arb), "atan2 in a series")
     if not (a > 0 or b > 0 or b < 0 or (a < 0 and b.is_zero())):
         raise Undefined("atan2 at its cut")
-    return Jet(b.atan2(a))
+    return Jet(arb.atan2(b, a))
 
 
 def apply_remainder(name: str, x: Jet, field: Any) -> Jet:
@@ -458,10 +458,21 @@ class Exact:
 
     @staticmethod
     def exp_of(kind: str, monomial: Any, c: fmpq) -> Exact:
-        """exp(c M) of a monomial M; exp(c log u) = u**c wherever log u is defined."""
+        """exp(c M), or exp(i c M), of a monomial M, wherever M is defined: exp(c log u) = u**c.
+
+        For a whole c, exp(i c M) = (a + i b)**c with (a, b) the point of the unit circle at the angle M = asin u,
+        acos u, atan u or atan2(y, x).
+        """
         match [*monomial]:
             case [((_, "log", content), 1)] if kind == "exp":
                 return Exact(content) ** c
+            case [((_, "asin" | "acos" | "atan" | "atan2" as name, content), 1)] if kind == "cis" and c.q == 1:
+                u, one = Exact(content) if name != "atan2" else None, Exact(1)
+                y, x = (u, one) if name == "atan" else map(Exact, content) if u is None else (u, u)
+                other = (one + u * u * -1) ** HALF if name in ("asin", "acos") else (x * x + y * y) ** -HALF  # type: ignore
+                a, b = {"asin": (other, u), "acos": (u, other)}.get(name, (x * other, y * other))
+                i = Exact([(frozenset({(TURN, HALF)}), fmpq(1 if c > 0 else -1))])
+                return prod([a + i * b] * abs(int(c)), start=one)  # type: ignore[operator]
         return Exact([(monomial, fmpq(1))]).make_atom(kind, c)
 
     def cos(self) -> Exact:
@@ -970,6 +981,8 @@ def prove_defined(proofs: Any, goal: Goal, *terms: Term, level: int = 0) -> None
     own = with_weaker(own)
     needed = [pair for pair in set_union(conditions(t, level) for t in terms) if pair not in own]
     needed = [pair for pair in needed if symbols_of(pair[1]) or not holds(pair[0], value_of(pair[1], {}))]
+    same = [pair for pair in needed if any(r == pair[0] and is_identity(subtract(t, pair[1])) for r, t in own)]
+    needed = [pair for pair in needed if pair not in same]
     prove_all(proofs, [goal._replace(term=t, relation=relation) for relation, t in needed])
 
 
@@ -1298,6 +1311,52 @@ def prove_range(proof: Any, goal: Goal) -> None:
     require(is_identity(subtract(goal.term, ("*", number(read_number(share)), gap))), "the term is another one")
 
 
+def prove_angle(proof: Any, goal: Goal) -> None:
+    """(-1)**k sin u >= 0, or > 0, for u between k pi and (k + 1) pi; cos u = sin(u + pi/2); times a number c > 0."""
+    _, turn, share, proofs = read_fields(proof, "rule turn share proofs")
+    k, c = read_integer(turn, -(10**6), 10**6), read_number(share)
+    require(goal.relation in (">=", ">") and c > 0, "expected >= or >")
+    waves = [f for f in list_factors(goal.term) if f[0] in ("sin", "cos")]
+    require(len(waves) == 1, "expected one sine or cosine")
+    ((name, angle),) = waves
+    require(is_identity(subtract(goal.term, ("*", number(c * (-1) ** k), waves[0]))), "the term is another one")
+    u = angle if name == "sin" else ("+", angle, ("*", ("pi",), number(HALF)))
+    sides = [subtract(u, ("*", ("pi",), number(k))), subtract(("*", ("pi",), number(k + 1)), u)]
+    prove_all(proofs, [remember(goal, side) for side in sides])
+
+
+HALF_TURN: Term = ("*", ("pi",), number(HALF))
+# The values of a function lie within the second number of the first; the last says whether the ends are left out.
+SPANS: dict[str, tuple[Term, Term, bool]] = {
+    "sin": (ZERO, ONE, False),
+    "cos": (ZERO, ONE, False),
+    "tanh": (ZERO, ONE, True),
+    "atan": (ZERO, HALF_TURN, True),
+    "asin": (ZERO, HALF_TURN, False),
+    "acos": (HALF_TURN, HALF_TURN, False),
+    "atan2": (ZERO, ("pi",), False),
+}
+
+
+def prove_bounded(proof: Any, goal: Goal) -> None:
+    """c + sum c_k g_k(u_k) is at least c + sum c_k m_k - |c_k| h_k for functions g with |g - m| <= h."""
+    _, premise = read_fields(proof, "rule proof")
+    require(goal.relation in (">=", ">"), "expected >= or >")
+    least, above = [], False
+    for term in list_terms(goal.term):
+        waves = [f for f in list_factors(term) if symbols_of(f)]
+        require(len(waves) <= 1, "a product of functions")
+        if not waves:
+            least.append(term)
+            continue
+        require(waves[0][0] in SPANS, "a function without a known range")
+        middle, half, inside = SPANS[waves[0][0]]
+        share: Term = ("*", *(f for f in list_factors(term) if f != waves[0]), ONE)
+        least += [("*", share, middle), negate(("*", ("abs", share), half))]
+        above = above or (inside and holds("!=", value_of(share, {})))
+    prove(premise, Goal(("+", *least), ">=" if above else goal.relation, {}))
+
+
 def prove_corners(proof: Any, goal: Goal) -> None:
     """A polynomial of degree one in each symbol is least at a corner of the box."""
     _, names, proofs = read_fields(proof, "rule symbols proofs")
@@ -1342,7 +1401,7 @@ def prove_product(proof: Any, goal: Goal) -> None:
     """A product has the product of the signs of its factors b**q; each has its entry, null or [sign, proof].
 
     Without a proof: an even whole power is >= 0, and > 0 or != 0 when q < 0, since b != 0 where it is defined; so is a
-    broken power, abs, sqrt; exp and cosh are > 0. Else sign b > 0, or >= 0 where that is enough.
+    broken power, abs, sqrt, acos; exp and cosh are > 0. Else sign b > 0, or >= 0 where that is enough.
     """
     _, entries = read_fields(proof, "rule factors")
     factors = list_factors(goal.term)
@@ -1351,7 +1410,7 @@ def prove_product(proof: Any, goal: Goal) -> None:
     for factor, entry in zip(factors, read_list(entries, lambda item: item, len(factors)), strict=True):
         base, q = (factor[1], constant_of(factor[2])) if factor[0] == "^" else (factor, fmpq(1))
         require(q is not None or entry is None, "an exponent that is no number")
-        natural = q is None or q.q > 1 or int(q) % 2 == 0 or factor[0] in ("exp", "cosh", "abs", "sqrt")
+        natural = q is None or q.q > 1 or int(q) % 2 == 0 or factor[0] in ("exp", "cosh", "abs", "sqrt", "acos")
         strict = q is None or q <= 0 or factor[0] in ("exp", "cosh") or goal.relation == ">="
         if factor[0] == "number":
             require(entry is None and (factor[1] != 0 or goal.relation == ">="), "a factor 0")
@@ -1391,7 +1450,7 @@ def prove_slope(proof: Any, goal: Goal) -> None:
     """A function that is continuous, and does not fall away from an end of the range of s, is least there.
 
     Mean value theorem: f(s) - f(end) = f'(r) (s - end) with r between. Strict: f(end) > 0; or f' > 0 and the end is
-    left out. Continuity is shown on the closed range, the derivative inside it.
+    left out. Continuity is shown on the range with this end, the derivative inside it.
     """
     _, name, side, strict, continuous, smooth, slope, floor = read_fields(
         proof, "rule symbol end strict continuous smooth slope floor"
@@ -1402,8 +1461,8 @@ def prove_slope(proof: Any, goal: Goal) -> None:
     require(end is not None, "a range without this end")
     by_slope = read_integer(strict, 0, 1) == 1 and goal.relation == ">"
     require(not by_slope or is_open, "the end belongs to the range")
-    closed = change_range(goal, name, open_low=False, open_high=False, nonzero=False, integer=False)
-    whole = closed._replace(term=ZERO, exists=())
+    own_end = {"open_high" if upper else "open_low": False}
+    whole = change_range(goal, name, nonzero=False, integer=False, **own_end)._replace(term=ZERO, exists=())
     prove_defined(continuous, whole, goal.term, level=1)
     inside = change_range(whole, name, open_low=True, open_high=True)
     change = differentiate(goal.term, name)
@@ -1537,8 +1596,8 @@ RULES: dict[str, Callable[[Any, Goal], None]] = {
     for rule in (
         prove_equal, prove_rewrite, prove_multiply, prove_exponential, prove_side, prove_cases, prove_split,
         prove_integers, prove_abstract, prove_dense, prove_identity, prove_zero, prove_solve, prove_squares,
-        prove_derivative, prove_balls, prove_given, prove_range, prove_corners, prove_product, prove_sum, prove_slope,
-        prove_quadratic, prove_roots,
+        prove_derivative, prove_balls, prove_given, prove_range, prove_angle, prove_bounded, prove_corners,
+        prove_product, prove_sum, prove_slope, prove_quadratic, prove_roots,
     )
 }  # fmt: skip
 

@@ -19,6 +19,23 @@ Box = Mapping[Any, tuple[Any, Any]]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Written:
+    """A statement as its author wrote it: what the checker reads, whatever the algebra makes of it.
+
+    left, right : text of each entry
+    exists      : text of what has to exist beside the sides
+    tolerance   : text, or None
+    symbols     : the symbols of all names in these texts
+    """
+
+    left: tuple[str, ...]
+    right: tuple[str, ...]
+    exists: tuple[str, ...] = ()
+    tolerance: str | None = None
+    symbols: tuple[Any, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Equation:
     """``printed = derived`` for all values of the symbols in the box.
 
@@ -30,6 +47,7 @@ class Equation:
     nonzero          : expressions that the statement takes to be nonzero
     exists           : expressions that must have a value: points where one has none are not points of the
                        statement, though the algebra may have cancelled what is undefined there
+    written          : the text of the statement, where it has one
     """
 
     printed: Any
@@ -38,6 +56,7 @@ class Equation:
     tolerance: Any = None
     nonzero: tuple[Any, ...] = ()
     exists: tuple[Any, ...] = ()
+    written: Written | None = None
 
     def _repr_latex_(self) -> str:
         """Both sides for notebooks, with a question mark: a statement is not yet a verdict."""
@@ -58,6 +77,7 @@ class Bound:
     derived: Any
     box: Box = field(default_factory=dict)
     exists: tuple[Any, ...] = ()
+    written: Written | None = None
 
     def _repr_latex_(self) -> str:
         sign = rf"\overset{{?}}{{{SIGNS.get(self.relation, self.relation)}}}"

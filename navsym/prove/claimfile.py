@@ -11,6 +11,7 @@ import sympy as sp
 
 from navsym.claims import OPEN, REFUTED, Bound, Equation, Statement, Verdict, Verdicts
 from navsym.claims.formula import Formula, Side, names_of
+from navsym.claims.statement import Written
 from navsym.core.errors import DomainError, EmptyError, ExpressionSyntaxError, NavsymError, ShapeError, TooLargeError
 from navsym.core.sandbox import Exhausted, Failed, run_many
 from navsym.language.advice import advise_on_relation
@@ -80,6 +81,7 @@ class FileClaim:
     relation    : one of ``= != < <= > >=``
     box         : symbol -> (lower, upper), the file's ranges and those of the claim itself
     tolerance   : None for equality; the exact number that ``|left - right|`` does not exceed
+    symbols     : the declared symbols
     divisors    : what the text divides by, also where the algebra has cancelled it since
     radicands   : what the text takes roots of, to be nonnegative, likewise
     arguments   : what the text takes logarithms and symbolic powers of, to be positive, likewise
@@ -91,6 +93,7 @@ class FileClaim:
     relation: str
     box: Mapping[Symbol, tuple[Expr, Expr]]
     tolerance: Expr | None = None
+    symbols: tuple[Symbol, ...] = ()
     divisors: tuple[Expr, ...] = ()
     radicands: tuple[Expr, ...] = ()
     arguments: tuple[Expr, ...] = ()
@@ -187,7 +190,7 @@ def read_claim(block: Any, symbols: Symbols, where: str) -> FileClaim:
         tuple(dict.fromkeys(part for cell in cells for part in getattr(cell, name)))
         for name in ("divisors", "radicands", "arguments")
     ]
-    return FileClaim(symbols.formula(table), left, right, relation, box, tolerance, *noted)
+    return FileClaim(symbols.formula(table), left, right, relation, box, tolerance, tuple(known.values()), *noted)
 
 
 def read_existing(value: Any, known: Mapping[str, Symbol], where: str) -> list[Parsed]:
@@ -327,6 +330,15 @@ def existing_parts(claim: FileClaim) -> tuple[sp.Expr, ...]:
 
 def statement_of(claim: FileClaim) -> Statement:
     """The file's claim as a statement of the ladder."""
+    formula = claim.formula
+    left, right = list_texts(formula.left), list_texts(formula.right)
+    written = Written(left, right, formula.exists, formula.tolerance, claim.symbols)
     if claim.relation == "=":
-        return Equation(claim.left, claim.right, claim.box, claim.tolerance, exists=existing_parts(claim))
-    return Bound(claim.left, claim.relation, claim.right, claim.box, existing_parts(claim))
+        exists = existing_parts(claim)
+        return Equation(claim.left, claim.right, claim.box, claim.tolerance, exists=exists, written=written)
+    return Bound(claim.left, claim.relation, claim.right, claim.box, existing_parts(claim), written)
+
+
+def list_texts(side: Side) -> tuple[str, ...]:
+    """The texts of the entries of a side, row by row."""
+    return (side,) if isinstance(side, str) else tuple(text for row in side for text in list_texts(row))

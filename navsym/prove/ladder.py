@@ -11,6 +11,7 @@ from navsym.claims.verdict import OPEN, REFUTED, Verdict
 from navsym.core.errors import DomainError
 from navsym.core.sandbox import Exhausted, run_limited
 from navsym.prove.equations import decide_equation
+from navsym.prove.grant import grant_verdict
 from navsym.prove.inequalities import decide_bound
 from navsym.prove.optimum import decide_optimum
 from navsym.prove.statements import require_statement
@@ -23,10 +24,15 @@ def decide(statement: Statement) -> Verdict:
     """Verdict of a statement, in this process and without limits.
 
     The ladder: counterexamples at exact points, exact algebra, balls on a divided box, samples; the first that
-    decides is the method of the verdict. Raises DomainError for what is no statement: a relation of
-    sympy may have been evaluated already.
+    decides is the method of the verdict. The checker grants it on the statement's own text. Raises DomainError for
+    what is no statement: a relation of sympy may have been evaluated already.
     """
     require_statement(statement)
+    return grant_verdict(statement, search_verdict(statement))
+
+
+def search_verdict(statement: Statement) -> Verdict:
+    """What the search makes of a statement; the checker has not seen it."""
     if isinstance(statement, Equation):
         return decide_equation(statement)
     if isinstance(statement, Bound):

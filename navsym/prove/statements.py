@@ -30,7 +30,7 @@ def require_statement(statement: Any) -> None:
         value = getattr(statement, field.name)
         if field.name == "box":
             require_box(value, f"{kind}: box")
-        elif field.name != "relation" and not (field.name == "tolerance" and value is None):
+        elif field.name not in ("relation", "written") and not (field.name == "tolerance" and value is None):
             require_formulas(value, f"{kind}: {field.name}")
 
 

@@ -16,7 +16,7 @@ from navsym.language.expression import to_text
 from navsym.prove.sampling.points import Point, Range, range_of
 
 #: Powers of two beyond which a number is written as a power of ten.
-MOST_SIZE = 20_000
+MOST_SIZE = 10_000
 
 
 def expression_text(expression: sp.Basic) -> str:

@@ -265,6 +265,8 @@ def split_turns(limit: Range, speed: sp.Expr) -> Iterator[Interval]:
     if lower is None:
         lower, closed = (-turn / 2 if upper is None else upper - turn), (False, closed[1])
     if upper is None or compare_numbers(enclose_number(upper - lower), enclose_number(turn)) >= 0:
+        if limit.parted:
+            raise UndecidedError  # one turn stands for all, but zero is left out of one of them only
         upper, closed = lower + turn, (closed[0], True)
     k = floor(to_fraction(exact_ball(lower / turn + sp.S.Half, 256)))
     k += compare_with_cut(lower, k + 1, turn) >= 0

@@ -1,0 +1,312 @@
+"""The grant: the checker has the last word on every verdict, on the statement's own text.
+
+The statement is written down as its author wrote it, a proof or a counterexample is put beside it, and the checker
+reads both. A certificate that it refuses leaves the verdict OPEN, whoever claimed it.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import sympy as sp
+from flint import arb, fmpq
+
+from navsym import checker
+from navsym.claims.statement import Bound, Equation, Statement
+from navsym.claims.verdict import CERTIFIED, CONFIRMED, OPEN, PROVED, REFUTED, Verdict
+from navsym.core.errors import NavsymError
+from navsym.core.numbers import Number
+from navsym.language.expression import to_text
+from navsym.prove.equations import list_entries
+from navsym.prove.sampling.points import Range, ranges_of
+from navsym.prove.search import SECONDS, draw_points, find_proof, player, simple_point, write_term
+from navsym.prove.wording import decimal_ends
+
+UNCHECKED = "unchecked: no certificate of this statement"
+BITS = (128, 1024, 8192)
+POINTS = 18
+IDENTITY = {"rule": "identity"}
+
+Document = dict[str, Any]
+
+
+# The statement as the checker reads it
+
+
+def write_statements(statement: Statement) -> list[Document] | None:
+    """The statements of the entries in the language of the checker; None for what it has no words for."""
+    if not isinstance(statement, (Equation, Bound)):
+        return None
+    try:
+        return [write_entry(statement, *sides) for sides in list_sides(statement)]
+    except NavsymError:
+        return None
+
+
+def list_sides(statement: Equation | Bound) -> list[tuple[str, str]]:
+    """Both sides of each entry as text: as written, where that is known."""
+    if statement.written is not None:
+        return list(zip(statement.written.left, statement.written.right, strict=True))
+    left, right = list_entries(statement.printed), list_entries(statement.derived)
+    return [(to_text(x), to_text(y)) for x, y in zip(left, right, strict=True)]
+
+
+def write_entry(statement: Equation | Bound, left: str, right: str) -> Document:
+    """One entry with its symbols, what has to exist, and its tolerance."""
+    written, tolerance = statement.written, getattr(statement, "tolerance", None)
+    if written is None:
+        exists = [to_text(sp.sympify(part, strict=True)) for part in statement.exists]
+        exists += [f"1/({to_text(sp.sympify(d, strict=True))})" for d in getattr(statement, "nonzero", ())]
+        symbols = set().union(*(sp.sympify(e).free_symbols for e in (*sides_of(statement), *statement.exists)))
+        symbols |= set().union(*(sp.sympify(e).free_symbols for e in getattr(statement, "nonzero", ())))
+        limit = None if tolerance is None else to_text(sp.sympify(tolerance, strict=True))
+    else:
+        exists, symbols, limit = list(written.exists), set(written.symbols), written.tolerance
+    names = checker.symbols_of(checker.parse(left)).union(
+        *(checker.symbols_of(checker.parse(e)) for e in (right, *exists))
+    )
+    ranges = ranges_of(sorted((s for s in symbols if s.name in names), key=str), statement.box)
+    return {
+        "left": left,
+        "relation": "=" if isinstance(statement, Equation) else statement.relation,
+        "right": right,
+        "symbols": {symbol.name: write_range(limits) for symbol, limits in ranges.items()},
+        "exists": exists,
+        "tolerance": limit,
+    }
+
+
+def sides_of(statement: Equation | Bound) -> list[sp.Expr]:
+    """The scalar expressions of both sides."""
+    return [*list_entries(statement.printed), *list_entries(statement.derived)]
+
+
+def write_range(limits: Range) -> list[Any]:
+    """A range in the words of the checker; zero is left out where it is an end and excluded."""
+    flags = []
+    at_low = limits.nonzero and limits.lower == 0
+    at_high = limits.nonzero and limits.upper == 0
+    for flag, is_said in (
+        ("open-low", limits.open_lower or at_low),
+        ("open-high", at_high),
+        ("nonzero", limits.parted),
+        ("integer", limits.integer),
+    ):
+        flags += [flag] if is_said else []
+    return [*(None if end is None else to_text(end) for end in (limits.lower, limits.upper)), flags]
+
+
+# The verdict
+
+
+def is_granted(verdict: Verdict) -> bool:
+    """True when the certificate is one of the statement's own, which the checker has accepted."""
+    certificate = verdict.certificate or {}
+    parts = certificate["of"] if certificate.get("kind") == "all" else [certificate]
+    return bool(parts) and all(part.get("kind") in ("proof", "counterexample") for part in parts)
+
+
+def grant_verdict(statement: Statement, verdict: Verdict, seconds: float = SECONDS) -> Verdict:
+    """The verdict with a certificate that the checker has accepted for the statement's own text.
+
+    A verdict without one says that it is unchecked; one that the text contradicts is OPEN or REFUTED. What the search
+    left open is proved here where a proof is found.
+    """
+    documents = write_statements(statement)
+    if documents is None or not isinstance(statement, (Equation, Bound)):
+        return leave_unchecked(verdict)
+    try:
+        if verdict.status == REFUTED:
+            return grant_refutation(documents, verdict)
+        return grant_proofs(documents, verdict, seconds, statement)
+    except checker.Refused as refusal:
+        return withdraw(verdict, str(refusal)) if verdict.status.holds or verdict.status == REFUTED else verdict
+
+
+def leave_unchecked(verdict: Verdict) -> Verdict:
+    """The same verdict, with the word in its evidence when it is one that others rely on."""
+    if verdict.status in (OPEN, CONFIRMED) or UNCHECKED in verdict.evidence:
+        return verdict
+    return replace(verdict, evidence=f"{verdict.evidence}; {UNCHECKED}".removeprefix("; "))
+
+
+def withdraw(verdict: Verdict, why: str) -> Verdict:
+    """OPEN in the place of a verdict that the checker does not grant."""
+    words = f"claimed {verdict.status} by {verdict.method}, but the checker refuses: {why}"
+    return Verdict(OPEN, verdict.method, verdict.scope, verdict.assumptions, words)
+
+
+def grant(documents: Sequence[Document], certificate: Mapping[str, Any]) -> str:
+    """HOLDS or FAILS by the checker, of what has been written down and read again; raises Refused."""
+    return checker.grant(list(documents), checker.load(json.dumps(certificate)))
+
+
+def grant_refutation(documents: Sequence[Document], verdict: Verdict) -> Verdict:
+    """REFUTED by a point that the checker accepts for one of the entries."""
+    if not verdict.counterexample and any(document["symbols"] for document in documents):
+        return leave_unchecked(verdict)  # a shape, or a root without a formula
+    point, why = dict(verdict.counterexample or {}), "no entry fails there"
+    for document in documents:
+        place = {name: point.get(name) or simple_value(limits) for name, limits in document["symbols"].items()}
+        try:
+            return replace(verdict, certificate=refute_document(documents, document, place))
+        except checker.Refused as refusal:
+            why = str(refusal)
+    return withdraw(verdict, why)
+
+
+def refute_document(documents: Sequence[Document], document: Document, point: Mapping[str, str]) -> Document:
+    """The certificate of a counterexample; raises Refused."""
+    refusal = checker.Refused("no counterexample")
+    for bits in BITS:
+        certificate: Document = {"kind": "counterexample", "statement": document, "bits": bits, "point": dict(point)}
+        try:
+            grant(documents, certificate | {"zero": None})
+            return certificate | {"zero": None}
+        except checker.Refused as error:
+            refusal = error
+    if document["relation"] in ("<", ">", "!="):
+        goals, _, _ = player.read_statement(document)
+        term = goals[0].term
+        for name, value in point.items():
+            term = player.replace(term, ("symbol", name), player.parse(value))
+        zero = find_proof(player.Goal(term, "=", {}))
+        if zero is not None:
+            certificate = {"kind": "counterexample", "statement": document, "bits": BITS[0], "point": dict(point)}
+            grant(documents, certificate | {"zero": zero})
+            return certificate | {"zero": zero}
+    raise refusal
+
+
+def simple_value(limits: Any) -> str:
+    """A simple number in the range of a symbol."""
+    return str(simple_point(player.read_range(limits), 0))
+
+
+def grant_proofs(
+    documents: Sequence[Document], verdict: Verdict, seconds: float, statement: Equation | Bound
+) -> Verdict:
+    """PROVED or CERTIFIED with proofs of all entries; REFUTED where a sample breaks one of them."""
+    certificates = []
+    for document in documents:
+        certificate = prove_document(document, verdict, seconds / len(documents))
+        if certificate is None:
+            return judge_without_proof(documents, document, verdict, statement)
+        certificates.append(certificate)
+    whole = certificates[0] if len(certificates) == 1 else {"kind": "all", "of": certificates}
+    grant(documents, whole)
+    if verdict.status.holds:
+        return replace(verdict, certificate=whole)
+    rules = sorted({rule for certificate in certificates for rule in rules_of(certificate["proofs"])})
+    status = CERTIFIED if "balls" in rules else PROVED
+    words = f"a proof by the rules {', '.join(rules)}"
+    return replace(verdict, status=status, method="proof tree", evidence=words, certificate=whole)
+
+
+def rules_of(proof: Any) -> set[str]:
+    """The names of the rules of a proof."""
+    if isinstance(proof, list):
+        return set().union(*map(rules_of, proof))
+    own = {proof["rule"]} if isinstance(proof, dict) and "rule" in proof else set()
+    return own.union(*map(rules_of, proof.values())) if isinstance(proof, dict) else own
+
+
+def prove_document(document: Document, verdict: Verdict, seconds: float) -> Document | None:
+    """The certificate of one entry, not granted yet; None where no proof is found."""
+    goals, terms, box = player.read_statement(document)
+    witness = find_witness(terms, box)
+    if witness is None:
+        return None
+    if verdict.method.startswith("normal form") and len(goals) == 1 and goals[0].relation == "=":
+        proofs: list[Any] = [IDENTITY]
+        try:
+            checker.prove(IDENTITY, checker.read_statement(document)[0][0])
+        except checker.Refused:
+            proofs = [find_proof(goals[0], seconds)]
+    else:
+        proofs = [find_proof(goal, seconds) for goal in goals]
+    if any(proof is None for proof in proofs):
+        return None
+    return {"kind": "proof", "statement": document, "bits": BITS[0], "witness": witness, "proofs": proofs}
+
+
+def find_witness(terms: Sequence[Any], box: Mapping[str, Any]) -> dict[str, str] | None:
+    """A point of the box at which all terms have a value, simple where possible."""
+    return next((write_point(point) for point, _ in defined_points(terms, box)), None)
+
+
+def defined_points(terms: Sequence[Any], box: Mapping[str, Any]) -> Iterator[tuple[dict[str, fmpq], dict[str, Any]]]:
+    """Some points of a box at which all terms have values: as numbers, and for the evaluation."""
+    for point in draw_points(box, POINTS if box else 3):
+        place = {name: player.Jet(arb(value)) for name, value in point.items()}
+        if all(player.value_of(term, place).is_finite() for term in terms):
+            yield point, place
+
+
+def write_point(point: Mapping[str, fmpq]) -> dict[str, str]:
+    return {name: write_term(player.number(value)) for name, value in point.items()}
+
+
+def judge_without_proof(
+    documents: Sequence[Document], document: Document, verdict: Verdict, statement: Equation | Bound
+) -> Verdict:
+    """What has no proof: REFUTED by a sample, OPEN where the reading changed the text, else unchecked."""
+    broken = find_failure(document)
+    if broken is not None:
+        try:
+            certificate = refute_document(documents, document, broken)
+        except checker.Refused:
+            return withdraw(verdict, "the text fails at a sample")
+        words = "the text fails at an exact point"
+        return Verdict(
+            REFUTED,
+            "exact point, ball arithmetic",
+            "one point",
+            (),
+            words,
+            broken,
+            difference_at(document, broken),
+            certificate,
+        )
+    if not verdict.status.holds:
+        return verdict
+    _, terms, box = player.read_statement(document)
+    if find_witness(terms, box) is None:
+        return withdraw(verdict, "no point is known at which both sides have a value")
+    if statement.written is None:
+        return leave_unchecked(verdict)
+    texts = [
+        (side, text)
+        for pair, entry in zip(list_sides(statement), entries_of(statement), strict=True)
+        for side, text in zip(pair, entry, strict=True)
+    ]
+    for own, text in texts:
+        goal = player.read_statement({**document, "left": own, "relation": "=", "right": text, "tolerance": None})[0][0]
+        if find_proof(goal, 1.0) is None:
+            return withdraw(verdict, f"the algebra system reads {own} as {text}")
+    return leave_unchecked(verdict)
+
+
+def entries_of(statement: Equation | Bound) -> list[tuple[str, str]]:
+    """Both sides of each entry as the algebra system has them."""
+    pairs = zip(list_entries(statement.printed), list_entries(statement.derived), strict=True)
+    return [(to_text(x), to_text(y)) for x, y in pairs]
+
+
+def find_failure(document: Document) -> dict[str, str] | None:
+    """A point at which a sample breaks the statement."""
+    goals, terms, box = player.read_statement(document)
+    for point, place in defined_points(terms, box):
+        if any(player.FAILURES[goal.relation](player.value_of(goal.term, place)) for goal in goals):
+            return write_point(point)
+    return None
+
+
+def difference_at(document: Document, point: Mapping[str, str]) -> Number | None:
+    """An enclosure of left - right at a point."""
+    place = {name: player.Jet(player.value_of(player.parse(text), {})) for name, text in point.items()}
+    value = player.value_of(player.subtract(player.parse(document["left"]), player.parse(document["right"])), place)
+    return decimal_ends(value) if value.is_finite() else None
