@@ -85,6 +85,7 @@ def all_schemes() -> Mapping[str, Scheme]:
     """Every family with its scheme."""
     import tests.attacks.schemes.beside
     import tests.attacks.schemes.bounds
+    import tests.attacks.schemes.daily
     import tests.attacks.schemes.domains
     import tests.attacks.schemes.identities
     import tests.attacks.schemes.thin
