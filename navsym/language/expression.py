@@ -18,6 +18,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
+from itertools import islice
 from typing import NoReturn
 
 import sympy as sp
@@ -53,6 +54,9 @@ from navsym.language.tree import (
 
 __all__ = ["Expr", "Matrix", "Parsed", "Symbol", "parse", "parse_noting", "read_tree", "symbol", "to_text"]
 
+MARKS, SIGNS, OPENERS = frozenset("*/"), frozenset("+-"), frozenset(("**", "("))
+FOLLOWERS = OPENERS | {"/"}  # a number before one of them may be a part of another one
+ZERO_LEAF, ONE_LEAF = build_number(0), build_number(1)
 LONGEST = 2_000_000  # characters of a text that is read into a tree: nothing is evaluated there
 
 # What the other files of this room need of the algebra, by our names.
@@ -191,62 +195,78 @@ class Reader:
         """Terms with their signs."""
         at, tokens = self.position, self.tokens
         terms = [self.product(False)]
-        while (mark := tokens[self.position]) in ("+", "-"):
+        while (mark := tokens[self.position]) in SIGNS:
             self.position += 1
             terms.append(self.product(mark == "-"))
         return self.make(at, SUM, *terms) if len(terms) > 1 else terms[0]
 
     def product(self, minus: bool) -> Tree:
         """Factors and inverted divisors; a minus before them is a factor."""
-        at, tokens, leaves = self.position, self.tokens, self.leaves
-        factors = self.signed(minus)
-        while (mark := tokens[self.position]) in ("*", "/"):
+        at, tokens = self.position, self.tokens
+        factors = self.signed(minus, head=True)
+        while (mark := tokens[self.position]) in MARKS:
             mark_at = self.position
             self.position += 1
-            factor = leaves.get(tokens[mark_at + 1])
-            if factor is None or tokens[mark_at + 2] in ("**", "("):
-                signed = self.signed(False, head=False)
-                factor = signed[0] if len(signed) == 1 else self.make(mark_at + 1, PRODUCT, *signed)
-            else:
-                self.position += 1
+            factor = self.unary()
             factors.append(factor if mark == "*" else self.make(mark_at, POWER, factor, MINUS_ONE))
             if len(factors) > FACTORS:
                 self.refuse(mark_at, refuse_size(f"at most {FACTORS} factors in a product", "more"))
         return self.make(at, PRODUCT, *factors) if len(factors) != 1 else factors[0]
 
-    def signed(self, minus: bool, head: bool = True) -> list[Tree]:
-        """The first factors behind signs, a minus as a number: none for the 1 of ``1/x``, one for ``-3``."""
-        while (mark := self.tokens[self.position]) in ("+", "-"):
+    def unary(self) -> Tree:
+        """A power with signs before it; a name or a number alone, and its power with plain digits, in one look."""
+        at = self.position
+        token, following, exponent, behind = self.tokens[at : at + 4]
+        leaf = self.leaves.get(token)
+        if leaf is not None and following not in OPENERS:
             self.position += 1
-            minus ^= mark == "-"
-        token, following = self.tokens[self.position : self.position + 2] if mark else (mark, mark)
+            return leaf
+        if leaf is not None and following == "**" and exponent.isdigit() and behind != "**":
+            self.position += 3
+            return self.make(at + 1, POWER, leaf, self.number(exponent))
+        factors = self.signed(False, head=False)
+        return self.make(at, PRODUCT, *factors) if len(factors) > 1 else factors[0]
+
+    def signed(self, minus: bool, head: bool) -> list[Tree]:
+        """The first factors behind signs, a minus as a number: none for the 1 of ``1/x``, one for ``-3``.
+
+        head : at the head of a product, where ``3/4`` is one number
+        """
+        at = self.position
+        token = self.tokens[at]
+        while token in SIGNS:
+            minus ^= token == "-"
+            self.position += 1
+            token = self.tokens[self.position]
+        following = self.tokens[self.position + 1]
+        leaf = self.leaves.get("-" + token if minus else token)
+        if leaf is not None and following not in FOLLOWERS:
+            self.position += 1
+            return [leaf]
         if not token[:1].isdigit() or following == "**":
             return [MINUS_ONE, self.power()] if minus else [self.power()]
-        at, value = self.position, self.number(token)
-        if head and following == "/" and (divisor := self.literal_divisor()):
-            self.position = at + 3
-            value = value / divisor
-        elif head and following == "/" and value == 1 and not minus:
-            self.position += 1
+        divisor = self.literal_divisor() if head and following == "/" else ""
+        self.position += 3 if divisor else 1
+        if head and following == "/" and not (divisor or minus) and self.number(token) is ONE_LEAF:
             return []
-        else:
-            self.position += 1
-        number = build_number(-value if minus else value)
+        number = self.number(token, "-" * minus, divisor)
         self.places.setdefault(number, at)
         return [number]
 
-    def literal_divisor(self) -> Fraction | None:
-        """The number behind ``/`` when its digits alone are the divisor, and it is not zero."""
+    def literal_divisor(self) -> str:
+        """The digits behind ``/`` when they alone are the divisor, and it is not zero."""
         token, following = self.tokens[self.position + 2 : self.position + 4]
-        return self.number(token) if token[:1].isdigit() and following != "**" else None
+        plain = token[:1].isdigit() and following != "**" and self.number(token) is not ZERO_LEAF
+        return token if plain else ""
 
-    def number(self, token: str) -> Fraction:
-        """The value of the digits."""
-        leaf = self.leaves.get(token)
+    def number(self, token: str, sign: str = "", divisor: str = "") -> Tree:
+        """The number that digits mean, with a sign and over another one."""
+        text = f"{sign}{token}/{divisor}" if divisor else sign + token
+        leaf = self.leaves.get(text)
         if leaf is None:
-            leaf = self.leaves[token] = build_number(token)
-        value: Fraction = leaf.args[0]
-        return value
+            value = Fraction(sign + token) / Fraction(divisor) if divisor else Fraction(text)
+            leaf = self.leaves[text] = build_number(value)
+        return leaf
 
     def power(self) -> Tree:
         """An atom, raised or not."""
@@ -256,11 +276,6 @@ class Reader:
         at = self.position
         self.position += 1
         return self.make(at, POWER, base, self.nested(at, self.unary))
-
-    def unary(self) -> Tree:
-        """A power with signs before it."""
-        at, factors = self.position, self.signed(False, head=False)
-        return self.make(at, PRODUCT, *factors) if len(factors) > 1 else factors[0]
 
     def atom(self) -> Tree:
         """A number, a name, a call or a sum in parentheses."""
@@ -272,8 +287,7 @@ class Reader:
             return value
         if token[:1].isdigit():
             self.position += 1
-            self.number(token)
-            return self.leaves[token]
+            return self.number(token)
         if token[:1].isalpha():
             self.position += 1
             return self.name(at, token)
@@ -346,7 +360,7 @@ class Reader:
 
     def token_at(self, at: int) -> Token:
         """A token with its place, which reading without errors does not need."""
-        return tokenize(self.source, LONGEST)[at]
+        return next(islice(tokenize(self.source, LONGEST), at, None))
 
     def fail(
         self, at: int, expected: str, got: str, remedy: str, error: type[NavsymError] = ExpressionSyntaxError

@@ -7,6 +7,7 @@ hexadecimal number or a digit separator is refused where it stands.
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import NoReturn
 
@@ -77,26 +78,25 @@ def split_tokens(source: Source, length: int = LENGTH) -> list[str]:
     return [*texts, "", "", "", ""]
 
 
-def tokenize(source: Source, length: int = LENGTH) -> list[Token]:
-    """Tokens of the text, the last of kind ``"end"``.
+def tokenize(source: Source, length: int = LENGTH) -> Iterator[Token]:
+    """Tokens of the text one by one, the last of kind ``"end"``.
 
     Raises ExpressionSyntaxError for what the language does not have, TooLargeError for long texts and numbers.
     """
     if len(source.text) > length:
         got, remedy = f"{len(source.text)}", "split the expression"
         source.fail(length, f"at most {length} characters", got, remedy, TooLargeError)
-    tokens: list[Token] = []
-    at = 0
-    while not tokens or tokens[-1].kind != "end":
+    at, kind = 0, ""
+    while kind != "end":
         match = TOKEN.match(source.text, at)
         if match is None:
             refuse_character(source, at + len(source.text[at:]) - len(source.text[at:].lstrip(" \t\r\n")))
         kind = str(match.lastgroup)
-        tokens.append(Token(kind, match[kind], match.start(kind)))
+        token = Token(kind, match[kind], match.start(kind))
         at = match.end()
         if kind == "number":
-            refuse_tail(source, tokens[-1], at)
-    return tokens
+            refuse_tail(source, token, at)
+        yield token
 
 
 def refuse_character(source: Source, at: int) -> NoReturn:

@@ -10,9 +10,9 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Mapping
 from fractions import Fraction
-from threading import Lock
+from threading import RLock
 from typing import Any, NoReturn, TypeVar
-from weakref import WeakValueDictionary
+from weakref import ref
 
 from navsym.core.errors import ExpressionSyntaxError, ShapeError
 from navsym.language.names import FUNCTIONS, NAME, quote
@@ -63,31 +63,53 @@ class Tree:
         return f"<{print_tree(self)}>"
 
 
-PARTS: WeakValueDictionary[tuple[str, tuple[Any, ...]], Tree] = WeakValueDictionary()
-LOCK = Lock()
+class Entry(ref):  # type: ignore[type-arg]
+    """A weak reference to a part, with its key in the table."""
+
+    __slots__ = ("key",)
+
+    key: tuple[Any, ...]
+
+
+#: Every part that something holds, by head and arguments.
+TABLE: dict[tuple[Any, ...], Entry] = {}
+LOCK = RLock()
 make_empty = object.__new__
 write_head, write_args = Tree.__dict__["head"].__set__, Tree.__dict__["args"].__set__
 
 
-def build(head: str, args: tuple[Any, ...]) -> Tree:
-    """The part of this head and these arguments; the functions below check both."""
-    node = PARTS.get((head, args))
-    if node is None:
-        with LOCK:
-            node = PARTS.get((head, args))
-            if node is None:
-                node = make_empty(Tree)
-                write_head(node, head)
-                write_args(node, args)
-                PARTS[head, args] = node
-    return node
+def forget(entry: Entry) -> None:
+    """Remove a part that nothing holds any more, unless it has been made again."""
+    with LOCK:
+        if TABLE.get(entry.key) is entry:
+            del TABLE[entry.key]
+
+
+def build(head: str, args: tuple[Any, ...], key: tuple[Any, ...] = ()) -> Tree:
+    """The part of this head and these arguments; the functions below check both, and give a quicker key for numbers."""
+    where = (head, key or args)
+    entry = TABLE.get(where)
+    node: Tree | None = entry() if entry is not None else None
+    if node is not None:
+        return node
+    with LOCK:
+        entry = TABLE.get(where)
+        node = entry() if entry is not None else None
+        if node is None:
+            node = make_empty(Tree)
+            write_head(node, head)
+            write_args(node, args)
+            entry = TABLE[where] = Entry(node, forget)
+            entry.key = where
+        return node
 
 
 def build_number(value: int | Fraction | str) -> Tree:
     """An exact number, also from a decimal: ``"0.1"`` is 1/10."""
     if isinstance(value, float):
         raise ExpressionSyntaxError(f"expected an exact number; got the float {value!r}; write it as text")
-    return build(NUMBER, (Fraction(value),))
+    number = Fraction(value)
+    return build(NUMBER, (number,), (number.numerator, number.denominator))
 
 
 def build_symbol(name: str) -> Tree:
@@ -204,5 +226,6 @@ def rebuild(steps: Iterable[tuple[str, tuple[Any, ...]]]) -> Tree:
     """The tree of such a list."""
     parts: list[Tree] = []
     for head, args in steps:
-        parts.append(build(head, args if head in (NUMBER, SYMBOL) else tuple(parts[at] for at in args)))
+        leaf = build_number(*args) if head == NUMBER else build(head, args) if head == SYMBOL else None
+        parts.append(leaf or build(head, tuple(parts[at] for at in args)))
     return parts[-1]
