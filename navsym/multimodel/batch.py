@@ -60,21 +60,9 @@ def in_lanes(models: Bank, z: Array, branching: int, out: Batch) -> bool:
 
     H, r, U, rotated = independent_scalars(models)
     with np.errstate(all="ignore"):
-        fine = run_all(
-            branching,
-            models.F,
-            models.Q,
-            H,
-            r,
-            U,
-            rotated,
-            models.mode_transition,
-            logs(models.probabilities),
-            models.means,
-            models.covariances,
-            z,
-            *out,
-        )
+        bank = (models.F, models.Q, H, r, U, rotated, models.mode_transition)
+        start = (logs(models.probabilities), models.means, models.covariances)
+        fine = run_all(branching, bank, start, z, tuple(out))
     return bool(fine)
 
 

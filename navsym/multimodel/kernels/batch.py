@@ -242,31 +242,17 @@ def restart_eight(m, n, now_mean, now, x, P):  # type: ignore[no-untyped-def]
 
 
 @njit(**COMPILE)
-def run_eight(  # type: ignore[no-untyped-def]
-    first,
-    branching,
-    F,
-    Q,
-    H,
-    r,
-    U,
-    rotated,
-    p_mode,
-    log_prior,
-    means,
-    covariances,
-    z,
-    mean,
-    covariance,
-    probabilities,
-    log_likelihood,
-):
+def run_eight(first, branching, models, start, z, out):  # type: ignore[no-untyped-def]
     """Eight runs from ``first`` on through all steps; branching 0 pulsating, 1 IMM, 2 polygaussian.
 
-    z (runs, T, p) without gaps; means (m, n), covariances (m, n, n) at step 0;
-    fills mean (runs, T, n), covariance (runs, T, n, n), probabilities (runs, T, m), log_likelihood (runs, T).
+    models : F, Q, H, r, U, whether the measurements are rotated by U, mode transition; start : log probabilities (m,),
+    means (m, n), covariances (m, n, n) at step 0; z (runs, T, p) without gaps; out, filled here : mean (runs, T, n),
+    covariance (runs, T, n, n), probabilities (runs, T, m), log_likelihood (runs, T).
     Returns False when a variance is not positive.
     """
+    F, Q, H, r, U, rotated, p_mode = models
+    log_prior, means, covariances = start
+    mean, covariance, probabilities, log_likelihood = out
     _, T, p = z.shape
     m, n = F.shape[1], F.shape[2]
     x, P, y, S = aligned(m * n * 8), aligned(m * n * n * 8), aligned(m * n * 8), aligned(m * n * n * 8)
@@ -304,45 +290,10 @@ def run_eight(  # type: ignore[no-untyped-def]
 
 
 @njit(error_model="numpy", nogil=True, parallel=True)
-def run_all(  # type: ignore[no-untyped-def]
-    branching,
-    F,
-    Q,
-    H,
-    r,
-    U,
-    rotated,
-    p_mode,
-    log_prior,
-    means,
-    covariances,
-    z,
-    mean,
-    covariance,
-    probabilities,
-    log_likelihood,
-):
+def run_all(branching, models, start, z, out):  # type: ignore[no-untyped-def]
     """All runs, eight at a time, on all cores; False when any of them had to stop."""
     groups = (z.shape[0] + 7) // 8
     fine = np.ones(groups, dtype=np.bool_)
     for g in numba.prange(groups):
-        fine[g] = run_eight(
-            g * 8,
-            branching,
-            F,
-            Q,
-            H,
-            r,
-            U,
-            rotated,
-            p_mode,
-            log_prior,
-            means,
-            covariances,
-            z,
-            mean,
-            covariance,
-            probabilities,
-            log_likelihood,
-        )
+        fine[g] = run_eight(g * 8, branching, models, start, z, out)
     return fine.all()
