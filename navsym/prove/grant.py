@@ -7,8 +7,10 @@ reads both. A certificate that it refuses leaves the verdict OPEN, whoever claim
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from decimal import Decimal
 from typing import Any
 
 import sympy as sp
@@ -28,6 +30,7 @@ from navsym.prove.wording import decimal_ends
 UNCHECKED = "unchecked: no certificate of this statement"
 BITS = (128, 1024, 8192)
 POINTS = 18
+NUMERAL = re.compile(r"(?<![\w.])\d+(?:\.\d+)?[eE][+-]?\d+", re.ASCII)
 IDENTITY = {"rule": "identity"}
 
 Document = dict[str, Any]
@@ -49,7 +52,8 @@ def write_statements(statement: Statement) -> list[Document] | None:
 def list_sides(statement: Equation | Bound) -> list[tuple[str, str]]:
     """Both sides of each entry as text: as written, where that is known."""
     if statement.written is not None:
-        return list(zip(statement.written.left, statement.written.right, strict=True))
+        pairs = zip(statement.written.left, statement.written.right, strict=True)
+        return [(write_numerals(left), write_numerals(right)) for left, right in pairs]
     left, right = list_entries(statement.printed), list_entries(statement.derived)
     return [(to_text(x), to_text(y)) for x, y in zip(left, right, strict=True)]
 
@@ -64,7 +68,8 @@ def write_entry(statement: Equation | Bound, left: str, right: str) -> Document:
         symbols |= set().union(*(sp.sympify(e).free_symbols for e in getattr(statement, "nonzero", ())))
         limit = None if tolerance is None else to_text(sp.sympify(tolerance, strict=True))
     else:
-        exists, symbols, limit = list(written.exists), set(written.symbols), written.tolerance
+        exists, symbols = [write_numerals(text) for text in written.exists], set(written.symbols)
+        limit = None if written.tolerance is None else write_numerals(written.tolerance)
     names = checker.symbols_of(checker.parse(left)).union(
         *(checker.symbols_of(checker.parse(e)) for e in (right, *exists))
     )
@@ -77,6 +82,11 @@ def write_entry(statement: Equation | Bound, left: str, right: str) -> Document:
         "exists": exists,
         "tolerance": limit,
     }
+
+
+def write_numerals(text: str) -> str:
+    """The text with 1e-3 and the like as the same decimals in full, the only ones that the checker reads."""
+    return NUMERAL.sub(lambda numeral: format(Decimal(numeral[0]), "f"), text)
 
 
 def sides_of(statement: Equation | Bound) -> list[sp.Expr]:
