@@ -18,8 +18,10 @@ Array = NDArray[np.float64]
 #: A shape; None stands for a size that is not prescribed.
 Shape = Sequence[int | None]
 
-#: Rounding allowed in a matrix that a caller calls symmetric, or in a sum that should be one.
+#: Rounding allowed in a matrix that a caller calls semidefinite, or in a sum that should be one.
 SLACK = 1e-9
+#: Difference allowed between the two halves of a covariance whose variances are 1.
+ASYMMETRY = 1e-12
 
 
 def as_array(name: str, value: Any, shape: Shape, why: str) -> Array:
@@ -87,7 +89,8 @@ def as_positive(name: str, value: Any, shape: Shape, why: str) -> Array:
 def as_covariance(name: str, value: Any, n: int | None, *, definite: bool = False) -> Array:
     """A covariance matrix (n, n): symmetric and positive semidefinite, made exactly symmetric.
 
-    Asymmetry and negative eigenvalues of the size of rounding (1e-9 of the largest entry) pass.
+    Asymmetry (1e-12) and negative eigenvalues (1e-9) of the size of rounding pass, in units in which the variances
+    are 1; a negative variance does not, nor a covariance with a state whose variance is zero.
     With ``definite`` the smallest eigenvalue must be positive, so that an inverse exists.
 
     Raises ShapeError, NotFiniteError, EmptyError, DomainError.
@@ -95,23 +98,30 @@ def as_covariance(name: str, value: Any, n: int | None, *, definite: bool = Fals
     array = as_array(name, value, (n, n), "a covariance, states by states")
     if array.shape[0] != array.shape[1]:
         raise ShapeError(f"{name}: expected a square covariance; got {array.shape}; give all rows")
-    scale = np.abs(array).max()
-    if np.abs(array - array.T).max() > SLACK * scale:
-        raise DomainError(f"{name}: expected a symmetric covariance; got {worst_asymmetry(array)}; symmetrise it")
-    symmetric = 0.5 * array + 0.5 * array.T
-    least = float(np.linalg.eigvalsh(symmetric)[0])
-    if least < -SLACK * scale or (definite and least <= 0.0):
+    variances = np.diagonal(array)
+    if variances.min() < 0.0:
+        i = int(variances.argmin())
+        least = float(np.linalg.eigvalsh(0.5 * array + 0.5 * array.T)[0])
+        raise DomainError(
+            f"{name}: expected a positive semidefinite covariance; got the eigenvalue {least:.6g}, "
+            f"for [{i}, {i}] = {variances[i]}; mend this variance"
+        )
+    # Units in which the variances are 1: what is small beside one variance may be large beside another.
+    scale = np.sqrt(np.where(variances > 0.0, variances, 1.0))
+    unit = array / scale[:, None] / scale
+    asymmetry = np.abs(unit - unit.T)
+    if asymmetry.max() > ASYMMETRY:
+        i, j = sorted(int(k) for k in np.unravel_index(asymmetry.argmax(), array.shape))
+        pair = f"[{i}, {j}] = {array[i, j]} against [{j}, {i}] = {array[j, i]}"
+        raise DomainError(f"{name}: expected a symmetric covariance; got {pair}; symmetrise it")
+    least = float(np.linalg.eigvalsh(0.5 * unit + 0.5 * unit.T)[0])
+    if least < -SLACK or (definite and least <= 0.0):
         kind = "definite" if definite else "semidefinite"
         raise DomainError(
-            f"{name}: expected a positive {kind} covariance; got the eigenvalue {least:.6g}; mend its entries"
+            f"{name}: expected a positive {kind} covariance; got the eigenvalue {least:.6g}, variances taken for 1; "
+            "mend its entries"
         )
-    return freeze(symmetric)
-
-
-def worst_asymmetry(array: Array) -> str:
-    """The worst pair of an array that should be symmetric, in words."""
-    i, j = (int(k) for k in np.unravel_index(np.abs(array - array.T).argmax(), array.shape))
-    return f"[{i}, {j}] = {array[i, j]} against [{j}, {i}] = {array[j, i]}"
+    return freeze(0.5 * array + 0.5 * array.T)
 
 
 def as_probabilities(name: str, value: Any, k: int | None = None) -> Array:

@@ -40,6 +40,7 @@ class Bank:
     probabilities   : (m,)     of the mode at step 0
     means, covariances : (m, n), (m, n, n) of the state at step 0, given the mode at step 0
     common          : True when all modes start from one Gaussian
+    horizon         : length of the lists over time, or None when nothing depends on time
 
     All modes explain the same p numbers: densities over different numbers cannot be compared. A mode in
     which a sensor says nothing has a zero row in H and the spread of that sensor in R.
@@ -63,6 +64,7 @@ class Bank:
     means: Array
     covariances: Array
     common: bool
+    horizon: int | None
 
     def __init__(self, models: Any, mode_transition: Any, initial: Any) -> None:
         rows = checked_models(models)
@@ -81,10 +83,10 @@ class Bank:
         transition = transitions(mode_transition, m)
         start, spread, common = initial_moments(initial["mean"], initial["covariance"], m, n)
         probabilities = arrays.as_probabilities("initial.probabilities", initial["probabilities"], m)
-        values = (F, Q, H, R, transition, probabilities, start, spread, common)
+        steps = length_of_lists([mode_transition, *(model[key] for model in rows for key in KEYS_OF_MODEL)])
+        values = (F, Q, H, R, transition, probabilities, start, spread, common, steps)
         for field, value in zip(fields(self), values, strict=True):
             object.__setattr__(self, field.name, value)
-        check_lengths(self)
 
     def __repr__(self) -> str:
         return f"<Bank: {self.modes} modes, {self.states} states, {self.channels} measurements>"
@@ -103,12 +105,6 @@ class Bank:
     def channels(self) -> int:
         """Size p of the measurement."""
         return int(self.H.shape[2])
-
-    @property
-    def horizon(self) -> int | None:
-        """Number of steps for which models are given, or None when nothing depends on time."""
-        lengths = {a.shape[0] for a in (self.F, self.Q, self.H, self.R, self.mode_transition)} - {1}
-        return max(lengths) if lengths else None
 
     def at(self, name: str, k: int) -> Array:
         """F, Q, H, R (m, ...) or mode_transition (m, m) of step k = 1, 2, ..."""
@@ -221,11 +217,12 @@ def initial_moments(mean: Any, covariance: Any, m: int, n: int) -> tuple[Array, 
     return arrays.freeze(means), arrays.freeze(spread), common
 
 
-def check_lengths(made: Bank) -> None:
-    """All lists over time have one length."""
-    lengths = {a.shape[0] for a in (made.F, made.Q, made.H, made.R, made.mode_transition)} - {1}
+def length_of_lists(values: Sequence[Any]) -> int | None:
+    """The one length of all lists over time, also when it is 1; None where there is no list."""
+    lengths = {len(value) for value in values if depth(value) > 2}
     if len(lengths) > 1:
         raise ShapeError(f"models: expected lists over time of one length; got {sorted(lengths)}; match them")
+    return lengths.pop() if lengths else None
 
 
 def measurements_for(made: Bank, values: Any, *, missing: bool = False) -> Array:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,8 @@ from numpy.typing import NDArray
 from navsym.core.errors import NotFiniteError, ShapeError
 from navsym.multimodel.bank import Bank
 from navsym.multimodel.compiled import independent_scalars
-from navsym.multimodel.filters import run_filter
+from navsym.multimodel.doubt import ROUNDING, disagreements, in_units, moments, other_units
+from navsym.multimodel.filters import UNUSED, run_filter
 from navsym.multimodel.kalman import logs
 from navsym.multimodel.schemes import require_room, scheme
 
@@ -23,6 +25,9 @@ IN_LANES = {"pulsating": 0, "imm": 1, "polygaussian": 2}
 
 def run_batch(models: Bank, measurements: Any, method: str = "imm", *, depth: int | None = None) -> Batch:
     """Filter ``measurements`` (runs, T, p) without gaps; any method, eight runs at a time where lanes fit.
+
+    Runs at which doubles lose their digits are filtered one by one, with a hundred digits where that is possible and
+    a warning where it is not.
 
     Raises ShapeError, NotFiniteError, and the errors of :func:`navsym.multimodel.filters.run_filter`.
     """
@@ -39,12 +44,19 @@ def run_batch(models: Bank, measurements: Any, method: str = "imm", *, depth: in
         )
     rule = scheme(method, depth)
     require_room(rule, models.modes, models.states, 1 if models.common else models.modes, z.shape[1])
-    if method not in IN_LANES or (method == "pulsating" and not models.common):
-        return one_by_one(models, z, method, depth)
     out = empty(z, models)
-    if not in_lanes(models, z, IN_LANES[method], out):
-        return one_by_one(models, z, method, depth)
-    return out
+    every = np.arange(len(z))
+    if method not in IN_LANES or (method == "pulsating" and not models.common):
+        return one_by_one(models, z, method, depth, out, every)
+    units, twin, lanes = other_units(models), empty(z, models), IN_LANES[method]
+    if not (in_lanes(models, z, lanes, out) and in_lanes(in_units(models, *units), z * units[1], lanes, twin)):
+        return one_by_one(models, z, method, depth, out, every)
+    doubt = disagreements(out, twin, z, *units).max(axis=1)
+    # Two runs of one program may err alike in a short series; the readable engine errs in another way.
+    single = run_filter(models, z[0], method, engine="compiled")
+    if single.engine == "digits":
+        doubt[:] = np.inf
+    return one_by_one(models, z, method, depth, out, np.flatnonzero(doubt > ROUNDING))
 
 
 def empty(z: Array, models: Bank) -> Batch:
@@ -66,11 +78,12 @@ def in_lanes(models: Bank, z: Array, branching: int, out: Batch) -> bool:
     return bool(fine)
 
 
-def one_by_one(models: Bank, z: Array, method: str, depth: int | None) -> Batch:
-    """Every run through the single-run engine: folding schemes, and series at which lanes stop."""
-    out = empty(z, models)
-    for row, series in enumerate(z):
-        estimate = run_filter(models, series, method, depth=depth, engine="compiled")
-        for target, name in zip(out, ("mean", "covariance", "probabilities", "log_likelihood"), strict=True):
-            target[row] = getattr(estimate, name)
+def one_by_one(models: Bank, z: Array, method: str, depth: int | None, out: Batch, rows: NDArray[np.intp]) -> Batch:
+    """``out`` with these runs by the single-run engine: folding schemes, and series at which lanes stop or err."""
+    for row in rows:
+        estimate = run_filter(models, z[row], method, depth=depth, engine="compiled")
+        for target, value in zip(out, moments(estimate), strict=True):
+            target[row] = value
+        for note in set(estimate.notes) - {UNUSED} if estimate.engine != "digits" else ():
+            warnings.warn(f"run {row}: {note}", stacklevel=3)
     return out

@@ -17,7 +17,7 @@ from navsym.claims.display import write_table
 from navsym.core import arrays
 from navsym.core.answers import Answer
 from navsym.multimodel.bank import Bank
-from navsym.multimodel.kalman import FORMS, Form, logs, normalise
+from navsym.multimodel.kalman import FORMS, Form, logs, normalise, residual, times, variances
 from navsym.multimodel.schemes import Scheme
 
 Array = NDArray[np.floating[Any]]
@@ -59,6 +59,8 @@ class Step:
     covariance: Array
     log_likelihood: float
     best: float
+    singular: bool
+    sound: bool
 
 
 def first_hypotheses(bank: Bank, rule: Scheme, form: Form = FORMS["joseph"]) -> Hypotheses:
@@ -80,12 +82,12 @@ def on_diagonal(log_weights: Array) -> Array:
 def advance(rule: Scheme, k: int, bank: Bank, before: Hypotheses, z: Array, form: Form = FORMS["joseph"]) -> Step:
     """Step k of the filter: branch, predict, correct, weigh, take moments, fold."""
     branches = branch_hypotheses(rule, before, logs(bank.at("mode_transition", k)), form)
-    means, kept, log_likelihoods = filter_branches(bank, k, branches, z, form)
-    best = float(log_likelihoods.max())
+    means, kept, log_likelihoods, sound = filter_branches(bank, k, branches, z, form)
+    best, singular = float(log_likelihoods.max()), bool(np.isneginf(log_likelihoods).any())
     if best == -np.inf:
         # No mode can have produced this measurement: leave it out, say so, and go on.
         step = advance(rule, k, bank, before, np.full_like(z, np.nan), form)
-        return Step(step.hypotheses, step.probabilities, step.mean, step.covariance, 0.0, best)
+        return Step(step.hypotheses, step.probabilities, step.mean, step.covariance, 0.0, best, singular, sound)
     weights, log_likelihood = normalise(branches.log_weights + log_likelihoods)
     if log_likelihood == -np.inf:
         weights, log_likelihood = normalise(branches.log_weights)[0], 0.0
@@ -94,7 +96,7 @@ def advance(rule: Scheme, k: int, bank: Bank, before: Hypotheses, z: Array, form
     probabilities = sum_by_mode(weights, branches.modes, bank.modes)
     found = Hypotheses(means, kept, spread_over_modes(log_weights, branches.modes, bank.modes))
     folded = fold_hypotheses(rule, k, found, (merged_mean, merged), form)
-    return Step(folded, probabilities, merged_mean[0], form.show(merged[0]), log_likelihood, best)
+    return Step(folded, probabilities, merged_mean[0], form.show(merged[0]), log_likelihood, best, singular, sound)
 
 
 def branch_hypotheses(rule: Scheme, before: Hypotheses, log_transition: Array, form: Form) -> Branches:
@@ -137,16 +139,38 @@ def log_matrix_product(A: Array, B: Array) -> Array:
     return logs(np.exp(terms - safe).sum(axis=1)) + safe[:, 0, :]
 
 
-def filter_branches(bank: Bank, k: int, branches: Branches, z: Array, form: Form) -> tuple[Array, Array, Array]:
-    """Kalman filter of every branch: means, covariances and log-likelihoods of the numbers that came."""
+def filter_branches(bank: Bank, k: int, branches: Branches, z: Array, form: Form) -> tuple[Array, Array, Array, bool]:
+    """Kalman filter of every branch: means, covariances, log-likelihoods of the numbers that came, and soundness."""
     i = branches.modes
     means, covariances = form.predict(branches.means, branches.covariances, bank.at("F", k)[i], bank.at("Q", k)[i])
     came = ~np.isnan(z)
+    before, ahead = form.show(branches.covariances), form.show(covariances)
+    sound = is_regular(before) and is_regular(ahead)
     if not came.any():
-        return means, covariances, np.zeros(len(i))
+        return means, covariances, np.zeros(len(i)), sound
     H = bank.at("H", k)[i][:, came, :]
     R = bank.at("R", k)[i][:, came, :][:, :, came]
-    return form.correct(means, covariances, z[came], H, R)  # multistructure:18*
+    S = residual(means, ahead, z[came], H, R)[1]
+    size = np.abs(z[came]) + times(np.abs(H), np.abs(means))
+    after = form.correct(means, covariances, z[came], H, R)  # multistructure:18*
+    sound = sound and is_regular(S) and bool((size * size <= LARGEST * variances(S)).all())
+    sound = sound and bool((variances(ahead) <= LARGEST * variances(form.show(after[1]))).all())
+    return (*after, sound and bool((after[2] > -LEAST).all()))
+
+
+#: A bank is sound while correlations keep this far from singular, variances fall by less than LARGEST in one step,
+#: measurements are below the root of LARGEST in their standard deviations, and log-likelihoods above -LEAST. Some
+#: 1e-9 of every number is then right; elsewhere :mod:`navsym.multimodel.doubt` looks again.
+REGULAR, LARGEST, LEAST = 1e-3, 1e10, 1e4
+
+
+def is_regular(P: Array) -> bool:
+    """Whether every correlation matrix of a stack of covariances is far from singular."""
+    spread = variances(P)
+    if not (spread > 0.0).all():
+        return False
+    scale = np.sqrt(spread)
+    return bool(np.linalg.eigvalsh(P / scale[..., None] / scale[..., None, :]).min() > REGULAR)
 
 
 def sum_by_mode(weights: Array, modes: NDArray[np.intp], m: int) -> Array:
@@ -190,8 +214,11 @@ class Estimates(Answer):
     filters_run   : one-step Kalman filters that ran, all steps together
     impossible    : steps whose measurement has a likelihood below the smallest double under every mode; the
                     weights are right all the same, because they are kept as logarithms
-    left_out      : steps whose measurement had to be left out, because even its logarithm has no number
-    engine        : ``compiled`` or ``numpy``, whichever ran
+    left_out      : steps whose measurement had to be left out, because it is impossible under every mode: it lies
+                    outside the range of S, or even the logarithm of its likelihood has no number
+    singular      : steps at which doubles had no density of a branch; empty once digits have decided
+    sound         : whether doubles are certain to have kept their digits
+    engine        : ``compiled``, ``numpy``, or ``digits`` where doubles did not suffice
     notes         : further sentences for people
     """
 
@@ -202,6 +229,8 @@ class Estimates(Answer):
     filters_run: int
     impossible: tuple[int, ...] = ()
     left_out: tuple[int, ...] = ()
+    singular: tuple[int, ...] = ()
+    sound: bool = False
     engine: str = "numpy"
     notes: tuple[str, ...] = ()
 
@@ -227,13 +256,14 @@ class Estimates(Answer):
         return (*self.notes, *unlikely, *left)
 
     def document(self) -> dict[str, Any]:
-        """The JSON document of ``navsym filter``."""
+        """The JSON document of ``navsym filter``; ``left_out`` is there when steps were."""
         return {
             "probabilities": self.probabilities.tolist(),
             "mean": self.mean.tolist(),
             "covariance": self.covariance.tolist(),
             "log_likelihood": self.log_likelihood.tolist(),
             "filters_run": self.filters_run,
+            **({"left_out": list(self.left_out)} if self.left_out else {}),
         }
 
     def rows(self) -> list[tuple[str, ...]]:
@@ -283,4 +313,6 @@ def stack_steps(found: list[Step], models: Bank, count: int) -> Estimates:
         count,
         tuple(k for k, b in enumerate(best, start=1) if b < UNDERFLOW),
         tuple(k for k, b in enumerate(best, start=1) if b == -np.inf),
+        tuple(k for k, s in enumerate(found, start=1) if s.singular),
+        all(s.sound for s in found),
     )

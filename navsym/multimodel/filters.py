@@ -6,6 +6,7 @@ methods differ. Paper: module ``multistructure``.
 
 from __future__ import annotations
 
+import functools
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -19,8 +20,9 @@ from navsym.language.files import name_file
 from navsym.language.jsonfile import read_json
 from navsym.language.names import only_keys
 from navsym.multimodel.bank import Bank, check_initial, forget_modes, measurements_for
+from navsym.multimodel.doubt import Rerun, settle
 from navsym.multimodel.engine import Estimates, run_in_numpy
-from navsym.multimodel.kalman import form_of
+from navsym.multimodel.kalman import FORMS, form_of
 from navsym.multimodel.schemes import require_room, scheme
 
 Array = NDArray[np.floating[Any]]
@@ -31,6 +33,8 @@ KEYS = ("models", "mode_transition", "initial", "measurements", "memoryless", "m
 UNUSED = "mode_transition is not used: polygaussian takes modes that never switch, equation (19)"
 #: Below this many one-step filters the compiled loops do not pay for being loaded.
 WORTH_COMPILING = 200_000
+#: In a shorter series two runs of the compiled loops may err alike; the readable engine errs in another way.
+WORTH_REPEATING = 2_000
 
 
 def filter(
@@ -129,12 +133,16 @@ def run_filter(
     roots = 1 if models.common else models.modes
     notes = (UNUSED,) if rule.branching == "own" and not never_switches(models.mode_transition) else ()
     count = require_room(rule, models.modes, models.states, roots, len(z))
+    run: Rerun = functools.partial(run_in_numpy, rule, count=count, form=kept)
+    twin: Rerun = functools.partial(run, form=FORMS["ud" if form == "qr" else "qr"])
     if compiled_fits(count, engine, form):
         from navsym.multimodel.compiled import run_compiled
 
-        return replace(require_range(run_compiled(rule, models, z, count)), notes=notes)
+        run = functools.partial(run_compiled, rule, count=count)
+        twin = run if count >= WORTH_REPEATING else twin
     with np.errstate(over="ignore", invalid="ignore"):  # what leaves the range is refused, with its step
-        return replace(require_range(run_in_numpy(rule, models, z, count, kept)), notes=notes)
+        estimate = settle(require_range(run(models, z=z)), twin, rule, models, z)
+    return replace(estimate, notes=(*notes, *estimate.notes))
 
 
 def never_switches(mode_transition: Array) -> bool:

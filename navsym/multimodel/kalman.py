@@ -115,6 +115,11 @@ def transposed(A: Array) -> Array:
     return np.swapaxes(A, -1, -2)
 
 
+def variances(P: Array) -> Array:
+    """Diagonals (..., n) of covariances (..., n, n)."""
+    return np.diagonal(P, axis1=-2, axis2=-1)
+
+
 def scalar_corrections(z: Array, H: Array, R: Array) -> tuple[Array, Array, Array]:
     """Independent scalar measurements that say the same: rotate z, H by the eigenvectors of R.
 
@@ -168,9 +173,11 @@ def merge_groups(weights: Array, means: Array, covariances: Array) -> tuple[Arra
 
 
 def root_of(P: Array) -> Array:
-    """A factor A (..., n, n) with ``A A^T = P`` for semidefinite P, by eigenvalues; not triangular."""
-    values, vectors = np.linalg.eigh(P)
-    return np.asarray(vectors * np.sqrt(np.maximum(values, 0.0))[..., None, :])
+    """A factor A (..., n, n) with ``A A^T = P`` for semidefinite P, by eigenvalues of correlations; not triangular."""
+    spread = np.sqrt(np.diagonal(P, axis1=-2, axis2=-1))
+    safe = np.where(spread > 0.0, spread, 1.0)
+    values, vectors = np.linalg.eigh(P / safe[..., None] / safe[..., None, :])
+    return np.asarray(safe[..., None] * vectors * np.sqrt(np.maximum(values, 0.0))[..., None, :])
 
 
 def triangular(A: Array) -> Array:

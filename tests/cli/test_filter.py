@@ -246,3 +246,30 @@ def test_an_unknown_experiment_is_refused_with_the_known_ones(capsys):
     assert main.run(["simulate", "nothing", "--json"]) == 2
     message = json.loads(capsys.readouterr().out)["error"]["message"]
     assert all(name in message for name in experiment_names())
+
+
+def test_steps_left_out_stand_in_the_document(tmp_path, capsys):
+    perfect = {"F": UNIT, "Q": [[0.0]], "H": [[1.0], [1.0]], "R": [[0.0, 0.0], [0.0, 0.0]]}
+    given = {
+        "models": [perfect],
+        "mode_transition": UNIT,
+        "initial": {"mean": [0.0], "covariance": UNIT, "probabilities": [1.0]},
+        "measurements": [[2.0, 2.0], [2.0, 3.0], [2.0, 2.0]],
+    }
+    status, document, remarks = answer(capsys, bank_file(tmp_path, **given))
+    assert status == 0 and document["left_out"] == [2] and "step 2" in remarks
+    assert document["mean"] == [[2.0]] * 3
+    assert "left_out" not in answer(capsys, bank_file(tmp_path, **{**given, "measurements": [[2.0, 2.0]]}))[1]
+
+
+@pytest.mark.parametrize(
+    ("changes", "kind", "words"),
+    [
+        (model(R=[[[1.0]]]), "shape", "at most 1 rows"),
+        (model(Q=[[[1.0]]], F=[UNIT] * 3), "shape", "one length; got [1, 3]"),
+        ({"mode_transition": [[[0.9, 0.1], [0.2, 0.8]]]}, "shape", "at most 1 rows"),
+    ],
+)
+def test_a_list_over_time_of_one_matrix_is_not_for_all_steps(tmp_path, capsys, changes, kind, words):
+    status, document, _ = answer(capsys, bank_file(tmp_path, **changes))
+    assert status == 2 and document["error"]["kind"] == kind and words in document["error"]["message"]

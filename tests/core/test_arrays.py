@@ -99,3 +99,24 @@ def test_rows_of_a_mode_transition_mean_from():
         as_transition("mode_transition", np.array([[0.9, 0.1], [0.3, 0.7]]).T)
     with pytest.raises(ShapeError, match="square"):
         as_transition("mode_transition", [[0.5, 0.5]])
+
+
+@pytest.mark.parametrize("scale", [1e-30, 1.0, 1e30])
+def test_a_covariance_is_judged_in_units_of_each_of_its_states(scale):
+    with pytest.raises(DomainError, match=r"P: .*eigenvalue -5.*\[1, 1\] = -5"):
+        as_covariance("P", [[1e10, 0.0], [0.0, -5.0]], 2)
+    for wrong, words in (
+        ([[1e10 * scale, 0.0], [0.0, -1e-20]], r"\[1, 1\] = -1e-20"),
+        ([[1e10, 1e-3], [1e-3, 1e-18]], "eigenvalue"),
+        ([[1e10, 1.0], [0.0, 1.0]], r"\[0, 1\] = 1.0 against \[1, 0\] = 0.0"),
+        ([[1.0, 1e-3], [1e-3, 0.0]], "eigenvalue"),
+    ):
+        with pytest.raises(DomainError, match=words):
+            as_covariance("P", wrong, 2)
+
+
+@given(st.integers(1, 5), st.integers(0, 2**32 - 1))
+def test_a_change_of_units_keeps_a_covariance_one(n, seed):
+    rng = np.random.default_rng(seed)
+    A, unit = rng.normal(size=(n, n)), 10.0 ** rng.integers(-100, 100, n)
+    as_covariance("P", A @ A.T * unit * unit[:, None], n)
