@@ -12,7 +12,7 @@ from flint import arb
 
 from navsym.core.balls import precision
 from navsym.core.errors import NavsymError
-from navsym.export.accuracy.filled import analyse
+from navsym.export.accuracy.continuation import analyse
 from navsym.export.accuracy.rounding import BITS, LIBRARY, Arithmetic, literals_of
 from navsym.export.expression_graph import Graph, build
 from navsym.export.forms import factored, safe

@@ -173,7 +173,7 @@ class ExportedFunction:
         return {new: field for field, new in self.fields.items() if new}
 
     @property
-    def kept(self) -> tuple[Output, ...]:
+    def field_outputs(self) -> tuple[Output, ...]:
         """The fields in order, with their shapes, as ``init`` makes them."""
         known = {o.name: o for o in self.state.init.outputs} if self.state else {}
         return tuple(known[name] for name in self.fields)

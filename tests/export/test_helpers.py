@@ -16,8 +16,7 @@ from flint import arb, arb_series, ctx
 
 from navsym.claims import Equation
 from navsym.core.balls import enclose, precision
-from navsym.export.accuracy.continuation import MARGIN, SWITCHES, continuation
-from navsym.export.accuracy.filled import analyse, filled_bounds, zones
+from navsym.export.accuracy.continuation import MARGIN, SWITCHES, analyse, continuation, filled_bounds, zones
 from navsym.export.accuracy.rounding import ARITHMETICS, DOUBLE, Bounded, literals_of
 from navsym.export.accuracy.vectors import vectors
 from navsym.export.atoms import expm1, filled, plain

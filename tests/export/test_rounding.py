@@ -11,7 +11,7 @@ import sympy as sp
 from flint import arb
 
 from navsym.core.balls import enclose
-from navsym.export.accuracy.filled import analyse
+from navsym.export.accuracy.continuation import analyse
 from navsym.export.accuracy.rounding import DOUBLE, FLOAT
 from navsym.export.accuracy.uniform import uniform_bound
 from navsym.export.accuracy.vectors import vectors

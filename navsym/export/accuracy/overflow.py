@@ -16,7 +16,7 @@ import sympy as sp
 from flint import arb
 
 from navsym.core.balls import precision
-from navsym.export.accuracy.filled import analyse
+from navsym.export.accuracy.continuation import analyse
 from navsym.export.accuracy.rounding import BITS, Arithmetic, Bounded, down, up
 from navsym.export.accuracy.uniform import Box, starting_cells
 from navsym.export.expression_graph import Graph, Node

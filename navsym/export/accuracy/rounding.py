@@ -99,7 +99,7 @@ def followed(
     """Value and error bounds of every node over the box of the inputs, which are taken as exact.
 
     literals : the number that stands in the code for each constant node (None for other nodes)
-    filled   : the bounds of a part with a hole (:mod:`navsym.export.accuracy.filled`)
+    filled   : the bounds of a part with a hole (:mod:`navsym.export.accuracy.continuation`)
     """
     with precision(BITS):
         done: list[Bounded] = []

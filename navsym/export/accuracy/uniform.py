@@ -10,7 +10,7 @@ from typing import Any
 from flint import arb
 
 from navsym.core.balls import precision
-from navsym.export.accuracy.filled import analyse
+from navsym.export.accuracy.continuation import analyse
 from navsym.export.accuracy.rounding import BITS, Arithmetic, up
 from navsym.export.expression_graph import Graph
 

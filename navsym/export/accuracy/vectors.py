@@ -16,8 +16,7 @@ import numpy as np
 from flint import arb
 
 from navsym.core.balls import Tape, enclose, precision, tape
-from navsym.export.accuracy.continuation import continuation
-from navsym.export.accuracy.filled import analyse
+from navsym.export.accuracy.continuation import analyse, continuation
 from navsym.export.accuracy.rounding import BITS, INFINITE, Arithmetic, Bounded, with_library
 from navsym.export.expression_graph import Node
 from navsym.export.parts import ExportedFunction, Input, Piece

@@ -19,7 +19,7 @@ import sympy as sp
 from flint import arb
 
 from navsym.core.balls import OPERATIONS, Tape, enclose, precision
-from navsym.export.accuracy.filled import filled_bounds
+from navsym.export.accuracy.continuation import filled_bounds
 from navsym.export.accuracy.rounding import Arithmetic, Bounded, factor, rounded
 from navsym.export.accuracy.vectors import tapes
 from navsym.export.expression_graph import Node
