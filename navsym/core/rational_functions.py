@@ -48,7 +48,8 @@ def add_fractions(first: Quotient, *others: Quotient) -> Quotient:
         if part.bottom == bottom:
             top = top + part.top
         else:
-            top, bottom = top * part.bottom + part.top * bottom, bottom * part.bottom
+            rest = part.bottom / part.bottom.gcd(bottom)  # a product of all bottoms could grow without end
+            top, bottom = top * rest + part.top * (bottom * rest / part.bottom), bottom * rest
     return cancel_fraction(top, bottom)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 import sympy as sp
 from flint import Ordering, fmpq_mpoly_ctx, fmpz_mpoly_ctx
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from navsym.core.errors import DomainError
@@ -40,6 +40,7 @@ def written(quotient):
 
 
 @over_both
+@settings(max_examples=25, deadline=None)
 @given(top=formulas, bottom=formulas)
 def test_what_is_read_is_written_again_in_lowest_terms(ring, top, bottom):
     expression = top / (bottom**2 + 1) - 3 / (x * y + 2)
