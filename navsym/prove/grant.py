@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from decimal import Decimal
 from typing import Any
@@ -17,7 +17,7 @@ import sympy as sp
 from flint import arb, fmpq
 
 from navsym import checker
-from navsym.claims.statement import Bound, Equation, Statement
+from navsym.claims.statement import Bound, Equation, Optimum, Property, Statement
 from navsym.claims.verdict import CERTIFIED, CONFIRMED, OPEN, PROVED, REFUTED, Verdict
 from navsym.core.errors import NavsymError
 from navsym.core.numbers import Number
@@ -30,6 +30,7 @@ from navsym.prove.wording import decimal_ends
 UNCHECKED = "unchecked: no certificate of this statement"
 BITS = (128, 1024, 8192)
 POINTS = 18
+SHARE = "share"
 NUMERAL = re.compile(r"(?<![\w.])\d+(?:\.\d+)?[eE][+-]?\d+", re.ASCII)
 IDENTITY = {"rule": "identity"}
 
@@ -41,12 +42,14 @@ Document = dict[str, Any]
 
 def write_statements(statement: Statement) -> list[Document] | None:
     """The statements of the entries in the language of the checker; None for what it has no words for."""
-    if not isinstance(statement, (Equation, Bound)):
-        return None
     try:
-        return [write_entry(statement, *sides) for sides in list_sides(statement)]
-    except NavsymError:
-        return None
+        if isinstance(statement, Optimum):
+            return write_optimum(statement)
+        if isinstance(statement, (Equation, Bound)):
+            return [write_entry(statement, *sides) for sides in list_sides(statement)]
+    except (NavsymError, checker.Refused):
+        pass
+    return None
 
 
 def list_sides(statement: Equation | Bound) -> list[tuple[str, str]]:
@@ -89,6 +92,45 @@ def write_numerals(text: str) -> str:
     return NUMERAL.sub(lambda numeral: format(Decimal(numeral[0]), "f"), text)
 
 
+def write_optimum(statement: Optimum) -> list[Document]:
+    """What weak duality needs: constraints, places inside, a dual that is feasible, and equal values.
+
+    The place in the interval is start + (end - start) share with a share from 0 to 1.
+    """
+    whole = sp.Tuple(*statement.regressors, *statement.functional, *statement.interval, *statement.dual)
+    whole = sp.Tuple(*whole, *statement.support, *statement.weights, statement.value)
+    symbols = sorted(whole.free_symbols - {statement.variable}, key=str)
+    ranges = {s.name: write_range(limits) for s, limits in ranges_of(symbols, statement.box).items()}
+
+    def read(parts: Iterable[Any]) -> list[Any]:
+        return [player.parse(to_text(sp.sympify(part, strict=True))) for part in parts]
+
+    def at(term: Any, place: Any) -> Any:
+        return player.replace(term, ("symbol", statement.variable.name), place)
+
+    H, P, x, w = map(read, (statement.regressors, statement.functional, statement.dual, statement.weights))
+    times = read(statement.support)
+    (start, end), (value,) = read(statement.interval), read([statement.value])
+    exists = [write_term(term) for term in (*P, *x, *w, *times, start, end, value)]
+
+    def state(left: Any, relation: str, right: Any, **more: Any) -> Document:
+        texts = {"left": write_term(left), "relation": relation, "right": write_term(right)}
+        return {**texts, "symbols": {**ranges, **more}, "exists": exists, "tolerance": None}
+
+    def total(xs: Sequence[Any], ys: Sequence[Any]) -> Any:
+        return ("+", player.ZERO, *(("*", a, b) for a, b in zip(xs, ys, strict=True)))
+
+    moving = ("+", start, ("*", player.subtract(end, start), ("symbol", SHARE)))
+    dual = total(x, [at(h, moving) for h in H])
+    sizes = ("+", player.ZERO, *(("abs", weight) for weight in w))
+    return [
+        *(state(total(w, [at(h, t) for t in times]), "=", p) for h, p in zip(H, P, strict=True)),
+        *(state(a, "<=", b) for t in times for a, b in ((start, t), (t, end))),
+        *(state(a, "<=", player.ONE, **{SHARE: ["0", "1", []]}) for a in (dual, player.negate(dual))),
+        *(state(value, "=", side) for side in (total(x, P), sizes)),
+    ]
+
+
 def sides_of(statement: Equation | Bound) -> list[sp.Expr]:
     """The scalar expressions of both sides."""
     return [*list_entries(statement.printed), *list_entries(statement.derived)]
@@ -126,7 +168,7 @@ def grant_verdict(statement: Statement, verdict: Verdict, seconds: float = SECON
     left open is proved here where a proof is found.
     """
     documents = write_statements(statement)
-    if documents is None or not isinstance(statement, (Equation, Bound)):
+    if documents is None:
         return leave_unchecked(verdict)
     try:
         if verdict.status == REFUTED:
@@ -261,7 +303,7 @@ def write_point(point: Mapping[str, fmpq]) -> dict[str, str]:
 
 
 def judge_without_proof(
-    documents: Sequence[Document], document: Document, verdict: Verdict, statement: Equation | Bound
+    documents: Sequence[Document], document: Document, verdict: Verdict, statement: Statement
 ) -> Verdict:
     """What has no proof: REFUTED by a sample, OPEN where the reading changed the text, else unchecked."""
     broken = find_failure(document)
@@ -286,7 +328,7 @@ def judge_without_proof(
     _, terms, box = player.read_statement(document)
     if find_witness(terms, box) is None:
         return withdraw(verdict, "no point is known at which both sides have a value")
-    if statement.written is None:
+    if isinstance(statement, (Optimum, Property)) or statement.written is None:
         return leave_unchecked(verdict)
     texts = [
         (side, text)
