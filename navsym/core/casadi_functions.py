@@ -20,11 +20,9 @@ from typing import Any, TypeAlias
 import casadi as ca
 import numpy as np
 import sympy as sp
-from numpy.typing import NDArray
 
 from navsym.core.errors import DomainError, NotFiniteError, ShapeError, UnknownSymbolError
 
-Array = NDArray[np.float64]
 Argument: TypeAlias = sp.Symbol | Sequence[sp.Symbol]
 Memo = dict[sp.Basic, Any]
 
@@ -69,20 +67,6 @@ def casadi_function(
     for symbol, value in named:
         memo[symbol] = translate(value, memo)
     return ca.Function(check_identifier(name), inputs, [translate_output(expression, memo)])
-
-
-def evaluate_on_grid(function: ca.Function, points: Any, *constants: float) -> Array:
-    """Values of a function of a scalar (and further constant arguments) at n points.
-
-    Returns (m, n) for a column of m outputs: one column per point, the shape of ``regressors``.
-    Raises ShapeError for no points at all.
-    """
-    row = np.asarray(points, dtype=float).reshape(1, -1)
-    n = row.shape[1]
-    if n == 0:
-        raise ShapeError("points: expected at least one; got none; give the grid")
-    repeated = [np.full((1, n), float(c)) for c in constants]
-    return np.array(function(row, *repeated)).reshape(-1, n)
 
 
 def column_function(name: str, inputs: Sequence[Any], outputs: Sequence[Any]) -> ca.Function:
