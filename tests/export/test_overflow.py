@@ -17,6 +17,7 @@ from navsym.core.errors import DomainError
 from navsym.export.accuracy.vectors import vectors
 from navsym.export.functions import ExportedFunction, function_of
 from navsym.export.languages.python import files as python_files
+from navsym.export.languages.summary import summary
 from navsym.export.languages.targets import TARGETS
 from tests.attacks.points.sweep import compiled_c, sweep_c
 from tests.export import samples
@@ -152,3 +153,52 @@ def test_no_random_formula_over_four_hundred_decades_gives_a_wrong_number(seed: 
             exact = enclose(flattened, dict(zip(symbols, map(arb, given[:, k].tolist()), strict=True)), 300)
             near = abs(exact - float(results[k])) <= abs(exact) * arb("1e-12") or abs(exact) < arb(2) ** -1020
             assert near, (formula, given[:, k], results[k])
+
+
+w = sp.Symbol("x", real=True, nonzero=True)
+#: Quotients that underflow inside at the second point of (x, y), not at the first, and at the third without harm.
+QUOTIENTS = [
+    ((1 - sp.cos(w)) / w**2, (1e-3, 0.0), (3e-162, 0.0), None),
+    (x**2 / (x**2 + y**2), (1e-3, 2e-3), (1e-162, 2e-162), (0.0, 2e-3)),
+    (x**2 / (x**2 + y**2), (1e-3, 2e-3), (1e-170, 2e-161), (1e-180, 1.0)),
+    (x * y / (x + y), (1e-3, 2e-3), (1e-200, 1e-200), (0.0, 2e-3)),
+    (x * y / sp.sin(y + x), (1e-3, 2e-3), (1e-170, 1e-170), (0.0, 2e-3)),
+    ((x**2 + y**2) / (x + y), (1e-3, 2e-3), (1e-180, 1e-180), (1e-180, 1.0)),
+]
+
+
+@COMPILER
+@pytest.mark.parametrize(("formula", "good", "bad", "zero"), QUOTIENTS)
+def test_underflow_inside_a_quotient_is_a_status_and_a_zero_by_right_is_not(formula, good, bad, zero, tmp_path) -> None:
+    made = function_of([samples.of_statement("quotient", Equation(formula, formula))])
+    (call,) = compiled_c([made], tmp_path)
+    points = [point for point in (good, bad, zero) if point]
+    columns = {"x": [a for a, _ in points], "y": [b for _, b in points]}
+    statuses, results = call(np.array([columns[i.symbol.name] for i in made.inputs]))
+    assert statuses.tolist() == [0, 2, 0][: len(points)]
+    exact = [
+        float(formula.subs({x: sp.Rational(a), w: sp.Rational(a), y: sp.Rational(b)}).evalf(30)) for a, b in points
+    ]
+    assert results[0][0] == pytest.approx(exact[0], rel=1e-12)
+    assert zero is None or results[0][2] == pytest.approx(exact[2], rel=1e-12, abs=1e-300)
+    assert any("the status says where" in line for line in summary(made))
+
+
+def test_a_divisor_that_cannot_be_tiny_is_not_asked() -> None:
+    for formula in (1 / (1 + x**2 * y**2), (x + y) / sp.sqrt(4 + x**4), x / (3 + sp.exp(y))):
+        made = function_of([samples.of_statement("large", Equation(formula, formula))])
+        small = [node for piece in made.pieces for node in piece.graph.nodes if node.op == "min"]
+        assert not small
+
+
+def test_a_header_names_the_hole_of_its_domain() -> None:
+    whole, hole = sp.Symbol("w", real=True), sp.Symbol("w", real=True, nonzero=True)
+    for symbol, box, said in (
+        (hole, {}, "w: w != 0;"),
+        (whole, {}, "w: w real;"),
+        (hole, {hole: (-1, 1)}, "w: -1 <= w <= 1, w != 0;"),
+        (sp.Symbol("w", positive=True), {}, "w: 0 < w;"),
+    ):
+        formula = sp.cos(symbol) / symbol**2
+        made = function_of([samples.of_statement("hole", Equation(formula, formula, box))])
+        assert any(said in line for line in summary(made)), summary(made)

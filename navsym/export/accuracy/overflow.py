@@ -6,7 +6,6 @@ lost its digits. Sums never lose digits by underflow.
 
 from __future__ import annotations
 
-import functools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -18,6 +17,7 @@ from flint import arb
 from navsym.core.balls import precision
 from navsym.export.accuracy.continuation import analyse
 from navsym.export.accuracy.rounding import BITS, Arithmetic, Bounded, down, up
+from navsym.export.accuracy.underflow import Margins
 from navsym.export.accuracy.uniform import Box, starting_cells
 from navsym.export.expression_graph import Graph, Node
 
@@ -110,95 +110,12 @@ def with_guards(graph: Graph, large: Sequence[int], small: Sequence[int], margin
     """
     quotients = [node.args for node in graph.nodes if node.op == "div"]
     asked = [*small, *(b for _, b in quotients if margins.is_needed(b))]
-    tops = [a for a, b in quotients if margins.may_be_below_one(b) and margins.is_needed(a)]
-    asked += [place for a in tops if (place := margins.of(a)) is not None]
+    asked += [margins.of_quotient(a, b) for a, b in quotients if margins.is_tiny(b) and margins.is_needed(a)]
     if not asked:
         return replace(graph, guards=tuple(large))
     four = margins.put("const", value=sp.Integer(4))
     places = [margins.put("div", four, k) for k in dict.fromkeys(asked)]
     return replace(graph, nodes=tuple(margins.nodes), guards=(*large, *places))
-
-
-#: Operations whose result is near zero only where their first argument is, with the same relative error there.
-FOLLOWS = frozenset({"neg", "abs", "sqrt", "sin", "asin", "atan", "sinh", "tanh", "expm1"})
-
-
-class Margins:
-    """Nodes that are normal numbers where no product behind a value has lost digits by underflow, else subnormal.
-
-    The margin of a product is its magnitude, plus one where a factor is exactly zero; that of a sum its magnitude, plus
-    the least margin of its terms, which counts where the terms are small; a value that is exact has none.
-    """
-
-    def __init__(self, graph: Graph, ranges: Sequence[Size | None], least: float):
-        self.nodes = list(graph.nodes)
-        self.ranges, self.least = ranges, least
-        self.done: dict[int, int | None] = {}
-        self.new: dict[tuple[str, tuple[int, ...], Any], int] = {}
-
-    def put(self, op: str, *args: int, value: Any = None) -> int:
-        """The place of a node behind those of the graph, made once."""
-        key = (op, args, value)
-        if key not in self.new:
-            self.new[key] = len(self.nodes)
-            self.nodes.append(Node(op, args, value))
-        return self.new[key]
-
-    def is_needed(self, place: int) -> bool:
-        """Whether a value, whose size is not known, may have lost digits by underflow."""
-        return self.ranges[place] is None and self.of(place) is not None
-
-    def may_be_below_one(self, place: int) -> bool:
-        """Whether a divisor may make a small error large."""
-        size = self.ranges[place]
-        return size is None or size.low < 0
-
-    def of(self, place: int) -> int | None:
-        """The margin of a value; None where underflow cannot reach it."""
-        if place not in self.done:
-            size = self.ranges[place]
-            safe = size is not None and size.low >= self.least
-            self.done[place] = None if safe else self.made(place)
-        return self.done[place]
-
-    def made(self, place: int) -> int | None:
-        """The margin of the result of an operation."""
-        node = self.nodes[place]
-        behind = [margin for a in node.args if (margin := self.of(a)) is not None]
-        if node.op in FOLLOWS:
-            return behind[0] if behind else None
-        if node.op in ("add", "sub", "max", "min"):
-            return self.put("add", self.put("abs", place), self.smallest(behind)) if behind else None
-        if node.op == "mul" and any(self.is_at_least_one(a) for a in node.args):
-            return behind[0] if behind else None
-        if node.op in ("mul", "div", "pow", "exp"):
-            factors = node.args if node.op == "mul" else node.args[:1] if node.op != "exp" else ()
-            zeros = [self.is_zero(a) for a in dict.fromkeys(factors) if self.ranges[a] is None]
-            return self.smallest([self.total([self.put("abs", place), *zeros]), *behind])
-        return None
-
-    def is_at_least_one(self, place: int) -> bool:
-        """Whether a factor makes nothing smaller."""
-        size = self.ranges[place]
-        return size is not None and size.low >= 0
-
-    def total(self, places: Sequence[int]) -> int:
-        """The sum of values."""
-        return functools.reduce(lambda a, b: self.put("add", a, b), places)
-
-    def smallest(self, places: Sequence[int]) -> int:
-        """The least of values."""
-        return functools.reduce(lambda a, b: self.put("min", a, b), dict.fromkeys(places))
-
-    def is_zero(self, place: int) -> int:
-        """One where a value is exactly zero, and zero elsewhere, without overflow: powers of two are exact."""
-        half = int(self.least) + 2
-        tiny = self.put("const", value=sp.Integer(2) ** half)
-        huge = self.put("const", value=sp.Integer(2) ** -half)
-        first = self.put("mul", self.put("min", self.put("abs", place), tiny), huge)
-        second = self.put("const", value=sp.Integer(2) ** -64)
-        full = self.put("mul", self.put("min", first, second), self.put("const", value=sp.Integer(2) ** 64))
-        return self.put("sub", self.put("const", value=sp.Integer(1)), full)
 
 
 def made(graph: Graph) -> set[int]:
