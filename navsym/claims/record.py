@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Any
 
+import msgspec
+
 from navsym.claims.claim import Slip
 from navsym.claims.verdict import Status
 from navsym.core.numbers import Number
@@ -22,6 +24,7 @@ class Record:
     status, method, scope, assumptions, evidence, counterexample, difference, certificate : as in :class:`Verdict`
     printed, derived : the sides in the language of files; empty when deriving them was stopped
     seconds          : how long deriving and deciding took
+    statement        : hash of the statement that was decided; in ledgers only, empty where it is not known
 
     ``Record.from_json(data).to_json() == data`` for an entry of ``navsym verify --json``, and
     ``Record.from_json(data).ledger_json() == data`` for an entry of a ledger.
@@ -54,6 +57,7 @@ class Record:
     difference: Number | None
     certificate: Mapping[str, Any] | None = None
     seconds: float = 0.0
+    statement: str = ""
 
     @property
     def is_expected(self) -> bool:
@@ -68,17 +72,12 @@ class Record:
     @classmethod
     def from_json(cls, data: Mapping[str, Any]) -> Record:
         """The record of an entry of a document or of a ledger; further keys are left out."""
-        values = {field.name: data[field.name] for field in fields(cls) if field.name in data}
-        difference = values["difference"]
-        values["difference"] = None if difference is None else Number(*difference)
-        for name in ("status", "expect"):
-            values[name] = Status(values[name])
-        values["assumptions"] = tuple(values["assumptions"])
-        return cls(**values)
+        ends = data["difference"]
+        return msgspec.convert({**data, "difference": None if ends is None else Number(*ends)}, cls)
 
     def to_json(self) -> dict[str, Any]:
         """The entry of ``claims`` in the document of ``navsym verify``."""
-        values = {field.name: getattr(self, field.name) for field in fields(self)}
+        values = {field.name: getattr(self, field.name) for field in fields(self) if field.name != "statement"}
         return values | {
             "status": str(self.status),
             "expect": str(self.expect),
@@ -89,4 +88,5 @@ class Record:
 
     def ledger_json(self) -> dict[str, Any]:
         """The entry of a ledger: nothing that varies from run to run."""
-        return {key: value for key, value in self.to_json().items() if key not in NOT_IN_LEDGERS}
+        values = {key: value for key, value in self.to_json().items() if key not in NOT_IN_LEDGERS}
+        return values | ({"statement": self.statement} if self.statement else {})

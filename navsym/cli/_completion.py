@@ -76,9 +76,9 @@ def claims() -> list[str]:
     """Ids of all claims, from the ledger."""
     try:
         document = json.loads((papers_folder() / "verdicts.json").read_text(encoding="utf-8"))
-    except (OSError, ValueError):
+        return [str(record["id"]) for record in document["claims"]]
+    except (OSError, ValueError, LookupError, TypeError):  # a damaged ledger completes nothing
         return []
-    return [record["id"] for record in document["claims"]]
 
 
 def datasets() -> list[str]:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from navsym.cli.output import emit, table
+from navsym.cli.output import emit, remark, table
 
 if TYPE_CHECKING:
     from navsym.report.listing import Listing
@@ -19,13 +19,17 @@ def command(
     words: Annotated[str | None, typer.Option(help="text that the id or the title contains")] = None,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> None:
-    """List claims in the order of the paper, without deciding them. A claim that no ledger holds shows its declaration.
+    """List claims in the order of the paper, without deciding them.
+
+    A claim shows its declaration where the ledger does not hold it, or the text of its paper has changed since.
 
     Example: navsym list --status REFUTED --slip paper
     """
     import navsym as nav
 
     listing = nav.claims(*(paper or []), status=status or (), slip=slip, words=words or "")
+    for name in listing.changed:
+        remark(f"the text of {name} has changed since its verdicts were written: navsym verify {name} --write")
     emit(listing.document(), as_json=json_, text=lambda: as_text(listing))
 
 

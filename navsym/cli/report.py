@@ -22,7 +22,7 @@ def command(
     seconds: Annotated[
         float, typer.Option(help="limit of processor time for one claim; above it the verdict is OPEN")
     ] = 90.0,
-    fresh: Annotated[bool, typer.Option("--fresh", help="decide everything again and ignore kept verdicts")] = False,
+    fresh: Annotated[bool, typer.Option("--fresh", help="search everything again, use no kept certificate")] = False,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> int:
     """Decide the claims (or read verdicts with --from) and write the pages. Exit status as in verify.

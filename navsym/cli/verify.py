@@ -5,6 +5,7 @@ from __future__ import annotations
 import textwrap
 import time
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
     from navsym.verification.ledger import Ledger
 
 WIDTH = 100
-RESUME = "the verdicts so far are kept: the same command (without --fresh) goes on from there"
+RESUME = "the certificates so far are kept: the same command (without --fresh) goes on from there"
 
 
 def command(
@@ -29,19 +30,20 @@ def command(
     seconds: Annotated[
         float, typer.Option(help="limit of processor time for one claim; above it the verdict is OPEN")
     ] = 90.0,
-    fresh: Annotated[bool, typer.Option("--fresh", help="decide everything again and ignore kept verdicts")] = False,
+    fresh: Annotated[bool, typer.Option("--fresh", help="search everything again, use no kept certificate")] = False,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> int:
     """Decide every claim of the papers. Status 1 when a verdict is not the one declared.
 
     Status 3 when every verdict is as declared but some could not be kept; they are named.
 
-    Verdicts are kept: a stopped run goes on, and a second run takes seconds.
+    Every statement is built from its source. Where a certificate is kept for it, the checker grants it again.
 
     Example: navsym verify guaranteed_velocity
     """
     import navsym as nav
-    from navsym.verification.papers import ledger_file
+    from navsym.core.errors import NavsymError
+    from navsym.verification.ledger import ledger_file
 
     started = time.monotonic()
     with Progress("claims", resume=RESUME) as bar:
@@ -49,7 +51,11 @@ def command(
             *(modules or []), jobs=jobs, seconds=seconds, fresh=fresh, progress=bar.follow, remark=remark
         )
     if write or not ledger_file().exists():
-        ledger.write()
+        try:
+            ledger.write()
+        except NavsymError as error:  # what was decided is printed all the same
+            remark(f"the ledger is not written: {error}")
+            ledger = replace(ledger, unsaved=tuple(record.id for record in ledger))
     spent = time.monotonic() - started
     emit(ledger.document(), as_json=json_, text=lambda: as_text(ledger, spent))
     return 1 if ledger.unexpected or ledger.missing else 3 if ledger.unsaved else 0
@@ -68,11 +74,21 @@ def as_text(ledger: Ledger, seconds: float) -> str:
         blocks += refuted_lines(records)
     counted = ", ".join(f"{count} {status}" for status, count in ledger.counts.items() if count)
     blocks.append(f"{len(ledger)} claims in {seconds:.1f} s: {counted}")
-    if changed := ledger.changed:
-        blocks.append(f"the ledger differs in {len(changed)} claims, {changed[0]} first; --write updates it")
-    else:
-        blocks.append("the ledger verdicts.json agrees")
-    return "\n".join(blocks + unexpected_lines(ledger.unexpected))
+    blocks.append(f"{len(ledger.unchecked)} verdicts are unchecked: the checker has no certificate of them")
+    return "\n".join([*blocks, compare_line(ledger), *unexpected_lines(ledger.unexpected)])
+
+
+def compare_line(ledger: Ledger) -> str:
+    """How the ledger as it was last written compares with these verdicts."""
+    from navsym.core.errors import NavsymError
+
+    try:
+        changed = ledger.changed
+    except NavsymError as error:
+        return f"the ledger cannot be compared: {error}"
+    if changed:
+        return f"the ledger differs in {len(changed)} claims, {changed[0]} first; --write updates it"
+    return "the ledger verdicts.json agrees"
 
 
 def refuted_lines(records: Sequence[Record]) -> list[str]:

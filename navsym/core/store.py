@@ -8,16 +8,34 @@ work: the caller is told what was not kept, and old results stay as they are.
 from __future__ import annotations
 
 import contextlib
+import functools
 import hashlib
+import importlib.metadata
 import json
 import os
 import sqlite3
+import sys
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
 from navsym.core.errors import NavsymError
 
+ROOT = Path(__file__).parents[1]
+#: Engines of which a result may depend on the version.
+ENGINES = (
+    "sympy",
+    "mpmath",
+    "python-flint",
+    "numpy",
+    "scipy",
+    "numba",
+    "casadi",
+    "cvxpy",
+    "highspy",
+    "clarabel",
+    "osqp",
+)
 SCHEMA = "CREATE TABLE IF NOT EXISTS results (key TEXT PRIMARY KEY, value TEXT NOT NULL, digest TEXT NOT NULL)"
 #: As bytes, so that an entry whose text is none any more is one damaged entry and not the end of reading.
 READ = "SELECT CAST(value AS BLOB), CAST(digest AS BLOB) FROM results WHERE key = ?"
@@ -51,6 +69,23 @@ def key_of(*parts: str) -> str:
         data = part.encode("utf-8")
         digest.update(f"{len(data)}:".encode() + data)
     return digest.hexdigest()
+
+
+@functools.cache
+def code_digest() -> str:
+    """Digest of navsym's sources, of Python and of the versions of the engines: what a computed result depends on."""
+    sources = [
+        text for path in sorted(ROOT.rglob("*.py")) for text in (str(path.relative_to(ROOT)), path.read_text("utf-8"))
+    ]
+    return key_of("code", sys.version, sys.platform, f"optimize {sys.flags.optimize}", *map(version, ENGINES), *sources)
+
+
+def version(name: str) -> str:
+    """Name and version of an installed package, or that there is none."""
+    try:
+        return f"{name} {importlib.metadata.version(name)}"
+    except importlib.metadata.PackageNotFoundError:
+        return f"{name} none"
 
 
 def is_intact(key: str, value: bytes | None, digest: bytes | None) -> bool:

@@ -13,8 +13,9 @@ from navsym.claims import Paper, Record, Status
 from navsym.core.answers import Answer
 from navsym.report.formula.sides import only_truth
 from navsym.report.names import latex_escape
-from navsym.verification.decide import decide_claim_of
-from navsym.verification.papers import find_claim, stored_records
+from navsym.verification.decide import look_up_claims
+from navsym.verification.ledger import stored_records
+from navsym.verification.papers import find_claim
 
 SHORT = 120  # characters of a formula that a note may hold
 
@@ -42,12 +43,12 @@ class Citation(Answer):
 
 
 def cite(claim: str, *, fresh: bool = False) -> Citation:
-    """BibTeX for a paper and for the verdict on one of its claims, from the ledger where it has one.
+    """BibTeX for a paper and for the verdict on one of its claims, from the ledger where it has one on this statement.
 
     claim : id such as "guaranteed_velocity:4.3.u2"
     fresh : decide now instead of citing the ledger
 
-    Raises DomainError, with the ids that come closest, for an id that is none.
+    Raises DomainError, with the ids that come closest, for an id that is none, and NavsymError for a damaged ledger.
 
     >>> import navsym as nav
     >>> print(nav.cite("alpha_beta_filter:8"))
@@ -58,12 +59,10 @@ def cite(claim: str, *, fresh: bool = False) -> Citation:
     ...
     """
     module, wanted = find_claim(claim)
-    stored = stored_records()
-    record = None if fresh else stored.get(wanted.id)
-    if record is None:
-        _, record = decide_claim_of(wanted.id)
-    correction = next((other for other in stored.values() if other.corrects == wanted.id), None)
-    return Citation(wanted.id, record.status, bibtex(module.paper, record, __version__, correction))
+    better = next((other for other in module.claims if other.corrects_id == wanted.id), None)
+    both = (wanted,) if better is None else (wanted, better)
+    record, *correction = look_up_claims(module, both, {} if fresh else stored_records())
+    return Citation(wanted.id, record.status, bibtex(module.paper, record, __version__, *correction))
 
 
 def bibtex(paper: Paper, record: Record, version: str, correction: Record | None = None) -> str:
@@ -71,7 +70,10 @@ def bibtex(paper: Paper, record: Record, version: str, correction: Record | None
 
     correction : record of the claim that corrects this one, to be named with it
     """
-    key = paper_key(paper)
+    first = paper.authors[0].split()[-1] if paper.authors else paper.module
+    key = citation_key(f"{first}{paper.year or ''}").lower()
+    language = f"In {paper.language}" if paper.language else ""
+    source = " ".join(f"{part.rstrip('.')}." for part in (paper.source, language) if part)
     verdict = {
         "title": f"Verdict on {record.id}: {record.status}",
         "author": "{navsym contributors}",
@@ -82,18 +84,12 @@ def bibtex(paper: Paper, record: Record, version: str, correction: Record | None
         "author": " and ".join(latex_escape(author) for author in paper.authors),
         "title": "{" + latex_escape(paper.title) + "}",
         "year": "" if paper.year is None else str(paper.year),
-        "note": latex_escape(source_words(paper)),
+        "note": latex_escape(source),
         "doi": paper.doi,
     }
     return (
         bibtex_entry("misc", key, words) + "\n" + bibtex_entry("misc", f"{key}-{citation_key(record.number)}", verdict)
     )
-
-
-def source_words(paper: Paper) -> str:
-    """Where it appeared and in which language; either may be unknown."""
-    language = f"In {paper.language}" if paper.language else ""
-    return " ".join(f"{part.rstrip('.')}." for part in (paper.source, language) if part)
 
 
 def verdict_words(record: Record) -> str:
@@ -120,12 +116,6 @@ def bibtex_entry(kind: str, key: str, fields: Mapping[str, str]) -> str:
     """An entry of BibTeX; empty fields are left out."""
     lines = [f"  {name} = {{{value}}}," for name, value in fields.items() if value]
     return "\n".join([f"@{kind}{{{key},", *lines, "}", ""])
-
-
-def paper_key(paper: Paper) -> str:
-    """Key of a paper: last name of the first author and year."""
-    first = paper.authors[0].split()[-1] if paper.authors else paper.module
-    return citation_key(f"{first}{paper.year or ''}").lower()
 
 
 def citation_key(text: str) -> str:

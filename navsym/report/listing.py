@@ -12,8 +12,8 @@ from navsym.core.answers import Answer
 from navsym.core.choice import one_of
 from navsym.core.errors import UnknownSymbolError
 from navsym.report.formula.sides import latex
-from navsym.verification.ledger import sort_records
-from navsym.verification.papers import load_papers, stored_records
+from navsym.verification.ledger import sort_records, stored_ledger
+from navsym.verification.papers import list_changed, load_papers
 
 if TYPE_CHECKING:
     from navsym.report.citation import Citation
@@ -98,9 +98,13 @@ class ListedClaim(Answer):
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Listing(Answer):
-    """Claims in the order of their papers: a sequence, or by id."""
+    """Claims in the order of their papers: a sequence, or by id.
+
+    changed : papers whose text has changed since their verdicts were written; what their claims declare is shown
+    """
 
     claims: tuple[ListedClaim, ...]
+    changed: tuple[str, ...] = ()
 
     def __len__(self) -> int:
         return len(self.claims)
@@ -131,12 +135,14 @@ class Listing(Answer):
 def claims(*papers: str, status: str | Sequence[str] = (), slip: str | None = None, words: str = "") -> Listing:
     r"""The claims of these papers, or of all, with the verdicts of the ledger; nothing is decided.
 
+    A claim shows what it declares where the ledger has no verdict, or the text of its paper has changed since.
+
     papers : names of derivation modules, such as "guaranteed_velocity"
     status : verdicts that count, such as "REFUTED"; all when none is given
     slip   : "paper" or "scan" for claims refuted by a slip there, "any" for both
     words  : text that the id or the title contains, in small or capital letters
 
-    Raises DomainError for a paper, a verdict or a slip that is none.
+    Raises DomainError for a paper, a verdict or a slip that is none, and NavsymError for a damaged ledger.
 
     >>> import navsym as nav
     >>> refuted = nav.claims("alpha_beta_filter", status="REFUTED")
@@ -150,11 +156,13 @@ def claims(*papers: str, status: str | Sequence[str] = (), slip: str | None = No
     given = [status] if isinstance(status, str) else status
     statuses = {one_of(str(word).upper(), tuple(Status), "status") for word in given}
     kind = None if slip is None else one_of(slip, SLIPS, "slip")
-    stored, wanted = stored_records(), str(words).lower()
+    ledger, modules, wanted = stored_ledger(), load_papers(papers), str(words).lower()
+    changed = list_changed(ledger.papers, modules)
+    stored = {record.id: record for record in ledger if record.paper not in changed}
     listed: list[ListedClaim] = []
-    for module in load_papers(papers):
+    for module in modules:
         listed += sort_records(module.paper, [ListedClaim(claim, stored.get(claim.id)) for claim in module.claims])
-    return Listing(tuple(claim for claim in listed if fits(claim, statuses, kind, wanted)))
+    return Listing(tuple(claim for claim in listed if fits(claim, statuses, kind, wanted)), tuple(changed))
 
 
 def fits(claim: ListedClaim, statuses: set[str], slip: str | None, words: str) -> bool:

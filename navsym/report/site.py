@@ -5,23 +5,21 @@ from __future__ import annotations
 import os
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from navsym.claims.paper import papers_folder
-from navsym.claims.record import NOT_IN_LEDGERS, Record
 from navsym.core.answers import Answer
-from navsym.core.errors import OutputError, ShapeError
+from navsym.core.errors import OutputError
 from navsym.language.files import read_text, write_text
-from navsym.language.jsonfile import read_json
 from navsym.report.page import pages
-from navsym.report.wording import Words, read_wording
+from navsym.report.wording import read_wording
 from navsym.verification.decide import SECONDS, verify
-from navsym.verification.ledger import Ledger
-from navsym.verification.papers import load_papers
+from navsym.verification.ledger import Ledger, read_ledger
+from navsym.verification.papers import list_changed, load_papers
 
-LARGEST = 200_000_000  # bytes of a document
-KEYS = frozenset(Record.__dataclass_fields__) - frozenset(NOT_IN_LEDGERS)
+LARGEST = 1_000_000  # bytes of the wording of a sheet
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -62,7 +60,8 @@ def report(
 
     papers   : names of derivation modules; all when none is given
     out      : the folder; made when it is not there
-    source   : a ledger, or the path of a document of ``navsym verify --json``; by default the claims are decided
+    source   : a ledger, or the path of a document of ``navsym verify --json``; by default the claims are decided, and
+               so are those of a ledger whose paper has changed since
     jobs, seconds, fresh : as in :func:`navsym.verify`
     progress : called with (done, all, id) while claims are decided, and again while they are set in type
     remark   : called with a sentence on what is kept
@@ -78,31 +77,17 @@ def report(
     cards = {module.name: module.paper for module in chosen}
     ledger = source if isinstance(source, Ledger) else None
     if source is not None and not isinstance(source, Ledger):
-        ledger = read_document(source)
+        ledger = read_ledger(source)
     make_folder(folder)  # before minutes are spent on what cannot be written
+    run = partial(verify, jobs=jobs, seconds=seconds, fresh=fresh, progress=progress, remark=remark)
     if ledger is None:
-        ledger = verify(*papers, jobs=jobs, seconds=seconds, fresh=fresh, progress=progress, remark=remark)
+        ledger = run(*papers)
     elif papers:
         ledger = ledger.restrict(cards)
+    if changed := list_changed(ledger.papers, chosen):
+        remark(f"the text of {', '.join(changed)} has changed since its verdicts were written: decided now")
+        ledger = run(*changed).merge(ledger)
     return write_pages(folder, Ledger(ledger.claims, ledger.papers, ledger.unsaved, cards), progress)
-
-
-def read_document(path: str | os.PathLike[str]) -> Ledger:
-    """A document of ``navsym verify --json``, or a ledger; raises ShapeError for another one."""
-    document, where = read_json(path, limit=LARGEST), str(path)
-    expected = "a document of navsym verify --json"
-    needed = {"claims", "papers", "counts"}
-    if not isinstance(document, dict) or not needed <= set(document):
-        came = f"no {', '.join(sorted(needed - set(document)))}" if isinstance(document, dict) else "no object"
-        raise ShapeError(f"expected {expected}; got {came}; make it with navsym verify --json", where=where)
-    for place, record in enumerate(document["claims"]):
-        if not isinstance(record, dict) or (lacking := KEYS - set(record)):
-            what = ", ".join(sorted(lacking)) if isinstance(record, dict) else "the record"
-            raise ShapeError(f"expected {expected}; got no {what} in it; make it again", where=f"{where}: {place}")
-    try:
-        return Ledger.from_json(document)
-    except (TypeError, ValueError, KeyError) as error:
-        raise ShapeError(f"expected {expected}; got another form ({error}); make it again", where=where) from None
 
 
 def make_folder(out: Path) -> None:
@@ -124,13 +109,9 @@ def write_pages(out: Path, ledger: Ledger, progress: Callable[[int, int, str], N
         done += 1
         progress(done, len(ledger), claim)
 
-    for name, text in pages(ledger, read_wordings(), progress=step):
+    files = sorted((papers_folder() / "errata").glob("*.toml"))  # wording of the erratum sheets, by module
+    wordings = {path.stem: read_wording(read_text(path, LARGEST), path.name) for path in files}
+    for name, text in pages(ledger, wordings, progress=step):
         write_text(out / name, text, durable=False)
         names.append(name)
     return Site(out, tuple(names), ledger)
-
-
-def read_wordings() -> dict[str, Words]:
-    """Wording of the erratum sheets by module, from the folder beside the papers."""
-    files = sorted((papers_folder() / "errata").glob("*.toml"))
-    return {path.stem: read_wording(read_text(path, LARGEST), path.name) for path in files}

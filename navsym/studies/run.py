@@ -20,13 +20,12 @@ import msgspec
 from navsym.claims.display import write_table
 from navsym.core.answers import Answer
 from navsym.core.errors import DomainError, MissingEngineError, NavsymError
-from navsym.core.store import default_path, key_of
+from navsym.core.store import code_digest, default_path, key_of
 from navsym.language.files import name_file
 from navsym.language.jsonfile import read_json
 from navsym.language.names import quote
 from navsym.studies.cluster import PATIENCE, answers, cluster
 from navsym.studies.plan import Sweep, fingerprint, run_job, summary, sweep_from
-from navsym.verification.fingerprints import rooms_digest
 
 # Rows of a study in Parquet files, one for each shard of consecutive jobs, written whole or not at all.
 #
@@ -188,7 +187,7 @@ def sweep(
         raise DomainError(f"expected a folder; got {quote(out)}; give its path", where="sweep: out") from None
     if not patience > 0:
         raise DomainError(f"patience: expected seconds above 0; got {patience}; correct it")
-    study = key_of("sweep", fingerprint(plan), rooms_digest())
+    study = key_of("sweep", fingerprint(plan), code_digest())
     shards = Shards(folder or default_path().parent / "sweeps" / study[:32], study)
     parts = cut(plan.jobs, size)
     known = {} if fresh else {part: rows for part in parts if (rows := shards.read(part)) is not None}
@@ -234,7 +233,7 @@ def read_plan(config: Any) -> Sweep:
 
 def run_shard(sweep: Sweep, part: range) -> tuple[range, str, Rows]:
     """The rows of a shard, with the digest of the code that made them."""
-    return part, rooms_digest(), [run_job(sweep, index) for index in part]
+    return part, code_digest(), [run_job(sweep, index) for index in part]
 
 
 @contextlib.contextmanager
@@ -252,7 +251,7 @@ def computed(
 def checked(result: tuple[range, str, Rows]) -> tuple[range, Rows]:
     """A worker's rows, when it has computed them with the code of this process."""
     part, rooms, rows = result
-    if rooms != rooms_digest():
+    if rooms != code_digest():
         message = "expected workers with the code of this process; got another version; install the same one"
         raise NavsymError(message, where="sweep")
     return part, rows

@@ -1,4 +1,4 @@
-"""Deciding the claims of papers: each in a limited child process, several at once, with the verdicts that are kept."""
+"""Deciding the claims of papers: each in a limited child process, with the certificates that are kept."""
 
 from __future__ import annotations
 
@@ -9,16 +9,18 @@ from typing import Any
 
 import sympy as sp
 
-from navsym.claims import OPEN, Bound, Claim, Equation, Optimum, Paper, Property, Record, Statement, Verdict
+from navsym.claims import OPEN, Claim, Equation, Paper, Record, Statement, Verdict
 from navsym.core.errors import DomainError
 from navsym.core.sandbox import Exhausted, Failed, require_limits, run_many
+from navsym.prove.grant import write_statements
 from navsym.prove.ladder import decide
-from navsym.prove.wording import expression_text
+from navsym.verification.certificates import Certificates, grant_entry, verdict_of
 from navsym.verification.ledger import Ledger
 from navsym.verification.papers import PaperModule, claim_ids, find_claim, load_papers, summarise_paper
-from navsym.verification.verdict_store import VerdictStore, sources
+from navsym.verification.sides import hash_statement, sides
 
 SECONDS = 90.0
+SHARE = 3  # of the seconds of a claim, one in so many for a kept certificate: the search has the rest
 
 
 def verify(
@@ -31,14 +33,14 @@ def verify(
 ) -> Ledger:
     """Verdicts on every claim of these papers, or of all of them.
 
-    Verdicts are kept: a claim whose own sources and whose deciding sources have not changed is not decided again, and
-    a run that was stopped goes on. Each claim is decided in a child process with limits of its own.
+    Every statement is built from its source. A certificate that is kept for it is granted again by the checker; what
+    has none is decided, so that a run that was stopped goes on. Each claim has a child process with limits of its own.
 
     papers   : names of derivation modules, such as "guaranteed_velocity"; all when none is given
     jobs     : claims decided at the same time; one per core when none is given
     seconds  : limit of processor time for one claim; above it the verdict is OPEN
-    fresh    : decide everything again
-    progress : called with (claims done, claims to decide, id) after each
+    fresh    : use no kept certificate, search again
+    progress : called with (claims done, all claims, id) after each
     remark   : called with a sentence on what is kept
 
     Raises DomainError for a name that is no paper, and for limits that are none.
@@ -51,25 +53,25 @@ def verify(
     'all r in (0, 1]'
     """
     require_workers(jobs, seconds)
-    before = sources()
     chosen = load_papers(papers)
-    store = VerdictStore(chosen, fresh, before, remark)
-    missing = len(store.keys) - len(store.known)
-    if store.known and missing:
-        remark(f"{len(store.known)} of {len(store.keys)} claims are as they were, {missing} are decided now")
-    done = 0
+    kept = Certificates(fresh, remark)
+    total = sum(len(module.claims) for module in chosen)
+    done = granted = 0
 
-    def step(record: Record) -> None:
-        nonlocal done
-        store.keep(record)
-        done += 1
-        progress(done, missing, record.id)
+    def step(record: Record, is_granted_again: bool) -> None:
+        nonlocal done, granted
+        done, granted = done + 1, granted + is_granted_again
+        if not is_granted_again:
+            kept.keep(record)
+        progress(done, total, record.id)
 
     try:
-        ledger = decide_papers(chosen, jobs=jobs, seconds=seconds, known=store.known, progress=step)
+        ledger = decide_papers(chosen, jobs=jobs, seconds=seconds, kept=kept, progress=step)
     finally:
-        store.close()
-    return replace(ledger, unsaved=tuple(store.lost))
+        kept.close()
+    if granted:
+        remark(f"the checker granted {granted} of {total} verdicts from kept certificates; the others are decided now")
+    return replace(ledger, unsaved=tuple(kept.lost))
 
 
 def require_workers(jobs: Any, seconds: Any) -> None:
@@ -84,8 +86,16 @@ def require_workers(jobs: Any, seconds: Any) -> None:
 def decide_claim_of(wanted: str, seconds: float = SECONDS) -> tuple[Paper, Record]:
     """Paper card and record of one claim, decided now in a limited child process."""
     module, claim = find_claim(wanted)
-    one = PaperModule(module.name, module.paper, (claim,))
+    one = replace(module, claims=(claim,))
     return module.paper, decide_papers([one], jobs=1, seconds=seconds).claims[0]
+
+
+def look_up_claims(module: PaperModule, claims: Sequence[Claim], stored: Mapping[str, Record]) -> tuple[Record, ...]:
+    """Records of claims of one paper: the stored verdict where it is of the same statement, else decided now.
+
+    stored : records of the ledger by claim id
+    """
+    return decide_papers([replace(module, claims=tuple(claims))], stored=stored).claims
 
 
 def show(claim: str, *, seconds: float = SECONDS) -> tuple[Record, ...]:
@@ -110,28 +120,32 @@ def decide_papers(
     *,
     jobs: int | None = None,
     seconds: float = SECONDS,
-    known: Mapping[str, Record] | None = None,
-    progress: Callable[[Record], None] = lambda record: None,
+    kept: Certificates | None = None,
+    stored: Mapping[str, Record] | None = None,
+    progress: Callable[[Record, bool], None] = lambda record, is_old: None,
 ) -> Ledger:
     """The verdict of every claim of these papers.
 
     jobs     : claims decided at the same time, by default one per core
     seconds  : limit for one claim; above it the verdict is OPEN
-    known    : records of an earlier run that are still valid, by claim id
-    progress : called with each new record
+    kept     : certificates that the checker may grant again
+    stored   : records by claim id that are taken as they are where the statement is the same
+    progress : called with each record, and whether nothing was searched for it
     """
-    known = known or {}
     claims = [(module.paper, claim) for module in modules for claim in module.claims]
-    records = {claim.id: known[claim.id] for _, claim in claims if claim.id in known}
-    missing = [(paper, claim) for paper, claim in claims if claim.id not in records]
+    known, records = stored or {}, dict[str, Record]()
+
+    def work(pair: tuple[Paper, Claim]) -> tuple[Record, bool]:
+        return record_of(*pair, kept, known.get(pair[1].id), seconds)
+
     warm_up()
-    for outcome in run_many(lambda pair: record_of(*pair), missing, jobs or os.cpu_count() or 1, seconds):
-        paper, claim = missing[outcome.place]
-        record = outcome.value
-        if isinstance(record, (Exhausted, Failed)):
-            record = make_record(paper, claim, None, open_verdict(record))
-        records[claim.id] = replace(record, seconds=round(outcome.seconds, 3))
-        progress(records[claim.id])
+    for outcome in run_many(work, claims, jobs or os.cpu_count() or 1, seconds):
+        paper, claim = claims[outcome.place]
+        value = outcome.value
+        if isinstance(value, (Exhausted, Failed)):
+            value = make_record(paper, claim, None, open_verdict(value)), False
+        records[claim.id] = replace(value[0], seconds=round(outcome.seconds, 3))
+        progress(records[claim.id], value[1])
     cards = {module.name: module.paper for module in modules}
     return Ledger(tuple(records[claim.id] for _, claim in claims), tuple(map(summarise_paper, modules)), cards=cards)
 
@@ -148,10 +162,21 @@ def open_verdict(outcome: Exhausted | Failed) -> Verdict:
     return Verdict(OPEN, "none", evidence=f"not decided: {why}")
 
 
-def record_of(paper: Paper, claim: Claim) -> Record:
-    """Derive and decide one claim, in this process."""
+def record_of(
+    paper: Paper, claim: Claim, kept: Certificates | None = None, stored: Record | None = None, seconds: float = SECONDS
+) -> tuple[Record, bool]:
+    """Derive one claim and give its verdict, in this process; and whether nothing was searched for it."""
     statement = claim.derive()
-    return make_record(paper, claim, statement, decide(statement))
+    texts = write_statements(statement)
+    key = hash_statement(statement, texts)
+    verdict = None
+    if stored is not None and stored.statement == key:
+        verdict = verdict_of(stored)
+    elif kept is not None and texts is not None:
+        entries = (grant_entry(texts, entry, seconds / SHARE) for entry in kept.list_entries(key))
+        verdict = next(filter(None, entries), None)
+    record = make_record(paper, claim, statement, verdict or decide(statement))
+    return replace(record, statement=key), verdict is not None
 
 
 def make_record(paper: Paper, claim: Claim, statement: Statement | None, verdict: Verdict) -> Record:
@@ -180,52 +205,3 @@ def make_record(paper: Paper, claim: Claim, statement: Statement | None, verdict
         difference=verdict.difference,
         certificate=verdict.certificate,
     )
-
-
-# The two sides as text
-
-
-def sides(statement: Statement) -> tuple[str, str]:
-    """Printed and derived side in the language of files."""
-    if isinstance(statement, Equation):
-        tail = (
-            ""
-            if statement.tolerance is None
-            else f" +- {expression_text(sp.sympify(statement.tolerance, strict=True))}"
-        )
-        return side_text(statement.printed) + tail, side_text(statement.derived)
-    if isinstance(statement, Bound):
-        return f"{side_text(statement.printed)} {statement.relation} {side_text(statement.derived)}", ""
-    if isinstance(statement, Optimum):
-        return optimum_text(statement)
-    assert isinstance(statement, Property)
-    return value_text(statement.printed), value_text(statement.derived.value)
-
-
-def side_text(side: Any) -> str:
-    """One side of a statement as text: a matrix by rows, a tuple, or one expression."""
-    if isinstance(side, sp.MatrixBase):
-        rows = ["[" + ", ".join(expression_text(entry) for entry in side.row(i)) + "]" for i in range(side.rows)]
-        return "[" + ", ".join(rows) + "]"
-    if isinstance(side, (tuple, list)):
-        return "(" + ", ".join(expression_text(sp.sympify(entry, strict=True)) for entry in side) + ")"
-    return expression_text(sp.sympify(side, strict=True))
-
-
-def value_text(value: Any) -> str:
-    """A value of a property as text, tuples entry by entry."""
-    if isinstance(value, tuple):
-        return "(" + ", ".join(value_text(item) for item in value) + ")"
-    return value if isinstance(value, str) else str(value)
-
-
-def optimum_text(statement: Optimum) -> tuple[str, str]:
-    """The printed dual, support, weights and value as text, and the regressors and functional."""
-    parts = (
-        ("dual", statement.dual),
-        ("support", statement.support),
-        ("weights", statement.weights),
-        ("value", statement.value),
-    )
-    printed = "; ".join(f"{name} = {side_text(side)}" for name, side in parts)
-    return printed, f"H = {side_text(statement.regressors)}, P = {side_text(statement.functional)}"

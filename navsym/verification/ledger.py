@@ -1,23 +1,33 @@
 """The ledger: the verdicts of one run, and the files of all verdicts as they were last written.
 
 ``verdicts.json`` is compared in the tests, so that no verdict changes unnoticed. It holds nothing that varies from run
-to run: no times, no certificates. ``README.md`` beside it is the same for people.
+to run: no times. Certificates have a file beside it, and ``README.md`` is the same for people.
 """
 
 from __future__ import annotations
 
+import contextlib
+import fcntl
 import html
 import json
+import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
+from pathlib import Path
 from typing import Any, Protocol, TypeVar
+
+import msgspec
 
 from navsym.claims import Paper, Record, equation_of
 from navsym.claims.display import mark_verdict, write_card, write_table
+from navsym.claims.paper import papers_folder
 from navsym.core.answers import Answer
-from navsym.core.errors import UnknownSymbolError
+from navsym.core.errors import ShapeError, UnknownSymbolError
 from navsym.language.files import write_text
-from navsym.verification.papers import PaperSummary, ledger_file, load_papers, stored_records
+from navsym.language.jsonfile import read_json
+from navsym.prove.grant import UNCHECKED
+from navsym.verification.certificates import LARGEST, REMEDY, certificates_file, certificates_text, collect_certificates
+from navsym.verification.papers import PaperSummary, load_papers
 
 MARKS = {"PROVED": "✓", "CERTIFIED": "✓", "CONFIRMED": "~", "REFUTED": "✗", "OPEN": "?"}
 WORST_FIRST = ("REFUTED", "OPEN", "CONFIRMED", "CERTIFIED", "PROVED")
@@ -49,8 +59,8 @@ class Ledger(Answer):
     def from_json(cls, document: Mapping[str, Any], cards: Mapping[str, Paper] | None = None) -> Ledger:
         """The ledger of a document of ``navsym verify --json``, or of ``verdicts.json``."""
         claims = tuple(Record.from_json(record) for record in document["claims"])
-        papers = (PaperSummary(**{**paper, "missing": tuple(paper["missing"])}) for paper in document["papers"])
-        return cls(claims, tuple(papers), tuple(document.get("unsaved", ())), cards or {})
+        papers = msgspec.convert(document["papers"], tuple[PaperSummary, ...])
+        return cls(claims, papers, tuple(document.get("unsaved", ())), cards or {})
 
     def document(self) -> dict[str, Any]:
         """The JSON document of ``navsym verify``."""
@@ -59,7 +69,7 @@ class Ledger(Answer):
 
     def summaries(self) -> list[dict[str, Any]]:
         """The coverage of each paper as plain data."""
-        return [{**asdict(paper), "missing": list(paper.missing)} for paper in self.papers]
+        return [{k: v for k, v in entry.items() if k != "source"} for entry in map(coverage, self.papers)]
 
     @property
     def counts(self) -> dict[str, int]:
@@ -78,10 +88,23 @@ class Ledger(Answer):
         return tuple(f"{paper.module}:{number}" for paper in self.papers for number in paper.missing)
 
     @property
+    def unchecked(self) -> tuple[Record, ...]:
+        """Records of verdicts on which others rely, but for which the checker has no kind of certificate."""
+        return tuple(record for record in self.claims if UNCHECKED in record.evidence)
+
+    @property
     def changed(self) -> tuple[str, ...]:
-        """Ids whose verdict is not the one in ``verdicts.json``, or that it does not have."""
+        """Ids whose verdict or statement is not the one in ``verdicts.json``, or that it does not have.
+
+        Raises NavsymError for a damaged file.
+        """
         stored = stored_records()
-        return tuple(r.id for r in self.claims if r.id not in stored or stored[r.id].status != r.status)
+
+        def is_stored(record: Record) -> bool:
+            old = stored.get(record.id)
+            return old is not None and old.status == record.status and record.statement in ("", old.statement)
+
+        return tuple(record.id for record in self.claims if not is_stored(record))
 
     def __len__(self) -> int:
         return len(self.claims)
@@ -113,17 +136,25 @@ class Ledger(Answer):
         return [record.certificate for record in self.claims if record.certificate is not None]
 
     def write(self) -> None:
-        """Update ``verdicts.json`` and ``README.md`` beside the papers; papers that were not run keep their verdicts.
+        """Update ``verdicts.json``, ``certificates.json`` and ``README.md`` beside the papers.
+
+        Papers that were not run keep their verdicts; several processes may write, one after the other.
+        Raises NavsymError where verdicts of papers that were not run cannot be read, or nothing can be written.
 
         >>> import navsym as nav
         >>> nav.verify("alpha_beta_filter").write()                                              # doctest: +SKIP
         """
-        path = ledger_file()
-        old = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {"claims": [], "papers": []}
-        whole = self.merge(Ledger.from_json(old))
-        whole = Ledger(whole.claims, whole.papers, cards={module.name: module.paper for module in load_papers()})
-        write_text(path, ledger_text(whole))
-        write_text(path.with_name("README.md"), people_text(whole))
+        path, cards = ledger_file(), {module.name: module.paper for module in load_papers()}
+        with lock_folder(path.parent):
+            whole = replace(self.merge(self.read_others(set(cards))), cards=cards)
+            write_text(certificates_file(), certificates_text(collect_certificates(whole.claims)))
+            write_text(path, ledger_text(whole))
+            write_text(path.with_name("README.md"), people_text(whole))
+
+    def read_others(self, known: set[str]) -> Ledger:
+        """What the files say of the papers that were not run; without any, the files need not be readable."""
+        run = {paper.module for paper in self.papers}
+        return Ledger((), ()) if known <= run else stored_ledger()
 
     def merge(self, old: Ledger) -> Ledger:
         """These verdicts together with the old ones of papers that were not run."""
@@ -183,10 +214,58 @@ def is_only_in_the_copy(record: Record) -> bool:
 # The files
 
 
+def read_ledger(path: str | os.PathLike[str]) -> Ledger:
+    """A document of ``navsym verify --json``, or a ledger; raises NavsymError for a damaged file or another one."""
+    document, where = read_json(path, limit=LARGEST), str(path)
+    expected = "a document of navsym verify --json"
+    needed = {"claims", "papers", "counts"}
+    if not isinstance(document, dict) or not needed <= set(document):
+        came = f"no {', '.join(sorted(needed - set(document)))}" if isinstance(document, dict) else "no object"
+        raise ShapeError(f"expected {expected}; got {came}; {REMEDY}", where=where)
+    try:
+        return Ledger.from_json(document)
+    except (msgspec.MsgspecError, TypeError, ValueError, KeyError) as error:
+        raise ShapeError(f"expected {expected}; got another form ({error}); {REMEDY}", where=where) from None
+
+
+def ledger_file() -> Path:
+    """The file of all verdicts as they were last written: ``verdicts.json`` beside the papers."""
+    return papers_folder() / "verdicts.json"
+
+
+def stored_ledger() -> Ledger:
+    """The ledger as it was last written; empty when there is none yet. Raises NavsymError for a damaged file."""
+    return read_ledger(ledger_file()) if ledger_file().exists() else Ledger((), ())
+
+
+def stored_records() -> dict[str, Record]:
+    """Records of the ledger by claim id."""
+    return {record.id: record for record in stored_ledger()}
+
+
+@contextlib.contextmanager
+def lock_folder(folder: Path) -> Iterator[None]:
+    """Let one process at a time change the files of a folder; the others wait."""
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        with contextlib.suppress(OSError):  # a file system without locks
+            fcntl.flock(handle, fcntl.LOCK_EX)
+        yield
+    finally:
+        with contextlib.suppress(OSError):  # a child made meanwhile holds the file open, and would keep the lock
+            fcntl.flock(handle, fcntl.LOCK_UN)
+        os.close(handle)
+
+
+def coverage(paper: PaperSummary) -> dict[str, Any]:
+    """The coverage of a paper as plain data."""
+    return {**asdict(paper), "missing": list(paper.missing)}
+
+
 def ledger_text(ledger: Ledger) -> str:
     """The ledger as JSON text, the same for the same verdicts."""
     claims = [record.ledger_json() for record in ledger.claims]
-    content = {"papers": ledger.summaries(), "counts": ledger.counts, "claims": claims}
+    content = {"papers": [*map(coverage, ledger.papers)], "counts": ledger.counts, "claims": claims}
     return json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
 
 

@@ -1,32 +1,37 @@
-"""Papers with their claims and their stored verdicts; a claim is found by its id."""
+"""Papers with their claims; a claim is found by its id."""
 
 from __future__ import annotations
 
 import difflib
-import json
+import functools
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
 
-from navsym.claims import Claim, Paper, Record, claims_of, compare_equations, equation_of
+from navsym.claims import Claim, Paper, claims_of, compare_equations, equation_of
 from navsym.claims.paper import import_paper, paper_names, papers_folder
 from navsym.core.choice import one_of
 from navsym.core.errors import DomainError
+from navsym.core.store import key_of
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PaperModule:
-    """A derivation module, its paper and its claims."""
+    """A derivation module, its paper, its claims, and the digest of its text."""
 
     name: str
     paper: Paper
     claims: tuple[Claim, ...]
+    source: str = ""
 
 
 @dataclass(frozen=True, slots=True)
 class PaperSummary:
-    """How many numbered equations of a paper are claimed or definitions, and which are missing."""
+    """How many numbered equations of a paper are claimed or definitions, and which are missing.
+
+    source : digest of the text from which its verdicts come; in ledgers only, empty where it is not known
+    """
 
     module: str
     title: str
@@ -34,12 +39,22 @@ class PaperSummary:
     claimed: int
     definitions: int
     missing: tuple[str, ...]
+    source: str = ""
 
 
 def paper_module(module: ModuleType) -> PaperModule:
     """The paper card and the claims of an imported derivation module."""
     paper: Paper = module.PAPER
-    return PaperModule(paper.module, paper, claims_of(module))
+    return PaperModule(paper.module, paper, claims_of(module), text_digest(module))
+
+
+@functools.cache  # of a module, not of its file: its text is what was imported
+def text_digest(module: ModuleType) -> str:
+    """Digest of the file of a module, or of all files in its folder."""
+    path = Path(str(module.__file__))
+    inside = sorted(path.parent.rglob("*")) if hasattr(module, "__path__") else [path]
+    files = [file for file in inside if file.is_file() and "__pycache__" not in file.parts]
+    return key_of(*(part for file in files for part in (file.name, file.read_bytes().hex())))
 
 
 def load_papers(names: Iterable[str] = ()) -> list[PaperModule]:
@@ -54,7 +69,7 @@ def summarise_paper(module: PaperModule) -> PaperSummary:
     """Coverage of the numbered equations of a paper."""
     covered = compare_equations(module.paper, module.claims)
     counts = (len(module.paper.equations), len(covered.claimed), len(covered.definitions))
-    return PaperSummary(module.name, module.paper.title, *counts, tuple(covered.missing))
+    return PaperSummary(module.name, module.paper.title, *counts, tuple(covered.missing), module.source)
 
 
 def ledger_file() -> Path:
@@ -62,13 +77,10 @@ def ledger_file() -> Path:
     return papers_folder() / "verdicts.json"
 
 
-def stored_records() -> dict[str, Record]:
-    """Records of the ledger by claim id; empty when there is none yet."""
-    path = ledger_file()
-    if not path.exists():
-        return {}
-    document = json.loads(path.read_text(encoding="utf-8"))
-    return {record["id"]: Record.from_json(record) for record in document["claims"]}
+def list_changed(summaries: Iterable[PaperSummary], papers: Iterable[PaperModule]) -> list[str]:
+    """Papers whose text is not the one from which these verdicts come; of verdicts without a digest nobody knows."""
+    known = {paper.module: paper.source for paper in summaries}
+    return [paper.name for paper in papers if known.get(paper.name, "") not in ("", paper.source)]
 
 
 def find_claim(wanted: str) -> tuple[PaperModule, Claim]:
@@ -93,8 +105,8 @@ def find_claim(wanted: str) -> tuple[PaperModule, Claim]:
 
 def papers_with(number: str) -> list[str]:
     """Papers that have claims of this number, or of parts of it."""
-    pairs = [(name.partition(":")[0], name.partition(":")[2]) for name in stored_records()]
-    return sorted({module for module, known in pairs if known == number or known.startswith(f"{number}.")})
+    numbers = ((paper.name, claim.number) for paper in load_papers() for claim in paper.claims)
+    return sorted({name for name, known in numbers if known == number or known.startswith(f"{number}.")})
 
 
 def claim_ids(wanted: str) -> list[str]:

@@ -13,13 +13,12 @@ from dask.distributed import Client
 
 from navsym.cli.main import run
 from navsym.core.errors import DomainError, MissingEngineError, NavsymError
-from navsym.core.store import key_of
+from navsym.core.store import code_digest, key_of
 from navsym.studies import run as sweep_shards
 from navsym.studies.cluster import greet
 from navsym.studies.plan import Sweep, fingerprint, run_job, sweep_from
 from navsym.studies.run import cut
 from navsym.studies.run import sweep as run_sweep
-from navsym.verification.fingerprints import rooms_digest
 
 
 @pytest.fixture(autouse=True)
@@ -70,7 +69,7 @@ def test_a_shard_with_any_byte_changed_is_right_or_not_read(tmp_path):
     rows = run_sweep(SMALL, out=tmp_path / "s", size=6).document()["rows"]
     (file,) = (tmp_path / "s").iterdir()
     honest = file.read_bytes()
-    study = key_of("sweep", fingerprint(SMALL), rooms_digest())
+    study = key_of("sweep", fingerprint(SMALL), code_digest())
     for place in range(len(honest)):
         file.write_bytes(honest[:place] + bytes([honest[place] ^ 16]) + honest[place + 1 :])
         assert sweep_shards.Shards(tmp_path / "s", study).read(range(6)) in (None, rows)

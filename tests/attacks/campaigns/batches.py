@@ -1,7 +1,7 @@
 """Campaigns: many small attacks in batches, kept in the store, so that a stopped one goes on.
 
 A campaign is a list of batches, each plain data, and a judge that turns a batch into counts and a
-list of what went wrong. What is kept depends on the batch, on the deciding rooms and on the engines:
+list of what went wrong. What is kept depends on the batch, on navsym's sources and on the engines:
 when any of them changes the batch is run again.
 """
 
@@ -13,8 +13,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from navsym.core.sandbox import Exhausted, Failed, run_many
-from navsym.core.store import Store, StoreError, key_of
-from navsym.verification.fingerprints import rooms_digest
+from navsym.core.store import Store, StoreError, code_digest, key_of
 
 #: What a judge returns: counts by outcome, wrong results, undecided ones, exact points of refutations.
 Result = dict[str, Any]
@@ -66,7 +65,7 @@ def run_campaign(
     seconds, megabytes and lines reached, of each reader of files) and ``unsaved`` (batches that the store did
     not take: they count here, and another run will do them again).
     """
-    keys = [key_of("campaign", campaign, batch.name, rooms_digest()) for batch in batches]
+    keys = [key_of("campaign", campaign, batch.name, code_digest()) for batch in batches]
     known = store.get(keys) if store is not None else {}
     todo = [place for place, key in enumerate(keys) if key not in known]
     results, stopped = [known[key] for key in keys if key in known], []

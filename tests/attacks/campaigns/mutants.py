@@ -21,7 +21,7 @@ from navsym.core.errors import NavsymError
 from navsym.prove.ladder import decide
 from navsym.prove.sampling.points import draw_points
 from navsym.prove.wording import expression_text, point_text
-from navsym.verification.fingerprints import fingerprint
+from navsym.verification.sides import hash_statement
 from tests.attacks.campaigns.batches import Batch, Result, result
 from tests.attacks.campaigns.changes import (
     Assertion,
@@ -48,7 +48,10 @@ class OutOfTimeError(Exception):
 def make_batches(claims: Iterable[Claim], share: float = 1.0, seed: int = 0) -> list[Batch]:
     """One batch for each claim that is declared to hold; a random share of its mutants, fixed by the seed."""
     held = [claim for claim in claims if claim.expect.holds]
-    return [Batch(f"{claim.id} {fingerprint(claim)} {share} {seed}", (claim, share, seed)) for claim in held]
+    return [
+        Batch(f"{claim.id} {hash_statement(claim.derive(), None)} {share} {seed}", (claim, share, seed))
+        for claim in held
+    ]
 
 
 def judge(task: tuple[Claim, float, int]) -> Result:
