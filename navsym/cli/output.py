@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import IO, Any
@@ -28,6 +29,10 @@ STYLES: Mapping[str, str] = {
 }
 
 
+#: What rich writes to colour a word.
+COLOUR = re.compile("(\x1b\\[[0-9;]*m)")
+
+
 # One document, or text
 
 
@@ -44,7 +49,7 @@ def emit(document: Any, *, as_json: bool, text: str | Callable[[], str | None]) 
         return
     shown = text() if callable(text) else text
     if shown:
-        put(shown if shown.endswith("\n") else shown + "\n")
+        put(harmless(shown if shown.endswith("\n") else shown + "\n"))
 
 
 def dumps(document: Any, *, indent: int | None = 2) -> str:
@@ -97,6 +102,13 @@ def remark(text: str) -> None:
 def visible(text: str) -> str:
     """The text without control characters, so that a file's words cannot steer a terminal."""
     return "".join(c if c.isprintable() or c in "\n\t" else repr(c)[1:-1] for c in text)
+
+
+def harmless(text: str) -> str:
+    """The text without control characters but the colours of our own tables, on a terminal that wants them."""
+    return "".join(
+        part if place % 2 and wants_colour() else visible(part) for place, part in enumerate(COLOUR.split(text))
+    )
 
 
 # Tables

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from navsym.cli.output import emit
+from navsym.core.errors import printable
 
 if TYPE_CHECKING:
     from navsym.claims import Record
@@ -45,4 +46,4 @@ def as_text(record: Record) -> str:
         lines.append(f"  corrects {record.corrects}")
     if not record.is_expected:
         lines.append(f"  declared {record.expect}")
-    return "\n".join(lines)
+    return "\n".join(map(printable, lines))

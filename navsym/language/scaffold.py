@@ -28,7 +28,7 @@ WIDE = 92
 
 NOT_YET = '"not looked at yet"'
 
-MODULE = '''"""{heading}: one sentence on the route from the model to the formulas."""
+MODULE = """{heading}
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ PAPER = Paper(
     definitions={{
 {definitions}    }},
 )
-{example}'''
+{example}"""
 
 EXAMPLE = '''
 x = sp.Symbol("x", real=True)
@@ -59,16 +59,16 @@ def example() -> Equation:
     return Equation(printed=2 * sp.sin(x) * sp.cos(x), derived=sp.expand_trig(sp.sin(2 * x)))
 '''
 
-CLAIM = '''
+CLAIM = """
 
 @claim({arguments})
 def {function}() -> Equation:
-    """{title}"""
+    {title}
     return Equation(
         printed={printed},
         derived={derived},
 {tolerance}    )
-'''
+"""
 
 
 def check_module_name(name: str) -> str:
@@ -98,7 +98,7 @@ def module_source(
     lines = "".join(f'        "{number}": {NOT_YET},\n' for number in equations)
     return MODULE.format(
         name=quote_string(check_module_name(name)),
-        heading=write_docstring(title) or name,
+        heading=write_docstring(f"{title or name}: one sentence on the route from the model to the formulas."),
         title=quote_string(title or name),
         authors=write_tuple(authors),
         year=year,
@@ -146,9 +146,18 @@ def check_number(number: str) -> str:
     raise ExpressionSyntaxError(f"expected an equation number such as 4.3 or 4.3.u2; got {quote(number)}; correct it")
 
 
+def one_line(text: str, where: str) -> str:
+    """The text without blanks around it; raises ExpressionSyntaxError for more than one printable line."""
+    if not text.strip().isprintable():
+        message = f"expected one printable line; got {quote(text)}; remove line ends and control characters"
+        raise ExpressionSyntaxError(message, where=where)
+    return text.strip()
+
+
 def write_docstring(text: str) -> str:
-    """A sentence that may stand in a docstring."""
-    return " ".join(text.replace("\\", "/").replace('"', "'").split())
+    """Source of a docstring that is the sentence."""
+    sentence = one_line(text, "--title")
+    return repr(sentence) if set(sentence) & set('"\\') else f'"""{sentence}"""'
 
 
 def side_source(expression: sp.Expr) -> str:
@@ -189,7 +198,7 @@ class NewClaim:
         found = [f'"{self.number}"', f"expect=Status.{self.expect}"]
         found += [f'corrects="{check_number(self.corrects)}"'] if self.corrects else []
         found += [f'slip="{self.slip}"'] if self.slip else []
-        found += [f'reason="{write_docstring(self.reason)}"'] if self.reason else []
+        found += [f"reason={quote_string(one_line(self.reason, '--reason'))}"] if self.reason else []
         return ", ".join(found)
 
 

@@ -182,3 +182,22 @@ def test_source_of_a_formula_keeps_it_exact(text):
     again = eval(source, {"sp": sympy, "a": sympy.Symbol("a", real=True)})
     assert again == expression and not again.atoms(sympy.Float)
     assert math.isfinite(float(again.subs(sympy.Symbol("a", real=True), sympy.Rational(1, 3))))
+
+
+@pytest.mark.parametrize(
+    "title", ["a\\", 'It is "one".', 'ends in a quote"', "two  blanks \\n and {braces}", "\\N{DIGIT}", "x'"]
+)
+def test_a_title_is_written_as_it_was_given(folder, title):
+    assert add(folder, "1", "--printed", "a", "--derived", "2*a", "--title", title, "--reason", title) == 0
+    (record,) = [r for r in decide_papers([loaded(folder / "sample_paper.py")], jobs=1).document()["claims"]]
+    assert record["title"] == title and record["reason"] == title
+    words = ["new-paper", "other", "--title", title, "--equations", "1", "--folder", str(folder)]
+    assert run(words) == 0 and loaded(folder / "other.py").paper.title == title
+
+
+@pytest.mark.parametrize("title", ["one\ntwo", "\x1b[2J", "right\u202eleft", "\ud800"])
+def test_a_title_of_more_than_one_printable_line_is_refused(folder, title, capsys):
+    before = (folder / "sample_paper.py").read_text()
+    assert add(folder, "1", "--printed", "a", "--derived", "a", "--title", title) == 2
+    assert "--title: expected one printable line" in capsys.readouterr().err
+    assert (folder / "sample_paper.py").read_text() == before

@@ -179,3 +179,12 @@ def test_an_output_that_is_full_or_closed_is_one_line_on_standard_error(options,
     )
     assert done.returncode == 2
     assert len(done.stderr.splitlines()) == 1 and done.stderr.startswith("navsym: output: standard output: expected")
+
+
+def test_text_for_people_keeps_no_control_character_but_the_colours_of_a_terminal(monkeypatch, capsys) -> None:
+    text = "title \x1b[31mred\x1b]0;window\x07 \u202eleft"
+    emit({}, as_json=False, text=text)
+    assert capsys.readouterr().out == "title \\x1b[31mred\\x1b]0;window\\x07 \\u202eleft\n"
+    monkeypatch.setattr("navsym.cli.output.wants_colour", lambda: True)
+    emit({}, as_json=False, text=text)
+    assert capsys.readouterr().out == "title \x1b[31mred\\x1b]0;window\\x07 \\u202eleft\n"

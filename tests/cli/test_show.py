@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import subprocess
 import sys
 
 import pytest
 
+import navsym as nav
 from navsym.cli.main import run
 
 REMARK = "alpha_beta_filter:remark.critical"
@@ -96,3 +98,14 @@ def test_a_number_without_its_paper_is_answered_with_the_papers_that_have_it(cap
     assert "take guaranteed_velocity:4.3.u2" in capsys.readouterr().err
     assert run(["explain", "9", "--json"]) == 2
     assert "multistructure:9 or terrain_search:9" in capsys.readouterr().out
+
+
+def test_the_words_of_a_claim_cannot_steer_a_terminal_or_feign_a_line(monkeypatch):
+    from navsym.claims import Record
+    from navsym.cli.show import as_text
+
+    title = "good \x1b[2J\u202e\n  at       a = 1"
+    record = nav.show(REMARK)[0]
+    shown = as_text(dataclasses.replace(record, title=title))
+    assert isinstance(record, Record) and "\x1b" not in shown and "\u202e" not in shown
+    assert r"good \x1b[2J\u202e\n  at" in shown.splitlines()[1]
