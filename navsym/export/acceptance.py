@@ -131,9 +131,9 @@ def parts_of(item: Any) -> list[Part]:
         message = "expected a file or folder that exists; got none of this name; correct it"
         raise NavsymError(message, where=str(path), kind="missing-file")
     if not path.is_dir():
-        return [(path.name, partial(check_one, path))]
-    files = sorted(path.rglob("*.json"))
-    return [(path.name, partial(check_code, path)), *((file.name, partial(check_in_folder, file)) for file in files)]
+        return [(path.name, lambda: [check_file(path)])]
+    files = [(file.name, partial(check_in_folder, file)) for file in sorted(path.rglob("*.json"))]
+    return [(path.name, lambda: [Check(**row) for row in check_export(path)]), *files]
 
 
 def certificate_parts(certificates: list[Mapping[str, Any]]) -> list[Part]:
@@ -152,16 +152,6 @@ def check_plain(name: str, certificate: Mapping[str, Any]) -> list[Check]:
         return [Check(name, checker.check(checker.load(json.dumps(certificate))), "ACCEPTED", "")]
     except (checker.Refused, TypeError, ValueError) as error:
         return [Check(name, kind if isinstance(kind, str) else None, "REJECTED", str(error))]
-
-
-def check_one(path: Path) -> list[Check]:
-    """A certificate that was named itself."""
-    return [check_file(path)]
-
-
-def check_code(folder: Path) -> list[Check]:
-    """Exported code of a folder, run on its own vectors."""
-    return [Check(**row) for row in check_export(folder)]
 
 
 def check_in_folder(file: Path) -> list[Check]:

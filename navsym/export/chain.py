@@ -192,6 +192,24 @@ def kept(title: str, names: Sequence[str], layout: Layout, box: Mapping[str, tup
     return Chain(title, tuple(links), entries, Layout(arrays, order, tests, units), box or {})
 
 
+# -- what the algorithms share ---------------------------------------
+
+
+def real(name: str) -> sp.Symbol:
+    """A real symbol."""
+    return sp.Symbol(name, real=True)
+
+
+def symmetric(upper: Sequence[sp.Expr]) -> sp.Matrix:
+    """A symmetric matrix (2, 2) from its upper triangle (11, 12, 22)."""
+    return sp.Matrix([[upper[0], upper[1]], [upper[1], upper[2]]])
+
+
+def units_of(names: Mapping[str, str]) -> dict[str, str]:
+    """Name -> unit, from the names of every unit in one text."""
+    return {name: unit for unit, text in names.items() for name in text.split()}
+
+
 # -- programs ---------------------------------------
 
 

@@ -8,7 +8,8 @@ import platform
 import shlex
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass
+from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -46,10 +47,19 @@ def files_of(functions: Sequence[ExportedFunction], order: Order) -> dict[str, s
         raise DuplicateError("expected functions with different names; got one name twice; name each claim once")
     notice = f"SPDX-License-Identifier: {license_id(order.license)}"
     found: dict[str, str] = {}
-    spoken, tests = Spoken(functions), Tests(order.count)
+
+    @cache
+    def bounded(library: int) -> list[ExportedFunction]:
+        """The functions with the bounds that hold for a library that is accurate to so many ulps."""
+        return [f if library == f.arithmetic.library else rebounded(f, library) for f in functions]
+
+    @cache
+    def tests(library: int, widen: int) -> dict[str, list[Vector]]:
+        """Vectors of every function by name, for the languages that share them."""
+        return {f.name: vectors(f, order.count, library=library, widen=widen) for f in bounded(library)}
+
     for target in order.targets:
-        known = spoken.for_library(target.library)
-        made = target.files()(known, tests.of(known, target), notice)
+        made = target.files()(bounded(target.library), tests(target.library, target.widen), notice)
         found |= {f"{target.name}/{name}": text for name, text in made.items()}
     for function in functions:
         found |= certificate_texts(function)
@@ -62,39 +72,6 @@ def license_id(text: str) -> str:
     if not text or len(text) > 80 or not all(c.isascii() and (c.isalnum() or c in ".-+() ") for c in text):
         raise DomainError(f"expected an SPDX identifier such as Apache-2.0; got {text[:40]!r}; correct --license")
     return text
-
-
-@dataclass(frozen=True, slots=True)
-class Spoken:
-    """The functions with the bounds that hold for the accuracy of a library, made once for each accuracy."""
-
-    functions: Sequence[ExportedFunction]
-    made: dict[int, list[ExportedFunction]] = field(default_factory=dict)
-
-    def for_library(self, library: int) -> list[ExportedFunction]:
-        """The functions with the bounds for a library that is accurate to so many ulps."""
-        if library not in self.made:
-            self.made[library] = [
-                f if library == f.arithmetic.library else rebounded(f, library) for f in self.functions
-            ]
-        return self.made[library]
-
-
-@dataclass(frozen=True, slots=True)
-class Tests:
-    """Vectors of every function, made once for the languages that share them."""
-
-    count: int
-    made: dict[tuple[int, int], dict[str, list[Vector]]] = field(default_factory=dict)
-
-    def of(self, functions: Sequence[ExportedFunction], target: Target) -> dict[str, list[Vector]]:
-        """Vectors of the functions by name, for the accuracy of the target's library and widened as it asks."""
-        key = (target.library, target.widen)
-        if key not in self.made:
-            self.made[key] = {
-                f.name: vectors(f, self.count, library=target.library, widen=target.widen) for f in functions
-            }
-        return self.made[key]
 
 
 # -- certificates ---------------------------------------
@@ -242,7 +219,8 @@ def write_export(
         write_folder(Path(trial), files, force=True)
         outcomes = []
         for target in order.targets:
-            outcomes.append(run_or_not(Path(trial), target, execute))
+            asked = run_target(Path(trial) / target.name, target) if execute else None
+            outcomes.append(asked or Outcome(target.name, "not executed", "not asked for", {}))
             progress(target.name)
     failed = [outcome for outcome in outcomes if outcome.status == "failed"]
     if failed:
@@ -252,13 +230,6 @@ def write_export(
         )
     write_folder(out, files, force=force)
     return Exported(out, tuple(functions), tuple(outcomes), tuple(files))
-
-
-def run_or_not(folder: Path, target: Target, execute: bool) -> Outcome:
-    """The outcome of compiling and running a language, or that this was not asked for."""
-    if not execute:
-        return Outcome(target.name, "not executed", "not asked for", {})
-    return run_target(folder / target.name, target)
 
 
 def summary_record(function: ExportedFunction) -> dict[str, Any]:

@@ -117,7 +117,7 @@ def slopes(terrain: TerrainMap, x: Array, y: Array) -> tuple[Array, Array]:
     r = np.clip(np.floor(w).astype(np.int64), 0, ny - 2)
     f, g = u - c, w - r
     found = []
-    for at, spacing in ((along_row, terrain.dx), (along_column, terrain.dy)):
+    for at, spacing in ((along_row, terrain.dx), (lambda H, r, c: along_row(H.T, c, r), terrain.dy)):
         low = blend(at(terrain.heights, r, c), at(terrain.heights, r, c + 1), f)
         high = blend(at(terrain.heights, r + 1, c), at(terrain.heights, r + 1, c + 1), f)
         found.append(blend(low, high, g) / spacing)
@@ -131,11 +131,6 @@ def along_row(H: Array, r: Indices, c: Indices) -> Array:
     first = np.clip(c - 1, 0, H.shape[1] - 3)
     weights = STENCILS[c - first]
     return weights[:, 0] * H[r, first] + weights[:, 1] * H[r, first + 1] + weights[:, 2] * H[r, first + 2]
-
-
-def along_column(H: Array, r: Indices, c: Indices) -> Array:
-    """Slope at nodes (r, c) along y, per cell."""
-    return along_row(H.T, c, r)
 
 
 def one_sided(terrain: TerrainMap, x: Array, y: Array) -> Information:

@@ -182,14 +182,9 @@ def edge_values(function: ExportedFunction, k: int) -> list[float]:
 
 def switches(function: ExportedFunction, k: int) -> set[float]:
     """Where the code changes from a polynomial to a formula in one argument."""
-    graphs = [piece.graph for piece in function.pieces]
-    parts = {n.value for g in graphs for n in g.nodes if n.op == "filled" and is_input(g.nodes[n.args[0]], k)}
+    graphs, i = [piece.graph for piece in function.pieces], Node("input", (), k)
+    parts = {n.value for g in graphs for n in g.nodes if n.op == "filled" and g.nodes[n.args[0]] == i}
     return {continuation(part, function.arithmetic.name).switch for part in parts}
-
-
-def is_input(node: Node, k: int) -> bool:
-    """True for the node of the k-th input."""
-    return node.op == "input" and node.value == k
 
 
 def next_float(function: ExportedFunction):  # type: ignore[no-untyped-def]

@@ -4,20 +4,22 @@ from __future__ import annotations
 
 import sympy as sp
 
-from navsym.export.chain import Chain, Link
+from navsym.export.chain import Chain, Link, units_of
 from navsym.export.parts import Layout
 
 TANGENT, SQUARE = sp.Symbol("tan_phi", real=True), sp.Symbol("r_squared", real=True)
 LENGTH = "Mm (10^6 m), or any unit in which the proved range holds"
-UNITS = {"a": LENGTH, "h": LENGTH, "radius": LENGTH, "e": "1", "phi_e": "rad", "phi": "rad", "latitude": "rad"}
-UNITS |= {
-    "V": "Mm/s",
-    "latitude_rate": "rad/s",
-    "longitude_rate": "rad/s",
-    "radius_rate": "Mm/s",
-    "xi": "any",
-    "eta": "that of xi",
-}
+UNITS = units_of(
+    {
+        LENGTH: "a h radius",
+        "1": "e",
+        "rad": "phi_e phi latitude",
+        "Mm/s": "V radius_rate",
+        "rad/s": "latitude_rate longitude_rate",
+        "any": "xi",
+        "that of xi": "eta",
+    }
+)
 
 GEOCENTRIC = Chain(
     title="Geocentric latitude and radius from geodetic latitude and height",

@@ -11,7 +11,7 @@ from itertools import combinations_with_replacement
 import sympy as sp
 
 from navsym.claims import Equation
-from navsym.export.chain import Chain, Link
+from navsym.export.chain import Chain, Link, real
 from navsym.export.parts import Layout
 
 UNITS = {
@@ -23,11 +23,6 @@ UNITS = {
     "next_x": "units of the state",
     "next_P": "their products",
 }
-
-
-def real(name: str) -> sp.Symbol:
-    """A real symbol."""
-    return sp.Symbol(name, real=True)
 
 
 def triangle(name: str, n: int) -> tuple[str, ...]:

@@ -11,7 +11,7 @@ from __future__ import annotations
 import sympy as sp
 
 from navsym.claims import Equation
-from navsym.export.chain import Chain, Link, Program
+from navsym.export.chain import Chain, Link, Program, real
 from navsym.export.parts import Layout
 
 STATE = ("x1", "x2", "x3", "x4", "x5", "x6", "y1", "y2", "y5", "y6")
@@ -19,11 +19,6 @@ RATES = (*(f"3.2.x{k}" for k in range(1, 7)), "3.3.y1*", "3.3.y2", "3.3.y5*", "3
 GAINS = tuple(f"Kc{k}" for k in range(1, 7)), ("Kh1", "Kh2", "Kh5", "Kh6")
 h = sp.Symbol("h", positive=True)
 lam_c, lam_h = sp.symbols("lambda_c lambda_h", positive=True)
-
-
-def plain(name: str) -> sp.Symbol:
-    """A real symbol."""
-    return sp.Symbol(name, real=True)
 
 
 # -- gains ---------------------------------------
@@ -62,15 +57,14 @@ def rates(stage: int, at: str) -> tuple[Link, ...]:
 
 def moved(stage: int, share: sp.Expr) -> Link:
     """The state moved along the rates of the stage before."""
-    formulas = tuple(plain(s) + share * plain(f"k{stage - 1}_{s}") for s in STATE)
+    formulas = tuple(real(s) + share * real(f"k{stage - 1}_{s}") for s in STATE)
     return Link(tuple(f"b{stage}_{s}" for s in STATE), "", formulas)
 
 
 def last() -> Link:
     """The state after the step, from the four rates: ``s + h/6 (k1 + 2 k2 + 2 k3 + k4)``."""
     formulas = tuple(
-        plain(s) + h / 6 * (plain(f"k1_{s}") + 2 * plain(f"k2_{s}") + 2 * plain(f"k3_{s}") + plain(f"k4_{s}"))
-        for s in STATE
+        real(s) + h / 6 * (real(f"k1_{s}") + 2 * real(f"k2_{s}") + 2 * real(f"k3_{s}") + real(f"k4_{s}")) for s in STATE
     )
     return Link(tuple(f"next_{s}" for s in STATE), "", formulas, fourth_order)
 
@@ -86,26 +80,8 @@ def fourth_order() -> Equation:
     return Equation(printed=s + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4), derived=taylor)
 
 
-WORDS = (
-    "x",
-    "y",
-    "x0",
-    "y0",
-    "Kc",
-    "Kh",
-    "sigma_c",
-    "sigma_M",
-    "mu",
-    "u_3",
-    "omega_1",
-    "omega_2",
-    "h",
-    "lambda_c",
-    "lambda_h",
-    "next_x",
-    "next_y",
-)
-UNITS = dict.fromkeys(WORDS, "1 (dimensionless as in section 2 of the paper)")
+WORDS = "x y x0 y0 Kc Kh sigma_c sigma_M mu u_3 omega_1 omega_2 h lambda_c lambda_h next_x next_y"
+UNITS = dict.fromkeys(WORDS.split(), "1 (dimensionless as in section 2 of the paper)")
 ARRAYS = {
     "x": STATE[:6],
     "y": STATE[6:],

@@ -9,7 +9,7 @@ from __future__ import annotations
 import sympy as sp
 
 from navsym.claims import Equation
-from navsym.export.chain import Chain, Link, Program, kept
+from navsym.export.chain import Chain, Link, Program, kept, symmetric, units_of
 from navsym.export.parts import Layout
 
 MODES = (1, 2)
@@ -27,11 +27,6 @@ def named(text: str) -> tuple[sp.Symbol, ...]:
     return sp.symbols(text, real=True)
 
 
-def full(upper: tuple[sp.Expr, ...]) -> sp.Matrix:
-    """A symmetric matrix from its upper triangle."""
-    return sp.Matrix([[upper[0], upper[1]], [upper[1], upper[2]]])
-
-
 def triangle(matrix: sp.Matrix) -> tuple[sp.Expr, ...]:
     """Upper triangle (11, 12, 22) of a symmetric matrix (2, 2)."""
     return (matrix[0, 0], matrix[0, 1], matrix[1, 1])
@@ -42,22 +37,22 @@ def triangle(matrix: sp.Matrix) -> tuple[sp.Expr, ...]:
 
 def predicted(i: int) -> Link:
     """Mean and covariance of the mode one step ahead."""
-    formulas = (*(A[i] * m), *triangle(A[i] * full(P) * A[i].T + full(Q[i])))
+    formulas = (*(A[i] * m), *triangle(A[i] * symmetric(P) * A[i].T + symmetric(Q[i])))
     return Link(names(i, "n1 n2 N11 N12 N22"), "", formulas, lambda: moments(i), cites=("multistructure:8.predict",))
 
 
 def moments(i: int) -> Equation:
     """The covariance of A e + w, entry by entry from the covariances of e and w."""
     derived = [
-        sum(A[i][j, a] * A[i][k, b] * full(P)[a, b] for a in (0, 1) for b in (0, 1)) + full(Q[i])[j, k]
+        sum(A[i][j, a] * A[i][k, b] * symmetric(P)[a, b] for a in (0, 1) for b in (0, 1)) + symmetric(Q[i])[j, k]
         for j, k in ((0, 0), (0, 1), (1, 1))
     ]
-    return Equation(printed=list(triangle(A[i] * full(P) * A[i].T + full(Q[i]))), derived=derived)
+    return Equation(printed=list(triangle(A[i] * symmetric(P) * A[i].T + symmetric(Q[i]))), derived=derived)
 
 
 def corrected(i: int) -> tuple[Link, ...]:
     """Innovation, its variance, gain; corrected mean and covariance."""
-    n, N = sp.Matrix(named(f"n1_{i} n2_{i}")), full(named(f"N11_{i} N12_{i} N22_{i}"))
+    n, N = sp.Matrix(named(f"n1_{i} n2_{i}")), symmetric(named(f"N11_{i} N12_{i} N22_{i}"))
     v, D, K = sp.Symbol(f"v_{i}", real=True), sp.Symbol(f"D_{i}", real=True), sp.Matrix(named(f"K1_{i} K2_{i}"))
     innovation = (z - (H[i] * n)[0], (H[i] * N * H[i].T)[0] + R[i])
     gain = tuple(N * H[i].T / D)
@@ -71,7 +66,7 @@ def corrected(i: int) -> tuple[Link, ...]:
 
 def information(i: int) -> Equation:
     """N - K K^T D inverts the sum of informations: (E + N h h^T/r) times it is N, for D = h^T N h + r."""
-    N, h_, r = full(named("n11 n12 n22")), H[i].T, R[i]
+    N, h_, r = symmetric(named("n11 n12 n22")), H[i].T, R[i]
     D = (h_.T * N * h_)[0] + r
     K = N * h_ / D
     after = N - K * K.T * D
@@ -121,7 +116,7 @@ def folded() -> tuple[Link, ...]:
     """Mean of the mixture, then its covariance about it."""
     w = named("w_1 w_2")
     c = [sp.Matrix(named(f"c1_{i} c2_{i}")) for i in MODES]
-    C = [full(named(f"C11_{i} C12_{i} C22_{i}")) for i in MODES]
+    C = [symmetric(named(f"C11_{i} C12_{i} C22_{i}")) for i in MODES]
     mean = sp.Matrix(named("mean1 mean2"))
     spread = [C[k] + (c[k] - mean) * (c[k] - mean).T for k in (0, 1)]
     return (
@@ -140,7 +135,10 @@ def second_moment() -> Equation:
     """The fold keeps the second moment of the mixture."""
     w1, w2 = sp.symbols("w_1 w_2", positive=True)
     w = (w1 / (w1 + w2), w2 / (w1 + w2))
-    c, C = [sp.Matrix(named(f"c1_{i} c2_{i}")) for i in MODES], [full(named(f"C11_{i} C12_{i} C22_{i}")) for i in MODES]
+    c, C = (
+        [sp.Matrix(named(f"c1_{i} c2_{i}")) for i in MODES],
+        [symmetric(named(f"C11_{i} C12_{i} C22_{i}")) for i in MODES],
+    )
     mean = w[0] * c[0] + w[1] * c[1]
     folded_ = sum((w[k] * (C[k] + (c[k] - mean) * (c[k] - mean).T) for k in (0, 1)), sp.zeros(2, 2))
     mixture = sum((w[k] * (C[k] + c[k] * c[k].T) for k in (0, 1)), sp.zeros(2, 2))
@@ -161,23 +159,17 @@ TESTS = {"P11": (1.0, 2.0), "P12": (-0.5, 0.5), "P22": (1.0, 2.0), "g1": (0.05, 
 TESTS |= {s.name: (-1.5, 1.5) for i in MODES for s in (*A[i], *H[i])} | {s.name: (0.01, 1.0) for s in PI}
 TESTS |= {q.name: ((0.3, 1.0) if k != 1 else (-0.2, 0.2)) for i in MODES for k, q in enumerate(Q[i])}
 TESTS |= {f"r{i}": (0.1, 4.0) for i in MODES} | {"m1": (-5.0, 5.0), "m2": (-5.0, 5.0), "z": (-10.0, 10.0)}
-UNITS = {
-    "mean": "units of the state",
-    "covariance": "their products",
-    "probabilities": "1",
-    "transition": "1",
-    "z": "unit of the measurement",
-    "r1": "(unit of the measurement)^2",
-    "r2": "(unit of the measurement)^2",
-    "next_mean": "units of the state",
-    "next_covariance": "their products",
-    "next_probabilities": "1",
-}
-UNITS |= {
-    f"{k}{i}": u
-    for i in MODES
-    for k, u in (("A", "ratios of the state's units"), ("Q", "their products"), ("H", "unit of z per state"))
-}
+UNITS = units_of(
+    {
+        "units of the state": "mean next_mean",
+        "their products": "covariance next_covariance Q1 Q2",
+        "1": "probabilities next_probabilities transition",
+        "unit of the measurement": "z",
+        "(unit of the measurement)^2": "r1 r2",
+        "ratios of the state's units": "A1 A2",
+        "unit of z per state": "H1 H2",
+    }
+)
 LAYOUT = Layout(ARRAYS, ORDER, TESTS, UNITS)
 SHARE = (sp.Integer(0), sp.Integer(1))
 

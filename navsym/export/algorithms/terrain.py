@@ -5,34 +5,22 @@ from __future__ import annotations
 import sympy as sp
 
 from navsym.claims import Equation
-from navsym.export.chain import Chain, Link, Program, kept
+from navsym.export.chain import Chain, Link, Program, kept, symmetric, units_of
 from navsym.export.parts import Layout
 
 G, M = sp.symbols("G11 G12 G22", real=True), sp.symbols("M11 M12 M22", real=True)
 p, q, k = sp.symbols("p q k", real=True)
 bx, by = sp.symbols("beta_x beta_y", real=True)
 SUMS = {"G": ("G11", "G12", "G22"), "M": ("M11", "M12", "M22")}
-UNITS = {
-    "G": "1 (squared slopes)",
-    "M": "number of measurements",
-    "k": "number of measurements",
-    "p": "1 (slope dh/dx)",
-    "q": "1 (slope dh/dy)",
-    "beta_x": "1",
-    "beta_y": "1",
-    "t_G": "number of measurements",
-    "t_min": "number of measurements",
-    "t_max": "number of measurements",
-    "t_mean": "number of measurements",
-    "next_G": "1",
-    "next_M": "number of measurements",
-    "next_k": "number of measurements",
-}
-
-
-def symmetric(upper: tuple[sp.Expr, ...]) -> sp.Matrix:
-    """A symmetric matrix (2, 2) from its upper triangle (11, 12, 22)."""
-    return sp.Matrix([[upper[0], upper[1]], [upper[1], upper[2]]])
+UNITS = units_of(
+    {
+        "1 (squared slopes)": "G",
+        "1 (slope dh/dx)": "p",
+        "1 (slope dh/dy)": "q",
+        "1": "beta_x beta_y next_G",
+        "number of measurements": "M k t_G t_min t_max t_mean next_M next_k",
+    }
+)
 
 
 def one_more() -> tuple[sp.Expr, ...]:
@@ -166,25 +154,14 @@ CORRECTION = Chain(
         {},
         ("x", "y", "Vx", "Vy", "i", "j", "Vi", "Vj", "Deltax", "Deltay", "DeltaVx", "DeltaVy", "t_n", "t_0", "t_G"),
         {"i": (-50.0, 50.0), "j": (-50.0, 50.0), "Vi": (-10.0, 10.0), "Vj": (-10.0, 10.0)},
-        {
-            "x": "m",
-            "y": "m",
-            "Vx": "m/s",
-            "Vy": "m/s",
-            "i": "1",
-            "j": "1",
-            "Vi": "1",
-            "Vj": "1",
-            "Deltax": "m",
-            "Deltay": "m",
-            "DeltaVx": "m/s",
-            "DeltaVy": "m/s",
-            "t_n": "s",
-            "t_0": "s",
-            "t_G": "number of measurements",
-            "Deltat": "s",
-            "position": "m",
-            "velocity": "m/s",
-        },
+        units_of(
+            {
+                "m": "x y Deltax Deltay position",
+                "m/s": "Vx Vy DeltaVx DeltaVy velocity",
+                "1": "i j Vi Vj",
+                "s": "t_n t_0 Deltat",
+                "number of measurements": "t_G",
+            }
+        ),
     ),
 )
