@@ -78,7 +78,7 @@ class Model:
 
     def __init__(
         self,
-        states: str | Sequence[str],
+        states: str | Sequence[str] | None = None,
         F: Any = None,
         H: Any = None,
         sigma: Any = 1,
@@ -190,7 +190,8 @@ class Model:
     ) -> Model:
         """The model of a :class:`LinearModel` without process noise; arguments as for :class:`Model`.
 
-        Parameters that are not declared are declared as their symbols are.
+        Parameters that are not declared are declared as their symbols are. A blank in a name becomes an underscore,
+        because the files that hold a model name states without blanks.
 
         Raises DomainError for process noise, and the errors of :class:`Model`.
         """
@@ -198,14 +199,17 @@ class Model:
             got = f"G with {linear.G.cols} columns"
             raise DomainError(f"expected a model without process noise; got {got}; drop G", where="Model: linear")
         time = {linear.time: symbol("t")}
+        states, measurements = (
+            ["_".join(text.split()) for text in names] for names in (linear.states, linear.measurements)
+        )
         return cls(
-            linear.states,
+            states,
             linear.F.subs(time),
             linear.H.subs(time),
             sigma,
             interval,
             targets,
-            measurements=linear.measurements,
+            measurements=measurements,
             name=name,
             parameters=parameters,
             **declared,
@@ -432,6 +436,8 @@ def error_of_call(where: str, path: Any) -> Iterator[None]:
 
 def name_list(names: Any, where: str) -> list[Any]:
     """Names from one text with blanks or commas between them, or from a list; symbols by their names."""
+    if names is None:
+        raise EmptyError('expected names; got none; write them in one text: "x v"', where=where)
     if isinstance(names, str):
         return names.replace(",", " ").split()
     if not isinstance(names, list | tuple):

@@ -143,6 +143,23 @@ def test_there_and_back_by_a_linear_model():
         nav.Model.from_linear(LinearModel([[0]], [[1]], [[1]]))
 
 
+def test_a_blank_in_a_name_of_a_linear_model_becomes_an_underscore():
+    linear = LinearModel([[0, 1], [0, 0]], None, [[1, 0]], ("east position", "v"), measurements=("gps  east",))
+    document = nav.Model.from_linear(linear, interval="1", targets={"drift": "east_position"}).document()
+    assert document["model"]["states"] == ["east_position", "v"]
+    assert document["measurement"][0]["name"] == "gps_east"
+    twice = LinearModel([[0, 1], [0, 0]], None, [[1, 0]], ("a b", "a_b"))
+    with pytest.raises(NavsymError, match="distinct names"):
+        nav.Model.from_linear(twice, interval="1")
+
+
+@pytest.mark.parametrize("given", [{}, {"F": [["0"]]}, {"states": ""}, {"states": []}])
+def test_a_model_without_states_is_an_error_that_says_what_is_missing(given):
+    with pytest.raises(NavsymError) as caught:
+        nav.Model(**given)
+    assert caught.value.kind == "empty" and caught.value.where and caught.value.remedy
+
+
 def test_save_then_load_gives_the_same_model(tmp_path):
     pieces = [(0, 1, [[0, 1], [0, 0]]), (1, "T", [[0, "w"], ["sin(t)", 0]])]
     saved = [
