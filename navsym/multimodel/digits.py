@@ -82,6 +82,8 @@ def log_of(likelihood: Any) -> float:
     """Log-likelihood of a step, without the weights of missing dimensions; -inf for a measurement that was left out."""
     if likelihood == 0:
         return -np.inf
+    if not likelihood.is_finite():
+        return np.nan
     _, exponent = likelihood.mid().man_exp()
     dimensions = (int(exponent) + DIMENSION // 2) // DIMENSION
     return float((likelihood * arb((fmpz(1), fmpz(-dimensions * DIMENSION)))).log())

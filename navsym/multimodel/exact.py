@@ -154,6 +154,8 @@ def merge_leaves(leaves: Sequence[Leaf], kit: Kit) -> tuple[Vector, Matrix]:
     """Mean and covariance of a group: multistructure:12* and :13, entry by entry; equal shares where none is likely."""
     whole = total(leaves)
     shares = [sum(leaf.weights) / whole if whole != 0 else kit.tidy(whole + 1) / len(leaves) for leaf in leaves]
+    if kit.rounded:  # a mode that another outweighs by a dimension has no share in the moments
+        shares = [share if share * kit.weight.sqrt() > 1 else 0 * share for share in shares]
     n = range(len(leaves[0].mean))
     mean = [kit.tidy(sum(g * leaf.mean[a] for g, leaf in zip(shares, leaves, strict=True))) for a in n]
 
@@ -163,12 +165,13 @@ def merge_leaves(leaves: Sequence[Leaf], kit: Kit) -> tuple[Vector, Matrix]:
             for g, leaf in zip(shares, leaves, strict=True)
         )
 
-    return mean, [[kit.tidy(entry(a, b)) for b in n] for a in n]
+    # Means that differ by their last digits only are equal.
+    return mean, clean([[kit.tidy(entry(a, b)) for b in n] for a in n], [x * x * NEGLIGIBLE**2 for x in mean], kit)
 
 
 def filter_leaf(leaf: Leaf, model: Model, mode: int, z: Sequence[Any], kit: Kit) -> tuple[int, Leaf]:
     """Kalman filter of one hypothesis; its weight is multiplied by the density of the innovation."""
-    mean = product_with(model.F, leaf.mean)
+    mean = shorten(product_with(model.F, leaf.mean), kit)
     P = add(product(product(model.F, leaf.covariance), transposed(model.F)), model.Q)
     P = clean(P, sizes_of_terms(model.F, leaf.covariance, model.Q, kit), kit)
     came = [j for j, value in enumerate(z) if value is not None]
@@ -189,13 +192,18 @@ def filter_leaf(leaf: Leaf, model: Model, mode: int, z: Sequence[Any], kit: Kit)
     corrected = [[x - y for x, y in zip(*rows, strict=True)] for rows in zip(P, shrink, strict=True)]
     corrected = clean(corrected, [P[a][a] for a in range(len(P))], kit)
     weight = leaf.weights[0] * kit.density(distance, determinant, len(came) - len(gaps)) * kit.weight ** len(gaps)
-    return mode, Leaf((weight,), [m + d for m, d in zip(mean, shift, strict=True)], corrected)
+    return mode, Leaf((weight,), shorten([m + d for m, d in zip(mean, shift, strict=True)], kit), corrected)
 
 
 def sizes_of_terms(A: Matrix, P: Matrix, N: Matrix, kit: Kit) -> Vector:
     """Bounds ``n sum_b A_ab^2 P_bb + N_aa`` of the terms on the diagonal of ``A P A^T + N``; needed when rounded."""
     n = len(P) if kit.rounded else 0
     return [n * sum(row[b] * row[b] * P[b][b] for b in range(n)) + N[a][a] for a, row in enumerate(A)]
+
+
+def shorten(values: Vector, kit: Kit) -> Vector:
+    """Rounded numbers without the digits beyond theirs; exact ones as they are."""
+    return [kit.tidy(value) for value in values] if kit.rounded else values
 
 
 def is_zero(variance: Any, scale: Any, kit: Kit) -> bool:
@@ -224,8 +232,7 @@ def is_fitting(gap: Any, spread: Vector, z: Vector, H: Matrix, mean: Vector, kit
 def weigh_leaves(grown: Sequence[tuple[int, Leaf]], modes: int, kit: Kit) -> ExactStep:
     """Normalise the weights of all branches and take the moments."""
     likelihood = total([leaf for _, leaf in grown])
-    shares = [leaf.weights[0] / likelihood for _, leaf in grown]
-    shares = [kit.tidy(share) for share in shares] if kit.rounded else shares
+    shares = shorten([leaf.weights[0] / likelihood for _, leaf in grown], kit)
     leaves = tuple(
         Leaf(tuple(share if i == mode else 0 for i in range(modes)), leaf.mean, leaf.covariance)
         for share, (mode, leaf) in zip(shares, grown, strict=True)

@@ -62,6 +62,12 @@ def filter(
     The exact posterior is a mixture with one Gaussian for every sequence of modes. Every method branches it, weighs
     the branches by the likelihoods of their innovations, and merges groups of them; the groups tell methods apart.
 
+    Whatever the engine and the form, a bank at which doubles may lose their digits is run twice, in two ways; where
+    the runs disagree, a hundred digits decide, and a remark says so. An innovation covariance S that is singular
+    (perfect sensors) has its density on the range of S, ``(2 pi)^(-r/2) pdet(S)^(-1/2) exp(-v^T S^+ v / 2)``, r its
+    rank and pdet the product of its eigenvalues that are not zero. As in the limit R -> 0, a mode of lower rank whose
+    measurement fits outweighs the others; a measurement that fits no mode is left out, and ``left_out`` names its step.
+
     Returns :class:`Estimates`. Raises NavsymError: ``shape``, ``domain``, ``not-finite``, ``empty``, ``too-large``
     (a tree that does not fit), ``unknown-symbol`` (a key). Source: multistructure:10 to :19.
 
@@ -141,7 +147,7 @@ def run_filter(
         run = functools.partial(run_compiled, rule, count=count)
         twin = run if count >= WORTH_REPEATING else twin
     with np.errstate(over="ignore", invalid="ignore"):  # what leaves the range is refused, with its step
-        estimate = settle(require_range(run(models, z=z)), twin, rule, models, z)
+        estimate = require_range(settle(require_range(run(models, z=z)), twin, rule, models, z))
     return replace(estimate, notes=(*notes, *estimate.notes))
 
 
