@@ -18,6 +18,7 @@ from navsym.language.tokens import EXPONENT
 BITS = 13_000  # size of any number, below 4000 digits
 GROWTH = 9_000  # argument of exp, sinh and cosh: exp(9000) is just below 2**BITS
 FACTORS = 128  # of one product: the algebra compares all of them
+DENOMINATOR = 1_000_000  # of an exponent: the atmosphere has 5.25588 and its inverse, measured laws have six decimals
 ROOT_BITS = 700  # size of a number under a root: sympy looks for square factors in it
 
 BUILDERS: dict[str, Callable[..., sp.Expr]] = {
@@ -91,7 +92,22 @@ def raise_exactly(base: sp.Expr, exponent: sp.Expr) -> sp.Expr:
         raise Refusal(DomainError, "a nonzero base", "zero to a negative power", "correct the denominator")
     if exponent.free_symbols and sign_of_constant(base) == -1:
         raise refuse_value("a negative number to a symbolic power")
+    if exponent.is_Rational and exponent.q > EXPONENT:
+        return require_real(raise_to_decimal(base, exponent))
     return require_real(sp.Pow(base, exponent))
+
+
+def raise_to_decimal(base: sp.Expr, exponent: sp.Rational) -> sp.Expr:
+    """``base**exponent`` with the numbers of the base taken apart into primes.
+
+    Of ``75**(1/131397)`` the algebra would make ``(3 * 5**43799...)**(...)``, a number of a hundred thousand digits.
+    """
+    number, rest = base.as_coeff_Mul()
+    if not number.is_Rational or number <= 0:
+        return sp.Pow(base, exponent)
+    primes = sp.factorrat(number, limit=2**15)
+    powers = [sp.Pow(prime, multiplicity * exponent) for prime, multiplicity in sorted(primes.items())]
+    return sp.Mul(*powers, sp.Pow(rest, exponent))
 
 
 def call_function(name: str, arguments: list[sp.Expr]) -> sp.Expr:
@@ -135,8 +151,8 @@ def bound_exponent(base: sp.Expr, exponent: sp.Expr) -> None:
     bits = number_bits(base)
     if size > EXPONENT:
         raise refuse_size(f"an exponent of at most {EXPONENT}", "a larger one")
-    if exponent.is_Rational and exponent.q > EXPONENT:
-        raise refuse_size(f"a fractional exponent with a denominator of at most {EXPONENT}", "a larger one")
+    if exponent.is_Rational and exponent.q > DENOMINATOR:
+        raise refuse_size(f"a fractional exponent with a denominator of at most {DENOMINATOR}", "a larger one")
     if exponent.is_Rational and total_exponent(base) * size > EXPONENT:
         raise refuse_size(f"a total exponent of at most {EXPONENT}", "powers of powers beyond it")
     if bits * size > BITS:

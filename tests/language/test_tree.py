@@ -17,7 +17,7 @@ from flint import arb
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from navsym.core.balls import precision
+from navsym.core.balls import enclose, precision
 from navsym.core.errors import (
     DomainError,
     DuplicateError,
@@ -349,3 +349,27 @@ def test_hostile_texts_end_soon_with_an_error(text, error):
         read_tree(text, {"x"})
     assert len(caught.value.message) < 400
     assert time.process_time() - started < 10
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "101325*(1 - x/44330.77)**5.25588",
+        "44330.77*(1 - ((x + 9)/101325)**0.190263)",
+        "((x + 9)/101325)**(1/5.25588)",
+        "1.0829**5.25588 + 75**(1/131397) + (8/27)**0.123457",
+        "(24*(9 + x))**0.123457/(x + 9)**-1.5",
+    ],
+)
+def test_decimal_exponents_are_read_exactly_and_soon(text):
+    started = time.process_time()
+    expression = parse(text, SYMBOLS)
+    assert time.process_time() - started < 2
+    assert len(to_text(expression)) < 400
+    ball = enclose_tree(read_tree(text), {"x": arb(2)}, 120)
+    assert ball.overlaps(enclose(expression, {SYMBOLS["x"]: arb(2)}, 120)) and ball.rad() < 1e-20
+
+
+def test_exponents_with_too_many_digits_are_refused():
+    with pytest.raises(TooLargeError, match="denominator of at most 1000000"):
+        parse("x**0.1234567", SYMBOLS)

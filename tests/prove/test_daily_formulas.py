@@ -1,0 +1,37 @@
+"""Formulas of daily use, and some at the edge of the language: each has a verdict or an error that says why."""
+
+from __future__ import annotations
+
+import pytest
+
+import navsym as nav
+
+
+@pytest.mark.parametrize(
+    ("text", "declarations", "status"),
+    [
+        ("(1 - h/44330.77)**5.25588 > 0", {"h": ("0", "11000")}, ("PROVED",)),
+        ("101325*(1 - h/44330.77)**5.25588 >= 22000", {"h": ("0", "11000")}, ("PROVED", "CERTIFIED")),
+        ("(1 - 0.0065*h/288.15)**5.25588 = ((288.15 - 0.0065*h)/288.15)**5.25588", {"h": ("0", "11000")}, ("PROVED",)),
+        ("x**5.25588*x**0.25588 = x**5.51176", {"x": "positive"}, ("PROVED",)),
+        ("((9 + x)**(1/3))**3 = 9 + x", {"x": ("0", "1")}, ("PROVED",)),
+        ("sqrt(cosh(exp(x))**2 - 1) = sinh(exp(x))", {"x": ("1", "100")}, ("PROVED", "CERTIFIED", "OPEN")),
+        ("((x - y)**2)**(1/4) = sqrt(x - y)", {"x": "real", "y": "real"}, ("PROVED", "CONFIRMED", "OPEN")),
+        ("atan2(x - y, 1/x) + atan2(1/x, x - y) = pi/2", {"x": "real", "y": "real"}, ("REFUTED", "OPEN")),
+        ("x**x**x = x**(x**x)", {"x": "positive"}, ("PROVED",)),
+    ],
+)
+def test_each_has_a_verdict(text, declarations, status):
+    assert nav.prove(text, **declarations).status.name in status
+
+
+@pytest.mark.parametrize(
+    "text", ["0**0 = 1", "9**9**9 > 0", "atan2(x - x, 0) = 0", "x**0.1234567 > 0", "2**2**2**2**2 > 0"]
+)
+def test_each_has_an_error_with_a_place(text):
+    with pytest.raises(nav.NavsymError, match=r"left, column \d+: expected .*; got .*; \w+"):
+        nav.prove(text, **{"x": "positive"} if "x" in text else {})
+
+
+def test_a_power_zero_asks_for_a_base_that_is_not_zero():
+    assert nav.prove("x**0 = 1", x="real").assumptions == ("x != 0",)
