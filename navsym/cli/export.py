@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from navsym.cli._options import called_options
 from navsym.cli._progress import Progress
 from navsym.cli.output import emit, table
 from navsym.core.errors import DomainError
@@ -21,17 +22,17 @@ def command(
     claims: Annotated[
         list[str], typer.Argument(help="module:number, FILE.toml:id, or regimes joined as A+B+C; or a ready-made name")
     ],
-    to: Annotated[str, typer.Option("--to", help="languages separated by commas; the documentation lists them")] = "c",
-    out: Annotated[Path, typer.Option("--out", help="folder for the code; made when it is not there")] = Path("export"),
-    real: Annotated[str, typer.Option("--real", help="floating-point type of the code: double or float")] = "double",
+    to: Annotated[str, typer.Option(help="languages separated by commas; the documentation lists them")] = "c",
+    out: Annotated[Path, typer.Option(help="folder for the code; made when it is not there")] = Path("export"),
+    real: Annotated[str, typer.Option(help="floating-point type of the code: double or float")] = "double",
     force: Annotated[bool, typer.Option("--force", help="replace existing files")] = False,
     allow_confirmed: Annotated[
         bool, typer.Option("--allow-confirmed", help="accept claims that were only sampled (CONFIRMED)")
     ] = False,
     license_: Annotated[str, typer.Option("--license", help="SPDX identifier for the headers")] = "Apache-2.0",
-    vectors: Annotated[int, typer.Option("--vectors", min=4, max=100_000, help="test vectors for each function")] = 48,
+    vectors: Annotated[int, typer.Option(min=4, max=100_000, help="test vectors for each function")] = 48,
     unit: Annotated[
-        list[str] | None, typer.Option("--unit", help="unit of a symbol or result, such as T=s; may be repeated")
+        list[str] | None, typer.Option(help="unit of a symbol or result, such as T=s; may be repeated")
     ] = None,
     run: Annotated[
         bool, typer.Option("--run/--no-run", help="compile and run the code on its vectors where this machine can")
@@ -48,7 +49,7 @@ def command(
     words = ["navsym", "export", *claims, "--to", to, "--real", real, "--license", license_, "--vectors", str(vectors)]
     words += ["--allow-confirmed"] if allow_confirmed else []
     words += [word for text in unit or [] for word in ("--unit", text)]
-    with Progress("parts", resume=RESUME) as bar:
+    with called_options("export"), Progress("parts", resume=RESUME) as bar:
         exported = nav.export(
             claims,
             to=to.split(","),

@@ -65,7 +65,7 @@ def require_free(out: Path, files: Mapping[str, str], *, force: bool = False) ->
     if taken and not force:
         raise FolderError(
             f"expected new files; got {len(taken)} that are there already, {taken[0].name} among them; "
-            "add --force or choose another --out",
+            "add force=True, or choose another folder",
             where=str(out),
         )
     return targets

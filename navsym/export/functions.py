@@ -49,7 +49,7 @@ def require_exportable(claim: str, verdict: Verdict, correction: str | None, all
         advice = f"export {correction}, which corrects it" if correction else "correct it first"
         raise RefusedError(f"expected a claim that holds; got {claim}, which is refuted; {advice}")
     if verdict.status == CONFIRMED:
-        advice = "add --allow-confirmed if samples are enough for you"
+        advice = "add allow_confirmed=True if samples are enough for you"
         raise RefusedError(f"expected a proved claim; got {claim}, which is only CONFIRMED by samples; {advice}")
     raise RefusedError(
         f"expected a proved claim; got {claim}, which is {verdict.status} ({verdict.evidence[:160]}); prove it first"

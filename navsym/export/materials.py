@@ -79,14 +79,25 @@ def functions_of_claim(
     if text in ALGORITHMS:
         return algorithm(text, lambda claim: material_of_claim(claim, allow_confirmed), real)
     name, _, claims = text.rpartition("=") if "=" in text else ("", "", text)
-    parts = [material_of_claim(part, allow_confirmed) for part in claims.split("+")]
+    parts = [material_of_claim(part, allow_confirmed) for part in split_regimes(claims)]
     known = {**UNITS.get(claims.partition(":")[0], {}), **(units or {})}
     return [function_of(parts, real=real, name=function_name(name) if name else None, layout=Layout(units=known))]
 
 
+def split_regimes(text: str) -> list[str]:
+    """The ids in ``A+B+C``: a plus joins two of them where an id follows that is no rest of one with a plus in it."""
+    found: list[str] = []
+    for part in re.split(r"\+(?=[^+:]+:)", text):
+        path, _, start = found[-1].partition(".toml:") if found else ("", "", "")
+        whole = start and f"{start}+{part}" in {claim.id for claim in read_claims(Path(f"{path}.toml")).claims}
+        found[-1:] = [f"{found[-1]}+{part}"] if whole else [*found[-1:], part]
+    return found
+
+
 def material_of_claim(text: str, allow_confirmed: bool) -> Material:
     """A claim of a paper or of a file, decided."""
-    module, colon, number = text.rpartition(":")
+    file, ending, label = text.partition(".toml:")
+    module, colon, number = (f"{file}.toml", ":", label) if ending else text.rpartition(":")
     if not colon or not module or not number:
         message = f"expected MODULE:NUMBER or FILE.toml:ID; got {text[:80]!r}; correct it"
         raise DomainError(message, where="claim")

@@ -70,7 +70,8 @@ def files_of(functions: Sequence[ExportedFunction], order: Order) -> dict[str, s
 def license_id(text: str) -> str:
     """The identifier as it is; raises DomainError when it cannot be one of SPDX."""
     if not text or len(text) > 80 or not all(c.isascii() and (c.isalnum() or c in ".-+() ") for c in text):
-        raise DomainError(f"expected an SPDX identifier such as Apache-2.0; got {text[:40]!r}; correct --license")
+        message = f"expected an SPDX identifier such as Apache-2.0; got {text[:40]!r}; correct it"
+        raise DomainError(message, where="export: license")
     return text
 
 

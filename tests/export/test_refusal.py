@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 import sympy as sp
 
+import navsym as nav
 from navsym.claims import CONFIRMED, OPEN, Bound, Equation, Finding, Property, Verdict
 from navsym.cli.main import run
 from navsym.core.errors import DomainError, NavsymError
@@ -57,7 +58,7 @@ def test_a_user_formula_that_holds_is_exported_and_checked(capsys, tmp_path: Pat
 def test_open_and_confirmed_claims_are_refused() -> None:
     with pytest.raises(RefusedError, match="OPEN"):
         material("m:1", TRUE, Verdict(OPEN, "none", evidence="not decided"))
-    with pytest.raises(RefusedError, match="allow-confirmed"):
+    with pytest.raises(RefusedError, match="allow_confirmed=True"):
         material("m:1", TRUE, Verdict(CONFIRMED, "sampling"))
     assert material("m:1", TRUE, Verdict(CONFIRMED, "sampling"), allow_confirmed=True).source.status == "CONFIRMED"
 
@@ -90,7 +91,7 @@ def test_names_differ_without_regard_to_case() -> None:
 
 def test_nothing_is_overwritten_unasked(tmp_path: Path) -> None:
     write_folder(tmp_path / "e", {"c/a.c": "one"})
-    with pytest.raises(FolderError, match="--force"):
+    with pytest.raises(FolderError, match="force=True"):
         write_folder(tmp_path / "e", {"c/a.c": "two"})
     write_folder(tmp_path / "e", {"c/a.c": "two"}, force=True)
     assert (tmp_path / "e" / "c" / "a.c").read_text() == "two"
@@ -254,3 +255,34 @@ def test_a_function_is_not_called_like_one_of_its_arguments() -> None:
     """Fortran has one name for one thing, in capitals or not."""
     found = function_of([material("m:1", TRUE, decide(TRUE))], name="A")
     assert found.name == "A_" and [i.name for i in found.inputs] == ["a"]
+
+
+CLAIM = '[symbols]\nx = "real"\n' + "".join(
+    f'[[claim]]\nid = "{label}"\nleft = "{k}*x + x"\nright = "{k + 1}*x"\n'
+    for k, label in enumerate(("a", "a+b", "a+b:c", "x+1.2*"), 1)
+)
+
+
+@pytest.mark.parametrize(
+    ("label", "names"), [("a+b", ["f_a_b"]), ("a+b:c", ["f_a_b_c"]), ("x+1.2*", ["f_x_1_2_corrected"])]
+)
+def test_a_plus_in_the_id_of_a_claim_is_no_join(tmp_path: Path, label: str, names: list[str]) -> None:
+    (tmp_path / "f.toml").write_text(CLAIM)
+    found = nav.export(f"{tmp_path / 'f.toml'}:{label}", to="python", out=tmp_path / "out", run=False, vectors=4)
+    assert [f["name"] for f in found.document()["functions"]] == [name]
+
+
+def test_a_remedy_names_the_argument_in_python_and_the_option_on_the_command_line(tmp_path: Path, capsys) -> None:
+    (tmp_path / "f.toml").write_text(CLAIM)
+    what, out = f"{tmp_path / 'f.toml'}:a", tmp_path / "out"
+    nav.export(what, to="python", out=out, run=False, vectors=4)
+    with pytest.raises(nav.NavsymError, match=r"; add force=True, or choose another folder$"):
+        nav.export(what, to="python", out=out, run=False, vectors=4)
+    words = ["export", what, "--out", str(out), "--no-run", "--vectors", "4"]
+    assert run([*words, "--to", "python"]) == 2
+    said = capsys.readouterr().err
+    assert "; add --force, or choose another folder" in said and "=True" not in said
+    with pytest.raises(nav.NavsymError) as caught:
+        nav.export(what, to="cobol", out=out)
+    assert caught.value.where == "export: to"
+    assert run([*words, "--to", "cobol"]) == 2 and "--to: expected languages" in capsys.readouterr().err

@@ -150,7 +150,8 @@ def find_targets(names: Sequence[str], real: str) -> list[Target]:
     found = []
     for name in dict.fromkeys(ALIASES.get(n.strip().lower(), n.strip().lower()) for n in names if n.strip()):
         if name not in TARGETS:
-            raise DomainError(f"expected languages among {', '.join(TARGETS)}; got {name[:40]!r}; correct --to")
+            message = f"expected languages among {', '.join(TARGETS)}; got {name[:40]!r}; correct it"
+            raise DomainError(message, where="export: to")
         if real not in TARGETS[name].reals:
             raise DomainError(f"expected a language with {real}; got {name}, which has only double; leave it out")
         found.append(TARGETS[name])
