@@ -53,11 +53,6 @@ class Line:
 LINE = Line()
 
 
-def remarks_wanted() -> bool:
-    """True where somebody asked for progress without a terminal."""
-    return os.environ.get("NAVSYM_PROGRESS", "0") not in ("", "0")
-
-
 class Progress:
     """Counts the steps of a long job; as a context it says how to go on when it is interrupted.
 
@@ -93,7 +88,7 @@ class Progress:
             return
         if LINE.drawn:
             LINE.show(self.words(now, doing))
-        elif remarks_wanted() and now - self.told >= BETWEEN_REMARKS:
+        elif os.environ.get("NAVSYM_PROGRESS", "0") not in ("", "0") and now - self.told >= BETWEEN_REMARKS:
             self.told = now
             sys.stderr.write(self.words(now, "") + "\n")
             sys.stderr.flush()

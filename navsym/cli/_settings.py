@@ -1,4 +1,4 @@
-"""Values of parameters from ``--set NAME=VALUE``, read alike by every verb that takes a model file."""
+"""Options NAME=VALUE, read alike by every verb: values of parameters from ``--set``, candidates of measurements."""
 
 from __future__ import annotations
 
@@ -7,19 +7,24 @@ from collections.abc import Sequence
 from navsym.core.errors import DuplicateError, ExpressionSyntaxError
 
 
-def values_of(settings: Sequence[str] | None) -> dict[str, str]:
-    """NAME=VALUE settings as a mapping.
+def values_of(
+    settings: Sequence[str] | None,
+    option: str = "--set",
+    form: str = "NAME=VALUE",
+    example: str = "--set T=5/2",
+    twice: str = "expected one value of {}; got two; give one",
+) -> dict[str, str]:
+    """NAME=VALUE settings of an option as a mapping.
 
     Raises ExpressionSyntaxError without a sign of equality and DuplicateError for a name given twice.
     """
     values: dict[str, str] = {}
     for setting in settings or ():
-        name, equals, value = setting.partition("=")
-        name = name.strip()
+        name, equals, value = (part.strip() for part in setting.partition("="))
         if not equals or not name:
-            message = f"expected NAME=VALUE; got {setting[:40]!r}; write --set T=5/2"
-            raise ExpressionSyntaxError(message, where="--set")
+            message = f"expected {form}; got {setting[:40]!r}; write {example}"
+            raise ExpressionSyntaxError(message, where=option)
         if name in values:
-            raise DuplicateError(f"expected one value of {name}; got two; give one", where="--set")
-        values[name] = value.strip()
+            raise DuplicateError(twice.format(name[:40]), where=option)
+        values[name] = value
     return values

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import sys
 import time
 from typing import Annotated, Any
@@ -9,7 +10,7 @@ from typing import Annotated, Any
 import typer
 
 from navsym.cli._progress import Progress
-from navsym.cli.output import emit, table
+from navsym.cli.output import emit
 from navsym.core.choice import one_of
 
 #: Campaign -> what is attacked, for the table of TRUST.md.
@@ -52,9 +53,9 @@ def command(
     Example: navsym campaign mutants guaranteed_velocity --share 0.02 --jobs 2
     """
     one_of(name, NAMES, "NAME")
-    start_campaign, started = load_attacks().start_campaign, time.monotonic()
+    attacks, started = load_attacks(), time.monotonic()
     with Progress("batches", resume=RESUME[fresh]) as bar:
-        document = start_campaign(
+        document = attacks.start_campaign(
             name,
             papers=modules or [],
             share=share,
@@ -66,7 +67,10 @@ def command(
             progress=bar.follow,
         )
     spent = time.monotonic() - started
-    emit(document, as_json=json_, text=lambda: markdown_row(document, spent) if markdown else as_text(document))
+    words = [word for word in sys.argv[1:] if word not in ("--markdown", "--fresh")]
+    row = {"what": NAMES[name], "words": words, "seconds": spent}
+    show = functools.partial(attacks.markdown_row, **row) if markdown else attacks.as_text
+    emit(document, as_json=json_, text=lambda: show(document))
     return 1 if document["wrong"] or document["stopped"] or document["unsaved"] else 0
 
 
@@ -86,35 +90,3 @@ def load_attacks() -> Any:
         "expected the folder tests/attacks of a checkout; got an installation without it; "
         "clone the repository of navsym and run the command in its folder"
     )
-
-
-def markdown_row(document: dict[str, Any], seconds: float) -> str:
-    """The row of the table in TRUST.md: what was attacked, the command, the outcome, the date."""
-    import datetime
-    import shlex
-
-    words = shlex.join(word for word in sys.argv[1:] if word not in ("--markdown", "--fresh"))
-    # Counts by the kind of change stand beside those by outcome.
-    said = [f"{n:,} {outcome}" for outcome, n in document["counts"].items() if not outcome.startswith("kind ")]
-    said += [f"{len(document[name])} {name}" for name in ("wrong", "stopped") if document[name] or name == "wrong"]
-    if document["measured"]:
-        said.append(f"slowest {max(row['slowest'] for row in document['measured'].values()):.2f} s")
-    took = f"{seconds / 60:.0f} min" if seconds > 90 else f"{seconds:.0f} s"
-    took += f", {document['resumed']} of {document['batches']} batches kept from before" * bool(document["resumed"])
-    date = datetime.date.today().isoformat()
-    return f"| {NAMES[document['campaign']]} | `navsym {words}` | {', '.join(said)} ({took}) | {date} |"
-
-
-def as_text(document: dict[str, Any]) -> str:
-    """Counts by outcome, what was measured of each reader, and the first of what is wrong, open, stopped, not kept."""
-    rows = [(outcome, str(count)) for outcome, count in document["counts"].items()]
-    lines = [table((document["campaign"], "count"), rows)]
-    measured = document["measured"]
-    if measured:
-        names = list(next(iter(measured.values())))
-        rows_measured = [(reader, *(f"{row[n]:g}" for n in names)) for reader, row in measured.items()]
-        lines.append(table(("reader", *names), rows_measured))
-    lines.append(f"{document['batches']} batches, {document['resumed']} resumed, wrong: {len(document['wrong'])}")
-    for key, word in (("wrong", "wrong"), ("open", "open"), ("stopped", "stopped"), ("unsaved", "not kept")):
-        lines += [f"{word}: {item}" for item in document[key][:20]]
-    return "\n".join(lines)

@@ -15,10 +15,10 @@ if TYPE_CHECKING:
 
 
 def command(
-    n: Annotated[int, typer.Option("--n", help="order of the motion, 1 to 120")],
-    tau: Annotated[str, typer.Option("--tau", help="step in seconds: decimal or fraction, read exactly")] = "0.2",
-    rho: Annotated[str, typer.Option("--rho", help="factor of the speed, 1/m: decimal or fraction")] = "1/6371000",
-    digits: Annotated[int, typer.Option("--digits", help="significant digits of the enclosures")] = 30,
+    n: Annotated[int, typer.Option(help="order of the motion, 1 to 120")],
+    tau: Annotated[str, typer.Option(help="step in seconds: decimal or fraction, read exactly")] = "0.2",
+    rho: Annotated[str, typer.Option(help="factor of the speed, 1/m: decimal or fraction")] = "1/6371000",
+    digits: Annotated[int, typer.Option(help="significant digits of the enclosures")] = 30,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> None:
     """Certified 2-norm condition numbers of the matrices N_p, N_pN, N_f and N_s, beside double precision.

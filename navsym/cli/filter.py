@@ -17,17 +17,13 @@ def command(
     file: Annotated[
         Path, typer.Argument(metavar="BANK.json", help="JSON: models, mode_transition, initial, measurements")
     ],
-    method: Annotated[
-        str, typer.Option("--method", help="pulsating, k-pulsating, polygaussian, imm, gpb2 or exact")
-    ] = "pulsating",
-    depth: Annotated[
-        int | None, typer.Option("--depth", help="K of k-pulsating: steps between two mergers  [default: 2]")
-    ] = None,
+    method: Annotated[str, typer.Option(help="pulsating, k-pulsating, polygaussian, imm, gpb2 or exact")] = "pulsating",
+    depth: Annotated[int | None, typer.Option(help="K of k-pulsating: steps between two mergers  [default: 2]")] = None,
     missing: Annotated[
         bool, typer.Option("--missing", help="take null in a measurement for a number that did not come")
     ] = False,
     form: Annotated[
-        str, typer.Option("--form", help="how covariances are kept: joseph, or the factors qr, potter, ud")
+        str, typer.Option(help="how covariances are kept: joseph, or the factors qr, potter, ud")
     ] = "joseph",
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> None:

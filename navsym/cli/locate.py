@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 def command(
     config: Annotated[Path, typer.Argument(help="JSON: map, track, position and velocity hypotheses")],
-    method: Annotated[str, typer.Option("--method", help="position, full, sequential or refined")] = "full",
+    method: Annotated[str, typer.Option(help="position, full, sequential or refined")] = "full",
     maps: Annotated[bool, typer.Option("--maps", help="add the criterion over positions, row = j")] = False,
     offset_free: Annotated[
         bool, typer.Option("--offset-free", help="heights have an unknown constant error; estimate it too")

@@ -187,14 +187,9 @@ def translated(error: Exception, arguments: Sequence[str]) -> NavsymError:
         return usage_error(error, arguments)
     if os.environ.get("NAVSYM_DEBUG"):
         traceback.print_exception(error, file=sys.stderr)
-    if isinstance(error, ModuleNotFoundError) and not is_our_own(error.name):
-        return missing_module(error)
-    return internal(error)
-
-
-def is_our_own(module: str | None) -> bool:
-    """True for a module of this project: when one is missing, that is a defect, not the machine."""
-    return (module or "navsym").partition(".")[0] in ("navsym", "navsym_papers")
+    # A module of this project that is missing is a defect, not the machine.
+    ours = (getattr(error, "name", None) or "navsym").partition(".")[0] in ("navsym", "navsym_papers")
+    return missing_module(error) if isinstance(error, ModuleNotFoundError) and not ours else internal(error)
 
 
 def usage_error(error: Any, arguments: Sequence[str]) -> NavsymError:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -10,7 +10,7 @@ import typer
 
 from navsym.cli._settings import values_of
 from navsym.cli.output import emit, table, write_text
-from navsym.core.errors import DuplicateError, ExpressionSyntaxError, NavsymError
+from navsym.core.errors import NavsymError
 
 
 def command(
@@ -43,7 +43,8 @@ def command(
     """
     import navsym as nav
 
-    named = read_candidates(candidate or [])
+    form, twice = "NAME = formula of the states", "expected one formula of {}; got two; rename one"
+    named = values_of(candidate, "--candidate", form, '"gps = x"', twice)
     try:
         answer = nav.observe(
             file, split=split, poles=poles, restore=restoring, candidates=named, values=values_of(set_)
@@ -58,29 +59,20 @@ def command(
     emit(answer.document(), as_json=json_, text=lambda: as_text(answer.document()))
 
 
-def read_candidates(texts: Sequence[str]) -> dict[str, str]:
-    """``NAME = formula`` each as a mapping."""
-    formulas: dict[str, str] = {}
-    for text in texts:
-        name, equals, formula = (part.strip() for part in text.partition("="))
-        if not equals or not name:
-            message = f'expected NAME = formula of the states; got {text[:40]!r}; write "gps = x"'
-            raise ExpressionSyntaxError(message, where="--candidate")
-        if name in formulas:
-            raise DuplicateError(f"expected one formula of {name[:40]}; got two; rename one", where="--candidate")
-        formulas[name] = formula
-    return formulas
-
-
 # Text for people
 
 
 def as_text(data: Mapping[str, Any]) -> str:
     """Tables of the document."""
-    chosen = split_text(data["split"]) if data["split"] else ""
     restored = restored_text(data["restore"]) if "restore" in data else ""
-    blocks = (overview(data), restored, drops_text(data), splits_text(data), chosen, *gains_text(data["gains"]))
-    return "\n".join(block for block in blocks if block)
+    chosen = split_text(data["split"]) if data["split"] else ""
+    rows = [
+        (s["i"], s["j"], s["det_L"], "least max(i, j)" if [s["i"], s["j"]] == data["best_split"] else "")
+        for s in data["splits"]
+    ]
+    splits = table(["i", "j", "det L", ""], rows) if rows else ""
+    gains = [f"{name} = ({', '.join(row)})\n" for name, row in data["gains"].items() if name != "stable" and row]
+    return "\n".join(block for block in (overview(data), restored, drops_text(data), splits, chosen, *gains) if block)
 
 
 def overview(data: Mapping[str, Any]) -> str:
@@ -115,24 +107,6 @@ def drop_row(drop: Mapping[str, Any]) -> list[str]:
     where = " and ".join(f"{zero} = 0" for zero in drop["zeros"])
     excluded = " (excluded by declaration)" if drop["excluded_by_declaration"] else ""
     return [drop["subspace"], where + excluded, "proved" if drop["complete"] else "not proved"]
-
-
-def splits_text(data: Mapping[str, Any]) -> str:
-    """The regular splits with their determinants; the best one is marked."""
-    if not data["splits"]:
-        return ""
-    return table(["i", "j", "det L", ""], [split_row(s, data["best_split"]) for s in data["splits"]])
-
-
-def split_row(split: Mapping[str, Any], best: list[int]) -> list[str]:
-    """One split as a row: sizes, determinant, a mark for the best."""
-    sizes = [split["i"], split["j"]]
-    return [*map(str, sizes), split["det_L"], "least max(i, j)" if sizes == best else ""]
-
-
-def gains_text(gains: Mapping[str, Any]) -> list[str]:
-    """One line for each vector of gains."""
-    return [f"{name} = ({', '.join(values)})\n" for name, values in gains.items() if name != "stable" and values]
 
 
 def split_text(chosen: Mapping[str, Any]) -> str:

@@ -15,14 +15,10 @@ from navsym.cli.output import emit, table
 
 def command(
     name: Annotated[str, typer.Argument(help="joint_correction, multistructure, terrain_search or trajectory")],
-    runs: Annotated[int | None, typer.Option("--runs", help="Monte-Carlo runs; default: those of the study")] = None,
-    steps: Annotated[
-        int | None, typer.Option("--steps", help="time steps of each run; default: those of the study")
-    ] = None,
-    seed: Annotated[int, typer.Option("--seed", help="same seed, same answer")] = 1,
-    journal: Annotated[
-        Path | None, typer.Option("--journal", help="keep finished runs in this file and go on from it")
-    ] = None,
+    runs: Annotated[int | None, typer.Option(help="Monte-Carlo runs; default: those of the study")] = None,
+    steps: Annotated[int | None, typer.Option(help="time steps of each run; default: those of the study")] = None,
+    seed: Annotated[int, typer.Option(help="same seed, same answer")] = 1,
+    journal: Annotated[Path | None, typer.Option(help="keep finished runs in this file and go on from it")] = None,
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> None:
     """Run the numerical experiment of a paper again; its figures, with confidence intervals where it is random.

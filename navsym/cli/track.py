@@ -17,22 +17,20 @@ if TYPE_CHECKING:
 def command(
     file: Annotated[Path, typer.Argument(help="CSV of time, latitude, longitude, height, or an RTKLIB .pos")],
     window: Annotated[
-        float | None, typer.Option("--window", help="length of the sliding window, seconds; chooses --method window")
+        float | None, typer.Option(help="length of the sliding window, seconds; chooses --method window")
     ] = None,
-    order: Annotated[
-        int, typer.Option("--order", help="states of the motion: 2 to velocity, 3 to acceleration, up to 6")
-    ] = 3,
+    order: Annotated[int, typer.Option(help="states of the motion: 2 to velocity, 3 to acceleration, up to 6")] = 3,
     method: Annotated[
-        str | None, typer.Option("--method", help="differences, window, filter, smoother (default) or guaranteed")
+        str | None, typer.Option(help="differences, window, filter, smoother (default) or guaranteed")
     ] = None,
     sigma: Annotated[
-        float | None, typer.Option("--sigma", help="standard deviation of positions, metres; default: the file's")
+        float | None, typer.Option(help="standard deviation of positions, metres; default: the file's")
     ] = None,
     gate: Annotated[
-        float, typer.Option("--gate", help="standard deviations beyond which an innovation has less weight; 0: off")
+        float, typer.Option(help="standard deviations beyond which an innovation has less weight; 0: off")
     ] = 5.0,
     policy: Annotated[
-        str, typer.Option("--policy", help="strict refuses bad rows; repair mends or drops them, and lists them")
+        str, typer.Option(help="strict refuses bad rows; repair mends or drops them, and lists them")
     ] = "strict",
     json_: Annotated[bool, typer.Option("--json", help="print one JSON document")] = False,
 ) -> None:

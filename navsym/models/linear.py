@@ -74,13 +74,6 @@ class LinearModel:
         symbols = self.F.free_symbols | self.G.free_symbols | self.H.free_symbols
         return tuple(sorted(symbols - {self.time}, key=str))
 
-    def unit(self, state: str | int) -> sp.ImmutableMatrix:
-        """The functional (n, 1) that picks one state, by name or by number."""
-        place = self.states.index(state) if isinstance(state, str) and state in self.states else state
-        if not isinstance(place, int) or not 0 <= place < self.size:
-            raise DomainError(f"state: expected one of {', '.join(self.states)}; got {state!r}; name one of them")
-        return sp.ImmutableMatrix(self.size, 1, lambda i, _: int(i == place))
-
     def _repr_latex_(self) -> str:
         """The equations of the model with named states, for notebooks."""
         states = r" \\ ".join(rf"\text{{{latex_words(name)}}}" for name in self.states)
@@ -93,9 +86,10 @@ class LinearModel:
     def at(self, values: Mapping[sp.Symbol, Any]) -> LinearModel:
         """The model with exact values or expressions put in for some of its parameters.
 
-        This is how a degenerate case is reached: substitute first, then derive.
+        This is how a degenerate case is reached: substitute first, then derive. Raises NotFiniteError at a pole.
         """
-        F, G, H = (substitute_exactly(matrix, values) for matrix in (self.F, self.G, self.H))
+        exact = {symbol: exact_entry("value of", 0, 0, value) for symbol, value in values.items()}
+        F, G, H = (matrix.subs(exact, simultaneous=True) for matrix in (self.F, self.G, self.H))
         return LinearModel(F, G, H, self.states, self.measurements, self.time)
 
 
@@ -104,7 +98,8 @@ def exact_matrix(name: str, value: Any) -> sp.ImmutableMatrix:
     if isinstance(value, sp.MatrixBase):
         rows = value.tolist()
     else:
-        rows = [list(row) for row in value] if is_nested(value) else [[value]]
+        nested = isinstance(value, Sequence) and all(isinstance(r, Sequence) and not isinstance(r, str) for r in value)
+        rows = [list(row) for row in value] if nested else [[value]]
     if len({len(row) for row in rows}) > 1:
         lengths = [len(row) for row in rows]
         raise ShapeError(f"{name}: expected rows of one length; got {lengths}; complete them")
@@ -112,11 +107,6 @@ def exact_matrix(name: str, value: Any) -> sp.ImmutableMatrix:
     if isinstance(value, sp.MatrixBase):
         return sp.ImmutableMatrix(*value.shape, [entry for row in entries for entry in row])
     return sp.ImmutableMatrix(entries)
-
-
-def is_nested(value: Any) -> bool:
-    """True for a list of lists."""
-    return isinstance(value, Sequence) and all(isinstance(row, Sequence) and not isinstance(row, str) for row in value)
 
 
 def exact_entry(name: str, i: int, j: int, entry: Any) -> sp.Expr:
@@ -168,12 +158,6 @@ def need_different(name: str, values: Iterable[Any], count: int, why: str) -> tu
 def number_names(letter: str, count: int) -> tuple[str, ...]:
     """Default names: the letter with 1, 2, ..."""
     return tuple(f"{letter}{place + 1}" for place in range(count))
-
-
-def substitute_exactly(matrix: sp.ImmutableMatrix, values: Mapping[sp.Symbol, Any]) -> sp.ImmutableMatrix:
-    """Simultaneous exact substitution; a pole shows itself as NotFiniteError at construction."""
-    exact = {symbol: exact_entry("value of", 0, 0, value) for symbol, value in values.items()}
-    return matrix.subs(exact, simultaneous=True)
 
 
 def linear_row(formula: sp.Expr, states: Sequence[sp.Symbol], where: str) -> list[sp.Expr]:

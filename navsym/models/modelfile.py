@@ -154,13 +154,16 @@ def read_basis(document: Table, where: str, parameters: Mapping[str, Parameter],
     require_distinct((*known, variable), join_place(place, "variable"))
     H = read_rows(require_key(table, "H", place), {**known, variable: made}, join_place(place, "H"))
     names = tuple(f"c{i}" for i in range(len(H[0])))
+    ends = join_place(place, "interval")
+    start, end = read_vector(require_key(table, "interval", place), known, ends, 2, "start and end")
+    require_order(start, end, ends)
     return BasisFile(
         name=as_title(table.get("name", "basis"), join_place(place, "name")),
         parameters=parameters,
         variable=made,
         H=H,
         sigma=read_sigmas(table, known, len(H), place),
-        interval=read_ends(require_key(table, "interval", place), known, join_place(place, "interval")),
+        interval=(start, end),
         targets=read_targets(document, known, names, where),
     )
 
@@ -191,13 +194,6 @@ def read_sigmas(table: Table, known: Known, count: int, where: str) -> tuple[Exp
     for i, sigma in enumerate(sigmas):
         require_positive(sigma, "a standard deviation", join_place(place, i))
     return sigmas
-
-
-def read_ends(value: Any, known: Known, where: str) -> tuple[Expr, Expr]:
-    """Start and end of the variable, in order."""
-    start, end = read_vector(value, known, where, 2, "start and end")
-    require_order(start, end, where)
-    return start, end
 
 
 def read_targets(document: Table, known: Known, names: tuple[str, ...], where: str) -> Targets:
@@ -356,13 +352,8 @@ def read_measurements(document: Table, moving: Known, n: int, where: str) -> tup
         name = as_label(table.get("name", f"z{i + 1}"), join_place(here, "name"))
         h = read_vector(require_key(table, "h", here), moving, join_place(here, "h"), n, "one per state")
         fixed = {key: value for key, value in moving.items() if key != "t"}
-        found.append(Measurement(name, h, read_sigma(table.get("sigma", 1), fixed, join_place(here, "sigma"))))
+        sigma = read_entry(table.get("sigma", 1), fixed, join_place(here, "sigma"))
+        require_positive(sigma, "a standard deviation", join_place(here, "sigma"))
+        found.append(Measurement(name, h, sigma))
     require_distinct((measurement.name for measurement in found), place)
     return tuple(found)
-
-
-def read_sigma(value: Any, known: Known, where: str) -> Expr:
-    """A bound of a standard deviation, above zero."""
-    sigma = read_entry(value, known, where)
-    require_positive(sigma, "a standard deviation", where)
-    return sigma

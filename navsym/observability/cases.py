@@ -89,7 +89,8 @@ def drops_by_all_minors(rows: Matrix, rank: int, ring: Ring) -> list[System] | N
 def visit(search: Search, rows: Matrix, rank: int, system: System) -> None:
     """One case: the drops among the real zeros of a system (all points for the empty one)."""
     name = "; ".join(sorted(map(str, system)))
-    if name in search.seen or is_covered(system, search.found):
+    covered = any(all(lies_in_ideal(f, system) for f in other) for other in search.found)
+    if name in search.seen or covered:  # its zeros visibly lie inside a drop that is known already
         return
     search.seen.add(name)
     search.cases += 1
@@ -256,8 +257,3 @@ def pivot_on(work: Matrix, step: int, free: Sequence[int], system: System) -> tu
         if place is None or not lies_in_ideal(shown[place[0]][place[1]], system):
             return place
         shown[place[0]][place[1]] = zero
-
-
-def is_covered(system: System, found: Sequence[System]) -> bool:
-    """True when the zeros of a system visibly lie inside a drop that is known already."""
-    return any(all(lies_in_ideal(f, system) for f in other) for other in found)

@@ -13,7 +13,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
-from typing import Any
 
 import sympy as sp
 from flint import nmod_mat
@@ -111,7 +110,7 @@ def annihilates(theta: Sequence[Poly], vectors: Matrix, ring: Ring) -> bool:
 
 def monic_factors(coefficients: Sequence[Poly], degree: int, ring: Ring) -> list[list[Poly]]:
     """Monic divisors of the given degree of a monic polynomial in p, each as coefficients, the 1 first."""
-    wider, p = with_variable(ring)
+    wider, p = Ring.over([*ring.symbols, sp.Dummy("p")]).context, len(ring.symbols)
     total: Poly = sum(
         (
             wider.from_dict({(*powers, place): int(c) for powers, c in coefficient.to_dict().items()})
@@ -131,12 +130,6 @@ def monic_factors(coefficients: Sequence[Poly], degree: int, ring: Ring) -> list
                     value = multiply_coefficients(value, f)
             found.append(value)
     return found
-
-
-def with_variable(ring: Ring) -> tuple[Any, int]:
-    """The ring with one generator more, and the place of that generator."""
-    wider = Ring.over([*ring.symbols, sp.Dummy("p")])
-    return wider.context, len(ring.symbols)
 
 
 def monic_by_power(f: Poly, place: int, ring: Ring) -> list[Poly]:
@@ -278,7 +271,12 @@ def chain_of(name: str, row: list[Poly], bottom: Poly, matrix: Matrix, clock: Po
     while True:
         while len(vectors) <= dimension:
             vectors.append(transposed_times(matrix, vectors[-1], ring))
-        coefficients = end_relation(vectors, dimension, matrix, ring, point)
+        theta = chain_relation(vectors, dimension, matrix, ring, point)
+        coefficients = (
+            linear_relation(vectors[:dimension], vectors[dimension], ring)
+            if theta is None
+            else [Quotient(part, ring.constant(1)) for part in theta]
+        )
         if coefficients is not None:
             break
         dimension += 1  # the points were unlucky: the relation, not they, decides
@@ -287,16 +285,6 @@ def chain_of(name: str, row: list[Poly], bottom: Poly, matrix: Matrix, clock: Po
         cancel_fraction(c.top * clock**j, c.bottom * clock**m) for j, c in enumerate(coefficients)
     )
     return Chain(name, vectors[:m], bottom, clock, companion)
-
-
-def end_relation(
-    vectors: Matrix, dimension: int, matrix: Matrix, ring: Ring, point: Sequence[int]
-) -> list[Quotient] | None:
-    """The coefficients of the last vector in the others, checked; None when it does not depend on them."""
-    found = chain_relation(vectors, dimension, matrix, ring, point)
-    if found is not None:
-        return [Quotient(theta, ring.constant(1)) for theta in found]
-    return linear_relation(vectors[:dimension], vectors[dimension], ring)
 
 
 def generic_rank(rows: Matrix, matrix: Matrix, ring: Ring) -> tuple[int, tuple[int, ...]]:
@@ -469,19 +457,17 @@ def observe_jointly(model: LinearModel) -> JointObservability:
     entries = [ring.expression(x) for vector in directions for x in vector]
     return JointObservability(
         states=model.states,
-        measurements=tuple(measurement_of(chain, ring) for chain in chains.chains),
+        measurements=tuple(
+            MeasurementObservability(
+                chain.name, chain_rows(chain.vectors, chain, ring), tuple(map(ring.expression, chain.companion))
+            )
+            for chain in chains.chains
+        ),
         staircase=chains.staircase,
         unobservable=sp.ImmutableMatrix(len(directions), n, entries),
         assumptions=model_denominators(chains),
         chains=chains,
     )
-
-
-def measurement_of(chain: Chain, ring: Ring) -> MeasurementObservability:
-    """The chain of one measurement in sympy."""
-    rows = chain_rows(chain.vectors, chain, ring)
-    companion = tuple(ring.expression(c) for c in chain.companion)
-    return MeasurementObservability(chain.name, rows, companion)
 
 
 def chain_rows(vectors: Matrix, chain: Chain, ring: Ring) -> sp.ImmutableMatrix:

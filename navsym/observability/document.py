@@ -74,7 +74,7 @@ def drop_data(drop: RankDrop) -> dict[str, Any]:
         "condition": f"{text} = 0",
         "zeros": zeros,
         "complete": drop.complete,
-        "excluded_by_declaration": drop.allowed is False,
+        "excluded_by_declaration": drop.excluded,
     }
 
 
@@ -161,13 +161,9 @@ def as_latex(answer: Observability) -> str:
     r"""A document fragment: one ``\[ \]`` display for every formula."""
     lines = [f"% states: {', '.join(answer.states)}"]
     for caption, name, value in captioned_formulas(answer):
-        lines += [rf"\paragraph{{{latex_literal(caption)}}}", rf"\[ {name} = {sp.latex(value)} \]"]
+        literal = "".join("\\" + c if c in "_%&#$" else c for c in caption)
+        lines += [rf"\paragraph{{{literal}}}", rf"\[ {name} = {sp.latex(value)} \]"]
     return "\n".join(lines) + "\n"
-
-
-def latex_literal(text: str) -> str:
-    """Text that LaTeX takes literally."""
-    return "".join("\\" + c if c in "_%&#$" else c for c in text)
 
 
 def as_html(answer: Observability, title: str) -> str:

@@ -184,7 +184,9 @@ def determinant(matrix: Matrix, ring: Ring) -> Poly:
     reduced = triangular_form(matrix, ring)
     if len(reduced.rows) < len(matrix):
         return ring.constant(0)
-    return reduced.pivot * reduced.sign * permutation_sign(reduced.columns)
+    order = reduced.columns
+    inversions = sum(a > b for i, a in enumerate(order) for b in order[i + 1 :])
+    return reduced.pivot * reduced.sign * (-1) ** inversions
 
 
 def scalar_product(row: Sequence[Poly], column: Sequence[Poly], zero: Poly) -> Poly:
@@ -199,12 +201,6 @@ def transposed_times(matrix: Matrix, vector: list[Poly], ring: Ring) -> list[Pol
         if factor != 0:
             total = [t + factor * x if x != 0 else t for t, x in zip(total, row, strict=True)]
     return total
-
-
-def permutation_sign(places: Sequence[int]) -> int:
-    """1 for an even and -1 for an odd order of the places."""
-    inversions = sum(1 for i, a in enumerate(places) for b in places[i + 1 :] if a > b)
-    return -1 if inversions % 2 else 1
 
 
 def linear_relation(vectors: Matrix, target: list[Poly], ring: Ring) -> list[Quotient] | None:

@@ -169,13 +169,13 @@ class RankDrop:
         return " and ".join(f"{zero} = 0" for zero in self.zeros)
 
     @property
-    def allowed(self) -> bool | None:
-        """False when what the symbols are declared to be (positive, nonzero) excludes it, else None."""
-        return False if any(is_excluded(zero) for zero in self.zeros) else None
+    def excluded(self) -> bool:
+        """True when what the symbols are declared to be (positive, nonzero) excludes it."""
+        return any(is_nonzero(zero) for zero in self.zeros)
 
 
-def is_excluded(zero: sp.Expr) -> bool:
-    """A symbol that is declared nonzero, or a sum of products of positive symbols."""
+def is_nonzero(zero: sp.Expr) -> bool:
+    """True for a symbol that is declared nonzero, or a sum of products of positive symbols."""
     if zero.is_Symbol:
         return bool(zero.is_positive or zero.is_nonzero)
     return bool(all(term.is_positive for term in sp.Add.make_args(zero)))
@@ -279,7 +279,9 @@ def drops_by_staircases(
     steps = list(compositions(rank, [chain.dimension for chain in part]))
     if rank < len(chains.matrix) or len(steps) > MOST_STAIRCASES:
         return None
-    if determinant_of is determinant_by_values and too_many_points(chains, part, steps):
+    starts = [chain.vectors[0] for chain in part]
+    points = (points_needed(list(zip(starts, step, strict=True)), chains.matrix) for step in steps)
+    if determinant_of is determinant_by_values and sum(points) > POINTS:
         return None
     minors: list[Poly] = []
     for step in steps:
@@ -292,12 +294,6 @@ def drops_by_staircases(
         if sum(map(len, minors)) > LAST_TERMS:
             return None
     return components(minors, chains.ring)
-
-
-def too_many_points(chains: Chains, part: tuple[Chain, ...], steps: Sequence[tuple[int, ...]]) -> bool:
-    """True when the determinants of all staircases take more values than one of them may."""
-    starts = [chain.vectors[0] for chain in part]
-    return sum(points_needed(list(zip(starts, step, strict=True)), chains.matrix) for step in steps) > POINTS
 
 
 def compositions(total: int, caps: Sequence[int]) -> Iterator[tuple[int, ...]]:

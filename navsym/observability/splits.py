@@ -164,22 +164,16 @@ def choose_split(found: JointObservability, i: int | None = None, j: int | None 
     chains = found.chains
     first, second = chains.chains
     ring = chains.ring
-    rows = [*chain_rows(first.vectors[:i], first, ring).tolist(), *second_rows(found, j)]
+    rows = [chain_rows(chains.first(chain, count), chain, ring) for chain, count in ((first, i), (second, j))]
     return Split(
         i=i,
         j=j,
-        L=sp.ImmutableMatrix(n, n, [x for row in rows for x in row]),
+        L=sp.ImmutableMatrix.vstack(*rows),
         tail=chain_rows(first.vectors, first, ring)[i:, :],
         theta=found.measurements[0].companion,
         link=tuple(ring.expression(q) for q in link_coefficients(found, first, second, i, j)),
         determinant=ring.factored(value),
     )
-
-
-def second_rows(found: JointObservability, j: int) -> list[list[sp.Expr]]:
-    """The first j vectors of the second chain as rows."""
-    chain = found.chains.chains[1]
-    return chain_rows(found.chains.first(chain, j), chain, found.chains.ring).tolist()
 
 
 def link_coefficients(found: JointObservability, first: Chain, second: Chain, i: int, j: int) -> list[Quotient]:

@@ -190,33 +190,20 @@ def entries_of(text: str) -> list[str]:
     text = text.strip()
     if len(text) > LONGEST or not text:
         return []
-    if text[0] not in "([" or closing_place(text) != len(text) - 1:
+    if text[0] not in "([":
         return [text]
-    parts = split_parts(text[1:-1])
-    if text[0] == "(" and len(parts) == 1:
-        return [text]
-    return [entry for part in parts for entry in entries_of(part)]
-
-
-def closing_place(text: str) -> int:
-    """Place of the bracket that closes the one at the beginning, -1 when there is none."""
-    depth = 0
+    parts, depth, start = [], 0, 1
     for place, char in enumerate(text):
         depth += (char in "([") - (char in ")]")
-        if depth == 0:
-            return place
-    return -1
-
-
-def split_parts(text: str) -> list[str]:
-    """Parts between the commas that stand in no bracket."""
-    parts, depth, start = [], 0, 0
-    for place, char in enumerate(text):
-        depth += (char in "([") - (char in ")]")
-        if char == "," and depth == 0:
+        if depth == 0 and place < len(text) - 1:
+            return [text]  # a bracket does not hold the whole
+        if depth == 0 or (char == "," and depth == 1):
             parts.append(text[start:place])
             start = place + 1
-    return [part for part in (*parts, text[start:]) if part.strip()]
+    parts = [part for part in parts if part.strip()]
+    if depth or (text[0] == "(" and len(parts) == 1):
+        return [text]
+    return [entry for part in parts for entry in entries_of(part)]
 
 
 # -- numbers in words -------------------------------------------------------------------------
@@ -268,7 +255,9 @@ def steps(record: Record) -> list[Step]:
     """
     found = [
         Step("What is printed", record.title, record.printed),
-        derived_step(record),
+        Step("What follows from the model", "Derived without looking at the printed side:", record.derived)
+        if record.derived
+        else Step("What follows from the model", "The statement itself was derived and then examined."),
         Step("What was asked", question(record)),
         Step("How it was decided", decision(record)),
     ]
@@ -277,19 +266,14 @@ def steps(record: Record) -> list[Step]:
     if record.status == "REFUTED":
         found += counterexample_steps(record)
     if record.reason:
-        found.append(Step("What went wrong" if record.slip else "Remark", slip_words(record)))
+        whose = {"paper": "A slip of the paper: ", "scan": "A slip of the scan, not of the authors: "}
+        words = f"{whose.get(record.slip or '', '')}{record.reason}."
+        found.append(Step("What went wrong" if record.slip else "Remark", words))
     if record.corrects:
         found.append(Step("What it corrects", f"It stands in the place of {record.corrects}."))
     if record.certificate:
         found.append(Step("Do not take our word", replay(record)))
     return found
-
-
-def derived_step(record: Record) -> Step:
-    """The derived side, or that there is none."""
-    if not record.derived:
-        return Step("What follows from the model", "The statement itself was derived and then examined.")
-    return Step("What follows from the model", "Derived without looking at the printed side:", record.derived)
 
 
 def question(record: Record) -> str:
@@ -359,25 +343,14 @@ def counterexample_steps(record: Record) -> list[Step]:
     found = [Step("The counterexample", f"At {where}:" if where else "Nothing has to be inserted:")]
     for line in arithmetic(record):
         if line.differs:
-            found.append(Step("", arithmetic_words(line)))
+            start = f"Entry {line.entry}: the" if line.entry else "The"
+            printed, derived = ball_words(line.printed), ball_words(line.derived)
+            found.append(Step("", ended(f"{start} printed side is {printed}, the derived side is {derived}")))
     if record.difference:
         low, high = record.difference.lower, record.difference.upper
         value = f"is {ball_words((low, high))}" if low == high else f"lies between {low} and {high}"
         found.append(Step("", f"The side on the left minus the other {value}: not zero."))
     return found
-
-
-def arithmetic_words(line: Arithmetic) -> str:
-    """Both sides at the counterexample as a sentence."""
-    start = f"Entry {line.entry}: the" if line.entry else "The"
-    sides = f"printed side is {ball_words(line.printed)}, the derived side is {ball_words(line.derived)}"
-    return ended(f"{start} {sides}")
-
-
-def slip_words(record: Record) -> str:
-    """Whose slip it is, and the reason."""
-    place = {"paper": "A slip of the paper: ", "scan": "A slip of the scan, not of the authors: "}
-    return place.get(record.slip or "", "") + record.reason + "."
 
 
 def replay(record: Record) -> str:

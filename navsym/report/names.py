@@ -6,47 +6,19 @@ import functools
 import html
 import re
 
-GREEK = {
-    "alpha": "α",
-    "beta": "β",
-    "gamma": "γ",
-    "delta": "δ",
-    "epsilon": "ε",
-    "zeta": "ζ",
-    "eta": "η",
-    "theta": "θ",
-    "iota": "ι",
-    "kappa": "κ",
-    "lambda": "λ",
-    "mu": "μ",
-    "nu": "ν",
-    "xi": "ξ",
-    "pi": "π",
-    "rho": "ρ",
-    "sigma": "σ",
-    "tau": "τ",
-    "phi": "φ",
-    "chi": "χ",
-    "psi": "ψ",
-    "omega": "ω",
-    "upsilon": "υ",
-    "Gamma": "Γ",
-    "Delta": "Δ",
-    "Theta": "Θ",
-    "Lambda": "Λ",
-    "Xi": "Ξ",
-    "Pi": "Π",
-    "Sigma": "Σ",
-    "Phi": "Φ",
-    "Psi": "Ψ",
-    "Omega": "Ω",
-    "lam": "λ",
-    "oo": "∞",
-    "eps": "ε",
-}
+NAMES = (
+    "alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi pi rho sigma tau phi chi psi omega "
+    "upsilon Gamma Delta Theta Lambda Xi Pi Sigma Phi Psi Omega lam oo eps"
+).split()
+GREEK = dict(zip(NAMES, "αβγδεζηθικλμνξπρστφχψωυΓΔΘΛΞΠΣΦΨΩλ∞ε", strict=True))
 LATEX_SPELLING = {"lam": "lambda", "oo": "infty", "eps": "varepsilon", "epsilon": "varepsilon", "phi": "varphi"}
 LATEX_FUNCTIONS = frozenset("sin cos tan cot sec csc exp log sinh cosh tanh det".split())
 STEM = re.compile(r"(?P<stem>[A-Za-z]+?)(?P<index>\d*)$")
+
+
+def greek_start(stem: str) -> str:
+    """The longest Greek name at the beginning of a stem, empty where there is none."""
+    return max((name for name in GREEK if stem.startswith(name)), key=len, default="")
 
 
 @functools.lru_cache(maxsize=4096)
@@ -57,7 +29,7 @@ def split_name(name: str) -> tuple[str, str]:
     head, *rest = [part for part in name.split("_") if part] or [name]
     match = STEM.match(head)
     stem, index = (match["stem"], match["index"]) if match else (head, "")
-    greek = max((name for name in GREEK if stem.startswith(name)), key=len, default="")
+    greek = greek_start(stem)
     base = stem[len(greek) :]
     if len(base) == 2 and (base[0].isupper() or base[1] in "TNm"):  # zT, Vj, DeltaVy
         stem, index = greek + base[0], base[1] + index
@@ -74,7 +46,7 @@ def letter_of(stem: str) -> str:
     """The stem with a Greek name at its beginning as a letter: ``DeltaV`` -> ΔV, ``tau`` -> τ, ``dphi`` -> dφ."""
     if varied(stem):
         return "d" + GREEK[stem[1:]]
-    greek = max((name for name in GREEK if stem.startswith(name)), key=len, default="")
+    greek = greek_start(stem)
     rest = stem[len(greek) :]
     return GREEK[greek] + rest if greek and len(rest) < 2 else stem
 
@@ -103,7 +75,7 @@ def latex_name(name: str, function: bool = False) -> str:
         return f"\\{name}" if name in LATEX_FUNCTIONS else rf"\operatorname{{{latex_escape(name)}}}"
     name, primes = name.rstrip("'"), "'" * name.count("'")
     stem, index = split_name(name)
-    greek = max((known for known in GREEK if stem.startswith(known)), key=len, default="")
+    greek = greek_start(stem)
     if varied(stem):
         letter = rf"\mathrm{{d}}\{LATEX_SPELLING.get(stem[1:], stem[1:])}"
     elif greek and len(stem) <= len(greek) + 1:

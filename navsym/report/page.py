@@ -28,7 +28,6 @@ from navsym.report.names import latex_escape
 from navsym.report.plots import refutation_svg
 from navsym.report.wording import Words
 from navsym.verification.ledger import Ledger, is_only_in_the_copy, records_about, sort_records
-from navsym.verification.papers import PaperSummary
 
 # Names of the files of a report, and the certificates that it keeps as files.
 
@@ -179,7 +178,8 @@ def pages(
     yield from certificate_files(ledger.claims).items()
     yield "verdicts.json", json.dumps(ledger.document(), ensure_ascii=False, allow_nan=False, indent=1) + "\n"
     for summary in ledger.papers:
-        card = ledger.cards.get(summary.module) or bare_card(summary)
+        bare = Paper(summary.module, summary.title, authors=(), year=None, source="", language="", equations=())
+        card = ledger.cards.get(summary.module) or bare
         paper = paper_view(card, ledger.claims, words.get(summary.module), progress)
         papers.append(paper)
         yield f"{paper.file}.html", env.get_template("paper.html").render(shared, paper=paper)
@@ -214,11 +214,6 @@ def visible(value: Any) -> Any:
     if not isinstance(value, str) or isinstance(value, Markup) or value.isprintable():
         return value
     return "".join(c if c.isprintable() or c in "\n\t" else repr(c)[1:-1] for c in value)
-
-
-def bare_card(paper: PaperSummary) -> Paper:
-    """A card for a paper of which only the ledger is known: module and title."""
-    return Paper(paper.module, paper.title, authors=(), year=None, source="", language="", equations=())
 
 
 def total(papers: Sequence[PaperView]) -> dict[str, int]:

@@ -27,6 +27,7 @@ from msgspec import Meta
 
 from navsym.claims.paper import import_paper
 from navsym.core.errors import DomainError, NavsymError, NotFiniteError
+from navsym.core.exact import to_rational
 from navsym.core.store import key_of
 from navsym.language.structs import fit_struct
 
@@ -137,17 +138,20 @@ def guaranteed_job(sweep: Sweep, index: int) -> dict[str, Any]:
 
     lower, upper : decimal strings that enclose the optimum, to 15 digits
     """
+    T, _ = sweep.parameters(index)
+    found = solve_on(T, lambda t: [t**k for k in range(sweep.degree + 1)], [0] * sweep.degree + [1])
+    return {"index": index, "T": str(T), "lower": found.lower, "upper": found.upper}
+
+
+def solve_on(T: Fraction, regressors: Callable[[Any], list[Any]], target: list[int]) -> Any:
+    """The guaranteed estimator to 15 digits on [0, T], with regressors in the time and a noise bound of one."""
     import sympy as sp
 
     from navsym.guaranteed.problem import from_regressors
     from navsym.guaranteed.solver import solve
 
-    T, _ = sweep.parameters(index)
     t = sp.Symbol("t", real=True)
-    end = sp.Rational(T.numerator, T.denominator)
-    target = [0] * sweep.degree + [1]
-    found = solve(from_regressors([[t**k for k in range(sweep.degree + 1)]], target, t, (0, end)), digits=15)
-    return {"index": index, "T": str(T), "lower": found.lower, "upper": found.upper}
+    return solve(from_regressors([regressors(t)], target, t, (0, to_rational(T))), digits=15)
 
 
 def phases_job(sweep: Sweep, index: int) -> dict[str, Any]:
@@ -157,16 +161,8 @@ def phases_job(sweep: Sweep, index: int) -> dict[str, Any]:
     """
     import sympy as sp
 
-    from navsym.guaranteed.problem import from_regressors
-    from navsym.guaranteed.solver import solve
-
     T, w = sweep.parameters(index)
-    t = sp.Symbol("t", real=True)
-    angle = sp.Rational(w.numerator, w.denominator) * t
-    problem = from_regressors(
-        [[sp.Integer(1), sp.cos(angle), sp.sin(angle)]], [1, 0, 0], t, (0, sp.Rational(T.numerator, T.denominator))
-    )
-    found = solve(problem, digits=15)
+    found = solve_on(T, lambda t: [1, sp.cos(to_rational(w) * t), sp.sin(to_rational(w) * t)], [1, 0, 0])
     bounds = {"lower": found.lower, "upper": found.upper, "instants": len(found.support)}
     return {"index": index, "T": str(T), "w": str(w), **bounds}
 

@@ -56,14 +56,6 @@ def test_what_makes_no_model_is_refused_with_its_place(changes, error, message):
         oscillator(**changes)
 
 
-def test_a_functional_picks_a_state_by_name_or_number():
-    model = oscillator()
-    assert model.unit("v") == model.unit(1) == sp.Matrix([0, 1])
-    for wrong in ("y", 2, -1):
-        with pytest.raises(DomainError, match="expected one of x, v"):
-            model.unit(wrong)
-
-
 def test_substitution_comes_before_derivation():
     assert oscillator().at({w: 0}).F.tolist() == [[0, 1], [0, 0]]
     with pytest.raises(NotFiniteError):

@@ -78,7 +78,7 @@ def test_the_velocity_group_breaks_at_one_value_of_the_link():
 def test_declared_signs_exclude_a_locus_without_hiding_it():
     s = sp.Symbol("s", positive=True)
     drops = rank_drops(observe_jointly(LinearModel([[0, s], [0, 0]], None, [[1, 0]])))
-    assert [(str(d.zeros[0]), d.allowed) for d in drops] == [("s", False), ("s", False)]
+    assert [(str(d.zeros[0]), d.excluded) for d in drops] == [("s", True), ("s", True)]
 
 
 def test_compositions_are_all_sums_within_their_caps():

@@ -96,7 +96,8 @@ def transition_matrix(A: Any, time: Any, *, where: Mapping[sp.Symbol, Any] | Non
         closed_form(ring, base, times, divisor, moment) for base, times in irreducible_divisors(ring, characteristic)
     ]
     terms = [term for form in forms for term in terms_of(ring, B, characteristic, form)]
-    refuse_degenerate(ring, [term.divisor for term in terms])
+    if any(reduce_squares(ring, term.divisor).is_zero() for term in terms):  # by sin^2 + cos^2 = 1 and the like
+        raise dependence_error()
     matrix, divisors = assemble_matrix(ring, system.rows, terms)
     return TransitionMatrix(
         matrix=matrix,
@@ -288,12 +289,6 @@ def write_constant(ring: Ring, value: Quotient, surd: Surd, divisors: dict[str, 
             above, below = cancel_fraction(above * surd.radicand, below)
             return write_quotient(ring, above, below) / surd.value
     return write_quotient(ring, above, below) * surd.value
-
-
-def refuse_degenerate(ring: Ring, divisors: Iterable[Poly]) -> None:
-    """Refuse divisors that vanish by a relation among the constants, such as sin^2 + cos^2 = 1."""
-    if any(reduce_squares(ring, divisor).is_zero() for divisor in divisors):
-        raise dependence_error()
 
 
 def dependence_error() -> DomainError:

@@ -300,7 +300,7 @@ def implicit_form(frame: Frame, base: Coefficients, factor: sp.Expr) -> Form:
         Piece(
             (
                 Wave(
-                    root_sum(monic, rho, rho**k * sp.exp(rho * frame.time) / slope),
+                    sp.RootSum(monic, sp.Lambda(rho, rho**k * sp.exp(rho * frame.time) / slope), rho, auto=False),
                     (frame.ring.one, frame.d ** (n - k - 1)),
                 ),
             ),
@@ -309,8 +309,3 @@ def implicit_form(frame: Frame, base: Coefficients, factor: sp.Expr) -> Form:
         for k in range(n)
     )
     return Form(base, 1, "sum over roots", factor, pieces)
-
-
-def root_sum(monic: sp.Expr, rho: sp.Symbol, summand: sp.Expr) -> sp.Expr:
-    """The summand added up over the roots of the polynomial, left as it stands."""
-    return sp.RootSum(monic, sp.Lambda(rho, summand), rho, auto=False)

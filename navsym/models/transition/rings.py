@@ -168,21 +168,16 @@ def write_quotient(ring: Ring, above: Poly, divisor: Poly) -> sp.Expr:
 
 
 def declared_sign(ring: Ring, poly: Poly) -> int:
-    """+1 or -1 when the declared signs of the parameters decide it term by term, else 0."""
+    """+1 or -1 when the declared signs of the parameters decide it factor by factor and term by term, else 0."""
     if poly.is_zero():
         return 0
     content, factors = poly.factor()
     result = 1 if content > 0 else -1
     for base, times in factors:
         if int(times) % 2:
-            result *= sign_of_sum(ring, base)
+            signs = {sign_of_term(ring, exponents, c) for exponents, c in base.to_dict().items()}
+            result *= signs.pop() if len(signs) == 1 else 0
     return result
-
-
-def sign_of_sum(ring: Ring, poly: Poly) -> int:
-    """The common sign of all terms, 0 when they differ or one is not decided."""
-    signs = {sign_of_term(ring, exponents, c) for exponents, c in poly.to_dict().items()}
-    return signs.pop() if len(signs) == 1 else 0
 
 
 def sign_of_term(ring: Ring, exponents: tuple[int, ...], coefficient: fmpq) -> int:

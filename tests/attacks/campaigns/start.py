@@ -10,6 +10,8 @@ from navsym.core.store import default_path, open_store
 from navsym.verification.papers import load_papers
 from tests.attacks.campaigns import cases, certificates, disks, fuzz, kills, mutants, parser, statements
 from tests.attacks.campaigns.batches import Batch, run_campaign
+from tests.attacks.campaigns.words import as_text as as_text
+from tests.attacks.campaigns.words import markdown_row as markdown_row
 
 ROOT = Path(__file__).resolve().parents[3]
 #: Campaigns that are tables of cases: where they are, and how many are one batch.
