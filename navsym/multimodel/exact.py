@@ -165,8 +165,11 @@ def merge_leaves(leaves: Sequence[Leaf], kit: Kit) -> tuple[Vector, Matrix]:
             for g, leaf in zip(shares, leaves, strict=True)
         )
 
+    covariance = [[kit.tidy(entry(a, b)) for b in n] for a in n]
+    if not kit.rounded:
+        return mean, covariance
     # Means that differ by their last digits only are equal.
-    return mean, clean([[kit.tidy(entry(a, b)) for b in n] for a in n], [x * x * NEGLIGIBLE**2 for x in mean], kit)
+    return mean, clean(covariance, [x * x * NEGLIGIBLE**2 for x in mean], kit)
 
 
 def filter_leaf(leaf: Leaf, model: Model, mode: int, z: Sequence[Any], kit: Kit) -> tuple[int, Leaf]:
