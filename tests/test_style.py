@@ -92,6 +92,19 @@ def test_a_name_is_seldom_defined_twice() -> None:
     assert len(twice) < AMBIGUOUS * names, "\n".join([f"{len(twice)} of {names} names are ambiguous:", *lines])
 
 
+def auxiliary_imperatives(source: str) -> list[str]:
+    """Words of a program in which a remedy begins with *do*."""
+    texts = (n.value for n in ast.walk(ast.parse(source)) if isinstance(n, ast.Constant) and isinstance(n.value, str))
+    return [text for text in texts if re.search(r"; do [a-z]", text)]
+
+
+def test_no_remedy_begins_with_do() -> None:
+    files = (ROOT / "navsym").rglob("*.py")
+    assert not {path.name: bad for path in files if (bad := auxiliary_imperatives(path.read_text(encoding="utf-8")))}
+    assert auxiliary_imperatives('f"expected {x}; got {y}; do mend it"')
+    assert not auxiliary_imperatives('f"expected {x}; got {y}; mend it"')
+
+
 # Docstrings; their form is judged by ruff
 
 

@@ -42,7 +42,8 @@ def test_the_pages_show_the_verdicts_of_the_ledger_they_were_made_from(site):
 def test_every_file_is_there_and_every_link_between_pages_leads_to_one(site):
     assert set(site.files) == {str(p.relative_to(site.out)) for p in site.out.rglob("*") if p.is_file()}
     for name in (name for name in site.files if name.endswith(".html")):
-        local = {link.partition("#")[0] for link in Links(site.out / name).found if not link.startswith(("http", "data:"))}
+        links = (link for link in Links(site.out / name).found if not link.startswith(("http", "data:")))
+        local = {link.partition("#")[0] for link in links}
         assert {part for part in local if part and not (site.out / name).parent.joinpath(part).exists()} == set()
 
 
