@@ -26,7 +26,19 @@ from math import factorial, prod
 from operator import add, mul
 from typing import Any, NamedTuple
 
-from flint import arb, arb_mat, arb_poly, arb_series, ctx, fmpq, fmpq_poly, fmpz_poly
+from flint import (
+    Ordering,
+    arb,
+    arb_mat,
+    arb_poly,
+    arb_series,
+    ctx,
+    fmpq,
+    fmpq_mpoly,
+    fmpq_mpoly_ctx,
+    fmpq_poly,
+    fmpz_poly,
+)
 
 
 # -- 1. Refusals -------------------------------------------------------------------------------------------------------
@@ -440,11 +452,18 @@ class Exact:
     __radd__, __rmul__ = __add__, __mul__
 
     def __pow__(self, q: fmpq) -> Exact:
-        """One term to an integer power, factor by factor; else (c S)**q = c**q S**q with a rational c > 0."""
+        """One term to an integer power, factor by factor, and so squares, which are >= 0, to any power.
+
+        Else (c S)**q = c**q S**q with a rational c > 0.
+        """
         if len(self.terms) == 1 and q.q == 1:
             ((monomial, c),) = self
             return Exact([(frozenset((atom, e * q) for atom, e in monomial), c ** int(q))])
         require(not self.is_zero(), "division by zero, or a root of it")
+        ((monomial, c),) = self if len(self.terms) == 1 else [(frozenset(), fmpq(0))]
+        if len(monomial) > 1 and c == 1 and all(fmpq(e).q == 1 and int(e) % 2 == 0 for _, e in monomial):
+            squares = (Exact([(frozenset({(atom, 2)}), fmpq(1))]).make_atom("sum", q * e / 2) for atom, e in monomial)
+            return prod(squares, start=Exact(1))
         coefficients = fmpq_poly([*self.terms.values()])
         c = fmpq(coefficients.numer().content(), coefficients.denom())
         require(c.p * c.q < 2**100, "a root of a large number")
@@ -1063,11 +1082,20 @@ def prove_cases(proof: Any, goal: Goal) -> None:
     _, text, proofs = read_fields(proof, "rule of proofs")
     u = parse(text)
     prove_defined([], goal, u)
-    cases = [replace(goal.term, ("abs", u), signed) for signed in (u, negate(u))]
-    both = [
-        remember(goal, case)._replace(given=(*goal.given, v)) for case, v in zip(cases, (u, negate(u)), strict=True)
-    ]
-    prove_all(proofs, both)
+    cases = []
+    for upper, signed in enumerate((u, negate(u))):
+        case = remember(goal, replace(goal.term, ("abs", u), signed))._replace(given=(*goal.given, signed))
+        cases.append(cut_range(case, u[1], upper) if u[0] == "symbol" else case)
+    prove_all(proofs, cases)
+
+
+def cut_range(goal: Goal, name: str, upper: int) -> Goal:
+    """The goal for the values >= 0 of a symbol, or for those <= 0."""
+    end = goal.box[name].high if upper else goal.box[name].low
+    if end is not None and not (value_of(end, {}) > 0 if upper else value_of(end, {}) < 0):
+        return goal
+    changes = {"high": ZERO, "open_high": False} if upper else {"low": ZERO, "open_low": False}
+    return change_range(goal, name, **changes)
 
 
 def prove_split(proof: Any, goal: Goal) -> None:
@@ -1131,7 +1159,7 @@ def prove_dense(proof: Any, goal: Goal) -> None:
     of Real Analytic Functions, 2002, chapter 4); so what is left is dense in a box whose sides have inner points.
     """
     _, text, point, defined, premise = read_fields(proof, "rule except point defined proof")
-    require(goal.relation == ">=" and not goal.given, "expected >= 0 on a whole box")
+    require(goal.relation == ">=", "expected >=")
     seldom = parse(text)
     require(is_entire(seldom), "expected an entire function")
     here = {name: read_ball(value) for name, value in point.items()}
@@ -1142,7 +1170,7 @@ def prove_dense(proof: Any, goal: Goal) -> None:
         box={name: r._replace(open_low=False, open_high=False, nonzero=False) for name, r in goal.box.items()}
     )
     prove_defined(defined, whole._replace(term=ZERO, exists=()), goal.term, *goal.exists, level=1)
-    prove(premise, goal._replace(exists=(*goal.exists, ("^", seldom, MINUS_ONE))))
+    prove(premise, goal._replace(exists=(*goal.exists, ("^", seldom, MINUS_ONE)), given=()))
 
 
 def is_narrow(limit: Range) -> bool:
@@ -1228,12 +1256,12 @@ def prove_squares(proof: Any, goal: Goal) -> None:
 def prove_derivative(proof: Any, goal: Goal) -> None:
     """A differentiable function on a box without holes, with derivatives 0, is constant; at one point it is 0."""
     _, point, value, slopes, defined = read_fields(proof, "rule point value slopes defined")
-    require(goal.relation == "=" and not goal.given, "expected an equation on a whole box")
+    require(goal.relation == "=", "expected an equation")
     require(not any(r.nonzero or r.integer for r in goal.box.values()), "a box with holes")
     names = sorted(symbols_of(goal.term))
     changes = [differentiate(goal.term, name) for name in names]
     prove_defined(defined, Goal(ZERO, "=", goal.box), goal.term, *changes, level=2)
-    prove_all(slopes, [goal._replace(term=change) for change in changes])
+    prove_all(slopes, [Goal(change, "=", goal.box) for change in changes])
     require(isinstance(point, dict) and set(point) == set(names), "the point gives every symbol of the term")
     place = {name: parse(text) for name, text in point.items()}
     require(all(is_inside(place[name], goal.box[name]) for name in names), "the point may lie outside the box")
@@ -1455,14 +1483,14 @@ def prove_slope(proof: Any, goal: Goal) -> None:
     _, name, side, strict, continuous, smooth, slope, floor = read_fields(
         proof, "rule symbol end strict continuous smooth slope floor"
     )
-    require(name in goal.box and goal.relation in (">=", ">") and not goal.given, "expected a symbol and a whole box")
+    require(name in goal.box and goal.relation in (">=", ">"), "expected a symbol")
     limit, upper = goal.box[name], read_integer(side, 0, 1)
     end, is_open = (limit.high, limit.open_high) if upper else (limit.low, limit.open_low)
     require(end is not None, "a range without this end")
     by_slope = read_integer(strict, 0, 1) == 1 and goal.relation == ">"
     require(not by_slope or is_open, "the end belongs to the range")
     own_end = {"open_high" if upper else "open_low": False}
-    whole = change_range(goal, name, nonzero=False, integer=False, **own_end)._replace(term=ZERO, exists=())
+    whole = change_range(goal, name, nonzero=False, integer=False, **own_end)._replace(term=ZERO, exists=(), given=())
     prove_defined(continuous, whole, goal.term, level=1)
     inside = change_range(whole, name, open_low=True, open_high=True)
     change = differentiate(goal.term, name)
@@ -1473,6 +1501,121 @@ def prove_slope(proof: Any, goal: Goal) -> None:
     prove(slope, rise._replace(exists=(goal.term,)))
     start = fix_symbol(whole._replace(term=goal.term), name, end)  # type: ignore[arg-type]
     prove(floor, start._replace(relation=">" if goal.relation == ">" and not by_slope else ">="))
+
+
+def prove_concave(proof: Any, goal: Goal) -> None:
+    """A function with f'' <= 0 between two ends of the range of s is >= 0 there when it is at both ends.
+
+    Theorem: it lies above its chord. Continuity is shown on the closed range, derivatives inside it.
+    """
+    _, name, continuous, smooth, curve, floors = read_fields(proof, "rule symbol continuous smooth curve floors")
+    require(name in goal.box and goal.relation == ">=", "expected >= and a symbol")
+    limit = goal.box[name]
+    require(limit.low is not None and limit.high is not None, "a range without an end")
+    flags = {"open_low": False, "open_high": False, "nonzero": False, "integer": False}
+    whole = change_range(goal, name, **flags)._replace(term=ZERO, exists=(), given=())
+    prove_defined(continuous, whole, goal.term, level=1)
+    inside = change_range(whole, name, open_low=True, open_high=True)
+    slope = differentiate(goal.term, name)
+    second = differentiate(slope, name)
+    known = with_weaker(conditions(goal.term, 1))
+    needed = set_union([conditions(goal.term, 2), conditions(slope, 2), conditions(second)])
+    prove_all(smooth, [inside._replace(term=t, relation=r) for r, t in needed if (r, t) not in known])
+    prove(curve, inside._replace(term=negate(second), relation=">=", exists=(goal.term,)))
+    ends = [fix_symbol(whole._replace(term=goal.term), name, end) for end in (limit.low, limit.high)]  # type: ignore
+    prove_all(floors, ends)
+
+
+def prove_cones(proof: Any, goal: Goal) -> None:
+    """A polynomial whose coefficients in variables >= 0 are all >= 0 is >= 0; else the variables are compared.
+
+    A symbol is low + y, high - y, (low z + high y)/(y + z), or y and -y one after the other, with y, z >= 0; a last
+    variable, 1, makes all terms of one degree in it and the y of ranges with one end. Where y_i >= y_j, y_i is put in
+    the place of y_i + y_j. For > every choice of variables that vanish has to leave a term, in which a last variable
+    and those that stand for no end do not.
+    """
+    _, splits = read_fields(proof, "rule splits")
+    require(goal.relation in (">=", ">"), "expected >= or >")
+    names = sorted(symbols_of(goal.term))
+    require(len(names) <= 8, "too many symbols")
+    terms = to_polynomial(goal.term, names)
+    signs = [(1, -1) if goal.box[n].low is None and goal.box[n].high is None else (1,) for n in names]
+    cones = [make_cone(terms, [goal.box[n] for n in names], chosen) for chosen in product(*signs)]
+    for (polynomial, alive), split in zip(cones, read_list(splits, lambda item: item, len(cones)), strict=True):
+        check_cone(polynomial, alive, split, goal.relation == ">")
+
+
+def to_polynomial(term: Term, names: list[str]) -> dict[tuple[int, ...], fmpq]:
+    """Exponents and coefficients of a polynomial in all its symbols."""
+    value = evaluate(term, make_symbols(names), Exact).parts[0]
+    places = {symbol_atom(name): k for k, name in enumerate(names)}
+    total = {}
+    for monomial, c in value:
+        require(all(a in places and fmpq(e).q == 1 and e >= 0 for a, e in monomial), "no polynomial")
+        powers = {places[a]: int(e) for a, e in monomial}
+        total[tuple(powers.get(k, 0) for k in range(len(names)))] = c
+    return total
+
+
+def make_cone(terms: dict[Any, fmpq], limits: list[Range], signs: Sequence[int]) -> tuple[fmpq_mpoly, list[set[int]]]:
+    """The polynomial in y_0 .., z_0 .., 1, times powers of y + z; and sets of variables that are not all 0."""
+    n = len(limits)
+    context = fmpq_mpoly_ctx.get([f"y{k}" for k in range(2 * n + 1)], Ordering.lex)
+    y = context.gens()
+    one, tops, bottoms, alive = y[2 * n], [], [], [{2 * n}]
+    for k, (limit, sign) in enumerate(zip(limits, signs, strict=True)):
+        low, high = (None if end is None else constant_of(end) for end in (limit.low, limit.high))
+        require((low is None) == (limit.low is None) and (high is None) == (limit.high is None), "an irrational end")
+        if low is not None and high is not None:
+            require(low < high, "an empty range")
+            pair = (low * y[n + k] + high * y[k], y[k] + y[n + k])
+            alive.append({k, n + k})
+        elif low is not None:
+            pair = (low * one + y[k], one)
+        else:
+            pair = (high * one - y[k], one) if high is not None else (sign * y[k], one)
+        is_open = limit.open_low if low is not None else limit.open_high if high is not None else limit.nonzero
+        if is_open and (low is None or high is None):
+            alive.append({k})
+        tops.append(pair[0])
+        bottoms.append(pair[1])
+    degrees = [max(powers[k] for powers in terms) if terms else 0 for k in range(n)]
+    total = context.constant(0)
+    for powers, c in terms.items():
+        term = context.constant(c)
+        for k, e in enumerate(powers):
+            term = term * tops[k] ** e * bottoms[k] ** (degrees[k] - e)
+        total = total + term
+    return total, alive
+
+
+def check_cone(polynomial: fmpq_mpoly, alive: list[set[int]], split: Any, strict: bool) -> None:
+    """A leaf, null, or [i, j, the proof where y_i >= y_j, the proof where y_j >= y_i]."""
+    if split is None:
+        rows = [(powers, c) for powers, c in polynomial.to_dict().items()]
+        require(all(c >= 0 for _, c in rows), "a negative coefficient")
+        require(
+            not strict or not may_vanish([{k for k, e in enumerate(p) if e} for p, _ in rows], alive), "it may be 0"
+        )
+        return
+    i, j, first, second = read_list(split, lambda item: item, 4)
+    variables = polynomial.context().gens()
+    require(read_integer(i, 0, len(variables) - 1) != read_integer(j, 0, len(variables) - 1), "one variable")
+    for larger, smaller, part in ((i, j, first), (j, i, second)):
+        moved = [v + variables[smaller] if k == larger else v for k, v in enumerate(variables)]
+        left = [group | {smaller} if larger in group else group for group in alive]
+        check_cone(polynomial.compose(*moved), left, part, strict)
+
+
+def may_vanish(supports: list[set[int]], alive: list[set[int]]) -> bool:
+    """Whether some set of positive variables meets every set of ``alive`` and holds the variables of no term."""
+    used = sorted(set().union(*supports, *alive))
+    require(len(used) <= 14, "too many variables")
+    for chosen in product((0, 1), repeat=len(used)):
+        positive = {k for k, on in zip(used, chosen, strict=True) if on}
+        if all(positive & group for group in alive) and not any(s <= positive for s in supports):
+            return True
+    return False
 
 
 def prove_quadratic(proof: Any, goal: Goal) -> None:
@@ -1597,7 +1740,7 @@ RULES: dict[str, Callable[[Any, Goal], None]] = {
         prove_equal, prove_rewrite, prove_multiply, prove_exponential, prove_side, prove_cases, prove_split,
         prove_integers, prove_abstract, prove_dense, prove_identity, prove_zero, prove_solve, prove_squares,
         prove_derivative, prove_balls, prove_given, prove_range, prove_angle, prove_bounded, prove_corners,
-        prove_product, prove_sum, prove_slope, prove_quadratic, prove_roots,
+        prove_product, prove_sum, prove_slope, prove_concave, prove_cones, prove_quadratic, prove_roots,
     )
 }  # fmt: skip
 

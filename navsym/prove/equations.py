@@ -15,7 +15,6 @@ from navsym.claims.statement import Equation
 from navsym.claims.verdict import CERTIFIED, CONFIRMED, OPEN, PROVED, REFUTED, Verdict
 from navsym.core.balls import UnsupportedError, enclose
 from navsym.prove.assumptions import conditions_as_written, remaining_assumptions
-from navsym.prove.certificates import identity_certificate
 from navsym.prove.identities.equalities import WAYS, Proof, first_proof
 from navsym.prove.identities.normal_form import OutsideLanguageError, UndefinedExpressionError, reduce_to_zero
 from navsym.prove.one_symbol import decide_by_roots
@@ -72,10 +71,7 @@ def weakest_verdict(verdicts: Sequence[Verdict]) -> Verdict:
     place = verdicts.index(weakest) + 1
     assumptions = tuple(dict.fromkeys(a for verdict in verdicts for a in verdict.assumptions))
     prefix = f"{len(verdicts)} entries, the weakest is number {place}: "
-    certificate = None
-    if all(verdict.certificate for verdict in verdicts):
-        certificate = {"kind": "all", "of": [dict(verdict.certificate or {}) for verdict in verdicts]}
-    return replace(weakest, assumptions=assumptions, evidence=prefix + weakest.evidence, certificate=certificate)
+    return replace(weakest, assumptions=assumptions, evidence=prefix + weakest.evidence)
 
 
 def decide_entry(printed: sp.Expr, derived: sp.Expr, statement: Equation) -> Verdict:
@@ -194,7 +190,6 @@ def grant_proof(proof: Proof, printed: sp.Expr, derived: sp.Expr, statement: Equ
         scope=scope_of(sp.Tuple(printed, derived), statement.box),
         assumptions=remaining_assumptions(proof.reduction, statement.box, statement.nonzero),
         evidence=proof.evidence,
-        certificate=identity_certificate(printed, derived) if proof.method == "normal form" else None,
     )
 
 

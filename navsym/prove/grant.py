@@ -17,7 +17,7 @@ import sympy as sp
 from flint import arb, fmpq
 
 from navsym import checker
-from navsym.claims.statement import Bound, Equation, Optimum, Property, Statement
+from navsym.claims.statement import Bound, Equation, Optimum, Statement
 from navsym.claims.verdict import CERTIFIED, CONFIRMED, OPEN, PROVED, REFUTED, Verdict
 from navsym.core.errors import NavsymError
 from navsym.core.numbers import Number
@@ -164,8 +164,8 @@ def is_granted(verdict: Verdict) -> bool:
 def grant_verdict(statement: Statement, verdict: Verdict, seconds: float = SECONDS) -> Verdict:
     """The verdict with a certificate that the checker has accepted for the statement's own text.
 
-    A verdict without one says that it is unchecked; one that the text contradicts is OPEN or REFUTED. What the search
-    left open is proved here where a proof is found.
+    A claimed verdict for which no certificate is found or accepted becomes OPEN, and what the search left open is
+    proved here where a proof is found. A computed fact, which is no formula, stays and says that it is unchecked.
     """
     documents = write_statements(statement)
     if documents is None:
@@ -173,7 +173,7 @@ def grant_verdict(statement: Statement, verdict: Verdict, seconds: float = SECON
     try:
         if verdict.status == REFUTED:
             return grant_refutation(documents, verdict)
-        return grant_proofs(documents, verdict, seconds, statement)
+        return grant_proofs(documents, verdict, seconds)
     except checker.Refused as refusal:
         return withdraw(verdict, str(refusal)) if verdict.status.holds or verdict.status == REFUTED else verdict
 
@@ -187,7 +187,7 @@ def leave_unchecked(verdict: Verdict) -> Verdict:
 
 def withdraw(verdict: Verdict, why: str) -> Verdict:
     """OPEN in the place of a verdict that the checker does not grant."""
-    words = f"claimed {verdict.status} by {verdict.method}, but the checker refuses: {why}"
+    words = f"claimed {verdict.status} by {verdict.method}, but not granted by the checker: {why}"
     return Verdict(OPEN, verdict.method, verdict.scope, verdict.assumptions, words)
 
 
@@ -199,7 +199,7 @@ def grant(documents: Sequence[Document], certificate: Mapping[str, Any]) -> str:
 def grant_refutation(documents: Sequence[Document], verdict: Verdict) -> Verdict:
     """REFUTED by a point that the checker accepts for one of the entries."""
     if not verdict.counterexample and any(document["symbols"] for document in documents):
-        return leave_unchecked(verdict)  # a shape, or a root without a formula
+        return withdraw(verdict, "a point without a formula")
     point, why = dict(verdict.counterexample or {}), "no entry fails there"
     for document in documents:
         place = {name: point.get(name) or simple_value(limits) for name, limits in document["symbols"].items()}
@@ -238,15 +238,13 @@ def simple_value(limits: Any) -> str:
     return str(simple_point(player.read_range(limits), 0))
 
 
-def grant_proofs(
-    documents: Sequence[Document], verdict: Verdict, seconds: float, statement: Equation | Bound
-) -> Verdict:
+def grant_proofs(documents: Sequence[Document], verdict: Verdict, seconds: float) -> Verdict:
     """PROVED or CERTIFIED with proofs of all entries; REFUTED where a sample breaks one of them."""
     certificates = []
     for document in documents:
         certificate = prove_document(document, verdict, seconds / len(documents))
         if certificate is None:
-            return judge_without_proof(documents, document, verdict, statement)
+            return judge_without_proof(documents, document, verdict)
         certificates.append(certificate)
     whole = certificates[0] if len(certificates) == 1 else {"kind": "all", "of": certificates}
     grant(documents, whole)
@@ -302,50 +300,18 @@ def write_point(point: Mapping[str, fmpq]) -> dict[str, str]:
     return {name: write_term(player.number(value)) for name, value in point.items()}
 
 
-def judge_without_proof(
-    documents: Sequence[Document], document: Document, verdict: Verdict, statement: Statement
-) -> Verdict:
-    """What has no proof: REFUTED by a sample, OPEN where the reading changed the text, else unchecked."""
+def judge_without_proof(documents: Sequence[Document], document: Document, verdict: Verdict) -> Verdict:
+    """What has no proof: REFUTED where a sample breaks the text, else never more than CONFIRMED."""
     broken = find_failure(document)
-    if broken is not None:
-        try:
-            certificate = refute_document(documents, document, broken)
-        except checker.Refused:
-            return withdraw(verdict, "the text fails at a sample")
-        words = "the text fails at an exact point"
-        return Verdict(
-            REFUTED,
-            "exact point, ball arithmetic",
-            "one point",
-            (),
-            words,
-            broken,
-            difference_at(document, broken),
-            certificate,
-        )
-    if not verdict.status.holds:
-        return verdict
-    _, terms, box = player.read_statement(document)
-    if find_witness(terms, box) is None:
-        return withdraw(verdict, "no point is known at which both sides have a value")
-    if isinstance(statement, (Optimum, Property)) or statement.written is None:
-        return leave_unchecked(verdict)
-    texts = [
-        (side, text)
-        for pair, entry in zip(list_sides(statement), entries_of(statement), strict=True)
-        for side, text in zip(pair, entry, strict=True)
-    ]
-    for own, text in texts:
-        goal = player.read_statement({**document, "left": own, "relation": "=", "right": text, "tolerance": None})[0][0]
-        if find_proof(goal, 1.0) is None:
-            return withdraw(verdict, f"the algebra system reads {own} as {text}")
-    return leave_unchecked(verdict)
-
-
-def entries_of(statement: Equation | Bound) -> list[tuple[str, str]]:
-    """Both sides of each entry as the algebra system has them."""
-    pairs = zip(list_entries(statement.printed), list_entries(statement.derived), strict=True)
-    return [(to_text(x), to_text(y)) for x, y in pairs]
+    if broken is None:
+        return withdraw(verdict, "no certificate was found") if verdict.status.holds else verdict
+    try:
+        certificate = refute_document(documents, document, broken)
+    except checker.Refused:
+        return withdraw(verdict, "the text fails at a sample") if verdict.status != OPEN else verdict
+    words, difference = "the text fails at an exact point", difference_at(document, broken)
+    method = "exact point, ball arithmetic"
+    return Verdict(REFUTED, method, "one point", (), words, broken, difference, certificate)
 
 
 def find_failure(document: Document) -> dict[str, str] | None:

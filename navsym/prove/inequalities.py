@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import Any
 
 import sympy as sp
 from flint import arb
@@ -14,13 +13,12 @@ from navsym.claims.verdict import CERTIFIED, CONFIRMED, OPEN, PROVED, Verdict
 from navsym.core.balls import UnsupportedError, tape
 from navsym.core.errors import DomainError
 from navsym.prove.assumptions import add_sides, remaining_assumptions
-from navsym.prove.certificates import factored_certificate, positivity_certificate
 from navsym.prove.equations import decide_equation, judge_look, judge_sample, list_entries, shape_of
 from navsym.prove.identities.equalities import WAYS, first_proof
 from navsym.prove.identities.normal_form import OutsideLanguageError, reduce_to_zero
 from navsym.prove.identities.numbers import is_zero
 from navsym.prove.one_symbol import decide_by_roots
-from navsym.prove.sampling.points import Point, Sample, draw_points, ranges_of, search_counterexample, value_at
+from navsym.prove.sampling.points import Point, Sample, draw_points, search_counterexample, value_at
 from navsym.prove.sampling.second_look import Look, look_again
 from navsym.prove.signs.bounds import Sign, SignProof, prove_sign
 from navsym.prove.wording import point_text, refute_at_point, scope_of
@@ -102,13 +100,11 @@ def decide_difference(
         return refute_at_point(sample.counterexample, sample.difference)
     decided = decide_by_roots(difference, relation, box, scope, sides)
     if decided is not None:
-        certificate = certificate_of(difference, relation, box) if decided.status == PROVED else None
-        return replace(decided, certificate=certificate)
+        return decided
     proof = prove_relation(difference, relation, box, sample)
     if proof.sign != Sign.UNKNOWN:
         status = PROVED if proof.exact else CERTIFIED
-        certificate = certificate_of(difference, relation, box)
-        return Verdict(status, "sign on the box", scope, evidence=proof.reason, certificate=certificate)
+        return Verdict(status, "sign on the box", scope, evidence=proof.reason)
     return decide_unproved_relation(difference, relation, box, scope, sides, sample)
 
 
@@ -184,16 +180,3 @@ def is_equality(difference: sp.Expr, box: Box, sample: Sample) -> bool:
         return False
     proof = first_proof(difference, sp.Integer(0), box, WAYS)
     return proof is not None and not remaining_assumptions(proof.reduction, box)
-
-
-def certificate_of(difference: sp.Expr, relation: str, box: Box) -> Mapping[str, Any] | None:
-    """Positivity on a closed box, or of what is left beside squares, for the checker; None where it has none."""
-    limits = ranges_of(sorted(difference.free_symbols, key=str), box)
-    signs = {"<": (-1,), "<=": (-1,), "!=": (1, -1)}.get(relation, (1,))
-    found = (positivity_certificate(sign * difference, limits) for sign in signs)
-    certificate = next((item for item in found if item is not None), None)
-    if certificate is not None or len(limits) != 1:
-        return certificate
-    ((symbol, limit),) = limits.items()
-    others = (factored_certificate(sign * difference, symbol, limit, relation in STRICT) for sign in signs)
-    return next((item for item in others if item is not None), None)

@@ -8,26 +8,33 @@ a room gets wrong is refused, so that a room which errs costs an answer, never a
 from __future__ import annotations
 
 import importlib.util
+import itertools
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any
 
+import numpy as np
+import scipy.optimize
 import sympy as sp
-from flint import arb, ctx, fmpq
+from flint import arb, ctx, fmpq, fmpq_mpoly
+from sympy.simplify.fu import TR8
 
 from navsym import checker
 from navsym.core.errors import NavsymError
 from navsym.core.exact import to_fmpq
 from navsym.language.expression import parse, symbol, to_text
+from navsym.prove.signs.polynomials import choose_pair
 from navsym.prove.signs.products import as_product
 
 Term = tuple[Any, ...]
 Proof = dict[str, Any]
 
-MOST_DEPTH = 7
-SECONDS = 4.0
+MOST_DEPTH = 12
+#: Rules that are tried for one goal of a statement: the same on every machine; the time is a net below.
+TRIES = 600
+SECONDS = 30.0
 CELLS = (120, 2500)
 SHARES = (fmpq(1, 2), fmpq(1, 7), fmpq(12, 13), fmpq(1, 1000), fmpq(1, 3), fmpq(999, 1000))
 
@@ -58,6 +65,7 @@ class Search:
     """One search: its limit of time, its depth, and the goals that were given up."""
 
     deadline: float
+    tries: int = TRIES
     depth: int = 0
     lost: dict[Any, int] = field(default_factory=dict)
     rules: list[str] = field(default_factory=list)
@@ -85,8 +93,9 @@ class Search:
         """A proof of a goal, or None."""
         key = (goal.term, goal.relation, tuple(sorted(goal.box.items())), goal.given)
         left = MOST_DEPTH - self.depth
-        if left <= 0 or self.lost.get(key, -1) >= left or time.process_time() > self.deadline:
+        if left <= 0 or self.lost.get(key, -1) >= left or self.is_spent():
             return None
+        self.lost[key] = left  # a goal among its own premises is none of them
         sample = sample_goal(goal)
         if not any(fails(goal.relation, value) for value in sample):
             self.depth += 1
@@ -95,14 +104,19 @@ class Search:
                     if room is by_forms and self.rules[-1:] == ["equal"]:
                         continue  # one form of a form is one of the first
                     for candidate in guard(room(goal, sample)):
-                        if time.process_time() > self.deadline:
+                        if self.is_spent():
                             return None
+                        self.tries -= 1
                         if self.plays(candidate, goal):
+                            del self.lost[key]
                             return candidate
             finally:
                 self.depth -= 1
-        self.lost[key] = left
         return None
+
+    def is_spent(self) -> bool:
+        """Whether nothing more is to be tried."""
+        return self.tries <= 0 or time.process_time() > self.deadline
 
     def plays(self, candidate: Proof, goal: Any) -> bool:
         """Whether the rule of a candidate applies and its holes can be filled."""
@@ -399,8 +413,20 @@ def by_identity(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     if goal.relation == ">=" and all(value.contains(0) for value in sample):
         yield {"rule": "identity"}
     if goal.relation == ">=":
-        for k in range(len(goal.given)):
-            yield {"rule": "given", "weights": ["1" if i == k else "0" for i in range(len(goal.given))]}
+        weights = find_weights(goal)
+        if weights is not None:
+            yield {"rule": "given", "weights": weights}
+
+
+def find_weights(goal: Any) -> list[str] | None:
+    """Weights >= 0 of the hypotheses that may add up to the term: least squares over the coefficients."""
+    if not goal.given:
+        return None
+    forms = [sp.expand(to_sympy(t)).as_coefficients_dict() for t in (goal.term, *goal.given)]
+    monomials = list(dict.fromkeys(m for form in forms for m in form))
+    rows = [[float(form.get(m, 0)) for m in monomials] for form in forms]
+    weights, rest = scipy.optimize.nnls(np.transpose(rows[1:]), np.array(rows[0]))
+    return [str(Fraction(w).limit_denominator(1000)) for w in weights] if rest < 1e-9 else None
 
 
 def by_range(goal: Any, sample: list[arb]) -> Iterator[Proof]:
@@ -538,6 +564,7 @@ FORMS: tuple[Callable[[sp.Expr], sp.Expr | None], ...] = (
     sp.factor_terms,
     lambda e: sp.expand(e),
     lambda e: sp.factor(sp.together(e)),
+    lambda e: sp.expand(TR8(sp.expand(e))) if e.has(sp.sin, sp.cos) else None,
     lambda e: sp.factor(sp.together(sp.expand_trig(e))) if e.has(sp.atan, sp.asin, sp.acos) else None,
     lambda e: complete_square(e),
 )
@@ -594,7 +621,7 @@ def join(terms: Sequence[Term]) -> Term:
 
 def by_slope(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     """Least at an end of the range of a symbol."""
-    if goal.relation == "!=" or goal.given:
+    if goal.relation == "!=":
         return
     for name in sorted(player.symbols_of(goal.term)):
         limit = goal.box[name]
@@ -607,11 +634,65 @@ def by_slope(goal: Any, sample: list[arb]) -> Iterator[Proof]:
                 yield {"rule": "slope", "symbol": name, "end": upper, "strict": strict, **holes}
 
 
+def by_concavity(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """Above its chord."""
+    for name in sorted(player.symbols_of(goal.term)) if goal.relation == ">=" else ():
+        limit = goal.box[name]
+        if limit.low is None or limit.high is None:
+            continue
+        second = player.differentiate(player.differentiate(goal.term, name), name)
+        if not is_below(values_of(goal, second), -1):
+            holes = {"continuous": Holes(), "smooth": Holes(), "curve": Hole(), "floors": Holes()}
+            yield {"rule": "concave", "symbol": name, **holes}
+
+
+#: Comparisons of variables in one proof by cones.
+MOST_SPLITS = 300
+
+
+def by_cones(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """A polynomial with coefficients >= 0 in variables that are compared with each other."""
+    if goal.relation == "!=" or any(p[0] not in ("+", "*", "^", "number", "symbol") for p in subterms(goal.term)):
+        return
+    names = sorted(player.symbols_of(goal.term))
+    if not 1 < len(names) <= 6:
+        return
+    terms = player.to_polynomial(goal.term, names)
+    limits = [goal.box[n] for n in names]
+    signs = [(1, -1) if r.low is None and r.high is None else (1,) for r in limits]
+    budget, splits = [MOST_SPLITS], []
+    for chosen in itertools.product(*signs):
+        polynomial, _ = player.make_cone(terms, limits, chosen)
+        splits.append(split_cone(polynomial, budget, 0))
+        if splits[-1] is False:
+            return
+    yield {"rule": "cones", "splits": splits}
+
+
+def split_cone(polynomial: fmpq_mpoly, budget: list[int], depth: int) -> Any:
+    """The comparisons that leave no negative coefficient: null, a list, or False."""
+    rows = polynomial.to_dict()
+    negative = {powers: c for powers, c in rows.items() if c < 0}
+    if not negative:
+        return None
+    budget[0] -= 1
+    pair = choose_pair(rows, negative, depth)
+    if budget[0] < 0 or depth > 12 or pair is None:
+        return False
+    variables, parts = polynomial.context().gens(), []
+    for larger, smaller in (pair, pair[::-1]):
+        moved = [v + variables[smaller] if k == larger else v for k, v in enumerate(variables)]
+        parts.append(split_cone(polynomial.compose(*moved), budget, depth + 1))
+        if parts[-1] is False:
+            return False
+    return [*pair, *parts]
+
+
 def by_contacts(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     """A zero inside the range: the parts beside it one by one."""
     for name in sorted(player.symbols_of(goal.term)):
         limit = goal.box[name]
-        for place in ("0", "1", "pi/2", "pi", "-1", "1/2", "2", "-pi/2"):
+        for place in ("0", "1", "pi/2", "pi", "-1", "1/2", "2", "-pi/2", "exp(1)", "exp(-1)", "pi/4", "3"):
             value = player.parse(place)
             inside = limit._replace(open_low=True, open_high=True)
             if not player.is_inside(value, inside):
@@ -728,6 +809,7 @@ EQUATIONS: tuple[Room, ...] = (
 )
 SIGNS: tuple[Room, ...] = (
     by_number, by_identity, by_range, by_roots, by_bounds, by_few_balls, by_product, by_sum, by_side, by_values,
-    by_forms, by_quadratic, by_squares, by_substitution, by_slope, by_contacts, by_modulus, by_logarithms,
+    by_forms, by_cones, by_quadratic, by_squares, by_substitution, by_slope, by_concavity, by_contacts, by_modulus,
+    by_logarithms,
     by_many_balls,
 )  # fmt: skip
