@@ -315,3 +315,18 @@ def test_no_covariance_of_a_bank_has_a_negative_variance_or_two_halves(key, valu
         model[key] = value
     with pytest.raises(DomainError, match=f"{key}.*{words}"):
         Bank([model], [[1.0]], start)
+
+
+@pytest.mark.parametrize("method", SCHEMES)
+def test_perfect_measurements_stay_perfect_through_every_merger(method):
+    """A known state, seen without noise in one mode: that mode outweighs the others, and no variance comes back."""
+    perfect = {"F": [[1.0]], "Q": [[0.0]], "H": [[-0.38]], "R": [[0.0]]}
+    models = [perfect, {**perfect, "R": [[6e-4]]}, {**perfect, "R": [[2e-3]]}]
+    start = {"mean": [0.1 / -0.38], "covariance": [[0.0]], "probabilities": [0.2, 0.3, 0.5]}
+    steps = 5 if method == "exact" else 12
+    found = run_filter(Bank(models, [[0.5, 0.25, 0.25]] * 3, start), np.full((steps, 1), 0.1), method)
+    assert found.left_out == ()
+    assert_allclose(found.probabilities.sum(axis=1), 1.0, rtol=1e-14)
+    assert_allclose(found.probabilities[:, 0], 1.0, rtol=1e-14)
+    assert_allclose(found.mean, 0.1 / -0.38, rtol=1e-14)
+    assert not found.covariance.any()
