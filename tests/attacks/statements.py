@@ -188,7 +188,7 @@ def attack(statement: Statement, seconds: float = 20.0) -> Judgement:
 def judge(statement: Statement, verdict: Any) -> Judgement:
     """The judgement of a verdict: by the known truth, by values, by the checker."""
     status = str(verdict.status)
-    refused = refusal_of_certificates(verdict)
+    refused = refusal_of_certificates(verdict) or foreign_statement(statement, verdict)
     if status == "REFUTED":
         why = fault_of_counterexample(statement, verdict.counterexample) or refused
         return Judgement("wrong", status, why) if why else Judgement("decided", status)
@@ -215,6 +215,34 @@ def refusal_of_certificates(verdict: Any) -> str:
         except Refused as error:
             return f"certificate refused: {error}"
     return ""
+
+
+def foreign_statement(statement: Statement, verdict: Any) -> str:
+    """Why a certificate is that of another statement; empty when it says what was typed, or states nothing."""
+    said = (verdict.certificate or {}).get("statement")
+    if said is None:
+        return ""
+    left, relation, right = read_relation(statement.text)
+    if (read(said["left"]), said["relation"], read(said["right"])) != (left, relation, right):
+        return f"certificate of another statement: {said['left']} {said['relation']} {said['right']}"
+    for name, (low, high, flags) in said["symbols"].items():
+        if "box" not in statement.beside and [low, high, flags] != range_of(statement.declared(name)):
+            return f"certificate with other declarations: {name} from {low} to {high} {flags}"
+    if not statement.names() <= set(said["symbols"]):
+        return f"certificate without a declaration: {sorted(said['symbols'])}"
+    tolerance, exists = statement.beside.get("tolerance"), statement.beside.get("exists")
+    wanted = (None if tolerance is None else read(tolerance)), [read(exists)] if exists else []
+    given = (None if said["tolerance"] is None else read(said["tolerance"])), [read(text) for text in said["exists"]]
+    return "" if wanted == given else f"certificate with other conditions: {said['tolerance']}, {said['exists']}"
+
+
+def range_of(declared: Any) -> list[Any]:
+    """A declaration as certificates write it: lower end, upper end, flags."""
+    if not isinstance(declared, str):
+        return [*declared, []]
+    low = "0" if declared in ("positive", "nonnegative") else None
+    flags = {"positive": ["open-low"], "nonzero": ["nonzero"]}.get(declared, [])
+    return [low, None, flags]
 
 
 def fault_of_counterexample(statement: Statement, given: Mapping[str, str] | None) -> str:

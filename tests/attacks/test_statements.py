@@ -115,6 +115,7 @@ def test_a_wrong_verdict_of_each_kind_is_noticed():
         "a point where it holds": judge(false, verdict("REFUTED", {"x": "1/2"})),
         "a missing assumption": judge(partial, verdict("PROVED")),
         "a forged certificate": judge(true, verdict("PROVED", certificate={"kind": "identity"})),
+        "the proof of another statement": judge(Statement("x**2 >= 1 - 1", True), nav.prove("x**2 >= 0")),
     }
     assert {name: one.outcome for name, one in said.items()} == dict.fromkeys(said, "wrong")
     assert judge(false, verdict("CONFIRMED")).outcome == "false confirmed"
