@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from navsym.claims.display import write_table
 from navsym.core.answers import Answer
-from navsym.guaranteed.convex import LP_SOLVERS, GridProblem, grid_problem, guaranteed_lp
+from navsym.guaranteed.convex import LP_SOLVERS, grid_problem, guaranteed_lp
 from navsym.guaranteed.problem import GuaranteedProblem
 
 if TYPE_CHECKING:
@@ -147,16 +147,11 @@ def compare_estimators(
     kalman = guaranteed_deviation(samples, quadratic_estimator(samples, P, samples.bounds**-2.0))
     answers = []
     for name in solvers:
-        answers.append(solver_answer(grid_problem(problem), name, optimum))
+        result = guaranteed_lp(grid_problem(problem), solver=name)
+        error = None if result.value is None else result.value / optimum - 1.0
+        answers.append(SolverAnswer(name, result.status, result.value, error, result.residual, result.seconds))
         progress(name)
     return Comparison(least, kalman, optimum, tuple(answers))
-
-
-def solver_answer(grid: GridProblem, name: str, optimum: float) -> SolverAnswer:
-    """The answer of one solver."""
-    result = guaranteed_lp(grid, solver=name)
-    error = None if result.value is None else result.value / optimum - 1.0
-    return SolverAnswer(name, result.status, result.value, error, result.residual, result.seconds)
 
 
 # The worst noise

@@ -120,10 +120,7 @@ def guaranteed_lp(problem: GridProblem, *, solver: str = LP_SOLVERS[0]) -> Conve
     The weights are split into positive and negative parts. Raises NotEstimableError when P does not
     lie in the range of the regressors, DomainError for an unknown solver.
     """
-    need_estimable(problem)
-    programme, engine = engine_of(solver, LP_SOLVERS)
-    run = {"casadi": lp_by_casadi, "cvxpy": lp_by_cvxpy}[programme]
-    return run_solver(problem, solver, run, engine)
+    return run_solver(problem, solver, LP_SOLVERS, {"casadi": lp_by_casadi, "cvxpy": lp_by_cvxpy})
 
 
 def least_squares_qp(problem: GridProblem, *, solver: str = QP_SOLVERS[0]) -> ConvexResult:
@@ -133,18 +130,7 @@ def least_squares_qp(problem: GridProblem, *, solver: str = QP_SOLVERS[0]) -> Co
     is the guaranteed one, sum sigma_i |Phi_i|: what least squares yields under its own worst correlation.
     Raises DomainError for an unknown solver, NotEstimableError when the measurements do not determine the functional.
     """
-    need_estimable(problem)
-    programme, engine = engine_of(solver, QP_SOLVERS)
-    run = {"casadi": qp_by_casadi, "cvxpy": qp_by_cvxpy}[programme]
-    return run_solver(problem, solver, run, engine)
-
-
-def engine_of(solver: str, known: tuple[str, ...]) -> tuple[str, str]:
-    """The pair of "programme:engine"; DomainError when it is not known."""
-    if solver not in known:
-        raise DomainError(f"solver: expected one of {', '.join(known)}; got {solver!r}; name one of them")
-    programme, engine = solver.split(":")
-    return programme, engine
+    return run_solver(problem, solver, QP_SOLVERS, {"casadi": qp_by_casadi, "cvxpy": qp_by_cvxpy})
 
 
 def need_estimable(problem: GridProblem) -> None:
@@ -166,18 +152,26 @@ def need_estimable(problem: GridProblem) -> None:
 
 
 def run_solver(
-    problem: GridProblem, solver: str, run: Callable[[GridProblem, str], RawAnswer], engine: str
+    problem: GridProblem, solver: str, known: tuple[str, ...], runs: dict[str, Callable[[GridProblem, str], RawAnswer]]
 ) -> ConvexResult:
-    """Run a solver, measure it, and compute what its answer is worth."""
+    """Run a solver "programme:engine", measure it, and compute what its answer is worth.
+
+    Raises DomainError for one that is not known.
+    """
+    need_estimable(problem)
+    if solver not in known:
+        raise DomainError(f"solver: expected one of {', '.join(known)}; got {solver!r}; name one of them")
+    programme, engine = solver.split(":")
     start = time.perf_counter()
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # "may be inaccurate" is in the status too
-            weights, multipliers, status = run(problem, engine)
+            weights, multipliers, status = runs[programme](problem, engine)
     except MemoryError:
         raise
     except Exception as reason:  # engines raise types of their own
-        weights, multipliers, status = None, None, f"failed: {type(reason).__name__}: {first_line(reason)}"
+        said = (str(reason).strip().splitlines() or [""])[0][:120]
+        weights, multipliers, status = None, None, f"failed: {type(reason).__name__}: {said}"
     seconds = time.perf_counter() - start
     weights = finite_vector(weights)
     residual = value = None
@@ -186,11 +180,6 @@ def run_solver(
         residual = float(np.abs(problem.regressors @ weights - problem.functional).max())
     lower = dual_lower_bound(problem, finite_vector(multipliers))
     return ConvexResult(solver, status, value, weights, residual, seconds, lower, status in SUCCESS)
-
-
-def first_line(reason: Exception) -> str:
-    """The first line of an error of a solver, cut short."""
-    return (str(reason).strip().splitlines() or [""])[0][:120]
 
 
 def finite_vector(vector: Any) -> Array | None:

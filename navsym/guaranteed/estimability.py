@@ -6,7 +6,7 @@ exact solution of as many equations at instants. Only a proof for all instants c
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -76,9 +76,9 @@ def unobservable_directions(found: ModelFile) -> list[UnobservableDirection]:
     return directions
 
 
-def is_zero_matrix(matrix: sp.Matrix) -> bool:
+def is_zero_matrix(matrix: Iterable[sp.Expr]) -> bool:
     """Every entry is proved to be zero."""
-    return all(entry == 0 or decide(Equation(entry, sp.S.Zero)).status is PROVED for entry in matrix)
+    return all(entry == 0 or decide(Equation(sp.sympify(entry), sp.S.Zero)).status is PROVED for entry in matrix)
 
 
 def prove_kernel(found: ModelFile, piece: Piece, end: sp.Expr) -> tuple[sp.Matrix, list[int]] | None:
@@ -200,7 +200,8 @@ def drop_dependent(problem: GuaranteedProblem, kept: list[int], index: int, coef
     if decide(Equation(change, sp.S.Zero)).status is not PROVED:
         if enclose(change, bits=DECIDING).contains(0):
             raise undecided_error(problem, k, balls)
-        words = ", ".join(entry_words(direction.entries.get(j, sp.S.Zero)) for j in range(len(problem.functional)))
+        entries = [direction.entries.get(j, sp.S.Zero) for j in range(len(problem.functional))]
+        words = ", ".join(t if len(t := to_text(c)) <= LETTERS else decimal(enclose(c), 15) for c in entries)
         raise NotEstimableError(
             f"functional: expected one that the measurements determine; got one that changes along the null "
             f"direction [{words}] which no measurement shows; estimate another combination"
@@ -233,12 +234,6 @@ def undecided_error(problem: GuaranteedProblem, k: int, balls: dict[int, arb]) -
         f"direction [{', '.join(near)}]; leave that unknown out or rewrite equal functions alike",
         kind="open",
     )
-
-
-def entry_words(c: sp.Expr) -> str:
-    """An exact number, rounded where its text is long."""
-    text = to_text(c)
-    return text if len(text) <= LETTERS else decimal(enclose(c), 15)
 
 
 def prove_relation(problem: GuaranteedProblem, k: int, balls: dict[int, arb]) -> Relation | None:

@@ -16,10 +16,10 @@ from navsym.core.errors import DomainError
 from navsym.core.exact import to_rational
 from navsym.core.loops import kernel
 from navsym.core.simplex import invert_matrix, rows_times, times_rows
-from navsym.guaranteed.certificate.basis import Basis, make_basis
+from navsym.guaranteed.certificate.basis import make_basis
 from navsym.guaranteed.phases.family import Family
 from navsym.guaranteed.phases.patterns import order_contacts
-from navsym.guaranteed.search.exchange import Contacts, find_contacts
+from navsym.guaranteed.search.exchange import find_contacts
 from navsym.guaranteed.search.kernels import Array, Ints, chebyshev_derivative, chebyshev_rows, chebyshev_sum
 
 #: The search basis of a length serves lengths down to this part of it.
@@ -52,7 +52,8 @@ def fill_values(family: Family, T: Array, block: Ints, values: Array) -> int:
     basis = make_basis(family.exact(to_rational(top)))
     contacts = order_contacts(find_contacts(basis.sharp))
     values[block[0]] = contacts.value * basis.scale
-    if block.size == 1 or not is_alternance(basis, contacts):
+    alternates = basis.sharp.coefficients.shape[0] == 1 and contacts.u.size == basis.sharp.functional.size
+    if block.size == 1 or not alternates:
         return 1
     ends = 2.0 * T[block[1:]] / float(top) - 1.0
     kind = np.where(contacts.inner == 1, 1, np.where(contacts.u < 0, 0, 2)).astype(np.int64)
@@ -63,11 +64,6 @@ def fill_values(family: Family, T: Array, block: Ints, values: Array) -> int:
     count = rest.size if np.isfinite(rest).all() else int(np.isfinite(rest).argmin())
     values[block[1 : count + 1]] = rest[:count] * basis.scale
     return 1 + count
-
-
-def is_alternance(basis: Basis, contacts: Contacts) -> bool:
-    """One panel, as many contacts as unknowns."""
-    return basis.sharp.coefficients.shape[0] == 1 and contacts.u.size == basis.sharp.functional.size
 
 
 @kernel

@@ -301,16 +301,9 @@ def independent_problem(problem: GuaranteedProblem) -> tuple[PanelProblem, list[
     """
     kept = list(range(len(problem.functional)))
     while True:
-        exact = restrict_problem(problem, kept)
+        panels = [replace(panel, functions=tuple(panel.functions[k] for k in kept)) for panel in problem.exact().panels]
+        exact = PanelProblem(tuple(panels), tuple(problem.functional[k] for k in kept))
         try:
             return exact, kept, make_basis(exact)
         except DependentError as found:
             drop_dependent(problem, kept, found.index, found.relation)
-
-
-def restrict_problem(problem: GuaranteedProblem, kept: list[int]) -> PanelProblem:
-    """The problem with some of the unknowns only."""
-    panels = tuple(
-        replace(panel, functions=tuple(panel.functions[k] for k in kept)) for panel in problem.exact().panels
-    )
-    return PanelProblem(panels, tuple(problem.functional[k] for k in kept))

@@ -19,11 +19,10 @@ from navsym.claims import PROVED, Equation
 from navsym.core.balls import enclose, precision
 from navsym.core.exact import to_fmpq, to_rational
 from navsym.guaranteed.certificate.basis import Basis, unit_fraction
-from navsym.guaranteed.certificate.enclosure import Panel, PanelProblem, Touch
+from navsym.guaranteed.certificate.enclosure import Panel, PanelProblem, Touch, prove_panel_bound
 from navsym.guaranteed.certificate.fixed import flatten_contacts
-from navsym.guaranteed.certificate.whole import prove_panel_bound
-from navsym.guaranteed.search.exchange import Contacts, add_places
-from navsym.guaranteed.search.interior import interior_dual
+from navsym.guaranteed.estimability import is_zero_matrix
+from navsym.guaranteed.search.exchange import Contacts, add_places, interior_dual
 from navsym.prove.ladder import decide
 
 BITS = 256
@@ -169,29 +168,32 @@ def signed_columns(problem: PanelProblem, places: Sequence[ContactPlace]) -> tup
 
 def largest_support(N: np.ndarray, P: np.ndarray) -> list[int]:
     """Columns that some nonnegative solution of ``N w = P`` uses."""
+    found = widest_weights(N, P, np.eye(N.shape[1]), 1e-3)
+    return [] if found is None else np.flatnonzero(found[1] > 1e-7).tolist()
+
+
+def widest_weights(
+    N: np.ndarray, P: np.ndarray, shares: np.ndarray, most: float
+) -> tuple[np.ndarray, np.ndarray] | None:
+    """Weights w >= 0 and rooms ``0 <= s <= most`` with ``N w = P``, ``shares s <= w`` and the largest sum of s."""
     from scipy.optimize import linprog
 
-    m, n = N.shape
-    room = np.eye(n)
+    (m, n), rooms = N.shape, shares.shape[1]
     answer = linprog(
-        np.r_[np.zeros(n), -np.ones(n)],
-        A_ub=np.c_[-room, room],
+        np.r_[np.zeros(n), -np.ones(rooms)],
+        A_ub=np.c_[-np.eye(n), shares],
         b_ub=np.zeros(n),
-        A_eq=np.c_[N, np.zeros((m, n))],
+        A_eq=np.c_[N, np.zeros((m, rooms))],
         b_eq=P,
-        bounds=[(0, None)] * n + [(0, 1e-3)] * n,
+        bounds=[(0, None)] * n + [(0, most)] * rooms,
     )
-    return [i for i in range(n) if answer.success and answer.x[n + i] > 1e-7]
+    return (answer.x[:n], answer.x[n:]) if answer.success else None
 
 
 def rational_columns(problem: PanelProblem, places: Sequence[ContactPlace]) -> tuple[fmpq_mat, fmpq_mat] | None:
     """The regressors at the places as columns, and P, when all of them are rational numbers."""
-    rows: list[sp.Expr] = []
-    for place in places:
-        panel = problem.panels[place.panel]
-        at = exact_time(panel, place)
-        rows += [sp.sympify(h, strict=True).subs(panel.variable, at) for h in panel.functions]
-    values = [*rows, *(sp.sympify(p, strict=True) for p in problem.functional)]
+    rows = [h for column in exact_columns(problem, places) for h in column]
+    values = [sp.sympify(e, strict=True) for e in (*rows, *problem.functional)]
     if not all(v.is_Rational for v in values):
         return None
     numbers = [to_fmpq(v) for v in values]
@@ -226,18 +228,8 @@ def has_rational_interior(values: tuple[fmpq_mat, fmpq_mat], signs: Sequence[int
 
 def most_interior_weights(N: np.ndarray, P: np.ndarray) -> np.ndarray | None:
     """Positive weights with ``N w = P`` whose smallest is as large as can be."""
-    from scipy.optimize import linprog
-
-    m, n = N.shape
-    answer = linprog(
-        np.r_[np.zeros(n), -1.0],
-        A_ub=np.c_[-np.eye(n), np.ones(n)],
-        b_ub=np.zeros(n),
-        A_eq=np.c_[N, np.zeros(m)],
-        b_eq=P,
-        bounds=[(0, None)] * n + [(0, 1.0)],
-    )
-    return answer.x[:n] if answer.success and answer.x[-1] > 1e-9 else None
+    found = widest_weights(N, P, np.ones((N.shape[1], 1)), 1.0)
+    return found[0] if found is not None and found[1][0] > 1e-9 else None
 
 
 def independent_first(N: np.ndarray, m: int) -> list[int] | None:
@@ -379,7 +371,11 @@ def conditions_follow(problem: PanelProblem, pins: Sequence[Pin], chosen: Sequen
     if not others:
         return True
     exact = exact_conditions(problem, pins)
-    return all(is_zero_row(exact[i]) or any(is_same_row(exact[i], exact[j]) for j in chosen) for i in others)
+
+    def is_same(row: Sequence[sp.Expr], other: Sequence[sp.Expr]) -> bool:
+        return any(is_zero_matrix([a - s * b for a, b in zip(row, other, strict=True)]) for s in (1, -1))
+
+    return all(is_zero_matrix(exact[i]) or any(is_same(exact[i], exact[j]) for j in chosen) for i in others)
 
 
 def exact_conditions(problem: PanelProblem, pins: Sequence[Pin]) -> list[tuple[sp.Expr, ...]]:
@@ -392,21 +388,6 @@ def exact_conditions(problem: PanelProblem, pins: Sequence[Pin]) -> list[tuple[s
             slopes = (h.diff(panel.variable) * (panel.end - panel.start) for h in panel.functions)
             rows.append((*(h.subs(panel.variable, at) for h in slopes), sp.S.Zero))
     return rows
-
-
-def is_zero_row(row: Sequence[sp.Expr]) -> bool:
-    """Every entry is proved to be zero."""
-    return all(entry == 0 or is_proved_zero(entry) for entry in row)
-
-
-def is_same_row(row: Sequence[sp.Expr], other: Sequence[sp.Expr]) -> bool:
-    """The rows are equal but for a sign."""
-    return any(is_zero_row([a - s * b for a, b in zip(row, other, strict=True)]) for s in (1, -1))
-
-
-def is_proved_zero(entry: sp.Expr) -> bool:
-    """The number is proved to be zero."""
-    return decide(Equation(sp.sympify(entry, strict=True), sp.S.Zero)).status is PROVED
 
 
 def decide_weights(problem: PanelProblem, places: Sequence[ContactPlace]) -> bool | None:
@@ -430,16 +411,13 @@ def is_twin(problem: PanelProblem, place: ContactPlace, other: ContactPlace) -> 
         return False
     a, b = exact_columns(problem, [place, other])
     bounds = [problem.panels[p.panel].sigma for p in (place, other)]
-    return is_zero_row([h * bounds[1] - g * bounds[0] for h, g in zip(a, b, strict=True)])
+    return is_zero_matrix([h * bounds[1] - g * bounds[0] for h, g in zip(a, b, strict=True)])
 
 
 def exact_columns(problem: PanelProblem, places: Sequence[ContactPlace]) -> list[list[sp.Expr]]:
     """The regressors at the places, exactly."""
-    panels = [problem.panels[p.panel] for p in places]
-    return [
-        [h.subs(panel.variable, exact_time(panel, p)) for h in panel.functions]
-        for panel, p in zip(panels, places, strict=True)
-    ]
+    pairs = [(problem.panels[p.panel], p) for p in places]
+    return [[h.subs(panel.variable, exact_time(panel, p)) for h in panel.functions] for panel, p in pairs]
 
 
 def has_only_weights(problem: PanelProblem, places: Sequence[ContactPlace]) -> bool:
@@ -470,10 +448,7 @@ def equations_hold(
     block = sp.Matrix([[column[i] for column in columns] for i in rows])
     determinant = block.det(method="berkowitz")
     times = block.adjugate() * sp.Matrix([problem.functional[i] for i in rows])
-    return all(
-        is_proved_zero(
-            sum((column[i] * w for column, w in zip(columns, times, strict=True)), sp.S.Zero)
-            - determinant * problem.functional[i]
-        )
+    return is_zero_matrix(
+        sum((column[i] * w for column, w in zip(columns, times, strict=True)), -determinant * problem.functional[i])
         for i in others
     )

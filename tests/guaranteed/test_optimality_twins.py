@@ -19,12 +19,14 @@ from navsym.guaranteed.certificate.enclosure import (
     Touch,
     interval_ball,
     joint_tape,
+    panel_polynomial,
+    prove_panel_bound,
     series_terms,
+    shift_polynomial,
 )
 from navsym.guaranteed.certificate.fixed import certify, optimality_system, solution_unknowns
 from navsym.guaranteed.certificate.krawczyk import alternance_image, krawczyk
 from navsym.guaranteed.certificate.polish import expand_locally, sharpen_contacts
-from navsym.guaranteed.certificate.whole import panel_polynomial, prove_panel_bound, shift_polynomial
 from navsym.guaranteed.search.exchange import find_contacts
 
 t = sp.Symbol("t", real=True)

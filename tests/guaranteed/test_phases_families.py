@@ -122,8 +122,9 @@ def test_where_many_are_optimal_the_closed_form_next_to_it_is_continued():
         "measurement": [{"name": "position", "h": ["1", "0", "0"], "sigma": "1"}],
     }
     answer = solved(triple, -3, -2)
-    assert [str(b.at) for b in answer.boundaries] == ["-sqrt(3) - 1", "-5/2"]
-    assert regimes(answer)[1] == ("-sqrt(3) - 1", "-5/2", "1 - p")
+    assert [str(b.at) for b in answer.boundaries] == ["-sqrt(3) - 1"]
+    assert regimes(answer)[1] == ("-sqrt(3) - 1", "-2", "1 - p")
+    assert answer.regimes[1].closed.places == (0, -2 / answer.family.parameter)
 
 
 @pytest.mark.slow

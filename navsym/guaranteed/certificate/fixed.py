@@ -18,12 +18,24 @@ from flint import arb, arb_mat, ctx, fmpq
 from navsym.core.balls import precision
 from navsym.core.exact import decimal, from_decimal, lower_end, to_fmpq, to_fraction, upper_end
 from navsym.guaranteed.certificate.basis import Basis, make_basis, unit_fraction
-from navsym.guaranteed.certificate.enclosure import Panel, PanelProblem, Touch, combine_series, dot_product
+from navsym.guaranteed.certificate.enclosure import (
+    Panel,
+    PanelProblem,
+    Touch,
+    combine_series,
+    dot_product,
+    prove_panel_bound,
+)
 from navsym.guaranteed.certificate.krawczyk import alternance_image, krawczyk
 from navsym.guaranteed.certificate.polish import ContactSolution, pin_dual, sharpen_contacts
-from navsym.guaranteed.certificate.whole import prove_panel_bound
-from navsym.guaranteed.search.exchange import Contacts, add_places, contact_candidates, regressor_rows, search_nodes
-from navsym.guaranteed.search.interior import interior_dual
+from navsym.guaranteed.search.exchange import (
+    Contacts,
+    add_places,
+    contact_candidates,
+    interior_dual,
+    regressor_rows,
+    search_nodes,
+)
 from navsym.language.expression import to_text
 
 # As many places as unknowns, with weights that satisfy the constraints exactly: the upper side of the optimum.

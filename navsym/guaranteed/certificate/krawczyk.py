@@ -92,7 +92,7 @@ class BlockInverse:
 
     def defect(self, J: JacobianBlocks, x: arb_mat, v: arb_mat, w: arb_mat) -> tuple[arb_mat, arb_mat, arb_mat]:
         """``(I - Y J) d`` for the step d = (x, v, w), with everything that cancels taken out by hand."""
-        C, one = self.values, identity_matrix(self.values.nrows())
+        C, one = self.values, arb_mat(self.values.nrows(), self.values.nrows(), 1)
         ex = (one - C * J.values) * x - C * entrywise(J.slope, v)
         turn = column([1 - d * b for d, b in zip(self.bend.entries(), J.bend.entries(), strict=True)])
         ev = entrywise(turn, v) - entrywise(self.bend, (J.slopes - self.slopes) * x + self.slopes * ex)
@@ -203,10 +203,6 @@ def block_inverse(J: JacobianBlocks) -> BlockInverse | None:
 
 def column(entries: Sequence[arb]) -> arb_mat:
     return arb_mat(len(entries), 1, list(entries))
-
-
-def identity_matrix(size: int) -> arb_mat:
-    return arb_mat(size, size, 1)
 
 
 def entrywise(a: arb_mat, b: arb_mat) -> arb_mat:

@@ -17,8 +17,7 @@ from flint import arb, arb_mat, fmpq
 from navsym.core.balls import precision
 from navsym.guaranteed.certificate.basis import Basis, unit_fraction
 from navsym.guaranteed.certificate.enclosure import Panel, PanelProblem
-from navsym.guaranteed.search.exchange import Contacts
-from navsym.guaranteed.search.interior import pin_rows
+from navsym.guaranteed.search.exchange import Contacts, pin_rows
 from navsym.guaranteed.search.kernels import contact_system
 
 # Taylor coefficients of the regressors about several places at once, and polynomials made of them.

@@ -238,7 +238,7 @@ def verify_curves(
     pattern, m = track.pattern, moving.size
     z = [list(map(arb, c)) for c in curves]
     free = free_unknowns(pattern, m)
-    residual = enclose_series(partial(system_values, moving, pattern, z, {}))
+    residual = enclose_series(lambda s: moving_system(moving, pattern, z, {}, s)[0])
     radius: dict[int, arb] = {}
     for attempt in range(4):
         move = newton_image(moving, pattern, z, residual, radius, free)
@@ -265,7 +265,7 @@ def verify_curves(
 
 def box_radius(move: dict[int, arb], z: Sequence[Sequence[arb]], slack: int) -> dict[int, arb]:
     """The radius of a box in which Newton's step has so many times the room that it needs."""
-    sizes = {k: curve_size(z[k]) for k in move}
+    sizes = {k: max(map(abs, z[k]), key=lambda a: float(a.mid())) + arb(10) ** -20 for k in move}
     worst = max((abs(d).upper() / sizes[k] for k, d in move.items()), key=to_fmpq) + arb(10) ** (4 - DIGITS)
     return {k: (slack * abs(d).upper() + SHARE * worst * sizes[k]).upper() for k, d in move.items()}
 
@@ -277,16 +277,6 @@ def value_ball(moving: MovingProblem, y: Sequence[Sequence[arb]], spread: dict[i
         return [dot([expand_polynomial(c, s) + spread[j] * EVERY for j, c in enumerate(y)], moving.target(s))]
 
     return ball_over_piece(enclose_series(product)[0])
-
-
-def curve_size(c: Sequence[arb]) -> arb:
-    return max((abs(a) for a in c), key=lambda a: float(a.mid())) + arb(10) ** -20
-
-
-def system_values(
-    moving: MovingProblem, pattern: Pattern, z: Sequence[Sequence[arb]], radius: dict[int, arb], s: arb
-) -> list[Any]:
-    return moving_system(moving, pattern, z, radius, s)[0]
 
 
 def enclose_series(function: Callable[[arb], list[Any]]) -> list[list[arb]]:

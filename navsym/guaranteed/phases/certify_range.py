@@ -38,6 +38,7 @@ from navsym.guaranteed.certificate.range import (
 )
 from navsym.guaranteed.phases.closed_forms import sharp_member
 from navsym.guaranteed.phases.family import Family, U
+from navsym.guaranteed.phases.narrow import join_intervals
 from navsym.guaranteed.phases.patterns import Pattern
 from navsym.language.expression import to_text
 
@@ -97,18 +98,17 @@ def argument_rates(row: list[sp.Expr]) -> list[fmpq] | None:
         if rate is None:
             return None
         rates.append(rate)
-    return rates if all(is_polynomial_in_terms(in_exponentials(h)) for h in row) else None
+    for h in map(in_exponentials, row):
+        # Polynomials in U and in what :func:`expand_functions` replaces.
+        own = {f: sp.Dummy() for f in h.atoms(sp.Function, sp.exp) | reciprocals(h)}
+        if not h.xreplace(own).is_polynomial(U):
+            return None
+    return rates
 
 
 def in_exponentials(h: sp.Expr) -> sp.Expr:
     """Hyperbolic functions written with exponentials."""
     return sp.expand(h.rewrite(sp.exp)) if h.has(sp.sinh, sp.cosh) else h
-
-
-def is_polynomial_in_terms(h: sp.Expr) -> bool:
-    """True for a polynomial in U and in what :func:`expand_functions` replaces: functions and reciprocals."""
-    own = {f: sp.Dummy() for f in h.atoms(sp.Function, sp.exp) | reciprocals(h)}
-    return bool(h.xreplace(own).is_polynomial(U))
 
 
 def reciprocals(h: sp.Expr) -> set[sp.Expr]:
@@ -357,11 +357,7 @@ def follow_from_middle(
 
 def covered(pieces: Sequence[RangePiece]) -> list[tuple[fmpq, fmpq]]:
     """Ranges that pieces in order cover, neighbours joined; pieces from zero and from the middle need not meet."""
-    done: list[tuple[fmpq, fmpq]] = []
-    for one in pieces:
-        start = done.pop()[0] if done and done[-1][1] == one.lower else one.lower
-        done.append((start, one.upper))
-    return done
+    return join_intervals([(one.lower, one.upper) for one in pieces])
 
 
 def plain_certificate(family: Family, pieces: Sequence[RangePiece]) -> dict[str, Any]:

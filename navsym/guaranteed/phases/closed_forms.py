@@ -43,11 +43,6 @@ from navsym.prove.signs.products import as_product
 NEAR = sp.Rational(1, 10**35)
 
 
-def has_monomials(family: Family) -> bool:
-    """One measurement with the regressors 1, u, u**2, …."""
-    return len(family.rows) == 1 and family.rows[0] == tuple(U**k for k in range(len(family.rows[0])))
-
-
 def rational_near(x: sp.Expr, size: int = 10**7) -> sp.Rational | None:
     """The rational with a small denominator within 1e-35 of a number with many digits."""
     value = sp.Rational(str(sp.N(x, 70)))
@@ -171,7 +166,7 @@ def propose_closed_forms(family: Family, span: PatternInterval) -> list[ClosedFo
     if any(p is None for p in places):
         return []
     exact = tuple(p for p in places if p is not None)
-    if has_monomials(family) and family.growing:
+    if family.growing and family.rows == (tuple(U**k for k in range(len(family.functional))),):
         quick = monomial_guess(family, span, exact, found)
         if quick is not None:
             return [quick]
@@ -365,13 +360,9 @@ def shorten_formula(expression: sp.Expr) -> sp.Expr:
     choices = [expression] if product is None else [product]
     simplified = sp.simplify(choices[0])
     choices.append(simplified)
-    return in_cotangents(min(choices, key=sp.count_ops))
-
-
-def in_cotangents(expression: sp.Expr) -> sp.Expr:
-    """``1/tan(x)`` as ``cot(x)``, which exists at the poles of the tangent as well."""
+    # ``1/tan(x)`` as ``cot(x)``, which exists at the poles of the tangent as well.
     inverse = lambda e: e.is_Pow and isinstance(e.base, sp.tan) and e.exp.is_negative  # noqa: E731
-    return expression.replace(inverse, lambda e: sp.cot(*e.base.args) ** -e.exp)
+    return min(choices, key=sp.count_ops).replace(inverse, lambda e: sp.cot(*e.base.args) ** -e.exp)
 
 
 def solve_weights(

@@ -12,6 +12,7 @@ import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import partial
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
@@ -22,7 +23,7 @@ from navsym.claims import CERTIFIED, OPEN
 from navsym.core.balls import enclose
 from navsym.core.errors import DomainError, DuplicateError, ExpressionSyntaxError
 from navsym.core.exact import decimal, from_decimal, lower_end, to_fmpq, to_fraction, to_rational, upper_end
-from navsym.guaranteed.certificate.range import RangePiece, RangeProof
+from navsym.guaranteed.certificate.range import RangeProof
 from navsym.guaranteed.phases.answer import Phases, Question, Regime, end_text
 from navsym.guaranteed.phases.boundaries import Boundary, locate_boundary, unlocated_boundary
 from navsym.guaranteed.phases.budget import DEFAULT_SECONDS, Budget
@@ -130,8 +131,9 @@ def settle_regime(
     done = follow_within(family, span, limits, limit.share(3 / 4), name)
     thin: list[Sliver] = []
     holes: list[tuple[fmpq, fmpq]] = []
-    for left, right in uncovered_intervals(done.pieces, limits):
-        made, left_over = certify_slivers(family, left, right, limit.met)
+    edges = [limits[0], *(edge for run in covered(done.pieces) for edge in run), limits[3]]
+    for left, right in zip(edges[::2], edges[1::2], strict=True):
+        made, left_over = certify_slivers(family, left, right, limit.met) if left < right else ([], [])
         thin += made
         holes += left_over
     run = longest_run(done)
@@ -181,12 +183,6 @@ def follow_within(family: Family, span: PatternInterval, limits: RegimeLimits, l
     return done
 
 
-def uncovered_intervals(pieces: Sequence[RangePiece], limits: RegimeLimits) -> list[tuple[fmpq, fmpq]]:
-    """Stretches of the regime that the followed contacts leave, before, between and behind their pieces."""
-    edges = [limits[0], *(edge for run in covered(pieces) for edge in run), limits[3]]
-    return [(a, b) for a, b in zip(edges[::2], edges[1::2], strict=True) if a < b]
-
-
 def longest_run(done: RangeProof) -> tuple[fmpq, fmpq] | None:
     """The longest stretch that the followed contacts cover without a gap."""
     return max(covered(done.pieces), key=lambda run: run[1] - run[0], default=None)
@@ -198,17 +194,12 @@ def value_table(family: Family, span: PatternInterval) -> tuple[dict[str, Any], 
     for k in range(POINTS):
         T = (span.lower + (span.upper - span.lower) * Fraction(2 * k + 1, 2 * POINTS)).limit_denominator(1000)
         found = solve_problem(family.problem(to_rational(T)), 20)
-        places = [point.document() for point in found.support]
-        places = [place | {"at": time_text(family, T, place["at"])} for place in places]
+        places, end = [point.document() for point in found.support], family.at(family.stop, to_rational(T))
+        for place in places if family.backward else ():
+            place["at"] = decimal(to_fmpq(enclose(end - sp.Rational(place["at"]), bits=200)), 20)
         places.sort(key=lambda place: sp.Rational(place["at"]))
         rows.append({family.parameter.name: str(T), "lower": found.lower, "upper": found.upper, "support": places})
     return tuple(rows)
-
-
-def time_text(family: Family, T: Fraction, u: str) -> str:
-    """The instant that a coordinate means at a value of the parameter, to twenty digits."""
-    end = family.at(family.stop, to_rational(T))
-    return decimal(to_fmpq(enclose(end - sp.Rational(u), bits=200)), 20) if family.backward else u
 
 
 # Where the pattern changes, from closed forms that are proved between the changes.
@@ -262,14 +253,14 @@ def agree_on_forms(
     After the first round a form only stays or falls, and no change moves unless one beside it fell.
     """
     rest: list[ClosedForm | None] = [g[0] if g else None for g in guesses]
-    parts = cut_at_changes(changes, ends)
+    parts = list(pairwise(cuts_of(changes, ends)))
     forms = [
         prove_form(family, g, part, limit.share(1 / (len(spans) - k)))
         for k, (g, part) in enumerate(zip(guesses, parts, strict=True))
     ]
     while not all(map(is_same_form, rest, forms)):
         changes, before = relocate_changes(family, spans, changes, rest, forms, limit), parts
-        rest, parts = forms, cut_at_changes(changes, ends)
+        rest, parts = forms, list(pairwise(cuts_of(changes, ends)))
         forms = [
             form if form is None or part == old else prove_form(family, [form], part, limit.share(1 / 2))
             for form, part, old in zip(rest, parts, before, strict=True)
@@ -313,9 +304,9 @@ def is_same_form(one: ClosedForm | None, other: ClosedForm | None) -> bool:
     return (one.panels, one.places, one.weights, one.dual) == (other.panels, other.places, other.weights, other.dual)
 
 
-def cut_at_changes(changes: Sequence[Boundary], ends: Ends) -> list[Ends]:
-    """The range between its ends, cut at the changes."""
-    return list(pairwise([ends[0], *map(boundary_middle, changes), ends[1]]))
+def cuts_of(changes: Sequence[Boundary], ends: Ends) -> list[sp.Expr]:
+    """The ends of the range with the changes between."""
+    return [ends[0], *map(boundary_middle, changes), ends[1]]
 
 
 def boundary_middle(b: Boundary) -> sp.Expr:
@@ -352,7 +343,10 @@ def find_phases(
     follow = FollowOptions(certify, unique)
     parts = [solve_interval(section, follow, steps, limit.share(1 / (len(plan) - k))) for k, section in enumerate(plan)]
     uncovered = [*lost, *(pair for part in parts for pair in part.uncovered)]
-    changes = {b if b.at is None else b.at: b for b in (*planned_boundaries(plan, lower), *edges)}
+    singular = {s.at: s for section in plan for s in section.singular}
+    known = [singular_boundary(s) for s in singular.values() if not (s.at == lower == 0 and plan[0].family.growing)]
+    known += [unsolved_boundary(section) for section in plan if section.unknown]
+    changes = {b if b.at is None else b.at: b for b in (*known, *edges)}
     inner = [b for part in parts for b in part.boundaries]
     ties = {id(tie): tie for section in plan for tie in section.ties}
     return Phases(
@@ -389,13 +383,6 @@ def plan_range(
             plan += found or []
             lost += [ends] if found is None else []
     return plan, lost, edges
-
-
-def planned_boundaries(plan: Sequence[RegularInterval], lower: sp.Expr) -> list[Boundary]:
-    """The singular values of all sections as boundaries, and what may hide further ones."""
-    singular = {s.at: s for section in plan for s in section.singular}
-    known = [singular_boundary(s) for s in singular.values() if not (s.at == lower == 0 and plan[0].family.growing)]
-    return known + [unsolved_boundary(s) for s in plan if s.unknown]
 
 
 class StepCounter:
@@ -441,10 +428,10 @@ def solve_interval(section: RegularInterval, follow: FollowOptions, steps: StepC
         spans,
         forms,
         changes,
-        lambda changes: [lower, *map(boundary_middle, changes), upper],
+        partial(cuts_of, ends=(lower, upper)),
         lambda form, start, end: prove_form(family, [form], (start, end), part.share(1 / 2)),
     )
-    cuts = [lower, *(boundary_middle(b) for b in changes), upper]
+    cuts = cuts_of(changes, (lower, upper))
     limits = regime_limits(family, lower, upper, low, high, changes, singular)
     regimes: list[list[Regime]] = []
     uncovered = []

@@ -111,7 +111,10 @@ def join_intervals(stretches: list[tuple[fmpq, fmpq]]) -> list[tuple[fmpq, fmpq]
 def certify_sliver(family: Family, start: fmpq, end: fmpq) -> tuple[Sliver | None, float]:
     """The two-sided certificate with the parameter as a ball, None when it is too wide, and how wide it is."""
     middle = (start + end) / 2
-    shown = ball_problem(family, interval_ball(start, end))
+    values = {family.parameter: interval_ball(start, end)}
+    shown = PanelProblem(
+        tuple(replace(panel, values=values) for panel in family.moving.panels), family.moving.functional, values
+    )
     if not all(bool(b > a) and bool(sigma > 0) for a, b, sigma in (panel.edges() for panel in shown.panels)):
         return None, inf
     ball = divide_by_bounds(shown)
@@ -224,13 +227,6 @@ def merge_contacts(contacts: Contacts) -> Contacts:
     means = np.array([(found.weights[g] * found.u[g]).sum() for g in groups]) / weights
     first = np.array([g[0] for g in groups])
     return replace(found, panel=found.panel[first], u=means, sign=found.sign[first], weights=weights)
-
-
-def ball_problem(family: Family, ball: arb) -> PanelProblem:
-    """The problem with a ball for the parameter."""
-    values = {family.parameter: ball}
-    panels = tuple(replace(panel, values=values) for panel in family.moving.panels)
-    return PanelProblem(panels, family.moving.functional, values)
 
 
 def divide_by_bounds(problem: PanelProblem) -> PanelProblem:

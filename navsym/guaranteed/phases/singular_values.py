@@ -179,13 +179,8 @@ def exact_real_roots(expression: sp.Expr, p: sp.Symbol) -> list[sp.Expr] | None:
         s = sp.Dummy()
         squared = sp.resultant(top.subs(roots[0], s), s**2 - roots[0].base, s)
         found = polynomial_roots(squared, p)
-        return None if found is None else [root for root in found if may_vanish(top.subs(p, root))]
+        return None if found is None else [root for root in found if not bool(abs(enclose(top.subs(p, root))) > 0)]
     return polynomial_roots(top, p)
-
-
-def may_vanish(x: sp.Expr) -> bool:
-    """False only when a ball shows that a number is not zero."""
-    return not bool(abs(enclose(x)) > 0)
 
 
 def polynomial_roots(top: sp.Expr, p: sp.Symbol) -> list[sp.Expr] | None:

@@ -44,7 +44,10 @@ def walk_to(
             if z is None:
                 return None
             if value == end:
-                return with_unknowns(found, z)
+                m, l = len(found.dual), len(found.v)
+                free = iter(z[m : len(z) - l])
+                v = tuple(next(free) if inner else at for at, inner in zip(found.v, found.inner, strict=True))
+                return replace(found, dual=tuple(z[:m]), v=v, weights=tuple(z[-l:]), residual=0.0, touching=())
             known.append((value, z))
             share = NEARER if len(known) > 2 else FIRST
             value = max((root + (value - root) * share, end), key=lambda p: abs(p - root))
@@ -81,11 +84,3 @@ def settle_system(problem: PanelProblem, found: ContactSolution, z: list[arb]) -
             return z
         last = size
     return None
-
-
-def with_unknowns(found: ContactSolution, z: Sequence[arb]) -> ContactSolution:
-    """A solution in place of another of the same pattern."""
-    m, l = len(found.dual), len(found.v)
-    free = iter(z[m : len(z) - l])
-    v = tuple(next(free) if inner else at for at, inner in zip(found.v, found.inner, strict=True))
-    return replace(found, dual=tuple(z[:m]), v=v, weights=tuple(z[len(z) - l :]), residual=0.0, touching=())

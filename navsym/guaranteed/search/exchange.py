@@ -179,9 +179,10 @@ def degenerate_contacts(panels: Panels, nodes: Array) -> Contacts:
             best = best if best.excess < 1e-9 or has_misfits(best) else complete_dual(panels, best)
             if best.excess < 1e-9:
                 return best
-        more = [place for dual in (*vertices, tried[-1].dual) for place in maxima_above_bound(panels, dual)]
-        extra_panel = np.concatenate([extra_panel, np.array([k for k, _ in more], dtype=np.int64)])
-        extra_u = np.concatenate([extra_u, np.array([v for _, v in more])])
+        for dual in (*vertices, tried[-1].dual):
+            where, places, height = local_maxima(C @ dual, panels.search.fine)
+            extra_panel = np.concatenate([extra_panel, where[height > 1.0 + 1e-12]])
+            extra_u = np.concatenate([extra_u, places[height > 1.0 + 1e-12]])
     assert best is not None
     return best
 
@@ -348,12 +349,6 @@ def inner_flags(C1: Array, panel: Ints, u: Array, sign: Array, x: Array) -> Ints
     return flags
 
 
-def maxima_above_bound(panels: Panels, x: Array) -> list[tuple[int, float]]:
-    """Local maxima of |f| above one."""
-    panel, u, height = local_maxima(panels.coefficients @ x, panels.search.fine)
-    return [(int(panel[i]), float(u[i])) for i in np.flatnonzero(height > 1.0 + 1e-12)]
-
-
 def survey_dual(panels: Panels, x: Array, panel: Ints, u: Array) -> tuple[float, tuple[tuple[int, float], ...]]:
     """Largest ``|f| - 1``, and the near-touching maxima that are not among the given contacts."""
     where, v, height = local_maxima(panels.coefficients @ x, panels.search.fine)
@@ -376,3 +371,54 @@ def compile_loops() -> None:
     """Compile the loops of the search now: for many problems, where waiting for the meter would cost more."""
     for loop in (find_alternance, contact_system, grid_values, lagrangian, local_maxima, simplex, spread_rows):
         loop.compiled()
+
+
+# Among several optimal duals one that leaves as much room below its bound as it can, off the contacts.
+
+#: Less room than this is none.
+LEAST_SLACK = 1e-7
+
+
+def interior_dual(panels: Panels, contacts: Contacts) -> Array | None:
+    """The dual x with ``x . q = sign`` at the contacts and the most room elsewhere, or None.
+
+    Flat at inner contacts, with the largest delta in ``|x . q(u)| <= 1 - delta room(u)`` on a grid; None when nothing
+    is left to choose or the search fails.
+
+    A vertex of the face of optimal duals touches its bound at places that carry no weight, which no certificate
+    in rounded numbers survives; a point inside the face does not.
+    """
+    from scipy.optimize import linprog
+
+    A, values = pin_rows(panels, contacts)
+    m = panels.functional.size
+    if np.linalg.matrix_rank(A, tol=1e-9) >= m:
+        return None
+    nodes = search_nodes(panels)
+    G, room = grid_values(panels.coefficients, nodes), wanted_slack(panels, contacts, nodes)[:, None]
+    answer = linprog(
+        np.r_[np.zeros(m), -1.0],
+        A_ub=np.block([[G, room], [-G, room]]),
+        b_ub=np.ones(2 * G.shape[0]),
+        A_eq=np.c_[A, np.zeros(A.shape[0])],
+        b_eq=values,
+        bounds=[(None, None)] * m + [(0.0, 1.0)],
+    )
+    return np.asarray(answer.x[:m], dtype=float) if answer.success and answer.x[m] > LEAST_SLACK else None
+
+
+def pin_rows(panels: Panels, contacts: Contacts) -> tuple[Array, Array]:
+    """Values at the contacts and slopes at the inner ones as rows for x, with what they must be."""
+    inner = contacts.inner == 1
+    rows = regressor_rows(panels.coefficients, contacts.panel, contacts.u)
+    flat = regressor_rows(panels.derivatives[0], contacts.panel[inner], contacts.u[inner])
+    return np.vstack([rows, flat]), np.r_[contacts.sign.astype(float), np.zeros(int(inner.sum()))]
+
+
+def wanted_slack(panels: Panels, contacts: Contacts, nodes: Array) -> Array:
+    """The room that is wanted: 0 at a contact, from there up to 1 like a parabola, from an end like a line."""
+    wanted = np.ones((panels.coefficients.shape[0], nodes.size))
+    for k, u, inner in zip(contacts.panel, contacts.u, contacts.inner, strict=True):
+        away = 3.0 * np.abs(nodes - u)
+        wanted[k] = np.minimum(wanted[k], away**2 if inner else away)
+    return wanted.ravel()
