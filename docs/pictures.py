@@ -21,8 +21,7 @@ sys.path.insert(0, str(ROOT))
 from docs import drawings  # noqa: E402
 from navsym.claims import Record  # noqa: E402
 from navsym.report import plots  # noqa: E402
-from navsym.verification.ledger import is_only_in_the_copy, records_about  # noqa: E402
-from navsym.verification.ledger import stored_records  # noqa: E402
+from navsym.verification.ledger import is_only_in_the_copy, records_about, stored_records  # noqa: E402
 
 CHANNEL = {
     "model": {
