@@ -494,6 +494,13 @@ class Exact:
                 return prod([a + i * b] * abs(int(c)), start=one)  # type: ignore[operator]
         return Exact([(monomial, fmpq(1))]).make_atom(kind, c)
 
+    def log(self) -> Exact:
+        """log of a product of exponentials is a sum."""
+        ((monomial, c),) = self if len(self.terms) == 1 else [(frozenset(), fmpq(0))]
+        if c != 1 or not monomial or any(kind != "exp" for (_, kind, _), _ in monomial):
+            return self.make_atom("log")
+        return Exact((m, d * q) for (_, _, content), q in monomial for m, d in content)
+
     def cos(self) -> Exact:
         """Euler: cos x = (exp(i x) + exp(-i x))/2."""
         return (self.exp("cis") + self.exp("cis", -1)) * fmpq(1, 2)
@@ -894,8 +901,75 @@ def replace(term: Term, old: Term, new: Term) -> Term:
 
 
 def is_identity(term: Term) -> bool:
-    """Whether a term is seen to vanish wherever all of it is defined."""
+    """Whether a term is seen to vanish wherever all of it is defined.
+
+    As a quotient of polynomials in its functions, or by what is known of these.
+    """
+    parts = [*dict.fromkeys(list_generators(term))]
+    ring = fmpq_mpoly_ctx.get([f"x{k}" for k in range(len(parts))], Ordering.degrevlex)
+    top, bottom = to_quotient(term, dict(zip(parts, ring.gens(), strict=True)), ring)
+    if bottom != 0 and top == 0:
+        return True
+    if all(part[0] == "symbol" for part in parts):
+        return False
     return bool(evaluate(term, make_symbols(sorted(symbols_of(term))), Exact).parts[0].is_zero())
+
+
+def list_generators(term: Term) -> Iterator[Term]:
+    """The largest parts of a term that are no sums, products or whole powers."""
+    match term:
+        case ("number", _):
+            return
+        case ("+", *parts) | ("*", *parts):
+            for part in parts:
+                yield from list_generators(part)
+        case ("^", base, exponent) if is_whole(exponent):
+            yield from list_generators(base)
+        case _:
+            yield term
+
+
+def is_whole(exponent: Term) -> bool:
+    q = constant_of(exponent)
+    return q is not None and q.q == 1 and abs(q) <= 1000
+
+
+Quotient = tuple[fmpq_mpoly, fmpq_mpoly]
+
+
+def to_quotient(term: Term, generators: dict[Term, fmpq_mpoly], ring: fmpq_mpoly_ctx) -> Quotient:
+    """Numerator and denominator; the term is undefined wherever its divisors vanish."""
+    match term:
+        case ("number", q):
+            return ring.constant(q), ring.constant(1)
+        case ("+", *parts):
+            pairs = [to_quotient(part, generators, ring) for part in parts]
+            while len(pairs) > 1:  # in halves: each polynomial is copied a few times only
+                rest = pairs[len(pairs) & ~1 :]
+                pairs = [*map(add_quotients, pairs[0 : len(pairs) - len(rest) : 2], pairs[1::2]), *rest]
+            return pairs[0]
+        case ("*", *parts):
+            return reduce(multiply_quotients, (to_quotient(part, generators, ring) for part in parts))
+        case ("^", base, exponent) if is_whole(exponent):
+            n, (top, bottom) = int(constant_of(exponent)), to_quotient(base, generators, ring)  # type: ignore[arg-type]
+            require(len(top) ** min(abs(n), 8) < 10**8 and len(bottom) ** min(abs(n), 8) < 10**8, "too many terms")
+            return (top**n, bottom**n) if n >= 0 else (bottom**-n, top**-n)
+    return generators[term], ring.constant(1)
+
+
+def add_quotients(x: Quotient, y: Quotient) -> Quotient:
+    if x[1] == y[1]:
+        return x[0] + y[0], x[1]
+    require(x[1] != 0 and y[1] != 0, "a division by zero")
+    common = x[1].gcd(y[1])
+    left, right = y[1] / common, x[1] / common
+    require(max(len(x[0]) * len(left), len(y[0]) * len(right), len(x[1]) * len(left)) < 10**7, "too many terms")
+    return x[0] * left + y[0] * right, x[1] * left
+
+
+def multiply_quotients(x: Quotient, y: Quotient) -> Quotient:
+    require(max(len(x[0]) * len(y[0]), len(x[1]) * len(y[1])) < 10**7, "too many terms")
+    return x[0] * y[0], x[1] * y[1]
 
 
 ZERO, ONE = number(0), number(1)
@@ -1179,7 +1253,9 @@ def is_narrow(limit: Range) -> bool:
 
 
 def is_entire(term: Term) -> bool:
-    """Whether a term is made of sums, products, whole powers, sin, cos, exp, sinh and cosh."""
+    """Whether a term is made of sums, products, whole powers, sin, cos, exp, sinh and cosh of symbols and numbers."""
+    if not symbols_of(term):
+        return True
     if term[0] == "^":
         q = constant_of(term[2])
         return q is not None and q.q == 1 and q > 0 and is_entire(term[1])

@@ -22,7 +22,7 @@ from navsym.claims.verdict import CERTIFIED, CONFIRMED, OPEN, PROVED, REFUTED, V
 from navsym.core.errors import NavsymError
 from navsym.core.numbers import Number
 from navsym.language.expression import to_text
-from navsym.prove.equations import list_entries
+from navsym.prove.equations import list_entries, shape_of
 from navsym.prove.sampling.points import Range, ranges_of
 from navsym.prove.search import SECONDS, draw_points, find_proof, player, simple_point, write_term
 from navsym.prove.wording import decimal_ends
@@ -45,7 +45,7 @@ def write_statements(statement: Statement) -> list[Document] | None:
     try:
         if isinstance(statement, Optimum):
             return write_optimum(statement)
-        if isinstance(statement, (Equation, Bound)):
+        if isinstance(statement, (Equation, Bound)) and shape_of(statement.printed) == shape_of(statement.derived):
             return [write_entry(statement, *sides) for sides in list_sides(statement)]
     except (NavsymError, checker.Refused):
         pass
@@ -198,8 +198,6 @@ def grant(documents: Sequence[Document], certificate: Mapping[str, Any]) -> str:
 
 def grant_refutation(documents: Sequence[Document], verdict: Verdict) -> Verdict:
     """REFUTED by a point that the checker accepts for one of the entries."""
-    if not verdict.counterexample and any(document["symbols"] for document in documents):
-        return withdraw(verdict, "a point without a formula")
     point, why = dict(verdict.counterexample or {}), "no entry fails there"
     for document in documents:
         place = {name: point.get(name) or simple_value(limits) for name, limits in document["symbols"].items()}

@@ -31,9 +31,9 @@ from navsym.prove.signs.products import as_product
 Term = tuple[Any, ...]
 Proof = dict[str, Any]
 
-MOST_DEPTH = 12
-#: Rules that are tried for one goal of a statement: the same on every machine; the time is a net below.
-TRIES = 600
+#: Depths of proofs and numbers of rules that are tried, one after the other: the same on every machine. The time is a
+#: net below.
+ROUNDS = ((4, 80), (7, 250), (12, 600))
 SECONDS = 30.0
 CELLS = (120, 2500)
 SHARES = (fmpq(1, 2), fmpq(1, 7), fmpq(12, 13), fmpq(1, 1000), fmpq(1, 3), fmpq(999, 1000))
@@ -65,7 +65,8 @@ class Search:
     """One search: its limit of time, its depth, and the goals that were given up."""
 
     deadline: float
-    tries: int = TRIES
+    tries: int
+    most_depth: int
     depth: int = 0
     lost: dict[Any, int] = field(default_factory=dict)
     rules: list[str] = field(default_factory=list)
@@ -92,7 +93,7 @@ class Search:
     def find(self, goal: Any) -> Proof | None:
         """A proof of a goal, or None."""
         key = (goal.term, goal.relation, tuple(sorted(goal.box.items())), goal.given)
-        left = MOST_DEPTH - self.depth
+        left = self.most_depth - self.depth
         if left <= 0 or self.lost.get(key, -1) >= left or self.is_spent():
             return None
         self.lost[key] = left  # a goal among its own premises is none of them
@@ -103,6 +104,8 @@ class Search:
                 for room in EQUATIONS if goal.relation == "=" else SIGNS:
                     if room is by_forms and self.rules[-1:] == ["equal"]:
                         continue  # one form of a form is one of the first
+                    if room is by_squares and self.rules.count("squares") > 1:
+                        continue  # squares of squares of squares only grow
                     for candidate in guard(room(goal, sample)):
                         if self.is_spent():
                             return None
@@ -140,11 +143,16 @@ def guard(candidates: Iterator[Proof]) -> Iterator[Proof]:
 
 def find_proof(goal: Any, seconds: float = SECONDS) -> Proof | None:
     """A proof of a goal of the checker as plain data, or None; it is still to be granted."""
-    search, before = Search(time.process_time() + seconds), (ctx.prec, ctx.cap)
-    player.prove, player.prove_all = search.prove, search.prove_all
+    before, deadline = (ctx.prec, ctx.cap), time.process_time() + seconds
     ctx.prec = 128
     try:
-        return plain(search.find(goal))
+        for depth, tries in ROUNDS:
+            search = Search(deadline, tries, depth)
+            player.prove, player.prove_all = search.prove, search.prove_all
+            found = search.find(goal)
+            if found is not None:
+                return plain(found)
+        return None
     finally:
         ctx.prec, ctx.cap = before
         player.prove = check_rule
@@ -808,7 +816,7 @@ EQUATIONS: tuple[Room, ...] = (
     by_gradient,
 )
 SIGNS: tuple[Room, ...] = (
-    by_number, by_identity, by_range, by_roots, by_bounds, by_few_balls, by_product, by_sum, by_side, by_values,
+    by_number, by_identity, by_range, by_roots, by_bounds, by_few_balls, by_values, by_product, by_sum, by_side,
     by_forms, by_cones, by_quadratic, by_squares, by_substitution, by_slope, by_concavity, by_contacts, by_modulus,
     by_logarithms,
     by_many_balls,
