@@ -102,7 +102,9 @@ class Ledger(Answer):
 
         def is_stored(record: Record) -> bool:
             old = stored.get(record.id)
-            return old is not None and old.status == record.status and record.statement in ("", old.statement)
+            if old is None or old.status != record.status:
+                return False
+            return old.statement == record.statement or "" in (old.statement, record.statement)
 
         return tuple(record.id for record in self.claims if not is_stored(record))
 
