@@ -1022,6 +1022,18 @@ def holds(relation: str, value: Any) -> bool:
     return bool(value > 0 if relation == ">" else value >= 0)
 
 
+def add_terms(terms: Iterable[Term]) -> Term:
+    """A sum without zeros."""
+    rest = tuple(t for t in terms if t != ZERO)
+    return ("+", *rest) if len(rest) > 1 else rest[0] if rest else ZERO
+
+
+def multiply_terms(*factors: Term) -> Term:
+    """A product without ones."""
+    rest = tuple(f for f in factors if f != ONE)
+    return ("*", *rest) if len(rest) > 1 else rest[0] if rest else ONE
+
+
 SLOPES = DERIVATIVES | {"tan": "cos(x)**(-2)", "cot": "-sin(x)**(-2)", "sec": "sin(x)/cos(x)**2"}
 SLOPES |= {"csc": "-cos(x)/sin(x)**2", "sinh": "cosh(x)", "cosh": "sinh(x)", "tanh": "1 - tanh(x)**2"}
 SLOPES |= {"sqrt": "1/(2*sqrt(x))", "abs": "x/abs(x)"}
@@ -1035,22 +1047,23 @@ def differentiate(term: Term, name: str) -> Term:
         case ("symbol", _):
             return ONE
         case ("+", *terms):
-            return ("+", ZERO, *(d for d in (differentiate(t, name) for t in terms) if d != ZERO))
+            return add_terms(differentiate(t, name) for t in terms)
         case ("*", *factors):
             rows = [(*factors[:k], differentiate(t, name), *factors[k + 1 :]) for k, t in enumerate(factors)]
-            return ("+", ZERO, *(("*", *row) for row, t in zip(rows, factors, strict=True) if name in symbols_of(t)))
+            return add_terms(multiply_terms(*row) for row in rows if ZERO not in row)
         case ("^", base, exponent) if constant_of(exponent) == 1:
             return differentiate(base, name)
         case ("^", base, exponent) if constant_of(exponent) is not None:
             lower = ("^", base, number(constant_of(exponent) - 1))  # type: ignore[operator]
-            return ("*", exponent, lower, differentiate(base, name))
+            lower = base if constant_of(exponent) == 2 else lower
+            return multiply_terms(exponent, lower, differentiate(base, name))
         case ("^", base, exponent):
             return ("*", term, differentiate(("*", exponent, ("log", base)), name))
         case ("atan2", y, x):
             top = subtract(("*", x, differentiate(y, name)), ("*", y, differentiate(x, name)))
             return ("*", top, ("^", ("+", ("*", x, x), ("*", y, y)), MINUS_ONE))
         case (function, x) if function in SLOPES:
-            return ("*", replace(parse(SLOPES[function]), ("symbol", "x"), x), differentiate(x, name))
+            return multiply_terms(replace(parse(SLOPES[function]), ("symbol", "x"), x), differentiate(x, name))
     raise Refused("no derivative is known")
 
 

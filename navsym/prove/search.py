@@ -7,6 +7,7 @@ a room gets wrong is refused, so that a room which errs costs an answer, never a
 
 from __future__ import annotations
 
+import functools
 import importlib.util
 import itertools
 import time
@@ -201,6 +202,7 @@ def write_number(q: fmpq) -> str:
     return f"(-{text})" if q < 0 else text
 
 
+@functools.lru_cache(maxsize=4096)
 def to_sympy(term: Term) -> sp.Expr:
     """The term for the algebra system, all symbols real: a source of candidates."""
     return parse(write_term(term), {name: symbol(name) for name in player.symbols_of(term)})
@@ -318,6 +320,15 @@ def by_logarithms_of_products(goal: Any, sample: list[arb]) -> Iterator[Proof]:
         spread = sp.expand_log(sp.log(sp.factor(own.args[0])) if own.args else own, force=True)
         if spread != own:
             yield rewrite_atom(write_term(part), to_text(spread))
+            return
+
+
+def by_values_of_constants(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """An inverse function of a number as the number that the algebra system has for it: acos(0) = pi/2."""
+    for part in dict.fromkeys(p for p in subterms(goal.term) if p[0] in ("asin", "acos", "atan", "log", "atan2")):
+        value = sp.S.NaN if player.symbols_of(part) else to_sympy(part)
+        if value.is_number and value.is_finite and not value.has(sp.asin, sp.acos, sp.atan, sp.log, sp.atan2):
+            yield rewrite_atom(write_term(part), to_text(value))
             return
 
 
@@ -553,17 +564,23 @@ def by_sum(goal: Any, sample: list[arb]) -> Iterator[Proof]:
 
 def by_forms(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     """The term written otherwise: as a product, as one fraction, expanded."""
-    expression = to_sympy(goal.term)
-    own, seen = write_term(goal.term), set()
+    for text in list_forms(goal.term):
+        yield {"rule": "equal", "to": text, "defined": Holes(), "proof": Hole()}
+
+
+@functools.lru_cache(maxsize=4096)
+def list_forms(term: Term) -> tuple[str, ...]:
+    """Texts of other forms of a term."""
+    expression, own, forms = to_sympy(term), write_term(term), dict[str, None]()
     for rewrite in FORMS:
         try:
             other = rewrite(expression)
             text = to_text(other) if other is not None else own
         except (NavsymError, ArithmeticError, ValueError, TypeError, AttributeError, NotImplementedError, KeyError):
             continue
-        if text not in seen and player.parse(text) != goal.term and len(text) < 6 * len(own) + 200:
-            seen.add(text)
-            yield {"rule": "equal", "to": text, "defined": Holes(), "proof": Hole()}
+        if player.parse(text) != term and len(text) < 6 * len(own) + 200:
+            forms[text] = None
+    return tuple(forms)
 
 
 FORMS: tuple[Callable[[sp.Expr], sp.Expr | None], ...] = (
@@ -810,6 +827,7 @@ EQUATIONS: tuple[Room, ...] = (
     by_values,
     by_modulus,
     by_logarithms_of_products,
+    by_values_of_constants,
     by_inverse,
     by_equal_squares,
     by_sides_of_zero,
@@ -817,7 +835,7 @@ EQUATIONS: tuple[Room, ...] = (
 )
 SIGNS: tuple[Room, ...] = (
     by_number, by_identity, by_range, by_roots, by_bounds, by_few_balls, by_values, by_product, by_sum, by_side,
-    by_forms, by_cones, by_quadratic, by_squares, by_substitution, by_slope, by_concavity, by_contacts, by_modulus,
+    by_squares, by_slope, by_cones, by_forms, by_quadratic, by_substitution, by_concavity, by_contacts, by_modulus,
     by_logarithms,
     by_many_balls,
 )  # fmt: skip
