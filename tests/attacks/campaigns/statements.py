@@ -6,11 +6,16 @@ has written.
 
 from __future__ import annotations
 
+import functools
 import json
+import os
+import subprocess
 import sys
 from collections import Counter
 from typing import Any
 
+from navsym.core.errors import NavsymError
+from navsym.core.sandbox import die_with_parent
 from tests.attacks.campaigns.batches import Batch, Result, deal, result
 from tests.attacks.statements import Statement, attack, make_statement
 
@@ -26,8 +31,26 @@ def make_batches(inputs: int, seed: int = 0) -> list[Batch]:
 
 
 def judge(task: tuple[str, int, int]) -> Result:
-    """Counts by outcome, and by family and outcome; wrong: false verdicts, crashes, certificates that are refused."""
+    """Counts by outcome, and by family and outcome; wrong: false verdicts, crashes, certificates that are refused.
+
+    In a process of its own: the front door starts one for each statement, which a process of a campaign may not.
+    """
     _, size, seed = task
+    told = subprocess.run(
+        [sys.executable, "-m", "tests.attacks.campaigns.statements", str(size), str(seed)],
+        capture_output=True,
+        text=True,
+        check=False,
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)},
+        preexec_fn=functools.partial(die_with_parent, os.getpid()),
+    )
+    if told.returncode != 0:
+        raise NavsymError(f"expected a batch of statements; got {told.stderr[-500:]}; read the error")
+    return json.loads(told.stdout)
+
+
+def judge_batch(size: int, seed: int) -> Result:
+    """The result of one batch, in this process."""
     counts: Counter[str] = Counter()
     wrong, undecided = [], []
     for number in range(seed % 10**6 * SIZE, seed % 10**6 * SIZE + size):
@@ -60,5 +83,8 @@ def make_table(counts: dict[str, int]) -> str:
 
 
 if __name__ == "__main__":
-    with open(sys.argv[1], encoding="utf-8") as source:
-        print(make_table(json.load(source)["counts"]))
+    if len(sys.argv) == 3:
+        print(json.dumps(judge_batch(*map(int, sys.argv[1:]))))
+    else:
+        with open(sys.argv[1], encoding="utf-8") as source:
+            print(make_table(json.load(source)["counts"]))
