@@ -70,7 +70,9 @@ def verify(
     finally:
         kept.close()
     if granted:
-        remark(f"the checker granted {granted} of {total} verdicts from kept certificates, {total - granted} are decided")
+        remark(
+            f"the checker granted {granted} of {total} verdicts from kept certificates, {total - granted} are decided"
+        )
     return replace(ledger, unsaved=tuple(kept.lost))
 
 
