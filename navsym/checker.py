@@ -413,6 +413,10 @@ def collect(pairs: Iterable[tuple[Any, Any]]) -> dict[Any, Any]:
     return {key: c for key, c in total.items() if c != 0}
 
 
+#: Products of two terms: so far, and at most for one question.
+EFFORT, MOST_EFFORT = [0], 10**6
+
+
 class Exact:
     """A sum of c a1**q1 a2**q2 ... with rational c and q, as {frozenset of (a, q): c}.
 
@@ -446,7 +450,8 @@ class Exact:
 
     def __mul__(self, other: Any) -> Exact:
         y = Exact(other)
-        require(len(self.terms) * len(y.terms) < 10**6, "too many terms")
+        EFFORT[0] += len(self.terms) * len(y.terms)
+        require(EFFORT[0] < MOST_EFFORT, "too many terms")
         return Exact((frozenset(collect([*m, *n]).items()), c * d) for (m, c), (n, d) in product(self, y))
 
     __radd__, __rmul__ = __add__, __mul__
@@ -912,6 +917,7 @@ def is_identity(term: Term) -> bool:
         return True
     if all(part[0] == "symbol" for part in parts):
         return False
+    EFFORT[0] = 0
     return bool(evaluate(term, make_symbols(sorted(symbols_of(term))), Exact).parts[0].is_zero())
 
 
@@ -1906,7 +1912,7 @@ KINDS |= {"sliver": check_gap, "range": check_touch}
 
 def check(item: Any) -> str:
     """The kind of a certificate that proves its statement; else raises Refused."""
-    before, ctx.prec = (ctx.prec, ctx.cap), 128
+    before, ctx.prec, EFFORT[0] = (ctx.prec, ctx.cap), 128, 0
     try:
         require(isinstance(item, dict) and item.get("kind") in KINDS, "expected a certificate of a known kind")
         KINDS[item["kind"]](item)
