@@ -264,6 +264,11 @@ def clip(x: Any) -> arb:
     return arb(x)
 
 
+def strict(x: Any) -> arb:
+    """Numbers as balls, like arb; with this field 0**0 has no value."""
+    return arb(x)
+
+
 class Nowhere(Refused):
     """An expression exists nowhere in these balls."""
 
@@ -335,14 +340,17 @@ def constant_of(term: Term) -> fmpq | None:
     if symbols_of(term):
         return None
     terms = evaluate(term, {}, Exact).parts[0].terms
-    return terms.get(frozenset(), fmpq(0)) if set(terms) <= {frozenset()} else None
+    if not set(terms) <= {frozenset()}:
+        return None
+    require(value_of(term, {}).is_finite(), "a number that may not exist")  # 0 log(-1) is none
+    return terms.get(frozenset(), fmpq(0))
 
 
 def raise_power(x: Jet, q: fmpq, field: Any) -> Jet:
     """x**q; d(x**q)/dx = q x**(q - 1)."""
     require(abs(q) < 1000, "a large exponent")
     if q.q == 1 and q >= 0:
-        if field is clip and q == 0 and arb_series(x.enclose())[0].contains(0):
+        if field in (clip, strict) and q == 0 and arb_series(x.enclose())[0].contains(0):
             raise Undefined("0**0 has no value")
         return prod([x] * int(q), start=Jet(1))
     inside = restrict(lambda ball: ball**q, x, 0, None) if field is clip and q.q > 1 else None
@@ -397,6 +405,7 @@ def apply_remainder(name: str, x: Jet, field: Any) -> Jet:
     k = int(digits)
     c = [Jet(field(fmpq(AT_ZERO[f][j % 4], factorial(j)))) for j in range(k + TERMS)]
     if field is Exact:
+        require(not has_root(frozenset(x.parts[0])), f"{name} of a root, which may be 0 throughout a part")
         return (apply_function(f, x, field) - evaluate_polynomial([*c[:k], Jet(0)], x)) * raise_power(
             x, fmpq(-k), field
         )
@@ -540,6 +549,11 @@ class Exact:
         divisor = fmpq_poly(fmpz_poly.cyclotomic(2 * n))
         sums = collect((m, fmpq_poly([0] * (int(q * n) % (2 * n)) + [c])) for m, q, c in rows)
         return all(part % divisor == 0 for part in sums.values())
+
+
+def has_root(content: Any) -> bool:
+    """Whether a root or divisor stands anywhere in the terms of a number."""
+    return content == "sum" or (isinstance(content, (tuple, frozenset)) and any(map(has_root, content)))
 
 
 PI = Exact([]).make_atom("pi")
@@ -869,6 +883,7 @@ def read_range(item: Any) -> Range:
     low, high, flags = read_list(item, lambda entry: entry, 3)
     ends = [None if end is None else parse(end) for end in (low, high)]
     require(all(end is None or not symbols_of(end) for end in ends), "a symbol in the end of a range")
+    require(all(end is None or value_of(end, {}).is_finite() for end in ends), "a number that may not exist")
     words = read_list(flags, str)
     require(set(words) <= set(FLAGS), "an unknown flag of a range")
     return Range(ends[0], ends[1], *(flag in words for flag in FLAGS))
@@ -903,6 +918,22 @@ def replace(term: Term, old: Term, new: Term) -> Term:
     if term == old:
         return new
     return tuple(replace(part, old, new) if isinstance(part, tuple) else part for part in term)
+
+
+def list_exponents(term: Term, besides: Term = ()) -> Iterator[Term]:
+    """The exponents in a term, but for those in its parts that are ``besides``."""
+    if term != besides:
+        if term[0] == "^":
+            yield term[2]
+        for part in term[1:]:
+            if isinstance(part, tuple):
+                yield from list_exponents(part, besides)
+
+
+def keep_power(narrow: Term, wide: Term) -> None:
+    """An exponent in the place of an equal one: b**q with a rational q exists for b <= 0, other powers do not."""
+    q = constant_of(wide)
+    require(q is None or constant_of(narrow) == q, "another exponent")
 
 
 def is_identity(term: Term) -> bool:
@@ -1076,6 +1107,8 @@ def differentiate(term: Term, name: str) -> Term:
 def prove(proof: Any, goal: Goal) -> None:
     """Check that a proof proves a goal."""
     require(isinstance(proof, dict) and proof.get("rule") in RULES, "expected a proof by a known rule")
+    names = set().union(*map(symbols_of, (goal.term, *goal.exists, *goal.given)))
+    require(names <= set(goal.box), "a symbol without a range")
     RULES[proof["rule"]](proof, goal)
 
 
@@ -1110,7 +1143,7 @@ def set_union(parts: Iterable[dict[Any, None]]) -> dict[Any, None]:
 def value_of(term: Term, point: dict[str, Jet]) -> arb:
     """The ball of a term at a point; NaN where it may have no value."""
     try:
-        value = evaluate(term, point, arb).enclose()
+        value = evaluate(term, point, strict).enclose()
     except Undefined:
         return arb.nan()
     return value if isinstance(value, arb) else arb.nan()
@@ -1144,6 +1177,8 @@ def prove_rewrite(proof: Any, goal: Goal) -> None:
     before, after = parse(old), parse(new)
     prove_defined(defined, goal, before, after)
     prove(equal, remember(goal, subtract(before, after))._replace(relation="="))
+    for exponent in list_exponents(goal.term, before):
+        keep_power(replace(exponent, before, after), exponent)
     prove(premise, remember(goal, replace(goal.term, before, after)))
 
 
@@ -1196,6 +1231,7 @@ def prove_split(proof: Any, goal: Goal) -> None:
     _, name, at, proofs = read_fields(proof, "rule symbol at proofs")
     middle = parse(at)
     require(not symbols_of(middle), "expected a number")
+    require(value_of(middle, {}).is_finite(), "a number that may not exist")
     parts = ({"high": middle, "open_high": False}, {"low": middle, "open_low": False})
     prove_all(proofs, [change_range(goal, name, **part) for part in parts])
 
@@ -1233,6 +1269,8 @@ def prove_abstract(proof: Any, goal: Goal) -> None:
     require(not any(limit.nonzero or limit.integer for limit in new.values()), "a range that is no interval")
     form = parse(text)
     back = reduce(lambda t, name: replace(t, ("symbol", name), terms[name]), terms, form)
+    for exponent in list_exponents(form):
+        keep_power(exponent, reduce(lambda t, name: replace(t, ("symbol", name), terms[name]), terms, exponent))
     prove_defined(defined, goal, back, *terms.values())
     require(is_identity(subtract(goal.term, back)), "the terms differ")
     goals = []
@@ -1262,7 +1300,7 @@ def prove_dense(proof: Any, goal: Goal) -> None:
     whole = goal._replace(
         box={name: r._replace(open_low=False, open_high=False, nonzero=False) for name, r in goal.box.items()}
     )
-    prove_defined(defined, whole._replace(term=ZERO, exists=()), goal.term, *goal.exists, level=1)
+    prove_defined(defined, whole._replace(term=ZERO, exists=(), given=()), goal.term, *goal.exists, level=1)
     prove(premise, goal._replace(exists=(*goal.exists, ("^", seldom, MINUS_ONE)), given=()))
 
 
@@ -1367,6 +1405,7 @@ def prove_derivative(proof: Any, goal: Goal) -> None:
 def is_inside(value: Term, limit: Range) -> bool:
     """Whether a number is shown to lie in a range."""
     require(not symbols_of(value), "expected a number")
+    require(value_of(value, {}).is_finite(), "a number that may not exist")
     q = constant_of(value)
     if (limit.integer and (q is None or q.q > 1)) or (limit.nonzero and not holds("!=", value_of(value, {}))):
         return False
@@ -1739,7 +1778,7 @@ def prove_roots(proof: Any, goal: Goal) -> None:
     limit, ends = goal.box[name], [None if end is None else read_number(end) for end in (low, high)]
     exact = [is_end(end, own, sign) for end, own, sign in zip(ends, (limit.low, limit.high), (1, -1), strict=True)]
     top, bottom = to_fraction(goal.term)
-    require(goal.relation != "=" and top != 0, "expected an inequality")
+    require(goal.relation != "=" and top != 0 and bottom != 0, "expected an inequality")
     inner = inner_number(*ends)
     while (top * bottom)(inner) == 0:
         inner = (inner + (ends[0] if ends[0] is not None else inner - 1)) / 2
