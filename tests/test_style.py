@@ -13,6 +13,8 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 LONGEST_FILE, LONGEST_FUNCTION = 700, 60
+#: The checker is one file on purpose: it can be taken away, read and run alone.
+LONGER_FILES = {"navsym/checker.py": 2100}
 
 #: Share of the names of top-level functions that may stand in two files or more.
 AMBIGUOUS = 0.10
@@ -59,7 +61,7 @@ def definitions(root: Path) -> Iterator[tuple[str, ast.FunctionDef | ast.AsyncFu
 def too_long(paths: Iterable[Path], root: Path) -> list[str]:
     """Python files, and functions of navsym, above their limits."""
     files = ((p.relative_to(root).as_posix(), p.read_bytes().count(b"\n")) for p in paths)
-    found = [f"{name}: {lines} lines" for name, lines in files if lines > LONGEST_FILE]
+    found = [f"{name}: {lines} lines" for name, lines in files if lines > LONGER_FILES.get(name, LONGEST_FILE)]
     for name, node in definitions(root):
         lines = (node.end_lineno or 0) - node.lineno + 1
         if not isinstance(node, ast.ClassDef) and lines > LONGEST_FUNCTION:

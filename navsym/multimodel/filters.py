@@ -50,7 +50,7 @@ def filter(
 ) -> Estimates:
     """Mode probabilities, mean, covariance and log-likelihood of a signal whose model switches, after every step.
 
-    bank       : path of a bank file (JSON), its document, or a :class:`Bank`
+    bank       : file of a bank (JSON), its document, or a :class:`Bank`
     z          : measurements (T, p), the first row at step 1: an array, lists, or a DataFrame; default: the file's
     method     : ``exact``, ``pulsating``, ``k-pulsating``, ``gpb2``, ``imm`` or ``polygaussian``
     depth      : K of k-pulsating, steps between two mergers; default 2
@@ -62,11 +62,10 @@ def filter(
     The exact posterior is a mixture with one Gaussian for every sequence of modes. Every method branches it, weighs
     the branches by the likelihoods of their innovations, and merges groups of them; the groups tell methods apart.
 
-    Whatever the engine and the form, a bank at which doubles may lose their digits is run twice, in two ways; where
-    the runs disagree, a hundred digits decide, and a remark says so. An innovation covariance S that is singular
-    (perfect sensors) has its density on the range of S, ``(2 pi)^(-r/2) pdet(S)^(-1/2) exp(-v^T S^+ v / 2)``, r its
-    rank and pdet the product of its eigenvalues that are not zero. As in the limit R -> 0, a mode of lower rank whose
-    measurement fits outweighs the others; a measurement that fits no mode is left out, and ``left_out`` names its step.
+    Where doubles may lose their digits, the bank is run twice; where the runs disagree, a hundred digits decide, and a
+    remark says so. A singular innovation covariance S (perfect sensors) has its density on the range of S,
+    ``(2 pi)^(-r/2) pdet(S)^(-1/2) exp(-v^T S^+ v / 2)``, r its rank, pdet the product of its other eigenvalues. As in
+    the limit R -> 0, a mode of lower rank that fits outweighs others; ``left_out`` names steps that fit no mode.
 
     Returns :class:`Estimates`. Raises NavsymError: ``shape``, ``domain``, ``not-finite``, ``empty``, ``too-large``
     (a tree that does not fit), ``unknown-symbol`` (a key). Source: multistructure:10 to :19.
@@ -89,16 +88,8 @@ def filter(
         else:
             document = read_json(bank) if isinstance(bank, str | os.PathLike) else bank
             given = read_bank(document, z)
-        return run_filter(
-            given.bank,
-            given.measurements,
-            method,
-            depth=depth,
-            memoryless=memoryless or given.memoryless,
-            missing=missing or given.missing,
-            form=form,
-            engine=engine,
-        )
+        said = {"memoryless": memoryless or given.memoryless, "missing": missing or given.missing}
+        return run_filter(given.bank, given.measurements, method, depth=depth, form=form, engine=engine, **said)
     except NavsymError as error:
         raise error if error.where.startswith(place) else error.at(place) from None
 

@@ -23,8 +23,9 @@ from navsym.core.errors import NavsymError
 from navsym.core.numbers import Number
 from navsym.language.expression import to_text
 from navsym.prove.equations import list_entries, shape_of
+from navsym.prove.rooms.goals import draw_points, player, simple_point, write_term
 from navsym.prove.sampling.points import Range, ranges_of
-from navsym.prove.search import SECONDS, draw_points, find_proof, player, simple_point, write_term
+from navsym.prove.search import SECONDS, find_proof
 from navsym.prove.wording import decimal_ends
 
 UNCHECKED = "unchecked: no certificate of this statement"

@@ -1,0 +1,141 @@
+"""Rooms of equations: exact algebra, inverse functions by their definitions, equal squares, derivatives."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import sympy as sp
+from flint import arb, fmpq
+
+from navsym.language.expression import to_text
+from navsym.prove.rooms.goals import (
+    Hole,
+    Holes,
+    Proof,
+    is_below,
+    is_root,
+    player,
+    simple_point,
+    subterms,
+    to_sympy,
+    values_of,
+    write_term,
+)
+
+
+def by_algebra(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """Both sides have one normal form."""
+    yield {"rule": "identity"}
+
+
+def by_values(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """An absolute value by its two cases."""
+    for part in dict.fromkeys(p for p in subterms(goal.term) if p[0] == "abs"):
+        if not any(p[0] == "abs" for p in subterms(part[1])):
+            yield {"rule": "cases", "of": write_term(part[1]), "proofs": Holes()}
+            return
+
+
+def by_modulus(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """sqrt(u) and |u| as what they are where its sign is known."""
+    for part in dict.fromkeys(p for p in subterms(goal.term) if p[0] in ("sqrt", "abs", "^")):
+        if part[0] == "^" and not (player.constant_of(part[2]) or fmpq(1)).q > 1:
+            continue
+        inside = to_sympy(part[1])
+        power = sp.Integer(1) if part[0] == "abs" else sp.Rational(1, 2)
+        power = power if part[0] != "^" else sp.Rational(str(player.constant_of(part[2])))
+        root = inside if part[0] == "abs" else sp.powdenest(sp.sqrt(sp.factor(inside)) ** (2 * power), force=True)
+        if root.has(sp.Pow) and any(not p.exp.is_Integer for p in root.atoms(sp.Pow)):
+            continue
+        text = to_text(root)
+        for value in (text, f"-({text})"):
+            if not is_below(values_of(goal, player.parse(value))):
+                yield rewrite_atom(write_term(part), value)
+
+
+def rewrite_atom(atom: str, value: str) -> Proof:
+    """The rule that puts a value in the place of an inverse function."""
+    return {"rule": "rewrite", "from": atom, "to": value, "defined": Holes(), "proof": Hole()} | {
+        "equal": solve_for(atom, value)
+    }
+
+
+def solve_for(atom: str, value: str, share: str = "1") -> Proof:
+    """The rule that an inverse function has a value."""
+    holes: Proof = {"defined": Holes(), "proofs": Holes()}
+    return {"rule": "solve", "share": share, "atom": atom, "value": value} | holes
+
+
+def by_logarithms_of_products(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """Logarithms as sums over the factors of what they are of; symbolic powers as exponentials first."""
+    powers = [p for p in subterms(goal.term) if p[0] == "^" and player.constant_of(p[2]) is None]
+    if powers:
+        term = goal.term
+        for part in dict.fromkeys(powers):
+            term = player.replace(term, part, ("exp", ("*", part[2], ("log", part[1]))))
+        yield {"rule": "equal", "to": write_term(term), "defined": Holes(), "proof": Hole()}
+    for part in dict.fromkeys(p for p in subterms(goal.term) if p[0] == "log"):
+        own = to_sympy(part)
+        spread = sp.expand_log(sp.log(sp.factor(own.args[0])) if own.args else own, force=True)
+        if spread != own:
+            yield rewrite_atom(write_term(part), to_text(spread))
+            return
+
+
+def by_values_of_constants(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """An inverse function of a number as the number that the algebra system has for it: acos(0) = pi/2."""
+    for part in dict.fromkeys(p for p in subterms(goal.term) if p[0] in ("asin", "acos", "atan", "log", "atan2")):
+        value = sp.S.NaN if player.symbols_of(part) else to_sympy(part)
+        if value.is_number and value.is_finite and not value.has(sp.asin, sp.acos, sp.atan, sp.log, sp.atan2):
+            yield rewrite_atom(write_term(part), to_text(value))
+            return
+
+
+def by_inverse(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """The equation solved for an inverse function, and the definition of that."""
+    expression = to_sympy(goal.term)
+    atoms = {to_text(atom): atom for atom in expression.atoms(sp.log, sp.asin, sp.acos, sp.atan, sp.atan2, sp.Abs)}
+    roots = {to_text(p): p for p in expression.atoms(sp.Pow) if p.exp.is_Rational and p.exp.q > 1}
+    own = {**atoms, **roots}
+    for text, atom in sorted(own.items(), key=lambda pair: -len(pair[0])):
+        rest = sp.expand_mul(expression)
+        share = rest.coeff(atom)
+        value = sp.expand_mul(atom - rest / share) if share.is_Rational and share != 0 else None
+        if value is None or value.has(atom):
+            continue
+        yield solve_for(text, to_text(value), str(share))
+
+
+def by_equal_squares(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """Equal squares of two sides of one sign."""
+    terms = player.list_terms(goal.term)
+    if len(terms) < 2 or not any(p[0] in ("sqrt", "abs", "^") for p in subterms(goal.term)):
+        return
+    for left in terms[:4]:
+        rest = tuple(player.negate(t) for t in terms if t is not left)
+        right = rest[0] if len(rest) == 1 else ("+", *rest)
+        for sign in (1, -1):
+            if not is_below(values_of(goal, left), sign) and not is_below(values_of(goal, right), sign):
+                yield {"rule": "squares", "left": write_term(left), "right": write_term(right), "sign": sign} | {
+                    "defined": Holes(), "proofs": Holes()
+                }  # fmt: skip
+
+
+def by_sides_of_zero(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """The parts of a range beside zero, on each of which odd functions have one sign."""
+    names = sorted(player.symbols_of(goal.term))
+    if len(names) == 1 and any(is_root(part) for part in subterms(goal.term)):
+        limit = goal.box[names[0]]
+        if player.is_inside(player.ZERO, limit._replace(open_low=True, open_high=True, nonzero=False)):
+            yield {"rule": "split", "symbol": names[0], "at": "0", "proofs": Holes()}
+
+
+def by_gradient(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """Derivatives that vanish, and one value."""
+    names = sorted(player.symbols_of(goal.term))
+    if not names:
+        return
+    for k in range(3):
+        point = {name: str(simple_point(goal.box[name], k)) for name in names}
+        yield {"rule": "derivative", "point": point, "value": Hole(), "slopes": Holes(), "defined": Holes()}

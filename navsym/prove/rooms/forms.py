@@ -1,0 +1,142 @@
+"""Rooms that write a term otherwise: other forms, and one new number for an exponential, a root or a half angle."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import sympy as sp
+from flint import arb
+from sympy.simplify.fu import TR8
+
+from navsym.core.errors import NavsymError
+from navsym.language.expression import symbol, to_text
+from navsym.prove.rooms.goals import Hole, Holes, Proof, Term, player, to_sympy, write_term
+from navsym.prove.signs.products import as_product
+
+Form = tuple[sp.Expr, sp.Expr, str | None, sp.Expr | None]
+
+
+def by_forms(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """The term written otherwise: as a product, as one fraction, expanded."""
+    for text in list_forms(goal.term):
+        yield {"rule": "equal", "to": text, "defined": Holes(), "proof": Hole()}
+
+
+@functools.lru_cache(maxsize=4096)
+def list_forms(term: Term) -> tuple[str, ...]:
+    """Texts of other forms of a term."""
+    expression, own, forms = to_sympy(term), write_term(term), dict[str, None]()
+    for rewrite in FORMS:
+        try:
+            other = rewrite(expression)
+            text = to_text(other) if other is not None else own
+        except (NavsymError, ArithmeticError, ValueError, TypeError, AttributeError, NotImplementedError, KeyError):
+            continue
+        if player.parse(text) != term and len(text) < 6 * len(own) + 200:
+            forms[text] = None
+    return tuple(forms)
+
+
+def complete_square(expression: sp.Expr) -> sp.Expr | None:
+    """a v**2 + b v + c as a (v + b/(2 a))**2 + rest, for the first symbol of degree two."""
+    for v in sorted(expression.free_symbols, key=str):
+        if expression.is_polynomial(v) and sp.degree(expression, v) == 2:
+            a, b, c = sp.Poly(expression, v).all_coeffs()
+            return a * (v + b / (2 * a)) ** 2 + sp.factor(c - b**2 / (4 * a))
+    return None
+
+
+FORMS: tuple[Callable[[sp.Expr], sp.Expr | None], ...] = (
+    as_product,
+    lambda e: sp.factor(e),
+    sp.factor_terms,
+    lambda e: sp.expand(e),
+    lambda e: sp.factor(sp.together(e)),
+    lambda e: sp.expand(TR8(sp.expand(e))) if e.has(sp.sin, sp.cos) else None,
+    lambda e: sp.factor(sp.together(sp.expand_trig(e))) if e.has(sp.atan, sp.asin, sp.acos) else None,
+    lambda e: complete_square(e),
+)
+
+
+def by_substitution(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """One number u in the place of an exponential, a root, or the tangent of a half angle."""
+    expression = to_sympy(goal.term)
+    u = sp.Symbol("u_", real=True)
+    name = "u"
+    while name in goal.box:
+        name += "u"
+    new = symbol(name)
+    for make in (by_exponentials, by_root, by_tangent):
+        for term, form, low, dense in make(expression, u):
+            body: Proof = {"rule": "abstract", "terms": {name: to_text(term)}, "ranges": {name: [low, None, []]}}
+            body |= {"to": to_text(sp.factor(form.xreplace({u: new}))), "inside": Holes(), "defined": Holes()}
+            body |= {"proof": Hole()}
+            if dense is None:
+                yield body
+            elif goal.relation == ">=":
+                point = {s.name: "1/7" for s in dense.free_symbols}
+                outer = {"rule": "dense", "except": to_text(dense), "point": point, "defined": Holes(), "proof": body}
+                yield outer
+
+
+def by_exponentials(expression: sp.Expr, u: sp.Symbol) -> Iterator[Form]:
+    """u = exp(x/d)."""
+    hyper = expression.rewrite(sp.exp) if expression.has(sp.sinh, sp.cosh, sp.tanh) else expression
+    arguments = [node.args[0] for node in hyper.atoms(sp.exp)]
+    symbols = {s for a in arguments for s in a.free_symbols}
+    if len(symbols) != 1:
+        return
+    (x,) = symbols
+    shares = [sp.expand(a / x) for a in arguments]
+    if not all(s.is_Rational for s in shares):
+        return
+    d = sp.ilcm(*(s.q for s in shares))
+    step = sp.igcd(*(int(s * d) for s in shares))
+    powers = {node: u ** sp.Rational(s * d, step) for node, s in zip(hyper.atoms(sp.exp), shares, strict=False)}
+    powers = {node: u ** (sp.expand(node.args[0] / x) * d / step) for node in hyper.atoms(sp.exp)}
+    form = hyper.xreplace(powers)
+    if not form.has(x):
+        yield sp.exp(x * sp.Rational(step, d)), form, "0", None
+
+
+def by_root(expression: sp.Expr, u: sp.Symbol) -> Iterator[Form]:
+    """u = (a + b x)**(1/q)."""
+    roots = [p for p in expression.atoms(sp.Pow) if p.exp.is_Rational and p.exp.q > 1]
+    bases = {p.base for p in roots}
+    if len(bases) != 1:
+        return
+    (base,) = bases
+    symbols = base.free_symbols
+    if len(symbols) != 1 or not base.is_polynomial() or sp.degree(base) != 1:
+        return
+    (x,) = symbols
+    q = sp.ilcm(*(p.exp.q for p in roots))
+    a, b = base.subs(x, 0), sp.diff(base, x)
+    form = expression.xreplace({p: u ** (p.exp * q) for p in roots}).subs(x, (u**q - a) / b)
+    yield sp.Pow(base, sp.Rational(1, q)), form, "0", None
+
+
+def by_tangent(expression: sp.Expr, u: sp.Symbol) -> Iterator[Form]:
+    """u = tan(x/(2 d)) for the one angle of which all others are multiples."""
+    waves = expression.atoms(sp.sin, sp.cos)
+    symbols = {s for node in waves for s in node.free_symbols}
+    if len(symbols) != 1:
+        return
+    (x,) = symbols
+    shares = {node: sp.expand(node.args[0] / x) for node in waves}
+    if not all(s.is_Rational for s in shares.values()):
+        return
+    d = sp.ilcm(*(s.q for s in shares.values()))
+    step = sp.igcd(*(int(s * d) for s in shares.values()))
+    turns = {node: int(s * d) // step for node, s in shares.items()}
+    if max(map(abs, turns.values())) > 8:
+        return
+    cosine, sine = (1 - u**2) / (1 + u**2), 2 * u / (1 + u**2)
+    values = {node: (sp.chebyshevt(abs(n), cosine) if node.func is sp.cos else
+                     sp.sign(n) * sine * sp.chebyshevu(abs(n) - 1, cosine)) for node, n in turns.items()}  # fmt: skip
+    form = expression.xreplace(values)
+    if not form.has(x):
+        half = x * sp.Rational(step, 2 * d)
+        yield sp.tan(half), form, None, sp.cos(half)

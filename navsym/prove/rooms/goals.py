@@ -1,0 +1,183 @@
+"""Goals, their terms and samples, and the second checker that plays the rules of a search."""
+
+from __future__ import annotations
+
+import functools
+import importlib.util
+from collections.abc import Callable, Iterator, Sequence
+from fractions import Fraction
+from typing import Any
+
+import sympy as sp
+from flint import arb, fmpq
+
+from navsym import checker
+from navsym.core.exact import to_fmpq
+from navsym.language.expression import parse, symbol
+
+Term = tuple[Any, ...]
+Proof = dict[str, Any]
+Room = Callable[[Any, list[arb]], Iterator[Proof]]
+
+SHARES = (fmpq(1, 2), fmpq(1, 7), fmpq(12, 13), fmpq(1, 1000), fmpq(1, 3), fmpq(999, 1000))
+
+
+class Hole(dict[str, Any]):
+    """A proof that is still to be found."""
+
+
+class Holes(list[Any]):
+    """Proofs of premises whose number is not known yet."""
+
+
+def load_player() -> Any:
+    """A second checker, which fills holes where the first would refuse them; it grants nothing."""
+    spec = importlib.util.spec_from_file_location("navsym.prove.player", checker.__file__)
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+player = load_player()
+player.MOST_EFFORT = 30_000  # what takes longer is no candidate
+
+
+# Terms
+
+
+def write_term(term: Term) -> str:
+    """Text that is read back as the same term."""
+    match term:
+        case ("number", q):
+            return write_number(q)
+        case ("pi",):
+            return "pi"
+        case ("symbol", name):
+            return str(name)
+        case ("+", *terms):
+            return f"({' + '.join(map(write_term, terms))})"
+        case ("*", *factors):
+            return f"({'*'.join(map(write_term, factors))})"
+        case ("^", base, exponent):
+            return f"({write_term(base)}**{write_term(exponent)})"
+        case (name, *arguments):
+            return f"{name}({', '.join(map(write_term, arguments))})"
+    raise ValueError(term)
+
+
+def write_number(q: fmpq) -> str:
+    """A number as one token where it is a decimal, else as a quotient."""
+    top, bottom, places = abs(int(q.p)), int(q.q), 0
+    while bottom % 2 == 0 or bottom % 5 == 0:
+        bottom = bottom // 2 if bottom % 2 == 0 else bottom // 5
+        places += 1
+    if bottom != 1:
+        return f"({q.p}/{q.q})"
+    digits = str(top * 10**places // int(q.q)).rjust(places + 1, "0")
+    text = f"{digits[:-places]}.{digits[-places:]}" if places else digits
+    return f"(-{text})" if q < 0 else text
+
+
+@functools.lru_cache(maxsize=4096)
+def to_sympy(term: Term) -> sp.Expr:
+    """The term for the algebra system, all symbols real: a source of candidates."""
+    return parse(write_term(term), {name: symbol(name) for name in player.symbols_of(term)})
+
+
+def subterms(term: Term) -> Iterator[Term]:
+    """The parts of a term, inner ones first."""
+    for part in term[1:]:
+        if isinstance(part, tuple):
+            yield from subterms(part)
+    yield term
+
+
+def is_root(part: Term) -> bool:
+    """Whether a term is a root or an absolute value."""
+    return part[0] in ("sqrt", "abs") or (part[0] == "^" and (player.constant_of(part[2]) or fmpq(1)).q > 1)
+
+
+def join(terms: Sequence[Term]) -> Term:
+    """The sum of terms."""
+    return terms[0] if len(terms) == 1 else ("+", *terms)
+
+
+# Samples
+
+
+def sample_goal(goal: Any) -> list[arb]:
+    """Balls of the term at some points of the box at which all has a value and the hypotheses hold."""
+    names = sorted(player.symbols_of(goal.term).union(*map(player.symbols_of, goal.given)))
+    values = []
+    for k in range(len(SHARES) + 4 if names else 1):
+        place = {name: player.Jet(inner_point(goal.box[name], k, i)) for i, name in enumerate(names)}
+        if any(not player.value_of(t, place) >= 0 for t in goal.given):
+            continue
+        value = player.value_of(goal.term, place)
+        if value.is_finite():
+            values.append(value)
+    return values
+
+
+def values_of(goal: Any, term: Term) -> list[arb]:
+    """Balls of another term at the points of a goal."""
+    return sample_goal(goal._replace(term=term))
+
+
+def fails(relation: str, value: arb) -> bool:
+    """Whether the ball contradicts the relation."""
+    return bool(player.FAILURES[relation](value))
+
+
+def is_below(values: Sequence[arb], sign: int = 1) -> bool:
+    """Whether some value is certainly below zero."""
+    return any(value * sign < 0 for value in values)
+
+
+# Points
+
+
+def inner_point(limit: Any, k: int, i: int) -> arb:
+    """The k-th point of a range for the i-th symbol."""
+    share = SHARES[(k + i * (k // 2)) % len(SHARES)]
+    low, high = (None if end is None else player.value_of(end, {}).mid() for end in (limit.low, limit.high))
+    if limit.integer:
+        return arb(int(float(low if low is not None else -3 if high is None else high - 5)) + k)
+    if low is not None and high is not None:
+        return arb(low + (high - low) * share)
+    far = arb(share / (1 - share))
+    return low + far if low is not None else high - far if high is not None else far - arb(2) / 3
+
+
+def simple_point(limit: Any, k: int) -> fmpq:
+    """A simple rational number in a range, if it is wide."""
+    numbers = [fmpq(n, d) for d in (1, 2, 4, 10) for n in (0, 1, -1, 3, -3, 7)][k:]
+    inside = [n for n in numbers if player.is_inside(player.number(n), limit)]
+    return inside[0] if inside else to_fmpq(inner_point(limit, k, 0).mid())
+
+
+def draw_points(box: Any, count: int) -> Iterator[dict[str, fmpq]]:
+    """Points of a box in rational numbers: simple ones first, then ones at which few things coincide."""
+    for k in range(count):
+        point = {}
+        for i, (name, limit) in enumerate(box.items()):
+            if k < count // 3:
+                point[name] = simple_point(limit, (k + 2 * i * k) % 6)
+            elif limit.low is None and limit.high is None and not limit.integer:
+                point[name] = fmpq(sp.prime(i + 2) + k, 1 + (k + i) % 7)
+            else:
+                point[name] = short_number(inner_point(limit, k, i), limit)
+        if all(player.is_inside(player.number(value), box[name]) for name, value in point.items()):
+            yield point
+
+
+def short_number(ball: arb, limit: Any) -> fmpq:
+    """A short fraction near a ball in the range, else the middle of the ball."""
+    middle = Fraction(str(to_fmpq(ball.mid())))
+    for size in (1, 10, 1000, 10**6):
+        near = middle.limit_denominator(size)
+        q = fmpq(near.numerator, near.denominator)
+        if player.is_inside(player.number(q), limit):
+            return q
+    return to_fmpq(ball.mid())

@@ -1,0 +1,302 @@
+"""Rooms of inequalities: balls, signs of factors and terms, ends of ranges, squares, slopes, real roots, cones."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import scipy.optimize
+import sympy as sp
+from flint import arb, fmpq, fmpq_mpoly
+
+from navsym.core.exact import to_fmpq
+from navsym.language.expression import to_text
+from navsym.prove.rooms.goals import (
+    Hole,
+    Holes,
+    Proof,
+    Term,
+    is_below,
+    is_root,
+    join,
+    player,
+    subterms,
+    to_sympy,
+    values_of,
+    write_term,
+)
+from navsym.prove.signs.polynomials import choose_pair
+
+CELLS = (120, 2500)
+#: Comparisons of variables in one proof by cones.
+MOST_SPLITS = 300
+
+
+def by_number(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """Numbers by a ball, or because they are zero."""
+    if player.symbols_of(goal.term):
+        return
+    for bits in (64, 256, 2048):
+        yield {"rule": "balls", "bits": bits, "cells": 1}
+    if goal.relation == ">=":
+        yield {"rule": "zero", "proof": Hole()}
+
+
+def by_identity(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """Zero, or a hypothesis."""
+    if goal.relation == ">=" and all(value.contains(0) for value in sample):
+        yield {"rule": "identity"}
+    if goal.relation == ">=":
+        weights = find_weights(goal)
+        if weights is not None:
+            yield {"rule": "given", "weights": weights}
+
+
+def find_weights(goal: Any) -> list[str] | None:
+    """Weights >= 0 of the hypotheses that may add up to the term: least squares over the coefficients."""
+    if not goal.given:
+        return None
+    forms = [sp.expand(to_sympy(t)).as_coefficients_dict() for t in (goal.term, *goal.given)]
+    monomials = list(dict.fromkeys(m for form in forms for m in form))
+    rows = [[float(form.get(m, 0)) for m in monomials] for form in forms]
+    weights, rest = scipy.optimize.nnls(np.transpose(rows[1:]), np.array(rows[0]))
+    return [str(Fraction(w).limit_denominator(1000)) for w in weights] if rest < 1e-9 else None
+
+
+def by_range(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """A multiple of the distance from an end of a range."""
+    if goal.relation == "!=" or len(player.symbols_of(goal.term)) != 1:
+        return
+    (name,) = player.symbols_of(goal.term)
+    if any(part[0] not in ("+", "*", "number", "symbol", "pi", "^") for part in subterms(goal.term)):
+        return
+    slope = player.differentiate(goal.term, name)
+    if player.symbols_of(slope):
+        return
+    share = player.constant_of(slope)
+    if share is not None and share != 0:
+        yield {"rule": "range", "symbol": name, "end": int(share < 0), "share": f"{abs(share)}"}
+
+
+def by_side(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """!= by the one sign that the term has."""
+    if goal.relation == "!=":
+        for sign in (1, -1):
+            if not is_below(sample, sign):
+                yield {"rule": "side", "sign": sign, "proof": Hole()}
+
+
+def by_roots(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """A rational function of one symbol by its real roots."""
+    names = player.symbols_of(goal.term)
+    if len(names) == 1 and all(p[0] in ("+", "*", "^", "number", "symbol") for p in subterms(goal.term)):
+        limit = goal.box[next(iter(names))]
+        yield {"rule": "roots", "from": outer_end(limit.low, -1), "to": outer_end(limit.high, 1)}
+
+
+def outer_end(end: Term | None, sign: int) -> str | None:
+    """A rational end, or a near rational number beyond it."""
+    if end is None:
+        return None
+    q = player.constant_of(end)
+    if q is None:
+        ball = player.value_of(end, {})
+        q = to_fmpq((ball.upper() if sign > 0 else ball.lower()) + arb(sign) * arb(2) ** -80)
+        q = fmpq(int(q * 2**100 + sign), 2**100)
+    return str(q)
+
+
+def by_bounds(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """Least values of the terms, and the half turn of an angle."""
+    if goal.relation == "!=" or not any(p[0] in player.SPANS for p in subterms(goal.term)):
+        return
+    factors = player.list_factors(goal.term)
+    waves = [f for f in factors if f[0] in ("sin", "cos")]
+    if len(waves) == 1 and sum(bool(player.symbols_of(f)) for f in factors) == 1:
+        yield from by_angle(goal, waves[0])
+    yield {"rule": "bounded", "proof": Hole()}
+
+
+def by_angle(goal: Any, wave: Term) -> Iterator[Proof]:
+    """The half turn in which an angle lies."""
+    share = player.constant_of(("*", player.ONE, *(f for f in player.list_factors(goal.term) if f != wave)))
+    angles = [float(v.mid()) / 3.141592653589793 for v in values_of(goal, wave[1])]
+    if share and angles:
+        middle = sum(angles) / len(angles) + (0 if wave[0] == "sin" else 0.5)
+        k = int(middle // 1)
+        if (share > 0) == (k % 2 == 0):
+            yield {"rule": "angle", "turn": k, "share": str(abs(share)), "proofs": Holes()}
+
+
+def by_few_balls(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """A few cells of a bounded box."""
+    yield from by_balls(goal, CELLS[0])
+
+
+def by_many_balls(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """Many cells of a bounded box."""
+    yield from by_balls(goal, CELLS[1])
+
+
+def by_balls(goal: Any, cells: int) -> Iterator[Proof]:
+    """Cells of a bounded box."""
+    names = player.symbols_of(goal.term).union(*map(player.symbols_of, goal.given))
+    if names and all(goal.box[n].low is not None and goal.box[n].high is not None for n in names):
+        yield {"rule": "balls", "bits": 64, "cells": cells // 4}
+
+
+def by_product(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """The signs of the factors."""
+    factors = player.list_factors(goal.term)
+    if len(factors) == 1 and factors[0][0] in ("+", "symbol", "number", "sin", "cos", "tan", "log", "atan"):
+        return
+    entries: list[Any] = []
+    for factor in factors:
+        base, q = (factor[1], player.constant_of(factor[2])) if factor[0] == "^" else (factor, fmpq(1))
+        positive = factor[0] in ("exp", "cosh") or q is None or (q < 0 and (q.q > 1 or int(q) % 2 == 0))
+        weak = q is not None and (q.q > 1 or int(q) % 2 == 0 or factor[0] in ("abs", "sqrt", "acos"))
+        if factor[0] == "number" or positive or (weak and goal.relation == ">="):
+            entries.append(None)
+            continue
+        values = values_of(goal, base)
+        sign = -1 if is_below(values) else 1
+        if is_below(values, sign) and not weak and goal.relation != "!=":
+            return
+        entries.append([sign, Hole()])
+    yield {"rule": "product", "factors": entries}
+
+
+def by_sum(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """Terms of one sign each."""
+    terms = player.list_terms(goal.term)
+    if len(terms) < 2 or goal.relation == "!=":
+        return
+    values = [values_of(goal, term) for term in terms]
+    if any(is_below(v) for v in values):
+        return
+    strict = [k for k, v in enumerate(values) if v and all(x > 0 for x in v)]
+    for k in strict[:3] if goal.relation == ">" else [0]:
+        yield {"rule": "sum", "proofs": Holes(), "strict": k}
+
+
+def by_quadratic(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """The discriminant of a polynomial of degree two in a symbol."""
+    if goal.relation == "!=":
+        return
+    expression = to_sympy(goal.term)
+    for v in sorted(expression.free_symbols, key=str):
+        if expression.is_polynomial(v) and sp.degree(expression, v) == 2:
+            texts = [to_text(part) for part in sp.Poly(expression, v).all_coeffs()]
+            yield {"rule": "quadratic", "symbol": v.name, "coefficients": texts} | {
+                "defined": Holes(), "proofs": Holes()
+            }  # fmt: skip
+
+
+def by_squares(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """L > R by L >= 0 and L**2 > R**2: roots and absolute values."""
+    if goal.relation == "!=" or not any(is_root(part) for part in subterms(goal.term)):
+        return
+    terms = player.list_terms(goal.term)
+    if len(terms) < 2:
+        return
+    values = [values_of(goal, term) for term in terms]
+    above = [t for t, v in zip(terms, values, strict=True) if not is_below(v)]
+    rooted = [t for t in terms if any(is_root(part) for part in subterms(t))]
+    for left in (above, rooted, [t for t in terms if t not in rooted]):
+        right = [player.negate(t) for t in terms if t not in left]
+        if left and right and not is_below(values_of(goal, join(left))):
+            yield {"rule": "squares", "left": write_term(join(left)), "right": write_term(join(right)), "sign": 1} | {
+                "defined": Holes(), "proofs": Holes()
+            }  # fmt: skip
+
+
+def by_slope(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """Least at an end of the range of a symbol."""
+    if goal.relation == "!=":
+        return
+    for name in sorted(player.symbols_of(goal.term)):
+        limit = goal.box[name]
+        slope = values_of(goal, player.differentiate(goal.term, name))
+        for upper, end, is_open in ((0, limit.low, limit.open_low), (1, limit.high, limit.open_high)):
+            if end is None or is_below(slope, -1 if upper else 1):
+                continue
+            for strict in (0, 1) if goal.relation == ">" and is_open else (0,):
+                holes = {key: Holes() for key in ("continuous", "smooth")} | {"slope": Hole(), "floor": Hole()}
+                yield {"rule": "slope", "symbol": name, "end": upper, "strict": strict, **holes}
+
+
+def by_concavity(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """Above its chord."""
+    for name in sorted(player.symbols_of(goal.term)) if goal.relation == ">=" else ():
+        limit = goal.box[name]
+        if limit.low is None or limit.high is None:
+            continue
+        second = player.differentiate(player.differentiate(goal.term, name), name)
+        if not is_below(values_of(goal, second), -1):
+            holes = {"continuous": Holes(), "smooth": Holes(), "curve": Hole(), "floors": Holes()}
+            yield {"rule": "concave", "symbol": name, **holes}
+
+
+def by_cones(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """A polynomial with coefficients >= 0 in variables that are compared with each other."""
+    if goal.relation == "!=" or any(p[0] not in ("+", "*", "^", "number", "symbol") for p in subterms(goal.term)):
+        return
+    names = sorted(player.symbols_of(goal.term))
+    if not 1 < len(names) <= 6:
+        return
+    terms = player.to_polynomial(goal.term, names)
+    limits = [goal.box[n] for n in names]
+    signs = [(1, -1) if r.low is None and r.high is None else (1,) for r in limits]
+    budget, splits = [MOST_SPLITS], []
+    for chosen in itertools.product(*signs):
+        polynomial, _ = player.make_cone(terms, limits, chosen)
+        splits.append(split_cone(polynomial, budget, 0))
+        if splits[-1] is False:
+            return
+    yield {"rule": "cones", "splits": splits}
+
+
+def split_cone(polynomial: fmpq_mpoly, budget: list[int], depth: int) -> Any:
+    """The comparisons that leave no negative coefficient: null, a list, or False."""
+    rows = polynomial.to_dict()
+    negative = {powers: c for powers, c in rows.items() if c < 0}
+    if not negative:
+        return None
+    budget[0] -= 1
+    pair = choose_pair(rows, negative, depth)
+    if budget[0] < 0 or depth > 12 or pair is None:
+        return False
+    variables, parts = polynomial.context().gens(), []
+    for larger, smaller in (pair, pair[::-1]):
+        moved = [v + variables[smaller] if k == larger else v for k, v in enumerate(variables)]
+        parts.append(split_cone(polynomial.compose(*moved), budget, depth + 1))
+        if parts[-1] is False:
+            return False
+    return [*pair, *parts]
+
+
+def by_contacts(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """A zero inside the range: the parts beside it one by one."""
+    for name in sorted(player.symbols_of(goal.term)):
+        limit = goal.box[name]
+        for place in ("0", "1", "pi/2", "pi", "-1", "1/2", "2", "-pi/2", "exp(1)", "exp(-1)", "pi/4", "3"):
+            value = player.parse(place)
+            inside = limit._replace(open_low=True, open_high=True)
+            if not player.is_inside(value, inside):
+                continue
+            touching = player.value_of(goal.term, {name: player.Jet(player.value_of(value, {}))})
+            if len(player.symbols_of(goal.term)) == 1 and not touching.contains(0) and place != "0":
+                continue
+            yield {"rule": "split", "symbol": name, "at": place, "proofs": Holes()}
+            if place == "0":
+                continue
+            return
+
+
+def by_logarithms(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """A sum of logarithms by its exponential."""
+    if any(p[0] == "log" for p in subterms(goal.term)) and not any(p[0] == "exp" for p in subterms(goal.term)):
+        yield {"rule": "exponential", "proof": Hole()}
