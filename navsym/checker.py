@@ -643,6 +643,7 @@ def prove_on_cells(cells: list[Cell], budget: Iterator[bool], holds: Callable[[C
         except Undefined:
             proved = False
         if not proved:
+            require(cell, "the bound is not shown, and there is nothing to halve")
             side = max(cell, key=lambda s: cell[s][1])
             middle, radius = cell[side][0], cell[side][1] / 2
             cells += [cell | {side: (half, radius)} for half in (middle - radius, middle + radius)]
@@ -1420,20 +1421,25 @@ def is_inside(value: Term, limit: Range) -> bool:
 def prove_balls(proof: Any, goal: Goal) -> None:
     """The ball of a term on a cell contains its values there, and so does f(c) + f'(cell) (x - c) (Moore, 1966).
 
-    The cells cover the box. Where a cell has no point of the goal, nothing is to be shown.
+    The cells cover the box; a symbol without both ends has the ball of all numbers, in which sin and cos have theirs.
+    Where a cell has no point of the goal, nothing is to be shown.
     """
     _, bits, cells = read_fields(proof, "rule bits cells")
     require(goal.relation != "=", "expected an inequality")
     before = ctx.prec
     try:
         budget, names = set_work(bits, cells), set().union(*map(symbols_of, (goal.term, *goal.given)))
-        ends = {name: [goal.box[name].low, goal.box[name].high] for name in sorted(names)}
-        require(all(None not in pair for pair in ends.values()), "a range without an end")
-        sides = {name: [evaluate(end, {}, arb) for end in pair] for name, pair in ends.items()}  # type: ignore[arg-type]
+        ends = {name: (goal.box[name].low, goal.box[name].high) for name in sorted(names)}
+        far = {name: Jet(arb(0, arb.pos_inf())) for name, pair in ends.items() if None in pair}
+        sides = {
+            name: [evaluate(end, {}, arb) for end in pair if end is not None]
+            for name, pair in ends.items()
+            if name not in far
+        }
 
         def is_settled(cell: Cell) -> bool:
             def place(jets: dict[str, Jet]) -> dict[str, Jet]:
-                return {name: low + (high - low) * jets[name] for name, (low, high) in sides.items()}
+                return far | {name: low + (high - low) * jets[name] for name, (low, high) in sides.items()}
 
             wide = place({name: Jet(arb(*cell[name])) for name in sides})
             try:
@@ -1481,7 +1487,7 @@ def prove_angle(proof: Any, goal: Goal) -> None:
     waves = [f for f in list_factors(goal.term) if f[0] in ("sin", "cos")]
     require(len(waves) == 1, "expected one sine or cosine")
     ((name, angle),) = waves
-    require(is_identity(subtract(goal.term, ("*", number(c * (-1) ** k), waves[0]))), "the term is another one")
+    require(is_identity(subtract(goal.term, ("*", number(c * (-1) ** (k % 2)), waves[0]))), "the term is another one")
     u = angle if name == "sin" else ("+", angle, ("*", ("pi",), number(HALF)))
     sides = [subtract(u, ("*", ("pi",), number(k))), subtract(("*", ("pi",), number(k + 1)), u)]
     prove_all(proofs, [remember(goal, side) for side in sides])

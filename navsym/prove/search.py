@@ -7,6 +7,7 @@ a room gets wrong is refused, so that a room which errs costs an answer, never a
 
 from __future__ import annotations
 
+import itertools
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
@@ -26,13 +27,14 @@ from navsym.prove.rooms.equations import (
     by_values,
     by_values_of_constants,
 )
-from navsym.prove.rooms.forms import by_forms, by_substitution
+from navsym.prove.rooms.forms import by_divisors, by_forms, by_roots_of_symbols, by_substitution
 from navsym.prove.rooms.goals import Hole, Holes, Proof, Room, fails, player, sample_goal
 from navsym.prove.rooms.signs import (
     by_bounds,
     by_concavity,
     by_cones,
     by_contacts,
+    by_corners,
     by_few_balls,
     by_identity,
     by_logarithms,
@@ -48,40 +50,39 @@ from navsym.prove.rooms.signs import (
     by_sum,
 )
 
-#: Depths of proofs and numbers of rules that are tried, one after the other: the same on every machine. The time is a
-#: net below.
-ROUNDS = ((4, 80), (7, 200), (12, 400))
-SECONDS = 30.0
-
-#: The rooms of an equation and of an inequality, in the order of their cost.
-EQUATIONS: tuple[Room, ...] = (
-    by_algebra,
-    by_values,
-    by_modulus,
-    by_logarithms_of_products,
-    by_values_of_constants,
-    by_inverse,
-    by_equal_squares,
-    by_sides_of_zero,
-    by_gradient,
-)
-SIGNS: tuple[Room, ...] = (
-    by_number, by_identity, by_range, by_roots, by_bounds, by_few_balls, by_values, by_product, by_sum, by_side,
-    by_squares, by_slope, by_cones, by_forms, by_quadratic, by_substitution, by_concavity, by_contacts, by_modulus,
-    by_logarithms,
-    by_many_balls,
+#: The rooms in the order of their cost: cheap ones, those that think longer, those of the last resort.
+EQUATIONS: tuple[tuple[Room, ...], ...] = (
+    (
+        by_algebra, by_modulus, by_values, by_logarithms_of_products, by_values_of_constants, by_inverse,
+        by_equal_squares, by_sides_of_zero, by_gradient,
+    ),
 )  # fmt: skip
+SIGNS: tuple[tuple[Room, ...], ...] = (
+    (
+        by_number, by_identity, by_range, by_roots, by_bounds, by_few_balls, by_values, by_product, by_sum, by_side,
+        by_corners, by_squares, by_cones, by_forms,
+    ),
+    (by_quadratic, by_divisors, by_roots_of_symbols, by_substitution, by_slope, by_contacts, by_modulus, by_logarithms),
+    (by_concavity, by_many_balls),
+)  # fmt: skip
+
+#: Depth of proofs, number of rules tried and kinds of rooms, one round after the other: the same on every machine.
+#: The time is a net below.
+ROUNDS = ((6, 200, 1), (8, 300, 2), (8, 400, 3), (12, 1200, 3))
+SECONDS = 30.0
 
 check_rule = player.prove
 
 
 @dataclass(slots=True)
 class Search:
-    """One search: its limit of time, its depth, and the goals that were given up."""
+    """One search: its limit of time, its depth, and the goals that were given up or found."""
 
     deadline: float
-    tries: int
-    most_depth: int
+    found: dict[Any, Proof] = field(default_factory=dict)
+    tries: int = 0
+    most_depth: int = 0
+    kinds: int = 0
     depth: int = 0
     lost: dict[Any, int] = field(default_factory=dict)
     rules: list[str] = field(default_factory=list)
@@ -108,6 +109,8 @@ class Search:
     def find(self, goal: Any) -> Proof | None:
         """A proof of a goal, or None."""
         key = (goal.term, goal.relation, tuple(sorted(goal.box.items())), goal.given)
+        if (key, goal.exists) in self.found:
+            return self.found[key, goal.exists]
         left = self.most_depth - self.depth
         if left <= 0 or self.lost.get(key, -1) >= left or self.is_spent():
             return None
@@ -116,10 +119,11 @@ class Search:
         if not any(fails(goal.relation, value) for value in sample):
             self.depth += 1
             try:
-                for room in EQUATIONS if goal.relation == "=" else SIGNS:
+                kinds = EQUATIONS if goal.relation == "=" else SIGNS
+                for room in itertools.chain(*kinds[: self.kinds]):
                     if room is by_forms and self.rules[-1:] == ["equal"]:
                         continue  # one form of a form is one of the first
-                    if room is by_squares and self.rules.count("squares") > 1:
+                    if room in (by_squares, by_equal_squares) and self.rules.count("squares") > 1:
                         continue  # squares of squares of squares only grow
                     for candidate in guard(room(goal, sample)):
                         if self.is_spent():
@@ -127,6 +131,7 @@ class Search:
                         self.tries -= 1
                         if self.plays(candidate, goal):
                             del self.lost[key]
+                            self.found[key, goal.exists] = candidate
                             return candidate
             finally:
                 self.depth -= 1
@@ -158,12 +163,12 @@ def guard(candidates: Iterator[Proof]) -> Iterator[Proof]:
 
 def find_proof(goal: Any, seconds: float = SECONDS) -> Proof | None:
     """A proof of a goal of the checker as plain data, or None; it is still to be granted."""
-    before, deadline = (ctx.prec, ctx.cap), time.process_time() + seconds
+    before, search = (ctx.prec, ctx.cap), Search(time.process_time() + seconds)
     ctx.prec = 128
     try:
-        for depth, tries in ROUNDS:
-            search = Search(deadline, tries, depth)
-            player.prove, player.prove_all = search.prove, search.prove_all
+        player.prove, player.prove_all = search.prove, search.prove_all
+        for search.most_depth, search.tries, search.kinds in ROUNDS:
+            search.lost.clear()
             found = search.find(goal)
             if found is not None:
                 return plain(found)

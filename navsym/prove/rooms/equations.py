@@ -30,7 +30,10 @@ def by_algebra(goal: Any, sample: list[arb]) -> Iterator[Proof]:
 
 
 def by_values(goal: Any, sample: list[arb]) -> Iterator[Proof]:
-    """An absolute value by its two cases."""
+    """An absolute value by its two cases; two that are compared have squares, which take no cases."""
+    terms = player.list_terms(goal.term)
+    if goal.relation != "=" and len(terms) == 2 and all(any(map(is_root, player.list_factors(t))) for t in terms):
+        return
     for part in dict.fromkeys(p for p in subterms(goal.term) if p[0] == "abs"):
         if not any(p[0] == "abs" for p in subterms(part[1])):
             yield {"rule": "cases", "of": write_term(part[1]), "proofs": Holes()}

@@ -12,6 +12,7 @@ from sympy.simplify.fu import TR8
 
 from navsym.core.errors import NavsymError
 from navsym.language.expression import symbol, to_text
+from navsym.prove.rooms.equations import rewrite_atom
 from navsym.prove.rooms.goals import Hole, Holes, Proof, Term, player, to_sympy, write_term
 from navsym.prove.signs.products import as_product
 
@@ -94,7 +95,6 @@ def by_exponentials(expression: sp.Expr, u: sp.Symbol) -> Iterator[Form]:
         return
     d = sp.ilcm(*(s.q for s in shares))
     step = sp.igcd(*(int(s * d) for s in shares))
-    powers = {node: u ** sp.Rational(s * d, step) for node, s in zip(hyper.atoms(sp.exp), shares, strict=False)}
     powers = {node: u ** (sp.expand(node.args[0] / x) * d / step) for node in hyper.atoms(sp.exp)}
     form = hyper.xreplace(powers)
     if not form.has(x):
@@ -140,3 +140,42 @@ def by_tangent(expression: sp.Expr, u: sp.Symbol) -> Iterator[Form]:
     if not form.has(x):
         half = x * sp.Rational(step, 2 * d)
         yield sp.tan(half), form, None, sp.cos(half)
+
+
+def by_roots_of_symbols(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """Positive symbols as whole powers of new ones, where roots are taken of their products."""
+    expression = to_sympy(goal.term)
+    roots = [p for p in expression.atoms(sp.Pow) if p.exp.is_Rational and p.exp.q > 1 and p.base.free_symbols]
+    if not roots or not all(part.is_Symbol for p in roots for part in p.base.as_powers_dict()):
+        return
+    q, terms, ranges, new = sp.ilcm(*(p.exp.q for p in roots)), {}, {}, {}
+    for v in sorted(set().union(*(p.base.free_symbols for p in roots)), key=str):
+        limit, name = goal.box[v.name], f"{v.name}_root"
+        if limit.low is None or name in goal.box or player.value_of(limit.low, {}) < 0:
+            return
+        is_open = limit.open_low or not player.value_of(limit.low, {}).contains(0)
+        terms[name], ranges[name] = to_text(sp.root(v, q)), ["0", None, ["open-low"] if is_open else []]
+        new[v] = sp.Symbol(name, positive=True)
+    form = expression.xreplace({v: u**q for v, u in new.items()}).xreplace({u: symbol(u.name) for u in new.values()})
+    proof: Proof = {"rule": "abstract", "terms": terms, "ranges": ranges, "to": to_text(form)}
+    proof |= {"inside": Holes(), "defined": Holes(), "proof": Hole()}
+    for p in roots:  # of products: by factors
+        apart = sp.Mul(
+            *(sp.Pow(v, n * p.exp, evaluate=False) for v, n in p.base.as_powers_dict().items()), evaluate=False
+        )
+        if not p.base.is_Symbol:
+            proof = rewrite_atom(to_text(p), to_text(apart)) | {"proof": proof}
+    yield proof
+
+
+def by_divisors(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """The term times the roots by which it is divided."""
+    expression, divisors = to_sympy(goal.term), dict[sp.Expr, sp.Rational]()
+    for p in sorted(expression.atoms(sp.Pow), key=str):
+        if p.exp.is_Rational and p.exp.q > 1 and p.exp < 0 and p.base.free_symbols:
+            divisors[p.base] = max(-p.exp, divisors.get(p.base, p.exp))
+    if goal.relation != "=" and divisors:
+        factor = sp.Mul(*(base**power for base, power in divisors.items()))
+        form = to_text(sp.Add(*(factor * term for term in sp.Add.make_args(expression))))
+        proof = {"rule": "equal", "to": form, "defined": Holes(), "proof": Hole()}
+        yield {"rule": "multiply", "by": to_text(factor), "defined": Holes(), "positive": Hole(), "proof": proof}

@@ -142,9 +142,10 @@ def by_many_balls(goal: Any, sample: list[arb]) -> Iterator[Proof]:
 
 
 def by_balls(goal: Any, cells: int) -> Iterator[Proof]:
-    """Cells of a bounded box."""
+    """Cells of a box; symbols without ends have to stand in functions that are bounded."""
     names = player.symbols_of(goal.term).union(*map(player.symbols_of, goal.given))
-    if names and all(goal.box[n].low is not None and goal.box[n].high is not None for n in names):
+    far = {n for n in names if goal.box[n].low is None or goal.box[n].high is None}
+    if names and (not far or any(p[0] in player.SPANS and player.symbols_of(p) & far for p in subterms(goal.term))):
         yield {"rule": "balls", "bits": 64, "cells": cells // 4}
 
 
@@ -195,6 +196,18 @@ def by_quadratic(goal: Any, sample: list[arb]) -> Iterator[Proof]:
             }  # fmt: skip
 
 
+def by_corners(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """The corners of the box in the symbols of which the term is of degree one."""
+    if goal.relation == "!=":
+        return
+    expression = to_sympy(goal.term)
+    ends = {v: goal.box[v.name] for v in sorted(expression.free_symbols, key=str)}
+    closed = [v for v, limit in ends.items() if limit.low is not None and limit.high is not None]
+    names = [v.name for v in closed if expression.is_polynomial(v) and sp.degree(expression, v) == 1]
+    for name in names:
+        yield {"rule": "corners", "symbols": [name], "proofs": Holes()}
+
+
 def by_squares(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     """L > R by L >= 0 and L**2 > R**2: roots and absolute values."""
     if goal.relation == "!=" or not any(is_root(part) for part in subterms(goal.term)):
@@ -208,9 +221,11 @@ def by_squares(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     for left in (above, rooted, [t for t in terms if t not in rooted]):
         right = [player.negate(t) for t in terms if t not in left]
         if left and right and not is_below(values_of(goal, join(left))):
-            yield {"rule": "squares", "left": write_term(join(left)), "right": write_term(join(right)), "sign": 1} | {
-                "defined": Holes(), "proofs": Holes()
-            }  # fmt: skip
+            sides = (join(left), join(right))
+            squares = sp.expand(to_sympy(sides[0]) ** 2 - to_sympy(sides[1]) ** 2)
+            reduced: Proof = {"rule": "equal", "to": to_text(squares), "defined": Holes(), "proof": Hole()}
+            proof = {"rule": "squares", "left": write_term(sides[0]), "right": write_term(sides[1]), "sign": 1}
+            yield proof | {"defined": Holes(), "proofs": [reduced, Hole()]}
 
 
 def by_slope(goal: Any, sample: list[arb]) -> Iterator[Proof]:
