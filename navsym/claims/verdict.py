@@ -64,7 +64,7 @@ class Verdict(Answer):
     >>> verdict.holds, dict(verdict.counterexample)
     (False, {'a': '1'})
     >>> nav.prove("(a - b)*(a + b) = a**2 - b**2").certificate["kind"]
-    'identity'
+    'proof'
     """
 
     status: Status
