@@ -28,7 +28,7 @@ from navsym.prove.rooms.equations import (
     by_values_of_constants,
 )
 from navsym.prove.rooms.forms import by_divisors, by_forms, by_roots_of_symbols, by_substitution
-from navsym.prove.rooms.goals import Hole, Holes, Proof, Room, fails, player, sample_goal
+from navsym.prove.rooms.goals import Hole, Holes, Proof, Room, fails, player, sample_goal, subterms
 from navsym.prove.rooms.signs import (
     by_bounds,
     by_concavity,
@@ -52,11 +52,9 @@ from navsym.prove.rooms.signs import (
 
 #: The rooms in the order of their cost: cheap ones, those that think longer, those of the last resort.
 EQUATIONS: tuple[tuple[Room, ...], ...] = (
-    (
-        by_algebra, by_modulus, by_values, by_logarithms_of_products, by_values_of_constants, by_inverse,
-        by_equal_squares, by_sides_of_zero, by_gradient,
-    ),
-)  # fmt: skip
+    (by_algebra, by_modulus, by_values, by_values_of_constants, by_inverse, by_equal_squares),
+    (by_logarithms_of_products, by_sides_of_zero, by_gradient),
+)
 SIGNS: tuple[tuple[Room, ...], ...] = (
     (
         by_number, by_identity, by_range, by_roots, by_bounds, by_few_balls, by_values, by_product, by_sum, by_side,
@@ -70,6 +68,8 @@ SIGNS: tuple[tuple[Room, ...], ...] = (
 #: The time is a net below.
 ROUNDS = ((6, 200, 1), (8, 300, 2), (8, 400, 3), (12, 1200, 3))
 SECONDS = 30.0
+#: Parts of a term for which only cheap rooms are asked.
+LONG = 600
 
 check_rule = player.prove
 
@@ -120,11 +120,10 @@ class Search:
             self.depth += 1
             try:
                 kinds = EQUATIONS if goal.relation == "=" else SIGNS
-                for room in itertools.chain(*kinds[: self.kinds]):
-                    if room is by_forms and self.rules[-1:] == ["equal"]:
-                        continue  # one form of a form is one of the first
-                    if room in (by_squares, by_equal_squares) and self.rules.count("squares") > 1:
-                        continue  # squares of squares of squares only grow
+                few = 1 if is_long(goal.term) else self.kinds
+                for room in itertools.chain(*kinds[:few]):
+                    if self.repeats(room):
+                        continue
                     for candidate in guard(room(goal, sample)):
                         if self.is_spent():
                             return None
@@ -136,6 +135,14 @@ class Search:
             finally:
                 self.depth -= 1
         return None
+
+    def repeats(self, room: Room) -> bool:
+        """Whether a room only makes goals grow that it has made already."""
+        if room is by_forms:
+            return self.rules[-1:] == ["equal"]  # one form of a form is one of the first
+        if room in (by_squares, by_equal_squares):
+            return self.rules.count("squares") > 1
+        return room is by_gradient and "derivative" in self.rules
 
     def is_spent(self) -> bool:
         """Whether nothing more is to be tried."""
@@ -151,6 +158,11 @@ class Search:
         finally:
             self.rules.pop()
         return True
+
+
+def is_long(term: Any) -> bool:
+    """Whether a term has many parts: algebra may take minutes with it."""
+    return next(itertools.islice(subterms(term), LONG, None), None) is not None
 
 
 def guard(candidates: Iterator[Proof]) -> Iterator[Proof]:
