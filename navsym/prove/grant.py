@@ -24,8 +24,8 @@ from navsym.core.numbers import Number
 from navsym.language.expression import to_text
 from navsym.prove.equations import list_entries, shape_of
 from navsym.prove.rooms.goals import draw_points, player, simple_point, write_term
-from navsym.prove.sampling.points import Range, ranges_of
-from navsym.prove.search import SECONDS, find_proof
+from navsym.prove.sampling.points import ranges_of, write_range
+from navsym.prove.search import SECONDS, find_proof, rules_of
 from navsym.prove.wording import decimal_ends
 
 UNCHECKED = "unchecked: no certificate of this statement"
@@ -137,21 +137,6 @@ def sides_of(statement: Equation | Bound) -> list[sp.Expr]:
     return [*list_entries(statement.printed), *list_entries(statement.derived)]
 
 
-def write_range(limits: Range) -> list[Any]:
-    """A range in the words of the checker; zero is left out where it is an end and excluded."""
-    flags = []
-    at_low = limits.nonzero and limits.lower == 0
-    at_high = limits.nonzero and limits.upper == 0
-    for flag, is_said in (
-        ("open-low", limits.open_lower or at_low),
-        ("open-high", at_high),
-        ("nonzero", limits.parted),
-        ("integer", limits.integer),
-    ):
-        flags += [flag] if is_said else []
-    return [*(None if end is None else to_text(end) for end in (limits.lower, limits.upper)), flags]
-
-
 # The verdict
 
 
@@ -177,6 +162,14 @@ def grant_verdict(statement: Statement, verdict: Verdict, seconds: float = SECON
         return grant_proofs(documents, verdict, seconds)
     except checker.Refused as refusal:
         return withdraw(verdict, str(refusal)) if verdict.status.holds or verdict.status == REFUTED else verdict
+
+
+def grant_look(statement: Statement, verdict: Verdict, looked: Verdict) -> Verdict:
+    """A second look at what has no proof: REFUTED where the checker accepts its point, else CONFIRMED or OPEN."""
+    documents = write_statements(statement)
+    if documents is None or looked.status not in (CONFIRMED, REFUTED):
+        return verdict
+    return grant_refutation(documents, looked) if looked.status == REFUTED else looked
 
 
 def leave_unchecked(verdict: Verdict) -> Verdict:
@@ -253,14 +246,6 @@ def grant_proofs(documents: Sequence[Document], verdict: Verdict, seconds: float
     status = CERTIFIED if "balls" in rules else PROVED
     words = f"a proof by the rules {', '.join(rules)}"
     return replace(verdict, status=status, method="proof tree", evidence=words, certificate=whole)
-
-
-def rules_of(proof: Any) -> set[str]:
-    """The names of the rules of a proof."""
-    if isinstance(proof, list):
-        return set().union(*map(rules_of, proof))
-    own = {proof["rule"]} if isinstance(proof, dict) and "rule" in proof else set()
-    return own.union(*map(rules_of, proof.values())) if isinstance(proof, dict) else own
 
 
 def prove_document(document: Document, verdict: Verdict, seconds: float) -> Document | None:

@@ -9,18 +9,16 @@ import sympy as sp
 from flint import arb
 
 from navsym.claims.statement import Bound, Box, Equation
-from navsym.claims.verdict import CERTIFIED, CONFIRMED, OPEN, PROVED, Verdict
+from navsym.claims.verdict import OPEN, REFUTED, Verdict
 from navsym.core.balls import UnsupportedError, tape
 from navsym.core.errors import DomainError
 from navsym.prove.assumptions import add_sides, remaining_assumptions
 from navsym.prove.equations import decide_equation, judge_look, judge_sample, list_entries, shape_of
-from navsym.prove.identities.equalities import WAYS, first_proof
 from navsym.prove.identities.normal_form import OutsideLanguageError, reduce_to_zero
 from navsym.prove.identities.numbers import is_zero
 from navsym.prove.one_symbol import decide_by_roots
 from navsym.prove.sampling.points import Point, Sample, draw_points, search_counterexample, value_at
 from navsym.prove.sampling.second_look import Look, look_again
-from navsym.prove.signs.bounds import Sign, SignProof, prove_sign
 from navsym.prove.wording import point_text, refute_at_point, scope_of
 
 #: relation -> when a finite ball of printed - derived contradicts it.
@@ -45,28 +43,27 @@ GOALS: dict[str, Callable[[sp.Expr], tuple[sp.Expr, ...]]] = {
 #: Relations that equality breaks.
 STRICT = ("<", ">", "!=")
 
-#: Sides that are nearer than this at every sampled point may be equal.
-EQUAL = 1e-20
 
+def decide_bound(statement: Bound, look: bool = False) -> Verdict:
+    """Verdict of an inequality by samples and real roots; ``=`` is handed to the equations.
 
-def decide_bound(statement: Bound) -> Verdict:
-    """Verdict of an inequality; ``=`` is handed to the equations."""
+    look : take a second look at what is left OPEN, which may end as CONFIRMED
+    """
     if statement.relation == "=":
         return decide_equation(Equation(statement.printed, statement.derived, statement.box, exists=statement.exists))
     if statement.relation not in EXCLUDES:
         raise DomainError(f"expected one of = != < <= > >=; got {statement.relation!r}; correct the relation")
     difference = difference_of(statement)
     scope = scope_of(difference, statement.box)
+    sides = [*list_entries(statement.printed), *list_entries(statement.derived)]
     try:
-        sides = [*list_entries(statement.printed), *list_entries(statement.derived)]
         existing = (*sides, *statement.exists)
-        verdict = decide_difference(difference, statement.relation, statement.box, scope, existing)
-        if not verdict.status.holds and verdict.status != CONFIRMED:
+        verdict = decide_difference(difference, statement.relation, statement.box, scope, existing, look)
+        if verdict.status == REFUTED:
             return verdict
         # Subtraction and the algebra may have cancelled what is not defined everywhere.
         conditions = add_sides(reduce_to_zero(difference), *sides)
-        assumed = remaining_assumptions(conditions, statement.box)
-        return replace(verdict, assumptions=assumed)
+        return replace(verdict, assumptions=remaining_assumptions(conditions, statement.box))
     except (UnsupportedError, OutsideLanguageError) as error:
         return Verdict(OPEN, "none", scope, evidence=str(error))
 
@@ -85,9 +82,9 @@ def difference_of(statement: Bound) -> sp.Expr:
 
 
 def decide_difference(
-    difference: sp.Expr, relation: str, box: Box, scope: str, sides: Sequence[sp.Expr] = ()
+    difference: sp.Expr, relation: str, box: Box, scope: str, sides: Sequence[sp.Expr] = (), look: bool = True
 ) -> Verdict:
-    """Verdict of ``difference relation 0``: break it by a point where the sides exist, or prove its sign."""
+    """Verdict of ``difference relation 0``: broken by a point where the sides exist, decided by real roots, or OPEN."""
     sample = search_counterexample(difference, lambda ball: contradicts(ball, relation), box, sides=sides)
     if sample.points == 0:
         return judge_sample(sample, scope, f"printed {relation} derived")
@@ -101,11 +98,9 @@ def decide_difference(
     decided = decide_by_roots(difference, relation, box, scope, sides)
     if decided is not None:
         return decided
-    proof = prove_relation(difference, relation, box, sample)
-    if proof.sign != Sign.UNKNOWN:
-        status = PROVED if proof.exact else CERTIFIED
-        return Verdict(status, "sign on the box", scope, evidence=proof.reason)
-    return decide_unproved_relation(difference, relation, box, scope, sides, sample)
+    if look:
+        return decide_unproved_relation(difference, relation, box, scope, sides, sample)
+    return Verdict(OPEN, "sampling", scope, evidence=f"printed {relation} derived at {sample.points} points")
 
 
 def decide_unproved_relation(
@@ -157,26 +152,3 @@ def find_exact_zero(difference: sp.Expr, box: Box, sides: Sequence[sp.Expr] = ()
         if is_zero(difference.subs(point)):
             return point
     return None
-
-
-def prove_relation(difference: sp.Expr, relation: str, box: Box, sample: Sample) -> SignProof:
-    """The sign that the relation asks for, and equality where that is enough."""
-    if relation in ("<=", "<"):
-        difference = -difference
-    wanted = Sign.NONNEGATIVE if relation in ("<=", ">=") else Sign.POSITIVE
-    if wanted == Sign.NONNEGATIVE and is_equality(difference, box, sample):
-        return SignProof(Sign.NONNEGATIVE, "the two sides are equal", exact=True)
-    proof = prove_sign(difference, box, wanted)
-    if relation == "!=" and not proof.at_least(wanted):
-        proof = prove_sign(-difference, box, wanted)
-    return proof if proof.at_least(wanted) else SignProof(Sign.UNKNOWN)
-
-
-def is_equality(difference: sp.Expr, box: Box, sample: Sample) -> bool:
-    """True when the difference is proved to vanish on the whole box, with nothing left to assume."""
-    if reduce_to_zero(difference).zero:
-        return True
-    if sample.largest is None or not sample.largest < EQUAL:
-        return False
-    proof = first_proof(difference, sp.Integer(0), box, WAYS)
-    return proof is not None and not remaining_assumptions(proof.reduction, box)

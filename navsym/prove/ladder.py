@@ -11,7 +11,7 @@ from navsym.claims.verdict import OPEN, REFUTED, Verdict
 from navsym.core.errors import DomainError
 from navsym.core.sandbox import Exhausted, run_limited
 from navsym.prove.equations import decide_equation
-from navsym.prove.grant import grant_verdict
+from navsym.prove.grant import grant_look, grant_verdict
 from navsym.prove.inequalities import decide_bound
 from navsym.prove.optimum import decide_optimum
 from navsym.prove.statements import require_statement
@@ -28,7 +28,10 @@ def decide(statement: Statement) -> Verdict:
     what is no statement: a relation of sympy may have been evaluated already.
     """
     require_statement(statement)
-    return grant_verdict(statement, search_verdict(statement))
+    verdict = grant_verdict(statement, search_verdict(statement))
+    if verdict.status == OPEN and isinstance(statement, Bound) and statement.relation != "=":
+        return grant_look(statement, verdict, decide_bound(statement, look=True))
+    return verdict
 
 
 def search_verdict(statement: Statement) -> Verdict:

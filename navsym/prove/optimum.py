@@ -123,12 +123,19 @@ def decide_feasibility(statement: Optimum) -> Verdict:
     if SHARE in sp.Tuple(polynomial, start, end).free_symbols:
         return Verdict(OPEN, "none", evidence="the name share is taken by the position in the interval")
     box = {**statement.box, SHARE: (0, 1)}
-    verdicts = []
-    for side in (1 - polynomial, 1 + polynomial):
-        product = as_product(side)
-        inside = (side if product is None else product).subs(statement.variable, start + (end - start) * SHARE)
-        verdicts.append(require_everywhere(decide_difference(inside, ">=", box, scope_of(inside, box))))
-    return weakest_verdict(verdicts)
+    return weakest_verdict([decide_side(side, statement, box) for side in (1 - polynomial, 1 + polynomial)])
+
+
+def decide_side(side: sp.Expr, statement: Optimum, box: Box) -> Verdict:
+    """side >= 0 on the interval: proved, or broken by a point."""
+    start, end = statement.interval
+    place = start + (end - start) * SHARE
+    forms = [form.subs(statement.variable, place) for form in (as_product(side), side) if form is not None]
+    for form in forms:
+        proof = prove_sign(form, box)
+        if proof.sign != Sign.UNKNOWN:
+            return judge_signs([proof], proof.reason)
+    return require_everywhere(decide_difference(forms[-1], ">=", box, scope_of(forms[-1], box)))
 
 
 def require_everywhere(verdict: Verdict) -> Verdict:

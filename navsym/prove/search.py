@@ -57,8 +57,8 @@ EQUATIONS: tuple[tuple[Room, ...], ...] = (
 )
 SIGNS: tuple[tuple[Room, ...], ...] = (
     (
-        by_number, by_identity, by_range, by_roots, by_bounds, by_few_balls, by_values, by_product, by_sum, by_side,
-        by_corners, by_squares, by_cones, by_forms,
+        by_number, by_identity, by_range, by_roots, by_bounds, by_corners, by_product, by_sum, by_few_balls, by_values,
+        by_side, by_squares, by_cones, by_forms,
     ),
     (by_quadratic, by_divisors, by_roots_of_symbols, by_substitution, by_slope, by_contacts, by_modulus, by_logarithms),
     (by_concavity, by_many_balls),
@@ -173,13 +173,13 @@ def guard(candidates: Iterator[Proof]) -> Iterator[Proof]:
         return
 
 
-def find_proof(goal: Any, seconds: float = SECONDS) -> Proof | None:
+def find_proof(goal: Any, seconds: float = SECONDS, rounds: Sequence[tuple[int, int, int]] = ROUNDS) -> Proof | None:
     """A proof of a goal of the checker as plain data, or None; it is still to be granted."""
     before, search = (ctx.prec, ctx.cap), Search(time.process_time() + seconds)
     ctx.prec = 128
     try:
         player.prove, player.prove_all = search.prove, search.prove_all
-        for search.most_depth, search.tries, search.kinds in ROUNDS:
+        for search.most_depth, search.tries, search.kinds in rounds:
             search.lost.clear()
             found = search.find(goal)
             if found is not None:
@@ -195,3 +195,14 @@ def plain(proof: Any) -> Any:
     if isinstance(proof, dict):
         return {key: plain(value) for key, value in proof.items()}
     return [plain(value) for value in proof] if isinstance(proof, list) else proof
+
+
+def rules_of(proof: Any) -> set[str]:
+    """The names of the rules of a proof; a ball of one number is exact and has none."""
+    if isinstance(proof, list):
+        return set().union(*map(rules_of, proof))
+    if not isinstance(proof, dict):
+        return set()
+    is_number = proof.get("rule") == "balls" and proof["cells"] == 1
+    own = {proof["rule"]} if "rule" in proof and not is_number else set()
+    return own.union(*map(rules_of, proof.values()))

@@ -72,6 +72,8 @@ def solve_for(atom: str, value: str, share: str = "1") -> Proof:
 
 def by_logarithms_of_products(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     """Logarithms as sums over the factors of what they are of; symbolic powers as exponentials first."""
+    if not player.symbols_of(goal.term):
+        return  # numbers with many digits, of which factors are sought for long
     powers = [p for p in subterms(goal.term) if p[0] == "^" and player.constant_of(p[2]) is None]
     if powers:
         term = goal.term

@@ -10,6 +10,7 @@ import itertools
 import random
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import sympy as sp
 from flint import arb
@@ -17,6 +18,7 @@ from flint import arb
 from navsym.claims.statement import Box
 from navsym.core.balls import Tape, UnsupportedError, enclose, exact_ball, tape
 from navsym.core.errors import DomainError
+from navsym.language.expression import to_text
 
 Point = dict[sp.Symbol, sp.Expr]
 
@@ -219,3 +221,18 @@ def search_counterexample(
         size = abs(ball)
         largest = size if largest is None else largest.max(size)
     return Sample(None, None, tried, largest)
+
+
+def write_range(limits: Range) -> list[Any]:
+    """A range in the words of the checker; zero is left out where it is an end and excluded."""
+    flags = []
+    at_low = limits.nonzero and limits.lower == 0
+    at_high = limits.nonzero and limits.upper == 0
+    for flag, is_said in (
+        ("open-low", limits.open_lower or at_low),
+        ("open-high", at_high),
+        ("nonzero", limits.parted),
+        ("integer", limits.integer),
+    ):
+        flags += [flag] if is_said else []
+    return [*(None if end is None else to_text(end) for end in (limits.lower, limits.upper)), flags]
