@@ -1617,8 +1617,9 @@ def prove_sum(proof: Any, goal: Goal) -> None:
 def prove_slope(proof: Any, goal: Goal) -> None:
     """A function that is continuous, and does not fall away from an end of the range of s, is least there.
 
-    Mean value theorem: f(s) - f(end) = f'(r) (s - end) with r between. Strict: f(end) > 0; or f' > 0 and the end is
-    left out. Continuity is shown on the range with this end, the derivative inside it.
+    Mean value theorem: f(s) - f(end) = f'(r) (s - end) with r between. Strict: f(end) > 0; or the end is left out and
+    f' > 0, or f' != 0 at a point and s is the only symbol: inside f is analytic, and constant near no point. Continuity
+    is shown on the range with this end, the derivative inside it.
     """
     _, name, side, strict, continuous, smooth, slope, floor = read_fields(
         proof, "rule symbol end strict continuous smooth slope floor"
@@ -1627,7 +1628,8 @@ def prove_slope(proof: Any, goal: Goal) -> None:
     limit, upper = goal.box[name], read_integer(side, 0, 1)
     end, is_open = (limit.high, limit.open_high) if upper else (limit.low, limit.open_low)
     require(end is not None, "a range without this end")
-    by_slope = read_integer(strict, 0, 1) == 1 and goal.relation == ">"
+    point = parse(strict) if isinstance(strict, str) else None
+    by_slope = (point is not None or read_integer(strict, 0, 1) == 1) and goal.relation == ">"
     require(not by_slope or is_open, "the end belongs to the range")
     own_end = {"open_high" if upper else "open_low": False}
     whole = change_range(goal, name, nonzero=False, integer=False, **own_end)._replace(term=ZERO, exists=(), given=())
@@ -1637,7 +1639,13 @@ def prove_slope(proof: Any, goal: Goal) -> None:
     known = with_weaker(conditions(goal.term, 1))
     rest = [p for p in set_union([conditions(goal.term, 2), conditions(change)]) if p not in known]
     prove_all(smooth, [inside._replace(term=t, relation=relation) for relation, t in rest])
-    rise = inside._replace(term=negate(change) if upper else change, relation=">" if by_slope else ">=")
+    if by_slope and point is not None:
+        require(
+            symbols_of(goal.term) == {name} and is_inside(point, inside.box[name]), "expected a point of one symbol"
+        )
+        require(holds("!=", value_of(replace(change, ("symbol", name), point), {})), "the slope may vanish throughout")
+    is_steep = by_slope and point is None
+    rise = inside._replace(term=negate(change) if upper else change, relation=">" if is_steep else ">=")
     prove(slope, rise._replace(exists=(goal.term,)))
     start = fix_symbol(whole._replace(term=goal.term), name, end)  # type: ignore[arg-type]
     prove(floor, start._replace(relation=">" if goal.relation == ">" and not by_slope else ">="))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import sympy as sp
@@ -282,7 +283,7 @@ def decide_claims(
     has no value, the claim is OPEN, and its error stands beside the verdicts.
     """
     verdicts: dict[int, Verdict] = {}
-    for outcome in run_many(decide_claim, claims.claims, jobs, seconds):
+    for outcome in run_many(partial(decide_claim, seconds=seconds / 2), claims.claims, jobs, seconds):
         verdict = outcome.value
         if isinstance(verdict, (Exhausted, Failed)):
             why = verdict.why if isinstance(verdict, Exhausted) else str(verdict.error)
@@ -296,9 +297,9 @@ def decide_claims(
     return Verdicts(tuple(done), {claim.id: claim.error for claim in claims.undefined})
 
 
-def decide_claim(claim: FileClaim) -> Verdict:
+def decide_claim(claim: FileClaim, seconds: float = SECONDS / 2) -> Verdict:
     """Verdict of one claim, with what its text divides by and takes roots of among the assumptions."""
-    verdict = decide(statement_of(claim))
+    verdict = decide(statement_of(claim), seconds)
     if verdict.status == REFUTED:
         return verdict
     assumptions = dict.fromkeys((*verdict.assumptions, *text_conditions(claim)))

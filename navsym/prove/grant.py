@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import re
+import time
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from decimal import Decimal
@@ -56,10 +57,14 @@ def write_statements(statement: Statement) -> list[Document] | None:
 def list_sides(statement: Equation | Bound) -> list[tuple[str, str]]:
     """Both sides of each entry as text: as written, where that is known."""
     if statement.written is not None:
-        pairs = zip(statement.written.left, statement.written.right, strict=True)
-        return [(write_numerals(left), write_numerals(right)) for left, right in pairs]
-    left, right = list_entries(statement.printed), list_entries(statement.derived)
-    return [(to_text(x), to_text(y)) for x, y in zip(left, right, strict=True)]
+        left, right = ([*map(write_numerals, side)] for side in (statement.written.left, statement.written.right))
+    else:
+        left, right = ([*map(to_text, list_entries(side))] for side in (statement.printed, statement.derived))
+    pairs = [*zip(left, right, strict=True)]
+    if len(pairs) == 1 or isinstance(statement, Equation):
+        return pairs
+    checker.require(statement.relation == "!=", "matrices have no order")  # they differ where one entry does
+    return [(" + ".join(f"(({x}) - ({y}))**2" for x, y in pairs), "0")]
 
 
 def write_entry(statement: Equation | Bound, left: str, right: str) -> Document:
@@ -232,9 +237,9 @@ def simple_value(limits: Any) -> str:
 
 def grant_proofs(documents: Sequence[Document], verdict: Verdict, seconds: float) -> Verdict:
     """PROVED or CERTIFIED with proofs of all entries; REFUTED where a sample breaks one of them."""
-    certificates = []
+    certificates, end = [], time.process_time() + seconds
     for document in documents:
-        certificate = prove_document(document, verdict, seconds / len(documents))
+        certificate = prove_document(document, verdict, end - time.process_time())
         if certificate is None:
             return judge_without_proof(documents, document, verdict)
         certificates.append(certificate)

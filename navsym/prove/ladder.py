@@ -14,21 +14,23 @@ from navsym.prove.equations import decide_equation
 from navsym.prove.grant import grant_look, grant_verdict
 from navsym.prove.inequalities import decide_bound
 from navsym.prove.optimum import decide_optimum
+from navsym.prove.search import SECONDS
 from navsym.prove.statements import require_statement
 
 DEFAULT_SECONDS = 20.0
 DEFAULT_MEGABYTES = 4096
 
 
-def decide(statement: Statement) -> Verdict:
+def decide(statement: Statement, seconds: float = SECONDS) -> Verdict:
     """Verdict of a statement, in this process and without limits.
 
-    The ladder: counterexamples at exact points, exact algebra, balls on a divided box, samples; the first that
-    decides is the method of the verdict. The checker grants it on the statement's own text. Raises DomainError for
-    what is no statement: a relation of sympy may have been evaluated already.
+    The ladder: counterexamples at exact points, exact algebra, real roots, the search for a proof, a second look at
+    samples; the first that decides is the method of the verdict. The checker grants it on the statement's own text.
+    ``seconds`` of processor time are a net below the search. Raises DomainError for what is no statement: a relation of
+    sympy may have been evaluated already.
     """
     require_statement(statement)
-    verdict = grant_verdict(statement, search_verdict(statement))
+    verdict = grant_verdict(statement, search_verdict(statement), seconds)
     if verdict.status == OPEN and isinstance(statement, Bound) and statement.relation != "=":
         return grant_look(statement, verdict, decide_bound(statement, look=True))
     return verdict

@@ -18,6 +18,7 @@ from flint import ctx
 from navsym.core.errors import NavsymError
 from navsym.prove.rooms.equations import (
     by_algebra,
+    by_cases,
     by_equal_squares,
     by_gradient,
     by_inverse,
@@ -27,7 +28,7 @@ from navsym.prove.rooms.equations import (
     by_values,
     by_values_of_constants,
 )
-from navsym.prove.rooms.forms import by_divisors, by_forms, by_roots_of_symbols, by_substitution
+from navsym.prove.rooms.forms import by_divisors, by_forms, by_hypothesis, by_roots_of_symbols, by_substitution
 from navsym.prove.rooms.goals import Hole, Holes, Proof, Room, fails, player, sample_goal, subterms
 from navsym.prove.rooms.signs import (
     by_bounds,
@@ -60,14 +61,17 @@ SIGNS: tuple[tuple[Room, ...], ...] = (
         by_number, by_identity, by_range, by_roots, by_bounds, by_corners, by_product, by_sum, by_few_balls, by_values,
         by_side, by_squares, by_cones, by_forms,
     ),
-    (by_quadratic, by_divisors, by_roots_of_symbols, by_substitution, by_slope, by_contacts, by_modulus, by_logarithms),
+    (
+        by_quadratic, by_hypothesis, by_cases, by_divisors, by_roots_of_symbols, by_substitution, by_slope, by_contacts,
+        by_modulus, by_logarithms,
+    ),
     (by_concavity, by_many_balls),
 )  # fmt: skip
 
 #: Depth of proofs, number of rules tried and kinds of rooms, one round after the other: the same on every machine.
 #: The time is a net below.
 ROUNDS = ((6, 200, 1), (8, 300, 2), (8, 400, 3), (12, 1200, 3))
-SECONDS = 30.0
+SECONDS = 10.0
 #: Parts of a term for which only cheap rooms are asked.
 LONG = 600
 

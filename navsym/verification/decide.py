@@ -20,6 +20,8 @@ from navsym.verification.papers import PaperModule, claim_ids, find_claim, load_
 from navsym.verification.sides import hash_statement, sides
 
 SECONDS = 90.0
+#: Of these, for the search for proofs.
+SEARCH = 60.0
 SHARE = 3  # of the seconds of a claim, one in so many for a kept certificate: the search has the rest
 
 
@@ -177,7 +179,7 @@ def record_of(
     elif kept is not None and texts is not None:
         entries = (grant_entry(texts, entry, seconds / SHARE) for entry in kept.list_entries(key))
         verdict = next(filter(None, entries), None)
-    record = make_record(paper, claim, statement, verdict or decide(statement))
+    record = make_record(paper, claim, statement, verdict or decide(statement, SEARCH))
     return replace(record, statement=key), verdict is not None
 
 

@@ -52,7 +52,7 @@ def test_a_user_formula_that_holds_is_exported_and_checked(capsys, tmp_path: Pat
     assert run(["check", str(out), "--json"]) == 0
     rows = json.loads(capsys.readouterr().out)["checked"]
     assert rows and all(row["status"] == "ACCEPTED" for row in rows)
-    assert {row["kind"] for row in rows} >= {"manifest", "code:c", "code:python", "identity"}
+    assert {row["kind"] for row in rows} >= {"manifest", "code:c", "code:python", "proof"}
 
 
 def test_open_and_confirmed_claims_are_refused() -> None:

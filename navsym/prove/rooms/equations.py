@@ -13,6 +13,7 @@ from navsym.prove.rooms.goals import (
     Hole,
     Holes,
     Proof,
+    Term,
     is_below,
     is_root,
     player,
@@ -31,9 +32,18 @@ def by_algebra(goal: Any, sample: list[arb]) -> Iterator[Proof]:
 
 def by_values(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     """An absolute value by its two cases; two that are compared have squares, which take no cases."""
-    terms = player.list_terms(goal.term)
-    if goal.relation != "=" and len(terms) == 2 and all(any(map(is_root, player.list_factors(t))) for t in terms):
-        return
+    if goal.relation == "=" or not is_comparison(goal.term):
+        yield from by_cases(goal, sample)
+
+
+def is_comparison(term: Term) -> bool:
+    """Whether a term is a root or an absolute value less another one."""
+    terms = player.list_terms(term)
+    return len(terms) == 2 and all(any(map(is_root, player.list_factors(t))) for t in terms)
+
+
+def by_cases(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """The first absolute value that has no other one inside, by its two cases."""
     for part in dict.fromkeys(p for p in subterms(goal.term) if p[0] == "abs"):
         if not any(p[0] == "abs" for p in subterms(part[1])):
             yield {"rule": "cases", "of": write_term(part[1]), "proofs": Holes()}

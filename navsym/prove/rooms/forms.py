@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import re
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -16,6 +17,8 @@ from navsym.prove.rooms.equations import rewrite_atom
 from navsym.prove.rooms.goals import Hole, Holes, Proof, Term, player, to_sympy, write_term
 from navsym.prove.signs.products import as_product
 
+#: Digits of a number up to which polynomials are factored.
+MOST_DIGITS = 40
 Form = tuple[sp.Expr, sp.Expr, str | None, sp.Expr | None]
 
 
@@ -29,7 +32,8 @@ def by_forms(goal: Any, sample: list[arb]) -> Iterator[Proof]:
 def list_forms(term: Term) -> tuple[str, ...]:
     """Texts of other forms of a term."""
     expression, own, forms = to_sympy(term), write_term(term), dict[str, None]()
-    for rewrite in FORMS:
+    is_heavy = any(len(digits) > MOST_DIGITS for digits in re.findall(r"\d+", own))
+    for rewrite in FORMS[-1:] if is_heavy else FORMS:
         try:
             other = rewrite(expression)
             text = to_text(other) if other is not None else own
@@ -166,6 +170,22 @@ def by_roots_of_symbols(goal: Any, sample: list[arb]) -> Iterator[Proof]:
         if not p.base.is_Symbol:
             proof = rewrite_atom(to_text(p), to_text(apart)) | {"proof": proof}
     yield proof
+
+
+def by_hypothesis(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """A hypothesis c v + r >= 0 as a number u >= 0, and v = (u - r)/c."""
+    for k, given in enumerate(goal.given):
+        linear = to_sympy(given)
+        for v in sorted(linear.free_symbols & to_sympy(goal.term).free_symbols, key=str):
+            c = linear.coeff(v)
+            name = f"{v.name}_{k}"
+            rest = linear - c * v
+            if not (c.is_Rational and c > 0 and rest != 0) or v in rest.free_symbols or name in goal.box:
+                continue
+            u = symbol(name)
+            form = to_text(to_sympy(goal.term).xreplace({v: (u - rest) / c}))
+            proof: Proof = {"rule": "abstract", "terms": {name: write_term(given)}, "ranges": {name: ["0", None, []]}}
+            yield proof | {"to": form, "inside": Holes(), "defined": Holes(), "proof": Hole()}
 
 
 def by_divisors(goal: Any, sample: list[arb]) -> Iterator[Proof]:

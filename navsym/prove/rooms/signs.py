@@ -23,6 +23,7 @@ from navsym.prove.rooms.goals import (
     is_root,
     join,
     player,
+    simple_point,
     subterms,
     to_sympy,
     values_of,
@@ -237,7 +238,11 @@ def by_slope(goal: Any, sample: list[arb]) -> Iterator[Proof]:
         for upper, end, is_open in ((0, limit.low, limit.open_low), (1, limit.high, limit.open_high)):
             if end is None or is_below(slope, -1 if upper else 1):
                 continue
-            for strict in (0, 1) if goal.relation == ">" and is_open else (0,):
+            ways: tuple[Any, ...] = (0,)
+            if goal.relation == ">" and is_open:
+                single = len(player.symbols_of(goal.term)) == 1
+                ways = (0, write_term(player.number(simple_point(limit, 1))) if single else 1, 1)
+            for strict in dict.fromkeys(ways):
                 holes = {key: Holes() for key in ("continuous", "smooth")} | {"slope": Hole(), "floor": Hole()}
                 yield {"rule": "slope", "symbol": name, "end": upper, "strict": strict, **holes}
 
