@@ -169,14 +169,6 @@ def grant_verdict(statement: Statement, verdict: Verdict, seconds: float = SECON
         return withdraw(verdict, str(refusal)) if verdict.status.holds or verdict.status == REFUTED else verdict
 
 
-def grant_look(statement: Statement, verdict: Verdict, looked: Verdict) -> Verdict:
-    """A second look at what has no proof: REFUTED where the checker accepts its point, else CONFIRMED or OPEN."""
-    documents = write_statements(statement)
-    if documents is None or looked.status not in (CONFIRMED, REFUTED):
-        return verdict
-    return grant_refutation(documents, looked) if looked.status == REFUTED else looked
-
-
 def leave_unchecked(verdict: Verdict) -> Verdict:
     """The same verdict, with the word in its evidence when it is one that others rely on."""
     if verdict.status in (OPEN, CONFIRMED) or UNCHECKED in verdict.evidence:

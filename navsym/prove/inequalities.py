@@ -44,11 +44,8 @@ GOALS: dict[str, Callable[[sp.Expr], tuple[sp.Expr, ...]]] = {
 STRICT = ("<", ">", "!=")
 
 
-def decide_bound(statement: Bound, look: bool = False) -> Verdict:
-    """Verdict of an inequality by samples and real roots; ``=`` is handed to the equations.
-
-    look : take a second look at what is left OPEN, which may end as CONFIRMED
-    """
+def decide_bound(statement: Bound) -> Verdict:
+    """Verdict of an inequality by samples and real roots; ``=`` is handed to the equations."""
     if statement.relation == "=":
         return decide_equation(Equation(statement.printed, statement.derived, statement.box, exists=statement.exists))
     if statement.relation not in EXCLUDES:
@@ -58,7 +55,7 @@ def decide_bound(statement: Bound, look: bool = False) -> Verdict:
     sides = [*list_entries(statement.printed), *list_entries(statement.derived)]
     try:
         existing = (*sides, *statement.exists)
-        verdict = decide_difference(difference, statement.relation, statement.box, scope, existing, look)
+        verdict = decide_difference(difference, statement.relation, statement.box, scope, existing)
         if verdict.status == REFUTED:
             return verdict
         # Subtraction and the algebra may have cancelled what is not defined everywhere.
@@ -82,7 +79,7 @@ def difference_of(statement: Bound) -> sp.Expr:
 
 
 def decide_difference(
-    difference: sp.Expr, relation: str, box: Box, scope: str, sides: Sequence[sp.Expr] = (), look: bool = True
+    difference: sp.Expr, relation: str, box: Box, scope: str, sides: Sequence[sp.Expr] = ()
 ) -> Verdict:
     """Verdict of ``difference relation 0``: broken by a point where the sides exist, decided by real roots, or OPEN."""
     sample = search_counterexample(difference, lambda ball: contradicts(ball, relation), box, sides=sides)
@@ -98,9 +95,7 @@ def decide_difference(
     decided = decide_by_roots(difference, relation, box, scope, sides)
     if decided is not None:
         return decided
-    if look:
-        return decide_unproved_relation(difference, relation, box, scope, sides, sample)
-    return Verdict(OPEN, "sampling", scope, evidence=f"printed {relation} derived at {sample.points} points")
+    return decide_unproved_relation(difference, relation, box, scope, sides, sample)
 
 
 def decide_unproved_relation(

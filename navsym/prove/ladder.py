@@ -11,7 +11,7 @@ from navsym.claims.verdict import OPEN, REFUTED, Verdict
 from navsym.core.errors import DomainError
 from navsym.core.sandbox import Exhausted, run_limited
 from navsym.prove.equations import decide_equation
-from navsym.prove.grant import grant_look, grant_verdict
+from navsym.prove.grant import grant_verdict
 from navsym.prove.inequalities import decide_bound
 from navsym.prove.optimum import decide_optimum
 from navsym.prove.search import SECONDS
@@ -24,16 +24,13 @@ DEFAULT_MEGABYTES = 4096
 def decide(statement: Statement, seconds: float = SECONDS) -> Verdict:
     """Verdict of a statement, in this process and without limits.
 
-    The ladder: counterexamples at exact points, exact algebra, real roots, the search for a proof, a second look at
-    samples; the first that decides is the method of the verdict. The checker grants it on the statement's own text.
+    The ladder: counterexamples at exact points, exact algebra, real roots, a second look at samples, the search for a
+    proof; the first that decides is the method of the verdict. The checker grants it on the statement's own text.
     ``seconds`` of processor time are a net below the search. Raises DomainError for what is no statement: a relation of
     sympy may have been evaluated already.
     """
     require_statement(statement)
-    verdict = grant_verdict(statement, search_verdict(statement), seconds)
-    if verdict.status == OPEN and isinstance(statement, Bound) and statement.relation != "=":
-        return grant_look(statement, verdict, decide_bound(statement, look=True))
-    return verdict
+    return grant_verdict(statement, search_verdict(statement), seconds)
 
 
 def search_verdict(statement: Statement) -> Verdict:
