@@ -62,7 +62,7 @@ SIGNS: tuple[tuple[Room, ...], ...] = (
         by_side, by_squares, by_cones, by_forms,
     ),
     (
-        by_quadratic, by_hypothesis, by_cases, by_divisors, by_roots_of_symbols, by_substitution, by_slope, by_contacts,
+        by_hypothesis, by_cases, by_quadratic, by_divisors, by_roots_of_symbols, by_substitution, by_slope, by_contacts,
         by_modulus, by_logarithms,
     ),
     (by_concavity, by_many_balls),

@@ -14,6 +14,7 @@ from navsym.prove.rooms.goals import (
     Holes,
     Proof,
     Term,
+    factor,
     is_below,
     is_root,
     player,
@@ -58,7 +59,7 @@ def by_modulus(goal: Any, sample: list[arb]) -> Iterator[Proof]:
         inside = to_sympy(part[1])
         power = sp.Integer(1) if part[0] == "abs" else sp.Rational(1, 2)
         power = power if part[0] != "^" else sp.Rational(str(player.constant_of(part[2])))
-        root = inside if part[0] == "abs" else sp.powdenest(sp.sqrt(sp.factor(inside)) ** (2 * power), force=True)
+        root = inside if part[0] == "abs" else sp.powdenest(sp.sqrt(factor(inside)) ** (2 * power), force=True)
         if root.has(sp.Pow) and any(not p.exp.is_Integer for p in root.atoms(sp.Pow)):
             continue
         text = to_text(root)
@@ -92,7 +93,7 @@ def by_logarithms_of_products(goal: Any, sample: list[arb]) -> Iterator[Proof]:
         yield {"rule": "equal", "to": write_term(term), "defined": Holes(), "proof": Hole()}
     for part in dict.fromkeys(p for p in subterms(goal.term) if p[0] == "log"):
         own = to_sympy(part)
-        spread = sp.expand_log(sp.log(sp.factor(own.args[0])) if own.args else own, force=True)
+        spread = sp.expand_log(sp.log(factor(own.args[0])) if own.args else own, force=True)
         if spread != own:
             yield rewrite_atom(write_term(part), to_text(spread))
             return

@@ -14,7 +14,7 @@ from sympy.simplify.fu import TR8
 from navsym.core.errors import NavsymError
 from navsym.language.expression import symbol, to_text
 from navsym.prove.rooms.equations import rewrite_atom
-from navsym.prove.rooms.goals import Hole, Holes, Proof, Term, player, to_sympy, write_term
+from navsym.prove.rooms.goals import Hole, Holes, Proof, Term, factor, player, to_sympy, write_term
 from navsym.prove.signs.products import as_product
 
 #: Digits of a number up to which polynomials are factored.
@@ -49,18 +49,17 @@ def complete_square(expression: sp.Expr) -> sp.Expr | None:
     for v in sorted(expression.free_symbols, key=str):
         if expression.is_polynomial(v) and sp.degree(expression, v) == 2:
             a, b, c = sp.Poly(expression, v).all_coeffs()
-            return a * (v + b / (2 * a)) ** 2 + sp.factor(c - b**2 / (4 * a))
+            return a * (v + b / (2 * a)) ** 2 + factor(c - b**2 / (4 * a))
     return None
 
 
 FORMS: tuple[Callable[[sp.Expr], sp.Expr | None], ...] = (
     as_product,
-    lambda e: sp.factor(e),
+    factor,
     sp.factor_terms,
     lambda e: sp.expand(e),
-    lambda e: sp.factor(sp.together(e)),
     lambda e: sp.expand(TR8(sp.expand(e))) if e.has(sp.sin, sp.cos) else None,
-    lambda e: sp.factor(sp.together(sp.expand_trig(e))) if e.has(sp.atan, sp.asin, sp.acos) else None,
+    lambda e: factor(sp.expand_trig(e)) if e.has(sp.atan, sp.asin, sp.acos) else None,
     lambda e: complete_square(e),
 )
 
@@ -76,7 +75,7 @@ def by_substitution(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     for make in (by_exponentials, by_root, by_tangent):
         for term, form, low, dense in make(expression, u):
             body: Proof = {"rule": "abstract", "terms": {name: to_text(term)}, "ranges": {name: [low, None, []]}}
-            body |= {"to": to_text(sp.factor(form.xreplace({u: new}))), "inside": Holes(), "defined": Holes()}
+            body |= {"to": to_text(factor(form.xreplace({u: new}))), "inside": Holes(), "defined": Holes()}
             body |= {"proof": Hole()}
             if dense is None:
                 yield body

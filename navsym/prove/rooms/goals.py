@@ -9,10 +9,11 @@ from fractions import Fraction
 from typing import Any
 
 import sympy as sp
-from flint import arb, fmpq
+from flint import Ordering, arb, fmpq, fmpq_mpoly_ctx
 
 from navsym import checker
-from navsym.core.exact import to_fmpq
+from navsym.core.exact import to_fmpq, to_rational
+from navsym.core.rational_functions import polynomial_sum
 from navsym.language.expression import parse, symbol
 
 Term = tuple[Any, ...]
@@ -85,6 +86,25 @@ def to_sympy(term: Term) -> sp.Expr:
     return parse(write_term(term), {name: symbol(name) for name in player.symbols_of(term)})
 
 
+def factor(expression: sp.Expr) -> sp.Expr:
+    """The expression as a quotient of irreducible rational factors, in which functions and roots are letters."""
+    result = sp.Integer(1)
+    for part, sign in zip(sp.fraction(sp.together(expression)), (1, -1), strict=True):
+        try:
+            whole = sp.Poly(part) if part.free_symbols else None
+        except sp.polys.polyerrors.BasePolynomialError:  # x - x, which nobody has expanded
+            whole = None
+        if whole is None or not (whole.domain.is_ZZ or whole.domain.is_QQ):
+            result *= part**sign
+            continue
+        context = fmpq_mpoly_ctx.get([f"g{k}" for k in range(len(whole.gens))], Ordering.lex)
+        content, factors = context.from_dict({powers: to_fmpq(c) for powers, c in whole.terms()}).factor()
+        for polynomial, power in factors:
+            result *= polynomial_sum(whole.gens, polynomial) ** (sign * int(power))
+        result *= to_rational(content) ** sign
+    return result
+
+
 def subterms(term: Term) -> Iterator[Term]:
     """The parts of a term, inner ones first."""
     for part in term[1:]:
@@ -109,8 +129,11 @@ def join(terms: Sequence[Term]) -> Term:
 def sample_goal(goal: Any) -> list[arb]:
     """Balls of the term at some points of the box at which all has a value and the hypotheses hold."""
     names = sorted(player.symbols_of(goal.term).union(*map(player.symbols_of, goal.given)))
-    values = []
-    for k in range(len(SHARES) + 4 if names else 1):
+    values: list[arb] = []
+    wanted = len(SHARES) + 4
+    for k in range((4 * wanted if goal.given else wanted) if names else 1):
+        if len(values) == wanted:
+            break
         place = {name: player.Jet(inner_point(goal.box[name], k, i)) for i, name in enumerate(names)}
         if any(not player.value_of(t, place) >= 0 for t in goal.given):
             continue

@@ -152,6 +152,8 @@ def by_balls(goal: Any, cells: int) -> Iterator[Proof]:
 def by_product(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     """The signs of the factors."""
     factors = player.list_factors(goal.term)
+    if not sample and goal.given:
+        return  # nothing speaks against a wrong sign
     if len(factors) == 1 and factors[0][0] in ("+", "symbol", "number", "sin", "cos", "tan", "log", "atan"):
         return
     entries: list[Any] = []
@@ -173,7 +175,7 @@ def by_product(goal: Any, sample: list[arb]) -> Iterator[Proof]:
 def by_sum(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     """Terms of one sign each."""
     terms = player.list_terms(goal.term)
-    if len(terms) < 2 or goal.relation == "!=":
+    if len(terms) < 2 or goal.relation == "!=" or (goal.given and not sample):
         return
     values = [values_of(goal, term) for term in terms]
     if any(is_below(v) for v in values):
