@@ -6,12 +6,14 @@ The sections stand in the order of trust: each rests on those before it, and eve
    exact; an operation on balls, or on series and matrices of balls (arb, arb_series, arb_mat), encloses its results for
    all numbers in the balls, gives NaN where one does not exist, and solves no system that may be singular.
 2. Reading. A certificate is a JSON object with a kind and exactly the keys of this kind. Numbers are decimals or
-   fractions in strings; floats are refused. Expressions are texts of + - * / ** (rational exponent), pi, symbols,
-   sin cos tan cot sec csc sinh cosh tanh exp log atan asin acos sqrt abs, and the entire functions f_k(x) =
-   (f(x) - its Taylor polynomial of degree < k)/x**k of f = exp, sin, cos for k = 0 .. 99 (by balls: |x| <= 1 only).
+   fractions in strings; floats are refused. Expressions are texts of + - * / **, pi, symbols, sin cos tan cot sec csc
+   sinh cosh tanh exp log atan asin acos sqrt abs, atan2(y, x), and the entire functions f_k(x) = (f(x) - its Taylor
+   polynomial of degree < k)/x**k of f = exp, sin, cos for k = 0 .. 99 (by balls: |x| <= 1 only). A power x**y whose
+   exponent is not seen to be a rational number is exp(y*log(x)), so that it exists for x > 0 only.
 3. Functions of a parameter, and 4. expressions, both in balls. 5. Exact algebra, which decides that numbers are equal.
 6. The kinds identity, exponential and rank, by exact algebra. 7. The kinds positivity, by balls, and all.
-8. The optimum of guaranteed estimation: the kinds gap and sliver, touch and range. 9. The entry: check.
+8. The optimum of guaranteed estimation: the kinds gap and sliver, touch and range. 9. The kinds proof and
+   counterexample: statements and the rules of their proofs. 10. The entry: check.
 """
 
 from __future__ import annotations
@@ -150,6 +152,10 @@ class Parser:
             while self.take(","):
                 arguments.append(self.read_sum())
             require(self.take(")"), "not an expression: no )")
+            known = word in ("atan2", *DEFINITIONS, *DERIVATIVES) or matches("(exp|sin|cos)_[0-9]{1,2}", word)
+            require(known, f"unknown function {word}")
+            expected = 2 if word == "atan2" else 1
+            require(len(arguments) == expected, f"expected {word} of {expected}; got {len(arguments)} arguments")
             return (word, *arguments)
         require(word == "(", "not an expression")
         inside = self.read_sum()
@@ -401,7 +407,6 @@ def apply_remainder(name: str, x: Jet, field: Any) -> Jet:
     of binomial(j, 60)/(j + k)! over j >= 60 is at most e/(60 + k)!, which is below 3/(60 + k)!.
     """
     f, _, digits = name.partition("_")
-    require(f in AT_ZERO and matches("[0-9]{1,2}", digits), f"function {name}")
     k = int(digits)
     c = [Jet(field(fmpq(AT_ZERO[f][j % 4], factorial(j)))) for j in range(k + TERMS)]
     if field is Exact:
