@@ -410,7 +410,7 @@ def apply_remainder(name: str, x: Jet, field: Any) -> Jet:
     k = int(digits)
     c = [Jet(field(fmpq(AT_ZERO[f][j % 4], factorial(j)))) for j in range(k + TERMS)]
     if field is Exact:
-        require(not has_root(frozenset(x.parts[0])), f"{name} of a root, which may be 0 throughout a part")
+        require(not has_branch(frozenset(x.parts[0])), f"{name} of a root or angle, which may be 0 throughout a part")
         return (apply_function(f, x, field) - evaluate_polynomial([*c[:k], Jet(0)], x)) * raise_power(
             x, fmpq(-k), field
         )
@@ -556,9 +556,14 @@ class Exact:
         return all(part % divisor == 0 for part in sums.values())
 
 
-def has_root(content: Any) -> bool:
-    """Whether a root or divisor stands anywhere in the terms of a number."""
-    return content == "sum" or (isinstance(content, (tuple, frozenset)) and any(map(has_root, content)))
+def has_branch(content: Any) -> bool:
+    """Whether a root, divisor, logarithm or angle stands anywhere in the terms of a number.
+
+    Such terms may be 0 throughout an open set and not be seen to be, as atan(x) + atan(1/x) - pi/2 for x > 0.
+    """
+    if isinstance(content, str):
+        return content in ("sum", "log", "asin", "acos", "atan", "atan2")
+    return isinstance(content, (tuple, frozenset)) and any(map(has_branch, content))
 
 
 PI = Exact([]).make_atom("pi")
@@ -648,6 +653,7 @@ def prove_on_cells(cells: list[Cell], budget: Iterator[bool], holds: Callable[[C
         except Undefined:
             proved = False
         if not proved:
+            require(cell, "the bound is not shown")
             side = max(cell, key=lambda s: cell[s][1])
             middle, radius = cell[side][0], cell[side][1] / 2
             cells += [cell | {side: (half, radius)} for half in (middle - radius, middle + radius)]
@@ -1486,7 +1492,7 @@ def prove_angle(proof: Any, goal: Goal) -> None:
     waves = [f for f in list_factors(goal.term) if f[0] in ("sin", "cos")]
     require(len(waves) == 1, "expected one sine or cosine")
     ((name, angle),) = waves
-    require(is_identity(subtract(goal.term, ("*", number(c * (-1) ** k), waves[0]))), "the term is another one")
+    require(is_identity(subtract(goal.term, ("*", number(-c if k % 2 else c), waves[0]))), "the term is another one")
     u = angle if name == "sin" else ("+", angle, ("*", ("pi",), number(HALF)))
     sides = [subtract(u, ("*", ("pi",), number(k))), subtract(("*", ("pi",), number(k + 1)), u)]
     prove_all(proofs, [remember(goal, side) for side in sides])
