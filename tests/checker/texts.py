@@ -63,6 +63,10 @@ EQUAL = [
     ("x**pi/x**(pi - 2)", "x**2"),
     ("x**sin(1)*x**cos(1)", "x**(sin(1) + cos(1))"),
     ("x**(2 + y - y)", "x**2"),
+    ("exp(-2*log(x))", "1/x**2"),
+    ("cos(atan2(x, y))*sqrt(x**2 + y**2)", "y"),
+    ("sin(2*acos(x))", "2*x*sqrt(1 - x**2)"),
+    ("2**3**2 - 2**9", "-(1 - 2 + 1)**2"),
     ("cos(pi/5040) + cos(pi/5040 + 2*pi/3) + cos(pi/5040 + 4*pi/3)", "0"),
     ("(T + x + y + lambda + a_1 + 1 + pi + exp(T))**2", "(a_1 + lambda + y + x + T + exp(T) + pi + 1)**2"),
 ]
@@ -87,6 +91,11 @@ UNEQUAL = [
     ("x**y", "y**x"),
     ("x**pi", "x**3"),
     ("(x**y)**T", "x**(y**T)"),
+    ("exp(-2*log(x))", "x**2"),
+    ("cos(atan2(x, y))*sqrt(x**2 + y**2)", "x"),
+    ("1 - x - y", "1 - (x - y)"),
+    ("1/x/y", "1/(x/y)"),
+    ("sqrt(x + 1)*(cos(pi/7) - cos(2*pi/7) + cos(3*pi/7) - 1/2) + x", "0"),
     ("0", "1"),
 ]
 # Functions of a parameter p, and the series that they are.
