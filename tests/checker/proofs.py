@@ -305,7 +305,11 @@ KINK = state("abs(x) - 1/2", ">=", x=BOTH)
 FALLING = state("atan2(x, -1)", ">=", x=BOTH)
 FALLS = equal("(x*x + 1)**(-1)", roots("-1", "1"))
 CAPTURE = abstract({"u": "x"}, {"u": BOTH}, "u", [span(0), span(1)], given("1"))
-CAPTURED = abstract({"u": "-1*x"}, {"u": BOTH}, "-u", [equal("x + 1", span(0)), span(1)], given("1"))
+CAPTURED = abstract({"u": "-x"}, {"u": BOTH}, "-u", [span(1), span(0)], given("1"))
+REUSED = abstract({"x": "-x"}, {"x": BOTH}, "-x", [span(1), span(0)], given("1"))
+MINUS_X = state("0*x - 1", ">=", x=TWO)
+LEFT = "(x - abs(x))"  # vanishes for x >= 0
+VACUOUS = rewrite(LEFT, "0", solve("abs(x)", "x", I, span(0), share="-1"), factors(None, [1, span(0)], None, [-1, I]))
 ONE_POINT = ["1", "1", []]
 COUNT = ["0", "3", ["integer"]]
 WHOLE = state("x*(x - 1)*(x - 2)", "=", x=COUNT)
@@ -353,10 +357,11 @@ HOSTILE = [
     ("cases", state("-1", ">=", x=UNIT), X0, cases("0*x", B, B), "not shown"),
     ("cases", state("abs(x) + x", ">=", "1", x=BOTH), X1, cases("x", given("2")), "expected 2 entries"),
     ("cases", state("x", ">=", x=BOTH), X1, cases("u + 0", CAPTURE, CAPTURED), "a symbol without a range"),
+    ("abstract", state("x", ">=", x=BOTH), X1, cases("x + 0", given("1"), REUSED), "in use"),
     ("split", state("x", "!=", x=BAR), XH, split("0", by("side", span(1), sign=-1), by("side", span(0), sign=1)),
      "the end belongs"),
     ("split", state("x", ">=", x=BOTH), X1, split("0", span(0), span(0)), "the term is another one"),
-    ("split", state("-1", ">=", x=TWO), X1, split("log(-1)", slope(1, I, B), slope(0, I, B)), "may not exist"),
+    ("split", MINUS_X, X1, split("log(-1)", slope(1, I, B), slope(0, I, B)), "may not exist"),
     ("split", state("-1", ">=", x=TWO), X1, split("x", slope(1, I, B), slope(0, I, B)), "expected a number"),
     ("split", state("x", ">=", x=BOTH), X1, split("0", span(0)), "expected 2 entries"),
     ("split", state("x", ">=", x=BOTH), X1, by("split", symbol="y", at="0", proofs=[B, B]), "without a range"),
@@ -374,7 +379,7 @@ HOSTILE = [
      symbol="u")), "the end belongs"),
     ("abstract", state("x", ">=", x=BOTH), X1, abstract({"u": "x*x"}, {"u": UP}, "u", [signs("x*x", [1, B], [1, B])],
      span(0, symbol="u")), "not shown|the terms differ"),
-    ("abstract", state("-1", ">=", x=BOTH), X1, abstract({"u": "x**2"}, {"u": UP}, "u", [factors(None)], span(0,
+    ("abstract", state("-1", ">=", x=BOTH), X1, abstract({"u": "x**2"}, {"u": UP}, "u", [signs("x**2", None)], span(0,
      symbol="u")), "the terms differ"),
     ("abstract", state("x", ">=", x=BOTH), X1, abstract({"x": "1 + x**2"}, {"x": TWO}, "x", [B, B], B), "in use"),
     ("abstract", state("x", ">", x=UNIT), X1, abstract({"u": "x"}, {"u": ["0", "1", [HOLED]]}, "u", [span(0), span(1)],
@@ -391,11 +396,13 @@ HOSTILE = [
      rewrite(VANISHING, "0", I, factors(None, [1, I])))), "may vanish throughout"),
     ("dense", CUT, X1, dense("x", X1, I, B, B), "not shown"),
     ("dense", state("x", ">", x=["0", "1", []]), X1, dense("x", X1, span(0)), "expected >="),
-    ("dense", state("abs(x)", ">", x=BOTH), X1, dense("x", X1, factors(None)), "expected >="),
+    ("dense", state("x**2", ">", x=BOTH), X1, dense("x", X1, multiply("x**(-2)", factors(None), equal("1", B))),
+     "expected >="),
     ("dense", state("-1", ">=", x=ONE_POINT), X1, dense("x - 1", X2, B), "a side without inner points"),
     ("dense", state("-1", ">=", x=["1", "2", ["integer"]]), X1, dense("(x - 1)*(x - 2)", X0, B),
      "a side without inner points"),
-    ("dense", state("-x", ">=", x=["0", None, []]), X0, dense("x - abs(x)", XB, B), "expected an entire function"),
+    ("dense", state("-x", ">=", x=UP), X0, dense(LEFT, XB, equal(f"-1*x*{LEFT}*{LEFT}**(-1)", VACUOUS)),
+     "expected an entire function"),
     ("dense", state("-1", ">=", x=BOTH), X0, dense("x**(-1)*x", X1, B), "expected an entire function"),
     ("dense", state("-1", ">=", x=BOTH), X0, dense("x**(1/2)", X1, B), "expected an entire function"),
     ("dense", state("-1", ">=", x=BOTH), X0, dense("x**0", X1, B), "expected an entire function"),
@@ -435,7 +442,7 @@ HOSTILE = [
     ("solve", state("sqrt((x + 3/5)**2)", "=", "x + 3/5", x=LONG), X0, solve("sqrt((x + 3/5)**2)", ROOT, I, B),
      "expected 1 entries"),
     ("solve", state("1", "=", x=UNIT), X1, solve("sqrt(x)", "sqrt(x)", I, I, share="0"), "expected an equation"),
-    ("solve", state("abs(x)", ">=", "-x - 1", x=TWO), X1, solve("abs(x)", "-x - 1", I, B), "expected an equation"),
+    ("solve", state("abs(x)", ">", "x", x=UNIT), X1, solve("abs(x)", "x", I, span(0)), "expected an equation"),
     ("solve", state("sqrt(x**2)", "=", "2*x", x=TWO), X1, solve("sqrt(x**2)", "x", I, B), "the equation differs"),
     ("solve", state("sin(x)", "=", "x", x=TWO), X1, solve("sin(x)", "x", I, I), "expected an inverse function"),
     ("squares", state("1", "=", "-1"), {}, squares("1", "-1", 1, I, B, B), "not shown"),
@@ -471,7 +478,7 @@ HOSTILE = [
     ("derivative", state("1 + 0*sqrt(x)", "=", x=TWO), X1, derivative(XB, multiply("0*sqrt(-1)", B), [I], B),
      "outside"),
     ("derivative", state("0*x + 1", "=", x=LINE), X0, derivative({}, I, [I]), "every symbol"),
-    ("derivative", state("0*x - 1", ">=", x=LINE), X0, derivative(X0, B, [I]), "expected an equation"),
+    ("derivative", state("0*x", ">", x=LINE), X0, derivative(X0, I, [I]), "expected an equation"),
     ("balls", state("x", ">", x=UNIT), X1, B, "not shown"),
     ("balls", state("x + 3/5", ">", x=BOTH), X1, B, "not shown"),
     ("balls", state("1/5 - x", ">=", x=UNIT), X0, B, "not shown"),
