@@ -548,6 +548,7 @@ HOSTILE = [
     ("corners", state("x**2 - 1/4", ">=", x=BOTH), X1, corners("x", B, B), "of a higher degree"),
     ("corners", state("x*y*x", ">=", "1/4*y", x=BOTH, y=TWO), XY, corners("x", B, B), "of a higher degree"),
     ("corners", state("1/x", ">=", "-3/2", x=BOTH), X1, corners("x", B, B), "depends where the term is defined"),
+    ("corners", state("x + 0*sqrt(x - 1/4)", ">=", "1/2", x=UNIT), X1, corners("x", B, B), "where the term is defined"),
     ("corners", state("sin(x) + 0.9", ">=", x=["0", "2*pi", []]), X0, corners("x", B, B), "inside a function"),
     ("corners", state("x*exp(x) + 3/8", ">=", x=["-20", "0", []]), X0, corners("x", B, B), "inside a function"),
     ("corners", state("x", ">=", x=[None, "1", []]), X1, corners("x", B, B), "without an end"),

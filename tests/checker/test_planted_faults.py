@@ -43,11 +43,7 @@ FAULTS = [
     ("", "cyclotomic(2 * n)", "cyclotomic(n)"),
     ("equal", "return x[0] * left + y[0] * right, x[1] * left", "return x[0] * right + y[0] * left, x[1] * left"),
     # what has to exist
-    (
-        "equal",
-        'elif q.q > 1:\n                found[">=", base]',
-        'elif q.q > 9:\n                found[">=", base]',
-    ),
+    ("equal", 'elif q.q > 1:\n                found[">=", base]', 'elif q.q > 9:\n                found[">=", base]'),
     ("equal", 'case ("sqrt", x):\n            found', 'case ("sqrt", x) if level == 2:\n            found'),
     ("slope", "            if level:\n", "            if level > 2:\n"),
     ("derivative", "            if level:\n", "            if level > 2:\n"),

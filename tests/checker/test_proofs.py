@@ -8,7 +8,7 @@ from collections import Counter
 import pytest
 
 from navsym import checker
-from tests.checker.proofs import FAILS, HOSTILE, STANDS, TRUE, WITNESSES, answer, prove, refute
+from tests.checker.proofs import FAILS, HOSTILE, STANDS, TRUE, UNIT, WITNESSES, X0, B, I, answer, prove, refute, state
 
 
 @pytest.mark.parametrize(("rule", "statement", "witness", "proof"), TRUE, ids=lambda x: str(x)[:40])
@@ -59,3 +59,12 @@ def test_a_certificate_grants_its_own_statement_only():
     ):
         with pytest.raises(checker.Refused):
             checker.grant(asked, offered)
+
+
+@pytest.mark.parametrize(("tolerance", "expected"), [("3/4", "HOLDS"), ("1/4", "not shown"), ("-3/4", "not shown")])
+def test_an_equation_with_a_tolerance_bounds_its_difference_on_both_sides(tolerance, expected):
+    statement = state("x", "=", "1/2", tolerance=tolerance, x=UNIT)
+    assert expected in answer(checker, statement, prove(statement, X0, B, B))
+    for sign, proof in ((1, I), (-1, B)):
+        one_sided = state("x", "=", str(sign), tolerance="1/2", x=UNIT)
+        assert answer(checker, one_sided, prove(one_sided, X0, proof, proof)) != "HOLDS"
