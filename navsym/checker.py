@@ -6,12 +6,14 @@ The sections stand in the order of trust: each rests on those before it, and eve
    exact; an operation on balls, or on series and matrices of balls (arb, arb_series, arb_mat), encloses its results for
    all numbers in the balls, gives NaN where one does not exist, and solves no system that may be singular.
 2. Reading. A certificate is a JSON object with a kind and exactly the keys of this kind. Numbers are decimals or
-   fractions in strings; floats are refused. Expressions are texts of + - * / ** (rational exponent), pi, symbols,
-   sin cos tan cot sec csc sinh cosh tanh exp log atan asin acos sqrt abs, and the entire functions f_k(x) =
-   (f(x) - its Taylor polynomial of degree < k)/x**k of f = exp, sin, cos for k = 0 .. 99 (by balls: |x| <= 1 only).
+   fractions in strings; floats are refused. Expressions are texts of + - * / **, pi, symbols, sin cos tan cot sec csc
+   sinh cosh tanh exp log atan asin acos sqrt abs, atan2(y, x), and the entire functions f_k(x) = (f(x) - its Taylor
+   polynomial of degree < k)/x**k of f = exp, sin, cos for k = 0 .. 99 (by balls: |x| <= 1 only). A power x**y whose
+   exponent is not seen to be a rational number is exp(y*log(x)), so that it exists for x > 0 only.
 3. Functions of a parameter, and 4. expressions, both in balls. 5. Exact algebra, which decides that numbers are equal.
 6. The kinds identity, exponential and rank, by exact algebra. 7. The kinds positivity, by balls, and all.
-8. The optimum of guaranteed estimation: the kinds gap and sliver, touch and range. 9. The entry: check.
+8. The optimum of guaranteed estimation: the kinds gap and sliver, touch and range. 9. The kinds proof and
+   counterexample: statements and the rules of their proofs. 10. The entry: check.
 """
 
 from __future__ import annotations
@@ -150,6 +152,10 @@ class Parser:
             while self.take(","):
                 arguments.append(self.read_sum())
             require(self.take(")"), "not an expression: no )")
+            known = word in ("atan2", *DEFINITIONS, *DERIVATIVES) or matches("(exp|sin|cos)_[0-9]{1,2}", word)
+            require(known, f"unknown function {word}")
+            expected = 2 if word == "atan2" else 1
+            require(len(arguments) == expected, f"expected {word} of {expected}; got {len(arguments)} arguments")
             return (word, *arguments)
         require(word == "(", "not an expression")
         inside = self.read_sum()
@@ -401,11 +407,10 @@ def apply_remainder(name: str, x: Jet, field: Any) -> Jet:
     of binomial(j, 60)/(j + k)! over j >= 60 is at most e/(60 + k)!, which is below 3/(60 + k)!.
     """
     f, _, digits = name.partition("_")
-    require(f in AT_ZERO and matches("[0-9]{1,2}", digits), f"function {name}")
     k = int(digits)
     c = [Jet(field(fmpq(AT_ZERO[f][j % 4], factorial(j)))) for j in range(k + TERMS)]
     if field is Exact:
-        require(not has_root(frozenset(x.parts[0])), f"{name} of a root, which may be 0 throughout a part")
+        require(not has_branch(frozenset(x.parts[0])), f"{name} of a root or angle, which may be 0 throughout a part")
         return (apply_function(f, x, field) - evaluate_polynomial([*c[:k], Jet(0)], x)) * raise_power(
             x, fmpq(-k), field
         )
@@ -551,9 +556,14 @@ class Exact:
         return all(part % divisor == 0 for part in sums.values())
 
 
-def has_root(content: Any) -> bool:
-    """Whether a root or divisor stands anywhere in the terms of a number."""
-    return content == "sum" or (isinstance(content, (tuple, frozenset)) and any(map(has_root, content)))
+def has_branch(content: Any) -> bool:
+    """Whether a root, divisor, logarithm or angle stands anywhere in the terms of a number.
+
+    Such terms may be 0 throughout an open set and not be seen to be, as atan(x) + atan(1/x) - pi/2 for x > 0.
+    """
+    if isinstance(content, str):
+        return content in ("sum", "log", "asin", "acos", "atan", "atan2")
+    return isinstance(content, (tuple, frozenset)) and any(map(has_branch, content))
 
 
 PI = Exact([]).make_atom("pi")
@@ -643,7 +653,7 @@ def prove_on_cells(cells: list[Cell], budget: Iterator[bool], holds: Callable[[C
         except Undefined:
             proved = False
         if not proved:
-            require(cell, "the bound is not shown, and there is nothing to halve")
+            require(cell, "the bound is not shown")
             side = max(cell, key=lambda s: cell[s][1])
             middle, radius = cell[side][0], cell[side][1] / 2
             cells += [cell | {side: (half, radius)} for half in (middle - radius, middle + radius)]
@@ -1487,7 +1497,7 @@ def prove_angle(proof: Any, goal: Goal) -> None:
     waves = [f for f in list_factors(goal.term) if f[0] in ("sin", "cos")]
     require(len(waves) == 1, "expected one sine or cosine")
     ((name, angle),) = waves
-    require(is_identity(subtract(goal.term, ("*", number(c * (-1) ** (k % 2)), waves[0]))), "the term is another one")
+    require(is_identity(subtract(goal.term, ("*", number(-c if k % 2 else c), waves[0]))), "the term is another one")
     u = angle if name == "sin" else ("+", angle, ("*", ("pi",), number(HALF)))
     sides = [subtract(u, ("*", ("pi",), number(k))), subtract(("*", ("pi",), number(k + 1)), u)]
     prove_all(proofs, [remember(goal, side) for side in sides])

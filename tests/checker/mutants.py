@@ -43,6 +43,7 @@ OPERATORS: dict[type[ast.operator], type[ast.operator]] = {
     ast.Mod: ast.Add,
     ast.Pow: ast.Mult,
     ast.BitOr: ast.BitAnd,
+    ast.BitAnd: ast.BitOr,
 }
 
 
@@ -135,13 +136,18 @@ def noticed(source: str, place: int, number: int) -> bool:
     return os.waitpid(child, 0)[1] != 0
 
 
+def module_of(source: str | ast.Module) -> ModuleType:
+    """The checker made of a changed source."""
+    module = ModuleType("mutant")
+    exec(compile(source, "mutant", "exec"), module.__dict__)
+    return module
+
+
 def judged(tree: ast.Module) -> int:
     from tests.checker.forgeries import discrepancies
 
-    module = ModuleType("mutant")
     try:
-        exec(compile(tree, "mutant", "exec"), module.__dict__)
-        return int(next(discrepancies(module), None) is not None)
+        return int(next(discrepancies(module_of(tree)), None) is not None)
     except BaseException:
         return 1
 

@@ -57,6 +57,16 @@ EQUAL = [
     (f"0*x**999 + 0*sqrt({2**100 - 1})", "0"),
     ("1/(1 + 1/(1 + 1/x))", "(x + 1)/(2*x + 1)"),
     ("cos(x/5040)**2", "1 - sin(x/5040)**2"),
+    # powers whose exponent is no rational number exist for a base > 0 only
+    ("x**y", "exp(y*log(x))"),
+    ("x**y*x**T", "x**(y + T)"),
+    ("x**pi/x**(pi - 2)", "x**2"),
+    ("x**sin(1)*x**cos(1)", "x**(sin(1) + cos(1))"),
+    ("x**(2 + y - y)", "x**2"),
+    ("exp(-2*log(x))", "1/x**2"),
+    ("cos(atan2(x, y))*sqrt(x**2 + y**2)", "y"),
+    ("sin(2*acos(x))", "2*x*sqrt(1 - x**2)"),
+    ("2**3**2 - 2**9", "-(1 - 2 + 1)**2"),
     ("cos(pi/5040) + cos(pi/5040 + 2*pi/3) + cos(pi/5040 + 4*pi/3)", "0"),
     ("(T + x + y + lambda + a_1 + 1 + pi + exp(T))**2", "(a_1 + lambda + y + x + T + exp(T) + pi + 1)**2"),
 ]
@@ -78,6 +88,14 @@ UNEQUAL = [
     ("sqrt(7)", "sqrt(11)"),
     ("x", "y"),
     ("1/x", "x"),
+    ("x**y", "y**x"),
+    ("x**pi", "x**3"),
+    ("(x**y)**T", "x**(y**T)"),
+    ("exp(-2*log(x))", "x**2"),
+    ("cos(atan2(x, y))*sqrt(x**2 + y**2)", "x"),
+    ("1 - x - y", "1 - (x - y)"),
+    ("1/x/y", "1/(x/y)"),
+    ("sqrt(x + 1)*(cos(pi/7) - cos(2*pi/7) + cos(3*pi/7) - 1/2) + x", "0"),
     ("0", "1"),
 ]
 # Functions of a parameter p, and the series that they are.
@@ -112,9 +130,11 @@ OUTSIDE = [
     "x if y else z",
     "x;y",
     "'a'",
-    "x**y",
-    "x**pi",
     "f(x, y)",
+    "sin(x, y)",
+    "atan2(x)",
+    "atan2(x, y, x)",
+    "exp_1(x, y)",
     "",
     "((",
     "x + 1.",
@@ -130,7 +150,6 @@ OUTSIDE = [
     "x < y",
     "(x, y)",
     "x**(1/0)",
-    "x**sin(1)",
     "х",
 ]
 BROKEN = [
