@@ -81,10 +81,14 @@ def solve_for(atom: str, value: str, share: str = "1") -> Proof:
     return {"rule": "solve", "share": share, "atom": atom, "value": value} | holes
 
 
+#: Letters of a term up to which logarithms are spread.
+LONGEST = 600
+
+
 def by_logarithms_of_products(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     """Logarithms as sums over the factors of what they are of; symbolic powers as exponentials first."""
-    if not player.symbols_of(goal.term):
-        return  # numbers with many digits, of which factors are sought for long
+    if len(write_term(goal.term)) > LONGEST:
+        return  # many digits, of which factors are sought for long
     powers = [p for p in subterms(goal.term) if p[0] == "^" and player.constant_of(p[2]) is None]
     if powers:
         term = goal.term
@@ -93,19 +97,38 @@ def by_logarithms_of_products(goal: Any, sample: list[arb]) -> Iterator[Proof]:
         yield {"rule": "equal", "to": write_term(term), "defined": Holes(), "proof": Hole()}
     for part in dict.fromkeys(p for p in subterms(goal.term) if p[0] == "log"):
         own = to_sympy(part)
-        spread = sp.expand_log(sp.log(factor(own.args[0])) if own.args else own, force=True)
-        if spread != own:
-            yield rewrite_atom(write_term(part), to_text(spread))
+        if own.func is sp.log:
+            own = sp.expand_log(sp.log(factor(own.args[0])), force=True, factor=True)
+        if player.parse(to_text(own)) != part:
+            yield rewrite_atom(write_term(part), to_text(own))
             return
+
+
+INVERSES = (sp.asin, sp.acos, sp.atan, sp.log, sp.atan2)
 
 
 def by_values_of_constants(goal: Any, sample: list[arb]) -> Iterator[Proof]:
-    """An inverse function of a number as the number that the algebra system has for it: acos(0) = pi/2."""
+    """An inverse function or a nested root of a number as what the algebra system makes of it: acos(0) = pi/2."""
     for part in dict.fromkeys(p for p in subterms(goal.term) if p[0] in ("asin", "acos", "atan", "log", "atan2")):
         value = sp.S.NaN if player.symbols_of(part) else to_sympy(part)
-        if value.is_number and value.is_finite and not value.has(sp.asin, sp.acos, sp.atan, sp.log, sp.atan2):
+        rest = [f for f in INVERSES if f is not sp.atan or part[0] != "atan2"]
+        if value.is_number and value.is_finite and not value.has(*rest):
             yield rewrite_atom(write_term(part), to_text(value))
             return
+    for part in dict.fromkeys(p for p in subterms(goal.term) if is_root(p) and p[0] != "abs"):
+        own = sp.S.NaN if player.symbols_of(part) else to_sympy(part)
+        if own.is_number and own.has(sp.Pow) and (value := denest(own)) != own:
+            yield rewrite_atom(write_term(part), to_text(value))
+            return
+
+
+def denest(root: sp.Expr) -> sp.Expr:
+    """A nested root as a sum of simpler ones, where one is found: for cube roots a guess from its digits."""
+    plain = sp.sqrtdenest(root)
+    inner = sorted(root.base.atoms(sp.Pow), key=str) if root.is_Pow else []
+    if plain != root or not inner or not root.base.is_Add:
+        return plain
+    return sp.nsimplify(root, inner, tolerance=sp.Rational(1, 10**25))
 
 
 def by_inverse(goal: Any, sample: list[arb]) -> Iterator[Proof]:
@@ -115,9 +138,9 @@ def by_inverse(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     roots = {to_text(p): p for p in expression.atoms(sp.Pow) if p.exp.is_Rational and p.exp.q > 1}
     own = {**atoms, **roots}
     for text, atom in sorted(own.items(), key=lambda pair: -len(pair[0])):
-        rest = sp.expand_mul(expression)
+        rest = sp.expand_mul(expression, deep=False)
         share = rest.coeff(atom)
-        value = sp.expand_mul(atom - rest / share) if share.is_Rational and share != 0 else None
+        value = sp.expand_mul(atom - rest / share, deep=False) if share.is_Rational and share != 0 else None
         if value is None or value.has(atom):
             continue
         yield solve_for(text, to_text(value), str(share))
