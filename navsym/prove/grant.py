@@ -35,6 +35,8 @@ POINTS = 18
 SHARE = "share"
 NUMERAL = re.compile(r"(?<![\w.])\d+(?:\.\d+)?[eE][+-]?\d+", re.ASCII)
 IDENTITY = {"rule": "identity"}
+#: The checker and its player are two modules, and each has its own class.
+REFUSALS = (checker.Refused, player.Refused)
 
 Document = dict[str, Any]
 
@@ -49,7 +51,7 @@ def write_statements(statement: Statement) -> list[Document] | None:
             return write_optimum(statement)
         if isinstance(statement, (Equation, Bound)) and shape_of(statement.printed) == shape_of(statement.derived):
             return [write_entry(statement, *sides) for sides in list_sides(statement)]
-    except (NavsymError, checker.Refused):
+    except (NavsymError, *REFUSALS):
         pass
     return None
 
@@ -129,7 +131,10 @@ def write_optimum(statement: Optimum) -> list[Document]:
     moving = ("+", start, ("*", player.subtract(end, start), ("symbol", SHARE)))
     dual = total(x, [at(h, moving) for h in H])
     sizes = ("+", player.ZERO, *(("abs", weight) for weight in w))
+    needed = dict.fromkeys(pair for h in H for pair in player.conditions(at(h, moving)))
+    inside = [(t, sign) for sign, t in needed if SHARE in player.symbols_of(t)]  # an interval without holes
     return [
+        *(state(t, sign, player.ZERO, **{SHARE: ["0", "1", []]}) for t, sign in inside),
         *(state(total(w, [at(h, t) for t in times]), "=", p) for h, p in zip(H, P, strict=True)),
         *(state(a, "<=", b) for t in times for a, b in ((start, t), (t, end))),
         *(state(a, "<=", player.ONE, **{SHARE: ["0", "1", []]}) for a in (dual, player.negate(dual))),
@@ -165,7 +170,7 @@ def grant_verdict(statement: Statement, verdict: Verdict, seconds: float = SECON
         if verdict.status == REFUTED:
             return grant_refutation(documents, verdict)
         return grant_proofs(documents, verdict, seconds)
-    except checker.Refused as refusal:
+    except REFUSALS as refusal:
         return withdraw(verdict, str(refusal)) if verdict.status.holds or verdict.status == REFUTED else verdict
 
 
@@ -194,7 +199,7 @@ def grant_refutation(documents: Sequence[Document], verdict: Verdict) -> Verdict
         place = {name: point.get(name) or simple_value(limits) for name, limits in document["symbols"].items()}
         try:
             return replace(verdict, certificate=refute_document(documents, document, place))
-        except checker.Refused as refusal:
+        except REFUSALS as refusal:
             why = str(refusal)
     return withdraw(verdict, why)
 
@@ -207,7 +212,7 @@ def refute_document(documents: Sequence[Document], document: Document, point: Ma
         try:
             grant(documents, certificate | {"zero": None})
             return certificate | {"zero": None}
-        except checker.Refused as error:
+        except REFUSALS as error:
             refusal = error
     if document["relation"] in ("<", ">", "!="):
         goals, _, _ = player.read_statement(document)
@@ -255,7 +260,7 @@ def prove_document(document: Document, verdict: Verdict, seconds: float) -> Docu
         proofs: list[Any] = [IDENTITY]
         try:
             checker.prove(IDENTITY, checker.read_statement(document)[0][0])
-        except checker.Refused:
+        except REFUSALS:
             proofs = [find_proof(goals[0], seconds)]
     else:
         proofs = [find_proof(goal, seconds) for goal in goals]
@@ -288,7 +293,7 @@ def judge_without_proof(documents: Sequence[Document], document: Document, verdi
         return withdraw(verdict, "no certificate was found") if verdict.status.holds else verdict
     try:
         certificate = refute_document(documents, document, broken)
-    except checker.Refused:
+    except REFUSALS:
         return withdraw(verdict, "the text fails at a sample") if verdict.status != OPEN else verdict
     words, difference = "the text fails at an exact point", difference_at(document, broken)
     method = "exact point, ball arithmetic"

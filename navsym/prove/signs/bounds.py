@@ -12,6 +12,7 @@ from navsym import checker
 from navsym.claims.statement import Box
 from navsym.core.errors import NavsymError
 from navsym.language.expression import to_text
+from navsym.prove.rooms.goals import player
 from navsym.prove.sampling.points import Range, ranges_of, write_range
 from navsym.prove.search import ROUNDS, find_proof, rules_of
 from navsym.prove.signs.exact import UNKNOWN, Sign, SignProof
@@ -46,7 +47,7 @@ def remember_sign(expression: sp.Expr, limits: tuple[tuple[sp.Symbol, Range], ..
             checker.prove(checker.load(json.dumps(proof)), goal)
             rules |= rules_of(proof)
         return SignProof(wanted, f"a proof by the rules {', '.join(sorted(rules))}", exact="balls" not in rules)
-    except (NavsymError, checker.Refused):
+    except (NavsymError, checker.Refused, player.Refused):
         return UNKNOWN
     finally:
         ctx.prec = before
