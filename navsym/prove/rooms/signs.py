@@ -203,6 +203,8 @@ def by_corners(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     if goal.relation == "!=":
         return
     expression = to_sympy(goal.term)
+    if len(expression.free_symbols) < len(player.symbols_of(goal.term)):  # 0 s
+        yield {"rule": "equal", "to": to_text(expression), "defined": Holes(), "proof": Hole()}
     ends = {v: goal.box[v.name] for v in sorted(expression.free_symbols, key=str)}
     closed = [v for v, limit in ends.items() if limit.low is not None and limit.high is not None]
     names = [v.name for v in closed if expression.is_polynomial(v) and sp.degree(expression, v) == 1]
