@@ -400,7 +400,7 @@ def decide_pair(family: Family, guess: ClosedForm, lower: sp.Expr, upper: sp.Exp
         return decide_polynomial(statements[0])
     # Without the checker's grant, for one measurement as for several: the search finds few of these proof trees.
     call = (decide_jointly, (statements, guess.panels)) if len(statements) > 1 else (search_verdict, (statements[0],))
-    outcome = run_limited(*call, seconds, DEFAULT_MEGABYTES)
+    outcome = run_limited(call[0], call[1], seconds, DEFAULT_MEGABYTES)
     return Verdict(OPEN, "none", evidence="stopped") if isinstance(outcome, Exhausted) else outcome
 
 

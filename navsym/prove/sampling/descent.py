@@ -18,7 +18,7 @@ from navsym.core.balls import DEFAULT_BITS, Tape, UnsupportedError, enclose, exa
 from navsym.core.exact import to_fmpq, to_fraction
 from navsym.prove.sampling.points import Range
 
-STARTS = 16
+STARTS = 256
 KEPT = 3
 STEPS = 400
 ROUNDS = 8

@@ -42,8 +42,10 @@ VANISHING = (sp.Abs, sp.sin, sp.tan, sp.atan, sp.asin, sp.sinh, sp.tanh)
 
 
 def zeros_of_factors(difference: sp.Expr, limits: Mapping[sp.Symbol, Range]) -> Iterator[Point]:
-    """Points of the box where a factor is zero; the caller shows that the whole is, and exists there."""
-    bases = dict.fromkeys(unwrap_factor(factor) for factor in sp.Mul.make_args(factor_exactly(difference)))
+    """Points of the box where a factor or what stands under a root or in an absolute value is zero."""
+    sharp = [node.args[0] for node in difference.atoms(sp.Abs, sp.Pow) if node.is_Function or node.exp.is_Rational]
+    kinks = sorted((part for part in sharp if part.free_symbols), key=str)
+    bases = dict.fromkeys(map(unwrap_factor, (*sp.Mul.make_args(factor_exactly(difference)), *kinks)))
     for base in list(bases)[:MOST_FACTORS]:
         for symbol in sorted(base.free_symbols, key=str):
             yield from zeros_in(base, symbol, limits)
