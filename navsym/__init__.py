@@ -13,7 +13,7 @@ A first session
 ---------------
 
     >>> nav.prove("sin(T) <= T", T=("0", "pi")).status
-    <Status.CERTIFIED: 'CERTIFIED'>
+    <Status.PROVED: 'PROVED'>
     >>> model = nav.Model(states="y1 y2 y3", F=[["0", "-1", "0"], ["0", "0", "1"], ["0", "-1", "0"]],
     ...                   H=[["1", "0", "0"]], sigma=["1"], interval="T", targets={"drift": "y3"}, T=("0", "2*pi"))
     >>> drift = nav.solve(model, "drift", T="pi/2")

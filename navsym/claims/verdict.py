@@ -149,7 +149,7 @@ class Verdicts(Answer):
     >>> import navsym as nav
     >>> verdicts = nav.prove("examples/formulas.toml")
     >>> verdicts
-    <3 verdicts: 1 PROVED, 1 CERTIFIED, 1 REFUTED>
+    <3 verdicts: 2 PROVED, 1 REFUTED>
     >>> verdicts["half-angle"].holds, verdicts.holds
     (True, False)
     """

@@ -203,7 +203,7 @@ def claim_of(old: Formula, new: Formula) -> FileClaim:
     both = zip(old.noted, new.noted, strict=True)
     noted = (tuple(dict.fromkeys((*mine, *(in_terms_of(part, old) for part in others)))) for mine, others in both)
     right = in_terms_of(new.expression, old)
-    return FileClaim(words, old.expression, right, "=", common_box(old, new), None, *noted)
+    return FileClaim(words, old.expression, right, "=", common_box(old, new), None, None, *noted)
 
 
 def different_ranges(old: Formula, new: Formula) -> list[str]:

@@ -78,7 +78,9 @@ def unobservable_directions(found: ModelFile) -> list[UnobservableDirection]:
 
 def is_zero_matrix(matrix: Iterable[sp.Expr]) -> bool:
     """Every entry is proved to be zero."""
-    return all(entry == 0 or decide(Equation(sp.sympify(entry), sp.S.Zero)).status is PROVED for entry in matrix)
+    return all(
+        entry == 0 or decide(Equation(sp.sympify(entry, strict=True), sp.S.Zero)).status is PROVED for entry in matrix
+    )
 
 
 def prove_kernel(found: ModelFile, piece: Piece, end: sp.Expr) -> tuple[sp.Matrix, list[int]] | None:

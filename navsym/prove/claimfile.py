@@ -82,7 +82,7 @@ class FileClaim:
     relation    : one of ``= != < <= > >=``
     box         : symbol -> (lower, upper), the file's ranges and those of the claim itself
     tolerance   : None for equality; the exact number that ``|left - right|`` does not exceed
-    symbols     : the declared symbols
+    symbols     : the declared symbols; None where ``formula`` is a name and no text
     divisors    : what the text divides by, also where the algebra has cancelled it since
     radicands   : what the text takes roots of, to be nonnegative, likewise
     arguments   : what the text takes logarithms and symbolic powers of, to be positive, likewise
@@ -94,7 +94,7 @@ class FileClaim:
     relation: str
     box: Mapping[Symbol, tuple[Expr, Expr]]
     tolerance: Expr | None = None
-    symbols: tuple[Symbol, ...] = ()
+    symbols: tuple[Symbol, ...] | None = ()
     divisors: tuple[Expr, ...] = ()
     radicands: tuple[Expr, ...] = ()
     arguments: tuple[Expr, ...] = ()
@@ -333,7 +333,8 @@ def statement_of(claim: FileClaim) -> Statement:
     """The file's claim as a statement of the ladder."""
     formula = claim.formula
     left, right = list_texts(formula.left), list_texts(formula.right)
-    written = Written(left, right, formula.exists, formula.tolerance, claim.symbols)
+    as_typed = claim.symbols is not None
+    written = Written(left, right, formula.exists, formula.tolerance, claim.symbols or ()) if as_typed else None
     if claim.relation == "=":
         exists = existing_parts(claim)
         return Equation(claim.left, claim.right, claim.box, claim.tolerance, exists=exists, written=written)

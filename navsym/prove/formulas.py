@@ -82,7 +82,7 @@ def prove(
     >>> nav.prove("sin(2*a) = 2*sin(a)*cos(a)")
     <PROVED: sin(2*a) = 2*sin(a)*cos(a); normal form; all real a>
     >>> nav.prove("sin(T) <= T", T=("0", "pi")).status
-    <Status.CERTIFIED: 'CERTIFIED'>
+    <Status.PROVED: 'PROVED'>
     >>> nav.prove("22/7 = pi", tolerance="0.005").holds
     True
     >>> nav.prove("a = a", exists="log(a)").assumptions

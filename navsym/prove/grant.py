@@ -75,8 +75,10 @@ def write_entry(statement: Equation | Bound, left: str, right: str) -> Document:
     if written is None:
         exists = [to_text(sp.sympify(part, strict=True)) for part in statement.exists]
         exists += [f"1/({to_text(sp.sympify(d, strict=True))})" for d in getattr(statement, "nonzero", ())]
-        symbols = set().union(*(sp.sympify(e).free_symbols for e in (*sides_of(statement), *statement.exists)))
-        symbols |= set().union(*(sp.sympify(e).free_symbols for e in getattr(statement, "nonzero", ())))
+        symbols = set().union(
+            *(sp.sympify(e, strict=True).free_symbols for e in (*sides_of(statement), *statement.exists))
+        )
+        symbols |= set().union(*(sp.sympify(e, strict=True).free_symbols for e in getattr(statement, "nonzero", ())))
         limit = None if tolerance is None else to_text(sp.sympify(tolerance, strict=True))
     else:
         exists, symbols = [write_numerals(text) for text in written.exists], set(written.symbols)

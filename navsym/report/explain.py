@@ -99,7 +99,7 @@ def explain(claim: str, *, seconds: float = SECONDS) -> Explanation:
     >>> import navsym as nav
     >>> why = nav.explain("alpha_beta_filter:remark.critical")
     >>> why
-    <explanation of alpha_beta_filter:remark.critical: REFUTED, 8 steps>
+    <explanation of alpha_beta_filter:remark.critical: REFUTED, 9 steps>
     >>> why.correction.id
     'alpha_beta_filter:remark.critical*'
     """

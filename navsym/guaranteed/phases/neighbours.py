@@ -26,6 +26,7 @@ from navsym.guaranteed.phases.closed_forms import ClosedForm, is_feasible, solve
 from navsym.guaranteed.phases.family import Family
 from navsym.guaranteed.phases.patterns import Pattern, PatternInterval, sample_contacts
 from navsym.guaranteed.search.exchange import regressor_rows
+from navsym.prove.identities.numbers import is_zero
 
 LARGEST, NEAR = 720, 1e-8
 #: Where a guess is looked at in a span, and the shares of a flat panel that may carry the functional.
@@ -151,7 +152,7 @@ def freeze_carrier(family: Family, pattern: Pattern, closed: ClosedForm, root: s
     rows = [
         (mark if mark[1] == "from" else (mark[0], "no", mark[2]), panel, sp.expand(family.at(place, root)), w)
         for mark, panel, place, w in zip(pattern, closed.panels, closed.places, weights, strict=True)
-        if not sp.simplify(w).is_zero
+        if not is_zero(w)
     ]
     marks, panels, places, left = zip(*rows, strict=True)
     return [(marks, replace(closed, panels=panels, places=places, weights=left))]
