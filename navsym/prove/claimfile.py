@@ -299,7 +299,7 @@ def decide_claims(
 
 def decide_claim(claim: FileClaim, seconds: float = SECONDS / 2) -> Verdict:
     """Verdict of one claim, with what its text divides by and takes roots of among the assumptions."""
-    verdict = decide(statement_of(claim), seconds)
+    verdict = decide(statement_of(claim), seconds=seconds)
     if verdict.status == REFUTED:
         return verdict
     assumptions = dict.fromkeys((*verdict.assumptions, *text_conditions(claim)))

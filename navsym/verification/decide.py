@@ -179,7 +179,7 @@ def record_of(
     elif kept is not None and texts is not None:
         entries = (grant_entry(texts, entry, seconds / SHARE) for entry in kept.list_entries(key))
         verdict = next(filter(None, entries), None)
-    record = make_record(paper, claim, statement, verdict or decide(statement, SEARCH))
+    record = make_record(paper, claim, statement, verdict or decide(statement, seconds=SEARCH))
     return replace(record, statement=key), verdict is not None
 
 

@@ -66,7 +66,7 @@ def test_results_that_the_store_does_not_take_are_counted_and_named(tmp_path, mo
 def test_verify_says_which_verdicts_were_not_kept(tmp_path, monkeypatch, capsys):
     monkeypatch.setenv("NAVSYM_CACHE", str(tmp_path))
     (tmp_path / "results.sqlite").write_bytes(b"something else" * 500)
-    assert run(["verify", "alpha_beta_filter", "--json"]) == 3
+    assert run(["verify", "alpha_beta_filter", "--fresh", "--json"]) == 3
     captured = capsys.readouterr()
     assert len(json.loads(captured.out)["unsaved"]) > 10 and "not kept" in captured.err
 
