@@ -48,7 +48,7 @@ def decide_within(
     statement: Statement, seconds: float = DEFAULT_SECONDS, megabytes: int = DEFAULT_MEGABYTES
 ) -> Verdict:
     """The same in a child process; OPEN when it needs more time or memory than allowed."""
-    outcome = run_limited(decide, (statement,), seconds, megabytes)
+    outcome = run_limited(decide, (statement, seconds / 2), seconds, megabytes)
     return leave_open(outcome) if isinstance(outcome, Exhausted) else outcome
 
 

@@ -71,7 +71,7 @@ SIGNS: tuple[tuple[Room, ...], ...] = (
 #: Depth of proofs, number of rules tried and kinds of rooms, one round after the other: the same on every machine.
 #: The time is a net below.
 ROUNDS = ((8, 200, 1), (8, 300, 2), (8, 400, 3), (12, 1200, 3))
-SECONDS = 10.0
+SECONDS = 30.0
 #: Parts of a term for which only cheap rooms are asked.
 LONG = 600
 
