@@ -43,10 +43,10 @@ def searches(monkeypatch, tmp_path):
     """Counts what is searched, in the children too."""
     count, first = tmp_path / "searched", decide.decide
 
-    def search(statement):
+    def search(statement, **limits):
         with count.open("a") as file:
             file.write("x")
-        return first(statement)
+        return first(statement, **limits)
 
     monkeypatch.setattr(decide, "decide", search)
     monkeypatch.setattr(decide, "warm_up", lambda: None)
