@@ -319,7 +319,7 @@ METHODS = (
         "ball arithmetic",
         "The range was covered by balls, each with all rounding errors enclosed; none of them leaves room for failure.",
     ),
-    ("sign on the box", "The sign was proved on the whole range, by factors of known sign or by halving the range."),
+    ("proof tree", "A tree of exact rules was found that ends in the statement; the checker has read it rule by rule."),
     ("sampling", "No proof was found. The statement was tried at exact points, which confirms and does not prove."),
     ("shape", "The two sides do not even have the same shape."),
     ("none", "Nothing decided it."),
