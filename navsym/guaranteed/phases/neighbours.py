@@ -146,7 +146,7 @@ def freeze_carrier(family: Family, pattern: Pattern, closed: ClosedForm, root: s
 
     None where a weight has a pole.
     """
-    weights = [sp.radsimp(family.at(w, root)) for w in closed.weights]
+    weights = [family.at(w, root) for w in closed.weights]
     if any(w.has(sp.zoo, sp.nan, sp.oo) for w in weights):
         return []
     rows = [
