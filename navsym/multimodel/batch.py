@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -10,8 +11,9 @@ from numpy.typing import NDArray
 
 from navsym.core.errors import NotFiniteError, ShapeError
 from navsym.multimodel.bank import Bank
-from navsym.multimodel.compiled import independent_scalars
+from navsym.multimodel.compiled import independent_scalars, run_compiled
 from navsym.multimodel.doubt import ROUNDING, disagreements, in_units, moments, other_units
+from navsym.multimodel.engine import Estimates
 from navsym.multimodel.filters import UNUSED, run_filter
 from navsym.multimodel.kalman import logs
 from navsym.multimodel.schemes import require_room, scheme
@@ -43,20 +45,30 @@ def run_batch(models: Bank, measurements: Any, method: str = "imm", *, depth: in
             f"got {z.shape[1]}; give models for every step"
         )
     rule = scheme(method, depth)
-    require_room(rule, models.modes, models.states, 1 if models.common else models.modes, z.shape[1])
-    out = empty(z, models)
-    every = np.arange(len(z))
-    if method not in IN_LANES or (method == "pulsating" and not models.common):
-        return one_by_one(models, z, method, depth, out, every)
-    units, twin, lanes = other_units(models), empty(z, models), IN_LANES[method]
-    if not (in_lanes(models, z, lanes, out) and in_lanes(in_units(models, *units), z * units[1], lanes, twin)):
-        return one_by_one(models, z, method, depth, out, every)
-    doubt = disagreements(out, twin, z, *units).max(axis=1)
+    count = require_room(rule, models.modes, models.states, 1 if models.common else models.modes, z.shape[1])
+    units, out, twin = other_units(models), empty(z, models), empty(z, models)
+
+    def run(bank: Bank, series: Array, target: Batch) -> NDArray[np.bool_]:
+        fits = method in IN_LANES and (method != "pulsating" or models.common)
+        if fits and in_lanes(bank, series, IN_LANES[method], target):
+            return np.full(len(series), True)
+        found = [run_compiled(rule, bank, row, count) for row in series]
+        put(target, found, range(len(found)))
+        return np.array([not estimate.singular for estimate in found])
+
+    with np.errstate(all="ignore"):  # what leaves the range is doubtful
+        fine = run(models, z, out) & run(in_units(models, *units), z * units[1], twin)
+    doubt = np.where(fine, disagreements(out, twin, z, *units).max(axis=1), np.inf)
     # Two runs of one program may err alike in a short series; the readable engine errs in another way.
-    single = run_filter(models, z[0], method, engine="compiled")
-    if single.engine == "digits":
+    if run_filter(models, z[0], method, depth=depth, engine="compiled").engine == "digits":
         doubt[:] = np.inf
-    return one_by_one(models, z, method, depth, out, np.flatnonzero(doubt > ROUNDING))
+    doubtful = np.flatnonzero(doubt > ROUNDING)
+    settled = [run_filter(models, z[row], method, depth=depth, engine="compiled") for row in doubtful]
+    put(out, settled, doubtful)
+    for row, estimate in zip(doubtful, settled, strict=True):
+        for note in set(estimate.notes) - {UNUSED} if estimate.engine != "digits" else ():
+            warnings.warn(f"run {row}: {note}", stacklevel=2)
+    return out
 
 
 def empty(z: Array, models: Bank) -> Batch:
@@ -71,19 +83,13 @@ def in_lanes(models: Bank, z: Array, branching: int, out: Batch) -> bool:
     from navsym.multimodel.kernels.batch import run_all
 
     H, r, U, rotated = independent_scalars(models)
-    with np.errstate(all="ignore"):
-        bank = (models.F, models.Q, H, r, U, rotated, models.mode_transition)
-        start = (logs(models.probabilities), models.means, models.covariances)
-        fine = run_all(branching, bank, start, z, tuple(out))
-    return bool(fine)
+    bank = (models.F, models.Q, H, r, U, rotated, models.mode_transition)
+    start = (logs(models.probabilities), models.means, models.covariances)
+    return bool(run_all(branching, bank, start, z, tuple(out)))
 
 
-def one_by_one(models: Bank, z: Array, method: str, depth: int | None, out: Batch, rows: NDArray[np.intp]) -> Batch:
-    """``out`` with these runs by the single-run engine: folding schemes, and series at which lanes stop or err."""
-    for row in rows:
-        estimate = run_filter(models, z[row], method, depth=depth, engine="compiled")
+def put(out: Batch, found: Sequence[Estimates], rows: Iterable[int]) -> None:
+    """Put estimates into rows of ``out``."""
+    for row, estimate in zip(rows, found, strict=True):
         for target, value in zip(out, moments(estimate), strict=True):
             target[row] = value
-        for note in set(estimate.notes) - {UNUSED} if estimate.engine != "digits" else ():
-            warnings.warn(f"run {row}: {note}", stacklevel=3)
-    return out

@@ -17,6 +17,8 @@ from numpy.typing import NDArray
 
 from navsym.core.errors import DomainError
 from navsym.multimodel.bank import Bank
+from navsym.multimodel.batch import run_batch
+from navsym.multimodel.compiled import run_compiled
 from navsym.multimodel.filters import run_filter
 from navsym.multimodel.schemes import require_room, scheme
 from navsym_papers.multistructure.experiment.modes import MODES, SchulerChannel
@@ -26,6 +28,8 @@ Array = NDArray[np.floating[Any]]
 QUANTILE = 1.959963984540054
 #: Steps of the series on which a method is timed.
 LONG = 2000
+#: Series that are filtered together, between two reports of progress.
+BLOCK = 50
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -121,34 +125,31 @@ class Filtered:
 def filter_all(
     models: Bank, signals: Signals, method: str, depth: int | None = None, step: Callable[[], None] = lambda: None
 ) -> Filtered:
-    """One method on every series, and its time per step; ``step`` is called after each series."""
-    run_filter(
-        models, signals.measurements[0], method, depth=depth, engine="compiled"
-    )  # load the loops before the clock
+    """One method on every series, and its time per step; ``step`` is called for each series."""
+    run_filter(models, signals.measurements[0], method, depth=depth, engine="compiled")  # load the loops first
     began = time.perf_counter()
     found = []
-    for z in signals.measurements:
-        found.append(run_filter(models, z, method, depth=depth, engine="compiled"))
-        step()
+    for start in range(0, len(signals.measurements), BLOCK):
+        block = signals.measurements[start : start + BLOCK]
+        found.append(run_batch(models, block, method, depth=depth))
+        for _ in block:
+            step()
     elapsed = time.perf_counter() - began
-    steps = signals.measurements.shape[1]
-    if method != "exact":
-        elapsed = seconds_of_long_run(models, signals, method, depth) * len(found) * steps
-    return Filtered(
-        np.stack([e.mean for e in found]),
-        np.stack([e.covariance for e in found]),
-        np.stack([e.probabilities for e in found]),
-        np.array([e.log_likelihood[-1] for e in found]),
-        elapsed / (len(found) * steps) * 1e6,
-        found[0].filters_run / steps,
-    )
+    runs, steps, _ = signals.measurements.shape
+    mean, covariance, probabilities, logs = (np.concatenate(parts) for parts in zip(*found, strict=True))
+    each = elapsed / (runs * steps) if method == "exact" else seconds_of_long_run(models, signals, method, depth)
+    roots = 1 if models.common else models.modes
+    count = require_room(scheme(method, depth), models.modes, models.states, roots, steps)
+    return Filtered(mean, covariance, probabilities, logs[:, -1], each * 1e6, count / steps)
 
 
 def seconds_of_long_run(models: Bank, signals: Signals, method: str, depth: int | None) -> float:
-    """Seconds per step in one long series, where starting a run does not count."""
+    """Seconds per step of the compiled loops in one long series, where starting a run does not count."""
     z = np.resize(signals.measurements, (LONG, models.channels))
+    rule = scheme(method, depth)
+    run_compiled(rule, models, z[:1], 0)  # load the loops first
     began = time.perf_counter()
-    run_filter(models, z, method, depth=depth, engine="compiled")
+    run_compiled(rule, models, z, 0)
     return (time.perf_counter() - began) / LONG
 
 
