@@ -1422,10 +1422,10 @@ class Formula(Parser):
         return x if self.reader.choose(">=", subtract(y, x)) == (name == "min") else y
 
     def find_sign(self, x: Term) -> Term:
-        """1, -1 or 0."""
-        if self.reader.choose(">", x):
-            return ONE
-        return MINUS_ONE if self.reader.choose(">", negate(x)) else ZERO
+        """0, 1 or -1."""
+        if self.reader.choose("=", x):
+            return ZERO
+        return ONE if self.reader.choose(">", x) else MINUS_ONE
 
     def differentiate(self, name: str, x: Value, by: Value | None = None, times: Value = number(1)) -> Value:
         """diff(x, symbol, times), or dot_(x) by time."""
