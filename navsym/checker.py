@@ -1188,16 +1188,39 @@ class Reader:
 
     def choose(self, relation: str, term: Term) -> bool:
         """Whether a condition is taken to hold in this case; one that is met again has the same answer."""
+        if relation == "!=":
+            return not self.choose("=", term)
         self.conditions += 1
         if self.dead:
             return True
+        known = self.recall(relation, term)
+        if known is not None:
+            self.need(term)
+            return known
         if (relation, term) not in self.met:
             taken = self.wanted[len(self.choices)] if len(self.choices) < len(self.wanted) else True
             self.choices.append(taken)
             self.met[relation, term] = taken
-            opposite = {">": ">=", ">=": ">", "=": "!=", "!=": "="}[relation]
-            self.suppose(relation if taken else opposite, term if taken or relation in ("=", "!=") else negate(term))
+            opposite = {">": ">=", ">=": ">", "=": "!="}[relation]
+            self.suppose(relation if taken else opposite, term if taken or relation == "=" else negate(term))
         return self.met[relation, term]
+
+    def recall(self, relation: str, term: Term) -> bool | None:
+        """The answer that follows from another condition on the same number, or on the one with the other sign."""
+        for (other, known), taken in self.met.items():
+            same = is_identity(subtract(term, known))
+            if not same and not is_identity(("+", term, known)):
+                continue
+            if "=" in (other, relation):
+                if other == relation:
+                    return taken
+            elif same == taken:  # term > 0, or >= 0
+                sharp = other == (">" if taken else ">=")
+                return True if sharp or relation == ">=" else not self.choose("=", term)
+            else:  # term < 0, or <= 0
+                sharp = other == (">" if taken else ">=")
+                return False if sharp or relation == ">" else self.choose("=", term)
+        return None
 
     def make_case(self, goals: list[tuple[Term, str, tuple[Term, ...]]], box: dict[str, Range]) -> Case:
         """The goals of this case on its box."""
@@ -1869,6 +1892,13 @@ def prove_zero(proof: Any, goal: Goal) -> None:
     prove(premise, goal._replace(relation="="))
 
 
+def prove_between(proof: Any, goal: Goal) -> None:
+    """f >= 0 and -f >= 0 give f = 0."""
+    _, proofs = read_fields(proof, "rule proofs")
+    require(goal.relation == "=", "expected an equation")
+    prove_all(proofs, [remember(goal, side)._replace(relation=">=") for side in (goal.term, negate(goal.term))])
+
+
 def prove_solve(proof: Any, goal: Goal) -> None:
     """f = c (A - v) with c != 0, and A = v by the definition of the inverse function A."""
     _, share, own, value, defined, proofs = read_fields(proof, "rule share atom value defined proofs")
@@ -2427,7 +2457,7 @@ RULES: dict[str, Callable[[Any, Goal], None]] = {
     rule.__name__.removeprefix("prove_"): rule
     for rule in (
         prove_equal, prove_rewrite, prove_multiply, prove_exponential, prove_side, prove_cases, prove_split,
-        prove_integers, prove_abstract, prove_dense, prove_identity, prove_zero, prove_solve, prove_squares,
+        prove_integers, prove_abstract, prove_dense, prove_identity, prove_zero, prove_between, prove_solve, prove_squares,
         prove_derivative, prove_balls, prove_given, prove_modulo, prove_range, prove_angle, prove_bounded, prove_corners,
         prove_product, prove_sum, prove_slope, prove_concave, prove_cones, prove_quadratic, prove_roots,
     )

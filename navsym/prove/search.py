@@ -16,7 +16,7 @@ from typing import Any
 from flint import ctx
 
 from navsym.core.errors import NavsymError
-from navsym.prove.relations.cofactors import by_cofactors, by_elimination
+from navsym.prove.relations.cofactors import by_cofactors, by_elimination, by_sums_of_hypotheses
 from navsym.prove.rooms.equations import (
     by_algebra,
     by_cases,
@@ -55,11 +55,11 @@ from navsym.prove.rooms.signs import (
 #: The rooms in the order of their cost: cheap ones, those that think longer, those of the last resort.
 EQUATIONS: tuple[tuple[Room, ...], ...] = (
     (by_algebra, by_cofactors, by_elimination, by_modulus, by_values, by_values_of_constants, by_inverse, by_equal_squares),
-    (by_logarithms_of_products, by_sides_of_zero, by_gradient),
+    (by_sums_of_hypotheses, by_logarithms_of_products, by_sides_of_zero, by_gradient),
 )
 SIGNS: tuple[tuple[Room, ...], ...] = (
     (
-        by_number, by_identity, by_elimination, by_range, by_roots, by_bounds, by_corners, by_product, by_sum, by_few_balls, by_values,
+        by_number, by_identity, by_elimination, by_sums_of_hypotheses, by_range, by_roots, by_bounds, by_corners, by_product, by_sum, by_few_balls, by_values,
         by_side, by_squares, by_cones, by_forms,
     ),
     (

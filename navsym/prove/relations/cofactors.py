@@ -8,6 +8,7 @@ the checker multiplies out.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from itertools import product
 from typing import Any
 
 from flint import Ordering, arb, fmpq, fmpq_mpoly, fmpq_mpoly_ctx, nmod_mat
@@ -16,7 +17,9 @@ from navsym.prove.rooms.goals import Hole, Holes, Proof, Term, player, write_num
 
 PRIME = (1 << 61) - 1
 ROUNDS = 5
+MOST_GIVEN = 5
 MOST_UNKNOWNS = 2500
+FEW_UNKNOWNS = 400  # where roots stand: two of them that are equal by their signs differ by no cofactors
 
 Exponents = tuple[int, ...]
 Polynomial = dict[Exponents, fmpq]
@@ -35,7 +38,9 @@ def by_cofactors(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     quotients = [player.to_quotient(t, generators, ring) for t in (goal.term, *goal.zeros)]
     (top, bottom), relations = quotients[0], [h for h, _ in quotients[1:]]
     own = [*relations, *list_own_relations(parts, generators, ring)]
-    for found in find_cofactors(top - rest * bottom, own):
+    roots = [k for k, part in enumerate(parts) if part[0] == "sqrt"]
+    most = FEW_UNKNOWNS if any(m[k] % 2 for m in read_terms(top) for k in roots) else MOST_UNKNOWNS
+    for found in find_cofactors(top - rest * bottom, own, most):
         shares = [
             write_share(c, down, bottom, parts) if c else "0"
             for c, (_, down) in zip(found, quotients[1:], strict=False)
@@ -52,6 +57,16 @@ def by_elimination(goal: Any, sample: list[arb]) -> Iterator[Proof]:
                 equal: Proof = {"rule": "modulo", "to": "0", "cofactors": shares, "defined": Holes(), "proof": Hole()}
                 body: Proof = {"rule": "rewrite", "from": own[1], "to": write_term(other), "defined": Holes()}
                 yield body | {"equal": equal, "proof": Hole()}
+
+
+def by_sums_of_hypotheses(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """A sum of hypotheses >= 0; what is so with both signs is 0."""
+    if not 0 < len(goal.given) <= MOST_GIVEN:
+        return
+    if goal.relation == "=":
+        yield {"rule": "between", "proofs": Holes()}
+    for chosen in product((0, 1), repeat=len(goal.given)) if goal.relation == ">=" else ():
+        yield {"rule": "given", "weights": [*map(str, chosen)]}
 
 
 def list_values(zero: Term) -> Iterator[tuple[Term, Term, int]]:
@@ -79,7 +94,9 @@ def list_own_relations(parts: Sequence[Term], generators: Any, ring: Any) -> Ite
             yield generators[part] ** 2 * bottom - top
 
 
-def find_cofactors(target: fmpq_mpoly, relations: Sequence[fmpq_mpoly]) -> Iterator[list[Polynomial]]:
+def find_cofactors(
+    target: fmpq_mpoly, relations: Sequence[fmpq_mpoly], most: int = MOST_UNKNOWNS
+) -> Iterator[list[Polynomial]]:
     """Cofactors of the relations with sum c_k h_k = target, with more and more unknowns."""
     wanted = read_terms(target)
     tables = [read_terms(h) for h in relations]
@@ -87,13 +104,13 @@ def find_cofactors(target: fmpq_mpoly, relations: Sequence[fmpq_mpoly]) -> Itera
     fresh: Iterable[Exponents] = [*monomials]
     for _ in range(ROUNDS):
         for m in fresh:
+            if len(columns) > most:
+                return
             for k, table in enumerate(tables):
                 for t in table:
                     shift = tuple(a - b for a, b in zip(m, t, strict=True))
                     if min(shift, default=0) >= 0 and (k, shift) not in columns:
                         columns[k, shift] = {tuple(map(sum, zip(u, shift, strict=True))): c for u, c in table.items()}
-        if len(columns) > MOST_UNKNOWNS:
-            return
         fresh = [m for m in dict.fromkeys(m for column in columns.values() for m in column) if m not in monomials]
         monomials |= dict.fromkeys(fresh)
         solution = solve_modulo(wanted, columns, [*monomials])

@@ -119,16 +119,16 @@ def is_identity(goal: Any) -> bool:
 
 def list_points(claim: TextClaim, cases: Sequence[Any], box: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
     """Exact points of the claim: they lie in the ranges and in one of the cases."""
-    zeros = list(dict.fromkeys(zero for case in cases for zero in case.zeros))
     kinds = {name: kind for name, kind in claim.kinds.items() if {e for row in kind[1] for e in row} <= set(box)}
-    for point in draw_special_points(box, zeros, kinds, POINTS if box else 1):
-        place = {name: player.number(value) for name, value in point.items()}
-        try:
-            inside = all(player.is_inside(place[name], box[name]) for name in box)
-            if inside and any(player.lies_in(case, place) for case in cases):
-                yield point
-        except (*REFUSALS, ArithmeticError):
-            continue
+    count = max(8, min(POINTS, 8 * POINTS // len(cases))) if box else 1
+    for case in cases:
+        for point in draw_special_points(case.goals[0].box, case.zeros, kinds, count):
+            place = {name: player.number(value) for name, value in point.items()}
+            try:
+                if all(player.is_inside(place[name], box[name]) for name in box) and player.lies_in(case, place):
+                    yield point
+            except (*REFUSALS, ArithmeticError):
+                continue
 
 
 def find_failure(cases: Sequence[Any], points: Sequence[dict[str, Any]]) -> dict[str, Any] | None:

@@ -29,8 +29,7 @@ def draw_special_points(
     plain = [*draw_points(box, count)]
     for k in range(count):
         if not zeros:
-            if k < len(plain):
-                yield plain[k]
+            yield plain[k] if k < len(plain) and k % 2 else {n: draw_number(r, generator) for n, r in box.items()}
             continue
         point = dict(plain[k % len(plain)]) if plain and k % 2 == 0 else {}
         for name, limit in box.items():
