@@ -182,6 +182,7 @@ def number(q: Any) -> Term:
 
 
 MINUS_ONE: Term = ("number", fmpq(-1))
+ZERO, ONE = number(0), number(1)
 
 
 # -- 3. Functions of a parameter ---------------------------------------------------------------------------------------
@@ -1044,7 +1045,9 @@ def multiply_matrices(x: Value, y: Value) -> Value:
 def cross(x: Value, y: Value) -> Value:
     """u x v = (u2 v3 - u3 v2, u3 v1 - u1 v3, u1 v2 - u2 v1)."""
     (a, b, c), (d, e, f) = to_column(x, 3), to_column(y, 3)
-    return make_column(*(subtract(("*", p, q), ("*", r, s)) for p, q, r, s in ((b, f, c, e), (c, d, a, f), (a, e, b, d))))
+    return make_column(
+        *(subtract(("*", p, q), ("*", r, s)) for p, q, r, s in ((b, f, c, e), (c, d, a, f), (a, e, b, d)))
+    )
 
 
 def scalar_product(x: Value, y: Value) -> Term:
@@ -1225,7 +1228,9 @@ class Reader:
     def make_case(self, goals: list[tuple[Term, str, tuple[Term, ...]]], box: dict[str, Range]) -> Case:
         """The goals of this case on its box."""
         terms = tuple(dict.fromkeys((*(t for goal in goals for t in goal[2]), *self.exists)))
-        require(set().union(*map(symbols_of, (*terms, *self.zeros, *self.given))) <= set(box), "a symbol without a range")
+        require(
+            set().union(*map(symbols_of, (*terms, *self.zeros, *self.given))) <= set(box), "a symbol without a range"
+        )
         own = tuple(t for t in terms if conditions(t)) if len(terms) > 8 else terms
         given, zeros = tuple(self.given), tuple(self.zeros)
         stated = [cut_box(Goal(term, relation, box, own, given, zeros)) for term, relation, _ in goals]
@@ -1378,7 +1383,8 @@ class Formula(Parser):
 
     def read_rows(self) -> Matrix:
         """A vector by its entries, or a matrix by its rows."""
-        rows, deep = [], self.words[-1] == "["
+        rows: list[list[Term]] = []
+        deep = self.words[-1] == "["
         while not rows or self.take(","):
             require(not deep or self.take("["), "expected a row in brackets")
             row = [to_number(self.read_sum())]
@@ -1450,7 +1456,7 @@ class Formula(Parser):
             return ZERO
         return ONE if self.reader.choose(">", x) else MINUS_ONE
 
-    def differentiate(self, name: str, x: Value, by: Value | None = None, times: Value = number(1)) -> Value:
+    def differentiate(self, name: str, x: Value, by: Value | None = None, times: Value = ONE) -> Value:
         """diff(x, symbol, times), or dot_(x) by time."""
         if name == "dot_":
             require(by is None, "expected dot_ of 1 argument")
@@ -1561,7 +1567,6 @@ def multiply_quotients(x: Quotient, y: Quotient) -> Quotient:
     return x[0] * y[0], x[1] * y[1]
 
 
-ZERO, ONE = number(0), number(1)
 LEAST = {"log": ">", "sqrt": ">="}
 DIVISORS = {"tan": "cos", "sec": "cos", "cot": "sin", "csc": "sin"}
 
@@ -2457,9 +2462,10 @@ RULES: dict[str, Callable[[Any, Goal], None]] = {
     rule.__name__.removeprefix("prove_"): rule
     for rule in (
         prove_equal, prove_rewrite, prove_multiply, prove_exponential, prove_side, prove_cases, prove_split,
-        prove_integers, prove_abstract, prove_dense, prove_identity, prove_zero, prove_between, prove_solve, prove_squares,
-        prove_derivative, prove_balls, prove_given, prove_modulo, prove_range, prove_angle, prove_bounded, prove_corners,
-        prove_product, prove_sum, prove_slope, prove_concave, prove_cones, prove_quadratic, prove_roots,
+        prove_integers, prove_abstract, prove_dense, prove_identity, prove_zero, prove_between, prove_solve,
+        prove_squares, prove_derivative, prove_balls, prove_given, prove_modulo, prove_range, prove_angle,
+        prove_bounded, prove_corners, prove_product, prove_sum, prove_slope, prove_concave, prove_cones,
+        prove_quadratic, prove_roots,
     )
 }  # fmt: skip
 

@@ -49,13 +49,13 @@ class Formula:
 
     def document(self) -> dict[str, Any]:
         """A whole claim file of this formula: ``{"symbols": …, "claim": [{"id", "left", "right", "relation"}]}``."""
-        block = {"id": self.id, "left": self.left, "right": self.right, "relation": self.relation}
+        block: dict[str, Any] = {"id": self.id, "left": self.left, "right": self.right, "relation": self.relation}
         if self.chain:
             block = {"id": self.id, "chain": self.chain}
         more = {"box": dict(self.box), "tolerance": self.tolerance, "exists": list(self.exists)}
         more |= {"given": list(self.given)}
         block |= {key: value for key, value in more.items() if value}
-        rates = {"rates": dict(self.rates)} if self.rates else {}
+        rates: dict[str, Any] = {"rates": dict(self.rates)} if self.rates else {}
         return {"symbols": dict(self.symbols), **rates, "claim": [block]}
 
     def _repr_latex_(self) -> str:

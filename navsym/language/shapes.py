@@ -38,7 +38,7 @@ class Shape:
     ranges    : symbol -> range in the words of the checker
     relations : what holds of it, as text
     rates     : name -> derivative by time as text, None where none is known
-    notes     : unit and frame
+    label     : how a derivative is written, ``dot_(x)``; empty for what is declared
     """
 
     name: str
@@ -47,6 +47,7 @@ class Shape:
     ranges: Mapping[str, list[Any]]
     relations: tuple[str, ...] = ()
     rates: Mapping[str, str | None] | None = None
+    label: str = ""
 
     @property
     def size(self) -> tuple[int, int] | None:
@@ -55,12 +56,13 @@ class Shape:
 
     def shown(self) -> dict[str, str]:
         """Symbol -> how the entry is written: ``v[1]``, ``A[1,2]``; the first place of a symbol that stands in two."""
+        name = self.label or self.name
         if self.kind == "scalar":
-            return {}
+            return {self.name: name} if self.label else {}
         places = {}
         for i, row in reversed([*enumerate(self.rows, 1)]):
             for j, entry in reversed([*enumerate(row, 1)]):
-                places[entry] = f"{self.name}[{i}]" if len(row) == 1 else f"{self.name}[{i},{j}]"
+                places[entry] = f"{name}[{i}]" if len(row) == 1 else f"{name}[{i},{j}]"
         return places
 
 
@@ -76,7 +78,9 @@ def read_shape(name: str, value: Any, taken: Collection[str], where: str) -> lis
     if isinstance(value, str):
         value = {"sign": value}
     if not isinstance(value, Mapping):
-        message = f"expected a word, a range or a table; got {describe_value(value)}; write {{ vector = 3 }}, for example"
+        message = (
+            f"expected a word, a range or a table; got {describe_value(value)}; write {{ vector = 3 }}, for example"
+        )
         raise ShapeError(message, where=where)
     expect_keys(value, KEYS, where)
     for note in ("unit", "frame"):
@@ -89,7 +93,13 @@ def read_shape(name: str, value: Any, taken: Collection[str], where: str) -> lis
     kind = kinds[0] if kinds else "scalar"
     rows = name_entries(name, read_size(kind, value, where), bool(value.get("symmetric")), taken)
     limits = read_limits(kind, value, where)
-    shape = Shape(name, rows, "scalar" if kind == "integer" else kind, limit_entries(rows, limits), relations_of(kind, value, name, where))
+    shape = Shape(
+        name,
+        rows,
+        "scalar" if kind == "integer" else kind,
+        limit_entries(rows, limits),
+        relations_of(kind, value, name, where),
+    )
     if "function" not in value:
         return [shape]
     if value["function"] != "t":
@@ -110,7 +120,9 @@ def read_size(kind: str, value: Mapping[str, Any], where: str) -> tuple[int, int
         return 4, 1
     if kind not in ("vector", "matrix"):
         if "symmetric" in value:
-            raise ShapeError("expected symmetric beside a matrix; got none; remove it", where=join_place(where, "symmetric"))
+            raise ShapeError(
+                "expected symmetric beside a matrix; got none; remove it", where=join_place(where, "symmetric")
+            )
         return None
     place = join_place(where, kind)
     sizes = [value["vector"]] if kind == "vector" else list(as_list(value["matrix"], place, "two numbers"))
@@ -138,7 +150,9 @@ def name_entries(
     while True:
         rows = tuple(
             tuple(
-                f"{name}{mark}{i}" if size[1] == 1 else f"{name}{mark}{min(i, j) if symmetric else i}_{max(i, j) if symmetric else j}"
+                f"{name}{mark}{i}"
+                if size[1] == 1
+                else f"{name}{mark}{min(i, j) if symmetric else i}_{max(i, j) if symmetric else j}"
                 for j in range(1, size[1] + 1)
             )
             for i in range(1, size[0] + 1)
@@ -154,7 +168,7 @@ def read_limits(kind: str, value: Mapping[str, Any], where: str) -> list[Any]:
     if kind == "integer":
         ends = list(as_list(value["integer"], join_place(where, "integer"), "two whole numbers"))
         if len(ends) != 2:
-            message = f"expected two ends; got {len(ends)}; write [\"1\", \"oo\"]"
+            message = f'expected two ends; got {len(ends)}; write ["1", "oo"]'
             raise ShapeError(message, where=join_place(where, "integer"))
         low, high = (read_end(end, join_place(where, "integer")) for end in ends)
         return [low, high, ["integer"]]
@@ -210,5 +224,6 @@ def list_derivatives(shape: Shape, taken: Collection[str]) -> list[Shape]:
             continue
         rows = name_entries(name, shape.size, False, taken)
         kind = "vector" if shape.kind == "quaternion" else "matrix" if shape.kind == "rotation" else shape.kind
-        found.append(Shape(name, rows, kind, limit_entries(rows, RANGES["real"]), (), {name: rate}))
+        label = "dot_(" * order + shape.name + ")" * order
+        found.append(Shape(name, rows, kind, limit_entries(rows, RANGES["real"]), (), {name: rate}, label))
     return found

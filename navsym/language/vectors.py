@@ -17,9 +17,9 @@ from navsym.core.errors import EmptyError, ExpressionSyntaxError, NavsymError, S
 from navsym.language.arithmetic import FACTORS, refuse_size
 from navsym.language.expression import LENGTH, Reader
 from navsym.language.names import FUNCTIONS, quote
+from navsym.language.printer import LOOSE, RAISED, TIGHT, WHOLE, LatexWriter, Text
 from navsym.language.tokens import Source, split_tokens
 from navsym.language.tree import MINUS_ONE, NUMBER, POWER, PRODUCT, SUM, SYMBOL, Tree, build, fold_tree
-from navsym.language.printer import LOOSE, RAISED, TIGHT, WHOLE, LatexWriter, Text
 
 Size = tuple[int, int] | None  # rows and columns; None for a number
 
@@ -236,7 +236,7 @@ class ValueReader(Reader):
         """One row in brackets."""
         if self.tokens[self.position] != "[":
             self.unexpected("[ before a row")
-        entries = []
+        entries: list[Tree] = []
         while not entries or self.tokens[self.position] == ",":
             self.position += 1
             entries.append(self.entry())
@@ -415,7 +415,9 @@ class ValueWriter(LatexWriter):
             return Text(rf"\begin{{cases}}{texts[1]} & {texts[0]} \\ {texts[2]}\end{{cases}}", WHOLE)
         if part.head == "diff":
             order = "" if len(texts) < 3 else f"^{{{texts[2]}}}"
-            return Text(rf"\frac{{\partial{order}}}{{\partial {texts[1]}{order}}} {self.enclose(inner[0], RAISED)}", TIGHT)
+            return Text(
+                rf"\frac{{\partial{order}}}{{\partial {texts[1]}{order}}} {self.enclose(inner[0], RAISED)}", TIGHT
+            )
         return super().spell(part, inner)
 
 

@@ -185,9 +185,7 @@ def claims_from(document: Table, where: str = "", *, go_on: bool = False) -> Cla
     return ClaimFile(symbols.parameters, claims, undefined)
 
 
-def read_claim_or_error(
-    block: Any, symbols: Symbols, where: str, place: int
-) -> FileClaim | TextClaim | UndefinedClaim:
+def read_claim_or_error(block: Any, symbols: Symbols, where: str, place: int) -> FileClaim | TextClaim | UndefinedClaim:
     """The claim, or why it cannot be read; one without a label is refused."""
     try:
         return read_claim(block, symbols, join_place(where, place))
@@ -363,8 +361,17 @@ def existing_parts(claim: FileClaim) -> tuple[sp.Expr, ...]:
     )
 
 
-def statement_of(claim: FileClaim) -> Statement:
-    """The file's claim as a statement of the ladder."""
+def require_numbers(claim: FileClaim | TextClaim) -> FileClaim:
+    """The claim, when its sides are numbers or lists of numbers; raises DomainError for one of the whole language."""
+    if isinstance(claim, FileClaim):
+        return claim
+    got = f"{claim.id}, which has vectors, cases, derivatives or hypotheses"
+    raise DomainError(f"expected a claim between numbers; got {got}; write its entries out", where=claim.id)
+
+
+def statement_of(claim: FileClaim | TextClaim) -> Statement:
+    """The file's claim as a statement of the ladder; raises DomainError for one of the whole language."""
+    claim = require_numbers(claim)
     formula = claim.formula
     left, right = list_texts(formula.left), list_texts(formula.right)
     as_typed = claim.symbols is not None

@@ -95,7 +95,7 @@ def prove(
     >>> nav.prove("a = a", exists="log(a)").assumptions
     ('a > 0',)
     >>> nav.prove("cross(u, cross(v, u)) = v - u*dot(u, v)", given="dot(u, u) = 1", u={"vector": 3}, v={"vector": 3})
-    <PROVED: cross(u, cross(v, u)) = v - u*dot(u, v); proof tree; all vector u of 3, vector v of 3>
+    <PROVED: cross(u, cross(v, u)) = v - u*dot(u, v); proof tree; all u in R^3, v in R^3>
     >>> import sympy
     >>> x = sympy.Symbol("x", positive=True)
     >>> nav.prove(sympy.log(x), "<=", x - 1).holds

@@ -5,9 +5,9 @@ from body to frame, and C turns body into frame with the body rate w: dC/dt = C 
 """
 
 DECLARED = {
-    **dict.fromkeys("uvwab", {"vector": 3}),
-    **dict.fromkeys("AB", {"matrix": [3, 3]}),
-    **dict.fromkeys("DE", {"matrix": [2, 2]}),
+    **{name: {"vector": 3} for name in "uvwab"},
+    **{name: {"matrix": [3, 3]} for name in "AB"},
+    **{name: {"matrix": [2, 2]} for name in "DE"},
     "F": {"matrix": [2, 3]},
     "P": {"matrix": [2, 2], "symmetric": True},
     "C": {"rotation": "b to n"},
@@ -30,13 +30,19 @@ VECTORS = (
     ("dot(u, v)", "dot(v, u)", "-dot(v, u)"),
     ("dot(u, cross(u, v))", "0", "dot(u, v)"),
     ("dot(u, cross(v, w))", "dot(v, cross(w, u))", "dot(v, cross(u, w))"),
-    ("dot(u, cross(v, w))", "det([[u[1], u[2], u[3]], [v[1], v[2], v[3]], [w[1], w[2], w[3]]])",
-     "det([[u[1], u[2], u[3]], [w[1], w[2], w[3]], [v[1], v[2], v[3]]])"),
+    (
+        "dot(u, cross(v, w))",
+        "det([[u[1], u[2], u[3]], [v[1], v[2], v[3]], [w[1], w[2], w[3]]])",
+        "det([[u[1], u[2], u[3]], [w[1], w[2], w[3]], [v[1], v[2], v[3]]])",
+    ),
     ("cross(u, cross(v, w))", "v*dot(u, w) - w*dot(u, v)", "w*dot(u, v) - v*dot(u, w)"),
     ("cross(cross(u, v), w)", "v*dot(u, w) - u*dot(v, w)", "u*dot(v, w) - v*dot(u, w)"),
     ("cross(u, cross(v, w)) + cross(v, cross(w, u)) + cross(w, cross(u, v))", "[0, 0, 0]", "[0, 0, 1]"),
-    ("dot(cross(u, v), cross(a, b))", "dot(u, a)*dot(v, b) - dot(u, b)*dot(v, a)",
-     "dot(u, a)*dot(v, b) + dot(u, b)*dot(v, a)"),
+    (
+        "dot(cross(u, v), cross(a, b))",
+        "dot(u, a)*dot(v, b) - dot(u, b)*dot(v, a)",
+        "dot(u, a)*dot(v, b) + dot(u, b)*dot(v, a)",
+    ),
     ("norm(cross(u, v))**2", "norm(u)**2*norm(v)**2 - dot(u, v)**2", "norm(u)**2*norm(v)**2 + dot(u, v)**2"),
     ("cross(cross(u, v), cross(u, w))", "u*dot(u, cross(v, w))", "u*dot(v, cross(u, w))"),
     ("norm(u + v)**2 + norm(u - v)**2", "2*norm(u)**2 + 2*norm(v)**2", "norm(u)**2 + norm(v)**2"),
@@ -86,14 +92,18 @@ ROTATIONS = (
     ("cross(C @ u, C @ v)", "C @ cross(u, v)", "C.T @ cross(u, v)"),
     ("C @ skew(u) @ C.T", "skew(C @ u)", "skew(C.T @ u)"),
     ("trace(C @ skew(u) @ C.T)", "0", "u[1]"),
-    ("[[cos(phi), -sin(phi)], [sin(phi), cos(phi)]] @ [[cos(x), -sin(x)], [sin(x), cos(x)]]",
-     "[[cos(phi + x), -sin(phi + x)], [sin(phi + x), cos(phi + x)]]",
-     "[[cos(phi - x), -sin(phi - x)], [sin(phi - x), cos(phi - x)]]"),
-    ("inv([[1, 0, -sin(theta)], [0, cos(phi), sin(phi)*cos(theta)], [0, -sin(phi), cos(phi)*cos(theta)]])",
-     "[[1, sin(phi)*tan(theta), cos(phi)*tan(theta)], [0, cos(phi), -sin(phi)],"
-     " [0, sin(phi)/cos(theta), cos(phi)/cos(theta)]]",
-     "[[1, sin(phi)*tan(theta), cos(phi)*tan(theta)], [0, cos(phi), sin(phi)],"
-     " [0, sin(phi)/cos(theta), cos(phi)/cos(theta)]]"),
+    (
+        "[[cos(phi), -sin(phi)], [sin(phi), cos(phi)]] @ [[cos(x), -sin(x)], [sin(x), cos(x)]]",
+        "[[cos(phi + x), -sin(phi + x)], [sin(phi + x), cos(phi + x)]]",
+        "[[cos(phi - x), -sin(phi - x)], [sin(phi - x), cos(phi - x)]]",
+    ),
+    (
+        "inv([[1, 0, -sin(theta)], [0, cos(phi), sin(phi)*cos(theta)], [0, -sin(phi), cos(phi)*cos(theta)]])",
+        "[[1, sin(phi)*tan(theta), cos(phi)*tan(theta)], [0, cos(phi), -sin(phi)],"
+        " [0, sin(phi)/cos(theta), cos(phi)/cos(theta)]]",
+        "[[1, sin(phi)*tan(theta), cos(phi)*tan(theta)], [0, cos(phi), sin(phi)],"
+        " [0, sin(phi)/cos(theta), cos(phi)/cos(theta)]]",
+    ),
 )
 QUATERNIONS = (
     ("conj(qmul(p, r))", "qmul(conj(r), conj(p))", "qmul(conj(p), conj(r))"),
@@ -101,30 +111,40 @@ QUATERNIONS = (
     ("qmul(q, conj(q))", "[1, 0, 0, 0]", "[0, 0, 0, 1]"),
     ("qmul(qmul(p, q), r)", "qmul(p, qmul(q, r))", "qmul(p, qmul(r, q))"),
     ("qmul([0, 1, 0, 0], [0, 0, 1, 0])", "[0, 0, 0, 1]", "[0, 0, 0, -1]"),
-    ("qmul(qmul(q, [0, u[1], u[2], u[3]]), conj(q))", "[0, (rot(q) @ u)[1], (rot(q) @ u)[2], (rot(q) @ u)[3]]",
-     "[0, (rot(q).T @ u)[1], (rot(q).T @ u)[2], (rot(q).T @ u)[3]]"),
+    (
+        "qmul(qmul(q, [0, u[1], u[2], u[3]]), conj(q))",
+        "[0, (rot(q) @ u)[1], (rot(q) @ u)[2], (rot(q) @ u)[3]]",
+        "[0, (rot(q).T @ u)[1], (rot(q).T @ u)[2], (rot(q).T @ u)[3]]",
+    ),
     ("rot(q) @ rot(q).T", "eye(3)", "rot(q)"),
     ("det(rot(q))", "1", "-1"),
     ("rot(conj(q))", "rot(q).T", "rot(q)"),
     ("rot(-q)", "rot(q)", "-rot(q)"),
     ("rot(qmul(p, r))", "rot(p) @ rot(r)", "rot(r) @ rot(p)"),
-    ("rot([cos(x/2), 0, 0, sin(x/2)])", "[[cos(x), -sin(x), 0], [sin(x), cos(x), 0], [0, 0, 1]]",
-     "[[cos(x), sin(x), 0], [-sin(x), cos(x), 0], [0, 0, 1]]"),
+    (
+        "rot([cos(x/2), 0, 0, sin(x/2)])",
+        "[[cos(x), -sin(x), 0], [sin(x), cos(x), 0], [0, 0, 1]]",
+        "[[cos(x), sin(x), 0], [-sin(x), cos(x), 0], [0, 0, 1]]",
+    ),
     ("trace(rot(q))", "4*q[1]**2 - 1", "4*q[4]**2 - 1"),
-    ("rot(q)", "(q[1]**2 - dot([q[2], q[3], q[4]], [q[2], q[3], q[4]]))*eye(3)"
-     " + 2*[q[2], q[3], q[4]] @ [q[2], q[3], q[4]].T + 2*q[1]*skew([q[2], q[3], q[4]])",
-     "(q[1]**2 - dot([q[2], q[3], q[4]], [q[2], q[3], q[4]]))*eye(3)"
-     " + 2*[q[2], q[3], q[4]] @ [q[2], q[3], q[4]].T - 2*q[1]*skew([q[2], q[3], q[4]])"),
+    (
+        "rot(q)",
+        "(q[1]**2 - dot([q[2], q[3], q[4]], [q[2], q[3], q[4]]))*eye(3)"
+        " + 2*[q[2], q[3], q[4]] @ [q[2], q[3], q[4]].T + 2*q[1]*skew([q[2], q[3], q[4]])",
+        "(q[1]**2 - dot([q[2], q[3], q[4]], [q[2], q[3], q[4]]))*eye(3)"
+        " + 2*[q[2], q[3], q[4]] @ [q[2], q[3], q[4]].T - 2*q[1]*skew([q[2], q[3], q[4]])",
+    ),
 )
 KINEMATICS = (
     ("dot_(C.T)", "-skew(w) @ C.T", "skew(w) @ C.T"),
     ("dot_(C @ C.T)", "zeros(3, 3)", "skew(w)"),
     ("dot_(C @ u)", "C @ (a + cross(w, u))", "C @ (a - cross(w, u))"),
     ("dot_(dot(q, q))", "0", "norm(w)"),
-    ("dot_(q)", "[[0, -w[1], -w[2], -w[3]], [w[1], 0, w[3], -w[2]], [w[2], -w[3], 0, w[1]],"
-     " [w[3], w[2], -w[1], 0]] @ q/2",
-     "[[0, -w[1], -w[2], -w[3]], [w[1], 0, -w[3], w[2]], [w[2], w[3], 0, -w[1]],"
-     " [w[3], -w[2], w[1], 0]] @ q/2"),
+    (
+        "dot_(q)",
+        "[[0, -w[1], -w[2], -w[3]], [w[1], 0, w[3], -w[2]], [w[2], -w[3], 0, w[1]], [w[3], w[2], -w[1], 0]] @ q/2",
+        "[[0, -w[1], -w[2], -w[3]], [w[1], 0, -w[3], w[2]], [w[2], w[3], 0, -w[1]], [w[3], -w[2], w[1], 0]] @ q/2",
+    ),
     ("dot_(rot(q) @ b)", "rot(q) @ cross(w, b)", "cross(w, rot(q) @ b)"),
     ("dot_(norm(u))", "dot(u, a)/norm(u)", "norm(a)"),
     ("dot_(cross(s, dot_(s)))", "cross(s, dot_(dot_(s)))", "cross(dot_(s), s)"),

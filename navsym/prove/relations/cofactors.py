@@ -18,6 +18,7 @@ from navsym.prove.rooms.goals import Hole, Holes, Proof, Term, player, write_num
 PRIME = (1 << 61) - 1
 ROUNDS = 5
 MOST_GIVEN = 5
+MOST_VALUES = 8  # the relations of a rotation give every entry by the others
 MOST_UNKNOWNS = 2500
 FEW_UNKNOWNS = 400  # where roots stand: two of them that are equal by their signs differ by no cofactors
 
@@ -50,7 +51,7 @@ def by_cofactors(goal: Any, sample: list[arb]) -> Iterator[Proof]:
 
 def by_elimination(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     """A symbol that a hypothesis s = u gives, by u."""
-    for k, zero in enumerate(goal.zeros):
+    for k, zero in enumerate(goal.zeros if len(goal.zeros) <= MOST_VALUES else ()):
         for own, other, sign in list_values(zero):
             if own[1] in player.symbols_of(goal.term) and own[1] not in player.symbols_of(other):
                 shares = [str(sign) if j == k else "0" for j in range(len(goal.zeros))]

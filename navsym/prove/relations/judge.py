@@ -17,16 +17,7 @@ from flint import arb
 from navsym.claims.formula import Formula
 from navsym.claims.verdict import CERTIFIED, OPEN, PROVED, REFUTED, Verdict
 from navsym.core.errors import NavsymError
-from navsym.prove.grant import (
-    BITS,
-    IDENTITY,
-    REFUSALS,
-    Document,
-    grant,
-    refute_document,
-    withdraw,
-    write_point,
-)
+from navsym.prove.grant import BITS, IDENTITY, REFUSALS, Document, grant, refute_document, withdraw, write_point
 from navsym.prove.relations.points import Rows, draw_special_points
 from navsym.prove.rooms.goals import player, to_sympy, write_term
 from navsym.prove.search import find_proof, rules_of
@@ -93,9 +84,7 @@ def decide_text(claim: TextClaim, seconds: float) -> Verdict:
     return conclude(claim, certificates, rules, tuple(assumptions))
 
 
-def conclude(
-    claim: TextClaim, certificates: list[Document], rules: set[str], assumptions: tuple[str, ...]
-) -> Verdict:
+def conclude(claim: TextClaim, certificates: list[Document], rules: set[str], assumptions: tuple[str, ...]) -> Verdict:
     """PROVED or CERTIFIED, when the checker grants it."""
     whole = certificates[0] if len(certificates) == 1 else {"kind": "all", "of": certificates}
     method = "entries by exact algebra" if rules <= {"identity"} else "proof tree"
@@ -163,9 +152,7 @@ def difference_at(document: Document, point: Mapping[str, Any]) -> Any:
     place = {name: player.number(value) for name, value in point.items()}
     balls = {name: player.Jet(arb(value)) for name, value in point.items()}
     cases, _ = player.read_statement({**document, "relation": "=", "tolerance": None})
-    values = [
-        player.value_of(goal.term, balls) for case in cases if player.lies_in(case, place) for goal in case.goals
-    ]
+    values = [player.value_of(goal.term, balls) for case in cases if player.lies_in(case, place) for goal in case.goals]
     far = [value for value in values if value.is_finite()]
     return decimal_ends(max(far, key=lambda value: abs(float(value.mid())))) if far else None
 

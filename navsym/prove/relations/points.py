@@ -56,7 +56,10 @@ def draw_number(limit: Any, generator: random.Random) -> fmpq:
         value = Fraction(generator.randint(-9, 9), generator.randint(1, 4))
         return fmpq(value.numerator or 1, value.denominator)
     share = generator.uniform(0.05, 0.95)
-    far = low + (high - low) * share if None not in (low, high) else low + share / (1 - share) if low is not None else high - share / (1 - share)  # type: ignore  # noqa: E501
+    if low is not None and high is not None:
+        far = low + (high - low) * share
+    else:
+        far = low + share / (1 - share) if low is not None else (high or 0.0) - share / (1 - share)
     near = Fraction(far).limit_denominator(50)
     return fmpq(near.numerator, near.denominator)
 

@@ -1,4 +1,4 @@
-"""Claims with vectors, matrices, hypotheses, chains, cases or derivatives: read for people, written down for the checker.
+"""Claims with vectors, matrices, hypotheses, chains, cases or derivatives, read and written down for the checker.
 
 Every text is read by :mod:`navsym.language.vectors`, which says what is wrong with it and where. The checker gets the
 texts as they were typed, the names of all entries, the hypotheses and the rates.
@@ -17,7 +17,7 @@ from navsym.language.names import expect_keys, quote, suggest_nearest
 from navsym.language.printer import to_text
 from navsym.language.schema import Table, as_list, as_table, as_text, join_place, require_key
 from navsym.language.shapes import RANGES, Shape, read_shape
-from navsym.language.tree import SYMBOL, Tree, list_names, list_parts
+from navsym.language.tree import Tree, list_names, list_parts
 from navsym.language.vectors import RELATIONS, Size, describe_size, is_wide, read_hypothesis, read_value
 from navsym.prove.grant import Document, write_numerals
 from navsym.prove.relations.judge import TextClaim
@@ -95,7 +95,8 @@ def read_text_claim(
     documents = [{"left": clean(x), "relation": sign, "right": clean(y)} | common for x, sign, y in links]
     kinds = {name: (shapes[name].kind, shapes[name].rows) for name in used if shapes[name].size}
     shown = {entry: text for name in used for entry, text in shapes[name].shown().items()}
-    return TextClaim(formula, tuple(documents), kinds, shown, describe_scope([shapes[n] for n in used], ranges))
+    scope = describe_scope([shapes[n] for n in used if not shapes[n].label], ranges)
+    return TextClaim(formula, tuple(documents), kinds, shown, scope)
 
 
 def read_links(block: Table, where: str) -> list[tuple[str, str, str]]:
@@ -132,7 +133,10 @@ def list_relations(text: str) -> list[re.Match[str]]:
 
 def read_link(link: tuple[str, str, str], sizes: Mapping[str, Size], where: str) -> Tree:
     """The tree of both sides, which have one shape."""
-    left, right = (read_value(text, sizes, where=join_place(where, key)) for text, key in zip(link[::2], ("left", "right"), strict=True))
+    left, right = (
+        read_value(text, sizes, where=join_place(where, key))
+        for text, key in zip(link[::2], ("left", "right"), strict=True)
+    )
     if left.size != right.size:
         got = f"{describe_size(left.size)} and {describe_size(right.size)}"
         raise ShapeError(f"expected two sides of one shape; got {got}; correct one of them", where=where)
@@ -191,7 +195,7 @@ def require_rates(trees: Sequence[Tree], rates: Mapping[str, str | None], where:
     for part in list_parts(*trees):
         if part.head == "dot_" and not set(rates) & {*list_names(part)}:
             names = ", ".join(sorted(list_names(part))) or "a number"
-            message = f"expected a rate below dot_; got none of {names}; write [rates], or declare {{ function = \"t\" }}"
+            message = f'expected a rate below dot_; got none of {names}; write [rates], or declare {{ function = "t" }}'
             raise DomainError(message, where=where)
 
 
@@ -206,10 +210,11 @@ def describe_scope(shapes: Sequence[Shape], ranges: Mapping[str, Sequence[Any]])
     for shape in shapes:
         if shape.kind == "scalar":
             words.append(describe_range(shape.name, ranges[shape.name]))
-        elif shape.kind in ("rotation", "quaternion"):
-            words.append(f"{'unit ' * bool(shape.relations and shape.kind == 'quaternion')}{shape.kind} {shape.name}")
+        elif shape.relations:
+            words.append(f"{shape.name} in {'SO(3)' if shape.kind == 'rotation' else 'S^3'}")
         else:
-            words.append(f"{shape.kind} {shape.name} of {' x '.join(map(str, shape.size or ()))}".replace(" x 1", ""))
+            rows, columns = shape.size or (1, 1)
+            words.append(f"{shape.name} in R^{rows}" if columns == 1 else f"{shape.name} in R^({rows} x {columns})")
     return "all " + ", ".join(words) if words else "numbers"
 
 
