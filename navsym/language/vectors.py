@@ -405,8 +405,9 @@ class ValueWriter(LatexWriter):
             sign = {"!=": r"\ne", "<=": r"\le", ">=": r"\ge"}.get(part.head, part.head)
             return Text(f"{texts[0]} {sign} {texts[1]}", LOOSE)
         if part.head in FORMS:
-            level = LOOSE if part.head in ("norm", "skew") else RAISED
-            return Text(FORMS[part.head].format(*(self.enclose(text, level) for text in inner)), TIGHT)
+            closed = part.head in ("norm", "skew")
+            written = FORMS[part.head].format(*(self.enclose(text, LOOSE if closed else RAISED) for text in inner))
+            return Text(written, WHOLE if closed else TIGHT)
         if part.head == "eye":
             return Text(rf"I_{{{texts[0]}}}", WHOLE)
         if part.head == "zeros":

@@ -149,7 +149,7 @@ def prove_formula(sides: Sides, given: Mapping[str, Any], beside: Mapping[str, A
     hypotheses = list(beside["given"]) if isinstance(beside["given"], (list, tuple)) else [beside["given"]]
     slopes = {name: write_entries(rate, f"prove: rates.{name}") for name, rate in dict(beside["rates"]).items()}
     texts = (left, right, exists, *map(str, hypotheses), *slopes.values())
-    words = dict.fromkeys(symbols_in(texts, given) | slopes.keys(), "real")
+    words = dict.fromkeys(sorted(symbols_in(texts, given) | slopes.keys()), "real")
     words |= read_assumptions((sides.left, sides.right, *existing), "prove")
     declared = {name: write_declaration(value, f"prove: {name}") for name, value in given.items()}
     for name in declared.keys() - words.keys():
