@@ -1478,6 +1478,13 @@ def replace(term: Term, old: Term, new: Term) -> Term:
     return tuple(replace(part, old, new) if isinstance(part, tuple) else part for part in term)
 
 
+def substitute(term: Term, values: dict[str, Term]) -> Term:
+    """The term with its symbols replaced, all at once."""
+    if term[0] == "symbol":
+        return values.get(term[1], term)
+    return tuple(substitute(part, values) if isinstance(part, tuple) else part for part in term)
+
+
 def list_exponents(term: Term, besides: Term = ()) -> Iterator[Term]:
     """The exponents in a term, but for those in its parts that are ``besides``."""
     if term != besides:
@@ -2483,10 +2490,9 @@ def lies_in(case: Case, place: dict[str, Term]) -> bool:
     balls = {name: evaluate(value, {}, arb) for name, value in place.items()}
     if not all(value_of(t, balls).is_finite() for t in case.terms):
         return False
-    at = [(t, reduce(lambda u, name: replace(u, ("symbol", name), place[name]), place, t)) for t in case.given]
-    if not all(value_of(t, balls) >= 0 or is_identity(u) for t, u in at):
+    if not all(value_of(t, balls) >= 0 or is_identity(substitute(t, place)) for t in case.given):
         return False
-    return all(is_identity(reduce(lambda u, n: replace(u, ("symbol", n), place[n]), place, t)) for t in case.zeros)
+    return all(is_identity(substitute(t, place)) for t in case.zeros)
 
 
 def check_proof(item: Any) -> None:

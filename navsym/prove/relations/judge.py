@@ -23,7 +23,7 @@ from navsym.prove.rooms.goals import player, to_sympy, write_term
 from navsym.prove.search import find_proof, rules_of
 from navsym.prove.wording import decimal_ends, expression_text
 
-POINTS = 24
+POINTS = 16
 QUICK = 0.4  # seconds for a condition that need not be listed
 
 
@@ -63,7 +63,7 @@ def decide_text(claim: TextClaim, seconds: float) -> Verdict:
         except (*REFUSALS, ArithmeticError, RecursionError) as error:
             return Verdict(OPEN, "none", claim.scope, evidence=f"the checker does not read it: {error}")
         points = [*list_points(claim, cases, box)]
-        broken = find_failure(cases, points)
+        broken = find_failure(points)
         if broken is not None:
             return refute(claim, document, broken)
         if not points:
@@ -76,7 +76,7 @@ def decide_text(claim: TextClaim, seconds: float) -> Verdict:
                 return Verdict(OPEN, "proof tree", claim.scope, evidence=words)
             proofs.append(proof)
         rules |= set().union(*map(rules_of, proofs))
-        witness = write_point(points[0])
+        witness = write_point(points[0][0])
         certificates.append(
             {"kind": "proof", "statement": document, "bits": BITS[0], "witness": witness, "proofs": proofs}
         )
@@ -106,8 +106,10 @@ def is_identity(goal: Any) -> bool:
         return False
 
 
-def list_points(claim: TextClaim, cases: Sequence[Any], box: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
-    """Exact points of the claim: they lie in the ranges and in one of the cases."""
+def list_points(
+    claim: TextClaim, cases: Sequence[Any], box: Mapping[str, Any]
+) -> Iterator[tuple[dict[str, Any], Any]]:
+    """Exact points of the claim with the case in which they lie."""
     kinds = {name: kind for name, kind in claim.kinds.items() if {e for row in kind[1] for e in row} <= set(box)}
     count = max(8, min(POINTS, 8 * POINTS // len(cases))) if box else 1
     for case in cases:
@@ -115,21 +117,17 @@ def list_points(claim: TextClaim, cases: Sequence[Any], box: Mapping[str, Any]) 
             place = {name: player.number(value) for name, value in point.items()}
             try:
                 if all(player.is_inside(place[name], box[name]) for name in box) and player.lies_in(case, place):
-                    yield point
+                    yield point, case
             except (*REFUSALS, ArithmeticError):
                 continue
 
 
-def find_failure(cases: Sequence[Any], points: Sequence[dict[str, Any]]) -> dict[str, Any] | None:
+def find_failure(points: Sequence[tuple[dict[str, Any], Any]]) -> dict[str, Any] | None:
     """A point at which a goal of its case fails."""
-    for point in points:
-        place = {name: player.number(value) for name, value in point.items()}
+    for point, case in points:
         balls = {name: player.Jet(arb(value)) for name, value in point.items()}
-        for case in cases:
-            if player.lies_in(case, place) and any(
-                player.FAILURES[goal.relation](player.value_of(goal.term, balls)) for goal in case.goals
-            ):
-                return point
+        if any(player.FAILURES[goal.relation](player.value_of(goal.term, balls)) for goal in case.goals):
+            return point
     return None
 
 

@@ -101,10 +101,7 @@ def transpose(rows: list[list[fmpq]]) -> list[list[fmpq]]:
 def solve_for_one(zero: Any, point: Point, fixed: set[str]) -> None:
     """Move one symbol, in which the hypothesis is linear at this point, so that it holds; it is not moved again."""
     for name in sorted(player.symbols_of(zero) - fixed, reverse=True):
-        others = {n: player.number(v) for n, v in point.items() if n != name}
-        term = zero
-        for other, value in others.items():
-            term = player.replace(term, ("symbol", other), value)
+        term = player.substitute(zero, {n: player.number(v) for n, v in point.items() if n != name})
         try:
             if name not in player.symbols_of(term):
                 continue
