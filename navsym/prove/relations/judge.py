@@ -106,9 +106,7 @@ def is_identity(goal: Any) -> bool:
         return False
 
 
-def list_points(
-    claim: TextClaim, cases: Sequence[Any], box: Mapping[str, Any]
-) -> Iterator[tuple[dict[str, Any], Any]]:
+def list_points(claim: TextClaim, cases: Sequence[Any], box: Mapping[str, Any]) -> Iterator[tuple[dict[str, Any], Any]]:
     """Exact points of the claim with the case in which they lie."""
     kinds = {name: kind for name, kind in claim.kinds.items() if {e for row in kind[1] for e in row} <= set(box)}
     count = max(8, min(POINTS, 8 * POINTS // len(cases))) if box else 1

@@ -51,10 +51,15 @@ def is_text_claim(block: Table, symbols: Table) -> bool:
     """True for a claim that the grammar of numbers alone does not have."""
     if {"given", "chain"} & set(block):
         return True
-    texts = [side_text(block[key]) for key in ("left", "right") if isinstance(block.get(key), (str, list))]
+    texts = [text for key in ("left", "right") for text in list_cells(block.get(key))]
     texts += [str(text) for text in block.get("exists", ()) if isinstance(block.get("exists"), list)]
     tables = {name for name, value in symbols.items() if isinstance(value, dict)}
     return any(is_wide(text) or tables & names_of(text) for text in texts)
+
+
+def list_cells(side: Any) -> list[str]:
+    """The texts of a side: of its entries where it is a list."""
+    return [text for part in side for text in list_cells(part)] if isinstance(side, list) else [str(side)]
 
 
 def read_text_claim(
