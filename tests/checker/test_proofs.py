@@ -8,26 +8,8 @@ from collections import Counter
 import pytest
 
 from navsym import checker
-from tests.checker.proofs import (
-    FAILS,
-    HOSTILE,
-    LANGUAGE_FAILS,
-    LANGUAGE_STANDS,
-    MEANINGLESS,
-    NOWHERE_DEFINED,
-    STANDS,
-    TRUE,
-    UNIT,
-    WITNESSES,
-    X0,
-    B,
-    I,
-    answer,
-    list_language,
-    prove,
-    refute,
-    state,
-)
+from tests.checker.language import LANGUAGE_FAILS, LANGUAGE_STANDS, MEANINGLESS, NOWHERE_DEFINED, list_language
+from tests.checker.proofs import FAILS, HOSTILE, STANDS, TRUE, UNIT, WITNESSES, X0, B, I, answer, prove, refute, state
 
 
 @pytest.mark.parametrize(("rule", "statement", "witness", "proof"), TRUE, ids=lambda x: str(x)[:40])
