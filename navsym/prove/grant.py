@@ -285,6 +285,7 @@ def defined_points(terms: Sequence[Any], box: Mapping[str, Any]) -> Iterator[tup
 
 
 def write_point(point: Mapping[str, fmpq]) -> dict[str, str]:
+    """A point as text, by name."""
     return {name: write_term(player.number(value)) for name, value in point.items()}
 
 

@@ -71,6 +71,9 @@ LANGUAGE = [
     (("rot([1, 0, 0, 1]) @ [1, 0, 0]", "=", "[0, 2, 0]"), ("[0, -2, 0]",), "", {}, [I] * 3, {}),
     (("rot([1, 1, 0, 0]) @ [0, 1, 0]", "=", "[0, 0, 2]"), ("[0, 0, -2]",), "", {}, [I] * 3, {}),
     (("rot([1, 0, 1, 0]) @ [0, 0, 1]", "=", "[2, 0, 0]"), ("[-2, 0, 0]",), "", {}, [I] * 3, {}),
+    (("rot([1, 0, 0, 1]) @ [0, 1, 0]", "=", "[-2, 0, 0]"), ("[2, 0, 0]",), "", {}, [I] * 3, {}),
+    (("rot([1, 1, 0, 0]) @ [0, 0, 1]", "=", "[0, -2, 0]"), ("[0, 2, 0]",), "", {}, [I] * 3, {}),
+    (("rot([1, 0, 1, 0]) @ [1, 0, 0]", "=", "[0, 0, -2]"), ("[0, 0, 2]",), "", {}, [I] * 3, {}),
     (("u.T @ v", "=", "dot(u, v)"), ("-dot(u, v)",), "uv", some(ONES, "u", "v"), [I], {}),
     (("-u/2 + u*3/2", "=", "u"), ("2*u", "-u"), "u", some(ONES, "u"), [I] * 3, {}),
     (
@@ -138,6 +141,7 @@ NOWHERE_DEFINED = [
     (stated("inv([[x, 0], [0, 1]])[2,2]", "=", "1", x=LINE), X0, [I], "no value at the witness"),
     (stated("diff(abs(x), x)*0", "=", "0", x=LINE), X0, [I], "no value at the witness"),
     (stated("diff(sqrt(x), y)", "=", "0", x=LINE, y=LINE), {"x": "-1", "y": "0"}, [I], "no value at the witness"),
+    (stated("diff(atan2(y, x), y)*0", "=", "0", x=LINE, y=LINE), {"x": "-1", "y": "0"}, [I], "no value at the witness"),
     (stated("min(1/x, 2)*0", "=", "0", x=LINE), X0, [I, I], "no value at the witness"),
     (stated("x", "=", "x", given=["x = 1"], x=LINE), X0, [I], "no value at the witness"),
     (stated("x", "=", "x", given=["x >= 1"], x=LINE), X0, [I], "no value at the witness"),
