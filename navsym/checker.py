@@ -182,6 +182,7 @@ def number(q: Any) -> Term:
 
 
 MINUS_ONE: Term = ("number", fmpq(-1))
+ZERO, ONE = number(0), number(1)
 
 
 # -- 3. Functions of a parameter ---------------------------------------------------------------------------------------
@@ -878,13 +879,14 @@ class Range(NamedTuple):
 
 
 class Goal(NamedTuple):
-    """``term relation 0`` on a box, where the terms of ``exists`` are defined and those of ``given`` are >= 0."""
+    """``term relation 0`` on a box, where terms of ``exists`` are defined, of ``given`` >= 0 and of ``zeros`` = 0."""
 
     term: Term
     relation: str
     box: dict[str, Range]
     exists: tuple[Term, ...] = ()
     given: tuple[Term, ...] = ()
+    zeros: tuple[Term, ...] = ()
 
 
 FLAGS = ("open-low", "open-high", "nonzero", "integer")
@@ -900,24 +902,569 @@ def read_range(item: Any) -> Range:
     return Range(ends[0], ends[1], *(flag in words for flag in FLAGS))
 
 
-def read_statement(item: Any) -> tuple[list[Goal], tuple[Term, ...], dict[str, Range]]:
-    """The goals that say it, the terms that it needs to exist, and its box."""
-    keys = "left relation right symbols exists tolerance"
-    left, relation, right, symbols, exists, tolerance = read_fields(item, keys)
-    x, y, parts = parse(left), parse(right), tuple(read_list(exists, parse))
+class Case(NamedTuple):
+    """A part of the points of a statement, given >= 0 and zeros = 0 where terms are defined, and what it says there."""
+
+    goals: list[Goal]
+    terms: tuple[Term, ...]
+    given: tuple[Term, ...]
+    zeros: tuple[Term, ...]
+
+
+SIGNS = {"=": (1, "="), "!=": (1, "!="), ">": (1, ">"), ">=": (1, ">="), "<": (-1, ">"), "<=": (-1, ">=")}
+MOST_CASES = 128
+
+
+def read_statement(item: Any) -> tuple[list[Case], dict[str, Range]]:
+    """The cases of a statement, which cover all its points, and its box.
+
+    ``shapes`` has names in the place of the entries of vectors and matrices, ``given`` hypotheses, and ``rates`` the
+    derivatives by time. One condition after the other is taken to hold, then to fail; each case has goals of its own.
+    """
+    more = " shapes given rates" if isinstance(item, dict) and "given" in item else ""
+    left, relation, right, symbols, exists, tolerance, *rest = read_fields(
+        item, f"left relation right symbols exists tolerance{more}"
+    )
     require(isinstance(symbols, dict), "expected ranges by symbol")
     box = {name: read_range(symbols[name]) for name in read_symbols([*symbols])}
-    terms = (x, y, *parts)
-    require(set().union(*map(symbols_of, terms)) <= set(box), "a symbol without a range")
-    difference = subtract(x, y)
+    shapes, given, rates = rest or ({}, [], {})
+    names = read_shapes(shapes, box)
+    limit = None if tolerance is None else parse(tolerance)
+    require(relation in SIGNS, "an unknown relation")
+    cases: list[Case] = []
+    choices: list[bool] | None = []
+    while choices is not None:
+        require(len(cases) < MOST_CASES, "too many cases")
+        reader = Reader(names, rates, choices)
+        for text in read_list(given, str):
+            reader.assume(text)
+        for text in read_list(exists, str):
+            reader.need(*list_entries(reader.read(text)))
+        goals = state_goals(reader.read(left), relation, reader.read(right), limit)
+        cases.append(reader.make_case(goals, box))
+        choices = next_choices(reader.choices)
+    return cases, box
+
+
+def read_shapes(shapes: Any, box: dict[str, Range]) -> dict[str, Value]:
+    """The vectors and matrices by name: entries are symbols of the box, and a symbol may stand in several places."""
+    require(isinstance(shapes, dict) and not {"pi", *shapes} & set(box), "a name given twice, or pi")
+    names: dict[str, Value] = {}
+    for name in [*shapes]:
+        require(matches("[A-Za-z][A-Za-z0-9_]*", name) and name != "pi", "expected names")
+        rows = read_list(shapes[name], lambda row: read_list(row, lambda e: ("symbol", e)))
+        require(all(entry[1] in box for row in rows for entry in row), "an entry without a range")
+        names[name] = Matrix(rows)
+    return names
+
+
+def state_goals(x: Value, relation: str, y: Value, tolerance: Term | None) -> list[tuple[Term, str, tuple[Term, ...]]]:
+    """Terms with their relation to 0 and what stands in them: one for each entry; matrices differ where one does."""
+    require(shape_of(x) == shape_of(y), "sides of different shapes")
+    pairs = [*zip(list_entries(x), list_entries(y), strict=True)]
+    parts = tuple(entry for pair in pairs for entry in pair)
+    differences = [subtract(*pair) for pair in pairs]
     if tolerance is not None:
         require(relation == "=", "a tolerance of an inequality")
-        sides = [("+", parse(tolerance), sign) for sign in (difference, negate(difference))]
-        return [Goal(side, ">=", box, terms) for side in sides], (*terms, parse(tolerance)), box
-    signs = {"=": (1, "="), "!=": (1, "!="), ">": (1, ">"), ">=": (1, ">="), "<": (-1, ">"), "<=": (-1, ">=")}
-    require(relation in signs, "an unknown relation")
-    sign, own = signs[relation]
-    return [Goal(difference if sign == 1 else subtract(y, x), own, box, terms)], terms, box
+        sides = [("+", tolerance, sign) for d in differences for sign in (d, negate(d))]
+        return [(side, ">=", (*parts, tolerance)) for side in sides]
+    sign, own = SIGNS[relation]
+    require(not isinstance(x, Matrix) or own in ("=", "!="), "matrices have no order")
+    if isinstance(x, Matrix) and own == "!=":
+        return [(("+", ZERO, *(("*", d, d) for d in differences)), own, parts)]
+    return [(d if sign == 1 else subtract(y, x), own, parts) for d in differences]  # type: ignore[arg-type]
+
+
+# Vectors and matrices are read as the terms of their entries; a vector is a matrix of one column. All of a text has to
+# have a value, also an entry that is not used, but for the branch of a where that is not taken.
+
+
+class Matrix:
+    """Rows of terms, all of one length."""
+
+    def __init__(self, rows: Iterable[Iterable[Term]]):
+        self.rows = [[*row] for row in rows]
+        require(self.rows and self.rows[0] and len({*map(len, self.rows)}) == 1, "expected rows of one length")
+        require(len(self.rows) <= 64 and len(self.rows[0]) <= 64, "too many entries")
+
+    def transpose(self) -> Matrix:
+        return Matrix(zip(*self.rows, strict=True))
+
+
+Value = Term | Matrix
+
+
+def shape_of(x: Value) -> tuple[int, int] | None:
+    return (len(x.rows), len(x.rows[0])) if isinstance(x, Matrix) else None
+
+
+def list_entries(x: Value) -> list[Term]:
+    return [entry for row in x.rows for entry in row] if isinstance(x, Matrix) else [x]
+
+
+def change_entries(change: Callable[..., Term], *values: Value) -> Value:
+    """A function of one or more values of one shape, entry by entry."""
+    require(len({*map(shape_of, values)}) == 1, "values of different shapes")
+    if not isinstance(values[0], Matrix):
+        return change(*values)
+    rows = zip(*(x.rows for x in values), strict=True)  # type: ignore[union-attr]
+    return Matrix([change(*entries) for entries in zip(*some, strict=True)] for some in rows)
+
+
+def to_column(x: Value, size: int | None = None) -> list[Term]:
+    require(isinstance(x, Matrix) and len(x.rows[0]) == 1 and size in (None, len(x.rows)), "expected a vector")
+    return [row[0] for row in x.rows]  # type: ignore[union-attr]
+
+
+def to_number(x: Value) -> Term:
+    require(not isinstance(x, Matrix), "expected a number; got a matrix")
+    return x  # type: ignore[return-value]
+
+
+def to_square(x: Value, most: int) -> list[list[Term]]:
+    require(isinstance(x, Matrix) and len(x.rows) == len(x.rows[0]) <= most, f"expected n by n with n <= {most}")
+    return x.rows  # type: ignore[union-attr]
+
+
+def make_column(*entries: Term) -> Matrix:
+    return Matrix([entry] for entry in entries)
+
+
+def make_sum(*terms: Term) -> Term:
+    return ("+", *terms) if len(terms) > 1 else terms[0]
+
+
+def multiply_matrices(x: Value, y: Value) -> Value:
+    """Rows times columns; a product of one entry is a number."""
+    require(isinstance(x, Matrix) and isinstance(y, Matrix) and len(x.rows[0]) == len(y.rows), "shapes that do not fit")
+    columns = [*zip(*y.rows, strict=True)]  # type: ignore[union-attr]
+    rows = [[make_sum(*(("*", a, b) for a, b in zip(r, c, strict=True))) for c in columns] for r in x.rows]  # type: ignore
+    return rows[0][0] if len(rows) == len(columns) == 1 else Matrix(rows)
+
+
+def cross(x: Value, y: Value) -> Value:
+    """u x v = (u2 v3 - u3 v2, u3 v1 - u1 v3, u1 v2 - u2 v1)."""
+    (a, b, c), (d, e, f) = to_column(x, 3), to_column(y, 3)
+    return make_column(
+        *(subtract(("*", p, q), ("*", r, s)) for p, q, r, s in ((b, f, c, e), (c, d, a, f), (a, e, b, d)))
+    )
+
+
+def scalar_product(x: Value, y: Value) -> Term:
+    u, v = to_column(x), to_column(y)
+    require(len(u) == len(v), "vectors of different lengths")
+    return make_sum(*(("*", a, b) for a, b in zip(u, v, strict=True)))
+
+
+def skew(x: Value) -> Value:
+    """The matrix [v] with [v] u = v x u."""
+    a, b, c = to_column(x, 3)
+    return Matrix([[ZERO, negate(c), b], [c, ZERO, negate(a)], [negate(b), a, ZERO]])
+
+
+def minor(rows: list[list[Term]], i: int, j: int) -> Term:
+    return determinant([row[:j] + row[j + 1 :] for k, row in enumerate(rows) if k != i])
+
+
+def determinant(rows: list[list[Term]]) -> Term:
+    """Laplace: expansion along the first row; the determinant of no rows is 1."""
+    if len(rows) < 2:
+        return rows[0][0] if rows else ONE
+    terms = [("*", entry, minor(rows, 0, j)) for j, entry in enumerate(rows[0])]
+    return ("+", *(negate(t) if j % 2 else t for j, t in enumerate(terms)))
+
+
+def invert(x: Value) -> Value:
+    """Cramer: the transposed matrix of the cofactors over the determinant, which has to be != 0."""
+    rows = to_square(x, 4)
+    inverse, places = ("^", determinant(rows), MINUS_ONE), range(len(rows))
+    cofactors = [[negate(minor(rows, i, j)) if (i + j) % 2 else minor(rows, i, j) for i in places] for j in places]
+    return Matrix([("*", entry, inverse) for entry in row] for row in cofactors)
+
+
+def multiply_quaternions(x: Value, y: Value) -> Value:
+    """Hamilton's product, scalars first: (a + u)(b + v) = ab - u.v + a v + b u + u x v."""
+    (a, *u), (b, *v) = to_column(x, 4), to_column(y, 4)
+    w = to_column(cross(make_column(*u), make_column(*v)))
+    scalar = subtract(("*", a, b), scalar_product(make_column(*u), make_column(*v)))
+    return make_column(scalar, *(("+", ("*", a, q), ("*", b, p), r) for p, q, r in zip(u, v, w, strict=True)))
+
+
+def conjugate(x: Value) -> Value:
+    scalar, *rest = to_column(x, 4)
+    return make_column(scalar, *map(negate, rest))
+
+
+def rotation_of(x: Value) -> Value:
+    """The matrix R of v -> q v q*, from body to frame (Solà, Quaternion kinematics, 2017, equation 115)."""
+    w, x1, y1, z1 = to_column(x, 4)
+
+    def two(a: Term, b: Term, sign: int, c: Term, d: Term) -> Term:
+        return ("*", number(2), ("+", ("*", a, b), ("*", number(sign), c, d)))
+
+    def square(sign: int, own: Term, *others: Term) -> Term:
+        return ("+", ("*", w, w), ("*", own, own), *(("*", MINUS_ONE, o, o) for o in others))
+
+    return Matrix(
+        [
+            [square(1, x1, y1, z1), two(x1, y1, -1, w, z1), two(x1, z1, 1, w, y1)],
+            [two(x1, y1, 1, w, z1), square(1, y1, x1, z1), two(y1, z1, -1, w, x1)],
+            [two(x1, z1, -1, w, y1), two(y1, z1, 1, w, x1), square(1, z1, x1, y1)],
+        ]
+    )
+
+
+def make_diagonal(*values: Value) -> Value:
+    entries = to_column(values[0]) if len(values) == 1 and isinstance(values[0], Matrix) else [*map(to_number, values)]
+    return Matrix([e if i == j else ZERO for j in range(len(entries))] for i, e in enumerate(entries))
+
+
+def read_size(x: Value) -> int:
+    require(not isinstance(x, Matrix) and x[0] == "number" and x[1].q == 1 and 1 <= x[1] <= 64, "expected a size")
+    return int(x[1])  # type: ignore[index]
+
+
+#: Functions of values: the numbers of arguments, and what they are.
+CALLS: dict[str, tuple[range, Callable[..., Value]]] = {
+    "cross": (range(2, 3), cross),
+    "dot": (range(2, 3), scalar_product),
+    "norm": (range(1, 2), lambda x: ("sqrt", make_sum(*(("*", a, a) for a in to_column(x))))),
+    "skew": (range(1, 2), skew),
+    "det": (range(1, 2), lambda x: determinant(to_square(x, 5))),
+    "inv": (range(1, 2), invert),
+    "trace": (range(1, 2), lambda x: make_sum(*(row[i] for i, row in enumerate(to_square(x, 64))))),
+    "transpose": (range(1, 2), lambda x: x.transpose()),
+    "eye": (range(1, 2), lambda n: make_diagonal(*[ONE] * read_size(n))),
+    "zeros": (range(2, 3), lambda m, n: Matrix([ZERO] * read_size(n) for _ in range(read_size(m)))),
+    "diag": (range(1, 65), make_diagonal),
+    "qmul": (range(2, 3), multiply_quaternions),
+    "conj": (range(1, 2), conjugate),
+    "rot": (range(1, 2), rotation_of),
+}
+MARKS = re.compile(r" *([0-9]+(?:\.[0-9]+)?|[A-Za-z][A-Za-z0-9_]*|\*\*|[<>!]=|[-+*/(),@.\[\]<>=])")
+
+
+class Reader:
+    """Reads the texts of one case: the conditions that it meets get the choices, and then they are taken to hold."""
+
+    def __init__(self, names: dict[str, Value], rates: Any, choices: list[bool]):
+        self.names, self.rates, self.wanted = names, rates, choices
+        require(isinstance(rates, dict) and len(rates) <= 64, "expected rates by name")
+        self.choices: list[bool] = []
+        self.met: dict[tuple[str, Term], bool] = {}
+        self.slopes: dict[str, Term | None] = {}
+        self.dead = self.conditions = 0
+        self.exists, self.given, self.zeros = (dict[Term, None]() for _ in range(3))
+
+    def read(self, text: Any) -> Value:
+        """The value of a text."""
+        require(matches(r"[A-Za-z0-9_+\-*/()., @\[\]<>=!]{1,400000}", text), "unexpected characters")
+        formula = Formula(text, self)
+        value = formula.read_sum()
+        require(formula.words == [""], "not an expression: more than one")
+        return value
+
+    def assume(self, text: Any) -> None:
+        """A hypothesis, of numbers or of matrices."""
+        require(matches(r"[A-Za-z0-9_+\-*/()., @\[\]<>=!]{1,400000}", text), "unexpected characters")
+        formula = Formula(text, self)
+        relation, difference = formula.read_relation()
+        require(formula.words == [""], "not a hypothesis: more than one")
+        require(relation == "=" or not isinstance(difference, Matrix), "matrices have no order")
+        for term in list_entries(difference):
+            self.suppose(relation, term)
+
+    def suppose(self, relation: str, term: Term) -> None:
+        """Note that a term has a value, and this relation to 0."""
+        self.need(term)
+        if relation == "=":
+            self.zeros[term] = None
+        if relation in (">", ">="):
+            self.given[term] = None
+        if relation in (">", "!="):
+            self.need(("^", term, MINUS_ONE))
+
+    def need(self, *terms: Term) -> None:
+        """Note terms that have to have a value."""
+        if not self.dead:
+            self.exists |= dict.fromkeys(t for t in terms if t[0] not in ("symbol", "number"))
+
+    def choose(self, relation: str, term: Term) -> bool:
+        """Whether a condition is taken to hold in this case; one that is met again has the same answer."""
+        if relation == "!=":
+            return not self.choose("=", term)
+        self.conditions += 1
+        if self.dead:
+            return True
+        known = self.recall(relation, term)
+        if known is not None:
+            self.need(term)
+            return known
+        if (relation, term) not in self.met:
+            taken = self.wanted[len(self.choices)] if len(self.choices) < len(self.wanted) else True
+            self.choices.append(taken)
+            self.met[relation, term] = taken
+            opposite = {">": ">=", ">=": ">", "=": "!="}[relation]
+            self.suppose(relation if taken else opposite, term if taken or relation == "=" else negate(term))
+        return self.met[relation, term]
+
+    def recall(self, relation: str, term: Term) -> bool | None:
+        """The answer that follows from another condition on the same number, or on the one with the other sign."""
+        for (other, known), taken in self.met.items():
+            same = is_identity(subtract(term, known))
+            if not same and not is_identity(("+", term, known)):
+                continue
+            if "=" in (other, relation):
+                if other == relation:
+                    return taken
+            elif same == taken:  # term > 0, or >= 0
+                sharp = other == (">" if taken else ">=")
+                return True if sharp or relation == ">=" else not self.choose("=", term)
+            else:  # term < 0, or <= 0
+                sharp = other == (">" if taken else ">=")
+                return False if sharp or relation == ">" else self.choose("=", term)
+        return None
+
+    def make_case(self, goals: list[tuple[Term, str, tuple[Term, ...]]], box: dict[str, Range]) -> Case:
+        """The goals of this case on its box."""
+        terms = tuple(dict.fromkeys((*(t for goal in goals for t in goal[2]), *self.exists)))
+        require(
+            set().union(*map(symbols_of, (*terms, *self.zeros, *self.given))) <= set(box), "a symbol without a range"
+        )
+        own = tuple(t for t in terms if conditions(t)) if len(terms) > 8 else terms
+        given, zeros = tuple(self.given), tuple(self.zeros)
+        stated = [cut_box(Goal(term, relation, box, own, given, zeros)) for term, relation, _ in goals]
+        return Case(stated, (*terms, *zeros), given, zeros)
+
+    def differentiate(self, x: Value, name: str) -> Value:
+        """The derivative by a symbol, where there is one; by time t it is that of all that has a rate."""
+        self.need(*(t for entry in list_entries(x) for t in (entry, *smoothness(entry))))
+        if name == "t" and "t" in self.rates:
+            return change_entries(self.differentiate_by_time, x)
+        return change_entries(lambda term: differentiate(term, name), x)
+
+    def differentiate_by_time(self, term: Term) -> Term:
+        """The chain rule: the sum of df/ds ds/dt over the symbols that have a rate; the others are constant."""
+        slopes = self.slopes = self.slopes or self.list_rates()
+        rows = [(name, slopes[name]) for name in sorted(symbols_of(term)) if name in slopes]
+        require(all(rate is not None for _, rate in rows), "no rate is known")
+        return add_terms(multiply_terms(differentiate(term, name), rate) for name, rate in rows)  # type: ignore[arg-type]
+
+    def list_rates(self) -> dict[str, Term | None]:
+        """Rates by the symbols of the entries."""
+        slopes: dict[str, Term | None] = {}
+        before = self.conditions
+        for name, text in self.rates.items():
+            entries = list_entries(self.names.get(name, ("symbol", name)))
+            rate = None if text is None else self.read(text)
+            require(rate is None or shape_of(rate) == shape_of(self.names.get(name, ONE)), "a rate of another shape")
+            rows = [None] * len(entries) if rate is None else list_entries(rate)
+            pairs = [(entry[1], row) for entry, row in zip(entries, rows, strict=True)]
+            require(all(slopes.get(own, row) == row for own, row in pairs), "two rates of one symbol")
+            slopes |= dict(pairs)
+        require(before == self.conditions, "a rate of cases")
+        return slopes
+
+
+def take_off(x: Term, y: Term) -> Term:
+    """x - y, and x where y is the number 0: a range is cut by what is said of a symbol alone."""
+    return x if y == ZERO else negate(y) if x == ZERO else subtract(x, y)
+
+
+def smoothness(term: Term) -> list[Term]:
+    """Terms with a value only where a term is differentiable."""
+    made: dict[str, Callable[[Term], Term]] = {
+        ">": lambda t: ("log", t),
+        ">=": lambda t: ("sqrt", t),
+        "!=": lambda t: ("^", t, MINUS_ONE),
+    }
+    return [made[relation](t) for relation, t in conditions(term, 2)]
+
+
+def next_choices(choices: list[bool]) -> list[bool] | None:
+    """The choices after these: the last condition that was taken to hold fails; None after the last ones."""
+    while choices and not choices[-1]:
+        choices = choices[:-1]
+    return [*choices[:-1], False] if choices else None
+
+
+def cut_box(goal: Goal) -> Goal:
+    """The goal with ranges cut by the hypotheses that say s >= 0 or -s >= 0 of a symbol."""
+    for term in goal.given:
+        upper = int(term[0] == "*" and term[1:-1] == (MINUS_ONE,))
+        name = term[-1] if upper else term
+        if name[0] == "symbol" and name[1] in goal.box:
+            goal = cut_range(goal, name[1], upper)
+    return goal
+
+
+class Formula(Parser):
+    """The language of files: numbers, vectors and matrices, conditions and derivatives, as values."""
+
+    def __init__(self, text: str, reader: Reader):
+        self.words, self.reader = ["", *reversed(MARKS.findall(text))], reader
+        require(sum(map(len, self.words)) == len(text.replace(" ", "")), "unexpected characters")
+
+    def read_sum(self) -> Any:
+        """Terms of one shape."""
+        terms = [self.read_product()]
+        while sign := self.take("+", "-"):
+            value = self.read_product()
+            terms.append(change_entries(negate, value) if sign == "-" else value)
+        return change_entries(lambda *entries: ("+", *entries), *terms) if len(terms) > 1 else terms[0]
+
+    def read_product(self) -> Any:
+        """Numbers with at most one matrix among them, from one @ to the next."""
+        factors = [self.read_signed()]
+        while mark := self.take("*", "/", "@"):
+            value = self.read_signed()
+            if mark == "@":
+                factors = [multiply_matrices(self.join(factors), value)]
+                continue
+            require(mark == "*" or not isinstance(value, Matrix), "a division by a matrix")
+            factors.append(value if mark == "*" else ("^", value, MINUS_ONE))
+        return self.join(factors)
+
+    @staticmethod
+    def join(factors: list[Value]) -> Value:
+        """The product of numbers and at most one matrix."""
+        if len(factors) == 1:
+            return factors[0]
+        places = [k for k, value in enumerate(factors) if isinstance(value, Matrix)]
+        require(len(places) < 2, "a product of matrices is written with @")
+        if not places:
+            return ("*", *factors)
+        before, after = factors[: places[0]], factors[places[0] + 1 :]
+        return change_entries(lambda entry: ("*", *before, entry, *after), factors[places[0]])
+
+    def read_signed(self) -> Any:
+        """Signs before a power of a number."""
+        if sign := self.take("+", "-"):
+            value = self.read_signed()
+            return change_entries(negate, value) if sign == "-" else value
+        base = self.read_entry()
+        return ("^", to_number(base), to_number(self.read_signed())) if self.take("**") else base
+
+    def read_entry(self) -> Any:
+        """A value with .T or indices, which count from 1, behind it."""
+        value = self.read_value()
+        while mark := self.take(".", "["):
+            require(isinstance(value, Matrix), "expected a vector or matrix before . and [")
+            if mark == ".":
+                require(self.take("T"), "expected T behind the point")
+                value = value.transpose()
+                continue
+            places = [read_size(self.read_value())]
+            if self.take(","):
+                places.append(read_size(self.read_value()))
+            require(self.take("]"), "not an expression: no ]")
+            require(len(places) == 2 or len(value.rows[0]) == 1, "expected two indices of a matrix")
+            i, j = places if len(places) == 2 else (*places, 1)
+            require(i <= len(value.rows) and j <= len(value.rows[0]), "an index beyond the last one")
+            self.reader.need(*list_entries(value))
+            value = value.rows[i - 1][j - 1]
+        return value
+
+    def read_value(self) -> Any:
+        """A number, a name, a call, rows in brackets, or a sum in parentheses."""
+        word = self.words.pop()
+        if word[:1].isdigit():
+            return ("number", read_number(word))
+        if word == "[":
+            return self.read_rows()
+        if word[:1].isalpha():
+            if self.take("("):
+                return self.read_call(word)
+            return ("pi",) if word == "pi" else self.reader.names.get(word, ("symbol", word))
+        require(word == "(", "not an expression")
+        inside = self.read_sum()
+        require(self.take(")"), "not an expression: no )")
+        return inside
+
+    def read_rows(self) -> Matrix:
+        """A vector by its entries, or a matrix by its rows."""
+        rows: list[list[Term]] = []
+        deep = self.words[-1] == "["
+        while not rows or self.take(","):
+            require(not deep or self.take("["), "expected a row in brackets")
+            row = [to_number(self.read_sum())]
+            while deep and self.take(","):
+                row.append(to_number(self.read_sum()))
+            require(not deep or self.take("]"), "not an expression: no ]")
+            rows.append(row)
+        require(self.take("]"), "not an expression: no ]")
+        return Matrix(rows)
+
+    def read_relation(self) -> tuple[str, Value]:
+        """A relation to 0, one of = != > >=, and the difference of which it is said."""
+        x = self.read_sum()
+        word = self.take(*SIGNS)
+        require(word, "expected a relation")
+        y = self.read_sum()
+        sign, relation = SIGNS[word]
+        return relation, change_entries(take_off, x, y) if sign == 1 else change_entries(take_off, y, x)
+
+    def read_call(self, name: str) -> Any:
+        """A function of values; where, min, max and sign are cases, diff and dot_ derivatives."""
+        if name == "where":
+            return self.read_where()
+        before, arguments = self.reader.conditions, [self.read_sum()]
+        while self.take(","):
+            arguments.append(self.read_sum())
+        require(self.take(")"), "not an expression: no )")
+        if name in ("min", "max"):
+            return reduce(lambda x, y: self.pick(name, x, y), map(to_number, arguments))
+        if name in ("diff", "dot_"):
+            require(before == self.reader.conditions, "a derivative of cases")
+            return self.differentiate(name, *arguments)
+        if name in CALLS:
+            require(len(arguments) in CALLS[name][0], f"a wrong number of arguments of {name}")
+            require(name != "transpose" or isinstance(arguments[0], Matrix), "expected a matrix")
+            if name == "trace":
+                self.reader.need(*list_entries(arguments[0]))
+            return CALLS[name][1](*arguments)
+        terms = [*map(to_number, arguments)]
+        if name == "sign":
+            return self.find_sign(*terms)
+        known = name in ("atan2", *DEFINITIONS, *DERIVATIVES) or matches("(exp|sin|cos)_[0-9]{1,2}", name)
+        require(known, f"unknown function {name}")
+        expected = 2 if name == "atan2" else 1
+        require(len(terms) == expected, f"expected {name} of {expected}; got {len(terms)} arguments")
+        return (name, *terms)
+
+    def read_where(self) -> Any:
+        """where(condition, a, b): a where it holds, b elsewhere; what is not taken need not have a value."""
+        relation, difference = self.read_relation()
+        taken = self.reader.choose(relation, to_number(difference))
+        values = []
+        for branch in (True, False):
+            require(self.take(","), "expected where(condition, a, b)")
+            self.reader.dead += branch != taken
+            values.append(self.read_sum())
+            self.reader.dead -= branch != taken
+        require(self.take(")"), "not an expression: no )")
+        require(shape_of(values[0]) == shape_of(values[1]), "branches of different shapes")
+        return values[0] if taken else values[1]
+
+    def pick(self, name: str, x: Term, y: Term) -> Term:
+        """The smaller or the larger of two numbers, which both need a value."""
+        return x if self.reader.choose(">=", subtract(y, x)) == (name == "min") else y
+
+    def find_sign(self, x: Term) -> Term:
+        """0, 1 or -1."""
+        if self.reader.choose("=", x):
+            return ZERO
+        return ONE if self.reader.choose(">", x) else MINUS_ONE
+
+    def differentiate(self, name: str, x: Value, by: Value | None = None, times: Value = ONE) -> Value:
+        """diff(x, symbol, times), or dot_(x) by time."""
+        if name == "dot_":
+            require(by is None, "expected dot_ of 1 argument")
+            self.reader.need(*(t for entry in list_entries(x) for t in (entry, *smoothness(entry))))
+            return change_entries(self.reader.differentiate_by_time, x)
+        require(by is not None and not isinstance(by, Matrix) and by[0] == "symbol", "expected a symbol behind diff")
+        require(read_size(times) <= 8, "a derivative of a high order")
+        return reduce(lambda y, _: self.reader.differentiate(y, by[1]), range(read_size(times)), x)  # type: ignore[index]
 
 
 def subtract(x: Term, y: Term) -> Term:
@@ -929,6 +1476,13 @@ def replace(term: Term, old: Term, new: Term) -> Term:
     if term == old:
         return new
     return tuple(replace(part, old, new) if isinstance(part, tuple) else part for part in term)
+
+
+def substitute(term: Term, values: dict[str, Term]) -> Term:
+    """The term with its symbols replaced, all at once."""
+    if term[0] == "symbol":
+        return values.get(term[1], term)
+    return tuple(substitute(part, values) if isinstance(part, tuple) else part for part in term)
 
 
 def list_exponents(term: Term, besides: Term = ()) -> Iterator[Term]:
@@ -1020,7 +1574,6 @@ def multiply_quotients(x: Quotient, y: Quotient) -> Quotient:
     return x[0] * y[0], x[1] * y[1]
 
 
-ZERO, ONE = number(0), number(1)
 LEAST = {"log": ">", "sqrt": ">="}
 DIVISORS = {"tan": "cos", "sec": "cos", "cot": "sin", "csc": "sin"}
 
@@ -1118,7 +1671,7 @@ def differentiate(term: Term, name: str) -> Term:
 def prove(proof: Any, goal: Goal) -> None:
     """Check that a proof proves a goal."""
     require(isinstance(proof, dict) and proof.get("rule") in RULES, "expected a proof by a known rule")
-    names = set().union(*map(symbols_of, (goal.term, *goal.exists, *goal.given)))
+    names = set().union(*map(symbols_of, (goal.term, *goal.exists, *goal.given, *goal.zeros)))
     require(names <= set(goal.box), "a symbol without a range")
     RULES[proof["rule"]](proof, goal)
 
@@ -1260,10 +1813,11 @@ def prove_integers(proof: Any, goal: Goal) -> None:
 
 def fix_symbol(goal: Goal, name: str, value: Term) -> Goal:
     """The goal at one value of a symbol."""
-    term, exists, given = (
-        tuple(replace(t, ("symbol", name), value) for t in terms) for terms in ((goal.term,), goal.exists, goal.given)
+    term, exists, given, zeros = (
+        tuple(replace(t, ("symbol", name), value) for t in terms)
+        for terms in ((goal.term,), goal.exists, goal.given, goal.zeros)
     )
-    return Goal(term[0], goal.relation, {k: v for k, v in goal.box.items() if k != name}, exists, given)
+    return Goal(term[0], goal.relation, {k: v for k, v in goal.box.items() if k != name}, exists, given, zeros)
 
 
 def prove_abstract(proof: Any, goal: Goal) -> None:
@@ -1311,8 +1865,9 @@ def prove_dense(proof: Any, goal: Goal) -> None:
     whole = goal._replace(
         box={name: r._replace(open_low=False, open_high=False, nonzero=False) for name, r in goal.box.items()}
     )
-    prove_defined(defined, whole._replace(term=ZERO, exists=(), given=()), goal.term, *goal.exists, level=1)
-    prove(premise, goal._replace(exists=(*goal.exists, ("^", seldom, MINUS_ONE)), given=()))
+    bare = whole._replace(term=ZERO, exists=(), given=(), zeros=())
+    prove_defined(defined, bare, goal.term, *goal.exists, level=1)
+    prove(premise, goal._replace(exists=(*goal.exists, ("^", seldom, MINUS_ONE)), given=(), zeros=()))
 
 
 def is_narrow(limit: Range) -> bool:
@@ -1347,6 +1902,13 @@ def prove_zero(proof: Any, goal: Goal) -> None:
     _, premise = read_fields(proof, "rule proof")
     require(goal.relation == ">=", "expected >=")
     prove(premise, goal._replace(relation="="))
+
+
+def prove_between(proof: Any, goal: Goal) -> None:
+    """f >= 0 and -f >= 0 give f = 0."""
+    _, proofs = read_fields(proof, "rule proofs")
+    require(goal.relation == "=", "expected an equation")
+    prove_all(proofs, [remember(goal, side)._replace(relation=">=") for side in (goal.term, negate(goal.term))])
 
 
 def prove_solve(proof: Any, goal: Goal) -> None:
@@ -1476,6 +2038,16 @@ def prove_given(proof: Any, goal: Goal) -> None:
     require(is_identity(subtract(goal.term, total)), "the term is another one")
 
 
+def prove_modulo(proof: Any, goal: Goal) -> None:
+    """f = g + sum c_k h_k, where the hypotheses say h_k = 0: at all points of the goal f is g."""
+    _, text, cofactors, defined, premise = read_fields(proof, "rule to cofactors defined proof")
+    term, shares = parse(text), read_list(cofactors, parse, len(goal.zeros))
+    prove_defined(defined, goal, term, *shares)
+    total = ("+", term, *(("*", c, h) for c, h in zip(shares, goal.zeros, strict=True)))
+    require(is_identity(subtract(goal.term, total)), "the terms differ")
+    prove(premise, remember(goal, term))
+
+
 def prove_range(proof: Any, goal: Goal) -> None:
     """c (s - low) or c (high - s) with c > 0, by the range of the symbol s."""
     _, name, side, share = read_fields(proof, "rule symbol end share")
@@ -1550,7 +2122,7 @@ def prove_corners(proof: Any, goal: Goal) -> None:
         ends = (goal.box[name].low, goal.box[name].high)
         require(None not in ends, "a range without an end")
         corners = [fix_symbol(corner, name, end) for corner in corners for end in ends]  # type: ignore[arg-type]
-    prove_all(proofs, [corner._replace(exists=(), given=()) for corner in corners])
+    prove_all(proofs, [corner._replace(exists=(), given=(), zeros=()) for corner in corners])
 
 
 def degree_in(polynomial: Exact, name: str) -> int:
@@ -1642,7 +2214,8 @@ def prove_slope(proof: Any, goal: Goal) -> None:
     by_slope = (point is not None or read_integer(strict, 0, 1) == 1) and goal.relation == ">"
     require(not by_slope or is_open, "the end belongs to the range")
     own_end = {"open_high" if upper else "open_low": False}
-    whole = change_range(goal, name, nonzero=False, integer=False, **own_end)._replace(term=ZERO, exists=(), given=())
+    whole = change_range(goal, name, nonzero=False, integer=False, **own_end)
+    whole = whole._replace(term=ZERO, exists=(), given=(), zeros=())
     prove_defined(continuous, whole, goal.term, level=1)
     inside = change_range(whole, name, open_low=True, open_high=True)
     change = differentiate(goal.term, name)
@@ -1671,7 +2244,7 @@ def prove_concave(proof: Any, goal: Goal) -> None:
     limit = goal.box[name]
     require(limit.low is not None and limit.high is not None, "a range without an end")
     flags = {"open_low": False, "open_high": False, "nonzero": False, "integer": False}
-    whole = change_range(goal, name, **flags)._replace(term=ZERO, exists=(), given=())
+    whole = change_range(goal, name, **flags)._replace(term=ZERO, exists=(), given=(), zeros=())
     prove_defined(continuous, whole, goal.term, level=1)
     inside = change_range(whole, name, open_low=True, open_high=True)
     slope = differentiate(goal.term, name)
@@ -1896,9 +2469,10 @@ RULES: dict[str, Callable[[Any, Goal], None]] = {
     rule.__name__.removeprefix("prove_"): rule
     for rule in (
         prove_equal, prove_rewrite, prove_multiply, prove_exponential, prove_side, prove_cases, prove_split,
-        prove_integers, prove_abstract, prove_dense, prove_identity, prove_zero, prove_solve, prove_squares,
-        prove_derivative, prove_balls, prove_given, prove_range, prove_angle, prove_bounded, prove_corners,
-        prove_product, prove_sum, prove_slope, prove_concave, prove_cones, prove_quadratic, prove_roots,
+        prove_integers, prove_abstract, prove_dense, prove_identity, prove_zero, prove_between, prove_solve,
+        prove_squares, prove_derivative, prove_balls, prove_given, prove_modulo, prove_range, prove_angle,
+        prove_bounded, prove_corners, prove_product, prove_sum, prove_slope, prove_concave, prove_cones,
+        prove_quadratic, prove_roots,
     )
 }  # fmt: skip
 
@@ -1911,14 +2485,24 @@ def read_point(point: Any, box: dict[str, Range]) -> dict[str, Term]:
     return place
 
 
+def lies_in(case: Case, place: dict[str, Term]) -> bool:
+    """Whether a point is shown to belong to a case: all of it has a value, and its conditions hold."""
+    balls = {name: evaluate(value, {}, arb) for name, value in place.items()}
+    if not all(value_of(t, balls).is_finite() for t in case.terms):
+        return False
+    if not all(value_of(t, balls) >= 0 or is_identity(substitute(t, place)) for t in case.given):
+        return False
+    return all(is_identity(substitute(t, place)) for t in case.zeros)
+
+
 def check_proof(item: Any) -> None:
-    """A statement holds wherever all of it is defined; it is defined at the witness."""
+    """A statement holds wherever all of it is defined and its hypotheses hold; the witness is such a point."""
     _, statement, bits, witness, proofs = read_fields(item, "kind statement bits witness proofs")
     ctx.prec = read_integer(bits, 53, 20000)
-    goals, terms, box = read_statement(statement)
-    place = {name: evaluate(value, {}, arb) for name, value in read_point(witness, box).items()}
-    require(all(value_of(t, place).is_finite() for t in terms), "the statement may have no value at the witness")
-    prove_all(proofs, goals)
+    cases, box = read_statement(statement)
+    place = read_point(witness, box)
+    require(any(lies_in(case, place) for case in cases), "the statement may have no value at the witness")
+    prove_all(proofs, [goal for case in cases for goal in case.goals])
 
 
 FAILURES: dict[str, Callable[[arb], Any]] = {
@@ -1933,10 +2517,11 @@ def check_counterexample(item: Any) -> None:
     """At a point where all of it is defined a statement fails: by balls, or because a term is exactly 0 there."""
     _, statement, bits, point, zero = read_fields(item, "kind statement bits point zero")
     ctx.prec = read_integer(bits, 53, 200000)
-    goals, terms, box = read_statement(statement)
+    cases, box = read_statement(statement)
     place = read_point(point, box)
+    goals = [goal for case in cases if lies_in(case, place) for goal in case.goals]
+    require(goals, "the statement may have no value at the point")
     balls = {name: evaluate(value, {}, arb) for name, value in place.items()}
-    require(all(value_of(t, balls).is_finite() for t in terms), "the statement may have no value at the point")
     if zero is not None:
         (goal,) = goals
         at = reduce(lambda t, name: replace(t, ("symbol", name), place[name]), place, goal.term)

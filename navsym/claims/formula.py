@@ -26,6 +26,9 @@ class Formula:
     box         : name -> range of this formula inside its declaration
     tolerance   : for a printed numeral, the exact number that ``|left - right|`` does not exceed; None for equality
     exists      : expressions that must have a value, beside those that stand in the sides
+    given       : hypotheses, each a relation
+    chain       : ``"a = b <= c"`` in the place of both sides and their relation
+    rates       : name -> derivative by time
     """
 
     left: Side
@@ -36,18 +39,28 @@ class Formula:
     id: str = "formula"
     tolerance: str | None = None
     exists: tuple[str, ...] = ()
+    given: tuple[str, ...] = ()
+    chain: str | None = None
+    rates: Mapping[str, Any] = field(default_factory=dict)
 
     def __str__(self) -> str:
         within = "" if self.tolerance is None else f" +- {self.tolerance}"
-        return f"{side_text(self.left)}{within} {self.relation} {side_text(self.right)}"
+        return self.chain or f"{side_text(self.left)}{within} {self.relation} {side_text(self.right)}"
 
     def document(self) -> dict[str, Any]:
         """A whole claim file of this formula: ``{"symbols": …, "claim": [{"id", "left", "right", "relation"}]}``."""
-        block = {"id": self.id, "left": self.left, "right": self.right, "relation": self.relation}
+        block: dict[str, Any] = {"id": self.id, "left": self.left, "right": self.right, "relation": self.relation}
+        if self.chain:
+            block = {"id": self.id, "chain": self.chain}
         more = {"box": dict(self.box), "tolerance": self.tolerance, "exists": list(self.exists)}
-        return {"symbols": dict(self.symbols), "claim": [block | {key: value for key, value in more.items() if value}]}
+        more |= {"given": list(self.given)}
+        block |= {key: value for key, value in more.items() if value}
+        rates: dict[str, Any] = {"rates": dict(self.rates)} if self.rates else {}
+        return {"symbols": dict(self.symbols), **rates, "claim": [block]}
 
     def _repr_latex_(self) -> str:
+        if self.chain:
+            return rf"$\displaystyle {chain_latex(self.chain, self.symbols)}$"
         left, right = (side_latex(side, self.symbols) for side in (self.left, self.right))
         left += "" if self.tolerance is None else rf" \pm {side_latex(self.tolerance, {})}"
         return rf"$\displaystyle {left} {SIGNS.get(self.relation, self.relation)} {right}$"
@@ -68,9 +81,21 @@ def side_latex(side: Side, names: Mapping[str, Any]) -> str:
     import sympy as sp
 
     from navsym.language.expression import parse, symbol
+    from navsym.language.shapes import read_shape
+    from navsym.language.vectors import is_wide, print_value_latex, read_value
 
+    wide = is_wide(side_text(side)) or any(isinstance(names[n], dict) for n in names_of(side) & set(names))
+    if wide:
+        shapes = [shape for name, value in names.items() for shape in read_shape(name, value, {*names}, "")]
+        return print_value_latex(read_value(side_text(side), {shape.name: shape.size for shape in shapes}).tree)
     if isinstance(side, list):
         rows = [row if isinstance(row, list) else [row] for row in side]
         lines = r" \\ ".join(" & ".join(side_latex(cell, names) for cell in row) for row in rows)
         return rf"\begin{{bmatrix}}{lines}\end{{bmatrix}}"
     return str(sp.latex(parse(str(side), {name: symbol(name) for name in names})))
+
+
+def chain_latex(chain: str, names: Mapping[str, Any]) -> str:
+    """A chain in LaTeX, side by side."""
+    parts = re.split(r"([<>!]=|[<>=])(?![^(\[]*[)\]])", chain)
+    return " ".join(SIGNS.get(p, p) if k % 2 else side_latex(p.strip(), names) for k, p in enumerate(parts))

@@ -27,7 +27,14 @@ from navsym.language.files import read_text
 from navsym.language.names import quote
 from navsym.language.tokens import Source, tokenize
 from navsym.language.values import write_value
-from navsym.prove.claimfile import FileClaim, claims_from, existing_parts, statement_of, text_conditions
+from navsym.prove.claimfile import (
+    FileClaim,
+    claims_from,
+    existing_parts,
+    require_numbers,
+    statement_of,
+    text_conditions,
+)
 from navsym.prove.ladder import decide
 from navsym.prove.sampling.points import range_of
 from navsym.prove.wording import decimal_ends, expression_text
@@ -325,7 +332,7 @@ def of_file(path: Path) -> dict[str, Formula]:
     document = read_toml(path)
     if "claim" in document:
         claims = claims_from(document, str(path)).claims
-        return {name: found for c in claims for name, found in entries_by_place(c).items()}
+        return {name: found for c in claims for name, found in entries_by_place(require_numbers(c)).items()}
     return of_model(path)
 
 

@@ -54,7 +54,7 @@ from navsym.language.tree import (
 
 __all__ = ["Expr", "Matrix", "Parsed", "Symbol", "parse", "parse_noting", "read_tree", "symbol", "to_text"]
 
-MARKS, SIGNS, OPENERS = frozenset("*/"), frozenset("+-"), frozenset(("**", "("))
+MARKS, SIGNS, OPENERS = frozenset("*/"), frozenset("+-"), frozenset(("**", "(", ".", "["))
 FOLLOWERS = OPENERS | {"/"}  # a number before one of them may be a part of another one
 ZERO_LEAF, ONE_LEAF = build_number(0), build_number(1)
 LONGEST = 2_000_000  # characters of a text that is read into a tree: nothing is evaluated there

@@ -29,6 +29,9 @@ TOKEN = re.compile(
 #: The same tokens in one sweep, a number with all that clings to it; and numbers that need no second look.
 QUICK = re.compile(r"[0-9][\w.]*|[A-Za-z][A-Za-z0-9_]*|\*\*|[-+*/(),]")
 PLAIN = re.compile(r"[0-9]{1,400}(?:\.[0-9]{1,400})?", re.ASCII)
+#: The same for the whole language, which has vectors, matrices and relations.
+WIDE_TOKEN = re.compile(TOKEN.pattern.replace(r"\*\*|[-+*/(),]", r"\*\*|[<>!]=|[-+*/(),@.\[\]<>=]"))
+WIDE_QUICK = re.compile(QUICK.pattern.replace(r"\*\*|[-+*/(),]", r"\*\*|[<>!]=|[-+*/(),@.\[\]<>=]"))
 SPACE = re.compile(r"[ \t\r\n]+")
 
 
@@ -43,10 +46,11 @@ class Token:
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """The text with the place it came from, able to point at a column of itself."""
+    """The text with the place it came from, able to point at a column of itself; wide for the whole language."""
 
     text: str
     where: str
+    wide: bool = False
 
     def place(self, at: int) -> str:
         """``where`` with the line and column added."""
@@ -71,7 +75,8 @@ class Source:
 
 def split_tokens(source: Source, length: int = LENGTH) -> list[str]:
     """The texts of the tokens without their places, and some empty ones behind the last; raises as :func:`tokenize`."""
-    texts: list[str] = QUICK.findall(source.text) if len(source.text) <= length else []
+    quick = WIDE_QUICK if source.wide else QUICK
+    texts: list[str] = quick.findall(source.text) if len(source.text) <= length else []
     whole = "".join(texts) == SPACE.sub("", source.text)
     if not whole or any(text[0] in "0123456789" and not PLAIN.fullmatch(text) for text in set(texts)):
         texts = [token.text for token in tokenize(source, length)]
@@ -88,7 +93,7 @@ def tokenize(source: Source, length: int = LENGTH) -> Iterator[Token]:
         source.fail(length, f"at most {length} characters", got, remedy, TooLargeError)
     at, kind = 0, ""
     while kind != "end":
-        match = TOKEN.match(source.text, at)
+        match = (WIDE_TOKEN if source.wide else TOKEN).match(source.text, at)
         if match is None:
             refuse_character(source, at + len(source.text[at:]) - len(source.text[at:].lstrip(" \t\r\n")))
         kind = str(match.lastgroup)

@@ -34,9 +34,13 @@ from navsym.language.schema import (
     require_distinct,
     require_key,
 )
+from navsym.language.shapes import Shape
 from navsym.language.tomlfile import read_toml
 from navsym.prove.assumptions import is_nonzero, is_positive
 from navsym.prove.ladder import decide
+from navsym.prove.relations.judge import TextClaim, decide_text
+from navsym.prove.relations.reading import is_text_claim, limit_scalar, read_shapes, read_text_claim
+from navsym.prove.sampling.points import ranges_of, write_range
 from navsym.prove.signs.bounds import Sign, prove_sign
 from navsym.prove.wording import expression_text, scope_of
 
@@ -52,20 +56,43 @@ class Symbols:
 
     written: Table
     parameters: Mapping[str, Parameter]
+    shapes: Mapping[str, Shape]
+    rates: Table
 
     @classmethod
-    def read(cls, table: Any, where: str) -> Symbols:
-        """The declarations of a ``[symbols]`` table."""
-        return cls(table, read_parameters(as_table(table, where), where))
+    def read(cls, table: Any, where: str, rates: Any = None) -> Symbols:
+        """The declarations of a ``[symbols]`` table, and of ``[rates]``."""
+        whole = as_table(table, where)
+        scalars = {name: value for name, value in whole.items() if not isinstance(value, dict)}
+        slopes = as_table({} if rates is None else rates, where)
+        parameters = read_parameters(scalars, where)
+        return cls(whole, parameters, read_shapes(whole, slopes, where), slopes)
 
     def formula(self, block: Table) -> Formula:
         """A claim as it is written, with the declarations of the names in it."""
-        sides = [side_as_written(block[side]) for side in ("left", "right")]
-        box, exists = block.get("box", {}), tuple(map(str, block.get("exists", ())))
-        names = set(box).union(*map(names_of, (*sides, *exists)))
+        sides = [side_as_written(block.get(side, "")) for side in ("left", "right")]
+        box, exists, given = block.get("box", {}), tuple(map(str, block.get("exists", ()))), block.get("given", ())
+        chain, names = block.get("chain"), set(box)
+        names = names.union(*map(names_of, (*sides, *exists, *map(str, given), *([chain] if chain else []))))
+        rates = {name: text for name, text in self.rates.items() if is_derived((*sides, chain or ""))}
+        names = names.union(rates, *map(names_of, rates.values()))
         symbols = {name: value for name, value in self.written.items() if name in names}
         tolerance = None if "tolerance" not in block else str(block["tolerance"])
-        return Formula(sides[0], block.get("relation", "="), sides[1], symbols, box, block["id"], tolerance, exists)
+        relation, more = block.get("relation", "="), (tuple(given), chain, rates)
+        return Formula(sides[0], relation, sides[1], symbols, box, block["id"], tolerance, exists, *more)
+
+    def limit(self, name: str, ends: Any, place: str) -> list[Any]:
+        """A claim's own range of a name in the words of the checker."""
+        if name not in self.parameters:
+            return limit_scalar(name, ends, self.shapes[name], place)
+        box = box_of(self.parameters) | read_box({name: ends}, self.parameters, place.rpartition(".")[0])
+        own = self.parameters[name].symbol
+        return write_range(ranges_of([own], box)[own])
+
+
+def is_derived(sides: tuple[Side, ...]) -> bool:
+    """Whether a derivative stands in a text."""
+    return any({"diff", "dot_"} & names_of(side) for side in sides)
 
 
 def side_as_written(value: Any) -> Side:
@@ -107,7 +134,7 @@ class FileClaim:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class UndefinedClaim:
-    """A claim with a side that has no value, such as ``log(0)``; ``place`` counts the claims of the file."""
+    """A claim that cannot be read, or has a side without a value; ``place`` counts the claims of the file."""
 
     formula: Formula
     place: int
@@ -124,7 +151,7 @@ class ClaimFile:
     """``[symbols]`` and ``[[claim]]``; ``undefined`` only where the reader was asked to go on."""
 
     symbols: Mapping[str, Parameter]
-    claims: tuple[FileClaim, ...]
+    claims: tuple[FileClaim | TextClaim, ...]
     undefined: tuple[UndefinedClaim, ...] = ()
 
 
@@ -138,8 +165,8 @@ def read_claims(path: str | os.PathLike[str], *, go_on: bool = False) -> ClaimFi
 
 def claims_from(document: Table, where: str = "", *, go_on: bool = False) -> ClaimFile:
     """Like :func:`read_claims` for a document in memory."""
-    expect_keys(document, ("symbols", "claim"), where)
-    symbols = Symbols.read(document.get("symbols", {}), join_place(where, "symbols"))
+    expect_keys(document, ("symbols", "claim", "rates"), where)
+    symbols = Symbols.read(document.get("symbols", {}), join_place(where, "symbols"), document.get("rates"))
     blocks = require_key(document, "claim", where)
     place = join_place(where, "claim")
     if not isinstance(blocks, list):
@@ -151,28 +178,31 @@ def claims_from(document: Table, where: str = "", *, go_on: bool = False) -> Cla
         raise TooLargeError(message, where=place)
     found = [read_claim_or_error(block, symbols, place, i) for i, block in enumerate(blocks)]
     require_distinct((claim.id for claim in found), place)
-    claims = tuple(claim for claim in found if isinstance(claim, FileClaim))
+    claims = tuple(claim for claim in found if not isinstance(claim, UndefinedClaim))
     undefined = tuple(claim for claim in found if isinstance(claim, UndefinedClaim))
     if undefined and not (go_on and claims):
         raise undefined[0].error
     return ClaimFile(symbols.parameters, claims, undefined)
 
 
-def read_claim_or_error(block: Any, symbols: Symbols, where: str, place: int) -> FileClaim | UndefinedClaim:
-    """The claim, or why a side of it has no value; everything else that is wrong with it is raised."""
+def read_claim_or_error(block: Any, symbols: Symbols, where: str, place: int) -> FileClaim | TextClaim | UndefinedClaim:
+    """The claim, or why it cannot be read; one without a label is refused."""
     try:
         return read_claim(block, symbols, join_place(where, place))
-    except DomainError as error:
-        sides = tuple(join_place(join_place(where, place), side) for side in ("left", "right"))
-        if not error.where.startswith(sides):
+    except NavsymError as error:
+        if not isinstance(block, dict) or not isinstance(block.get("id"), str):
             raise
         as_label(block["id"], join_place(join_place(where, place), "id"))
-        return UndefinedClaim(symbols.formula(block), place, error)
+        return UndefinedClaim(Formula("", "=", "", id=block["id"]), place, error)
 
 
-def read_claim(block: Any, symbols: Symbols, where: str) -> FileClaim:
+def read_claim(block: Any, symbols: Symbols, where: str) -> FileClaim | TextClaim:
     """One [[claim]] block."""
     table = as_table(block, where)
+    if is_text_claim(table, symbols.written):
+        as_label(require_key(table, "id", where), join_place(where, "id"))
+        read_tolerance(table.get("tolerance"), table.get("relation", "="), join_place(where, "tolerance"))
+        return read_text_claim(table, symbols.shapes, symbols.rates, symbols.formula, symbols.limit, where)
     expect_keys(table, ("id", "left", "right", "relation", "box", "tolerance", "exists"), where)
     as_label(require_key(table, "id", where), join_place(where, "id"))
     relation = as_text(table.get("relation", "="), join_place(where, "relation"), "a relation")
@@ -297,8 +327,10 @@ def decide_claims(
     return Verdicts(tuple(done), {claim.id: claim.error for claim in claims.undefined})
 
 
-def decide_claim(claim: FileClaim, seconds: float = SECONDS / 2) -> Verdict:
+def decide_claim(claim: FileClaim | TextClaim, seconds: float = SECONDS / 2) -> Verdict:
     """Verdict of one claim, with what its text divides by and takes roots of among the assumptions."""
+    if isinstance(claim, TextClaim):
+        return decide_text(claim, seconds)
     verdict = decide(statement_of(claim), seconds=seconds)
     if verdict.status == REFUTED:
         return verdict
@@ -329,8 +361,17 @@ def existing_parts(claim: FileClaim) -> tuple[sp.Expr, ...]:
     )
 
 
-def statement_of(claim: FileClaim) -> Statement:
-    """The file's claim as a statement of the ladder."""
+def require_numbers(claim: FileClaim | TextClaim) -> FileClaim:
+    """The claim, when its sides are numbers or lists of numbers; raises DomainError for one of the whole language."""
+    if isinstance(claim, FileClaim):
+        return claim
+    got = f"{claim.id}, which has vectors, cases, derivatives or hypotheses"
+    raise DomainError(f"expected a claim between numbers; got {got}; write its entries out", where=claim.id)
+
+
+def statement_of(claim: FileClaim | TextClaim) -> Statement:
+    """The file's claim as a statement of the ladder; raises DomainError for one of the whole language."""
+    claim = require_numbers(claim)
     formula = claim.formula
     left, right = list_texts(formula.left), list_texts(formula.right)
     as_typed = claim.symbols is not None

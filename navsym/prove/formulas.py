@@ -10,7 +10,7 @@ from types import NoneType
 from typing import Any, overload
 
 from navsym.claims import Verdict, Verdicts
-from navsym.claims.formula import names_of
+from navsym.claims.formula import names_of, side_text
 from navsym.core.errors import DomainError, ExpressionSyntaxError, ShapeError, UnknownSymbolError
 from navsym.language.names import RESERVED, quote, suggest_nearest
 from navsym.language.tomlfile import read_toml
@@ -38,6 +38,8 @@ def prove(
     box: Mapping[str, Any] | None = ...,
     tolerance: Any = ...,
     exists: Any = ...,
+    given: Any = ...,
+    rates: Mapping[str, Any] | None = ...,
     seconds: float = ...,
     **symbols: Any,
 ) -> Verdict: ...
@@ -52,6 +54,8 @@ def prove(
     box: Mapping[str, Any] | None = None,
     tolerance: Any = None,
     exists: Any = (),
+    given: Any = (),
+    rates: Mapping[str, Any] | None = None,
     seconds: float = SECONDS,
     jobs: int = 1,
     progress: Progress | None = None,
@@ -63,14 +67,15 @@ def prove(
                 ``right``; or the path of a claim file (TOML). A side is text, an exact number, a sympy expression, or
                 a list of rows or matrix of these.
     relation  : one of ``= != < <= > >=``
-    symbols   : declarations, ``T=("0", "2*pi")`` for a closed range, or one of ``"real"``, ``"positive"``,
-                ``"nonnegative"``, ``"nonzero"``. A symbol without one is real, or what its sympy assumptions say.
+    symbols   : declarations: ``T=("0", "2*pi")`` for a closed range, ``"real"``, ``"positive"``, ``"nonnegative"``,
+                ``"nonzero"``, or a table such as ``u={"vector": 3}``; without one real, or as sympy assumes
     box       : name -> range, inside the declaration of that symbol
     tolerance : of a printed numeral, half a unit of its last digit: ``|left - right| <= tolerance``
     exists    : expression, or list of them, that must have a value: points where one has none do not count
+    given     : hypothesis, or list of them, each a relation: ``"dot(u, u) = 1"``
+    rates     : name -> derivative by time, for ``dot_(x)``
     seconds   : limit for one formula, seconds of processor time; above it the verdict is OPEN
-    jobs      : claims of a file decided at the same time
-    progress  : called with each verdict of a file, and the number of its claims
+    jobs, progress : claims of a file decided at the same time; called with each verdict and their number
 
     The formula is written down and read again in the language of files, so that nothing but that language is decided:
     first an exact point is sought where it fails, then a proof by exact algebra or balls. Angles are radians.
@@ -83,20 +88,17 @@ def prove(
     <PROVED: sin(2*a) = 2*sin(a)*cos(a); normal form; all real a>
     >>> nav.prove("sin(T) <= T", T=("0", "pi")).status
     <Status.PROVED: 'PROVED'>
-    >>> nav.prove("22/7 = pi", tolerance="0.005").holds
-    True
-    >>> nav.prove("a = a", exists="log(a)").assumptions
-    ('a > 0',)
+    >>> nav.prove("cross(u, cross(v, u)) = v - u*dot(u, v)", given="dot(u, u) = 1", u={"vector": 3}, v={"vector": 3})
+    <PROVED: cross(u, cross(v, u)) = v - u*dot(u, v); proof tree; all u in R^3, v in R^3>
     >>> import sympy
-    >>> x = sympy.Symbol("x", positive=True)
-    >>> nav.prove(sympy.log(x), "<=", x - 1).holds
+    >>> nav.prove(sympy.Symbol("x") ** 2, ">=", 0).holds
     True
     >>> nav.prove(0.5, "=", "1/2")
     Traceback (most recent call last):
     navsym.core.errors.DomainError: prove: left: expected an exact number; got the float 0.5; write "1/2" ...
     """
     require_options(box, seconds, jobs)
-    beside = {"box": box or {}, "tolerance": tolerance, "exists": exists}
+    beside = {"box": box or {}, "tolerance": tolerance, "exists": exists, "given": given, "rates": rates or {}}
     if relation is None and is_file(statement):
         if given := symbols or {name: value for name, value in beside.items() if value not in (None, {}, ())}:
             raise misplaced_declarations(given)
@@ -137,7 +139,10 @@ def prove_formula(sides: Sides, given: Mapping[str, Any], beside: Mapping[str, A
     left, right = write_entries(sides.left, "prove: left"), write_entries(sides.right, "prove: right")
     existing = beside["exists"] if isinstance(beside["exists"], (list, tuple)) else [beside["exists"]]
     exists = write_entries(list(existing), "prove: exists")
-    words = dict.fromkeys(symbols_in((left, right, exists), given), "real")
+    hypotheses = list(beside["given"]) if isinstance(beside["given"], (list, tuple)) else [beside["given"]]
+    slopes = {name: write_entries(rate, f"prove: rates.{name}") for name, rate in dict(beside["rates"]).items()}
+    texts = (left, right, exists, *map(str, hypotheses), *slopes.values())
+    words = dict.fromkeys(sorted(symbols_in(texts, given) | slopes.keys()), "real")
     words |= read_assumptions((sides.left, sides.right, *existing), "prove")
     declared = {name: write_declaration(value, f"prove: {name}") for name, value in given.items()}
     for name in declared.keys() - words.keys():
@@ -149,9 +154,10 @@ def prove_formula(sides: Sides, given: Mapping[str, Any], beside: Mapping[str, A
     narrowed |= {name: write_declaration(ends, f"prove: box.{name}") for name, ends in beside["box"].items()}
     block = {"id": "formula", "left": left, "relation": sides.relation, "right": right, "box": narrowed}
     block |= {"exists": exists} if exists else {}
+    block |= {"given": hypotheses} if hypotheses else {}
     if beside["tolerance"] is not None:
         block["tolerance"] = write_value(beside["tolerance"], "prove: tolerance")
-    symbols = Symbols.read(table, "prove")
+    symbols = Symbols.read(table, "prove", slopes)
     claim = read_claim(block, symbols, "prove")
     return decide_claims(ClaimFile(symbols.parameters, (claim,)), seconds=seconds)[0]
 
@@ -188,7 +194,7 @@ def split_formula(statement: Any) -> Sides:
         expected = "a formula as text, or two sides with their relation between them"
         message = f'expected {expected}; got {quote(statement)}; write prove(left, "=", right)'
         raise ExpressionSyntaxError(message, where="prove: statement")
-    marks = list(RELATION.finditer(statement))
+    marks = [mark for mark in RELATION.finditer(statement) if is_outside_brackets(statement, mark.start())]
     if not marks:
         message = f"expected a relation = != < <= > >= or a file.toml; got {quote(statement)}; write both sides"
         raise ExpressionSyntaxError(message, where="prove: statement")
@@ -199,11 +205,20 @@ def split_formula(statement: Any) -> Sides:
     return Sides(statement[: mark.start()].strip(), mark[0], statement[mark.end() :].strip())
 
 
+def is_outside_brackets(text: str, at: int) -> bool:
+    """Whether a place of a text lies in no parentheses and brackets."""
+    before = text[:at]
+    return sum(map(before.count, "([")) <= sum(map(before.count, ")]"))
+
+
 def symbols_in(sides: Iterable[Any], given: Mapping[str, Any]) -> set[str]:
     """Names in texts that are symbols: no function, and not a function or number of another language.
 
     ``e`` and ``ln`` count where the caller declares them; the reader says of the others what to write instead.
     """
     from navsym.language.advice import FOREIGN
+    from navsym.language.vectors import TAKES, UNDECIDED
 
-    return set().union(*map(names_of, sides)) - RESERVED - (FOREIGN.keys() - given.keys())
+    called = {name for side in sides for name in re.findall(r"([A-Za-z]\w*)\s*\(", side_text(side))}
+    functions = called & {*TAKES, *UNDECIDED}
+    return set().union(*map(names_of, sides)) - RESERVED - ((FOREIGN.keys() | functions) - given.keys())

@@ -217,8 +217,7 @@ def refute_document(documents: Sequence[Document], document: Document, point: Ma
         except REFUSALS as error:
             refusal = error
     if document["relation"] in ("<", ">", "!="):
-        goals, _, _ = player.read_statement(document)
-        term = goals[0].term
+        term = player.read_statement(document)[0][0].goals[0].term
         for name, value in point.items():
             term = player.replace(term, ("symbol", name), player.parse(value))
         zero = find_proof(player.Goal(term, "=", {}))
@@ -254,14 +253,15 @@ def grant_proofs(documents: Sequence[Document], verdict: Verdict, seconds: float
 
 def prove_document(document: Document, verdict: Verdict, seconds: float) -> Document | None:
     """The certificate of one entry, not granted yet; None where no proof is found."""
-    goals, terms, box = player.read_statement(document)
-    witness = find_witness(terms, box)
+    cases, box = player.read_statement(document)
+    goals = [goal for case in cases for goal in case.goals]
+    witness = find_witness(cases[0].terms, box)
     if witness is None:
         return None
     if verdict.method.startswith("normal form") and len(goals) == 1 and goals[0].relation == "=":
         proofs: list[Any] = [IDENTITY]
         try:
-            checker.prove(IDENTITY, checker.read_statement(document)[0][0])
+            checker.prove(IDENTITY, checker.read_statement(document)[0][0].goals[0])
         except REFUSALS:
             proofs = [find_proof(goals[0], seconds)]
     else:
@@ -285,6 +285,7 @@ def defined_points(terms: Sequence[Any], box: Mapping[str, Any]) -> Iterator[tup
 
 
 def write_point(point: Mapping[str, fmpq]) -> dict[str, str]:
+    """A point as text, by name."""
     return {name: write_term(player.number(value)) for name, value in point.items()}
 
 
@@ -304,9 +305,9 @@ def judge_without_proof(documents: Sequence[Document], document: Document, verdi
 
 def find_failure(document: Document) -> dict[str, str] | None:
     """A point at which a sample breaks the statement."""
-    goals, terms, box = player.read_statement(document)
-    for point, place in defined_points(terms, box):
-        if any(player.FAILURES[goal.relation](player.value_of(goal.term, place)) for goal in goals):
+    (case,), box = player.read_statement(document)
+    for point, place in defined_points(case.terms, box):
+        if any(player.FAILURES[goal.relation](player.value_of(goal.term, place)) for goal in case.goals):
             return write_point(point)
     return None
 

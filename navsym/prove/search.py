@@ -16,6 +16,7 @@ from typing import Any
 from flint import ctx
 
 from navsym.core.errors import NavsymError
+from navsym.prove.relations.cofactors import by_cofactors, by_elimination, by_sums_of_hypotheses
 from navsym.prove.rooms.equations import (
     by_algebra,
     by_cases,
@@ -53,17 +54,20 @@ from navsym.prove.rooms.signs import (
 
 #: The rooms in the order of their cost: cheap ones, those that think longer, those of the last resort.
 EQUATIONS: tuple[tuple[Room, ...], ...] = (
-    (by_algebra, by_modulus, by_values, by_values_of_constants, by_inverse, by_equal_squares),
-    (by_logarithms_of_products, by_sides_of_zero, by_gradient),
-)
+    (
+        by_algebra, by_cofactors, by_elimination, by_modulus, by_values, by_values_of_constants, by_inverse,
+        by_equal_squares,
+    ),
+    (by_sums_of_hypotheses, by_logarithms_of_products, by_sides_of_zero, by_gradient),
+)  # fmt: skip
 SIGNS: tuple[tuple[Room, ...], ...] = (
     (
-        by_number, by_identity, by_range, by_roots, by_bounds, by_corners, by_product, by_sum, by_few_balls, by_values,
-        by_side, by_squares, by_cones, by_forms,
+        by_number, by_identity, by_elimination, by_sums_of_hypotheses, by_range, by_roots, by_bounds, by_corners,
+        by_product, by_sum, by_few_balls, by_values, by_side, by_squares, by_cones, by_forms,
     ),
     (
-        by_hypothesis, by_cases, by_quadratic, by_divisors, by_roots_of_symbols, by_substitution, by_slope, by_contacts,
-        by_modulus, by_logarithms,
+        by_cofactors, by_hypothesis, by_cases, by_quadratic, by_divisors, by_roots_of_symbols, by_substitution,
+        by_slope, by_contacts, by_modulus, by_logarithms,
     ),
     (by_concavity, by_many_balls),
 )  # fmt: skip
@@ -112,7 +116,7 @@ class Search:
 
     def find(self, goal: Any) -> Proof | None:
         """A proof of a goal, or None."""
-        key = (goal.term, goal.relation, tuple(sorted(goal.box.items())), goal.given)
+        key = (goal.term, goal.relation, tuple(sorted(goal.box.items())), goal.given, goal.zeros)
         if (key, goal.exists) in self.found:
             return self.found[key, goal.exists]
         left = self.most_depth - self.depth

@@ -37,6 +37,25 @@ I, B = by("identity"), by("balls", bits=60, cells=20)
 X0, X1, XB, XY = {"x": "0"}, {"x": "1"}, {"x": "-1"}, {"x": "1", "y": "1"}
 
 
+def stated(left, relation, right, *names, given=(), rates=None, exists=(), tolerance=None, **symbols):
+    """A statement of the whole language: u, v, w are vectors of three, q one of four, A, B matrices of two rows."""
+    sizes = {**dict.fromkeys("uvw", (3, 1)), "q": (4, 1), **dict.fromkeys("AB", (2, 2)), "G": (2, 3)}
+    shapes = {
+        name: [[f"{name}_{i}_{j}" for j in range(sizes[name][1])] for i in range(sizes[name][0])] for name in names
+    }
+    ranges = {entry: LINE for rows in shapes.values() for row in rows for entry in row} | symbols
+    whole = state(left, relation, right, exists, tolerance, **ranges)
+    return whole | {"shapes": shapes, "given": list(given), "rates": rates or {}}
+
+
+def modulo(to, proof, *cofactors, defined=()):
+    return by("modulo", proof, to=to, cofactors=list(cofactors), defined=list(defined))
+
+
+def between(*proofs):
+    return by("between", proofs=list(proofs))
+
+
 def equal(to, proof, *defined):
     return by("equal", proof, to=to, defined=list(defined))
 
@@ -708,6 +727,90 @@ HOSTILE = [
 # fmt: on
 
 
+# The rules of hypotheses
+TRUE += [
+    ("modulo", stated("x**2", "=", "4", given=["x = 2"], x=LINE), {"x": "2"}, modulo("0", I, "x + 2")),
+    ("modulo", stated("x**2", ">", "3", given=["x = 2"], x=LINE), {"x": "2"}, modulo("1", B, "x + 2")),
+    (
+        "modulo",
+        stated("x", "=", "y", given=["x*y = 1", "y**2 = 1"], x=LINE, y=LINE),
+        XY,
+        modulo("0", I, "y", "-x", defined=()),
+    ),
+    ("modulo", stated("1/x", "=", "y", given=["x*y = 1"], x=LINE, y=LINE), XY, modulo("0", I, "-1/x")),
+    (
+        "between",
+        stated("x", "=", "0", given=["x >= 0", "-x >= 0"], x=LINE),
+        X0,
+        between(given("1", "0"), given("0", "1")),
+    ),
+]
+HOSTILE += [
+    ("modulo", stated("x**2", "=", "4", given=["x = 2"], x=LINE), {"x": "2"}, modulo("0", I, "x - 2"), "terms differ"),
+    ("modulo", stated("x**2", "=", "4", given=["x = 2"], x=LINE), {"x": "2"}, modulo("0", I), "expected 1 entries"),
+    (
+        "modulo",
+        stated("x", "=", "4", given=["x**2 = 16"], x=LINE),
+        {"x": "4"},
+        modulo("0", I, "1/(x + 4)"),
+        "expected 1 entries",
+    ),
+    ("modulo", state("x", "=", "4", x=LINE), {"x": "4"}, modulo("0", I), "the terms differ"),
+    (
+        "modulo",
+        stated("x", "=", "4", given=["x >= 4"], x=LINE),
+        {"x": "4"},
+        modulo("0", I, "1"),
+        "expected a list of entries",
+    ),
+    (
+        "modulo",
+        stated("x", "=", "3", given=["x - x = 1"], x=LINE),
+        {"x": "3"},
+        modulo("0", I, "-(x - 3)"),
+        "no value at the witness",
+    ),
+    (
+        "modulo",
+        stated("x", "=", "y", given=["x = 2"], x=LINE, y=LINE),
+        {"x": "2", "y": "2"},
+        modulo("0", I, "1 - z"),
+        "the terms differ",
+    ),
+    ("between", state("x", "=", x=UNIT), X0, between(span(0), span(1)), "the term is another one"),
+    ("between", state("x", ">=", x=UNIT), X0, between(span(0), span(0)), "expected an equation"),
+    (
+        "slope",
+        stated("x", ">=", "1", given=["x = 1"], x=["0", "2", []]),
+        X1,
+        slope(0, B, modulo("0", I, "1")),
+        "expected a list of entries",
+    ),
+    (
+        "dense",
+        stated("(x - 1)**2", ">=", "0", given=["x = 1"], x=LINE),
+        X1,
+        dense("x", {"x": "1"}, modulo("0", I, "x - 1")),
+        "expected a list of entries",
+    ),
+    (
+        "derivative",
+        stated("x", "=", "1", given=["x = 1"], x=LINE),
+        X1,
+        derivative({"x": "1"}, I, [modulo("0", I, "1")]),
+        "expected a list of entries",
+    ),
+    (
+        "corners",
+        stated("x - 1", ">=", "0", given=["x = 1"], x=["0", "2", []]),
+        X1,
+        corners(["x"], modulo("0", I, "1"), B),
+        "expected a list of entries",
+    ),
+]
+# fmt: on
+
+
 # What is no statement or no witness, and points that refute or do not
 # fmt: off
 WITNESSES = [
@@ -798,6 +901,18 @@ def discrepancies(module: Any, reasons: bool = True, first: str = "") -> Iterato
     hostile = [(s, prove(s, at, proof), why) for _, s, at, proof, why in rows]
     hostile += [(s, prove(s, at, proof), why) for s, at, proof, why in WITNESSES]
     hostile += [(s, refute(s, at, zero), why) for s, at, zero, why in STANDS]
+    from tests.checker import language  # its rows are made of these
+
+    for statement, at, proofs, is_true in language.list_language():
+        found = answer(module, statement, prove(statement, at, *proofs))
+        if (found == "HOLDS") != is_true:
+            yield f"{found}: {statement}"
+    for statement, point, zero in language.LANGUAGE_FAILS:
+        if answer(module, statement, refute(statement, point, zero)) != "FAILS":
+            yield f"not refuted: {statement}"
+    hostile += [(s, prove(s, {}, I), why) for s, why in language.MEANINGLESS]
+    hostile += [(s, prove(s, at, *proofs), why) for s, at, proofs, why in language.NOWHERE_DEFINED]
+    hostile += [(s, refute(s, at, zero), why) for s, at, zero, why in language.LANGUAGE_STANDS]
     for statement, item, why in hostile:
         given_answer = answer(module, statement, item)
         if given_answer in ("HOLDS", "FAILS") or (reasons and not re.search(why, given_answer)):

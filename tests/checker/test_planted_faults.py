@@ -89,9 +89,25 @@ FAULTS = [
     ("slope", "require(not by_slope or is_open", "require(True"),
     (
         "slope",
-        "name, nonzero=False, integer=False, **own_end)._replace(term=ZERO, exists=(), given=())",
+        "name, nonzero=False, integer=False, **own_end)\n"
+        "    whole = whole._replace(term=ZERO, exists=(), given=(), zeros=())",
         "name, **own_end)",
     ),
+    # the whole language
+    (
+        "modulo",
+        'require(is_identity(subtract(goal.term, total)), "the terms differ")\n'
+        "    prove(premise, remember(goal, term))",
+        "prove(premise, remember(goal, term))",
+    ),
+    ("between", "for side in (goal.term, negate(goal.term))]", "for side in (goal.term, goal.term)]"),
+    ("modulo", "all(is_identity(substitute(t, place)) for t in case.zeros)", "True"),
+    ("", "(c, d, a, f)", "(a, f, c, d)"),
+    ("", "two(x1, y1, -1, w, z1)", "two(x1, y1, 1, w, z1)"),
+    ("", "self.reader.need(*list_entries(value))", "pass"),
+    ("", "conditions(term, 2)]", "conditions(term)]"),
+    ("", '{">": ">=", ">=": ">", "=": "!="}', '{">": ">", ">=": ">", "=": "!="}'),
+    ("", "negate(minor(rows, i, j)) if (i + j) % 2 else minor", "negate(minor(rows, j, i)) if (i + j) % 2 else minor"),
     ("concave", 'negate(second), relation=">="', 'second, relation=">="'),
     ("cones", 'require(all(c >= 0 for _, c in rows), "a negative coefficient")', "pass"),
     ("cones", "if all(positive & group for group in alive) and", "if all(positive >= group for group in alive) and"),

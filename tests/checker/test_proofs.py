@@ -8,6 +8,7 @@ from collections import Counter
 import pytest
 
 from navsym import checker
+from tests.checker.language import LANGUAGE_FAILS, LANGUAGE_STANDS, MEANINGLESS, NOWHERE_DEFINED, list_language
 from tests.checker.proofs import FAILS, HOSTILE, STANDS, TRUE, UNIT, WITNESSES, X0, B, I, answer, prove, refute, state
 
 
@@ -33,12 +34,29 @@ def test_a_malformed_statement_or_a_point_outside_is_no_witness(statement, witne
     assert re.search(why, answer(checker, statement, prove(statement, witness, proof)))
 
 
-@pytest.mark.parametrize(("statement", "point", "zero"), FAILS, ids=lambda x: str(x)[:40])
+@pytest.mark.parametrize(("statement", "witness", "proofs", "is_true"), [*list_language()], ids=lambda x: str(x)[:60])
+def test_the_whole_language_is_read_as_it_is_meant_and_its_false_variants_are_refused(
+    statement, witness, proofs, is_true
+):
+    assert (answer(checker, statement, prove(statement, witness, *proofs)) == "HOLDS") is is_true
+
+
+@pytest.mark.parametrize(("statement", "why"), MEANINGLESS, ids=lambda x: str(x)[:60])
+def test_what_the_language_does_not_mean_is_refused(statement, why):
+    assert re.search(why, answer(checker, statement, prove(statement, {}, I)))
+
+
+@pytest.mark.parametrize(("statement", "witness", "proofs", "why"), NOWHERE_DEFINED, ids=lambda x: str(x)[:60])
+def test_a_part_without_a_value_and_a_forgotten_case_are_seen(statement, witness, proofs, why):
+    assert re.search(why, answer(checker, statement, prove(statement, witness, *proofs)))
+
+
+@pytest.mark.parametrize(("statement", "point", "zero"), [*FAILS, *LANGUAGE_FAILS], ids=lambda x: str(x)[:40])
 def test_a_point_where_a_statement_fails_refutes_it(statement, point, zero):
     assert answer(checker, statement, refute(statement, point, zero)) == "FAILS"
 
 
-@pytest.mark.parametrize(("statement", "point", "zero", "why"), STANDS, ids=lambda x: str(x)[:40])
+@pytest.mark.parametrize(("statement", "point", "zero", "why"), [*STANDS, *LANGUAGE_STANDS], ids=lambda x: str(x)[:40])
 def test_a_statement_stands_at_a_point_where_it_holds_or_has_no_value(statement, point, zero, why):
     assert re.search(why, answer(checker, statement, refute(statement, point, zero)))
 

@@ -7,7 +7,7 @@ import json
 import pytest
 
 from navsym.cli.main import run
-from navsym.core.errors import DomainError, ExpressionSyntaxError
+from navsym.core.errors import DomainError, EmptyError
 from navsym.prove.claimfile import claims_from, decide_claims
 
 GOOD = {"id": "good", "left": "a + a", "right": "2*a"}
@@ -37,9 +37,19 @@ def test_a_file_of_nothing_else_is_refused():
         claims_from(document(POLE), "f", go_on=True)
 
 
-def test_what_is_wrong_in_any_other_way_refuses_the_file():
-    with pytest.raises(ExpressionSyntaxError):
-        claims_from(document(GOOD, {"id": "open", "left": "(a", "right": "a"}), "f", go_on=True)
+@pytest.mark.parametrize(
+    "wrong",
+    [{"id": "open", "left": "(a", "right": "a"}, {"id": "typo", "left": "a"}, {"id": "key", "left": "a", "rihgt": "a"}],
+)
+def test_what_is_wrong_in_any_other_way_spoils_its_own_claim_only(wrong):
+    found = decide_claims(claims_from(document(GOOD, wrong), "f", go_on=True)).document()
+    assert [(claim["id"], claim["status"]) for claim in found["claims"]] == [("good", "PROVED"), (wrong["id"], "OPEN")]
+    assert found["error"]["where"].startswith("f: claim[1]")
+
+
+def test_a_claim_without_a_label_refuses_the_file():
+    with pytest.raises(EmptyError):
+        claims_from(document(GOOD, {"left": "a", "right": "a"}), "f", go_on=True)
 
 
 def test_the_verb_answers_with_verdicts_an_error_and_status_two(tmp_path, capsys):

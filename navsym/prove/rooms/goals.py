@@ -127,7 +127,12 @@ def join(terms: Sequence[Term]) -> Term:
 
 
 def sample_goal(goal: Any) -> list[arb]:
-    """Balls of the term at some points of the box at which all has a value and the hypotheses hold."""
+    """Balls of the term at some points of the box at which all has a value and the hypotheses hold.
+
+    None where something has to be 0: points of the box hardly meet that.
+    """
+    if goal.zeros:
+        return []
     names = sorted(player.symbols_of(goal.term).union(*map(player.symbols_of, goal.given)))
     values: list[arb] = []
     wanted = len(SHARES) + 4

@@ -1,0 +1,229 @@
+"""Symbols declared by tables: vectors, matrices, rotations, quaternions, functions of time, integers, ranges.
+
+A vector or matrix has one symbol for each entry: ``v`` has ``v_1, v_2, v_3``, shown as ``v[1]``. A symmetric matrix has
+one symbol in two places. A rotation and a unit quaternion have relations, which every claim about them may use.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from navsym.core.errors import DomainError, ExpressionSyntaxError, ShapeError, TooLargeError
+from navsym.language.declarations import SIGNS, read_range
+from navsym.language.expression import Expr
+from navsym.language.names import check_name, expect_keys, quote
+from navsym.language.printer import to_text
+from navsym.language.schema import SIDE, as_list, as_text, describe_value, join_place, read_entry
+
+#: What a table may say; ``unit`` and ``frame`` are notes for people.
+KINDS = ("vector", "matrix", "rotation", "quaternion", "integer")
+KEYS = (*KINDS, "symmetric", "function", "range", "sign", "unit", "frame")
+ORDERS = 3  # derivatives of a function of time that have symbols of their own
+RANGES: dict[str, list[Any]] = {
+    "real": [None, None, []],
+    "positive": ["0", None, ["open-low"]],
+    "nonnegative": ["0", None, []],
+    "nonzero": [None, None, ["nonzero"]],
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Shape:
+    """A declared name.
+
+    rows      : the symbols of the entries, row by row; a scalar has one of its own name
+    kind      : scalar, vector, matrix, rotation or quaternion
+    ranges    : symbol -> range in the words of the checker
+    relations : what holds of it, as text
+    rates     : name -> derivative by time as text, None where none is known
+    label     : how a derivative is written, ``dot_(x)``; empty for what is declared
+    """
+
+    name: str
+    rows: tuple[tuple[str, ...], ...]
+    kind: str
+    ranges: Mapping[str, list[Any]]
+    relations: tuple[str, ...] = ()
+    rates: Mapping[str, str | None] | None = None
+    label: str = ""
+
+    @property
+    def size(self) -> tuple[int, int] | None:
+        """Rows and columns; None for a scalar."""
+        return None if self.kind == "scalar" else (len(self.rows), len(self.rows[0]))
+
+    def shown(self) -> dict[str, str]:
+        """Symbol -> how the entry is written: ``v[1]``, ``A[1,2]``; the first place of a symbol that stands in two."""
+        name = self.label or self.name
+        if self.kind == "scalar":
+            return {self.name: name} if self.label else {}
+        places = {}
+        for i, row in reversed([*enumerate(self.rows, 1)]):
+            for j, entry in reversed([*enumerate(row, 1)]):
+                places[entry] = f"{name}[{i}]" if len(row) == 1 else f"{name}[{i},{j}]"
+        return places
+
+
+def read_shape(name: str, value: Any, taken: Collection[str], where: str) -> list[Shape]:
+    """The declared name, and behind it the derivatives of a function of time.
+
+    value : a table, or what ``[symbols]`` has for scalars
+    taken : names that the entries may not have
+    """
+    check_name(name, where=where)
+    if isinstance(value, list):
+        value = {"range": value}
+    if isinstance(value, str):
+        value = {"sign": value}
+    if not isinstance(value, Mapping):
+        message = (
+            f"expected a word, a range or a table; got {describe_value(value)}; write {{ vector = 3 }}, for example"
+        )
+        raise ShapeError(message, where=where)
+    expect_keys(value, KEYS, where)
+    for note in ("unit", "frame"):
+        if note in value:
+            as_text(value[note], join_place(where, note), "a note")
+    kinds = [kind for kind in KINDS if kind in value]
+    if len(kinds) > 1:
+        message = f"expected one of {', '.join(KINDS)}; got {' and '.join(kinds)}; keep one of them"
+        raise ShapeError(message, where=where)
+    kind = kinds[0] if kinds else "scalar"
+    rows = name_entries(name, read_size(kind, value, where), bool(value.get("symmetric")), taken)
+    limits = read_limits(kind, value, where)
+    shape = Shape(
+        name,
+        rows,
+        "scalar" if kind == "integer" else kind,
+        limit_entries(rows, limits),
+        relations_of(kind, value, name, where),
+    )
+    if "function" not in value:
+        return [shape]
+    if value["function"] != "t":
+        message = f'expected function = "t", the time; got {describe_value(value["function"])}; correct it'
+        raise DomainError(message, where=join_place(where, "function"))
+    return list_derivatives(shape, taken)
+
+
+def read_size(kind: str, value: Mapping[str, Any], where: str) -> tuple[int, int] | None:
+    """Rows and columns of what a table declares; None for a scalar."""
+    if kind == "rotation":
+        as_text(value["rotation"], join_place(where, "rotation"), 'two frames, such as "b to n",')
+        return 3, 3
+    if kind == "quaternion":
+        if value["quaternion"] not in ("unit", "any"):
+            message = f'expected "unit" or "any"; got {describe_value(value["quaternion"])}; correct it'
+            raise DomainError(message, where=join_place(where, "quaternion"))
+        return 4, 1
+    if kind not in ("vector", "matrix"):
+        if "symmetric" in value:
+            raise ShapeError(
+                "expected symmetric beside a matrix; got none; remove it", where=join_place(where, "symmetric")
+            )
+        return None
+    place = join_place(where, kind)
+    sizes = [value["vector"]] if kind == "vector" else list(as_list(value["matrix"], place, "two numbers"))
+    if len(sizes) != (1 if kind == "vector" else 2):
+        raise ShapeError(f"expected rows and columns; got {len(sizes)} numbers; write [2, 3]", where=place)
+    for size in sizes:
+        if not isinstance(size, int) or isinstance(size, bool) or size < 1:
+            message = f"expected a whole number from 1 on; got {describe_value(size)}; give the dimension as a number"
+            raise ShapeError(message, where=place)
+        if size > SIDE:
+            raise TooLargeError(f"expected at most {SIDE} rows; got {size}; split it", where=place)
+    rows, columns = (sizes[0], 1) if kind == "vector" else sizes
+    if value.get("symmetric") and rows != columns:
+        raise ShapeError(f"expected a square matrix to be symmetric; got {rows} x {columns}; correct it", where=place)
+    return rows, columns
+
+
+def name_entries(
+    name: str, size: tuple[int, int] | None, symmetric: bool, taken: Collection[str]
+) -> tuple[tuple[str, ...], ...]:
+    """Names of the entries that nobody has declared: ``v_1``, or ``v__1`` where ``v_1`` is taken."""
+    if size is None:
+        return ((name,),)
+    mark = "_"
+    while True:
+        rows = tuple(
+            tuple(
+                f"{name}{mark}{i}"
+                if size[1] == 1
+                else f"{name}{mark}{min(i, j) if symmetric else i}_{max(i, j) if symmetric else j}"
+                for j in range(1, size[1] + 1)
+            )
+            for i in range(1, size[0] + 1)
+        )
+        if not {entry for row in rows for entry in row} & {*taken}:
+            return rows
+        mark += "_"
+
+
+def read_limits(kind: str, value: Mapping[str, Any], where: str) -> list[Any]:
+    """The range of every entry in the words of the checker."""
+    place = join_place(where, "range")
+    if kind == "integer":
+        ends = list(as_list(value["integer"], join_place(where, "integer"), "two whole numbers"))
+        if len(ends) != 2:
+            message = f'expected two ends; got {len(ends)}; write ["1", "oo"]'
+            raise ShapeError(message, where=join_place(where, "integer"))
+        low, high = (read_end(end, join_place(where, "integer")) for end in ends)
+        return [low, high, ["integer"]]
+    if "range" in value and kind == "scalar":
+        low, high = read_range(value["range"], place)
+        return [to_text(low), to_text(high), []]
+    if "range" in value:
+        raise DomainError(f"expected a range of a number; got one of a {kind}; state it by given", where=place)
+    word = value.get("sign", "real")
+    if word not in SIGNS or (word != "real" and kind != "scalar"):
+        message = f"expected one of {', '.join(SIGNS)}; got {quote(word)}; correct it"
+        raise ExpressionSyntaxError(message, where=where)
+    return RANGES[word]
+
+
+def read_end(value: Any, where: str) -> str | None:
+    """An end of a range of integers; None for ``oo`` and ``-oo``."""
+    if value in ("oo", "-oo"):
+        return None
+    end: Expr = read_entry(value, {}, where)
+    if not end.is_Integer:
+        raise DomainError(f'expected a whole number or "oo"; got {quote(value)}; correct it', where=where)
+    return to_text(end)
+
+
+def limit_entries(rows: tuple[tuple[str, ...], ...], limits: list[Any]) -> dict[str, list[Any]]:
+    return {entry: limits for row in rows for entry in row}
+
+
+def relations_of(kind: str, value: Mapping[str, Any], name: str, where: str) -> tuple[str, ...]:
+    """What holds of a rotation, C'C = CC' = E, det C = 1 and each column the product of the others; or of a unit."""
+    if kind == "quaternion" and value["quaternion"] == "unit":
+        return (f"dot({name}, {name}) = 1",)
+    if kind != "rotation":
+        return ()
+    columns = [f"[{', '.join(f'{name}[{i},{j}]' for i in (1, 2, 3))}]" for j in (1, 2, 3)]
+    products = [f"cross({columns[a]}, {columns[b]}) = {columns[c]}" for a, b, c in ((0, 1, 2), (1, 2, 0), (2, 0, 1))]
+    return (f"{name}.T @ {name} = eye(3)", f"{name} @ {name}.T = eye(3)", f"det({name}) = 1", *products)
+
+
+def list_derivatives(shape: Shape, taken: Collection[str]) -> list[Shape]:
+    """A function of time and its derivatives, each the rate of the one before; of the last no rate is known."""
+    found, names = [], [shape.name]
+    for order in range(1, ORDERS + 1):
+        name = f"{shape.name}_dot{order}"
+        while name in taken:
+            name += "_"
+        names.append(name)
+    for order, name in enumerate(names):
+        rate = names[order + 1] if order < ORDERS else None
+        if order == 0:
+            found.append(Shape(name, shape.rows, shape.kind, shape.ranges, shape.relations, {name: rate}))
+            continue
+        rows = name_entries(name, shape.size, False, taken)
+        kind = "vector" if shape.kind == "quaternion" else "matrix" if shape.kind == "rotation" else shape.kind
+        label = "dot_(" * order + shape.name + ")" * order
+        found.append(Shape(name, rows, kind, limit_entries(rows, RANGES["real"]), (), {name: rate}, label))
+    return found

@@ -1,0 +1,1 @@
+"""Hypotheses: cofactors of what is equal because of them, and exact points where they hold."""

@@ -1,0 +1,176 @@
+"""A term as a sum of hypotheses with cofactors, by linear algebra of bounded degree: f = sum c_k h_k.
+
+The monomials of f are the first ones; every product of a monomial and a hypothesis of which a term is among them is an
+unknown, and brings its other terms along. The system is solved modulo a prime and its solution guessed as fractions;
+the checker multiplies out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import product
+from typing import Any
+
+from flint import Ordering, arb, fmpq, fmpq_mpoly, fmpq_mpoly_ctx, nmod_mat
+
+from navsym.prove.rooms.goals import Hole, Holes, Proof, Term, player, write_number, write_term
+
+PRIME = (1 << 61) - 1
+ROUNDS = 5
+MOST_GIVEN = 5
+MOST_VALUES = 8  # the relations of a rotation give every entry by the others
+MOST_UNKNOWNS = 2500
+FEW_UNKNOWNS = 400  # where roots stand: two of them that are equal by their signs differ by no cofactors
+
+Exponents = tuple[int, ...]
+Polynomial = dict[Exponents, fmpq]
+
+
+def by_cofactors(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """Candidates for the rule ``modulo`` with nothing left of the term, or 1 where it has a sign."""
+    if not goal.zeros:
+        return
+    rest = 0 if goal.relation in ("=", ">=") else 1
+    parts = [*dict.fromkeys(g for t in (goal.term, *goal.zeros) for g in player.list_generators(t))]
+    if not parts:
+        return
+    ring = fmpq_mpoly_ctx.get([f"x{k}" for k in range(len(parts))], Ordering.degrevlex)
+    generators = dict(zip(parts, ring.gens(), strict=True))
+    quotients = [player.to_quotient(t, generators, ring) for t in (goal.term, *goal.zeros)]
+    (top, bottom), relations = quotients[0], [h for h, _ in quotients[1:]]
+    own = [*relations, *list_own_relations(parts, generators, ring)]
+    roots = [k for k, part in enumerate(parts) if part[0] == "sqrt"]
+    most = FEW_UNKNOWNS if any(m[k] % 2 for m in read_terms(top) for k in roots) else MOST_UNKNOWNS
+    for found in find_cofactors(top - rest * bottom, own, most):
+        shares = [
+            write_share(c, down, bottom, parts) if c else "0"
+            for c, (_, down) in zip(found, quotients[1:], strict=False)
+        ]
+        yield {"rule": "modulo", "to": str(rest), "cofactors": shares, "defined": Holes(), "proof": Hole()}
+
+
+def by_elimination(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """A symbol that a hypothesis s = u gives, by u."""
+    for k, zero in enumerate(goal.zeros if len(goal.zeros) <= MOST_VALUES else ()):
+        for own, other, sign in list_values(zero):
+            if own[1] in player.symbols_of(goal.term) and own[1] not in player.symbols_of(other):
+                shares = [str(sign) if j == k else "0" for j in range(len(goal.zeros))]
+                equal: Proof = {"rule": "modulo", "to": "0", "cofactors": shares, "defined": Holes(), "proof": Hole()}
+                body: Proof = {"rule": "rewrite", "from": own[1], "to": write_term(other), "defined": Holes()}
+                yield body | {"equal": equal, "proof": Hole()}
+
+
+def by_sums_of_hypotheses(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """A sum of hypotheses >= 0; what is so with both signs is 0."""
+    if not 0 < len(goal.given) <= MOST_GIVEN:
+        return
+    if goal.relation == "=":
+        yield {"rule": "between", "proofs": Holes()}
+    for chosen in product((0, 1), repeat=len(goal.given)) if goal.relation == ">=" else ():
+        yield {"rule": "given", "weights": [*map(str, chosen)]}
+
+
+def list_values(zero: Term) -> Iterator[tuple[Term, Term, int]]:
+    """Symbols with the terms that are equal to them, and the sign of zero = sign (symbol - term)."""
+    if zero[0] == "symbol":
+        yield zero, player.ZERO, 1
+    elif zero[0] == "*" and zero[1] == player.MINUS_ONE and len(zero) == 3 and zero[2][0] == "symbol":
+        yield zero[2], player.ZERO, -1
+    elif zero[0] == "+" and len(zero) == 3:
+        left, right = zero[1], player.negate(zero[2])
+        right = zero[2][2] if zero[2][:2] == ("*", player.MINUS_ONE) and len(zero[2]) == 3 else right
+        if left[0] == "symbol":
+            yield left, right, 1
+        if right[0] == "symbol":
+            yield right, left, -1
+
+
+def list_own_relations(parts: Sequence[Term], generators: Any, ring: Any) -> Iterator[fmpq_mpoly]:
+    """What holds of functions by themselves: sin**2 + cos**2 = 1 and sqrt(u)**2 = u, for polynomials u."""
+    for part in parts:
+        if part[0] == "sin" and ("cos", part[1]) in generators:
+            yield generators[part] ** 2 + generators["cos", part[1]] ** 2 - 1
+        if part[0] == "sqrt" and all(g in generators for g in player.list_generators(part[1])):
+            top, bottom = player.to_quotient(part[1], generators, ring)
+            yield generators[part] ** 2 * bottom - top
+
+
+def find_cofactors(
+    target: fmpq_mpoly, relations: Sequence[fmpq_mpoly], most: int = MOST_UNKNOWNS
+) -> Iterator[list[Polynomial]]:
+    """Cofactors of the relations with sum c_k h_k = target, with more and more unknowns."""
+    wanted = read_terms(target)
+    tables = [read_terms(h) for h in relations]
+    monomials, columns = dict.fromkeys(wanted), dict[tuple[int, Exponents], Polynomial]()
+    fresh: Iterable[Exponents] = [*monomials]
+    for _ in range(ROUNDS):
+        for m in fresh:
+            if len(columns) > most:
+                return
+            for k, table in enumerate(tables):
+                for t in table:
+                    shift = tuple(a - b for a, b in zip(m, t, strict=True))
+                    if min(shift, default=0) >= 0 and (k, shift) not in columns:
+                        columns[k, shift] = {tuple(map(sum, zip(u, shift, strict=True))): c for u, c in table.items()}
+        fresh = [m for m in dict.fromkeys(m for column in columns.values() for m in column) if m not in monomials]
+        monomials |= dict.fromkeys(fresh)
+        solution = solve_modulo(wanted, columns, [*monomials])
+        if solution is not None:
+            yield [{m: c for (j, m), c in solution.items() if j == k} for k in range(len(relations))]
+        if not fresh:
+            return
+
+
+def read_terms(polynomial: fmpq_mpoly) -> Polynomial:
+    return {tuple(map(int, powers)): c for powers, c in polynomial.to_dict().items()}
+
+
+def solve_modulo(
+    wanted: Polynomial, columns: dict[tuple[int, Exponents], Polynomial], monomials: Sequence[Exponents]
+) -> dict[tuple[int, Exponents], fmpq] | None:
+    """One solution of sum x_j column_j = wanted in small fractions; None where there is none."""
+    rows, keys = {m: i for i, m in enumerate(monomials)}, [*columns]
+    entries = [[0] * (len(keys) + 1) for _ in monomials]
+    for j, table in enumerate((*columns.values(), wanted)):
+        for m, c in table.items():
+            entries[rows[m]][j] = reduce_number(c)
+    reduced, rank = nmod_mat(entries, PRIME).rref()
+    solution = {}
+    for i in range(rank):
+        pivot = next(j for j in range(len(keys) + 1) if int(reduced[i, j]))
+        if pivot == len(keys):
+            return None
+        value = guess_fraction(int(reduced[i, len(keys)]))
+        if value is None:
+            return None
+        if value != 0:
+            solution[keys[pivot]] = value
+    return solution
+
+
+def reduce_number(q: fmpq) -> int:
+    return int(q.p) * pow(int(q.q), -1, PRIME) % PRIME
+
+
+def guess_fraction(residue: int) -> fmpq | None:
+    """The fraction with small numerator and denominator of this residue: Euclid, stopped halfway."""
+    r, s, t, u = PRIME, residue, 0, 1
+    while s > 1 << 30:
+        r, s, t, u = s, r % s, u, t - r // s * u
+    return fmpq(s, u) if u and abs(u) < 1 << 30 else None
+
+
+def write_share(cofactor: Polynomial, above: fmpq_mpoly, below: fmpq_mpoly, parts: Sequence[Term]) -> str:
+    """c D_k/D as text: h_k is H_k/D_k, and f is N/D."""
+    text = write_polynomial(cofactor, parts)
+    for mark, polynomial in (("*", above), ("/", below)):
+        if polynomial != 1:
+            text = f"({text}){mark}({write_polynomial(read_terms(polynomial), parts)})"
+    return text
+
+
+def write_polynomial(terms: Polynomial, parts: Sequence[Term]) -> str:
+    return " + ".join(
+        "*".join([write_number(c), *(f"{write_term(p)}**{e}" for p, e in zip(parts, powers, strict=True) if e)])
+        for powers, c in terms.items()
+    )

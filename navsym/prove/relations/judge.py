@@ -1,0 +1,183 @@
+"""Claims that are decided on their text: vectors, matrices, hypotheses, cases and derivatives.
+
+The player of the search reads the text as the checker does and gives the goals of all entries and cases. An exact point
+where one fails refutes, proofs of all of them prove; the checker grants either.
+"""
+
+from __future__ import annotations
+
+import re
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from flint import arb
+
+from navsym.claims.formula import Formula
+from navsym.claims.verdict import CERTIFIED, OPEN, PROVED, REFUTED, Verdict
+from navsym.core.errors import NavsymError
+from navsym.prove.grant import BITS, IDENTITY, REFUSALS, Document, grant, refute_document, withdraw, write_point
+from navsym.prove.relations.points import Rows, draw_special_points
+from navsym.prove.rooms.goals import player, to_sympy, write_term
+from navsym.prove.search import find_proof, rules_of
+from navsym.prove.wording import decimal_ends, expression_text
+
+POINTS = 16
+QUICK = 0.4  # seconds for a condition that need not be listed
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TextClaim:
+    """A claim of which the checker reads the whole text.
+
+    documents : its statements in the words of the checker, one for each link of a chain
+    kinds     : name -> what it is and the names of its entries
+    shown     : name of an entry -> how it is shown, ``v_1`` as ``v[1]``
+    scope     : the quantifier in words
+    """
+
+    formula: Formula
+    documents: tuple[Document, ...]
+    kinds: Mapping[str, tuple[str, Rows]] = field(default_factory=dict)
+    shown: Mapping[str, str] = field(default_factory=dict)
+    scope: str = ""
+
+    @property
+    def id(self) -> str:
+        """The label of the claim."""
+        return self.formula.id
+
+    def show(self, text: str) -> str:
+        """The text with entries as they are written on paper."""
+        return re.sub(r"[A-Za-z]\w*", lambda name: self.shown.get(name[0], name[0]), text)
+
+
+def decide_text(claim: TextClaim, seconds: float) -> Verdict:
+    """Verdict of the claim: every link, entry and case of it."""
+    end = time.process_time() + seconds
+    certificates, assumptions, rules = [], dict[str, None](), set[str]()
+    for document in claim.documents:
+        try:
+            cases, box = player.read_statement(document)
+        except (*REFUSALS, ArithmeticError, RecursionError) as error:
+            return Verdict(OPEN, "none", claim.scope, evidence=f"the checker does not read it: {error}")
+        points = [*list_points(claim, cases, box)]
+        broken = find_failure(points)
+        if broken is not None:
+            return refute(claim, document, broken)
+        if not points:
+            return Verdict(OPEN, "none", claim.scope, evidence="no point is known at which all of it has a value")
+        proofs = []
+        for goal in (goal for case in cases for goal in case.goals):
+            proof = IDENTITY if is_identity(goal) else find_proof(goal, max(0.1, end - time.process_time()))
+            if proof is None:
+                words = f"no proof was found; it holds at {len(points)} exact points"
+                return Verdict(OPEN, "proof tree", claim.scope, evidence=words)
+            proofs.append(proof)
+        rules |= set().union(*map(rules_of, proofs))
+        witness = write_point(points[0][0])
+        certificates.append(
+            {"kind": "proof", "statement": document, "bits": BITS[0], "witness": witness, "proofs": proofs}
+        )
+        assumptions |= dict.fromkeys(list_assumptions(claim, cases))
+    return conclude(claim, certificates, rules, tuple(assumptions))
+
+
+def conclude(claim: TextClaim, certificates: list[Document], rules: set[str], assumptions: tuple[str, ...]) -> Verdict:
+    """PROVED or CERTIFIED, when the checker grants it."""
+    whole = certificates[0] if len(certificates) == 1 else {"kind": "all", "of": certificates}
+    method = "entries by exact algebra" if rules <= {"identity"} else "proof tree"
+    words = f"{sum(len(c['proofs']) for c in certificates)} goals by the rules {', '.join(sorted(rules))}"
+    status = CERTIFIED if "balls" in rules else PROVED
+    verdict = Verdict(status, method, claim.scope, assumptions, words, certificate=whole)
+    try:
+        grant(claim.documents, whole)
+    except REFUSALS as refusal:
+        return withdraw(replace(verdict, certificate=None), str(refusal))
+    return verdict
+
+
+def is_identity(goal: Any) -> bool:
+    """Whether exact algebra alone shows an equation."""
+    try:
+        return goal.relation == "=" and bool(player.is_identity(goal.term))
+    except (*REFUSALS, ArithmeticError):
+        return False
+
+
+def list_points(claim: TextClaim, cases: Sequence[Any], box: Mapping[str, Any]) -> Iterator[tuple[dict[str, Any], Any]]:
+    """Exact points of the claim with the case in which they lie."""
+    kinds = {name: kind for name, kind in claim.kinds.items() if {e for row in kind[1] for e in row} <= set(box)}
+    count = max(8, min(POINTS, 8 * POINTS // len(cases))) if box else 1
+    for case in cases:
+        for point in draw_special_points(case.goals[0].box, case.zeros, kinds, count):
+            place = {name: player.number(value) for name, value in point.items()}
+            try:
+                if all(player.is_inside(place[name], box[name]) for name in box) and player.lies_in(case, place):
+                    yield point, case
+            except (*REFUSALS, ArithmeticError):
+                continue
+
+
+def find_failure(points: Sequence[tuple[dict[str, Any], Any]]) -> dict[str, Any] | None:
+    """A point at which a goal of its case fails."""
+    for point, case in points:
+        balls = {name: player.Jet(arb(value)) for name, value in point.items()}
+        if any(player.FAILURES[goal.relation](player.value_of(goal.term, balls)) for goal in case.goals):
+            return point
+    return None
+
+
+def refute(claim: TextClaim, document: Document, point: Mapping[str, Any]) -> Verdict:
+    """REFUTED at a point, when the checker grants it."""
+    written = write_point(point)
+    shown = {claim.shown.get(name, name): str(value) for name, value in point.items()}
+    verdict = Verdict(REFUTED, "exact point, ball arithmetic", "one point", (), "", shown)
+    try:
+        certificate = refute_document(claim.documents, document, written)
+    except REFUSALS as refusal:
+        return withdraw(verdict, str(refusal))
+    difference = difference_at(document, point)
+    words = "the text fails at an exact point"
+    return replace(verdict, evidence=words, certificate=certificate, difference=difference)
+
+
+def difference_at(document: Document, point: Mapping[str, Any]) -> Any:
+    """An enclosure of left - right at the point, of the entry that differs most visibly."""
+    place = {name: player.number(value) for name, value in point.items()}
+    balls = {name: player.Jet(arb(value)) for name, value in point.items()}
+    cases, _ = player.read_statement({**document, "relation": "=", "tolerance": None})
+    values = [player.value_of(goal.term, balls) for case in cases if player.lies_in(case, place) for goal in case.goals]
+    far = [value for value in values if value.is_finite()]
+    return decimal_ends(max(far, key=lambda value: abs(float(value.mid())))) if far else None
+
+
+def list_assumptions(claim: TextClaim, cases: Sequence[Any]) -> Iterator[str]:
+    """What the text needs to have a value, where neither ranges nor hypotheses nor the cases say so."""
+    known = {t for case in cases for t in (*case.given, *case.zeros)}
+    needed = player.set_union(player.conditions(t) for case in cases for t in case.terms)
+    positive = {t for relation, t in needed if relation == ">"}
+    goal = cases[0].goals[0]._replace(exists=(), zeros=(), given=()) if len(cases) > 1 else cases[0].goals[0]
+    for relation, term in needed:
+        is_known = bool(known & {term, player.negate(term)}) or (relation != ">" and strip_root(term) in positive)
+        if not player.symbols_of(term) or is_known:
+            continue
+        own = goal._replace(term=term, relation=relation, exists=())
+        ways = (own._replace(zeros=()), own) if own.zeros else (own,)
+        if all(find_proof(way, QUICK, ((6, 60, 2),)) is None for way in ways):
+            yield f"{claim.show(write_condition(term))} {relation} 0"
+
+
+def strip_root(term: Any) -> Any:
+    """What a root with a number before it is taken of; else the term itself."""
+    factors = [f for f in player.list_factors(term) if f[0] != "number"]
+    return factors[0][1] if len(factors) == 1 and factors[0][0] == "sqrt" else term
+
+
+def write_condition(term: Any) -> str:
+    """A term in the usual order, as far as the algebra takes it."""
+    try:
+        return expression_text(to_sympy(term))
+    except (NavsymError, ArithmeticError, RecursionError):
+        return write_term(term)

@@ -1,0 +1,116 @@
+"""Exact points at which hypotheses hold: unit vectors, rotations and unit quaternions have rational parameters.
+
+Other hypotheses are solved for a symbol in which they are linear. A point is a proposal: the checker looks at it.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator, Mapping, Sequence
+from fractions import Fraction
+from typing import Any
+
+from flint import fmpq
+
+from navsym.prove.rooms.goals import draw_points, player
+
+Point = dict[str, fmpq]
+Rows = Sequence[Sequence[str]]
+
+
+def draw_special_points(
+    box: Mapping[str, Any], zeros: Sequence[Any], kinds: Mapping[str, tuple[str, Rows]], count: int
+) -> Iterator[Point]:
+    """Points of the box, some of which satisfy the hypotheses.
+
+    kinds : name -> ("rotation", "quaternion" or "vector", the names of the entries)
+    """
+    generator = random.Random(1)
+    plain = [*draw_points(box, count)]
+    for k in range(count):
+        if not zeros:
+            yield plain[k] if k < len(plain) and k % 2 else {n: draw_number(r, generator) for n, r in box.items()}
+            continue
+        point = dict(plain[k % len(plain)]) if plain and k % 2 == 0 else {}
+        for name, limit in box.items():
+            if name not in point or k % 2:
+                point[name] = draw_number(limit, generator)
+        fixed: set[str] = set()
+        frame = transpose(draw_rotation(generator))
+        for place, (kind, rows) in enumerate(kinds.values()):
+            entries = [name for row in rows for name in row]
+            values = draw_entries(kind, place, len(entries), frame, k, generator)
+            point.update(zip(entries, values, strict=True)) if values else None
+            fixed.update(entries if kind in ("rotation", "quaternion") or (values and k % 3) else ())
+        for zero in zeros:
+            solve_for_one(zero, point, fixed)
+        yield point
+
+
+def draw_number(limit: Any, generator: random.Random) -> fmpq:
+    """A short fraction in a range, as far as its ends are seen."""
+    low, high = (None if end is None else float(player.value_of(end, {}).mid()) for end in (limit.low, limit.high))
+    if limit.integer:
+        return fmpq(round(generator.uniform(low if low is not None else -5, high if high is not None else 9)))
+    if low is None and high is None:
+        value = Fraction(generator.randint(-9, 9), generator.randint(1, 4))
+        return fmpq(value.numerator or 1, value.denominator)
+    share = generator.uniform(0.05, 0.95)
+    if low is not None and high is not None:
+        far = low + (high - low) * share
+    else:
+        far = low + share / (1 - share) if low is not None else (high or 0.0) - share / (1 - share)
+    near = Fraction(far).limit_denominator(50)
+    return fmpq(near.numerator, near.denominator)
+
+
+def draw_entries(
+    kind: str, place: int, size: int, frame: list[list[fmpq]], k: int, generator: random.Random
+) -> list[fmpq]:
+    """Values of the entries of a matrix or vector; none where any values do."""
+    if kind == "rotation":
+        return [entry for row in draw_rotation(generator) for entry in row]
+    if kind == "quaternion":
+        return draw_unit(4, generator)
+    if kind == "vector" and k % 3 == 1 and size == 3:
+        return frame[place % 3]
+    return draw_unit(size, generator) if kind == "vector" and k % 3 == 2 else []
+
+
+def draw_unit(size: int, generator: random.Random) -> list[fmpq]:
+    """A rational point of the unit sphere, from a point of the plane by the lines through a pole."""
+    s = [fmpq(generator.randint(-4, 4), generator.randint(1, 3)) for _ in range(size - 1)]
+    square = sum((x * x for x in s), fmpq(0))
+    return [(1 - square) / (1 + square), *(2 * x / (1 + square) for x in s)]
+
+
+def draw_rotation(generator: random.Random) -> list[list[fmpq]]:
+    """A rational rotation matrix, of a rational quaternion (Euler, Rodrigues)."""
+    w, x, y, z = draw_unit(4, generator)
+    return [
+        [w * w + x * x - y * y - z * z, 2 * (x * y - w * z), 2 * (x * z + w * y)],
+        [2 * (x * y + w * z), w * w - x * x + y * y - z * z, 2 * (y * z - w * x)],
+        [2 * (x * z - w * y), 2 * (y * z + w * x), w * w - x * x - y * y + z * z],
+    ]
+
+
+def transpose(rows: list[list[fmpq]]) -> list[list[fmpq]]:
+    return [list(column) for column in zip(*rows, strict=True)]
+
+
+def solve_for_one(zero: Any, point: Point, fixed: set[str]) -> None:
+    """Move one symbol, in which the hypothesis is linear at this point, so that it holds; it is not moved again."""
+    for name in sorted(player.symbols_of(zero) - fixed, reverse=True):
+        term = player.substitute(zero, {n: player.number(v) for n, v in point.items() if n != name})
+        try:
+            if name not in player.symbols_of(term):
+                continue
+            top, bottom = player.to_fraction(term)
+        except (player.Refused, ZeroDivisionError):
+            continue
+        if top.degree() == 1 and bottom != 0:
+            root = -top[0] / top[1]
+            if bottom(root) != 0:
+                point[name] = root
+                fixed.add(name)
+                return

@@ -1,0 +1,242 @@
+"""Claims with vectors, matrices, hypotheses, chains, cases or derivatives, read and written down for the checker.
+
+Every text is read by :mod:`navsym.language.vectors`, which says what is wrong with it and where. The checker gets the
+texts as they were typed, the names of all entries, the hypotheses and the rates.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any
+
+from navsym.claims.formula import Formula, names_of, side_text
+from navsym.core.errors import DomainError, ExpressionSyntaxError, ShapeError, UnknownSymbolError
+from navsym.language.declarations import read_range
+from navsym.language.names import expect_keys, quote, suggest_nearest
+from navsym.language.printer import to_text
+from navsym.language.schema import Table, as_list, as_table, as_text, join_place, require_key
+from navsym.language.shapes import RANGES, Shape, read_shape
+from navsym.language.tree import Tree, list_names, list_parts
+from navsym.language.vectors import RELATIONS, Size, describe_size, is_wide, read_hypothesis, read_value
+from navsym.prove.grant import Document, write_numerals
+from navsym.prove.relations.judge import TextClaim
+
+#: Two sides of a chain at each of its relations, outside of parentheses and brackets.
+SIGN = re.compile(r"[<>!]=|[<>=]")
+MOST_LINKS = 16
+TIME = "t"
+
+
+def read_shapes(table: Table, rates: Table, where: str) -> dict[str, Shape]:
+    """The declared names by name, with the derivatives of functions of time, and rates taken from ``[rates]``."""
+    taken, found = {*table}, dict[str, Shape]()
+    for name, value in table.items():
+        for shape in read_shape(name, value, taken, join_place(where, name)):
+            found[shape.name] = shape
+            taken |= {shape.name, *(entry for row in shape.rows for entry in row)}
+    for name in rates:
+        if name not in found:
+            hint = suggest_nearest(name, found)
+            raise UnknownSymbolError(
+                f"expected a declared name; got {quote(name)}; declare it below [symbols]: {hint}",
+                where=join_place("rates", name),
+            )
+    if TIME not in found and any(shape.rates for shape in found.values()):
+        found[TIME] = Shape(TIME, ((TIME,),), "scalar", {TIME: RANGES["real"]})
+    return found
+
+
+def is_text_claim(block: Table, symbols: Table) -> bool:
+    """True for a claim that the grammar of numbers alone does not have."""
+    if {"given", "chain"} & set(block):
+        return True
+    texts = [text for key in ("left", "right") for text in list_cells(block.get(key))]
+    texts += [str(text) for text in block.get("exists", ()) if isinstance(block.get("exists"), list)]
+    tables = {name for name, value in symbols.items() if isinstance(value, dict)}
+    return any(is_wide(text) or tables & names_of(text) for text in texts)
+
+
+def list_cells(side: Any) -> list[str]:
+    """The texts of a side: of its entries where it is a list."""
+    return [text for part in side for text in list_cells(part)] if isinstance(side, list) else [str(side)]
+
+
+def read_text_claim(
+    block: Table,
+    shapes: Mapping[str, Shape],
+    rates: Table,
+    make_formula: Callable[[Table], Formula],
+    limit: Callable[[str, Sequence[Any], str], list[Any]],
+    where: str,
+) -> TextClaim:
+    """One claim.
+
+    make_formula : the claim as it is written
+    limit        : name, ends and place of a range of the claim itself -> the range in the words of the checker
+    """
+    expect_keys(block, ("id", "left", "right", "relation", "chain", "given", "box", "tolerance", "exists"), where)
+    sizes = {name: shape.size for name, shape in shapes.items()}
+    links = read_links(block, where)
+    trees = [read_link(link, sizes, where) for link in links]
+    texts = [text for left, _, right in links for text in (left, right)]
+    given = read_given(block.get("given", []), sizes, join_place(where, "given"))
+    exists = read_texts(block.get("exists", []), join_place(where, "exists"))
+    for i, text in enumerate(exists):
+        trees.append(read_value(text, sizes, where=join_place(join_place(where, "exists"), i)).tree)
+    used, slopes = collect_names([*texts, *exists, *given], shapes, rates, sizes)
+    require_rates(trees, slopes, where)
+    relations = [text for name in used for text in shapes[name].relations]
+    ranges = {entry: span for name in used for entry, span in shapes[name].ranges.items()}
+    for name, ends in as_table(block.get("box", {}), join_place(where, "box")).items():
+        place = join_place(join_place(where, "box"), name)
+        if name not in shapes:
+            expect_keys({name: ends}, tuple(shapes), join_place(where, "box"))
+        ranges[name] = limit(name, ends, place)
+    formula = make_formula(block)
+    common: Document = {"symbols": ranges, "exists": [*map(clean, exists)], "tolerance": formula.tolerance}
+    common |= {"shapes": {n: [[*row] for row in shapes[n].rows] for n in used if shapes[n].size}}
+    common |= {"given": [*map(clean, (*given, *relations))], "rates": slopes}
+    documents = [{"left": clean(x), "relation": sign, "right": clean(y)} | common for x, sign, y in links]
+    kinds = {name: (shapes[name].kind, shapes[name].rows) for name in used if shapes[name].size}
+    shown = {entry: text for name in used for entry, text in shapes[name].shown().items()}
+    scope = describe_scope([shapes[n] for n in used if not shapes[n].label], ranges)
+    return TextClaim(formula, tuple(documents), kinds, shown, scope)
+
+
+def read_links(block: Table, where: str) -> list[tuple[str, str, str]]:
+    """Left side, relation and right side of each link of a chain, or of the one relation."""
+    if "chain" not in block:
+        sides = [side_text(require_key(block, key, where)) for key in ("left", "right")]
+        relation = as_text(block.get("relation", "="), join_place(where, "relation"), "a relation")
+        if relation not in RELATIONS:
+            message = f"expected one of {' '.join(RELATIONS)}; got {quote(relation)}; correct it"
+            raise ExpressionSyntaxError(message, where=join_place(where, "relation"))
+        return [(sides[0], relation, sides[1])]
+    place = join_place(where, "chain")
+    for key in ("left", "right", "relation"):
+        if key in block:
+            raise ExpressionSyntaxError(f"expected a chain alone; got {key} beside it; remove one of them", where=place)
+    text = as_text(block["chain"], place, "a chain")
+    marks = list_relations(text)
+    if not 1 <= len(marks) <= MOST_LINKS:
+        message = f'expected 1 to {MOST_LINKS} relations; got {len(marks)}; write "a = b <= c"'
+        raise ExpressionSyntaxError(message, where=place)
+    ends = [0, *(end for mark in marks for end in (mark.start(), mark.end())), len(text)]
+    sides = [text[a:b].strip() for a, b in zip(ends[::2], ends[1::2], strict=True)]
+    return [(sides[k], mark[0], sides[k + 1]) for k, mark in enumerate(marks)]
+
+
+def list_relations(text: str) -> list[re.Match[str]]:
+    """The relations of a text that stand in no parentheses and brackets."""
+    depth, depths = 0, []
+    for char in text:
+        depth += (char in "([") - (char in ")]")
+        depths.append(depth)
+    return [mark for mark in SIGN.finditer(text) if depths[mark.start()] == 0]
+
+
+def read_link(link: tuple[str, str, str], sizes: Mapping[str, Size], where: str) -> Tree:
+    """The tree of both sides, which have one shape."""
+    left, right = (
+        read_value(text, sizes, where=join_place(where, key))
+        for text, key in zip(link[::2], ("left", "right"), strict=True)
+    )
+    if left.size != right.size:
+        got = f"{describe_size(left.size)} and {describe_size(right.size)}"
+        raise ShapeError(f"expected two sides of one shape; got {got}; correct one of them", where=where)
+    if left.size is not None and link[1] not in ("=", "!="):
+        message = f"expected = or != between matrices; got {link[1]}; compare them entry by entry"
+        raise ShapeError(message, where=join_place(where, "relation"))
+    from navsym.language.tree import build
+
+    return build(link[1], (left.tree, right.tree))
+
+
+def read_given(value: Any, sizes: Mapping[str, Size], where: str) -> list[str]:
+    """The hypotheses, each a relation."""
+    texts = read_texts(value, where)
+    for i, text in enumerate(texts):
+        read_hypothesis(text, sizes, where=join_place(where, i))
+    return texts
+
+
+def read_texts(value: Any, where: str) -> list[str]:
+    """A list of texts."""
+    items = [] if value in ([], ()) else as_list(value, where)
+    return [as_text(item, join_place(where, i), "an expression") for i, item in enumerate(items)]
+
+
+def collect_names(
+    texts: Iterable[str], shapes: Mapping[str, Shape], rates: Table, sizes: Mapping[str, Size]
+) -> tuple[list[str], dict[str, str | None]]:
+    """The names in texts and in the rates of these, in the order of declaration; and the rates."""
+    derived = any(re.search(r"\b(diff|dot_)\s*\(", text) for text in texts)
+    waiting, used, slopes = [*set().union(*map(names_of, texts)) & set(shapes)], set[str](), dict[str, str | None]()
+    while waiting:
+        name = waiting.pop()
+        if name in used:
+            continue
+        used.add(name)
+        if not derived:
+            continue
+        own = dict(shapes[name].rates or {})
+        if name in rates:
+            place = join_place("rates", name)
+            text = side_text(rates[name])
+            if read_value(text, sizes, where=place).size != shapes[name].size:
+                message = f"expected a rate of the shape of {name}; got another one; correct it"
+                raise ShapeError(message, where=place)
+            own = {name: clean(text)}
+        slopes |= own
+        waiting += [n for text in own.values() if text is not None for n in names_of(text) & set(shapes)]
+    if derived and (slopes or any(shape.rates for shape in shapes.values())) and TIME in shapes:
+        slopes[TIME] = "1"
+    return [name for name in shapes if name in used], slopes
+
+
+def require_rates(trees: Sequence[Tree], rates: Mapping[str, str | None], where: str) -> None:
+    """Refuse a derivative by time of what has no rate at all: it would silently be 0."""
+    for part in list_parts(*trees):
+        if part.head == "dot_" and not set(rates) & {*list_names(part)}:
+            names = ", ".join(sorted(list_names(part))) or "a number"
+            message = f'expected a rate below dot_; got none of {names}; write [rates], or declare {{ function = "t" }}'
+            raise DomainError(message, where=where)
+
+
+def clean(text: str) -> str:
+    """The text on one line, with decimals as the checker reads them."""
+    return write_numerals(" ".join(text.split()))
+
+
+def describe_scope(shapes: Sequence[Shape], ranges: Mapping[str, Sequence[Any]]) -> str:
+    """The quantifier in words."""
+    words = []
+    for shape in shapes:
+        if shape.kind == "scalar":
+            words.append(describe_range(shape.name, ranges[shape.name]))
+        elif shape.relations:
+            words.append(f"{shape.name} in {'SO(3)' if shape.kind == 'rotation' else 'S^3'}")
+        else:
+            rows, columns = shape.size or (1, 1)
+            words.append(f"{shape.name} in R^{rows}" if columns == 1 else f"{shape.name} in R^({rows} x {columns})")
+    return "all " + ", ".join(words) if words else "numbers"
+
+
+def describe_range(name: str, limits: Sequence[Any]) -> str:
+    """A range in words: ``real x != 0``, ``T in [0, pi]``."""
+    low, high, flags = limits
+    if low is None and high is None:
+        return f"{'integer' if 'integer' in flags else 'real'} {name}" + " != 0" * ("nonzero" in flags)
+    left = "(" if low is None or "open-low" in flags else "["
+    right = ")" if high is None or "open-high" in flags else "]"
+    return f"{name} in {left}{low or '-oo'}, {high or 'oo'}{right}" + " whole" * ("integer" in flags)
+
+
+def limit_scalar(name: str, ends: Any, shape: Shape, place: str) -> list[Any]:
+    """The range of a claim itself for a scalar without a range of its own."""
+    if shape.kind != "scalar" or shape.ranges[name][:2] != [None, None]:
+        message = f"expected a real scalar; got {name}, which has entries or a range; narrow its declaration"
+        raise DomainError(message, where=place)
+    low, high = read_range(ends, place)
+    return [to_text(low), to_text(high), list(shape.ranges[name][2])]

@@ -1,0 +1,178 @@
+"""Statements with vectors, matrices, cases, hypotheses and derivatives: what they mean, and what has no meaning."""
+
+from __future__ import annotations
+
+from tests.checker.proofs import LINE, X0, X1, XY, I, modulo, stated
+
+ONES = {f"{n}_{i}_0": str(i + k) for k, n in enumerate("uvw") for i in range(3)}
+TWOS = {f"{n}_{i}_{j}": str(2 * i + 3 * j + k) for k, n in enumerate("AB") for i in range(2) for j in range(2)}
+QUAT = {"q_0_0": "3/5", "q_1_0": "4/5", "q_2_0": "0", "q_3_0": "0"}
+
+
+def some(point, *names):
+    return {key: value for key, value in point.items() if key[0] in names}
+
+
+#: True statements of the whole language, and false ones that differ in a sign, an index, an order or a transposition.
+#: The same proofs are offered for both.
+LANGUAGE = [
+    (("skew(u) @ v", "=", "cross(u, v)"), ("cross(v, u)", "cross(u, v)*2"), "uv", some(ONES, "u", "v"), [I] * 3, {}),
+    (
+        ("cross(u, v)[1]", "=", "u[2]*v[3] - u[3]*v[2]"),
+        ("u[3]*v[2] - u[2]*v[3]", "u[1]*v[2] - u[2]*v[1]"),
+        "uv",
+        some(ONES, "u", "v"),
+        [I],
+        {},
+    ),
+    (
+        ("dot(u, v)", "=", "u[1]*v[1] + u[2]*v[2] + u[3]*v[3]"),
+        ("u[1]*v[1] + u[2]*v[2] - u[3]*v[3]",),
+        "uv",
+        some(ONES, "u", "v"),
+        [I],
+        {},
+    ),
+    (("norm(u)**2", "=", "dot(u, u)"), ("dot(u, u)**2", "-dot(u, u)"), "u", some(ONES, "u"), [I], {}),
+    (("A @ B", "=", "(B.T @ A.T).T"), ("B @ A", "(A.T @ B.T).T"), "AB", TWOS, [I] * 4, {}),
+    (("A[1,2]", "=", "A.T[2,1]"), ("A[2,1]", "A.T[1,2]"), "A", some(TWOS, "A"), [I], {}),
+    (("[[1, 2], [3, x]][2,1]", "=", "3"), ("2",), "", {"x": "1"}, [I], {"x": LINE}),
+    (
+        ("det(A)", "=", "A[1,1]*A[2,2] - A[1,2]*A[2,1]"),
+        ("A[1,1]*A[2,2] + A[1,2]*A[2,1]",),
+        "A",
+        some(TWOS, "A"),
+        [I],
+        {},
+    ),
+    (("det([[1, 2, 3], [4, 5, 6], [7, 8, x]])", "=", "27 - 3*x"), ("3*x - 27",), "", {"x": "1"}, [I], {"x": LINE}),
+    (("inv(A) @ A", "=", "eye(2)"), ("-eye(2)", "diag(1, 2)"), "A", some(TWOS, "A"), [I] * 4, {}),
+    (
+        ("inv([[0, 1, 0], [0, 0, 1], [x, 0, 0]])", "=", "[[0, 0, 1/x], [1, 0, 0], [0, 1, 0]]"),
+        ("[[0, 1, 0], [0, 0, 1], [1/x, 0, 0]]",),
+        "",
+        {"x": "2"},
+        [I] * 9,
+        {"x": LINE},
+    ),
+    (("trace(A)", "=", "A[1,1] + A[2,2]"), ("A[1,1] - A[2,2]", "A[1,2] + A[2,1]"), "A", some(TWOS, "A"), [I], {}),
+    (("transpose(A)", "=", "A.T"), ("A",), "A", some(TWOS, "A"), [I] * 4, {}),
+    (
+        ("diag([x, 2])", "=", "x*[[1, 0], [0, 0]] + [[0, 0], [0, 2]]"),
+        ("zeros(2, 2)",),
+        "",
+        {"x": "1"},
+        [I] * 4,
+        {"x": LINE},
+    ),
+    (("qmul([0, 1, 0, 0], [0, 0, 1, 0])", "=", "[0, 0, 0, 1]"), ("[0, 0, 0, -1]", "[1, 0, 0, 0]"), "", {}, [I] * 4, {}),
+    (("qmul(q, conj(q))", "=", "[dot(q, q), 0, 0, 0]"), ("[0, 0, 0, dot(q, q)]",), "q", QUAT, [I] * 4, {}),
+    (("rot([0, 0, 0, 1]) @ [1, 2, 3]", "=", "[-1, -2, 3]"), ("[1, -2, -3]",), "", {}, [I] * 3, {}),
+    (("rot([1, 0, 0, 1]) @ [1, 0, 0]", "=", "[0, 2, 0]"), ("[0, -2, 0]",), "", {}, [I] * 3, {}),
+    (("rot([1, 1, 0, 0]) @ [0, 1, 0]", "=", "[0, 0, 2]"), ("[0, 0, -2]",), "", {}, [I] * 3, {}),
+    (("rot([1, 0, 1, 0]) @ [0, 0, 1]", "=", "[2, 0, 0]"), ("[-2, 0, 0]",), "", {}, [I] * 3, {}),
+    (("rot([1, 0, 0, 1]) @ [0, 1, 0]", "=", "[-2, 0, 0]"), ("[2, 0, 0]",), "", {}, [I] * 3, {}),
+    (("rot([1, 1, 0, 0]) @ [0, 0, 1]", "=", "[0, -2, 0]"), ("[0, 2, 0]",), "", {}, [I] * 3, {}),
+    (("rot([1, 0, 1, 0]) @ [1, 0, 0]", "=", "[0, 0, -2]"), ("[0, 0, 2]",), "", {}, [I] * 3, {}),
+    (("u.T @ v", "=", "dot(u, v)"), ("-dot(u, v)",), "uv", some(ONES, "u", "v"), [I], {}),
+    (("-u/2 + u*3/2", "=", "u"), ("2*u", "-u"), "u", some(ONES, "u"), [I] * 3, {}),
+    (
+        ("where(x >= 0, x, -x)", "=", "where(x > 0, x, -x)"),
+        ("x", "-x"),
+        "",
+        {"x": "1"},
+        [modulo("0", I, "2"), I, I],
+        {"x": LINE},
+    ),
+    (
+        ("where(x != 1, 1, 2)", "=", "where(x = 1, 2, 1)"),
+        ("1", "where(x = 1, 1, 2)"),
+        "",
+        {"x": "1"},
+        [I] * 2,
+        {"x": LINE},
+    ),
+    (
+        ("max(x, 2)", "=", "x + 2 - min(2, x)"),
+        ("min(x, 2)", "x"),
+        "",
+        {"x": "1"},
+        [modulo("0", I, "-1"), I, I],
+        {"x": LINE},
+    ),
+    (("sign(x)", "=", "-sign(-x)"), ("sign(-x)", "1"), "", {"x": "1"}, [I] * 3, {"x": LINE}),
+    (("diff(x**3, x, 2)", "=", "6*x"), ("3*x**2", "6"), "", {"x": "1"}, [I], {"x": LINE}),
+    (("diff([x**2, x*y], x)", "=", "[2*x, y]"), ("[2*x, x]",), "", XY, [I] * 2, {"x": LINE, "y": LINE}),
+]
+#: What the language does not mean, with the reason of its refusal.
+MEANINGLESS = [
+    (stated("u*v", "=", "u", "u", "v"), "a product of matrices is written with @"),
+    (stated("A/B", "=", "A", "A", "B"), "a division by a matrix"),
+    (stated("1/u", "=", "u", "u"), "a division by a matrix"),
+    (stated("u + 1", "=", "u", "u"), "values of different shapes"),
+    (stated("u", "=", "0", "u"), "sides of different shapes"),
+    (stated("A @ u", "=", "u", "u", "A"), "shapes that do not fit"),
+    (stated("cross(u, q)", "=", "u", "u", "q"), "expected a vector"),
+    (stated("dot(u, q)", "=", "0", "u", "q"), "vectors of different lengths"),
+    (stated("det(G)", "=", "0", "G"), "expected n by n"),
+    (stated("u[4]", "=", "0", "u"), "an index beyond"),
+    (stated("u[0]", "=", "0", "u"), "expected a size"),
+    (stated("A[1]", "=", "0", "A"), "two indices"),
+    (stated("A**2", "=", "A", "A"), "expected a number"),
+    (stated("sin(u)", "=", "u", "u"), "expected a number"),
+    (stated("u", ">=", "u", "u"), "no order"),
+    (stated("x.T", "=", "x", x=LINE), "before . and"),
+    (stated("u_0_0", "=", "u", "u", u=LINE), "a name given twice"),
+    (stated("u", "=", "u", "u") | {"shapes": {"u": [["x"], ["y"]]}}, "an entry without a range"),
+    (stated("u", "=", "u", "u") | {"shapes": {"u": [["u_0_0"], ["u_1_0", "u_2_0"]]}}, "one length"),
+    (stated("diff(where(x > 0, x, 1), x)", "=", "1", x=LINE), "a derivative of cases"),
+    (stated("dot_(x)", "=", "y", rates={"x": None}, x=LINE, y=LINE), "no rate is known"),
+    (stated("dot_(u)", "=", "u", "u", rates={"u": "1"}), "another shape"),
+    (stated("dot_(x)", "=", "0", rates={"x": "sign(x)"}, x=LINE), "a rate of cases"),
+    (stated("integral(x, x)", "=", "0", x=LINE), "unknown function"),
+    (stated("x", "=", "x", given=["x"], x=LINE), "expected a relation"),
+    (stated("x", "=", "x", given=["x = 1 = 1"], x=LINE), "more than one"),
+    (stated("x", "=", "x", "u", given=["u > u"], x=LINE), "no order"),
+]
+#: True statements that one proof of everything would make of a part that has no value, or of a case forgotten.
+NOWHERE_DEFINED = [
+    (stated("[1/x, 2][2]", "=", "2", x=LINE), X0, [I], "no value at the witness"),
+    (stated("trace([[1, 1/x], [0, 1]])", "=", "2", x=LINE), X0, [I], "no value at the witness"),
+    (stated("inv([[x, 0], [0, 1]])[2,2]", "=", "1", x=LINE), X0, [I], "no value at the witness"),
+    (stated("diff(abs(x), x)*0", "=", "0", x=LINE), X0, [I], "no value at the witness"),
+    (stated("diff(sqrt(x), y)", "=", "0", x=LINE, y=LINE), {"x": "-1", "y": "0"}, [I], "no value at the witness"),
+    (stated("diff(atan2(y, x), y)*0", "=", "0", x=LINE, y=LINE), {"x": "-1", "y": "0"}, [I], "no value at the witness"),
+    (stated("min(1/x, 2)*0", "=", "0", x=LINE), X0, [I, I], "no value at the witness"),
+    (stated("x", "=", "x", given=["x = 1"], x=LINE), X0, [I], "no value at the witness"),
+    (stated("x", "=", "x", given=["x >= 1"], x=LINE), X0, [I], "no value at the witness"),
+    (stated("x", "=", "x", given=["x > 0"], x=LINE), X0, [I], "no value at the witness"),
+    (stated("x", "=", "x", given=["x != 0"], x=LINE), X0, [I], "no value at the witness"),
+    (stated("where(x > 0, 1, 2)", "=", "1", x=LINE), X1, [I], "expected 2 entries"),
+    (stated("where(x > 0, 1, 2)", "=", "1", x=LINE), X1, [I, I], "the sides differ"),
+    (stated("where(x = 0, 1, 2)", "=", "2", x=LINE), X1, [I, I], "the sides differ"),
+    (stated("max(x, 0)", "=", "x", x=LINE), X1, [I, I], "the sides differ"),
+    (stated("A", "=", "A", "A"), some(TWOS, "A"), [I], "expected 4 entries"),
+]
+#: Points where a statement of the whole language fails, and where it does not although its other case would.
+LANGUAGE_FAILS = [
+    (stated("x", "=", "2", given=["x**2 = 4"], x=LINE), {"x": "-2"}, None),
+    (stated("where(x > 0, 1, 2)", "=", "1", x=LINE), X0, None),
+    (stated("cross(u, v)", "=", "cross(v, u)", "u", "v"), some(ONES, "u", "v"), None),
+    (stated("A", "!=", "A.T", "A"), {f"A_{i}_{j}": "1" for i in range(2) for j in range(2)}, None),
+    (stated("sin(x)", "!=", "cos(x)", given=["sin(x) = cos(x)"], x=LINE), {"x": "pi/4"}, I),
+]
+LANGUAGE_STANDS = [
+    (stated("x", "=", "2", given=["x**2 = 4"], x=LINE), {"x": "1"}, None, "no value at the point"),
+    (stated("x", "=", "2", given=["x >= 2"], x=LINE), {"x": "1"}, None, "no value at the point"),
+    (stated("where(x > 0, 1, 2)", "=", "1", x=LINE), X1, None, "not seen to fail"),
+    (stated("where(x > 0, x, 1/x)", "=", "x", x=LINE), X0, None, "no value at the point"),
+    (stated("norm(u)", "=", "1", "u", given=["dot(u, u) = 1"]), some(ONES, "u"), None, "no value at the point"),
+]
+
+
+def list_language():
+    """(statement, witness, proofs, whether it holds) of the table LANGUAGE."""
+    for (left, relation, right), wrong, names, witness, proofs, symbols in LANGUAGE:
+        yield stated(left, relation, right, *names, **symbols), witness, proofs, True
+        for other in wrong:
+            yield stated(left, relation, other, *names, **symbols), witness, proofs, False
