@@ -72,7 +72,10 @@ def needs_balls(part: Mapping[str, Any]) -> bool:
 def write_theorem(name: str, part: Mapping[str, Any]) -> str:
     """One theorem with its script."""
     statement = part["statement"]
-    goals, terms, box = checker.read_statement(statement)
+    if "given" in statement:
+        raise Unwritten("vectors, cases or hypotheses")
+    cases, box = checker.read_statement(statement)
+    terms = cases[0].terms
     names = rename(box)
     sides = [checker.parse(statement[side]) for side in ("left", "right")]
     says = [(write_term(x, names), relation, write_term(y, names)) for x, relation, y in relations(statement, sides)]
