@@ -38,18 +38,30 @@ class Nilpotent:
         self.value, self.error, self.rate, self.mixed = value, error, rate, mixed
 
     def __add__(self, other: Nilpotent) -> Nilpotent:
-        pairs = zip(self.parts(), other.parts(), strict=True)
-        return Nilpotent(*(plus(x, y) for x, y in pairs))
+        if other is NOTHING:
+            return self
+        return Nilpotent(
+            plus(self.value, other.value),
+            plus(self.error, other.error),
+            plus(self.rate, other.rate),
+            plus(self.mixed, other.mixed),
+        )
 
     def __neg__(self) -> Nilpotent:
-        return Nilpotent(*(times(-1, x) for x in self.parts()))
+        if self is NOTHING:
+            return self
+        return Nilpotent(times(-1, self.value), times(-1, self.error), times(-1, self.rate), times(-1, self.mixed))
 
     def __sub__(self, other: Nilpotent) -> Nilpotent:
         return self + -other
 
     def __mul__(self, other: Nilpotent) -> Nilpotent:
-        a, e, t, m = self.parts()
-        A, E, T, M = other.parts()
+        if self is NOTHING or other is NOTHING:
+            return NOTHING
+        if self is ONE or other is ONE:
+            return other if self is ONE else self
+        a, e, t, m = self.value, self.error, self.rate, self.mixed
+        A, E, T, M = other.value, other.error, other.rate, other.mixed
         mixed = plus(plus(times(a, M), times(m, A)), plus(times(e, T), times(t, E)))
         return Nilpotent(times(a, A), plus(times(a, E), times(e, A)), plus(times(a, T), times(t, A)), mixed)
 
@@ -86,7 +98,8 @@ def total(terms: Sequence[Nilpotent]) -> Nilpotent:
     """The sum; nothing for no terms."""
     result = NOTHING
     for term in terms:
-        result = result + term
+        if term is not NOTHING:
+            result = term if result is NOTHING else result + term
     return result
 
 

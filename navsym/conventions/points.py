@@ -184,7 +184,7 @@ class Sampler:
                 self.values[name] = self.pick(parameter)
         world = World(
             C, f, w, v, r, earth, sine, cosine, h, RN, RE, self.pick(None), gravity, pull, radius,
-            gradient_radii(RN, RE, h, third),
+            gradient_names(RN, RE, h, third, (RN * RE).sqrt()),
         )
         transport = self.transport(world) if level and "transport_rate" in given else None
         if transport is None and "transport_rate" in given:
@@ -264,9 +264,9 @@ WORLD_FIELDS = (
 )  # fmt: skip
 
 
-def gradient_radii(RN: Any, RE: Any, h: Any, third: Any) -> dict[str, Any]:
-    """Words of a card -> the radius of its gradient of gravity."""
-    bare = {"R": RN, "RN": RN, "RE": RE, "sqrt(RN*RE)": (RN * RE).sqrt(), "third radius": third}
+def gradient_names(RN: Any, RE: Any, h: Any, third: Any, mean: Any) -> dict[str, Any]:
+    """Words of a card -> the radius of its gradient of gravity; ``mean`` is sqrt(RN RE)."""
+    bare = {"R": RN, "RN": RN, "RE": RE, "sqrt(RN*RE)": mean, "third radius": third}
     lifted = {f"{name} + h": value if type(h) is int else value + h for name, value in bare.items()}
     return {**bare, **lifted, "radial": third}
 

@@ -17,6 +17,7 @@ from navsym.conventions.mechanisation import ROLES, Mechanisation, flat_card
 from navsym.conventions.points import BITS, ImpossibleError, Point, draw_point, evaluate
 from navsym.conventions.reading import Problem
 from navsym.core.balls import precision
+from navsym.language.tree import list_names
 
 Block = tuple[str, str]
 
@@ -56,7 +57,12 @@ def narrow_card(card: Card, role: str) -> Card:
     if role == "position":
         return plain
     level = card.frame == "local-level"
-    kept = {"height_variation": None, "radius_variation": None, "gravity_radius": None}
+    if role in BIASES:
+        flat = flat_card(plain)
+        return replace(flat, angle=None, earth_rate=None, transport_rate=None, position_error=None)
+    if role == "attitude" and card.vector_error != "rotated":
+        plain = replace(plain, angle=None)
+    kept: dict[str, str | None] = {"height_variation": None, "radius_variation": None, "gravity_radius": None}
     if level or card.gravity_gradient != "central":  # a central pull settles gravity itself
         kept["gravity_gradient"] = "none"
     return replace(plain, centrifugal=None, **kept)
@@ -92,6 +98,8 @@ class Comparison:
     def sign(self, card: Card, block: Block, sign: int) -> Mismatch | None:
         """The first point that tells the user's block from ``sign`` times the card's, with all entries that differ."""
         row, column = block
+        if row in BIASES and column in BIASES:
+            return self.bias_block(block)
         for number in range(POINTS):
             written = self.entries(key_of_points(card), block, number)
             columns = self.columns(card, column, number)
@@ -103,6 +111,34 @@ class Comparison:
             if wrong:
                 return Mismatch(block, tuple(wrong), number)
         return None
+
+    def bias_block(self, block: Block) -> Mismatch | None:
+        """What no bias may do: depend on another one, on the motion, or grow where the signs of its constants are known."""
+        moving = {name for trees in self.problem.quantities.values() for name in list_names(*trees)}
+        values = self.point(Card("inertial"), 0).values
+        wrong = []
+        for i, j in product(*(range(3) for _ in range(2))):
+            tree = self.problem.block(*block)[i][j]
+            value, names = evaluate(tree, values), set(list_names(tree))
+            signed = all(self.problem.parameters[name].kind in ("positive", "range") for name in names)
+            own = block[0] == block[1] and i == j and not names & moving
+            if not value.contains(0) and not (own and not (signed and value > 0)):
+                wrong.append((self.problem.roles[block[0]][i], self.problem.roles[block[1]][j]))
+        return Mismatch(block, tuple(wrong), 0) if wrong else None
+
+    def show(self, card: Card, block: Block, entry: tuple[int, int], number: int) -> tuple[dict[str, str], str, str]:
+        """The point in decimals, the user's entry there and the card's."""
+        row, column = block
+        i, j = self.problem.roles[row].index(entry[0]), self.problem.roles[column].index(entry[1])
+        signs = card.signs()
+        with precision(BITS):
+            key = key_of_points(card)
+            written = self.entries(key, block, number)[i][j]
+            columns = self.columns(card, column, number)
+            expected = signs[row] * signs[column] * columns[j][row][i]
+            names = list_names(self.problem.F[entry[0]][entry[1]])
+            point = {name: in_decimals(self.point(key, number).values[name]) for name in names}
+            return point, in_decimals(written), in_decimals(expected)
 
     def is_zero(self, block: Block) -> bool:
         """True where every entry of the user's block is written as zero."""
@@ -122,11 +158,16 @@ class Comparison:
         return all(type(x) is int or x.contains(0) for x in parts)
 
 
+def in_decimals(x: Any) -> str:
+    """A ball by its leading digits."""
+    return str(x) if isinstance(x, int) else str(x.str(10, radius=False))
+
+
 def list_blocks(problem: Problem) -> list[Block]:
     """Blocks in the order in which they exclude: those that depend on few conventions first."""
     roles = [role for role in ROLES if role in problem.roles]
     main = [("attitude", "gyro_bias"), ("velocity", "accelerometer_bias"), ("velocity", "attitude"), ("attitude", "attitude")]
-    blocks = [(row, column) for row in roles for column in roles if not (row in BIASES and column in BIASES)]
+    blocks = [(row, column) for row in roles for column in roles]
     return sorted(blocks, key=lambda block: main.index(block) if block in main else len(main) + ("position" in block))
 
 
