@@ -70,7 +70,7 @@ class Nilpotent:
 
     def inverse(self) -> Nilpotent:
         """1/x; the value must not be zero."""
-        one = 1 / self.value
+        one = self.value if type(self.value) is int and abs(self.value) == 1 else 1 / self.value
         square = one * one
         curved = times(2, times(square * one, times(self.error, self.rate)))
         linear = (times(-1, times(square, part)) for part in (self.error, self.rate, self.mixed))

@@ -54,6 +54,8 @@ def evaluate(tree: Tree, values: Mapping[str, Any]) -> Any:
             return result
         if part.head == POWER:
             return raise_power(part, inner)
+        if part.head == "sqrt":
+            return rational_power(inner[0], 1, 2)
         return OPERATIONS[part.head](None, inner, {})
 
     return fold_tree(tree, step)
