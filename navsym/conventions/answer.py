@@ -5,19 +5,27 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from navsym.conventions.card import Card
+from navsym.conventions.proof import Prover
 from navsym.conventions.reading import Problem, read_problem
+from navsym.conventions.search import (
+    SIGNS,
+    Comparison,
+    Mismatch,
+    Outcome,
+    find_candidates,
+    find_nearest,
+    list_blocks,
+    plain_card,
+)
 from navsym.core.answers import Answer
 from navsym.core.errors import DomainError
 from navsym.language.files import name_file
 from navsym.language.names import quote
 from navsym.language.tomlfile import read_toml
 
-if TYPE_CHECKING:
-    from navsym.conventions.proof import Prover
-    from navsym.conventions.search import Block, Comparison, Mismatch, Outcome
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,11 +143,7 @@ def conventions(
     >>> [(card.attitude_error, card.rotation_sign) for card in answer.cards], answer.complete
     ([('frame', '+')], True)
     """
-    from navsym.conventions.search import Comparison, find_candidates, find_nearest
-
     problem = problem_of(model, roles, quantities, known)
-    from navsym.conventions.proof import Prover
-
     prover, comparison = Prover(problem), Comparison(problem)
     findings = find_candidates(problem, comparison)
     proved = {card: is_card_proved(card, problem, prover) for card in findings.candidates}
@@ -153,7 +157,7 @@ def conventions(
             conflicts = tuple(state_conflict(outcomes[0], m, prover) for m in outcomes[0].mismatches)
             sets = dict.fromkeys(tuple(m.block for m in outcome.mismatches) for outcome in outcomes)
             alternatives = tuple(sets)[1:]
-    examined = len(cards) + len(findings.excluded)
+    examined = len(cards) + sum(outcome.count for outcome in findings.excluded)
     excluded = tuple(find_neighbours(cards, findings.excluded, comparison))
     return Conventions(
         problem.name, cards, complete, conflicts, nearest, alternatives, excluded, examined, problem.unused
@@ -185,8 +189,6 @@ def plain_lists(value: Any) -> Any:
 
 def is_card_proved(card: Card, problem: Problem, prover: Prover) -> bool:
     """True where the prover grants every block of the card that is not dropped."""
-    from navsym.conventions.search import list_blocks
-
     signs = card.signs()
     plain = plain_card(card)
     return all(
@@ -194,13 +196,6 @@ def is_card_proved(card: Card, problem: Problem, prover: Prover) -> bool:
         for block in list_blocks(problem)
         if block not in card.dropped
     )
-
-
-def plain_card(card: Card) -> Card:
-    """The card with every sign plus, whose blocks the signs of others scale."""
-    from navsym.conventions.card import ESTIMATE
-
-    return replace(card, error=ESTIMATE, rotation_sign="+", bias_sign=ESTIMATE, dropped=())
 
 
 def rank_outcome(outcome: Outcome) -> tuple[Any, ...]:
@@ -250,9 +245,10 @@ def find_neighbours(cards: Sequence[Card], outcomes: Sequence[Outcome], comparis
     names = [f.name for f in fields(Card) if f.name != "dropped"]
     for outcome in outcomes:
         for card in cards:
-            different = [name for name in names if getattr(card, name) != getattr(outcome.card, name)]
-            if len(different) == 1 and outcome.card not in neighbours:
-                neighbours[outcome.card] = exclude(outcome, different[0], comparison)
+            other = outcome.card if outcome.count == 1 else replace(outcome.card, **{k: getattr(card, k) for k in SIGNS})
+            different = [name for name in names if getattr(card, name) != getattr(other, name)]
+            if len(different) == 1 and other not in neighbours:
+                neighbours[other] = exclude(replace(outcome, card=other), different[0], comparison)
     return list(neighbours.values())
 
 

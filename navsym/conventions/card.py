@@ -25,7 +25,7 @@ CHOICES: Mapping[str, tuple[str, ...]] = {
     "gravity_gradient": ("none", "central", "radial", "vertical"),
     "centrifugal": (KEPT, DROPPED),
     "height_variation": (KEPT, DROPPED),
-    "radius_variation": (KEPT, DROPPED),
+    "radius_variation": (KEPT, "position", DROPPED),
     "position_error": ("metres", "geodetic"),
     "vector_error": ("difference", "rotated", "body"),
 }
@@ -42,7 +42,8 @@ class Card:
     rotation_sign    : the sign of [p x] above
     bias_sign        : sign of the errors of both sensors' biases; a sensor shows truth plus bias
     earth            : shape; ``none`` is flat, with constant gravity
-    earth_rate, transport_rate, centrifugal, height_variation, radius_variation : terms that are kept or dropped
+    earth_rate, transport_rate, centrifugal, height_variation : terms that are kept or dropped
+    radius_variation : dRN/dL and dRE/dL: kept, dropped, or kept in the equations of the position only
     gravity_gradient : ``central``: of -mu r/|r|^3; ``radial``: only -2 g r'/(|r| R); ``vertical``: -2 g/R along the vertical
     gravity_radius   : R of the vertical gradient, in words
     position_error   : ``metres`` along the axes, or ``geodetic`` (latitude, longitude, height)
@@ -143,7 +144,9 @@ def list_curved(flat: Card, radii: int) -> Iterator[Card]:
     if has_position:
         gradients += [("vertical", name + height) for name in radius for height in (" + h", "")]
     both = (KEPT, DROPPED) if has_position else (KEPT,)
-    slopes: tuple[str | None, ...] = both if flat.earth == "ellipsoid" else (None,)
+    slopes: tuple[str | None, ...] = (None,)
+    if flat.earth == "ellipsoid":
+        slopes = CHOICES["radius_variation"] if has_position else (DROPPED,)
     positions = CHOICES["position_error"] if has_position else (None,)
     for (earth, transport), (gradient, by), height, slope, position in product(
         rates, gradients, both, slopes, positions

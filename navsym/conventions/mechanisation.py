@@ -11,7 +11,7 @@ Integrated Navigation Systems, chapter 5. The errors of a card are definitions (
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from navsym.conventions.card import DROPPED, KEPT, Card
@@ -143,13 +143,13 @@ class Mechanisation:
         sine, cosine, change = Nilpotent(self.world.sin), Nilpotent(self.world.cos), x.position[0]
         return sine + cosine * change, cosine - sine * change
 
-    def radii(self, x: State) -> tuple[Nilpotent, Nilpotent]:
-        """RN + h and RE + h at the state."""
+    def radii(self, x: State, keeping: tuple[str, ...] = (KEPT, "position")) -> tuple[Nilpotent, Nilpotent]:
+        """RN + h and RE + h at the state; they change with the latitude where the card says one of ``keeping``."""
         world, card = self.world, self.card
         north, east = (Nilpotent(plus_height(radius, world.h)) for radius in (world.RN, world.RE))
         if card.height_variation == KEPT:
             north, east = north + x.position[2], east + x.position[2]
-        if card.radius_variation == KEPT:
+        if card.radius_variation in keeping:
             # (RE + h) cos L is the distance from the axis, and its derivative is -(RN + h) sin L.
             across = Nilpotent((world.RE - world.RN) * world.sin / world.cos)
             north, east = north + Nilpotent(world.slope) * x.position[0], east + across * x.position[0]
@@ -171,7 +171,7 @@ class Mechanisation:
             return [NOTHING] * 3
         north, east, _ = apply(transpose(self.turn), x.velocity)
         sine, cosine = self.trigonometry(x)
-        meridian, across = self.radii(x)
+        meridian, across = self.radii(x, (KEPT,))
         rate = apply(self.turn, [east / across, -north / meridian, -east * sine / (across * cosine)])
         if self.world.transport is not None:
             names = self.world.transport
@@ -319,8 +319,6 @@ def plus_height(radius: Any, height: Any) -> Any:
 
 def flat_card(card: Card) -> Card:
     """The same errors over a flat Earth that does not turn; its zeros are where a term may be dropped."""
-    from dataclasses import replace
-
     return replace(
         card,
         earth="none",
@@ -333,6 +331,3 @@ def flat_card(card: Card) -> Card:
         radius_variation=None,
         position_error=None if card.position_error is None else "metres",
     )
-
-
-__all__ = ["AXES", "ONE", "ROLES", "Mechanisation", "State", "World", "flat_card"]

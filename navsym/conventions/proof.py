@@ -10,9 +10,9 @@ from collections.abc import Mapping, Sequence
 from functools import cache
 from typing import Any
 
-from navsym.claims.verdict import PROVED, REFUTED, Verdict
+from navsym.claims.verdict import OPEN, PROVED, REFUTED, Verdict
 from navsym.conventions.card import Card
-from navsym.conventions.mechanisation import AXES, flat_card
+from navsym.conventions.mechanisation import AXES
 from navsym.conventions.points import BITS, Sampler, evaluate
 from navsym.conventions.reading import Problem
 from navsym.conventions.search import BIASES, Block
@@ -21,7 +21,8 @@ from navsym.core.balls import precision
 from navsym.language.expression import read_tree
 from navsym.language.printer import print_tree
 from navsym.language.tree import SYMBOL, Tree, build_symbol, list_names, replace
-from navsym.prove.claimfile import claims_from, decide_claim
+from navsym.prove.claimfile import claims_from, decide_claim, statement_of
+from navsym.prove.grant import grant_verdict
 
 ANGLES = tuple(f"{HIDDEN}a{k}" for k in (1, 2, 3))
 
@@ -89,7 +90,10 @@ class Prover:
         names = list_names(read_tree(left, None), read_tree(right, None))
         declared = {name: self.problem.declared.get(name, "real") for name in names}
         document = {"symbols": declared, "claim": [{"id": "entry", "left": left, "right": right}]}
-        return decide_claim(claims_from(document).claims[0])
+        claim = claims_from(document).claims[0]
+        # Equality is what is expected: a proof is looked for before a counterexample.
+        verdict = grant_verdict(statement_of(claim), Verdict(OPEN, "none"))
+        return verdict if verdict.status == PROVED else decide_claim(claim)
 
     def relations(self, card: Card) -> dict[str, str]:
         """Bound name -> text of free ones; later ones may contain earlier ones no more."""
@@ -148,5 +152,3 @@ def substitute(tree: Tree, bound: Mapping[str, str]) -> Tree:
     by = {build_symbol(name): read_tree(text, None) for name, text in bound.items() if name in list_names(tree)}
     return replace(tree, by)
 
-
-__all__ = ["Prover", "flat_card"]

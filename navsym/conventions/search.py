@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
-from itertools import product
+from itertools import islice, product
 from typing import Any
 
 from navsym.conventions.card import CHOICES, DROPPED, ESTIMATE, TRUTH, Card, list_structures
@@ -21,6 +21,7 @@ from navsym.language.tree import list_names
 
 Block = tuple[str, str]
 
+SIGNS = ("error", "rotation_sign", "bias_sign")
 BIASES = ("gyro_bias", "accelerometer_bias")
 POINTS = 3
 
@@ -36,11 +37,15 @@ class Mismatch:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Outcome:
-    """A card with the blocks that exclude it; ``impossible`` names a quantity that contradicts it."""
+    """A card with the blocks that exclude it; ``impossible`` names a quantity that contradicts it.
+
+    count : cards that are excluded alike, whatever their signs
+    """
 
     card: Card
     mismatches: tuple[Mismatch, ...]
     impossible: str = ""
+    count: int = 1
 
 
 #: Fields on which the equations of motion at a point depend, as far as the values of parameters go.
@@ -51,9 +56,15 @@ def key_of_points(card: Card) -> Card:
     return Card(card.frame, card.axes, earth=shape, gravity_gradient=central)
 
 
+def plain_card(card: Card) -> Card:
+    """The card with every sign plus, whose blocks the signs of others scale."""
+    return replace(card, error=ESTIMATE, rotation_sign="+", bias_sign=ESTIMATE, dropped=())
+
+
+@cache
 def narrow_card(card: Card, role: str) -> Card:
     """The card without the fields that have no influence on the columns of a role (a test compares them)."""
-    plain = replace(card, error=ESTIMATE, rotation_sign="+", bias_sign=ESTIMATE, dropped=())
+    plain = plain_card(card)
     if role == "position":
         return plain
     level = card.frame == "local-level"
@@ -76,6 +87,7 @@ class Comparison:
         self.point = cache(self.draw)
         self.computed = cache(self.compute_columns)
         self.entries = cache(self.evaluate_block)
+        self.is_zero = cache(self.has_zeros)
 
     def draw(self, key: Card, number: int) -> Point:
         """A point for cards of this kind."""
@@ -140,21 +152,19 @@ class Comparison:
             point = {name: in_decimals(self.point(key, number).values[name]) for name in names}
             return point, in_decimals(written), in_decimals(expected)
 
-    def is_zero(self, block: Block) -> bool:
+    def has_zeros(self, block: Block) -> bool:
         """True where every entry of the user's block is written as zero."""
         return all(repr(tree) == "<0>" for row in self.problem.block(*block) for tree in row)
+
+    def is_dropped(self, card: Card, block: Block) -> bool:
+        """True where the user's block is zero and the card's has small terms only."""
+        return self.is_zero(block) and self.is_small(card, block)
 
     def is_small(self, card: Card, block: Block) -> bool:
         """True where the card's block vanishes over a flat Earth that does not turn: its terms may be dropped."""
         row, column = block
         flat = flat_card(card)
         parts = [x for k in range(3) for x in self.columns(flat, column, 0)[k][row]]
-        return all(type(x) is int or x.contains(0) for x in parts)
-
-    def is_nothing(self, card: Card, block: Block) -> bool:
-        """True where the card's block is zero."""
-        row, column = block
-        parts = [x for k in range(3) for x in self.columns(card, column, 0)[k][row]]
         return all(type(x) is int or x.contains(0) for x in parts)
 
 
@@ -180,33 +190,36 @@ def list_signs(problem: Problem) -> Iterator[dict[str, str | None]]:
         yield {"error": error, "rotation_sign": attitude, "bias_sign": bias}
 
 
-def is_known(card: Card, problem: Problem) -> bool:
-    """True where the card says what is known."""
-    return all(getattr(card, name) == word for name, word in problem.known.items())
-
-
-def examine(problem: Problem, comparison: Comparison, most: int | None = None) -> Iterator[Outcome]:
-    """Every card that agrees with what is known, with the blocks that exclude it.
-
-    most : stop looking at a card when more blocks than that exclude it; None finds one and stops
-    """
+def examine(problem: Problem, comparison: Comparison, most: int = 0) -> Iterator[Outcome]:
+    """Every card that agrees with what is known, with up to ``most + 1`` of the blocks that exclude it."""
     frames = (problem.known["frame"],) if "frame" in problem.known else CHOICES["frame"]
     radii = len(problem.quantities.get("radii", ()))
     blocks = list_blocks(problem)
+    signs = [words for words in list_signs(problem) if all(problem.known.get(k, w) == w for k, w in words.items())]
+    fixed = {name: word for name, word in problem.known.items() if name not in SIGNS}
     for structure in list_structures(frozenset(problem.roles), radii, frames):
-        candidates = [replace(structure, **signs) for signs in list_signs(problem)]
-        candidates = [card for card in candidates if is_known(card, problem)]
-        if not candidates:
+        if any(getattr(structure, name) != word for name, word in fixed.items()):
             continue
         try:
             comparison.point(key_of_points(structure), 0)
         except ImpossibleError as error:
-            yield from (Outcome(card, (), str(error)) for card in candidates)
+            yield Outcome(structure, (), str(error), len(signs))
             continue
         # Signs only scale rows and columns: blocks are compared for the structure, once for each sign.
         results = cache(lambda block, sign, card=structure: comparison.sign(card, block, sign))
-        for card in candidates:
-            yield judge(card, structure, comparison, blocks, results, most or 0)
+        hopeless = list(islice(list_hopeless(structure, comparison, blocks, results), most + 1))
+        if len(hopeless) > most:
+            yield Outcome(structure, tuple(hopeless), count=len(signs))
+        else:
+            yield from (judge(replace(structure, **words), structure, comparison, blocks, results, most) for words in signs)
+
+
+def list_hopeless(structure: Card, comparison: Comparison, blocks: Sequence[Block], results: Any) -> Iterator[Mismatch]:
+    """The blocks that no signs make right."""
+    for block in blocks:
+        mismatch = results(block, 1)
+        if mismatch and results(block, -1) and not comparison.is_dropped(structure, block):
+            yield mismatch
 
 
 def judge(
@@ -218,7 +231,7 @@ def judge(
         mismatch = results(block, signs[block[0]] * signs[block[1]])
         if mismatch is None:
             continue
-        if comparison.is_zero(block) and comparison.is_small(structure, block):
+        if comparison.is_dropped(structure, block):
             dropped.append(block)
             continue
         mismatches.append(mismatch)
@@ -231,7 +244,7 @@ def has_evidence(card: Card, comparison: Comparison, blocks: Sequence[Block]) ->
     """False where every term of a curved or turning Earth is dropped: the card of a flat Earth says the same."""
     if card.earth == "none" and card.earth_rate in (None, DROPPED):
         return True
-    plain = replace(card, dropped=(), **{k: v for k, v in zip(("error", "rotation_sign", "bias_sign"), (ESTIMATE, "+", ESTIMATE), strict=True)})
+    plain = plain_card(card)
     flat = flat_card(plain)
     for block in blocks:
         if block in card.dropped:
