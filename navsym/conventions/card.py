@@ -89,22 +89,26 @@ class Card:
         }
 
 
-def list_structures(roles: frozenset[str], radii: int, frames: tuple[str, ...]) -> Iterator[Card]:
+def list_structures(
+    roles: frozenset[str], radii: int, frames: tuple[str, ...], height: bool = True
+) -> Iterator[Card]:
     """Every card without its signs, for a model of these roles.
 
     radii  : how many radii of the Earth are given: with one it is a sphere, with more an ellipsoid, with none either
     frames : the frames to list
+    height : False where radii contain the height
     """
     vectors = CHOICES["vector_error"] if {"attitude", "velocity"} <= roles else ("difference",)
     sides = CHOICES["attitude_error"] if "attitude" in roles else ("frame",)
     for frame in frames:
-        lister = list_level if frame == "local-level" else list_cartesian
+        level = frame == "local-level"
+        cards = list(list_level(frame, roles, radii, height) if level else list_cartesian(frame, roles))
         for side, vector in product(sides, vectors):
-            for card in lister(frame, roles, radii):
+            for card in cards:
                 yield replace(card, attitude_error=side, vector_error=vector)
 
 
-def list_cartesian(frame: str, roles: frozenset[str], radii: int) -> Iterator[Card]:
+def list_cartesian(frame: str, roles: frozenset[str]) -> Iterator[Card]:
     """Cards of the inertial frame and of the frame that turns with the Earth."""
     metres = "metres" if "position" in roles else None
     gradients = {"none": "none", "central": "sphere", "radial": "ellipsoid"} if metres else {"none": "none"}
@@ -122,7 +126,7 @@ def list_cartesian(frame: str, roles: frozenset[str], radii: int) -> Iterator[Ca
             )
 
 
-def list_level(frame: str, roles: frozenset[str], radii: int) -> Iterator[Card]:
+def list_level(frame: str, roles: frozenset[str], radii: int, height: bool) -> Iterator[Card]:
     """Cards of a local level: over a flat Earth, a sphere, an ellipsoid."""
     metres = "metres" if "position" in roles else None
     shapes = {0: ("sphere", "ellipsoid"), 1: ("sphere",)}.get(radii, ("ellipsoid",))
@@ -131,10 +135,10 @@ def list_level(frame: str, roles: frozenset[str], radii: int) -> Iterator[Card]:
         for rate in (KEPT, DROPPED):
             yield replace(flat, earth_rate=rate)
         for shape in shapes:
-            yield from list_curved(replace(flat, earth=shape), radii)
+            yield from list_curved(replace(flat, earth=shape), radii, height)
 
 
-def list_curved(flat: Card, radii: int) -> Iterator[Card]:
+def list_curved(flat: Card, radii: int, height: bool) -> Iterator[Card]:
     """The ways to keep and to drop terms over a curved Earth."""
     rates = product((KEPT, DROPPED), repeat=2)
     has_position = flat.position_error is not None
@@ -142,13 +146,13 @@ def list_curved(flat: Card, radii: int) -> Iterator[Card]:
     radius = ("third radius",) if radii == 3 else radius
     gradients: list[tuple[str, str | None]] = [("none", None)]
     if has_position:
-        gradients += [("vertical", name + height) for name in radius for height in (" + h", "")]
+        gradients += [("vertical", name + end) for name in radius for end in ((" + h", "") if height else ("",))]
     both = (KEPT, DROPPED) if has_position else (KEPT,)
     slopes: tuple[str | None, ...] = (None,)
     if flat.earth == "ellipsoid":
         slopes = CHOICES["radius_variation"] if has_position else (DROPPED,)
     positions = CHOICES["position_error"] if has_position else (None,)
-    for (earth, transport), (gradient, by), height, slope, position in product(
+    for (earth, transport), (gradient, by), lift, slope, position in product(
         rates, gradients, both, slopes, positions
     ):
         yield replace(
@@ -157,7 +161,7 @@ def list_curved(flat: Card, radii: int) -> Iterator[Card]:
             transport_rate=transport,
             gravity_gradient=gradient,
             gravity_radius=by,
-            height_variation=height,
+            height_variation=lift,
             radius_variation=slope,
             position_error=position,
         )

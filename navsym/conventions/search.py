@@ -48,7 +48,7 @@ class Outcome:
     count: int = 1
 
 
-#: Fields on which the equations of motion at a point depend, as far as the values of parameters go.
+@cache
 def key_of_points(card: Card) -> Card:
     """The card without what has no influence on the points."""
     shape = card.earth if card.frame == "local-level" else "none"
@@ -87,6 +87,8 @@ class Comparison:
         self.point = cache(self.draw)
         self.computed = cache(self.compute_columns)
         self.entries = cache(self.evaluate_block)
+        self.signs = cache(self.compare)
+        self.is_small = cache(self.has_small_terms)
         self.is_zero = cache(self.has_zeros)
 
     def draw(self, key: Card, number: int) -> Point:
@@ -109,12 +111,16 @@ class Comparison:
 
     def sign(self, card: Card, block: Block, sign: int) -> Mismatch | None:
         """The first point that tells the user's block from ``sign`` times the card's, with all entries that differ."""
-        row, column = block
-        if row in BIASES and column in BIASES:
+        if block[0] in BIASES and block[1] in BIASES:
             return self.bias_block(block)
+        return self.signs(narrow_card(card, block[1]), key_of_points(card), block, sign)
+
+    def compare(self, card: Card, key: Card, block: Block, sign: int) -> Mismatch | None:
+        """The same for a card of which only the fields are left that matter."""
+        row, column = block
         for number in range(POINTS):
-            written = self.entries(key_of_points(card), block, number)
-            columns = self.columns(card, column, number)
+            written = self.entries(key, block, number)
+            columns = self.computed(card, column, number)
             wrong = []
             for i, j in product(range(3), range(3)):
                 difference = written[i][j] - sign * columns[j][row][i]
@@ -158,13 +164,12 @@ class Comparison:
 
     def is_dropped(self, card: Card, block: Block) -> bool:
         """True where the user's block is zero and the card's has small terms only."""
-        return self.is_zero(block) and self.is_small(card, block)
+        return self.is_zero(block) and self.is_small(flat_card(plain_card(card)), block)
 
-    def is_small(self, card: Card, block: Block) -> bool:
-        """True where the card's block vanishes over a flat Earth that does not turn: its terms may be dropped."""
+    def has_small_terms(self, card: Card, block: Block) -> bool:
+        """True where the block vanishes for a card of a flat Earth that does not turn: its terms may be dropped."""
         row, column = block
-        flat = flat_card(card)
-        parts = [x for k in range(3) for x in self.columns(flat, column, 0)[k][row]]
+        parts = [x for k in range(3) for x in self.columns(card, column, 0)[k][row]]
         return all(type(x) is int or x.contains(0) for x in parts)
 
 
@@ -197,7 +202,7 @@ def examine(problem: Problem, comparison: Comparison, most: int = 0) -> Iterator
     blocks = list_blocks(problem)
     signs = [words for words in list_signs(problem) if all(problem.known.get(k, w) == w for k, w in words.items())]
     fixed = {name: word for name, word in problem.known.items() if name not in SIGNS}
-    for structure in list_structures(frozenset(problem.roles), radii, frames):
+    for structure in list_structures(frozenset(problem.roles), radii, frames, "height" in problem.quantities):
         if any(getattr(structure, name) != word for name, word in fixed.items()):
             continue
         try:

@@ -235,6 +235,66 @@ def left_invariant() -> dict[str, Any]:
     return document("avpgb", blocks, quantities, {"frame": "inertial"})
 
 
+def msckf() -> dict[str, Any]:
+    """Mourikis and Roumeliotis 2007, error state truth minus estimate; VINS-Mono has the same continuous-time matrix."""
+    return {**sola_local(), "known": {"frame": "inertial", "error": "truth - estimate"}}
+
+
+def psins() -> dict[str, Any]:
+    """Yan, PSINS toolbox, etm: phi angle in east-north-up, geodetic position, no gradient of gravity."""
+    m, n = "(RN + h)", "(RE + h)"
+    quantities = {**NED, "velocity": ["vE", "vN", "vU"]}
+    earth, turn = ["0", "W*cos(L)", "W*sin(L)"], [f"-vN/{m}", f"vE/{n}", f"vE*tan(L)/{n}"]
+    both = [f"{x} + {y}" for x, y in zip(earth, turn, strict=True)]
+    twice = [f"2*({x}) + {y}" for x, y in zip(earth, turn, strict=True)]
+    m1 = [["0", "0", "0"], ["-W*sin(L)", "0", "0"], ["W*cos(L)", "0", "0"]]
+    m2 = [["0", "0", f"vN/{m}**2"], ["0", "0", f"-vE/{n}**2"], [f"vE/({n}*cos(L)**2)", "0", f"-vE*tan(L)/{n}**2"]]
+    av = [["0", f"-1/{m}", "0"], [f"1/{n}", "0", "0"], [f"tan(L)/{n}", "0", "0"]]
+    v = skew(["vE", "vN", "vU"])
+    vv = plus(mul(v, av), neg(skew(twice)))
+    pp = [["0", "0", f"-vN/{m}**2"], [f"vE*tan(L)/({n}*cos(L))", "0", f"-vE/(cos(L)*{n}**2)"], ["0", "0", "0"]]
+    blocks = {
+        "aa": neg(skew(both)), "av": av, "ap": plus(m1, m2), "ag": neg(C), "va": skew(F_N), "vv": vv,
+        "vp": mul(v, plus(plus(m1, m1), m2)), "vb": C,
+        "pv": [["0", f"1/{m}", "0"], [f"1/({n}*cos(L))", "0", "0"], ["0", "0", "1"]], "pp": pp,
+    }  # fmt: skip
+    return document("avpgb", blocks, quantities, **declared(quantities))
+
+
+def plus(A: Grid, B: Grid) -> Grid:
+    """A + B."""
+    return [[f"({x}) + ({y})" for x, y in zip(*rows, strict=True)] for rows in zip(A, B, strict=True)]
+
+
+def navego() -> dict[str, Any]:
+    """NaveGo, F_update as found in a public copy: one radius R, both bias blocks +C beside + f x."""
+    quantities = {**NED, "radii": ["R", "R", "rS"]}
+    quantities.pop("height")
+    aa = neg(skew(local_rate("R", "R")))
+    av = [["0", "1/R", "0"], ["-1/R", "0", "0"], ["0", "-tan(L)/R", "0"]]
+    ap = [
+        ["-W*sin(L)", "0", "-vE/R**2"],
+        ["0", "0", "vN/R**2"],
+        ["-W*cos(L) - vE/(R*cos(L)**2)", "0", "vE*tan(L)/R**2"],
+    ]
+    vv = [
+        ["vD/R", "-2*(W*sin(L) + vE*tan(L)/R)", "vN/R"],
+        ["2*W*sin(L) + vE*tan(L)/R", "(vN*tan(L) + vD)/R", "2*W*cos(L) + vE/R"],
+        ["-2*vN/R", "-2*(W*cos(L) + vE/R)", "0"],
+    ]
+    vp = [
+        ["-vE*(2*W*cos(L) + vE/(R*cos(L)**2))", "0", "(vE**2*tan(L) - vN*vD)/R**2"],
+        ["2*W*(vN*cos(L) - vD*sin(L)) + vN*vE/(R*cos(L)**2)", "0", "-vE*(vN*tan(L) + vD)/R**2"],
+        ["2*W*vE*sin(L)", "0", "vE**2/R**2 + vN**2/R**2 - 2*g/rS"],
+    ]
+    pv = [["1/R", "0", "0"], ["0", "1/(R*cos(L))", "0"], ["0", "0", "-1"]]
+    pp = [["0", "0", "-vN/R**2"], ["vE*tan(L)/(R*cos(L))", "0", "-vE/(R**2*cos(L))"], ["0", "0", "0"]]
+    blocks = {
+        "aa": aa, "av": av, "ap": ap, "ag": C, "va": skew(F_N), "vv": vv, "vp": vp, "vb": C, "pv": pv, "pp": pp,
+    }  # fmt: skip
+    return document("avpgb", blocks, quantities, rS="positive", **declared(quantities))
+
+
 PUBLISHED = {
     "Groves, inertial frame": groves_inertial,
     "Groves, Earth frame": groves_earth,
@@ -245,4 +305,7 @@ PUBLISHED = {
     "psi angle": psi_level,
     "right invariant": right_invariant,
     "left invariant": left_invariant,
+    "MSCKF": msckf,
+    "PSINS": psins,
+    "NaveGo": navego,
 }
