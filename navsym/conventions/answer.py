@@ -12,6 +12,7 @@ from navsym.conventions.proof import Prover
 from navsym.conventions.reading import Problem, read_problem
 from navsym.conventions.search import (
     SIGNS,
+    Block,
     Comparison,
     Mismatch,
     Outcome,
@@ -25,7 +26,6 @@ from navsym.core.errors import DomainError
 from navsym.language.files import name_file
 from navsym.language.names import quote
 from navsym.language.tomlfile import read_toml
-
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,7 +149,8 @@ def conventions(
     proved = {card: is_card_proved(card, problem, prover) for card in findings.candidates}
     cards, complete = findings.candidates, all(proved.values())
     conflicts: tuple[Conflict, ...] = ()
-    nearest, alternatives = None, ()
+    nearest: Card | None = None
+    alternatives: tuple[tuple[Block, ...], ...] = ()
     if not cards:
         outcomes = sorted(find_nearest(problem, comparison), key=rank_outcome)
         if outcomes:
@@ -204,7 +205,14 @@ def rank_outcome(outcome: Outcome) -> tuple[Any, ...]:
     biased = -sum(m.block == ("velocity", "accelerometer_bias") for m in outcome.mismatches)
     gyros = -sum(m.block == ("attitude", "gyro_bias") for m in outcome.mismatches)
     card = outcome.card
-    return biased, gyros, entries, len(card.dropped), card.vector_error != "difference", card.error != "estimate - truth"
+    return (
+        biased,
+        gyros,
+        entries,
+        len(card.dropped),
+        card.vector_error != "difference",
+        card.error != "estimate - truth",
+    )
 
 
 def state_conflict(outcome: Outcome, mismatch: Mismatch, prover: Prover) -> Conflict:
@@ -227,12 +235,18 @@ def describe_change(written: list[list[str]], expected: list[list[str]], prover:
 
     def agrees(sign: str, turned: bool) -> bool:
         pairs = (
-            (f"{sign}({written[j][i] if turned else written[i][j]})", expected[i][j]) for i in range(3) for j in range(3)
+            (f"{sign}({written[j][i] if turned else written[i][j]})", expected[i][j])
+            for i in range(3)
+            for j in range(3)
         )
         return all(prover.compare(plain_card(card), *pair).status == PROVED for pair in pairs)
 
     words = "write"
-    for sign, turned, text in (("-", False, "change the sign"), ("", True, "transpose"), ("-", True, "transpose and change the sign")):
+    for sign, turned, text in (
+        ("-", False, "change the sign"),
+        ("", True, "transpose"),
+        ("-", True, "transpose and change the sign"),
+    ):
         if agrees(sign, turned):
             words = f"{text}: write"
             break
@@ -245,7 +259,9 @@ def find_neighbours(cards: Sequence[Card], outcomes: Sequence[Outcome], comparis
     names = [f.name for f in fields(Card) if f.name != "dropped"]
     for outcome in outcomes:
         for card in cards:
-            other = outcome.card if outcome.count == 1 else replace(outcome.card, **{k: getattr(card, k) for k in SIGNS})
+            other = (
+                outcome.card if outcome.count == 1 else replace(outcome.card, **{k: getattr(card, k) for k in SIGNS})
+            )
             different = [name for name in names if getattr(card, name) != getattr(other, name)]
             if len(different) == 1 and other not in neighbours:
                 neighbours[other] = exclude(replace(outcome, card=other), different[0], comparison)

@@ -89,9 +89,7 @@ class Card:
         }
 
 
-def list_structures(
-    roles: frozenset[str], radii: int, frames: tuple[str, ...], height: bool = True
-) -> Iterator[Card]:
+def list_structures(roles: frozenset[str], radii: int, frames: tuple[str, ...], height: bool = True) -> Iterator[Card]:
     """Every card without its signs, for a model of these roles.
 
     radii  : how many radii of the Earth are given: with one it is a sphere, with more an ellipsoid, with none either
@@ -152,9 +150,7 @@ def list_curved(flat: Card, radii: int, height: bool) -> Iterator[Card]:
     if flat.earth == "ellipsoid":
         slopes = CHOICES["radius_variation"] if has_position else (DROPPED,)
     positions = CHOICES["position_error"] if has_position else (None,)
-    for (earth, transport), (gradient, by), lift, slope, position in product(
-        rates, gradients, both, slopes, positions
-    ):
+    for (earth, transport), (gradient, by), lift, slope, position in product(rates, gradients, both, slopes, positions):
         yield replace(
             flat,
             earth_rate=earth,

@@ -17,7 +17,6 @@ from typing import Any
 from navsym.conventions.card import DROPPED, KEPT, Card
 from navsym.conventions.nilpotent import (
     NOTHING,
-    ONE,
     Grid,
     Nilpotent,
     Vector,
@@ -92,7 +91,10 @@ class State:
 
     def advance(self, rate: State) -> State:
         """The state after the infinitesimal time tau."""
-        attitude = [[x.advance(y) for x, y in zip(*rows, strict=True)] for rows in zip(self.attitude, rate.attitude, strict=True)]
+        attitude = [
+            [x.advance(y) for x, y in zip(*rows, strict=True)]
+            for rows in zip(self.attitude, rate.attitude, strict=True)
+        ]
         moved = [
             [x.advance(y) for x, y in zip(getattr(self, name), getattr(rate, name), strict=True)]
             for name in ("velocity", "position", "gyro_bias", "accelerometer_bias")
@@ -130,9 +132,7 @@ class Mechanisation:
         w = add_vectors(constant(self.world.w), negate(x.gyro_bias))
         force = apply(x.attitude, add_vectors(constant(self.world.f), negate(x.accelerometer_bias)))
         earth, transport = self.earth_rate(x), self.transport_rate(x)
-        attitude = subtract(
-            multiply(x.attitude, skew(w)), multiply(skew(add_vectors(earth, transport)), x.attitude)
-        )
+        attitude = subtract(multiply(x.attitude, skew(w)), multiply(skew(add_vectors(earth, transport)), x.attitude))
         coriolis = cross(add_vectors(earth, earth, transport), x.velocity)
         velocity = add_vectors(force, self.gravity(x), negate(coriolis))
         zero = [NOTHING] * 3

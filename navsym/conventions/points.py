@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import random
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from flint import arb, fmpq
@@ -185,14 +185,28 @@ class Sampler:
             if name not in self.values and not self.is_transport(name):
                 self.values[name] = self.pick(parameter)
         world = World(
-            C, f, w, v, r, earth, sine, cosine, h, RN, RE, self.pick(None), gravity, pull, radius,
+            C,
+            f,
+            w,
+            v,
+            r,
+            earth,
+            sine,
+            cosine,
+            h,
+            RN,
+            RE,
+            self.pick(None),
+            gravity,
+            pull,
+            radius,
             gradient_names(RN, RE, h, third, (RN * RE).sqrt()),
         )
         transport = self.transport(world) if level and "transport_rate" in given else None
         if transport is None and "transport_rate" in given:
             self.settle("transport_rate")
         if transport is not None:
-            world = World(*(getattr(world, name) for name in WORLD_FIELDS), transport=transport)
+            world = replace(world, transport=transport)
         return Point(world, self.values)
 
     def is_transport(self, name: str) -> bool:
@@ -258,12 +272,6 @@ class Sampler:
         meridian, across = world.RN + world.h, world.RE + world.h
         wanted = self.turned([east / across, -north / meridian, -east * world.sin / (across * world.cos)])
         return self.settle("transport_rate", wanted)
-
-
-WORLD_FIELDS = (
-    "C", "f", "w", "v", "r", "earth_rate", "sin", "cos", "h", "RN", "RE", "slope", "gravity", "pull", "radius",
-    "gradient_radii",
-)  # fmt: skip
 
 
 def gradient_names(RN: Any, RE: Any, h: Any, third: Any, mean: Any) -> dict[str, Any]:

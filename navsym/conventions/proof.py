@@ -11,11 +11,11 @@ from functools import cache
 from typing import Any
 
 from navsym.claims.verdict import OPEN, PROVED, REFUTED, Verdict
-from navsym.conventions.card import Card
+from navsym.conventions.card import DROPPED, Card
 from navsym.conventions.mechanisation import AXES
 from navsym.conventions.points import BITS, Sampler, evaluate
 from navsym.conventions.reading import Problem
-from navsym.conventions.search import BIASES, Block
+from navsym.conventions.search import BIASES, Block, narrow_card
 from navsym.conventions.symbols import HIDDEN, Formulas
 from navsym.core.balls import precision
 from navsym.language.expression import read_tree
@@ -47,7 +47,15 @@ class Prover:
 
     def block_texts(self, card: Card, block: Block, sign: int) -> list[list[str]]:
         """The card's block in the user's names."""
-        return self.formulas(card).block(*block, sign)
+        still = card.earth == "none" and card.earth_rate in (None, DROPPED) and card.vector_error != "rotated"
+        if still:  # without gravity among the terms a flat Earth that does not turn is an inertial frame
+            card = Card(
+                "inertial",
+                attitude_error=card.attitude_error,
+                vector_error=card.vector_error,
+                position_error=card.position_error,
+            )
+        return self.formulas(narrow_card(card, block[1])).block(*block, sign)
 
     def written(self, block: Block) -> list[list[str]]:
         """The user's block."""
@@ -97,7 +105,8 @@ class Prover:
 
     def relations(self, card: Card) -> dict[str, str]:
         """Bound name -> text of free ones; later ones may contain earlier ones no more."""
-        given, result = self.problem.quantities, {}
+        given = self.problem.quantities
+        result: dict[str, str] = {}
         texts = {name: [print_tree(tree) for tree in trees] for name, trees in given.items()}
 
         def bind(quantity: str, values: Sequence[str]) -> None:
@@ -107,13 +116,19 @@ class Prover:
 
         if all(tree.head == SYMBOL for tree in given.get("rotation", ())):
             bind("rotation", euler_texts())
-        rotation = [result.get(text, text) for text in texts.get("rotation", [f"{HIDDEN}c{i}{j}" for i in range(3) for j in range(3)])]
+        rotation = [
+            result.get(text, text)
+            for text in texts.get("rotation", [f"{HIDDEN}c{i}{j}" for i in range(3) for j in range(3)])
+        ]
         if "rotation" not in given:
             result.update(zip(rotation, euler_texts(), strict=True))
             rotation = euler_texts()
         if {"specific_force", "specific_force_body"} <= set(given):
             body = texts["specific_force_body"]
-            bind("specific_force", [" + ".join(f"({rotation[3 * i + k]})*({body[k]})" for k in range(3)) for i in range(3)])
+            bind(
+                "specific_force",
+                [" + ".join(f"({rotation[3 * i + k]})*({body[k]})" for k in range(3)) for i in range(3)],
+            )
         if card.frame == "local-level":
             self.bind_level(card, texts, bind)
         elif card.gravity_gradient == "central" and len(given.get("gravity", ())) == 3 and "position" in texts:
@@ -132,9 +147,7 @@ class Prover:
         def turned(ned: Sequence[str]) -> list[str]:
             return [" + ".join(f"({x})*({y})" for x, y in zip(row, ned, strict=True) if x) for row in A]
 
-        north, east = (
-            " + ".join(f"({A[k][j]})*({velocity[k]})" for k in range(3) if A[k][j]) for j in range(2)
-        )
+        north, east = (" + ".join(f"({A[k][j]})*({velocity[k]})" for k in range(3) if A[k][j]) for j in range(2))
         if len(texts.get("earth_rate", ())) == 3:
             bind("earth_rate", turned([f"{HIDDEN}rate*cos({latitude})", "0", f"-{HIDDEN}rate*sin({latitude})"]))
         rate = [
@@ -151,4 +164,3 @@ def substitute(tree: Tree, bound: Mapping[str, str]) -> Tree:
     """The tree with bound names written by free ones."""
     by = {build_symbol(name): read_tree(text, None) for name, text in bound.items() if name in list_names(tree)}
     return replace(tree, by)
-

@@ -8,7 +8,14 @@ from typing import Any
 
 from navsym.conventions.card import CHOICES
 from navsym.conventions.mechanisation import ROLES
-from navsym.core.errors import DomainError, DuplicateError, EmptyError, ExpressionSyntaxError, ShapeError, UnknownSymbolError
+from navsym.core.errors import (
+    DomainError,
+    DuplicateError,
+    EmptyError,
+    ExpressionSyntaxError,
+    ShapeError,
+    UnknownSymbolError,
+)
 from navsym.language.declarations import Parameter, read_parameters
 from navsym.language.expression import read_tree
 from navsym.language.names import Table, check_name, join_place, quote, suggest_nearest
@@ -160,7 +167,9 @@ def read_quantities(value: Any, names: Mapping[str, Any], where: str) -> dict[st
         place, sizes = join_place(where, name), QUANTITIES[name]
         cells = list_cells(items, place)
         if len(cells) not in sizes or (name == "rotation" and not is_grid(items)):
-            wanted = "three rows of three entries" if name == "rotation" else " or ".join(map(str, sizes)) + " components"
+            wanted = (
+                "three rows of three entries" if name == "rotation" else " or ".join(map(str, sizes)) + " components"
+            )
             raise ShapeError(f"expected {wanted}; got {len(cells)} entries; correct {name}", where=place)
         quantities[name] = tuple(read_cell(cell, names, spot) for cell, spot in cells)
     return quantities

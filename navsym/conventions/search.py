@@ -6,7 +6,7 @@ zero excludes the card. What no point excludes is a candidate; the prover decide
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from itertools import islice, product
@@ -69,14 +69,12 @@ def narrow_card(card: Card, role: str) -> Card:
         return plain
     level = card.frame == "local-level"
     if role in BIASES:
-        flat = flat_card(plain)
-        return replace(flat, angle=None, earth_rate=None, transport_rate=None, position_error=None)
+        plain = replace(plain, angle=None, earth_rate=None, transport_rate=None)
     if role == "attitude" and card.vector_error != "rotated":
         plain = replace(plain, angle=None)
-    kept: dict[str, str | None] = {"height_variation": None, "radius_variation": None, "gravity_radius": None}
     if level or card.gravity_gradient != "central":  # a central pull settles gravity itself
-        kept["gravity_gradient"] = "none"
-    return replace(plain, centrifugal=None, **kept)
+        plain = replace(plain, gravity_gradient="none")
+    return replace(plain, centrifugal=None, height_variation=None, radius_variation=None, gravity_radius=None)
 
 
 class Comparison:
@@ -181,7 +179,12 @@ def in_decimals(x: Any) -> str:
 def list_blocks(problem: Problem) -> list[Block]:
     """Blocks in the order in which they exclude: those that depend on few conventions first."""
     roles = [role for role in ROLES if role in problem.roles]
-    main = [("attitude", "gyro_bias"), ("velocity", "accelerometer_bias"), ("velocity", "attitude"), ("attitude", "attitude")]
+    main = [
+        ("attitude", "gyro_bias"),
+        ("velocity", "accelerometer_bias"),
+        ("velocity", "attitude"),
+        ("attitude", "attitude"),
+    ]
     blocks = [(row, column) for row in roles for column in roles]
     return sorted(blocks, key=lambda block: main.index(block) if block in main else len(main) + ("position" in block))
 
@@ -216,7 +219,9 @@ def examine(problem: Problem, comparison: Comparison, most: int = 0) -> Iterator
         if len(hopeless) > most:
             yield Outcome(structure, tuple(hopeless), count=len(signs))
         else:
-            yield from (judge(replace(structure, **words), structure, comparison, blocks, results, most) for words in signs)
+            yield from (
+                judge(change(structure, words), structure, comparison, blocks, results, most) for words in signs
+            )
 
 
 def list_hopeless(structure: Card, comparison: Comparison, blocks: Sequence[Block], results: Any) -> Iterator[Mismatch]:
@@ -262,20 +267,33 @@ def has_evidence(card: Card, comparison: Comparison, blocks: Sequence[Block]) ->
     return False
 
 
+def change(card: Card, words: Mapping[str, Any]) -> Card:
+    """The card with other words in some fields."""
+    return replace(card, **words)
+
+
 def is_same(x: Any, y: Any) -> bool:
     """True where two balls overlap."""
     difference = x - y
     return difference == 0 if type(difference) is int else bool(difference.contains(0))
 
 
-FREE_FIELDS = ("earth_rate", "transport_rate", "gravity_gradient", "gravity_radius", "centrifugal", "height_variation", "radius_variation")
+FREE_FIELDS = (
+    "earth_rate",
+    "transport_rate",
+    "gravity_gradient",
+    "gravity_radius",
+    "centrifugal",
+    "height_variation",
+    "radius_variation",
+)
 
 
 def keep_simplest(cards: Sequence[Card]) -> list[Card]:
     """Of cards with the same conventions those that drop least: fewest blocks, then fewest terms."""
 
     def convention(card: Card) -> Card:
-        return replace(card, dropped=(), **dict.fromkeys(FREE_FIELDS, None) | {"gravity_gradient": "none"})
+        return change(card, {**dict.fromkeys(FREE_FIELDS), "dropped": ()})
 
     def cost(card: Card) -> tuple[int, int]:
         return len(card.dropped), sum(getattr(card, name) == DROPPED for name in FREE_FIELDS)

@@ -41,7 +41,11 @@ def transpose(A: Grid) -> Grid:
 
 
 def document(
-    order: str, blocks: Mapping[str, Grid], quantities: Mapping[str, Any], known: Mapping[str, str] | None = None, **declared: Any
+    order: str,
+    blocks: Mapping[str, Grid],
+    quantities: Mapping[str, Any],
+    known: Mapping[str, str] | None = None,
+    **declared: Any,
 ) -> dict[str, Any]:
     """A conventions file: ``order`` lists the roles by letters, ``blocks["va"]`` is velocity by attitude."""
     states = {role: [f"x_{role}{k}" for k in range(3)] for role in order}
@@ -80,7 +84,15 @@ NED = {
     "gravity": "g",
     "radii": ["RN", "RE"],
 }
-POSITIVE = {"RN": ["6", "7"], "RE": ["7", "8"], "R": ["6", "7"], "h": ["0", "1"], "L": ["-1", "1"], "g": "positive", "W": "positive"}
+POSITIVE = {
+    "RN": ["6", "7"],
+    "RE": ["7", "8"],
+    "R": ["6", "7"],
+    "h": ["0", "1"],
+    "L": ["-1", "1"],
+    "g": "positive",
+    "W": "positive",
+}
 
 
 def declared(quantities: Mapping[str, Any]) -> dict[str, Any]:
@@ -92,18 +104,10 @@ def declared(quantities: Mapping[str, Any]) -> dict[str, Any]:
 def kf_gins() -> dict[str, Any]:
     """Wuhan University, KF-GINS: phi angle, north-east-down, position error in metres; biases without correlation times."""
     m, n = "(RN + h)", "(RE + h)"
-    pp = [
-        [f"-vD/{m}", "0", f"vN/{m}"],
-        [f"vE*tan(L)/{n}", f"-(vD + vN*tan(L))/{n}", f"vE/{n}"],
-        ["0", "0", "0"],
-    ]
+    pp = [[f"-vD/{m}", "0", f"vN/{m}"], [f"vE*tan(L)/{n}", f"-(vD + vN*tan(L))/{n}", f"vE/{n}"], ["0", "0", "0"]]
     vp = [
         [f"-2*vE*W*cos(L)/{m} - vE**2/({m}*{n}*cos(L)**2)", "0", f"vN*vD/{m}**2 - vE**2*tan(L)/{n}**2"],
-        [
-            f"2*W*(vN*cos(L) - vD*sin(L))/{m} + vN*vE/({m}*{n}*cos(L)**2)",
-            "0",
-            f"(vE*vD + vN*vE*tan(L))/{n}**2",
-        ],
+        [f"2*W*(vN*cos(L) - vD*sin(L))/{m} + vN*vE/({m}*{n}*cos(L)**2)", "0", f"(vE*vD + vN*vE*tan(L))/{n}**2"],
         [f"2*W*vE*sin(L)/{m}", "0", f"-vE**2/{n}**2 - vN**2/{m}**2 + 2*g/(sqrt(RN*RE) + h)"],
     ]
     vv = [
@@ -118,7 +122,18 @@ def kf_gins() -> dict[str, Any]:
     ]
     av = [["0", f"1/{n}", "0"], [f"-1/{m}", "0", "0"], ["0", f"-tan(L)/{n}", "0"]]
     aa = neg(skew(local_rate(m, n)))
-    blocks = {"pp": pp, "pv": E, "vp": vp, "vv": vv, "va": skew(F_N), "vb": C, "ap": ap, "av": av, "aa": aa, "ag": neg(C)}
+    blocks = {
+        "pp": pp,
+        "pv": E,
+        "vp": vp,
+        "vv": vv,
+        "va": skew(F_N),
+        "vb": C,
+        "ap": ap,
+        "av": av,
+        "aa": aa,
+        "ag": neg(C),
+    }
     return document("pvagb", blocks, NED, **declared(NED))
 
 
@@ -145,19 +160,11 @@ def groves_ned() -> dict[str, Any]:
     ]
     vp = [
         [f"-vE**2/({n}*cos(L)**2) - 2*vE*W*cos(L)", "0", f"vE**2*tan(L)/{n}**2 - vN*vD/{m}**2"],
-        [
-            f"vN*vE/({n}*cos(L)**2) + 2*vN*W*cos(L) - 2*vD*W*sin(L)",
-            "0",
-            f"-(vN*vE*tan(L) + vE*vD)/{n}**2",
-        ],
+        [f"vN*vE/({n}*cos(L)**2) + 2*vN*W*cos(L) - 2*vD*W*sin(L)", "0", f"-(vN*vE*tan(L) + vE*vD)/{n}**2"],
         ["2*vE*W*sin(L)", "0", f"vE**2/{n}**2 + vN**2/{m}**2 - 2*g/rS"],
     ]
     pv = [[f"1/{m}", "0", "0"], ["0", f"1/({n}*cos(L))", "0"], ["0", "0", "-1"]]
-    pp = [
-        ["0", "0", f"-vN/{m}**2"],
-        [f"vE*sin(L)/({n}*cos(L)**2)", "0", f"-vE/({n}**2*cos(L))"],
-        ["0", "0", "0"],
-    ]
+    pp = [["0", "0", f"-vN/{m}**2"], [f"vE*sin(L)/({n}*cos(L)**2)", "0", f"-vE/({n}**2*cos(L))"], ["0", "0", "0"]]
     blocks = {
         "aa": aa, "av": av, "ap": ap, "ag": C, "va": neg(skew(F_N)), "vv": vv, "vp": vp, "vb": C, "pv": pv, "pp": pp,
     }  # fmt: skip
@@ -166,7 +173,13 @@ def groves_ned() -> dict[str, Any]:
 
 def groves_inertial() -> dict[str, Any]:
     """Groves, 2nd edition, (14.30)-(14.35): Earth-centred inertial frame."""
-    quantities = {"specific_force": F_N, "rotation": C, "position": ["r1", "r2", "r3"], "gravity": ["g1", "g2", "g3"], "radii": ["rS"]}
+    quantities = {
+        "specific_force": F_N,
+        "rotation": C,
+        "position": ["r1", "r2", "r3"],
+        "gravity": ["g1", "g2", "g3"],
+        "radii": ["rS"],
+    }
     norm = "sqrt(r1**2 + r2**2 + r3**2)"
     vp = [[f"-2*g{i}*r{j}/(rS*{norm})" for j in (1, 2, 3)] for i in (1, 2, 3)]
     blocks = {"ag": C, "va": neg(skew(F_N)), "vp": vp, "vb": C, "pv": E}

@@ -92,7 +92,11 @@ class Flight:
             position = vec(N / (RN + h), Ea / ((RE + h) * mp.cos(L)), -D)
         gravity = self.gravity(x)
         acceleration = x["C"] * f + gravity - skew(2 * turning + transport) * x["velocity"]
-        return {"C": x["C"] * skew(w) - skew(turning + transport) * x["C"], "velocity": acceleration, "position": position}
+        return {
+            "C": x["C"] * skew(w) - skew(turning + transport) * x["C"],
+            "velocity": acceleration,
+            "position": position,
+        }
 
     def gravity(self, x: dict[str, Any]) -> Any:
         card = self.card
@@ -100,7 +104,9 @@ class Flight:
             down = self.g[0]
             if card.gravity_gradient == "vertical":
                 RN, RE = self.radii(self.L0)
-                radius = {"R": RN, "RN": RN, "RE": RE, "sqrt(RN*RE)": mp.sqrt(RN * RE)}[card.gravity_radius.split(" ")[0]]
+                radius = {"R": RN, "RN": RN, "RE": RE, "sqrt(RN*RE)": mp.sqrt(RN * RE)}[
+                    card.gravity_radius.split(" ")[0]
+                ]
                 radius += self.h if "+ h" in card.gravity_radius else 0
                 down *= 1 - 2 * (x["position"][2] - self.h) / radius
             return AXES[card.axes] * vec(0, 0, down)
@@ -114,14 +120,24 @@ class Flight:
     def truth(self) -> dict[str, Any]:
         curved = self.card.frame == "local-level" and self.card.earth != "none"
         position = vec(self.L, 0.4, self.h) if curved else self.r
-        return {"C": self.C, "velocity": self.v, "position": position, "gyro_bias": vec(0, 0, 0), "accelerometer_bias": vec(0, 0, 0)}
+        return {
+            "C": self.C,
+            "velocity": self.v,
+            "position": position,
+            "gyro_bias": vec(0, 0, 0),
+            "accelerometer_bias": vec(0, 0, 0),
+        }
 
     # Errors by the definitions of a card
 
     def signs(self) -> tuple[int, int, int]:
         card = self.card
         plus = "estimate - truth"
-        return (1 if card.error == plus else -1), (1 if card.rotation_sign == "+" else -1), (1 if card.bias_sign == plus else -1)
+        return (
+            (1 if card.error == plus else -1),
+            (1 if card.rotation_sign == "+" else -1),
+            (1 if card.bias_sign == plus else -1),
+        )
 
     def moved(self, x: dict[str, Any], y: dict[str, Any]) -> Any:
         """From the true to the estimated local level, for psi."""
