@@ -30,7 +30,7 @@ from navsym.language.tomlfile import read_toml
 
 @dataclass(frozen=True, slots=True)
 class Conflict:
-    """A block that must change: its roles, entries of F that differ (from 1), the mended rows, and how that is known."""
+    """A block that must change: roles, entries of F that differ (from 1), the mended rows, and how that is known."""
 
     block: tuple[str, str]
     entries: tuple[tuple[int, int], ...]
@@ -74,7 +74,7 @@ class Conventions(Answer):
     complete     : True where each card is proved and each other one excluded at an exact point
     conflicts    : with no card: the blocks that must change for ``nearest``, one of the cards that ask for the fewest
     alternatives : other sets of as few blocks
-    excluded     : the neighbours of the cards, with what excludes them; ``examined`` counts all cards that were looked at
+    excluded     : the neighbours of the cards, with what excludes them; ``examined`` counts all cards
     unused       : tables of the file that say nothing about the error dynamics
     """
 
@@ -120,12 +120,12 @@ def conventions(
 ) -> Conventions:
     """All cards of conventions under which the error dynamics of a model are right.
 
-    For each card the error equations are derived from the nonlinear mechanisation, d/dt (error) to first order along the
-    true flow, and compared with F block by block: exactly by the prover where they agree, at an exact point where not.
+    For each card the error equations are derived from the nonlinear mechanisation, to first order along the true flow,
+    and compared with F block by block: by the prover where they agree, at an exact point where they differ.
 
     model      : path of a conventions file, its document, or a :class:`navsym.Model`
     roles      : role (position, velocity, attitude, gyro_bias, accelerometer_bias) -> names of its three states
-    quantities : quantity (specific_force, rotation, latitude, velocity, radii, ...) -> names or expressions of parameters
+    quantities : quantity (specific_force, rotation, latitude, velocity, radii, ...) -> names or expressions
     known      : parts of the card that are certain, such as ``{"frame": "inertial"}``
 
     With no card the answer names the fewest blocks that must change. Raises a NavsymError for bad input: roles that are

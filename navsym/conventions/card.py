@@ -44,7 +44,7 @@ class Card:
     earth            : shape; ``none`` is flat, with constant gravity
     earth_rate, transport_rate, centrifugal, height_variation : terms that are kept or dropped
     radius_variation : dRN/dL and dRE/dL: kept, dropped, or kept in the equations of the position only
-    gravity_gradient : ``central``: of -mu r/|r|^3; ``radial``: only -2 g r'/(|r| R); ``vertical``: -2 g/R along the vertical
+    gravity_gradient : ``central``: of -mu r/|r|^3; ``radial``: -2 g r'/(|r| R); ``vertical``: -2 g/R along down
     gravity_radius   : R of the vertical gradient, in words
     position_error   : ``metres`` along the axes, or ``geodetic`` (latitude, longitude, height)
     vector_error     : ``difference``; ``rotated``: the truth is turned by the attitude error first (right invariant);

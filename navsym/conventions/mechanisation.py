@@ -5,7 +5,7 @@ obeys the same equations with the sensors' output less the estimated biases. For
 error eps e_j, the rate of the error is linear in eps: its coefficient is column j of F.
 
 Sources of the equations: Andreev, Theory of Inertial Navigation; Groves, Principles of GNSS, Inertial, and Multisensor
-Integrated Navigation Systems, chapter 5. The errors of a card are definitions (:class:`Card`); no error equation is typed.
+Integrated Navigation Systems, chapter 5. The errors of a card are definitions; no error equation is typed.
 """
 
 from __future__ import annotations
@@ -81,7 +81,7 @@ class World:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class State:
-    """Attitude, velocity, biases, and position; a position on the Earth as its small change (latitude, longitude, height)."""
+    """Attitude, velocity, biases, position; on the Earth its small change in latitude, longitude and height."""
 
     attitude: Grid
     velocity: Vector

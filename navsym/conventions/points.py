@@ -1,7 +1,7 @@
 """Points of a motion: values of the user's parameters that satisfy the relations of the quantities, in balls.
 
-A rotation satisfies C C' = E, the specific force in the frame is C times that in the body, the rates of the Earth and of
-the local level follow from latitude, velocity and radii. What no relation binds is a random rational.
+A rotation satisfies C C' = E, the specific force in the frame is C times that in the body, the rates of the Earth and
+of the local level follow from latitude, velocity and radii. What no relation binds is a random rational.
 """
 
 from __future__ import annotations

@@ -1,13 +1,14 @@
 """What the prover says of a card: each block equals the card's, or an entry of it does not.
 
 The statements are formulas of the user's own names. Where names are bound by relations they are written by free ones:
-a rotation by three angles, the force in the frame by that in the body, the rate of the local level by velocity and radii.
+a rotation by three angles, the force in the frame by that in the body, the rate of a local level by the velocity.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import cache
+from itertools import chain
 from typing import Any
 
 from navsym.claims.verdict import OPEN, PROVED, REFUTED, Verdict
@@ -65,7 +66,7 @@ class Prover:
         """True where the prover grants that the blocks are equal."""
         if block[0] in BIASES and block[1] in BIASES:
             return True
-        pairs = zip(sum(self.written(block), []), sum(self.block_texts(card, block, sign), []), strict=True)
+        pairs = zip(chain(*self.written(block)), chain(*self.block_texts(card, block, sign)), strict=True)
         different = tuple(pair for pair in pairs if pair[0] != pair[1])
         return not different or all(self.compare(card, *pair).status == PROVED for pair in different)
 

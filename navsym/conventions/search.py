@@ -129,7 +129,7 @@ class Comparison:
         return None
 
     def bias_block(self, block: Block) -> Mismatch | None:
-        """What no bias may do: depend on another one, on the motion, or grow where the signs of its constants are known."""
+        """What no bias may do: depend on another one or on the motion, or grow where its constants have known signs."""
         moving = {name for trees in self.problem.quantities.values() for name in list_names(*trees)}
         values = self.point(Card("inertial"), 0).values
         wrong = []

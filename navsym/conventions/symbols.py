@@ -260,7 +260,7 @@ def rotation_rules() -> dict[tuple[int, int], dict[tuple[int, ...], Fraction]]:
     """A Groebner basis of the relations of a rotation: pair of entries -> what its product is.
 
     The relations C C' = E, C' C = E and cofactors = C span all that a basis of degree two needs; elimination in degree
-    reverse lexicographic order makes it one. Any rule follows from the relations, so the reduction is sound in any case.
+    reverse lexicographic order makes it one. Every rule follows from the relations, so the reduction is sound.
     """
     pairs = sorted(((i, j) for j in range(9) for i in range(j + 1)), key=lambda pair: (pair[1], pair[0]))
     columns: list[tuple[int, ...]] = [*pairs, *((k,) for k in range(9)), ()]

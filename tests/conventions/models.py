@@ -102,7 +102,7 @@ def declared(quantities: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def kf_gins() -> dict[str, Any]:
-    """Wuhan University, KF-GINS: phi angle, north-east-down, position error in metres; biases without correlation times."""
+    """Wuhan University, KF-GINS: phi angle, north-east-down, position error in metres, constant biases."""
     m, n = "(RN + h)", "(RE + h)"
     pp = [[f"-vD/{m}", "0", f"vN/{m}"], [f"vE*tan(L)/{n}", f"-(vD + vN*tan(L))/{n}", f"vE/{n}"], ["0", "0", "0"]]
     vp = [
@@ -143,7 +143,7 @@ def local_rate(m: str, n: str) -> list[str]:
 
 
 def groves_ned() -> dict[str, Any]:
-    """Groves, 2nd edition, (14.63)-(14.71): local navigation frame, geodetic position, gravity by the geocentric radius."""
+    """Groves, 2nd edition, (14.63)-(14.71): local navigation frame, geodetic position, geocentric radius of gravity."""
     m, n = "(RN + h)", "(RE + h)"
     quantities = {**NED, "radii": ["RN", "RE", "rS"]}
     aa = neg(skew(local_rate(m, n)))
@@ -234,7 +234,8 @@ def right_invariant() -> dict[str, Any]:
         "position": ["r1", "r2", "r3"], "gravity": ["g1", "g2", "g3"],
     }  # fmt: skip
     blocks = {
-        "va": skew(["g1", "g2", "g3"]), "pv": E, "ag": neg(C), "vg": neg(mul(skew(["v1", "v2", "v3"]), C)), "vb": neg(C),
+        "va": skew(["g1", "g2", "g3"]), "pv": E, "ag": neg(C), "vg": neg(mul(skew(["v1", "v2", "v3"]), C)),
+        "vb": neg(C),
         "pg": neg(mul(skew(["r1", "r2", "r3"]), C)),
     }  # fmt: skip
     return document("avpgb", blocks, quantities, {"frame": "inertial"})
@@ -249,7 +250,7 @@ def left_invariant() -> dict[str, Any]:
 
 
 def msckf() -> dict[str, Any]:
-    """Mourikis and Roumeliotis 2007, error state truth minus estimate; VINS-Mono has the same continuous-time matrix."""
+    """Mourikis and Roumeliotis 2007, error state truth minus estimate; VINS-Mono has the same matrix."""
     return {**sola_local(), "known": {"frame": "inertial", "error": "truth - estimate"}}
 
 
