@@ -176,6 +176,7 @@ def test_neighbours_are_excluded_by_an_entry_at_a_point():
     assert all(exclusion.entry and exclusion.why for exclusion in answer.excluded)
 
 
+@pytest.mark.long
 def test_without_a_known_frame_a_flat_model_fits_every_frame():
     document = models.sola_global()
     document["known"] = {"error": PLUS}
